@@ -1,0 +1,59 @@
+//! Clearance at a tolerance level (eq. 9) and its class.
+
+use crate::Scalar;
+
+/// A gap over the production: mean and standard deviation (m).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GapStatistics<S> {
+    /// Mean x (m).
+    pub mean: S,
+    /// Standard deviation σ (m).
+    pub deviation: S,
+}
+
+impl<S: Scalar> GapStatistics<S> {
+    /// The gap at tolerance level `n`: x − n·σ (m, eq. 9). n > 0 tightens, n < 0 loosens.
+    #[inline(always)]
+    pub fn at(&self, n: S) -> S {
+        self.mean - n * self.deviation
+    }
+}
+
+/// The paper's three classes of a gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum GapClass {
+    /// Negative: the parts are pressed together.
+    Compressed,
+    /// Exactly zero.
+    Zero,
+    /// Positive.
+    Free,
+}
+
+impl GapClass {
+    /// The class of a `gap` (m).
+    pub fn of<S: Scalar + PartialOrd>(gap: S) -> Self {
+        if gap < S::zero() {
+            Self::Compressed
+        } else if gap > S::zero() {
+            Self::Free
+        } else {
+            Self::Zero
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{GapClass, GapStatistics};
+
+    #[test]
+    fn tightens_with_n_and_classifies() {
+        let gap = GapStatistics { mean: 0.5, deviation: 0.25 };
+        assert_eq!((gap.at(0.0), gap.at(2.0), gap.at(-2.0)), (0.5, 0.0, 1.0));
+        assert_eq!(GapClass::of(gap.at(2.0)), GapClass::Zero);
+        assert_eq!(GapClass::of(gap.at(3.0)), GapClass::Compressed);
+        assert_eq!(GapClass::of(gap.at(0.0)), GapClass::Free);
+    }
+}

@@ -1,0 +1,45 @@
+//! The drive: a P-velocity controller behind a ramp (eq. 12).
+
+use crate::{Scalar, Vector3, law::step::step};
+
+/// F_z = K_p·(STEP(t, t0, 0, t1, V) − v_z) along the frame's z, at a point fixed in the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive<S> {
+    /// Gain K_p (N·s/m).
+    pub gain: S,
+    /// Start of the ramp t0 (s).
+    pub ramp_start: S,
+    /// End of the ramp t1 (s), after its start.
+    pub ramp_end: S,
+    /// Commanded speed V at the end of the ramp (m/s).
+    pub speed: S,
+    /// Where the force acts, from the centre of mass (m).
+    pub point_b: Vector3<S>,
+}
+
+impl<S: Scalar> Drive<S> {
+    /// The commanded speed (m/s) at time `t` (s).
+    #[inline(always)]
+    pub fn command(&self, t: S) -> S {
+        step(t, self.ramp_start, S::zero(), self.ramp_end, self.speed)
+    }
+
+    /// The force (N) along the frame's z at time `t` (s) and speed `v_z` (m/s) of the centre of mass.
+    #[inline(always)]
+    pub fn force(&self, t: S, v_z: S) -> S {
+        self.gain * (self.command(t) - v_z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Drive;
+    use crate::Vector3;
+
+    #[test]
+    fn blocked_at_full_speed_gives_four_newton() {
+        let drive = Drive { gain: 40.0, ramp_start: 0.05, ramp_end: 1.0, speed: 0.1, point_b: Vector3::zeros() };
+        assert_eq!(drive.force(2.0, 0.0), 4.0);
+        assert_eq!(drive.force(0.0, 0.1), -4.0);
+    }
+}

@@ -1,0 +1,11 @@
+//! Force laws, one a file. Each gives its force together with the derivatives an implicit step needs.
+
+pub mod bistop;
+pub mod elastic;
+pub mod friction;
+pub mod impact;
+pub mod step;
+
+pub use elastic::{Elastic, Linear, Power, ThreeHalves};
+pub use friction::{Friction, Frictionless, Regularised};
+pub use impact::{Impact, NormalResponse};

@@ -1,0 +1,30 @@
+//! Rigid bodies on clearance joints, stepped in bounded time with the same bits on every machine.
+//!
+//! Units are SI throughout (m, kg, s, N, rad). Suffixes name the frame: `_w` the fixed frame, `_b` the moving body.
+//! A gap is the signed distance between the two surfaces of a contact, negative when they penetrate.
+//!
+//! *The paper* is Makkonen, Kuosmanen, Münster, Mäkeläinen, Ramseier: "Quality management by concurrent computer
+//! aided tolerance analysis and functional prototyping"; equation and table numbers are its own.
+//!
+//! Where to look: [`law`] holds one force law a file, [`slide`] the mechanism of the paper, [`integrator`] the
+//! fixed-step schemes, [`kernel`] what a controller calls once a step, [`table`] the flash table it may look up instead.
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod clearance;
+pub mod drive;
+mod error;
+pub mod integrator;
+pub mod kernel;
+pub mod law;
+mod linear;
+pub mod mechanism;
+pub mod menu;
+pub mod pose;
+pub mod power;
+mod scalar;
+pub mod slide;
+
+pub use error::ParameterError;
+pub use nalgebra::{SVector, Vector3};
+pub use scalar::Scalar;

@@ -1,0 +1,137 @@
+//! The menu of scene types: from plain data to the cheapest kernel that covers it.
+
+use crate::{
+    ParameterError, Scalar,
+    drive::Drive,
+    law::{Elastic, Friction, Frictionless, Impact, Linear, Power, Regularised, ThreeHalves},
+    slide::{Body, Slide},
+};
+
+/// Contact parameters, SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactData<S> {
+    /// Stiffness k (N/m^e).
+    pub stiffness: S,
+    /// Exponent e.
+    pub exponent: S,
+    /// Damping c (N·s/m).
+    pub damping: S,
+    /// Depth of full damping d (m).
+    pub depth: S,
+}
+
+/// Friction parameters, SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FrictionData<S> {
+    /// No friction.
+    None,
+    /// Coulomb friction smoothed over a stick band.
+    Regularised {
+        /// Coefficient μ.
+        coefficient: S,
+        /// Stick band v_s (m/s).
+        stick_band: S,
+    },
+}
+
+/// A slide as plain data, SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlideData<S> {
+    /// Body, pins and gaps.
+    pub body: Body<S>,
+    /// Contact law.
+    pub contact: ContactData<S>,
+    /// Friction law.
+    pub friction: FrictionData<S>,
+    /// Drive.
+    pub drive: Drive<S>,
+}
+
+/// Work to be done on a slide of whichever type covers the data.
+pub trait SlideVisitor<S> {
+    /// What the work gives.
+    type Output;
+
+    /// Does the work.
+    fn visit<E: Elastic<S>, F: Friction<S>>(self, slide: Slide<S, E, F>) -> Self::Output;
+}
+
+/// The normal law's type for an exponent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NormalType {
+    /// e = 1.
+    Linear,
+    /// e = 3/2.
+    ThreeHalves,
+    /// Any other.
+    Power,
+}
+
+/// The friction law's type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrictionType {
+    /// No friction asked for, or μ = 0.
+    Frictionless,
+    /// The smoothed law.
+    Regularised,
+}
+
+impl<S: Scalar + PartialOrd> ContactData<S> {
+    /// The cheapest normal law that covers the exponent.
+    pub fn normal_type(&self) -> NormalType {
+        if self.exponent == S::one() {
+            NormalType::Linear
+        } else if self.exponent == S::from_f64(1.5) {
+            NormalType::ThreeHalves
+        } else {
+            NormalType::Power
+        }
+    }
+}
+
+impl<S: Scalar + PartialOrd> FrictionData<S> {
+    /// The cheapest friction law that covers the data.
+    pub fn friction_type(&self) -> FrictionType {
+        match self {
+            Self::Regularised { coefficient, .. } if *coefficient != S::zero() => FrictionType::Regularised,
+            _ => FrictionType::Frictionless,
+        }
+    }
+}
+
+impl<S: Scalar + PartialOrd> SlideData<S> {
+    /// Hands the slide to `visitor` as the cheapest type that covers it.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    pub fn visit<V: SlideVisitor<S>>(&self, visitor: V) -> Result<V::Output, ParameterError<S>> {
+        let ContactData { stiffness, exponent, .. } = self.contact;
+        match self.contact.normal_type() {
+            NormalType::Linear => self.visit_elastic(Linear::new(stiffness)?, visitor),
+            NormalType::ThreeHalves => self.visit_elastic(ThreeHalves::new(stiffness)?, visitor),
+            NormalType::Power => self.visit_elastic(Power::new(stiffness, exponent)?, visitor),
+        }
+    }
+
+    fn visit_elastic<E: Elastic<S>, V: SlideVisitor<S>>(
+        &self,
+        elastic: E,
+        visitor: V,
+    ) -> Result<V::Output, ParameterError<S>> {
+        let contact = Impact::new(elastic, self.contact.damping, self.contact.depth)?;
+        match self.friction {
+            FrictionData::Regularised { coefficient, stick_band } => {
+                let friction = Regularised::new(coefficient, stick_band)?;
+                match self.friction.friction_type() {
+                    FrictionType::Regularised => {
+                        Ok(visitor.visit(Slide::new(self.body, contact, friction, self.drive)?))
+                    }
+                    FrictionType::Frictionless => {
+                        Ok(visitor.visit(Slide::new(self.body, contact, Frictionless, self.drive)?))
+                    }
+                }
+            }
+            FrictionData::None => Ok(visitor.visit(Slide::new(self.body, contact, Frictionless, self.drive)?)),
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Tolerance analysis, dynamics and flash tables of sliding mechanisms.
+#![forbid(unsafe_code)]
+
+pub mod outcome;
+pub mod scene;
+pub mod sweep;

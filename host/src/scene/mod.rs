@@ -1,0 +1,162 @@
+//! Scene files: what a designer writes, validated and in SI units.
+//!
+//! A file uses the units of the paper's Table 1 (mm, g, N/mm, N·s/mm) or says its own; this module is the one place
+//! where they become SI.
+
+mod diagnostic;
+mod parse;
+mod value;
+
+use slipfit_core::{
+    Scalar, Vector3,
+    clearance::GapStatistics,
+    drive::Drive,
+    menu::{ContactData, FrictionData, SlideData},
+    slide::{ABSENT, Body, CONTACTS, PINS, box_inertia},
+};
+
+pub use diagnostic::SceneError;
+
+/// The paper's slide, its ramp as printed: what every command works on without a scene.
+pub const CD_ROM_SLIDE: &str = include_str!("../../scenes/cd-rom-slide.toml");
+
+/// Which surfaces meet a pin, in the order of Table 2.
+pub const SURFACES: [&str; 4] = ["left", "right", "rail", "wall"];
+
+/// A sliding mechanism and what is to be done with it. SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Title, for plots and reports.
+    pub title: String,
+    /// The slide.
+    pub slide: SlideSpec,
+    /// Contact law.
+    pub contact: ContactData<f64>,
+    /// Friction law.
+    pub friction: FrictionData<f64>,
+    /// Drive.
+    pub drive: Drive<f64>,
+    /// Pins with their gaps.
+    pub pins: [PinSpec; PINS],
+    /// Nominal clearances stated on the drawing, [across, up and down] (m); information only.
+    pub nominal_clearance: Option<[f64; 2]>,
+    /// One run.
+    pub run: RunSpec,
+    /// Tolerance levels of a sweep.
+    pub sweep: LevelRange,
+}
+
+/// The moving body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlideSpec {
+    /// Mass (kg).
+    pub mass: f64,
+    /// Edges x, y, z (m) of the uniform box that has the slide's inertia.
+    pub inertia_box: [f64; 3],
+    /// Gravity in the fixed frame (m/s²).
+    pub gravity: [f64; 3],
+}
+
+/// A pin of the frame and its gaps over the production.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PinSpec {
+    /// Name, such as "left front".
+    pub name: String,
+    /// Position from the slide's centre of mass at the nominal pose (m).
+    pub position: [f64; 3],
+    /// Left, right, rail and wall gap; `None` where the pin has no such contact.
+    pub gaps: [Option<GapStatistics<f64>>; 4],
+}
+
+/// One run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunSpec {
+    /// Simulated time (s).
+    pub duration: f64,
+    /// Step (s).
+    pub step: f64,
+    /// Scheme.
+    pub integrator: IntegratorKind,
+}
+
+/// The fixed-step schemes a scene can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum IntegratorKind {
+    /// First order.
+    ImplicitEuler,
+    /// Second order.
+    Sdirk2,
+}
+
+/// Equidistant tolerance levels: `first`, `first + step`, …, up to `last`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelRange {
+    /// First level.
+    pub first: f64,
+    /// Distance between levels, positive.
+    pub step: f64,
+    /// How many, at least 1.
+    pub count: usize,
+}
+
+impl LevelRange {
+    /// The `i`-th level.
+    pub fn level(&self, i: usize) -> f64 {
+        self.first + self.step * i as f64
+    }
+
+    /// All levels.
+    pub fn levels(&self) -> Vec<f64> {
+        (0..self.count).map(|i| self.level(i)).collect()
+    }
+}
+
+impl Scene {
+    /// All sixteen gaps (m) at the tolerance levels `n`, one a contact; [`ABSENT`] where there is no contact.
+    pub fn gaps_at(&self, n: &[f64; CONTACTS]) -> [f64; CONTACTS] {
+        let mut gaps = [ABSENT; CONTACTS];
+        let statistics = self.pins.iter().flat_map(|pin| &pin.gaps);
+        for ((gap, statistics), n) in gaps.iter_mut().zip(statistics).zip(n) {
+            if let Some(statistics) = statistics {
+                *gap = statistics.at(*n);
+            }
+        }
+        gaps
+    }
+
+    /// The slide with the given `gaps` (m) as the kernel's data, every number rounded once to the scalar `S`.
+    pub fn slide_data<S: Scalar>(&self, gaps: &[f64; CONTACTS]) -> SlideData<S> {
+        let s = S::from_f64;
+        let vector = |[x, y, z]: [f64; 3]| Vector3::new(s(x), s(y), s(z));
+        let inertia = box_inertia(self.slide.mass, self.slide.inertia_box);
+        let point = self.drive.point_b;
+        SlideData {
+            body: Body {
+                mass: s(self.slide.mass),
+                inertia_b: vector(inertia.into()),
+                gravity_w: vector(self.slide.gravity),
+                pins_w: [0, 1, 2, 3].map(|i| vector(self.pins[i].position)),
+                gaps: gaps.map(s),
+            },
+            contact: ContactData {
+                stiffness: s(self.contact.stiffness),
+                exponent: s(self.contact.exponent),
+                damping: s(self.contact.damping),
+                depth: s(self.contact.depth),
+            },
+            friction: match self.friction {
+                FrictionData::None => FrictionData::None,
+                FrictionData::Regularised { coefficient, stick_band } => {
+                    FrictionData::Regularised { coefficient: s(coefficient), stick_band: s(stick_band) }
+                }
+            },
+            drive: Drive {
+                gain: s(self.drive.gain),
+                ramp_start: s(self.drive.ramp_start),
+                ramp_end: s(self.drive.ramp_end),
+                speed: s(self.drive.speed),
+                point_b: vector(point.into()),
+            },
+        }
+    }
+}
