@@ -11,6 +11,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod axis;
 pub mod clearance;
 pub mod drive;
 mod error;

@@ -1,15 +1,23 @@
 //! The same slide at many tolerance levels.
 
-use slipfit_core::{clearance::GapClass, slide::CONTACTS};
+use rayon::prelude::*;
+use slipfit_core::{
+    clearance::GapClass,
+    slide::{ABSENT, CONTACTS},
+};
 
-use crate::outcome::{Outcome, Trajectory};
+use crate::{
+    outcome::{Outcome, Trajectory, Verdict},
+    scene::Scene,
+    simulate::{Settings, SimulateError, simulate},
+};
 
 /// One level of a sweep.
 #[derive(Clone, Debug)]
 pub struct Level {
     /// Tolerance level, positive is tighter.
     pub n: f64,
-    /// The run, every millisecond.
+    /// The run, sampled.
     pub trajectory: Trajectory,
     /// Its figures, the verdict confirmed at half the step.
     pub outcome: Outcome,
@@ -22,4 +30,62 @@ pub struct Level {
 pub struct Sweep {
     /// Equidistant levels, ascending.
     pub levels: Vec<Level>,
+}
+
+/// The class of every gap (m); `None` where there is no contact.
+pub fn classes(gaps: &[f64; CONTACTS]) -> [Option<GapClass>; CONTACTS] {
+    gaps.map(|gap| (gap < ABSENT / 2.0).then(|| GapClass::of(gap)))
+}
+
+/// Runs one unit and, if it comes to a verdict, once more at half the step: where the two disagree the verdict is
+/// undecided.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn level(scene: &Scene, n: f64, settings: &Settings) -> Result<Level, SimulateError> {
+    let gaps = scene.gaps_at(&[n; CONTACTS]);
+    let mut run = simulate(scene, &gaps, settings)?;
+    run.outcome.verdict = confirmed(scene, &gaps, settings, &run.outcome)?;
+    Ok(Level { n, trajectory: run.trajectory, outcome: run.outcome, classes: classes(&gaps) })
+}
+
+/// The verdict of `outcome`, if a run at half the step gives the same.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn confirmed(
+    scene: &Scene,
+    gaps: &[f64; CONTACTS],
+    settings: &Settings,
+    outcome: &Outcome,
+) -> Result<Verdict, SimulateError> {
+    if outcome.verdict == Verdict::Undecided {
+        return Ok(Verdict::Undecided);
+    }
+    let mut half = *settings;
+    half.run.step /= 2.0;
+    let again = simulate(scene, gaps, &half)?.outcome.verdict;
+    Ok(if again == outcome.verdict { again } else { Verdict::Undecided })
+}
+
+/// Runs every level of `levels`, on all threads of the current pool; `done` is called after each. The result does
+/// not depend on the number of threads.
+///
+/// # Errors
+/// The first level's [`SimulateError`], in the order of levels.
+pub fn sweep(
+    scene: &Scene,
+    levels: &[f64],
+    settings: &Settings,
+    done: impl Fn() + Sync,
+) -> Result<Sweep, SimulateError> {
+    let levels: Vec<Result<Level, SimulateError>> = levels
+        .par_iter()
+        .map(|&n| {
+            let level = level(scene, n, settings);
+            done();
+            level
+        })
+        .collect();
+    Ok(Sweep { levels: levels.into_iter().collect::<Result<_, _>>()? })
 }

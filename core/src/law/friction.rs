@@ -8,9 +8,15 @@ use crate::{ParameterError, Scalar, error::bounded};
 pub struct Contact<S> {
     /// Force on the body (N).
     pub force: [S; 3],
-    /// −∂force/∂u (N·s/m): rows are forces, columns velocities.
+    /// −∂force/∂u (N·s/m), near enough for Newton: rows are forces, columns velocities.
     pub impedance: [[S; 3]; 3],
 }
+
+/// How much of the ratio's slope the impedance takes; the rest is the secant. Newton's pure tangent (1) is flat where
+/// the body slides, so that an iterate that comes from there overshoots the stick band and passes are lost to and fro:
+/// on the jammed stroke at 1 ms four passes left 3e-3 N·s, with 0.9 they leave 3e-5 N·s. The secant alone (0) never
+/// overshoots but creeps.
+const TANGENT_SHARE: f64 = 0.9;
 
 /// A friction law.
 pub trait Friction<S>: Copy {
@@ -68,7 +74,7 @@ impl<S: Scalar> Friction<S> for Regularised<S> {
     fn add(&self, [x, y]: [S; 2], normal: S, normal_slope: S, contact: &mut Contact<S>) {
         let (ratio, ratio_slope) = self.per_speed(x * x + y * y);
         let along = ratio * normal;
-        let turn = (ratio_slope + ratio_slope) * normal;
+        let turn = S::from_f64(2.0 * TANGENT_SHARE) * ratio_slope * normal;
         let grip = ratio * normal_slope;
         contact.force[1] = -along * x;
         contact.force[2] = -along * y;
@@ -79,7 +85,7 @@ impl<S: Scalar> Friction<S> for Regularised<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Contact, Friction, Regularised};
+    use super::{Contact, Friction, Regularised, TANGENT_SHARE};
 
     fn traction(velocity: [f64; 3]) -> Contact<f64> {
         let mut contact = Contact { force: [0.0; 3], impedance: [[0.0; 3]; 3] };
@@ -99,9 +105,14 @@ mod tests {
     }
 
     #[test]
-    fn impedance_is_the_derivative() {
+    fn impedance_is_between_the_derivative_and_the_secant() {
         for velocity in [[1e-3, 3e-5, -2e-5], [0.0, 0.02, 0.01], [1e-3, 0.0, 2e-4]] {
             let at = traction(velocity);
+            let secant = Regularised::new(0.3, 1e-4)
+                .unwrap()
+                .per_speed(velocity[1] * velocity[1] + velocity[2] * velocity[2])
+                .0
+                * (2.0 + 5.0 * velocity[0]);
             for column in 0..3 {
                 let h = 1e-9;
                 let (mut up, mut down) = (velocity, velocity);
@@ -109,6 +120,9 @@ mod tests {
                 down[column] -= h;
                 for row in 1..3 {
                     let slope = -(traction(up).force[row] - traction(down).force[row]) / (2.0 * h);
+                    let secant = if row == column { secant } else { 0.0 };
+                    // The share acts on tangential velocities only; the normal force's part is exact.
+                    let slope = if column == 0 { slope } else { TANGENT_SHARE * slope + (1.0 - TANGENT_SHARE) * secant };
                     let found = at.impedance[row][column];
                     assert!(libm::fabs(found - slope) <= 1e-5 * (1.0 + libm::fabs(slope)), "{row}{column} {found} {slope}");
                 }

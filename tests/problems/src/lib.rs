@@ -3,3 +3,4 @@
 #![forbid(unsafe_code)]
 
 pub mod cd_rom;
+pub mod laws;

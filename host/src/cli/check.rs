@@ -1,0 +1,198 @@
+//! `slipfit check`: is the scene sound, what is left free, when does a gap close.
+
+use std::fmt::Write;
+
+use clap::Args;
+use serde::Serialize;
+use slipfit_core::slide::CONTACTS;
+
+use super::{Failure, SceneArguments, print, print_json, text_table};
+use crate::{
+    number::{fixed, level, or_dash},
+    mobility::{contacts, degrees_of_freedom, rank_of_normals},
+    scene::{SURFACES, Scene},
+    self_locking::{DriveSide, Guide, guide},
+    sweep::classes,
+    table2::derived,
+};
+
+/// Validates a scene: degrees of freedom, gaps at n, the n that closes each pair, warnings.
+#[derive(Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Tolerance level of the gaps shown; positive is tighter.
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true)]
+    n: f64,
+}
+
+#[derive(Serialize)]
+struct Findings {
+    title: String,
+    parts: u32,
+    n_cl: u32,
+    degrees_of_freedom: i64,
+    normal_law: &'static str,
+    friction_law: &'static str,
+    kernel_why: String,
+    n: f64,
+    gaps: Vec<Gap>,
+    n_star: Vec<Closing>,
+    guide: Option<Guide>,
+    warnings: Vec<String>,
+}
+
+/// A pair of gaps and the level that closes it.
+#[derive(Clone, Serialize)]
+struct Closing {
+    pin: String,
+    pair: String,
+    n: f64,
+}
+
+#[derive(Serialize)]
+struct Gap {
+    name: String,
+    mm: f64,
+    class: &'static str,
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        if !self.n.is_finite() {
+            return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
+        }
+        let findings = find(&self.scene.load(&[])?, self.n);
+        if self.scene.json { print_json(&findings) } else { print(&describe(&findings)) }
+    }
+}
+
+fn find(scene: &Scene, n: f64) -> Findings {
+    let n_cl = rank_of_normals(&contacts(scene));
+    let gaps = scene.gaps_at(&[n; CONTACTS]);
+    let names = scene.pins.iter().flat_map(|pin| SURFACES.map(|surface| format!("{} {surface}", pin.name)));
+    let table = derived(scene, n);
+    let mut n_star: Vec<Closing> = table
+        .closures()
+        .map(|c| Closing { pin: c.pin.into(), pair: c.direction.to_string(), n: c.n })
+        .collect();
+    n_star.sort_by(|a, b| a.n.total_cmp(&b.n));
+    let guide = guide(scene, n);
+    let (normal_law, friction_law, kernel_why) = kernel(scene);
+    Findings {
+        title: scene.title.clone(),
+        parts: 2,
+        n_cl,
+        degrees_of_freedom: degrees_of_freedom(2, &[], n_cl),
+        normal_law,
+        friction_law,
+        kernel_why,
+        n,
+        gaps: names
+            .zip(gaps)
+            .zip(classes(&gaps))
+            .filter_map(|((name, gap), class)| {
+                class.map(|class| Gap { name, mm: gap * 1e3, class: class_name(class) })
+            })
+            .collect(),
+        warnings: warnings(scene, n_cl, guide.as_ref()),
+        n_star,
+        guide,
+    }
+}
+
+/// The kernel's laws from the menu, and why these.
+fn kernel(scene: &Scene) -> (&'static str, &'static str, String) {
+    use slipfit_core::menu::{FrictionType, NormalType};
+    let (normal, cost) = match scene.contact.normal_type() {
+        NormalType::Linear => ("linear", "no root"),
+        NormalType::ThreeHalves => ("three-halves", "one square root a contact"),
+        NormalType::Power => ("power", "a general power a contact"),
+    };
+    let (friction, why) = match scene.friction.friction_type() {
+        FrictionType::Frictionless => ("none", "no friction code at all"),
+        FrictionType::Regularised => ("regularised", "Coulomb friction smoothed over the stick band"),
+    };
+    (normal, friction, format!("exponent {} needs {cost}; friction: {why}", scene.contact.exponent))
+}
+
+/// What a designer should know before trusting a run.
+pub(super) fn warnings(scene: &Scene, n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    match degrees_of_freedom(2, &[], n_cl) {
+        1 => {}
+        n if n < 1 => warnings.push(format!("{n} degrees of freedom are left: the slide cannot move")),
+        n => warnings.push(format!("{n} degrees of freedom are left: more than the travel is free")),
+    }
+    if let Some(guide) = guide.filter(|guide| guide.warn) {
+        let critical = guide.critical_friction.unwrap_or(f64::INFINITY);
+        let meaning = match guide.side {
+            DriveSide::Beyond => "the slide locks like a drawer",
+            _ => "the drive passes on the line of the other resistances, so that the least offset outwards locks it",
+        };
+        warnings.push(format!(
+            "self-locking: friction {} is not below the critical {critical:.4} of a guide {} mm long, driven {} mm \
+             beside it: {meaning}. Drive nearer to the guide, lengthen it, or lower the friction",
+            guide.friction,
+            fixed(guide.length * 1e3, 1),
+            fixed(guide.drive_distance * 1e3, 1)
+        ));
+    }
+    if let Some(nominal) = scene.nominal_clearance {
+        let pins = derived(scene, 0.0).pins;
+        let across: Vec<f64> = pins.iter().filter_map(|pin| Some(pin.across?.clearance)).collect();
+        let up_down: Vec<f64> = pins.iter().filter_map(|pin| Some(pin.up_down?.clearance)).collect();
+        for (pair, nominal, sums) in [("across", nominal[0], across), ("up-down", nominal[1], up_down)] {
+            let [least, greatest] =
+                [f64::min, f64::max].map(|pick| sums.iter().copied().reduce(pick).unwrap_or(nominal));
+            if (least - nominal).abs().max((greatest - nominal).abs()) > 0.005e-3 {
+                warnings.push(format!(
+                    "the drawing states a clearance of {} mm {pair}, the gaps add up to {} to {} mm: the gaps count",
+                    fixed(nominal * 1e3, 2),
+                    fixed(least * 1e3, 4),
+                    fixed(greatest * 1e3, 4)
+                ));
+            }
+        }
+    }
+    warnings
+}
+
+fn describe(findings: &Findings) -> String {
+    let mut text = String::new();
+    let n_cl = findings.n_cl;
+    let freedom = findings.degrees_of_freedom;
+    let _ = writeln!(text, "{}\n", findings.title);
+    let _ = writeln!(text, "Degrees of freedom  6·(2 − 1) − 0 − {n_cl} = {freedom}   (n_cl = {n_cl}, n = {freedom})");
+    let _ = writeln!(text, "Kernel              {}", findings.kernel_why);
+    let rows: Vec<_> =
+        findings.gaps.iter().map(|gap| vec![gap.name.clone(), fixed(gap.mm, 4), gap.class.into()]).collect();
+    let heading = format!("gap at n = {}", level(findings.n));
+    let _ = writeln!(text, "\n{}", text_table(&[&heading, "mm", "class"], &rows));
+    let rows: Vec<_> =
+        findings.n_star.iter().map(|c| vec![format!("{} {}", c.pin, c.pair), fixed(c.n, 4)]).collect();
+    let _ = writeln!(text, "{}", text_table(&["pair", "closes at n*"], &rows));
+    if let Some(closing) = findings.n_star.first() {
+        let _ = writeln!(text, "The product closes at n* = {}: {} {}", fixed(closing.n, 4), closing.pin, closing.pair);
+    }
+    if let Some(guide) = &findings.guide {
+        let case = match guide.side {
+            DriveSide::Beyond => "beyond the line of the other resistances: it locks from there on",
+            DriveSide::Edge => "on the line of the other resistances: on the edge",
+            DriveSide::Short => "short of the line of the other resistances: it never locks",
+        };
+        let _ = writeln!(
+            text,
+            "Guide line at x = {} mm, {} mm long, driven {} mm beside it, {case}; critical friction L/(2b) = {}, here {}",
+            fixed(guide.line_x * 1e3, 1),
+            fixed(guide.length * 1e3, 1),
+            fixed(guide.drive_distance * 1e3, 1),
+            or_dash(guide.critical_friction, |x| fixed(x, 4)),
+            guide.friction
+        );
+    }
+    for warning in &findings.warnings {
+        let _ = writeln!(text, "\nwarning: {warning}");
+    }
+    text
+}

@@ -1,0 +1,200 @@
+//! The command line: one file a command, each with its arguments and its `run`.
+
+mod check;
+mod run;
+mod simulate;
+mod sweep;
+mod table;
+mod tolerance;
+
+use std::{
+    io::{IsTerminal, Write},
+    path::PathBuf,
+    process::ExitCode,
+};
+
+use clap::{Args, CommandFactory, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+use thiserror::Error;
+
+use crate::{
+    files::WriteError,
+    interrupt,
+    scene::{CD_ROM_SLIDE, Override, Scene, SceneError},
+    simulate::SimulateError,
+};
+
+/// From a drawing's tolerances to a flashed force table.
+///
+/// Works on the paper's CD-ROM slide unless a scene file is given. Exit codes: 0 done, 1 failed, 2 bad input or usage.
+#[derive(Parser)]
+#[command(name = "slipfit", version, max_term_width = 100, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  slipfit run                                   the whole job on the CD-ROM slide, into slipfit-out/
+  slipfit check my-slide.toml                   is the scene sound, what is left free, when does a gap close
+  slipfit simulate --n 2.5 --csv unit.csv       one unit at tolerance level n = +2.5 (positive is tighter)
+  slipfit sweep --n -1:4:0.5 --set run.duration=1500   does the full stroke jam, and at which n
+  slipfit table -o force.h                      the flash table as a C header (.bin .hex .h .rs)";
+
+#[derive(Subcommand)]
+enum Command {
+    Run(run::Arguments),
+    Check(check::Arguments),
+    Tolerance(tolerance::Arguments),
+    Simulate(simulate::Arguments),
+    Sweep(sweep::Arguments),
+    Table(table::Arguments),
+}
+
+/// Why a command did not do its work.
+#[derive(Debug, Error)]
+enum Failure {
+    /// A scene that cannot be read as one.
+    #[error("{0}")]
+    Scene(#[from] SceneError),
+    /// Other bad input.
+    #[error("{0}")]
+    Input(String),
+    /// The work itself failed.
+    #[error("{0:#}")]
+    Work(#[from] anyhow::Error),
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Self::Work(error.into())
+    }
+}
+
+impl From<SimulateError> for Failure {
+    fn from(error: SimulateError) -> Self {
+        match error {
+            SimulateError::Parameter(_) | SimulateError::Every { .. } => Self::Input(error.to_string()),
+            SimulateError::NotFinite { .. } | SimulateError::Interrupted => Self::Work(error.into()),
+        }
+    }
+}
+
+/// A path that was given for output and cannot be written is bad input while nothing has been done yet.
+fn refused(error: WriteError) -> Failure {
+    Failure::Input(error.to_string())
+}
+
+/// What every command takes.
+#[derive(Args)]
+struct SceneArguments {
+    /// Scene file (TOML); the CD-ROM slide if none is given.
+    scene: Option<PathBuf>,
+    /// Sets a key of the scene, such as contact.stiffness=1000 or "slide.mass=90 g"; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Prints JSON for machines.
+    #[arg(long)]
+    json: bool,
+}
+
+impl SceneArguments {
+    /// Reads the scene, with `options` as further settings.
+    fn load(&self, options: &[Override]) -> Result<Scene, Failure> {
+        let mut overrides = self.set.iter().map(|text| Override::from_set(text)).collect::<Result<Vec<_>, _>>()?;
+        overrides.extend_from_slice(options);
+        let (name, text) = match &self.scene {
+            None => ("cd-rom-slide.toml".into(), CD_ROM_SLIDE.into()),
+            Some(path) => {
+                let unreadable = |why: &dyn std::fmt::Display| {
+                    Failure::Input(format!("cannot read the scene {}: {why}", path.display()))
+                };
+                let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
+                let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
+                (path.display().to_string(), text)
+            }
+        };
+        Ok(Scene::parse(&name, &text, &overrides)?)
+    }
+}
+
+/// Number of threads of the commands that work on many units.
+#[derive(Args)]
+struct ThreadArguments {
+    /// Threads to work on; all cores if not given. The result does not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl ThreadArguments {
+    /// Runs `work` on a pool of that many threads.
+    fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+        let threads = self.threads.map_or(0, usize::from);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
+        Ok(pool.install(work))
+    }
+}
+
+/// A progress bar with an estimate, on standard error, if that is a terminal.
+fn progress(what: &'static str, length: usize) -> ProgressBar {
+    let bar = ProgressBar::new(length as u64);
+    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} left") {
+        bar.set_style(style);
+    }
+    bar.set_message(what);
+    bar
+}
+
+/// Prints a finished text.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    let written = out.write_all(text.as_bytes()).and_then(|()| {
+        if text.ends_with('\n') { Ok(()) } else { out.write_all(b"\n") }
+    });
+    written.and_then(|()| out.flush()).map_err(|error| anyhow::Error::from(error).context("standard output").into())
+}
+
+/// Prints `value` as JSON.
+fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    print(&serde_json::to_string_pretty(value).map_err(anyhow::Error::from)?)
+}
+
+/// A table for people: a heading and rows, numbers to the right.
+fn text_table(heading: &[&str], rows: &[Vec<String>]) -> String {
+    let mut table = comfy_table::Table::new();
+    table.load_preset("      ──            ").set_header(heading);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(comfy_table::CellAlignment::Right);
+    }
+    table.add_rows(rows);
+    table.trim_fmt() + "\n"
+}
+
+/// Runs the command that the process was started with.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    if let Err(error) = interrupt::install() {
+        eprintln!("error: {error}");
+        return ExitCode::from(1);
+    }
+    let result = match cli.command {
+        None => print(&Cli::command().render_help().to_string()),
+        Some(Command::Run(arguments)) => arguments.run(),
+        Some(Command::Check(arguments)) => arguments.run(),
+        Some(Command::Tolerance(arguments)) => arguments.run(),
+        Some(Command::Simulate(arguments)) => arguments.run(),
+        Some(Command::Sweep(arguments)) => arguments.run(),
+        Some(Command::Table(arguments)) => arguments.run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            match &failure {
+                Failure::Scene(error) => eprintln!("{}", error.render(std::io::stderr().is_terminal())),
+                other => eprintln!("error: {other}"),
+            }
+            ExitCode::from(if matches!(failure, Failure::Work(_)) { 1 } else { 2 })
+        }
+    }
+}

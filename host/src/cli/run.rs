@@ -1,0 +1,104 @@
+//! `slipfit run`: the main job, from tolerances to a flash table and a report.
+
+use std::{fmt::Write, path::PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{
+    Failure, SceneArguments, ThreadArguments, check, print, print_json, progress, refused,
+    sweep::{LevelArguments, LevelReport, for_machines, for_people},
+    table,
+};
+use crate::{
+    export::sweep_csv,
+    files, force_table,
+    mobility::{contacts, rank_of_normals},
+    plot,
+    report::{ReportInput, report},
+    self_locking::guide,
+    simulate::ScalarKind,
+};
+
+/// The tolerance level of the report's Table 2: the paper's, which just closes the tightest pair.
+const PAPER_LEVEL: f64 = 3.43;
+
+/// The main job: tolerances, sweep over n, flash table, figures, report.
+#[derive(Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Folder for table.bin, sweep.csv, fig8.svg, fig9.svg and report.html.
+    #[arg(long, value_name = "DIR", default_value = "slipfit-out")]
+    out: PathBuf,
+    #[command(flatten)]
+    levels: LevelArguments,
+    #[command(flatten)]
+    threads: ThreadArguments,
+}
+
+#[derive(Serialize)]
+struct Report {
+    title: String,
+    files: Vec<String>,
+    table_bytes: usize,
+    worst_force_error_n: f64,
+    levels: Vec<LevelReport>,
+    warnings: Vec<String>,
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        let overrides: Vec<_> = self.levels.overrides().into_iter().collect();
+        let scene = self.scene.load(&overrides)?;
+        force_table::check_size(&scene).map_err(|error| Failure::Input(error.to_string()))?;
+        files::prepare_folder(&self.out).map_err(refused)?;
+
+        let axis = scene.sweep;
+        let bar = progress("simulating", force_table::levels(&axis).count);
+        let made = self.threads.install(|| force_table::make(&scene, &axis, ScalarKind::F64, || bar.inc(1)))??;
+        bar.finish_and_clear();
+        let (table, sweep) = made?;
+        let warnings = check::warnings(&scene, rank_of_normals(&contacts(&scene)), guide(&scene, 0.0).as_ref());
+
+        let figure_8 = plot::figure_8(&sweep, &scene.title).map_err(anyhow::Error::from)?;
+        let figure_9 = plot::figure_9(&sweep, &scene.title).map_err(anyhow::Error::from)?;
+        let page = report(&ReportInput {
+            scene: &scene,
+            sweep: &sweep,
+            table: &table,
+            derived_at: PAPER_LEVEL,
+            warnings: &warnings,
+        })
+        .map_err(anyhow::Error::from)?;
+        let outputs: [(&str, Vec<u8>); 5] = [
+            ("table.bin", table.bytes.clone()),
+            ("sweep.csv", sweep_csv(&sweep)?),
+            ("fig8.svg", figure_8.into_bytes()),
+            ("fig9.svg", figure_9.into_bytes()),
+            ("report.html", page.into_bytes()),
+        ];
+        for (name, bytes) in &outputs {
+            files::write(&self.out.join(name), bytes)?;
+        }
+        let files: Vec<String> =
+            outputs.iter().map(|(name, _)| self.out.join(name).display().to_string()).collect();
+        if self.scene.json {
+            return print_json(&Report {
+                title: scene.title.clone(),
+                files,
+                table_bytes: table.bytes.len(),
+                worst_force_error_n: table.worst_error[0],
+                levels: for_machines(&sweep),
+                warnings,
+            });
+        }
+        let mut text = format!("{}\n\n{}\n", scene.title, for_people(&scene, &sweep));
+        let _ = writeln!(text, "{}", table::describe(&table));
+        for warning in &warnings {
+            let _ = writeln!(text, "warning: {warning}\n");
+        }
+        let _ = writeln!(text, "Wrote {}", files.join(" "));
+        print(&text)
+    }
+}

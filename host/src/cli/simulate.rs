@@ -1,0 +1,158 @@
+//! `slipfit simulate`: one unit.
+
+use std::{fmt::Write, path::PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+use slipfit_core::slide::CONTACTS;
+
+use super::{Failure, SceneArguments, print, print_json, refused};
+use crate::{
+    export,
+    files,
+    number::{fixed, level, or_dash},
+    outcome::{Outcome, Trajectory, Verdict},
+    scene::{IntegratorKind, Override, Scene, parse_duration},
+    simulate::{Run, ScalarKind, Settings, simulate},
+    sweep::confirmed,
+};
+
+/// Simulates one unit: velocity and drive force over time.
+#[derive(Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Tolerance level, positive is tighter: one for all gaps, or sixteen separated by commas, in the order left,
+    /// right, rail, wall of each pin.
+    #[arg(long, value_delimiter = ',', allow_hyphen_values = true, default_value = "0")]
+    n: Vec<f64>,
+    /// Writes t,vz,force,x,y in s, m/s, N, m, m.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Interval of the samples, such as 1ms or 500us.
+    #[arg(long, default_value = "1ms")]
+    every: String,
+    #[command(flatten)]
+    stepping: SteppingArguments,
+}
+
+/// How to step, where it differs from the scene.
+#[derive(Args)]
+pub(super) struct SteppingArguments {
+    /// Step, such as 100us (a bare number is µs).
+    #[arg(long)]
+    step: Option<String>,
+    /// Scheme.
+    #[arg(long, value_enum)]
+    integrator: Option<IntegratorKind>,
+    /// Number type: f32 is the controller's.
+    #[arg(long, value_enum, default_value_t)]
+    pub scalar: ScalarKind,
+}
+
+impl SteppingArguments {
+    /// The options as settings of the scene.
+    pub fn overrides(&self) -> Vec<Override> {
+        let step = self.step.as_ref().map(|step| Override::from_option("--step", "run.step", step));
+        let integrator =
+            self.integrator.map(|kind| Override::from_option("--integrator", "run.integrator", kind.name()));
+        step.into_iter().chain(integrator).collect()
+    }
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    title: &'a str,
+    n: &'a [f64],
+    integrator: &'static str,
+    scalar: ScalarKind,
+    step_s: f64,
+    duration_s: f64,
+    integration_ms: f64,
+    #[serde(flatten)]
+    outcome: Outcome,
+    samples: &'a Trajectory,
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        let scene = self.scene.load(&self.stepping.overrides())?;
+        let n = levels(&self.n)?;
+        let every = parse_duration(&self.every).map_err(|why| Failure::Input(format!("--every {why}")))?;
+        if let Some(path) = &self.csv {
+            files::check_writable(path).map_err(refused)?;
+        }
+        let settings = Settings { run: scene.run, every, scalar: self.stepping.scalar };
+        let gaps = scene.gaps_at(&n);
+        let mut run = simulate(&scene, &gaps, &settings)?;
+        run.outcome.verdict = confirmed(&scene, &gaps, &settings, &run.outcome)?;
+        if let Some(path) = &self.csv {
+            files::write(path, &export::trajectory_csv(&run.trajectory)?)?;
+        }
+        if self.scene.json {
+            print_json(&Report {
+                title: &scene.title,
+                n: &self.n,
+                integrator: scene.run.integrator.name(),
+                scalar: self.stepping.scalar,
+                step_s: scene.run.step,
+                duration_s: scene.run.duration,
+                integration_ms: run.integration.as_secs_f64() * 1e3,
+                outcome: run.outcome,
+                samples: &run.trajectory,
+            })
+        } else {
+            print(&self.describe(&scene, &run))
+        }
+    }
+
+    fn describe(&self, scene: &Scene, run: &Run) -> String {
+        let mut text = String::new();
+        let Outcome { breakaway, peak_force, settled_force, final_velocity, verdict } = run.outcome;
+        let n: Vec<String> = self.n.iter().map(|&n| level(n)).collect();
+        let integration = run.integration.as_secs_f64() * 1e3;
+        let _ = writeln!(text, "{}, n = {}\n", scene.title, n.join(", "));
+        let _ = writeln!(text, "Breakaway       {} ms", or_dash(breakaway, |t| fixed(t * 1e3, 2)));
+        let _ = writeln!(text, "Peak force      {} N", or_dash(peak_force, |f| fixed(f, 4)));
+        let _ = writeln!(text, "Settled force   {} N", or_dash(settled_force, |f| fixed(f, 4)));
+        let _ = writeln!(text, "Final velocity  {} mm/s", fixed(final_velocity * 1e3, 3));
+        let _ = writeln!(text, "Verdict         {verdict}{}", why_undecided(scene, verdict));
+        let _ = writeln!(
+            text,
+            "\n{} ms in steps of {} µs, {}, {:?}: integrated in {} ms, worst residual {:.1e} N·s",
+            fixed(scene.run.duration * 1e3, 1),
+            fixed(scene.run.step * 1e6, 2),
+            scene.run.integrator.name(),
+            self.stepping.scalar,
+            fixed(integration, 2),
+            run.trajectory.worst_residual
+        );
+        text
+    }
+}
+
+/// A remark behind an undecided verdict.
+pub(super) fn why_undecided(scene: &Scene, verdict: Verdict) -> String {
+    if verdict != Verdict::Undecided {
+        return String::new();
+    }
+    let (end, ramp) = (scene.run.duration * 1e3, scene.drive.ramp_end * 1e3);
+    if scene.run.duration < scene.drive.ramp_end {
+        format!(" (the run ends at {end} ms, the ramp at {ramp} ms; --set run.duration=1500 runs the stroke)")
+    } else {
+        " (a run at half the step came to another verdict: take a smaller step)".into()
+    }
+}
+
+/// One level for all contacts, or one each.
+fn levels(n: &[f64]) -> Result<[f64; CONTACTS], Failure> {
+    if let Some(bad) = n.iter().find(|n| !n.is_finite()) {
+        return Err(Failure::Input(format!("--n holds {bad}, allowed are finite numbers")));
+    }
+    match n {
+        [all] => Ok([*all; CONTACTS]),
+        _ => n
+            .try_into()
+            .map_err(|_| Failure::Input(format!("--n holds {} values, allowed are 1 or {CONTACTS}", n.len()))),
+    }
+}

@@ -1,0 +1,126 @@
+//! `slipfit sweep`: the slide over tolerance levels.
+
+use std::{fmt::Write, path::PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{
+    Failure, SceneArguments, ThreadArguments, print, print_json, progress, refused,
+    simulate::{SteppingArguments, why_undecided},
+    text_table,
+};
+use crate::{
+    export::{class_counts, sweep_csv},
+    files,
+    force_table,
+    number::{fixed, level, or_dash},
+    outcome::{Outcome, Verdict},
+    scene::{Override, Scene},
+    simulate::Settings,
+    sweep::{Sweep, sweep},
+};
+
+/// Simulates the slide at many tolerance levels: breakaway, required force, does it jam.
+#[derive(Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    #[command(flatten)]
+    levels: LevelArguments,
+    /// Writes the figures over n as CSV.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    #[command(flatten)]
+    stepping: SteppingArguments,
+    #[command(flatten)]
+    threads: ThreadArguments,
+}
+
+/// Tolerance levels, where they differ from the scene's.
+#[derive(Args)]
+pub(super) struct LevelArguments {
+    /// Tolerance levels, first:last:step; positive is tighter.
+    #[arg(long, value_name = "A:B:STEP", allow_hyphen_values = true)]
+    n: Option<String>,
+}
+
+impl LevelArguments {
+    /// The option as a setting of the scene.
+    pub fn overrides(&self) -> Option<Override> {
+        self.n.as_ref().map(|n| Override::from_option("--n", "sweep.n", n))
+    }
+}
+
+/// A level for machines.
+#[derive(Serialize)]
+pub(super) struct LevelReport {
+    n: f64,
+    #[serde(flatten)]
+    outcome: Outcome,
+    compressed: usize,
+    zero: usize,
+    free: usize,
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        let overrides: Vec<_> = self.stepping.overrides().into_iter().chain(self.levels.overrides()).collect();
+        let scene = self.scene.load(&overrides)?;
+        if let Some(path) = &self.csv {
+            files::check_writable(path).map_err(refused)?;
+        }
+        // Samples are not shown; the coarsest that the run allows are enough.
+        let every = force_table::settings(scene.run, self.stepping.scalar).every;
+        let settings = Settings { run: scene.run, every, scalar: self.stepping.scalar };
+        let levels = scene.sweep.levels();
+        let bar = progress("simulating", levels.len());
+        let result = self.threads.install(|| sweep(&scene, &levels, &settings, || bar.inc(1)))??;
+        bar.finish_and_clear();
+        if let Some(path) = &self.csv {
+            files::write(path, &sweep_csv(&result)?)?;
+        }
+        if self.scene.json {
+            print_json(&for_machines(&result))
+        } else {
+            print(&format!("{}\n\n{}", scene.title, for_people(&scene, &result)))
+        }
+    }
+}
+
+/// The levels of a sweep as JSON wants them.
+pub(super) fn for_machines(sweep: &Sweep) -> Vec<LevelReport> {
+    let report = |level: &crate::sweep::Level| {
+        let [compressed, zero, free] = class_counts(level);
+        LevelReport { n: level.n, outcome: level.outcome, compressed, zero, free }
+    };
+    sweep.levels.iter().map(report).collect()
+}
+
+/// The levels of a sweep as a table.
+pub(super) fn for_people(scene: &Scene, sweep: &Sweep) -> String {
+    let rows: Vec<Vec<String>> = sweep
+        .levels
+        .iter()
+        .map(|at| {
+            let Outcome { breakaway, peak_force, settled_force, final_velocity, verdict } = at.outcome;
+            let [compressed, zero, free] = class_counts(at);
+            vec![
+                level(at.n),
+                or_dash(breakaway, |t| fixed(t * 1e3, 2)),
+                or_dash(peak_force, |f| fixed(f, 4)),
+                or_dash(settled_force, |f| fixed(f, 4)),
+                fixed(final_velocity * 1e3, 3),
+                verdict.to_string(),
+                format!("{compressed}/{zero}/{free}"),
+            ]
+        })
+        .collect();
+    let heading =
+        ["n", "breakaway, ms", "peak, N", "settled, N", "final, mm/s", "verdict", "gaps compressed/zero/free"];
+    let mut text = text_table(&heading, &rows);
+    if sweep.levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided) {
+        let _ = writeln!(text, "\nundecided{}", why_undecided(scene, Verdict::Undecided));
+    }
+    text
+}

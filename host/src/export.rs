@@ -1,0 +1,64 @@
+//! Results as CSV.
+
+use slipfit_core::clearance::GapClass;
+
+use crate::{
+    number::ten_digits,
+    outcome::Trajectory,
+    sweep::{Level, Sweep},
+};
+
+/// `t,vz,force,x,y` in s, m/s, N, m, m, ten digits.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn trajectory_csv(trajectory: &Trajectory) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["t", "vz", "force", "x", "y"])?;
+    for (i, t) in trajectory.t.iter().enumerate() {
+        let columns = [*t, trajectory.vz[i], trajectory.force[i], trajectory.x[i], trajectory.y[i]];
+        writer.write_record(columns.map(ten_digits))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// Figures over n, one line a level; empty where a figure does not exist.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn sweep_csv(sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "n",
+        "breakaway_s",
+        "peak_force_N",
+        "settled_force_N",
+        "final_velocity_m_per_s",
+        "verdict",
+        "compressed",
+        "zero",
+        "free",
+    ])?;
+    for level in &sweep.levels {
+        let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
+        let [compressed, zero, free] = class_counts(level).map(|count| count.to_string());
+        writer.write_record([
+            ten_digits(level.n),
+            optional(level.outcome.breakaway),
+            optional(level.outcome.peak_force),
+            optional(level.outcome.settled_force),
+            ten_digits(level.outcome.final_velocity),
+            level.outcome.verdict.to_string(),
+            compressed,
+            zero,
+            free,
+        ])?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// How many gaps of a level are compressed, zero and free.
+pub fn class_counts(level: &Level) -> [usize; 3] {
+    [GapClass::Compressed, GapClass::Zero, GapClass::Free]
+        .map(|class| level.classes.iter().flatten().filter(|&&found| found == class).count())
+}

@@ -1,0 +1,18 @@
+//! Ctrl-C: long work asks now and then whether to stop, so that nothing is left half written.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static REQUESTED: AtomicBool = AtomicBool::new(false);
+
+/// From now on Ctrl-C only sets a flag.
+///
+/// # Errors
+/// If the system refuses the handler.
+pub fn install() -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(|| REQUESTED.store(true, Ordering::Relaxed))
+}
+
+/// Whether somebody asked to stop.
+pub fn requested() -> bool {
+    REQUESTED.load(Ordering::Relaxed)
+}

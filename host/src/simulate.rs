@@ -1,0 +1,166 @@
+//! One unit, stepped from rest.
+
+use std::time::{Duration, Instant};
+
+use slipfit_core::{
+    ParameterError, Scalar,
+    integrator::{ImplicitEuler, Integrator, Sdirk2},
+    kernel::Kernel,
+    law::{Elastic, Friction},
+    menu::SlideVisitor,
+    pose::Pose,
+    slide::{CONTACTS, Slide},
+};
+use thiserror::Error;
+
+use crate::{
+    interrupt,
+    outcome::{Observer, Outcome, Trajectory},
+    scene::{IntegratorKind, RunSpec, Scene},
+};
+
+/// The number type of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ScalarKind {
+    /// Single precision, the controller's.
+    F32,
+    /// Double precision.
+    #[default]
+    F64,
+}
+
+/// How to run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Duration, step and scheme.
+    pub run: RunSpec,
+    /// Interval of the samples (s), a multiple of the step.
+    pub every: f64,
+    /// Number type.
+    pub scalar: ScalarKind,
+}
+
+/// A finished run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Samples.
+    pub trajectory: Trajectory,
+    /// Figures, from every step.
+    pub outcome: Outcome,
+    /// Wall time of the integration alone.
+    pub integration: Duration,
+}
+
+/// Why a run did not finish.
+#[derive(Debug, Error)]
+pub enum SimulateError {
+    /// A parameter is out of bounds.
+    #[error("{0}")]
+    Parameter(String),
+    /// Samples do not fall on steps.
+    #[error("samples every {every} s do not fall on steps of {step} s: choose a multiple of the step")]
+    Every {
+        /// Interval of the samples (s).
+        every: f64,
+        /// Step (s).
+        step: f64,
+    },
+    /// The motion left the range of the number type.
+    #[error("the motion left the finite range at t = {time} s: take a smaller step than {step} s")]
+    NotFinite {
+        /// When (s).
+        time: f64,
+        /// Step (s).
+        step: f64,
+    },
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl<S: std::fmt::Display> From<ParameterError<S>> for SimulateError {
+    fn from(error: ParameterError<S>) -> Self {
+        Self::Parameter(error.to_string())
+    }
+}
+
+/// Runs the slide of `scene` with the given `gaps` (m) from rest in its nominal pose.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Result<Run, SimulateError> {
+    let per_sample = (settings.every / settings.run.step).round();
+    if !(per_sample >= 1.0 && (per_sample * settings.run.step - settings.every).abs() <= 1e-6 * settings.every) {
+        return Err(SimulateError::Every { every: settings.every, step: settings.run.step });
+    }
+    let stepper = Stepper {
+        settings,
+        observer: Observer::new(scene.drive, settings.run.duration),
+        per_sample: per_sample as u32,
+    };
+    match settings.scalar {
+        ScalarKind::F32 => scene.slide_data::<f32>(gaps).visit(stepper)?,
+        ScalarKind::F64 => scene.slide_data::<f64>(gaps).visit(stepper)?,
+    }
+}
+
+struct Stepper<'a> {
+    settings: &'a Settings,
+    observer: Observer,
+    per_sample: u32,
+}
+
+impl<S: Scalar + PartialOrd + std::fmt::Display> SlideVisitor<S> for Stepper<'_> {
+    type Output = Result<Run, SimulateError>;
+
+    fn visit<E: Elastic<S>, F: Friction<S>>(self, slide: Slide<S, E, F>) -> Self::Output {
+        match self.settings.run.integrator {
+            IntegratorKind::ImplicitEuler => self.run::<S, E, F, ImplicitEuler<4>>(slide),
+            IntegratorKind::Sdirk2 => self.run::<S, E, F, Sdirk2<4>>(slide),
+        }
+    }
+}
+
+impl Stepper<'_> {
+    fn run<S, E, F, I>(mut self, slide: Slide<S, E, F>) -> Result<Run, SimulateError>
+    where
+        S: Scalar + PartialOrd + std::fmt::Display,
+        E: Elastic<S>,
+        F: Friction<S>,
+        I: Integrator,
+    {
+        let RunSpec { duration, step, .. } = self.settings.run;
+        let kernel = Kernel::<S, _, I>::new(slide, S::from_f64(step))?;
+        let steps = (duration / step).round() as u32;
+        let mut state = kernel.at_rest(Pose::nominal());
+        let mut trajectory = Trajectory::default();
+        let start = Instant::now();
+        loop {
+            let t = f64::from(state.steps) * step;
+            let vz = state.motion.velocity.z;
+            let force = kernel.mechanism().drive().force(kernel.time(state.steps), vz).to_f64();
+            self.observer.observe(t, vz.to_f64(), force);
+            if state.steps.is_multiple_of(self.per_sample) {
+                if interrupt::requested() {
+                    return Err(SimulateError::Interrupted);
+                }
+                let r = state.motion.pose.displacement_w;
+                trajectory.t.push(t);
+                trajectory.vz.push(vz.to_f64());
+                trajectory.force.push(force);
+                trajectory.x.push(r.x.to_f64());
+                trajectory.y.push(r.y.to_f64());
+            }
+            if state.steps == steps {
+                let integration = start.elapsed();
+                return Ok(Run { trajectory, outcome: self.observer.outcome(t, vz.to_f64()), integration });
+            }
+            let residual = kernel.step(&mut state).residual.to_f64();
+            if !residual.is_finite() {
+                return Err(SimulateError::NotFinite { time: t, step });
+            }
+            trajectory.worst_residual = trajectory.worst_residual.max(residual);
+        }
+    }
+}

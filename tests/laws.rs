@@ -1,0 +1,105 @@
+//! The contact law at single points and over single bounces, against values computed elsewhere.
+
+use slipfit_core::{
+    SVector, Scalar,
+    axis::AxisBody,
+    integrator::{ImplicitEuler, Integrator, Sdirk2},
+    kernel::Kernel,
+    law::{Impact, ThreeHalves, bistop},
+};
+use slipfit_problems::{
+    cd_rom::STIFFNESS,
+    laws::{BOUNCE_MASS, BOUNCES, Bounce, IMPACT_VALUES},
+};
+
+fn contact<S: Scalar + PartialOrd>() -> Impact<S, ThreeHalves<S>> {
+    let s = S::from_f64;
+    Impact::new(ThreeHalves::new(s(STIFFNESS)).unwrap(), s(1000.0), s(1e-4)).unwrap()
+}
+
+/// The closed form of the law, in mm and N, written here once more on purpose.
+fn closed_form(p: f64, w: f64) -> f64 {
+    let s = (p / 0.1).min(1.0);
+    (100.0 * p * libm::sqrt(p) + s * s * (3.0 - 2.0 * s) * w).max(0.0)
+}
+
+#[test]
+fn impact_meets_the_closed_form() {
+    for [p, w, rounded] in IMPACT_VALUES {
+        let exact = closed_form(p, w);
+        assert!((exact - rounded).abs() <= 5e-8, "{p} {w}");
+        let double = contact::<f64>().response(p * 1e-3, w * 1e-3).force;
+        assert!((double - exact).abs() <= 1e-12 * exact, "{p} {w}: {double} {exact}");
+        let single = contact::<f32>().response((p * 1e-3) as f32, (w * 1e-3) as f32).force;
+        assert!((f64::from(single) - exact).abs() <= 1e-5 * exact, "{p} {w}: {single} {exact}");
+    }
+}
+
+#[test]
+fn impact_never_pulls_and_is_zero_outside() {
+    let law = contact::<f64>();
+    for i in -50..200 {
+        for w in [-10.0, -0.1, 0.0, 0.1, 10.0] {
+            let p = f64::from(i) * 1e-6;
+            let response = law.response(p, w);
+            assert!(response.force >= 0.0);
+            let exact = closed_form(p.max(0.0) * 1e3, w * 1e3) * if p > 0.0 { 1.0 } else { 0.0 };
+            assert!((response.force - exact).abs() <= 1e-11 * (1.0 + exact), "{p} {w}");
+        }
+    }
+}
+
+#[test]
+fn bistop_is_the_same_law_at_both_ends() {
+    let bistop::SlotResponse { force, normal, .. } = contact::<f64>().slot(1e-4, 2e-4, 2.5e-4, -0.01, 0.0);
+    let end = contact::<f64>().response(2.5e-4 - 2e-4, 0.01).force;
+    assert_eq!((force, normal), (end, end));
+    let mirrored = contact::<f64>().slot(2e-4, 1e-4, -2.5e-4, 0.01, 0.0);
+    assert_eq!(mirrored.force, -end);
+}
+
+/// What a bounce did, from a run in steps of `h` (s) that ends `duration` (s) after the start in contact.
+fn bounce<I: Integrator>(speed: f64, h: f64, duration: f64) -> Bounce {
+    let body = AxisBody::new(BOUNCE_MASS, 0.0, 0.0, contact::<f64>()).unwrap();
+    let kernel = Kernel::<f64, _, I>::new(body, h).unwrap();
+    let mut state = kernel.at_rest(0.0);
+    state.motion.velocity = SVector::<f64, 1>::new(-speed);
+    let (mut peak_penetration, mut peak_force, mut contact_time) = (0.0f64, 0.0f64, 0.0);
+    for _ in 0..(duration / h) as u32 {
+        kernel.step(&mut state);
+        let (x, v) = (state.motion.pose, state.motion.velocity.x);
+        peak_penetration = peak_penetration.max(-x);
+        peak_force = peak_force.max(kernel.mechanism().pad_force(x, v));
+        if x < 0.0 {
+            // The crossing inside the step that leaves is at most one step away; velocity is steady there.
+            contact_time = kernel.time(state.steps) - x / v;
+        }
+    }
+    let restitution = state.motion.velocity.x / speed;
+    Bounce { speed, restitution, peak_penetration, peak_force, contact_time }
+}
+
+/// The greatest relative deviation of a bounce's figures.
+fn deviation(found: &Bounce, known: &Bounce) -> f64 {
+    [
+        found.restitution / known.restitution,
+        found.peak_penetration / known.peak_penetration,
+        found.peak_force / known.peak_force,
+        found.contact_time / known.contact_time,
+    ]
+    .iter()
+    .fold(0.0, |worst, ratio| worst.max((ratio - 1.0).abs()))
+}
+
+#[test]
+fn bounces_converge_to_the_known_figures() {
+    for known in BOUNCES {
+        // The printed figures carry four digits, restitution as few as three.
+        let rounding = 0.000_005 / known.restitution + 2e-4;
+        let errors = [5e-5, 5e-6, 5e-7].map(|h| deviation(&bounce::<Sdirk2<5>>(known.speed, h, 0.05), &known));
+        eprintln!("{} m/s: {errors:.6?}", known.speed);
+        assert!(errors[2] <= rounding, "{} m/s: {errors:?}", known.speed);
+        let euler = [5e-6, 5e-7].map(|h| deviation(&bounce::<ImplicitEuler<4>>(known.speed, h, 0.05), &known));
+        assert!(euler[1] <= 0.3 * euler[0] + rounding, "{} m/s: {euler:?}", known.speed);
+    }
+}

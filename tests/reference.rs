@@ -1,0 +1,116 @@
+//! The kernel against the reference runs, through the same path that `simulate` takes.
+
+use std::fmt::Write;
+
+use slipfit::{
+    outcome::Verdict,
+    scene::{CD_ROM_SLIDE, IntegratorKind, Scene},
+    simulate::{Run, ScalarKind, Settings, simulate},
+};
+use slipfit_core::{menu::FrictionData, slide::CONTACTS};
+use slipfit_tests::{Reference, deviation, references};
+
+fn scene_of(reference: &Reference) -> Scene {
+    let mut scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).unwrap();
+    let FrictionData::Regularised { coefficient, .. } = scene.friction else { panic!("{:?}", scene.friction) };
+    scene.friction = FrictionData::Regularised { coefficient, stick_band: reference.stick_band };
+    scene.drive.ramp_end = reference.ramp_end;
+    scene.run.duration = reference.duration;
+    scene
+}
+
+fn run(reference: &Reference, integrator: IntegratorKind, step: f64, scalar: ScalarKind) -> Run {
+    let mut scene = scene_of(reference);
+    scene.run.integrator = integrator;
+    scene.run.step = step;
+    let settings = Settings { run: scene.run, every: 1e-3, scalar };
+    simulate(&scene, &scene.gaps_at(&[reference.n; CONTACTS]), &settings).unwrap()
+}
+
+fn default_run(reference: &Reference) -> Run {
+    let scene = scene_of(reference);
+    run(reference, scene.run.integrator, scene.run.step, ScalarKind::F64)
+}
+
+fn openings() -> Vec<Reference> {
+    references().into_iter().filter(|r| r.name.contains("opening")).collect()
+}
+
+const SCHEMES: [IntegratorKind; 2] = [IntegratorKind::ImplicitEuler, IntegratorKind::Sdirk2];
+
+#[test]
+fn openings_at_one_millisecond_are_within_half_a_percent_after_the_release() {
+    assert_eq!(openings().len(), 4);
+    for reference in openings() {
+        for scheme in SCHEMES {
+            for scalar in [ScalarKind::F32, ScalarKind::F64] {
+                let errors = reference.errors(&run(&reference, scheme, 1e-3, scalar).trajectory.force);
+                assert!(errors.late_max <= 0.5, "{} {scheme:?} {scalar:?}: {errors:?}", reference.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_run_at_the_default_step_is_within_two_percent_throughout() {
+    for reference in references() {
+        let errors = reference.errors(&default_run(&reference).trajectory.force);
+        assert!(errors.max <= 2.0, "{}: {errors:?}", reference.name);
+    }
+}
+
+#[test]
+fn the_stroke_jams_at_0_and_runs_at_2_5() {
+    for (name, verdict) in [("slide-stroke-n0", Verdict::Jammed), ("slide-stroke-n2.5", Verdict::Runs)] {
+        let reference = references().into_iter().find(|r| r.name == name).unwrap();
+        let run = default_run(&reference);
+        assert_eq!(run.outcome.verdict, verdict, "{name}");
+        let (end, known) = (run.trajectory.force.last().unwrap(), reference.force.last().unwrap());
+        assert!((end / known - 1.0).abs() <= 0.005, "{name}: {end} N, reference {known} N");
+    }
+}
+
+#[test]
+fn single_and_double_precision_agree_on_openings() {
+    for reference in openings() {
+        for scheme in SCHEMES {
+            let [single, double] = [ScalarKind::F32, ScalarKind::F64]
+                .map(|scalar| run(&reference, scheme, 1e-3, scalar).trajectory.force);
+            let difference = deviation(&single, &double, reference.peak);
+            assert!(difference.late_max <= 0.1, "{} {scheme:?}: {difference:?}", reference.name);
+        }
+    }
+}
+
+/// A table of errors in % of the peak force: every number here is the same on every machine.
+#[test]
+fn errors_by_scheme_and_step() {
+    let mut table = String::from("scheme          step   run                  whole max    rms   late max    rms\n");
+    let scene = scene_of(&references()[0]);
+    let steps = [(IntegratorKind::ImplicitEuler, 1e-3), (IntegratorKind::Sdirk2, 1e-3), (IntegratorKind::Sdirk2, 1e-4)];
+    for (scheme, step) in steps.into_iter().chain([(scene.run.integrator, scene.run.step)]) {
+        for reference in references() {
+            let e = reference.errors(&run(&reference, scheme, step, ScalarKind::F64).trajectory.force);
+            writeln!(
+                table,
+                "{:14} {:4.0}µs   {:20} {:9.4} {:6.4}  {:9.4} {:6.4}",
+                scheme.name(),
+                step * 1e6,
+                reference.name,
+                e.max,
+                e.rms,
+                e.late_max,
+                e.late_rms
+            )
+            .unwrap();
+        }
+    }
+    writeln!(table, "\nsingle against double precision, sdirk2 at 1 ms").unwrap();
+    for reference in references() {
+        let [single, double] = [ScalarKind::F32, ScalarKind::F64]
+            .map(|scalar| run(&reference, IntegratorKind::Sdirk2, 1e-3, scalar).trajectory.force);
+        let e = deviation(&single, &double, reference.peak);
+        writeln!(table, "{:20} whole {:8.4}  late {:8.4}", reference.name, e.max, e.late_max).unwrap();
+    }
+    insta::assert_snapshot!(table);
+}
