@@ -4,7 +4,13 @@
 //! where they become SI.
 
 mod diagnostic;
+mod keys;
+mod levels;
 mod parse;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod unit;
 mod value;
 
 use slipfit_core::{
@@ -15,7 +21,8 @@ use slipfit_core::{
     slide::{ABSENT, Body, CONTACTS, PINS, box_inertia},
 };
 
-pub use diagnostic::SceneError;
+pub use diagnostic::{Problem, SceneError};
+pub use levels::{LevelError, MOST_LEVELS, parse_levels};
 
 /// The paper's slide, its ramp as printed: what every command works on without a scene.
 pub const CD_ROM_SLIDE: &str = include_str!("../../scenes/cd-rom-slide.toml");

@@ -1,0 +1,179 @@
+//! What is wrong with a scene, and where.
+
+use std::{fmt, ops::Range};
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str};
+
+use super::LevelError;
+
+/// What is wrong with a scene. Keys are written in full, such as `slide.mass`; values as they were typed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The text is not TOML.
+    #[error("not valid TOML: {0}")]
+    Syntax(String),
+    /// An override is not of the form `key=value`.
+    #[error("`--set` needs a key and a value")]
+    Override,
+    /// A key that no scene has.
+    #[error("unknown key `{key}`{}", similar.map(|key| format!(", did you mean `{key}`?")).unwrap_or_default())]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// A key that is spelt alike.
+        similar: Option<&'static str>,
+    },
+    /// An override of a pin that the scene does not have.
+    #[error("there is no pin `{0}`")]
+    UnknownPin(String),
+    /// A key that every scene needs.
+    #[error("`{0}` is missing")]
+    Missing(String),
+    /// A value of another type.
+    #[error("`{key}` is {found}")]
+    Type {
+        /// The key.
+        key: String,
+        /// What the value is, with its article.
+        found: &'static str,
+    },
+    /// A list of another length.
+    #[error("`{key}` is a list of {found}")]
+    Length {
+        /// The key.
+        key: String,
+        /// Elements found.
+        found: usize,
+    },
+    /// A text that does not begin with a number.
+    #[error("`{key}` is \"{written}\", which is not a number with its unit")]
+    NotANumber {
+        /// The key.
+        key: String,
+        /// The value.
+        written: String,
+    },
+    /// A unit that does not fit the key.
+    #[error("`{key}` is \"{written}\", whose unit does not fit")]
+    Unit {
+        /// The key.
+        key: String,
+        /// The value.
+        written: String,
+    },
+    /// A stiffness in a unit with an exponent other than the contact's.
+    #[error("`{key}` is \"{written}\", but `contact.exponent` is {exponent}")]
+    Exponent {
+        /// The key.
+        key: String,
+        /// The value.
+        written: String,
+        /// The contact's exponent.
+        exponent: f64,
+    },
+    /// NaN, infinite, or too large for a number.
+    #[error("`{key}` is {written}, which is not finite")]
+    NotFinite {
+        /// The key.
+        key: String,
+        /// The value.
+        written: String,
+    },
+    /// A number outside its range.
+    #[error("`{key}` is {written}")]
+    OutOfRange {
+        /// The key.
+        key: String,
+        /// The value with its unit.
+        written: String,
+    },
+    /// A text that is none of the choices.
+    #[error("`{key}` is \"{written}\"")]
+    Choice {
+        /// The key.
+        key: String,
+        /// The value.
+        written: String,
+    },
+    /// A choice that this version does not offer.
+    #[error("`{key}` is \"{written}\", which this version does not have yet")]
+    NotYet {
+        /// The key.
+        key: String,
+        /// The value.
+        written: String,
+    },
+    /// Not a range of tolerance levels.
+    #[error("`{key}`: {error}")]
+    Levels {
+        /// The key.
+        key: String,
+        /// Why not.
+        error: LevelError,
+    },
+    /// A step that does not divide the run.
+    #[error("`run.step` is {step}, which does not divide `run.duration`, {duration}")]
+    Indivisible {
+        /// The step.
+        step: String,
+        /// The duration.
+        duration: String,
+    },
+}
+
+/// A [`Problem`] with the place it was found at and what is allowed there.
+///
+/// Displays as several lines for a terminal: the problem; file, line and column; the line with a pointer; what is
+/// allowed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneError(Box<Report>);
+
+#[derive(Clone, Debug, PartialEq)]
+struct Report {
+    problem: Problem,
+    allowed: String,
+    name: String,
+    text: String,
+    span: Range<usize>,
+}
+
+impl SceneError {
+    /// A `problem` at the bytes `span` of the `text` called `name`; `allowed` may be empty.
+    pub(super) fn new(problem: Problem, allowed: String, name: &str, text: &str, span: Range<usize>) -> Self {
+        // A TOML error may lie past the end or inside of a character.
+        let floor = |at: usize| (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
+        let start = floor(span.start);
+        let span = start..floor(span.end).max(start);
+        Self(Box::new(Report { problem, allowed, name: name.into(), text: text.into(), span }))
+    }
+
+    /// What is wrong.
+    pub fn problem(&self) -> &Problem {
+        &self.0.problem
+    }
+
+    /// What is allowed instead, as a phrase; empty if the problem says it.
+    pub fn allowed(&self) -> &str {
+        &self.0.allowed
+    }
+
+    /// The message for a terminal, in colour if `color`.
+    pub fn render(&self, color: bool) -> String {
+        let Report { problem, allowed, name, text, span } = &*self.0;
+        let pointer = AnnotationKind::Primary.span(span.clone());
+        let snippet = Snippet::source(text).path(name).annotation(pointer);
+        let group = Level::ERROR.primary_title(problem.to_string()).element(snippet);
+        let help = Level::HELP.with_name("allowed").message(normalize_untrusted_str(allowed));
+        let report = [if allowed.is_empty() { group } else { group.element(help) }];
+        if color { Renderer::styled() } else { Renderer::plain() }.render(&report)
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for SceneError {}

@@ -1,0 +1,259 @@
+//! From the text of a scene file to a scene.
+
+use std::path::Path;
+
+use clap::ValueEnum;
+use slipfit_core::{
+    clearance::GapStatistics,
+    drive::Drive,
+    menu::{ContactData, FrictionData},
+    slide::{PINS, box_inertia},
+};
+
+use super::{
+    IntegratorKind, LevelRange, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError, SlideSpec, keys, parse_levels,
+    tree::{SET, Source, Value},
+    unit::{self, Quantity},
+    value::Field,
+};
+
+const MASS: Quantity = Quantity { units: unit::MASS, range: [0.001, 1e7] };
+const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
+const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
+const EXPONENT: Quantity = Quantity { units: unit::ONE, range: [1.0, 4.0] };
+const DAMPING: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
+const DEPTH: Quantity = Quantity { units: unit::LENGTH, range: [1e-6, 1000.0] };
+const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [0.0, 100.0] };
+const STICK_BAND: Quantity = Quantity { units: unit::SPEED, range: [1e-7, 1000.0] };
+const GAIN: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
+const RAMP: Quantity = Quantity { units: unit::SECONDS, range: [-1000.0, 1000.0] };
+const SPEED: Quantity = Quantity { units: unit::SPEED, range: [-1e6, 1e6] };
+const POINT: Quantity = Quantity { units: unit::LENGTH, range: [-1e5, 1e5] };
+const MEAN: Quantity = Quantity { units: unit::LENGTH, range: [-100.0, 100.0] };
+const DEVIATION: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
+const CLEARANCE: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
+const DURATION: Quantity = Quantity { units: unit::MILLISECONDS, range: [0.001, 1e6] };
+const STEP: Quantity = Quantity { units: unit::MICROSECONDS, range: [0.001, 1e4] };
+
+/// N/m^e.
+const STIFFNESS: [f64; 2] = [1e-9, 1e20];
+/// kg·m²: what the slide's kernel takes.
+const LEAST_MOMENT: f64 = 1e-12;
+/// s: what the slide's kernel takes.
+const LEAST_RAMP: f64 = 1e-6;
+const MOST_STEPS: f64 = 50e6;
+
+impl Scene {
+    /// Reads the `text` of the scene file `file_name` with the `overrides`, each `key=value` as after `--set`, applied
+    /// in order. An override's value is TOML or, where that does not parse, a bare text: `slide.mass=90 g`. A pin goes
+    /// by its name: `pin.left front.left=[0.01, 0.05]`.
+    ///
+    /// # Errors
+    /// [`SceneError`] points at the first value, in the file or in an override, that makes no scene.
+    pub fn parse(file_name: &str, text: &str, overrides: &[String]) -> Result<Self, SceneError> {
+        let overrides: Vec<_> = overrides.iter().map(|set| format!("{SET}{set}")).collect();
+        let mut tree = Source { name: file_name, text }.document()?;
+        for text in &overrides {
+            tree.set(Source { name: "command line", text })?;
+        }
+        keys::refuse_unknown(&tree, "")?;
+
+        let root = Field { key: String::new(), node: &tree };
+        Ok(Self {
+            title: title(&root, file_name)?,
+            slide: slide(&root.table("slide")?)?,
+            contact: contact(&root.table("contact")?)?,
+            friction: friction(&root.table("friction")?)?,
+            drive: drive(&root.table("drive")?)?,
+            pins: pins(&root)?,
+            nominal_clearance: nominal_clearance(&root)?,
+            run: run(&root.table("run")?)?,
+            sweep: sweep(&root.table("sweep")?)?,
+        })
+    }
+}
+
+fn title(root: &Field, file_name: &str) -> Result<String, SceneError> {
+    let stem = Path::new(file_name).file_stem().unwrap_or_default().to_string_lossy();
+    Ok(root.get("title").map(|title| title.to_text()).transpose()?.unwrap_or(&stem).into())
+}
+
+fn slide(table: &Field) -> Result<SlideSpec, SceneError> {
+    let mass = table.number("mass", &MASS)?;
+    let edges = table.require("inertia_box", "a list of 3 lengths in mm")?;
+    let inertia_box = edges.to_numbers(&EDGE)?;
+    if box_inertia(mass, inertia_box).min() < LEAST_MOMENT {
+        return Err(edges.out_of_range("mm", format!("moments of inertia of at least {LEAST_MOMENT:e} kg·m²")));
+    }
+    Ok(SlideSpec { mass, inertia_box, gravity: table.numbers("gravity", &GRAVITY)? })
+}
+
+fn contact(table: &Field) -> Result<ContactData<f64>, SceneError> {
+    let exponent = table.number("exponent", &EXPONENT)?;
+    Ok(ContactData {
+        stiffness: stiffness(table, exponent)?,
+        exponent,
+        damping: table.number("damping", &DAMPING)?,
+        depth: table.number("depth", &DEPTH)?,
+    })
+}
+
+/// The stiffness (N/m^e); its unit has the contact's exponent.
+fn stiffness(table: &Field, exponent: f64) -> Result<f64, SceneError> {
+    let units = format!("a number in N/mm^{exponent}, or a text with its unit: N/mm^{exponent}, N/m^{exponent}");
+    let field = table.require("stiffness", &units)?;
+    let measure = field.measure(&units)?;
+    let (key, written) = (field.key.clone(), field.written(""));
+
+    let (length, power) = match measure.unit.map(stiffness_unit) {
+        None => ("mm", exponent),
+        Some(Some(unit)) => unit,
+        Some(None) => return Err(field.error(Problem::Unit { key, written }, units)),
+    };
+    if power != exponent {
+        return Err(field.error(Problem::Exponent { key, written, exponent }, units));
+    }
+    let number = measure.number;
+    let value = match length {
+        // k·1000^e under the root, where 1000^1.5 is not yet rounded: the nearest double for the paper's contact.
+        "mm" => libm::copysign(libm::sqrt(number * number * libm::pow(1e6, exponent)), number),
+        _ => number,
+    };
+    let [least, greatest] = STIFFNESS;
+    if (least..=greatest).contains(&value) {
+        return Ok(value);
+    }
+    Err(field.out_of_range(&format!("N/mm^{exponent}"), format!("{least:e} to {greatest:e} N/m^{exponent}")))
+}
+
+/// Length and exponent of a unit such as N/mm^1.5.
+fn stiffness_unit(unit: &str) -> Option<(&str, f64)> {
+    let (length, power) = unit.strip_prefix("N/")?.split_once('^').unwrap_or((unit.strip_prefix("N/")?, "1"));
+    let power = power.parse().ok()?;
+    matches!(length, "mm" | "m").then_some((length, power))
+}
+
+fn friction(table: &Field) -> Result<FrictionData<f64>, SceneError> {
+    const LAWS: &str = "regularised, none";
+    let law = table.require("law", LAWS)?;
+    let (key, written) = (law.key.clone(), law.written(""));
+    match law.to_text()? {
+        "regularised" => Ok(FrictionData::Regularised {
+            coefficient: table.number("coefficient", &COEFFICIENT)?,
+            stick_band: table.number("stick_band", &STICK_BAND)?,
+        }),
+        "none" => {
+            // Not used, but wrong all the same.
+            table.get("coefficient").map(|field| field.to_number(&COEFFICIENT)).transpose()?;
+            table.get("stick_band").map(|field| field.to_number(&STICK_BAND)).transpose()?;
+            Ok(FrictionData::None)
+        }
+        "exact" => Err(law.error(Problem::NotYet { key, written }, LAWS)),
+        _ => Err(law.error(Problem::Choice { key, written }, LAWS)),
+    }
+}
+
+fn drive(table: &Field) -> Result<Drive<f64>, SceneError> {
+    let ramp_start = table.number("ramp_start", &RAMP)?;
+    let end = table.require("ramp_end", &RAMP.units())?;
+    let ramp_end = end.to_number(&RAMP)?;
+    if ramp_end - ramp_start < LEAST_RAMP {
+        return Err(end.out_of_range("s", format!("more than drive.ramp_start, {ramp_start} s, by 1 µs or more")));
+    }
+    let point: [f64; 3] = table.get("point").map(|point| point.to_numbers(&POINT)).transpose()?.unwrap_or_default();
+    Ok(Drive {
+        gain: table.number("gain", &GAIN)?,
+        ramp_start,
+        ramp_end,
+        speed: table.number("speed", &SPEED)?,
+        point_b: point.into(),
+    })
+}
+
+fn pins(root: &Field) -> Result<[PinSpec; PINS], SceneError> {
+    const ALLOWED: &str = "one to four tables [[pin]]";
+    let list = root.require("pin", ALLOWED)?;
+    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(ALLOWED)) };
+    let wrong_length = |node: Field| node.error(Problem::Length { key: "pin".into(), found: nodes.len() }, ALLOWED);
+    if nodes.is_empty() {
+        return Err(wrong_length(list));
+    }
+    let mut pins = std::array::from_fn(|_| PinSpec { name: String::new(), position: [0.0; 3], gaps: [None; 4] });
+    for (i, node) in nodes.iter().enumerate() {
+        let table = Field { key: "pin".into(), node };
+        *pins.get_mut(i).ok_or_else(|| wrong_length(Field { key: "pin".into(), node }))? = pin(&table)?;
+    }
+    Ok(pins)
+}
+
+fn pin(table: &Field) -> Result<PinSpec, SceneError> {
+    table.expect_table()?;
+    let name = table.require("name", "a text in quotes, such as \"left front\"")?.to_text()?.into();
+    let mut gaps = [None; 4];
+    for (gap, surface) in gaps.iter_mut().zip(SURFACES) {
+        *gap = table.get(surface).map(|field| statistics(&field)).transpose()?;
+    }
+    Ok(PinSpec { name, position: table.numbers("position", &POINT)?, gaps })
+}
+
+fn statistics(field: &Field) -> Result<GapStatistics<f64>, SceneError> {
+    const ALLOWED: &str = "[mean, standard deviation] in mm";
+    let Value::List(nodes) = &field.node.value else { return Err(field.wrong_type(ALLOWED)) };
+    let [mean, deviation] = &nodes[..] else {
+        return Err(field.error(Problem::Length { key: field.key.clone(), found: nodes.len() }, ALLOWED));
+    };
+    let number = |node, quantity| Field { key: field.key.clone(), node }.to_number(quantity);
+    Ok(GapStatistics { mean: number(mean, &MEAN)?, deviation: number(deviation, &DEVIATION)? })
+}
+
+fn nominal_clearance(root: &Field) -> Result<Option<[f64; 2]>, SceneError> {
+    let Some(drawing) = root.get("drawing") else { return Ok(None) };
+    drawing.expect_table()?;
+    drawing.get("clearance").map(|field| field.to_numbers(&CLEARANCE)).transpose()
+}
+
+fn run(table: &Field) -> Result<RunSpec, SceneError> {
+    let duration_field = table.require("duration", &DURATION.units())?;
+    let duration = duration_field.to_number(&DURATION)?;
+    let field = table.require("step", &STEP.units())?;
+    let step = field.to_number(&STEP)?;
+    let (step_written, duration_written) = (field.written("µs"), duration_field.written("ms"));
+
+    if step > duration {
+        return Err(field.out_of_range("µs", format!("at most run.duration, {duration_written}")));
+    }
+    let steps = duration / step;
+    if steps > MOST_STEPS {
+        let least = duration / MOST_STEPS * 1e6;
+        return Err(field.out_of_range("µs", format!("at least {least} µs: 50 million steps of run.duration")));
+    }
+    if (steps - steps.round()).abs() > 1e-6 {
+        // In µs, as the range.
+        let [longer, step, shorter] = [steps.floor(), steps, steps.ceil()].map(|steps| duration * 1e6 / steps);
+        let nearest = if longer <= STEP.range[1] && longer - step < step - shorter { longer } else { shorter };
+        let problem = Problem::Indivisible { step: step_written, duration: duration_written };
+        return Err(field.error(problem, format!("a step that divides it, the nearest is {nearest} µs")));
+    }
+    Ok(RunSpec { duration, step, integrator: integrator(table)? })
+}
+
+/// By the names of the command line's option.
+fn integrator(table: &Field) -> Result<IntegratorKind, SceneError> {
+    let names = IntegratorKind::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+    let names = names.map(|value| value.get_name().to_owned()).collect::<Vec<_>>().join(", ");
+    let field = table.require("integrator", &names)?;
+    let name = field.to_text()?;
+    IntegratorKind::from_str(name, false)
+        .map_err(|_| field.error(Problem::Choice { key: field.key.clone(), written: field.written("") }, names))
+}
+
+fn sweep(table: &Field) -> Result<LevelRange, SceneError> {
+    const ALLOWED: &str = "a text \"FIRST:LAST:STEP\", such as \"-3:5:0.1\", of at most 100000 levels, or one level";
+    let field = table.require("n", ALLOWED)?;
+    let levels = match &field.node.value {
+        Value::Text(text) => parse_levels(text),
+        Value::Number(level) => parse_levels(&level.to_string()),
+        _ => return Err(field.wrong_type(ALLOWED)),
+    };
+    levels.map_err(|error| field.error(Problem::Levels { key: field.key.clone(), error }, ALLOWED))
+}

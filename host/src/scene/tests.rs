@@ -1,0 +1,319 @@
+//! The shipped scenes, every kind of bad input, and that no text panics.
+
+use proptest::prelude::*;
+use slipfit_core::slide::ABSENT;
+use slipfit_problems::cd_rom;
+
+use super::{CD_ROM_SLIDE, IntegratorKind, LevelRange, RunSpec, Scene, SceneError};
+
+const FAST: &str = include_str!("../../scenes/cd-rom-slide-fast.toml");
+
+fn parse(text: &str, overrides: &[&str]) -> Result<Scene, SceneError> {
+    let overrides: Vec<_> = overrides.iter().map(|text| text.to_string()).collect();
+    Scene::parse("scene.toml", text, &overrides)
+}
+
+/// The message for the paper's scene with `from` replaced by `to`.
+fn message(from: &str, to: &str) -> String {
+    assert!(CD_ROM_SLIDE.contains(from), "{from}");
+    match parse(&CD_ROM_SLIDE.replacen(from, to, 1), &[]) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("accepted: {to}"),
+    }
+}
+
+/// Where in `text` the bar in `marked` stands.
+fn line_and_column(text: &str, marked: &str) -> String {
+    let at = text.find(&marked.replace('|', "")).unwrap() + marked.find('|').unwrap();
+    let before = &text[..at];
+    let column = before.chars().rev().take_while(|character| *character != '\n').count() + 1;
+    format!("{}:{column}", before.matches('\n').count() + 1)
+}
+
+/// The paper's scene with overrides.
+fn with(overrides: &[&str]) -> Scene {
+    parse(CD_ROM_SLIDE, overrides).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn the_shipped_scene_is_the_paper_s_to_the_last_bit() {
+    let scene = with(&[]);
+    for n in [0.0, 1.0, 2.5, -3.0] {
+        assert_eq!(scene.slide_data::<f64>(&scene.gaps_at(&[n; 16])), cd_rom::data(n));
+    }
+    assert_eq!(scene.title, "CD-ROM slide");
+    assert_eq!(scene.pins[2].name, "left front");
+    assert_eq!(scene.nominal_clearance, Some([0.4 / 1000.0; 2]));
+    assert_eq!(scene.run, RunSpec { duration: 0.2, step: 50e-6, integrator: IntegratorKind::Sdirk2 });
+    assert_eq!(scene.sweep, LevelRange { first: -3.0, step: 0.1, count: 81 });
+
+    let mut fast = parse(FAST, &[]).unwrap();
+    assert_eq!((fast.drive.ramp_end, fast.title.as_str()), (0.1, "CD-ROM slide, fast ramp"));
+    (fast.drive.ramp_end, fast.title) = (1.0, scene.title.clone());
+    assert_eq!(fast, scene);
+}
+
+#[test]
+fn units_mean_the_same() {
+    for set in [
+        "slide.mass=0.0818 kg",
+        "slide.mass = \"81.8g\"",
+        "slide.inertia_box=['13 cm', '0.012 m', 150]",
+        "slide.gravity=[0, '-9810 mm/s^2', 0]",
+        "contact.stiffness=100",
+        "contact.stiffness=100.0 N/mm^1.5",
+        "contact.damping=1000 N*s/m",
+        "contact.damping=1 Ns/mm",
+        "contact.depth=100 um",
+        "friction.law=regularised",
+        "drive.ramp_start=50 ms",
+        "drive.speed=0.1 m/s",
+        "run.duration=0.2 s",
+        "run.step=0.05 ms",
+        "pin.left front.left=['-22.3 µm', 0.0624]",
+        "sweep.n=-3:5:0.1",
+        "drawing={clearance = [0.4, 0.4]}",
+    ] {
+        assert_eq!(with(&[set]), with(&[]), "{set}");
+    }
+}
+
+#[test]
+fn overrides_apply_in_order() {
+    let scene = with(&["slide.mass=1", "slide.mass=90 g", "friction.law=none", "sweep.n=2.5", "slide.gravity=[0,0,1]"]);
+    assert_eq!((scene.slide.mass, scene.slide.gravity), (0.09, [0.0, 0.0, 1.0]));
+    assert_eq!(scene.sweep.levels(), [2.5]);
+    assert_eq!(with(&["sweep.n=10:10:05"]).sweep.count, 1);
+    assert_eq!(with(&["contact.exponent=1", "contact.stiffness=7 N/mm"]).contact.stiffness, 7000.0);
+    assert_eq!(with(&["contact.exponent=2", "contact.stiffness=7 N/m^2"]).contact.stiffness, 7.0);
+    assert_eq!(with(&["title=a b"]).title, "a b");
+}
+
+#[test]
+fn what_may_be_left_out() {
+    let without = |line: &str| parse(&CD_ROM_SLIDE.replacen(line, "", 1), &[]).unwrap();
+    assert_eq!(without("title = \"CD-ROM slide\"").title, "scene");
+    assert_eq!(without("point = [0, 0, 0]"), with(&[]));
+    assert_eq!(without("clearance = [0.4, 0.4]").nominal_clearance, None);
+    assert_eq!(without("wall = [0.5757, 0.0465]").gaps_at(&[0.0; 16])[3], ABSENT);
+    let (front, _) = CD_ROM_SLIDE.rsplit_once("[[pin]]").unwrap();
+    let three = parse(front, &[]).unwrap();
+    assert_eq!((three.pins[3].gaps, three.pins[3].position), ([None; 4], [0.0; 3]));
+}
+
+#[test]
+fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
+    let gap = "left = [0.0064, 0.0404]";
+    for (from, to, [marked, problem, allowed]) in [
+        (
+            "mass = 81.8 ",
+            "mas = 81.8 ",
+            ["|mas = ", "unknown key `slide.mas`, did you mean `slide.mass`", "inertia_box"],
+        ),
+        ("[sweep]", "[swep]", ["[|swep]", "unknown key `swep`, did you mean `sweep`?", "title, slide, contact"]),
+        ("wall = [0.5757", "floor = [0.5757", ["|floor = ", "unknown key `pin.floor`", "rail, wall"]),
+        ("mass = 81.8 ", "", ["|[slide]", "`slide.mass` is missing", "a number in g, or a text with its unit: g, kg"]),
+        ("law = \"regularised\"", "", ["|[friction]", "`friction.law` is missing", "regularised, none"]),
+        ("mass = 81.8 ", "mass = true ", ["mass = |true", "`slide.mass` is a boolean", "a number in g"]),
+        (
+            "gravity = [0, -9.81, 0]",
+            "gravity = 9.81",
+            ["gravity = |9.81", "`slide.gravity` is a number", "a list of 3"],
+        ),
+        (
+            "gravity = [0, -9.81, 0]",
+            "gravity = [0]",
+            ["gravity = |[0]", "`slide.gravity` is a list of 1", "a list of 3"],
+        ),
+        ("law = \"regularised\"", "law = 3", ["law = |3", "`friction.law` is a number", "a text in quotes"]),
+        ("mass = 81.8 ", "mass = \"81.8\" ", ["mass = |\"81.8\"", "\"81.8\", whose unit does not fit", "g, kg"]),
+        ("mass = 81.8 ", "mass = \"81.8 mm\" ", ["mass = |\"81.8 mm", "\"81.8 mm\", whose unit does not fit", "g, kg"]),
+        (
+            "mass = 81.8 ",
+            "mass = \"heavy\" ",
+            ["mass = |\"heavy", "\"heavy\", which is not a number with its unit", "g, kg"],
+        ),
+        ("N/mm^1.5\"", "N/mm^2\"", ["stiffness = |\"100 N/mm^2", "but `contact.exponent` is 1.5", "N/mm^1.5"]),
+        ("N/mm^1.5\"", "N/mm\"", ["stiffness = |\"100 N/mm\"", "but `contact.exponent` is 1.5", "N/mm^1.5"]),
+        ("N/mm^1.5\"", "N/s\"", ["stiffness = |\"100 N/s", "whose unit does not fit", "N/mm^1.5"]),
+        ("mass = 81.8 ", "mass = nan ", ["mass = |nan", "`slide.mass` is nan, which is not finite", "a number in g"]),
+        ("mass = 81.8 ", "mass = \"1e999 g\"", ["mass = |\"1e999", "1e999 g, which is not finite", "a number in g"]),
+        (
+            "gravity = [0, -9.81",
+            "gravity = [0, -inf",
+            ["gravity = [0, |-inf", "-inf, which is not finite", "a number in m/s²"],
+        ),
+        ("mass = 81.8 ", "mass = -81.8 ", ["mass = |-81.8", "`slide.mass` is -81.8 g", "0.001 to 10000000 g"]),
+        ("mass = 81.8 ", "mass = 0xffffffffffffffffffff ", ["mass = |0xff", "which is not finite", "a number in g"]),
+        ("[130, 12, 150]", "[130, 0, 150]", ["[130, |0, 150]", "`slide.inertia_box` is 0 mm", "0.001 to 100000 mm"]),
+        ("[130, 12, 150]", "[0.005, 0.005, 0.005]", ["|[0.005", "`slide.inertia_box`", "at least 1e-12 kg·m²"]),
+        ("\"100 N/mm^1.5\"", "-100", ["stiffness = |-100", "`contact.stiffness` is -100 N/mm^1.5", "to 1e20 N/m^1.5"]),
+        ("exponent = 1.5", "exponent = 0.9", ["exponent = |0.9", "`contact.exponent` is 0.9", "1 to 4"]),
+        ("damping = 1 ", "damping = -1 ", ["damping = |-1", "is -1 N·s/mm", "0 to 1000000 N·s/mm"]),
+        ("depth = 0.1", "depth = 0", ["depth = |0", "`contact.depth` is 0 mm", "0.000001 to 1000 mm"]),
+        (
+            "\"regularised\"",
+            "\"exact\"",
+            ["law = |\"exact", "\"exact\", which this version does not have", "regularised, none"],
+        ),
+        ("\"regularised\"", "\"wet\"", ["law = |\"wet", "`friction.law` is \"wet\"", "regularised, none"]),
+        (
+            "coefficient = 0.3",
+            "coefficient = -0.3",
+            ["coefficient = |-0.3", "`friction.coefficient` is -0.3", "0 to 100"],
+        ),
+        (
+            "stick_band = 0.1",
+            "stick_band = 0",
+            ["stick_band = |0", "`friction.stick_band` is 0 mm/s", "0.0000001 to 1000 mm/s"],
+        ),
+        (
+            "ramp_end = 1.0",
+            "ramp_end = 0.05",
+            ["ramp_end = |0.05", "`drive.ramp_end` is 0.05 s", "more than drive.ramp_start, 0.05 s"],
+        ),
+        ("step = 50 ", "step = 0 ", ["step = |0 ", "`run.step` is 0 µs", "0.001 to 10000 µs"]),
+        ("step = 50 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`run.step` is 20 ms", "0.001 to 10000 µs"]),
+        ("duration = 200", "duration = 0.01", ["step = |50", "`run.step` is 50 µs", "at most run.duration, 0.01 ms"]),
+        ("step = 50 ", "step = 0.001 ", ["step = |0.001", "`run.step` is 0.001 µs", "at least 0.004 µs"]),
+        (
+            "step = 50 ",
+            "step = 30 ",
+            ["step = |30", "which does not divide `run.duration`, 200 ms", "nearest is 29.99850"],
+        ),
+        (
+            "\"sdirk2\"",
+            "\"radau\"",
+            ["integrator = |\"radau", "`run.integrator` is \"radau\"", "implicit-euler, sdirk2"],
+        ),
+        ("\"-3:5:0.1\"", "\"\"", ["n = |\"\"", "is neither FIRST:LAST:STEP", "-3:5:0.1"]),
+        (
+            "\"-3:5:0.1\"",
+            "\"5:-3:0.1\"",
+            ["n = |\"5:-3", "`sweep.n`: the last level, -3, is below the first, 5", "-3:5:0.1"],
+        ),
+        ("\"-3:5:0.1\"", "\"0:5:1e-9\"", ["n = |\"0:5:1e-9", "makes more than 100000 levels", "at most 100000 levels"]),
+        (gap, "left = [0.0064, -0.0404]", ["[0.0064, |-0.0404]", "`pin.left` is -0.0404 mm", "0 to 100 mm"]),
+        (gap, "left = [200, 0]", ["[|200", "`pin.left` is 200 mm", "-100 to 100 mm"]),
+        (gap, "left = [0.0064]", ["left = |[0.0064]", "`pin.left` is a list of 1", "[mean, standard deviation] in mm"]),
+        ("[[pin]]", "[[pin]]\n[[pin]]", ["|[[pin]]", "`pin.name` is missing", "such as \"left front\""]),
+        ("mass = 81.8 ", "mass = 81.8\nmass = 2", ["|mass = 2", "not valid TOML: duplicate key", "mass = 2"]),
+        ("mass = 81.8 ", "mass = ~", ["mass = |~", "not valid TOML", "mass = ~"]),
+        ("[sweep]", "[sweep", ["[sweep|", "not valid TOML: unclosed table", "[sweep"]),
+    ] {
+        let message = message(from, to);
+        let text = CD_ROM_SLIDE.replacen(from, to, 1);
+        let place = format!(" scene.toml:{}\n", line_and_column(&text, marked));
+        for part in [place.as_str(), problem, allowed] {
+            assert!(message.contains(part), "{part} is not in\n{message}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_has_one_to_four_pins() {
+    let five = format!("{CD_ROM_SLIDE}\n[[pin]]\nname = \"fifth\"\nposition = [0, 0, 0]\n");
+    let message = parse(&five, &[]).unwrap_err().to_string();
+    assert!(message.contains("`pin` is a list of 5") && message.contains("one to four"), "{message}");
+    let (none, _) = CD_ROM_SLIDE.split_once("[[pin]]").unwrap();
+    assert!(parse(none, &[]).unwrap_err().to_string().contains("`pin` is missing"));
+    assert!(parse(none, &["pin=[]"]).unwrap_err().to_string().contains("`pin` is a list of 0"));
+    assert!(parse("", &[]).unwrap_err().to_string().contains("`slide` is missing"));
+}
+
+#[test]
+fn errors_in_overrides_point_into_them() {
+    for (set, part) in [
+        ("contact.stiffness=abc", "1:25"),
+        ("slide.mas=3", "unknown key `slide.mas`, did you mean `slide.mass`?"),
+        ("mass=3", "unknown key `mass`, did you mean `slide.mass`?"),
+        ("slide.mass.x=3", "unknown key `slide.mass.x`"),
+        ("a.b.c.d.e=3", "unknown key `a`"),
+        ("slide=3", "`slide` is a number"),
+        ("slide.mass", "`--set` needs a key and a value"),
+        ("", "`--set` needs a key and a value"),
+        ("=3", "unknown key ``"),
+        ("slide.mass=", "1:18"),
+        ("slide.gravity=[0, -9.81", "`slide.gravity` is a text"),
+        ("slide.gravity=[0, nan, 0]", "1:25"),
+        ("pin.middle.left=[0, 1]", "there is no pin `middle`"),
+        ("pin.left front.left=[0, -1]", "1:31"),
+        ("title=3", "`title` is a number"),
+    ] {
+        let error = parse(CD_ROM_SLIDE, &["slide.mass=90 g", set]).unwrap_err().to_string();
+        assert!(error.contains(part) && error.contains("command line:1:"), "{set}\n{error}");
+        assert!(error.contains(format!("1 | --set {set}").trim_end()), "{set}\n{error}");
+    }
+    let error = parse(CD_ROM_SLIDE, &["friction.law=none", "friction.coefficient=-1"]).unwrap_err().to_string();
+    assert!(error.contains("`friction.coefficient` is -1"), "{error}");
+}
+
+#[test]
+fn messages_are_for_people() {
+    insta::assert_snapshot!(message("mass = 81.8 ", "mas = 81.8 "), @r#"
+    error: unknown key `slide.mas`, did you mean `slide.mass`?
+      --> scene.toml:12:1
+       |
+    12 | mas = 81.8                       # g
+       | ^^^
+       |
+       = allowed: mass, inertia_box, gravity
+    "#);
+    insta::assert_snapshot!(message("step = 50 ", "step = 30 "), @r#"
+    error: `run.step` is 30 µs, which does not divide `run.duration`, 200 ms
+      --> scene.toml:36:8
+       |
+    36 | step = 30                         # µs
+       |        ^^
+       |
+       = allowed: a step that divides it, the nearest is 29.99850007499625 µs
+    "#);
+    insta::assert_snapshot!(parse(CD_ROM_SLIDE, &["contact.stiffness=1 kN"]).unwrap_err(), @r#"
+    error: `contact.stiffness` is "1 kN", whose unit does not fit
+     --> command line:1:25
+      |
+    1 | --set contact.stiffness=1 kN
+      |                         ^^^^
+      |
+      = allowed: a number in N/mm^1.5, or a text with its unit: N/mm^1.5, N/m^1.5
+    "#);
+    let error = parse("title = 3", &[]).unwrap_err();
+    assert!(error.render(true).contains("\u{1b}[") && !error.render(false).contains('\u{1b}'));
+}
+
+proptest! {
+    #[test]
+    fn no_text_panics(text in any::<String>(), set in any::<String>()) {
+        let _ = parse(&text, &[&set]).map_err(|error| (error.render(true), error.to_string()));
+    }
+
+    /// Whatever is accepted also makes a kernel.
+    #[test]
+    fn no_change_of_the_shipped_scene_panics(
+        at in 0..CD_ROM_SLIDE.len(),
+        length in 0..12usize,
+        insert in "[-0-9.e\"\\[\\]=a-zµ\t\r\n]{0,4}",
+    ) {
+        let mut text = CD_ROM_SLIDE.to_owned().into_bytes();
+        text.splice(at..(at + length).min(CD_ROM_SLIDE.len()), insert.into_bytes());
+        match parse(&String::from_utf8_lossy(&text), &[]) {
+            Ok(scene) => {
+                let kernel = scene.slide_data::<f64>(&[0.0; 16]).visit(Accept);
+                prop_assert!(kernel.is_ok(), "{:?}", kernel);
+            }
+            Err(error) => prop_assert!(error.to_string().contains("scene.toml:")),
+        }
+    }
+}
+
+struct Accept;
+
+impl slipfit_core::menu::SlideVisitor<f64> for Accept {
+    type Output = ();
+
+    fn visit<E: slipfit_core::law::Elastic<f64>, F: slipfit_core::law::Friction<f64>>(
+        self,
+        _: slipfit_core::slide::Slide<f64, E, F>,
+    ) {
+    }
+}

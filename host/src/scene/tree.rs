@@ -1,0 +1,203 @@
+//! A TOML document in which every value knows the text that it came from: the file, or an override.
+
+use std::{borrow::Cow, ops::Range};
+
+use toml::{
+    Spanned,
+    de::{DeInteger, DeTable, DeValue},
+};
+
+use super::{Problem, SceneError};
+
+/// What stands before an override in messages.
+pub const SET: &str = "--set ";
+
+/// A text and what it is called in messages.
+#[derive(Clone, Copy)]
+pub struct Source<'s> {
+    /// Name, such as a file's.
+    pub name: &'s str,
+    /// Text.
+    pub text: &'s str,
+}
+
+/// Bytes of a source.
+#[derive(Clone)]
+pub struct Place<'s> {
+    source: Source<'s>,
+    span: Range<usize>,
+}
+
+/// A value and its place; for a table the place of its header.
+pub struct Node<'s> {
+    /// Where.
+    pub place: Place<'s>,
+    /// What.
+    pub value: Value<'s>,
+}
+
+/// A TOML value as far as scenes use it.
+pub enum Value<'s> {
+    /// An integer or a float.
+    Number(f64),
+    /// A string.
+    Text(Cow<'s, str>),
+    /// An array, or an array of tables.
+    List(Vec<Node<'s>>),
+    /// A table, its entries in the order of the text.
+    Table(Vec<Entry<'s>>),
+    /// Anything else: what it is, with its article.
+    Other(&'static str),
+}
+
+/// A key with its value.
+pub struct Entry<'s> {
+    /// The key.
+    pub key: Cow<'s, str>,
+    /// Where the key is.
+    pub place: Place<'s>,
+    /// The value.
+    pub node: Node<'s>,
+}
+
+impl<'s> Source<'s> {
+    fn place(self, span: Range<usize>) -> Place<'s> {
+        Place { source: self, span }
+    }
+
+    /// `span` without the white space at its ends.
+    fn trimmed(self, span: Range<usize>) -> Place<'s> {
+        let text = &self.text[span.clone()];
+        let start = span.start + text.len() - text.trim_start().len();
+        self.place(start..start + text.trim().len())
+    }
+
+    /// The whole text as a TOML document.
+    pub fn document(self) -> Result<Node<'s>, SceneError> {
+        let table = DeTable::parse(self.text).map_err(|error| {
+            self.place(error.span().unwrap_or(0..0)).error(Problem::Syntax(error.message().into()), "")
+        })?;
+        Ok(self.node(Spanned::new(table.span(), DeValue::Table(table.into_inner())), 0))
+    }
+
+    /// `value`, parsed from the text that begins `offset` bytes into this one.
+    fn node(self, value: Spanned<DeValue<'s>>, offset: usize) -> Node<'s> {
+        let place = |span: Range<usize>| self.place(offset + span.start..offset + span.end);
+        let span = value.span();
+        let value = match value.into_inner() {
+            DeValue::Integer(integer) => Value::Number(integer_value(&integer)),
+            DeValue::Float(float) => Value::Number(float.as_str().parse().unwrap_or(f64::NAN)),
+            DeValue::String(text) => Value::Text(text),
+            DeValue::Boolean(_) => Value::Other("a boolean"),
+            DeValue::Datetime(_) => Value::Other("a date or time"),
+            DeValue::Array(array) => Value::List(array.into_iter().map(|value| self.node(value, offset)).collect()),
+            DeValue::Table(table) => {
+                let entry = |(key, value): (Spanned<_>, _)| {
+                    let place = place(key.span());
+                    Entry { place, key: key.into_inner(), node: self.node(value, offset) }
+                };
+                let mut entries: Vec<_> = table.into_iter().map(entry).collect();
+                entries.sort_by_key(|entry| entry.place.span.start);
+                Value::Table(entries)
+            }
+        };
+        Node { place: place(span), value }
+    }
+}
+
+/// The value of an integer; what does not fit becomes infinite, and is refused as such.
+fn integer_value(integer: &DeInteger<'_>) -> f64 {
+    match integer.radix() {
+        10 => integer.as_str().parse().unwrap_or(f64::INFINITY),
+        radix => u64::from_str_radix(integer.as_str(), radix).map_or(f64::INFINITY, |value| value as f64),
+    }
+}
+
+impl<'s> Place<'s> {
+    /// The text at this place.
+    pub fn text(&self) -> &'s str {
+        self.source.text.get(self.span.clone()).unwrap_or_default()
+    }
+
+    /// A `problem` at this place, and what is `allowed`.
+    pub fn error(&self, problem: Problem, allowed: impl Into<String>) -> SceneError {
+        SceneError::new(problem, allowed.into(), self.source.name, self.source.text, self.span.clone())
+    }
+}
+
+impl<'s> Node<'s> {
+    /// What this is, with its article.
+    pub fn kind(&self) -> &'static str {
+        match self.value {
+            Value::Number(_) => "a number",
+            Value::Text(_) => "a text",
+            Value::List(_) => "a list",
+            Value::Table(_) => "a table",
+            Value::Other(kind) => kind,
+        }
+    }
+
+    /// The value of a key, if this is a table that has it.
+    pub fn get(&self, key: &str) -> Option<&Self> {
+        let Value::Table(entries) = &self.value else { return None };
+        entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
+    }
+
+    /// Replaces or adds what the override `--set key=value` in `source` names. The value is TOML, else a bare text.
+    pub fn set(&mut self, source: Source<'s>) -> Result<(), SceneError> {
+        let text = source.text;
+        let start = SET.len().min(text.len());
+        let Some(equals) = text[start..].find('=').map(|at| start + at) else {
+            return Err(source.trimmed(start..text.len()).error(Problem::Override, "key=value, such as slide.mass=90"));
+        };
+        let key = source.trimmed(start..equals);
+        let value = source.trimmed(equals + 1..text.len());
+        let bare = || Node { place: value.clone(), value: Value::Text(value.text().into()) };
+        let value = match DeValue::parse(value.text()) {
+            // 10:20:05 is a range of levels here, not a time of the day.
+            Ok(parsed) if !parsed.get_ref().is_datetime() => source.node(parsed, value.span.start),
+            _ => bare(),
+        };
+
+        // A pin's name between the first dot and the last may have dots of its own.
+        let (section, rest) =
+            key.text().split_once('.').map_or((None, key.text()), |(first, rest)| (Some(first), rest));
+        let (pin, last) = rest.rsplit_once('.').map_or((None, rest), |(pin, last)| (Some(pin), last));
+        let mut node = self;
+        for key_part in section.into_iter().chain(pin).chain([last]) {
+            node = node.child(key_part.trim(), &key)?;
+        }
+        *node = value;
+        Ok(())
+    }
+
+    /// The entry `key` of a table, made if it is not there, or the table of that name in a list.
+    fn child(&mut self, key: &'s str, place: &Place<'s>) -> Result<&mut Self, SceneError> {
+        let unknown = Problem::UnknownKey { key: place.text().into(), similar: None };
+        match &mut self.value {
+            Value::Table(entries) => {
+                let at = entries.iter().position(|entry| entry.key == key).unwrap_or(entries.len());
+                if at == entries.len() {
+                    let node = Node { place: place.clone(), value: Value::Table(Vec::new()) };
+                    entries.push(Entry { key: key.into(), place: place.clone(), node });
+                }
+                Ok(&mut entries[at].node)
+            }
+            Value::List(nodes) => {
+                let names: Vec<_> = nodes.iter().filter_map(Self::name).collect();
+                let Some(at) = nodes.iter().position(|node| node.name() == Some(key)) else {
+                    return Err(place.error(Problem::UnknownPin(key.into()), names.join(", ")));
+                };
+                Ok(&mut nodes[at])
+            }
+            _ => Err(place.error(unknown, "a key of the scene file, such as slide.mass")),
+        }
+    }
+
+    fn name(&self) -> Option<&str> {
+        match &self.get("name")?.value {
+            Value::Text(name) => Some(name),
+            _ => None,
+        }
+    }
+}
