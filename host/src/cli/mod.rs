@@ -102,8 +102,8 @@ struct SceneArguments {
 impl SceneArguments {
     /// Reads the scene, with `options` as further settings.
     fn load(&self, options: &[Override]) -> Result<Scene, Failure> {
-        let mut overrides = self.set.iter().map(|text| Override::from_set(text)).collect::<Result<Vec<_>, _>>()?;
-        overrides.extend_from_slice(options);
+        let set = self.set.iter().map(|assignment| Override::set(assignment));
+        let overrides: Vec<_> = set.chain(options.iter().cloned()).collect();
         let (name, text) = match &self.scene {
             None => ("cd-rom-slide.toml".into(), CD_ROM_SLIDE.into()),
             Some(path) => {

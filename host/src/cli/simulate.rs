@@ -53,9 +53,9 @@ pub(super) struct SteppingArguments {
 impl SteppingArguments {
     /// The options as settings of the scene.
     pub fn overrides(&self) -> Vec<Override> {
-        let step = self.step.as_ref().map(|step| Override::from_option("--step", "run.step", step));
+        let step = self.step.as_ref().map(|step| Override::option("--step", "run.step", step));
         let integrator =
-            self.integrator.map(|kind| Override::from_option("--integrator", "run.integrator", kind.name()));
+            self.integrator.map(|kind| Override::option("--integrator", "run.integrator", kind.name()));
         step.into_iter().chain(integrator).collect()
     }
 }

@@ -48,7 +48,7 @@ pub(super) struct LevelArguments {
 impl LevelArguments {
     /// The option as a setting of the scene.
     pub fn overrides(&self) -> Option<Override> {
-        self.n.as_ref().map(|n| Override::from_option("--n", "sweep.n", n))
+        self.n.as_ref().map(|n| Override::option("--n", "sweep.n", n))
     }
 }
 

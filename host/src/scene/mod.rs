@@ -53,6 +53,28 @@ pub struct Scene {
     pub sweep: LevelRange,
 }
 
+/// A change of one key, from the command line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Override {
+    /// As typed, for messages: an option, a space, and what follows it.
+    text: String,
+    /// The key, unless what follows the option names it.
+    key: Option<&'static str>,
+}
+
+impl Override {
+    /// What follows `--set`: `key=value`. The value is TOML or, where that does not parse, a bare text:
+    /// `slide.mass=90 g`. A pin goes by its name: `pin.left front.left=[0.01, 0.05]`.
+    pub fn set(assignment: &str) -> Self {
+        Self { text: format!("--set {assignment}"), key: None }
+    }
+
+    /// The value of an `option` (without spaces) that stands for `key`.
+    pub fn option(option: &str, key: &'static str, value: &str) -> Self {
+        Self { text: format!("{option} {value}"), key: Some(key) }
+    }
+}
+
 /// The moving body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlideSpec {
@@ -104,6 +126,16 @@ pub struct LevelRange {
     pub step: f64,
     /// How many, at least 1.
     pub count: usize,
+}
+
+impl IntegratorKind {
+    /// Its name in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ImplicitEuler => "implicit-euler",
+            Self::Sdirk2 => "sdirk2",
+        }
+    }
 }
 
 impl LevelRange {

@@ -11,8 +11,8 @@ use slipfit_core::{
 };
 
 use super::{
-    IntegratorKind, LevelRange, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError, SlideSpec, keys, parse_levels,
-    tree::{SET, Source, Value},
+    IntegratorKind, LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError, SlideSpec, keys, parse_levels,
+    tree::{Source, Value},
     unit::{self, Quantity},
     value::Field,
 };
@@ -44,17 +44,14 @@ const LEAST_RAMP: f64 = 1e-6;
 const MOST_STEPS: f64 = 50e6;
 
 impl Scene {
-    /// Reads the `text` of the scene file `file_name` with the `overrides`, each `key=value` as after `--set`, applied
-    /// in order. An override's value is TOML or, where that does not parse, a bare text: `slide.mass=90 g`. A pin goes
-    /// by its name: `pin.left front.left=[0.01, 0.05]`.
+    /// Reads the `text` of the scene file `file_name` with the `overrides` applied in order.
     ///
     /// # Errors
     /// [`SceneError`] points at the first value, in the file or in an override, that makes no scene.
-    pub fn parse(file_name: &str, text: &str, overrides: &[String]) -> Result<Self, SceneError> {
-        let overrides: Vec<_> = overrides.iter().map(|set| format!("{SET}{set}")).collect();
+    pub fn parse(file_name: &str, text: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let mut tree = Source { name: file_name, text }.document()?;
-        for text in &overrides {
-            tree.set(Source { name: "command line", text })?;
+        for change in overrides {
+            tree.set(change)?;
         }
         keys::refuse_unknown(&tree, "")?;
 

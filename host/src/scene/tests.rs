@@ -9,7 +9,7 @@ use super::{CD_ROM_SLIDE, IntegratorKind, LevelRange, RunSpec, Scene, SceneError
 const FAST: &str = include_str!("../../scenes/cd-rom-slide-fast.toml");
 
 fn parse(text: &str, overrides: &[&str]) -> Result<Scene, SceneError> {
-    let overrides: Vec<_> = overrides.iter().map(|text| text.to_string()).collect();
+    let overrides: Vec<_> = overrides.iter().map(|text| Override::set(text)).collect();
     Scene::parse("scene.toml", text, &overrides)
 }
 

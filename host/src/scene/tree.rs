@@ -7,10 +7,7 @@ use toml::{
     de::{DeInteger, DeTable, DeValue},
 };
 
-use super::{Problem, SceneError};
-
-/// What stands before an override in messages.
-pub const SET: &str = "--set ";
+use super::{Override, Problem, SceneError};
 
 /// A text and what it is called in messages.
 #[derive(Clone, Copy)]
@@ -143,15 +140,22 @@ impl<'s> Node<'s> {
         entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
     }
 
-    /// Replaces or adds what the override `--set key=value` in `source` names. The value is TOML, else a bare text.
-    pub fn set(&mut self, source: Source<'s>) -> Result<(), SceneError> {
+    /// Replaces or adds the key that `change` names. The value is TOML, else a bare text.
+    pub fn set(&mut self, change: &'s Override) -> Result<(), SceneError> {
+        let source = Source { name: "command line", text: &change.text };
         let text = source.text;
-        let start = SET.len().min(text.len());
-        let Some(equals) = text[start..].find('=').map(|at| start + at) else {
-            return Err(source.trimmed(start..text.len()).error(Problem::Override, "key=value, such as slide.mass=90"));
+        let start = text.find(' ').map_or(text.len(), |space| space + 1);
+        let (key, place, value) = match change.key {
+            Some(key) => (key, source.trimmed(0..start), source.trimmed(start..text.len())),
+            None => {
+                let Some(equals) = text[start..].find('=').map(|at| start + at) else {
+                    let place = source.trimmed(start..text.len());
+                    return Err(place.error(Problem::Override, "key=value, such as slide.mass=90"));
+                };
+                let key = source.trimmed(start..equals);
+                (key.text(), key, source.trimmed(equals + 1..text.len()))
+            }
         };
-        let key = source.trimmed(start..equals);
-        let value = source.trimmed(equals + 1..text.len());
         let bare = || Node { place: value.clone(), value: Value::Text(value.text().into()) };
         let value = match DeValue::parse(value.text()) {
             // 10:20:05 is a range of levels here, not a time of the day.
@@ -161,11 +165,11 @@ impl<'s> Node<'s> {
 
         // A pin's name between the first dot and the last may have dots of its own.
         let (section, rest) =
-            key.text().split_once('.').map_or((None, key.text()), |(first, rest)| (Some(first), rest));
+            key.split_once('.').map_or((None, key), |(first, rest)| (Some(first), rest));
         let (pin, last) = rest.rsplit_once('.').map_or((None, rest), |(pin, last)| (Some(pin), last));
         let mut node = self;
         for key_part in section.into_iter().chain(pin).chain([last]) {
-            node = node.child(key_part.trim(), &key)?;
+            node = node.child(key_part.trim(), &place)?;
         }
         *node = value;
         Ok(())
