@@ -1,17 +1,17 @@
 //! The force table: a sweep on a grid of tolerance level and time, with its interpolation error measured.
 
-use anyhow::Context;
 use slipfit_core::{
     slide::CONTACTS,
-    table::{AxisKind, Table},
+    table::{AxisKind, Encoding, Table},
 };
+use thiserror::Error;
 
 use crate::{
-    flash::{self, AxisSpec, TableSpec},
+    flash::{self, AxisSpec, ChannelSpec, FlashError, TableSpec},
     outcome::Trajectory,
     scene::{LevelRange, RunSpec, Scene},
     simulate::{ScalarKind, Settings, SimulateError},
-    sweep::Sweep,
+    sweep::{Level, Sweep, sweep},
 };
 
 /// Distance of the table's instants (s), unless the step asks for more.
@@ -41,28 +41,61 @@ pub fn levels(axis: &LevelRange) -> LevelRange {
     LevelRange { first: axis.first, step: axis.step / 2.0, count: 2 * axis.count - 1 }
 }
 
+/// Why there is no table.
+#[derive(Debug, Error)]
+pub enum TableError {
+    /// A unit could not be simulated.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// The format cannot hold it.
+    #[error(transparent)]
+    Flash(#[from] FlashError),
+}
+
+/// Whether a table of `scene` fits its region of flash, found out before any run.
+///
+/// # Errors
+/// [`FlashError`] if not, or if there are fewer than two levels or instants.
+pub fn check(scene: &Scene) -> Result<(), FlashError> {
+    let settings = settings(scene.run, ScalarKind::F64);
+    let samples = (scene.run.duration / settings.every * (1.0 + 1e-9)) as usize + 1;
+    let instants = samples.div_ceil(2);
+    let nodes = scene.sweep.count.saturating_mul(instants);
+    if nodes > flash::TABLE_REGION {
+        let bytes = nodes.saturating_mul(2 * size_of::<f32>());
+        return Err(FlashError::TooLarge { bytes, region: flash::TABLE_REGION });
+    }
+    let zeros = vec![0.0; nodes];
+    flash::encode(&spec(scene, &settings, instants, zeros.clone(), zeros)).map(drop)
+}
+
+fn spec(scene: &Scene, settings: &Settings, instants: usize, force: Vec<f32>, velocity: Vec<f32>) -> TableSpec {
+    let LevelRange { first, step, count } = scene.sweep;
+    let channel = |values| ChannelSpec { values, encoding: Encoding::F32, worst_error: 0.0 };
+    TableSpec {
+        scene_hash: scene_hash(scene),
+        axes: vec![
+            AxisSpec { kind: AxisKind::Level, first: first as f32, step: step as f32, count },
+            AxisSpec { kind: AxisKind::Time, first: 0.0, step: (2.0 * settings.every) as f32, count: instants },
+        ],
+        force: channel(force),
+        velocity: channel(velocity),
+    }
+}
+
 /// Makes the table of `scene` from a `sweep` at [`levels`] with [`settings`].
 ///
 /// # Errors
 /// If the sweep has fewer than two levels or instants, or the table is larger than its region of flash.
-pub fn build(scene: &Scene, axis: &LevelRange, sweep: &Sweep, settings: &Settings) -> anyhow::Result<ForceTable> {
+pub fn build(scene: &Scene, sweep: &Sweep, settings: &Settings) -> Result<ForceTable, FlashError> {
     let instants = sweep.levels.first().map_or(0, |level| level.trajectory.t.len().div_ceil(2));
-    let nodes = || sweep.levels.iter().step_by(2).map(|level| &level.trajectory);
     let channel = |pick: fn(&Trajectory) -> &Vec<f64>| -> Vec<f32> {
-        nodes().flat_map(|run| pick(run).iter().step_by(2).map(|&x| x as f32)).collect()
+        let nodes = sweep.levels.iter().step_by(2).map(|level| pick(&level.trajectory));
+        nodes.flat_map(|values| values.iter().step_by(2).map(|&x| x as f32)).collect()
     };
-    let mut spec = TableSpec {
-        scene_hash: scene_hash(scene),
-        axes: vec![
-            AxisSpec { kind: AxisKind::Level, first: axis.first as f32, step: axis.step as f32, count: axis.count },
-            AxisSpec { kind: AxisKind::Time, first: 0.0, step: (2.0 * settings.every) as f32, count: instants },
-        ],
-        force: channel(|run| &run.force),
-        velocity: channel(|run| &run.vz),
-        worst_error: [0.0; 2],
-    };
+    let mut spec = spec(scene, settings, instants, channel(|run| &run.force), channel(|run| &run.vz));
     let bytes = flash::encode(&spec)?;
-    let table = Table::open(&bytes).context("the table just made")?;
+    let table = Table::open(&bytes).expect("the encoder's own table");
     let (mut worst_error, mut worst_error_after_ramp_start) = ([0.0f64; 2], [0.0f64; 2]);
     for level in &sweep.levels {
         let run = &level.trajectory;
@@ -77,9 +110,10 @@ pub fn build(scene: &Scene, axis: &LevelRange, sweep: &Sweep, settings: &Setting
             }
         }
     }
-    spec.worst_error = worst_error.map(|error| error as f32);
+    spec.force.worst_error = worst_error[0] as f32;
+    spec.velocity.worst_error = worst_error[1] as f32;
     let bytes = flash::encode(&spec)?;
-    Ok(ForceTable { bytes, shape: [axis.count, instants], worst_error, worst_error_after_ramp_start })
+    Ok(ForceTable { bytes, shape: [scene.sweep.count, instants], worst_error, worst_error_after_ramp_start })
 }
 
 /// What a table of `scene` is stamped with.
@@ -96,7 +130,7 @@ pub fn scene_hash(scene: &Scene) -> u64 {
 }
 
 /// The sweep at the nodes only, sampled at the table's instants: what is shown to people.
-pub fn nodes(sweep: &Sweep) -> Sweep {
+fn nodes(sweep: &Sweep) -> Sweep {
     let thin = |values: &[f64]| values.iter().step_by(2).copied().collect();
     let levels = sweep.levels.iter().step_by(2).map(|level| {
         let run = &level.trajectory;
@@ -108,22 +142,18 @@ pub fn nodes(sweep: &Sweep) -> Sweep {
             y: thin(&run.y),
             worst_residual: run.worst_residual,
         };
-        crate::sweep::Level { trajectory, ..level.clone() }
+        Level { trajectory, ..level.clone() }
     });
     Sweep { levels: levels.collect() }
 }
 
-/// Sweeps and builds in one go; `done` is called after each of the [`levels`].
+/// Sweeps and builds in one go; `done` is called after each of the [`levels`]. Gives the table and the sweep at its
+/// nodes.
 ///
 /// # Errors
 /// Those of the runs and of [`build`].
-pub fn make(
-    scene: &Scene,
-    axis: &LevelRange,
-    scalar: ScalarKind,
-    done: impl Fn() + Sync,
-) -> Result<anyhow::Result<(ForceTable, Sweep)>, SimulateError> {
+pub fn make(scene: &Scene, scalar: ScalarKind, done: impl Fn() + Sync) -> Result<(ForceTable, Sweep), TableError> {
     let settings = settings(scene.run, scalar);
-    let sweep = crate::sweep::sweep(scene, &levels(axis).levels(), &settings, done)?;
-    Ok(build(scene, axis, &sweep, &settings).map(|table| (table, nodes(&sweep))))
+    let sweep = sweep(scene, &levels(&scene.sweep).levels(), &settings, done)?;
+    Ok((build(scene, &sweep, &settings)?, nodes(&sweep)))
 }

@@ -19,6 +19,7 @@ use thiserror::Error;
 
 use crate::{
     files::WriteError,
+    force_table::TableError,
     interrupt,
     scene::{CD_ROM_SLIDE, Override, Scene, SceneError},
     simulate::SimulateError,
@@ -77,6 +78,15 @@ impl From<SimulateError> for Failure {
         match error {
             SimulateError::Parameter(_) | SimulateError::Every { .. } => Self::Input(error.to_string()),
             SimulateError::NotFinite { .. } | SimulateError::Interrupted => Self::Work(error.into()),
+        }
+    }
+}
+
+impl From<TableError> for Failure {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::Simulate(error) => error.into(),
+            TableError::Flash(error) => Self::Input(error.to_string()),
         }
     }
 }

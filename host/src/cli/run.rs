@@ -51,12 +51,11 @@ impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let overrides: Vec<_> = self.levels.overrides().into_iter().collect();
         let scene = self.scene.load(&overrides)?;
-        force_table::check_size(&scene).map_err(|error| Failure::Input(error.to_string()))?;
+        force_table::check(&scene).map_err(|error| Failure::Input(error.to_string()))?;
         files::prepare_folder(&self.out).map_err(refused)?;
 
-        let axis = scene.sweep;
-        let bar = progress("simulating", force_table::levels(&axis).count);
-        let made = self.threads.install(|| force_table::make(&scene, &axis, ScalarKind::F64, || bar.inc(1)))??;
+        let bar = progress("simulating", force_table::levels(&scene.sweep).count);
+        let made = self.threads.install(|| force_table::make(&scene, ScalarKind::F64, || bar.inc(1)))?;
         bar.finish_and_clear();
         let (table, sweep) = made?;
         let warnings = check::warnings(&scene, rank_of_normals(&contacts(&scene)), guide(&scene, 0.0).as_ref());

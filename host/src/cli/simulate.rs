@@ -12,7 +12,7 @@ use crate::{
     files,
     number::{fixed, level, or_dash},
     outcome::{Outcome, Trajectory, Verdict},
-    scene::{IntegratorKind, Override, Scene, parse_duration},
+    scene::{IntegratorKind, Override, Scene, parse_every},
     simulate::{Run, ScalarKind, Settings, simulate},
     sweep::confirmed,
 };
@@ -78,7 +78,7 @@ impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let scene = self.scene.load(&self.stepping.overrides())?;
         let n = levels(&self.n)?;
-        let every = parse_duration(&self.every).map_err(|why| Failure::Input(format!("--every {why}")))?;
+        let every = parse_every(&self.every)?;
         if let Some(path) = &self.csv {
             files::check_writable(path).map_err(refused)?;
         }

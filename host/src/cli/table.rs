@@ -11,8 +11,10 @@ use super::{
 };
 use crate::{
     files,
-    flash::{self, TABLE_REGION},
-    flash_export::{self, Format},
+    flash::{
+        TABLE_ADDRESS, TABLE_REGION,
+        export::{EXTENSIONS, ExportError, render},
+    },
     force_table::{self, ForceTable},
     number::fixed,
 };
@@ -50,16 +52,18 @@ impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let overrides: Vec<_> = self.stepping.overrides().into_iter().chain(self.levels.overrides()).collect();
         let scene = self.scene.load(&overrides)?;
-        let format = Format::of(&self.output).map_err(|error| Failure::Input(error.to_string()))?;
-        force_table::check_size(&scene).map_err(|error| Failure::Input(error.to_string()))?;
+        let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        if !EXTENSIONS.contains(&extension.as_str()) {
+            return Err(Failure::Input(format!("--output: {}", ExportError::Extension { found: extension })));
+        }
+        force_table::check(&scene).map_err(|error| Failure::Input(error.to_string()))?;
         files::check_writable(&self.output).map_err(refused)?;
-        let axis = scene.sweep;
-        let bar = progress("simulating", force_table::levels(&axis).count);
-        let made =
-            self.threads.install(|| force_table::make(&scene, &axis, self.stepping.scalar, || bar.inc(1)))??;
+        let bar = progress("simulating", force_table::levels(&scene.sweep).count);
+        let made = self.threads.install(|| force_table::make(&scene, self.stepping.scalar, || bar.inc(1)))?;
         bar.finish_and_clear();
         let (table, _) = made?;
-        files::write(&self.output, &flash_export::render(format, &table.bytes)?)?;
+        let file = render(&extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
+        files::write(&self.output, &file)?;
         if self.scene.json {
             let [force, velocity] = table.worst_error;
             let [force_after, velocity_after] = table.worst_error_after_ramp_start;

@@ -23,6 +23,7 @@ use slipfit_core::{
 
 pub use diagnostic::{Problem, SceneError};
 pub use levels::{LevelError, MOST_LEVELS, parse_levels};
+pub use parse::parse_every;
 
 /// The paper's slide, its ramp as printed: what every command works on without a scene.
 pub const CD_ROM_SLIDE: &str = include_str!("../../scenes/cd-rom-slide.toml");

@@ -70,6 +70,17 @@ impl Scene {
     }
 }
 
+/// Reads the interval (s) between samples from what follows `--every`: a number in ms or with its unit.
+///
+/// # Errors
+/// [`SceneError`] points into the option.
+pub fn parse_every(text: &str) -> Result<f64, SceneError> {
+    let change = Override::option("--every", "every", text);
+    let mut tree = Source { name: "command line", text: "" }.document()?;
+    tree.set(&change)?;
+    Field { key: String::new(), node: &tree }.number("every", &DURATION)
+}
+
 fn title(root: &Field, file_name: &str) -> Result<String, SceneError> {
     let stem = Path::new(file_name).file_stem().unwrap_or_default().to_string_lossy();
     Ok(root.get("title").map(|title| title.to_text()).transpose()?.unwrap_or(&stem).into())
