@@ -74,8 +74,8 @@ fn the_stroke_jams_at_0_and_runs_at_2_5() {
 fn single_and_double_precision_agree_on_openings() {
     for reference in openings() {
         for scheme in SCHEMES {
-            let [single, double] = [ScalarKind::F32, ScalarKind::F64]
-                .map(|scalar| run(&reference, scheme, 1e-3, scalar).trajectory.force);
+            let [single, double] =
+                [ScalarKind::F32, ScalarKind::F64].map(|scalar| run(&reference, scheme, 1e-3, scalar).trajectory.force);
             let difference = deviation(&single, &double, reference.peak);
             assert!(difference.late_max <= 0.1, "{} {scheme:?}: {difference:?}", reference.name);
         }

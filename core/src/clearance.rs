@@ -44,6 +44,16 @@ impl GapClass {
     }
 }
 
+impl core::fmt::Display for GapClass {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.pad(match self {
+            Self::Compressed => "compressed",
+            Self::Zero => "zero",
+            Self::Free => "free",
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{GapClass, GapStatistics};

@@ -33,5 +33,9 @@ pub(crate) fn bounded<S: crate::Scalar + PartialOrd>(
     [least, greatest]: [f64; 2],
 ) -> Result<S, ParameterError<S>> {
     let (least, greatest) = (S::from_f64(least), S::from_f64(greatest));
-    if value >= least && value <= greatest { Ok(value) } else { Err(ParameterError { parameter, value, least, greatest }) }
+    if value >= least && value <= greatest {
+        Ok(value)
+    } else {
+        Err(ParameterError { parameter, value, least, greatest })
+    }
 }

@@ -47,10 +47,7 @@ impl<S: Scalar> Pose<S> {
         let scale = S::one() / (S::one() + turn.dot(&turn));
         Self {
             displacement_w: self.displacement_w + velocity_w * dt,
-            orientation: Orientation {
-                w: (w - v.dot(&turn)) * scale,
-                v: (v + turn * w + v.cross(&turn)) * scale,
-            },
+            orientation: Orientation { w: (w - v.dot(&turn)) * scale, v: (v + turn * w + v.cross(&turn)) * scale },
         }
     }
 
@@ -60,10 +57,7 @@ impl<S: Scalar> Pose<S> {
         let (from, to_q) = (self.orientation, to.orientation);
         Self {
             displacement_w: self.displacement_w + (to.displacement_w - self.displacement_w) * weight,
-            orientation: Orientation {
-                w: from.w + (to_q.w - from.w) * weight,
-                v: from.v + (to_q.v - from.v) * weight,
-            },
+            orientation: Orientation { w: from.w + (to_q.w - from.w) * weight, v: from.v + (to_q.v - from.v) * weight },
         }
     }
 

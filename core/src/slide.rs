@@ -69,12 +69,7 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     /// # Errors
     /// [`ParameterError`] names the first parameter of `body` or `drive` that is not finite or out of bounds.
     /// The laws are validated where they are made, see [`menu`](crate::menu).
-    pub fn new(
-        body: Body<S>,
-        contact: Impact<S, E>,
-        friction: F,
-        drive: Drive<S>,
-    ) -> Result<Self, ParameterError<S>> {
+    pub fn new(body: Body<S>, contact: Impact<S, E>, friction: F, drive: Drive<S>) -> Result<Self, ParameterError<S>> {
         bounded("slide.mass", body.mass, [1e-6, 1e6])?;
         for moment in body.inertia_b.iter() {
             bounded("slide.inertia", *moment, [1e-12, 1e9])?;
@@ -147,9 +142,15 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         let (c, k) = (across.impedance, up.impedance);
         let force = Vector3::new(f[0] + g[1], f[1] + g[0], f[2] + g[2]);
         let impedance = Matrix3::new(
-            c[0][0] + k[1][1], c[0][1] + k[1][0], c[0][2] + k[1][2],
-            c[1][0] + k[0][1], c[1][1] + k[0][0], c[1][2] + k[0][2],
-            c[2][0] + k[2][1], c[2][1] + k[2][0], c[2][2] + k[2][2],
+            c[0][0] + k[1][1],
+            c[0][1] + k[1][0],
+            c[0][2] + k[1][2],
+            c[1][0] + k[0][1],
+            c[1][1] + k[0][0],
+            c[1][2] + k[0][2],
+            c[2][0] + k[2][1],
+            c[2][1] + k[2][0],
+            c[2][2] + k[2][2],
         );
         (force, impedance)
     }

@@ -1,12 +1,6 @@
 //! Results as CSV.
 
-use slipfit_core::clearance::GapClass;
-
-use crate::{
-    number::ten_digits,
-    outcome::Trajectory,
-    sweep::{Level, Sweep},
-};
+use crate::{number::ten_digits, outcome::Trajectory, sweep::Sweep};
 
 /// `t,vz,force,x,y` in s, m/s, N, m, m, ten digits.
 ///
@@ -41,7 +35,7 @@ pub fn sweep_csv(sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
     ])?;
     for level in &sweep.levels {
         let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
-        let [compressed, zero, free] = class_counts(level).map(|count| count.to_string());
+        let [compressed, zero, free] = level.class_counts().map(|count| count.to_string());
         writer.write_record([
             ten_digits(level.n),
             optional(level.outcome.breakaway),
@@ -55,10 +49,4 @@ pub fn sweep_csv(sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
         ])?;
     }
     Ok(writer.into_inner()?)
-}
-
-/// How many gaps of a level are compressed, zero and free.
-pub fn class_counts(level: &Level) -> [usize; 3] {
-    [GapClass::Compressed, GapClass::Zero, GapClass::Free]
-        .map(|class| level.classes.iter().flatten().filter(|&&found| found == class).count())
 }

@@ -118,11 +118,8 @@ pub fn build(scene: &Scene, sweep: &Sweep, settings: &Settings) -> Result<ForceT
 
 /// What a table of `scene` is stamped with.
 pub fn scene_hash(scene: &Scene) -> u64 {
-    let deviations: Vec<f64> = scene
-        .pins
-        .iter()
-        .flat_map(|pin| pin.gaps.map(|gap| gap.map_or(0.0, |gap| gap.deviation)))
-        .collect();
+    let deviations: Vec<f64> =
+        scene.pins.iter().flat_map(|pin| pin.gaps.map(|gap| gap.map_or(0.0, |gap| gap.deviation))).collect();
     let mut all = [0.0; CONTACTS];
     all.iter_mut().zip(deviations).for_each(|(slot, deviation)| *slot = deviation);
     let data = scene.slide_data::<f64>(&scene.gaps_at(&[0.0; CONTACTS]));

@@ -1,7 +1,27 @@
 //! Tolerance analysis, dynamics and flash tables of sliding mechanisms.
+//!
+//! The command line is in [`cli`], one file a command; everything it prints is computed by the modules beside it.
 #![forbid(unsafe_code)]
 
+mod chart;
+pub mod cli;
+#[cfg(test)]
+mod example;
+pub mod export;
+pub mod figure;
+pub mod files;
 pub mod flash;
+pub mod force_table;
+pub mod interrupt;
+mod layout;
+mod markup;
+pub mod mobility;
+pub mod number;
 pub mod outcome;
+pub mod plot;
+pub mod report;
 pub mod scene;
+pub mod self_locking;
+pub mod simulate;
 pub mod sweep;
+pub mod table2;

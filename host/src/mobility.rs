@@ -1,6 +1,6 @@
 //! Degrees of freedom of a mechanism with clearance joints (eqs. 5–8; eq. 6 repeats eq. 5).
 
-use nalgebra::{DMatrix, Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3, Vector6};
 
 use crate::scene::Scene;
 
@@ -18,17 +18,12 @@ pub fn degrees_of_freedom(parts: u32, removed: &[u32], by_clearance: u32) -> i64
 pub fn rank_of_normals(contacts: &[(Vector3<f64>, Vector3<f64>)]) -> u32 {
     let length = contacts.iter().map(|(point, _)| point.norm()).fold(0.0, f64::max);
     let length = if length > 0.0 { length } else { 1.0 };
-    let wrenches: Vec<Vector6<f64>> = contacts
-        .iter()
-        .map(|(point, normal)| {
-            let moment = point.cross(normal) / length;
-            Vector6::new(normal.x, normal.y, normal.z, moment.x, moment.y, moment.z)
-        })
-        .collect();
-    if wrenches.is_empty() {
-        return 0;
-    }
-    DMatrix::from_columns(&wrenches).rank(1e-9) as u32
+    let gram = contacts.iter().fold(Matrix6::zeros(), |gram, (point, normal)| {
+        let moment = point.cross(normal) / length;
+        let wrench = Vector6::new(normal.x, normal.y, normal.z, moment.x, moment.y, moment.z);
+        gram + wrench * wrench.transpose()
+    });
+    gram.rank(1e-9) as u32
 }
 
 /// The scene's contacts at the nominal pose: point (m, from the centre of mass) and outward normal of the slide.
@@ -54,8 +49,7 @@ mod tests {
 
     #[test]
     fn mechanisms_of_known_mobility() {
-        let corners =
-            [[-0.062, 0.0, -0.018], [0.062, 0.0, -0.018], [-0.062, 0.0, 0.018], [0.062, 0.0, 0.018]];
+        let corners = [[-0.062, 0.0, -0.018], [0.062, 0.0, -0.018], [-0.062, 0.0, 0.018], [0.062, 0.0, 0.018]];
         // The CD-ROM slide keeps its travel only.
         assert_eq!(rank(&corners, &[0, 1, 2, 3]), 5);
         assert_eq!(degrees_of_freedom(2, &[], 5), 1);

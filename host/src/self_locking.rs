@@ -77,14 +77,5 @@ pub fn guide(scene: &Scene, n: f64) -> Option<Guide> {
     };
     let critical_friction = (drive_distance > 1e-9 * length).then(|| length / (2.0 * drive_distance));
     let warn = side != DriveSide::Short && critical_friction.is_some_and(|critical| friction >= critical);
-    Some(Guide {
-        length,
-        line_x,
-        drive_distance,
-        resistance_distance,
-        side,
-        critical_friction,
-        friction,
-        warn,
-    })
+    Some(Guide { length, line_x, drive_distance, resistance_distance, side, critical_friction, friction, warn })
 }

@@ -25,6 +25,14 @@ pub struct Level {
     pub classes: [Option<GapClass>; CONTACTS],
 }
 
+impl Level {
+    /// How many gaps are compressed, zero and free.
+    pub fn class_counts(&self) -> [usize; 3] {
+        [GapClass::Compressed, GapClass::Zero, GapClass::Free]
+            .map(|class| self.classes.iter().flatten().filter(|&&found| found == class).count())
+    }
+}
+
 /// A sweep over tolerance levels.
 #[derive(Clone, Debug)]
 pub struct Sweep {

@@ -90,7 +90,12 @@ mod tests {
     fn traction(velocity: [f64; 3]) -> Contact<f64> {
         let mut contact = Contact { force: [0.0; 3], impedance: [[0.0; 3]; 3] };
         // A normal force of 2 N that grows by 5 N·s/m.
-        Regularised::new(0.3, 1e-4).unwrap().add([velocity[1], velocity[2]], 2.0 + 5.0 * velocity[0], 5.0, &mut contact);
+        Regularised::new(0.3, 1e-4).unwrap().add(
+            [velocity[1], velocity[2]],
+            2.0 + 5.0 * velocity[0],
+            5.0,
+            &mut contact,
+        );
         contact
     }
 
@@ -108,11 +113,9 @@ mod tests {
     fn impedance_is_between_the_derivative_and_the_secant() {
         for velocity in [[1e-3, 3e-5, -2e-5], [0.0, 0.02, 0.01], [1e-3, 0.0, 2e-4]] {
             let at = traction(velocity);
-            let secant = Regularised::new(0.3, 1e-4)
-                .unwrap()
-                .per_speed(velocity[1] * velocity[1] + velocity[2] * velocity[2])
-                .0
-                * (2.0 + 5.0 * velocity[0]);
+            let secant =
+                Regularised::new(0.3, 1e-4).unwrap().per_speed(velocity[1] * velocity[1] + velocity[2] * velocity[2]).0
+                    * (2.0 + 5.0 * velocity[0]);
             for column in 0..3 {
                 let h = 1e-9;
                 let (mut up, mut down) = (velocity, velocity);
@@ -122,9 +125,13 @@ mod tests {
                     let slope = -(traction(up).force[row] - traction(down).force[row]) / (2.0 * h);
                     let secant = if row == column { secant } else { 0.0 };
                     // The share acts on tangential velocities only; the normal force's part is exact.
-                    let slope = if column == 0 { slope } else { TANGENT_SHARE * slope + (1.0 - TANGENT_SHARE) * secant };
+                    let slope =
+                        if column == 0 { slope } else { TANGENT_SHARE * slope + (1.0 - TANGENT_SHARE) * secant };
                     let found = at.impedance[row][column];
-                    assert!(libm::fabs(found - slope) <= 1e-5 * (1.0 + libm::fabs(slope)), "{row}{column} {found} {slope}");
+                    assert!(
+                        libm::fabs(found - slope) <= 1e-5 * (1.0 + libm::fabs(slope)),
+                        "{row}{column} {found} {slope}"
+                    );
                 }
             }
         }

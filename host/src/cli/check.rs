@@ -8,8 +8,8 @@ use slipfit_core::slide::CONTACTS;
 
 use super::{Failure, SceneArguments, print, print_json, text_table};
 use crate::{
-    number::{fixed, level, or_dash},
     mobility::{contacts, degrees_of_freedom, rank_of_normals},
+    number::{fixed, level, or_dash},
     scene::{SURFACES, Scene},
     self_locking::{DriveSide, Guide, guide},
     sweep::classes,
@@ -54,7 +54,7 @@ struct Closing {
 struct Gap {
     name: String,
     mm: f64,
-    class: &'static str,
+    class: String,
 }
 
 impl Arguments {
@@ -72,10 +72,8 @@ fn find(scene: &Scene, n: f64) -> Findings {
     let gaps = scene.gaps_at(&[n; CONTACTS]);
     let names = scene.pins.iter().flat_map(|pin| SURFACES.map(|surface| format!("{} {surface}", pin.name)));
     let table = derived(scene, n);
-    let mut n_star: Vec<Closing> = table
-        .closures()
-        .map(|c| Closing { pin: c.pin.into(), pair: c.direction.to_string(), n: c.n })
-        .collect();
+    let mut n_star: Vec<Closing> =
+        table.closures().map(|c| Closing { pin: c.pin.into(), pair: c.direction.to_string(), n: c.n }).collect();
     n_star.sort_by(|a, b| a.n.total_cmp(&b.n));
     let guide = guide(scene, n);
     let (normal_law, friction_law, kernel_why) = kernel(scene);
@@ -91,9 +89,7 @@ fn find(scene: &Scene, n: f64) -> Findings {
         gaps: names
             .zip(gaps)
             .zip(classes(&gaps))
-            .filter_map(|((name, gap), class)| {
-                class.map(|class| Gap { name, mm: gap * 1e3, class: class_name(class) })
-            })
+            .filter_map(|((name, gap), class)| class.map(|class| Gap { name, mm: gap * 1e3, class: class.to_string() }))
             .collect(),
         warnings: warnings(scene, n_cl, guide.as_ref()),
         n_star,
@@ -166,11 +162,10 @@ fn describe(findings: &Findings) -> String {
     let _ = writeln!(text, "Degrees of freedom  6·(2 − 1) − 0 − {n_cl} = {freedom}   (n_cl = {n_cl}, n = {freedom})");
     let _ = writeln!(text, "Kernel              {}", findings.kernel_why);
     let rows: Vec<_> =
-        findings.gaps.iter().map(|gap| vec![gap.name.clone(), fixed(gap.mm, 4), gap.class.into()]).collect();
+        findings.gaps.iter().map(|gap| vec![gap.name.clone(), fixed(gap.mm, 4), gap.class.clone()]).collect();
     let heading = format!("gap at n = {}", level(findings.n));
     let _ = writeln!(text, "\n{}", text_table(&[&heading, "mm", "class"], &rows));
-    let rows: Vec<_> =
-        findings.n_star.iter().map(|c| vec![format!("{} {}", c.pin, c.pair), fixed(c.n, 4)]).collect();
+    let rows: Vec<_> = findings.n_star.iter().map(|c| vec![format!("{} {}", c.pin, c.pair), fixed(c.n, 4)]).collect();
     let _ = writeln!(text, "{}", text_table(&["pair", "closes at n*"], &rows));
     if let Some(closing) = findings.n_star.first() {
         let _ = writeln!(text, "The product closes at n* = {}: {} {}", fixed(closing.n, 4), closing.pin, closing.pair);

@@ -12,10 +12,11 @@ use super::{
 };
 use crate::{
     export::sweep_csv,
+    figure::{figure_8, figure_9, required_force},
     files, force_table,
     mobility::{contacts, rank_of_normals},
-    plot,
-    report::{ReportInput, report},
+    plot::PlotError,
+    report::{Figure, Flash, ReportInput, report},
     self_locking::guide,
     simulate::ScalarKind,
 };
@@ -60,28 +61,34 @@ impl Arguments {
         let (table, sweep) = made?;
         let warnings = check::warnings(&scene, rank_of_normals(&contacts(&scene)), guide(&scene, 0.0).as_ref());
 
-        let figure_8 = plot::figure_8(&sweep, &scene.title).map_err(anyhow::Error::from)?;
-        let figure_9 = plot::figure_9(&sweep, &scene.title).map_err(anyhow::Error::from)?;
+        let captioned = |caption: &str, svg: Result<String, PlotError>| -> Result<Figure, Failure> {
+            Ok(Figure { caption: caption.into(), svg: svg.map_err(anyhow::Error::from)? })
+        };
+        let figures = [
+            captioned("Velocity of the slide over time (Fig. 8 of the paper).", figure_8(&sweep, &scene.title))?,
+            captioned("Drive force over time (Fig. 9 of the paper).", figure_9(&sweep, &scene.title))?,
+            captioned("Peak drive force and breakaway over the level.", required_force(&sweep, &scene.title))?,
+        ];
+        let [worst_force_error, worst_velocity_error] = table.worst_error;
         let page = report(&ReportInput {
             scene: &scene,
             sweep: &sweep,
-            table: &table,
-            derived_at: PAPER_LEVEL,
-            warnings: &warnings,
-        })
-        .map_err(anyhow::Error::from)?;
+            figures: &figures,
+            n: PAPER_LEVEL,
+            flash: Some(Flash { bytes: table.bytes.len(), worst_force_error, worst_velocity_error }),
+            notes: &warnings,
+        });
         let outputs: [(&str, Vec<u8>); 5] = [
             ("table.bin", table.bytes.clone()),
             ("sweep.csv", sweep_csv(&sweep)?),
-            ("fig8.svg", figure_8.into_bytes()),
-            ("fig9.svg", figure_9.into_bytes()),
+            ("fig8.svg", figures[0].svg.clone().into_bytes()),
+            ("fig9.svg", figures[1].svg.clone().into_bytes()),
             ("report.html", page.into_bytes()),
         ];
         for (name, bytes) in &outputs {
             files::write(&self.out.join(name), bytes)?;
         }
-        let files: Vec<String> =
-            outputs.iter().map(|(name, _)| self.out.join(name).display().to_string()).collect();
+        let files: Vec<String> = outputs.iter().map(|(name, _)| self.out.join(name).display().to_string()).collect();
         if self.scene.json {
             return print_json(&Report {
                 title: scene.title.clone(),

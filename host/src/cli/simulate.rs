@@ -8,8 +8,7 @@ use slipfit_core::slide::CONTACTS;
 
 use super::{Failure, SceneArguments, print, print_json, refused};
 use crate::{
-    export,
-    files,
+    export, files,
     number::{fixed, level, or_dash},
     outcome::{Outcome, Trajectory, Verdict},
     scene::{IntegratorKind, Override, Scene, parse_every},
@@ -54,8 +53,7 @@ impl SteppingArguments {
     /// The options as settings of the scene.
     pub fn overrides(&self) -> Vec<Override> {
         let step = self.step.as_ref().map(|step| Override::option("--step", "run.step", step));
-        let integrator =
-            self.integrator.map(|kind| Override::option("--integrator", "run.integrator", kind.name()));
+        let integrator = self.integrator.map(|kind| Override::option("--integrator", "run.integrator", kind.name()));
         step.into_iter().chain(integrator).collect()
     }
 }

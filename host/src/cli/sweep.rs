@@ -11,9 +11,8 @@ use super::{
     text_table,
 };
 use crate::{
-    export::{class_counts, sweep_csv},
-    files,
-    force_table,
+    export::sweep_csv,
+    files, force_table,
     number::{fixed, level, or_dash},
     outcome::{Outcome, Verdict},
     scene::{Override, Scene},
@@ -91,7 +90,7 @@ impl Arguments {
 /// The levels of a sweep as JSON wants them.
 pub(super) fn for_machines(sweep: &Sweep) -> Vec<LevelReport> {
     let report = |level: &crate::sweep::Level| {
-        let [compressed, zero, free] = class_counts(level);
+        let [compressed, zero, free] = level.class_counts();
         LevelReport { n: level.n, outcome: level.outcome, compressed, zero, free }
     };
     sweep.levels.iter().map(report).collect()
@@ -104,7 +103,7 @@ pub(super) fn for_people(scene: &Scene, sweep: &Sweep) -> String {
         .iter()
         .map(|at| {
             let Outcome { breakaway, peak_force, settled_force, final_velocity, verdict } = at.outcome;
-            let [compressed, zero, free] = class_counts(at);
+            let [compressed, zero, free] = at.class_counts();
             vec![
                 level(at.n),
                 or_dash(breakaway, |t| fixed(t * 1e3, 2)),

@@ -6,8 +6,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Failure, SceneArguments, ThreadArguments, print, print_json, progress, refused,
-    simulate::SteppingArguments, sweep::LevelArguments,
+    Failure, SceneArguments, ThreadArguments, print, print_json, progress, refused, simulate::SteppingArguments,
+    sweep::LevelArguments,
 };
 use crate::{
     files,

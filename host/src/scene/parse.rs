@@ -11,7 +11,8 @@ use slipfit_core::{
 };
 
 use super::{
-    IntegratorKind, LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError, SlideSpec, keys, parse_levels,
+    IntegratorKind, LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError, SlideSpec, keys,
+    parse_levels,
     tree::{Source, Value},
     unit::{self, Quantity},
     value::Field,

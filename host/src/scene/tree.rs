@@ -164,8 +164,7 @@ impl<'s> Node<'s> {
         };
 
         // A pin's name between the first dot and the last may have dots of its own.
-        let (section, rest) =
-            key.split_once('.').map_or((None, key), |(first, rest)| (Some(first), rest));
+        let (section, rest) = key.split_once('.').map_or((None, key), |(first, rest)| (Some(first), rest));
         let (pin, last) = rest.rsplit_once('.').map_or((None, rest), |(pin, last)| (Some(pin), last));
         let mut node = self;
         for key_part in section.into_iter().chain(pin).chain([last]) {

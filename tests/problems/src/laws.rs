@@ -32,7 +32,25 @@ pub const BOUNCE_MASS: f64 = 0.0818;
 
 /// Bounces at three speeds, rounded as printed.
 pub const BOUNCES: [Bounce; 3] = [
-    Bounce { speed: 0.01, restitution: 0.330_94, peak_penetration: 1.694e-5, peak_force: 0.4536, contact_time: 9.473e-3 },
-    Bounce { speed: 0.1, restitution: 0.034_48, peak_penetration: 4.593e-5, peak_force: 16.4318, contact_time: 18.719e-3 },
-    Bounce { speed: 1.0, restitution: 0.004_64, peak_penetration: 1.3001e-4, peak_force: 574.1, contact_time: 28.853e-3 },
+    Bounce {
+        speed: 0.01,
+        restitution: 0.330_94,
+        peak_penetration: 1.694e-5,
+        peak_force: 0.4536,
+        contact_time: 9.473e-3,
+    },
+    Bounce {
+        speed: 0.1,
+        restitution: 0.034_48,
+        peak_penetration: 4.593e-5,
+        peak_force: 16.4318,
+        contact_time: 18.719e-3,
+    },
+    Bounce {
+        speed: 1.0,
+        restitution: 0.004_64,
+        peak_penetration: 1.3001e-4,
+        peak_force: 574.1,
+        contact_time: 28.853e-3,
+    },
 ];

@@ -1,0 +1,68 @@
+//! Numbers as people read them.
+
+/// `value` with `decimals` digits after the point, and never a negative zero.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().all(|byte| matches!(byte, b'0' | b'.')) => digits.to_owned(),
+        _ => text,
+    }
+}
+
+/// A tolerance level with its sign and no more digits than it needs: `+2.5`, `0`, `-1`.
+pub fn level(n: f64) -> String {
+    let digits = fixed(n, 4);
+    let short = digits.trim_end_matches('0').trim_end_matches('.');
+    if short.starts_with('-') || short == "0" { short.to_owned() } else { format!("+{short}") }
+}
+
+/// For pictures and pages: a real minus sign instead of the hyphen.
+pub fn typeset(number: &str) -> String {
+    number.replace('-', "\u{2212}")
+}
+
+/// Ten significant digits, the shortest way to write them.
+pub fn ten_digits(x: f64) -> String {
+    let rounded: f64 = format!("{x:.9e}").parse().unwrap_or(x);
+    if rounded == 0.0 {
+        "0".to_owned()
+    } else if (1e-4..1e10).contains(&rounded.abs()) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// What is there through `format`, else a dash.
+pub fn or_dash(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
+    value.map_or_else(|| "-".to_owned(), format)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{fixed, level, ten_digits, typeset};
+
+    #[test]
+    fn ten_digits_are_short() {
+        assert_eq!(ten_digits(0.293_000_000_000_000_04), "0.293");
+        assert_eq!(ten_digits(-0.0), "0");
+        assert_eq!(ten_digits(2.782_455_694_123e-5), "2.782455694e-5");
+    }
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(fixed(-0.000016, 4), "0.0000");
+        assert_eq!(fixed(-0.0, 0), "0");
+        assert_eq!(fixed(-0.00006, 4), "-0.0001");
+        assert_eq!(fixed(10.0, 0), "10");
+    }
+
+    #[test]
+    fn a_level_shows_its_sign() {
+        assert_eq!(
+            [2.5, 0.0, -0.0, -1.0, 10.0, 3.43, 0.1 + 0.2].map(level),
+            ["+2.5", "0", "0", "-1", "+10", "+3.43", "+0.3"]
+        );
+        assert_eq!(typeset("-1"), "\u{2212}1");
+    }
+}
