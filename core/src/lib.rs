@@ -24,6 +24,7 @@ pub mod pose;
 pub mod power;
 mod scalar;
 pub mod slide;
+pub mod table;
 
 pub use error::ParameterError;
 pub use nalgebra::{SVector, Vector3};

@@ -1,0 +1,51 @@
+//! What opening a table refuses.
+
+use super::layout::VERSION;
+
+/// Why bytes are not the table asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum TableError {
+    /// The region ends before the table does.
+    Truncated,
+    /// The region does not start with a table.
+    Magic,
+    /// Another version of the format.
+    Version {
+        /// The version found.
+        found: u16,
+    },
+    /// The bytes are not those that were written.
+    Checksum,
+    /// The named field of the header is out of bounds or contradicts another one.
+    Header(&'static str),
+    /// The named channel's data holds a value that is not finite or exceeds the format's limit.
+    Value(&'static str),
+    /// A table over another number of axes.
+    Axes {
+        /// The number found.
+        found: usize,
+    },
+    /// A table for another scene or other laws.
+    Scene {
+        /// The hash found.
+        found: u64,
+    },
+}
+
+impl core::fmt::Display for TableError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Truncated => f.write_str("the region ends before the table does"),
+            Self::Magic => f.write_str("no table starts here"),
+            Self::Version { found } => write!(f, "format version {found}, this reader knows {VERSION}"),
+            Self::Checksum => f.write_str("the checksum does not match: the table is damaged"),
+            Self::Header(field) => write!(f, "bad {field}"),
+            Self::Value(channel) => write!(f, "a value of the {channel} is out of bounds"),
+            Self::Axes { found } => write!(f, "a table over {found} axes, another number is asked for"),
+            Self::Scene { found } => write!(f, "made for another scene or other laws (hash {found:#018x})"),
+        }
+    }
+}
+
+impl core::error::Error for TableError {}

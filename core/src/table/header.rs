@@ -1,0 +1,130 @@
+//! The header of a table over any number of axes.
+
+use heapless::Vec;
+
+use super::{
+    Axis, AxisKind, ChannelKind, Encoding, TableError,
+    layout::{
+        AXES_AT, AXES_LEAST, AXES_MOST, AXIS_COUNT_AT, AXIS_FIRST_AT, AXIS_KIND_AT, AXIS_NODES_AT, AXIS_SIZE,
+        AXIS_STEP_AT, CHANNEL_COUNT_AT, CHANNEL_ENCODING_AT, CHANNEL_ERROR_AT, CHANNEL_KIND_AT, CHANNEL_SCALE_AT,
+        CHANNEL_SIZE, CHANNELS, CHANNELS_AT, CHECKSUM_SIZE, HEADER_SIZE, I16_MOST, LENGTH_AT, MAGIC, MAGIC_AT,
+        SCENE_HASH_AT, VALUE_MOST, VERSION, VERSION_AT, checksum,
+    },
+};
+
+/// What a table says about itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header {
+    /// Hash of the scene and laws the table was made for.
+    pub scene_hash: u64,
+    /// Length of the whole table (bytes).
+    pub length: usize,
+    /// The axes, slowest first.
+    pub axes: Vec<Axis, AXES_MOST>,
+    /// Force and velocity.
+    pub channels: [ChannelRecord; CHANNELS],
+}
+
+/// What a table says about a channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ChannelRecord {
+    /// What the channel is.
+    pub kind: ChannelKind,
+    /// How values are stored.
+    pub encoding: Encoding,
+    /// What a stored value is multiplied with (N or m/s); 1 for [`Encoding::F32`].
+    pub scale: f32,
+    /// The worst interpolation error (N or m/s), measured when the table was made.
+    pub worst_error: f32,
+}
+
+impl Header {
+    /// The header of the table that `region` starts with. The checksum is checked, the data is not looked into.
+    ///
+    /// # Errors
+    /// [`TableError`] says what is wrong.
+    pub fn read(region: &[u8]) -> Result<Self, TableError> {
+        if field(region, MAGIC_AT)? != MAGIC {
+            return Err(TableError::Magic);
+        }
+        let found = u16::from_le_bytes(field(region, VERSION_AT)?);
+        if found != VERSION {
+            return Err(TableError::Version { found });
+        }
+        let length = u32::from_le_bytes(field(region, LENGTH_AT)?) as usize;
+        let body = length.checked_sub(CHECKSUM_SIZE).filter(|body| *body >= HEADER_SIZE);
+        let body = body.ok_or(TableError::Header("length"))?;
+        let found = u32::from_le_bytes(field(region, body)?);
+        if checksum(region.get(..body).ok_or(TableError::Truncated)?) != found {
+            return Err(TableError::Checksum);
+        }
+
+        let [axis_count] = field(region, AXIS_COUNT_AT)?;
+        let axis_count = usize::from(axis_count);
+        if !(AXES_LEAST..=AXES_MOST).contains(&axis_count) {
+            return Err(TableError::Header("number of axes"));
+        }
+        let [channel_count] = field(region, CHANNEL_COUNT_AT)?;
+        if usize::from(channel_count) != CHANNELS {
+            return Err(TableError::Header("number of channels"));
+        }
+        let mut axes = Vec::new();
+        for i in 0..AXES_MOST {
+            let record: [u8; AXIS_SIZE] = field(region, AXES_AT + i * AXIS_SIZE)?;
+            if i >= axis_count {
+                zero(&record, "absent axis")?;
+            } else if axes.push(axis(&record)?).is_err() {
+                return Err(TableError::Header("number of axes"));
+            }
+        }
+        let [force, velocity] = ChannelKind::ALL;
+        let channels = [
+            channel(force, &field(region, CHANNELS_AT)?)?,
+            channel(velocity, &field(region, CHANNELS_AT + CHANNEL_SIZE)?)?,
+        ];
+        Ok(Self { scene_hash: u64::from_le_bytes(field(region, SCENE_HASH_AT)?), length, axes, channels })
+    }
+}
+
+fn field<const N: usize>(bytes: &[u8], at: usize) -> Result<[u8; N], TableError> {
+    bytes.get(at..).and_then(<[u8]>::first_chunk).copied().ok_or(TableError::Truncated)
+}
+
+fn zero(bytes: &[u8], what: &'static str) -> Result<(), TableError> {
+    if bytes.iter().all(|byte| *byte == 0) { Ok(()) } else { Err(TableError::Header(what)) }
+}
+
+fn axis(record: &[u8; AXIS_SIZE]) -> Result<Axis, TableError> {
+    let [kind, reserved @ ..] = field::<4>(record, AXIS_KIND_AT)?;
+    zero(&reserved, "reserved byte of an axis")?;
+    Axis::new(
+        AxisKind::of(kind).ok_or(TableError::Header("kind of axis"))?,
+        f32::from_le_bytes(field(record, AXIS_FIRST_AT)?),
+        f32::from_le_bytes(field(record, AXIS_STEP_AT)?),
+        u32::from_le_bytes(field(record, AXIS_NODES_AT)?) as usize,
+    )
+}
+
+fn channel(kind: ChannelKind, record: &[u8; CHANNEL_SIZE]) -> Result<ChannelRecord, TableError> {
+    let [code] = field(record, CHANNEL_KIND_AT)?;
+    if code != kind as u8 {
+        return Err(TableError::Header("kind of channel"));
+    }
+    let [encoding, reserved @ ..] = field::<3>(record, CHANNEL_ENCODING_AT)?;
+    zero(&reserved, "reserved byte of a channel")?;
+    let encoding = Encoding::of(encoding).ok_or(TableError::Header("encoding"))?;
+    let scale = f32::from_le_bytes(field(record, CHANNEL_SCALE_AT)?);
+    let scale_is_good = match encoding {
+        Encoding::F32 => scale == 1.0,
+        Encoding::I16 => scale > 0.0 && scale <= VALUE_MOST / f32::from(I16_MOST),
+    };
+    if !scale_is_good {
+        return Err(TableError::Header("scale"));
+    }
+    let worst_error = f32::from_le_bytes(field(record, CHANNEL_ERROR_AT)?);
+    if !(worst_error >= 0.0 && worst_error.is_finite()) {
+        return Err(TableError::Header("worst error"));
+    }
+    Ok(ChannelRecord { kind, encoding, scale, worst_error })
+}

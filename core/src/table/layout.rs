@@ -1,0 +1,72 @@
+//! Where everything lies in a table (bytes), for the reader, for whoever writes one, and for a C header made from it.
+
+/// What a table starts with.
+pub const MAGIC: [u8; 4] = *b"SLFT";
+/// The format version this crate reads.
+pub const VERSION: u16 = 1;
+
+/// Offset of the magic.
+pub const MAGIC_AT: usize = 0;
+/// Offset of the format version, u16.
+pub const VERSION_AT: usize = 4;
+/// Offset of the number of axes, u8.
+pub const AXIS_COUNT_AT: usize = 6;
+/// Offset of the number of channels, u8.
+pub const CHANNEL_COUNT_AT: usize = 7;
+/// Offset of the scene hash, u64.
+pub const SCENE_HASH_AT: usize = 8;
+/// Offset of the length in bytes, u32.
+pub const LENGTH_AT: usize = 16;
+
+/// Offset of the first axis record.
+pub const AXES_AT: usize = 20;
+/// The least number of axes.
+pub const AXES_LEAST: usize = 2;
+/// The greatest number of axes; a table has room for as many records.
+pub const AXES_MOST: usize = 3;
+/// Size of an axis record.
+pub const AXIS_SIZE: usize = 16;
+/// In an axis record: what varies, u8, see [`AxisKind`](super::AxisKind).
+pub const AXIS_KIND_AT: usize = 0;
+/// In an axis record: the number of nodes, u32.
+pub const AXIS_NODES_AT: usize = 4;
+/// In an axis record: the first node, f32.
+pub const AXIS_FIRST_AT: usize = 8;
+/// In an axis record: the distance between nodes, f32.
+pub const AXIS_STEP_AT: usize = 12;
+
+/// Offset of the first channel record.
+pub const CHANNELS_AT: usize = AXES_AT + AXES_MOST * AXIS_SIZE;
+/// Number of channels.
+pub const CHANNELS: usize = 2;
+/// Size of a channel record.
+pub const CHANNEL_SIZE: usize = 12;
+/// In a channel record: what it is, u8, see [`ChannelKind`](super::ChannelKind).
+pub const CHANNEL_KIND_AT: usize = 0;
+/// In a channel record: how values are stored, u8, see [`Encoding`](super::Encoding).
+pub const CHANNEL_ENCODING_AT: usize = 1;
+/// In a channel record: what a stored value is multiplied with, f32.
+pub const CHANNEL_SCALE_AT: usize = 4;
+/// In a channel record: the worst interpolation error, f32.
+pub const CHANNEL_ERROR_AT: usize = 8;
+
+/// Size of the header, and offset of the data.
+pub const HEADER_SIZE: usize = CHANNELS_AT + CHANNELS * CHANNEL_SIZE;
+/// Every channel's data starts at a multiple of this.
+pub const DATA_ALIGNMENT: usize = 4;
+/// Size of the checksum at the end.
+pub const CHECKSUM_SIZE: usize = 4;
+
+/// The greatest number of nodes of an axis: among so many, f32 tells where a point lies to about 1 % of a step.
+pub const NODES_MOST: usize = 1 << 16;
+/// The greatest magnitude of a value, so that no interpolation overflows.
+pub const VALUE_MOST: f32 = 1e30;
+/// The greatest magnitude of a stored i16, either sign.
+pub const I16_MOST: i16 = i16::MAX;
+
+/// The checksum, CRC-32/ISO-HDLC, of `bytes`.
+///
+/// Computed bit by bit: a table of remainders would speed up something done once, at the price of 1 KB of flash.
+pub fn checksum(bytes: &[u8]) -> u32 {
+    crc::Crc::<u32, crc::NoTable>::new(&crc::CRC_32_ISO_HDLC).checksum(bytes)
+}

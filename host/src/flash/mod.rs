@@ -1,0 +1,216 @@
+//! The flash table's builder: bytes from grids, in the layout that [`slipfit_core::table`] describes and reads.
+
+pub mod export;
+mod hash;
+#[cfg(test)]
+mod tests;
+
+use slipfit_core::table::{
+    Axis, AxisKind, ChannelKind, Encoding, TableError,
+    layout::{
+        AXES_AT, AXES_LEAST, AXES_MOST, AXIS_COUNT_AT, AXIS_FIRST_AT, AXIS_KIND_AT, AXIS_NODES_AT, AXIS_SIZE,
+        AXIS_STEP_AT, CHANNEL_COUNT_AT, CHANNEL_ENCODING_AT, CHANNEL_ERROR_AT, CHANNEL_KIND_AT, CHANNEL_SCALE_AT,
+        CHANNEL_SIZE, CHANNELS, CHANNELS_AT, CHECKSUM_SIZE, DATA_ALIGNMENT, HEADER_SIZE, I16_MOST, LENGTH_AT, MAGIC,
+        MAGIC_AT, SCENE_HASH_AT, VALUE_MOST, VERSION, VERSION_AT, checksum,
+    },
+};
+
+pub use hash::scene_hash;
+
+/// Size of the TABLE region of `memory.x` (bytes): the longest table there can be.
+pub const TABLE_REGION: usize = 256 * 1024;
+
+/// Where the TABLE region of `memory.x` starts.
+pub const TABLE_ADDRESS: u32 = 0x0008_0000;
+
+/// What a table is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableSpec {
+    /// What [`scene_hash`] gives.
+    pub scene_hash: u64,
+    /// Two or three axes, slowest first.
+    pub axes: Vec<AxisSpec>,
+    /// Force (N).
+    pub force: ChannelSpec,
+    /// Velocity (m/s).
+    pub velocity: ChannelSpec,
+}
+
+/// An axis of equidistant nodes, in the unit of its kind. [`Axis::node`] says where f32 puts them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisSpec {
+    /// What varies.
+    pub kind: AxisKind,
+    /// The first node.
+    pub first: f32,
+    /// The distance between nodes.
+    pub step: f32,
+    /// The number of nodes, at least 2.
+    pub count: usize,
+}
+
+/// A quantity at every node of the grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelSpec {
+    /// Values (N or m/s), the last axis fastest.
+    pub values: Vec<f32>,
+    /// How they are to be stored. I16 keeps them to within half a 32,767th of the greatest.
+    pub encoding: Encoding,
+    /// The worst interpolation error (N or m/s), 0 while it is not measured yet: the table has to be opened for that.
+    pub worst_error: f32,
+}
+
+/// Why there is no table.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FlashError {
+    /// Too few or too many axes.
+    #[error("a table has {AXES_LEAST} or {AXES_MOST} axes, not {found}")]
+    Axes {
+        /// How many there are.
+        found: usize,
+    },
+    /// An axis with a single node, or none.
+    #[error("an axis needs at least 2 levels, the {axis:?} axis has {count}")]
+    TooFewLevels {
+        /// Which axis.
+        axis: AxisKind,
+        /// How many it has.
+        count: usize,
+    },
+    /// An axis that the format cannot hold.
+    #[error("the {axis:?} axis: {source}")]
+    Axis {
+        /// Which axis.
+        axis: AxisKind,
+        /// What is wrong with it.
+        source: TableError,
+    },
+    /// Not one value a node.
+    #[error("{} has {found} values for {expected} nodes", channel.name())]
+    Size {
+        /// Which channel.
+        channel: ChannelKind,
+        /// How many values it has.
+        found: usize,
+        /// How many nodes the grid has.
+        expected: usize,
+    },
+    /// A value that is not finite, or too great.
+    #[error("{} at node {index} is {value}, allowed is -{VALUE_MOST:e} to {VALUE_MOST:e}", channel.name())]
+    Value {
+        /// Which channel.
+        channel: ChannelKind,
+        /// Which of its values.
+        index: usize,
+        /// The value (N or m/s).
+        value: f32,
+    },
+    /// An interpolation error that is negative or not finite.
+    #[error("the worst interpolation error of {} is {error}", channel.name())]
+    WorstError {
+        /// Which channel.
+        channel: ChannelKind,
+        /// The error (N or m/s).
+        error: f32,
+    },
+    /// It does not fit.
+    #[error("the table takes {bytes} bytes, the TABLE region has {region}: use fewer nodes or i16")]
+    TooLarge {
+        /// Length of the table.
+        bytes: usize,
+        /// Length of the region, [`TABLE_REGION`].
+        region: usize,
+    },
+}
+
+/// The table's bytes.
+///
+/// # Errors
+/// [`FlashError`] says what the format or the target cannot hold.
+pub fn encode(spec: &TableSpec) -> Result<Vec<u8>, FlashError> {
+    let found = spec.axes.len();
+    if !(AXES_LEAST..=AXES_MOST).contains(&found) {
+        return Err(FlashError::Axes { found });
+    }
+    for &AxisSpec { kind: axis, first, step, count } in &spec.axes {
+        if count < 2 {
+            return Err(FlashError::TooFewLevels { axis, count });
+        }
+        Axis::new(axis, first, step, count).map_err(|source| FlashError::Axis { axis, source })?;
+    }
+    let nodes = spec.axes.iter().fold(1usize, |nodes, axis| nodes.saturating_mul(axis.count));
+
+    let mut bytes = vec![0; HEADER_SIZE];
+    put(&mut bytes, MAGIC_AT, &MAGIC);
+    put(&mut bytes, VERSION_AT, &VERSION.to_le_bytes());
+    put(&mut bytes, AXIS_COUNT_AT, &[found as u8]);
+    put(&mut bytes, CHANNEL_COUNT_AT, &[CHANNELS as u8]);
+    put(&mut bytes, SCENE_HASH_AT, &spec.scene_hash.to_le_bytes());
+    for (i, axis) in spec.axes.iter().enumerate() {
+        let at = AXES_AT + i * AXIS_SIZE;
+        put(&mut bytes, at + AXIS_KIND_AT, &[axis.kind as u8]);
+        put(&mut bytes, at + AXIS_NODES_AT, &(axis.count as u32).to_le_bytes());
+        put(&mut bytes, at + AXIS_FIRST_AT, &axis.first.to_le_bytes());
+        put(&mut bytes, at + AXIS_STEP_AT, &axis.step.to_le_bytes());
+    }
+    for (i, (kind, channel)) in ChannelKind::ALL.into_iter().zip([&spec.force, &spec.velocity]).enumerate() {
+        channel.check(kind, nodes)?;
+        let at = CHANNELS_AT + i * CHANNEL_SIZE;
+        put(&mut bytes, at + CHANNEL_KIND_AT, &[kind as u8]);
+        put(&mut bytes, at + CHANNEL_ENCODING_AT, &[channel.encoding as u8]);
+        put(&mut bytes, at + CHANNEL_SCALE_AT, &channel.scale().to_le_bytes());
+        put(&mut bytes, at + CHANNEL_ERROR_AT, &channel.worst_error.to_le_bytes());
+        channel.append(&mut bytes);
+    }
+
+    let length = bytes.len() + CHECKSUM_SIZE;
+    if length > TABLE_REGION {
+        return Err(FlashError::TooLarge { bytes: length, region: TABLE_REGION });
+    }
+    put(&mut bytes, LENGTH_AT, &(length as u32).to_le_bytes());
+    let sum = checksum(&bytes);
+    bytes.extend(sum.to_le_bytes());
+    Ok(bytes)
+}
+
+fn put(bytes: &mut [u8], at: usize, field: &[u8]) {
+    bytes[at..at + field.len()].copy_from_slice(field);
+}
+
+impl ChannelSpec {
+    fn check(&self, channel: ChannelKind, expected: usize) -> Result<(), FlashError> {
+        let (found, error) = (self.values.len(), self.worst_error);
+        if found != expected {
+            return Err(FlashError::Size { channel, found, expected });
+        }
+        if let Some((index, &value)) = self.values.iter().enumerate().find(|(_, v)| v.is_nan() || v.abs() > VALUE_MOST)
+        {
+            return Err(FlashError::Value { channel, index, value });
+        }
+        if error >= 0.0 && error.is_finite() { Ok(()) } else { Err(FlashError::WorstError { channel, error }) }
+    }
+
+    /// What stored values are multiplied with: for i16 such that the greatest value takes the greatest integer.
+    fn scale(&self) -> f32 {
+        let greatest = self.values.iter().fold(0.0, |greatest: f32, value| greatest.max(value.abs()));
+        match self.encoding {
+            Encoding::F32 => 1.0,
+            Encoding::I16 if greatest == 0.0 => 1.0,
+            // A subnormal scale would keep too few digits.
+            Encoding::I16 => (greatest / f32::from(I16_MOST)).max(f32::MIN_POSITIVE),
+        }
+    }
+
+    /// Appends the values as they are stored, padded to the alignment of what follows.
+    fn append(&self, bytes: &mut Vec<u8>) {
+        let scale = f64::from(self.scale());
+        for value in &self.values {
+            match self.encoding {
+                Encoding::F32 => bytes.extend(value.to_le_bytes()),
+                // The scale is rounded, by so little that no value leaves the integers: `as` saturates beyond.
+                Encoding::I16 => bytes.extend(((f64::from(*value) / scale).round() as i16).to_le_bytes()),
+            }
+        }
+        bytes.resize(bytes.len().next_multiple_of(DATA_ALIGNMENT), 0);
+    }
+}
