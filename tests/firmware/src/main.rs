@@ -1,1 +1,19 @@
-fn main() {}
+//! The kernel and the flash table on a Cortex-M4F.
+//!
+//! `cargo qemu [TABLE]` runs the image; `cargo run -p slipfit-firmware [TABLE]` prints on the host what the image must
+//! print, but for the lines that start with `instructions` or `stack`, which only the image can count.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod count;
+mod fingerprint;
+mod program;
+
+#[cfg(target_os = "none")]
+mod board;
+#[cfg(not(target_os = "none"))]
+mod desk;
+
+#[cfg(not(target_os = "none"))]
+fn main() -> std::io::Result<()> {
+    desk::main()
+}

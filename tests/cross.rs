@@ -1,0 +1,63 @@
+//! Cargo for the emulated target, from inside a test.
+
+use std::{
+    env,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+/// The target that is emulated: a Cortex-M4F.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// A Cargo whose target folder is in `folder`, the test's `CARGO_TARGET_TMPDIR`, so that it never waits for the Cargo
+/// that runs the test. Its compiler flags are the repository's, whatever the environment says: counts of instructions
+/// depend on them.
+pub fn cargo(folder: &str) -> Command {
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .env("CARGO_TARGET_DIR", Path::new(folder).join("cross"))
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .env_remove("CARGO_BUILD_TARGET")
+        .stdin(Stdio::null());
+    cargo
+}
+
+/// Runs `command` to its end.
+///
+/// # Panics
+/// If it does not start.
+pub fn finished(command: &mut Command) -> Output {
+    command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"))
+}
+
+/// What `command` printed.
+///
+/// # Panics
+/// If it fails, with all that it printed.
+pub fn printed(command: &mut Command) -> String {
+    let Output { status, stdout, stderr } = finished(command);
+    let stdout = String::from_utf8_lossy(&stdout).into_owned();
+    assert!(status.success(), "{command:?}: {status}\n{stdout}\n{}", String::from_utf8_lossy(&stderr));
+    stdout
+}
+
+/// Fails, saying what to install, where images for the target cannot be built.
+///
+/// # Panics
+/// As said.
+pub fn require_target() {
+    let folder = printed(Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]));
+    let installed = Path::new(folder.trim()).is_dir();
+    assert!(installed, "the target {TARGET} is not installed; to install it: rustup target add {TARGET}");
+}
+
+/// Fails, saying what to install, where images cannot be run.
+///
+/// # Panics
+/// As said.
+pub fn require_emulator() {
+    let found = Command::new("qemu-system-arm").arg("--version").output().is_ok();
+    assert!(found, "qemu-system-arm is not installed; to install it: apt-get install qemu-system-arm");
+}

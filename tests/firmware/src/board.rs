@@ -1,0 +1,131 @@
+//! A Cortex-M4F under a debugger as the program's machine. The one file of the image with unsafe code.
+#![allow(unsafe_code, reason = "linker symbols, the painted stack and the fault handler")]
+
+use core::{
+    fmt::{Display, Write as _},
+    panic::PanicInfo,
+    slice,
+};
+
+use cortex_m::{
+    Peripherals,
+    peripheral::{SYST, syst::SystClkSource},
+    register::{fpscr, msp},
+};
+use cortex_m_rt::{ExceptionFrame, entry, exception};
+use heapless::String;
+use semihosting::{
+    io::{self, Stdout, Write as _},
+    process,
+};
+
+use crate::program::{self, Machine};
+
+/// Time of a tick of the system timer (ns): the board's processor clock of 25 MHz.
+const TICK: u32 = 40;
+
+/// Time of an instruction (ns): what the emulator is told by `-icount shift=7`. At more than twice a tick, the
+/// difference of two readings, right to less than a tick, gives the exact number of instructions.
+const INSTRUCTION: u32 = 128;
+
+/// What unused stack is filled with.
+const PAINT: u32 = 0x5a5a_5a5a;
+
+/// What a fresh Cortex-M has of FPSCR's AHP, DN, FZ and RMode: half precision as in IEEE 754, NaNs and denormals kept,
+/// rounding to nearest.
+const FPSCR_MODES: u32 = 0x07c0_0000;
+
+unsafe extern "C" {
+    /// From `memory.x`: ends of the flash table's region.
+    static _table_start: u8;
+    static _table_end: u8;
+    /// From cortex-m-rt: end of the program's data, where the stack must not reach.
+    static mut _stack_end: u32;
+}
+
+struct Board {
+    out: Stdout,
+    /// Instructions of an empty measurement.
+    overhead: u32,
+}
+
+impl Board {
+    fn new(mut timer: SYST) -> Self {
+        timer.set_clock_source(SystClkSource::Core);
+        timer.set_reload(0x00ff_ffff);
+        timer.clear_current();
+        timer.enable_counter();
+        Self { out: io::stdout().expect("a debugger listens"), overhead: instructions(|| {}) }
+    }
+}
+
+impl Machine for Board {
+    fn print(&mut self, line: &str) {
+        self.out.write_all(line.as_bytes()).expect("a debugger listens");
+    }
+
+    #[inline(always)]
+    fn instructions(&mut self, work: impl FnOnce()) -> Option<u32> {
+        Some(instructions(work).saturating_sub(self.overhead))
+    }
+
+    #[inline(never)]
+    fn stack(&mut self, work: impl FnOnce()) -> Option<u32> {
+        let top = msp::read() as usize;
+        let end = &raw mut _stack_end;
+        let words = (top - end.addr()) / size_of::<u32>();
+        for i in 0..words {
+            // SAFETY: RAM between the program's data and the stack pointer is nobody's, and no interrupt is enabled.
+            unsafe { end.add(i).write_volatile(PAINT) };
+        }
+        work();
+        // SAFETY: as above; `work` has left whatever it put there.
+        let unused = (0..words).take_while(|i| unsafe { end.add(*i).read_volatile() } == PAINT).count();
+        Some(((words - unused) * size_of::<u32>()) as u32)
+    }
+}
+
+/// Instructions of `work` and of reading the timer, which counts down, 24 bits wide.
+#[inline(always)]
+fn instructions(work: impl FnOnce()) -> u32 {
+    let start = SYST::get_current();
+    work();
+    let ticks = start.wrapping_sub(SYST::get_current()) & 0x00ff_ffff;
+    (ticks * TICK + INSTRUCTION / 2) / INSTRUCTION
+}
+
+/// The region of the flash table.
+fn flash() -> &'static [u8] {
+    let (start, end) = (&raw const _table_start, &raw const _table_end);
+    // SAFETY: memory.x says that this is flash, which nothing writes while the program runs.
+    unsafe { slice::from_raw_parts(start, end.addr() - start.addr()) }
+}
+
+#[entry]
+fn main() -> ! {
+    let peripherals = Peripherals::take().expect("nobody has taken them before");
+    assert_eq!(fpscr::read().bits() & FPSCR_MODES, 0, "FPSCR would give other bits than the host");
+    program::run(&mut Board::new(peripherals.SYST), flash());
+    process::exit(0)
+}
+
+/// Prints why, and ends the emulation as failed: it must never hang.
+fn fail(why: impl Display) -> ! {
+    let mut line = String::<512>::new();
+    // A text that is too long loses its end.
+    let _ = writeln!(line, "{why}");
+    if let Ok(mut out) = io::stdout() {
+        let _ = out.write_all(line.as_bytes());
+    }
+    process::exit(1)
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo<'_>) -> ! {
+    fail(info)
+}
+
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    fail(format_args!("hard fault at {:#010x}", frame.pc()))
+}

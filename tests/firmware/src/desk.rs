@@ -1,0 +1,41 @@
+//! The host as the program's machine: the reference for the image.
+
+use std::{env, fs, io};
+
+use crate::program::{self, Machine};
+
+/// Bytes of the TABLE region of `memory.x`.
+const TABLE_LENGTH: usize = 256 * 1024;
+
+struct Desk;
+
+impl Machine for Desk {
+    fn print(&mut self, line: &str) {
+        print!("{line}");
+    }
+
+    fn instructions(&mut self, work: impl FnOnce()) -> Option<u32> {
+        work();
+        None
+    }
+
+    fn stack(&mut self, work: impl FnOnce()) -> Option<u32> {
+        work();
+        None
+    }
+}
+
+/// Runs the program with the table in the file that the first argument names, if there is one.
+pub fn main() -> io::Result<()> {
+    let mut flash = match env::args_os().nth(1) {
+        Some(file) => fs::read(file)?,
+        None => Vec::new(),
+    };
+    if flash.len() > TABLE_LENGTH {
+        return Err(io::Error::other("the table is larger than the flash that memory.x keeps for it"));
+    }
+    // As the emulator has it; an erased flash would read 0xff.
+    flash.resize(TABLE_LENGTH, 0);
+    program::run(&mut Desk, &flash);
+    Ok(())
+}

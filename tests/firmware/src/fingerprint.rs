@@ -1,0 +1,37 @@
+//! One number for many bits.
+
+use slipfit_problems::cd_rom::CdRomState;
+
+/// FNV-1a, 64 bits wide.
+#[derive(Clone, Copy, Debug)]
+pub struct Fingerprint(u64);
+
+impl Fingerprint {
+    /// Adds the bits of `value`, which must not be NaN: the bits of a NaN vary between machines.
+    pub fn add(&mut self, value: f32) {
+        debug_assert!(!value.is_nan());
+        for byte in value.to_bits().to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+
+    /// Adds every number of `state`.
+    pub fn add_state(&mut self, state: &CdRomState<f32>) {
+        let pose = &state.motion.pose;
+        let orientation = &pose.orientation;
+        let numbers = pose.displacement_w.iter().chain([&orientation.w]).chain(orientation.v.iter());
+        numbers.chain(state.motion.velocity.iter()).for_each(|number| self.add(*number));
+    }
+}
+
+impl Default for Fingerprint {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl core::fmt::Display for Fingerprint {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{:016x}", self.0)
+    }
+}

@@ -1,0 +1,60 @@
+//! Every use a controller makes of the library, with inputs that the optimiser knows nothing about.
+
+use core::hint::black_box;
+
+use slipfit_core::{
+    ParameterError,
+    integrator::{ImplicitEuler, Integrator, Sdirk2},
+    kernel::Kernel,
+    law::{Elastic, Friction},
+    menu::SlideVisitor,
+    pose::Pose,
+    slide::Slide,
+    table::{Table, TableError},
+};
+use slipfit_problems::cd_rom;
+
+/// All uses; every input may be anything, so that every error is reached too.
+pub fn all() {
+    let _ = black_box(every_slide());
+    let _ = black_box(look_up());
+    if cfg!(feature = "reachable-panic") {
+        assert!(black_box(true));
+    }
+}
+
+/// Makes the slide and steps it, whatever laws its data ask for.
+fn every_slide() -> Result<(), ParameterError<f32>> {
+    black_box(cd_rom::data(black_box(0.0))).visit(Stepped)?
+}
+
+struct Stepped;
+
+impl SlideVisitor<f32> for Stepped {
+    type Output = Result<(), ParameterError<f32>>;
+
+    fn visit<E: Elastic<f32>, F: Friction<f32>>(self, slide: Slide<f32, E, F>) -> Self::Output {
+        step::<E, F, ImplicitEuler<4>>(slide)?;
+        step::<E, F, Sdirk2<3>>(slide)
+    }
+}
+
+fn step<E: Elastic<f32>, F: Friction<f32>, I: Integrator>(slide: Slide<f32, E, F>) -> Result<(), ParameterError<f32>> {
+    let kernel = Kernel::<f32, _, I>::new(slide, black_box(1e-3))?;
+    let mut state = black_box(kernel.at_rest(Pose::nominal()));
+    black_box(kernel.step(&mut state));
+    black_box(kernel.mechanism().gaps(&state.motion.pose));
+    black_box(kernel.mechanism().drive().force(kernel.time(state.steps), state.motion.velocity.z));
+    Ok(())
+}
+
+/// Opens a table and looks it up.
+fn look_up() -> Result<(), TableError> {
+    static REGION: [u8; 256] = [0; 256];
+    let region: &[u8] = black_box(&REGION);
+    let plane = Table::<2>::open(region)?.expect_scene(black_box(0))?;
+    black_box(plane.lookup(black_box([0.0; 2])));
+    let space = Table::<3>::open(region)?;
+    black_box(space.lookup(black_box([0.0; 3])));
+    Ok(())
+}

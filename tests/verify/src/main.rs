@@ -1,0 +1,121 @@
+//! Every test with one command, `cargo verify`: installs what the tests need where it may, and says what is missing where
+//! it may not. No test is ever skipped. Arguments go to `cargo test`.
+#![forbid(unsafe_code)]
+
+use std::{
+    env,
+    path::Path,
+    process::{Command, ExitCode, Stdio},
+};
+
+/// Targets that tests build for.
+const TARGETS: [&str; 4] =
+    ["thumbv6m-none-eabi", "thumbv7em-none-eabihf", "thumbv8m.main-none-eabihf", "riscv32imafc-unknown-none-elf"];
+
+/// Programs that tests run, and the Debian packages that have them.
+const PROGRAMS: [(&str, &str); 1] = [("qemu-system-arm", "qemu-system-arm")];
+
+/// The root of the repository.
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+
+/// A step's outcome: what it ascertained, or what is wrong.
+type Outcome = Result<String, String>;
+
+/// A step.
+type Step = fn() -> Outcome;
+
+fn main() -> ExitCode {
+    let steps: [(&str, Step); 3] = [("targets", targets), ("programs", programs), ("tests", tests)];
+    let mut done = Vec::new();
+    for (name, step) in steps {
+        eprintln!("== {name}");
+        match step() {
+            Ok(what) => done.push(format!("{name}: {what}")),
+            Err(why) => {
+                eprintln!("error: {why}");
+                return ExitCode::FAILURE;
+            }
+        }
+    }
+    eprintln!("== all passed\n{}", done.join("\n"));
+    ExitCode::SUCCESS
+}
+
+/// Has the targets installed.
+fn targets() -> Outcome {
+    let missing: Vec<_> = TARGETS.into_iter().filter(|target| !has_target(target)).collect();
+    if !missing.is_empty() {
+        let mut install = Command::new("rustup");
+        install.args(["target", "add"]).args(&missing);
+        if !runs(&mut install) || !missing.iter().all(|target| has_target(target)) {
+            return Err(format!("targets are missing; to install them: rustup target add {}", missing.join(" ")));
+        }
+    }
+    Ok(TARGETS.join(", "))
+}
+
+/// Whether the compiler has the target's core library.
+fn has_target(target: &str) -> bool {
+    let output = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
+    output.is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir())
+}
+
+/// Has the programs installed.
+fn programs() -> Outcome {
+    let missing: Vec<_> = PROGRAMS.into_iter().filter(|(program, _)| !has_program(program)).collect();
+    if !missing.is_empty() {
+        let packages: Vec<_> = missing.iter().map(|(_, package)| *package).collect();
+        if !install(&packages) || !missing.iter().all(|(program, _)| has_program(program)) {
+            let names: Vec<_> = missing.iter().map(|(program, _)| *program).collect();
+            let (names, packages) = (names.join(", "), packages.join(" "));
+            return Err(format!("missing: {names}; to install it on Debian: sudo apt-get install {packages}"));
+        }
+    }
+    Ok(PROGRAMS.map(|(program, _)| program).join(", "))
+}
+
+/// Whether the program starts.
+fn has_program(program: &str) -> bool {
+    quietly(Command::new(program).arg("--version"))
+}
+
+/// Installs Debian packages, as root or with a sudo that asks nothing.
+fn install(packages: &[&str]) -> bool {
+    if !has_program("apt-get") {
+        return false;
+    }
+    let is_root = Command::new("id").arg("-u").output().is_ok_and(|output| output.stdout.trim_ascii() == b"0");
+    if !is_root && !quietly(Command::new("sudo").args(["-n", "true"])) {
+        return false;
+    }
+    let apt_get = || {
+        let mut command = if is_root { Command::new("env") } else { Command::new("sudo") };
+        command.args(["DEBIAN_FRONTEND=noninteractive", "apt-get"]);
+        command
+    };
+    runs(apt_get().arg("update")) && runs(apt_get().args(["install", "--yes"]).args(packages))
+}
+
+/// Runs the tests of the whole workspace.
+fn tests() -> Outcome {
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.current_dir(ROOT).args(["test", "--workspace"]).args(env::args_os().skip(1));
+    if runs(&mut command) { Ok("cargo test --workspace".to_owned()) } else { Err("tests failed".to_owned()) }
+}
+
+/// Whether `command` starts and succeeds, saying what it is.
+fn runs(command: &mut Command) -> bool {
+    eprintln!("{command:?}");
+    command.stdin(Stdio::null()).status().is_ok_and(|status| status.success())
+}
+
+/// Whether `command` starts and succeeds, silently.
+fn quietly(command: &mut Command) -> bool {
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok_and(|status| status.success())
+}
