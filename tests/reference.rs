@@ -8,7 +8,7 @@ use slipfit::{
     simulate::{Run, ScalarKind, Settings, simulate},
 };
 use slipfit_core::{menu::FrictionData, slide::CONTACTS};
-use slipfit_tests::{Reference, deviation, references};
+use slipfit_tests::known_runs::{Reference, deviation, references};
 
 fn scene_of(reference: &Reference) -> Scene {
     let mut scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).unwrap();

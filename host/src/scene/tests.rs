@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use slipfit_core::slide::ABSENT;
 use slipfit_problems::cd_rom;
 
-use super::{CD_ROM_SLIDE, IntegratorKind, LevelRange, RunSpec, Scene, SceneError};
+use super::{CD_ROM_SLIDE, IntegratorKind, LevelRange, Override, RunSpec, Scene, SceneError};
 
 const FAST: &str = include_str!("../../scenes/cd-rom-slide-fast.toml");
 
@@ -44,7 +44,7 @@ fn the_shipped_scene_is_the_paper_s_to_the_last_bit() {
     assert_eq!(scene.title, "CD-ROM slide");
     assert_eq!(scene.pins[2].name, "left front");
     assert_eq!(scene.nominal_clearance, Some([0.4 / 1000.0; 2]));
-    assert_eq!(scene.run, RunSpec { duration: 0.2, step: 50e-6, integrator: IntegratorKind::Sdirk2 });
+    assert_eq!(scene.run, RunSpec { duration: 0.2, step: 25e-6, integrator: IntegratorKind::Sdirk2 });
     assert_eq!(scene.sweep, LevelRange { first: -3.0, step: 0.1, count: 81 });
 
     let mut fast = parse(FAST, &[]).unwrap();
@@ -60,7 +60,7 @@ fn units_mean_the_same() {
         "slide.mass = \"81.8g\"",
         "slide.inertia_box=['13 cm', '0.012 m', 150]",
         "slide.gravity=[0, '-9810 mm/s^2', 0]",
-        "contact.stiffness=100",
+        "contact.stiffness=\"100 N/mm^1.5\"",
         "contact.stiffness=100.0 N/mm^1.5",
         "contact.damping=1000 N*s/m",
         "contact.damping=1 Ns/mm",
@@ -69,7 +69,7 @@ fn units_mean_the_same() {
         "drive.ramp_start=50 ms",
         "drive.speed=0.1 m/s",
         "run.duration=0.2 s",
-        "run.step=0.05 ms",
+        "run.step=0.025 ms",
         "pin.left front.left=['-22.3 µm', 0.0624]",
         "sweep.n=-3:5:0.1",
         "drawing={clearance = [0.4, 0.4]}",
@@ -133,9 +133,9 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
             "mass = \"heavy\" ",
             ["mass = |\"heavy", "\"heavy\", which is not a number with its unit", "g, kg"],
         ),
-        ("N/mm^1.5\"", "N/mm^2\"", ["stiffness = |\"100 N/mm^2", "but `contact.exponent` is 1.5", "N/mm^1.5"]),
-        ("N/mm^1.5\"", "N/mm\"", ["stiffness = |\"100 N/mm\"", "but `contact.exponent` is 1.5", "N/mm^1.5"]),
-        ("N/mm^1.5\"", "N/s\"", ["stiffness = |\"100 N/s", "whose unit does not fit", "N/mm^1.5"]),
+        ("= 100      ", "= \"100 N/mm^2\"", ["stiffness = |\"100 N/mm^2", "but `contact.exponent` is 1.5", "N/mm^1.5"]),
+        ("= 100      ", "= \"100 N/mm\"", ["stiffness = |\"100 N/mm\"", "but `contact.exponent` is 1.5", "N/mm^1.5"]),
+        ("= 100      ", "= \"100 N/s\"", ["stiffness = |\"100 N/s", "whose unit does not fit", "N/mm^1.5"]),
         ("mass = 81.8 ", "mass = nan ", ["mass = |nan", "`slide.mass` is nan, which is not finite", "a number in g"]),
         ("mass = 81.8 ", "mass = \"1e999 g\"", ["mass = |\"1e999", "1e999 g, which is not finite", "a number in g"]),
         (
@@ -147,7 +147,7 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
         ("mass = 81.8 ", "mass = 0xffffffffffffffffffff ", ["mass = |0xff", "which is not finite", "a number in g"]),
         ("[130, 12, 150]", "[130, 0, 150]", ["[130, |0, 150]", "`slide.inertia_box` is 0 mm", "0.001 to 100000 mm"]),
         ("[130, 12, 150]", "[0.005, 0.005, 0.005]", ["|[0.005", "`slide.inertia_box`", "at least 1e-12 kg·m²"]),
-        ("\"100 N/mm^1.5\"", "-100", ["stiffness = |-100", "`contact.stiffness` is -100 N/mm^1.5", "to 1e20 N/m^1.5"]),
+        ("= 100      ", "= -100", ["stiffness = |-100", "`contact.stiffness` is -100 N/mm^1.5", "to 1e20 N/m^1.5"]),
         ("exponent = 1.5", "exponent = 0.9", ["exponent = |0.9", "`contact.exponent` is 0.9", "1 to 4"]),
         ("damping = 1 ", "damping = -1 ", ["damping = |-1", "is -1 N·s/mm", "0 to 1000000 N·s/mm"]),
         ("depth = 0.1", "depth = 0", ["depth = |0", "`contact.depth` is 0 mm", "0.000001 to 1000 mm"]),
@@ -172,12 +172,12 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
             "ramp_end = 0.05",
             ["ramp_end = |0.05", "`drive.ramp_end` is 0.05 s", "more than drive.ramp_start, 0.05 s"],
         ),
-        ("step = 50 ", "step = 0 ", ["step = |0 ", "`run.step` is 0 µs", "0.001 to 10000 µs"]),
-        ("step = 50 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`run.step` is 20 ms", "0.001 to 10000 µs"]),
-        ("duration = 200", "duration = 0.01", ["step = |50", "`run.step` is 50 µs", "at most run.duration, 0.01 ms"]),
-        ("step = 50 ", "step = 0.001 ", ["step = |0.001", "`run.step` is 0.001 µs", "at least 0.004 µs"]),
+        ("step = 25 ", "step = 0 ", ["step = |0 ", "`run.step` is 0 µs", "0.001 to 10000 µs"]),
+        ("step = 25 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`run.step` is 20 ms", "0.001 to 10000 µs"]),
+        ("duration = 200", "duration = 0.01", ["step = |25", "`run.step` is 25 µs", "at most run.duration, 0.01 ms"]),
+        ("step = 25 ", "step = 0.001 ", ["step = |0.001", "`run.step` is 0.001 µs", "at least 0.004 µs"]),
         (
-            "step = 50 ",
+            "step = 25 ",
             "step = 30 ",
             ["step = |30", "which does not divide `run.duration`, 200 ms", "nearest is 29.99850"],
         ),
@@ -259,7 +259,7 @@ fn messages_are_for_people() {
        |
        = allowed: mass, inertia_box, gravity
     "#);
-    insta::assert_snapshot!(message("step = 50 ", "step = 30 "), @r#"
+    insta::assert_snapshot!(message("step = 25 ", "step = 30 "), @r#"
     error: `run.step` is 30 µs, which does not divide `run.duration`, 200 ms
       --> scene.toml:36:8
        |

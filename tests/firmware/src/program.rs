@@ -24,7 +24,7 @@ type Scheme = ImplicitEuler<4>;
 type SlideKernel = Kernel<f32, CdRomSlide<f32>, Scheme>;
 
 /// Tolerance levels, from loose to tight.
-const LEVELS: [f32; 6] = [-3.0, 0.0, 1.0, 2.5, 3.43, 5.0];
+const LEVELS: [f32; 7] = [-3.0, 0.0, 1.0, 2.5, 3.43, 5.0, 6.0];
 
 /// Step (s).
 const STEP: f32 = 1e-3;
