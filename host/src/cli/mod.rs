@@ -37,11 +37,12 @@ struct Cli {
 
 const EXAMPLES: &str = "\
 Examples:
-  slipfit run                                   the whole job on the CD-ROM slide, into slipfit-out/
-  slipfit check my-slide.toml                   is the scene sound, what is left free, when does a gap close
-  slipfit simulate --n 2.5 --csv unit.csv       one unit at tolerance level n = +2.5 (positive is tighter)
-  slipfit sweep --n -1:4:0.5 --set run.duration=1500   does the full stroke jam, and at which n
-  slipfit table -o force.h                      the flash table as a C header (.bin .hex .h .rs)";
+  slipfit run                              the whole job on the CD-ROM slide, into slipfit-out/
+  slipfit check my-slide.toml              is the scene sound, when does a gap close
+  slipfit simulate --n 2.5 --csv unit.csv  one unit, tighter by 2.5 sigma
+  slipfit sweep --n 0:5:0.5 --set run.duration=1500
+                                           at which n does the full stroke jam
+  slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)";
 
 #[derive(Subcommand)]
 enum Command {

@@ -1,4 +1,19 @@
 //! The paper's CD-ROM slide (Tables 1 and 2), SI units.
+//!
+//! ```
+//! use slipfit_core::{integrator::ImplicitEuler, kernel::Kernel, pose::Pose};
+//!
+//! let slide = slipfit_problems::cd_rom::slide(2.5f32);
+//! let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(slide, 1e-3)?; // parameters
+//! let mut state = kernel.at_rest(Pose::nominal()); // state
+//! for _ in 0..200 {
+//!     let report = kernel.step(&mut state);
+//!     assert!(report.residual < 1e-3, "N·s");
+//! }
+//! let force = kernel.mechanism().drive().force(kernel.time(state.steps), state.motion.velocity[2]);
+//! assert!((force - 0.24).abs() < 1e-3, "N");
+//! # Ok::<(), slipfit_core::ParameterError<f32>>(())
+//! ```
 
 use slipfit_core::{
     Scalar, Vector3,

@@ -1,0 +1,189 @@
+//! The program as a user meets it.
+
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
+
+fn slipfit(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn json(folder: &Path, arguments: &[&str]) -> serde_json::Value {
+    serde_json::from_str(&stdout(&slipfit(folder, arguments))).unwrap()
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn explains_itself_in_one_screen() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = stdout(&slipfit(folder.path(), &[]));
+    assert!(text.lines().count() <= 40 && text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    for command in ["run", "check", "tolerance", "simulate", "sweep", "table"] {
+        assert!(text.contains(&format!("\n  {command} ")), "{command}");
+    }
+}
+
+#[test]
+fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    for (out, threads) in [("one", "1"), ("two", "2"), ("eight", "8")] {
+        stdout(&slipfit(folder.path(), &["run", "--out", out, "--threads", threads, "--n", "0:4:1"]));
+        assert_eq!(files(&folder.path().join(out)), ["fig8.svg", "fig9.svg", "report.html", "sweep.csv", "table.bin"]);
+    }
+    for name in files(&folder.path().join("one")) {
+        let [one, two, eight] = ["one", "two", "eight"].map(|out| std::fs::read(folder.path().join(out).join(&name)));
+        let one = one.unwrap();
+        assert!(one == two.unwrap() && one == eight.unwrap(), "{name}");
+    }
+    let page = std::fs::read_to_string(folder.path().join("one/report.html")).unwrap();
+    for external in ["http://", "https://", "<script", "<link"] {
+        let without_namespaces = page.replace("http://www.w3.org/", "");
+        assert!(!without_namespaces.contains(external), "{external}");
+    }
+}
+
+#[test]
+fn check_counts_degrees_of_freedom_and_names_the_tightest_pair() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = json(folder.path(), &["check", "--json"]);
+    assert_eq!((&found["n_cl"], &found["degrees_of_freedom"]), (&5.into(), &1.into()));
+    let tightest = &found["n_star"][0];
+    assert_eq!((&tightest["pin"], &tightest["pair"]), (&"left front".into(), &"across".into()));
+    assert!((tightest["n"].as_f64().unwrap() - 3.4299).abs() < 5e-5);
+    assert!(stdout(&slipfit(folder.path(), &["check"])).contains("n_cl = 5, n = 1"));
+    // A gap is compressed, zero or free.
+    let zero = json(folder.path(), &["check", "--json", "--set", "pin.left back.left=[0, 0.04]"]);
+    let classes: Vec<_> = zero["gaps"].as_array().unwrap().iter().map(|gap| gap["class"].as_str().unwrap()).collect();
+    assert_eq!((classes[0], classes[2], classes[3]), ("zero", "compressed", "free"));
+}
+
+#[test]
+fn drive_points_on_both_sides_of_the_edge() {
+    let folder = tempfile::tempdir().unwrap();
+    let guide = |x: &str| json(folder.path(), &["check", "--json", "--set", &format!("drive.point=[{x},0,0]")]);
+    for (x, side, critical, warn) in
+        [("0", "edge", 0.290_32, true), ("5", "beyond", 0.268_66, true), ("-10", "short", 0.346_15, false)]
+    {
+        let found = guide(x);
+        assert_eq!(found["guide"]["side"], side);
+        assert!((found["guide"]["critical_friction"].as_f64().unwrap() - critical).abs() < 1e-5, "{found}");
+        let warned = found["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains("self-locking"));
+        assert_eq!(warned, warn, "{x}");
+    }
+}
+
+#[test]
+fn a_run_is_sampled_as_asked_and_json_carries_its_figures() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["simulate", "--n", "2.5", "--step", "1ms", "--csv", "run.csv", "--json", "--scalar", "f32"];
+    let report = json(folder.path(), &arguments);
+    assert!(report["integration_ms"].as_f64().unwrap() > 0.0);
+    assert_eq!(report["verdict"], "undecided");
+    let csv = std::fs::read_to_string(folder.path().join("run.csv")).unwrap();
+    let lines: Vec<_> = csv.lines().collect();
+    assert_eq!((lines[0], lines.len()), ("t,vz,force,x,y", 202));
+    assert!(lines[201].starts_with("0.2,"));
+    let sixteen = ["2.5"; 16].join(",");
+    let each = json(folder.path(), &["simulate", "--n", &sixteen, "--step", "1ms", "--json", "--scalar", "f32"]);
+    assert_eq!(each["samples"], report["samples"]);
+}
+
+#[test]
+fn tolerance_gives_table_2_in_millimetres() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = json(folder.path(), &["tolerance", "--json"]);
+    let measures = report["measures"].as_array().unwrap();
+    assert_eq!(measures.len(), 16);
+    for (measure, [mean, sd]) in measures.iter().zip(slipfit_problems::cd_rom::TABLE_2) {
+        assert_eq!((measure["mean"].as_f64(), measure["sd"].as_f64()), (Some(mean), Some(sd)), "{measure}");
+    }
+}
+
+#[test]
+fn every_form_of_the_table_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["table.bin", "table.hex", "table.h", "table.rs"] {
+        let text = stdout(&slipfit(folder.path(), &["table", "-o", name, "--n", "0:2:1", "--step", "100us"]));
+        assert!(text.contains("Worst interpolation error"), "{text}");
+    }
+    assert_eq!(files(folder.path()), ["table.bin", "table.h", "table.hex", "table.rs"]);
+    let bytes = std::fs::read(folder.path().join("table.bin")).unwrap();
+    let table: slipfit_core::table::Table<'_> = slipfit_core::table::Table::open(&bytes).unwrap();
+    assert!(table.lookup([1.0, 0.2]).force > 0.2);
+}
+
+/// Every kind of bad input: exit code 2, a message that names the thing, nothing written.
+#[test]
+fn bad_input_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = slipfit::scene::CD_ROM_SLIDE;
+    let scene = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        name.to_owned()
+    };
+    let unknown = scene("unknown.toml", &shipped.replace("mass =", "mas ="));
+    let missing = scene("missing.toml", &shipped.replace("gain = 0.04", ""));
+    let broken = scene("broken.toml", "[slide\nmass = 1");
+    std::fs::write(folder.path().join("latin.toml"), [0xe9, 0x0a]).unwrap();
+    let before = files(folder.path());
+
+    let cases: &[(&[&str], &str)] = &[
+        (&["check", &unknown], "unknown.toml:12:1"),
+        (&["check", &missing], "drive.gain"),
+        (&["check", &broken], "broken.toml:1:"),
+        (&["check", "latin.toml"], "latin.toml"),
+        (&["check", "absent.toml"], "absent.toml"),
+        (&["check", "--n", "inf"], "--n"),
+        (&["run", "--set", "slide.mass=true"], "`slide.mass` is a boolean"),
+        (&["run", "--set", "slide.mass=80 mm"], "unit does not fit"),
+        (&["run", "--set", "slide.mass=nan"], "not finite"),
+        (&["run", "--set", "contact.stiffness=inf"], "not finite"),
+        (&["run", "--set", "slide.mass=-1"], "slide.mass"),
+        (&["run", "--set", "contact.stiffness=-1"], "contact.stiffness"),
+        (&["run", "--set", "contact.exponent=0.9"], "contact.exponent"),
+        (&["run", "--set", "slide.colour=1"], "slide.colour"),
+        (&["run", "--set", "friction.law=exact"], "exact"),
+        (&["run", "--set", "run.step=0"], "run.step"),
+        (&["run", "--set", "run.duration=0.01"], "run.step"),
+        (&["run", "--n", ""], "--n"),
+        (&["run", "--n", "5:0:1"], "--n"),
+        (&["run", "--n", "0:100:0.01"], "TABLE region"),
+        (&["run", "--n", "2"], "at least 2 levels"),
+        (&["run", "--bogus"], "--bogus"),
+        (&["run", "--threads", "0"], "--threads"),
+        (&["run", "--out", "unknown.toml"], "unknown.toml"),
+        (&["run", "--out", "/proc/slipfit"], "/proc/slipfit"),
+        (&["fly"], "fly"),
+        (&["table", "-o", "table.txt"], ".hex"),
+        (&["table", "-o", "nowhere/table.bin"], "nowhere"),
+        (&["simulate", "--step", "0"], "--step 0"),
+        (&["simulate", "--step", "1s"], "--step 1s"),
+        (&["simulate", "--every", "130us", "--step", "100us"], "multiple of the step"),
+        (&["simulate", "--every", "x"], "--every x"),
+        (&["simulate", "--n", "1,2"], "--n"),
+        (&["simulate", "--n", "nan"], "--n"),
+        (&["simulate", "--n", "1e9"], "gap"),
+        (&["simulate", "--integrator", "magic"], "--integrator"),
+        (&["simulate", "--csv", "nowhere/x.csv"], "nowhere"),
+    ];
+    for (arguments, named) in cases {
+        let output = slipfit(folder.path(), arguments);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}\n{message}");
+        assert!(message.contains(named), "{arguments:?}\n{message}");
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+        assert_eq!(files(folder.path()), before, "{arguments:?}");
+    }
+}
