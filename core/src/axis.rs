@@ -4,7 +4,7 @@ use crate::{
     ParameterError, SVector, Scalar,
     error::bounded,
     law::{Elastic, Impact},
-    mechanism::Mechanism,
+    mechanism::{Evaluation, Mechanism},
 };
 
 /// A body that moves along one axis, with a pad below it.
@@ -43,6 +43,8 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     /// Position (m), positive upwards.
     type Pose = S;
 
+    type Memory = ();
+
     /// Effective mass (kg).
     type Linearisation = S;
 
@@ -52,9 +54,17 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     }
 
     #[inline(always)]
-    fn extrapolated(&self, from: &S, to: &S, weight: S) -> S {
-        *from + (*to - *from) * weight
+    fn moved(&self, pose: &S, velocity: &SVector<S, 1>, dt: S) -> S {
+        *pose + velocity.x * dt
     }
+
+    #[inline(always)]
+    fn shifted(&self, base: &S, from: &S, to: &S, weight: S) -> S {
+        *base + (*to - *from) * weight
+    }
+
+    #[inline(always)]
+    fn memory_shifted(&self, (): &(), (): &(), (): &(), _: S) {}
 
     #[inline(always)]
     fn normalised(&self, pose: &S) -> S {
@@ -62,8 +72,11 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     }
 
     #[inline(always)]
-    fn selected(&self, condition: S, yes: &S, no: &S) -> S {
-        condition.select_gt(S::zero(), *yes, *no)
+    fn fresh(&self) {}
+
+    #[inline(always)]
+    fn selected(&self, condition: S, (yes, ()): (&S, &()), (no, ()): (&S, &())) -> (S, ()) {
+        (condition.select_gt(S::zero(), *yes, *no), ())
     }
 
     #[inline(always)]
@@ -77,10 +90,18 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     }
 
     #[inline(always)]
-    fn linearised(&self, _: S, pose: &S, velocity: &SVector<S, 1>, a: S) -> (SVector<S, 1>, S) {
+    fn velocity(&self, momentum: &SVector<S, 1>) -> SVector<S, 1> {
+        momentum / self.mass
+    }
+
+    #[inline(always)]
+    fn evaluated(&self, _: S, pose: &S, (): &(), velocity: &SVector<S, 1>, a: S, _: S) -> Evaluation<S, (), S, 1> {
         let pad = self.contact.response(-(self.gap + *pose), -velocity.x);
-        let force = SVector::<S, 1>::new(pad.force + self.mass * self.gravity);
-        (force, self.mass + a * (pad.damping + a * pad.stiffness))
+        Evaluation {
+            force: SVector::<S, 1>::new(pad.force + self.mass * self.gravity),
+            memory: (),
+            linearisation: self.mass + a * (pad.damping + a * pad.stiffness),
+        }
     }
 
     #[inline(always)]

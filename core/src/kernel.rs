@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 use crate::{
     ParameterError, SVector, Scalar,
     error::bounded,
-    integrator::{Integrator, Motion},
+    integrator::{Integrator, Motion, Step},
     mechanism::Mechanism,
 };
 
@@ -20,20 +20,25 @@ pub struct Kernel<S, M, I> {
 
 /// Everything that changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State<S, P, const D: usize> {
+pub struct State<S, P, R, const D: usize> {
     /// Steps taken; time is this count times the step.
     pub steps: u32,
-    /// Pose and velocities.
-    pub motion: Motion<S, P, D>,
+    /// Pose, velocities and memory.
+    pub motion: Motion<S, P, R, D>,
 }
+
+/// The state of mechanism `M`.
+pub type StateOf<S, M, const D: usize> = State<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Memory, D>;
 
 /// What a step says about itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Report<S> {
-    /// Imbalance of momentum (N·s) that the last Newton pass found; what the step keeps of it is smaller.
+    /// Imbalance of momentum (N·s) that the Newton passes left in the worst stage.
     /// Infinite if the step left the finite range: then the motion was held as it was.
     pub residual: S,
+    /// Estimate of the momentum's error (N·s) made in this step; infinite likewise.
+    pub error: S,
 }
 
 impl<S: Scalar + PartialOrd, M, I: Integrator> Kernel<S, M, I> {
@@ -59,30 +64,32 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
     }
 
     /// At rest in `pose` at time 0.
-    pub fn at_rest<const D: usize>(&self, pose: M::Pose) -> State<S, M::Pose, D>
+    pub fn at_rest<const D: usize>(&self, pose: M::Pose) -> StateOf<S, M, D>
     where
         M: Mechanism<S, D>,
     {
-        State { steps: 0, motion: Motion { pose, velocity: SVector::zeros() } }
+        State { steps: 0, motion: Motion { pose, velocity: SVector::zeros(), memory: self.mechanism.fresh() } }
     }
 
     /// Moves `state` by one step. The count of steps stops at its greatest value, after which time stands still.
     #[inline]
-    pub fn step<const D: usize>(&self, state: &mut State<S, M::Pose, D>) -> Report<S>
+    pub fn step<const D: usize>(&self, state: &mut StateOf<S, M, D>) -> Report<S>
     where
         M: Mechanism<S, D>,
     {
-        let t = self.time(state.steps);
-        let (next, residual) = I::step(&self.mechanism, t, self.step, &state.motion);
+        let was = state.motion;
+        let Step { motion: next, residual, error } = I::step(&self.mechanism, self.time(state.steps), self.step, &was);
         let zero = S::zero();
         let nought = next.velocity.iter().fold(self.mechanism.nought(&next.pose), |sum, v| sum + *v * zero);
         let finite = S::one() + nought;
-        let was = state.motion;
+        let (pose, memory) = self.mechanism.selected(finite, (&next.pose, &next.memory), (&was.pose, &was.memory));
         state.steps = state.steps.saturating_add(1);
         state.motion = Motion {
-            pose: self.mechanism.selected(finite, &next.pose, &was.pose),
+            pose,
             velocity: next.velocity.zip_map(&was.velocity, |new, old| finite.select_gt(zero, new, old)),
+            memory,
         };
-        Report { residual: finite.select_gt(zero, residual, S::one() / zero) }
+        let or_infinite = |x: S| finite.select_gt(zero, x, S::one() / zero);
+        Report { residual: or_infinite(residual), error: or_infinite(error) }
     }
 }

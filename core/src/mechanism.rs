@@ -2,6 +2,18 @@
 
 use crate::{SVector, Scalar};
 
+/// Forces at one motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Evaluation<S, M, L, const D: usize> {
+    /// The generalised force (N, N·m).
+    pub force: SVector<S, D>,
+    /// What the laws remember if the motion is accepted.
+    pub memory: M,
+    /// Linearisation of momentum − a·force with respect to the velocity. It may be approximate; it steers, the force
+    /// decides.
+    pub linearisation: L,
+}
+
 /// A mechanism with `D` generalised velocities.
 ///
 /// Implicit schemes solve momentum(V) − momentum(V₀) = a·force(t, Q, V) with Q = advanced(Q₀, V, a) for V. `a` (s) is
@@ -10,20 +22,37 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// Where the bodies are.
     type Pose: Copy;
 
+    /// What force laws remember from one step to the next, such as friction forces; `()` where nothing.
+    type Memory: Copy;
+
     /// Whatever [`solve`](Self::solve) needs of a linearisation.
     type Linearisation;
 
     /// The pose Q = `pose` + `dt`·Q̇(Q, `velocity`), implicit in Q.
     fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
 
-    /// `from + weight·(to − from)` in the coordinates in which poses are integrated.
-    fn extrapolated(&self, from: &Self::Pose, to: &Self::Pose, weight: S) -> Self::Pose;
+    /// The pose `pose` + `dt`·Q̇(`pose`, `velocity`), explicit.
+    fn moved(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
+
+    /// `base + weight·(to − from)` in the coordinates in which poses are integrated.
+    fn shifted(&self, base: &Self::Pose, from: &Self::Pose, to: &Self::Pose, weight: S) -> Self::Pose;
+
+    /// `base + weight·(to − from)`.
+    fn memory_shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
 
     /// The same pose with rounding's drift of its constraints taken out.
     fn normalised(&self, pose: &Self::Pose) -> Self::Pose;
 
+    /// The memory of laws that nothing has happened to yet.
+    fn fresh(&self) -> Self::Memory;
+
     /// `yes` where `condition` > 0, else `no` (also where it is NaN).
-    fn selected(&self, condition: S, yes: &Self::Pose, no: &Self::Pose) -> Self::Pose;
+    fn selected(
+        &self,
+        condition: S,
+        yes: (&Self::Pose, &Self::Memory),
+        no: (&Self::Pose, &Self::Memory),
+    ) -> (Self::Pose, Self::Memory);
 
     /// 0 if all coordinates of `pose` are finite, else NaN.
     fn nought(&self, pose: &Self::Pose) -> S;
@@ -31,15 +60,21 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// M·`velocity`: generalised momentum (N·s, N·m·s).
     fn momentum(&self, velocity: &SVector<S, D>) -> SVector<S, D>;
 
-    /// The generalised force (N, N·m) at time `t` (s), and the linearisation of momentum − `a`·force with respect to
-    /// the velocity, through the pose too. The linearisation may be approximate; it steers, the force decides.
-    fn linearised(
+    /// M⁻¹·`momentum`: generalised velocities (m/s, rad/s).
+    fn velocity(&self, momentum: &SVector<S, D>) -> SVector<S, D>;
+
+    /// Forces at time `t` (s), and how momentum − `a`·force changes with the velocity, through the pose too. Of the
+    /// friction's change along the sliding direction the linearisation takes `tangent_share` from the law's tangent, the
+    /// rest from its secant.
+    fn evaluated(
         &self,
         t: S,
         pose: &Self::Pose,
+        memory: &Self::Memory,
         velocity: &SVector<S, D>,
         a: S,
-    ) -> (SVector<S, D>, Self::Linearisation);
+        tangent_share: S,
+    ) -> Evaluation<S, Self::Memory, Self::Linearisation, D>;
 
     /// The velocity change that brings the linearised momentum balance from `residual` to zero, negated.
     fn solve(&self, linearisation: &Self::Linearisation, residual: &SVector<S, D>) -> SVector<S, D>;

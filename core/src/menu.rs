@@ -3,7 +3,7 @@
 use crate::{
     ParameterError, Scalar,
     drive::Drive,
-    law::{Elastic, Friction, Frictionless, Impact, Linear, Power, Regularised, ThreeHalves},
+    law::{Elastic, Exact, Friction, Frictionless, Impact, Linear, Power, Regularised, ThreeHalves},
     slide::{Body, Slide},
 };
 
@@ -31,6 +31,11 @@ pub enum FrictionData<S> {
         coefficient: S,
         /// Stick band v_s (m/s).
         stick_band: S,
+    },
+    /// Coulomb friction with true stick.
+    Exact {
+        /// Coefficient μ.
+        coefficient: S,
     },
 }
 
@@ -74,6 +79,8 @@ pub enum FrictionType {
     Frictionless,
     /// The smoothed law.
     Regularised,
+    /// The law with true stick.
+    Exact,
 }
 
 impl<S: Scalar + PartialOrd> ContactData<S> {
@@ -90,11 +97,21 @@ impl<S: Scalar + PartialOrd> ContactData<S> {
 }
 
 impl<S: Scalar + PartialOrd> FrictionData<S> {
+    /// Coefficient μ, 0 without friction.
+    pub fn coefficient(&self) -> S {
+        match *self {
+            Self::None => S::zero(),
+            Self::Regularised { coefficient, .. } | Self::Exact { coefficient } => coefficient,
+        }
+    }
+
     /// The cheapest friction law that covers the data.
     pub fn friction_type(&self) -> FrictionType {
         match self {
-            Self::Regularised { coefficient, .. } if *coefficient != S::zero() => FrictionType::Regularised,
-            _ => FrictionType::Frictionless,
+            _ if self.coefficient() == S::zero() => FrictionType::Frictionless,
+            Self::None => FrictionType::Frictionless,
+            Self::Regularised { .. } => FrictionType::Regularised,
+            Self::Exact { .. } => FrictionType::Exact,
         }
     }
 }
@@ -119,19 +136,19 @@ impl<S: Scalar + PartialOrd> SlideData<S> {
         visitor: V,
     ) -> Result<V::Output, ParameterError<S>> {
         let contact = Impact::new(elastic, self.contact.damping, self.contact.depth)?;
-        match self.friction {
+        let SlideData { body, friction, drive, .. } = *self;
+        if friction.friction_type() == FrictionType::Frictionless {
+            return Ok(visitor.visit(Slide::new(body, contact, Frictionless, drive)?));
+        }
+        match friction {
+            FrictionData::None => Ok(visitor.visit(Slide::new(body, contact, Frictionless, drive)?)),
             FrictionData::Regularised { coefficient, stick_band } => {
                 let friction = Regularised::new(coefficient, stick_band)?;
-                match self.friction.friction_type() {
-                    FrictionType::Regularised => {
-                        Ok(visitor.visit(Slide::new(self.body, contact, friction, self.drive)?))
-                    }
-                    FrictionType::Frictionless => {
-                        Ok(visitor.visit(Slide::new(self.body, contact, Frictionless, self.drive)?))
-                    }
-                }
+                Ok(visitor.visit(Slide::new(body, contact, friction, drive)?))
             }
-            FrictionData::None => Ok(visitor.visit(Slide::new(self.body, contact, Frictionless, self.drive)?)),
+            FrictionData::Exact { coefficient } => {
+                Ok(visitor.visit(Slide::new(body, contact, Exact::new(coefficient)?, drive)?))
+            }
         }
     }
 }

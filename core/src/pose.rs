@@ -51,13 +51,27 @@ impl<S: Scalar> Pose<S> {
         }
     }
 
-    /// `self + weight·(to − self)`, component by component; the quaternion is not brought back to unit length.
+    /// `self` + `dt`·Q̇(`self`): an explicit move with the velocities `velocity_w` (m/s) and `angular_velocity_b` (rad/s).
     #[inline(always)]
-    pub fn extrapolated(&self, to: &Self, weight: S) -> Self {
-        let (from, to_q) = (self.orientation, to.orientation);
+    pub fn moved(&self, velocity_w: Vector3<S>, angular_velocity_b: Vector3<S>, dt: S) -> Self {
+        let Orientation { w, v } = self.orientation;
+        let turn = angular_velocity_b * (dt * S::from_f64(0.5));
         Self {
-            displacement_w: self.displacement_w + (to.displacement_w - self.displacement_w) * weight,
-            orientation: Orientation { w: from.w + (to_q.w - from.w) * weight, v: from.v + (to_q.v - from.v) * weight },
+            displacement_w: self.displacement_w + velocity_w * dt,
+            orientation: Orientation { w: w - v.dot(&turn), v: v + turn * w + v.cross(&turn) },
+        }
+    }
+
+    /// `self + weight·(to − from)`, component by component; the quaternion is not brought back to unit length.
+    #[inline(always)]
+    pub fn shifted(&self, from: &Self, to: &Self, weight: S) -> Self {
+        let (from_q, to_q) = (from.orientation, to.orientation);
+        Self {
+            displacement_w: self.displacement_w + (to.displacement_w - from.displacement_w) * weight,
+            orientation: Orientation {
+                w: self.orientation.w + (to_q.w - from_q.w) * weight,
+                v: self.orientation.v + (to_q.v - from_q.v) * weight,
+            },
         }
     }
 
@@ -124,7 +138,7 @@ mod tests {
         for _ in 0..10_000 {
             // The midpoint of two implicit half-moves is second order: a Cayley step.
             let half = pose.advanced(Vector3::zeros(), rate, 0.5e-4);
-            pose = pose.extrapolated(&half, 2.0).normalised();
+            pose = pose.shifted(&pose, &half, 2.0).normalised();
         }
         let x_w = pose.to_body().apply_inverse(Vector3::x());
         assert!((x_w - Vector3::x()).norm_squared() < 1e-14, "{x_w}");

@@ -13,9 +13,12 @@ use crate::{
     ParameterError, SVector, Scalar, Vector3,
     drive::Drive,
     error::bounded,
-    law::{Elastic, Friction, Impact, friction::Contact},
+    law::{
+        Elastic, Friction, Impact,
+        friction::{Contact, Rubbing},
+    },
     linear::Blocks,
-    mechanism::Mechanism,
+    mechanism::{Evaluation, Mechanism},
     pose::Pose,
 };
 
@@ -24,6 +27,9 @@ pub const PINS: usize = 4;
 
 /// Contacts of the slide: left, right, rail, wall of each pin in turn.
 pub const CONTACTS: usize = 4 * PINS;
+
+/// Slots of the slide, each two opposing contacts: across, then up and down, of each pin in turn.
+pub const SLOTS: usize = 2 * PINS;
 
 /// A gap (m) that never closes: what a contact that the scene leaves out has.
 pub const ABSENT: f64 = 1e6;
@@ -120,40 +126,67 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
 
     /// A slot along one axis: what it does to the slide and how that changes, axis first.
     #[inline(always)]
-    fn slot(&self, gaps: [S; 2], offset: S, velocity: [S; 3], a: S) -> Contact<S> {
-        let [along, sliding_0, sliding_1] = velocity;
-        let slot = self.contact.slot(gaps[0], gaps[1], offset, along, a);
+    fn slot(
+        &self,
+        memory: &mut F::Memory,
+        gaps: [S; 2],
+        offset: S,
+        [along, sliding_0, sliding_1]: [S; 3],
+        way: Way<S>,
+    ) -> Contact<S> {
+        let slot = self.contact.slot(gaps[0], gaps[1], offset, along, way.a);
         let zero = S::zero();
         let mut contact = Contact {
             force: [slot.force, zero, zero],
             impedance: [[slot.force_slope, zero, zero], [zero; 3], [zero; 3]],
         };
-        self.friction.add([sliding_0, sliding_1], slot.normal, slot.normal_slope, &mut contact);
+        let rubbing = Rubbing {
+            sliding: [sliding_0, sliding_1],
+            normal: slot.normal,
+            normal_slope: slot.normal_slope,
+            mass_rate: way.mass_rate,
+            tangent_share: way.tangent_share,
+        };
+        *memory = self.friction.add(memory, &rubbing, &mut contact);
         contact
     }
 
-    /// Force on the slide at one pin and its impedance −∂force/∂u, in body axes.
+    /// Force on the slide at one pin and its impedance −∂force/∂u, in body axes, for the pin's offset `d` and the
+    /// velocity `u` of the slide's material there.
     #[inline(always)]
-    fn pin(&self, gaps: [S; 4], d: Vector3<S>, u: Vector3<S>, a: S) -> (Vector3<S>, Matrix3<S>) {
-        let [left, right, rail, wall] = gaps;
-        let across = self.slot([left, right], d.x, [u.x, u.y, u.z], a);
-        let up = self.slot([wall, rail], d.y, [u.y, u.x, u.z], a);
+    fn pin(
+        &self,
+        memory: &mut [F::Memory; 2],
+        [left, right, rail, wall]: [S; 4],
+        d: Vector3<S>,
+        u: Vector3<S>,
+        way: Way<S>,
+    ) -> (Vector3<S>, Matrix3<S>) {
+        let [across_memory, up_memory] = memory;
+        let across = self.slot(across_memory, [left, right], d.x, [u.x, u.y, u.z], way);
+        let up = self.slot(up_memory, [wall, rail], d.y, [u.y, u.x, u.z], way);
         let (f, g) = (across.force, up.force);
         let (c, k) = (across.impedance, up.impedance);
         let force = Vector3::new(f[0] + g[1], f[1] + g[0], f[2] + g[2]);
+        #[rustfmt::skip]
         let impedance = Matrix3::new(
-            c[0][0] + k[1][1],
-            c[0][1] + k[1][0],
-            c[0][2] + k[1][2],
-            c[1][0] + k[0][1],
-            c[1][1] + k[0][0],
-            c[1][2] + k[0][2],
-            c[2][0] + k[2][1],
-            c[2][1] + k[2][0],
-            c[2][2] + k[2][2],
+            c[0][0] + k[1][1], c[0][1] + k[1][0], c[0][2] + k[1][2],
+            c[1][0] + k[0][1], c[1][1] + k[0][0], c[1][2] + k[0][2],
+            c[2][0] + k[2][1], c[2][1] + k[2][0], c[2][2] + k[2][2],
         );
         (force, impedance)
     }
+}
+
+/// How forces are to be linearised.
+#[derive(Clone, Copy, Debug)]
+struct Way<S> {
+    /// Implicit part of the step (s).
+    a: S,
+    /// Mass over it (kg/s).
+    mass_rate: S,
+    /// See [`Rubbing`].
+    tangent_share: S,
 }
 
 /// [a]×, the matrix with [a]×·b = a × b.
@@ -183,6 +216,7 @@ pub struct SlideLinearisation<S> {
 
 impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F> {
     type Pose = Pose<S>;
+    type Memory = [F::Memory; SLOTS];
     type Linearisation = SlideLinearisation<S>;
 
     #[inline(always)]
@@ -192,8 +226,29 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     }
 
     #[inline(always)]
-    fn extrapolated(&self, from: &Pose<S>, to: &Pose<S>, weight: S) -> Pose<S> {
-        from.extrapolated(to, weight)
+    fn moved(&self, pose: &Pose<S>, velocity: &SVector<S, 6>, dt: S) -> Pose<S> {
+        let (v_w, w_b) = split(velocity);
+        pose.moved(v_w, w_b, dt)
+    }
+
+    #[inline(always)]
+    fn shifted(&self, base: &Pose<S>, from: &Pose<S>, to: &Pose<S>, weight: S) -> Pose<S> {
+        base.shifted(from, to, weight)
+    }
+
+    #[inline(always)]
+    fn memory_shifted(
+        &self,
+        base: &[F::Memory; SLOTS],
+        from: &[F::Memory; SLOTS],
+        to: &[F::Memory; SLOTS],
+        weight: S,
+    ) -> [F::Memory; SLOTS] {
+        let mut memory = *base;
+        for ((slot, from), to) in memory.iter_mut().zip(from).zip(to) {
+            *slot = F::shifted(slot, from, to, weight);
+        }
+        memory
     }
 
     #[inline(always)]
@@ -202,8 +257,22 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     }
 
     #[inline(always)]
-    fn selected(&self, condition: S, yes: &Pose<S>, no: &Pose<S>) -> Pose<S> {
-        Pose::selected(condition, yes, no)
+    fn fresh(&self) -> [F::Memory; SLOTS] {
+        [F::fresh(); SLOTS]
+    }
+
+    #[inline(always)]
+    fn selected(
+        &self,
+        condition: S,
+        (yes, yes_memory): (&Pose<S>, &[F::Memory; SLOTS]),
+        (no, no_memory): (&Pose<S>, &[F::Memory; SLOTS]),
+    ) -> (Pose<S>, [F::Memory; SLOTS]) {
+        let mut memory = *no_memory;
+        for (slot, yes) in memory.iter_mut().zip(yes_memory) {
+            *slot = F::selected(condition, yes, slot);
+        }
+        (Pose::selected(condition, yes, no), memory)
     }
 
     #[inline(always)]
@@ -220,25 +289,36 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     }
 
     #[inline(always)]
-    fn linearised(
+    fn velocity(&self, momentum: &SVector<S, 6>) -> SVector<S, 6> {
+        let (p_w, l_b) = split(momentum);
+        join(p_w / self.body.mass, l_b.component_div(&self.body.inertia_b))
+    }
+
+    #[inline(always)]
+    fn evaluated(
         &self,
         t: S,
         pose: &Pose<S>,
+        memory: &[F::Memory; SLOTS],
         velocity: &SVector<S, 6>,
         a: S,
-    ) -> (SVector<S, 6>, SlideLinearisation<S>) {
+        tangent_share: S,
+    ) -> Evaluation<S, [F::Memory; SLOTS], SlideLinearisation<S>, 6> {
         let (v_w, w_b) = split(velocity);
         let to_body = pose.to_body();
         let v_b = to_body.apply(v_w);
         let shift = to_body.apply(pose.displacement_w);
+        let way = Way { a, mass_rate: self.body.mass / a, tangent_share };
 
+        let mut memory = *memory;
         let mut force = Vector3::zeros();
         let mut torque = Vector3::zeros();
         let mut blocks = Blocks { a: Matrix3::zeros(), b: Matrix3::zeros(), c: Matrix3::zeros(), d: Matrix3::zeros() };
-        for (gaps, pin) in self.body.gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w) {
+        let pins = self.body.gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w);
+        for ((gaps, pin), memory) in pins.zip(memory.as_chunks_mut::<2>().0) {
             let d = to_body.change(*pin) - shift;
             let lever = *pin + d;
-            let (f, impedance) = self.pin(*gaps, d, v_b + w_b.cross(&lever), a);
+            let (f, impedance) = self.pin(memory, *gaps, d, v_b + w_b.cross(&lever), way);
             let arm = cross_matrix(&lever);
             let turned = arm * impedance;
             force += f;
@@ -268,7 +348,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         blocks.b *= a;
         blocks.c *= a;
         blocks.d = blocks.d * a + Matrix3::from_diagonal(&self.body.inertia_b);
-        (join(force_w, torque), SlideLinearisation { blocks, to_body })
+        Evaluation { force: join(force_w, torque), memory, linearisation: SlideLinearisation { blocks, to_body } }
     }
 
     #[inline(always)]

@@ -21,6 +21,7 @@ pub mod outcome;
 pub mod plot;
 pub mod report;
 pub mod scene;
+pub mod scheme;
 pub mod self_locking;
 pub mod simulate;
 pub mod sweep;

@@ -11,7 +11,7 @@ use crate::{
     markup::escape,
     number::{fixed, level, typeset},
     outcome::Verdict,
-    scene::{IntegratorKind, SURFACES, Scene},
+    scene::{SURFACES, Scene},
     sweep::{Level, Sweep},
     table2::{Pair, Pin, Table2, Toes, derived},
 };
@@ -92,7 +92,7 @@ fn summary(input: &ReportInput, table: &Table2) -> String {
         "Time",
         format!("{} ms in steps of {} µs", plain(scene.run.duration * 1e3), plain(scene.run.step * 1e6)),
     ));
-    facts.push(("Integrator", integrator(scene.run.integrator).to_owned()));
+    facts.push(("Integrator", scene.run.integrator.name().to_owned()));
     if let Some(tightest) = table.tightest() {
         let (n, pin) = (real(tightest.n, 4), escape(tightest.pin));
         facts.push(("First pair to close", format!("{pin}, {}, at n* = {n}", tightest.direction)));
@@ -218,13 +218,6 @@ fn flash(flash: &Flash) -> String {
         real(flash.worst_force_error * 1e3, 3),
         real(flash.worst_velocity_error * 1e3, 4)
     )
-}
-
-fn integrator(kind: IntegratorKind) -> &'static str {
-    match kind {
-        IntegratorKind::ImplicitEuler => "implicit Euler, first order",
-        IntegratorKind::Sdirk2 => "SDIRK2, second order",
-    }
 }
 
 /// A table with a caption; `head` and `body` are rows.

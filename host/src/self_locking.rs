@@ -8,7 +8,7 @@
 use serde::Serialize;
 
 use crate::scene::{PinSpec, Scene};
-use slipfit_core::{menu::FrictionData, slide::ABSENT};
+use slipfit_core::slide::ABSENT;
 
 /// Where the drive passes, seen from the guide line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -71,10 +71,7 @@ pub fn guide(scene: &Scene, n: f64) -> Option<Guide> {
     } else {
         DriveSide::Short
     };
-    let friction = match scene.friction {
-        FrictionData::None => 0.0,
-        FrictionData::Regularised { coefficient, .. } => coefficient,
-    };
+    let friction = scene.friction.coefficient();
     let critical_friction = (drive_distance > 1e-9 * length).then(|| length / (2.0 * drive_distance));
     let warn = side != DriveSide::Short && critical_friction.is_some_and(|critical| friction >= critical);
     Some(Guide { length, line_x, drive_distance, resistance_distance, side, critical_friction, friction, warn })

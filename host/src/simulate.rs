@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use slipfit_core::{
     ParameterError, Scalar,
-    integrator::{ImplicitEuler, Integrator, Sdirk2},
+    integrator::Integrator,
     kernel::Kernel,
     law::{Elastic, Friction},
     menu::SlideVisitor,
@@ -16,7 +16,8 @@ use thiserror::Error;
 use crate::{
     interrupt,
     outcome::{Observer, Outcome, Trajectory},
-    scene::{IntegratorKind, RunSpec, Scene},
+    scene::{RunSpec, Scene},
+    scheme::IntegratorVisitor,
 };
 
 /// The number type of a run.
@@ -115,22 +116,27 @@ impl<S: Scalar + PartialOrd + std::fmt::Display> SlideVisitor<S> for Stepper<'_>
     type Output = Result<Run, SimulateError>;
 
     fn visit<E: Elastic<S>, F: Friction<S>>(self, slide: Slide<S, E, F>) -> Self::Output {
-        match self.settings.run.integrator {
-            IntegratorKind::ImplicitEuler => self.run::<S, E, F, ImplicitEuler<4>>(slide),
-            IntegratorKind::Sdirk2 => self.run::<S, E, F, Sdirk2<4>>(slide),
-        }
+        self.settings.run.integrator.visit(Started { stepper: self, slide })
     }
 }
 
-impl Stepper<'_> {
-    fn run<S, E, F, I>(mut self, slide: Slide<S, E, F>) -> Result<Run, SimulateError>
-    where
-        S: Scalar + PartialOrd + std::fmt::Display,
-        E: Elastic<S>,
-        F: Friction<S>,
-        I: Integrator,
-    {
-        let RunSpec { duration, step, .. } = self.settings.run;
+/// A stepper whose slide's type is known.
+struct Started<'a, S, E, F> {
+    stepper: Stepper<'a>,
+    slide: Slide<S, E, F>,
+}
+
+impl<S, E, F> IntegratorVisitor for Started<'_, S, E, F>
+where
+    S: Scalar + PartialOrd + std::fmt::Display,
+    E: Elastic<S>,
+    F: Friction<S>,
+{
+    type Output = Result<Run, SimulateError>;
+
+    fn visit<I: Integrator>(self) -> Self::Output {
+        let Self { stepper: Stepper { settings, mut observer, per_sample }, slide } = self;
+        let RunSpec { duration, step, .. } = settings.run;
         let kernel = Kernel::<S, _, I>::new(slide, S::from_f64(step))?;
         let steps = (duration / step).round() as u32;
         let mut state = kernel.at_rest(Pose::nominal());
@@ -140,8 +146,8 @@ impl Stepper<'_> {
             let t = f64::from(state.steps) * step;
             let vz = state.motion.velocity.z;
             let force = kernel.mechanism().drive().force(kernel.time(state.steps), vz).to_f64();
-            self.observer.observe(t, vz.to_f64(), force);
-            if state.steps.is_multiple_of(self.per_sample) {
+            observer.observe(t, vz.to_f64(), force);
+            if state.steps.is_multiple_of(per_sample) {
                 if interrupt::requested() {
                     return Err(SimulateError::Interrupted);
                 }
@@ -154,7 +160,7 @@ impl Stepper<'_> {
             }
             if state.steps == steps {
                 let integration = start.elapsed();
-                return Ok(Run { trajectory, outcome: self.observer.outcome(t, vz.to_f64()), integration });
+                return Ok(Run { trajectory, outcome: observer.outcome(t, vz.to_f64()), integration });
             }
             let residual = kernel.step(&mut state).residual.to_f64();
             if !residual.is_finite() {

@@ -1,23 +1,32 @@
-//! Implicit Euler: first order, L-stable, the most forgiving.
+//! Implicit Euler: first order, L-stable, the most forgiving and the cheapest of the implicit schemes.
 
-use super::{Integrator, Motion, stage};
+use super::{Integrator, Motion, MotionOf, Step, StepOf, stage};
 use crate::{Scalar, mechanism::Mechanism};
 
-/// Implicit Euler with `PASSES` Newton passes.
+/// Implicit Euler with `PASSES` Newton passes; with one pass it is the linearly implicit scheme.
 #[derive(Clone, Copy, Debug)]
 pub struct ImplicitEuler<const PASSES: usize>;
 
 impl<const PASSES: usize> Integrator for ImplicitEuler<PASSES> {
-    const NAME: &'static str = "implicit-euler";
+    const NAME: &'static str = if PASSES == 1 { "linearly-implicit-euler" } else { "implicit-euler" };
+    const ORDER: u32 = 1;
+    const IMPLICIT: bool = true;
 
     #[inline(always)]
     fn step<S: Scalar, M: Mechanism<S, D>, const D: usize>(
         mechanism: &M,
         t: S,
         h: S,
-        motion: &Motion<S, M::Pose, D>,
-    ) -> (Motion<S, M::Pose, D>, S) {
-        let (end, residual) = stage::<S, M, D, PASSES>(mechanism, t + h, h, motion, motion.velocity);
-        (Motion { pose: mechanism.normalised(&end.pose), velocity: end.velocity }, residual)
+        motion: &MotionOf<S, M, D>,
+    ) -> StepOf<S, M, D> {
+        let start = mechanism.evaluated(t, &motion.pose, &motion.memory, &motion.velocity, h, S::one());
+        let end = stage::<S, M, D, PASSES>(mechanism, t + h, h, motion, motion.velocity);
+        // Half the change of the force over the step is what the first order leaves out; the linearisation takes the stiff
+        // part out of it again, which the scheme damps and does not follow.
+        let change = mechanism.momentum(&(end.motion.velocity - motion.velocity)) - start.force * h;
+        let left_out = mechanism.solve(&end.linearisation, &(change * S::from_f64(0.5)));
+        let error = mechanism.impulse(&mechanism.momentum(&left_out));
+        let pose = mechanism.normalised(&end.motion.pose);
+        Step { motion: Motion { pose, ..end.motion }, residual: end.residual, error }
     }
 }

@@ -1,55 +1,137 @@
-//! Fixed-step schemes, one a file. Each solves its implicit stages with a fixed number of Newton passes.
+//! Fixed-step schemes, one a file.
+//!
+//! Implicit schemes solve their stages with a fixed number of Newton passes and then look at what the last pass left.
+//! Which one to take, by error against run time, is what `slipfit precision` shows.
 
+mod extrapolated;
 mod implicit_euler;
+mod runge_kutta_4;
 mod sdirk2;
+mod semi_implicit_euler;
 
+pub use extrapolated::Extrapolated;
 pub use implicit_euler::ImplicitEuler;
+pub use runge_kutta_4::RungeKutta4;
 pub use sdirk2::Sdirk2;
+pub use semi_implicit_euler::SemiImplicitEuler;
 
 use crate::{SVector, Scalar, mechanism::Mechanism};
 
-/// Where the bodies are and how fast they move.
+/// Where the bodies are, how fast they move, and what their force laws remember.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion<S, P, const D: usize> {
+pub struct Motion<S, P, R, const D: usize> {
     /// Pose.
     pub pose: P,
     /// Generalised velocities.
     pub velocity: SVector<S, D>,
+    /// Memory of the force laws.
+    pub memory: R,
 }
+
+/// A motion of mechanism `M`.
+pub type MotionOf<S, M, const D: usize> = Motion<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Memory, D>;
+
+/// What a step leads to, and how well.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<S, P, R, const D: usize> {
+    /// The motion at the step's end.
+    pub motion: Motion<S, P, R, D>,
+    /// Imbalance of momentum (N·s) that the passes left in the worst stage; 0 for explicit schemes.
+    pub residual: S,
+    /// Estimate of the momentum's error (N·s) made in this step.
+    pub error: S,
+}
+
+/// A step of mechanism `M`.
+pub type StepOf<S, M, const D: usize> = Step<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Memory, D>;
 
 /// A fixed-step scheme.
 pub trait Integrator: Copy {
-    /// Name on the command line.
+    /// Name in scene files and on the command line.
     const NAME: &'static str;
 
-    /// The motion a step `h` (s) after `motion`, which holds at time `t` (s), and the residual (N·s): the imbalance of
-    /// momentum that the last Newton pass of any stage found, before it corrected it.
+    /// Order of convergence on smooth motion.
+    const ORDER: u32;
+
+    /// Whether forces are solved for at the end of a step; exact friction needs that.
+    const IMPLICIT: bool;
+
+    /// The motion a step `h` (s) after `motion`, which holds at time `t` (s).
     fn step<S: Scalar, M: Mechanism<S, D>, const D: usize>(
         mechanism: &M,
         t: S,
         h: S,
-        motion: &Motion<S, M::Pose, D>,
-    ) -> (Motion<S, M::Pose, D>, S);
+        motion: &MotionOf<S, M, D>,
+    ) -> StepOf<S, M, D>;
 }
 
-/// One implicit stage: the motion Q = Q₀ + a·Q̇, V = V₀ + a·M⁻¹·force(t, Q, V) from `base` = (Q₀, V₀), after `PASSES`
-/// Newton passes that start at `guess`, and the residual (N·s).
+/// An implicit stage, solved.
+struct Stage<S, P, R, L, const D: usize> {
+    motion: Motion<S, P, R, D>,
+    /// Imbalance of momentum (N·s) that the passes left.
+    residual: S,
+    /// Linearisation at the motion.
+    linearisation: L,
+}
+
+type StageOf<S, M, const D: usize> =
+    Stage<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Memory, <M as Mechanism<S, D>>::Linearisation, D>;
+
+/// How much of friction's tangent a Newton pass takes.
+///
+/// The tangent is flat where the body slides, so that an iterate that comes from there overshoots the stick band into
+/// sliding the other way, and passes are lost to and fro. The secant never overshoots but creeps. A cautious second pass
+/// ends the cycle, tangents after it converge. Measured on openings at 1 ms over n = −1…6, greatest error for t ≥ 50 ms
+/// with extrapolated Euler of four passes, exact friction: tangents only 23 % of the peak force, 0.9 in all passes 7.4 %, this
+/// one 0.08 %.
+#[inline(always)]
+fn tangent_share<S: Scalar>(pass: usize) -> S {
+    S::from_f64(match pass {
+        0 => 0.9,
+        1 => 0.3,
+        _ => 1.0,
+    })
+}
+
+/// The motion Q = Q₀ + a·Q̇, V = V₀ + a·M⁻¹·force(t, Q, V) from `base` = (Q₀, V₀), after `PASSES` Newton passes that
+/// start at the velocity `guess`.
 #[inline(always)]
 fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize>(
     mechanism: &M,
     t: S,
     a: S,
-    base: &Motion<S, M::Pose, D>,
+    base: &MotionOf<S, M, D>,
     guess: SVector<S, D>,
-) -> (Motion<S, M::Pose, D>, S) {
+) -> StageOf<S, M, D> {
     let mut velocity = guess;
-    let mut residual = S::zero();
-    for _ in 0..PASSES {
+    for pass in 0..PASSES {
         let pose = mechanism.advanced(&base.pose, &velocity, a);
-        let (force, linearisation) = mechanism.linearised(t, &pose, &velocity, a);
-        let imbalance = mechanism.momentum(&(velocity - base.velocity)) - force * a;
-        residual = mechanism.impulse(&imbalance);
-        velocity -= mechanism.solve(&linearisation, &imbalance);
+        let at = mechanism.evaluated(t, &pose, &base.memory, &velocity, a, tangent_share(pass));
+        let imbalance = mechanism.momentum(&(velocity - base.velocity)) - at.force * a;
+        velocity -= mechanism.solve(&at.linearisation, &imbalance);
     }
-    (Motion { pose: mechanism.advanced(&base.pose, &velocity, a), velocity }, residual)
+    let pose = mechanism.advanced(&base.pose, &velocity, a);
+    let at = mechanism.evaluated(t, &pose, &base.memory, &velocity, a, S::one());
+    let imbalance = mechanism.momentum(&(velocity - base.velocity)) - at.force * a;
+    Stage {
+        motion: Motion { pose, velocity, memory: at.memory },
+        residual: mechanism.impulse(&imbalance),
+        linearisation: at.linearisation,
+    }
+}
+
+/// `base + weight·(to − from)`.
+#[inline(always)]
+fn shifted<S: Scalar, M: Mechanism<S, D>, const D: usize>(
+    mechanism: &M,
+    base: &MotionOf<S, M, D>,
+    from: &MotionOf<S, M, D>,
+    to: &MotionOf<S, M, D>,
+    weight: S,
+) -> MotionOf<S, M, D> {
+    Motion {
+        pose: mechanism.shifted(&base.pose, &from.pose, &to.pose, weight),
+        velocity: base.velocity + (to.velocity - from.velocity) * weight,
+        memory: mechanism.memory_shifted(&base.memory, &from.memory, &to.memory, weight),
+    }
 }

@@ -108,6 +108,7 @@ fn kernel(scene: &Scene) -> (&'static str, &'static str, String) {
     let (friction, why) = match scene.friction.friction_type() {
         FrictionType::Frictionless => ("none", "no friction code at all"),
         FrictionType::Regularised => ("regularised", "Coulomb friction smoothed over the stick band"),
+        FrictionType::Exact => ("exact", "Coulomb friction with true stick"),
     };
     (normal, friction, format!("exponent {} needs {cost}; friction: {why}", scene.contact.exponent))
 }

@@ -11,7 +11,8 @@ use crate::{
     export, files,
     number::{fixed, level, or_dash},
     outcome::{Outcome, Trajectory, Verdict},
-    scene::{IntegratorKind, Override, Scene, parse_every},
+    scene::{Override, Scene, parse_every},
+    scheme::IntegratorKind,
     simulate::{Run, ScalarKind, Settings, simulate},
     sweep::confirmed,
 };

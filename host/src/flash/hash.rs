@@ -14,8 +14,8 @@ const LAWS: u8 = 1;
 /// `data` has the gaps at tolerance level 0, `deviations` (m) say how they vary with n, `integrator` and `step` (s) how
 /// the runs were made. All numbers have to be finite; −0 counts as 0. Hashed are, in this order: a version of the laws
 /// (u8), the type of the normal law (u8: 1 linear, 2 exponent 3/2, 3 any other), that of the friction law (u8: 0 none,
-/// 1 regularised), and as little-endian f64 mass, inertia, gravity, pins, gaps, deviations, stiffness, exponent,
-/// damping, depth, friction coefficient and stick band (both 0 without friction), gain, start, end and speed of the
+/// 1 regularised, 2 exact), and as little-endian f64 mass, inertia, gravity, pins, gaps, deviations, stiffness, exponent,
+/// damping, depth, friction coefficient and stick band (0 where there is none), gain, start, end and speed of the
 /// drive, its point, the step; then the integrator's name in UTF-8.
 pub fn scene_hash(data: &SlideData<f64>, deviations: &[f64; CONTACTS], integrator: &str, step: f64) -> u64 {
     let SlideData { body, contact, friction, drive } = data;
@@ -26,9 +26,8 @@ pub fn scene_hash(data: &SlideData<f64>, deviations: &[f64; CONTACTS], integrato
     };
     let (friction_type, coefficient, stick_band) = match (friction.friction_type(), friction) {
         (FrictionType::Frictionless, _) | (_, FrictionData::None) => (0, 0.0, 0.0),
-        (FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
-            (1, *coefficient, *stick_band)
-        }
+        (_, FrictionData::Regularised { coefficient, stick_band }) => (1, *coefficient, *stick_band),
+        (_, FrictionData::Exact { coefficient }) => (2, *coefficient, 0.0),
     };
 
     let mut numbers = vec![body.mass];

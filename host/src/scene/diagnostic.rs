@@ -96,14 +96,9 @@ pub enum Problem {
         /// The value.
         written: String,
     },
-    /// A choice that this version does not offer.
-    #[error("`{key}` is \"{written}\", which this version does not have yet")]
-    NotYet {
-        /// The key.
-        key: String,
-        /// The value.
-        written: String,
-    },
+    /// Exact friction with a scheme that does not solve for forces.
+    #[error("`run.integrator` is \"{0}\", which cannot do exact friction")]
+    ExplicitFriction(String),
     /// Not a range of tolerance levels.
     #[error("`{key}`: {error}")]
     Levels {

@@ -21,6 +21,8 @@ use slipfit_core::{
     slide::{ABSENT, Body, CONTACTS, PINS, box_inertia},
 };
 
+use crate::scheme::IntegratorKind;
+
 pub use diagnostic::{Problem, SceneError};
 pub use levels::{LevelError, MOST_LEVELS, parse_levels};
 pub use parse::parse_every;
@@ -109,15 +111,6 @@ pub struct RunSpec {
     pub integrator: IntegratorKind,
 }
 
-/// The fixed-step schemes a scene can ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum IntegratorKind {
-    /// First order.
-    ImplicitEuler,
-    /// Second order.
-    Sdirk2,
-}
-
 /// Equidistant tolerance levels: `first`, `first + step`, …, up to `last`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevelRange {
@@ -127,16 +120,6 @@ pub struct LevelRange {
     pub step: f64,
     /// How many, at least 1.
     pub count: usize,
-}
-
-impl IntegratorKind {
-    /// Its name in scene files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ImplicitEuler => "implicit-euler",
-            Self::Sdirk2 => "sdirk2",
-        }
-    }
 }
 
 impl LevelRange {
@@ -189,6 +172,7 @@ impl Scene {
                 FrictionData::Regularised { coefficient, stick_band } => {
                     FrictionData::Regularised { coefficient: s(coefficient), stick_band: s(stick_band) }
                 }
+                FrictionData::Exact { coefficient } => FrictionData::Exact { coefficient: s(coefficient) },
             },
             drive: Drive {
                 gain: s(self.drive.gain),

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use clap::ValueEnum;
 use slipfit_core::{
     clearance::GapStatistics,
     drive::Drive,
@@ -10,9 +9,10 @@ use slipfit_core::{
     slide::{PINS, box_inertia},
 };
 
+use crate::scheme::IntegratorKind;
+
 use super::{
-    IntegratorKind, LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError, SlideSpec, keys,
-    parse_levels,
+    LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError, SlideSpec, keys, parse_levels,
     tree::{Source, Value},
     unit::{self, Quantity},
     value::Field,
@@ -57,15 +57,19 @@ impl Scene {
         keys::refuse_unknown(&tree, "")?;
 
         let root = Field { key: String::new(), node: &tree };
+        let title = title(&root, file_name)?;
+        let slide = slide(&root.table("slide")?)?;
+        let contact = contact(&root.table("contact")?)?;
+        let friction = friction(&root.table("friction")?)?;
         Ok(Self {
-            title: title(&root, file_name)?,
-            slide: slide(&root.table("slide")?)?,
-            contact: contact(&root.table("contact")?)?,
-            friction: friction(&root.table("friction")?)?,
+            title,
+            slide,
+            contact,
+            friction,
             drive: drive(&root.table("drive")?)?,
             pins: pins(&root)?,
             nominal_clearance: nominal_clearance(&root)?,
-            run: run(&root.table("run")?)?,
+            run: run(&root.table("run")?, &friction)?,
             sweep: sweep(&root.table("sweep")?)?,
         })
     }
@@ -143,7 +147,7 @@ fn stiffness_unit(unit: &str) -> Option<(&str, f64)> {
 }
 
 fn friction(table: &Field) -> Result<FrictionData<f64>, SceneError> {
-    const LAWS: &str = "regularised, none";
+    const LAWS: &str = "regularised, exact, none";
     let law = table.require("law", LAWS)?;
     let (key, written) = (law.key.clone(), law.written(""));
     match law.to_text()? {
@@ -157,7 +161,10 @@ fn friction(table: &Field) -> Result<FrictionData<f64>, SceneError> {
             table.get("stick_band").map(|field| field.to_number(&STICK_BAND)).transpose()?;
             Ok(FrictionData::None)
         }
-        "exact" => Err(law.error(Problem::NotYet { key, written }, LAWS)),
+        "exact" => {
+            table.get("stick_band").map(|field| field.to_number(&STICK_BAND)).transpose()?;
+            Ok(FrictionData::Exact { coefficient: table.number("coefficient", &COEFFICIENT)? })
+        }
         _ => Err(law.error(Problem::Choice { key, written }, LAWS)),
     }
 }
@@ -221,7 +228,7 @@ fn nominal_clearance(root: &Field) -> Result<Option<[f64; 2]>, SceneError> {
     drawing.get("clearance").map(|field| field.to_numbers(&CLEARANCE)).transpose()
 }
 
-fn run(table: &Field) -> Result<RunSpec, SceneError> {
+fn run(table: &Field, friction: &FrictionData<f64>) -> Result<RunSpec, SceneError> {
     let duration_field = table.require("duration", &DURATION.units())?;
     let duration = duration_field.to_number(&DURATION)?;
     let field = table.require("step", &STEP.units())?;
@@ -243,17 +250,22 @@ fn run(table: &Field) -> Result<RunSpec, SceneError> {
         let problem = Problem::Indivisible { step: step_written, duration: duration_written };
         return Err(field.error(problem, format!("a step that divides it, the nearest is {nearest} µs")));
     }
-    Ok(RunSpec { duration, step, integrator: integrator(table)? })
+    Ok(RunSpec { duration, step, integrator: integrator(table, friction)? })
 }
 
-/// By the names of the command line's option.
-fn integrator(table: &Field) -> Result<IntegratorKind, SceneError> {
-    let names = IntegratorKind::value_variants().iter().filter_map(ValueEnum::to_possible_value);
-    let names = names.map(|value| value.get_name().to_owned()).collect::<Vec<_>>().join(", ");
+fn integrator(table: &Field, friction: &FrictionData<f64>) -> Result<IntegratorKind, SceneError> {
+    let names = IntegratorKind::ALL.map(IntegratorKind::name).join(", ");
     let field = table.require("integrator", &names)?;
     let name = field.to_text()?;
-    IntegratorKind::from_str(name, false)
-        .map_err(|_| field.error(Problem::Choice { key: field.key.clone(), written: field.written("") }, names))
+    let kind = IntegratorKind::ALL.into_iter().find(|kind| kind.name() == name);
+    let kind =
+        kind.ok_or_else(|| field.error(Problem::Choice { key: field.key.clone(), written: field.written("") }, names))?;
+    if matches!(friction, FrictionData::Exact { .. }) && !kind.is_implicit() {
+        let implicit: Vec<_> = IntegratorKind::ALL.into_iter().filter(|kind| kind.is_implicit()).collect();
+        let names = implicit.into_iter().map(IntegratorKind::name).collect::<Vec<_>>().join(", ");
+        return Err(field.error(Problem::ExplicitFriction(kind.name().into()), names));
+    }
+    Ok(kind)
 }
 
 fn sweep(table: &Field) -> Result<LevelRange, SceneError> {

@@ -4,7 +4,9 @@ use proptest::prelude::*;
 use slipfit_core::slide::ABSENT;
 use slipfit_problems::cd_rom;
 
-use super::{CD_ROM_SLIDE, IntegratorKind, LevelRange, Override, RunSpec, Scene, SceneError};
+use crate::scheme::IntegratorKind;
+
+use super::{CD_ROM_SLIDE, LevelRange, Override, RunSpec, Scene, SceneError};
 
 const FAST: &str = include_str!("../../scenes/cd-rom-slide-fast.toml");
 
@@ -44,7 +46,7 @@ fn the_shipped_scene_is_the_paper_s_to_the_last_bit() {
     assert_eq!(scene.title, "CD-ROM slide");
     assert_eq!(scene.pins[2].name, "left front");
     assert_eq!(scene.nominal_clearance, Some([0.4 / 1000.0; 2]));
-    assert_eq!(scene.run, RunSpec { duration: 0.2, step: 25e-6, integrator: IntegratorKind::Sdirk2 });
+    assert_eq!(scene.run, RunSpec { duration: 0.2, step: 100e-6, integrator: IntegratorKind::Extrapolated });
     assert_eq!(scene.sweep, LevelRange { first: -3.0, step: 0.1, count: 81 });
 
     let mut fast = parse(FAST, &[]).unwrap();
@@ -69,7 +71,7 @@ fn units_mean_the_same() {
         "drive.ramp_start=50 ms",
         "drive.speed=0.1 m/s",
         "run.duration=0.2 s",
-        "run.step=0.025 ms",
+        "run.step=0.1 ms",
         "pin.left front.left=['-22.3 µm', 0.0624]",
         "sweep.n=-3:5:0.1",
         "drawing={clearance = [0.4, 0.4]}",
@@ -113,7 +115,7 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
         ("[sweep]", "[swep]", ["[|swep]", "unknown key `swep`, did you mean `sweep`?", "title, slide, contact"]),
         ("wall = [0.5757", "floor = [0.5757", ["|floor = ", "unknown key `pin.floor`", "rail, wall"]),
         ("mass = 81.8 ", "", ["|[slide]", "`slide.mass` is missing", "a number in g, or a text with its unit: g, kg"]),
-        ("law = \"regularised\"", "", ["|[friction]", "`friction.law` is missing", "regularised, none"]),
+        ("law = \"regularised\"", "", ["|[friction]", "`friction.law` is missing", "regularised, exact, none"]),
         ("mass = 81.8 ", "mass = true ", ["mass = |true", "`slide.mass` is a boolean", "a number in g"]),
         (
             "gravity = [0, -9.81, 0]",
@@ -153,10 +155,10 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
         ("depth = 0.1", "depth = 0", ["depth = |0", "`contact.depth` is 0 mm", "0.000001 to 1000 mm"]),
         (
             "\"regularised\"",
-            "\"exact\"",
-            ["law = |\"exact", "\"exact\", which this version does not have", "regularised, none"],
+            "\"sticky\"",
+            ["law = |\"sticky", "`friction.law` is \"sticky\"", "regularised, exact, none"],
         ),
-        ("\"regularised\"", "\"wet\"", ["law = |\"wet", "`friction.law` is \"wet\"", "regularised, none"]),
+        ("\"regularised\"", "\"wet\"", ["law = |\"wet", "`friction.law` is \"wet\"", "regularised, exact, none"]),
         (
             "coefficient = 0.3",
             "coefficient = -0.3",
@@ -172,17 +174,17 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
             "ramp_end = 0.05",
             ["ramp_end = |0.05", "`drive.ramp_end` is 0.05 s", "more than drive.ramp_start, 0.05 s"],
         ),
-        ("step = 25 ", "step = 0 ", ["step = |0 ", "`run.step` is 0 µs", "0.001 to 10000 µs"]),
-        ("step = 25 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`run.step` is 20 ms", "0.001 to 10000 µs"]),
-        ("duration = 200", "duration = 0.01", ["step = |25", "`run.step` is 25 µs", "at most run.duration, 0.01 ms"]),
-        ("step = 25 ", "step = 0.001 ", ["step = |0.001", "`run.step` is 0.001 µs", "at least 0.004 µs"]),
+        ("step = 100 ", "step = 0 ", ["step = |0 ", "`run.step` is 0 µs", "0.001 to 10000 µs"]),
+        ("step = 100 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`run.step` is 20 ms", "0.001 to 10000 µs"]),
+        ("duration = 200", "duration = 0.01", ["step = |100", "`run.step` is 100 µs", "at most run.duration, 0.01 ms"]),
+        ("step = 100 ", "step = 0.001 ", ["step = |0.001", "`run.step` is 0.001 µs", "at least 0.004 µs"]),
         (
-            "step = 25 ",
+            "step = 100 ",
             "step = 30 ",
             ["step = |30", "which does not divide `run.duration`, 200 ms", "nearest is 29.99850"],
         ),
         (
-            "\"sdirk2\"",
+            "\"extrapolated\"",
             "\"radau\"",
             ["integrator = |\"radau", "`run.integrator` is \"radau\"", "implicit-euler, sdirk2"],
         ),
@@ -259,11 +261,11 @@ fn messages_are_for_people() {
        |
        = allowed: mass, inertia_box, gravity
     "#);
-    insta::assert_snapshot!(message("step = 25 ", "step = 30 "), @r#"
+    insta::assert_snapshot!(message("step = 100 ", "step = 30 "), @r#"
     error: `run.step` is 30 µs, which does not divide `run.duration`, 200 ms
       --> scene.toml:36:8
        |
-    36 | step = 30                         # µs
+    36 | step = 30                        # µs
        |        ^^
        |
        = allowed: a step that divides it, the nearest is 29.99850007499625 µs

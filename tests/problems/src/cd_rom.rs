@@ -19,9 +19,9 @@ use slipfit_core::{
     Scalar, Vector3,
     clearance::GapStatistics,
     drive::Drive,
+    kernel::StateOf,
     law::{Impact, Regularised, ThreeHalves},
     menu::{ContactData, FrictionData, SlideData},
-    pose::Pose,
     slide::{Body, CONTACTS, Slide, box_inertia},
 };
 
@@ -29,7 +29,7 @@ use slipfit_core::{
 pub type CdRomSlide<S> = Slide<S, ThreeHalves<S>, Regularised<S>>;
 
 /// State of a kernel that steps it.
-pub type CdRomState<S> = slipfit_core::kernel::State<S, Pose<S>, 6>;
+pub type CdRomState<S> = StateOf<S, CdRomSlide<S>, 6>;
 
 /// Table 2: mean and standard deviation (mm) of the left, right, rail and wall gap of the pins left back, right back,
 /// left front, right front.

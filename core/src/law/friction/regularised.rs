@@ -1,38 +1,7 @@
-//! Coulomb friction in the contact plane, as a menu of types so that a frictionless scene pays nothing.
+//! Regularised Coulomb friction: what multibody solvers use.
 
+use super::{Contact, Friction, Rubbing};
 use crate::{ParameterError, Scalar, error::bounded};
-
-/// Traction of one contact on the body and its change with velocity, in the contact's own axes
-/// (0 the normal, 1 and 2 the tangents).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact<S> {
-    /// Force on the body (N).
-    pub force: [S; 3],
-    /// −∂force/∂u (N·s/m), near enough for Newton: rows are forces, columns velocities.
-    pub impedance: [[S; 3]; 3],
-}
-
-/// How much of the ratio's slope the impedance takes; the rest is the secant. Newton's pure tangent (1) is flat where
-/// the body slides, so that an iterate that comes from there overshoots the stick band and passes are lost to and fro:
-/// on the jammed stroke at 1 ms four passes left 3e-3 N·s, with 0.9 they leave 3e-5 N·s. The secant alone (0) never
-/// overshoots but creeps.
-const TANGENT_SHARE: f64 = 0.9;
-
-/// A friction law.
-pub trait Friction<S>: Copy {
-    /// Adds the tangential part to `contact`, whose normal part is there already, for the sliding velocity
-    /// `sliding` (m/s) of the body, under the normal force `normal` (N) with ∂normal/∂u `normal_slope` (N·s/m).
-    fn add(&self, sliding: [S; 2], normal: S, normal_slope: S, contact: &mut Contact<S>);
-}
-
-/// No friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frictionless;
-
-impl<S: Scalar> Friction<S> for Frictionless {
-    #[inline(always)]
-    fn add(&self, _: [S; 2], _: S, _: S, _: &mut Contact<S>) {}
-}
 
 /// Coulomb friction smoothed by STEP over the stick band: μ(s) = μ·w(3 − w²)/2 with w = s/v_s up to v_s, then μ.
 ///
@@ -70,32 +39,48 @@ impl<S: Scalar> Regularised<S> {
 }
 
 impl<S: Scalar> Friction<S> for Regularised<S> {
+    type Memory = ();
+
     #[inline(always)]
-    fn add(&self, [x, y]: [S; 2], normal: S, normal_slope: S, contact: &mut Contact<S>) {
+    fn fresh() {}
+
+    #[inline(always)]
+    fn add(&self, (): &(), rubbing: &Rubbing<S>, contact: &mut Contact<S>) {
+        let Rubbing { sliding: [x, y], normal, normal_slope, tangent_share, .. } = *rubbing;
         let (ratio, ratio_slope) = self.per_speed(x * x + y * y);
         let along = ratio * normal;
-        let turn = S::from_f64(2.0 * TANGENT_SHARE) * ratio_slope * normal;
+        let turn = (tangent_share + tangent_share) * ratio_slope * normal;
         let grip = ratio * normal_slope;
         contact.force[1] = -along * x;
         contact.force[2] = -along * y;
         contact.impedance[1] = [grip * x, along + turn * x * x, turn * x * y];
         contact.impedance[2] = [grip * y, turn * x * y, along + turn * y * y];
     }
+
+    #[inline(always)]
+    fn shifted((): &(), (): &(), (): &(), _: S) {}
+
+    #[inline(always)]
+    fn selected(_: S, (): &(), (): &()) {}
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Contact, Friction, Regularised, TANGENT_SHARE};
+    use super::*;
+
+    const SHARE: f64 = 0.9;
 
     fn traction(velocity: [f64; 3]) -> Contact<f64> {
         let mut contact = Contact { force: [0.0; 3], impedance: [[0.0; 3]; 3] };
-        // A normal force of 2 N that grows by 5 N·s/m.
-        Regularised::new(0.3, 1e-4).unwrap().add(
-            [velocity[1], velocity[2]],
-            2.0 + 5.0 * velocity[0],
-            5.0,
-            &mut contact,
-        );
+        let rubbing = Rubbing {
+            sliding: [velocity[1], velocity[2]],
+            // A normal force of 2 N that grows by 5 N·s/m.
+            normal: 2.0 + 5.0 * velocity[0],
+            normal_slope: 5.0,
+            mass_rate: 80.0,
+            tangent_share: SHARE,
+        };
+        Regularised::new(0.3, 1e-4).unwrap().add(&(), &rubbing, &mut contact);
         contact
     }
 
@@ -125,8 +110,7 @@ mod tests {
                     let slope = -(traction(up).force[row] - traction(down).force[row]) / (2.0 * h);
                     let secant = if row == column { secant } else { 0.0 };
                     // The share acts on tangential velocities only; the normal force's part is exact.
-                    let slope =
-                        if column == 0 { slope } else { TANGENT_SHARE * slope + (1.0 - TANGENT_SHARE) * secant };
+                    let slope = if column == 0 { slope } else { SHARE * slope + (1.0 - SHARE) * secant };
                     let found = at.impedance[row][column];
                     assert!(
                         libm::fabs(found - slope) <= 1e-5 * (1.0 + libm::fabs(slope)),

@@ -1,0 +1,31 @@
+//! Semi-implicit Euler: first order, explicit in the forces. A baseline: one evaluation a step, stable only while the step
+//! resolves every contact and the stick band.
+
+use super::{Integrator, Motion, MotionOf, Step, StepOf};
+use crate::{Scalar, mechanism::Mechanism};
+
+/// Velocities from the forces at the step's start, poses from the new velocities.
+#[derive(Clone, Copy, Debug)]
+pub struct SemiImplicitEuler;
+
+impl Integrator for SemiImplicitEuler {
+    const NAME: &'static str = "semi-implicit-euler";
+    const ORDER: u32 = 1;
+    const IMPLICIT: bool = false;
+
+    #[inline(always)]
+    fn step<S: Scalar, M: Mechanism<S, D>, const D: usize>(
+        mechanism: &M,
+        t: S,
+        h: S,
+        motion: &MotionOf<S, M, D>,
+    ) -> StepOf<S, M, D> {
+        let start = mechanism.evaluated(t, &motion.pose, &motion.memory, &motion.velocity, h, S::one());
+        let velocity = motion.velocity + mechanism.velocity(&(start.force * h));
+        let pose = mechanism.normalised(&mechanism.advanced(&motion.pose, &velocity, h));
+        let end = mechanism.evaluated(t + h, &pose, &motion.memory, &velocity, h, S::one());
+        // Half the change of the force over the step is what the first order leaves out.
+        let error = mechanism.impulse(&((end.force - start.force) * (h * S::from_f64(0.5))));
+        Step { motion: Motion { pose, velocity, memory: motion.memory }, residual: S::zero(), error }
+    }
+}

@@ -1,0 +1,72 @@
+//! Coulomb friction in the contact plane, as a menu of types so that a frictionless scene pays nothing.
+
+mod exact;
+mod regularised;
+
+pub use exact::Exact;
+pub use regularised::Regularised;
+
+use crate::Scalar;
+
+/// Traction of one contact on the body and its change with velocity, in the contact's own axes
+/// (0 the normal, 1 and 2 the tangents).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<S> {
+    /// Force on the body (N).
+    pub force: [S; 3],
+    /// −∂force/∂u (N·s/m), near enough for Newton: rows are forces, columns velocities.
+    pub impedance: [[S; 3]; 3],
+}
+
+/// What friction acts upon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rubbing<S> {
+    /// Velocity of the body along the two tangents (m/s).
+    pub sliding: [S; 2],
+    /// Normal force (N).
+    pub normal: S,
+    /// ∂normal/∂u (N·s/m) for a velocity u along the contact's axis.
+    pub normal_slope: S,
+    /// Mass of the body over the implicit part of the step (kg/s = N·s/m).
+    pub mass_rate: S,
+    /// How the impedance is to change along the sliding direction: 1 the tangent of the law, 0 its secant.
+    pub tangent_share: S,
+}
+
+/// A friction law.
+pub trait Friction<S>: Copy {
+    /// What the law remembers of a contact from one step to the next.
+    type Memory: Copy + core::fmt::Debug + PartialEq;
+
+    /// The memory of a contact that nothing has touched yet.
+    fn fresh() -> Self::Memory;
+
+    /// Adds the tangential part to `contact`, whose normal part is there already, and returns the new memory.
+    fn add(&self, memory: &Self::Memory, rubbing: &Rubbing<S>, contact: &mut Contact<S>) -> Self::Memory;
+
+    /// `base + weight·(to − from)`.
+    fn shifted(base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
+
+    /// `yes` where `condition` > 0, else `no` (also where it is NaN).
+    fn selected(condition: S, yes: &Self::Memory, no: &Self::Memory) -> Self::Memory;
+}
+
+/// No friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frictionless;
+
+impl<S: Scalar> Friction<S> for Frictionless {
+    type Memory = ();
+
+    #[inline(always)]
+    fn fresh() {}
+
+    #[inline(always)]
+    fn add(&self, (): &(), _: &Rubbing<S>, _: &mut Contact<S>) {}
+
+    #[inline(always)]
+    fn shifted((): &(), (): &(), (): &(), _: S) {}
+
+    #[inline(always)]
+    fn selected(_: S, (): &(), (): &()) {}
+}
