@@ -46,7 +46,7 @@ fn the_shipped_scene_is_the_paper_s_to_the_last_bit() {
     assert_eq!(scene.title, "CD-ROM slide");
     assert_eq!(scene.pins[2].name, "left front");
     assert_eq!(scene.nominal_clearance, Some([0.4 / 1000.0; 2]));
-    assert_eq!(scene.run, RunSpec { duration: 0.2, step: 100e-6, integrator: IntegratorKind::Extrapolated });
+    assert_eq!(scene.run, RunSpec { duration: 0.2, step: 50e-6, integrator: IntegratorKind::Extrapolated });
     assert_eq!(scene.sweep, LevelRange { first: -3.0, step: 0.1, count: 81 });
 
     let mut fast = parse(FAST, &[]).unwrap();
@@ -71,7 +71,7 @@ fn units_mean_the_same() {
         "drive.ramp_start=50 ms",
         "drive.speed=0.1 m/s",
         "run.duration=0.2 s",
-        "run.step=0.1 ms",
+        "run.step=0.05 ms",
         "pin.left front.left=['-22.3 µm', 0.0624]",
         "sweep.n=-3:5:0.1",
         "drawing={clearance = [0.4, 0.4]}",
@@ -174,12 +174,12 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
             "ramp_end = 0.05",
             ["ramp_end = |0.05", "`drive.ramp_end` is 0.05 s", "more than drive.ramp_start, 0.05 s"],
         ),
-        ("step = 100 ", "step = 0 ", ["step = |0 ", "`run.step` is 0 µs", "0.001 to 10000 µs"]),
-        ("step = 100 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`run.step` is 20 ms", "0.001 to 10000 µs"]),
-        ("duration = 200", "duration = 0.01", ["step = |100", "`run.step` is 100 µs", "at most run.duration, 0.01 ms"]),
-        ("step = 100 ", "step = 0.001 ", ["step = |0.001", "`run.step` is 0.001 µs", "at least 0.004 µs"]),
+        ("step = 50 ", "step = 0 ", ["step = |0 ", "`run.step` is 0 µs", "0.001 to 10000 µs"]),
+        ("step = 50 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`run.step` is 20 ms", "0.001 to 10000 µs"]),
+        ("duration = 200", "duration = 0.01", ["step = |50", "`run.step` is 50 µs", "at most run.duration, 0.01 ms"]),
+        ("step = 50 ", "step = 0.001 ", ["step = |0.001", "`run.step` is 0.001 µs", "at least 0.004 µs"]),
         (
-            "step = 100 ",
+            "step = 50 ",
             "step = 30 ",
             ["step = |30", "which does not divide `run.duration`, 200 ms", "nearest is 29.99850"],
         ),
@@ -261,11 +261,11 @@ fn messages_are_for_people() {
        |
        = allowed: mass, inertia_box, gravity
     "#);
-    insta::assert_snapshot!(message("step = 100 ", "step = 30 "), @r#"
+    insta::assert_snapshot!(message("step = 50 ", "step = 30 "), @r#"
     error: `run.step` is 30 µs, which does not divide `run.duration`, 200 ms
       --> scene.toml:36:8
        |
-    36 | step = 30                        # µs
+    36 | step = 30                         # µs
        |        ^^
        |
        = allowed: a step that divides it, the nearest is 29.99850007499625 µs
