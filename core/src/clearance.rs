@@ -25,18 +25,19 @@ impl<S: Scalar> GapStatistics<S> {
 pub enum GapClass {
     /// Negative: the parts are pressed together.
     Compressed,
-    /// Exactly zero.
+    /// Zero.
     Zero,
     /// Positive.
     Free,
 }
 
 impl GapClass {
-    /// The class of a `gap` (m).
+    /// The class of a `gap` (m); what is within a picometre of zero is zero, so that rounding of eq. 9 does not decide.
     pub fn of<S: Scalar + PartialOrd>(gap: S) -> Self {
-        if gap < S::zero() {
+        let zero = S::from_f64(1e-12);
+        if gap < -zero {
             Self::Compressed
-        } else if gap > S::zero() {
+        } else if gap > zero {
             Self::Free
         } else {
             Self::Zero
@@ -65,5 +66,7 @@ mod tests {
         assert_eq!(GapClass::of(gap.at(2.0)), GapClass::Zero);
         assert_eq!(GapClass::of(gap.at(3.0)), GapClass::Compressed);
         assert_eq!(GapClass::of(gap.at(0.0)), GapClass::Free);
+        // 0.03 mm − 3·0.01 mm is not quite zero in binary.
+        assert_eq!(GapClass::of(GapStatistics { mean: 3e-5f64, deviation: 1e-5 }.at(3.0)), GapClass::Zero);
     }
 }

@@ -1,6 +1,6 @@
 //! Results as CSV.
 
-use crate::{number::ten_digits, outcome::Trajectory, sweep::Sweep};
+use crate::{number::ten_digits, outcome::Trajectory, scene::Scene, sweep::Sweep};
 
 /// `t,vz,force,x,y` in s, m/s, N, m, m, ten digits.
 ///
@@ -16,37 +16,27 @@ pub fn trajectory_csv(trajectory: &Trajectory) -> anyhow::Result<Vec<u8>> {
     Ok(writer.into_inner()?)
 }
 
-/// Figures over n, one line a level; empty where a figure does not exist.
+/// Figures and the class of each gap over n, one line a level; empty where there is none.
 ///
 /// # Errors
 /// Those of the writer, none in memory.
-pub fn sweep_csv(sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
+pub fn sweep_csv(scene: &Scene, sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record([
-        "n",
-        "breakaway_s",
-        "peak_force_N",
-        "settled_force_N",
-        "final_velocity_m_per_s",
-        "verdict",
-        "compressed",
-        "zero",
-        "free",
-    ])?;
+    let figures = ["n", "breakaway_s", "peak_force_N", "settled_force_N", "final_velocity_m_per_s", "verdict"];
+    let names = scene.contact_names();
+    writer.write_record(figures.into_iter().chain(names.iter().map(String::as_str)))?;
     for level in &sweep.levels {
         let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
-        let [compressed, zero, free] = level.class_counts().map(|count| count.to_string());
-        writer.write_record([
+        let classes = level.classes.map(|class| class.map_or_else(String::new, |class| class.to_string()));
+        let figures = [
             ten_digits(level.n),
             optional(level.outcome.breakaway),
             optional(level.outcome.peak_force),
             optional(level.outcome.settled_force),
             ten_digits(level.outcome.final_velocity),
             level.outcome.verdict.to_string(),
-            compressed,
-            zero,
-            free,
-        ])?;
+        ];
+        writer.write_record(figures.iter().chain(&classes))?;
     }
     Ok(writer.into_inner()?)
 }

@@ -12,7 +12,6 @@ use thiserror::Error;
 #[error("cannot write {}: {source}", path.display())]
 pub struct WriteError {
     path: PathBuf,
-    #[source]
     source: std::io::Error,
 }
 
@@ -35,25 +34,40 @@ fn temporary_beside(path: &Path) -> Result<tempfile::NamedTempFile, WriteError> 
     builder.prefix(".slipfit-").tempfile_in(folder).map_err(failed(path))
 }
 
+/// Whether `path` is there and is neither a file nor a folder: a device or a pipe, which is written to, not replaced.
+fn is_stream(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())
+}
+
+/// Where a link leads, so that its target is replaced and not the link.
+fn resolved(path: &Path) -> PathBuf {
+    std::fs::canonicalize(path).unwrap_or_else(|_| path.into())
+}
+
 /// Whether `path` can be written, found out before long work starts. Leaves nothing behind.
 ///
 /// # Errors
 /// [`WriteError`] if not.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     if path.is_dir() {
-        return Err(failed(path)(std::io::Error::from(std::io::ErrorKind::IsADirectory)));
+        return Err(WriteError { path: path.into(), source: std::io::ErrorKind::IsADirectory.into() });
     }
-    temporary_beside(path).map(drop)
+    if is_stream(path) { Ok(()) } else { temporary_beside(&resolved(path)).map(drop) }
 }
 
-/// Writes `bytes` under a temporary name beside `path` and renames it.
+/// Writes `bytes` under a temporary name beside `path` and renames it; straight into a device or a pipe.
 ///
 /// # Errors
-/// [`WriteError`]; then `path` is as it was.
+/// [`WriteError`]; then a file is as it was.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    let mut file = temporary_beside(path)?;
+    if is_stream(path) {
+        let mut stream = std::fs::OpenOptions::new().write(true).open(path).map_err(failed(path))?;
+        return stream.write_all(bytes).map_err(failed(path));
+    }
+    let target = resolved(path);
+    let mut file = temporary_beside(&target)?;
     file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(failed(path))?;
-    file.persist(path).map_err(|error| failed(path)(error.error)).map(drop)
+    file.persist(&target).map_err(|error| failed(path)(error.error)).map(drop)
 }
 
 /// Makes the folder `path`, its parents too, and checks that files can be written there.
@@ -78,6 +92,23 @@ mod tests {
         check_writable(&path).unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"two");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn follows_links_and_leaves_devices_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link] = ["file", "link"].map(|name| folder.path().join(name));
+        write(&file, b"old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write(&link, b"new").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        // A stream that takes everything, through a link so that nothing real is at stake.
+        let null = folder.path().join("null");
+        std::os::unix::fs::symlink("/dev/null", &null).unwrap();
+        write(&null, b"gone").unwrap();
+        assert!(null.is_symlink() && !std::fs::metadata(&null).unwrap().is_file());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use slipfit_core::{
     slide::CONTACTS,
-    table::{AxisKind, Encoding, Table},
+    table::{AxisKind, Encoding, Table, layout},
 };
 use thiserror::Error;
 
@@ -17,6 +17,9 @@ use crate::{
 /// Distance of the table's instants (s), unless the step asks for more.
 pub const TIME_STEP: f64 = 1e-3;
 
+/// Samples of a run from one instant of the table to the next; those between serve the error only.
+const SUBSAMPLES: usize = 4;
+
 /// A finished table and how well it does.
 #[derive(Clone, Debug)]
 pub struct ForceTable {
@@ -24,16 +27,28 @@ pub struct ForceTable {
     pub bytes: Vec<u8>,
     /// Levels by instants.
     pub shape: [usize; 2],
-    /// Worst interpolation error over the whole run: force (N), velocity (m/s).
+    /// Worst interpolation error over the whole run: force (N), velocity (m/s); looked for at every level and half way
+    /// between levels, at every instant and three times between instants.
     pub worst_error: [f64; 2],
     /// The same from the ramp's start on, after the release of stored compression.
     pub worst_error_after_ramp_start: [f64; 2],
 }
 
-/// How runs for a table are sampled: at the table's instants and half way between them.
-pub fn settings(run: RunSpec, scalar: ScalarKind) -> Settings {
-    let per_half = (TIME_STEP / (2.0 * run.step) - 1e-9).ceil().max(1.0);
-    Settings { run, every: per_half * run.step, scalar }
+/// How runs for a table are sampled: at its instants and [`SUBSAMPLES`] − 1 times between them. Instants are
+/// [`TIME_STEP`] apart, or the least multiple of it up to ten with which the table fits its region.
+pub fn settings(scene: &Scene, scalar: ScalarKind) -> Settings {
+    let RunSpec { duration, step, .. } = scene.run;
+    let every = |coarser: u32| {
+        let between = TIME_STEP * f64::from(coarser) / SUBSAMPLES as f64;
+        (between / step - 1e-9).ceil().max(1.0) * step
+    };
+    let fits = |coarser: &u32| {
+        let instants = duration / (every(*coarser) * SUBSAMPLES as f64) + 1.0;
+        let bytes = instants * scene.sweep.count as f64 * (2 * size_of::<f32>()) as f64;
+        bytes + (layout::HEADER_SIZE + layout::CHECKSUM_SIZE) as f64 <= flash::TABLE_REGION as f64
+    };
+    let coarser = (1..=10).find(fits).unwrap_or(1);
+    Settings { run: scene.run, every: every(coarser), scalar }
 }
 
 /// The levels a table needs: those of its axis with one half way between each two, which only serve the error.
@@ -57,9 +72,9 @@ pub enum TableError {
 /// # Errors
 /// [`FlashError`] if not, or if there are fewer than two levels or instants.
 pub fn check(scene: &Scene) -> Result<(), FlashError> {
-    let settings = settings(scene.run, ScalarKind::F64);
+    let settings = settings(scene, ScalarKind::F64);
     let samples = (scene.run.duration / settings.every * (1.0 + 1e-9)) as usize + 1;
-    let instants = samples.div_ceil(2);
+    let instants = samples.div_ceil(SUBSAMPLES);
     let nodes = scene.sweep.count.saturating_mul(instants);
     if nodes > flash::TABLE_REGION {
         let bytes = nodes.saturating_mul(2 * size_of::<f32>());
@@ -76,7 +91,12 @@ fn spec(scene: &Scene, settings: &Settings, instants: usize, force: Vec<f32>, ve
         scene_hash: scene_hash(scene),
         axes: vec![
             AxisSpec { kind: AxisKind::Level, first: first as f32, step: step as f32, count },
-            AxisSpec { kind: AxisKind::Time, first: 0.0, step: (2.0 * settings.every) as f32, count: instants },
+            AxisSpec {
+                kind: AxisKind::Time,
+                first: 0.0,
+                step: (SUBSAMPLES as f64 * settings.every) as f32,
+                count: instants,
+            },
         ],
         force: channel(force),
         velocity: channel(velocity),
@@ -88,10 +108,10 @@ fn spec(scene: &Scene, settings: &Settings, instants: usize, force: Vec<f32>, ve
 /// # Errors
 /// If the sweep has fewer than two levels or instants, or the table is larger than its region of flash.
 pub fn build(scene: &Scene, sweep: &Sweep, settings: &Settings) -> Result<ForceTable, FlashError> {
-    let instants = sweep.levels.first().map_or(0, |level| level.trajectory.t.len().div_ceil(2));
+    let instants = sweep.levels.first().map_or(0, |level| level.trajectory.t.len().div_ceil(SUBSAMPLES));
     let channel = |pick: fn(&Trajectory) -> &Vec<f64>| -> Vec<f32> {
         let nodes = sweep.levels.iter().step_by(2).map(|level| pick(&level.trajectory));
-        nodes.flat_map(|values| values.iter().step_by(2).map(|&x| x as f32)).collect()
+        nodes.flat_map(|values| values.iter().step_by(SUBSAMPLES).map(|&x| x as f32)).collect()
     };
     let mut spec = spec(scene, settings, instants, channel(|run| &run.force), channel(|run| &run.vz));
     let bytes = flash::encode(&spec)?;
@@ -99,7 +119,7 @@ pub fn build(scene: &Scene, sweep: &Sweep, settings: &Settings) -> Result<ForceT
     let (mut worst_error, mut worst_error_after_ramp_start) = ([0.0f64; 2], [0.0f64; 2]);
     for level in &sweep.levels {
         let run = &level.trajectory;
-        for (i, &t) in run.t.iter().enumerate().take(2 * instants - 1) {
+        for (i, &t) in run.t.iter().enumerate().take(SUBSAMPLES * (instants - 1) + 1) {
             let found = table.lookup([level.n as f32, t as f32]);
             let error = [f64::from(found.force) - run.force[i], f64::from(found.velocity) - run.vz[i]].map(f64::abs);
             for (k, error) in error.into_iter().enumerate() {
@@ -128,7 +148,7 @@ pub fn scene_hash(scene: &Scene) -> u64 {
 
 /// The sweep at the nodes only, sampled at the table's instants: what is shown to people.
 fn nodes(sweep: &Sweep) -> Sweep {
-    let thin = |values: &[f64]| values.iter().step_by(2).copied().collect();
+    let thin = |values: &[f64]| values.iter().step_by(SUBSAMPLES).copied().collect();
     let levels = sweep.levels.iter().step_by(2).map(|level| {
         let run = &level.trajectory;
         let trajectory = Trajectory {
@@ -150,7 +170,7 @@ fn nodes(sweep: &Sweep) -> Sweep {
 /// # Errors
 /// Those of the runs and of [`build`].
 pub fn make(scene: &Scene, scalar: ScalarKind, done: impl Fn() + Sync) -> Result<(ForceTable, Sweep), TableError> {
-    let settings = settings(scene.run, scalar);
+    let settings = settings(scene, scalar);
     let sweep = sweep(scene, &levels(&scene.sweep).levels(), &settings, done)?;
     Ok((build(scene, &sweep, &settings)?, nodes(&sweep)))
 }

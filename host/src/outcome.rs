@@ -36,7 +36,7 @@ pub enum Verdict {
     Crawls,
     /// Below 1 %.
     Jammed,
-    /// The run ends before the ramp does, or a run at half the step says otherwise.
+    /// The run ends before the ramp does, nothing is commanded, or a run at half the step says otherwise.
     Undecided,
 }
 
@@ -51,7 +51,7 @@ impl std::fmt::Display for Verdict {
     }
 }
 
-/// Figures of one unit.
+/// Figures of one unit. Speeds and forces count along the commanded direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Outcome {
     /// Breakaway time (s): the last upward crossing of 0.2 mm/s after the ramp's start; `None` if there is none.
@@ -93,8 +93,14 @@ impl Observer {
         Self { drive, window_start, last: None, breakaway: None, peak: None, window: None }
     }
 
+    /// 1 or −1: the direction of the command. Speeds and forces count along it.
+    fn along(&self) -> f64 {
+        if self.drive.speed < 0.0 { -1.0 } else { 1.0 }
+    }
+
     /// Takes note of the time `t` (s), the velocity `vz` (m/s) and the drive force (N). Times ascend.
     pub fn observe(&mut self, t: f64, vz: f64, force: f64) {
+        let (vz, force) = (vz * self.along(), force * self.along());
         if t >= self.drive.ramp_start {
             if let Some((before, speed)) = self.last
                 && speed < BREAKAWAY_SPEED
@@ -122,8 +128,9 @@ impl Observer {
             let mean = window.sum / window.count;
             (window.greatest - window.least < 0.01 * mean.abs()).then_some(mean)
         });
-        let share = vz / self.drive.speed;
-        let verdict = if t < self.drive.ramp_end {
+        let (vz, command) = (vz * self.along(), self.drive.speed.abs());
+        let share = vz / command;
+        let verdict = if t < self.drive.ramp_end || command == 0.0 {
             Verdict::Undecided
         } else if share >= 0.5 {
             Verdict::Runs

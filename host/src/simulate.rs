@@ -31,6 +31,16 @@ pub enum ScalarKind {
     F64,
 }
 
+impl ScalarKind {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
 /// How to run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -148,9 +158,6 @@ where
             let force = kernel.mechanism().drive().force(kernel.time(state.steps), vz).to_f64();
             observer.observe(t, vz.to_f64(), force);
             if state.steps.is_multiple_of(per_sample) {
-                if interrupt::requested() {
-                    return Err(SimulateError::Interrupted);
-                }
                 let r = state.motion.pose.displacement_w;
                 trajectory.t.push(t);
                 trajectory.vz.push(vz.to_f64());
@@ -161,6 +168,9 @@ where
             if state.steps == steps {
                 let integration = start.elapsed();
                 return Ok(Run { trajectory, outcome: observer.outcome(t, vz.to_f64()), integration });
+            }
+            if state.steps.is_multiple_of(1024) && interrupt::requested() {
+                return Err(SimulateError::Interrupted);
             }
             let residual = kernel.step(&mut state).residual.to_f64();
             if !residual.is_finite() {

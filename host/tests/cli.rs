@@ -55,6 +55,19 @@ fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
 }
 
 #[test]
+fn a_stroke_s_table_takes_longer_steps_and_gives_verdicts() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["run", "--json", "--n", "0:5:0.25", "--set", "run.duration=1500", "--set", "run.step=500"];
+    let report = json(folder.path(), &arguments);
+    assert!(report["table_bytes"].as_u64().unwrap() < 256 * 1024);
+    let verdicts: Vec<_> = report["levels"].as_array().unwrap().iter().map(|level| &level["verdict"]).collect();
+    assert!(verdicts.contains(&&"jammed".into()) && verdicts.contains(&&"runs".into()), "{verdicts:?}");
+    assert_eq!(report["levels"][0]["classes"]["left front left"], "compressed");
+    let csv = std::fs::read_to_string(folder.path().join("slipfit-out/sweep.csv")).unwrap();
+    assert!(csv.starts_with("n,breakaway_s,") && csv.lines().next().unwrap().ends_with(",right front wall"));
+}
+
+#[test]
 fn check_counts_degrees_of_freedom_and_names_the_tightest_pair() {
     let folder = tempfile::tempdir().unwrap();
     let found = json(folder.path(), &["check", "--json"]);
@@ -137,6 +150,8 @@ fn bad_input_is_refused_by_name() {
     let missing = scene("missing.toml", &shipped.replace("gain = 0.04", ""));
     let broken = scene("broken.toml", "[slide\nmass = 1");
     std::fs::write(folder.path().join("latin.toml"), [0xe9, 0x0a]).unwrap();
+    scene("unit.toml", shipped);
+    std::fs::create_dir_all(folder.path().join("taken/report.html")).unwrap();
     let before = files(folder.path());
 
     let cases: &[(&[&str], &str)] = &[
@@ -175,7 +190,13 @@ fn bad_input_is_refused_by_name() {
         (&["simulate", "--every", "x"], "--every x"),
         (&["simulate", "--n", "1,2"], "--n"),
         (&["simulate", "--n", "nan"], "--n"),
-        (&["simulate", "--n", "1e9"], "gap"),
+        (&["simulate", "--n", "1e9"], "--n: at n = 1000000000 the left back left gap is"),
+        (&["run", "--n", "0:1000000:500000"], "--n 0:1000000:500000"),
+        (&["simulate", "--every", "-1ms"], "--every -1ms"),
+        (&["simulate", "--step=-1ms"], "--step -1ms"),
+        (&["simulate", "unit.toml", "--csv", "unit.toml"], "it is the scene"),
+        (&["run", "--out", "taken"], "report.html"),
+        (&["check", "--set", "pin.left back.name=left front"], "a name of its own"),
         (&["simulate", "--integrator", "magic"], "--integrator"),
         (&["simulate", "--csv", "nowhere/x.csv"], "nowhere"),
     ];

@@ -10,7 +10,7 @@ use super::{Failure, SceneArguments, print, print_json, text_table};
 use crate::{
     mobility::{contacts, degrees_of_freedom, rank_of_normals},
     number::{fixed, level, or_dash},
-    scene::{SURFACES, Scene},
+    scene::Scene,
     self_locking::{DriveSide, Guide, guide},
     sweep::classes,
     table2::derived,
@@ -36,7 +36,7 @@ struct Findings {
     friction_law: &'static str,
     kernel_why: String,
     n: f64,
-    gaps: Vec<Gap>,
+    gaps: Vec<GapReport>,
     n_star: Vec<Closing>,
     guide: Option<Guide>,
     warnings: Vec<String>,
@@ -50,11 +50,23 @@ struct Closing {
     n: f64,
 }
 
+/// A gap at a tolerance level.
 #[derive(Serialize)]
-struct Gap {
-    name: String,
-    mm: f64,
-    class: String,
+pub(super) struct GapReport {
+    /// Pin and surface.
+    pub name: String,
+    /// Gap (mm).
+    pub mm: f64,
+    /// Compressed, zero or free.
+    pub class: String,
+}
+
+/// The `gaps` (m) that the scene has, with names and classes.
+pub(super) fn gap_reports(scene: &Scene, gaps: &[f64; CONTACTS]) -> Vec<GapReport> {
+    let named = scene.contact_names().into_iter().zip(gaps).zip(classes(gaps));
+    named
+        .filter_map(|((name, gap), class)| Some(GapReport { name, mm: gap * 1e3, class: class?.to_string() }))
+        .collect()
 }
 
 impl Arguments {
@@ -70,7 +82,6 @@ impl Arguments {
 fn find(scene: &Scene, n: f64) -> Findings {
     let n_cl = rank_of_normals(&contacts(scene));
     let gaps = scene.gaps_at(&[n; CONTACTS]);
-    let names = scene.pins.iter().flat_map(|pin| SURFACES.map(|surface| format!("{} {surface}", pin.name)));
     let table = derived(scene, n);
     let mut n_star: Vec<Closing> =
         table.closures().map(|c| Closing { pin: c.pin.into(), pair: c.direction.to_string(), n: c.n }).collect();
@@ -86,11 +97,7 @@ fn find(scene: &Scene, n: f64) -> Findings {
         friction_law,
         kernel_why,
         n,
-        gaps: names
-            .zip(gaps)
-            .zip(classes(&gaps))
-            .filter_map(|((name, gap), class)| class.map(|class| Gap { name, mm: gap * 1e3, class: class.to_string() }))
-            .collect(),
+        gaps: gap_reports(scene, &gaps),
         warnings: warnings(scene, n_cl, guide.as_ref()),
         n_star,
         guide,

@@ -8,8 +8,8 @@ mod table;
 mod tolerance;
 
 use std::{
-    io::{IsTerminal, Write},
-    path::PathBuf,
+    io::{IsTerminal, Read, Write},
+    path::{Path, PathBuf},
     process::ExitCode,
 };
 
@@ -18,7 +18,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use thiserror::Error;
 
 use crate::{
-    files::WriteError,
+    files::{self, WriteError},
     force_table::TableError,
     interrupt,
     scene::{CD_ROM_SLIDE, Override, Scene, SceneError},
@@ -110,7 +110,19 @@ struct SceneArguments {
     json: bool,
 }
 
+/// The longest scene file (bytes).
+const SCENE_MOST: u64 = 1 << 20;
+
 impl SceneArguments {
+    /// Whether `output` can be written and is not the scene itself.
+    fn check_output(&self, output: &Path) -> Result<(), Failure> {
+        let same = |scene: &Path| scene.canonicalize().is_ok_and(|s| output.canonicalize().is_ok_and(|o| s == o));
+        if self.scene.as_deref().is_some_and(same) {
+            return Err(Failure::Input(format!("cannot write {}: it is the scene", output.display())));
+        }
+        files::check_writable(output).map_err(|error| Failure::Input(error.to_string()))
+    }
+
     /// Reads the scene, with `options` as further settings.
     fn load(&self, options: &[Override]) -> Result<Scene, Failure> {
         let set = self.set.iter().map(|assignment| Override::set(assignment));
@@ -121,7 +133,12 @@ impl SceneArguments {
                 let unreadable = |why: &dyn std::fmt::Display| {
                     Failure::Input(format!("cannot read the scene {}: {why}", path.display()))
                 };
-                let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
+                let mut bytes = Vec::new();
+                let file = std::fs::File::open(path).map_err(|error| unreadable(&error))?;
+                file.take(SCENE_MOST + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
+                if bytes.len() as u64 > SCENE_MOST {
+                    return Err(unreadable(&format!("it is longer than {SCENE_MOST} bytes")));
+                }
                 let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
                 (path.display().to_string(), text)
             }
@@ -173,7 +190,10 @@ fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
 /// A table for people: a heading and rows, numbers to the right.
 fn text_table(heading: &[&str], rows: &[Vec<String>]) -> String {
     let mut table = comfy_table::Table::new();
-    table.load_preset("      ──            ").set_header(heading);
+    table.load_preset(comfy_table::presets::NOTHING).set_header(heading);
+    for rule in [comfy_table::TableComponent::HeaderLines, comfy_table::TableComponent::MiddleHeaderIntersections] {
+        table.set_style(rule, '─');
+    }
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(comfy_table::CellAlignment::Right);
     }

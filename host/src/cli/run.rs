@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::{
     Failure, SceneArguments, ThreadArguments, check, print, print_json, progress, refused,
+    simulate::why_undecided,
     sweep::{LevelArguments, LevelReport, for_machines, for_people},
     table,
 };
@@ -15,6 +16,7 @@ use crate::{
     figure::{figure_8, figure_9, required_force},
     files, force_table,
     mobility::{contacts, rank_of_normals},
+    outcome::Verdict,
     plot::PlotError,
     report::{Figure, Flash, ReportInput, report},
     self_locking::guide,
@@ -23,6 +25,9 @@ use crate::{
 
 /// The tolerance level of the report's Table 2: the paper's, which just closes the tightest pair.
 const PAPER_LEVEL: f64 = 3.43;
+
+/// What is written.
+const OUTPUTS: [&str; 5] = ["table.bin", "sweep.csv", "fig8.svg", "fig9.svg", "report.html"];
 
 /// The main job: tolerances, sweep over n, flash table, figures, report.
 #[derive(Args)]
@@ -54,21 +59,31 @@ impl Arguments {
         let scene = self.scene.load(&overrides)?;
         force_table::check(&scene).map_err(|error| Failure::Input(error.to_string()))?;
         files::prepare_folder(&self.out).map_err(refused)?;
+        for name in OUTPUTS {
+            self.scene.check_output(&self.out.join(name))?;
+        }
 
         let bar = progress("simulating", force_table::levels(&scene.sweep).count);
         let made = self.threads.install(|| force_table::make(&scene, ScalarKind::F64, || bar.inc(1)))?;
         bar.finish_and_clear();
         let (table, sweep) = made?;
-        let warnings = check::warnings(&scene, rank_of_normals(&contacts(&scene)), guide(&scene, 0.0).as_ref());
+        let mut warnings = check::warnings(&scene, rank_of_normals(&contacts(&scene)), guide(&scene, 0.0).as_ref());
+
+        if sweep.levels.iter().all(|level| level.outcome.verdict == Verdict::Undecided) {
+            warnings.push(format!("no level comes to a verdict{}", why_undecided(&scene, Verdict::Undecided)));
+        }
 
         let captioned = |caption: &str, svg: Result<String, PlotError>| -> Result<Figure, Failure> {
             Ok(Figure { caption: caption.into(), svg: svg.map_err(anyhow::Error::from)? })
         };
-        let figures = [
+        let mut figures = vec![
             captioned("Velocity of the slide over time (Fig. 8 of the paper).", figure_8(&sweep, &scene.title))?,
             captioned("Drive force over time (Fig. 9 of the paper).", figure_9(&sweep, &scene.title))?,
-            captioned("Peak drive force and breakaway over the level.", required_force(&sweep, &scene.title))?,
         ];
+        if sweep.levels.iter().any(|level| level.outcome.peak_force.is_some()) {
+            let caption = "Peak drive force and breakaway over the level.";
+            figures.push(captioned(caption, required_force(&sweep, &scene.title))?);
+        }
         let [worst_force_error, worst_velocity_error] = table.worst_error;
         let page = report(&ReportInput {
             scene: &scene,
@@ -78,24 +93,20 @@ impl Arguments {
             flash: Some(Flash { bytes: table.bytes.len(), worst_force_error, worst_velocity_error }),
             notes: &warnings,
         });
-        let outputs: [(&str, Vec<u8>); 5] = [
-            ("table.bin", table.bytes.clone()),
-            ("sweep.csv", sweep_csv(&sweep)?),
-            ("fig8.svg", figures[0].svg.clone().into_bytes()),
-            ("fig9.svg", figures[1].svg.clone().into_bytes()),
-            ("report.html", page.into_bytes()),
-        ];
-        for (name, bytes) in &outputs {
-            files::write(&self.out.join(name), bytes)?;
+        let [velocity, force] = [&figures[0], &figures[1]].map(|figure| figure.svg.clone().into_bytes());
+        let contents = [table.bytes.clone(), sweep_csv(&scene, &sweep)?, velocity, force, page.into_bytes()];
+        let paths = OUTPUTS.map(|name| self.out.join(name));
+        for (path, bytes) in paths.iter().zip(&contents) {
+            files::write(path, bytes)?;
         }
-        let files: Vec<String> = outputs.iter().map(|(name, _)| self.out.join(name).display().to_string()).collect();
+        let files = paths.map(|path| path.display().to_string()).to_vec();
         if self.scene.json {
             return print_json(&Report {
                 title: scene.title.clone(),
                 files,
                 table_bytes: table.bytes.len(),
                 worst_force_error_n: table.worst_error[0],
-                levels: for_machines(&sweep),
+                levels: for_machines(&scene, &sweep),
                 warnings,
             });
         }

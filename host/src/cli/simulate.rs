@@ -4,12 +4,16 @@ use std::{fmt::Write, path::PathBuf};
 
 use clap::Args;
 use serde::Serialize;
-use slipfit_core::slide::CONTACTS;
+use slipfit_core::{clearance::GapClass, slide::CONTACTS};
 
-use super::{Failure, SceneArguments, print, print_json, refused};
+use super::{
+    Failure, SceneArguments,
+    check::{GapReport, gap_reports},
+    print, print_json,
+};
 use crate::{
     export, files,
-    number::{fixed, level, or_dash},
+    number::{fixed, level, or_dash, ten_digits},
     outcome::{Outcome, Trajectory, Verdict},
     scene::{Override, Scene, parse_every},
     scheme::IntegratorKind,
@@ -30,7 +34,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Interval of the samples, such as 1ms or 500us.
-    #[arg(long, default_value = "1ms")]
+    #[arg(long, default_value = "1ms", allow_hyphen_values = true)]
     every: String,
     #[command(flatten)]
     stepping: SteppingArguments,
@@ -40,7 +44,7 @@ pub(super) struct Arguments {
 #[derive(Args)]
 pub(super) struct SteppingArguments {
     /// Step, such as 100us (a bare number is µs).
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     step: Option<String>,
     /// Scheme.
     #[arg(long, value_enum)]
@@ -70,6 +74,7 @@ struct Report<'a> {
     integration_ms: f64,
     #[serde(flatten)]
     outcome: Outcome,
+    gaps: Vec<GapReport>,
     samples: &'a Trajectory,
 }
 
@@ -77,9 +82,10 @@ impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let scene = self.scene.load(&self.stepping.overrides())?;
         let n = levels(&self.n)?;
+        scene.check_gaps(&n).map_err(|error| Failure::Input(format!("--n: {error}")))?;
         let every = parse_every(&self.every)?;
         if let Some(path) = &self.csv {
-            files::check_writable(path).map_err(refused)?;
+            self.scene.check_output(path)?;
         }
         let settings = Settings { run: scene.run, every, scalar: self.stepping.scalar };
         let gaps = scene.gaps_at(&n);
@@ -98,14 +104,15 @@ impl Arguments {
                 duration_s: scene.run.duration,
                 integration_ms: run.integration.as_secs_f64() * 1e3,
                 outcome: run.outcome,
+                gaps: gap_reports(&scene, &gaps),
                 samples: &run.trajectory,
             })
         } else {
-            print(&self.describe(&scene, &run))
+            print(&self.describe(&scene, &run, &gap_reports(&scene, &gaps)))
         }
     }
 
-    fn describe(&self, scene: &Scene, run: &Run) -> String {
+    fn describe(&self, scene: &Scene, run: &Run, gaps: &[GapReport]) -> String {
         let mut text = String::new();
         let Outcome { breakaway, peak_force, settled_force, final_velocity, verdict } = run.outcome;
         let n: Vec<String> = self.n.iter().map(|&n| level(n)).collect();
@@ -116,13 +123,23 @@ impl Arguments {
         let _ = writeln!(text, "Settled force   {} N", or_dash(settled_force, |f| fixed(f, 4)));
         let _ = writeln!(text, "Final velocity  {} mm/s", fixed(final_velocity * 1e3, 3));
         let _ = writeln!(text, "Verdict         {verdict}{}", why_undecided(scene, verdict));
+        let classes = |class| {
+            let of_class = gaps.iter().filter(|gap| gap.class == class);
+            of_class.map(|gap| gap.name.as_str()).collect::<Vec<_>>().join(", ")
+        };
+        for class in [GapClass::Compressed, GapClass::Zero].map(|class| class.to_string()) {
+            let names = classes(class.clone());
+            if !names.is_empty() {
+                let _ = writeln!(text, "Gaps {class:10} {names}");
+            }
+        }
         let _ = writeln!(
             text,
-            "\n{} ms in steps of {} µs, {}, {:?}: integrated in {} ms, worst residual {:.1e} N·s",
+            "\n{} ms in steps of {} µs, {}, {}: integrated in {} ms, worst residual {:.1e} N·s",
             fixed(scene.run.duration * 1e3, 1),
             fixed(scene.run.step * 1e6, 2),
             scene.run.integrator.name(),
-            self.stepping.scalar,
+            self.stepping.scalar.name(),
             fixed(integration, 2),
             run.trajectory.worst_residual
         );
@@ -135,9 +152,12 @@ pub(super) fn why_undecided(scene: &Scene, verdict: Verdict) -> String {
     if verdict != Verdict::Undecided {
         return String::new();
     }
-    let (end, ramp) = (scene.run.duration * 1e3, scene.drive.ramp_end * 1e3);
+    let [end, ramp] = [scene.run.duration, scene.drive.ramp_end].map(|t| ten_digits(t * 1e3));
     if scene.run.duration < scene.drive.ramp_end {
-        format!(" (the run ends at {end} ms, the ramp at {ramp} ms; --set run.duration=1500 runs the stroke)")
+        let stroke = ten_digits((scene.drive.ramp_end + 0.5) * 1e3);
+        format!(" (the run ends at {end} ms, the ramp at {ramp} ms; --set run.duration={stroke} runs the stroke)")
+    } else if scene.drive.speed == 0.0 {
+        " (nothing is commanded)".into()
     } else {
         " (a run at half the step came to another verdict: take a smaller step)".into()
     }

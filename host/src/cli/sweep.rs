@@ -1,18 +1,18 @@
 //! `slipfit sweep`: the slide over tolerance levels.
 
-use std::{fmt::Write, path::PathBuf};
+use std::{collections::BTreeMap, fmt::Write, path::PathBuf};
 
 use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Failure, SceneArguments, ThreadArguments, print, print_json, progress, refused,
+    Failure, SceneArguments, ThreadArguments, print, print_json, progress,
     simulate::{SteppingArguments, why_undecided},
     text_table,
 };
 use crate::{
     export::sweep_csv,
-    files, force_table,
+    files,
     number::{fixed, level, or_dash},
     outcome::{Outcome, Verdict},
     scene::{Override, Scene},
@@ -60,6 +60,8 @@ pub(super) struct LevelReport {
     compressed: usize,
     zero: usize,
     free: usize,
+    /// Class of each gap by name.
+    classes: BTreeMap<String, String>,
 }
 
 impl Arguments {
@@ -67,20 +69,19 @@ impl Arguments {
         let overrides: Vec<_> = self.stepping.overrides().into_iter().chain(self.levels.overrides()).collect();
         let scene = self.scene.load(&overrides)?;
         if let Some(path) = &self.csv {
-            files::check_writable(path).map_err(refused)?;
+            self.scene.check_output(path)?;
         }
-        // Samples are not shown; the coarsest that the run allows are enough.
-        let every = force_table::settings(scene.run, self.stepping.scalar).every;
-        let settings = Settings { run: scene.run, every, scalar: self.stepping.scalar };
+        // Samples are not shown: only the run's ends are kept.
+        let settings = Settings { run: scene.run, every: scene.run.duration, scalar: self.stepping.scalar };
         let levels = scene.sweep.levels();
         let bar = progress("simulating", levels.len());
         let result = self.threads.install(|| sweep(&scene, &levels, &settings, || bar.inc(1)))??;
         bar.finish_and_clear();
         if let Some(path) = &self.csv {
-            files::write(path, &sweep_csv(&result)?)?;
+            files::write(path, &sweep_csv(&scene, &result)?)?;
         }
         if self.scene.json {
-            print_json(&for_machines(&result))
+            print_json(&for_machines(&scene, &result))
         } else {
             print(&format!("{}\n\n{}", scene.title, for_people(&scene, &result)))
         }
@@ -88,10 +89,12 @@ impl Arguments {
 }
 
 /// The levels of a sweep as JSON wants them.
-pub(super) fn for_machines(sweep: &Sweep) -> Vec<LevelReport> {
+pub(super) fn for_machines(scene: &Scene, sweep: &Sweep) -> Vec<LevelReport> {
     let report = |level: &crate::sweep::Level| {
         let [compressed, zero, free] = level.class_counts();
-        LevelReport { n: level.n, outcome: level.outcome, compressed, zero, free }
+        let named = scene.contact_names().into_iter().zip(level.classes);
+        let classes = named.filter_map(|(name, class)| Some((name, class?.to_string()))).collect();
+        LevelReport { n: level.n, outcome: level.outcome, compressed, zero, free, classes }
     };
     sweep.levels.iter().map(report).collect()
 }

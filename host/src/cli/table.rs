@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Failure, SceneArguments, ThreadArguments, print, print_json, progress, refused, simulate::SteppingArguments,
+    Failure, SceneArguments, ThreadArguments, print, print_json, progress, simulate::SteppingArguments,
     sweep::LevelArguments,
 };
 use crate::{
@@ -57,7 +57,7 @@ impl Arguments {
             return Err(Failure::Input(format!("--output: {}", ExportError::Extension { found: extension })));
         }
         force_table::check(&scene).map_err(|error| Failure::Input(error.to_string()))?;
-        files::check_writable(&self.output).map_err(refused)?;
+        self.scene.check_output(&self.output)?;
         let bar = progress("simulating", force_table::levels(&scene.sweep).count);
         let made = self.threads.install(|| force_table::make(&scene, self.stepping.scalar, || bar.inc(1)))?;
         bar.finish_and_clear();

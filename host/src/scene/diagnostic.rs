@@ -4,7 +4,7 @@ use std::{fmt, ops::Range};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str};
 
-use super::LevelError;
+use super::{GapError, LevelError};
 
 /// What is wrong with a scene. Keys are written in full, such as `slide.mass`; values as they were typed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -107,6 +107,9 @@ pub enum Problem {
         /// Why not.
         error: LevelError,
     },
+    /// Tolerance levels at which a gap is out of bounds.
+    #[error("`sweep.n`: {0}")]
+    Gap(GapError),
     /// A step that does not divide the run.
     #[error("`run.step` is {step}, which does not divide `run.duration`, {duration}")]
     Indivisible {

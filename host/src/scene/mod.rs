@@ -134,7 +134,41 @@ impl LevelRange {
     }
 }
 
+/// The largest gap and the deepest interference (m) that a kernel is made for.
+pub const GAP_MOST: f64 = 0.1;
+
+/// A tolerance level at which a gap is out of bounds.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("at n = {n} the {contact} gap is {} mm, allowed is -{} to {} mm", gap * 1e3, GAP_MOST * 1e3, GAP_MOST * 1e3)]
+pub struct GapError {
+    /// Tolerance level.
+    pub n: f64,
+    /// Pin and surface, such as "left front rail".
+    pub contact: String,
+    /// The gap (m).
+    pub gap: f64,
+}
+
 impl Scene {
+    /// Names of the sixteen contacts, such as "left front rail"; those that the scene leaves out too.
+    pub fn contact_names(&self) -> [String; CONTACTS] {
+        std::array::from_fn(|i| format!("{} {}", self.pins[i / 4].name, SURFACES[i % 4]))
+    }
+
+    /// Whether all gaps at the tolerance levels `n` are within [`GAP_MOST`].
+    ///
+    /// # Errors
+    /// [`GapError`] names the first that is not.
+    pub fn check_gaps(&self, n: &[f64; CONTACTS]) -> Result<(), GapError> {
+        let names = self.contact_names();
+        for ((contact, gap), n) in names.into_iter().zip(self.gaps_at(n)).zip(n) {
+            if gap != ABSENT && !(gap.abs() <= GAP_MOST) {
+                return Err(GapError { n: *n, contact, gap });
+            }
+        }
+        Ok(())
+    }
+
     /// All sixteen gaps (m) at the tolerance levels `n`, one a contact; [`ABSENT`] where there is no contact.
     pub fn gaps_at(&self, n: &[f64; CONTACTS]) -> [f64; CONTACTS] {
         let mut gaps = [ABSENT; CONTACTS];

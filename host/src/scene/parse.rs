@@ -6,7 +6,7 @@ use slipfit_core::{
     clearance::GapStatistics,
     drive::Drive,
     menu::{ContactData, FrictionData},
-    slide::{PINS, box_inertia},
+    slide::{CONTACTS, PINS, box_inertia},
 };
 
 use crate::scheme::IntegratorKind;
@@ -34,7 +34,7 @@ const MEAN: Quantity = Quantity { units: unit::LENGTH, range: [-100.0, 100.0] };
 const DEVIATION: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
 const CLEARANCE: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
 const DURATION: Quantity = Quantity { units: unit::MILLISECONDS, range: [0.001, 1e6] };
-const STEP: Quantity = Quantity { units: unit::MICROSECONDS, range: [0.001, 1e4] };
+const STEP: Quantity = Quantity { units: unit::MICROSECONDS, range: [0.002, 1e4] };
 
 /// N/m^e.
 const STIFFNESS: [f64; 2] = [1e-9, 1e20];
@@ -61,7 +61,8 @@ impl Scene {
         let slide = slide(&root.table("slide")?)?;
         let contact = contact(&root.table("contact")?)?;
         let friction = friction(&root.table("friction")?)?;
-        Ok(Self {
+        let sweep_table = root.table("sweep")?;
+        let scene = Self {
             title,
             slide,
             contact,
@@ -70,8 +71,15 @@ impl Scene {
             pins: pins(&root)?,
             nominal_clearance: nominal_clearance(&root)?,
             run: run(&root.table("run")?, &friction)?,
-            sweep: sweep(&root.table("sweep")?)?,
-        })
+            sweep: sweep(&sweep_table)?,
+        };
+        for i in [0, scene.sweep.count - 1] {
+            scene.check_gaps(&[scene.sweep.level(i); CONTACTS]).map_err(|error| {
+                let field = sweep_table.get("n").unwrap_or(sweep_table.clone());
+                field.error(Problem::Gap(error), "")
+            })?;
+        }
+        Ok(scene)
     }
 }
 
@@ -88,7 +96,9 @@ pub fn parse_every(text: &str) -> Result<f64, SceneError> {
 
 fn title(root: &Field, file_name: &str) -> Result<String, SceneError> {
     let stem = Path::new(file_name).file_stem().unwrap_or_default().to_string_lossy();
-    Ok(root.get("title").map(|title| title.to_text()).transpose()?.unwrap_or(&stem).into())
+    let title = root.get("title").map(|title| title.to_text()).transpose()?.unwrap_or(&stem);
+    // A title is printed as it is; control characters would steer the terminal.
+    Ok(title.chars().map(|c| if c.is_control() { ' ' } else { c }).collect())
 }
 
 fn slide(table: &Field) -> Result<SlideSpec, SceneError> {
@@ -197,7 +207,13 @@ fn pins(root: &Field) -> Result<[PinSpec; PINS], SceneError> {
     let mut pins = std::array::from_fn(|_| PinSpec { name: String::new(), position: [0.0; 3], gaps: [None; 4] });
     for (i, node) in nodes.iter().enumerate() {
         let table = Field { key: "pin".into(), node };
-        *pins.get_mut(i).ok_or_else(|| wrong_length(Field { key: "pin".into(), node }))? = pin(&table)?;
+        let found = pin(&table)?;
+        if pins.iter().take(i).any(|other| other.name == found.name) {
+            let name = table.get("name").unwrap_or(table);
+            let problem = Problem::OutOfRange { key: "pin.name".into(), written: format!("\"{}\" again", found.name) };
+            return Err(name.error(problem, "a name of its own for each pin"));
+        }
+        *pins.get_mut(i).ok_or_else(|| wrong_length(Field { key: "pin".into(), node }))? = found;
     }
     Ok(pins)
 }

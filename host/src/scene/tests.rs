@@ -174,10 +174,10 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
             "ramp_end = 0.05",
             ["ramp_end = |0.05", "`drive.ramp_end` is 0.05 s", "more than drive.ramp_start, 0.05 s"],
         ),
-        ("step = 50 ", "step = 0 ", ["step = |0 ", "`run.step` is 0 µs", "0.001 to 10000 µs"]),
-        ("step = 50 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`run.step` is 20 ms", "0.001 to 10000 µs"]),
+        ("step = 50 ", "step = 0 ", ["step = |0 ", "`run.step` is 0 µs", "0.002 to 10000 µs"]),
+        ("step = 50 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`run.step` is 20 ms", "0.002 to 10000 µs"]),
         ("duration = 200", "duration = 0.01", ["step = |50", "`run.step` is 50 µs", "at most run.duration, 0.01 ms"]),
-        ("step = 50 ", "step = 0.001 ", ["step = |0.001", "`run.step` is 0.001 µs", "at least 0.004 µs"]),
+        ("step = 50 ", "step = 0.002 ", ["step = |0.002", "`run.step` is 0.002 µs", "at least 0.004 µs"]),
         (
             "step = 50 ",
             "step = 30 ",

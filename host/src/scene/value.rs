@@ -7,6 +7,7 @@ use super::{
 };
 
 /// A value and the full name of its key.
+#[derive(Clone)]
 pub struct Field<'t, 's> {
     /// The key, such as `slide.mass`.
     pub key: String,
