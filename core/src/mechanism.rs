@@ -57,6 +57,11 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// 0 if all coordinates of `pose` are finite, else NaN.
     fn nought(&self, pose: &Self::Pose) -> S;
 
+    /// `velocity` with what can only be rounding taken out of it, where the mechanism can be truly at rest.
+    fn settled(&self, velocity: &SVector<S, D>) -> SVector<S, D> {
+        *velocity
+    }
+
     /// M·`velocity`: generalised momentum (N·s, N·m·s).
     fn momentum(&self, velocity: &SVector<S, D>) -> SVector<S, D>;
 

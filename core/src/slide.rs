@@ -282,6 +282,19 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         r.x * zero + r.y * zero + r.z * zero + q.w * zero + q.v.x * zero + q.v.y * zero + q.v.z * zero
     }
 
+    /// Velocities are rounded to the last place of 4 m/s (4e-16 m/s in f64, 2e-7 m/s in f32): what rounding of the
+    /// contact forces stirs up stays below, and a body that sticks comes to rest to the last bit.
+    #[inline(always)]
+    fn settled(&self, velocity: &SVector<S, 6>) -> SVector<S, 6> {
+        if !F::STICKS {
+            return *velocity;
+        }
+        let (v_w, w_b) = split(velocity);
+        let round = |x: S, unit: S| (x + unit) - unit;
+        let unit = S::from_f64(4.0);
+        join(v_w.map(|x| round(x, unit)), w_b.map(|x| round(x, unit * self.per_lever)))
+    }
+
     #[inline(always)]
     fn momentum(&self, velocity: &SVector<S, 6>) -> SVector<S, 6> {
         let (v_w, w_b) = split(velocity);

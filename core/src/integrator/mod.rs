@@ -106,6 +106,7 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize>(
         let imbalance = mechanism.momentum(&(velocity - base.velocity)) - at.force * a;
         velocity -= mechanism.solve(&at.linearisation, &imbalance);
     }
+    let velocity = mechanism.settled(&velocity);
     let pose = mechanism.advanced(&base.pose, &velocity, a);
     let at = mechanism.evaluated(t, &pose, &base.memory, &velocity, a, S::one());
     let imbalance = mechanism.momentum(&(velocity - base.velocity)) - at.force * a;

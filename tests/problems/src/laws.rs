@@ -54,3 +54,35 @@ pub const BOUNCES: [Bounce; 3] = [
         contact_time: 28.853e-3,
     },
 ];
+
+/// A ball that bounces on an undamped linear spring, released at rest height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BouncingBall {
+    /// Mass (kg).
+    pub mass: f64,
+    /// Stiffness of the floor (N/m).
+    pub stiffness: f64,
+    /// Acceleration of free fall (m/s²), positive upwards.
+    pub gravity: f64,
+    /// Radius (m): the ball touches the floor when its centre is that high.
+    pub radius: f64,
+    /// Height of the centre at the start (m).
+    pub height: f64,
+    /// Velocity at the start (m/s), positive upwards.
+    pub velocity: f64,
+}
+
+/// The ball.
+pub const BALL: BouncingBall =
+    BouncingBall { mass: 0.25, stiffness: 20e3, gravity: -9.81, radius: 0.05, height: 0.06, velocity: -1.0 };
+
+/// Time (s) and height of the ball's centre (m) then: after 3 impacts, and after 22.
+pub const BALL_HEIGHTS: [[f64; 2]; 2] = [[0.5, 0.060_939_776_065_215_1], [5.0, 0.097_253_007_782_5]];
+
+impl BouncingBall {
+    /// Total energy (J) at the height `height` (m) of the centre and the velocity `velocity` (m/s).
+    pub fn energy(&self, height: f64, velocity: f64) -> f64 {
+        let depth = if height < self.radius { self.radius - height } else { 0.0 };
+        0.5 * self.mass * velocity * velocity - self.mass * self.gravity * height + 0.5 * self.stiffness * depth * depth
+    }
+}

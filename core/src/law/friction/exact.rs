@@ -34,6 +34,8 @@ impl<S: Scalar> Friction<S> for Exact<S> {
     /// The friction force on the body along the two tangents (N).
     type Memory = [S; 2];
 
+    const STICKS: bool = true;
+
     #[inline(always)]
     fn fresh() -> [S; 2] {
         [S::zero(); 2]

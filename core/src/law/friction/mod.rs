@@ -38,6 +38,9 @@ pub trait Friction<S>: Copy {
     /// What the law remembers of a contact from one step to the next.
     type Memory: Copy + core::fmt::Debug + PartialEq;
 
+    /// Whether the law can hold a body at rest.
+    const STICKS: bool;
+
     /// The memory of a contact that nothing has touched yet.
     fn fresh() -> Self::Memory;
 
@@ -57,6 +60,8 @@ pub struct Frictionless;
 
 impl<S: Scalar> Friction<S> for Frictionless {
     type Memory = ();
+
+    const STICKS: bool = false;
 
     #[inline(always)]
     fn fresh() {}

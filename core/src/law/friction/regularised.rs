@@ -41,6 +41,8 @@ impl<S: Scalar> Regularised<S> {
 impl<S: Scalar> Friction<S> for Regularised<S> {
     type Memory = ();
 
+    const STICKS: bool = false;
+
     #[inline(always)]
     fn fresh() {}
 
