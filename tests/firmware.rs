@@ -8,7 +8,7 @@ use std::{
 };
 
 use slipfit::{
-    force_table,
+    flash, force_table,
     scene::{CD_ROM_SLIDE, Scene},
     simulate::ScalarKind,
 };
@@ -61,6 +61,20 @@ fn every_step_takes_the_recorded_instructions() {
     assert!(step.is_some_and(|step| step.ends_with(", the same every time")), "{counts}");
 
     insta::assert_snapshot!("counts", counts);
+}
+
+/// memory.x is the only place that decides; what repeats its numbers is held against it.
+#[test]
+fn everything_agrees_with_memory_x() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |file: &str| fs::read_to_string(root.join(file)).expect("a file of the repository");
+    let memory = read("memory.x");
+    let line = memory.lines().find(|line| line.trim_start().starts_with("TABLE")).expect("a TABLE region");
+    let address = format!("{:#010x}", flash::TABLE_ADDRESS);
+    let length = format!("{}K", flash::TABLE_REGION / 1024);
+    assert!(line.to_lowercase().contains(&address) && line.contains(&length), "{line}");
+    let runner = read(".cargo/qemu");
+    assert!(runner.contains(&format!("addr={:#x}", flash::TABLE_ADDRESS)), "{runner}");
 }
 
 /// A line that only the image has.

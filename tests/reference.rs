@@ -24,7 +24,7 @@ fn run(reference: &Reference, integrator: IntegratorKind, step: f64, scalar: Sca
     let mut scene = scene_of(reference);
     scene.run.integrator = integrator;
     scene.run.step = step;
-    let settings = Settings { run: scene.run, every: 1e-3, scalar };
+    let settings = Settings::fixed(scene.run, 1e-3, scalar);
     simulate(&scene, &scene.gaps_at(&[reference.n; CONTACTS]), &settings).unwrap()
 }
 
@@ -58,6 +58,21 @@ fn every_run_at_the_default_step_is_within_two_percent_throughout() {
     for reference in references() {
         let errors = reference.errors(&default_run(&reference).trajectory.force);
         assert!(errors.max <= 2.0, "{}: {errors:?}", reference.name);
+    }
+}
+
+#[test]
+fn error_control_comes_close_to_every_reference() {
+    for reference in references() {
+        let scene = scene_of(&reference);
+        let settings =
+            |force: f64| Settings { tolerance: Some(force), ..Settings::fixed(scene.run, 1e-3, ScalarKind::F64) };
+        let gaps = scene.gaps_at(&[reference.n; CONTACTS]);
+        let run = |force: f64| simulate(&scene, &gaps, &settings(force)).unwrap();
+        let [coarse, fine] = [1e-4, 1e-6].map(|force| reference.errors(&run(force).trajectory.force));
+        eprintln!("{:20} 1e-4 N: {:.4} %   1e-6 N: {:.4} %", reference.name, coarse.max, fine.max);
+        assert!(coarse.max <= 0.5 && fine.max <= 0.05, "{}: {coarse:?} {fine:?}", reference.name);
+        assert_eq!(run(1e-4).trajectory, run(1e-4).trajectory, "deterministic");
     }
 }
 

@@ -16,6 +16,6 @@ pub fn sweep(levels: LevelRange, duration: f64, ramp_end: f64) -> Sweep {
     let mut scene = cd_rom();
     scene.drive.ramp_end = ramp_end;
     (scene.run.duration, scene.run.step) = (duration, 1e-4);
-    let settings = Settings { run: scene.run, every: 1e-3, scalar: ScalarKind::F64 };
+    let settings = Settings::fixed(scene.run, 1e-3, ScalarKind::F64);
     crate::sweep::sweep(&scene, &levels.levels(), &settings, || ()).unwrap()
 }

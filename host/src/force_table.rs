@@ -48,7 +48,7 @@ pub fn settings(scene: &Scene, scalar: ScalarKind) -> Settings {
         bytes + (layout::HEADER_SIZE + layout::CHECKSUM_SIZE) as f64 <= flash::TABLE_REGION as f64
     };
     let coarser = (1..=10).find(fits).unwrap_or(1);
-    Settings { run: scene.run, every: every(coarser), scalar }
+    Settings::fixed(scene.run, every(coarser), scalar)
 }
 
 /// The levels a table needs: those of its axis with one half way between each two, which only serve the error.

@@ -5,6 +5,7 @@
 
 mod chart;
 pub mod cli;
+pub mod controlled;
 #[cfg(test)]
 mod example;
 pub mod export;

@@ -3,10 +3,11 @@
 use std::time::{Duration, Instant};
 
 use slipfit_core::{
-    ParameterError, Scalar,
-    integrator::Integrator,
+    ParameterError, SVector, Scalar,
+    integrator::{Extrapolated, Integrator, Motion},
     kernel::Kernel,
     law::{Elastic, Friction},
+    mechanism::Mechanism,
     menu::SlideVisitor,
     pose::Pose,
     slide::{CONTACTS, Slide},
@@ -14,6 +15,7 @@ use slipfit_core::{
 use thiserror::Error;
 
 use crate::{
+    controlled::{self, Sensitivity, Tolerance},
     interrupt,
     outcome::{Observer, Outcome, Trajectory},
     scene::{RunSpec, Scene},
@@ -50,6 +52,15 @@ pub struct Settings {
     pub every: f64,
     /// Number type.
     pub scalar: ScalarKind,
+    /// Error control instead of fixed steps, in f64 whatever the number type: the error of force (N) a step may make.
+    pub tolerance: Option<f64>,
+}
+
+impl Settings {
+    /// Fixed steps as `run` has them, sampled every `every` (s).
+    pub fn fixed(run: RunSpec, every: f64, scalar: ScalarKind) -> Self {
+        Self { run, every, scalar, tolerance: None }
+    }
 }
 
 /// A finished run.
@@ -101,6 +112,10 @@ impl<S: std::fmt::Display> From<ParameterError<S>> for SimulateError {
 /// # Errors
 /// See [`SimulateError`].
 pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Result<Run, SimulateError> {
+    if let Some(force) = settings.tolerance {
+        let controlled = Controlled { scene, settings, tolerance: Tolerance::of_force(force) };
+        return Ok(scene.slide_data::<f64>(gaps).visit(controlled)?);
+    }
     let per_sample = (settings.every / settings.run.step).round();
     if !(per_sample >= 1.0 && (per_sample * settings.run.step - settings.every).abs() <= 1e-6 * settings.every) {
         return Err(SimulateError::Every { every: settings.every, step: settings.run.step });
@@ -113,6 +128,53 @@ pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> R
     match settings.scalar {
         ScalarKind::F32 => scene.slide_data::<f32>(gaps).visit(stepper)?,
         ScalarKind::F64 => scene.slide_data::<f64>(gaps).visit(stepper)?,
+    }
+}
+
+/// A run by error-controlled steps.
+struct Controlled<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    tolerance: Tolerance,
+}
+
+/// Distance (s) at which an error-controlled run is looked at for its figures.
+const LOOK: f64 = 1e-4;
+
+impl SlideVisitor<f64> for Controlled<'_> {
+    type Output = Run;
+
+    fn visit<E: Elastic<f64>, F: Friction<f64>>(self, slide: Slide<f64, E, F>) -> Run {
+        let Self { scene, settings, tolerance } = self;
+        let duration = settings.run.duration;
+        let sensitivity = Sensitivity { mass: scene.slide.mass, gain: scene.drive.gain };
+        let rest = Motion { pose: Pose::nominal(), velocity: SVector::zeros(), memory: slide.fresh() };
+        let mut knots = Vec::new();
+        let start = Instant::now();
+        let effort =
+            controlled::integrate::<Extrapolated<3, 3>, _>(&slide, rest, duration, sensitivity, tolerance, &mut knots);
+        let integration = start.elapsed();
+
+        let looks = (settings.every / LOOK - 1e-9).ceil().max(1.0);
+        let between = settings.every / looks;
+        let count = (duration / between * (1.0 + 1e-12)).floor() as usize;
+        let time = |i: usize| (i as f64 * between).min(duration);
+        let mut trajectory = Trajectory { worst_residual: effort.worst_residual, ..Trajectory::default() };
+        let mut observer = Observer::new(scene.drive, duration);
+        for (i, [vz, x, y]) in controlled::sampled(&knots, (0..=count).map(time)).into_iter().enumerate() {
+            let t = time(i);
+            let force = scene.drive.force(t, vz);
+            observer.observe(t, vz, force);
+            if i.is_multiple_of(looks as usize) {
+                trajectory.t.push(t);
+                trajectory.vz.push(vz);
+                trajectory.force.push(force);
+                trajectory.x.push(x);
+                trajectory.y.push(y);
+            }
+        }
+        let last = knots.last().map_or(0.0, |knot| knot.values[0]);
+        Run { trajectory, outcome: observer.outcome(duration, last), integration }
     }
 }
 

@@ -176,7 +176,7 @@ impl fmt::Display for Table2 {
             write!(f, " {heading:>9}")?;
         }
         writeln!(f)?;
-        for pin in &self.pins {
+        for pin in self.pins.iter().filter(|pin| pin.gaps.iter().any(Option::is_some)) {
             write!(f, "{:width$}", pin.name)?;
             for gap in pin.gaps {
                 write!(f, " {:>9}", millimetres(gap))?;

@@ -38,6 +38,9 @@ pub(super) struct Arguments {
     every: String,
     #[command(flatten)]
     stepping: SteppingArguments,
+    /// Error-controlled steps instead of fixed ones: the error of the drive force (N) that a step may make, such as 1e-4.
+    #[arg(long, value_name = "N", conflicts_with_all = ["step", "integrator", "scalar"], allow_hyphen_values = true)]
+    error: Option<f64>,
 }
 
 /// How to step, where it differs from the scene.
@@ -87,10 +90,15 @@ impl Arguments {
         if let Some(path) = &self.csv {
             self.scene.check_output(path)?;
         }
-        let settings = Settings { run: scene.run, every, scalar: self.stepping.scalar };
+        if let Some(error) = self.error.filter(|error| !(1e-12..=1e3).contains(error)) {
+            return Err(Failure::Input(format!("--error is {error}, allowed is 1e-12 to 1e3 N")));
+        }
+        let settings = Settings { run: scene.run, every, scalar: self.stepping.scalar, tolerance: self.error };
         let gaps = scene.gaps_at(&n);
         let mut run = simulate(&scene, &gaps, &settings)?;
-        run.outcome.verdict = confirmed(&scene, &gaps, &settings, &run.outcome)?;
+        if self.error.is_none() {
+            run.outcome.verdict = confirmed(&scene, &gaps, &settings, &run.outcome)?;
+        }
         if let Some(path) = &self.csv {
             files::write(path, &export::trajectory_csv(&run.trajectory)?)?;
         }
@@ -133,13 +141,19 @@ impl Arguments {
                 let _ = writeln!(text, "Gaps {class:10} {names}");
             }
         }
+        let how = match self.error {
+            Some(error) => format!("error-controlled to {error:e} N a step"),
+            None => format!(
+                "in steps of {} µs, {}, {}",
+                ten_digits(scene.run.step * 1e6),
+                scene.run.integrator.name(),
+                self.stepping.scalar.name()
+            ),
+        };
         let _ = writeln!(
             text,
-            "\n{} ms in steps of {} µs, {}, {}: integrated in {} ms, worst residual {:.1e} N·s",
-            fixed(scene.run.duration * 1e3, 1),
-            fixed(scene.run.step * 1e6, 2),
-            scene.run.integrator.name(),
-            self.stepping.scalar.name(),
+            "\n{} ms {how}: integrated in {} ms, worst residual {:.1e} N·s",
+            ten_digits(scene.run.duration * 1e3),
             fixed(integration, 2),
             run.trajectory.worst_residual
         );

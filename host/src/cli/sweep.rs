@@ -72,7 +72,7 @@ impl Arguments {
             self.scene.check_output(path)?;
         }
         // Samples are not shown: only the run's ends are kept.
-        let settings = Settings { run: scene.run, every: scene.run.duration, scalar: self.stepping.scalar };
+        let settings = Settings::fixed(scene.run, scene.run.duration, self.stepping.scalar);
         let levels = scene.sweep.levels();
         let bar = progress("simulating", levels.len());
         let result = self.threads.install(|| sweep(&scene, &levels, &settings, || bar.inc(1)))??;

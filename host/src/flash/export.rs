@@ -105,9 +105,13 @@ fn c_header(table: &[u8]) -> String {
     for encoding in Encoding::ALL {
         define(&format!("ENCODING_{encoding:?}"), encoding as usize);
     }
+    let hash = table.get(layout::SCENE_HASH_AT..layout::LENGTH_AT).unwrap_or_default();
+    let hash: String = hash.iter().rev().map(|byte| format!("{byte:02x}")).collect();
     define("DATA_AT", layout::HEADER_SIZE);
     define("DATA_ALIGNMENT", layout::DATA_ALIGNMENT);
     define("CHECKSUM_SIZE", layout::CHECKSUM_SIZE);
+    // The one macro that is the table's own: firmware compares it with the table it finds.
+    let _ = writeln!(text, "#define SLIPFIT_TABLE_SCENE_HASH 0x{hash}ull");
     define("SIZE", table.len());
     text + C_ARRAY + &array(table) + "};\n\n#endif\n"
 }

@@ -1,0 +1,159 @@
+//! Error control: steps as long as their own error estimates allow, the truth that fixed steps are measured against.
+//!
+//! The steps are those of the kernel's schemes, so that no law is written twice; only their length changes. Between the
+//! ends of steps velocities and positions are cubics whose slopes come from the neighbouring ends: the accelerations
+//! themselves are no use, because a stiff contact turns a velocity's last digits into large ones. Deterministic: the same
+//! scene and tolerance give the same bits.
+
+use slipfit_core::{
+    integrator::{Integrator, MotionOf},
+    mechanism::Mechanism,
+    pose::Pose,
+};
+
+/// How well each step has to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Error of the drive force that a step may make (N).
+    pub force: f64,
+    /// Error of a position that a step may make (m).
+    pub position: f64,
+}
+
+impl Tolerance {
+    /// `force` (N), and a tenth of a micrometre of position for each 0.1 mN.
+    pub fn of_force(force: f64) -> Self {
+        Self { force, position: force * 1e-3 }
+    }
+}
+
+/// What turns an error of momentum into one of force and position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// Mass (kg).
+    pub mass: f64,
+    /// Gain of the drive (N·s/m).
+    pub gain: f64,
+}
+
+/// The end of an accepted step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knot {
+    /// Time (s).
+    pub t: f64,
+    /// Velocity along z (m/s), displacements across and up (m).
+    pub values: [f64; 3],
+}
+
+/// What an integration took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// Accepted steps.
+    pub accepted: u32,
+    /// Refused steps.
+    pub refused: u32,
+    /// Worst residual of an accepted step (N·s).
+    pub worst_residual: f64,
+}
+
+/// Least and greatest step (s).
+const STEPS: [f64; 2] = [1e-9, 0.02];
+
+/// First step (s).
+const FIRST_STEP: f64 = 2e-5;
+
+/// Integrates `mechanism` from `start` at time 0 over `duration` (s) into `knots`, the start among them.
+pub fn integrate<I: Integrator, M: Mechanism<f64, 6, Pose = Pose<f64>>>(
+    mechanism: &M,
+    start: MotionOf<f64, M, 6>,
+    duration: f64,
+    sensitivity: Sensitivity,
+    tolerance: Tolerance,
+    knots: &mut Vec<Knot>,
+) -> Effort {
+    let knot = |t: f64, motion: &MotionOf<f64, M, 6>| {
+        let r = motion.pose.displacement_w;
+        Knot { t, values: [motion.velocity.z, r.x, r.y] }
+    };
+    let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
+    knots.push(knot(t, &motion));
+    while t < duration {
+        // A last step that would leave a splinter takes it along.
+        let length = if t + 1.01 * h >= duration { duration - t } else { h };
+        let step = I::step(mechanism, t, length, &motion);
+        let velocity_error = step.error / sensitivity.mass;
+        let error =
+            (sensitivity.gain * velocity_error / tolerance.force).max(length * velocity_error / tolerance.position);
+        // A step whose estimate is not a number is the worst of all.
+        let error = if error.is_finite() { error } else { 1e12 };
+        let factor = (0.9 * libm::pow(error.max(1e-12), -1.0 / f64::from(I::ORDER))).clamp(0.2, 4.0);
+        h = (length * factor).clamp(STEPS[0], STEPS[1]);
+        if error > 1.0 && length > STEPS[0] {
+            effort.refused += 1;
+            continue;
+        }
+        effort.accepted += 1;
+        effort.worst_residual = effort.worst_residual.max(step.residual);
+        t = if length == duration - t { duration } else { t + length };
+        motion = step.motion;
+        knots.push(knot(t, &motion));
+    }
+    effort
+}
+
+/// The values of [`Knot`] at ascending `times` (s) within the `knots`, of which there are at least two.
+pub fn sampled(knots: &[Knot], times: impl Iterator<Item = f64>) -> Vec<[f64; 3]> {
+    let mut i = 0;
+    times
+        .map(|t| {
+            while i + 2 < knots.len() && knots[i + 1].t < t {
+                i += 1;
+            }
+            between(knots, i, t)
+        })
+        .collect()
+}
+
+/// The values at time `t` between the knots `i` and `i + 1`.
+fn between(knots: &[Knot], i: usize, t: f64) -> [f64; 3] {
+    let (from, to) = (knots[i], knots[i + 1]);
+    let h = to.t - from.t;
+    [0, 1, 2].map(|k| {
+        let slopes = [slope(knots, i, k), slope(knots, i + 1, k)];
+        hermite((t - from.t) / h, [from.values[k], to.values[k]], slopes.map(|slope| slope * h))
+    })
+}
+
+/// Slope of value `k` at knot `i`: that of the parabola through it and its neighbours, of the chord at the ends.
+fn slope(knots: &[Knot], i: usize, k: usize) -> f64 {
+    let chord = |i: usize| (knots[i + 1].values[k] - knots[i].values[k]) / (knots[i + 1].t - knots[i].t);
+    if i == 0 {
+        chord(0)
+    } else if i + 1 == knots.len() {
+        chord(i - 1)
+    } else {
+        let (before, after) = (knots[i].t - knots[i - 1].t, knots[i + 1].t - knots[i].t);
+        (chord(i - 1) * after + chord(i) * before) / (before + after)
+    }
+}
+
+/// The cubic with the given values and slopes at 0 and 1.
+fn hermite(s: f64, [y0, y1]: [f64; 2], [d0, d1]: [f64; 2]) -> f64 {
+    let rest = 1.0 - s;
+    y0 * rest * rest * (1.0 + 2.0 * s) + y1 * s * s * (3.0 - 2.0 * s) + d0 * s * rest * rest - d1 * s * s * rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parabolas_are_met_exactly_between_uneven_knots() {
+        let y = |t: f64| 1.0 + t * (2.0 - 3.0 * t);
+        let knots: Vec<_> = [0.0, 0.1, 0.4, 0.5, 1.0].map(|t| Knot { t, values: [y(t), 0.0, t] }).into();
+        let times = [0.1, 0.25, 0.4, 0.45, 0.5];
+        for (t, found) in times.into_iter().zip(sampled(&knots, times.into_iter())) {
+            assert!((found[0] - y(t)).abs() < 1e-14 && (found[2] - t).abs() < 1e-14, "{t}: {found:?}");
+        }
+    }
+}
