@@ -110,9 +110,9 @@ fn c_header(table: &[u8]) -> String {
     define("DATA_AT", layout::HEADER_SIZE);
     define("DATA_ALIGNMENT", layout::DATA_ALIGNMENT);
     define("CHECKSUM_SIZE", layout::CHECKSUM_SIZE);
-    // The one macro that is the table's own: firmware compares it with the table it finds.
-    let _ = writeln!(text, "#define SLIPFIT_TABLE_SCENE_HASH 0x{hash}ull");
     define("SIZE", table.len());
+    // Firmware compares it with the hash in the table that it finds.
+    let _ = writeln!(text, "#define SLIPFIT_TABLE_SCENE_HASH 0x{hash}ull");
     text + C_ARRAY + &array(table) + "};\n\n#endif\n"
 }
 
