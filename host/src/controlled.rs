@@ -81,7 +81,8 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, 6, Pose = Pose<f64>>>(
         // A last step that would leave a splinter takes it along.
         let length = if t + 1.01 * h >= duration { duration - t } else { h };
         let step = I::step(mechanism, t, length, &motion);
-        let velocity_error = step.error / sensitivity.mass;
+        // What Newton left counts like an error of the scheme: without it, a stage that has not converged would pass.
+        let velocity_error = step.error.max(step.residual) / sensitivity.mass;
         let error =
             (sensitivity.gain * velocity_error / tolerance.force).max(length * velocity_error / tolerance.position);
         // A step whose estimate is not a number is the worst of all.
