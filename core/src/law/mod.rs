@@ -7,5 +7,5 @@ pub mod impact;
 pub mod step;
 
 pub use elastic::{Elastic, Linear, Power, ThreeHalves};
-pub use friction::{Exact, Friction, Frictionless, Regularised};
+pub use friction::{Exact, Friction, Frictionless, Regularised, StaticKinetic};
 pub use impact::{Impact, NormalResponse};

@@ -43,28 +43,7 @@ impl<S: Scalar> Friction<S> for Exact<S> {
 
     #[inline(always)]
     fn add(&self, memory: &[S; 2], rubbing: &Rubbing<S>, contact: &mut Contact<S>) -> [S; 2] {
-        let Rubbing { sliding: [x, y], normal, normal_slope, mass_rate, tangent_share } = *rubbing;
-        let grip = S::from_f64(GRIP) * mass_rate;
-        let trial = [memory[0] - grip * x, memory[1] - grip * y];
-        let trial_squared = trial[0] * trial[0] + trial[1] * trial[1];
-        let limit = self.coefficient * normal;
-        let limit_squared = limit * limit;
-        // The least square keeps the root finite where there is neither load nor trial.
-        let inverse = trial_squared.max_of(limit_squared).max_of(S::from_f64(1e-30)).rsqrt();
-        let slides = |yes: S, no: S| trial_squared.select_gt(limit_squared, yes, no);
-        let share = slides(limit * inverse, S::one());
-        let force = [trial[0] * share, trial[1] * share];
-
-        let direction = [trial[0] * inverse, trial[1] * inverse];
-        let along = grip * share;
-        let turn = slides(tangent_share * along, S::zero());
-        let pull = slides(self.coefficient * normal_slope, S::zero());
-        let shear = -turn * direction[0] * direction[1];
-        contact.force[1] = force[0];
-        contact.force[2] = force[1];
-        contact.impedance[1] = [-pull * direction[0], along - turn * direction[0] * direction[0], shear];
-        contact.impedance[2] = [-pull * direction[1], shear, along - turn * direction[1] * direction[1]];
-        force
+        return_mapping(memory, rubbing, [self.coefficient; 2], contact)
     }
 
     #[inline(always)]
@@ -77,6 +56,39 @@ impl<S: Scalar> Friction<S> for Exact<S> {
         let pick = |i: usize| condition.select_gt(S::zero(), yes[i], no[i]);
         [pick(0), pick(1)]
     }
+}
+
+/// Brings the trial force λ − ρu back into the cone: it holds up to `coefficients[0]` times the normal force and slides
+/// with `coefficients[1]` times it. Adds the tangential part to `contact` and returns the force (N).
+#[inline(always)]
+pub(super) fn return_mapping<S: Scalar>(
+    memory: &[S; 2],
+    rubbing: &Rubbing<S>,
+    [at_rest, sliding]: [S; 2],
+    contact: &mut Contact<S>,
+) -> [S; 2] {
+    let Rubbing { sliding: [x, y], normal, normal_slope, mass_rate, tangent_share } = *rubbing;
+    let grip = S::from_f64(GRIP) * mass_rate;
+    let trial = [memory[0] - grip * x, memory[1] - grip * y];
+    let trial_squared = trial[0] * trial[0] + trial[1] * trial[1];
+    let limit = at_rest * normal;
+    let limit_squared = limit * limit;
+    // The least square keeps the root finite where there is neither load nor trial.
+    let inverse = trial_squared.max_of(limit_squared).max_of(S::from_f64(1e-30)).rsqrt();
+    let slides = |yes: S, no: S| trial_squared.select_gt(limit_squared, yes, no);
+    let share = slides(sliding * normal * inverse, S::one());
+    let force = [trial[0] * share, trial[1] * share];
+
+    let direction = [trial[0] * inverse, trial[1] * inverse];
+    let along = grip * share;
+    let turn = slides(tangent_share * along, S::zero());
+    let pull = slides(sliding * normal_slope, S::zero());
+    let shear = -turn * direction[0] * direction[1];
+    contact.force[1] = force[0];
+    contact.force[2] = force[1];
+    contact.impedance[1] = [-pull * direction[0], along - turn * direction[0] * direction[0], shear];
+    contact.impedance[2] = [-pull * direction[1], shear, along - turn * direction[1] * direction[1]];
+    force
 }
 
 #[cfg(test)]

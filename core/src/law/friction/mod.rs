@@ -2,9 +2,11 @@
 
 mod exact;
 mod regularised;
+mod static_kinetic;
 
 pub use exact::Exact;
 pub use regularised::Regularised;
+pub use static_kinetic::StaticKinetic;
 
 use crate::Scalar;
 

@@ -1,0 +1,140 @@
+//! Stick-slip on a belt: a body on a spring that a belt drags along until it lets go.
+
+use slipfit_core::{
+    SVector,
+    integrator::{Extrapolated, Integrator, Sdirk2},
+    kernel::Kernel,
+    law::{
+        Friction, StaticKinetic,
+        friction::{Contact, Rubbing},
+    },
+    mechanism::{Evaluation, Mechanism},
+};
+
+/// A body of one degree of freedom on a spring and a belt; unit normal force, so that coefficients are forces.
+struct OnBelt {
+    mass: f64,
+    stiffness: f64,
+    belt: f64,
+    friction: StaticKinetic<f64>,
+}
+
+impl Mechanism<f64, 1> for OnBelt {
+    type Pose = f64;
+    type Memory = [f64; 2];
+    type Linearisation = f64;
+
+    fn advanced(&self, pose: &f64, velocity: &SVector<f64, 1>, dt: f64) -> f64 {
+        pose + velocity.x * dt
+    }
+
+    fn moved(&self, pose: &f64, velocity: &SVector<f64, 1>, dt: f64) -> f64 {
+        pose + velocity.x * dt
+    }
+
+    fn shifted(&self, base: &f64, from: &f64, to: &f64, weight: f64) -> f64 {
+        base + (to - from) * weight
+    }
+
+    fn memory_shifted(&self, base: &[f64; 2], from: &[f64; 2], to: &[f64; 2], weight: f64) -> [f64; 2] {
+        StaticKinetic::shifted(base, from, to, weight)
+    }
+
+    fn normalised(&self, pose: &f64) -> f64 {
+        *pose
+    }
+
+    fn fresh(&self) -> [f64; 2] {
+        StaticKinetic::<f64>::fresh()
+    }
+
+    fn selected(&self, condition: f64, yes: (&f64, &[f64; 2]), no: (&f64, &[f64; 2])) -> (f64, [f64; 2]) {
+        let (pose, memory) = if condition > 0.0 { yes } else { no };
+        (*pose, *memory)
+    }
+
+    fn nought(&self, pose: &f64) -> f64 {
+        pose * 0.0
+    }
+
+    fn momentum(&self, velocity: &SVector<f64, 1>) -> SVector<f64, 1> {
+        velocity * self.mass
+    }
+
+    fn velocity(&self, momentum: &SVector<f64, 1>) -> SVector<f64, 1> {
+        momentum / self.mass
+    }
+
+    fn evaluated(
+        &self,
+        _: f64,
+        pose: &f64,
+        memory: &[f64; 2],
+        velocity: &SVector<f64, 1>,
+        a: f64,
+        tangent_share: f64,
+    ) -> Evaluation<f64, [f64; 2], f64, 1> {
+        let mut contact = Contact { force: [0.0; 3], impedance: [[0.0; 3]; 3] };
+        let rubbing = Rubbing {
+            sliding: [velocity.x - self.belt, 0.0],
+            normal: 1.0,
+            normal_slope: 0.0,
+            mass_rate: self.mass / a,
+            tangent_share,
+        };
+        let memory = self.friction.add(memory, &rubbing, &mut contact);
+        Evaluation {
+            force: SVector::<f64, 1>::new(contact.force[1] - self.stiffness * pose),
+            memory,
+            linearisation: self.mass + a * (contact.impedance[1][1] + a * self.stiffness),
+        }
+    }
+
+    fn solve(&self, linearisation: &f64, residual: &SVector<f64, 1>) -> SVector<f64, 1> {
+        residual / *linearisation
+    }
+
+    fn impulse(&self, imbalance: &SVector<f64, 1>) -> f64 {
+        imbalance.x.abs()
+    }
+}
+
+/// The period (s) of the limit cycle, from the instants at which the body lets go, in steps of `h` (s).
+fn period<I: Integrator>(body: OnBelt, h: f64, duration: f64) -> f64 {
+    let belt = body.belt;
+    let kernel = Kernel::<f64, _, I>::new(body, h).unwrap();
+    let mut state = kernel.at_rest(0.0);
+    state.motion.velocity.x = belt;
+    let (mut before, mut turns) = (belt, Vec::new());
+    while kernel.time(state.steps) < duration {
+        kernel.step(&mut state);
+        let v = state.motion.velocity.x;
+        // The body turns back once a period, while it slides: a crossing that is smooth in time.
+        if before > 0.0 && v <= 0.0 {
+            turns.push(kernel.time(state.steps) - h * v / (v - before));
+        }
+        before = v;
+    }
+    let [.., last, end] = turns[..] else { panic!("{turns:?}") };
+    end - last
+}
+
+#[test]
+fn periods_are_the_known_ones() {
+    let textbook = || OnBelt { mass: 1.0, stiffness: 2.0, belt: 0.1, friction: StaticKinetic::new(1.5, 1.0).unwrap() };
+    let slide_sized = || OnBelt {
+        mass: 0.0818,
+        stiffness: 1000.0,
+        belt: 0.01,
+        friction: StaticKinetic::new(0.24075, 0.1605).unwrap(),
+    };
+    for (name, known, found) in [
+        ("textbook, sdirk2", 7.611259, period::<Sdirk2<4>>(textbook(), 2e-4, 40.0)),
+        ("textbook, extrapolated", 7.611259, period::<Extrapolated<2, 4>>(textbook(), 2e-4, 40.0)),
+        ("slide-sized, sdirk2", 0.059749, period::<Sdirk2<4>>(slide_sized(), 2e-6, 0.4)),
+        ("slide-sized, extrapolated", 0.059749, period::<Extrapolated<2, 4>>(slide_sized(), 2e-6, 0.4)),
+    ] {
+        eprintln!("{name}: {found:.6} s, known {known} s");
+        assert!((found / known - 1.0).abs() <= 1e-3, "{name}: {found} {known}");
+    }
+}
