@@ -4,7 +4,7 @@ use slipfit_core::{
     Vector3,
     integrator::{Extrapolated, ImplicitEuler, Integrator, Sdirk2},
     kernel::{Kernel, StateOf},
-    law::{Exact, Friction, Impact, Regularised, ThreeHalves},
+    law::{Exact, Friction, Regularised, ThreeHalves},
     menu::SlideData,
     pose::Pose,
     slide::{ABSENT, Slide},
@@ -14,12 +14,6 @@ use slipfit_problems::cd_rom;
 type SlideWith<F> = Slide<f64, ThreeHalves<f64>, F>;
 
 const COEFFICIENT: f64 = 0.3;
-
-fn slide<F: Friction<f64>>(data: &SlideData<f64>, friction: F) -> SlideWith<F> {
-    let elastic = ThreeHalves::new(data.contact.stiffness).unwrap();
-    let contact = Impact::new(elastic, data.contact.damping, data.contact.depth).unwrap();
-    Slide::new(data.body, contact, friction, data.drive).unwrap()
-}
 
 /// The slide with free gaps on its sides, hanging on its rails alone, pushed by a steady `share` of the friction μ·m·g.
 fn loaded(share: f64) -> SlideData<f64> {
@@ -55,12 +49,13 @@ fn settled<I: Integrator, F: Friction<f64>>(
 }
 
 fn holds<I: Integrator>(step: f64) {
-    let (state, changed) = settled::<I, _>(slide(&loaded(0.99), Exact::new(COEFFICIENT).unwrap()), step, 10.0);
+    let (state, changed) =
+        settled::<I, _>(cd_rom::with_friction(&loaded(0.99), Exact::new(COEFFICIENT).unwrap()), step, 10.0);
     let (z, v) = (state.motion.pose.displacement_w.z, state.motion.velocity.z);
     eprintln!("0.99: last change at {:.3} s, z {z:e} m, v {v:e} m/s", f64::from(changed) * step);
     assert!(f64::from(changed) * step < 9.0, "still moving: {:?}", state.motion.velocity);
     assert!(v.abs() < 1e-12 && z.abs() < 2e-6, "{z} {v}");
-    let (state, _) = settled::<I, _>(slide(&loaded(1.01), Exact::new(COEFFICIENT).unwrap()), step, 0.5);
+    let (state, _) = settled::<I, _>(cd_rom::with_friction(&loaded(1.01), Exact::new(COEFFICIENT).unwrap()), step, 0.5);
     // 1 % of the load accelerates the slide by 0.03 m/s².
     let v = state.motion.velocity.z;
     assert!(v > 5e-3, "{v}");
@@ -77,7 +72,7 @@ fn exact_friction_holds_below_breakaway_without_any_change_and_moves_above() {
 fn regularised_friction_creeps_as_its_law_says() {
     for share in [0.1, 0.5, 0.9, 0.99] {
         let law = Regularised::new(COEFFICIENT, cd_rom::STICK_BAND).unwrap();
-        let (state, _) = settled::<Sdirk2<4>, _>(slide(&loaded(share), law), 1e-3, 0.5);
+        let (state, _) = settled::<Sdirk2<4>, _>(cd_rom::with_friction(&loaded(share), law), 1e-3, 0.5);
         let u = state.motion.velocity.z / cd_rom::STICK_BAND;
         // As it moves off, its weight leaves the middle of its pins and it tilts by a few µrad: gravity helps by that much.
         let tilt = 2.0 * state.motion.pose.orientation.v.x;
@@ -104,7 +99,8 @@ fn locks(coefficient: f64) -> bool {
     data.drive.ramp_start = 0.0;
     data.drive.ramp_end = 0.05;
     data.drive.speed = 0.02;
-    let (state, _) = settled::<Sdirk2<4>, _>(slide(&data, Exact::new(coefficient).unwrap()), 1e-4, 0.15);
+    let (state, _) =
+        settled::<Sdirk2<4>, _>(cd_rom::with_friction(&data, Exact::new(coefficient).unwrap()), 1e-4, 0.15);
     state.motion.velocity.z < 1e-3
 }
 

@@ -1,6 +1,6 @@
 //! One number for many bits.
 
-use slipfit_problems::cd_rom::CdRomState;
+use slipfit_core::{integrator::Motion, pose::Pose, slide::SLOTS};
 
 /// FNV-1a, 64 bits wide.
 #[derive(Clone, Copy, Debug)]
@@ -15,12 +15,31 @@ impl Fingerprint {
         }
     }
 
-    /// Adds every number of `state`.
-    pub fn add_state(&mut self, state: &CdRomState<f32>) {
-        let pose = &state.motion.pose;
+    /// Adds every number of `motion`, the remembered friction forces too.
+    pub fn add_motion<R: Remembered>(&mut self, motion: &Motion<f32, Pose<f32>, [R; SLOTS], 6>) {
+        let pose = &motion.pose;
         let orientation = &pose.orientation;
         let numbers = pose.displacement_w.iter().chain([&orientation.w]).chain(orientation.v.iter());
-        numbers.chain(state.motion.velocity.iter()).for_each(|number| self.add(*number));
+        numbers.chain(motion.velocity.iter()).for_each(|number| self.add(*number));
+        motion.memory.iter().flat_map(R::numbers).for_each(|number| self.add(*number));
+    }
+}
+
+/// What a friction law remembers, as numbers.
+pub trait Remembered {
+    /// The numbers.
+    fn numbers(&self) -> &[f32];
+}
+
+impl Remembered for () {
+    fn numbers(&self) -> &[f32] {
+        &[]
+    }
+}
+
+impl Remembered for [f32; 2] {
+    fn numbers(&self) -> &[f32] {
+        self
     }
 }
 

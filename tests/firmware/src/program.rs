@@ -10,21 +10,32 @@ use heapless::String;
 use slipfit_core::{
     Scalar,
     integrator::{ImplicitEuler, Integrator},
-    kernel::{Kernel, Report},
+    kernel::{Kernel, Report, StateOf},
+    law::{Exact, Friction, Regularised, ThreeHalves},
     pose::Pose,
+    slide::Slide,
     table::{Lookup, Table},
 };
-use slipfit_problems::cd_rom::{self, CdRomSlide, CdRomState};
+use slipfit_problems::cd_rom::{self, STICK_BAND};
 
-use crate::{count::Count, fingerprint::Fingerprint};
+use crate::{
+    count::Count,
+    fingerprint::{Fingerprint, Remembered},
+};
 
 /// The scheme that predicts.
 type Scheme = ImplicitEuler<4>;
 
-type SlideKernel = Kernel<f32, CdRomSlide<f32>, Scheme>;
+/// The slide with friction law `F`, its kernel and state.
+type SlideWith<F> = Slide<f32, ThreeHalves<f32>, F>;
+type SlideKernel<F> = Kernel<f32, SlideWith<F>, Scheme>;
+type SlideState<F> = StateOf<f32, SlideWith<F>, 6>;
 
 /// Tolerance levels, from loose to tight.
 const LEVELS: [f32; 7] = [-3.0, 0.0, 1.0, 2.5, 3.43, 5.0, 6.0];
+
+/// Coefficient of friction.
+const COEFFICIENT: f32 = 0.3;
 
 /// Step (s).
 const STEP: f32 = 1e-3;
@@ -63,29 +74,45 @@ pub fn run(machine: &mut impl Machine, flash: &[u8]) {
         Err(error) => print(machine, format_args!("no table: {error}")),
     }
 
+    let regularised = Regularised::new(COEFFICIENT, STICK_BAND as f32).expect("the law is in bounds");
+    let exact = Exact::new(COEFFICIENT).expect("the law is in bounds");
+    all_levels(machine, "smoothed friction", regularised, table.as_ref().ok());
+    all_levels(machine, "exact friction", exact, None);
+    print(machine, format_args!("done"));
+}
+
+/// Runs the opening at every level with one friction law.
+fn all_levels<F: Friction<f32>>(machine: &mut impl Machine, law: &str, friction: F, table: Option<&Table<'_>>)
+where
+    F::Memory: Remembered,
+{
+    print(machine, format_args!("\n== {law}"));
     let mut costs = Costs::default();
     for n in LEVELS {
-        open(machine, n, table.as_ref().ok(), &mut costs);
+        open(machine, n, friction, table, &mut costs);
     }
 
     print(machine, format_args!(""));
     // A machine that counts starts its lines so that they can be left out of a comparison.
     if let Some(range) = costs.step.range() {
-        print(machine, format_args!("instructions of a step: {range}"));
+        print(machine, format_args!("instructions of a step, {law}: {range}"));
     }
     if let Some(range) = costs.lookup.range() {
         print(machine, format_args!("instructions of a lookup: {range}"));
     }
-    let (kernel, mut state) = at_rest(0.0);
+    let (kernel, mut state) = at_rest(0.0, friction);
     if let Some(bytes) = machine.stack(|| _ = black_box(step(&kernel, &mut state))) {
-        print(machine, format_args!("stack of a step: {bytes} bytes"));
+        print(machine, format_args!("stack of a step, {law}: {bytes} bytes"));
     }
-    print(machine, format_args!("done"));
+    print(machine, format_args!("parameters {} bytes, state {} bytes", size_of_val(&kernel), size_of_val(&state)));
 }
 
 /// Runs the opening at tolerance level `n`.
-fn open(machine: &mut impl Machine, n: f32, table: Option<&Table<'_>>, costs: &mut Costs) {
-    let (kernel, mut state) = at_rest(n);
+fn open<F: Friction<f32>>(machine: &mut impl Machine, n: f32, friction: F, table: Option<&Table<'_>>, costs: &mut Costs)
+where
+    F::Memory: Remembered,
+{
+    let (kernel, mut state) = at_rest(n, friction);
     let (mut states, mut lookups) = (Fingerprint::default(), Fingerprint::default());
     let (mut clamped, mut worst_residual) = (0, 0.0);
     print(machine, format_args!("\nn = {n}\n t (ms)  kernel (N)   table (N)"));
@@ -93,7 +120,7 @@ fn open(machine: &mut impl Machine, n: f32, table: Option<&Table<'_>>, costs: &m
         let mut residual = 0.0;
         costs.step.add(machine.instructions(|| residual = step(&kernel, &mut state).residual));
         worst_residual = residual.max_of(worst_residual);
-        states.add_state(&state);
+        states.add_motion(&state.motion);
         let t = kernel.time(state.steps);
         let force = kernel.mechanism().drive().force(t, state.motion.velocity[2]);
 
@@ -122,15 +149,15 @@ fn open(machine: &mut impl Machine, n: f32, table: Option<&Table<'_>>, costs: &m
 
 /// The slide's kernel at tolerance level `n`, hidden from the optimiser so that its step is compiled for any slide, and
 /// its first state.
-fn at_rest(n: f32) -> (SlideKernel, CdRomState<f32>) {
-    let kernel = SlideKernel::new(cd_rom::slide(n), STEP).expect("the step is in bounds");
-    let kernel = black_box(kernel);
+fn at_rest<F: Friction<f32>>(n: f32, friction: F) -> (SlideKernel<F>, SlideState<F>) {
+    let slide = cd_rom::with_friction(&cd_rom::data(n), friction);
+    let kernel = black_box(SlideKernel::new(slide, STEP).expect("the step is in bounds"));
     (kernel, kernel.at_rest(Pose::nominal()))
 }
 
-/// The step as a controller calls it, once in the image.
+/// The step as a controller calls it, once a law in the image.
 #[inline(never)]
-fn step(kernel: &SlideKernel, state: &mut CdRomState<f32>) -> Report<f32> {
+fn step<F: Friction<f32>>(kernel: &SlideKernel<F>, state: &mut SlideState<F>) -> Report<f32> {
     kernel.step(state)
 }
 

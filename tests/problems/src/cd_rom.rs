@@ -16,20 +16,16 @@
 //! ```
 
 use slipfit_core::{
-    Scalar, Vector3,
+    ParameterError, Scalar, Vector3,
     clearance::GapStatistics,
     drive::Drive,
-    kernel::StateOf,
-    law::{Impact, Regularised, ThreeHalves},
+    law::{Friction, Impact, Regularised, ThreeHalves},
     menu::{ContactData, FrictionData, SlideData},
     slide::{Body, CONTACTS, Slide, box_inertia},
 };
 
 /// The slide's type: progressive contact with exponent 3/2, smoothed friction.
 pub type CdRomSlide<S> = Slide<S, ThreeHalves<S>, Regularised<S>>;
-
-/// State of a kernel that steps it.
-pub type CdRomState<S> = StateOf<S, CdRomSlide<S>, 6>;
 
 /// Table 2: mean and standard deviation (mm) of the left, right, rail and wall gap of the pins left back, right back,
 /// left front, right front.
@@ -101,18 +97,30 @@ pub fn slide<S: Scalar + PartialOrd>(n: S) -> CdRomSlide<S> {
 /// A slide of this type from `data`.
 ///
 /// # Panics
-/// If the data is out of bounds, asks for another exponent or for no friction.
+/// If the data is out of bounds, asks for another exponent or for another friction law.
 pub fn from_data<S: Scalar + PartialOrd>(data: &SlideData<S>) -> CdRomSlide<S> {
-    let ContactData { stiffness, damping, depth, .. } = data.contact;
     let FrictionData::Regularised { coefficient, stick_band } = data.friction else {
         panic!("the CD-ROM slide has smoothed friction")
     };
-    let built = ThreeHalves::new(stiffness)
-        .and_then(|elastic| Impact::new(elastic, damping, depth))
-        .and_then(|contact| Ok((contact, Regularised::new(coefficient, stick_band)?)))
-        .and_then(|(contact, friction)| Slide::new(data.body, contact, friction, data.drive));
-    match built {
-        Ok(slide) => slide,
+    with_friction(data, built(Regularised::new(coefficient, stick_band)))
+}
+
+/// A slide from `data` with another friction law.
+///
+/// # Panics
+/// If the data is out of bounds or asks for another exponent.
+pub fn with_friction<S: Scalar + PartialOrd, F: Friction<S>>(
+    data: &SlideData<S>,
+    friction: F,
+) -> Slide<S, ThreeHalves<S>, F> {
+    let ContactData { stiffness, damping, depth, .. } = data.contact;
+    let contact = built(Impact::new(built(ThreeHalves::new(stiffness)), damping, depth));
+    built(Slide::new(data.body, contact, friction, data.drive))
+}
+
+fn built<T, S>(result: Result<T, ParameterError<S>>) -> T {
+    match result {
+        Ok(built) => built,
         Err(error) => panic!("{} out of bounds", error.parameter),
     }
 }
