@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use slipfit_core::{
     ParameterError,
-    integrator::{ImplicitEuler, Integrator, Sdirk2},
+    integrator::{Extrapolated, ImplicitEuler, Integrator, Sdirk2},
     kernel::Kernel,
     law::{Elastic, Friction},
     menu::SlideVisitor,
@@ -35,7 +35,8 @@ impl SlideVisitor<f32> for Stepped {
 
     fn visit<E: Elastic<f32>, F: Friction<f32>>(self, slide: Slide<f32, E, F>) -> Self::Output {
         step::<E, F, ImplicitEuler<4>>(slide)?;
-        step::<E, F, Sdirk2<3>>(slide)
+        step::<E, F, Sdirk2<3>>(slide)?;
+        step::<E, F, Extrapolated<2, 4>>(slide)
     }
 }
 
