@@ -69,7 +69,11 @@ fn over_n(sweep: &Sweep, y_label: &str, value: impl Fn(&Outcome) -> Option<f64>)
         sweep.levels.iter().map(|level| value(&level.outcome).map(|value| (level.n, value))).collect();
     let series = values
         .split(Option::is_none)
-        .map(|part| Series { label: String::new(), look: Look::Guide, points: part.iter().flatten().copied().collect() })
+        .map(|part| Series {
+            label: String::new(),
+            look: Look::Guide,
+            points: part.iter().flatten().copied().collect(),
+        })
         .collect();
     let marks = |(verdict, shape)| Markers {
         label: word(verdict).to_owned(),

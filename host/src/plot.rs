@@ -271,9 +271,7 @@ fn draw_mark(root: &Area, shape: Shape, (x, y): (i32, i32), r: i32, colour: RGBC
             let r = r * 5 / 4;
             root.draw(&Polygon::new([(x - r, y), (x, y - r), (x + r, y), (x, y + r)], filled))
         }
-        Shape::Cross => {
-            stroke((x - r, y - r), (x + r, y + r)).and_then(|()| stroke((x - r, y + r), (x + r, y - r)))
-        }
+        Shape::Cross => stroke((x - r, y - r), (x + r, y + r)).and_then(|()| stroke((x - r, y + r), (x + r, y - r))),
         Shape::Plus => stroke((x - r, y), (x + r, y)).and_then(|()| stroke((x, y - r), (x, y + r))),
     }
     .map_err(backend)
@@ -525,7 +523,8 @@ mod tests {
 
     #[test]
     fn powers_of_ten() {
-        let line = |look, label: &str, points: &[(f64, f64)]| Series { label: label.into(), look, points: points.into() };
+        let line =
+            |look, label: &str, points: &[(f64, f64)]| Series { label: label.into(), look, points: points.into() };
         let mut log = chart(&[], |_, _| 0.0);
         log.scale = Scale::Log;
         log.panels[0].note = "blown up".to_owned();
