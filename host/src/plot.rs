@@ -169,7 +169,10 @@ fn draw_panel(root: &Area, area: &Area, panel: &Panel, x: &Axis, y: &Axis) -> Re
     let plot = chart.plotting_area();
     let tolerance = INVISIBLE * (y.high - y.low) * f64::from(FINE) / f64::from(plot.dim_in_pixel().1);
     let line = |series: &Series, coarse: usize, style: ShapeStyle| {
-        let points = thinned(&series.points, tolerance * coarse as f64, POINTS / coarse);
+        let points = match x.scale {
+            Scale::Linear => thinned(&series.points, tolerance * coarse as f64, POINTS / coarse),
+            Scale::Log => series.points.clone(),
+        };
         plot.draw(&PathElement::new(points, style)).map_err(backend)
     };
     let levels: Vec<&Series> = panel.series.iter().filter(|series| series.level().is_some()).collect();

@@ -35,7 +35,7 @@ pub fn work_precision(
     line_chart(&Chart {
         title: scene.title.clone(),
         subtitle: format!(
-            "error against run time, n = {}: a mark for each step; thick in double precision, thin in single",
+            "error against run time, n = {}: a mark for each setting; thick f64, thin f32; grey: how well the truth is known",
             typeset(&level(n))
         ),
         x_label: "run time of the integration (ms)".to_owned(),

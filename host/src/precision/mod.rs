@@ -20,8 +20,8 @@ use crate::{
 
 /// Interval of the samples that are compared (s).
 pub const EVERY: f64 = 1e-3;
-/// Step (s) of the run that is taken for the truth.
-const TRUE_STEP: f64 = 2e-6;
+/// Step (s) of the finest run.
+const FINEST_STEP: f64 = 2e-6;
 
 /// A stretch of motion to be simulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub const STROKE: Problem = Problem { name: "stroke", duration: 1.5 };
 pub struct Truth {
     /// Drive force (N) every millisecond.
     pub force: Vec<f64>,
-    /// How far two other fine runs, one of a coarser step and one of another scheme, are off: errors below are not known.
+    /// How far two fine runs, the finest of the same scheme and one of another, are off: errors below are not known.
     pub floor: Deviation,
 }
 
@@ -73,7 +73,9 @@ pub struct Point {
     pub blew_up_at_s: Option<f64>,
 }
 
-/// The far finer run of a problem, and how well it is known.
+/// The motion that far finer runs tend to, and how well it is known.
+///
+/// Two steps of a second-order scheme are extrapolated to none.
 ///
 /// # Errors
 /// See [`SimulateError`].
@@ -81,10 +83,12 @@ pub fn truth(scene: &Scene, gaps: &[f64; CONTACTS], problem: Problem) -> Result<
     let force = |integrator, step| {
         fixed_step(scene, gaps, problem.duration, integrator, step, ScalarKind::F64).map(|run| run.trajectory.force)
     };
-    let best = force(IntegratorKind::Extrapolated, TRUE_STEP)?;
-    let coarser = Deviation::between(&force(IntegratorKind::Extrapolated, 2.0 * TRUE_STEP)?, &best);
-    let other = Deviation::between(&force(IntegratorKind::Sdirk2, TRUE_STEP)?, &best);
-    Ok(Truth { force: best, floor: coarser.worst(other) })
+    let fine = force(IntegratorKind::Extrapolated, 2.0 * FINEST_STEP)?;
+    let finest = force(IntegratorKind::Extrapolated, FINEST_STEP)?;
+    let limit: Vec<f64> = finest.iter().zip(&fine).map(|(finest, fine)| finest + (finest - fine) / 3.0).collect();
+    let other = force(IntegratorKind::Sdirk2, FINEST_STEP)?;
+    let floor = Deviation::between(&finest, &limit).worst(Deviation::between(&other, &limit));
+    Ok(Truth { force: limit, floor })
 }
 
 /// Runs `solver` at `setting` again and again until the least run time can be trusted.

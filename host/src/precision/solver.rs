@@ -14,7 +14,7 @@ use crate::{
 /// Steps of all fixed-step schemes (s).
 const STEPS: [f64; 8] = [1e-3, 500e-6, 250e-6, 200e-6, 100e-6, 50e-6, 25e-6, 10e-6];
 /// Further steps of the explicit ones (s), which are cheap and stable only when they resolve the stick band.
-const FINER: [f64; 5] = [5e-6, 2e-6, 1e-6, 0.5e-6, 0.25e-6];
+const FINER: [f64; 4] = [5e-6, 2e-6, 1e-6, 0.5e-6];
 
 /// What a solver's setting is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -1,0 +1,132 @@
+//! Error against run time of the kernel's integrators and of diffsol's stiff solvers, in one run on one thread.
+//!
+//! All solve the paper's slide at n = 2.5, in f64 with the smoothed friction law, and give the drive force every
+//! millisecond; errors are against the reference runs. diffsol gets the kernel's own forces as its right-hand side, a
+//! range of tolerances and two Jacobians, of which the best found counts.
+//!
+//! `cargo bench --bench work_precision` prints each solver's quickest run within 1, 0.1 and 0.01 %, `-- --all` every run.
+
+mod peer;
+
+use std::time::{Duration, Instant};
+
+use slipfit::scheme::{IntegratorKind, IntegratorVisitor};
+use slipfit_core::{integrator::Integrator, kernel::Kernel, pose::Pose};
+use slipfit_problems::cd_rom::{self, CdRomSlide};
+use slipfit_tests::known_runs::{Reference, references};
+
+/// Errors (% of the peak force, greatest over the whole run) at which run times are compared.
+const WITHIN: [f64; 3] = [1.0, 0.1, 0.01];
+/// Steps of the kernel (s).
+const STEPS: [f64; 11] = [1e-3, 500e-6, 250e-6, 200e-6, 100e-6, 50e-6, 25e-6, 10e-6, 5e-6, 2e-6, 1e-6];
+
+/// One solver at one setting: a work that gives the drive force (N) at each millisecond, or nothing if it fails.
+struct Entry {
+    solver: &'static str,
+    setting: String,
+    work: Box<dyn Fn() -> Option<Vec<f64>>>,
+}
+
+/// What an entry achieved.
+struct Finding {
+    solver: &'static str,
+    setting: String,
+    max_percent: f64,
+    time: Duration,
+}
+
+fn main() {
+    // Cargo passes --bench.
+    let all = std::env::args().any(|argument| argument == "--all");
+    for name in ["slide-opening-n2.5", "slide-stroke-n2.5"] {
+        let found = references().into_iter().find(|reference| reference.name == name);
+        compare(&found.unwrap_or_else(|| panic!("{name} is a reference run")), all);
+    }
+}
+
+fn compare(reference: &Reference, all: bool) {
+    let slide = cd_rom::slide(reference.n);
+    let mut entries = kernels(&slide, reference.duration);
+    entries.extend(peer::entries(&slide, reference.duration));
+    let findings: Vec<Finding> = entries.iter().filter_map(|entry| measure(entry, reference)).collect();
+    println!("\n{}, {} ms", reference.name, reference.duration * 1e3);
+    if all {
+        for finding in &findings {
+            print(finding, "");
+        }
+    }
+    let mut solvers: Vec<&str> = findings.iter().map(|finding| finding.solver).collect();
+    solvers.dedup();
+    for within in WITHIN {
+        println!("\n  within {within} %{:35}max error, %   time, ms   of diffsol's BDF", "");
+        let quickest = |solver: &str| {
+            let able = findings.iter().filter(|found| found.solver == solver && found.max_percent <= within);
+            able.min_by_key(|found| found.time)
+        };
+        let bdf = quickest(peer::BDF).map(|found| found.time.as_secs_f64());
+        let mut best: Vec<&Finding> = solvers.iter().filter_map(|solver| quickest(solver)).collect();
+        best.sort_by_key(|found| found.time);
+        for found in best {
+            print(found, &bdf.map_or_else(String::new, |bdf| format!("{:10.2}", found.time.as_secs_f64() / bdf)));
+        }
+    }
+}
+
+fn print(Finding { solver, setting, max_percent, time }: &Finding, ratio: &str) {
+    let milliseconds = time.as_secs_f64() * 1e3;
+    println!("  {solver:24}{setting:26}{max_percent:10.4}{milliseconds:11.3}{ratio}");
+}
+
+/// The kernel with every integrator at every step.
+fn kernels(slide: &CdRomSlide<f64>, duration: f64) -> Vec<Entry> {
+    let every = |kind: IntegratorKind| STEPS.map(|step| kind.visit(KernelEntry { slide: *slide, duration, step }));
+    IntegratorKind::ALL.into_iter().flat_map(every).collect()
+}
+
+struct KernelEntry {
+    slide: CdRomSlide<f64>,
+    duration: f64,
+    step: f64,
+}
+
+impl IntegratorVisitor for KernelEntry {
+    type Output = Entry;
+
+    fn visit<I: Integrator>(self) -> Entry {
+        let Self { slide, duration, step } = self;
+        let work = move || {
+            let kernel = Kernel::<f64, _, I>::new(slide, step).ok()?;
+            let mut state = kernel.at_rest(Pose::nominal());
+            let per_sample = (1e-3 / step).round() as u32;
+            let mut force = vec![slide.drive().force(0.0, 0.0)];
+            for _ in 0..(duration * 1e3).round() as u32 {
+                for _ in 0..per_sample {
+                    if !kernel.step(&mut state).residual.is_finite() {
+                        return None;
+                    }
+                }
+                force.push(slide.drive().force(kernel.time(state.steps), state.motion.velocity.z));
+            }
+            Some(force)
+        };
+        Entry { solver: I::NAME, setting: format!("{} µs", (step * 1e6).round()), work: Box::new(work) }
+    }
+}
+
+/// The error of an entry and its least time of at least 5 runs and 30 ms, unless these take more than half a second.
+fn measure(entry: &Entry, reference: &Reference) -> Option<Finding> {
+    let begin = Instant::now();
+    let mut time = Duration::MAX;
+    let mut count = 0;
+    loop {
+        let start = Instant::now();
+        let force = (entry.work)()?;
+        time = time.min(start.elapsed());
+        count += 1;
+        let spent = begin.elapsed();
+        if spent >= Duration::from_millis(500) || (count >= 5 && spent >= Duration::from_millis(30)) {
+            let max_percent = reference.errors(&force).max;
+            return Some(Finding { solver: entry.solver, setting: entry.setting.clone(), max_percent, time });
+        }
+    }
+}
