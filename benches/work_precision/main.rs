@@ -1,15 +1,17 @@
-//! Error against run time of the kernel's integrators and of diffsol's stiff solvers, in one run on one thread.
+//! Error against run time of the kernel's integrators and of general stiff solvers, in one run on one thread.
 //!
 //! All solve the paper's slide at n = 2.5, in f64 with the smoothed friction law, and give the drive force every
-//! millisecond; errors are against the reference runs. diffsol gets the kernel's own forces as its right-hand side, a
-//! range of tolerances and two Jacobians, of which the best found counts.
+//! millisecond; errors are against the reference runs. diffsol and, where it is installed, SUNDIALS
+//! CVODE get the kernel's own forces as their right-hand side and a range of tolerances, of which the best found counts.
 //!
 //! `cargo bench --bench work_precision` prints each solver's quickest run within 1, 0.1 and 0.01 %, `-- --all` every run.
 
-mod peer;
+mod cvode_peer;
+mod diffsol_peer;
 
 use std::time::{Duration, Instant};
 
+use cvode_peer::Cvode;
 use slipfit::scheme::{IntegratorKind, IntegratorVisitor};
 use slipfit_core::{integrator::Integrator, kernel::Kernel, pose::Pose};
 use slipfit_problems::cd_rom::{self, CdRomSlide};
@@ -20,11 +22,17 @@ const WITHIN: [f64; 3] = [1.0, 0.1, 0.01];
 /// Steps of the kernel (s).
 const STEPS: [f64; 11] = [1e-3, 500e-6, 250e-6, 200e-6, 100e-6, 50e-6, 25e-6, 10e-6, 5e-6, 2e-6, 1e-6];
 
-/// One solver at one setting: a work that gives the drive force (N) at each millisecond, or nothing if it fails.
+/// One solver at one setting: work that is done, or not if the solver gives up.
 struct Entry {
     solver: &'static str,
     setting: String,
-    work: Box<dyn Fn() -> Option<Vec<f64>>>,
+    work: Box<dyn Fn() -> Option<Achieved>>,
+}
+
+/// The drive force (N) at every millisecond from 0 on, and the time that the integration alone took.
+struct Achieved {
+    force: Vec<f64>,
+    time: Duration,
 }
 
 /// What an entry achieved.
@@ -35,19 +43,54 @@ struct Finding {
     time: Duration,
 }
 
-fn main() {
-    // Cargo passes --bench.
-    let all = std::env::args().any(|argument| argument == "--all");
-    for name in ["slide-opening-n2.5", "slide-stroke-n2.5"] {
-        let found = references().into_iter().find(|reference| reference.name == name);
-        compare(&found.unwrap_or_else(|| panic!("{name} is a reference run")), all);
+/// Tolerances of the peers.
+#[derive(Clone, Copy)]
+struct Tolerances {
+    /// Relative.
+    relative: f64,
+    /// Absolute, of velocities (m/s, rad/s).
+    absolute: f64,
+    /// Absolute tolerances of poses over those of velocities (s).
+    proportion: f64,
+}
+
+impl Tolerances {
+    /// Those tried.
+    fn all() -> impl Iterator<Item = Self> {
+        let relative = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+        let absolute = [1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8];
+        let pairs = relative.into_iter().flat_map(move |r| absolute.map(|a| (r, a)));
+        pairs.flat_map(|(relative, absolute)| {
+            [1e-2, 1e-3, 1e-4].map(|proportion| Self { relative, absolute, proportion })
+        })
     }
 }
 
-fn compare(reference: &Reference, all: bool) {
+impl std::fmt::Display for Tolerances {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.0e} {:.0e} {:.0e}", self.relative, self.absolute, self.proportion)
+    }
+}
+
+fn main() {
+    // Cargo passes --bench.
+    let all = std::env::args().any(|argument| argument == "--all");
+    let cvode = Cvode::built();
+    if let Err(why) = &cvode {
+        println!("without SUNDIALS CVODE: {why}");
+    }
+    for name in ["slide-opening-n2.5", "slide-stroke-n2.5"] {
+        let found = references().into_iter().find(|reference| reference.name == name);
+        compare(&found.unwrap_or_else(|| panic!("{name} is a reference run")), cvode.as_ref().ok(), all);
+    }
+}
+
+fn compare(reference: &Reference, cvode: Option<&Cvode>, all: bool) {
     let slide = cd_rom::slide(reference.n);
-    let mut entries = kernels(&slide, reference.duration);
-    entries.extend(peer::entries(&slide, reference.duration));
+    let milliseconds = (reference.duration * 1e3).round() as u32;
+    let mut entries = kernels(&slide, milliseconds);
+    entries.extend(diffsol_peer::entries(&slide, milliseconds));
+    entries.extend(cvode.map(|cvode| cvode.entries(milliseconds)).into_iter().flatten());
     let findings: Vec<Finding> = entries.iter().filter_map(|entry| measure(entry, reference)).collect();
     println!("\n{}, {} ms", reference.name, reference.duration * 1e3);
     if all {
@@ -63,7 +106,7 @@ fn compare(reference: &Reference, all: bool) {
             let able = findings.iter().filter(|found| found.solver == solver && found.max_percent <= within);
             able.min_by_key(|found| found.time)
         };
-        let bdf = quickest(peer::BDF).map(|found| found.time.as_secs_f64());
+        let bdf = quickest(diffsol_peer::BDF).map(|found| found.time.as_secs_f64());
         let mut best: Vec<&Finding> = solvers.iter().filter_map(|solver| quickest(solver)).collect();
         best.sort_by_key(|found| found.time);
         for found in best {
@@ -78,14 +121,14 @@ fn print(Finding { solver, setting, max_percent, time }: &Finding, ratio: &str) 
 }
 
 /// The kernel with every integrator at every step.
-fn kernels(slide: &CdRomSlide<f64>, duration: f64) -> Vec<Entry> {
-    let every = |kind: IntegratorKind| STEPS.map(|step| kind.visit(KernelEntry { slide: *slide, duration, step }));
+fn kernels(slide: &CdRomSlide<f64>, milliseconds: u32) -> Vec<Entry> {
+    let every = |kind: IntegratorKind| STEPS.map(|step| kind.visit(KernelEntry { slide: *slide, milliseconds, step }));
     IntegratorKind::ALL.into_iter().flat_map(every).collect()
 }
 
 struct KernelEntry {
     slide: CdRomSlide<f64>,
-    duration: f64,
+    milliseconds: u32,
     step: f64,
 }
 
@@ -93,13 +136,14 @@ impl IntegratorVisitor for KernelEntry {
     type Output = Entry;
 
     fn visit<I: Integrator>(self) -> Entry {
-        let Self { slide, duration, step } = self;
+        let Self { slide, milliseconds, step } = self;
         let work = move || {
             let kernel = Kernel::<f64, _, I>::new(slide, step).ok()?;
+            let start = Instant::now();
             let mut state = kernel.at_rest(Pose::nominal());
             let per_sample = (1e-3 / step).round() as u32;
             let mut force = vec![slide.drive().force(0.0, 0.0)];
-            for _ in 0..(duration * 1e3).round() as u32 {
+            for _ in 0..milliseconds {
                 for _ in 0..per_sample {
                     if !kernel.step(&mut state).residual.is_finite() {
                         return None;
@@ -107,7 +151,7 @@ impl IntegratorVisitor for KernelEntry {
                 }
                 force.push(slide.drive().force(kernel.time(state.steps), state.motion.velocity.z));
             }
-            Some(force)
+            Some(Achieved { force, time: start.elapsed() })
         };
         Entry { solver: I::NAME, setting: format!("{} µs", (step * 1e6).round()), work: Box::new(work) }
     }
@@ -119,13 +163,12 @@ fn measure(entry: &Entry, reference: &Reference) -> Option<Finding> {
     let mut time = Duration::MAX;
     let mut count = 0;
     loop {
-        let start = Instant::now();
-        let force = (entry.work)()?;
-        time = time.min(start.elapsed());
+        let achieved = (entry.work)()?;
+        time = time.min(achieved.time);
         count += 1;
         let spent = begin.elapsed();
         if spent >= Duration::from_millis(500) || (count >= 5 && spent >= Duration::from_millis(30)) {
-            let max_percent = reference.errors(&force).max;
+            let max_percent = reference.errors(&achieved.force).max;
             return Some(Finding { solver: entry.solver, setting: entry.setting.clone(), max_percent, time });
         }
     }

@@ -61,7 +61,7 @@ impl Arguments {
         for path in [&self.csv, &self.plot].into_iter().flatten() {
             files::check_writable(path).map_err(refused)?;
         }
-        let (problems, points) = study(&scene, self.n)?;
+        let Study { problems, points } = study(&scene, self.n)?;
         if let Some(path) = &self.csv {
             files::write(path, &precision_csv(&points)?)?;
         }
@@ -79,8 +79,14 @@ impl Arguments {
     }
 }
 
+/// All that was measured.
+struct Study {
+    problems: Vec<(Problem, Truth)>,
+    points: Vec<Point>,
+}
+
 /// One run after the other, so that they do not disturb each other's time.
-fn study(scene: &Scene, n: f64) -> Result<(Vec<(Problem, Truth)>, Vec<Point>), Failure> {
+fn study(scene: &Scene, n: f64) -> Result<Study, Failure> {
     let gaps = scene.gaps_at(&[n; CONTACTS]);
     let solvers = solvers(scene);
     let settings: usize = solvers.iter().map(|solver| solver.settings.len()).sum();
@@ -100,7 +106,7 @@ fn study(scene: &Scene, n: f64) -> Result<(Vec<(Problem, Truth)>, Vec<Point>), F
         problems.push((problem, truth));
     }
     bar.finish_and_clear();
-    Ok((problems, points))
+    Ok(Study { problems, points })
 }
 
 fn describe(scene: &Scene, n: f64, problems: &[(Problem, Truth)], points: &[Point]) -> String {
