@@ -6,6 +6,7 @@
 use std::path::PathBuf;
 
 use serde::Deserialize;
+use slipfit::deviation::Deviation;
 
 /// A reference run and what it was run with.
 #[derive(Clone, Debug)]
@@ -26,19 +27,6 @@ pub struct Reference {
     pub force: Vec<f64>,
     /// Velocity along z (m/s) every millisecond.
     pub vz: Vec<f64>,
-}
-
-/// Deviation from a reference in % of its peak force.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
-    /// Greatest over the whole run.
-    pub max: f64,
-    /// Root mean square over the whole run.
-    pub rms: f64,
-    /// Greatest for t ≥ 50 ms, after the release of stored compression.
-    pub late_max: f64,
-    /// Root mean square for t ≥ 50 ms.
-    pub late_rms: f64,
 }
 
 #[derive(Deserialize)]
@@ -99,17 +87,11 @@ pub fn references() -> Vec<Reference> {
 
 impl Reference {
     /// How far `force` (N, every millisecond) is off.
-    pub fn errors(&self, force: &[f64]) -> Errors {
-        assert_eq!(force.len(), self.force.len());
-        deviation(force, &self.force, self.peak)
+    ///
+    /// # Panics
+    /// If it is not as long as the reference.
+    pub fn errors(&self, force: &[f64]) -> Deviation {
+        assert_eq!(force.len(), self.force.len(), "{}", self.name);
+        Deviation::between(force, &self.force)
     }
-}
-
-/// Deviation of `force` from `reference` (N, every millisecond) in % of `peak` (N).
-pub fn deviation(force: &[f64], reference: &[f64], peak: f64) -> Errors {
-    let percent: Vec<f64> = force.iter().zip(reference).map(|(a, b)| (a - b).abs() / peak * 100.0).collect();
-    let max = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
-    let rms = |errors: &[f64]| libm::sqrt(errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64);
-    let late = &percent[50..];
-    Errors { max: max(&percent), rms: rms(&percent), late_max: max(late), late_rms: rms(late) }
 }

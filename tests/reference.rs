@@ -3,13 +3,14 @@
 use std::fmt::Write;
 
 use slipfit::{
+    deviation::Deviation,
     outcome::Verdict,
     scene::{CD_ROM_SLIDE, Scene},
     scheme::IntegratorKind,
     simulate::{Run, ScalarKind, Settings, simulate},
 };
 use slipfit_core::{menu::FrictionData, slide::CONTACTS};
-use slipfit_tests::known_runs::{Reference, deviation, references};
+use slipfit_tests::known_runs::{Reference, references};
 
 fn scene_of(reference: &Reference) -> Scene {
     let mut scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).unwrap();
@@ -134,7 +135,7 @@ fn single_and_double_precision_agree_on_openings() {
         for scheme in SCHEMES {
             let [single, double] =
                 [ScalarKind::F32, ScalarKind::F64].map(|scalar| run(&reference, scheme, 1e-3, scalar).trajectory.force);
-            let difference = deviation(&single, &double, reference.peak);
+            let difference = Deviation::between(&single, &double);
             assert!(difference.late_max <= 0.1, "{} {scheme:?}: {difference:?}", reference.name);
         }
     }
@@ -167,7 +168,7 @@ fn errors_by_scheme_and_step() {
     for reference in references() {
         let [single, double] = [ScalarKind::F32, ScalarKind::F64]
             .map(|scalar| run(&reference, IntegratorKind::Extrapolated, 1e-3, scalar).trajectory.force);
-        let e = deviation(&single, &double, reference.peak);
+        let e = Deviation::between(&single, &double);
         writeln!(table, "{:20} whole {:8.4}  late {:8.4}", reference.name, e.max, e.late_max).unwrap();
     }
     insta::assert_snapshot!(table);

@@ -1,5 +1,25 @@
 //! What a line chart shows.
 
+/// How numbers become places along the axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scale {
+    /// In proportion; the ordinate always shows zero.
+    #[default]
+    Linear,
+    /// By powers of ten, for positive numbers.
+    Log,
+}
+
+impl Scale {
+    /// Where `value` stands; not finite for what the scale cannot show.
+    pub(crate) fn place(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Log => libm::log10(value),
+        }
+    }
+}
+
 /// Panels above each other over one abscissa.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
@@ -9,15 +29,19 @@ pub struct Chart {
     pub subtitle: String,
     /// Name and unit of the abscissa, as in `time (ms)`.
     pub x_label: String,
+    /// Of all axes.
+    pub scale: Scale,
     /// From top to bottom, at least one.
     pub panels: Vec<Panel>,
 }
 
-/// One pair of axes. The ordinate always shows zero.
+/// One pair of axes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
     /// Name and unit of the ordinate, as in `drive force (N)`.
     pub y_label: String,
+    /// A remark at the right of the heading, where there is no legend.
+    pub note: String,
     /// Lines.
     pub series: Vec<Series>,
     /// Points with a legend.
@@ -27,13 +51,36 @@ pub struct Panel {
 /// A line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// What stands at the line's end, if `n` is given.
+    /// What stands at the line's end; a guide has none.
     pub label: String,
-    /// Tolerance level, which gives the colour. Of many such lines at most [`LABELLED`](crate::plot::LABELLED) are drawn in full, spread
-    /// evenly, the first, the last and the one nearest zero among them; the others are faint. `None`: a grey guide.
-    pub n: Option<f64>,
+    /// How it looks.
+    pub look: Look,
     /// The points, x ascending.
     pub points: Vec<(f64, f64)>,
+}
+
+/// How a line looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    /// Grey, without a label.
+    Guide,
+    /// By tolerance level, which gives the colour. Of many such lines at most [`LABELLED`](crate::plot::LABELLED) are
+    /// drawn in full, spread evenly, the first, the last and the one nearest zero among them; the others are faint.
+    Level(f64),
+    /// One of several kinds, by its number: a colour, and a shape that marks every point.
+    Kind(usize),
+    /// Belongs to the kind of that number: the same but thin, and without a label.
+    Variant(usize),
+}
+
+impl Series {
+    /// The tolerance level that gives the colour.
+    pub(crate) fn level(&self) -> Option<f64> {
+        match self.look {
+            Look::Level(n) => Some(n),
+            _ => None,
+        }
+    }
 }
 
 /// Points of one kind.
@@ -58,6 +105,12 @@ pub enum Shape {
     Triangle,
     /// Oblique cross.
     Cross,
+    /// Filled square.
+    Square,
+    /// Filled square on its corner.
+    Diamond,
+    /// Upright cross.
+    Plus,
 }
 
 impl Panel {

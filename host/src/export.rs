@@ -1,6 +1,6 @@
 //! Results as CSV.
 
-use crate::{number::ten_digits, outcome::Trajectory, scene::Scene, sweep::Sweep};
+use crate::{number::ten_digits, outcome::Trajectory, precision::Point, scene::Scene, sweep::Sweep};
 
 /// `t,vz,force,x,y` in s, m/s, N, m, m, ten digits.
 ///
@@ -37,6 +37,18 @@ pub fn sweep_csv(scene: &Scene, sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
             level.outcome.verdict.to_string(),
         ];
         writer.write_record(figures.iter().chain(&classes))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// Errors and run times, one line a point; empty where a run blew up.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn precision_csv(points: &[Point]) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for point in points {
+        writer.serialize(point)?;
     }
     Ok(writer.into_inner()?)
 }

@@ -3,7 +3,7 @@
 use crate::{
     number::{level, typeset},
     outcome::{Outcome, Trajectory, Verdict},
-    plot::{Chart, Markers, Panel, PlotError, Series, Shape, line_chart},
+    plot::{Chart, Look, Markers, Panel, PlotError, Scale, Series, Shape, line_chart},
     sweep::{Level, Sweep},
 };
 
@@ -32,7 +32,7 @@ fn over_time(
 ) -> Result<String, PlotError> {
     let line = |of: &Level| Series {
         label: format!("n = {}", typeset(&level(of.n))),
-        n: Some(of.n),
+        look: Look::Level(of.n),
         points: of.trajectory.t.iter().map(|t| t * 1e3).zip(values(&of.trajectory)).collect(),
     };
     let series = sweep.levels.iter().map(line).collect();
@@ -40,7 +40,8 @@ fn over_time(
         title: title.to_owned(),
         subtitle: format!("{quantity} over time, {}", levels(sweep)),
         x_label: "time (ms)".to_owned(),
-        panels: vec![Panel { y_label: format!("{quantity} ({unit})"), series, markers: Vec::new() }],
+        scale: Scale::Linear,
+        panels: vec![Panel { y_label: format!("{quantity} ({unit})"), series, ..Panel::default() }],
     })
 }
 
@@ -57,6 +58,7 @@ pub fn required_force(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
         title: title.to_owned(),
         subtitle: format!("required force and breakaway, {}", levels(sweep)),
         x_label: "tolerance level n".to_owned(),
+        scale: Scale::Linear,
         panels: vec![force, breakaway],
     })
 }
@@ -67,7 +69,11 @@ fn over_n(sweep: &Sweep, y_label: &str, value: impl Fn(&Outcome) -> Option<f64>)
         sweep.levels.iter().map(|level| value(&level.outcome).map(|value| (level.n, value))).collect();
     let series = values
         .split(Option::is_none)
-        .map(|part| Series { label: String::new(), n: None, points: part.iter().flatten().copied().collect() })
+        .map(|part| Series {
+            label: String::new(),
+            look: Look::Guide,
+            points: part.iter().flatten().copied().collect(),
+        })
         .collect();
     let marks = |(verdict, shape)| Markers {
         label: word(verdict).to_owned(),
@@ -86,7 +92,7 @@ fn over_n(sweep: &Sweep, y_label: &str, value: impl Fn(&Outcome) -> Option<f64>)
         (Verdict::Jammed, Shape::Cross),
         (Verdict::Undecided, Shape::Ring),
     ];
-    Panel { y_label: y_label.to_owned(), series, markers: shapes.map(marks).into() }
+    Panel { y_label: y_label.to_owned(), series, markers: shapes.map(marks).into(), ..Panel::default() }
 }
 
 fn levels(sweep: &Sweep) -> String {

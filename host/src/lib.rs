@@ -6,6 +6,7 @@
 mod chart;
 pub mod cli;
 pub mod controlled;
+pub mod deviation;
 #[cfg(test)]
 mod example;
 pub mod export;
@@ -20,6 +21,7 @@ pub mod mobility;
 pub mod number;
 pub mod outcome;
 pub mod plot;
+pub mod precision;
 pub mod report;
 pub mod scene;
 pub mod scheme;

@@ -33,6 +33,19 @@ pub fn ten_digits(x: f64) -> String {
     }
 }
 
+/// Three significant digits, for measured values of any size.
+pub fn three_digits(x: f64) -> String {
+    let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
+    let size = rounded.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e6).contains(&size) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:.1e}")
+    }
+}
+
 /// What is there through `format`, else a dash.
 pub fn or_dash(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
     value.map_or_else(|| "-".to_owned(), format)
@@ -40,13 +53,21 @@ pub fn or_dash(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{fixed, level, ten_digits, typeset};
+    use super::{fixed, level, ten_digits, three_digits, typeset};
 
     #[test]
     fn ten_digits_are_short() {
         assert_eq!(ten_digits(0.293_000_000_000_000_04), "0.293");
         assert_eq!(ten_digits(-0.0), "0");
         assert_eq!(ten_digits(2.782_455_694_123e-5), "2.782455694e-5");
+    }
+
+    #[test]
+    fn three_digits_of_any_size() {
+        assert_eq!(
+            [0.0, 0.012_345, 1.0, 99.96, 1234.0, 4.44e-7, 2e12].map(three_digits),
+            ["0", "0.0123", "1", "100", "1230", "4.4e-7", "2.0e12"]
+        );
     }
 
     #[test]

@@ -8,6 +8,7 @@ use std::ops::Range;
 use plotters::{
     coord::{
         Shift,
+        cartesian::Cartesian2d,
         ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter},
     },
     prelude::*,
@@ -20,7 +21,7 @@ use crate::{
     number::{fixed, typeset},
 };
 
-pub use crate::chart::{Chart, Markers, Panel, Series, Shape};
+pub use crate::chart::{Chart, Look, Markers, Panel, Scale, Series, Shape};
 
 /// Why a chart cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -43,7 +44,10 @@ pub const POINTS: usize = 600;
 
 /// Units of the drawing in one pixel.
 const FINE: i32 = 100;
-const SIZE: (i32, i32) = (900, 540);
+const WIDTH: i32 = 900;
+/// Height of a linear chart, and of a logarithmic one's panel.
+const HEIGHT: i32 = 540;
+const LOG_PANEL: i32 = 400;
 /// Heading of the chart, heading of a panel, axis below, axis to the left.
 const HEADING: i32 = 62;
 const PANEL_HEADING: i32 = 30;
@@ -62,56 +66,84 @@ const SOFT: RGBColor = RGBColor(96, 96, 96);
 const GUIDE: RGBColor = RGBColor(150, 150, 150);
 const GRID: RGBColor = RGBColor(228, 228, 228);
 const MARK: RGBColor = RGBColor(38, 84, 124);
+/// Kinds by their number (Okabe and Ito: told apart by every eye), with the shapes of their marks.
+const KINDS: [(RGBColor, Shape); 7] = [
+    (RGBColor(0, 114, 178), Shape::Dot),
+    (RGBColor(213, 94, 0), Shape::Triangle),
+    (RGBColor(0, 158, 115), Shape::Square),
+    (RGBColor(204, 121, 167), Shape::Diamond),
+    (RGBColor(230, 159, 0), Shape::Cross),
+    (RGBColor(34, 34, 34), Shape::Ring),
+    (RGBColor(86, 180, 233), Shape::Plus),
+];
 const FONTS: &str = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif";
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Plot<'a> = DrawingArea<SVGBackend<'a>, Cartesian2d<Axis, Axis>>;
 
-/// The chart as an SVG document, 900 × 540 pixels; the same bytes for the same chart.
+/// The chart as an SVG document, 900 pixels wide; the same bytes for the same chart.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to plot or a value is not finite.
 pub fn line_chart(chart: &Chart) -> Result<String, PlotError> {
-    let finite = |panel: &Panel| panel.points().all(|(x, y)| x.is_finite() && y.is_finite());
+    let place = |value: f64| chart.scale.place(value);
+    let finite = |panel: &Panel| panel.points().all(|(x, y)| place(x).is_finite() && place(y).is_finite());
     if let Some(panel) = chart.panels.iter().find(|panel| !finite(panel)) {
         return Err(PlotError::NotFinite(panel.y_label.clone()));
     }
     let x_axis = Axis::abscissa(chart)?;
-    let y_axes =
-        chart.panels.iter().map(|panel| Axis::ordinate(panel, chart.panels.len())).collect::<Result<Vec<_>, _>>()?;
-    let labelled = chart.panels.iter().flat_map(|panel| &panel.series).any(|series| series.n.is_some());
-    let right = SIZE.0 - if labelled { LABELS } else { PLAIN };
-    let height = (SIZE.1 - HEADING - BELOW) / chart.panels.len() as i32;
+    let y_axes = chart.panels.iter().map(|panel| Axis::ordinate(chart, panel)).collect::<Result<Vec<_>, _>>()?;
+    let right = WIDTH - chart.panels.iter().flat_map(|panel| &panel.series).map(label_room).fold(PLAIN, i32::max);
+    let size = (WIDTH, total_height(chart));
+    let height = (size.1 - HEADING - BELOW) / chart.panels.len() as i32;
 
     let mut svg = String::new();
     {
-        let root = SVGBackend::with_string(&mut svg, (fine(SIZE.0), fine(SIZE.1))).into_drawing_area();
+        let root = SVGBackend::with_string(&mut svg, (fine(size.0), fine(size.1))).into_drawing_area();
         root.fill(&WHITE).map_err(backend)?;
         write(&root, &shortened(&chart.title, 80), (16, 26), &bold(18))?;
         write(&root, &shortened(&chart.subtitle, 130), (16, 48), &text(13, &SOFT, HPos::Left))?;
-        write(&root, &chart.x_label, ((LEFT + right) / 2, SIZE.1 - 14), &text(13, &INK, HPos::Center))?;
+        write(&root, &chart.x_label, ((LEFT + right) / 2, size.1 - 14), &text(13, &INK, HPos::Center))?;
         for (i, (panel, y_axis)) in chart.panels.iter().zip(&y_axes).enumerate() {
             let top = HEADING + height * i as i32;
             write(&root, &panel.y_label, (16, top + 14), &text(13, &INK, HPos::Left))?;
+            write(&root, &panel.note, (right, top + 14), &text(12, &SOFT, HPos::Right))?;
             draw_legend(&root, &panel.markers, (right, top + 14))?;
             let area = root.clone().shrink((0, fine(top)), (fine(right), fine(height)));
             draw_panel(&root, &area, panel, &x_axis, y_axis)?;
         }
         root.present().map_err(backend)?;
     }
-    Ok(finished(&svg, chart))
+    Ok(finished(&svg, chart, size))
+}
+
+fn total_height(chart: &Chart) -> i32 {
+    match chart.scale {
+        Scale::Linear => HEIGHT,
+        Scale::Log => HEADING + BELOW + LOG_PANEL * chart.panels.len() as i32,
+    }
+}
+
+/// Pixels that the label of `series` needs to the right of the axes.
+fn label_room(series: &Series) -> i32 {
+    match series.look {
+        Look::Guide | Look::Variant(_) => PLAIN,
+        Look::Level(_) => LABELS,
+        Look::Kind(_) => 32 + 7 * series.label.chars().count() as i32,
+    }
 }
 
 /// The backend's document at its size in pixels, with a title, and with what all texts and lines share said once.
-fn finished(svg: &str, chart: &Chart) -> String {
+fn finished(svg: &str, chart: &Chart, (width, height): (i32, i32)) -> String {
     let body = svg.split_once('\n').map_or("", |(_, body)| body);
     let body = body.replace(" opacity=\"1\"", "").replace(" font-family=\"sans-serif\"", "").replace(" \"/>", "\"/>");
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" \
          font-family=\"{FONTS}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n<title>{}: {}</title>\n{body}",
-        SIZE.0,
-        SIZE.1,
-        fine(SIZE.0),
-        fine(SIZE.1),
+        width,
+        height,
+        fine(width),
+        fine(height),
         escape(&chart.title),
         escape(&chart.subtitle),
     )
@@ -137,46 +169,65 @@ fn draw_panel(root: &Area, area: &Area, panel: &Panel, x: &Axis, y: &Axis) -> Re
     let plot = chart.plotting_area();
     let tolerance = INVISIBLE * (y.high - y.low) * f64::from(FINE) / f64::from(plot.dim_in_pixel().1);
     let line = |series: &Series, coarse: usize, style: ShapeStyle| {
-        let points = thinned(&series.points, tolerance * coarse as f64, POINTS / coarse);
+        let points = match x.scale {
+            Scale::Linear => thinned(&series.points, tolerance * coarse as f64, POINTS / coarse),
+            Scale::Log => series.points.clone(),
+        };
         plot.draw(&PathElement::new(points, style)).map_err(backend)
     };
-    let levels: Vec<&Series> = panel.series.iter().filter(|series| series.n.is_some()).collect();
-    let chosen = chosen(&levels.iter().filter_map(|series| series.n).collect::<Vec<_>>(), LABELLED);
+    let levels: Vec<&Series> = panel.series.iter().filter(|series| series.level().is_some()).collect();
+    let chosen = chosen(&levels.iter().filter_map(|series| series.level()).collect::<Vec<_>>(), LABELLED);
     let colours = Colours::over(&levels);
-    for guide in panel.series.iter().filter(|series| series.n.is_none()) {
-        line(guide, 1, GUIDE.stroke_width(fine(1)))?;
+    let mut ends = Vec::new();
+    for series in &panel.series {
+        match series.look {
+            Look::Level(_) => {}
+            Look::Guide => line(series, 1, GUIDE.stroke_width(fine(1)))?,
+            Look::Variant(_) => {
+                line(series, 1, colours.of(series).mix(0.55).stroke_width(fine(1) * 8 / 10))?;
+                draw_marks(root, plot, series, 2)?;
+            }
+            Look::Kind(_) => {
+                line(series, 1, colours.of(series).stroke_width(fine(2) * 9 / 10))?;
+                draw_marks(root, plot, series, 4)?;
+                ends.extend(series.points.last().map(|end| (plot.map_coordinate(end), series)));
+            }
+        }
     }
     for (_, series) in levels.iter().enumerate().filter(|(i, _)| !chosen.contains(i)) {
         line(series, 4, colours.of(series).mix(0.45).stroke_width(fine(1) * 6 / 10))?;
     }
-    let mut ends = Vec::new();
     for series in chosen.iter().map(|i| levels[*i]) {
         line(series, 1, colours.of(series).stroke_width(fine(2) * 9 / 10))?;
         ends.extend(series.points.last().map(|end| (plot.map_coordinate(end), series)));
     }
     for markers in &panel.markers {
         for point in &markers.points {
-            draw_mark(root, markers.shape, plot.map_coordinate(point))?;
+            draw_mark(root, markers.shape, plot.map_coordinate(point), px(4), MARK)?;
         }
     }
-    let (_, rows) = plot.get_pixel_range();
-    draw_labels(root, ends, f64::from(rows.start) / f64::from(FINE)..f64::from(rows.end) / f64::from(FINE), &colours)
+    let (columns, rows) = plot.get_pixel_range();
+    let rows = f64::from(rows.start) / f64::from(FINE)..f64::from(rows.end) / f64::from(FINE);
+    draw_labels(root, ends, (columns.end, rows), &colours)
 }
 
 /// Labels beside the ends of lines, in their order and moved apart where they would touch.
 fn draw_labels(
     root: &Area,
     mut ends: Vec<((i32, i32), &Series)>,
-    rows: Range<f64>,
+    (right, rows): (i32, Range<f64>),
     colours: &Colours,
 ) -> Result<(), PlotError> {
     ends.sort_by_key(|((_, y), _)| *y);
     let wanted: Vec<f64> = ends.iter().map(|((_, y), _)| f64::from(*y) / f64::from(FINE)).collect();
     for (((x, y), series), row) in ends.into_iter().zip(apart(&wanted, LABEL_PITCH, rows)) {
         let row = (row * f64::from(FINE)) as i32;
-        let right = root.dim_in_pixel().0 as i32 - px(LABELS);
-        let leader = vec![(x, y), (right + px(4), y), (right + px(14), row), (right + px(20), row)];
-        root.draw(&PathElement::new(leader, colours.of(series).stroke_width(fine(1)))).map_err(backend)?;
+        let colour = colours.of(series);
+        // The line may end far from the edge: what leads from there is not part of it.
+        let across = vec![(x, y), (right + px(4), y)];
+        root.draw(&PathElement::new(across, colour.mix(0.3).stroke_width(fine(1)))).map_err(backend)?;
+        let leader = vec![(right + px(4), y), (right + px(14), row), (right + px(20), row)];
+        root.draw(&PathElement::new(leader, colour.stroke_width(fine(1)))).map_err(backend)?;
         let style = text(12, &INK, HPos::Left);
         root.draw(&Text::new(printable(&series.label), (right + px(24), row), style)).map_err(backend)?;
     }
@@ -189,24 +240,42 @@ fn draw_legend(root: &Area, markers: &[Markers], (right, y): (i32, i32)) -> Resu
     let shown = || markers.iter().filter(|markers| !markers.points.is_empty() && !markers.label.is_empty());
     let mut x = right - shown().map(|markers| width(&markers.label)).sum::<i32>();
     for Markers { label, shape, .. } in shown() {
-        draw_mark(root, *shape, (px(x + 8), px(y)))?;
+        draw_mark(root, *shape, (px(x + 8), px(y)), px(4), MARK)?;
         write(root, label, (x + 17, y), &text(12, &INK, HPos::Left))?;
         x += width(label);
     }
     Ok(())
 }
 
-fn draw_mark(root: &Area, shape: Shape, (x, y): (i32, i32)) -> Result<(), PlotError> {
-    let (r, line) = (px(4), MARK.stroke_width(fine(1) * 3 / 2));
+fn draw_marks(root: &Area, plot: &Plot<'_>, series: &Series, radius: i32) -> Result<(), PlotError> {
+    if let Look::Kind(number) | Look::Variant(number) = series.look {
+        let (colour, shape) = KINDS[number % KINDS.len()];
+        for point in &series.points {
+            draw_mark(root, shape, plot.map_coordinate(point), px(radius), colour)?;
+        }
+    }
+    Ok(())
+}
+
+/// A mark within `r` around a point.
+fn draw_mark(root: &Area, shape: Shape, (x, y): (i32, i32), r: i32, colour: RGBColor) -> Result<(), PlotError> {
+    let (filled, line) = (colour.filled(), colour.stroke_width(fine(1) * 3 / 2));
+    let stroke = |a: (i32, i32), b: (i32, i32)| root.draw(&PathElement::new([a, b], line));
     match shape {
-        Shape::Dot => root.draw(&Circle::new((x, y), r, MARK.filled())),
+        Shape::Dot => root.draw(&Circle::new((x, y), r, filled)),
         Shape::Ring => root
             .draw(&Circle::new((x, y), r, WHITE.filled()))
             .and_then(|()| root.draw(&Circle::new((x, y), r - px(1) / 2, line))),
-        Shape::Triangle => root.draw(&Polygon::new([(x - r, y + r), (x, y - r), (x + r, y + r)], MARK.filled())),
-        Shape::Cross => root
-            .draw(&PathElement::new([(x - r, y - r), (x + r, y + r)], line))
-            .and_then(|()| root.draw(&PathElement::new([(x - r, y + r), (x + r, y - r)], line))),
+        Shape::Triangle => root.draw(&Polygon::new([(x - r, y + r), (x, y - r), (x + r, y + r)], filled)),
+        Shape::Square => {
+            root.draw(&Polygon::new([(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)], filled))
+        }
+        Shape::Diamond => {
+            let r = r * 5 / 4;
+            root.draw(&Polygon::new([(x - r, y), (x, y - r), (x + r, y), (x, y + r)], filled))
+        }
+        Shape::Cross => stroke((x - r, y - r), (x + r, y + r)).and_then(|()| stroke((x - r, y + r), (x + r, y - r))),
+        Shape::Plus => stroke((x - r, y), (x + r, y)).and_then(|()| stroke((x, y - r), (x, y + r))),
     }
     .map_err(backend)
 }
@@ -247,7 +316,7 @@ fn shortened(words: &str, most: usize) -> String {
     words.chars().take(most - 1).chain(['…']).collect()
 }
 
-/// Viridis over the levels, without its light end.
+/// Viridis over the levels, without its light end; kinds by their number.
 struct Colours {
     low: f64,
     high: f64,
@@ -255,20 +324,25 @@ struct Colours {
 
 impl Colours {
     fn over(levels: &[&Series]) -> Self {
-        let n = || levels.iter().filter_map(|series| series.n);
+        let n = || levels.iter().filter_map(|series| series.level());
         Self { low: n().fold(f64::INFINITY, f64::min), high: n().fold(f64::NEG_INFINITY, f64::max) }
     }
 
     fn of(&self, series: &Series) -> RGBColor {
-        let n = series.n.unwrap_or(self.low);
+        let n = match series.look {
+            Look::Level(n) => n,
+            Look::Kind(number) | Look::Variant(number) => return KINDS[number % KINDS.len()].0,
+            Look::Guide => return GUIDE,
+        };
         let share = if self.high > self.low { (n - self.low) / (self.high - self.low) } else { 0.5 };
         ViridisRGB.get_color(0.8 * share)
     }
 }
 
-/// An axis from `low` to `high` with its ticks.
+/// An axis from `low` to `high`, places on its scale, with its ticks.
 #[derive(Clone)]
 struct Axis {
+    scale: Scale,
     low: f64,
     high: f64,
     ticks: Ticks,
@@ -278,7 +352,10 @@ impl Axis {
     /// From the first to the last abscissa, with room for markers.
     fn abscissa(chart: &Chart) -> Result<Self, PlotError> {
         let points = || chart.panels.iter().flat_map(Panel::points);
-        let (low, high) = extent(points().map(|(x, _)| x)).ok_or(PlotError::Empty)?;
+        let (low, high) = extent(points().map(|(x, _)| chart.scale.place(x))).ok_or(PlotError::Empty)?;
+        if chart.scale == Scale::Log {
+            return Ok(Self::decades(low, high));
+        }
         let marked = chart.panels.iter().any(|panel| panel.markers.iter().any(|markers| !markers.points.is_empty()));
         let room = match high - low {
             0.0 => 0.5f64.max(0.05 * high.abs()),
@@ -287,17 +364,29 @@ impl Axis {
         };
         let (low, high) = (low - room, high + room);
         let ticks = Ticks::over(high - low, 10.0).ok_or_else(|| PlotError::NotFinite(chart.x_label.clone()))?;
-        Ok(Self { low, high, ticks })
+        Ok(Self { scale: chart.scale, low, high, ticks })
     }
 
-    /// Around all values and zero, with a little room.
-    fn ordinate(panel: &Panel, panels: usize) -> Result<Self, PlotError> {
+    /// Around all values, on a linear scale around zero and with a little room, too.
+    fn ordinate(chart: &Chart, panel: &Panel) -> Result<Self, PlotError> {
         let error = || PlotError::NotFinite(panel.y_label.clone());
-        let (low, high) = extent(panel.points().map(|(_, y)| y).chain([0.0])).ok_or_else(error)?;
+        let values = panel.points().map(|(_, y)| chart.scale.place(y));
+        if chart.scale == Scale::Log {
+            let (low, high) = extent(values).unwrap_or((0.0, 0.0));
+            return Ok(Self::decades(low, high));
+        }
+        let (low, high) = extent(values.chain([0.0])).ok_or_else(error)?;
         let high = if high > low { high } else { 1.0 };
-        let ticks = Ticks::over(high - low, if panels > 1 { 4.0 } else { 8.0 }).ok_or_else(error)?;
+        let ticks = Ticks::over(high - low, if chart.panels.len() > 1 { 4.0 } else { 8.0 }).ok_or_else(error)?;
         let room = 0.04 * (high - low);
-        Ok(Self { low: if low < 0.0 { low - room } else { low }, high: high + room, ticks })
+        Ok(Self { scale: chart.scale, low: if low < 0.0 { low - room } else { low }, high: high + room, ticks })
+    }
+
+    /// Whole powers of ten around the exponents `low` to `high`, at least one, each with a tick.
+    fn decades(low: f64, high: f64) -> Self {
+        let (low, high) = (low.floor(), high.ceil());
+        let high = high.max(low + 1.0);
+        Self { scale: Scale::Log, low, high, ticks: Ticks { step: ((high - low) / 12.0).ceil(), decimals: 0 } }
     }
 }
 
@@ -306,21 +395,33 @@ impl Ranged for Axis {
     type ValueType = f64;
 
     fn map(&self, value: &f64, (start, end): (i32, i32)) -> i32 {
-        let share = (value - self.low) / (self.high - self.low);
+        let share = (self.scale.place(*value) - self.low) / (self.high - self.low);
         start + (share * f64::from(end - start)).round() as i32
     }
 
     fn key_points<H: KeyPointHint>(&self, _: H) -> Vec<f64> {
-        self.ticks.within(self.low, self.high)
+        let places = self.ticks.within(self.low, self.high);
+        match self.scale {
+            Scale::Linear => places,
+            Scale::Log => places.into_iter().map(|exponent| libm::pow(10.0, exponent)).collect(),
+        }
     }
 
     fn range(&self) -> Range<f64> {
-        self.low..self.high
+        match self.scale {
+            Scale::Linear => self.low..self.high,
+            Scale::Log => libm::pow(10.0, self.low)..libm::pow(10.0, self.high),
+        }
     }
 }
 
 impl ValueFormatter<f64> for Axis {
     fn format_ext(&self, value: &f64) -> String {
+        if self.scale == Scale::Log {
+            let exponent = libm::log10(*value).round();
+            let plain = (-4.0..6.0).contains(&exponent);
+            return if plain { fixed(*value, (-exponent).max(0.0) as usize) } else { typeset(&format!("{value:.0e}")) };
+        }
         let wide = self.high.max(-self.low) >= 1e6 || self.ticks.decimals > 5;
         typeset(&if wide && *value == 0.0 {
             "0".to_owned()
@@ -339,22 +440,23 @@ fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Chart, Markers, Panel, PlotError, Series, Shape, line_chart};
+    use super::{Chart, Look, Markers, Panel, PlotError, Scale, Series, Shape, line_chart};
 
     fn chart(levels: &[f64], value: impl Fn(f64, f64) -> f64) -> Chart {
         let line = |n: &f64| Series {
             label: format!("n = {n}"),
-            n: Some(*n),
+            look: Look::Level(*n),
             points: (0..=1500).map(|i| (f64::from(i), value(f64::from(i), *n))).collect(),
         };
         Chart {
             title: "<slide> & \"pins\"\u{7}".to_owned(),
             subtitle: "drawn & labelled".to_owned(),
             x_label: "time (ms)".to_owned(),
+            scale: Scale::Linear,
             panels: vec![Panel {
                 y_label: "drive force (N)".to_owned(),
                 series: levels.iter().map(line).collect(),
-                markers: Vec::new(),
+                ..Panel::default()
             }],
         }
     }
@@ -420,6 +522,27 @@ mod tests {
         let mut chart = chart(&[], |_, _| 0.0);
         chart.panels[0].markers = markers;
         assert!(texts(&chart).contains(&"jammed".to_owned()));
+    }
+
+    #[test]
+    fn powers_of_ten() {
+        let line =
+            |look, label: &str, points: &[(f64, f64)]| Series { label: label.into(), look, points: points.into() };
+        let mut log = chart(&[], |_, _| 0.0);
+        log.scale = Scale::Log;
+        log.panels[0].note = "blown up".to_owned();
+        log.panels[0].series = vec![
+            line(Look::Kind(0), "one scheme", &[(0.05, 3.0), (200.0, 2e-6)]),
+            line(Look::Variant(0), "unseen", &[(0.04, 3.0), (100.0, 2e-4)]),
+            line(Look::Guide, "unseen", &[(0.01, 1e-6), (1000.0, 1e-6)]),
+        ];
+        let texts = texts(&log);
+        for expected in ["one scheme", "blown up", "0.01", "1000", "1e\u{2212}6", "0.0001", "10"] {
+            assert!(texts.iter().any(|text| text == expected), "{expected} in {texts:?}");
+        }
+        assert!(!texts.contains(&"unseen".to_owned()));
+        log.panels[0].series[0].points[0].1 = 0.0;
+        assert_eq!(line_chart(&log), Err(PlotError::NotFinite("drive force (N)".to_owned())));
     }
 
     #[test]

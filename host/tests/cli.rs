@@ -30,7 +30,7 @@ fn explains_itself_in_one_screen() {
     let folder = tempfile::tempdir().unwrap();
     let text = stdout(&slipfit(folder.path(), &[]));
     assert!(text.lines().count() <= 40 && text.lines().all(|line| line.chars().count() <= 100), "{text}");
-    for command in ["run", "check", "tolerance", "simulate", "sweep", "table"] {
+    for command in ["run", "check", "tolerance", "simulate", "sweep", "table", "precision"] {
         assert!(text.contains(&format!("\n  {command} ")), "{command}");
     }
 }

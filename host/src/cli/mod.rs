@@ -1,6 +1,7 @@
 //! The command line: one file a command, each with its arguments and its `run`.
 
 mod check;
+mod precision;
 mod run;
 mod simulate;
 mod sweep;
@@ -52,6 +53,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Sweep(sweep::Arguments),
     Table(table::Arguments),
+    Precision(precision::Arguments),
 }
 
 /// Why a command did not do its work.
@@ -216,6 +218,7 @@ pub fn main() -> ExitCode {
         Some(Command::Simulate(arguments)) => arguments.run(),
         Some(Command::Sweep(arguments)) => arguments.run(),
         Some(Command::Table(arguments)) => arguments.run(),
+        Some(Command::Precision(arguments)) => arguments.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

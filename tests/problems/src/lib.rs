@@ -3,4 +3,5 @@
 #![forbid(unsafe_code)]
 
 pub mod cd_rom;
+pub mod first_order;
 pub mod laws;

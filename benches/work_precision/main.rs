@@ -1,0 +1,210 @@
+//! Error against run time of the kernel's integrators and of general stiff solvers, in one run on one thread.
+//!
+//! All solve the paper's slide at n = 2.5, in f64 with the smoothed friction law, and give the drive force every
+//! millisecond; errors are against the reference runs. diffsol and, where it is installed, SUNDIALS
+//! CVODE get the kernel's own forces as their right-hand side and a range of tolerances, of which the best found counts.
+//!
+//! `cargo bench --bench work_precision` prints each solver's quickest run within 1, 0.1 and 0.01 %, `-- --all` every run.
+
+mod cvode_peer;
+mod diffsol_peer;
+
+use std::time::{Duration, Instant};
+
+use cvode_peer::Cvode;
+use slipfit::{
+    controlled::{Sensitivity, Tolerance, integrate, sampled},
+    scheme::{IntegratorKind, IntegratorVisitor},
+};
+use slipfit_core::{
+    SVector,
+    integrator::{Extrapolated, Integrator, Motion},
+    kernel::Kernel,
+    mechanism::Mechanism,
+    pose::Pose,
+};
+use slipfit_problems::cd_rom::{self, CdRomSlide};
+use slipfit_tests::known_runs::{Reference, references};
+
+/// Errors (% of the peak force, greatest over the whole run) at which run times are compared.
+const WITHIN: [f64; 3] = [1.0, 0.1, 0.01];
+/// Steps of the kernel (s).
+const STEPS: [f64; 11] = [1e-3, 500e-6, 250e-6, 200e-6, 100e-6, 50e-6, 25e-6, 10e-6, 5e-6, 2e-6, 1e-6];
+
+/// One solver at one setting: work that is done, or not if the solver gives up.
+struct Entry {
+    solver: &'static str,
+    setting: String,
+    work: Box<dyn Fn() -> Option<Achieved>>,
+}
+
+/// The drive force (N) at every millisecond from 0 on, and the time that the integration alone took.
+struct Achieved {
+    force: Vec<f64>,
+    time: Duration,
+}
+
+/// What an entry achieved.
+struct Finding {
+    solver: &'static str,
+    setting: String,
+    max_percent: f64,
+    time: Duration,
+}
+
+/// Tolerances of the peers.
+#[derive(Clone, Copy)]
+struct Tolerances {
+    /// Relative.
+    relative: f64,
+    /// Absolute, of velocities (m/s, rad/s).
+    absolute: f64,
+    /// Absolute tolerances of poses over those of velocities (s).
+    proportion: f64,
+}
+
+impl Tolerances {
+    /// Those tried.
+    fn all() -> impl Iterator<Item = Self> {
+        let relative = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+        let absolute = [1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8];
+        let pairs = relative.into_iter().flat_map(move |r| absolute.map(|a| (r, a)));
+        pairs.flat_map(|(relative, absolute)| {
+            [1e-2, 1e-3, 1e-4].map(|proportion| Self { relative, absolute, proportion })
+        })
+    }
+}
+
+impl std::fmt::Display for Tolerances {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.0e} {:.0e} {:.0e}", self.relative, self.absolute, self.proportion)
+    }
+}
+
+fn main() {
+    // Cargo passes --bench.
+    let all = std::env::args().any(|argument| argument == "--all");
+    let cvode = Cvode::built();
+    if let Err(why) = &cvode {
+        println!("without SUNDIALS CVODE: {why}");
+    }
+    for name in ["slide-opening-n2.5", "slide-stroke-n2.5"] {
+        let found = references().into_iter().find(|reference| reference.name == name);
+        compare(&found.unwrap_or_else(|| panic!("{name} is a reference run")), cvode.as_ref().ok(), all);
+    }
+}
+
+fn compare(reference: &Reference, cvode: Option<&Cvode>, all: bool) {
+    let slide = cd_rom::slide(reference.n);
+    let milliseconds = (reference.duration * 1e3).round() as u32;
+    let mut entries = kernels(&slide, milliseconds);
+    entries.extend(controlled::<Extrapolated<2, 1>>("controlled, 2 columns", &slide, milliseconds));
+    entries.extend(controlled::<Extrapolated<3, 1>>("controlled, 3 columns", &slide, milliseconds));
+    entries.extend(controlled::<Extrapolated<4, 1>>("controlled, 4 columns", &slide, milliseconds));
+    entries.extend(controlled::<Extrapolated<3, 3>>("controlled, 3 passes", &slide, milliseconds));
+    entries.extend(diffsol_peer::entries(&slide, milliseconds));
+    entries.extend(cvode.map(|cvode| cvode.entries(milliseconds)).into_iter().flatten());
+    let findings: Vec<Finding> = entries.iter().filter_map(|entry| measure(entry, reference)).collect();
+    println!("\n{}, {} ms", reference.name, reference.duration * 1e3);
+    if all {
+        for finding in &findings {
+            print(finding, "");
+        }
+    }
+    let mut solvers: Vec<&str> = findings.iter().map(|finding| finding.solver).collect();
+    solvers.dedup();
+    for within in WITHIN {
+        println!("\n  within {within} %{:35}max error, %   time, ms   of diffsol's BDF", "");
+        let quickest = |solver: &str| {
+            let able = findings.iter().filter(|found| found.solver == solver && found.max_percent <= within);
+            able.min_by_key(|found| found.time)
+        };
+        let bdf = quickest(diffsol_peer::BDF).map(|found| found.time.as_secs_f64());
+        let mut best: Vec<&Finding> = solvers.iter().filter_map(|solver| quickest(solver)).collect();
+        best.sort_by_key(|found| found.time);
+        for found in best {
+            print(found, &bdf.map_or_else(String::new, |bdf| format!("{:10.2}", found.time.as_secs_f64() / bdf)));
+        }
+    }
+}
+
+fn print(Finding { solver, setting, max_percent, time }: &Finding, ratio: &str) {
+    let milliseconds = time.as_secs_f64() * 1e3;
+    println!("  {solver:24}{setting:26}{max_percent:10.4}{milliseconds:11.3}{ratio}");
+}
+
+/// The kernel with every integrator at every step.
+fn kernels(slide: &CdRomSlide<f64>, milliseconds: u32) -> Vec<Entry> {
+    let every = |kind: IntegratorKind| STEPS.map(|step| kind.visit(KernelEntry { slide: *slide, milliseconds, step }));
+    IntegratorKind::ALL.into_iter().flat_map(every).collect()
+}
+
+/// The kernel's steps under error control, at every tolerance.
+fn controlled<I: Integrator>(solver: &'static str, slide: &CdRomSlide<f64>, milliseconds: u32) -> Vec<Entry> {
+    let entry = |force: f64| {
+        let slide = *slide;
+        let work = move || {
+            let body = cd_rom::data::<f64>(0.0).body;
+            let sensitivity = Sensitivity { mass: body.mass, gain: slide.drive().gain };
+            let rest = Motion { pose: Pose::nominal(), velocity: SVector::zeros(), memory: slide.fresh() };
+            let duration = f64::from(milliseconds) * 1e-3;
+            let mut knots = Vec::new();
+            let start = Instant::now();
+            integrate::<I, _>(&slide, rest, duration, sensitivity, Tolerance::of_force(force), &mut knots);
+            let times = (0..=milliseconds).map(|k| f64::from(k) * 1e-3);
+            let values = sampled(&knots, times.clone());
+            let force = times.zip(values).map(|(t, [vz, ..])| slide.drive().force(t, vz)).collect();
+            Some(Achieved { force, time: start.elapsed() })
+        };
+        Entry { solver, setting: format!("{force:.0e} N"), work: Box::new(work) }
+    };
+    [1e-2, 3e-3, 1e-3, 5e-4, 3e-4, 2e-4, 1e-4, 5e-5, 3e-5, 1e-5, 3e-6, 1e-6].map(entry).into()
+}
+
+struct KernelEntry {
+    slide: CdRomSlide<f64>,
+    milliseconds: u32,
+    step: f64,
+}
+
+impl IntegratorVisitor for KernelEntry {
+    type Output = Entry;
+
+    fn visit<I: Integrator>(self) -> Entry {
+        let Self { slide, milliseconds, step } = self;
+        let work = move || {
+            let kernel = Kernel::<f64, _, I>::new(slide, step).ok()?;
+            let start = Instant::now();
+            let mut state = kernel.at_rest(Pose::nominal());
+            let per_sample = (1e-3 / step).round() as u32;
+            let mut force = vec![slide.drive().force(0.0, 0.0)];
+            for _ in 0..milliseconds {
+                for _ in 0..per_sample {
+                    if !kernel.step(&mut state).residual.is_finite() {
+                        return None;
+                    }
+                }
+                force.push(slide.drive().force(kernel.time(state.steps), state.motion.velocity.z));
+            }
+            Some(Achieved { force, time: start.elapsed() })
+        };
+        Entry { solver: I::NAME, setting: format!("{} µs", (step * 1e6).round()), work: Box::new(work) }
+    }
+}
+
+/// The error of an entry and its least time of at least 5 runs and 30 ms, unless these take more than half a second.
+fn measure(entry: &Entry, reference: &Reference) -> Option<Finding> {
+    let begin = Instant::now();
+    let mut time = Duration::MAX;
+    let mut count = 0;
+    loop {
+        let achieved = (entry.work)()?;
+        time = time.min(achieved.time);
+        count += 1;
+        let spent = begin.elapsed();
+        if spent >= Duration::from_millis(500) || (count >= 5 && spent >= Duration::from_millis(30)) {
+            let max_percent = reference.errors(&achieved.force).max;
+            return Some(Finding { solver: entry.solver, setting: entry.setting.clone(), max_percent, time });
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! `slipfit precision`: error against run time.
+
+use std::{fmt::Write, path::PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+use slipfit_core::slide::CONTACTS;
+
+use super::{Failure, SceneArguments, print, print_json, progress, refused, text_table};
+use crate::{
+    deviation::Deviation,
+    export::precision_csv,
+    files,
+    number::{level, or_dash, three_digits},
+    precision::{OPENING, Point, Problem, STROKE, Truth, measure, quickest_within, solvers, truth, work_precision},
+    scene::Scene,
+    simulate::ScalarKind,
+};
+
+/// Measures error against run time: every integrator, step and number type, on the opening and the stroke.
+///
+/// Errors are those of the drive force every millisecond, in % of its peak, against a far finer run. Explicit
+/// integrators are tried at finer steps, too, because they are stable only there.
+#[derive(Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Tolerance level, positive is tighter.
+    #[arg(long, default_value_t = 2.5, allow_hyphen_values = true)]
+    n: f64,
+    /// Writes every measured point as CSV.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Draws error over run time as SVG.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    title: &'a str,
+    n: f64,
+    /// How well the truth is known, by problem (%).
+    floors: Vec<Floor>,
+    points: &'a [Point],
+}
+
+#[derive(Serialize)]
+struct Floor {
+    problem: &'static str,
+    #[serde(flatten)]
+    percent: Deviation,
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        let scene = self.scene.load(&[])?;
+        if !self.n.is_finite() {
+            return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
+        }
+        for path in [&self.csv, &self.plot].into_iter().flatten() {
+            files::check_writable(path).map_err(refused)?;
+        }
+        let Study { problems, points } = study(&scene, self.n)?;
+        if let Some(path) = &self.csv {
+            files::write(path, &precision_csv(&points)?)?;
+        }
+        if let Some(path) = &self.plot {
+            let svg = work_precision(&scene, self.n, &problems, &points).map_err(anyhow::Error::from)?;
+            files::write(path, svg.as_bytes())?;
+        }
+        if self.scene.json {
+            let floor = |(problem, truth): &(Problem, Truth)| Floor { problem: problem.name, percent: truth.floor };
+            let floors = problems.iter().map(floor).collect();
+            print_json(&Report { title: &scene.title, n: self.n, floors, points: &points })
+        } else {
+            print(&describe(&scene, self.n, &problems, &points))
+        }
+    }
+}
+
+/// All that was measured.
+struct Study {
+    problems: Vec<(Problem, Truth)>,
+    points: Vec<Point>,
+}
+
+/// One run after the other, so that they do not disturb each other's time.
+fn study(scene: &Scene, n: f64) -> Result<Study, Failure> {
+    let gaps = scene.gaps_at(&[n; CONTACTS]);
+    let solvers = solvers(scene);
+    let settings: usize = solvers.iter().map(|solver| solver.settings.len()).sum();
+    let bar = progress("measuring", 2 * (1 + 2 * settings));
+    let (mut problems, mut points) = (Vec::new(), Vec::new());
+    for problem in [OPENING, STROKE] {
+        let truth = truth(scene, &gaps, problem)?;
+        bar.inc(1);
+        for solver in &solvers {
+            for scalar in [ScalarKind::F32, ScalarKind::F64].into_iter().filter(|scalar| solver.does(*scalar)) {
+                for setting in &solver.settings {
+                    points.push(measure(scene, &gaps, (problem, &truth), (solver, *setting), scalar)?);
+                    bar.inc(1);
+                }
+            }
+        }
+        problems.push((problem, truth));
+    }
+    bar.finish_and_clear();
+    Ok(Study { problems, points })
+}
+
+fn describe(scene: &Scene, n: f64, problems: &[(Problem, Truth)], points: &[Point]) -> String {
+    let mut text = format!("{}, n = {}, errors in % of the peak force\n", scene.title, level(n));
+    for (problem, truth) in problems {
+        let here = || points.iter().filter(|point| point.problem == problem.name);
+        let (name, milliseconds) = (problem.name, problem.duration * 1e3);
+        let floor = three_digits(truth.floor.max);
+        let _ = writeln!(text, "\n{name}, {milliseconds} ms; the truth is known to {floor} %\n");
+        let rows: Vec<_> = here().map(row).collect();
+        let heading = ["integrator", "scalar", "step", "run time, ms", "max", "rms", "max ≥ 50 ms", "rms ≥ 50 ms"];
+        let _ = writeln!(text, "{}", text_table(&heading, &rows));
+        for percent in [1.0, 0.1, 0.01] {
+            let quickest = quickest_within(here(), percent).map(|point| {
+                let time = three_digits(point.run_ms.unwrap_or_default());
+                let setting = point.knob.typeset(point.setting);
+                format!("{time} ms, {} at {setting}, {}", point.solver, point.scalar.name())
+            });
+            let _ = writeln!(text, "Quickest within {percent:4} %  {}", quickest.as_deref().unwrap_or("none"));
+        }
+    }
+    text
+}
+
+fn row(point: &Point) -> Vec<String> {
+    let blown = point.blew_up_at_s.map(|t| format!("blew up at {} ms", three_digits(t * 1e3)));
+    let number = |x: Option<f64>| or_dash(x, three_digits);
+    vec![
+        point.solver.to_owned(),
+        point.scalar.name().to_owned(),
+        point.knob.typeset(point.setting),
+        number(point.run_ms),
+        blown.unwrap_or_else(|| number(point.max_percent)),
+        number(point.rms_percent),
+        number(point.late_max_percent),
+        number(point.late_rms_percent),
+    ]
+}
