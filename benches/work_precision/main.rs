@@ -66,7 +66,7 @@ struct Tolerances {
 impl Tolerances {
     /// Those tried.
     fn all() -> impl Iterator<Item = Self> {
-        let relative = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+        let relative = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6];
         let absolute = [1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8];
         let pairs = relative.into_iter().flat_map(move |r| absolute.map(|a| (r, a)));
         pairs.flat_map(|(relative, absolute)| {

@@ -209,3 +209,15 @@ fn bad_input_is_refused_by_name() {
         assert_eq!(files(folder.path()), before, "{arguments:?}");
     }
 }
+
+#[test]
+fn precision_refuses_before_it_measures() {
+    let folder = tempfile::tempdir().unwrap();
+    for (bad, word) in
+        [(["--n", "inf"], "--n"), (["--csv", "no/such.csv"], "such.csv"), (["--plot", "."], "cannot write")]
+    {
+        let output = slipfit(folder.path(), &["precision", bad[0], bad[1]]);
+        assert_eq!(output.status.code(), Some(2), "{bad:?}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains(word), "{bad:?}");
+    }
+}
