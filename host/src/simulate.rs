@@ -7,6 +7,7 @@ use slipfit_core::{
     integrator::Integrator,
     kernel::Kernel,
     law::{Elastic, Friction},
+    mechanism::Mechanism,
     menu::SlideVisitor,
     pose::Pose,
     slide::{CONTACTS, Slide},
@@ -14,10 +15,12 @@ use slipfit_core::{
 use thiserror::Error;
 
 use crate::{
+    audit::{Audit, Auditor},
     interrupt,
     outcome::{Observer, Outcome, Trajectory},
     scene::{RunSpec, Scene},
     scheme::IntegratorVisitor,
+    trust::{Trust, Watch},
 };
 
 /// The number type of a run.
@@ -49,6 +52,10 @@ pub struct Run {
     pub trajectory: Trajectory,
     /// Figures, from every step.
     pub outcome: Outcome,
+    /// The energy account, if asked for.
+    pub audit: Option<Audit>,
+    /// What the run says about its step.
+    pub trust: Trust,
     /// Wall time of the integration alone.
     pub integration: Duration,
 }
@@ -91,6 +98,23 @@ impl<S: std::fmt::Display> From<ParameterError<S>> for SimulateError {
 /// # Errors
 /// See [`SimulateError`].
 pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Result<Run, SimulateError> {
+    started(scene, gaps, settings, None)
+}
+
+/// The same run, with an account of its energy.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn audited(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Result<Run, SimulateError> {
+    started(scene, gaps, settings, Some(Auditor::new(settings.run.step)))
+}
+
+fn started(
+    scene: &Scene,
+    gaps: &[f64; CONTACTS],
+    settings: &Settings,
+    auditor: Option<Auditor>,
+) -> Result<Run, SimulateError> {
     let per_sample = (settings.every / settings.run.step).round();
     if !(per_sample >= 1.0 && (per_sample * settings.run.step - settings.every).abs() <= 1e-6 * settings.every) {
         return Err(SimulateError::Every { every: settings.every, step: settings.run.step });
@@ -98,6 +122,8 @@ pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> R
     let stepper = Stepper {
         settings,
         observer: Observer::new(scene.drive, settings.run.duration),
+        auditor,
+        watch: Watch::new(settings.run.step, scene.slide.mass, scene.drive.gain, scene.drive.ramp_start),
         per_sample: per_sample as u32,
     };
     match settings.scalar {
@@ -109,6 +135,8 @@ pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> R
 struct Stepper<'a> {
     settings: &'a Settings,
     observer: Observer,
+    auditor: Option<Auditor>,
+    watch: Watch,
     per_sample: u32,
 }
 
@@ -135,7 +163,7 @@ where
     type Output = Result<Run, SimulateError>;
 
     fn visit<I: Integrator>(self) -> Self::Output {
-        let Self { stepper: Stepper { settings, mut observer, per_sample }, slide } = self;
+        let Self { stepper: Stepper { settings, mut observer, mut auditor, mut watch, per_sample }, slide } = self;
         let RunSpec { duration, step, .. } = settings.run;
         let kernel = Kernel::<S, _, I>::new(slide, S::from_f64(step))?;
         let steps = (duration / step).round() as u32;
@@ -147,6 +175,10 @@ where
             let vz = state.motion.velocity.z;
             let force = kernel.mechanism().drive().force(kernel.time(state.steps), vz).to_f64();
             observer.observe(t, vz.to_f64(), force);
+            if let Some(auditor) = &mut auditor {
+                let slide = kernel.mechanism();
+                auditor.observe(slide.energy(&state.motion), slide.power(kernel.time(state.steps), &state.motion));
+            }
             if state.steps.is_multiple_of(per_sample) {
                 if interrupt::requested() {
                     return Err(SimulateError::Interrupted);
@@ -160,13 +192,24 @@ where
             }
             if state.steps == steps {
                 let integration = start.elapsed();
-                return Ok(Run { trajectory, outcome: observer.outcome(t, vz.to_f64()), integration });
+                let audit = auditor.map(|auditor| auditor.audit());
+                return Ok(Run {
+                    trajectory,
+                    outcome: observer.outcome(t, vz.to_f64()),
+                    trust: watch.trust(),
+                    audit,
+                    integration,
+                });
             }
-            let residual = kernel.step(&mut state).residual.to_f64();
+            let report = kernel.step(&mut state);
+            let residual = report.residual.to_f64();
             if !residual.is_finite() {
                 return Err(SimulateError::NotFinite { time: t, step });
             }
             trajectory.worst_residual = trajectory.worst_residual.max(residual);
+            let slide = kernel.mechanism();
+            let momentum = slide.impulse(&slide.momentum(&state.motion.velocity));
+            watch.observe(t, [residual, report.error.to_f64()], momentum.to_f64(), force);
         }
     }
 }

@@ -3,6 +3,7 @@
 mod check;
 mod run;
 mod simulate;
+mod stability;
 mod sweep;
 mod table;
 mod tolerance;
@@ -52,6 +53,8 @@ enum Command {
     Simulate(simulate::Arguments),
     Sweep(sweep::Arguments),
     Table(table::Arguments),
+    #[command(hide = true)]
+    Stability(stability::Arguments),
 }
 
 /// Why a command did not do its work.
@@ -196,6 +199,7 @@ pub fn main() -> ExitCode {
         Some(Command::Simulate(arguments)) => arguments.run(),
         Some(Command::Sweep(arguments)) => arguments.run(),
         Some(Command::Table(arguments)) => arguments.run(),
+        Some(Command::Stability(arguments)) => arguments.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
