@@ -7,6 +7,8 @@
 //! still along the axes, and the gaps are q + d·N: a difference of small numbers, not of positions, so that f32 keeps
 //! its digits. Opposing planes of a pin form a slot.
 
+mod energy;
+
 use nalgebra::Matrix3;
 
 use crate::{
@@ -21,6 +23,8 @@ use crate::{
     mechanism::{Evaluation, Mechanism},
     pose::Pose,
 };
+
+pub use energy::{Energy, Power};
 
 /// Pins of the slide.
 pub const PINS: usize = 4;

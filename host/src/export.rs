@@ -1,6 +1,6 @@
 //! Results as CSV.
 
-use crate::{number::ten_digits, outcome::Trajectory, precision::Point, scene::Scene, sweep::Sweep};
+use crate::{number::ten_digits, outcome::Trajectory, precision, scene::Scene, stability, sweep::Sweep};
 
 /// `t,vz,force,x,y` in s, m/s, N, m, m, ten digits.
 ///
@@ -45,10 +45,39 @@ pub fn sweep_csv(scene: &Scene, sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
 ///
 /// # Errors
 /// Those of the writer, none in memory.
-pub fn precision_csv(points: &[Point]) -> anyhow::Result<Vec<u8>> {
+pub fn precision_csv(points: &[precision::Point]) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for point in points {
         writer.serialize(point)?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// The stability map, one line a point; the indicators are empty where the motion left the finite range.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn stability_csv<'a>(points: impl Iterator<Item = &'a stability::Point>) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "integrator",
+        "factor",
+        "values",
+        "grade",
+        "error",
+        "defect",
+        "filling",
+        "rise",
+        "imbalance",
+        "doubtful_force",
+    ])?;
+    for point in points {
+        let values: Vec<String> = point.values.iter().map(|value| ten_digits(*value)).collect();
+        let names = [point.integrator.into(), point.factor.into(), values.join(" "), format!("{:?}", point.grade())];
+        let numbers = point
+            .indicators
+            .map(|at| [at.error, at.defect, at.filling, at.rise, at.imbalance, at.doubtful_force].map(ten_digits));
+        writer.write_record(names.iter().chain(&numbers.unwrap_or_default()))?;
     }
     Ok(writer.into_inner()?)
 }

@@ -3,6 +3,7 @@
 //! The command line is in [`cli`], one file a command; everything it prints is computed by the modules beside it.
 #![forbid(unsafe_code)]
 
+pub mod audit;
 mod chart;
 pub mod cli;
 pub mod controlled;
@@ -27,5 +28,8 @@ pub mod scene;
 pub mod scheme;
 pub mod self_locking;
 pub mod simulate;
+pub mod stability;
+pub mod strips;
 pub mod sweep;
 pub mod table2;
+pub mod trust;

@@ -15,11 +15,13 @@ use slipfit_core::{
 use thiserror::Error;
 
 use crate::{
+    audit::{Audit, Auditor},
     controlled::{self, Sensitivity, Tolerance},
     interrupt,
     outcome::{Observer, Outcome, Trajectory},
     scene::{RunSpec, Scene},
     scheme::IntegratorVisitor,
+    trust::{Trust, Watch},
 };
 
 /// The number type of a run.
@@ -70,6 +72,10 @@ pub struct Run {
     pub trajectory: Trajectory,
     /// Figures, from every step.
     pub outcome: Outcome,
+    /// The energy account, if asked for.
+    pub audit: Option<Audit>,
+    /// What the run says about its step.
+    pub trust: Trust,
     /// Wall time of the integration alone.
     pub integration: Duration,
 }
@@ -112,6 +118,23 @@ impl<S: std::fmt::Display> From<ParameterError<S>> for SimulateError {
 /// # Errors
 /// See [`SimulateError`].
 pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Result<Run, SimulateError> {
+    started(scene, gaps, settings, None)
+}
+
+/// The same run, with an account of its energy; fixed steps only.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn audited(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Result<Run, SimulateError> {
+    started(scene, gaps, settings, Some(Auditor::new(settings.run.step)))
+}
+
+fn started(
+    scene: &Scene,
+    gaps: &[f64; CONTACTS],
+    settings: &Settings,
+    auditor: Option<Auditor>,
+) -> Result<Run, SimulateError> {
     if let Some(force) = settings.tolerance {
         let controlled = Controlled { scene, settings, tolerance: Tolerance::of_force(force) };
         return Ok(scene.slide_data::<f64>(gaps).visit(controlled)?);
@@ -123,6 +146,8 @@ pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> R
     let stepper = Stepper {
         settings,
         observer: Observer::new(scene.drive, settings.run.duration),
+        auditor,
+        watch: Watch::new(settings.run.step, scene.slide.mass, scene.drive.gain, scene.drive.ramp_start),
         per_sample: per_sample as u32,
     };
     match settings.scalar {
@@ -174,13 +199,17 @@ impl SlideVisitor<f64> for Controlled<'_> {
             }
         }
         let last = knots.last().map_or(0.0, |knot| knot.values[0]);
-        Run { trajectory, outcome: observer.outcome(duration, last), integration }
+        // Error control has bounded what a watch looks for.
+        let outcome = observer.outcome(duration, last);
+        Run { trajectory, outcome, trust: Trust::default(), audit: None, integration }
     }
 }
 
 struct Stepper<'a> {
     settings: &'a Settings,
     observer: Observer,
+    auditor: Option<Auditor>,
+    watch: Watch,
     per_sample: u32,
 }
 
@@ -207,7 +236,7 @@ where
     type Output = Result<Run, SimulateError>;
 
     fn visit<I: Integrator>(self) -> Self::Output {
-        let Self { stepper: Stepper { settings, mut observer, per_sample }, slide } = self;
+        let Self { stepper: Stepper { settings, mut observer, mut auditor, mut watch, per_sample }, slide } = self;
         let RunSpec { duration, step, .. } = settings.run;
         let kernel = Kernel::<S, _, I>::new(slide, S::from_f64(step))?;
         let steps = (duration / step).round() as u32;
@@ -219,6 +248,10 @@ where
             let vz = state.motion.velocity.z;
             let force = kernel.mechanism().drive().force(kernel.time(state.steps), vz).to_f64();
             observer.observe(t, vz.to_f64(), force);
+            if let Some(auditor) = &mut auditor {
+                let slide = kernel.mechanism();
+                auditor.observe(slide.energy(&state.motion), slide.power(kernel.time(state.steps), &state.motion));
+            }
             if state.steps.is_multiple_of(per_sample) {
                 let r = state.motion.pose.displacement_w;
                 trajectory.t.push(t);
@@ -229,16 +262,27 @@ where
             }
             if state.steps == steps {
                 let integration = start.elapsed();
-                return Ok(Run { trajectory, outcome: observer.outcome(t, vz.to_f64()), integration });
+                let audit = auditor.map(|auditor| auditor.audit());
+                return Ok(Run {
+                    trajectory,
+                    outcome: observer.outcome(t, vz.to_f64()),
+                    trust: watch.trust(),
+                    audit,
+                    integration,
+                });
             }
             if state.steps.is_multiple_of(1024) && interrupt::requested() {
                 return Err(SimulateError::Interrupted);
             }
-            let residual = kernel.step(&mut state).residual.to_f64();
+            let report = kernel.step(&mut state);
+            let residual = report.residual.to_f64();
             if !residual.is_finite() {
                 return Err(SimulateError::NotFinite { time: t, step });
             }
             trajectory.worst_residual = trajectory.worst_residual.max(residual);
+            let slide = kernel.mechanism();
+            let momentum = slide.impulse(&slide.momentum(&state.motion.velocity));
+            watch.observe(t, [residual, report.error.to_f64()], momentum.to_f64(), force);
         }
     }
 }

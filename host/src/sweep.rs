@@ -10,6 +10,7 @@ use crate::{
     outcome::{Outcome, Trajectory, Verdict},
     scene::Scene,
     simulate::{Settings, SimulateError, simulate},
+    trust::Trust,
 };
 
 /// One level of a sweep.
@@ -21,6 +22,8 @@ pub struct Level {
     pub trajectory: Trajectory,
     /// Its figures, the verdict confirmed at half the step.
     pub outcome: Outcome,
+    /// What the run says about its step.
+    pub trust: Trust,
     /// Class of each gap in the order of Table 2; `None` where there is no contact.
     pub classes: [Option<GapClass>; CONTACTS],
 }
@@ -54,7 +57,7 @@ pub fn level(scene: &Scene, n: f64, settings: &Settings) -> Result<Level, Simula
     let gaps = scene.gaps_at(&[n; CONTACTS]);
     let mut run = simulate(scene, &gaps, settings)?;
     run.outcome.verdict = confirmed(scene, &gaps, settings, &run.outcome)?;
-    Ok(Level { n, trajectory: run.trajectory, outcome: run.outcome, classes: classes(&gaps) })
+    Ok(Level { n, trajectory: run.trajectory, outcome: run.outcome, trust: run.trust, classes: classes(&gaps) })
 }
 
 /// The verdict of `outcome`, if a run at half the step gives the same.

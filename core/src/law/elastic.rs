@@ -8,6 +8,9 @@ const STIFFNESS: [f64; 2] = [0.0, 1e20];
 pub trait Elastic<S>: Copy {
     /// Force (N) and stiffness dF/dδ (N/m) at a penetration `depth` ≥ 0 (m). Both vanish at depth 0.
     fn force(&self, depth: S) -> (S, S);
+
+    /// Energy (J) stored at a penetration `depth` ≥ 0 (m): the integral of the force.
+    fn energy(&self, depth: S) -> S;
 }
 
 /// F = k·δ.
@@ -30,6 +33,10 @@ impl<S: Scalar> Elastic<S> for Linear<S> {
     #[inline(always)]
     fn force(&self, depth: S) -> (S, S) {
         (self.stiffness * depth, depth.select_gt(S::zero(), self.stiffness, S::zero()))
+    }
+
+    fn energy(&self, depth: S) -> S {
+        self.stiffness * depth * depth / S::from_f64(2.0)
     }
 }
 
@@ -54,6 +61,10 @@ impl<S: Scalar> Elastic<S> for ThreeHalves<S> {
     fn force(&self, depth: S) -> (S, S) {
         let slope = self.stiffness * depth.sqrt();
         (slope * depth, S::from_f64(1.5) * slope)
+    }
+
+    fn energy(&self, depth: S) -> S {
+        self.force(depth).0 * depth / S::from_f64(2.5)
     }
 }
 
@@ -83,6 +94,10 @@ impl<S: Scalar> Elastic<S> for Power<S> {
         let slope = self.stiffness * depth.pow(self.exponent - S::one());
         (slope * depth, self.exponent * slope)
     }
+
+    fn energy(&self, depth: S) -> S {
+        self.force(depth).0 * depth / (self.exponent + S::one())
+    }
 }
 
 #[cfg(test)]
@@ -100,5 +115,18 @@ mod tests {
         }
         assert_eq!(Linear::new(2.0f32).unwrap().force(0.0), (0.0, 0.0));
         assert_eq!(Linear::new(2.0f32).unwrap().force(3.0), (6.0, 2.0));
+    }
+
+    #[test]
+    fn energy_is_the_integral_of_the_force() {
+        fn check(law: impl Elastic<f64>) {
+            let (depth, h) = (3e-4, 1e-8);
+            let slope = (law.energy(depth + h) - law.energy(depth - h)) / (2.0 * h);
+            assert!(libm::fabs(slope / law.force(depth).0 - 1.0) < 1e-7, "{slope}");
+            assert_eq!(law.energy(0.0), 0.0);
+        }
+        check(Linear::new(2e5).unwrap());
+        check(ThreeHalves::new(3e6).unwrap());
+        check(Power::new(3e6, 2.2).unwrap());
     }
 }

@@ -57,4 +57,16 @@ impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
             damping: force.select_gt(zero, damper, zero),
         }
     }
+
+    /// Elastic energy (J) stored at `penetration` (m, positive inside).
+    pub fn energy(&self, penetration: S) -> S {
+        self.elastic.energy(penetration.max_of(S::zero()))
+    }
+
+    /// Power (W, ≥ 0) lost at `penetration` δ (m) and `rate` δ̇ (m/s): (F − k·δ^e)·δ̇. Where surfaces part faster than the
+    /// spring can follow, F is clipped at zero, and what the spring gives up is lost.
+    pub fn loss(&self, penetration: S, rate: S) -> S {
+        let (spring, _) = self.elastic.force(penetration.max_of(S::zero()));
+        (self.response(penetration, rate).force - spring) * rate
+    }
 }

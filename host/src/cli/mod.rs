@@ -4,6 +4,7 @@ mod check;
 mod precision;
 mod run;
 mod simulate;
+mod stability;
 mod sweep;
 mod table;
 mod tolerance;

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
-use super::{Failure, SceneArguments, print, print_json, progress, refused, text_table};
+use super::{Failure, SceneArguments, print, print_json, progress, stability::MapArguments, text_table};
 use crate::{
     deviation::Deviation,
     export::precision_csv,
@@ -34,6 +34,8 @@ pub(super) struct Arguments {
     /// Draws error over run time as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    map: MapArguments,
 }
 
 #[derive(Serialize)]
@@ -59,7 +61,10 @@ impl Arguments {
             return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
         }
         for path in [&self.csv, &self.plot].into_iter().flatten() {
-            files::check_writable(path).map_err(refused)?;
+            self.scene.check_output(path)?;
+        }
+        if self.map.stability {
+            return self.map.run(&scene, self.scene.json, self.csv.as_deref(), self.plot.as_deref());
         }
         let Study { problems, points } = study(&scene, self.n)?;
         if let Some(path) = &self.csv {

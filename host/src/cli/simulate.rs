@@ -9,16 +9,18 @@ use slipfit_core::{clearance::GapClass, slide::CONTACTS};
 use super::{
     Failure, SceneArguments,
     check::{GapReport, gap_reports},
-    print, print_json,
+    print, print_json, text_table,
 };
 use crate::{
+    audit::Audit,
     export, files,
     number::{fixed, level, or_dash, ten_digits},
     outcome::{Outcome, Trajectory, Verdict},
     scene::{Override, Scene, parse_every},
     scheme::IntegratorKind,
-    simulate::{Run, ScalarKind, Settings, simulate},
+    simulate::{Run, ScalarKind, Settings, audited, simulate},
     sweep::confirmed,
+    trust::Trust,
 };
 
 /// Simulates one unit: velocity and drive force over time.
@@ -36,10 +38,13 @@ pub(super) struct Arguments {
     /// Interval of the samples, such as 1ms or 500us.
     #[arg(long, default_value = "1ms", allow_hyphen_values = true)]
     every: String,
+    /// Prints where the energy went: work, gains, losses, and what the scheme lost or made up.
+    #[arg(long)]
+    audit: bool,
     #[command(flatten)]
     stepping: SteppingArguments,
     /// Error-controlled steps instead of fixed ones: the error of the drive force (N) that a step may make, such as 1e-4.
-    #[arg(long, value_name = "N", conflicts_with_all = ["step", "integrator", "scalar"], allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", conflicts_with_all = ["step", "integrator", "scalar", "audit"], allow_hyphen_values = true)]
     error: Option<f64>,
 }
 
@@ -78,6 +83,9 @@ struct Report<'a> {
     #[serde(flatten)]
     outcome: Outcome,
     gaps: Vec<GapReport>,
+    trust: Trust,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    audit_j: Option<Audit>,
     samples: &'a Trajectory,
 }
 
@@ -95,7 +103,8 @@ impl Arguments {
         }
         let settings = Settings { run: scene.run, every, scalar: self.stepping.scalar, tolerance: self.error };
         let gaps = scene.gaps_at(&n);
-        let mut run = simulate(&scene, &gaps, &settings)?;
+        let run = if self.audit { audited } else { simulate };
+        let mut run = run(&scene, &gaps, &settings)?;
         if self.error.is_none() {
             run.outcome.verdict = confirmed(&scene, &gaps, &settings, &run.outcome)?;
         }
@@ -113,6 +122,8 @@ impl Arguments {
                 integration_ms: run.integration.as_secs_f64() * 1e3,
                 outcome: run.outcome,
                 gaps: gap_reports(&scene, &gaps),
+                trust: run.trust,
+                audit_j: run.audit,
                 samples: &run.trajectory,
             })
         } else {
@@ -157,8 +168,39 @@ impl Arguments {
             fixed(integration, 2),
             run.trajectory.worst_residual
         );
+        if let Some(audit) = &run.audit {
+            let _ = write!(text, "\n{}", describe_audit(audit));
+        }
+        if let Some(warning) = run.trust.warning() {
+            let _ = writeln!(text, "\nwarning: {warning}");
+        }
         text
     }
+}
+
+/// The energy account as a table.
+fn describe_audit(audit: &Audit) -> String {
+    // A unit in which the greatest entry has one to three digits before the point.
+    let (unit, scale) = match audit.exchanged {
+        most if most >= 1.0 => ("J", 1.0),
+        most if most >= 1e-3 => ("mJ", 1e3),
+        _ => ("µJ", 1e6),
+    };
+    let rows = [
+        ("work of the drive", audit.work),
+        ("= gain of kinetic energy", audit.kinetic),
+        ("+ gain of height", audit.gravity),
+        ("+ gain of compression", audit.elastic),
+        ("+ lost in contacts", audit.damping),
+        ("+ lost to friction", audit.friction),
+        ("+ defect", audit.defect),
+    ];
+    let rows: Vec<_> = rows.iter().map(|(name, energy)| vec![(*name).into(), fixed(energy * scale, 6)]).collect();
+    format!(
+        "{}The worst defect at any time is {:.1e} of the greatest energy exchanged; positive is lost by the scheme.\n",
+        text_table(&["energy", unit], &rows),
+        audit.relative_defect()
+    )
 }
 
 /// A remark behind an undecided verdict.

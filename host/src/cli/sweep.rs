@@ -18,6 +18,7 @@ use crate::{
     scene::{Override, Scene},
     simulate::Settings,
     sweep::{Sweep, sweep},
+    trust::Trust,
 };
 
 /// Simulates the slide at many tolerance levels: breakaway, required force, does it jam.
@@ -57,6 +58,7 @@ pub(super) struct LevelReport {
     n: f64,
     #[serde(flatten)]
     outcome: Outcome,
+    trust: Trust,
     compressed: usize,
     zero: usize,
     free: usize,
@@ -94,7 +96,7 @@ pub(super) fn for_machines(scene: &Scene, sweep: &Sweep) -> Vec<LevelReport> {
         let [compressed, zero, free] = level.class_counts();
         let named = scene.contact_names().into_iter().zip(level.classes);
         let classes = named.filter_map(|(name, class)| Some((name, class?.to_string()))).collect();
-        LevelReport { n: level.n, outcome: level.outcome, compressed, zero, free, classes }
+        LevelReport { n: level.n, outcome: level.outcome, trust: level.trust, compressed, zero, free, classes }
     };
     sweep.levels.iter().map(report).collect()
 }
@@ -123,6 +125,16 @@ pub(super) fn for_people(scene: &Scene, sweep: &Sweep) -> String {
     let mut text = text_table(&heading, &rows);
     if sweep.levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided) {
         let _ = writeln!(text, "\nundecided{}", why_undecided(scene, Verdict::Undecided));
+    }
+    let doubtful: Vec<_> = sweep.levels.iter().filter(|level| !level.trust.is_sound()).collect();
+    if let Some(step) = doubtful.iter().filter_map(|level| level.trust.better_step).reduce(f64::min) {
+        let levels: Vec<String> = doubtful.iter().map(|at| level(at.n)).collect();
+        let _ = writeln!(
+            text,
+            "\nwarning: the step is too large at n = {}; take --step {}us",
+            levels.join(", "),
+            (step * 1e6).max(1.0)
+        );
     }
     text
 }

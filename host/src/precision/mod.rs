@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn exact_friction_is_for_implicit_solvers() {
         let mut scene = example::cd_rom();
-        assert_eq!(solvers(&scene).len(), IntegratorKind::ALL.len());
+        assert_eq!(solvers(&scene).len(), IntegratorKind::ALL.len() + 1, "and error control");
         scene.friction = FrictionData::Exact { coefficient: 0.3 };
         let names: Vec<_> = solvers(&scene).iter().map(|solver| solver.name).collect();
         assert!(names.contains(&"sdirk2") && !names.contains(&"rk4"), "{names:?}");

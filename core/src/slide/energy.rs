@@ -1,0 +1,82 @@
+//! Where the slide's energy is and where it goes. For audits on the host; no step computes any of it.
+
+use super::{Slide, split};
+use crate::{
+    Scalar,
+    integrator::MotionOf,
+    law::{
+        Elastic, Friction,
+        friction::{Contact, Rubbing},
+    },
+    mechanism::Mechanism,
+};
+
+/// Energy of a slide at one motion (J).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Energy<S> {
+    /// Of motion, ≥ 0.
+    pub kinetic: S,
+    /// Of height against gravity, 0 at the nominal pose.
+    pub gravity: S,
+    /// Of compressed contacts, ≥ 0.
+    pub elastic: S,
+}
+
+/// Power into and out of a slide at one motion (W).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Power<S> {
+    /// What the drive does on the slide.
+    pub drive: S,
+    /// What contacts lose, ≥ 0: to their dampers, and where the force is held at zero while surfaces part.
+    pub damping: S,
+    /// What friction takes, ≥ 0 where its force opposes the sliding.
+    pub friction: S,
+}
+
+impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
+    /// The energy at `motion`.
+    pub fn energy(&self, motion: &MotionOf<S, Self, 6>) -> Energy<S> {
+        let momentum = self.momentum(&motion.velocity);
+        let gaps = self.gaps(&motion.pose);
+        Energy {
+            kinetic: motion.velocity.dot(&momentum) / S::from_f64(2.0),
+            gravity: -self.body.gravity_w.dot(&motion.pose.displacement_w) * self.body.mass,
+            elastic: gaps.iter().fold(S::zero(), |sum, gap| sum + self.contact.energy(-*gap)),
+        }
+    }
+
+    /// The powers at `motion` and time `t` (s). Friction with a memory acts with the force remembered, as far as the
+    /// normal force of the motion carries it.
+    pub fn power(&self, t: S, motion: &MotionOf<S, Self, 6>) -> Power<S> {
+        let (v_w, w_b) = split(&motion.velocity);
+        let to_body = motion.pose.to_body();
+        let v_b = to_body.apply(v_w);
+        let zero = S::zero();
+        let gaps = self.gaps(&motion.pose);
+        let (mut damping, mut friction) = (zero, zero);
+        let pins = gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w);
+        for (([left, right, rail, wall], pin), memory) in pins.zip(motion.memory.as_chunks::<2>().0) {
+            let lever = *pin + to_body.change(*pin) - to_body.apply(motion.pose.displacement_w);
+            let u = v_b + w_b.cross(&lever);
+            let slots = [([left, right], [u.x, u.y, u.z]), ([wall, rail], [u.y, u.x, u.z])];
+            for ((gaps, [along, sliding_0, sliding_1]), memory) in slots.into_iter().zip(memory) {
+                // The gaps of this pose, so that the slot stands at offset 0.
+                let slot = self.contact.slot(*gaps[0], *gaps[1], zero, along, zero);
+                let rubbing = Rubbing {
+                    sliding: [sliding_0, sliding_1],
+                    normal: slot.normal,
+                    normal_slope: zero,
+                    // Without grip the remembered force stands.
+                    mass_rate: zero,
+                    tangent_share: zero,
+                };
+                let mut contact = Contact { force: [zero; 3], impedance: [[zero; 3]; 3] };
+                self.friction.add(memory, &rubbing, &mut contact);
+                friction -= contact.force[1] * sliding_0 + contact.force[2] * sliding_1;
+                damping += self.contact.loss(-*gaps[0], along) + self.contact.loss(-*gaps[1], -along);
+            }
+        }
+        let point_speed = v_w.z + to_body.apply_inverse(w_b.cross(&self.drive.point_b)).z;
+        Power { drive: self.drive.force(t, v_w.z) * point_speed, damping, friction }
+    }
+}

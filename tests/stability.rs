@@ -1,0 +1,105 @@
+//! Energy accounts and the reduced stability map.
+
+use slipfit::{
+    audit::Audit,
+    scene::{CD_ROM_SLIDE, Override, Scene},
+    scheme::IntegratorKind,
+    simulate::{ScalarKind, Settings, audited, simulate},
+    stability::{self, Grade},
+};
+use slipfit_core::slide::CONTACTS;
+
+fn scene(settings: &[&str]) -> Scene {
+    let settings: Vec<_> = settings.iter().map(|setting| Override::set(setting)).collect();
+    Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &settings).unwrap()
+}
+
+/// The account of the slide with all gaps at `gap` (m).
+fn account(scene: &Scene, gap: f64, integrator: IntegratorKind, step: f64) -> Audit {
+    let mut run = scene.run;
+    (run.integrator, run.step) = (integrator, step);
+    let settings = Settings::fixed(run, 1e-3, ScalarKind::F64);
+    audited(scene, &[gap; CONTACTS], &settings).unwrap().audit.unwrap()
+}
+
+/// A slide held by interference all round, linear and lossless, swings under gravity and a drive that pulls at once:
+/// smooth, so that defects fall with the order. Relative defects at 20 µs and 10 µs.
+fn smooth_defects(integrator: IntegratorKind, more: &[&str]) -> [f64; 2] {
+    let mut settings = vec![
+        "contact.exponent=1",
+        "contact.stiffness=10",
+        "contact.damping=0.001",
+        "drive.ramp_start=-0.05",
+        "drive.ramp_end=0.1",
+        "drive.point=[20,0,0]",
+        "run.duration=2",
+    ];
+    settings.extend(more);
+    let scene = scene(&settings);
+    [20e-6, 10e-6].map(|step| account(&scene, -0.2e-3, integrator, step).relative_defect())
+}
+
+const LOSSLESS: [&str; 3] = ["friction.law=none", "contact.damping=0", "drive.gain=0"];
+
+#[test]
+fn energy_is_conserved_to_the_order_of_the_method() {
+    let schemes = [
+        (IntegratorKind::SemiImplicitEuler, 1.0),
+        (IntegratorKind::ImplicitEuler, 1.0),
+        (IntegratorKind::Sdirk2, 2.0),
+        (IntegratorKind::Extrapolated, 2.0),
+    ];
+    for (integrator, order) in schemes {
+        let [coarse, fine] = smooth_defects(integrator, &LOSSLESS);
+        let found = libm::log2(coarse / fine);
+        println!("lossless {integrator:?} {coarse:.2e} {fine:.2e} order {found:.2}");
+        assert!(found > order - 0.25, "{integrator:?}: {coarse:e} {fine:e}");
+    }
+}
+
+#[test]
+fn the_defect_falls_with_the_order_of_the_method() {
+    let schemes = [
+        (IntegratorKind::SemiImplicitEuler, 1.0),
+        (IntegratorKind::RungeKutta4, 3.0),
+        (IntegratorKind::ImplicitEuler, 1.0),
+        (IntegratorKind::Sdirk2, 2.0),
+        (IntegratorKind::Extrapolated, 2.0),
+    ];
+    for (integrator, order) in schemes {
+        let [coarse, fine] = smooth_defects(integrator, &["friction.stick_band=100"]);
+        let found = libm::log2(coarse / fine);
+        println!("driven {integrator:?} {coarse:.2e} {fine:.2e} order {found:.2}");
+        assert!(found > order - 0.25, "{integrator:?}: {coarse:e} {fine:e}");
+    }
+}
+
+#[test]
+fn implicit_euler_only_loses_energy() {
+    let settings = ["contact.exponent=1", "run.duration=50"].into_iter().chain(LOSSLESS).collect::<Vec<_>>();
+    let audit = account(&scene(&settings), -0.2e-3, IntegratorKind::ImplicitEuler, 50e-6);
+    assert!(audit.defect > 0.0 && audit.rise <= 1e-9 * audit.exchanged, "{audit:?}");
+}
+
+#[test]
+fn runs_with_too_large_a_step_say_so() {
+    for integrator in stability::SCHEMES {
+        for (n, step, sound) in [(7.0, 1e-3, false), (8.0, 1e-3, false), (0.0, 50e-6, true), (5.0, 50e-6, true)] {
+            let scene = scene(&[]);
+            let mut run = scene.run;
+            (run.integrator, run.step) = (integrator, step);
+            let settings = Settings::fixed(run, 1e-3, ScalarKind::F64);
+            let trust = simulate(&scene, &scene.gaps_at(&[n; CONTACTS]), &settings).unwrap().trust;
+            assert_eq!(trust.is_sound(), sound, "{integrator:?} n = {n}: {trust:?}");
+        }
+    }
+}
+
+#[test]
+fn a_reduced_map_is_finite_or_says_so_and_does_not_depend_on_threads() {
+    let scene = scene(&[]);
+    let points = stability::random(&scene, 1, 16, || ()).unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    assert_eq!(points, pool.install(|| stability::random(&scene, 1, 16, || ())).unwrap());
+    assert!(points.iter().filter(|point| point.grade() == Grade::Silent).count() <= 1, "{points:?}");
+}
