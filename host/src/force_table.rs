@@ -34,7 +34,7 @@ pub struct ForceTable {
     pub worst_error_after_ramp_start: [f64; 2],
 }
 
-/// How runs for a table are sampled: at its instants and [`SUBSAMPLES`] − 1 times between them. Instants are
+/// How runs for a table are sampled: at its instants and three times between them. Instants are
 /// [`TIME_STEP`] apart, or the least multiple of it up to ten with which the table fits its region.
 pub fn settings(scene: &Scene, scalar: ScalarKind) -> Settings {
     let RunSpec { duration, step, .. } = scene.run;

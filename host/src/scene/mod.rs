@@ -162,7 +162,7 @@ impl Scene {
     pub fn check_gaps(&self, n: &[f64; CONTACTS]) -> Result<(), GapError> {
         let names = self.contact_names();
         for ((contact, gap), n) in names.into_iter().zip(self.gaps_at(n)).zip(n) {
-            if gap != ABSENT && !(gap.abs() <= GAP_MOST) {
+            if gap != ABSENT && (gap.is_nan() || gap.abs() > GAP_MOST) {
                 return Err(GapError { n: *n, contact, gap });
             }
         }
