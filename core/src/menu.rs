@@ -137,18 +137,15 @@ impl<S: Scalar + PartialOrd> SlideData<S> {
     ) -> Result<V::Output, ParameterError<S>> {
         let contact = Impact::new(elastic, self.contact.damping, self.contact.depth)?;
         let SlideData { body, friction, drive, .. } = *self;
-        if friction.friction_type() == FrictionType::Frictionless {
-            return Ok(visitor.visit(Slide::new(body, contact, Frictionless, drive)?));
-        }
-        match friction {
-            FrictionData::None => Ok(visitor.visit(Slide::new(body, contact, Frictionless, drive)?)),
-            FrictionData::Regularised { coefficient, stick_band } => {
+        match (friction.friction_type(), friction) {
+            (FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
                 let friction = Regularised::new(coefficient, stick_band)?;
                 Ok(visitor.visit(Slide::new(body, contact, friction, drive)?))
             }
-            FrictionData::Exact { coefficient } => {
+            (FrictionType::Exact, FrictionData::Exact { coefficient }) => {
                 Ok(visitor.visit(Slide::new(body, contact, Exact::new(coefficient)?, drive)?))
             }
+            _ => Ok(visitor.visit(Slide::new(body, contact, Frictionless, drive)?)),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Semi-implicit Euler: first order, explicit in the forces. A baseline: one evaluation a step, stable only while the step
-//! resolves every contact and the stick band.
+//! Semi-implicit Euler: first order, explicit in the forces. A baseline: one evaluation a step and one for the error
+//! estimate, stable only while the step resolves every contact and the stick band.
 
 use super::{Integrator, Motion, MotionOf, Step, StepOf};
 use crate::{Scalar, mechanism::Mechanism};
