@@ -32,4 +32,5 @@ pub mod stability;
 pub mod strips;
 pub mod sweep;
 pub mod table2;
+pub mod tolerance;
 pub mod trust;

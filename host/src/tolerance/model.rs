@@ -1,0 +1,145 @@
+//! What every analysis works on: contributors that vary, and the measures that follow from them.
+
+use super::lanes::Lanes;
+
+/// A product whose measures are a function of independent (or correlated) random variables.
+pub struct Model {
+    /// What varies. A contributor's variables follow those of the contributor before it.
+    pub contributors: Vec<Contributor>,
+    /// Correlations of scalar contributors, as (row, column, coefficient) of their normal scores; none is 0.
+    pub correlations: Vec<(usize, usize, f64)>,
+    /// What is measured, in the order in which `function` writes it.
+    pub measures: Vec<Measure>,
+    /// Sums of measures whose closing is asked for.
+    pub sums: Vec<Sum>,
+    /// Measures of the variables.
+    pub function: Box<dyn Function>,
+}
+
+/// The measures of assembled units as a function of their variables.
+pub trait Function: Send + Sync {
+    /// Writes all `measures` (SI: m, rad) of the units whose `variables` these are. A measure that cannot be computed
+    /// is not a number.
+    fn evaluate(&self, variables: &[Lanes], measures: &mut [Lanes]);
+}
+
+/// One tolerance or toleranced dimension.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contributor {
+    /// Name, such as "slide.left-rail flatness".
+    pub name: String,
+    /// How it varies.
+    pub variation: Variation,
+}
+
+/// How a contributor varies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Variation {
+    /// One variable in SI units.
+    Scalar {
+        /// Its distribution.
+        distribution: Distribution,
+        /// Lower and upper limit, for the worst case.
+        limits: [f64; 2],
+    },
+    /// A plane in its zone of width t: offset u = 2w/t and tilts p = αb/t, r = βa/t, with |u| + |p| + |r| ≤ 1 inside
+    /// the zone. Three variables u, p, r (one, u, for [`ZoneRule::Translation`]).
+    Zone(ZoneRule),
+}
+
+/// How a plane varies in its zone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ZoneRule {
+    /// u, p, r independent normals of standard deviation 1/(3√3): a corner of the face has t/6.
+    SigmaZone,
+    /// The same, drawn again until inside the zone.
+    Truncated,
+    /// Uniform in the octahedron.
+    UniformInZone,
+    /// Offset only: u normal of standard deviation 1/3.
+    Translation,
+}
+
+/// Distribution of a scalar contributor. SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Distribution {
+    /// Always this value.
+    Constant(f64),
+    /// Normal.
+    Normal {
+        /// Mean.
+        mean: f64,
+        /// Standard deviation.
+        deviation: f64,
+    },
+    /// Normal, sorted out beyond its limits. `mean` and `deviation` are those before.
+    TruncatedNormal {
+        /// Mean before truncation.
+        mean: f64,
+        /// Standard deviation before truncation.
+        deviation: f64,
+        /// Lower and upper limit.
+        limits: [f64; 2],
+    },
+    /// Uniform between its limits.
+    Uniform {
+        /// Lower and upper limit.
+        limits: [f64; 2],
+    },
+    /// Triangular.
+    Triangular {
+        /// Lower and upper limit.
+        limits: [f64; 2],
+        /// Most frequent value, within the limits.
+        mode: f64,
+    },
+    /// Trapezoidal: constant density between the shoulders, falling linearly to the limits.
+    Trapezoidal {
+        /// Lower and upper limit.
+        limits: [f64; 2],
+        /// Lower and upper shoulder, within the limits.
+        shoulders: [f64; 2],
+    },
+    /// Skewed: the shifted log-normal of these moments.
+    Skewed {
+        /// Mean.
+        mean: f64,
+        /// Standard deviation.
+        deviation: f64,
+        /// Skewness, not 0: positive has its long tail upwards.
+        skewness: f64,
+    },
+    /// Measured data: values in ascending order, at least two; linear between them.
+    Table(Vec<f64>),
+}
+
+/// One measure of the assembled product.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Name.
+    pub name: String,
+    /// What kind of number it is.
+    pub quantity: Quantity,
+    /// Lower and upper specification limit (SI), where given.
+    pub limits: [Option<f64>; 2],
+}
+
+/// Kind of a measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// m; reported in mm.
+    Length,
+    /// rad; reported in degrees.
+    Angle,
+    /// Reported as it is.
+    Ratio,
+}
+
+/// A sum of measures that must stay positive, such as the two gaps of a pin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sum {
+    /// Name, such as "left front across".
+    pub name: String,
+    /// Indices of its measures.
+    pub measures: Vec<usize>,
+}
