@@ -6,9 +6,9 @@ use slipfit_core::{
     kernel::Kernel,
     law::{
         Friction, StaticKinetic,
-        friction::{Contact, Rubbing},
+        friction::Rubbing,
     },
-    mechanism::{Evaluation, Mechanism},
+    mechanism::{Differentiated, Evaluation, Mechanism},
 };
 
 /// A body of one degree of freedom on a spring and a belt; unit normal force, so that coefficients are forces.
@@ -23,6 +23,7 @@ impl Mechanism<f64, 1> for OnBelt {
     type Pose = f64;
     type Memory = [f64; 2];
     type Linearisation = f64;
+    type Slopes = f64;
 
     fn advanced(&self, pose: &f64, velocity: &SVector<f64, 1>, dt: f64) -> f64 {
         pose + velocity.x * dt
@@ -74,19 +75,17 @@ impl Mechanism<f64, 1> for OnBelt {
         a: f64,
         tangent_share: f64,
     ) -> Evaluation<f64, [f64; 2], f64, 1> {
-        let mut contact = Contact { force: [0.0; 3], impedance: [[0.0; 3]; 3] };
         let rubbing = Rubbing {
             sliding: [velocity.x - self.belt, 0.0],
             normal: 1.0,
-            normal_slope: 0.0,
             mass_rate: self.mass / a,
             tangent_share,
         };
-        let memory = self.friction.add(memory, &rubbing, &mut contact);
+        let (traction, memory) = self.friction.traction(memory, &rubbing);
         Evaluation {
-            force: SVector::<f64, 1>::new(contact.force[1] - self.stiffness * pose),
+            force: SVector::<f64, 1>::new(traction.force[0] - self.stiffness * pose),
             memory,
-            linearisation: self.mass + a * (contact.impedance[1][1] + a * self.stiffness),
+            linearisation: self.linearised(&traction.impedance[0], a),
         }
     }
 
@@ -96,6 +95,30 @@ impl Mechanism<f64, 1> for OnBelt {
 
     fn impulse(&self, imbalance: &SVector<f64, 1>) -> f64 {
         imbalance.x.abs()
+    }
+
+    fn differentiated(
+        &self,
+        t: f64,
+        pose: &f64,
+        memory: &[f64; 2],
+        velocity: &SVector<f64, 1>,
+    ) -> Differentiated<f64, f64, 1> {
+        let rubbing =
+            Rubbing { sliding: [velocity.x - self.belt, 0.0], normal: 1.0, mass_rate: 0.0, tangent_share: 1.0 };
+        Differentiated {
+            force: self.evaluated(t, pose, memory, velocity, 1.0, 1.0).force,
+            per_time: SVector::zeros(),
+            slopes: self.friction.traction(memory, &rubbing).0.impedance[0],
+        }
+    }
+
+    fn linearised(&self, damping: &f64, a: f64) -> f64 {
+        self.mass / a + damping + a * self.stiffness
+    }
+
+    fn pushed(&self, _: &f64, displacement: &SVector<f64, 1>) -> SVector<f64, 1> {
+        displacement * -self.stiffness
     }
 }
 

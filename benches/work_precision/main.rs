@@ -18,7 +18,7 @@ use slipfit::{
 };
 use slipfit_core::{
     SVector,
-    integrator::{Extrapolated, Integrator, Motion},
+    integrator::{Extrapolated, Integrator, Motion, Rodas3},
     kernel::Kernel,
     mechanism::Mechanism,
     pose::Pose,
@@ -98,10 +98,8 @@ fn compare(reference: &Reference, cvode: Option<&Cvode>, all: bool) {
     let slide = cd_rom::slide(reference.n);
     let milliseconds = (reference.duration * 1e3).round() as u32;
     let mut entries = kernels(&slide, milliseconds);
-    entries.extend(controlled::<Extrapolated<2, 1>>("controlled, 2 columns", &slide, milliseconds));
-    entries.extend(controlled::<Extrapolated<3, 1>>("controlled, 3 columns", &slide, milliseconds));
-    entries.extend(controlled::<Extrapolated<4, 1>>("controlled, 4 columns", &slide, milliseconds));
-    entries.extend(controlled::<Extrapolated<3, 3>>("controlled, 3 passes", &slide, milliseconds));
+    entries.extend(controlled::<Rodas3>("controlled rodas3", &slide, milliseconds));
+    entries.extend(controlled::<Extrapolated<3, 3>>("controlled extrapolated", &slide, milliseconds));
     entries.extend(diffsol_peer::entries(&slide, milliseconds));
     entries.extend(cvode.map(|cvode| cvode.entries(milliseconds)).into_iter().flatten());
     let findings: Vec<Finding> = entries.iter().filter_map(|entry| measure(entry, reference)).collect();

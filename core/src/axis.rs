@@ -4,7 +4,7 @@ use crate::{
     ParameterError, SVector, Scalar,
     error::bounded,
     law::{Elastic, Impact},
-    mechanism::{Evaluation, Mechanism},
+    mechanism::{Differentiated, Evaluation, Mechanism},
 };
 
 /// A body that moves along one axis, with a pad below it.
@@ -45,8 +45,11 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
 
     type Memory = ();
 
-    /// Effective mass (kg).
+    /// Effective impedance (N·s/m).
     type Linearisation = S;
+
+    /// Damping (N·s/m) and stiffness (N/m) of the pad.
+    type Slopes = [S; 2];
 
     #[inline(always)]
     fn advanced(&self, pose: &S, velocity: &SVector<S, 1>, dt: S) -> S {
@@ -100,17 +103,43 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
         Evaluation {
             force: SVector::<S, 1>::new(pad.force + self.mass * self.gravity),
             memory: (),
-            linearisation: self.mass + a * (pad.damping + a * pad.stiffness),
+            linearisation: self.linearised(&[pad.damping, pad.stiffness], a),
         }
     }
 
     #[inline(always)]
-    fn solve(&self, effective_mass: &S, residual: &SVector<S, 1>) -> SVector<S, 1> {
-        SVector::<S, 1>::new(residual.x / *effective_mass)
+    fn solve(&self, impedance: &S, residual: &SVector<S, 1>) -> SVector<S, 1> {
+        SVector::<S, 1>::new(residual.x / *impedance)
     }
 
     #[inline(always)]
     fn impulse(&self, imbalance: &SVector<S, 1>) -> S {
         imbalance.x.magnitude()
+    }
+
+    #[inline(always)]
+    fn differentiated(
+        &self,
+        _: S,
+        pose: &S,
+        (): &(),
+        velocity: &SVector<S, 1>,
+    ) -> Differentiated<S, [S; 2], 1> {
+        let pad = self.contact.response(-(self.gap + *pose), -velocity.x);
+        Differentiated {
+            force: SVector::<S, 1>::new(pad.force + self.mass * self.gravity),
+            per_time: SVector::zeros(),
+            slopes: [pad.damping, pad.stiffness],
+        }
+    }
+
+    #[inline(always)]
+    fn linearised(&self, [damping, stiffness]: &[S; 2], a: S) -> S {
+        self.mass / a + *damping + a * *stiffness
+    }
+
+    #[inline(always)]
+    fn pushed(&self, [_, stiffness]: &[S; 2], displacement: &SVector<S, 1>) -> SVector<S, 1> {
+        displacement * -*stiffness
     }
 }

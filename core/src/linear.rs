@@ -22,7 +22,55 @@ fn inverse<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
     Matrix3::from_columns(&[c0 * scale, c1 * scale, c2 * scale])
 }
 
+/// [a]×·`m`: the cross products of a with the columns.
+#[inline(always)]
+fn cross_columns<S: Scalar>(a: &Vector3<S>, m: &Matrix3<S>) -> Matrix3<S> {
+    let [x, y, z]: [[S; 3]; 3] = m.data.0;
+    let (x, y, z) = (Vector3::from(x), Vector3::from(y), Vector3::from(z));
+    Matrix3::from_columns(&[a.cross(&x), a.cross(&y), a.cross(&z)])
+}
+
+/// −`m`·[a]×: the cross products of a with the rows.
+#[inline(always)]
+fn cross_rows<S: Scalar>(a: &Vector3<S>, m: &Matrix3<S>) -> Matrix3<S> {
+    cross_columns(a, &m.transpose()).transpose()
+}
+
 impl<S: Scalar> Blocks<S> {
+    /// All zero but for the diagonal.
+    #[inline(always)]
+    pub fn diagonal(a: Vector3<S>, d: Vector3<S>) -> Self {
+        let zero = Matrix3::zeros();
+        Self { a: Matrix3::from_diagonal(&a), b: zero, c: zero, d: Matrix3::from_diagonal(&d) }
+    }
+
+    /// Adds what the force −`matrix`·(v + ω × `lever`), acting at `lever`, means for force and torque by v and ω.
+    #[inline(always)]
+    pub fn add_at(&mut self, lever: &Vector3<S>, matrix: &Matrix3<S>) {
+        let turned = cross_columns(lever, matrix);
+        self.a += matrix;
+        self.b += cross_rows(lever, matrix);
+        self.c += turned;
+        self.d += cross_rows(lever, &turned);
+    }
+
+    /// `self`·(x, y).
+    #[inline(always)]
+    pub fn times(&self, x: Vector3<S>, y: Vector3<S>) -> (Vector3<S>, Vector3<S>) {
+        (self.a * x + self.b * y, self.c * x + self.d * y)
+    }
+
+    /// `self` + `weight`·`other`.
+    #[inline(always)]
+    pub fn plus(&self, other: &Self, weight: S) -> Self {
+        Self {
+            a: self.a + other.a * weight,
+            b: self.b + other.b * weight,
+            c: self.c + other.c * weight,
+            d: self.d + other.d * weight,
+        }
+    }
+
     /// The solution of `self`·(x, y) = (`f`, `g`). Eliminates x; no pivoting is needed, because the diagonal blocks
     /// carry mass and inertia plus positive contact terms.
     #[inline(always)]

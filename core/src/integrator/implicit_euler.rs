@@ -23,7 +23,8 @@ impl<const PASSES: usize> Integrator for ImplicitEuler<PASSES> {
         let end = stage::<S, M, D, PASSES>(mechanism, t + h, h, motion, motion.velocity);
         // Half the change of the force over the step is what the first order leaves out; the linearisation takes the stiff
         // part out of it again, which the scheme damps and does not follow.
-        let change = mechanism.momentum(&(end.motion.velocity - motion.velocity)) - start.force * h;
+        let rate = S::one() / h;
+        let change = mechanism.momentum(&(end.motion.velocity - motion.velocity)) * rate - start.force;
         let left_out = mechanism.solve(&end.linearisation, &(change * S::from_f64(0.5)));
         let error = mechanism.impulse(&mechanism.momentum(&left_out));
         let pose = mechanism.normalised(&end.motion.pose);

@@ -5,12 +5,14 @@
 
 mod extrapolated;
 mod implicit_euler;
+mod rodas3;
 mod runge_kutta_4;
 mod sdirk2;
 mod semi_implicit_euler;
 
 pub use extrapolated::Extrapolated;
 pub use implicit_euler::ImplicitEuler;
+pub use rodas3::Rodas3;
 pub use runge_kutta_4::RungeKutta4;
 pub use sdirk2::Sdirk2;
 pub use semi_implicit_euler::SemiImplicitEuler;
@@ -99,20 +101,21 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize>(
     base: &MotionOf<S, M, D>,
     guess: SVector<S, D>,
 ) -> StageOf<S, M, D> {
+    let rate = S::one() / a;
     let mut velocity = guess;
     for pass in 0..PASSES {
         let pose = mechanism.advanced(&base.pose, &velocity, a);
         let at = mechanism.evaluated(t, &pose, &base.memory, &velocity, a, tangent_share(pass));
-        let imbalance = mechanism.momentum(&(velocity - base.velocity)) - at.force * a;
+        let imbalance = mechanism.momentum(&(velocity - base.velocity)) * rate - at.force;
         velocity -= mechanism.solve(&at.linearisation, &imbalance);
     }
     let velocity = mechanism.settled(&velocity);
     let pose = mechanism.advanced(&base.pose, &velocity, a);
     let at = mechanism.evaluated(t, &pose, &base.memory, &velocity, a, S::one());
-    let imbalance = mechanism.momentum(&(velocity - base.velocity)) - at.force * a;
+    let imbalance = mechanism.momentum(&(velocity - base.velocity)) * rate - at.force;
     Stage {
         motion: Motion { pose, velocity, memory: at.memory },
-        residual: mechanism.impulse(&imbalance),
+        residual: mechanism.impulse(&imbalance) * a,
         linearisation: at.linearisation,
     }
 }
