@@ -8,7 +8,7 @@ use slipfit_core::{
         Friction, StaticKinetic,
         friction::Rubbing,
     },
-    mechanism::{Differentiated, Evaluation, Mechanism},
+    mechanism::{Differentiated, Linearised, Mechanism},
 };
 
 /// A body of one degree of freedom on a spring and a belt; unit normal force, so that coefficients are forces.
@@ -17,6 +17,12 @@ struct OnBelt {
     stiffness: f64,
     belt: f64,
     friction: StaticKinetic<f64>,
+}
+
+impl OnBelt {
+    fn rubbing(&self, velocity: &SVector<f64, 1>, mass_rate: f64, tangent_share: f64) -> Rubbing<f64> {
+        Rubbing { sliding: [velocity.x - self.belt, 0.0], normal: 1.0, mass_rate, tangent_share }
+    }
 }
 
 impl Mechanism<f64, 1> for OnBelt {
@@ -66,26 +72,31 @@ impl Mechanism<f64, 1> for OnBelt {
         momentum / self.mass
     }
 
-    fn evaluated(
+    fn forces(
         &self,
         _: f64,
         pose: &f64,
         memory: &[f64; 2],
         velocity: &SVector<f64, 1>,
         a: f64,
+    ) -> (SVector<f64, 1>, [f64; 2]) {
+        let (traction, memory) = self.friction.traction(memory, &self.rubbing(velocity, self.mass / a, 1.0));
+        (SVector::<f64, 1>::new(traction.force[0] - self.stiffness * pose), memory)
+    }
+
+    fn linearised(
+        &self,
+        t: f64,
+        pose: &f64,
+        memory: &[f64; 2],
+        velocity: &SVector<f64, 1>,
+        a: f64,
         tangent_share: f64,
-    ) -> Evaluation<f64, [f64; 2], f64, 1> {
-        let rubbing = Rubbing {
-            sliding: [velocity.x - self.belt, 0.0],
-            normal: 1.0,
-            mass_rate: self.mass / a,
-            tangent_share,
-        };
-        let (traction, memory) = self.friction.traction(memory, &rubbing);
-        Evaluation {
-            force: SVector::<f64, 1>::new(traction.force[0] - self.stiffness * pose),
-            memory,
-            linearisation: self.linearised(&traction.impedance[0], a),
+    ) -> Linearised<f64, f64, 1> {
+        let rubbing = self.rubbing(velocity, self.mass / a, tangent_share);
+        Linearised {
+            force: self.forces(t, pose, memory, velocity, a).0,
+            linearisation: self.linearisation(&self.friction.traction(memory, &rubbing).0.impedance[0], a),
         }
     }
 
@@ -104,16 +115,15 @@ impl Mechanism<f64, 1> for OnBelt {
         memory: &[f64; 2],
         velocity: &SVector<f64, 1>,
     ) -> Differentiated<f64, f64, 1> {
-        let rubbing =
-            Rubbing { sliding: [velocity.x - self.belt, 0.0], normal: 1.0, mass_rate: 0.0, tangent_share: 1.0 };
+        let rubbing = self.rubbing(velocity, 0.0, 1.0);
         Differentiated {
-            force: self.evaluated(t, pose, memory, velocity, 1.0, 1.0).force,
+            force: self.forces(t, pose, memory, velocity, 1.0).0,
             per_time: SVector::zeros(),
             slopes: self.friction.traction(memory, &rubbing).0.impedance[0],
         }
     }
 
-    fn linearised(&self, damping: &f64, a: f64) -> f64 {
+    fn linearisation(&self, damping: &f64, a: f64) -> f64 {
         self.mass / a + damping + a * self.stiffness
     }
 

@@ -4,7 +4,7 @@ use crate::{
     ParameterError, SVector, Scalar,
     error::bounded,
     law::{Elastic, Impact},
-    mechanism::{Differentiated, Evaluation, Mechanism},
+    mechanism::{Differentiated, Linearised, Mechanism},
 };
 
 /// A body that moves along one axis, with a pad below it.
@@ -98,13 +98,14 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     }
 
     #[inline(always)]
-    fn evaluated(&self, _: S, pose: &S, (): &(), velocity: &SVector<S, 1>, a: S, _: S) -> Evaluation<S, (), S, 1> {
-        let pad = self.contact.response(-(self.gap + *pose), -velocity.x);
-        Evaluation {
-            force: SVector::<S, 1>::new(pad.force + self.mass * self.gravity),
-            memory: (),
-            linearisation: self.linearised(&[pad.damping, pad.stiffness], a),
-        }
+    fn forces(&self, t: S, pose: &S, memory: &(), velocity: &SVector<S, 1>, _: S) -> (SVector<S, 1>, ()) {
+        (self.differentiated(t, pose, memory, velocity).force, ())
+    }
+
+    #[inline(always)]
+    fn linearised(&self, t: S, pose: &S, memory: &(), velocity: &SVector<S, 1>, a: S, _: S) -> Linearised<S, S, 1> {
+        let Differentiated { force, slopes, .. } = self.differentiated(t, pose, memory, velocity);
+        Linearised { force, linearisation: self.linearisation(&slopes, a) }
     }
 
     #[inline(always)]
@@ -134,7 +135,7 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     }
 
     #[inline(always)]
-    fn linearised(&self, [damping, stiffness]: &[S; 2], a: S) -> S {
+    fn linearisation(&self, [damping, stiffness]: &[S; 2], a: S) -> S {
         self.mass / a + *damping + a * *stiffness
     }
 

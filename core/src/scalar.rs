@@ -11,6 +11,7 @@ use crate::power;
 pub trait Scalar:
     nalgebra::Scalar
     + Copy
+    + Default
     + Zero
     + One
     + core::ops::Neg<Output = Self>

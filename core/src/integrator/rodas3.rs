@@ -27,7 +27,7 @@ impl Integrator for Rodas3 {
         let (half, two) = (S::from_f64(0.5), S::from_f64(2.0));
         let start = mechanism.differentiated(t, &motion.pose, &motion.memory, &motion.velocity);
         let a = h * half;
-        let linearisation = mechanism.linearised(&start.slopes, a);
+        let linearisation = mechanism.linearisation(&start.slopes, a);
         // Rates at a place and the force there, with what earlier stages add to both: the stage's own part of place and
         // velocity. The equation of the place is solved for first.
         let stage = |rate: SVector<S, D>, force: SVector<S, D>| {
@@ -38,7 +38,7 @@ impl Integrator for Rodas3 {
         let forces = |at: &Part<S, D>| {
             let pose = mechanism.moved(&motion.pose, &at.place, S::one());
             let velocity = motion.velocity + at.velocity;
-            let force = mechanism.evaluated(end, &pose, &motion.memory, &velocity, h, S::one()).force;
+            let (force, _) = mechanism.forces(end, &pose, &motion.memory, &velocity, h);
             (mechanism.rate(&at.place, &velocity), force)
         };
         let per_step = S::one() / h;
@@ -65,6 +65,7 @@ impl Integrator for Rodas3 {
             motion: Motion { pose, velocity: motion.velocity + moved.velocity, memory: motion.memory },
             residual: S::zero(),
             error: mechanism.impulse(&inertia(&fourth)),
+            drift: mechanism.impulse(&mechanism.momentum(&fourth.place)),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::{SLOTS, Slide};
 use crate::{
     Scalar, Vector3,
     law::{Elastic, Friction, friction::Rubbing},
-    linear::Blocks,
+    linear::{Blocks, cross_columns, cross_matrix, cross_rows},
     pose::ToBody,
 };
 
@@ -41,7 +41,7 @@ pub(super) struct PinForce<S> {
     pub force: Vector3<S>,
     /// −∂force/∂u (N·s/m) by the velocity of the slide's material at the pin, which also moves it over the time `a`.
     pub impedance: Matrix3<S>,
-    /// −∂force/∂x (N/m) by the displacement of the slide's material at the pin.
+    /// −∂force/∂x (N/m) by the displacement of the slide's material at the pin, if `impedance` leaves it in place.
     pub stiffness: Matrix3<S>,
 }
 
@@ -49,6 +49,12 @@ pub(super) struct PinForce<S> {
 pub(super) trait Collect<S> {
     /// Takes in the force at one pin, whose `lever` (m) reaches from the centre of mass.
     fn collect(&mut self, lever: &Vector3<S>, pin: &PinForce<S>);
+}
+
+/// Nothing.
+impl<S> Collect<S> for () {
+    #[inline(always)]
+    fn collect(&mut self, _: &Vector3<S>, _: &PinForce<S>) {}
 }
 
 /// Their impedance.
@@ -59,12 +65,14 @@ impl<S: Scalar> Collect<S> for Blocks<S> {
     }
 }
 
-/// Their impedance and stiffness.
+/// Their impedance and stiffness, and that the force stays at the pin while the slide is displaced.
 impl<S: Scalar> Collect<S> for [Blocks<S>; 2] {
     #[inline(always)]
     fn collect(&mut self, lever: &Vector3<S>, pin: &PinForce<S>) {
         self[0].add_at(lever, &pin.impedance);
         self[1].add_at(lever, &pin.stiffness);
+        self[1].c -= cross_matrix(&pin.force);
+        self[1].d += cross_columns(&pin.force, &cross_matrix(lever));
     }
 }
 
@@ -95,9 +103,11 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         for ((gaps, pin), memory) in pins.zip(memory.as_chunks_mut::<2>().0) {
             let offset = at.to_body.change(*pin) - at.displacement_b;
             let lever = *pin + offset;
-            let pin = self.pin(memory, *gaps, offset, at.velocity_b + at.rotation_b.cross(&lever), way);
+            let mut pin = self.pin(memory, *gaps, offset, at.velocity_b + at.rotation_b.cross(&lever), way);
             force += pin.force;
             torque += lever.cross(&pin.force);
+            // Where the slide turns, a displacement changes the velocity of its material at the pin by −ω × displacement.
+            pin.stiffness += cross_rows(&at.rotation_b, &pin.impedance);
             collection.collect(&lever, &pin);
         }
         (force, torque)

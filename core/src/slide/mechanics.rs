@@ -1,5 +1,7 @@
 //! The slide as integrators see it.
 
+use nalgebra::Matrix3;
+
 use super::{
     SLOTS, Slide,
     contacts::{Placed, Way},
@@ -8,20 +10,29 @@ use super::{
 use crate::{
     SVector, Scalar, Vector3,
     law::{Elastic, Friction},
-    linear::Blocks,
-    mechanism::{Differentiated, Evaluation, Mechanism},
+    linear::{Blocks, Factors, cross_columns, cross_matrix, cross_rows},
+    mechanism::{Differentiated, Linearised, Mechanism},
     pose::{Pose, ToBody},
 };
 
 /// The balance of forces linearised in body axes, and the rotation that leads there.
 #[derive(Clone, Copy, Debug)]
 pub struct Linearisation<S> {
-    blocks: Blocks<S>,
+    factors: Factors<S>,
     to_body: ToBody<S>,
 }
 
-/// How the force changes with motion and place, in body axes, and the rotation that leads there. Like the linearisation
-/// it leaves out what the turning of levers and forces with the pose does.
+impl<S: Scalar> Default for Linearisation<S> {
+    #[inline(always)]
+    fn default() -> Self {
+        let zero = Matrix3::zeros();
+        let factors = Factors { inverse_a: zero, b: zero, c_over_a: zero, inverse_rest: zero };
+        Self { factors, to_body: Pose::nominal().to_body() }
+    }
+}
+
+/// How the force changes with motion and place, in body axes, and the rotation that leads there. Only
+/// the gyroscopic torque's change is left out.
 #[derive(Clone, Copy, Debug)]
 pub struct Slopes<S> {
     /// −∂force/∂velocity.
@@ -126,7 +137,24 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     }
 
     #[inline(always)]
-    fn evaluated(
+    fn forces(
+        &self,
+        t: S,
+        pose: &Pose<S>,
+        memory: &[F::Memory; SLOTS],
+        velocity: &SVector<S, 6>,
+        a: S,
+    ) -> (SVector<S, 6>, [F::Memory; SLOTS]) {
+        let at = placed(pose, velocity);
+        let mut memory = *memory;
+        let way = Way { a, mass_rate: self.body.mass / a, tangent_share: S::one() };
+        let contacts = self.contact_forces(&at, &mut memory, way, &mut ());
+        let push = self.pull(&at.to_body).times(self.drive.force(t, velocity.z));
+        (self.total(&at, contacts, push), memory)
+    }
+
+    #[inline(always)]
+    fn linearised(
         &self,
         t: S,
         pose: &Pose<S>,
@@ -134,23 +162,24 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         velocity: &SVector<S, 6>,
         a: S,
         tangent_share: S,
-    ) -> Evaluation<S, [F::Memory; SLOTS], Linearisation<S>, 6> {
+    ) -> Linearised<S, Linearisation<S>, 6> {
         let at = placed(pose, velocity);
-        let mut memory = *memory;
         let rate = S::one() / a;
         let pull = self.pull(&at.to_body);
         let mut blocks = self.inertia(rate);
         pull.add_to(&mut blocks, self.drive.gain);
         let way = Way { a, mass_rate: self.body.mass * rate, tangent_share };
-        let contacts = self.contact_forces(&at, &mut memory, way, &mut blocks);
-        let force = self.total(&at, contacts, pull.times(self.drive.force(t, velocity.z)));
-        Evaluation { force, memory, linearisation: Linearisation { blocks, to_body: at.to_body } }
+        let contacts = self.contact_forces(&at, &mut { *memory }, way, &mut blocks);
+        Linearised {
+            force: self.total(&at, contacts, pull.times(self.drive.force(t, velocity.z))),
+            linearisation: Linearisation { factors: blocks.factorised(), to_body: at.to_body },
+        }
     }
 
     #[inline(always)]
     fn solve(&self, linearisation: &Linearisation<S>, residual: &SVector<S, 6>) -> SVector<S, 6> {
         let (f_w, g_b) = split(residual);
-        let (v_b, w_b) = linearisation.blocks.solve(linearisation.to_body.apply(f_w), g_b);
+        let (v_b, w_b) = linearisation.factors.solve(linearisation.to_body.apply(f_w), g_b);
         join(linearisation.to_body.apply_inverse(v_b), w_b)
     }
 
@@ -172,22 +201,29 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         let zero = Vector3::zeros();
         let pull = self.pull(&at.to_body);
         let mut slopes = [Blocks::diagonal(zero, zero); 2];
-        pull.add_to(&mut slopes[0], self.drive.gain);
         let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
         let contacts = self.contact_forces(&at, &mut { *memory }, way, &mut slopes);
-        let [damping, stiffness] = slopes;
+        let [mut damping, mut stiffness] = slopes;
+        // A turn θ changes the velocity that the contacts see by −θ × v.
+        stiffness.b -= cross_rows(&at.velocity_b, &damping.a);
+        stiffness.d -= cross_rows(&at.velocity_b, &damping.c);
+        pull.add_to(&mut damping, self.drive.gain);
+        // The contacts' forces turn with the slide, the drive's does not.
+        let push = self.drive.force(t, velocity.z);
+        stiffness.b += cross_matrix(&contacts.0);
+        stiffness.d -= cross_columns(&self.drive.point_b, &cross_matrix(&(pull.force_b * push)));
         let (force_b, torque_b) = pull.times(self.drive.gain * self.drive.command_rate(t));
         Differentiated {
-            force: self.total(&at, contacts, pull.times(self.drive.force(t, velocity.z))),
+            force: self.total(&at, contacts, pull.times(push)),
             per_time: join(at.to_body.apply_inverse(force_b), torque_b),
             slopes: Slopes { damping, stiffness, to_body: at.to_body },
         }
     }
 
     #[inline(always)]
-    fn linearised(&self, slopes: &Slopes<S>, a: S) -> Linearisation<S> {
+    fn linearisation(&self, slopes: &Slopes<S>, a: S) -> Linearisation<S> {
         let blocks = self.inertia(S::one() / a).plus(&slopes.damping, S::one()).plus(&slopes.stiffness, a);
-        Linearisation { blocks, to_body: slopes.to_body }
+        Linearisation { factors: blocks.factorised(), to_body: slopes.to_body }
     }
 
     #[inline(always)]
