@@ -132,6 +132,13 @@ impl Toleranced {
         Ok(Self { nominal, limits, distribution })
     }
 
+    /// How far a point is off in a zone of `width` (m): normal with a sixth of the width.
+    pub fn in_zone(width: f64) -> Self {
+        let limits = [-width / 2.0, width / 2.0];
+        let distribution = Distribution::Normal { mean: 0.0, deviation: width / 6.0 };
+        Self { nominal: 0.0, limits, distribution }
+    }
+
     /// As a contributor called `name`.
     pub fn contributor(&self, name: String) -> Contributor {
         let variation = Variation::Scalar { distribution: self.distribution.clone(), limits: self.limits };

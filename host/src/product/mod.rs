@@ -3,12 +3,17 @@
 //! A scene file states them (see `scenes/three-part-stack.toml` for the simplest); they become a
 //! [`Model`](crate::tolerance::model::Model) of independent or correlated variables. SI units inside.
 
+pub mod assembly;
+pub mod contact;
 pub mod correlation;
 pub mod dimension;
 pub mod expression;
+pub mod feature;
 pub mod function;
 pub mod iso2768;
 pub mod moments;
+pub mod pose;
+pub mod vector;
 
 use crate::tolerance::{lanes::Lanes, model::Model};
 

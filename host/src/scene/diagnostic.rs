@@ -4,7 +4,7 @@ use std::{fmt, ops::Range};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str};
 
-use crate::product::{dimension::ShapeError, expression::Fault, iso2768::BandError};
+use crate::product::{assembly::PlacementError, dimension::ShapeError, expression::Fault, iso2768::BandError};
 
 use super::{GapError, LevelError};
 
@@ -151,6 +151,29 @@ pub enum Problem {
     /// Coefficients that no set of random variables can have.
     #[error("the correlations contradict each other: their matrix is not positive definite")]
     NotPositiveDefinite,
+    /// Something that drawings have and this program does not.
+    #[error("{what} is not supported")]
+    Unsupported {
+        /// What.
+        what: String,
+    },
+    /// A part, or a system of datums, without one definite place.
+    #[error("`{part}`: {error}")]
+    Placement {
+        /// Part or feature.
+        part: String,
+        /// Why.
+        error: PlacementError,
+    },
+    /// A part without a mate.
+    #[error("no mate places the part `{0}`: it is under-constrained")]
+    NotPlaced(String),
+    /// A part with two mates, or the first part with one.
+    #[error("the part `{0}` is placed already: it is over-constrained")]
+    PlacedTwice(String),
+    /// Mates that rest on each other.
+    #[error("the mates form a loop: {0}")]
+    Loop(String),
     /// A scene of tolerances alone where motion is asked for.
     #[error("the scene has no `slide`: there is nothing to move")]
     NoSlide,

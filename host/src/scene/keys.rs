@@ -21,8 +21,62 @@ const fn table(name: &'static str, below: &'static [Key]) -> Key {
 
 const DISTRIBUTION: Key = table(
     "distribution",
-    &[key("kind"), key("sigma"), key("mode"), key("shoulders"), key("skewness"), key("deviations")],
+    &[key("kind"), key("mode"), key("shoulders"), key("skewness"), key("deviations")],
 );
+
+const TOLERANCED: &[Key] =
+    &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge")];
+const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
+const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
+const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
+const ZONE: &[Key] = &[key("zone"), key("datum"), key("rule")];
+
+const PLANE: &[Key] = &[
+    key("name"),
+    key("at"),
+    key("normal"),
+    key("along"),
+    key("extents"),
+    table("offset", TOLERANCED),
+    table("flatness", ZONE),
+    table("straightness", ZONE),
+    table("parallelism", ZONE),
+    table("perpendicularity", ZONE),
+    table("angularity", ZONE),
+    table("position", ZONE),
+    table("profile", ZONE),
+    VECTORIAL,
+];
+const POINT: &[Key] = &[
+    key("name"),
+    key("at"),
+    key("normal"),
+    key("extents"),
+    table("offset", TOLERANCED),
+    table("flatness", ZONE),
+    table("position", ZONE),
+    table("profile", ZONE),
+    VECTORIAL,
+];
+const AXIS: &[Key] = &[
+    key("name"),
+    key("at"),
+    key("along"),
+    key("length"),
+    table("diameter", TOLERANCED),
+    table("straightness", ZONE),
+    table("parallelism", ZONE),
+    table("perpendicularity", ZONE),
+    table("angularity", ZONE),
+    table("position", ZONE),
+    VECTORIAL,
+];
+
+/// What drawings have and scenes do not.
+const UNSUPPORTED: [&str; 12] = [
+    "circularity", "roundness", "cylindricity", "concentricity", "coaxiality", "symmetry", "run_out", "runout",
+    "total_run_out", "line_profile", "maximum_material", "projected_zone",
+];
 
 /// Every key of a scene.
 const ROOT: &[Key] = &[
@@ -40,7 +94,27 @@ const ROOT: &[Key] = &[
         "dimension",
         &[key("name"), key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge")],
     ),
-    table("measure", &[key("name"), key("is"), key("lower"), key("upper")]),
+    table(
+        "part",
+        &[
+            key("name"),
+            key("at"),
+            key("turned"),
+            table("plane", PLANE),
+            table("point", POINT),
+            table("axis", AXIS),
+        ],
+    ),
+    table(
+        "mate",
+        &[
+            key("part"),
+            key("contacts"),
+            table("move", &[key("along"), key("by")]),
+            table("turn", &[key("about"), key("at"), key("by")]),
+        ],
+    ),
+    table("measure", &[key("name"), key("is"), key("distance"), key("angle"), key("lower"), key("upper")]),
     table("sum", &[key("name"), key("of")]),
     table("correlation", &[key("of"), key("coefficient")]),
 ];
@@ -57,6 +131,10 @@ fn refuse(node: &Node<'_>, path: &str, keys: &[Key]) -> Result<(), SceneError> {
             let name = join(path, &entry.key);
             match keys.iter().find(|key| key.name == entry.key) {
                 Some(key) => refuse(&entry.node, &name, key.below),
+                None if UNSUPPORTED.contains(&&*entry.key) => {
+                    let known = "flatness, straightness, parallelism, perpendicularity, angularity, position, profile";
+                    Err(entry.place.error(Problem::Unsupported { what: entry.key.to_string() }, known))
+                }
                 None => {
                     let similar = similar(&name);
                     let allowed = keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ");

@@ -116,6 +116,11 @@ impl<'s> Place<'s> {
         self.source.text.get(self.span.clone()).unwrap_or_default()
     }
 
+    /// Where it begins in its text.
+    pub fn start(&self) -> usize {
+        self.span.start
+    }
+
     /// The bytes `within` of the `text` that was read here: part of this place where the text stands as it is, between
     /// its quotes, else all of it.
     pub fn within(&self, text: &str, within: Range<usize>) -> Self {

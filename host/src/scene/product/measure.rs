@@ -27,10 +27,9 @@ pub(super) fn measures(root: &Field, draft: &mut Draft, function: &mut Measures)
     let mut measures = Vec::new();
     for table in tables(root, "measure")? {
         let (name, name_field) = name(&table)?;
-        let field = table.require("is", "an expression, such as \"(a + 'a name' - 3 mm) / 2\"")?;
-        let expression = expression(&field, draft, function)?;
-        let quantity = expression.quantity();
-        function.formulas.push(Formula::Expression(expression));
+        let formula = formula(&table, draft, function)?;
+        let quantity = formula.quantity();
+        function.formulas.push(formula);
         draft.name(&name_field, name, Source::Measure(measures.len()), Kind::of(quantity))?;
         measures.push(Measure { name: name.into(), quantity, limits: limits(&table, quantity)? });
     }
@@ -38,6 +37,30 @@ pub(super) fn measures(root: &Field, draft: &mut Draft, function: &mut Measures)
         return Err(root.error(Problem::Missing("measure".into()), "one or more tables [[measure]]"));
     }
     Ok(measures)
+}
+
+/// Reads the one of the keys `is`, `distance` and `angle` that a measure has.
+fn formula(table: &Field, draft: &Draft, function: &Measures) -> Result<Formula, SceneError> {
+    const ALLOWED: &str = "one of: is = \"an expression\", distance = [\"PART.FEATURE\", \"PART.FEATURE\"], angle = […]";
+    let given: Vec<_> = ["is", "distance", "angle"].iter().filter_map(|key| Some((*key, table.get(key)?))).collect();
+    let (key, field) = match &given[..] {
+        [] => return Err(table.error(Problem::Missing(format!("{}.is", table.key)), ALLOWED)),
+        [only] => only,
+        [_, (_, second), ..] => {
+            let problem = Problem::Unsupported { what: "a measure of two kinds".into() };
+            return Err(second.error(problem, ALLOWED));
+        }
+    };
+    if *key == "is" {
+        return Ok(Formula::Expression(expression(field, draft, function)?));
+    }
+    let pair = texts(table, key, "a list of two features, PART.FEATURE")?;
+    let [(_, one), (_, two)] = &pair[..] else {
+        let problem = Problem::Length { key: field.key.clone(), found: pair.len() };
+        return Err(field.error(problem, "a list of two features, PART.FEATURE"));
+    };
+    let (one, two) = (draft.feature(one)?, draft.feature(two)?);
+    Ok(if *key == "angle" { Formula::Angle(one, two) } else { Formula::distance(&function.assembly, one, two) })
 }
 
 /// Reads an expression of what `draft` and the measures of `function` so far name; finite at the nominal values.

@@ -18,14 +18,19 @@
 //! lower = 9.8
 //! ```
 
+mod callout;
+mod mate;
 mod measure;
+mod part;
 #[cfg(test)]
 mod tests;
 mod toleranced;
 
 use crate::{
     product::{
-        Product, correlation,
+        Product,
+        assembly::Assembly,
+        correlation,
         expression::{Kind, Source},
         function::Measures,
         iso2768::{General, WITHDRAWN},
@@ -59,6 +64,10 @@ struct Draft {
     nominal: Vec<f64>,
     /// What expressions can use.
     names: Vec<(String, Source, Kind)>,
+    assembly: Assembly,
+    /// Names with the parts'.
+    feature_names: Vec<String>,
+    parts_of_features: Vec<usize>,
 }
 
 impl Draft {
@@ -67,6 +76,17 @@ impl Draft {
         self.contributors.push(contributor);
         self.nominal.extend(nominal);
         self.nominal.len() - nominal.len()
+    }
+
+    /// The feature that `field` names, as PART.FEATURE.
+    fn feature(&self, field: &Field) -> Result<usize, SceneError> {
+        let name = field.to_text()?;
+        self.feature_names.iter().position(|known| known == name).ok_or_else(|| {
+            let near = self.feature_names.iter().map(|known| (strsim::osa_distance(known, name), known)).min();
+            let hint = near.map(|(_, known)| format!(", such as {known}")).unwrap_or_default();
+            let problem = Problem::UnknownName { of: "feature above".into(), name: name.into() };
+            field.error(problem, format!("PART.FEATURE{hint}"))
+        })
     }
 
     /// Gives `name` to `source`, unless something else has it.
@@ -82,12 +102,24 @@ impl Draft {
 
 /// Reads the product in `root`.
 pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
-    let mut draft = Draft { defaults: defaults(root)?, contributors: vec![], nominal: vec![], names: vec![] };
+    let mut draft = Draft {
+        defaults: defaults(root)?,
+        contributors: Vec::new(),
+        nominal: Vec::new(),
+        names: Vec::new(),
+        assembly: Assembly::default(),
+        feature_names: Vec::new(),
+        parts_of_features: Vec::new(),
+    };
     for table in tables(root, "dimension")? {
         toleranced::dimension(&table, &mut draft)?;
     }
+    let mut parts = part::parts(root)?;
+    let mates = mate::mates(root, &mut parts)?;
+    part::features(&parts, &mut draft)?;
+    mates.iter().try_for_each(|mate| mate::place(mate, &parts, &mut draft))?;
     let correlations = correlations(root, &draft.contributors)?;
-    let mut function = Measures::default();
+    let mut function = Measures { assembly: std::mem::take(&mut draft.assembly), formulas: Vec::new() };
     let measures = measure::measures(root, &mut draft, &mut function)?;
     let sums = measure::sums(root, &measures)?;
     let mut warnings = Vec::new();

@@ -246,3 +246,49 @@ pub(super) fn check(text: &str, from: &str, to: &str, [marked, problem, allowed]
         assert!(error.contains(part), "{part} is not in\n{error}");
     }
 }
+
+#[test]
+fn three_locators() {
+    let plate = product("three-locators", &[]);
+    let [middle, corner] = &moments::of_measures(&plate.model)[..] else { panic!("two measures") };
+    let sigma = 0.01e-3;
+    // σ·√Σλ², λ the barycentric coordinates of the point in the triangle of the locators.
+    close(middle.deviation / sigma, 0.707_107, 1e-6);
+    close(corner.deviation / sigma, 1.732_051, 1e-6);
+    close(middle.mean, 0.0, 1e-9);
+}
+
+/// Table 2: mean and standard deviation (mm) of the left, right, rail and wall gap, pin by pin.
+const TABLE_2: [[f64; 2]; 16] = [
+    [0.0064, 0.0404],
+    [0.4327, 0.0266],
+    [-0.0003, 0.0145],
+    [0.5757, 0.0465],
+    [0.2049, 0.0573],
+    [0.7760, 0.0478],
+    [0.0002, 0.0148],
+    [0.5779, 0.0490],
+    [-0.0223, 0.0624],
+    [0.4037, 0.0488],
+    [-0.0003, 0.0176],
+    [0.5754, 0.0581],
+    [0.2040, 0.0767],
+    [0.7776, 0.0633],
+    [0.0002, 0.0177],
+    [0.5778, 0.0579],
+];
+
+#[test]
+fn the_drawing_of_the_slide_gives_table_2() {
+    let drawing = product("cd-rom-slide-drawing", &[]);
+    let moments = moments::of_measures(&drawing.model);
+    for ((statistics, expected), measure) in moments.iter().zip(TABLE_2).zip(&drawing.model.measures) {
+        println!("{}: {} {}", measure.name, statistics.mean * 1e3, statistics.deviation * 1e3);
+        close(statistics.mean * 1e3, expected[0], 0.5e-4);
+        close(statistics.deviation * 1e3, expected[1], 0.5e-4);
+    }
+    for rail in &moments[16..] {
+        println!("{} {}", rail.mean * 1e3, rail.deviation * 1e3);
+    }
+    assert_eq!(moments.len(), 18);
+}

@@ -16,8 +16,10 @@ use crate::{
 
 use super::{Draft, SIGMA, name};
 
-const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
+pub(super) const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
 const ANGLE: Quantity = Quantity { units: unit::ANGLE, range: [-3600.0, 3600.0] };
+/// A component of a unit vector.
+pub(super) const RATIO: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
 const SKEWNESS: Quantity = Quantity { units: unit::ONE, range: [-10.0, 10.0] };
 
 const TOLERANCE: &str = "± as one number, [lower, upper] deviations, or a class of ISO 2768-1: f, m, c, v";
@@ -26,14 +28,49 @@ const SHAPES: &str = "normal, truncated-normal, uniform, triangular, trapezoidal
 /// Reads a `[[dimension]]`.
 pub(super) fn dimension(table: &Field, draft: &mut Draft) -> Result<(), SceneError> {
     let (name, name_field) = name(table)?;
-    let (toleranced, kind) = toleranced(table, draft)?;
+    let value = table.require("value", "a length in mm, or a text with its unit: \"30°\"")?;
+    let (toleranced, kind) = toleranced(table, &value, draft)?;
     let variable = draft.add(toleranced.contributor(name.into()), &[toleranced.nominal]);
     draft.name(&name_field, name, Source::Variable(variable), kind)
 }
 
-/// Reads the keys `value`, `tolerance`, `sigma`, `distribution`, `side` and `edge` of a table.
-pub(super) fn toleranced(table: &Field, draft: &Draft) -> Result<(Toleranced, Kind), SceneError> {
-    let value = table.require("value", "a length in mm, or a text with its unit: \"30°\"")?;
+/// Reads the diameter of an axis: a bare length under the general tolerance, or a table like a dimension's.
+pub(super) fn diameter(axis: &Field, name: &str, draft: &mut Draft) -> Result<(), SceneError> {
+    let Some(field) = axis.get("diameter") else { return Ok(()) };
+    let value = match field.node.value {
+        Value::Table(_) => field.require("value", "a length in mm")?,
+        _ => field.clone(),
+    };
+    let (diameter, kind) = toleranced(&field, &value, draft)?;
+    if diameter.limits[0] <= 0.0 || kind != Kind::LENGTH {
+        return Err(value.out_of_range("mm", "a length that stays above 0"));
+    }
+    let name = format!("{name}.diameter");
+    let variable = draft.add(diameter.contributor(name.clone()), &[diameter.nominal]);
+    draft.name(&field, &name, Source::Variable(variable), kind)
+}
+
+/// Reads the size by which a feature lies off: deviations, or a table like a dimension's.
+pub(super) fn offset(field: &Field, draft: &Draft) -> Result<Toleranced, SceneError> {
+    match field.get("value") {
+        Some(value) => Ok(toleranced(field, &value, draft)?.0),
+        None => deviation(field, &LENGTH, draft),
+    }
+}
+
+/// Reads a deviation from 0: a tolerance, or a table of `tolerance`, `sigma` and `distribution`.
+pub(super) fn deviation(field: &Field, quantity: &Quantity, draft: &Draft) -> Result<Toleranced, SceneError> {
+    let tolerance = match field.node.value {
+        Value::Table(_) => field.require("tolerance", TOLERANCE)?,
+        _ => field.clone(),
+    };
+    let shape = shape(field, quantity, draft.defaults.sigma)?;
+    Toleranced::new(0.0, deviations(&tolerance, quantity)?, &shape)
+        .map_err(|error| field.error(Problem::Shape { key: field.key.clone(), error }, TOLERANCE))
+}
+
+/// Reads the keys `tolerance`, `sigma`, `distribution`, `side` and `edge` of a table, and its `value`.
+pub(super) fn toleranced(table: &Field, value: &Field, draft: &Draft) -> Result<(Toleranced, Kind), SceneError> {
     let is_angle = matches!(value.node.value, Value::Text(_))
         && value.measure("a length or an angle")?.unit.is_some_and(|text| unit::ANGLE.iter().any(|unit| unit.is(text)));
     let (quantity, kind) = if is_angle { (&ANGLE, Kind::ANGLE) } else { (&LENGTH, Kind::LENGTH) };
@@ -47,15 +84,15 @@ pub(super) fn toleranced(table: &Field, draft: &Draft) -> Result<(Toleranced, Ki
             return Err(field.error(problem, "no tolerance with this distribution"));
         }
         (Some(field), _) => match class(field) {
-            Some(class) => general(table, &value, kind, nominal, class)?,
+            Some(class) => general(table, value, kind, nominal, class)?,
             None => deviations(field, quantity)?,
         },
         (None, _) => match draft.defaults.general.size {
-            Some(class) => general(table, &value, kind, nominal, class)?,
+            Some(class) => general(table, value, kind, nominal, class)?,
             None => return Err(table.error(Problem::Missing(format!("{}.tolerance", table.key)), TOLERANCE)),
         },
     };
-    let at = table.get("distribution").or(tolerance).unwrap_or(value);
+    let at = table.get("distribution").or(tolerance).unwrap_or(value.clone());
     let made = Toleranced::new(nominal, deviations, &shape);
     let toleranced = made.map_err(|error| at.error(Problem::Shape { key: at.key.clone(), error }, TOLERANCE))?;
     Ok((toleranced, kind))
