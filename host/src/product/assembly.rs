@@ -9,7 +9,7 @@ use crate::tolerance::lanes::Lanes;
 use super::{
     contact::{CONDITIONS, Contact, Freedoms, Rows},
     feature::{Feature, Located},
-    vector::Displacement,
+    vector::{Displacement, Vector},
 };
 
 /// Newton passes with the nominal Jacobian. Each gains the factor of the parts' rotations, a thousandth or less.
@@ -26,16 +26,29 @@ pub struct Assembly {
     pub placements: Vec<Placement>,
 }
 
-/// How a body comes to lie: a part on others, or a frame of datums on its features.
+/// How a body comes to lie, a part on others or a frame of datums on its features, and what it carries.
 #[derive(Clone, Debug)]
 pub struct Placement {
-    contacts: Vec<Joined>,
+    support: Support,
+    carried: Vec<Carried>,
+}
+
+#[derive(Clone, Debug)]
+enum Support {
+    /// A datum that is one plane: a perfect plane on the actual one.
+    Plane(usize),
+    /// Contacts whose conditions are solved for.
+    Contacts(Contacts),
+}
+
+/// Contacts that leave a body no freedom.
+#[derive(Clone, Debug)]
+struct Contacts {
+    joined: Vec<Joined>,
     centre: [f64; 3],
     start: [f64; 6],
     /// Of each contact, components of the displacement per condition.
     gains: Vec<Vec<Gain>>,
-    /// Features that it carries.
-    carried: Vec<Carried>,
 }
 
 /// A feature that goes where a body goes.
@@ -45,6 +58,18 @@ pub struct Carried {
     pub feature: usize,
     /// Whether it turns only, about its own point.
     pub turns_only: bool,
+}
+
+impl Carried {
+    /// Moves the feature.
+    #[inline(always)]
+    fn by(self, displacement: &Displacement, located: &mut [Located]) {
+        let feature = &mut located[self.feature];
+        if !self.turns_only {
+            feature.place = displacement.apply(feature.place);
+        }
+        feature.direction = displacement.turn(feature.direction);
+    }
 }
 
 /// A contact of two features.
@@ -95,17 +120,66 @@ pub enum PlacementError {
 }
 
 impl Placement {
+    /// What goes with a plane that is the only datum. The plane holds a shift along its normal and two rotations; it
+    /// leads to no other motion.
+    pub fn on_plane(plane: usize, carried: Carried) -> Self {
+        Self { support: Support::Plane(plane), carried: vec![carried] }
+    }
+
     /// A body that `contacts` place, the first with precedence over the next, and that carries the features `carried`.
     /// Other freedoms are `fixed`: directions of shifts, and of rotations about the centre.
     ///
     /// # Errors
     /// [`PlacementError`].
-    pub fn new(
+    pub fn on_contacts(
         assembly: &Assembly,
         nominal: &[Lanes],
         contacts: Vec<Joined>,
         fixed: &[[[f64; 3]; 2]],
         carried: Vec<Carried>,
+    ) -> Result<Self, PlacementError> {
+        let support = Support::Contacts(Contacts::new(assembly, nominal, contacts, fixed)?);
+        Ok(Self { support, carried })
+    }
+
+    /// Lets the body carry another feature.
+    pub fn carry(&mut self, carried: Carried) {
+        self.carried.push(carried);
+    }
+
+    /// Moves the features that the body carries to where it comes to lie.
+    #[inline(always)]
+    fn place(&self, assembly: &Assembly, located: &mut [Located]) {
+        let displacement = match &self.support {
+            Support::Plane(plane) => onto_plane(&assembly.features[*plane], &located[*plane]),
+            Support::Contacts(contacts) => contacts.displacement(assembly, located),
+        };
+        for carried in &self.carried {
+            carried.by(&displacement, located);
+        }
+    }
+}
+
+/// The displacement that brings a nominal plane onto the actual one, by the shortest way.
+#[inline(always)]
+fn onto_plane(nominal: &Feature, actual: &Located) -> Displacement {
+    let [place, normal] = nominal.nominal;
+    let perfect = nominal.perfect();
+    // 2·tan(θ/2) of the angle between n and m is 2·|n × m|/(|m| + n·m).
+    let cosine = actual.direction.along(normal);
+    let turn = perfect.direction.cross(actual.direction) * (Lanes::splat(2.0) / (actual.direction.norm() + cosine));
+    let height = actual.direction.dot(actual.place - perfect.place) / cosine;
+    let (shift, Vector([a, b, c])) = (perfect.direction * height, turn);
+    let Vector([x, y, z]) = shift;
+    Displacement::new(&[x, y, z, a, b, c], place)
+}
+
+impl Contacts {
+    fn new(
+        assembly: &Assembly,
+        nominal: &[Lanes],
+        contacts: Vec<Joined>,
+        fixed: &[[[f64; 3]; 2]],
     ) -> Result<Self, PlacementError> {
         let places = contacts.iter().map(|joined| joined.own.feature()).map(|i| assembly.features[i].nominal[0]);
         let count = contacts.len().max(1) as f64;
@@ -113,7 +187,7 @@ impl Placement {
         let spread = places.map(|place| (0..3).map(|i| (place[i] - centre[i]).abs()).fold(0.0, f64::max));
         let reaches = contacts.iter().map(|joined| assembly.features[joined.own.feature()].reach);
         let scale = Some(spread.chain(reaches).fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
-        let mut made = Self { contacts, centre, start: [0.0; 6], gains: Vec::new(), carried };
+        let mut made = Self { joined: contacts, centre, start: [0.0; 6], gains: Vec::new() };
 
         let located = assembly.locate(nominal);
         for _ in 0..NOMINAL_PASSES {
@@ -141,14 +215,14 @@ impl Placement {
         scale: f64,
     ) -> Result<(), PlacementError> {
         const STEP: f64 = 1e-6;
-        let mut derivatives = vec![Rows::zeros(); self.contacts.len()];
+        let mut derivatives = vec![Rows::zeros(); self.joined.len()];
         for component in 0..6 {
             let step = if component < 3 { STEP * scale } else { STEP };
             let mut moved = self.start.map(Lanes::splat);
             moved[component].0[0] += step;
             moved[component].0[1] -= step;
             let displacement = Displacement::new(&moved, self.centre);
-            for (rows, joined) in derivatives.iter_mut().zip(&self.contacts) {
+            for (rows, joined) in derivatives.iter_mut().zip(&self.joined) {
                 for (row, condition) in joined.conditions(assembly, located, &displacement).iter().enumerate() {
                     rows[(row, component)] = (condition.0[0] - condition.0[1]) / (2.0 * STEP * scale);
                 }
@@ -167,17 +241,17 @@ impl Placement {
             let row = [shift[0], shift[1], shift[2], turn[0], turn[1], turn[2]];
             let held = freedoms.hold(&Rows::from_fn(|i, column| if i == 0 { row[column] } else { 0.0 }));
             if held.is_empty() {
-                return Err(PlacementError::Over(self.contacts.len()));
+                return Err(PlacementError::Over(self.joined.len()));
             }
         }
-        if self.contacts.iter().any(|joined| matches!(joined.own, Own::Perfect(_))) {
+        if self.joined.iter().any(|joined| matches!(joined.own, Own::Perfect(_))) {
             freedoms.hold_the_rest();
         }
         let Some(inverse) = freedoms.inverse() else {
             let motion = freedoms.one().map(|motion| describe(motion.as_slice())).unwrap_or_default();
             return Err(PlacementError::Under { left: freedoms.count(), motion });
         };
-        let mut gains = vec![[[0.0; 6]; CONDITIONS]; self.contacts.len()];
+        let mut gains = vec![[[0.0; 6]; CONDITIONS]; self.joined.len()];
         for (row, (contact, combination)) in combinations.iter().enumerate() {
             for (gains, weight) in gains[*contact].iter_mut().zip(combination) {
                 for (component, gain) in gains.iter_mut().enumerate() {
@@ -203,7 +277,7 @@ impl Placement {
     fn correction(&self, assembly: &Assembly, located: &[Located], components: &[Lanes; 6]) -> [Lanes; 6] {
         let displacement = Displacement::new(components, self.centre);
         let mut change = [Lanes::ZERO; 6];
-        for (joined, gains) in self.contacts.iter().zip(&self.gains) {
+        for (joined, gains) in self.joined.iter().zip(&self.gains) {
             let conditions = joined.conditions(assembly, located, &displacement);
             for gain in gains {
                 change[gain.component] += conditions[gain.condition] * gain.factor;
@@ -212,8 +286,8 @@ impl Placement {
         change
     }
 
-    /// Moves the features that the body carries to where it comes to lie.
-    fn place(&self, assembly: &Assembly, located: &mut [Located]) {
+    #[inline(always)]
+    fn displacement(&self, assembly: &Assembly, located: &[Located]) -> Displacement {
         let mut components = self.start.map(Lanes::splat);
         for _ in 0..PASSES {
             let change = self.correction(assembly, located, &components);
@@ -221,15 +295,7 @@ impl Placement {
                 *component -= change;
             }
         }
-        let displacement = Displacement::new(&components, self.centre);
-        for carried in &self.carried {
-            let feature = &mut located[carried.feature];
-            let place = feature.place;
-            *feature = feature.displaced(&displacement);
-            if carried.turns_only {
-                feature.place = place;
-            }
-        }
+        Displacement::new(&components, self.centre)
     }
 }
 

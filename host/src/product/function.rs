@@ -2,7 +2,11 @@
 
 use crate::tolerance::{lanes::Lanes, model::Function, model::Quantity};
 
-use super::{assembly::Assembly, expression::Expression, feature::{Located, Shape}};
+use super::{
+    assembly::Assembly,
+    expression::Expression,
+    feature::{Located, Shape},
+};
 
 /// How one measure is computed.
 #[derive(Clone, Debug)]
@@ -11,6 +15,8 @@ pub enum Formula {
     Expression(Expression),
     /// Signed distance of the place of the first feature from the second, a plane; positive outside of its material.
     FromPlane(usize, usize),
+    /// Distance of the first feature, a plane, to the second, a point; positive into its material, as a thickness is.
+    IntoPlane(usize, usize),
     /// Distance of the place of the first feature from the second, an axis.
     FromAxis(usize, usize),
     /// Distance of two points.
@@ -31,10 +37,12 @@ pub struct Measures {
 impl Formula {
     /// The distance of feature `from` to feature `to`, by what they are.
     pub fn distance(assembly: &Assembly, from: usize, to: usize) -> Self {
-        match assembly.features[to].shape {
-            Shape::Plane => Self::FromPlane(from, to),
-            Shape::Axis => Self::FromAxis(from, to),
-            Shape::Point => Self::Points(from, to),
+        match (assembly.features[from].shape, assembly.features[to].shape) {
+            (_, Shape::Plane) => Self::FromPlane(from, to),
+            (Shape::Plane, _) => Self::IntoPlane(from, to),
+            (_, Shape::Axis) => Self::FromAxis(from, to),
+            (Shape::Axis, Shape::Point) => Self::FromAxis(to, from),
+            (Shape::Point, Shape::Point) => Self::Points(from, to),
         }
     }
 
@@ -42,7 +50,7 @@ impl Formula {
     pub fn quantity(&self) -> Quantity {
         match self {
             Self::Expression(expression) => expression.quantity(),
-            Self::FromPlane(..) | Self::FromAxis(..) | Self::Points(..) => Quantity::Length,
+            Self::FromPlane(..) | Self::IntoPlane(..) | Self::FromAxis(..) | Self::Points(..) => Quantity::Length,
             Self::Angle(..) => Quantity::Angle,
         }
     }
@@ -51,10 +59,8 @@ impl Formula {
     fn evaluate(&self, located: &[Located], variables: &[Lanes], before: &[Lanes]) -> Lanes {
         match self {
             Self::Expression(expression) => expression.evaluate(variables, before),
-            Self::FromPlane(point, plane) => {
-                let plane = &located[*plane];
-                (located[*point].place - plane.place).dot(plane.direction) / plane.direction.norm()
-            }
+            Self::FromPlane(point, plane) => height(&located[*point], &located[*plane]),
+            Self::IntoPlane(plane, point) => -height(&located[*point], &located[*plane]),
             Self::FromAxis(point, axis) => {
                 let axis = &located[*axis];
                 (located[*point].place - axis.place).cross(axis.direction).norm() / axis.direction.norm()
@@ -67,6 +73,12 @@ impl Formula {
             }
         }
     }
+}
+
+/// Signed distance of a point from a plane, positive outside of its material.
+#[inline(always)]
+fn height(point: &Located, plane: &Located) -> Lanes {
+    (point.place - plane.place).dot(plane.direction) / plane.direction.norm()
 }
 
 impl Function for Measures {

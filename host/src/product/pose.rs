@@ -21,7 +21,8 @@ impl Pose {
         let (s, c) = (libm::sin(angle), libm::cos(angle));
         let [x, y, z] = axis;
         let cross = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
-        let entry = |i: usize, j: usize| f64::from(u8::from(i == j)) * c + (1.0 - c) * axis[i] * axis[j] + s * cross[i][j];
+        let entry =
+            |i: usize, j: usize| f64::from(u8::from(i == j)) * c + (1.0 - c) * axis[i] * axis[j] + s * cross[i][j];
         let rows = [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)));
         let turn = Self { rows, shift: [0.0; 3] };
         let moved = turn.point(point);

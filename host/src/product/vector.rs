@@ -137,7 +137,7 @@ mod tests {
         let displacement = Displacement::new(&small, [0.0; 3]);
         let vector = Vector::splat([0.3, -0.7, 0.2]);
         let turned = displacement.turn(vector);
-        assert!((turned.norm() - vector.norm()).0[0].abs() < 1e-16);
+        assert!((turned.norm() - vector.norm()).0[0].abs() < 1e-15);
         let rotation = Vector([small[3], small[4], small[5]]);
         let second_order = vector + rotation.cross(vector) + rotation.cross(rotation.cross(vector)) * Lanes::splat(0.5);
         assert!((turned - second_order).norm().0[0] < 1e-8);

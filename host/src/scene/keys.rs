@@ -19,13 +19,10 @@ const fn table(name: &'static str, below: &'static [Key]) -> Key {
     Key { name, below }
 }
 
-const DISTRIBUTION: Key = table(
-    "distribution",
-    &[key("kind"), key("mode"), key("shoulders"), key("skewness"), key("deviations")],
-);
+const DISTRIBUTION: Key =
+    table("distribution", &[key("kind"), key("mode"), key("shoulders"), key("skewness"), key("deviations")]);
 
-const TOLERANCED: &[Key] =
-    &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge")];
+const TOLERANCED: &[Key] = &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge")];
 const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
@@ -74,8 +71,18 @@ const AXIS: &[Key] = &[
 
 /// What drawings have and scenes do not.
 const UNSUPPORTED: [&str; 12] = [
-    "circularity", "roundness", "cylindricity", "concentricity", "coaxiality", "symmetry", "run_out", "runout",
-    "total_run_out", "line_profile", "maximum_material", "projected_zone",
+    "circularity",
+    "roundness",
+    "cylindricity",
+    "concentricity",
+    "coaxiality",
+    "symmetry",
+    "run_out",
+    "runout",
+    "total_run_out",
+    "line_profile",
+    "maximum_material",
+    "projected_zone",
 ];
 
 /// Every key of a scene.
@@ -96,14 +103,7 @@ const ROOT: &[Key] = &[
     ),
     table(
         "part",
-        &[
-            key("name"),
-            key("at"),
-            key("turned"),
-            table("plane", PLANE),
-            table("point", POINT),
-            table("axis", AXIS),
-        ],
+        &[key("name"), key("at"), key("turned"), table("plane", PLANE), table("point", POINT), table("axis", AXIS)],
     ),
     table(
         "mate",

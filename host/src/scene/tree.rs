@@ -224,8 +224,9 @@ impl<'s> Node<'s> {
         }
     }
 
+    /// By which a table in a list is found: its own name, a mate's that of its part.
     fn name(&self) -> Option<&str> {
-        match &self.get("name")?.value {
+        match &self.get("name").or_else(|| self.get("part"))?.value {
             Value::Text(name) => Some(name),
             _ => None,
         }

@@ -85,7 +85,8 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
     let general = draft.defaults.general.geometry;
     if let Some(class) = general.filter(|_| !formed && made.feature.shape != Shape::Axis) {
         let key = format!("{}.extents", made.table.key);
-        let missing = || made.table.error(Problem::Missing(key), "extents of its face, flatness, or flatness = \"none\"");
+        let missing =
+            || made.table.error(Problem::Missing(key), "extents of its face, flatness, or flatness = \"none\"");
         let [a, b] = made.extents.ok_or_else(missing)?;
         let at = made.table.get("extents").unwrap_or(made.table.clone());
         let width = iso2768::flatness(class, a.max(b)).map_err(|error| toleranced::band(&at, error))?;
@@ -133,7 +134,13 @@ fn datums(field: &Field, limits: Limits, draft: &Draft) -> Result<Vec<usize>, Sc
 }
 
 /// The width (m) of a zone, stated or general.
-fn width(field: &Field, callout: &str, made: &FeatureDraft, datums: &[usize], draft: &Draft) -> Result<f64, SceneError> {
+fn width(
+    field: &Field,
+    callout: &str,
+    made: &FeatureDraft,
+    datums: &[usize],
+    draft: &Draft,
+) -> Result<f64, SceneError> {
     let stated = match field.node.value {
         Value::Table(_) => field.get("zone"),
         _ => Some(field.clone()),
@@ -246,24 +253,35 @@ fn vectorial(made: &mut FeatureDraft, draft: &mut Draft) -> Result<bool, SceneEr
 
 /// Lets a feature go where its datums go: all of it, or its direction only.
 fn carry(index: usize, datums: &[usize], limits: Limits, table: &Field, draft: &mut Draft) -> Result<(), SceneError> {
-    let features = &draft.assembly.features;
+    let carried = Carried { feature: index, turns_only: limits == Limits::Orientation };
     let part = draft.parts_of_features[index];
-    let mut contacts = Vec::new();
-    for datum in datums {
-        let feature = &features[*datum];
-        if draft.parts_of_features[*datum] != part {
-            let problem = Problem::Unsupported { what: format!("the datum `{}` of another part", draft.feature_names[*datum]) };
-            return Err(table.error(problem, "a datum of the same part"));
-        }
-        let contact = Contact::new(feature.shape, feature.shape, feature.nominal[1], feature.reach.max(1e-3));
-        contacts.extend(contact.map(|contact| Joined { contact, own: Own::Perfect(*datum), other: *datum }));
+    if let Some(foreign) = datums.iter().find(|datum| draft.parts_of_features[**datum] != part) {
+        let what = format!("the datum `{}` of another part", draft.feature_names[*foreign]);
+        return Err(table.error(Problem::Unsupported { what }, "a datum of the same part"));
     }
-    let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
-    let carried = vec![Carried { feature: index, turns_only: limits == Limits::Orientation }];
-    let placement = Placement::new(&draft.assembly, &nominal, contacts, &[], carried).map_err(|error| {
-        let part = draft.feature_names[index].clone();
-        table.error(Problem::Placement { part, error }, "datums that each hold something more than the ones before")
-    })?;
+    if let Some((_, placement)) = draft.datum_systems.iter().find(|(known, _)| known == datums) {
+        draft.assembly.placements[*placement].carry(carried);
+        return Ok(());
+    }
+    let features = &draft.assembly.features;
+    let placement = match datums {
+        [plane] if features[*plane].shape == Shape::Plane => Placement::on_plane(*plane, carried),
+        _ => {
+            let contact = |datum: &usize| {
+                let feature = &features[*datum];
+                let contact = Contact::new(feature.shape, feature.shape, feature.nominal[1], feature.reach)?;
+                Some(Joined { contact, own: Own::Perfect(*datum), other: *datum })
+            };
+            let contacts = datums.iter().filter_map(contact).collect();
+            let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
+            let placed = Placement::on_contacts(&draft.assembly, &nominal, contacts, &[], vec![carried]);
+            placed.map_err(|error| {
+                let part = draft.feature_names[index].clone();
+                table.error(Problem::Placement { part, error }, "datums that each hold something more")
+            })?
+        }
+    };
+    draft.datum_systems.push((datums.to_vec(), draft.assembly.placements.len()));
     draft.assembly.placements.push(placement);
     Ok(())
 }

@@ -23,7 +23,8 @@ use super::{
 
 const POSITION: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
 const ANGLE: Quantity = Quantity { units: unit::ANGLE, range: [-3600.0, 3600.0] };
-const CONTACTS: &str = "a list of pairs, such as [[\"lid.bottom\", \"box.top\"]]: a feature of the part, and one that it meets";
+const CONTACTS: &str =
+    "a list of pairs, such as [[\"lid.bottom\", \"box.top\"]]: a feature of the part, and one that it meets";
 
 /// A mate as it is written: names only.
 pub(super) struct Mate<'t, 's> {
@@ -128,7 +129,8 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
         let (own, other) = (draft.feature(own_field)?, draft.feature(other_field)?);
         if part::part_of(own_field, parts)? != mate.part {
             let name = parts[mate.part].name;
-            let problem = Problem::UnknownName { of: format!("feature of `{name}`"), name: own_field.to_text()?.into() };
+            let problem =
+                Problem::UnknownName { of: format!("feature of `{name}`"), name: own_field.to_text()?.into() };
             return Err(own_field.error(problem, CONTACTS));
         }
         if part::part_of(other_field, parts)? == mate.part {
@@ -139,7 +141,10 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
         let (one, two) = (&features[own], &features[other]);
         let contact = Contact::new(one.shape, two.shape, two.nominal[1], one.reach).ok_or_else(|| {
             let what = format!("a contact of {} and {}", one.shape.article(), two.shape.article());
-            other_field.error(Problem::Unsupported { what }, "plane and plane, plane and point, axis and axis, point and point")
+            other_field.error(
+                Problem::Unsupported { what },
+                "plane and plane, plane and point, axis and axis, point and point",
+            )
         })?;
         contacts.push(Joined { contact, own: Own::Made(own), other });
     }
@@ -147,7 +152,7 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
     let members = draft.parts_of_features.iter().enumerate().filter(|(_, part)| **part == mate.part);
     let carried = members.map(|(feature, _)| Carried { feature, turns_only: false }).collect();
     let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
-    let placement = Placement::new(&draft.assembly, &nominal, contacts, &fixed, carried).map_err(|error| {
+    let placement = Placement::on_contacts(&draft.assembly, &nominal, contacts, &fixed, carried).map_err(|error| {
         let field = match error {
             PlacementError::Over(i) => match mate.contacts.get(i) {
                 Some([own, _]) => own.clone(),
@@ -156,7 +161,9 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
             _ => mate.table.get("part").unwrap_or(mate.table.clone()),
         };
         let allowed = match error {
-            PlacementError::Over(_) => "contacts that each hold something: 3, 2 and 1 freedoms of three planes, 1 of a point",
+            PlacementError::Over(_) => {
+                "contacts that each hold something: 3, 2 and 1 freedoms of three planes, 1 of a point"
+            }
             PlacementError::Open => "features that meet where the drawing has them, or nearly",
             _ => "contacts that hold all six, or a `move` or `turn` for the one that is meant to be free",
         };

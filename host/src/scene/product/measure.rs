@@ -41,7 +41,8 @@ pub(super) fn measures(root: &Field, draft: &mut Draft, function: &mut Measures)
 
 /// Reads the one of the keys `is`, `distance` and `angle` that a measure has.
 fn formula(table: &Field, draft: &Draft, function: &Measures) -> Result<Formula, SceneError> {
-    const ALLOWED: &str = "one of: is = \"an expression\", distance = [\"PART.FEATURE\", \"PART.FEATURE\"], angle = […]";
+    const ALLOWED: &str =
+        "one of: is = \"an expression\", distance = [\"PART.FEATURE\", \"PART.FEATURE\"], angle = […]";
     let given: Vec<_> = ["is", "distance", "angle"].iter().filter_map(|key| Some((*key, table.get(key)?))).collect();
     let (key, field) = match &given[..] {
         [] => return Err(table.error(Problem::Missing(format!("{}.is", table.key)), ALLOWED)),

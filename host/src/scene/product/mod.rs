@@ -18,6 +18,8 @@
 //! lower = 9.8
 //! ```
 
+#[cfg(test)]
+mod assembly_tests;
 mod callout;
 mod mate;
 mod measure;
@@ -68,6 +70,8 @@ struct Draft {
     /// Names with the parts'.
     feature_names: Vec<String>,
     parts_of_features: Vec<usize>,
+    /// Datums that go together, and what they place.
+    datum_systems: Vec<(Vec<usize>, usize)>,
 }
 
 impl Draft {
@@ -110,6 +114,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         assembly: Assembly::default(),
         feature_names: Vec::new(),
         parts_of_features: Vec::new(),
+        datum_systems: Vec::new(),
     };
     for table in tables(root, "dimension")? {
         toleranced::dimension(&table, &mut draft)?;
