@@ -8,7 +8,7 @@ use crate::tolerance::lanes::Lanes;
 
 use super::{
     contact::{CONDITIONS, Contact, Freedoms, Rows},
-    feature::{Feature, Located},
+    feature::{Feature, Located, Shape},
     vector::{Displacement, Vector},
 };
 
@@ -61,14 +61,16 @@ pub struct Carried {
 }
 
 impl Carried {
-    /// Moves the feature.
+    /// Moves the feature. The direction of a point is of no use once its own tolerance has moved it.
     #[inline(always)]
-    fn by(self, displacement: &Displacement, located: &mut [Located]) {
-        let feature = &mut located[self.feature];
+    fn by(self, displacement: &Displacement, features: &[Feature], located: &mut [Located]) {
+        let moved = &mut located[self.feature];
         if !self.turns_only {
-            feature.place = displacement.apply(feature.place);
+            moved.place = displacement.apply(moved.place);
         }
-        feature.direction = displacement.turn(feature.direction);
+        if features[self.feature].shape != Shape::Point {
+            moved.direction = displacement.turn(moved.direction);
+        }
     }
 }
 
@@ -155,7 +157,7 @@ impl Placement {
             Support::Contacts(contacts) => contacts.displacement(assembly, located),
         };
         for carried in &self.carried {
-            carried.by(&displacement, located);
+            carried.by(&displacement, &assembly.features, located);
         }
     }
 }
@@ -304,10 +306,10 @@ impl Joined {
     #[inline(always)]
     fn conditions(&self, assembly: &Assembly, located: &[Located], displacement: &Displacement) -> [Lanes; CONDITIONS] {
         let own = match self.own {
-            Own::Made(feature) => located[feature],
-            Own::Perfect(feature) => assembly.features[feature].perfect(),
+            Own::Made(feature) => located[feature].displaced(displacement),
+            Own::Perfect(feature) => assembly.features[feature].perfect().displaced(displacement),
         };
-        self.contact.conditions(&own.displaced(displacement), &located[self.other])
+        self.contact.conditions(&own, &located[self.other])
     }
 }
 
@@ -321,7 +323,10 @@ impl Own {
 impl Assembly {
     /// All features where they are in the assembled units.
     pub fn locate(&self, variables: &[Lanes]) -> Vec<Located> {
-        let mut located: Vec<_> = self.features.iter().map(|feature| feature.locate(variables)).collect();
+        let mut located: Vec<_> = self.features.iter().map(Feature::perfect).collect();
+        for (feature, located) in self.features.iter().zip(&mut located) {
+            feature.deviate(variables, located);
+        }
         for placement in &self.placements {
             placement.place(self, &mut located);
         }

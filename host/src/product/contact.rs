@@ -49,22 +49,18 @@ impl Contact {
     #[inline(always)]
     pub fn conditions(&self, own: &Located, other: &Located) -> [Lanes; CONDITIONS] {
         let apart = own.place - other.place;
-        let tilt = |[a, b]: [[f64; 3]; 2]| {
-            let tilt = own.direction.cross(other.direction);
-            [tilt.along(a) * self.reach, tilt.along(b) * self.reach]
-        };
         let zero = Lanes::ZERO;
         match self.kind {
             Kind::PointOnPlane => [apart.dot(other.direction), zero, zero, zero],
             Kind::PlaneOnPoint => [apart.dot(own.direction), zero, zero, zero],
             Kind::Planes => {
-                let [p, r] = tilt(self.across);
+                let [p, r] = self.tilts(own, other);
                 [apart.dot(other.direction), p, r, zero]
             }
             Kind::Axes => {
                 let along = apart.dot(other.direction) / other.direction.dot(other.direction);
                 let off = apart - other.direction * along;
-                let ([a, b], [p, r]) = (self.across, tilt(self.across));
+                let ([a, b], [p, r]) = (self.across, self.tilts(own, other));
                 [off.along(a), off.along(b), p, r]
             }
             Kind::Points => {
@@ -72,6 +68,15 @@ impl Contact {
                 [x, y, z, zero]
             }
         }
+    }
+}
+
+impl Contact {
+    /// How far from parallel the directions are, times the reach.
+    #[inline(always)]
+    fn tilts(&self, own: &Located, other: &Located) -> [Lanes; 2] {
+        let tilt = own.direction.cross(other.direction);
+        self.across.map(|axis| tilt.along(axis) * self.reach)
     }
 }
 

@@ -87,23 +87,21 @@ impl Feature {
         Located { place, direction }
     }
 
-    /// Where the feature of a part in its nominal place is.
+    /// Adds the deviations of the units with these `variables` to where the feature is.
     #[inline(always)]
-    pub fn locate(&self, variables: &[Lanes]) -> Located {
-        let [place, direction] = self.nominal;
-        let mut components = [place[0], place[1], place[2], direction[0], direction[1], direction[2]].map(Lanes::splat);
+    pub fn deviate(&self, variables: &[Lanes], located: &mut Located) {
         for term in &self.terms {
-            components[term.component] += variables[term.variable] * term.factor;
+            let Located { place, direction } = &mut *located;
+            let vector = if term.component < 3 { place } else { direction };
+            vector.0[term.component % 3] += variables[term.variable] * term.factor;
         }
-        let [x, y, z, a, b, c] = components;
-        Located { place: Vector([x, y, z]), direction: Vector([a, b, c]) }
     }
 }
 
 impl Located {
     /// After a displacement.
     #[inline(always)]
-    pub fn displaced(self, displacement: &Displacement) -> Self {
+    pub fn displaced(&self, displacement: &Displacement) -> Self {
         Self { place: displacement.apply(self.place), direction: displacement.turn(self.direction) }
     }
 }

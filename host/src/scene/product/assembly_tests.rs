@@ -29,8 +29,8 @@ fn three_locators() {
     let [middle, corner] = &moments::of_measures(&plate.model)[..] else { panic!("two measures") };
     let sigma = 0.01e-3;
     // σ·√Σλ², λ the barycentric coordinates of the point in the triangle of the locators.
-    close(middle.deviation / sigma, 0.707_107, 1e-6);
-    close(corner.deviation / sigma, 1.732_051, 1e-6);
+    close(middle.deviation / sigma, std::f64::consts::FRAC_1_SQRT_2, 1e-9);
+    close(corner.deviation / sigma, libm::sqrt(3.0), 1e-9);
     close(middle.mean, 0.0, 1e-9);
 }
 
@@ -296,6 +296,11 @@ fn bad_parts_are_shown_with_their_place_and_what_is_allowed() {
             ["[|\"block.tipp", "`block.tipp`", "such as block.tip"],
         ),
         ("angle = [", "is = \"1\"\nangle = [", ["angle = |[", "a measure of two kinds is not", "one of"]),
+        (
+            "angle = [\"block.bottom",
+            "angle = [\"block.tip",
+            ["angle = |[\"block.tip", "an angle of a point", "planes and axes"],
+        ),
         ("angle = [", "was = [", ["|was", "unknown key `measure.was`", "distance"]),
     ];
     check_all(BLOCK, &cases);

@@ -3,6 +3,7 @@
 use crate::{
     product::{
         expression::{Expression, ExpressionError, Kind, Source, parse},
+        feature::Shape,
         function::{Formula, Measures},
     },
     scene::{
@@ -61,6 +62,9 @@ fn formula(table: &Field, draft: &Draft, function: &Measures) -> Result<Formula,
         return Err(field.error(problem, "a list of two features, PART.FEATURE"));
     };
     let (one, two) = (draft.feature(one)?, draft.feature(two)?);
+    if *key == "angle" && [one, two].iter().any(|i| function.assembly.features[*i].shape == Shape::Point) {
+        return Err(field.error(Problem::Unsupported { what: "an angle of a point".into() }, "planes and axes"));
+    }
     Ok(if *key == "angle" { Formula::Angle(one, two) } else { Formula::distance(&function.assembly, one, two) })
 }
 
