@@ -5,6 +5,7 @@
 
 pub mod assembly;
 pub mod contact;
+pub mod contacts;
 pub mod correlation;
 pub mod dimension;
 pub mod expression;

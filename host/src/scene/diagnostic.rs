@@ -4,7 +4,7 @@ use std::{fmt, ops::Range};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str};
 
-use crate::product::{assembly::PlacementError, dimension::ShapeError, expression::Fault, iso2768::BandError};
+use crate::product::{contacts::PlacementError, dimension::ShapeError, expression::Fault, iso2768::BandError};
 
 use super::{GapError, LevelError};
 

@@ -2,8 +2,9 @@
 
 use crate::{
     product::{
-        assembly::{Carried, Joined, Own, Placement},
+        assembly::{Carried, Placement},
         contact::Contact,
+        contacts::{Joined, Own},
         dimension::Toleranced,
         feature::Shape,
         iso2768,

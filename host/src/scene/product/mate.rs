@@ -2,8 +2,9 @@
 
 use crate::{
     product::{
-        assembly::{Carried, Joined, Own, Placement, PlacementError},
+        assembly::{Carried, Placement},
         contact::Contact,
+        contacts::{Joined, Own, PlacementError},
         pose::Pose,
     },
     scene::{

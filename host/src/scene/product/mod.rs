@@ -16,7 +16,29 @@
 //! name = "gap"
 //! is = "30 mm - height"        # names with spaces in single quotes
 //! lower = 9.8
+//!
+//! [[part]]                     # the first stays where it is, a mate places each other
+//! name = "box"                 # features in the part's frame; `at`, `turned` (z-x-z) place that in the assembly's
+//! plane = [                    # middle of the face, outward normal, direction of the first extent, extents in mm
+//!   { name = "rim", at = [0, 0, 20], normal = "+z", along = "+x", extents = [100, 60], flatness = 0.05 },
+//! ]
+//! point = [{ name = "tip", at = [9, 0, 20], normal = "+z", profile = { zone = 0.1, datum = "box.rim" } }]
+//! axis = [{ name = "pin", at = [0, 0, 22], along = "+z", length = 6, diameter = 4, position = 0.1 }]
+//!
+//! [[mate]]                     # the first contact has precedence over the next, as a first datum has
+//! part = "lid"
+//! contacts = [["lid.bottom", "box.rim"], ["lid.hole", "box.pin"]]
+//! turn = { about = "+z", by = "30°" }     # or move = { along, by }: holds a freedom that is meant to move
+//!
+//! [[measure]]                  # distances from a plane are positive outside of its material
+//! name = "height"
+//! distance = ["lid.tip", "box.rim"]       # or angle = [PLANE, PLANE]
 //! ```
+//!
+//! Tolerances of a feature: `flatness`, `straightness`, `parallelism`, `perpendicularity`, `angularity`, `position`,
+//! `profile` (the width of the zone, or zone, datum and rule), `offset` (± along the normal), `vectorial` (each component of
+//! the position and of the orientation vector). A plane or a point with none has the general flatness, if there is a
+//! class, unless it says `flatness = "none"`.
 
 #[cfg(test)]
 mod assembly_tests;
