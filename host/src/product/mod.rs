@@ -1,7 +1,7 @@
 //! Products: parts, features, tolerances and mates, and the measures that follow from them.
 //!
 //! A scene file states them (see `scenes/three-part-stack.toml` for the simplest); they become a
-//! [`Model`](crate::tolerance::model::Model) of independent or correlated variables. SI units inside.
+//! [`Model`] of independent or correlated variables. SI units inside.
 
 pub mod assembly;
 pub mod contact;

@@ -82,7 +82,7 @@ pub struct Displacement {
 impl Displacement {
     /// From t (m) and the Gibbs vector 2·tan(θ/2)·axis, which to second order is the rotation vector.
     ///
-    /// R = ((1 − g²)·I + 2ggᵀ + 2[g]×)/(1 + g²) with half of it for g: exact, without trigonometry, and regular at no
+    /// R = ((1 − g²)·I + 2ggᵀ + 2g×)/(1 + g²) with half of it for g: exact, without trigonometry, and regular at no
     /// rotation, as the Euler angles of eq. 3 are not.
     #[inline(always)]
     pub fn new(components: &[Lanes; 6], centre: [f64; 3]) -> Self {
