@@ -2,6 +2,22 @@
 //!
 //! A [`model::Model`] turns random contributors into measures; it does not know how they are drawn. What draws them
 //! and makes statistics of the measures does not know what they mean.
+//!
+//! Drawing goes [`sampler`] (random numbers of a unit) → [`draw`] (its variables) → the model → [`tally`] (counts and
+//! sums) → [`forest`] (joined in a fixed shape).
 
+mod distribution;
+pub mod draw;
+#[cfg(test)]
+mod examples;
+pub mod forest;
 pub mod lanes;
+pub mod linear;
 pub mod model;
+pub mod normal;
+mod permutation;
+pub mod quadrature;
+pub mod sampler;
+pub mod sobol;
+pub mod study;
+pub mod tally;
