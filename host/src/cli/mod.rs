@@ -1,6 +1,7 @@
 //! The command line: one file a command, each with its arguments and its `run`.
 
 mod check;
+mod merge;
 mod precision;
 mod run;
 mod simulate;
@@ -25,6 +26,7 @@ use crate::{
     interrupt,
     scene::{CD_ROM_SLIDE, Override, Scene, SceneError},
     simulate::SimulateError,
+    tolerance::run::RunError,
 };
 
 /// From a drawing's tolerances to a flashed force table.
@@ -55,6 +57,7 @@ enum Command {
     Sweep(sweep::Arguments),
     Table(table::Arguments),
     Precision(precision::Arguments),
+    Merge(merge::Arguments),
 }
 
 /// Why a command did not do its work.
@@ -82,6 +85,15 @@ impl From<SimulateError> for Failure {
         match error {
             SimulateError::Parameter(_) | SimulateError::Every { .. } => Self::Input(error.to_string()),
             SimulateError::NotFinite { .. } | SimulateError::Interrupted => Self::Work(error.into()),
+        }
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Interrupted { .. } | RunError::Write(_) | RunError::Header(_) => Self::Work(error.into()),
+            bad => Self::Input(bad.to_string()),
         }
     }
 }
@@ -130,8 +142,14 @@ impl SceneArguments {
     fn load(&self, options: &[Override]) -> Result<Scene, Failure> {
         let set = self.set.iter().map(|assignment| Override::set(assignment));
         let overrides: Vec<_> = set.chain(options.iter().cloned()).collect();
-        let (name, text) = match &self.scene {
-            None => ("cd-rom-slide.toml".into(), CD_ROM_SLIDE.into()),
+        let (name, text) = self.text()?;
+        Ok(Scene::parse(&name, &text, &overrides)?)
+    }
+
+    /// Name and text of the scene.
+    fn text(&self) -> Result<(String, String), Failure> {
+        match &self.scene {
+            None => Ok(("cd-rom-slide.toml".into(), CD_ROM_SLIDE.into())),
             Some(path) => {
                 let unreadable = |why: &dyn std::fmt::Display| {
                     Failure::Input(format!("cannot read the scene {}: {why}", path.display()))
@@ -143,10 +161,9 @@ impl SceneArguments {
                     return Err(unreadable(&format!("it is longer than {SCENE_MOST} bytes")));
                 }
                 let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
-                (path.display().to_string(), text)
+                Ok((path.display().to_string(), text))
             }
-        };
-        Ok(Scene::parse(&name, &text, &overrides)?)
+        }
     }
 }
 
@@ -220,6 +237,7 @@ pub fn main() -> ExitCode {
         Some(Command::Sweep(arguments)) => arguments.run(),
         Some(Command::Table(arguments)) => arguments.run(),
         Some(Command::Precision(arguments)) => arguments.run(),
+        Some(Command::Merge(arguments)) => arguments.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

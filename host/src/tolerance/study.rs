@@ -98,6 +98,11 @@ impl Settings {
         self.blocks_each() * self.replicates
     }
 
+    /// Units of `blocks`.
+    pub fn units_in(&self, blocks: &Range<u64>) -> u64 {
+        blocks.clone().map(|block| self.block(block).2).map(|units| units.end - units.start).sum()
+    }
+
     /// Replicate, number within it, and units of block `block`.
     fn block(&self, block: u64) -> (usize, u64, Range<u64>) {
         let (replicate, within) = (block / self.blocks_each(), block % self.blocks_each());
