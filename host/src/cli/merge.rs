@@ -45,6 +45,7 @@ impl Arguments {
         for path in self.outputs.paths().chain(&self.out) {
             files::check_writable(path).map_err(refused)?;
         }
+        self.outputs.prepare()?;
         let study = Study::new(&model, part.header.settings).map_err(RunError::from)?;
         if let Some(path) = &self.out {
             files::write(path, &part.encode().map_err(RunError::from)?)?;

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::{Failure, SceneArguments, ThreadArguments, print, print_json, progress, text_table};
+use super::{Failure, SceneArguments, ThreadArguments, print, print_json, progress, refused, text_table};
 use crate::{
     files,
     number::{fixed, or_dash, three_digits},
@@ -14,8 +14,10 @@ use crate::{
     table2::{Table2, derived},
     tolerance::{
         analysis::conclude,
+        experiment::{Design, Finding, experiment},
         file::Source,
-        model::Model,
+        model::{Measure as Measured, Model},
+        picture::{contributors_svg, correlation_svg, histogram_svg},
         report::{self, measures_csv},
         run::{Keep, RunError, Shard, checkpoint, run},
         sampler::Method,
@@ -72,6 +74,24 @@ enum Sampling {
     Lhs,
     /// Owen-scrambled Sobol' points.
     Sobol,
+    /// No random units: all combinations of the limits.
+    Factorial,
+    /// No random units: the smallest two-level orthogonal array (L4, L8, …).
+    Taguchi,
+    /// No random units: the smallest three-level orthogonal array (L9, L27, …).
+    Taguchi3,
+}
+
+impl Sampling {
+    /// The designed experiment, if it is one.
+    fn design(self) -> Option<Design> {
+        match self {
+            Self::Mc | Self::Lhs | Self::Sobol => None,
+            Self::Factorial => Some(Design::FullFactorial),
+            Self::Taguchi => Some(Design::TwoLevel),
+            Self::Taguchi3 => Some(Design::ThreeLevel),
+        }
+    }
 }
 
 /// What is written of an analysis.
@@ -80,6 +100,9 @@ pub(super) struct OutputArguments {
     /// Writes the measures' statistics as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Draws histograms, contributors and correlations as SVG into a folder.
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
 }
 
 #[derive(Serialize)]
@@ -138,9 +161,9 @@ impl Arguments {
 
     fn settings(&self) -> Result<Settings, Failure> {
         let (method, replicates) = match self.method {
-            Sampling::Mc => (Method::PseudoRandom, 1),
             Sampling::Lhs => (Method::LatinHypercube, 8),
             Sampling::Sobol => (Method::ScrambledSobol, 8),
+            _ => (Method::PseudoRandom, 1),
         };
         let replicates = self.replicates.unwrap_or(replicates);
         let bad = || Failure::Input(format!("{} samples in {replicates} replicates are too many", self.samples));
@@ -152,12 +175,16 @@ impl Arguments {
     }
 
     fn study(&self, title: &str, model: &Model) -> Result<(), Failure> {
+        if let Some(design) = self.method.design() {
+            return self.experiment(title, model, design);
+        }
         let settings = self.settings()?;
         let study = Study::new(model, settings).map_err(RunError::from)?;
         let partial = self.out.as_deref().map(checkpoint);
-        for path in [&self.out, &partial, &self.draws, &self.outputs.csv].into_iter().flatten() {
+        for path in [&self.out, &partial, &self.draws].into_iter().flatten().chain(self.outputs.paths()) {
             self.scene.check_output(path)?;
         }
+        self.outputs.prepare()?;
         let (name, text) = self.scene.text()?;
         let source = Source { name, text, set: self.scene.set.clone() };
         let shard = self.shard.unwrap_or(Shard::ALL);
@@ -178,6 +205,67 @@ impl Arguments {
             _ => self.outputs.show(title, &study, &tallies, self.scene.json),
         }
     }
+}
+
+impl Arguments {
+    fn experiment(&self, title: &str, model: &Model, design: Design) -> Result<(), Failure> {
+        let made = experiment(model, design).map_err(|error| Failure::Input(error.to_string()))?;
+        let scaled = |finding: &Finding, factor: f64| Finding {
+            mean: finding.mean * factor,
+            range: finding.range.map(|end| end * factor),
+            effects: finding.effects.iter().map(|effect| effect * factor).collect(),
+            shares: finding.shares.clone(),
+        };
+        let quantities = model.measures.iter().map(|measure| measure.quantity);
+        let findings: Vec<_> =
+            made.findings.iter().zip(quantities).map(|(finding, q)| scaled(finding, q.factor())).collect();
+        if self.scene.json {
+            let measures = model.measures.iter().zip(findings).map(|(measure, finding)| Named {
+                name: measure.name.clone(),
+                unit: measure.quantity.unit(),
+                finding,
+            });
+            let measures = measures.collect();
+            return print_json(&Designed { title, design, runs: made.runs, factors: &made.factors, measures });
+        }
+        let row = |(measure, finding): (&Measured, &Finding)| {
+            let mut ranks: Vec<usize> = (0..made.factors.len()).collect();
+            ranks.sort_by(|one, other| finding.shares[*other].total_cmp(&finding.shares[*one]));
+            let most = ranks
+                .into_iter()
+                .take(3)
+                .map(|k| format!("{} {}", made.factors[k], fixed(finding.shares[k] * 100.0, 1)));
+            let [low, high] = finding.range;
+            vec![
+                measure.name.clone(),
+                fixed(finding.mean, 4),
+                fixed(low, 4),
+                fixed(high, 4),
+                most.collect::<Vec<_>>().join(", "),
+            ]
+        };
+        let rows: Vec<_> = model.measures.iter().zip(&findings).map(row).collect();
+        let table = text_table(&["measure", "mean", "least", "greatest", "factors, %"], &rows);
+        print(&format!("{title}\n{} runs\n\n{table}", made.runs))
+    }
+}
+
+/// An experiment for machines.
+#[derive(Serialize)]
+struct Designed<'a> {
+    title: &'a str,
+    design: Design,
+    runs: usize,
+    factors: &'a [String],
+    measures: Vec<Named>,
+}
+
+#[derive(Serialize)]
+struct Named {
+    name: String,
+    unit: &'static str,
+    #[serde(flatten)]
+    finding: Finding,
 }
 
 /// The product that a scene describes, if it describes one.
@@ -226,12 +314,25 @@ impl OutputArguments {
         self.csv.iter()
     }
 
+    /// Makes the folder for pictures.
+    pub fn prepare(&self) -> Result<(), Failure> {
+        self.plots.as_deref().map_or(Ok(()), |folder| files::prepare_folder(folder).map_err(refused))
+    }
+
     /// Shows and writes what was found of `study`.
     pub fn show(&self, title: &str, study: &Study, tallies: &[Tally], json: bool) -> Result<(), Failure> {
         let analysis = conclude(study, tallies).map_err(RunError::from)?;
         let report = report::report(title, study.model, &analysis);
         if let Some(path) = &self.csv {
             files::write(path, &measures_csv(&report)?)?;
+        }
+        if let Some(folder) = &self.plots {
+            files::write(&folder.join("contributors.svg"), contributors_svg(&report).as_bytes())?;
+            files::write(&folder.join("correlation.svg"), correlation_svg(&report).as_bytes())?;
+            for i in 0..report.measures.len() {
+                let svg = histogram_svg(&report, study, tallies, i).map_err(anyhow::Error::from)?;
+                files::write(&folder.join(format!("histogram-{}.svg", i + 1)), svg.as_bytes())?;
+            }
         }
         if json { print_json(&report) } else { print(&for_people(&report)) }
     }

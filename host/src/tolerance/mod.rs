@@ -13,6 +13,7 @@ pub mod draw;
 pub mod estimate;
 #[cfg(test)]
 mod examples;
+pub mod experiment;
 pub mod file;
 pub mod forest;
 pub mod importance;
@@ -24,6 +25,7 @@ pub mod model;
 pub mod moments;
 pub mod normal;
 mod permutation;
+pub mod picture;
 pub mod quadrature;
 pub mod report;
 pub mod rss;
