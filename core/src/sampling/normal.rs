@@ -3,6 +3,8 @@
 //! Wichura, "The percentage points of the normal distribution", Applied Statistics 37 (1988), algorithm AS 241, routine
 //! PPND16: three ratios of polynomials, of which the right one is selected, so that nothing branches.
 
+#![allow(clippy::excessive_precision, reason = "coefficients as published")]
+
 use crate::Scalar;
 
 /// A ratio of two polynomials of degree 7, coefficients in ascending order.

@@ -31,10 +31,12 @@ pub enum DrawError {
 pub struct Draw {
     seed: u64,
     rules: Vec<Rule>,
-    /// Rows of the Cholesky factor: a variable, and the weights of variables up to it.
-    correlated: Vec<(usize, Vec<(usize, f64)>)>,
+    correlated: Vec<Row>,
     dimensions: usize,
 }
+
+/// Row of the Cholesky factor: a variable, and the weights of variables up to it.
+type Row = (usize, Vec<(usize, f64)>);
 
 enum Rule {
     Scalar(Marginal),
@@ -190,7 +192,7 @@ impl Model {
 }
 
 /// Rows of the factor L of the correlation matrix L·Lᵀ that differ from those of the unit matrix.
-fn cholesky(model: &Model) -> Result<Vec<(usize, Vec<(usize, f64)>)>, DrawError> {
+fn cholesky(model: &Model) -> Result<Vec<Row>, DrawError> {
     let offsets = model.offsets();
     let name = |variable: usize| {
         let contributor = offsets.iter().rposition(|offset| *offset <= variable).unwrap_or(0);

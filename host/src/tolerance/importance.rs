@@ -126,10 +126,8 @@ pub fn probability(model: &Model, draw: &Draw, failure: &Failure, seed: u64) -> 
             scores.iter_mut().zip(&point).for_each(|(score, z)| *score += Lanes::splat(*z));
             let margins = margin.at(&mut scores);
             let (inside, factor) = draw.is_inside(&scores);
-            for lane in 0..LANES {
-                if margins.0[lane] < 0.0 && inside[lane] {
-                    sum.0[lane] += factor * libm::exp(-beta * (along.0[lane] + 0.5 * beta));
-                }
+            for (lane, _) in inside.iter().enumerate().filter(|(lane, inside)| **inside && margins.0[*lane] < 0.0) {
+                sum.0[lane] += factor * libm::exp(-beta * (along.0[lane] + 0.5 * beta));
             }
         }
         shares.push(sum.0.iter().sum::<f64>() / UNITS as f64);

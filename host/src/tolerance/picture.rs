@@ -105,11 +105,11 @@ pub fn contributors_svg(report: &Report) -> String {
 
 /// The correlation matrix of the measures as coloured cells with numbers.
 pub fn correlation_svg(report: &Report) -> String {
-    const CELL: f64 = 36.0;
+    const CELL: f64 = 42.0;
     const NAMES: f64 = 170.0;
     let count = report.measures.len() as f64;
     let (width, height) = ((NAMES + CELL * count + 24.0).max(420.0), HEAD + NAMES + CELL * count + 16.0);
-    let mut svg = document(width, height, &report.title, "correlation of the measures: blue negative, red positive");
+    let mut svg = document(width, height, &report.title, "correlation of the measures: blue negative, orange positive");
     for (i, measure) in report.measures.iter().enumerate() {
         let place = (i as f64 + 0.5) * CELL;
         text(&mut svg, [NAMES - 6.0, HEAD + NAMES + place + 4.0], "end", "", &measure.name);

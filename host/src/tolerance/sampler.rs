@@ -136,7 +136,7 @@ mod tests {
         for dimension in 0..5 {
             let mut strata: Vec<u128> = (0..13)
                 .flat_map(|group| drawn(&sampler, 104 + group * LANES as u64)[dimension])
-                .map(|bits| u128::from(bits) * 104 >> 64)
+                .map(|bits| (u128::from(bits) * 104) >> 64)
                 .collect();
             strata.sort_unstable();
             assert!(strata.iter().copied().eq(0..104));

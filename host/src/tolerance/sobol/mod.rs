@@ -23,7 +23,7 @@ pub struct Directions {
 impl Directions {
     /// For `dimensions` ≤ [`MOST_DIMENSIONS`].
     pub fn new(dimensions: usize) -> Self {
-        let mut of_digit = vec![Vec::with_capacity(dimensions); DIGITS];
+        let mut of_digit = vec![Vec::new(); DIGITS];
         let first = (0..DIGITS).map(|digit| 1 << digit).collect();
         let others = JOE_KUO.lines().skip(1).map(directions);
         for numbers in std::iter::once(first).chain(others).take(dimensions) {
