@@ -167,27 +167,42 @@ impl<'a> Tile<'a> {
 const NAN_BIN: usize = 0;
 
 fn count(values: &[f64], limits: [Option<f64>; 2], counts: &mut MeasureCounts, rejected: &mut [bool]) {
-    let [mut least, mut greatest] = counts.extremes;
-    let mut sum = 0.0;
-    for value in values {
-        least = if *value < least { *value } else { least };
-        greatest = if *value > greatest { *value } else { greatest };
-        sum += value;
-    }
-    counts.extremes = [least, greatest];
+    let ([least, greatest], sum) = range(values);
+    counts.extremes = [counts.extremes[0].min(least), counts.extremes[1].max(greatest)];
     if !sum.is_finite() {
         for (value, rejected) in values.iter().zip(rejected.iter_mut()) {
             counts.undefined += u64::from(value.is_nan());
             *rejected |= value.is_nan();
         }
     }
-    let [lower, upper] = limits;
-    for (value, rejected) in values.iter().zip(rejected) {
-        let (below, above) = (lower.is_some_and(|lower| *value < lower), upper.is_some_and(|upper| *value > upper));
-        counts.outside[0] += u64::from(below);
-        counts.outside[1] += u64::from(above);
-        *rejected |= below | above;
+    let [lower, upper] = [limits[0].unwrap_or(f64::NEG_INFINITY), limits[1].unwrap_or(f64::INFINITY)];
+    // Most tiles are good as a whole.
+    if least < lower || greatest > upper {
+        for (value, rejected) in values.iter().zip(rejected) {
+            counts.outside[0] += u64::from(*value < lower);
+            counts.outside[1] += u64::from(*value > upper);
+            *rejected |= *value < lower || *value > upper;
+        }
     }
+}
+
+/// Least and greatest of the values that are numbers, and the sum of all, eight apart, so that they are vectors.
+fn range(values: &[f64]) -> ([f64; 2], f64) {
+    let (mut least, mut greatest, mut sums) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES], [0.0; LANES]);
+    let (groups, rest) = values.as_chunks::<LANES>();
+    let mut add = |lane: usize, value: f64| {
+        least[lane] = if value < least[lane] { value } else { least[lane] };
+        greatest[lane] = if value > greatest[lane] { value } else { greatest[lane] };
+        sums[lane] += value;
+    };
+    for group in groups {
+        for (lane, value) in group.iter().enumerate() {
+            add(lane, *value);
+        }
+    }
+    rest.iter().enumerate().for_each(|(lane, value)| add(lane, *value));
+    let least = least.into_iter().fold(f64::INFINITY, f64::min);
+    ([least, greatest.into_iter().fold(f64::NEG_INFINITY, f64::max)], sums.iter().sum())
 }
 
 /// Sums of the first four powers, eight apart, so that they are vectors.
