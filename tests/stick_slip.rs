@@ -4,10 +4,7 @@ use slipfit_core::{
     SVector,
     integrator::{Extrapolated, Integrator, Sdirk2},
     kernel::Kernel,
-    law::{
-        Friction, StaticKinetic,
-        friction::Rubbing,
-    },
+    law::{Friction, StaticKinetic, friction::Rubbing},
     mechanism::{Differentiated, Linearised, Mechanism},
 };
 

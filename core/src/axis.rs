@@ -119,13 +119,7 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     }
 
     #[inline(always)]
-    fn differentiated(
-        &self,
-        _: S,
-        pose: &S,
-        (): &(),
-        velocity: &SVector<S, 1>,
-    ) -> Differentiated<S, [S; 2], 1> {
+    fn differentiated(&self, _: S, pose: &S, (): &(), velocity: &SVector<S, 1>) -> Differentiated<S, [S; 2], 1> {
         let pad = self.contact.response(-(self.gap + *pose), -velocity.x);
         Differentiated {
             force: SVector::<S, 1>::new(pad.force + self.mass * self.gravity),

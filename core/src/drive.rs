@@ -1,6 +1,9 @@
 //! The drive: a P-velocity controller behind a ramp (eq. 12).
 
-use crate::{Scalar, Vector3, law::step::{cubic, step}};
+use crate::{
+    Scalar, Vector3,
+    law::step::{cubic, step},
+};
 
 /// F_z = K_p·(STEP(t, t0, 0, t1, V) − v_z) along the frame's z, at a point fixed in the body.
 #[derive(Clone, Copy, Debug, PartialEq)]

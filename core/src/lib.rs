@@ -23,6 +23,8 @@ pub mod mechanism;
 pub mod menu;
 pub mod pose;
 pub mod power;
+#[cfg(feature = "sampling")]
+pub mod sampling;
 mod scalar;
 pub mod slide;
 pub mod table;

@@ -43,6 +43,9 @@ pub trait Scalar:
     /// Relative error ≤ 2e-6 in f32, 1e-14 in f64 for results inside 2^±126 and 2^±1022.
     fn pow(self, exponent: Self) -> Self;
 
+    /// ln `self` for a positive normal number. Relative error ≤ 3e-7 in f32, 1e-15 in f64.
+    fn ln(self) -> Self;
+
     /// False for NaN and the infinities. A lane is finite if all of its numbers are.
     fn is_finite(self) -> bool;
 
@@ -107,6 +110,11 @@ impl Scalar for f32 {
         power::pow_f32(self, exponent)
     }
 
+    #[inline(always)]
+    fn ln(self) -> Self {
+        power::ln_f32(self)
+    }
+
     fn is_finite(self) -> bool {
         f32::is_finite(self)
     }
@@ -145,6 +153,11 @@ impl Scalar for f64 {
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
         power::pow_f64(self, exponent)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        power::ln_f64(self)
     }
 
     fn is_finite(self) -> bool {

@@ -1,7 +1,9 @@
 //! The fixed-step schemes a scene can ask for, with their numbers of passes.
 
 use clap::{ValueEnum, builder::PossibleValue};
-use slipfit_core::integrator::{Extrapolated, ImplicitEuler, Integrator, Rodas3, RungeKutta4, Sdirk2, SemiImplicitEuler};
+use slipfit_core::integrator::{
+    Extrapolated, ImplicitEuler, Integrator, Rodas3, RungeKutta4, Sdirk2, SemiImplicitEuler,
+};
 
 /// A scheme by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

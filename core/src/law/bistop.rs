@@ -50,10 +50,7 @@ impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
     /// the pin, so the offset's rate is −u.
     #[inline(always)]
     pub fn slot(&self, lower: S, upper: S, offset: S, speed: S) -> SlotResponse<S> {
-        SlotResponse {
-            low: self.response(-(lower + offset), speed),
-            high: self.response(offset - upper, -speed),
-        }
+        SlotResponse { low: self.response(-(lower + offset), speed), high: self.response(offset - upper, -speed) }
     }
 }
 

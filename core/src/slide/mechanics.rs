@@ -299,10 +299,5 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
 fn placed<S: Scalar>(pose: &Pose<S>, velocity: &SVector<S, 6>) -> Placed<S> {
     let (v_w, rotation_b) = split(velocity);
     let to_body = pose.to_body();
-    Placed {
-        displacement_b: to_body.apply(pose.displacement_w),
-        velocity_b: to_body.apply(v_w),
-        rotation_b,
-        to_body,
-    }
+    Placed { displacement_b: to_body.apply(pose.displacement_w), velocity_b: to_body.apply(v_w), rotation_b, to_body }
 }

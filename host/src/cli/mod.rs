@@ -1,6 +1,7 @@
 //! The command line: one file a command, each with its arguments and its `run`.
 
 mod check;
+mod merge;
 mod precision;
 mod run;
 mod simulate;
@@ -26,6 +27,7 @@ use crate::{
     interrupt,
     scene::{CD_ROM_SLIDE, Override, SHIPPED, Scene, SceneError, SceneFile, shipped},
     simulate::SimulateError,
+    tolerance::run::RunError,
 };
 
 /// From a drawing's tolerances to a flashed force table.
@@ -56,6 +58,7 @@ enum Command {
     Sweep(sweep::Arguments),
     Table(table::Arguments),
     Precision(precision::Arguments),
+    Merge(merge::Arguments),
 }
 
 /// Why a command did not do its work.
@@ -83,6 +86,15 @@ impl From<SimulateError> for Failure {
         match error {
             SimulateError::Parameter(_) | SimulateError::Every { .. } => Self::Input(error.to_string()),
             SimulateError::NotFinite { .. } | SimulateError::Interrupted => Self::Work(error.into()),
+        }
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Interrupted { .. } | RunError::Write(_) | RunError::Header(_) => Self::Work(error.into()),
+            bad => Self::Input(bad.to_string()),
         }
     }
 }
@@ -240,6 +252,7 @@ pub fn main() -> ExitCode {
         Some(Command::Sweep(arguments)) => arguments.run(),
         Some(Command::Table(arguments)) => arguments.run(),
         Some(Command::Precision(arguments)) => arguments.run(),
+        Some(Command::Merge(arguments)) => arguments.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

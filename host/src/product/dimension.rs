@@ -1,8 +1,9 @@
 //! Toleranced numbers: a dimension's nominal value, its limits, and how it is distributed between them.
 
-use crate::tolerance::model::{Contributor, Distribution, Variation};
-
-use super::moments;
+use crate::tolerance::{
+    model::{Contributor, Distribution, Variation},
+    quadrature::mean_and_deviation,
+};
 
 /// A number of the drawing and its variation. SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,7 +148,7 @@ impl Toleranced {
 
     /// Mean of the distribution.
     pub fn mean(&self) -> f64 {
-        moments::of(&self.distribution).0
+        mean_and_deviation(&self.contributor(String::new()).variation)[0][0]
     }
 }
 

@@ -12,7 +12,6 @@ pub mod expression;
 pub mod feature;
 pub mod function;
 pub mod iso2768;
-pub mod moments;
 pub mod pose;
 pub mod vector;
 

@@ -2,12 +2,12 @@
 
 use slipfit_core::clearance::GapStatistics;
 
-use crate::product::{Product, moments};
+use crate::{product::Product, tolerance::moments};
 
 use super::{
     Override, Problem, Scene, SceneError, keys,
     parse::{scene, title},
-    pins::{GapMeasures, fill, pins, sums},
+    pins::{fill, pins, sums},
     product::product,
     tree::Source,
     value::Field,
@@ -20,9 +20,8 @@ pub struct SceneFile {
     /// Parts, tolerances and measures, if it has any.
     pub product: Option<Product>,
     /// The mechanism, if it has one. Gaps that are measures of the product have the moments that [`moments::of_measures`]
-    /// finds, until [`Self::with_gaps`] gives better ones.
+    /// finds.
     pub slide: Option<Scene>,
-    gap_measures: GapMeasures,
 }
 
 impl SceneFile {
@@ -46,23 +45,19 @@ impl SceneFile {
             .transpose()?;
         let of_slide = ["slide", "contact", "friction", "drive", "run", "sweep", "pin"];
         if product.is_some() && of_slide.iter().all(|key| root.get(key).is_none()) {
-            return Ok(Self { title, product, slide: None, gap_measures: GapMeasures::default() });
+            return Ok(Self { title, product, slide: None });
         }
         root.table("slide")?;
         let (mut pins, gap_measures) = pins(&root, product.as_ref().map(|product| &product.model))?;
         if let Some(product) = product.as_mut().filter(|_| gap_measures.iter().flatten().any(Option::is_some)) {
-            fill(&mut pins, &gap_measures, &moments::of_measures(&product.model));
+            let moments = moments::of_measures(&product.model);
+            let statistics: Vec<_> =
+                moments.iter().map(|of| GapStatistics { mean: of.mean, deviation: of.deviation }).collect();
+            fill(&mut pins, &gap_measures, &statistics);
             product.model.sums.extend(sums(&pins, &gap_measures));
         }
         let slide = Some(scene(&root, title.clone(), pins)?);
-        Ok(Self { title, product, slide, gap_measures })
-    }
-
-    /// The slide with other `statistics` of the product's measures, in their order.
-    pub fn with_gaps(&self, statistics: &[GapStatistics<f64>]) -> Option<Scene> {
-        let mut slide = self.slide.clone()?;
-        fill(&mut slide.pins, &self.gap_measures, statistics);
-        Some(slide)
+        Ok(Self { title, product, slide })
     }
 }
 

@@ -1,8 +1,9 @@
 //! The shipped products against known numbers, and every kind of bad input.
 
 use crate::{
-    product::{Product, moments},
+    product::Product,
     scene::{Override, Problem, SceneError, SceneFile, shipped},
+    tolerance::moments,
     tolerance::{
         lanes::{LANES, Lanes},
         model::{Distribution, Quantity, Variation},
