@@ -2,8 +2,11 @@
 //!
 //! The same input gives the same bytes; there is no date on the page.
 
+mod production;
+
 use std::fmt::Write;
 
+pub use production::Production;
 use slipfit_core::clearance::GapStatistics;
 
 use crate::{
@@ -17,7 +20,7 @@ use crate::{
 };
 
 /// What a report is made of.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct ReportInput<'a> {
     /// The scene.
     pub scene: &'a Scene,
@@ -27,6 +30,8 @@ pub struct ReportInput<'a> {
     pub figures: &'a [Figure],
     /// The tolerance level of Table 2's derived columns; 3.43 in the paper.
     pub n: f64,
+    /// How the product's measures vary, if the scene has a product.
+    pub production: Option<&'a Production>,
     /// The flash table, if one was made.
     pub flash: Option<Flash>,
     /// What the reader should know, as plain text.
@@ -62,7 +67,8 @@ pub fn report(input: &ReportInput) -> String {
         notes(input.notes),
         figures(input.figures),
         levels(input.sweep),
-        given(input.scene),
+        input.production.map(production::section).unwrap_or_default(),
+        given(input.scene, input.production.is_some()),
         derived_columns(&table),
         input.flash.as_ref().map(flash).unwrap_or_default(),
     ];
@@ -117,14 +123,16 @@ fn notes(notes: &[String]) -> String {
 }
 
 fn figures(figures: &[Figure]) -> String {
-    let figure = |Figure { caption, svg }: &Figure| {
-        format!("<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n", escape(caption))
-    };
+    let figure = |Figure { caption, svg }: &Figure| figure(caption, svg);
     if figures.is_empty() {
         String::new()
     } else {
         format!("<h2>Figures</h2>\n{}", figures.iter().map(figure).collect::<String>())
     }
+}
+
+fn figure(caption: &str, svg: &str) -> String {
+    format!("<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n", escape(caption))
 }
 
 fn levels(sweep: &Sweep) -> String {
@@ -154,7 +162,7 @@ fn levels(sweep: &Sweep) -> String {
     format!("<h2>Levels</h2>\n{}", table(caption, head, &sweep.levels.iter().map(row).collect::<String>()))
 }
 
-fn given(scene: &Scene) -> String {
+fn given(scene: &Scene, computed: bool) -> String {
     let mut head = "<tr><th scope=\"col\" rowspan=\"2\">pin</th>".to_owned();
     head.extend(SURFACES.map(|surface| format!("<th scope=\"colgroup\" colspan=\"2\">{surface}</th>")));
     head.push_str("</tr>\n<tr class=\"sub\">");
@@ -166,7 +174,10 @@ fn given(scene: &Scene) -> String {
         .iter()
         .map(|pin| tr(&escape(&pin.name), &pin.gaps.iter().flat_map(cells).collect::<Vec<_>>()))
         .collect();
-    format!("<h2>Clearances</h2>\n{}", table("The gaps of every pin over the production (mm).", &head, &rows))
+    let source =
+        if computed { ": moments of second order of the product's measures, which the dynamics use" } else { "" };
+    let caption = format!("The gaps of every pin over the production (mm){source}.");
+    format!("<h2>Clearances</h2>\n{}", table(&caption, &head, &rows))
 }
 
 fn derived_columns(derived: &Table2) -> String {
@@ -289,7 +300,15 @@ mod tests {
         });
         let flash = Some(Flash { bytes: 34_816, worst_force_error: 1.23e-3, worst_velocity_error: 2.1e-5 });
         let notes = ["a < b".to_owned()];
-        report(&ReportInput { scene: &scene, sweep: &sweep, figures: &figures, n: 3.43, flash, notes: &notes })
+        report(&ReportInput {
+            scene: &scene,
+            sweep: &sweep,
+            figures: &figures,
+            n: 3.43,
+            production: None,
+            flash,
+            notes: &notes,
+        })
     }
 
     #[test]
@@ -321,7 +340,9 @@ mod tests {
     #[test]
     fn leaves_out_what_there_is_not() {
         let (scene, sweep) = (example::cd_rom(), Sweep { levels: Vec::new() });
-        let html = report(&ReportInput { scene: &scene, sweep: &sweep, figures: &[], n: 0.0, flash: None, notes: &[] });
+        let (production, flash) = (None, None);
+        let html =
+            report(&ReportInput { scene: &scene, sweep: &sweep, figures: &[], n: 0.0, production, flash, notes: &[] });
         assert!(!["Figures", "Notes", "Flash table", "NaN", "inf"].iter().any(|absent| html.contains(absent)));
     }
 }

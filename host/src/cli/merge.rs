@@ -37,16 +37,16 @@ impl Arguments {
         let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
         let file = SceneFile::parse(&source.name, &source.text, &set)?;
         let nothing = || Failure::Input(format!("{}: the scene describes no product", source.name));
-        let model = file.product.ok_or_else(nothing)?.model;
-        check(&part, self.files.first().map_or(Path::new(""), |path| path), &model)?;
+        let model = &file.product.as_ref().ok_or_else(nothing)?.model;
+        check(&part, self.files.first().map_or(Path::new(""), |path| path), model)?;
         for path in self.outputs.paths().chain(&self.out) {
             files::check_writable(path).map_err(refused)?;
         }
         self.outputs.prepare()?;
-        let study = Study::new(&model, part.header.settings).map_err(RunError::from)?;
+        let study = Study::new(model, part.header.settings).map_err(RunError::from)?;
         if let Some(path) = &self.out {
             files::write(path, &part.encode().map_err(RunError::from)?)?;
         }
-        self.outputs.show(&file.title, &study, &part.tallies, self.json)
+        self.outputs.show(&file.title, file.slide.as_ref(), &study, &part.tallies, self.json)
     }
 }

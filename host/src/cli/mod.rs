@@ -25,14 +25,16 @@ use crate::{
     files::{self, WriteError},
     force_table::TableError,
     interrupt,
-    scene::{CD_ROM_SLIDE, Override, SHIPPED, Scene, SceneError, SceneFile, shipped},
+    product::Product,
+    scene::{Override, SHIPPED, Scene, SceneError, SceneFile, shipped},
     simulate::SimulateError,
     tolerance::run::RunError,
 };
 
 /// From a drawing's tolerances to a flashed force table.
 ///
-/// Works on the paper's CD-ROM slide unless a scene file is given. Exit codes: 0 done, 1 failed, 2 bad input or usage.
+/// Without a scene, `run` and `tolerance` start from the drawing of the paper's CD-ROM slide, the others from its Table 2 as
+/// given. Exit codes: 0 done, 1 failed, 2 bad input or usage.
 #[derive(Parser)]
 #[command(name = "slipfit", version, max_term_width = 100, after_help = EXAMPLES)]
 struct Cli {
@@ -44,6 +46,7 @@ const EXAMPLES: &str = "\
 Examples:
   slipfit run                              the whole job on the CD-ROM slide, into slipfit-out/
   slipfit check my-slide.toml              is the scene sound, when does a gap close
+  slipfit tolerance three-part-stack       how a product's measures vary, and what from
   slipfit simulate --n 2.5 --csv unit.csv  one unit, tighter by 2.5 sigma
   slipfit sweep --n 0:5:0.5 --set run.duration=1500
                                            at which n does the full stroke jam
@@ -113,11 +116,17 @@ fn refused(error: WriteError) -> Failure {
     Failure::Input(error.to_string())
 }
 
+/// The shipped scene that commands work on: the paper's slide with Table 2 as given.
+const TABLE_2: &str = "cd-rom-slide";
+/// The shipped scene of the commands that start from a drawing: the same slide, Table 2 following from its parts.
+const DRAWING: &str = "cd-rom-slide-drawing";
+
 /// What every command takes.
 #[derive(Args)]
 struct SceneArguments {
-    /// Scene file (TOML), or the name of a shipped scene; the CD-ROM slide if none is given.
-    scene: Option<PathBuf>,
+    /// Scene file (TOML), or the name of a shipped scene.
+    #[arg(default_value = TABLE_2)]
+    scene: PathBuf,
     /// Sets a key of the scene, such as contact.stiffness=1000 or "slide.mass=90 g"; may be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -133,7 +142,7 @@ impl SceneArguments {
     /// Whether `output` can be written and is not the scene itself.
     fn check_output(&self, output: &Path) -> Result<(), Failure> {
         let same = |scene: &Path| scene.canonicalize().is_ok_and(|s| output.canonicalize().is_ok_and(|o| s == o));
-        if self.scene.as_deref().is_some_and(same) {
+        if same(&self.scene) {
             return Err(Failure::Input(format!("cannot write {}: it is the scene", output.display())));
         }
         files::check_writable(output).map_err(|error| Failure::Input(error.to_string()))
@@ -151,27 +160,33 @@ impl SceneArguments {
         Ok(Scene::parse(&name, &text, &self.overrides(options))?)
     }
 
+    /// Reads the slide of the scene and the product it belongs to, if there is one, with `options` as further settings.
+    fn load_with_product(&self, options: &[Override]) -> Result<(Scene, Option<Product>), Failure> {
+        let (name, text) = self.text()?;
+        Ok(SceneFile::parse_with_slide(&name, &text, &self.overrides(options))?)
+    }
+
     fn overrides(&self, options: &[Override]) -> Vec<Override> {
         self.set.iter().map(|assignment| Override::set(assignment)).chain(options.iter().cloned()).collect()
     }
 
     /// Name and text of the scene: a file, or a shipped one by its name.
     fn text(&self) -> Result<(String, Cow<'static, str>), Failure> {
-        let Some(path) = &self.scene else { return Ok(("cd-rom-slide.toml".into(), CD_ROM_SLIDE.into())) };
+        let path = &self.scene;
         let unreadable =
             |why: &dyn std::fmt::Display| Failure::Input(format!("cannot read the scene {}: {why}", path.display()));
-        let file = match std::fs::File::open(path) {
-            Ok(file) => file,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                let name = path.to_string_lossy();
-                let text = shipped(&name).ok_or_else(|| {
-                    let names: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
-                    unreadable(&format!("{error}; shipped scenes are {}", names.join(", ")))
-                })?;
-                return Ok((format!("{name}.toml"), text.into()));
+        let name = path.to_string_lossy();
+        // A folder of that name is none's scene.
+        if let Some(text) = shipped(&name).filter(|_| !path.exists() || path.is_dir()) {
+            return Ok((format!("{name}.toml"), text.into()));
+        }
+        let file = std::fs::File::open(path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => {
+                let names: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
+                unreadable(&format!("{error}; shipped scenes are {}", names.join(", ")))
             }
-            Err(error) => return Err(unreadable(&error)),
-        };
+            _ => unreadable(&error),
+        })?;
         let mut bytes = Vec::new();
         file.take(SCENE_MOST + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
         if bytes.len() as u64 > SCENE_MOST {

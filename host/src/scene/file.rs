@@ -59,6 +59,19 @@ impl SceneFile {
         let slide = Some(scene(&root, title.clone(), pins)?);
         Ok(Self { title, product, slide })
     }
+
+    /// The slide of the scene file `file_name` and the product it belongs to, if the scene has one.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`].
+    pub fn parse_with_slide(
+        file_name: &str,
+        text: &str,
+        overrides: &[Override],
+    ) -> Result<(Scene, Option<Product>), SceneError> {
+        let file = Self::parse(file_name, text, overrides)?;
+        Ok((file.slide.ok_or_else(|| no_slide(file_name, text))?, file.product))
+    }
 }
 
 impl Scene {
@@ -68,8 +81,7 @@ impl Scene {
     /// [`SceneError`] points at the first value, in the file or in an override, that makes no scene, or says that it
     /// has no slide.
     pub fn parse(file_name: &str, text: &str, overrides: &[Override]) -> Result<Self, SceneError> {
-        let file = SceneFile::parse(file_name, text, overrides)?;
-        file.slide.ok_or_else(|| no_slide(file_name, text))
+        SceneFile::parse_with_slide(file_name, text, overrides).map(|(scene, _)| scene)
     }
 }
 

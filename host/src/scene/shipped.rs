@@ -1,6 +1,6 @@
 //! The scenes that the program carries.
 
-/// The paper's slide, its ramp as printed: what every command works on without a scene.
+/// The paper's slide with its Table 2 as given, its ramp as printed.
 pub const CD_ROM_SLIDE: &str = include_str!("../../scenes/cd-rom-slide.toml");
 
 /// Names and texts of the shipped scenes.

@@ -23,11 +23,38 @@ const VERMILION: [f64; 3] = [213.0, 94.0, 0.0];
 /// root.
 const CLASSES: [(u64, usize); 4] = [(1_000, 64), (20_000, 32), (500_000, 16), (u64::MAX, 8)];
 
+/// A picture of an analysis.
+pub struct Picture {
+    /// Name of its file.
+    pub file: String,
+    /// Plain text below it.
+    pub caption: String,
+    /// An SVG document without XML declaration.
+    pub svg: String,
+}
+
+/// All pictures: contributors, correlations, and a histogram for every measure.
+///
+/// # Errors
+/// [`PlotError`], if a number is not finite.
+pub fn pictures(report: &Report, study: &Study, tallies: &[Tally]) -> Result<Vec<Picture>, PlotError> {
+    let picture = |file: &str, caption: &str, svg| Picture { file: file.into(), caption: caption.into(), svg };
+    let histogram = |(i, measure): (usize, &MeasureReport)| {
+        let file = format!("histogram-{}.svg", i + 1);
+        Ok(picture(&file, &format!("{} over the production.", measure.name), histogram_svg(report, study, tallies, i)?))
+    };
+    let all = [
+        picture("contributors.svg", "What the measures' variances come from.", contributors_svg(report)),
+        picture("correlation.svg", "Which measures vary together.", correlation_svg(report)),
+    ];
+    all.into_iter().map(Ok).chain(report.measures.iter().enumerate().map(histogram)).collect()
+}
+
 /// The histogram of measure `i` with the normal of the same moments and its limits.
 ///
 /// # Errors
 /// [`PlotError`], if a number is not finite.
-pub fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) -> Result<String, PlotError> {
+fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) -> Result<String, PlotError> {
     let (measure, factor) = (&report.measures[i], study.model.measures[i].quantity.factor());
     let width = CLASSES.iter().find(|(units, _)| report.samples <= *units).map_or(8, |(_, width)| *width);
     let classes = histogram(study.frames(), tallies, i, width);
@@ -76,7 +103,7 @@ pub fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize
 }
 
 /// Shares of the contributors in the variance of every measure that varies, largest first.
-pub fn contributors_svg(report: &Report) -> String {
+fn contributors_svg(report: &Report) -> String {
     const MOST: usize = 8;
     let shown = |m: &MeasureReport| -> Vec<(String, f64)> {
         let shares = m.contributors.iter().filter(|share| share.percent.abs() >= 0.05).take(MOST);
@@ -104,7 +131,7 @@ pub fn contributors_svg(report: &Report) -> String {
 }
 
 /// The correlation matrix of the measures as coloured cells with numbers.
-pub fn correlation_svg(report: &Report) -> String {
+fn correlation_svg(report: &Report) -> String {
     const CELL: f64 = 42.0;
     const NAMES: f64 = 170.0;
     let count = report.measures.len() as f64;

@@ -1,0 +1,212 @@
+//! `slipfit tolerance`: how the measures of a product vary over the production.
+
+mod experiment;
+mod gaps;
+mod output;
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use indicatif::ProgressBar;
+use serde::Serialize;
+
+use self::gaps::Given;
+use super::{DRAWING, Failure, SceneArguments, ThreadArguments, print, print_json, progress};
+use crate::{
+    files,
+    number::ten_digits,
+    scene::Scene,
+    tolerance::{
+        experiment::Design,
+        file::Source,
+        lanes::LANES,
+        model::Model,
+        run::{Keep, RunError, Shard, checkpoint, run},
+        sampler::Method,
+        study::{Settings, Study},
+    },
+};
+
+pub(super) use output::{OutputArguments, PAPER_LEVEL};
+
+/// What is drawn unless something else is asked for: as many units as in the paper.
+pub(super) const DEFAULT: Settings = Settings { method: Method::PseudoRandom, samples: 5000, replicates: 1, seed: 1 };
+
+/// How the measures vary: Monte Carlo, worst case, RSS, contributors, capability, joint statistics.
+///
+/// Starts from the drawing of the paper's slide unless a scene is given. A scene with a slide has Table 2's derived columns
+/// shown, too; one that gives its gaps instead of a product has nothing to draw, and these are all.
+#[derive(Args)]
+#[command(mut_arg("scene", |arg| arg.default_value(DRAWING)))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Units; of every replicate, where there are several.
+    #[arg(long, default_value_t = DEFAULT.samples)]
+    samples: u64,
+    /// How units are drawn.
+    #[arg(long, value_enum, default_value_t = Sampling::Mc)]
+    method: Sampling,
+    /// Independent designs; 8 for lhs and sobol if not given, 1 for mc. Their spread is the standard error.
+    #[arg(long)]
+    replicates: Option<u64>,
+    /// Seed of the production.
+    #[arg(long, default_value_t = DEFAULT.seed)]
+    seed: u64,
+    #[command(flatten)]
+    threads: ThreadArguments,
+    /// Works on one of n parts, i from 1 to n; `slipfit merge` joins them.
+    #[arg(long, value_name = "I/N", requires = "out")]
+    shard: Option<Shard>,
+    /// Writes what `slipfit merge` reads.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Goes on where a run with the same --out stopped.
+    #[arg(long, requires = "out")]
+    resume: bool,
+    /// Writes every unit's measures as CSV.
+    #[arg(long, value_name = "FILE", conflicts_with = "shard")]
+    draws: Option<PathBuf>,
+    #[command(flatten)]
+    outputs: OutputArguments,
+}
+
+/// How units are drawn.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Sampling {
+    /// Pseudo-random.
+    Mc,
+    /// Latin hypercube.
+    Lhs,
+    /// Owen-scrambled Sobol' points.
+    Sobol,
+    /// No random units: all combinations of the limits.
+    Factorial,
+    /// No random units: the smallest two-level orthogonal array (L4, L8, …).
+    Taguchi,
+    /// No random units: the smallest three-level orthogonal array (L9, L27, …).
+    Taguchi3,
+}
+
+impl Sampling {
+    /// The designed experiment, if it is one.
+    fn design(self) -> Option<Design> {
+        match self {
+            Self::Mc | Self::Lhs | Self::Sobol => None,
+            Self::Factorial => Some(Design::FullFactorial),
+            Self::Taguchi => Some(Design::TwoLevel),
+            Self::Taguchi3 => Some(Design::ThreeLevel),
+        }
+    }
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        let file = self.scene.load_file(&[])?;
+        match (&file.product, &file.slide) {
+            (Some(product), _) => {
+                product.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+                self.study(&file.title, &product.model, file.slide.as_ref())
+            }
+            (None, Some(scene)) => self.given(scene),
+            (None, None) => Ok(()),
+        }
+    }
+
+    /// The gaps as the scene gives them.
+    fn given(&self, scene: &Scene) -> Result<(), Failure> {
+        self.refuse_files("the scene gives its gaps, there is no product to draw")?;
+        let given = Given::new(scene, self.outputs.n);
+        if self.scene.json { print_json(&given) } else { print(&given.describe()) }
+    }
+
+    /// Refuses options that ask for files of random units where there are none.
+    fn refuse_files(&self, why: &str) -> Result<(), Failure> {
+        let own = self.out.as_ref().map(|_| "--out").or(self.draws.as_ref().map(|_| "--draws"));
+        let option = own.or(self.outputs.asked());
+        option.map_or(Ok(()), |option| Err(Failure::Input(format!("{option}: {why}"))))
+    }
+
+    fn settings(&self) -> Result<Settings, Failure> {
+        let (method, replicates) = match self.method {
+            Sampling::Lhs => (Method::LatinHypercube, 8),
+            Sampling::Sobol => (Method::ScrambledSobol, 8),
+            _ => (DEFAULT.method, DEFAULT.replicates),
+        };
+        let replicates = self.replicates.unwrap_or(replicates);
+        let bad = || Failure::Input(format!("{} samples in {replicates} replicates are too many", self.samples));
+        let samples = self.samples.checked_mul(replicates).ok_or_else(bad)?;
+        if replicates > 1024 {
+            return Err(Failure::Input(format!("--replicates is {replicates}, allowed are 1 to 1024")));
+        }
+        Ok(Settings { method, samples, replicates, seed: self.seed })
+    }
+
+    fn study(&self, title: &str, model: &Model, slide: Option<&Scene>) -> Result<(), Failure> {
+        if let Some(design) = self.method.design() {
+            self.refuse_files("a designed experiment has no random units")?;
+            return experiment::show(title, model, design, self.scene.json);
+        }
+        let settings = self.settings()?;
+        let study = Study::new(model, settings).map_err(RunError::from)?;
+        let partial = self.out.as_deref().map(checkpoint);
+        for path in [&self.out, &partial, &self.draws].into_iter().flatten().chain(self.outputs.paths()) {
+            self.scene.check_output(path)?;
+        }
+        self.outputs.prepare()?;
+        let (name, text) = self.scene.text()?;
+        let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
+        let shard = self.shard.unwrap_or(Shard::ALL);
+        let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
+        let blocks = shard.blocks(&settings);
+        let bar = progress("drawing", settings.units_in(&blocks) as usize);
+        let tallies = self.threads.install(|| run(&study, &source, shard, keep.as_ref(), |units| bar.inc(units)))??;
+        bar.finish_and_clear();
+        if let Some(path) = &self.draws {
+            files::write(path, &draws_csv(&study, &progress("writing", settings.samples as usize))?)?;
+        }
+        match (&self.out, shard) {
+            (Some(out), Shard { number, count: 2.. }) => {
+                let units: u64 = tallies.iter().map(|tally| tally.counts.units).sum();
+                let written = Written { shard: number, of: shard.count, units, file: out.display().to_string() };
+                if self.scene.json { print_json(&written) } else { print(&written.to_string()) }
+            }
+            _ => self.outputs.show(title, slide, &study, &tallies, self.scene.json),
+        }
+    }
+}
+
+/// A shard that is done.
+#[derive(Serialize)]
+struct Written {
+    shard: u64,
+    of: u64,
+    units: u64,
+    file: String,
+}
+
+impl std::fmt::Display for Written {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "shard {} of {}: {} units in {}", self.shard, self.of, self.units, self.file)
+    }
+}
+
+/// Measures of every unit, in mm and degrees, one line a unit.
+fn draws_csv(study: &Study, bar: &ProgressBar) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let measures = &study.model.measures;
+    let heading = measures.iter().map(|measure| measure.name.clone());
+    writer.write_record(std::iter::once("unit".to_owned()).chain(heading))?;
+    for first in (0..study.settings.samples).step_by(LANES) {
+        let values = study.unit_measures(first);
+        let units = (study.settings.samples - first).min(LANES as u64);
+        for lane in 0..units as usize {
+            let scaled = measures.iter().zip(&values).map(|(measure, value)| value.0[lane] * measure.quantity.factor());
+            let fields = scaled.map(ten_digits);
+            writer.write_record(std::iter::once((first + lane as u64).to_string()).chain(fields))?;
+        }
+        bar.inc(units);
+    }
+    bar.finish_and_clear();
+    Ok(writer.into_inner()?)
+}

@@ -1,0 +1,121 @@
+//! How the product's measures vary, as a section of the page.
+
+use super::{figure, optional, real, table, tr};
+use crate::{
+    markup::escape,
+    number::{three_digits, typeset},
+    tolerance::{
+        picture::Picture,
+        report::{MeasureReport, Report, SumReport},
+    },
+};
+
+/// The analysis of a product.
+pub struct Production {
+    /// What was found.
+    pub report: Report,
+    /// Its pictures.
+    pub pictures: Vec<Picture>,
+}
+
+/// Headings of a table's columns.
+fn head(columns: &[&str]) -> String {
+    let cells: String = columns.iter().map(|column| format!("<th scope=\"col\">{column}</th>")).collect();
+    format!("<tr>{cells}</tr>\n")
+}
+
+fn ppm(number: f64) -> String {
+    typeset(&three_digits(number))
+}
+
+/// Tables and pictures.
+pub fn section(Production { report, pictures }: &Production) -> String {
+    let pictures: String = pictures.iter().map(|Picture { caption, svg, .. }| figure(caption, svg)).collect();
+    format!(
+        "<h2>Tolerance analysis</h2>\n{}{}{}{}<div class=\"multiples\">\n{pictures}</div>\n",
+        measures(report),
+        beside(report),
+        sums(report),
+        notes(&report.notes),
+    )
+}
+
+fn measures(report: &Report) -> String {
+    let columns = [
+        "measure",
+        "mean",
+        "σ",
+        "skew",
+        "kurtosis",
+        "0.135 %",
+        "50 %",
+        "99.865 %",
+        "Pp",
+        "Ppk",
+        "ppm below",
+        "ppm above",
+    ];
+    let row = |m: &MeasureReport| {
+        let mut cells = vec![named(m)];
+        cells.extend([m.mean, m.sd].map(|x| real(x, 4)));
+        cells.extend([m.skew, m.kurtosis].map(|x| real(x, 3)));
+        cells.extend([m.q00135, m.median, m.q99865].map(|x| real(x, 4)));
+        cells.extend([m.pp, m.ppk].map(|x| optional(x, 3)));
+        cells.extend(m.dpm.map(|side| side.map_or_else(|| "–".to_owned(), |side| ppm(side.dpm))));
+        tr("", &cells)
+    };
+    let caption =
+        format!("{} units drawn, seed {}: mean, standard deviation, points, capability.", report.samples, report.seed);
+    table(&caption, &head(&columns), &report.measures.iter().map(row).collect::<String>())
+}
+
+fn beside(report: &Report) -> String {
+    let columns =
+        ["measure", "worst case, from", "to", "RSS, middle", "±", "mean, 2nd order", "σ, 2nd order", "most from", "%"];
+    let row = |m: &MeasureReport| {
+        let (low, high) = (m.worst_case[0], m.worst_case[1]);
+        let numbers = [low, high, m.rss.middle, m.rss.tolerance, m.second_order.mean, m.second_order.sd];
+        let most = m.contributors.first();
+        let mut cells = vec![named(m)];
+        cells.extend(numbers.map(|x| real(x, 4)));
+        cells.push(most.map_or_else(|| "–".to_owned(), |most| escape(&most.name)));
+        cells.push(optional(most.map(|most| most.percent), 1));
+        tr("", &cells)
+    };
+    let caption = "Without random numbers: worst case, root sum of squares, moments of second order, and the contributor \
+                   with the largest share of the variance.";
+    table(caption, &head(&columns), &report.measures.iter().map(row).collect::<String>())
+}
+
+fn sums(report: &Report) -> String {
+    if report.sums.is_empty() {
+        return String::new();
+    }
+    let columns = ["sum", "mean", "σ", "ρ", "ppm below 0", "eq. 9 (ρ = 1)", "ρ = 0"];
+    let row = |sum: &SumReport| {
+        let cells = [
+            escape(&sum.name),
+            real(sum.mean, 4),
+            real(sum.sd, 4),
+            optional(sum.correlation, 3),
+            ppm(sum.model.dpm),
+            ppm(sum.eq9_ppm),
+            ppm(sum.independent_ppm),
+        ];
+        tr("", &cells)
+    };
+    let caption = "Sums that must not close: defects per million with the model's own correlation, and as mean and σ alone \
+                   would have it, both gaps moving together as in eq. 9, or independently.";
+    table(caption, &head(&columns), &report.sums.iter().map(row).collect::<String>())
+}
+
+fn notes(notes: &[String]) -> String {
+    let items: String = notes.iter().map(|note| format!("<li>{}</li>\n", escape(note))).collect();
+    if items.is_empty() { items } else { format!("<ul class=\"notes\">\n{items}</ul>\n") }
+}
+
+/// A measure with its unit.
+fn named(measure: &MeasureReport) -> String {
+    let unit = if measure.unit.is_empty() { String::new() } else { format!(", {}", measure.unit) };
+    escape(&measure.name) + &unit
+}
