@@ -40,14 +40,26 @@ fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
     let folder = tempfile::tempdir().unwrap();
     for (out, threads) in [("one", "1"), ("two", "2"), ("eight", "8")] {
         stdout(&slipfit(folder.path(), &["run", "--out", out, "--threads", threads, "--n", "0:4:1"]));
-        assert_eq!(files(&folder.path().join(out)), ["fig8.svg", "fig9.svg", "report.html", "sweep.csv", "table.bin"]);
     }
+    // From the drawing: what the dynamics give, and what the tolerance analysis of 18 measures gives.
+    let mut expected: Vec<String> = (1..=18).map(|i| format!("histogram-{i}.svg")).collect();
+    let others =
+        ["contributors.svg", "correlation.svg", "fig8.svg", "fig9.svg", "report.html", "sweep.csv", "table.bin"];
+    expected.extend(others.iter().chain(&["tolerance.csv"]).map(|name| (*name).to_owned()));
+    expected.sort();
+    assert_eq!(files(&folder.path().join("one")), expected);
+    // Of Table 2 as given, there is no product to analyse.
+    stdout(&slipfit(folder.path(), &["run", "cd-rom-slide", "--out", "given", "--n", "0:4:1"]));
+    assert_eq!(files(&folder.path().join("given")), ["fig8.svg", "fig9.svg", "report.html", "sweep.csv", "table.bin"]);
     for name in files(&folder.path().join("one")) {
         let [one, two, eight] = ["one", "two", "eight"].map(|out| std::fs::read(folder.path().join(out).join(&name)));
         let one = one.unwrap();
         assert!(one == two.unwrap() && one == eight.unwrap(), "{name}");
     }
     let page = std::fs::read_to_string(folder.path().join("one/report.html")).unwrap();
+    assert!(page.contains("<h2>Tolerance analysis</h2>") && page.contains("left front across"));
+    let given = std::fs::read_to_string(folder.path().join("given/report.html")).unwrap();
+    assert!(!given.contains("Tolerance analysis"));
     for external in ["http://", "https://", "<script", "<link"] {
         let without_namespaces = page.replace("http://www.w3.org/", "");
         assert!(!without_namespaces.contains(external), "{external}");
@@ -116,7 +128,7 @@ fn a_run_is_sampled_as_asked_and_json_carries_its_figures() {
 #[test]
 fn tolerance_gives_table_2_in_millimetres() {
     let folder = tempfile::tempdir().unwrap();
-    let report = json(folder.path(), &["tolerance", "--json"]);
+    let report = json(folder.path(), &["tolerance", "cd-rom-slide", "--json"]);
     let measures = report["measures"].as_array().unwrap();
     assert_eq!(measures.len(), 16);
     for (measure, [mean, sd]) in measures.iter().zip(slipfit_problems::cd_rom::TABLE_2) {

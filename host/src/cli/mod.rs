@@ -176,7 +176,7 @@ impl SceneArguments {
         let unreadable =
             |why: &dyn std::fmt::Display| Failure::Input(format!("cannot read the scene {}: {why}", path.display()));
         let name = path.to_string_lossy();
-        // A folder of that name is none's scene.
+        // A folder is no scene: where there is one of that name, the shipped one is meant.
         if let Some(text) = shipped(&name).filter(|_| !path.exists() || path.is_dir()) {
             return Ok((format!("{name}.toml"), text.into()));
         }

@@ -1,6 +1,6 @@
 //! How the product's measures vary, as a section of the page.
 
-use super::{figure, optional, real, table, tr};
+use super::html::{figure, list, optional, real, table, tr};
 use crate::{
     markup::escape,
     number::{three_digits, typeset},
@@ -36,7 +36,7 @@ pub fn section(Production { report, pictures }: &Production) -> String {
         measures(report),
         beside(report),
         sums(report),
-        notes(&report.notes),
+        list(&report.notes),
     )
 }
 
@@ -107,11 +107,6 @@ fn sums(report: &Report) -> String {
     let caption = "Sums that must not close: defects per million with the model's own correlation, and as mean and σ alone \
                    would have it, both gaps moving together as in eq. 9, or independently.";
     table(caption, &head(&columns), &report.sums.iter().map(row).collect::<String>())
-}
-
-fn notes(notes: &[String]) -> String {
-    let items: String = notes.iter().map(|note| format!("<li>{}</li>\n", escape(note))).collect();
-    if items.is_empty() { items } else { format!("<ul class=\"notes\">\n{items}</ul>\n") }
 }
 
 /// A measure with its unit.

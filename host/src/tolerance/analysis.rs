@@ -13,6 +13,7 @@ use super::{
     normal::tail,
     rss::{RootSumSquare, root_sum_square},
     study::{Settings, Study, StudyError, Tally},
+    tensor::{self, Exact},
     worst_case::{WorstCase, middle, reach, worst_case},
 };
 
@@ -33,6 +34,8 @@ pub struct Theory {
     pub moments: Vec<Moments>,
     /// What every contributor does to every measure, a row a measure.
     pub sensitivities: Vec<Vec<Sensitivity>>,
+    /// Moments by quadrature of the measures that are not linear, where their variables are few.
+    pub exact: Vec<Option<Exact>>,
     /// Sobol' indices of the measures that are not linear; none with correlated contributors.
     pub indices: Vec<Option<Indices>>,
     /// P(below the lower limit), P(above the upper limit) of every measure.
@@ -126,6 +129,7 @@ pub fn theory(model: &Model, seed: u64) -> Result<Theory, StudyError> {
     } else {
         vec![None; model.measures.len()]
     };
+    let exact = if curved { tensor::of_measures(model) } else { vec![None; model.measures.len()] };
     let mut number = TAILS;
     let mut rare = |failure: Failure| {
         number += 1;
@@ -146,6 +150,7 @@ pub fn theory(model: &Model, seed: u64) -> Result<Theory, StudyError> {
         worst_cases: worst_case(model, &around_middle),
         sums_of_squares: root_sum_square(model, &around_middle, &around_mean, &deviations),
         sensitivities: around_middle.slopes.iter().map(|slopes| sensitivities(model, slopes)).collect(),
+        exact: exact.into_iter().zip(&moments).map(|(e, m)| e.filter(|_| m.curved > LINEAR)).collect(),
         indices: all_indices.into_iter().zip(&moments).map(|(i, m)| i.filter(|_| m.curved > LINEAR)).collect(),
         moments,
         tails,

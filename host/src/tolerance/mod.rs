@@ -34,6 +34,7 @@ pub mod sampler;
 pub mod sobol;
 pub mod study;
 pub mod tally;
+pub mod tensor;
 #[cfg(test)]
 mod tests;
 pub mod worst_case;

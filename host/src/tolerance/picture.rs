@@ -86,11 +86,12 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
         series.push(line("", Look::Guide, vec![(limit, 0.0), (limit, 1.05 * top)]));
     }
     let unit = if measure.unit.is_empty() { String::new() } else { format!(" ({})", measure.unit) };
+    let limits = if measure.limits == [None; 2] { "" } else { "; grey: limits" };
     let ppk = measure.ppk.map(|ppk| format!(", Ppk {}", fixed(ppk, 3))).unwrap_or_default();
     line_chart(&Chart {
         title: report.title.clone(),
         subtitle: format!(
-            "{}: mean {}, σ {}{ppk}; {} units; grey: limits",
+            "{}: mean {}, σ {}{ppk}; {} units{limits}",
             measure.name,
             typeset(&fixed(measure.mean, 4)),
             fixed(measure.sd, 4),
@@ -111,17 +112,27 @@ fn contributors_svg(report: &Report) -> String {
     };
     let blocks: Vec<_> = report.measures.iter().map(|m| (m, shown(m))).filter(|(_, s)| !s.is_empty()).collect();
     let height = HEAD + blocks.iter().map(|(_, shares)| ROW * (shares.len() as f64 + 1.5)).sum::<f64>();
-    let mut svg = document(900.0, height, &report.title, "contributors, % of the variance of first order");
+    let names = blocks.iter().flat_map(|(_, shares)| shares).map(|(name, _)| name.as_str());
+    let left = longest(names).max(200.0) + 32.0;
+    // Correlated contributors can have less than nothing, and others then more than all.
+    let percents = || blocks.iter().flat_map(|(_, shares)| shares).map(|(_, percent)| *percent);
+    let (low, high) = (percents().fold(0.0, f64::min), percents().fold(100.0, f64::max));
+    let scale = 520.0 / (high - low);
+    let zero = left - scale * low;
+    let mut svg = document(left + 600.0, height, &report.title, "contributors, % of the variance of first order");
     let mut y = HEAD;
     for (measure, shares) in blocks {
         text(&mut svg, [16.0, y + 14.0], "start", "font-weight=\"bold\"", &measure.name);
         y += ROW;
         for (name, percent) in shares {
-            text(&mut svg, [300.0, y + 14.0], "end", "", &name);
-            let (from, width) = (percent.min(0.0), percent.abs());
+            text(&mut svg, [left - 10.0, y + 14.0], "end", "", &name);
             let colour = if percent < 0.0 { VERMILION } else { BLUE };
-            rectangle(&mut svg, [310.0 + 5.2 * from.max(-8.0), y + 3.0, (5.2 * width).max(0.5), ROW - 6.0], colour);
-            let end = 310.0 + 5.2 * percent.max(0.0) + 6.0;
+            rectangle(
+                &mut svg,
+                [zero + scale * percent.min(0.0), y + 3.0, (scale * percent.abs()).max(0.5), ROW - 6.0],
+                colour,
+            );
+            let end = zero + scale * percent.max(0.0) + 6.0;
             text(&mut svg, [end, y + 14.0], "start", "", &format!("{} %", typeset(&fixed(percent, 1))));
             y += ROW;
         }
@@ -133,22 +144,26 @@ fn contributors_svg(report: &Report) -> String {
 /// The correlation matrix of the measures as coloured cells with numbers.
 fn correlation_svg(report: &Report) -> String {
     const CELL: f64 = 42.0;
-    const NAMES: f64 = 170.0;
-    let count = report.measures.len() as f64;
-    let (width, height) = ((NAMES + CELL * count + 24.0).max(420.0), HEAD + NAMES + CELL * count + 16.0);
+    // Names stand up at 60°: the last one leans out to the right.
+    const LEAN: [f64; 2] = [0.5, 0.866];
+    let names = longest(report.measures.iter().map(|measure| measure.name.as_str()));
+    let (left, top) = (names + 22.0, HEAD + LEAN[1] * names + 16.0);
+    let across = CELL * report.measures.len() as f64;
+    let (width, height) = ((left + across + LEAN[0] * names + 8.0).max(420.0), top + across + 16.0);
     let mut svg = document(width, height, &report.title, "correlation of the measures: blue negative, orange positive");
     for (i, measure) in report.measures.iter().enumerate() {
         let place = (i as f64 + 0.5) * CELL;
-        text(&mut svg, [NAMES - 6.0, HEAD + NAMES + place + 4.0], "end", "", &measure.name);
-        let (x, y) = (NAMES + place + 4.0, HEAD + NAMES - 6.0);
+        text(&mut svg, [left - 6.0, top + place + 4.0], "end", "", &measure.name);
+        let (x, y) = (left + place + 4.0, top - 6.0);
         let turn = format!("transform=\"rotate(-60 {x:.1} {y:.1})\"");
         text(&mut svg, [x, y], "start", &turn, &measure.name);
         for (j, rho) in report.correlation[i].iter().enumerate() {
-            let (x, y) = (NAMES + j as f64 * CELL, HEAD + NAMES + i as f64 * CELL);
+            let (x, y) = (left + j as f64 * CELL, top + i as f64 * CELL);
             let strength = rho.abs().min(1.0);
             let full = if *rho < 0.0 { BLUE } else { VERMILION };
             rectangle(&mut svg, [x, y, CELL - 1.0, CELL - 1.0], full.map(|c| 255.0 + (c - 255.0) * strength));
-            let ink = if strength > 0.6 { "fill=\"#fff\"" } else { "" };
+            // White reads better than black on nothing but the full blue.
+            let ink = if *rho < -0.85 { "fill=\"#fff\"" } else { "" };
             let number = typeset(&fixed(*rho, 2));
             text(&mut svg, [x + CELL / 2.0, y + CELL / 2.0 + 4.0], "middle", ink, &number);
         }
@@ -166,6 +181,11 @@ fn document(width: f64, height: f64, title: &str, subtitle: &str) -> String {
          <text x=\"16\" y=\"26\" font-size=\"18\" font-weight=\"bold\">{title}</text>\n\
          <text x=\"16\" y=\"48\" font-size=\"13\" fill=\"#606060\">{subtitle}</text>\n"
     )
+}
+
+/// About how wide the longest of some words is.
+fn longest<'a>(words: impl Iterator<Item = &'a str>) -> f64 {
+    words.map(|word| 6.8 * word.chars().count() as f64).fold(0.0, f64::max)
 }
 
 fn rectangle(svg: &mut String, [x, y, width, height]: [f64; 4], colour: [f64; 3]) {

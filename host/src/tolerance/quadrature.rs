@@ -242,4 +242,15 @@ mod tests {
         let truncated = of(ZoneRule::Truncated)[0][1];
         assert!(truncated < super::SIGMA_ZONE && truncated > 0.97 * super::SIGMA_ZONE);
     }
+
+    /// Of a `sigma-zone`, 98.956 % lies inside: the integral of its density over the octahedron.
+    #[test]
+    fn share_inside_a_zone() {
+        let variance = 2.0 * super::SIGMA_ZONE * super::SIGMA_ZONE;
+        let exponential = |at: [f64; 3]| libm::exp(-at.iter().map(|x| x * x).sum::<f64>() / variance);
+        let integral: f64 = super::octahedron(exponential).iter().map(|node| node.weight).sum();
+        let inside = integral / libm::pow(std::f64::consts::PI * variance, 1.5);
+        assert!((inside - crate::tolerance::draw::INSIDE).abs() < 1e-8, "{inside}");
+        assert!((inside - 0.989_56).abs() < 5e-6);
+    }
 }

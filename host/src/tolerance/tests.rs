@@ -73,8 +73,23 @@ fn one_way_clutch() {
     for (share, percent) in rss.shares.iter().zip([81.942, 13.013, 5.045]) {
         close(share * 100.0, percent, 5e-4);
     }
+    // cos φ = (a + c)/(e − c), differentiated: by a, c, e times their tolerances.
+    let (a, c, e): (f64, f64, f64) = (27.645, 11.43, 50.8);
+    let cosine = (a + c) / (e - c);
+    let sine = (e - c) * libm::sqrt(1.0 - cosine * cosine);
+    let parts = [0.05 / sine, 0.01 * (1.0 + cosine) / sine, 0.0125 * cosine / sine];
+    let square: f64 = parts.iter().map(|part| part * part).sum();
+    close(rss.middle, libm::acos(cosine), 1e-9);
+    close((high - low).to_radians() / 2.0, parts.iter().sum(), 1e-9);
+    close(rss.tolerance, libm::sqrt(square), 1e-9);
+    for (share, part) in rss.shares.iter().zip(parts) {
+        close(*share, part * part / square, 1e-9);
+    }
     let moments = theory.moments[0];
-    // Second order leaves out what the third has in them.
+    // Second order leaves out what the third has in them; quadrature does not.
+    let exact = theory.exact[0].unwrap();
+    close(degrees(exact.mean), 7.014_956, 5e-7);
+    close(degrees(exact.deviation), 0.219_670, 5e-7);
     close(degrees(moments.mean), 7.014_956, 2e-5);
     close(degrees(moments.deviation), 0.219_670, 4e-4);
     close(moments.skewness, -0.09439, 2e-3);

@@ -3,6 +3,7 @@
 mod experiment;
 mod gaps;
 mod output;
+mod tables;
 
 use std::path::PathBuf;
 

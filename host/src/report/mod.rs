@@ -2,21 +2,21 @@
 //!
 //! The same input gives the same bytes; there is no date on the page.
 
+mod clearances;
+mod html;
 mod production;
 
-use std::fmt::Write;
-
-pub use production::Production;
-use slipfit_core::clearance::GapStatistics;
-
+pub use self::production::Production;
+use self::{
+    clearances::{derived_columns, given},
+    html::{figure, list, marked, optional, plain, real, table, tr, typed},
+};
 use crate::{
-    figure::word,
     markup::escape,
-    number::{fixed, level, typeset},
     outcome::Verdict,
-    scene::{SURFACES, Scene},
+    scene::Scene,
     sweep::{Level, Sweep},
-    table2::{Pair, Pin, Table2, Toes, derived},
+    table2::{Table2, derived},
 };
 
 /// What a report is made of.
@@ -77,7 +77,7 @@ pub fn report(input: &ReportInput) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n\
          <style>\n{}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n\
          <p class=\"lead\">Tolerance levels, drive force and clearances of the mechanism</p>\n{}</main>\n</body>\n</html>\n",
-        include_str!("report.css"),
+        include_str!("page.css"),
         sections.concat(),
     )
 }
@@ -115,11 +115,7 @@ fn verdicts(sweep: &Sweep) -> String {
 }
 
 fn notes(notes: &[String]) -> String {
-    if notes.is_empty() {
-        return String::new();
-    }
-    let items: String = notes.iter().map(|note| format!("<li>{}</li>\n", escape(note))).collect();
-    format!("<h2>Notes</h2>\n<ul class=\"notes\">\n{items}</ul>\n")
+    if notes.is_empty() { String::new() } else { format!("<h2>Notes</h2>\n{}", list(notes)) }
 }
 
 fn figures(figures: &[Figure]) -> String {
@@ -129,10 +125,6 @@ fn figures(figures: &[Figure]) -> String {
     } else {
         format!("<h2>Figures</h2>\n{}", figures.iter().map(figure).collect::<String>())
     }
-}
-
-fn figure(caption: &str, svg: &str) -> String {
-    format!("<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n", escape(caption))
 }
 
 fn levels(sweep: &Sweep) -> String {
@@ -162,65 +154,6 @@ fn levels(sweep: &Sweep) -> String {
     format!("<h2>Levels</h2>\n{}", table(caption, head, &sweep.levels.iter().map(row).collect::<String>()))
 }
 
-fn given(scene: &Scene, computed: bool) -> String {
-    let mut head = "<tr><th scope=\"col\" rowspan=\"2\">pin</th>".to_owned();
-    head.extend(SURFACES.map(|surface| format!("<th scope=\"colgroup\" colspan=\"2\">{surface}</th>")));
-    head.push_str("</tr>\n<tr class=\"sub\">");
-    head.push_str(&"<th scope=\"col\">mean</th><th scope=\"col\">sd</th>".repeat(SURFACES.len()));
-    head.push_str("</tr>\n");
-    let cells = |gap: &Option<GapStatistics<f64>>| [gap.map(|gap| gap.mean), gap.map(|gap| gap.deviation)].map(mm);
-    let rows: String = scene
-        .pins
-        .iter()
-        .map(|pin| tr(&escape(&pin.name), &pin.gaps.iter().flat_map(cells).collect::<Vec<_>>()))
-        .collect();
-    let source =
-        if computed { ": moments of second order of the product's measures, which the dynamics use" } else { "" };
-    let caption = format!("The gaps of every pin over the production (mm){source}.");
-    format!("<h2>Clearances</h2>\n{}", table(&caption, &head, &rows))
-}
-
-fn derived_columns(derived: &Table2) -> String {
-    let n = typed(derived.n);
-    let pair = "<th scope=\"col\">clearance</th><th scope=\"col\">mean</th><th scope=\"col\">n*</th>";
-    let head = format!(
-        "<tr><th scope=\"col\" rowspan=\"2\">pin</th><th scope=\"colgroup\" colspan=\"4\">gap</th>\
-         <th scope=\"colgroup\" colspan=\"3\">across</th><th scope=\"colgroup\" colspan=\"3\">up-down</th></tr>\n\
-         <tr class=\"sub\">{}{pair}{pair}</tr>\n",
-        SURFACES.map(|surface| format!("<th scope=\"col\">{surface}</th>")).concat()
-    );
-    let pair = |pair: Option<Pair>| {
-        let closes_at = optional(pair.and_then(|pair| pair.closes_at), 3);
-        [mm(pair.map(|pair| pair.clearance)), mm(pair.map(|pair| pair.mean)), closes_at]
-    };
-    let row =
-        |pin: &Pin| tr(&escape(&pin.name), &[&pin.gaps.map(mm)[..], &pair(pin.across), &pair(pin.up_down)].concat());
-    let first = derived.tightest().map_or_else(String::new, |tightest| {
-        let (n, pin) = (real(tightest.n, 4), escape(tightest.pin));
-        format!(" The product's is the least, {n}: {pin}, {}.", tightest.direction)
-    });
-    let caption = format!(
-        "At n = {n} (mm): clearance is the sum of a pair's gaps, mean half their difference; n* is the level that closes \
-         the pair.{first}"
-    );
-    let toes = toe_outs(&n, [("across", derived.toes_across), ("up-down", derived.toes_up_down)]);
-    table(&caption, &head, &derived.pins.iter().map(row).collect::<String>()) + &toes
-}
-
-fn toe_outs(n: &str, directions: [(&str, Option<Toes>); 2]) -> String {
-    let head = "<tr><th scope=\"col\" rowspan=\"2\">toe-out</th><th scope=\"colgroup\" colspan=\"3\">right − left</th>\
-        <th scope=\"colgroup\" colspan=\"3\">front − back</th></tr>\n\
-        <tr class=\"sub\"><th scope=\"col\">back</th><th scope=\"col\">front</th><th scope=\"col\">front − back</th>\
-        <th scope=\"col\">left</th><th scope=\"col\">right</th><th scope=\"col\">right − left</th></tr>\n";
-    let row = |(name, toes): (&str, Option<Toes>)| {
-        let Toes { back, front, left, right, front_minus_back, right_minus_left } = toes?;
-        Some(tr(name, &[back, front, front_minus_back, left, right, right_minus_left].map(|toe| mm(Some(toe)))))
-    };
-    let rows: String = directions.into_iter().filter_map(row).collect();
-    let caption = format!("Toe-outs at n = {n} (mm): differences of the means, subtracted before rounding.");
-    if rows.is_empty() { rows } else { table(&caption, head, &rows) }
-}
-
 fn flash(flash: &Flash) -> String {
     format!(
         "<h2>Flash table</h2>\n<dl>\n<dt>Size</dt><dd>{} bytes</dd>\n<dt>Worst interpolation error</dt>\
@@ -229,53 +162,6 @@ fn flash(flash: &Flash) -> String {
         real(flash.worst_force_error * 1e3, 3),
         real(flash.worst_velocity_error * 1e3, 4)
     )
-}
-
-/// A table with a caption; `head` and `body` are rows.
-fn table(caption: &str, head: &str, body: &str) -> String {
-    format!(
-        "<div class=\"scroll\"><table>\n<caption>{caption}</caption>\n<thead>\n{head}</thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
-    )
-}
-
-/// A row with `name` as its heading, or with its first cell if there is no name.
-fn tr(name: &str, cells: &[String]) -> String {
-    let (name, cells) = match cells {
-        [first, rest @ ..] if name.is_empty() => (first.as_str(), rest),
-        _ => (name, cells),
-    };
-    let mut row = format!("<tr><th scope=\"row\">{name}</th>");
-    for cell in cells {
-        let _ = write!(row, "<td>{cell}</td>");
-    }
-    row + "</tr>\n"
-}
-
-fn marked(verdict: Verdict) -> String {
-    let word = word(verdict);
-    format!("<span class=\"{word}\">{word}</span>")
-}
-
-fn typed(n: f64) -> String {
-    typeset(&level(n))
-}
-
-fn real(value: f64, decimals: usize) -> String {
-    typeset(&fixed(value, decimals))
-}
-
-fn optional(value: Option<f64>, decimals: usize) -> String {
-    value.map_or_else(|| "–".to_owned(), |value| real(value, decimals))
-}
-
-fn mm(length: Option<f64>) -> String {
-    optional(length.map(|length| length * 1e3), 4)
-}
-
-/// Without trailing zeros.
-fn plain(value: f64) -> String {
-    let digits = fixed(value, 3);
-    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 #[cfg(test)]

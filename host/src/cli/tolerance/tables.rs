@@ -1,0 +1,120 @@
+//! An analysis as text.
+
+use std::fmt::Write;
+
+use crate::{
+    cli::text_table,
+    number::{fixed, or_dash, three_digits},
+    tolerance::{
+        estimate::Estimate,
+        report::{MeasureReport, Report, SumReport},
+    },
+};
+
+/// All that a person is shown of `report`.
+pub(super) fn tables(report: &Report) -> String {
+    let replicates =
+        if report.replicates > 1 { format!(" in {} replicates", report.replicates) } else { String::new() };
+    let mut text = format!("{}\n{} units{replicates}, seed {}\n\n", report.title, report.samples, report.seed);
+    for table in [drawn(report), by_formula(report), contributors(report), sums(report)] {
+        if !table.is_empty() {
+            let _ = writeln!(text, "{table}");
+        }
+    }
+    if let Some(good) = report.yield_of_all {
+        let [low, high] = good.interval.map(|end| or_dash(end.map(|end| end * 100.0), |x| fixed(x, 4)));
+        let _ = writeln!(text, "yield {} % ({low} … {high})", fixed(good.value * 100.0, 4));
+    }
+    for note in &report.notes {
+        let _ = writeln!(text, "note: {note}");
+    }
+    text
+}
+
+fn real(x: f64) -> String {
+    fixed(x, 4)
+}
+
+/// What the units say.
+fn drawn(report: &Report) -> String {
+    let row = |m: &MeasureReport| {
+        let unit = if m.unit.is_empty() { String::new() } else { format!(", {}", m.unit) };
+        let mut row = vec![format!("{}{unit}", m.name)];
+        row.extend([m.mean, m.sd].map(real));
+        row.extend([m.skew, m.kurtosis].map(|x| fixed(x, 3)));
+        row.extend([m.min, m.q00135, m.median, m.q99865, m.max].map(real));
+        row.extend([m.pp, m.ppk].map(|x| or_dash(x, |x| fixed(x, 3))));
+        row.extend(m.dpm.map(|side| or_dash(side.map(|side| side.dpm), three_digits)));
+        row
+    };
+    let heading = [
+        "measure",
+        "mean",
+        "σ",
+        "skew",
+        "kurt",
+        "min",
+        "0.135 %",
+        "50 %",
+        "99.865 %",
+        "max",
+        "Pp",
+        "Ppk",
+        "ppm below",
+        "ppm above",
+    ];
+    text_table(&heading, &report.measures.iter().map(row).collect::<Vec<_>>())
+}
+
+/// How good that is, and what needs no units.
+fn by_formula(report: &Report) -> String {
+    let by_quadrature = report.measures.iter().any(|m| m.quadrature.is_some());
+    let plus_minus = |estimate: &Estimate| or_dash(estimate.error, |error| format!("±{}", three_digits(error)));
+    let row = |m: &MeasureReport| {
+        let [low, high] = m.worst_case.map(real);
+        let mut row = vec![m.name.clone(), plus_minus(&m.estimates.mean), plus_minus(&m.estimates.sd)];
+        row.extend([format!("{low} … {high}"), format!("{} ± {}", real(m.rss.middle), real(m.rss.tolerance))]);
+        row.extend([m.rss.sd, m.second_order.mean, m.second_order.sd].map(real));
+        if by_quadrature {
+            row.extend([m.quadrature.map(|q| q.mean), m.quadrature.map(|q| q.sd)].map(|x| or_dash(x, real)));
+        }
+        row
+    };
+    let mut heading =
+        vec!["measure", "error of mean", "of σ", "worst case", "RSS", "σ linear", "mean 2nd order", "σ 2nd order"];
+    if by_quadrature {
+        heading.extend(["mean exact", "σ exact"]);
+    }
+    text_table(&heading, &report.measures.iter().map(row).collect::<Vec<_>>())
+}
+
+fn contributors(report: &Report) -> String {
+    let mut text = "Contributors, % of variance\n".to_owned();
+    for m in &report.measures {
+        let most = m.contributors.iter().filter(|share| share.percent.abs() >= 1.0).take(6);
+        let most: Vec<String> = most.map(|share| format!("{} {}", share.name, fixed(share.percent, 1))).collect();
+        let _ = writeln!(text, "  {}: {}", m.name, most.join(", "));
+    }
+    text
+}
+
+fn sums(report: &Report) -> String {
+    if report.sums.is_empty() {
+        return String::new();
+    }
+    let row = |s: &SumReport| {
+        vec![
+            s.name.clone(),
+            real(s.mean),
+            real(s.sd),
+            or_dash(s.correlation, |rho| fixed(rho, 3)),
+            three_digits(s.model.dpm),
+            or_dash(s.model.error, |error| format!("±{}", three_digits(error))),
+            three_digits(s.eq9_ppm),
+            three_digits(s.independent_ppm),
+        ]
+    };
+    let heading = ["sum < 0", "mean", "σ", "ρ", "ppm", "error", "eq. 9 (ρ = 1)", "ρ = 0"];
+    text_table(&heading, &report.sums.iter().map(row).collect::<Vec<_>>())
+        + "ppm: with the model's own correlation; eq. 9 and ρ = 0: read from means and σ alone\n"
+}

@@ -1,0 +1,73 @@
+//! The measures of a report as CSV.
+
+use super::Report;
+use crate::number::ten_digits;
+
+/// Measures, one line each, as CSV.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn measures_csv(report: &Report) -> anyhow::Result<Vec<u8>> {
+    let mut writer = ::csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "measure",
+        "unit",
+        "mean",
+        "mean_error",
+        "sd",
+        "sd_error",
+        "skew",
+        "kurtosis",
+        "min",
+        "q00135",
+        "median",
+        "q99865",
+        "max",
+        "lower",
+        "upper",
+        "pp",
+        "ppk",
+        "dpm_below",
+        "dpm_above",
+        "yield",
+        "worst_low",
+        "worst_high",
+        "rss_middle",
+        "rss_tolerance",
+        "second_order_mean",
+        "second_order_sd",
+    ])?;
+    let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
+    for m in &report.measures {
+        let [below, above] = m.dpm.map(|side| side.map(|side| side.dpm));
+        let numbers = [
+            Some(m.mean),
+            m.estimates.mean.error,
+            Some(m.sd),
+            m.estimates.sd.error,
+            Some(m.skew),
+            Some(m.kurtosis),
+            Some(m.min),
+            Some(m.q00135),
+            Some(m.median),
+            Some(m.q99865),
+            Some(m.max),
+            m.limits[0],
+            m.limits[1],
+            m.pp,
+            m.ppk,
+            below,
+            above,
+            m.good,
+            Some(m.worst_case[0]),
+            Some(m.worst_case[1]),
+            Some(m.rss.middle),
+            Some(m.rss.tolerance),
+            Some(m.second_order.mean),
+            Some(m.second_order.sd),
+        ];
+        let record = [m.name.clone(), m.unit.into()].into_iter().chain(numbers.map(optional));
+        writer.write_record(record)?;
+    }
+    Ok(writer.into_inner()?)
+}

@@ -1,0 +1,161 @@
+//! A report from an analysis.
+
+use super::{Defects, Estimates, MeasureReport, Quadrature, Report, Rss, SecondOrder, Share, SumReport};
+use crate::tolerance::{
+    analysis::{Analysis, better},
+    estimate::Estimate,
+    importance::Tail,
+    model::{Contributor, Model, Quantity, Sum},
+    sampler::Method,
+};
+
+fn defects(counted: &Estimate, tail: Option<&Tail>) -> Defects {
+    let (probability, error, source) = better(counted, tail);
+    Defects {
+        dpm: probability * 1e6,
+        error: error.map(|error| error * 1e6),
+        source,
+        reliability: tail.map(|tail| tail.reliability),
+        evaluations: tail.map(|tail| tail.evaluations),
+    }
+}
+
+/// The report of an `analysis` of `model`.
+pub fn report(title: &str, model: &Model, analysis: &Analysis) -> Report {
+    let Analysis { settings, theory, joint } = analysis;
+    let sum = |(i, sum): (usize, &Sum)| {
+        let quantity = sum.measures.first().map_or(Quantity::Ratio, |measure| model.measures[*measure].quantity);
+        let closing = &theory.closings[i];
+        let pair: Option<[usize; 2]> = sum.measures.clone().try_into().ok();
+        SumReport {
+            name: sum.name.clone(),
+            unit: quantity.unit(),
+            mean: closing.mean * quantity.factor(),
+            sd: closing.deviation * quantity.factor(),
+            correlation: pair.map(|[one, other]| joint.correlation[one][other]),
+            model: defects(&joint.closed[i], closing.tail.as_ref()),
+            counted: joint.closed[i].scaled(1e6),
+            normal_ppm: closing.normal * 1e6,
+            eq9_ppm: closing.together * 1e6,
+            independent_ppm: closing.independent * 1e6,
+        }
+    };
+    Report {
+        title: title.into(),
+        method: settings.method,
+        samples: settings.samples,
+        replicates: settings.replicates,
+        seed: settings.seed,
+        yield_of_all: joint.good,
+        measures: (0..model.measures.len()).map(|i| measure(model, analysis, i)).collect(),
+        correlation: joint.correlation.clone(),
+        sums: model.sums.iter().enumerate().map(sum).collect(),
+        notes: notes(model, analysis),
+    }
+}
+
+fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
+    let (measure, theory, found) = (&model.measures[i], &analysis.theory, &analysis.joint.measures[i]);
+    let factor = measure.quantity.factor();
+    let scaled = |value: f64| value * factor;
+    let (rss, moments, tails) = (&theory.sums_of_squares[i], theory.moments[i], &theory.tails[i]);
+    let contributor = |(k, contributor): (usize, &Contributor)| {
+        let sensitivity = theory.sensitivities[i][k];
+        let indices = theory.indices[i].as_ref();
+        Share {
+            name: contributor.name.clone(),
+            percent: rss.shares[k] * 100.0,
+            // Per mm or radian: a length over a length has no factor.
+            slope: sensitivity
+                .slope
+                .map(|slope| if measure.quantity == Quantity::Length { slope } else { slope * factor * 1e-3 }),
+            reach: scaled(sensitivity.reach),
+            sobol_first: indices.map(|indices| indices.first[k]),
+            sobol_total: indices.map(|indices| indices.total[k]),
+        }
+    };
+    let mut contributors: Vec<Share> = model.contributors.iter().enumerate().map(contributor).collect();
+    contributors.sort_by(|one, other| other.percent.total_cmp(&one.percent));
+    let [q00135, median, q99865] = found.points.map(|point| point.scaled(factor));
+    let per_million = |share: Option<Estimate>| share.map(|share| share.scaled(1e6));
+    let estimates = Estimates {
+        mean: found.mean.scaled(factor),
+        sd: found.deviation.scaled(factor),
+        skew: found.skewness,
+        kurtosis: found.kurtosis,
+        q00135,
+        median,
+        q99865,
+        pp: found.pp,
+        ppk: found.ppk,
+        dpm_below: per_million(found.outside[0]),
+        dpm_above: per_million(found.outside[1]),
+        good: found.good,
+    };
+    MeasureReport {
+        name: measure.name.clone(),
+        unit: measure.quantity.unit(),
+        mean: estimates.mean.value,
+        sd: estimates.sd.value,
+        skew: found.skewness.value,
+        kurtosis: found.kurtosis.value,
+        min: scaled(found.extremes[0]),
+        max: scaled(found.extremes[1]),
+        q00135: q00135.value,
+        median: median.value,
+        q99865: q99865.value,
+        undefined: found.undefined,
+        limits: measure.limits.map(|limit| limit.map(scaled)),
+        pp: found.pp.map(|pp| pp.value),
+        ppk: found.ppk.map(|ppk| ppk.value),
+        dpm: [0, 1].map(|side| found.outside[side].map(|counted| defects(&counted, tails[side].as_ref()))),
+        good: found.good.map(|good| good.value),
+        estimates,
+        worst_case: theory.worst_cases[i].linear.map(scaled),
+        worst_case_vertices: theory.worst_cases[i].vertices.map(|range| range.map(scaled)),
+        rss: Rss { middle: scaled(rss.middle), tolerance: scaled(rss.tolerance), sd: scaled(rss.deviation) },
+        second_order: SecondOrder {
+            mean: scaled(moments.mean),
+            mean_shift: scaled(moments.shift),
+            sd: scaled(moments.deviation),
+            skew: moments.skewness,
+            kurtosis: moments.kurtosis,
+        },
+        quadrature: theory.exact[i].map(|exact| Quadrature {
+            mean: scaled(exact.mean),
+            sd: scaled(exact.deviation),
+            skew: exact.skewness,
+            kurtosis: exact.kurtosis,
+        }),
+        contributors,
+    }
+}
+
+/// Share of the curvature in a variance that the reader is told of.
+const NOTED: f64 = 1e-3;
+
+fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
+    let mut notes = Vec::new();
+    let settings = analysis.settings;
+    if settings.method == Method::ScrambledSobol && !settings.units().is_power_of_two() {
+        notes.push(format!(
+            "{} Sobol' points a replicate are not a power of two: they are less even than they could be",
+            settings.units()
+        ));
+    }
+    if settings.method != Method::PseudoRandom && settings.replicates < 2 {
+        notes.push("one replicate of a design has no standard error: see --replicates".into());
+    }
+    for (measure, moments) in model.measures.iter().zip(&analysis.theory.moments) {
+        if moments.curved >= NOTED {
+            let percent = moments.curved * 100.0;
+            notes.push(format!("{} is not linear: {percent:.2} % of its variance is curvature", measure.name));
+        }
+    }
+    for (measure, found) in model.measures.iter().zip(&analysis.joint.measures) {
+        if found.undefined > 0 {
+            notes.push(format!("{} could not be computed in {} units", measure.name, found.undefined));
+        }
+    }
+    notes
+}

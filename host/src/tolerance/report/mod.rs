@@ -1,0 +1,214 @@
+//! An analysis as people and machines read it: lengths in mm, angles in degrees.
+
+mod csv;
+mod fill;
+
+use serde::Serialize;
+
+pub use self::{csv::measures_csv, fill::report};
+use super::{analysis::Source, estimate::Estimate, model::Quantity, sampler::Method};
+
+/// All of an analysis.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The scene's title.
+    pub title: String,
+    /// How units were drawn.
+    pub method: Method,
+    /// Units in all.
+    pub samples: u64,
+    /// Independent designs they were split into.
+    pub replicates: u64,
+    /// Seed of the production.
+    pub seed: u64,
+    /// Share of units with all measures within their limits, if any has limits.
+    pub yield_of_all: Option<Estimate>,
+    /// Measures in the model's order.
+    pub measures: Vec<MeasureReport>,
+    /// Correlation matrix of the measures, row by row.
+    pub correlation: Vec<Vec<f64>>,
+    /// Sums that must stay positive.
+    pub sums: Vec<SumReport>,
+    /// What a reader has to know.
+    pub notes: Vec<String>,
+}
+
+/// One measure.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeasureReport {
+    /// Name.
+    pub name: String,
+    /// mm, ° or empty.
+    pub unit: &'static str,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub sd: f64,
+    /// Skewness.
+    pub skew: f64,
+    /// Kurtosis; 3 for a normal.
+    pub kurtosis: f64,
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+    /// The 0.135 % point.
+    pub q00135: f64,
+    /// The median.
+    pub median: f64,
+    /// The 99.865 % point.
+    pub q99865: f64,
+    /// Units in which it could not be computed.
+    pub undefined: u64,
+    /// Specification limits.
+    pub limits: [Option<f64>; 2],
+    /// Width between both limits over 6σ.
+    pub pp: Option<f64>,
+    /// Nearer limit over 3σ.
+    pub ppk: Option<f64>,
+    /// Defects per million below and above, the better known of both sources.
+    pub dpm: [Option<Defects>; 2],
+    /// Share within the limits.
+    #[serde(rename = "yield")]
+    pub good: Option<f64>,
+    /// The same numbers with standard errors and 95 % intervals.
+    pub estimates: Estimates,
+    /// Worst case by slopes.
+    pub worst_case: [f64; 2],
+    /// Worst case over all combinations of limits, where these are few.
+    pub worst_case_vertices: Option<[f64; 2]>,
+    /// Root sum of squares: value at the middle of the limits, half the tolerance, standard deviation of first order.
+    pub rss: Rss,
+    /// Moments of second order.
+    pub second_order: SecondOrder,
+    /// Moments by quadrature, where the measure is not linear and its variables are few: as good as exact.
+    pub quadrature: Option<Quadrature>,
+    /// By contributor, largest share first.
+    pub contributors: Vec<Share>,
+}
+
+/// Numbers with their errors.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs, reason = "named as in the measure")]
+pub struct Estimates {
+    pub mean: Estimate,
+    pub sd: Estimate,
+    pub skew: Estimate,
+    pub kurtosis: Estimate,
+    pub q00135: Estimate,
+    pub median: Estimate,
+    pub q99865: Estimate,
+    pub pp: Option<Estimate>,
+    pub ppk: Option<Estimate>,
+    pub dpm_below: Option<Estimate>,
+    pub dpm_above: Option<Estimate>,
+    #[serde(rename = "yield")]
+    pub good: Option<Estimate>,
+}
+
+/// Defects per million on one side.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Defects {
+    /// Defects per million.
+    pub dpm: f64,
+    /// Standard error.
+    pub error: Option<f64>,
+    /// Where the number comes from.
+    pub source: Source,
+    /// Reliability index: distance of the most probable defect in standard deviations.
+    pub reliability: Option<f64>,
+    /// Evaluations that importance sampling took.
+    pub evaluations: Option<u64>,
+}
+
+/// Root sum of squares.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[allow(missing_docs, reason = "see the report")]
+pub struct Rss {
+    pub middle: f64,
+    pub tolerance: f64,
+    pub sd: f64,
+}
+
+/// Moments of second order.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[allow(missing_docs, reason = "named as in the measure")]
+pub struct SecondOrder {
+    pub mean: f64,
+    pub mean_shift: f64,
+    pub sd: f64,
+    pub skew: f64,
+    pub kurtosis: f64,
+}
+
+/// Moments by quadrature.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[allow(missing_docs, reason = "named as in the measure")]
+pub struct Quadrature {
+    pub mean: f64,
+    pub sd: f64,
+    pub skew: f64,
+    pub kurtosis: f64,
+}
+
+/// What a contributor has in a measure.
+#[derive(Clone, Debug, Serialize)]
+pub struct Share {
+    /// Name.
+    pub name: String,
+    /// Share in the variance of first order, in %.
+    pub percent: f64,
+    /// ∂measure/∂tolerance: per mm (or radian) that a scalar moves.
+    pub slope: Option<f64>,
+    /// How far the whole tolerance moves the measure to either side.
+    pub reach: f64,
+    /// Sobol' index of first order, where the measure is not linear.
+    pub sobol_first: Option<f64>,
+    /// Total Sobol' index, where the measure is not linear.
+    pub sobol_total: Option<f64>,
+}
+
+/// One sum that must stay positive.
+#[derive(Clone, Debug, Serialize)]
+pub struct SumReport {
+    /// Name.
+    pub name: String,
+    /// mm, ° or empty.
+    pub unit: &'static str,
+    /// Mean of second order.
+    pub mean: f64,
+    /// Standard deviation with the model's own correlation.
+    pub sd: f64,
+    /// Correlation of its measures in the sample, if there are two.
+    pub correlation: Option<f64>,
+    /// P(sum < 0) with the model's own correlation, ppm, the better known of both sources.
+    pub model: Defects,
+    /// Counted alone, ppm.
+    pub counted: Estimate,
+    /// ppm if the sum were normal, with the model's own correlation.
+    pub normal_ppm: f64,
+    /// ppm as eq. 9 reads it: normal, both measures moving together, ρ = +1.
+    pub eq9_ppm: f64,
+    /// ppm if normal and independent.
+    pub independent_ppm: f64,
+}
+
+impl Quantity {
+    /// What an SI value is multiplied by for a report.
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Length => 1e3,
+            Self::Angle => 180.0 / std::f64::consts::PI,
+            Self::Ratio => 1.0,
+        }
+    }
+
+    /// The unit of a report.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Length => "mm",
+            Self::Angle => "°",
+            Self::Ratio => "",
+        }
+    }
+}
