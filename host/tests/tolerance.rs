@@ -88,7 +88,7 @@ const SPOILT: &[Spoilt] = &[
     spoilt(
         "lid-on-pins",
         ["[\"lid.hole 2\", \"box.pin 2\"]", "[\"lid.bottom\", \"box.bottom\"]"],
-        "[\"lid.bottom\", \"box.bottom\"]",
+        "\"lid.bottom\", \"box.bottom\"]",
         "over-constrained",
     ),
     spoilt("lid-on-pins", [", [\"lid.hole 2\", \"box.pin 2\"]", ""], "\"lid\"\ncontacts", "1 of 6 freedoms are left"),
@@ -109,8 +109,13 @@ const SPOILT: &[Spoilt] = &[
     spoilt("three-part-stack", ["value = 19.5", "value = 4000.1"], "4000.1", "for 4000.1 mm"),
     spoilt("three-part-stack", ["value = 19.5", "value = 0.4"], "0.4", "for 0.4 mm"),
     spoilt("three-part-stack", ["channel - 'block A' -", "channel - - ) -"], ") -", "found `)`"),
-    spoilt("three-part-stack", ["channel - 'block A'", "channel / ('block A' - 40 mm)"], "/ (", "divides by zero"),
-    spoilt("three-part-stack", ["upper = 1 ", "upper = -1 "], "-1 ", "not above the lower limit"),
+    spoilt("three-part-stack", ["channel - 'block A' -", "channel / ('block A' - 40 mm) *"], "/ (", "divides by zero"),
+    spoilt(
+        "three-part-stack",
+        ["upper = 1 ", "upper = -1 "],
+        "-1                     # and",
+        "not above the lower limit",
+    ),
     spoilt("worn-tool", ["coefficient = 0.8", "coefficient = 1.0"], "1.0", "not positive definite"),
     spoilt(
         "lid-on-pins",
@@ -146,7 +151,7 @@ fn options_that_do_not_fit_are_refused() {
         (&["--shard", "1/4"], "--out"),
         (&["--resume"], "--out"),
         (&["--samples", "1"], "1"),
-        (&["--samples", "100", "--replicates", "7"], "7"),
+        (&["--samples", "9223372036854775808", "--replicates", "2"], "in 2 replicates are too many"),
         (&["--replicates", "2000"], "--replicates is 2000"),
         (&["--method", "dice"], "dice"),
         (&["--method", "factorial", "--csv", "m.csv"], "--csv"),
