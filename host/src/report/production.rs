@@ -41,27 +41,19 @@ pub fn section(Production { report, pictures }: &Production) -> String {
 }
 
 fn measures(report: &Report) -> String {
-    let columns = [
-        "measure",
-        "mean",
-        "σ",
-        "skew",
-        "kurtosis",
-        "0.135 %",
-        "50 %",
-        "99.865 %",
-        "Pp",
-        "Ppk",
-        "ppm below",
-        "ppm above",
-    ];
+    let mut columns = vec!["measure", "mean", "σ", "skew", "kurtosis", "0.135 %", "50 %", "99.865 %"];
+    if report.limited() {
+        columns.extend(["Pp", "Ppk", "ppm below", "ppm above"]);
+    }
     let row = |m: &MeasureReport| {
         let mut cells = vec![named(m)];
         cells.extend([m.mean, m.sd].map(|x| real(x, 4)));
         cells.extend([m.skew, m.kurtosis].map(|x| real(x, 3)));
         cells.extend([m.q00135, m.median, m.q99865].map(|x| real(x, 4)));
-        cells.extend([m.pp, m.ppk].map(|x| optional(x, 3)));
-        cells.extend(m.dpm.map(|side| side.map_or_else(|| "–".to_owned(), |side| ppm(side.dpm))));
+        if report.limited() {
+            cells.extend([m.pp, m.ppk].map(|x| optional(x, 3)));
+            cells.extend(m.dpm.map(|side| side.map_or_else(|| "–".to_owned(), |side| ppm(side.dpm))));
+        }
         tr("", &cells)
     };
     let caption =
@@ -70,16 +62,21 @@ fn measures(report: &Report) -> String {
 }
 
 fn beside(report: &Report) -> String {
-    let columns =
-        ["measure", "worst case, from", "to", "RSS, middle", "±", "mean, 2nd order", "σ, 2nd order", "most from", "%"];
+    let columns = ["measure", "worst case", "RSS", "mean, 2nd order", "σ, 2nd order", "most comes from"];
     let row = |m: &MeasureReport| {
-        let (low, high) = (m.worst_case[0], m.worst_case[1]);
-        let numbers = [low, high, m.rss.middle, m.rss.tolerance, m.second_order.mean, m.second_order.sd];
+        let [low, high] = m.worst_case.map(|x| real(x, 4));
+        let [middle, tolerance, mean, deviation] =
+            [m.rss.middle, m.rss.tolerance, m.second_order.mean, m.second_order.sd].map(|x| real(x, 4));
         let most = m.contributors.first();
-        let mut cells = vec![named(m)];
-        cells.extend(numbers.map(|x| real(x, 4)));
-        cells.push(most.map_or_else(|| "–".to_owned(), |most| escape(&most.name)));
-        cells.push(optional(most.map(|most| most.percent), 1));
+        let most = most.map(|most| format!("{}, {} %", escape(&most.name), real(most.percent, 1)));
+        let cells = [
+            named(m),
+            format!("{low} … {high}"),
+            format!("{middle} ± {tolerance}"),
+            mean,
+            deviation,
+            most.unwrap_or_else(|| "–".to_owned()),
+        ];
         tr("", &cells)
     };
     let caption = "Without random numbers: worst case, root sum of squares, moments of second order, and the contributor \

@@ -73,8 +73,11 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
         outline.push((right, 0.0));
     }
     let top = outline.iter().map(|(_, density)| *density).fold(0.0, f64::max);
-    let normal = (-160..=160).map(|k| {
-        let z = f64::from(k) / 40.0;
+    // As far as the limits, so that these stand within the picture.
+    let ends = measure.limits.into_iter().flatten().map(|limit| (limit - measure.mean) / measure.sd);
+    let [low, high] = ends.fold([-4.0, 4.0], |[low, high]: [f64; 2], z| [low.min(z - 0.25), high.max(z + 0.25)]);
+    let normal = (0..=320).map(|k| {
+        let z = low + (high - low) * f64::from(k) / 320.0;
         (measure.mean + z * measure.sd, super::normal::density(z) / measure.sd)
     });
     let line = |label: &str, look, points| Series { label: label.into(), look, points };

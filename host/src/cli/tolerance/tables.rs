@@ -43,26 +43,16 @@ fn drawn(report: &Report) -> String {
         row.extend([m.mean, m.sd].map(real));
         row.extend([m.skew, m.kurtosis].map(|x| fixed(x, 3)));
         row.extend([m.min, m.q00135, m.median, m.q99865, m.max].map(real));
-        row.extend([m.pp, m.ppk].map(|x| or_dash(x, |x| fixed(x, 3))));
-        row.extend(m.dpm.map(|side| or_dash(side.map(|side| side.dpm), three_digits)));
+        if report.limited() {
+            row.extend([m.pp, m.ppk].map(|x| or_dash(x, |x| fixed(x, 3))));
+            row.extend(m.dpm.map(|side| or_dash(side.map(|side| side.dpm), three_digits)));
+        }
         row
     };
-    let heading = [
-        "measure",
-        "mean",
-        "σ",
-        "skew",
-        "kurt",
-        "min",
-        "0.135 %",
-        "50 %",
-        "99.865 %",
-        "max",
-        "Pp",
-        "Ppk",
-        "ppm below",
-        "ppm above",
-    ];
+    let mut heading = vec!["measure", "mean", "σ", "skew", "kurt", "min", "0.135 %", "50 %", "99.865 %", "max"];
+    if report.limited() {
+        heading.extend(["Pp", "Ppk", "ppm below", "ppm above"]);
+    }
     text_table(&heading, &report.measures.iter().map(row).collect::<Vec<_>>())
 }
 

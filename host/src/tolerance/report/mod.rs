@@ -33,6 +33,13 @@ pub struct Report {
     pub notes: Vec<String>,
 }
 
+impl Report {
+    /// Whether any measure has limits.
+    pub fn limited(&self) -> bool {
+        self.measures.iter().any(|measure| measure.limits != [None; 2])
+    }
+}
+
 /// One measure.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeasureReport {
