@@ -224,6 +224,7 @@ fn scrambled_sobol_points_find_deviations_better() {
     for (coefficients, least) in [(vec![1.0; 47], 5.0), (falling, 20.0)] {
         let random = deviation_error(&coefficients, Method::PseudoRandom);
         let sobol = deviation_error(&coefficients, Method::ScrambledSobol);
+        println!("error of σ: pseudo-random {random:.2e}, scrambled Sobol' {sobol:.2e}, {:.1} times", random / sobol);
         assert!(random / sobol >= least, "{random} / {sobol} = {}", random / sobol);
     }
 }
