@@ -62,25 +62,15 @@ fn measures(report: &Report) -> String {
 }
 
 fn beside(report: &Report) -> String {
-    let columns = ["measure", "worst case", "RSS", "mean, 2nd order", "σ, 2nd order", "most comes from"];
+    let columns = ["measure", "worst case", "RSS", "mean, 2nd order", "σ, 2nd order"];
     let row = |m: &MeasureReport| {
         let [low, high] = m.worst_case.map(|x| real(x, 4));
         let [middle, tolerance, mean, deviation] =
             [m.rss.middle, m.rss.tolerance, m.second_order.mean, m.second_order.sd].map(|x| real(x, 4));
-        let most = m.contributors.first();
-        let most = most.map(|most| format!("{}, {} %", escape(&most.name), real(most.percent, 1)));
-        let cells = [
-            named(m),
-            format!("{low} … {high}"),
-            format!("{middle} ± {tolerance}"),
-            mean,
-            deviation,
-            most.unwrap_or_else(|| "–".to_owned()),
-        ];
+        let cells = [named(m), format!("{low} … {high}"), format!("{middle} ± {tolerance}"), mean, deviation];
         tr("", &cells)
     };
-    let caption = "Without random numbers: worst case, root sum of squares, moments of second order, and the contributor \
-                   with the largest share of the variance.";
+    let caption = "Without random numbers: worst case, root sum of squares, moments of second order.";
     table(caption, &head(&columns), &report.measures.iter().map(row).collect::<String>())
 }
 
