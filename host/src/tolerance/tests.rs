@@ -205,7 +205,7 @@ fn threads_and_shards_give_the_same_bytes() {
 fn deviation_error(coefficients: &[f64], method: Method) -> f64 {
     let model = normals(coefficients);
     let exact = libm::sqrt(coefficients.iter().map(|c| c * c).sum());
-    let seeds = 24;
+    let seeds = 200;
     let square = |seed| {
         let settings = Settings { method, samples: 4096, replicates: 1, seed };
         let study = Study::new(&model, settings).unwrap();
