@@ -107,7 +107,7 @@ fn on_target(table: Option<&Path>) -> String {
     printed(cargo(FOLDER).args(["run", "--release", "-p", "slipfit-firmware", "--target", TARGET, "--"]).args(table))
 }
 
-/// The table that `slipfit run` makes of the paper's slide, over n from −3 to 5.
+/// The table that `slipfit run cd-rom-slide` makes: the paper's slide, over n from −3 to 5.
 fn table() -> Vec<u8> {
     let scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).expect("the shipped scene");
     let (table, _) = force_table::make(&scene, ScalarKind::F64, || ()).expect("its table");

@@ -230,6 +230,16 @@ fn scrambled_sobol_points_find_deviations_better() {
 }
 
 #[test]
+fn replicates_that_count_nothing_still_have_an_interval() {
+    let settings = Settings { method: Method::ScrambledSobol, samples: 8 * 1024, replicates: 8, seed: 1 };
+    let good = analyse(&clutch(), settings, |_| ()).unwrap().joint.good.unwrap();
+    assert_eq!(good.value, 1.0);
+    // 12 ppm are outside; 8192 good units show no more than that it is less than 450 (Clopper and Pearson).
+    close(good.interval[0].unwrap(), 1.0 - 450e-6, 1e-6);
+    assert_eq!(good.interval[1], Some(1.0));
+}
+
+#[test]
 fn impossible_studies_are_refused() {
     let model = chain();
     let refused = |settings| Study::new(&model, settings).err();

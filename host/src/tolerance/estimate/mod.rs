@@ -183,14 +183,18 @@ impl Errors<'_> {
             let (hits, units) = hits(plain);
             hits as f64 / units as f64
         };
-        let found = self.estimate(share(all), &share, &|value| {
+        let independent = |value| {
             let (hits, units) = hits(all);
             Estimate {
                 value,
                 error: Some(libm::sqrt(value * (1.0 - value) / units as f64)),
                 interval: interval::proportion(hits, units).map(Some),
             }
-        });
+        };
+        let found = self.estimate(share(all), &share, &independent);
+        // Replicates that all count the same, such as nothing, have no spread to learn from. A design's counts spread less
+        // than those of independent units, so that these are on the safe side.
+        let found = if found.error == Some(0.0) { independent(found.value) } else { found };
         Estimate { interval: found.interval.map(|end| end.map(|end| end.clamp(0.0, 1.0))), ..found }
     }
 }
