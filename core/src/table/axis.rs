@@ -44,7 +44,8 @@ pub struct Axis {
 pub(super) struct Place {
     pub(super) cell: usize,
     pub(super) fraction: f32,
-    pub(super) clamped: bool,
+    /// Bits in which the coordinate differs from the nearest one inside: 0 if it lies inside.
+    pub(super) outside: u32,
 }
 
 impl Axis {
@@ -108,7 +109,7 @@ impl Axis {
         let steps = (inside - self.first) * self.per_step;
         let whole = steps as u32 as usize;
         let cell = if whole < self.last_cell { whole } else { self.last_cell };
-        Place { cell, fraction: steps - cell as u32 as f32, clamped: inside != x }
+        Place { cell, fraction: steps - cell as u32 as f32, outside: inside.to_bits() ^ x.to_bits() }
     }
 }
 
@@ -135,14 +136,14 @@ mod tests {
             (f32::NAN, 0, 0.0, true),
         ] {
             let place = axis.locate(x);
-            assert_eq!((place.cell, place.fraction, place.clamped), (cell, fraction, clamped), "{x}");
+            assert_eq!((place.cell, place.fraction, place.outside != 0), (cell, fraction, clamped), "{x}");
         }
     }
 
     #[test]
     fn every_node_is_inside() {
         let axis = Axis::new(AxisKind::Time, 0.05, 0.1, 1000).unwrap();
-        assert!((0..1000).all(|i| !axis.locate(axis.node(i)).clamped));
+        assert!((0..1000).all(|i| axis.locate(axis.node(i)).outside == 0));
         assert_eq!(axis.node(999), axis.last());
     }
 

@@ -3,20 +3,20 @@
 //! [`Table::open`] checks a table once, completely; what it returns cannot fail any more. Nothing is copied: values are
 //! decoded from the flash at each [`Table::lookup`], byte by byte, so that the region needs no alignment.
 //!
-//! # Layout, version 1
-//! Little-endian. Every field lies at a multiple of its own size. Offsets in bytes, here and in [`layout`]:
+//! # Layout, version 2
+//! Little-endian. Every field lies at a multiple of its own size, or of 4. Offsets in bytes, here and in [`layout`]:
 //!
 //! | offset | type | field |
 //! |---|---|---|
 //! | 0 | `[u8; 4]` | magic, "SLFT" |
-//! | 4 | u16 | format version, 1 |
+//! | 4 | u16 | format version, 2 |
 //! | 6 | u8 | number of axes, 2 or 3 |
-//! | 7 | u8 | number of channels, 2 |
+//! | 7 | u8 | how values are stored: 1 f32, 2 i16 |
 //! | 8 | u64 | hash of the scene and its laws |
 //! | 16 | u32 | length in bytes, from the magic to the end of the checksum |
 //! | 20, 36, 52 | axis | three records of 16 bytes; those of absent axes are all zero |
 //! | 68, 80 | channel | two records of 12 bytes: force (N), then velocity (m/s) |
-//! | 92 | data | the force's values, zero to three zero bytes, the velocity's values, zero to three zero bytes |
+//! | 92 | data | a node after the other, the last axis fastest: force and velocity of each |
 //! | length − 4 | u32 | checksum, CRC-32/ISO-HDLC, of all bytes before it |
 //!
 //! | in an axis | type | field |
@@ -29,42 +29,45 @@
 //!
 //! | in a channel | type | field |
 //! |---|---|---|
-//! | 0 | u8 | what it is: 1 force (N), 2 velocity (m/s) |
-//! | 1 | u8 | how values are stored: 1 f32, 2 i16 |
-//! | 2 | `[u8; 2]` | zero |
-//! | 4 | f32 | what a stored value is multiplied with: positive; 1 for f32 |
-//! | 8 | f32 | worst interpolation error (N or m/s), measured when the table was made |
+//! | 0 | f32 | what a stored value is multiplied with: positive; 1 for f32 |
+//! | 4 | f32 | worst interpolation error (N or m/s), measured when the table was made |
+//! | 8 | f32 | root mean square of that error (N or m/s) after the drive has started |
 //!
-//! Values are ordered with the last axis fastest, and each channel starts at a multiple of 4. No value exceeds 10³⁰ in
-//! magnitude. The table may lie in a larger region; what follows it is not looked at.
+//! No value exceeds 10³⁰ in magnitude. The table may lie in a larger region; what follows it is not looked at, but
+//! for the record at the end of a slot, see [`Slots`].
 //!
 //! *Compatibility:* a reader accepts its own version only. Whatever moves a byte or gives it another meaning raises the
 //! version.
 
 mod axis;
-mod channel;
 mod error;
 mod header;
 pub mod layout;
+mod nodes;
+mod patrol;
+mod slots;
 
-use channel::{Channel, Row};
 use layout::{CHANNELS, CHECKSUM_SIZE, HEADER_SIZE};
+use nodes::Nodes;
 
 pub use axis::{Axis, AxisKind};
-pub use channel::{ChannelKind, Encoding};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
+pub use nodes::{ChannelKind, Encoding};
+pub use patrol::Patrol;
+pub use slots::{RECORD_SIZE, Slots, record};
 
 /// A checked table over `N` axes, 2 or 3, in the region it was opened from.
 #[derive(Clone, Copy, Debug)]
 pub struct Table<'a, const N: usize = 2> {
+    /// The table alone, from the magic to the checksum.
+    bytes: &'a [u8],
     scene_hash: u64,
-    length: usize,
     axes: [Axis; N],
-    /// How many values apart two neighbours along each axis are.
+    /// How many nodes apart two neighbours along each axis are.
     strides: [usize; N],
     records: [ChannelRecord; CHANNELS],
-    channels: [Channel<'a>; CHANNELS],
+    nodes: Nodes<'a>,
 }
 
 /// What a table says about one point.
@@ -92,28 +95,17 @@ impl<'a, const N: usize> Table<'a, N> {
         let found = header.axes.len();
         let axes = header.axes.into_array::<N>().map_err(|_| TableError::Axes { found })?;
 
-        let mut values = 1usize;
+        let mut count = 1usize;
         let mut strides = [0; N];
         for (stride, axis) in strides.iter_mut().zip(&axes).rev() {
-            *stride = values;
-            values = values.checked_mul(axis.count()).ok_or(TableError::Header("length"))?;
+            *stride = count;
+            count = count.checked_mul(axis.count()).ok_or(TableError::Header("length"))?;
         }
 
-        let data = region.get(HEADER_SIZE..header.length.saturating_sub(CHECKSUM_SIZE)).ok_or(TableError::Truncated)?;
-        let [force, velocity] = header.channels;
-        let (force, data) = Channel::split(&force, values, data)?;
-        let (velocity, data) = Channel::split(&velocity, values, data)?;
-        if !data.is_empty() {
-            return Err(TableError::Header("length"));
-        }
-        Ok(Self {
-            scene_hash: header.scene_hash,
-            length: header.length,
-            axes,
-            strides,
-            records: header.channels,
-            channels: [force, velocity],
-        })
+        let bytes = region.get(..header.length).ok_or(TableError::Truncated)?;
+        let data = bytes.get(HEADER_SIZE..header.length.saturating_sub(CHECKSUM_SIZE)).ok_or(TableError::Truncated)?;
+        let nodes = Nodes::new(header.encoding, &header.channels, count, data)?;
+        Ok(Self { bytes, scene_hash: header.scene_hash, axes, strides, records: header.channels, nodes })
     }
 
     /// This table, if it was made for the scene and laws that `hash` stands for.
@@ -132,27 +124,15 @@ impl<'a, const N: usize> Table<'a, N> {
     /// axes, the number of nodes and how many steps the end farther from 0 is away from it.
     #[inline]
     pub fn lookup(&self, at: [f32; N]) -> Lookup {
-        let mut rows = [Row { index: 0, weight: 1.0 }; ROWS];
-        let mut weights = [1.0, 0.0];
-        let mut clamped = false;
-        for (i, ((axis, stride), x)) in self.axes.iter().zip(self.strides).zip(at).enumerate() {
+        let (mut first, mut fractions, mut outside) = (0, [0.0; N], 0);
+        for (((axis, stride), x), fraction) in self.axes.iter().zip(self.strides).zip(at).zip(&mut fractions) {
             let place = axis.locate(x);
-            clamped |= place.clamped;
-            weights = [1.0 - place.fraction, place.fraction];
-            // The last axis picks two neighbours in each row; every other one doubles the number of rows.
-            for (k, row) in rows.iter_mut().enumerate() {
-                if i + 1 == N {
-                    row.index += place.cell;
-                } else {
-                    let upper = k >> i & 1;
-                    row.index += (place.cell + upper) * stride;
-                    row.weight *= if upper == 1 { place.fraction } else { 1.0 - place.fraction };
-                }
-            }
+            first += place.cell * stride;
+            *fraction = place.fraction;
+            outside |= place.outside;
         }
-        let rows = rows.get(..rows_of(N)).unwrap_or(&rows);
-        let [force, velocity] = self.channels.map(|channel| channel.sum(rows, weights));
-        Lookup { force, velocity, clamped }
+        let [force, velocity] = self.nodes.within(first, &self.strides, &fractions);
+        Lookup { force, velocity, clamped: outside != 0 }
     }
 
     /// The axes, slowest first.
@@ -172,14 +152,14 @@ impl<'a, const N: usize> Table<'a, N> {
 
     /// Length of the table (bytes); the region may be longer.
     pub fn length(&self) -> usize {
-        self.length
+        self.bytes.len()
     }
-}
 
-/// Rows of a cell of the greatest number of axes.
-const ROWS: usize = rows_of(layout::AXES_MOST);
-
-/// Pairs of neighbours along the last axis, at the corners of a cell over `axes` axes.
-const fn rows_of(axes: usize) -> usize {
-    1 << (axes - 1)
+    /// How values are stored.
+    pub fn encoding(&self) -> Encoding {
+        match self.nodes {
+            Nodes::F32(_) => Encoding::F32,
+            Nodes::I16(..) => Encoding::I16,
+        }
+    }
 }

@@ -90,7 +90,7 @@ impl From<TableError> for Failure {
     fn from(error: TableError) -> Self {
         match error {
             TableError::Simulate(error) => error.into(),
-            TableError::Flash(error) => Self::Input(error.to_string()),
+            TableError::Flash(_) | TableError::MaxError { .. } => Self::Input(error.to_string()),
         }
     }
 }
