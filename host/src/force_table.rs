@@ -80,7 +80,9 @@ pub enum TableError {
     #[error(transparent)]
     Flash(#[from] FlashError),
     /// No table of the scene's levels errs so little.
-    #[error("no table errs by at most {asked} N; the best that fits the TABLE region errs by {best} N in {bytes} bytes")]
+    #[error(
+        "no table errs by at most {asked} N; the best that fits the TABLE region errs by {best} N in {bytes} bytes"
+    )]
     MaxError {
         /// The greatest error asked for (N).
         asked: f64,

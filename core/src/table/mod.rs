@@ -48,18 +48,20 @@ mod patrol;
 mod slots;
 
 use layout::{CHANNELS, CHECKSUM_SIZE, HEADER_SIZE};
-use nodes::Nodes;
 
 pub use axis::{Axis, AxisKind};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
-pub use nodes::{ChannelKind, Encoding};
+pub use nodes::{AnyNodes, ChannelKind, Encoding, F32Nodes, I16Nodes, Nodes};
 pub use patrol::Patrol;
 pub use slots::{RECORD_SIZE, Slots, record};
 
 /// A checked table over `N` axes, 2 or 3, in the region it was opened from.
+///
+/// `V` is how values are stored: either way unless [`Table::f32`] or [`Table::i16`] has made sure, after which a lookup
+/// need not ask and the other way leaves no code.
 #[derive(Clone, Copy, Debug)]
-pub struct Table<'a, const N: usize = 2> {
+pub struct Table<'a, const N: usize = 2, V = AnyNodes<'a>> {
     /// The table alone, from the magic to the checksum.
     bytes: &'a [u8],
     scene_hash: u64,
@@ -67,11 +69,11 @@ pub struct Table<'a, const N: usize = 2> {
     /// How many nodes apart two neighbours along each axis are.
     strides: [usize; N],
     records: [ChannelRecord; CHANNELS],
-    nodes: Nodes<'a>,
+    nodes: V,
 }
 
 /// What a table says about one point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Lookup {
     /// Force (N).
@@ -104,10 +106,41 @@ impl<'a, const N: usize> Table<'a, N> {
 
         let bytes = region.get(..header.length).ok_or(TableError::Truncated)?;
         let data = bytes.get(HEADER_SIZE..header.length.saturating_sub(CHECKSUM_SIZE)).ok_or(TableError::Truncated)?;
-        let nodes = Nodes::new(header.encoding, &header.channels, count, data)?;
+        let nodes = AnyNodes::new(header.encoding, &header.channels, count, data)?;
         Ok(Self { bytes, scene_hash: header.scene_hash, axes, strides, records: header.channels, nodes })
     }
 
+    /// This table, if its values are f32.
+    pub fn f32(self) -> Option<Table<'a, N, F32Nodes<'a>>> {
+        match self.nodes {
+            AnyNodes::F32(nodes) => Some(self.with(nodes)),
+            AnyNodes::I16(_) => None,
+        }
+    }
+
+    /// This table, if its values are i16.
+    pub fn i16(self) -> Option<Table<'a, N, I16Nodes<'a>>> {
+        match self.nodes {
+            AnyNodes::I16(nodes) => Some(self.with(nodes)),
+            AnyNodes::F32(_) => None,
+        }
+    }
+
+    fn with<V>(self, nodes: V) -> Table<'a, N, V> {
+        let Self { bytes, scene_hash, axes, strides, records, .. } = self;
+        Table { bytes, scene_hash, axes, strides, records, nodes }
+    }
+
+    /// How values are stored.
+    pub fn encoding(&self) -> Encoding {
+        match self.nodes {
+            AnyNodes::F32(_) => Encoding::F32,
+            AnyNodes::I16(_) => Encoding::I16,
+        }
+    }
+}
+
+impl<const N: usize, V: Nodes> Table<'_, N, V> {
     /// This table, if it was made for the scene and laws that `hash` stands for.
     ///
     /// # Errors
@@ -118,10 +151,11 @@ impl<'a, const N: usize> Table<'a, N> {
 
     /// Force and velocity at the point `at`, one coordinate an axis, in the axes' order and units.
     ///
-    /// Multilinear between the nodes. Outside the grid the nearest point of the grid counts, for NaN the low end. Never
-    /// fails and is never NaN. Exact at a node whose distance from the first one, in steps, comes out whole in f32;
-    /// elsewhere rounding stays within (6·r + 16)·2⁻²⁴ of the channel's greatest magnitude, where r adds up, over all
-    /// axes, the number of nodes and how many steps the end farther from 0 is away from it.
+    /// Multilinear between the nodes. Outside the grid the nearest point of the grid counts, for NaN one of the lowest
+    /// cell. Never fails and is never NaN. Exact at a node, but for the last of an axis, whose distance from the first
+    /// one, in steps, comes out whole in f32; elsewhere rounding stays within (6·r + 16)·2⁻²⁴ of the channel's greatest
+    /// magnitude, where r adds up, over all axes, the number of nodes and how many steps the end farther from 0 is away
+    /// from it.
     #[inline]
     pub fn lookup(&self, at: [f32; N]) -> Lookup {
         let (mut first, mut fractions, mut outside) = (0, [0.0; N], 0);
@@ -153,13 +187,5 @@ impl<'a, const N: usize> Table<'a, N> {
     /// Length of the table (bytes); the region may be longer.
     pub fn length(&self) -> usize {
         self.bytes.len()
-    }
-
-    /// How values are stored.
-    pub fn encoding(&self) -> Encoding {
-        match self.nodes {
-            Nodes::F32(_) => Encoding::F32,
-            Nodes::I16(..) => Encoding::I16,
-        }
     }
 }

@@ -65,14 +65,35 @@ impl Encoding {
     }
 }
 
-/// Every node where it lies.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Nodes<'a> {
-    F32(&'a [[u8; 8]]),
-    I16(&'a [[u8; 4]], [f32; CHANNELS]),
+/// Every node of a table where it lies, however it is stored.
+pub trait Nodes: Copy {
+    /// Force and velocity (N, m/s) at the `fractions` of the cell whose lowest node is `first`; nodes along an axis are
+    /// its stride apart.
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS];
 }
 
-impl<'a> Nodes<'a> {
+/// Nodes of two f32.
+#[derive(Clone, Copy, Debug)]
+pub struct F32Nodes<'a>(&'a [[u8; 8]]);
+
+/// Nodes of two i16.
+#[derive(Clone, Copy, Debug)]
+pub struct I16Nodes<'a> {
+    nodes: &'a [[u8; 4]],
+    /// What integers are multiplied with.
+    scales: [f32; CHANNELS],
+}
+
+/// Nodes of either kind, known when the table is opened.
+#[derive(Clone, Copy, Debug)]
+pub enum AnyNodes<'a> {
+    /// Two f32 each.
+    F32(F32Nodes<'a>),
+    /// Two i16 each.
+    I16(I16Nodes<'a>),
+}
+
+impl<'a> AnyNodes<'a> {
     /// The `count` nodes that `data` consists of.
     ///
     /// # Errors
@@ -91,82 +112,87 @@ impl<'a> Nodes<'a> {
             Encoding::F32 => {
                 let nodes = data.as_chunks().0;
                 for node in nodes {
-                    for (value, channel) in floats(*node).into_iter().zip(ChannelKind::ALL) {
+                    for (value, channel) in floats(node).into_iter().zip(ChannelKind::ALL) {
                         if value.is_nan() || value.abs() > VALUE_MOST {
                             return Err(TableError::Value(channel.name()));
                         }
                     }
                 }
-                Self::F32(nodes)
+                Self::F32(F32Nodes(nodes))
             }
-            Encoding::I16 => Self::I16(data.as_chunks().0, [records[0].scale, records[1].scale]),
+            Encoding::I16 => {
+                Self::I16(I16Nodes { nodes: data.as_chunks().0, scales: records.map(|record| record.scale) })
+            }
         })
     }
+}
 
-    /// Force and velocity at the `fractions` of the cell whose lowest node is `first`; nodes along an axis are its
-    /// stride apart.
+impl Nodes for AnyNodes<'_> {
     #[inline(always)]
-    pub(super) fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; 2] {
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
         match self {
-            Self::F32(nodes) => cell(nodes, floats, first, strides, fractions),
-            Self::I16(nodes, scales) => {
-                let [force, velocity] = cell(nodes, integers, first, strides, fractions);
-                [scales[0] * force, scales[1] * velocity]
-            }
+            Self::F32(nodes) => nodes.within(first, strides, fractions),
+            Self::I16(nodes) => nodes.within(first, strides, fractions),
         }
     }
 }
 
-#[inline(always)]
-fn floats([a, b, c, d, e, f, g, h]: [u8; 8]) -> [f32; CHANNELS] {
-    [f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h])]
+impl Nodes for F32Nodes<'_> {
+    #[inline(always)]
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
+        cell(self.0, first, strides, fractions, |[a, b], along| blended(floats(a), floats(b), along))
+    }
 }
 
-#[inline(always)]
-fn integers([a, b, c, d]: [u8; 4]) -> [f32; CHANNELS] {
-    [f32::from(i16::from_le_bytes([a, b])), f32::from(i16::from_le_bytes([c, d]))]
+impl Nodes for I16Nodes<'_> {
+    #[inline(always)]
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
+        let [force, velocity] =
+            cell(self.nodes, first, strides, fractions, |[a, b], along| blended(integers(a), integers(b), along));
+        [self.scales[0] * force, self.scales[1] * velocity]
+    }
 }
 
-/// What [`Nodes::within`] gives, before scaling.
+/// What [`Nodes::within`] gives, with `blend` between two neighbours along the last axis.
 ///
 /// Every node is there, since the grid's size was checked; but the compiler does not know and would add a panic.
 #[inline(always)]
 fn cell<T: Copy>(
     nodes: &[T],
-    decode: fn(T) -> [f32; CHANNELS],
     first: usize,
     strides: &[usize],
     fractions: &[f32],
+    blend: impl Fn(&[T; 2], f32) -> [f32; CHANNELS],
 ) -> [f32; CHANNELS] {
+    let face = |first: usize, row: usize, across, along| {
+        let rest = nodes.get(first..)?;
+        let upper = rest.get(row..)?.first_chunk()?;
+        Some(blended(blend(rest.first_chunk()?, along), blend(upper, along), across))
+    };
     let found = match (strides, fractions) {
-        ([row, _], [across, along]) => {
-            nodes.get(first..first + row + 2).and_then(|face| bilinear(face, decode, *across, *along))
+        ([row, _], [across, along]) => face(first, *row, *across, *along),
+        ([layer, row, _], [up, across, along]) => {
+            let lower = face(first, *row, *across, *along);
+            let upper = face(first.wrapping_add(*layer), *row, *across, *along);
+            lower.zip(upper).map(|(lower, upper)| blended(lower, upper, *up))
         }
-        ([layer, row, _], [up, across, along]) => nodes.get(first..first + layer + row + 2).and_then(|body| {
-            let lower = bilinear(body.get(..row + 2)?, decode, *across, *along)?;
-            let upper = bilinear(body.get(*layer..)?, decode, *across, *along)?;
-            Some(blended(lower, upper, *up))
-        }),
         _ => None,
     };
     found.unwrap_or_default()
 }
 
-/// Between the first two and the last two of `nodes`, and between the two of each.
 #[inline(always)]
-fn bilinear<T: Copy>(
-    nodes: &[T],
-    decode: fn(T) -> [f32; CHANNELS],
-    across: f32,
-    along: f32,
-) -> Option<[f32; CHANNELS]> {
-    let ([a, b], [c, d]) = (nodes.first_chunk()?, nodes.last_chunk()?);
-    Some(blended(blended(decode(*a), decode(*b), along), blended(decode(*c), decode(*d), along), across))
+fn floats(&[a, b, c, d, e, f, g, h]: &[u8; 8]) -> [f32; CHANNELS] {
+    [f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h])]
 }
 
-/// `fraction` of the way from `a` to `b`, exactly either at its ends.
+#[inline(always)]
+fn integers(&[a, b, c, d]: &[u8; 4]) -> [f32; CHANNELS] {
+    [f32::from(i16::from_le_bytes([a, b])), f32::from(i16::from_le_bytes([c, d]))]
+}
+
+/// `fraction` of the way from `a` to `b`.
 #[inline(always)]
 fn blended(a: [f32; CHANNELS], b: [f32; CHANNELS], fraction: f32) -> [f32; CHANNELS] {
-    let rest = 1.0 - fraction;
-    [rest * a[0] + fraction * b[0], rest * a[1] + fraction * b[1]]
+    [a[0] + fraction * (b[0] - a[0]), a[1] + fraction * (b[1] - a[1])]
 }
