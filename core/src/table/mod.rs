@@ -189,3 +189,18 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
         self.bytes.len()
     }
 }
+
+impl<V: Nodes> Table<'_, 2, V> {
+    /// The force (N) at every node of the first axis, at `x` on the second; none outside of it.
+    #[inline]
+    pub fn forces(&self, x: f32) -> Option<impl Iterator<Item = f32>> {
+        let ([nodes, axis], [stride, _]) = (&self.axes, self.strides);
+        let place = axis.locate(x);
+        let firsts = (0..nodes.count()).map(move |i| place.cell + i * stride);
+        let force = move |first| {
+            let [force, _] = self.nodes.between(first, place.fraction);
+            force
+        };
+        (place.outside == 0).then(|| firsts.map(force))
+    }
+}

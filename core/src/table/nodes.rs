@@ -70,6 +70,9 @@ pub trait Nodes: Copy {
     /// Force and velocity (N, m/s) at the `fractions` of the cell whose lowest node is `first`; nodes along an axis are
     /// its stride apart.
     fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS];
+
+    /// Force and velocity (N, m/s) `fraction` of the way from the node `first` to the one that follows it.
+    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS];
 }
 
 /// Nodes of two f32.
@@ -135,22 +138,62 @@ impl Nodes for AnyNodes<'_> {
             Self::I16(nodes) => nodes.within(first, strides, fractions),
         }
     }
+
+    #[inline(always)]
+    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
+        match self {
+            Self::F32(nodes) => nodes.between(first, fraction),
+            Self::I16(nodes) => nodes.between(first, fraction),
+        }
+    }
 }
 
 impl Nodes for F32Nodes<'_> {
     #[inline(always)]
     fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
-        cell(self.0, first, strides, fractions, |[a, b], along| blended(floats(a), floats(b), along))
+        cell(self.0, first, strides, fractions, Self::blend)
+    }
+
+    #[inline(always)]
+    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
+        pair(self.0, first).map(|pair| Self::blend(pair, fraction)).unwrap_or_default()
+    }
+}
+
+impl F32Nodes<'_> {
+    #[inline(always)]
+    fn blend([a, b]: &[[u8; 8]; 2], fraction: f32) -> [f32; CHANNELS] {
+        blended(floats(a), floats(b), fraction)
     }
 }
 
 impl Nodes for I16Nodes<'_> {
     #[inline(always)]
     fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
-        let [force, velocity] =
-            cell(self.nodes, first, strides, fractions, |[a, b], along| blended(integers(a), integers(b), along));
+        self.scaled(cell(self.nodes, first, strides, fractions, Self::blend))
+    }
+
+    #[inline(always)]
+    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
+        self.scaled(pair(self.nodes, first).map(|pair| Self::blend(pair, fraction)).unwrap_or_default())
+    }
+}
+
+impl I16Nodes<'_> {
+    #[inline(always)]
+    fn blend([a, b]: &[[u8; 4]; 2], fraction: f32) -> [f32; CHANNELS] {
+        blended(integers(a), integers(b), fraction)
+    }
+
+    #[inline(always)]
+    fn scaled(&self, [force, velocity]: [f32; CHANNELS]) -> [f32; CHANNELS] {
         [self.scales[0] * force, self.scales[1] * velocity]
     }
+}
+
+#[inline(always)]
+fn pair<T>(nodes: &[T], first: usize) -> Option<&[T; 2]> {
+    nodes.get(first..)?.first_chunk()
 }
 
 /// What [`Nodes::within`] gives, with `blend` between two neighbours along the last axis.
