@@ -26,6 +26,7 @@ pub mod monitor;
 pub mod pose;
 pub mod power;
 mod scalar;
+pub mod scene;
 pub mod slide;
 pub mod table;
 
