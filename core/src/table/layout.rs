@@ -60,12 +60,21 @@ pub const VALUE_MOST: f32 = 1e30;
 /// The greatest magnitude of a stored i16, either sign.
 pub const I16_MOST: i16 = i16::MAX;
 
-/// What computes the checksum, CRC-32/ISO-HDLC.
+/// The checksum, CRC-32/ISO-HDLC, of `bytes`.
+pub fn checksum(bytes: &[u8]) -> u32 {
+    !continued(EMPTY, bytes)
+}
+
+/// The checksum's register before the first byte; its complement after the last one is the checksum.
+pub(super) const EMPTY: u32 = !0;
+
+/// The checksum's register after `bytes`.
 ///
 /// Bit by bit: a table of remainders would speed up something done rarely, at the price of 1 KB of flash.
-pub(super) static CRC: crc::Crc<u32, crc::NoTable> = crc::Crc::<u32, crc::NoTable>::new(&crc::CRC_32_ISO_HDLC);
-
-/// The checksum of `bytes`.
-pub fn checksum(bytes: &[u8]) -> u32 {
-    CRC.checksum(bytes)
+pub(super) fn continued(register: u32, bytes: &[u8]) -> u32 {
+    bytes.iter().fold(register, |register, byte| {
+        (0..8).fold(register ^ u32::from(*byte), |register, _| {
+            register >> 1 ^ if register & 1 == 1 { 0xedb8_8320 } else { 0 }
+        })
+    })
 }

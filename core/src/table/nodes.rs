@@ -139,7 +139,8 @@ impl Nodes for AnyNodes<'_> {
         }
     }
 
-    #[inline(always)]
+    // Called for every level of a bank: one copy of either way will do.
+    #[inline(never)]
     fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
         match self {
             Self::F32(nodes) => nodes.between(first, fraction),

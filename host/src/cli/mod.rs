@@ -1,6 +1,7 @@
 //! The command line: one file a command, each with its arguments and its `run`.
 
 mod check;
+mod kernel;
 mod precision;
 mod run;
 mod simulate;
@@ -44,7 +45,8 @@ Examples:
   slipfit simulate --n 2.5 --csv unit.csv  one unit, tighter by 2.5 sigma
   slipfit sweep --n 0:5:0.5 --set run.duration=1500
                                            at which n does the full stroke jam
-  slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)";
+  slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)
+  slipfit kernel -o scene.rs               the scene as a Rust constant and type for firmware";
 
 #[derive(Subcommand)]
 enum Command {
@@ -54,6 +56,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Sweep(sweep::Arguments),
     Table(table::Arguments),
+    Kernel(kernel::Arguments),
     Precision(precision::Arguments),
 }
 
@@ -219,6 +222,7 @@ pub fn main() -> ExitCode {
         Some(Command::Simulate(arguments)) => arguments.run(),
         Some(Command::Sweep(arguments)) => arguments.run(),
         Some(Command::Table(arguments)) => arguments.run(),
+        Some(Command::Kernel(arguments)) => arguments.run(),
         Some(Command::Precision(arguments)) => arguments.run(),
     };
     match result {

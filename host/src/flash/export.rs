@@ -135,7 +135,7 @@ const C_ARRAY: &str = "
 #if defined(__GNUC__)
 __attribute__((aligned(4), unused))
 #endif
-static const uint8_t slipfit_table[SLIPFIT_TABLE_SIZE] = {
+static const uint8_t slipfit_table_bytes[SLIPFIT_TABLE_SIZE] = {
 ";
 
 /// A module's source with the table as `SLIPFIT_TABLE`.
@@ -238,14 +238,14 @@ mod tests {
         #include <string.h>
 
         int main(void) {
-            const uint8_t *length = slipfit_table + SLIPFIT_TABLE_LENGTH_AT;
-            fwrite(slipfit_table, 1, sizeof slipfit_table, stdout);
-            return memcmp(slipfit_table + SLIPFIT_TABLE_MAGIC_AT, "SLFT", 4) != 0
-                || slipfit_table[SLIPFIT_TABLE_VERSION_AT] != SLIPFIT_TABLE_FORMAT_VERSION
+            const uint8_t *length = slipfit_table_bytes + SLIPFIT_TABLE_LENGTH_AT;
+            fwrite(slipfit_table_bytes, 1, sizeof slipfit_table_bytes, stdout);
+            return memcmp(slipfit_table_bytes + SLIPFIT_TABLE_MAGIC_AT, "SLFT", 4) != 0
+                || slipfit_table_bytes[SLIPFIT_TABLE_VERSION_AT] != SLIPFIT_TABLE_FORMAT_VERSION
                 || length[0] + 256u * length[1] != SLIPFIT_TABLE_SIZE
-                || slipfit_table[SLIPFIT_TABLE_AXES_AT + SLIPFIT_TABLE_AXIS_KIND_AT] != SLIPFIT_TABLE_AXIS_LEVEL
-                || slipfit_table[SLIPFIT_TABLE_ENCODING_AT] != SLIPFIT_TABLE_ENCODING_I16
-                || (uintptr_t)slipfit_table % 4 != 0;
+                || slipfit_table_bytes[SLIPFIT_TABLE_AXES_AT + SLIPFIT_TABLE_AXIS_KIND_AT] != SLIPFIT_TABLE_AXIS_LEVEL
+                || slipfit_table_bytes[SLIPFIT_TABLE_ENCODING_AT] != SLIPFIT_TABLE_ENCODING_I16
+                || (uintptr_t)slipfit_table_bytes % 4 != 0;
         }
     "#;
 
