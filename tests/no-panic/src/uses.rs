@@ -8,9 +8,10 @@ use slipfit_core::{
     kernel::Kernel,
     law::{Elastic, Friction},
     menu::SlideVisitor,
+    monitor::{LevelBank, Limits, Monitor, Sample, Watch},
     pose::Pose,
     slide::Slide,
-    table::{Table, TableError},
+    table::{Patrol, Slots, Table, TableError},
 };
 use slipfit_problems::cd_rom;
 
@@ -57,5 +58,21 @@ fn look_up() -> Result<(), TableError> {
     black_box(plane.lookup(black_box([0.0; 2])));
     let space = Table::<3>::open(region)?;
     black_box(space.lookup(black_box([0.0; 3])));
+    let slots = Slots::<2>::open(black_box([region, region]), black_box(0));
+    black_box(slots.spare());
+    black_box(Patrol::new(slots.newest()?).check(region, black_box(64)))?;
+    watch(&plane);
     Ok(())
+}
+
+/// Watches a drive by a table.
+fn watch(table: &Table<'_>) {
+    if let Ok(monitor) = Monitor::new(*table, black_box(0.0), black_box(Limits::for_noise(1e-3, 0.0))) {
+        let sample = black_box(Sample { time: 0.0, force: 0.0, speed: 0.0, command: 0.0 });
+        black_box(monitor.step(&mut black_box(Watch::default()), &sample));
+    }
+    if let Ok(mut bank) = LevelBank::<96>::new(table) {
+        bank.add(table, black_box(0.0), black_box(0.0));
+        black_box(black_box(&bank).estimate(table));
+    }
 }
