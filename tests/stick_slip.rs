@@ -4,11 +4,8 @@ use slipfit_core::{
     SVector,
     integrator::{Extrapolated, Integrator, Sdirk2},
     kernel::Kernel,
-    law::{
-        Friction, StaticKinetic,
-        friction::{Contact, Rubbing},
-    },
-    mechanism::{Evaluation, Mechanism},
+    law::{Friction, StaticKinetic, friction::Rubbing},
+    mechanism::{Differentiated, Linearised, Mechanism},
 };
 
 /// A body of one degree of freedom on a spring and a belt; unit normal force, so that coefficients are forces.
@@ -19,10 +16,17 @@ struct OnBelt {
     friction: StaticKinetic<f64>,
 }
 
+impl OnBelt {
+    fn rubbing(&self, velocity: &SVector<f64, 1>, mass_rate: f64, tangent_share: f64) -> Rubbing<f64> {
+        Rubbing { sliding: [velocity.x - self.belt, 0.0], normal: 1.0, mass_rate, tangent_share }
+    }
+}
+
 impl Mechanism<f64, 1> for OnBelt {
     type Pose = f64;
     type Memory = [f64; 2];
     type Linearisation = f64;
+    type Slopes = f64;
 
     fn advanced(&self, pose: &f64, velocity: &SVector<f64, 1>, dt: f64) -> f64 {
         pose + velocity.x * dt
@@ -65,28 +69,31 @@ impl Mechanism<f64, 1> for OnBelt {
         momentum / self.mass
     }
 
-    fn evaluated(
+    fn forces(
         &self,
         _: f64,
         pose: &f64,
         memory: &[f64; 2],
         velocity: &SVector<f64, 1>,
         a: f64,
+    ) -> (SVector<f64, 1>, [f64; 2]) {
+        let (traction, memory) = self.friction.traction(memory, &self.rubbing(velocity, self.mass / a, 1.0));
+        (SVector::<f64, 1>::new(traction.force[0] - self.stiffness * pose), memory)
+    }
+
+    fn linearised(
+        &self,
+        t: f64,
+        pose: &f64,
+        memory: &[f64; 2],
+        velocity: &SVector<f64, 1>,
+        a: f64,
         tangent_share: f64,
-    ) -> Evaluation<f64, [f64; 2], f64, 1> {
-        let mut contact = Contact { force: [0.0; 3], impedance: [[0.0; 3]; 3] };
-        let rubbing = Rubbing {
-            sliding: [velocity.x - self.belt, 0.0],
-            normal: 1.0,
-            normal_slope: 0.0,
-            mass_rate: self.mass / a,
-            tangent_share,
-        };
-        let memory = self.friction.add(memory, &rubbing, &mut contact);
-        Evaluation {
-            force: SVector::<f64, 1>::new(contact.force[1] - self.stiffness * pose),
-            memory,
-            linearisation: self.mass + a * (contact.impedance[1][1] + a * self.stiffness),
+    ) -> Linearised<f64, f64, 1> {
+        let rubbing = self.rubbing(velocity, self.mass / a, tangent_share);
+        Linearised {
+            force: self.forces(t, pose, memory, velocity, a).0,
+            linearisation: self.linearisation(&self.friction.traction(memory, &rubbing).0.impedance[0], a),
         }
     }
 
@@ -96,6 +103,29 @@ impl Mechanism<f64, 1> for OnBelt {
 
     fn impulse(&self, imbalance: &SVector<f64, 1>) -> f64 {
         imbalance.x.abs()
+    }
+
+    fn differentiated(
+        &self,
+        t: f64,
+        pose: &f64,
+        memory: &[f64; 2],
+        velocity: &SVector<f64, 1>,
+    ) -> Differentiated<f64, f64, 1> {
+        let rubbing = self.rubbing(velocity, 0.0, 1.0);
+        Differentiated {
+            force: self.forces(t, pose, memory, velocity, 1.0).0,
+            per_time: SVector::zeros(),
+            slopes: self.friction.traction(memory, &rubbing).0.impedance[0],
+        }
+    }
+
+    fn linearisation(&self, damping: &f64, a: f64) -> f64 {
+        self.mass / a + damping + a * self.stiffness
+    }
+
+    fn pushed(&self, _: &f64, displacement: &SVector<f64, 1>) -> SVector<f64, 1> {
+        displacement * -self.stiffness
     }
 }
 

@@ -18,7 +18,7 @@ use slipfit::{
 };
 use slipfit_core::{
     SVector,
-    integrator::{Extrapolated, Integrator, Motion},
+    integrator::{Extrapolated, Integrator, Motion, Rodas3},
     kernel::Kernel,
     mechanism::Mechanism,
     pose::Pose,
@@ -98,10 +98,8 @@ fn compare(reference: &Reference, cvode: Option<&Cvode>, all: bool) {
     let slide = cd_rom::slide(reference.n);
     let milliseconds = (reference.duration * 1e3).round() as u32;
     let mut entries = kernels(&slide, milliseconds);
-    entries.extend(controlled::<Extrapolated<2, 1>>("controlled, 2 columns", &slide, milliseconds));
-    entries.extend(controlled::<Extrapolated<3, 1>>("controlled, 3 columns", &slide, milliseconds));
-    entries.extend(controlled::<Extrapolated<4, 1>>("controlled, 4 columns", &slide, milliseconds));
-    entries.extend(controlled::<Extrapolated<3, 3>>("controlled, 3 passes", &slide, milliseconds));
+    entries.extend(controlled::<Rodas3>("controlled rodas3", &slide, milliseconds));
+    entries.extend(controlled::<Extrapolated<3, 3>>("controlled extrapolated", &slide, milliseconds));
     entries.extend(diffsol_peer::entries(&slide, milliseconds));
     entries.extend(cvode.map(|cvode| cvode.entries(milliseconds)).into_iter().flatten());
     let findings: Vec<Finding> = entries.iter().filter_map(|entry| measure(entry, reference)).collect();
@@ -158,7 +156,7 @@ fn controlled<I: Integrator>(solver: &'static str, slide: &CdRomSlide<f64>, mill
         };
         Entry { solver, setting: format!("{force:.0e} N"), work: Box::new(work) }
     };
-    [1e-2, 3e-3, 1e-3, 5e-4, 3e-4, 2e-4, 1e-4, 5e-5, 3e-5, 1e-5, 3e-6, 1e-6].map(entry).into()
+    [1e-2, 3e-3, 1e-3, 7e-4, 5e-4, 4e-4, 3e-4, 2e-4, 1e-4, 5e-5, 3e-5, 1e-5, 3e-6, 1e-6].map(entry).into()
 }
 
 struct KernelEntry {

@@ -4,7 +4,7 @@ use crate::{
     ParameterError, SVector, Scalar,
     error::bounded,
     law::{Elastic, Impact},
-    mechanism::{Evaluation, Mechanism},
+    mechanism::{Differentiated, Linearised, Mechanism},
 };
 
 /// A body that moves along one axis, with a pad below it.
@@ -45,8 +45,11 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
 
     type Memory = ();
 
-    /// Effective mass (kg).
+    /// Effective impedance (N·s/m).
     type Linearisation = S;
+
+    /// Damping (N·s/m) and stiffness (N/m) of the pad.
+    type Slopes = [S; 2];
 
     #[inline(always)]
     fn advanced(&self, pose: &S, velocity: &SVector<S, 1>, dt: S) -> S {
@@ -95,22 +98,43 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     }
 
     #[inline(always)]
-    fn evaluated(&self, _: S, pose: &S, (): &(), velocity: &SVector<S, 1>, a: S, _: S) -> Evaluation<S, (), S, 1> {
-        let pad = self.contact.response(-(self.gap + *pose), -velocity.x);
-        Evaluation {
-            force: SVector::<S, 1>::new(pad.force + self.mass * self.gravity),
-            memory: (),
-            linearisation: self.mass + a * (pad.damping + a * pad.stiffness),
-        }
+    fn forces(&self, t: S, pose: &S, memory: &(), velocity: &SVector<S, 1>, _: S) -> (SVector<S, 1>, ()) {
+        (self.differentiated(t, pose, memory, velocity).force, ())
     }
 
     #[inline(always)]
-    fn solve(&self, effective_mass: &S, residual: &SVector<S, 1>) -> SVector<S, 1> {
-        SVector::<S, 1>::new(residual.x / *effective_mass)
+    fn linearised(&self, t: S, pose: &S, memory: &(), velocity: &SVector<S, 1>, a: S, _: S) -> Linearised<S, S, 1> {
+        let Differentiated { force, slopes, .. } = self.differentiated(t, pose, memory, velocity);
+        Linearised { force, linearisation: self.linearisation(&slopes, a) }
+    }
+
+    #[inline(always)]
+    fn solve(&self, impedance: &S, residual: &SVector<S, 1>) -> SVector<S, 1> {
+        SVector::<S, 1>::new(residual.x / *impedance)
     }
 
     #[inline(always)]
     fn impulse(&self, imbalance: &SVector<S, 1>) -> S {
         imbalance.x.magnitude()
+    }
+
+    #[inline(always)]
+    fn differentiated(&self, _: S, pose: &S, (): &(), velocity: &SVector<S, 1>) -> Differentiated<S, [S; 2], 1> {
+        let pad = self.contact.response(-(self.gap + *pose), -velocity.x);
+        Differentiated {
+            force: SVector::<S, 1>::new(pad.force + self.mass * self.gravity),
+            per_time: SVector::zeros(),
+            slopes: [pad.damping, pad.stiffness],
+        }
+    }
+
+    #[inline(always)]
+    fn linearisation(&self, [damping, stiffness]: &[S; 2], a: S) -> S {
+        self.mass / a + *damping + a * *stiffness
+    }
+
+    #[inline(always)]
+    fn pushed(&self, [_, stiffness]: &[S; 2], displacement: &SVector<S, 1>) -> SVector<S, 1> {
+        displacement * -*stiffness
     }
 }

@@ -1,6 +1,9 @@
 //! The drive: a P-velocity controller behind a ramp (eq. 12).
 
-use crate::{Scalar, Vector3, law::step::step};
+use crate::{
+    Scalar, Vector3,
+    law::step::{cubic, step},
+};
 
 /// F_z = K_p·(STEP(t, t0, 0, t1, V) − v_z) along the frame's z, at a point fixed in the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +27,13 @@ impl<S: Scalar> Drive<S> {
         step(t, self.ramp_start, S::zero(), self.ramp_end, self.speed)
     }
 
+    /// How fast the command changes (m/s²) at time `t` (s).
+    #[inline(always)]
+    pub fn command_rate(&self, t: S) -> S {
+        let per_duration = S::one() / (self.ramp_end - self.ramp_start);
+        S::from_f64(6.0) * self.speed * per_duration * cubic((t - self.ramp_start) * per_duration).1
+    }
+
     /// The force (N) along the frame's z at time `t` (s) and speed `v_z` (m/s) of the centre of mass.
     #[inline(always)]
     pub fn force(&self, t: S, v_z: S) -> S {
@@ -35,6 +45,15 @@ impl<S: Scalar> Drive<S> {
 mod tests {
     use super::Drive;
     use crate::Vector3;
+
+    #[test]
+    fn the_rate_is_the_derivative_of_the_command() {
+        let drive = Drive { gain: 40.0, ramp_start: 0.05, ramp_end: 1.0, speed: 0.1, point_b: Vector3::zeros() };
+        for t in [0.0, 0.06, 0.5, 0.9, 1.5] {
+            let slope = (drive.command(t + 1e-6) - drive.command(t - 1e-6)) / 2e-6;
+            assert!(libm::fabs(drive.command_rate(t) - slope) < 1e-9, "{t}");
+        }
+    }
 
     #[test]
     fn blocked_at_full_speed_gives_four_newton() {

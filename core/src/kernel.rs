@@ -78,7 +78,8 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
         M: Mechanism<S, D>,
     {
         let was = state.motion;
-        let Step { motion: next, residual, error } = I::step(&self.mechanism, self.time(state.steps), self.step, &was);
+        let Step { motion: next, residual, error, .. } =
+            I::step(&self.mechanism, self.time(state.steps), self.step, &was);
         let zero = S::zero();
         let nought = next.velocity.iter().fold(self.mechanism.nought(&next.pose), |sum, v| sum + *v * zero);
         let finite = S::one() + nought;

@@ -25,6 +25,8 @@ pub mod menu;
 pub mod monitor;
 pub mod pose;
 pub mod power;
+#[cfg(feature = "sampling")]
+pub mod sampling;
 mod scalar;
 pub mod scene;
 pub mod slide;

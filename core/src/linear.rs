@@ -22,15 +22,88 @@ fn inverse<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
     Matrix3::from_columns(&[c0 * scale, c1 * scale, c2 * scale])
 }
 
+/// [a]×, the matrix with [a]×·b = a × b.
+#[inline(always)]
+pub(crate) fn cross_matrix<S: Scalar>(a: &Vector3<S>) -> Matrix3<S> {
+    let o = S::zero();
+    Matrix3::new(o, -a.z, a.y, a.z, o, -a.x, -a.y, a.x, o)
+}
+
+/// [a]×·`m`: the cross products of a with the columns.
+#[inline(always)]
+pub(crate) fn cross_columns<S: Scalar>(a: &Vector3<S>, m: &Matrix3<S>) -> Matrix3<S> {
+    let [x, y, z]: [[S; 3]; 3] = m.data.0;
+    let (x, y, z) = (Vector3::from(x), Vector3::from(y), Vector3::from(z));
+    Matrix3::from_columns(&[a.cross(&x), a.cross(&y), a.cross(&z)])
+}
+
+/// −`m`·[a]×: the cross products of a with the rows.
+#[inline(always)]
+pub(crate) fn cross_rows<S: Scalar>(a: &Vector3<S>, m: &Matrix3<S>) -> Matrix3<S> {
+    cross_columns(a, &m.transpose()).transpose()
+}
+
 impl<S: Scalar> Blocks<S> {
-    /// The solution of `self`·(x, y) = (`f`, `g`). Eliminates x; no pivoting is needed, because the diagonal blocks
-    /// carry mass and inertia plus positive contact terms.
+    /// All zero but for the diagonal.
     #[inline(always)]
-    pub fn solve(&self, f: Vector3<S>, g: Vector3<S>) -> (Vector3<S>, Vector3<S>) {
+    pub fn diagonal(a: Vector3<S>, d: Vector3<S>) -> Self {
+        let zero = Matrix3::zeros();
+        Self { a: Matrix3::from_diagonal(&a), b: zero, c: zero, d: Matrix3::from_diagonal(&d) }
+    }
+
+    /// Adds what the force −`matrix`·(v + ω × `lever`), acting at `lever`, means for force and torque by v and ω.
+    #[inline(always)]
+    pub fn add_at(&mut self, lever: &Vector3<S>, matrix: &Matrix3<S>) {
+        let turned = cross_columns(lever, matrix);
+        self.a += matrix;
+        self.b += cross_rows(lever, matrix);
+        self.c += turned;
+        self.d += cross_rows(lever, &turned);
+    }
+
+    /// `self`·(x, y).
+    #[inline(always)]
+    pub fn times(&self, x: Vector3<S>, y: Vector3<S>) -> (Vector3<S>, Vector3<S>) {
+        (self.a * x + self.b * y, self.c * x + self.d * y)
+    }
+
+    /// `self` + `weight`·`other`.
+    #[inline(always)]
+    pub fn plus(&self, other: &Self, weight: S) -> Self {
+        Self {
+            a: self.a + other.a * weight,
+            b: self.b + other.b * weight,
+            c: self.c + other.c * weight,
+            d: self.d + other.d * weight,
+        }
+    }
+
+    /// What solving takes. Eliminates x; no pivoting is needed, because the diagonal blocks carry mass and inertia plus
+    /// positive contact terms.
+    #[inline(always)]
+    pub fn factorised(&self) -> Factors<S> {
         let inverse_a = inverse(&self.a);
         let c_over_a = self.c * inverse_a;
-        let y = inverse(&(self.d - c_over_a * self.b)) * (g - c_over_a * f);
-        (inverse_a * (f - self.b * y), y)
+        Factors { inverse_a, b: self.b, c_over_a, inverse_rest: inverse(&(self.d - c_over_a * self.b)) }
+    }
+}
+
+/// [`Blocks`] made ready for solving.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Factors<S> {
+    pub inverse_a: Matrix3<S>,
+    pub b: Matrix3<S>,
+    pub c_over_a: Matrix3<S>,
+    /// Of d − c·a⁻¹·b, what is left for y.
+    pub inverse_rest: Matrix3<S>,
+}
+
+impl<S: Scalar> Factors<S> {
+    /// The solution of blocks·(x, y) = (`f`, `g`).
+    #[inline(always)]
+    pub fn solve(&self, f: Vector3<S>, g: Vector3<S>) -> (Vector3<S>, Vector3<S>) {
+        let y = self.inverse_rest * (g - self.c_over_a * f);
+        (self.inverse_a * (f - self.b * y), y)
     }
 }
 
@@ -52,7 +125,7 @@ mod tests {
             let r = SVector::<f64, 6>::from_fn(|_, _| next());
             let block = |i, j| -> Matrix3<f64> { m.fixed_view::<3, 3>(i, j).into_owned() };
             let blocks = Blocks { a: block(0, 0), b: block(0, 3), c: block(3, 0), d: block(3, 3) };
-            let (x, y) = blocks.solve(Vector3::new(r[0], r[1], r[2]), Vector3::new(r[3], r[4], r[5]));
+            let (x, y) = blocks.factorised().solve(Vector3::new(r[0], r[1], r[2]), Vector3::new(r[3], r[4], r[5]));
             let back = m * SVector::<f64, 6>::new(x.x, x.y, x.z, y.x, y.y, y.z) - r;
             assert!(back.norm() < 1e-13, "{back}");
         }

@@ -2,16 +2,25 @@
 
 use crate::{SVector, Scalar};
 
-/// Forces at one motion.
+/// Forces at one motion and their linearisation.
 #[derive(Clone, Copy, Debug)]
-pub struct Evaluation<S, M, L, const D: usize> {
+pub struct Linearised<S, L, const D: usize> {
     /// The generalised force (N, N·m).
     pub force: SVector<S, D>,
-    /// What the laws remember if the motion is accepted.
-    pub memory: M,
-    /// Linearisation of momentum − a·force with respect to the velocity. It may be approximate; it steers, the force
+    /// Linearisation of momentum/a − force with respect to the velocity. It may be approximate; it steers, the force
     /// decides.
     pub linearisation: L,
+}
+
+/// Forces at one motion and all their derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct Differentiated<S, L, const D: usize> {
+    /// The generalised force (N, N·m).
+    pub force: SVector<S, D>,
+    /// ∂force/∂t (N/s, N·m/s).
+    pub per_time: SVector<S, D>,
+    /// Derivatives by velocity and displacement.
+    pub slopes: L,
 }
 
 /// A mechanism with `D` generalised velocities.
@@ -26,7 +35,10 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     type Memory: Copy;
 
     /// Whatever [`solve`](Self::solve) needs of a linearisation.
-    type Linearisation;
+    type Linearisation: Copy + Default;
+
+    /// Derivatives of the force by velocity and displacement.
+    type Slopes;
 
     /// The pose Q = `pose` + `dt`·Q̇(Q, `velocity`), implicit in Q.
     fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
@@ -68,10 +80,20 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// M⁻¹·`momentum`: generalised velocities (m/s, rad/s).
     fn velocity(&self, momentum: &SVector<S, D>) -> SVector<S, D>;
 
-    /// Forces at time `t` (s), and how momentum − `a`·force changes with the velocity, through the pose too. Of the
+    /// Forces (N, N·m) at time `t` (s) and the memory if the motion is accepted; `a` (s) is the implicit part of the step.
+    fn forces(
+        &self,
+        t: S,
+        pose: &Self::Pose,
+        memory: &Self::Memory,
+        velocity: &SVector<S, D>,
+        a: S,
+    ) -> (SVector<S, D>, Self::Memory);
+
+    /// Forces at time `t` (s), and how momentum/`a` − force changes with the velocity, through the pose too. Of the
     /// friction's change along the sliding direction the linearisation takes `tangent_share` from the law's tangent, the
     /// rest from its secant.
-    fn evaluated(
+    fn linearised(
         &self,
         t: S,
         pose: &Self::Pose,
@@ -79,11 +101,32 @@ pub trait Mechanism<S: Scalar, const D: usize> {
         velocity: &SVector<S, D>,
         a: S,
         tangent_share: S,
-    ) -> Evaluation<S, Self::Memory, Self::Linearisation, D>;
+    ) -> Linearised<S, Self::Linearisation, D>;
 
-    /// The velocity change that brings the linearised momentum balance from `residual` to zero, negated.
+    /// The velocity change that brings the linearised balance of forces from `residual` (N, N·m) to zero, negated.
     fn solve(&self, linearisation: &Self::Linearisation, residual: &SVector<S, D>) -> SVector<S, D>;
 
     /// One number for an imbalance of momentum (N·s): angular components over a length of the mechanism.
     fn impulse(&self, imbalance: &SVector<S, D>) -> S;
+
+    /// Forces at time `t` (s) and their derivatives, for laws without memory.
+    fn differentiated(
+        &self,
+        t: S,
+        pose: &Self::Pose,
+        memory: &Self::Memory,
+        velocity: &SVector<S, D>,
+    ) -> Differentiated<S, Self::Slopes, D>;
+
+    /// Linearisation of momentum/`a` − force with respect to a velocity that also moves the pose over the time `a` (s).
+    fn linearisation(&self, slopes: &Self::Slopes, a: S) -> Self::Linearisation;
+
+    /// How the force changes (N, N·m) with a small `displacement` (m, rad).
+    fn pushed(&self, slopes: &Self::Slopes, displacement: &SVector<S, D>) -> SVector<S, D>;
+
+    /// The rate (m/s, rad/s) of a `displacement` x from a pose, such that `moved(pose, x, 1)` is the pose, while the body
+    /// moves with `velocity`. It is the velocity at no displacement, and everywhere where coordinates are straight.
+    fn rate(&self, _displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
+        *velocity
+    }
 }

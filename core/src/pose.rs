@@ -1,5 +1,7 @@
 //! The pose of one rigid body on full SO(3).
 
+use nalgebra::Matrix3;
+
 use crate::{Scalar, Vector3};
 
 /// A unit quaternion, body to fixed frame.
@@ -25,9 +27,7 @@ pub struct Pose<S> {
 /// Kept as the difference, because near the nominal pose R would leave f32 few digits of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToBody<S> {
-    axis: Vector3<S>,
-    w: S,
-    twice_per_norm: S,
+    change: Matrix3<S>,
 }
 
 impl<S: Scalar> Pose<S> {
@@ -100,16 +100,32 @@ impl<S: Scalar> Pose<S> {
     #[inline(always)]
     pub fn to_body(&self) -> ToBody<S> {
         let Orientation { w, v } = self.orientation;
-        ToBody { axis: v, w, twice_per_norm: S::from_f64(2.0) / (w * w + v.dot(&v)) }
+        let twice = v * (S::from_f64(2.0) / (w * w + v.dot(&v)));
+        let (xx, yy, zz) = (twice.x * v.x, twice.y * v.y, twice.z * v.z);
+        let (xy, yz, zx) = (twice.x * v.y, twice.y * v.z, twice.z * v.x);
+        let (wx, wy, wz) = (twice.x * w, twice.y * w, twice.z * w);
+        #[rustfmt::skip]
+        let change = Matrix3::new(
+            -(yy + zz), xy + wz, zx - wy,
+            xy - wz, -(xx + zz), yz + wx,
+            zx + wy, yz - wx, -(xx + yy),
+        );
+        ToBody { change }
     }
 }
 
 impl<S: Scalar> ToBody<S> {
+    /// The frame's z axis in body axes.
+    #[inline(always)]
+    pub fn z_axis(&self) -> Vector3<S> {
+        let [x, y, z] = self.change.data.0[2];
+        Vector3::new(x, y, S::one() + z)
+    }
+
     /// (Rᵀ − I)·`vector_w`.
     #[inline(always)]
     pub fn change(&self, vector_w: Vector3<S>) -> Vector3<S> {
-        let half = self.axis.cross(&vector_w);
-        (self.axis.cross(&half) - half * self.w) * self.twice_per_norm
+        self.change * vector_w
     }
 
     /// Rᵀ·`vector_w`: a frame vector in body axes.
@@ -121,8 +137,7 @@ impl<S: Scalar> ToBody<S> {
     /// R·`vector_b`: a body vector in frame axes.
     #[inline(always)]
     pub fn apply_inverse(&self, vector_b: Vector3<S>) -> Vector3<S> {
-        let half = self.axis.cross(&vector_b);
-        vector_b + (self.axis.cross(&half) + half * self.w) * self.twice_per_norm
+        vector_b + self.change.tr_mul(&vector_b)
     }
 }
 

@@ -7,16 +7,8 @@
 /// Zero and denormals count as 2⁻¹²⁶ for the logarithm and are scaled back, so that the result stays monotone.
 #[inline(always)]
 pub fn pow_f32(x: f32, y: f32) -> f32 {
-    let normal = if x > f32::MIN_POSITIVE { x } else { f32::MIN_POSITIVE };
-    // Mantissa in [√½, √2), so that the logarithm is accurate around x = 1.
-    let shifted = normal.to_bits().wrapping_sub(0x3f35_04f3);
-    let exponent = (shifted as i32) >> 23;
-    let mantissa = f32::from_bits((shifted & 0x007f_ffff).wrapping_add(0x3f35_04f3));
-    let r = (mantissa - 1.0) / (mantissa + 1.0);
-    let q = r * r;
-    // ln m = 2 artanh r
-    let series = r * (2.0 + q * (2.0 / 3.0 + q * (2.0 / 5.0 + q * (2.0 / 7.0 + q * (2.0 / 9.0)))));
-    let (log_high, log_low) = (exponent as f32, series * core::f32::consts::LOG2_E);
+    let (exponent, series) = split_log_f32(x);
+    let (log_high, log_low) = (exponent, series * core::f32::consts::LOG2_E);
 
     let scaled = y * log_high + y * log_low;
     let limited = if scaled > 127.0 { 127.0 } else { scaled };
@@ -41,18 +33,8 @@ pub fn pow_f32(x: f32, y: f32) -> f32 {
 /// Zero and denormals count as 2⁻¹⁰²² for the logarithm and are scaled back, so that the result stays monotone.
 #[inline(always)]
 pub fn pow_f64(x: f64, y: f64) -> f64 {
-    let normal = if x > f64::MIN_POSITIVE { x } else { f64::MIN_POSITIVE };
-    let shifted = normal.to_bits().wrapping_sub(0x3fe6_a09e_667f_3bcd);
-    let exponent = ((shifted as i64) >> 52) as i32;
-    let mantissa = f64::from_bits((shifted & 0x000f_ffff_ffff_ffff).wrapping_add(0x3fe6_a09e_667f_3bcd));
-    let r = (mantissa - 1.0) / (mantissa + 1.0);
-    let q = r * r;
-    let mut tail = 0.0;
-    for denominator in [23.0, 21.0, 19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0] {
-        tail = tail * q + 2.0 / denominator;
-    }
-    let series = r * (2.0 + q * tail);
-    let (log_high, log_low) = (f64::from(exponent), series * core::f64::consts::LOG2_E);
+    let (exponent, series) = split_log_f64(x);
+    let (log_high, log_low) = (exponent, series * core::f64::consts::LOG2_E);
 
     let scaled = y * log_high + y * log_low;
     let limited = if scaled > 1023.0 { 1023.0 } else { scaled };
@@ -71,9 +53,68 @@ pub fn pow_f64(x: f64, y: f64) -> f64 {
     if x > f64::MIN_POSITIVE { power } else { power * (x / f64::MIN_POSITIVE) }
 }
 
+/// ln `x` for x > 0. Relative error ≤ 3e-7; zero and denormals count as 2⁻¹²⁶.
+#[inline(always)]
+pub fn ln_f32(x: f32) -> f32 {
+    let (exponent, series) = split_log_f32(x);
+    exponent * core::f32::consts::LN_2 + series
+}
+
+/// ln `x` for x > 0. Relative error ≤ 1e-15; zero and denormals count as 2⁻¹⁰²².
+#[inline(always)]
+pub fn ln_f64(x: f64) -> f64 {
+    let (exponent, series) = split_log_f64(x);
+    exponent * core::f64::consts::LN_2 + series
+}
+
+/// The exponent k and ln m of x = 2ᵏ·m, m in [√½, √2), so that the logarithm is accurate around x = 1. Zero and denormals
+/// count as 2⁻¹²⁶.
+#[inline(always)]
+fn split_log_f32(x: f32) -> (f32, f32) {
+    let normal = if x > f32::MIN_POSITIVE { x } else { f32::MIN_POSITIVE };
+    let shifted = normal.to_bits().wrapping_sub(0x3f35_04f3);
+    let exponent = (shifted as i32) >> 23;
+    let mantissa = f32::from_bits((shifted & 0x007f_ffff).wrapping_add(0x3f35_04f3));
+    let r = (mantissa - 1.0) / (mantissa + 1.0);
+    let q = r * r;
+    // ln m = 2 artanh r
+    let series = r * (2.0 + q * (2.0 / 3.0 + q * (2.0 / 5.0 + q * (2.0 / 7.0 + q * (2.0 / 9.0)))));
+    (exponent as f32, series)
+}
+
+/// The exponent k and ln m of x = 2ᵏ·m, m in [√½, √2). Zero and denormals count as 2⁻¹⁰²².
+#[inline(always)]
+fn split_log_f64(x: f64) -> (f64, f64) {
+    let normal = if x > f64::MIN_POSITIVE { x } else { f64::MIN_POSITIVE };
+    let shifted = normal.to_bits().wrapping_sub(0x3fe6_a09e_667f_3bcd);
+    let exponent = ((shifted as i64) >> 52) as i32;
+    let mantissa = f64::from_bits((shifted & 0x000f_ffff_ffff_ffff).wrapping_add(0x3fe6_a09e_667f_3bcd));
+    let r = (mantissa - 1.0) / (mantissa + 1.0);
+    let q = r * r;
+    let mut tail = 0.0;
+    for denominator in [23.0, 21.0, 19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0] {
+        tail = tail * q + 2.0 / denominator;
+    }
+    let series = r * (2.0 + q * tail);
+    (f64::from(exponent), series)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{pow_f32, pow_f64};
+    use super::{ln_f32, ln_f64, pow_f32, pow_f64};
+
+    #[test]
+    fn logarithms_meet_their_bounds_against_libm() {
+        for step in -5000..5000 {
+            let x = libm::exp2(f64::from(step) / 47.0);
+            let error = |found: f64, x: f64| libm::fabs(found - libm::log(x)) / libm::fabs(libm::log(x));
+            assert!(x == 1.0 || error(ln_f64(x), x) <= 1e-15, "{x:e}");
+            let single = x as f32;
+            if single != 1.0 {
+                assert!(error(f64::from(ln_f32(single)), f64::from(single)) <= 3e-7, "{x:e} in f32");
+            }
+        }
+    }
 
     #[test]
     fn powers_meet_their_bounds_against_libm() {

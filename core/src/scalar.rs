@@ -11,6 +11,7 @@ use crate::power;
 pub trait Scalar:
     nalgebra::Scalar
     + Copy
+    + Default
     + Zero
     + One
     + core::ops::Neg<Output = Self>
@@ -41,6 +42,9 @@ pub trait Scalar:
     /// `self` to the power of `exponent`, for `self` ≥ 0 and `exponent` > 0; 0 at 0.
     /// Relative error ≤ 2e-6 in f32, 1e-14 in f64 for results inside 2^±126 and 2^±1022.
     fn pow(self, exponent: Self) -> Self;
+
+    /// ln `self` for a positive normal number. Relative error ≤ 3e-7 in f32, 1e-15 in f64.
+    fn ln(self) -> Self;
 
     /// False for NaN and the infinities. A lane is finite if all of its numbers are.
     fn is_finite(self) -> bool;
@@ -85,15 +89,15 @@ impl Scalar for f32 {
         if self > other { yes } else { no }
     }
 
-    /// A guess from the exponent's bits and three Newton steps: 24 instructions on a Cortex-M4F, against a software
-    /// root of some 200 in `libm`, and free of branches.
+    /// A guess from the exponent's bits, a Newton step, which leaves 0.18 % at most, and a step of third order, whose error
+    /// is below the rounding. Some 20 instructions on a Cortex-M4F, against a software root of some 200 in `libm`, and free
+    /// of branches.
     #[inline(always)]
     fn rsqrt(self) -> Self {
         let guess = f32::from_bits(0x5f37_5a86u32.wrapping_sub(self.to_bits() >> 1));
-        let half = 0.5 * self;
-        let once = guess * (1.5 - half * guess * guess);
-        let twice = once * (1.5 - half * once * once);
-        twice * (1.5 - half * twice * twice)
+        let near = guess * (1.5 - 0.5 * self * guess * guess);
+        let miss = 1.0 - self * near * near;
+        near + near * miss * (0.5 + 0.375 * miss)
     }
 
     #[inline(always)]
@@ -104,6 +108,11 @@ impl Scalar for f32 {
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
         power::pow_f32(self, exponent)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        power::ln_f32(self)
     }
 
     fn is_finite(self) -> bool {
@@ -144,6 +153,11 @@ impl Scalar for f64 {
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
         power::pow_f64(self, exponent)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        power::ln_f64(self)
     }
 
     fn is_finite(self) -> bool {

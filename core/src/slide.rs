@@ -7,20 +7,15 @@
 //! still along the axes, and the gaps are q + d·N: a difference of small numbers, not of positions, so that f32 keeps
 //! its digits. Opposing planes of a pin form a slot.
 
+mod contacts;
 mod energy;
-
-use nalgebra::Matrix3;
+mod mechanics;
 
 use crate::{
     ParameterError, SVector, Scalar, Vector3,
     drive::Drive,
     error::bounded,
-    law::{
-        Elastic, Friction, Impact,
-        friction::{Contact, Rubbing},
-    },
-    linear::Blocks,
-    mechanism::{Evaluation, Mechanism},
+    law::{Elastic, Friction, Impact},
     pose::Pose,
 };
 
@@ -127,77 +122,6 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         }
         gaps
     }
-
-    /// A slot along one axis: what it does to the slide and how that changes, axis first.
-    #[inline(always)]
-    fn slot(
-        &self,
-        memory: &mut F::Memory,
-        gaps: [S; 2],
-        offset: S,
-        [along, sliding_0, sliding_1]: [S; 3],
-        way: Way<S>,
-    ) -> Contact<S> {
-        let slot = self.contact.slot(gaps[0], gaps[1], offset, along, way.a);
-        let zero = S::zero();
-        let mut contact = Contact {
-            force: [slot.force, zero, zero],
-            impedance: [[slot.force_slope, zero, zero], [zero; 3], [zero; 3]],
-        };
-        let rubbing = Rubbing {
-            sliding: [sliding_0, sliding_1],
-            normal: slot.normal,
-            normal_slope: slot.normal_slope,
-            mass_rate: way.mass_rate,
-            tangent_share: way.tangent_share,
-        };
-        *memory = self.friction.add(memory, &rubbing, &mut contact);
-        contact
-    }
-
-    /// Force on the slide at one pin and its impedance −∂force/∂u, in body axes, for the pin's offset `d` and the
-    /// velocity `u` of the slide's material there.
-    #[inline(always)]
-    fn pin(
-        &self,
-        memory: &mut [F::Memory; 2],
-        [left, right, rail, wall]: [S; 4],
-        d: Vector3<S>,
-        u: Vector3<S>,
-        way: Way<S>,
-    ) -> (Vector3<S>, Matrix3<S>) {
-        let [across_memory, up_memory] = memory;
-        let across = self.slot(across_memory, [left, right], d.x, [u.x, u.y, u.z], way);
-        let up = self.slot(up_memory, [wall, rail], d.y, [u.y, u.x, u.z], way);
-        let (f, g) = (across.force, up.force);
-        let (c, k) = (across.impedance, up.impedance);
-        let force = Vector3::new(f[0] + g[1], f[1] + g[0], f[2] + g[2]);
-        #[rustfmt::skip]
-        let impedance = Matrix3::new(
-            c[0][0] + k[1][1], c[0][1] + k[1][0], c[0][2] + k[1][2],
-            c[1][0] + k[0][1], c[1][1] + k[0][0], c[1][2] + k[0][2],
-            c[2][0] + k[2][1], c[2][1] + k[2][0], c[2][2] + k[2][2],
-        );
-        (force, impedance)
-    }
-}
-
-/// How forces are to be linearised.
-#[derive(Clone, Copy, Debug)]
-struct Way<S> {
-    /// Implicit part of the step (s).
-    a: S,
-    /// Mass over it (kg/s).
-    mass_rate: S,
-    /// See [`Rubbing`].
-    tangent_share: S,
-}
-
-/// [a]×, the matrix with [a]×·b = a × b.
-#[inline(always)]
-fn cross_matrix<S: Scalar>(a: &Vector3<S>) -> Matrix3<S> {
-    let o = S::zero();
-    Matrix3::new(o, -a.z, a.y, a.z, o, -a.x, -a.y, a.x, o)
 }
 
 #[inline(always)]
@@ -209,175 +133,4 @@ fn split<S: Scalar>(v: &SVector<S, 6>) -> (Vector3<S>, Vector3<S>) {
 #[inline(always)]
 fn join<S: Scalar>(a: Vector3<S>, b: Vector3<S>) -> SVector<S, 6> {
     SVector::<S, 6>::new(a.x, a.y, a.z, b.x, b.y, b.z)
-}
-
-/// The momentum balance linearised in body axes, and the rotation that leads there.
-#[derive(Clone, Copy, Debug)]
-pub struct SlideLinearisation<S> {
-    blocks: Blocks<S>,
-    to_body: crate::pose::ToBody<S>,
-}
-
-impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F> {
-    type Pose = Pose<S>;
-    type Memory = [F::Memory; SLOTS];
-    type Linearisation = SlideLinearisation<S>;
-
-    #[inline(always)]
-    fn advanced(&self, pose: &Pose<S>, velocity: &SVector<S, 6>, dt: S) -> Pose<S> {
-        let (v_w, w_b) = split(velocity);
-        pose.advanced(v_w, w_b, dt)
-    }
-
-    #[inline(always)]
-    fn moved(&self, pose: &Pose<S>, velocity: &SVector<S, 6>, dt: S) -> Pose<S> {
-        let (v_w, w_b) = split(velocity);
-        pose.moved(v_w, w_b, dt)
-    }
-
-    #[inline(always)]
-    fn shifted(&self, base: &Pose<S>, from: &Pose<S>, to: &Pose<S>, weight: S) -> Pose<S> {
-        base.shifted(from, to, weight)
-    }
-
-    #[inline(always)]
-    fn memory_shifted(
-        &self,
-        base: &[F::Memory; SLOTS],
-        from: &[F::Memory; SLOTS],
-        to: &[F::Memory; SLOTS],
-        weight: S,
-    ) -> [F::Memory; SLOTS] {
-        let mut memory = *base;
-        for ((slot, from), to) in memory.iter_mut().zip(from).zip(to) {
-            *slot = F::shifted(slot, from, to, weight);
-        }
-        memory
-    }
-
-    #[inline(always)]
-    fn normalised(&self, pose: &Pose<S>) -> Pose<S> {
-        pose.normalised()
-    }
-
-    #[inline(always)]
-    fn fresh(&self) -> [F::Memory; SLOTS] {
-        [F::fresh(); SLOTS]
-    }
-
-    #[inline(always)]
-    fn selected(
-        &self,
-        condition: S,
-        (yes, yes_memory): (&Pose<S>, &[F::Memory; SLOTS]),
-        (no, no_memory): (&Pose<S>, &[F::Memory; SLOTS]),
-    ) -> (Pose<S>, [F::Memory; SLOTS]) {
-        let mut memory = *no_memory;
-        for (slot, yes) in memory.iter_mut().zip(yes_memory) {
-            *slot = F::selected(condition, yes, slot);
-        }
-        (Pose::selected(condition, yes, no), memory)
-    }
-
-    #[inline(always)]
-    fn nought(&self, pose: &Pose<S>) -> S {
-        let zero = S::zero();
-        let Pose { displacement_w: r, orientation: q } = pose;
-        r.x * zero + r.y * zero + r.z * zero + q.w * zero + q.v.x * zero + q.v.y * zero + q.v.z * zero
-    }
-
-    /// Velocities are rounded to the last place of 4 m/s (4e-16 m/s in f64, 2e-7 m/s in f32): what rounding of the
-    /// contact forces stirs up stays below, and a body that sticks comes to rest to the last bit.
-    #[inline(always)]
-    fn settled(&self, velocity: &SVector<S, 6>) -> SVector<S, 6> {
-        if !F::STICKS {
-            return *velocity;
-        }
-        let (v_w, w_b) = split(velocity);
-        let round = |x: S, unit: S| (x + unit) - unit;
-        let unit = S::from_f64(4.0);
-        join(v_w.map(|x| round(x, unit)), w_b.map(|x| round(x, unit * self.per_lever)))
-    }
-
-    #[inline(always)]
-    fn momentum(&self, velocity: &SVector<S, 6>) -> SVector<S, 6> {
-        let (v_w, w_b) = split(velocity);
-        join(v_w * self.body.mass, w_b.component_mul(&self.body.inertia_b))
-    }
-
-    #[inline(always)]
-    fn velocity(&self, momentum: &SVector<S, 6>) -> SVector<S, 6> {
-        let (p_w, l_b) = split(momentum);
-        join(p_w / self.body.mass, l_b.component_div(&self.body.inertia_b))
-    }
-
-    #[inline(always)]
-    fn evaluated(
-        &self,
-        t: S,
-        pose: &Pose<S>,
-        memory: &[F::Memory; SLOTS],
-        velocity: &SVector<S, 6>,
-        a: S,
-        tangent_share: S,
-    ) -> Evaluation<S, [F::Memory; SLOTS], SlideLinearisation<S>, 6> {
-        let (v_w, w_b) = split(velocity);
-        let to_body = pose.to_body();
-        let v_b = to_body.apply(v_w);
-        let shift = to_body.apply(pose.displacement_w);
-        let way = Way { a, mass_rate: self.body.mass / a, tangent_share };
-
-        let mut memory = *memory;
-        let mut force = Vector3::zeros();
-        let mut torque = Vector3::zeros();
-        let mut blocks = Blocks { a: Matrix3::zeros(), b: Matrix3::zeros(), c: Matrix3::zeros(), d: Matrix3::zeros() };
-        let pins = self.body.gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w);
-        for ((gaps, pin), memory) in pins.zip(memory.as_chunks_mut::<2>().0) {
-            let d = to_body.change(*pin) - shift;
-            let lever = *pin + d;
-            let (f, impedance) = self.pin(memory, *gaps, d, v_b + w_b.cross(&lever), way);
-            let arm = cross_matrix(&lever);
-            let turned = arm * impedance;
-            force += f;
-            torque += lever.cross(&f);
-            blocks.a += impedance;
-            blocks.b -= impedance * arm;
-            blocks.c += turned;
-            blocks.d -= turned * arm;
-        }
-
-        // The drive pushes along the frame's z with what the speed of the centre of mass leaves of the command.
-        let z_b = to_body.apply(Vector3::z());
-        let drive_lever = self.drive.point_b.cross(&z_b);
-        let push = self.drive.force(t, v_w.z);
-        let gain_z = z_b * self.drive.gain;
-        force += z_b * push;
-        torque += drive_lever * push;
-        blocks.a += z_b * gain_z.transpose();
-        blocks.c += drive_lever * gain_z.transpose();
-
-        let spin = w_b.component_mul(&self.body.inertia_b);
-        torque -= w_b.cross(&spin);
-        let force_w = to_body.apply_inverse(force) + self.body.gravity_w * self.body.mass;
-
-        let m = self.body.mass;
-        blocks.a = blocks.a * a + Matrix3::from_diagonal(&Vector3::new(m, m, m));
-        blocks.b *= a;
-        blocks.c *= a;
-        blocks.d = blocks.d * a + Matrix3::from_diagonal(&self.body.inertia_b);
-        Evaluation { force: join(force_w, torque), memory, linearisation: SlideLinearisation { blocks, to_body } }
-    }
-
-    #[inline(always)]
-    fn solve(&self, linearisation: &SlideLinearisation<S>, residual: &SVector<S, 6>) -> SVector<S, 6> {
-        let (p_w, l_b) = split(residual);
-        let (v_b, w_b) = linearisation.blocks.solve(linearisation.to_body.apply(p_w), l_b);
-        join(linearisation.to_body.apply_inverse(v_b), w_b)
-    }
-
-    #[inline(always)]
-    fn impulse(&self, imbalance: &SVector<S, 6>) -> S {
-        let (p, l) = split(imbalance);
-        (p.dot(&p) + l.dot(&l) * self.per_lever * self.per_lever).sqrt()
-    }
 }

@@ -71,6 +71,7 @@ pub fn rust_source(scene: &Scene) -> String {
     let (scheme, scheme_type) = match scene.run.integrator {
         IntegratorKind::SemiImplicitEuler => ("SemiImplicitEuler", "SemiImplicitEuler"),
         IntegratorKind::RungeKutta4 => ("RungeKutta4", "RungeKutta4"),
+        IntegratorKind::Rodas3 => ("Rodas3", "Rodas3"),
         IntegratorKind::LinearlyImplicitEuler => ("ImplicitEuler", "ImplicitEuler<1>"),
         IntegratorKind::ImplicitEuler => ("ImplicitEuler", "ImplicitEuler<4>"),
         IntegratorKind::Sdirk2 => ("Sdirk2", "Sdirk2<4>"),

@@ -24,6 +24,7 @@ pub mod number;
 pub mod outcome;
 pub mod plot;
 pub mod precision;
+pub mod product;
 pub mod report;
 pub mod scene;
 pub mod scheme;

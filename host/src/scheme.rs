@@ -1,7 +1,9 @@
 //! The fixed-step schemes a scene can ask for, with their numbers of passes.
 
 use clap::{ValueEnum, builder::PossibleValue};
-use slipfit_core::integrator::{Extrapolated, ImplicitEuler, Integrator, RungeKutta4, Sdirk2, SemiImplicitEuler};
+use slipfit_core::integrator::{
+    Extrapolated, ImplicitEuler, Integrator, Rodas3, RungeKutta4, Sdirk2, SemiImplicitEuler,
+};
 
 /// A scheme by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,6 +12,8 @@ pub enum IntegratorKind {
     SemiImplicitEuler,
     /// Fourth order, explicit.
     RungeKutta4,
+    /// Third order, linearly implicit.
+    Rodas3,
     /// First order, one Newton pass.
     LinearlyImplicitEuler,
     /// First order, four Newton passes.
@@ -31,10 +35,11 @@ pub trait IntegratorVisitor {
 
 impl IntegratorKind {
     /// All of them, the cheapest step first.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::SemiImplicitEuler,
         Self::RungeKutta4,
         Self::LinearlyImplicitEuler,
+        Self::Rodas3,
         Self::ImplicitEuler,
         Self::Sdirk2,
         Self::Extrapolated,
@@ -45,6 +50,7 @@ impl IntegratorKind {
         match self {
             Self::SemiImplicitEuler => visitor.visit::<SemiImplicitEuler>(),
             Self::RungeKutta4 => visitor.visit::<RungeKutta4>(),
+            Self::Rodas3 => visitor.visit::<Rodas3>(),
             Self::LinearlyImplicitEuler => visitor.visit::<ImplicitEuler<1>>(),
             Self::ImplicitEuler => visitor.visit::<ImplicitEuler<4>>(),
             Self::Sdirk2 => visitor.visit::<Sdirk2<4>>(),

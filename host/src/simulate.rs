@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use slipfit_core::{
     ParameterError, SVector, Scalar,
-    integrator::{Extrapolated, Integrator, Motion},
+    integrator::{Extrapolated, Integrator, Motion, Rodas3},
     kernel::Kernel,
     law::{Elastic, Friction},
     mechanism::Mechanism,
@@ -176,8 +176,10 @@ impl SlideVisitor<f64> for Controlled<'_> {
         let rest = Motion { pose: Pose::nominal(), velocity: SVector::zeros(), memory: slide.fresh() };
         let mut knots = Vec::new();
         let start = Instant::now();
-        let effort =
-            controlled::integrate::<Extrapolated<3, 3>, _>(&slide, rest, duration, sensitivity, tolerance, &mut knots);
+        // A law that sticks remembers its force from step to step, which only a solved step can follow.
+        let integrate =
+            if F::STICKS { controlled::integrate::<Extrapolated<3, 3>, _> } else { controlled::integrate::<Rodas3, _> };
+        let effort = integrate(&slide, rest, duration, sensitivity, tolerance, &mut knots);
         let integration = start.elapsed();
 
         let looks = (settings.every / LOOK - 1e-9).ceil().max(1.0);

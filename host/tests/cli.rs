@@ -221,3 +221,22 @@ fn precision_refuses_before_it_measures() {
         assert!(String::from_utf8_lossy(&output.stderr).contains(word), "{bad:?}");
     }
 }
+
+#[test]
+fn shipped_scenes_go_by_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = json(folder.path(), &["check", "cd-rom-slide-drawing", "--json"]);
+    assert!((found["n_star"][0]["n"].as_f64().unwrap() - 3.43).abs() < 1e-3, "{found}");
+    let product = stdout(&slipfit(folder.path(), &["check", "clutch"]));
+    assert!(product.contains("pressure angle") && product.contains("7.0184"), "{product}");
+    for (arguments, parts) in [
+        (["check", "no-such-scene"], ["shipped scenes are cd-rom-slide, ", "clutch"]),
+        (["simulate", "clutch"], ["the scene has no `slide`", "clutch.toml:1:1"]),
+    ] {
+        let output = slipfit(folder.path(), &arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+    }
+    assert!(files(folder.path()).is_empty());
+}

@@ -49,6 +49,6 @@ impl<const COLUMNS: usize, const PASSES: usize> Integrator for Extrapolated<COLU
         }
         let end = row[COLUMNS - 1];
         let pose = mechanism.normalised(&end.pose);
-        Step { motion: Motion { pose, ..end }, residual, error }
+        Step { motion: Motion { pose, ..end }, residual, error, drift: error * h }
     }
 }

@@ -19,14 +19,15 @@ impl<const PASSES: usize> Integrator for ImplicitEuler<PASSES> {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        let start = mechanism.evaluated(t, &motion.pose, &motion.memory, &motion.velocity, h, S::one());
+        let (start, _) = mechanism.forces(t, &motion.pose, &motion.memory, &motion.velocity, h);
         let end = stage::<S, M, D, PASSES>(mechanism, t + h, h, motion, motion.velocity);
         // Half the change of the force over the step is what the first order leaves out; the linearisation takes the stiff
         // part out of it again, which the scheme damps and does not follow.
-        let change = mechanism.momentum(&(end.motion.velocity - motion.velocity)) - start.force * h;
+        let rate = S::one() / h;
+        let change = mechanism.momentum(&(end.motion.velocity - motion.velocity)) * rate - start;
         let left_out = mechanism.solve(&end.linearisation, &(change * S::from_f64(0.5)));
         let error = mechanism.impulse(&mechanism.momentum(&left_out));
         let pose = mechanism.normalised(&end.motion.pose);
-        Step { motion: Motion { pose, ..end.motion }, residual: end.residual, error }
+        Step { motion: Motion { pose, ..end.motion }, residual: end.residual, error, drift: error * h }
     }
 }

@@ -5,12 +5,14 @@
 
 mod extrapolated;
 mod implicit_euler;
+mod rodas3;
 mod runge_kutta_4;
 mod sdirk2;
 mod semi_implicit_euler;
 
 pub use extrapolated::Extrapolated;
 pub use implicit_euler::ImplicitEuler;
+pub use rodas3::Rodas3;
 pub use runge_kutta_4::RungeKutta4;
 pub use sdirk2::Sdirk2;
 pub use semi_implicit_euler::SemiImplicitEuler;
@@ -40,6 +42,8 @@ pub struct Step<S, P, R, const D: usize> {
     pub residual: S,
     /// Estimate of the momentum's error (N·s) made in this step.
     pub error: S,
+    /// Estimate of the error (N·s²) of the place made in this step, weighted with the masses as momentum is.
+    pub drift: S,
 }
 
 /// A step of mechanism `M`.
@@ -70,7 +74,7 @@ struct Stage<S, P, R, L, const D: usize> {
     motion: Motion<S, P, R, D>,
     /// Imbalance of momentum (N·s) that the passes left.
     residual: S,
-    /// Linearisation at the motion.
+    /// Linearisation of the last pass.
     linearisation: L,
 }
 
@@ -99,22 +103,21 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize>(
     base: &MotionOf<S, M, D>,
     guess: SVector<S, D>,
 ) -> StageOf<S, M, D> {
+    let rate = S::one() / a;
     let mut velocity = guess;
+    let mut linearisation = M::Linearisation::default();
     for pass in 0..PASSES {
         let pose = mechanism.advanced(&base.pose, &velocity, a);
-        let at = mechanism.evaluated(t, &pose, &base.memory, &velocity, a, tangent_share(pass));
-        let imbalance = mechanism.momentum(&(velocity - base.velocity)) - at.force * a;
+        let at = mechanism.linearised(t, &pose, &base.memory, &velocity, a, tangent_share(pass));
+        let imbalance = mechanism.momentum(&(velocity - base.velocity)) * rate - at.force;
         velocity -= mechanism.solve(&at.linearisation, &imbalance);
+        linearisation = at.linearisation;
     }
     let velocity = mechanism.settled(&velocity);
     let pose = mechanism.advanced(&base.pose, &velocity, a);
-    let at = mechanism.evaluated(t, &pose, &base.memory, &velocity, a, S::one());
-    let imbalance = mechanism.momentum(&(velocity - base.velocity)) - at.force * a;
-    Stage {
-        motion: Motion { pose, velocity, memory: at.memory },
-        residual: mechanism.impulse(&imbalance),
-        linearisation: at.linearisation,
-    }
+    let (force, memory) = mechanism.forces(t, &pose, &base.memory, &velocity, a);
+    let imbalance = mechanism.momentum(&(velocity - base.velocity)) * rate - force;
+    Stage { motion: Motion { pose, velocity, memory }, residual: mechanism.impulse(&imbalance) * a, linearisation }
 }
 
 /// `base + weight·(to − from)`.

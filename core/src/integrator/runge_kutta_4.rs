@@ -22,7 +22,7 @@ impl Integrator for RungeKutta4 {
     ) -> StepOf<S, M, D> {
         let (half, third, sixth) = (S::from_f64(0.5), S::from_f64(1.0 / 3.0), S::from_f64(1.0 / 6.0));
         let acceleration = |t: S, pose: &M::Pose, velocity: &SVector<S, D>| {
-            mechanism.velocity(&mechanism.evaluated(t, pose, &motion.memory, velocity, h, S::one()).force)
+            mechanism.velocity(&mechanism.forces(t, pose, &motion.memory, velocity, h).0)
         };
         let (q1, v1) = (motion.pose, motion.velocity);
         let a1 = acceleration(t, &q1, &v1);
@@ -46,6 +46,6 @@ impl Integrator for RungeKutta4 {
         // The two slopes at the middle differ by a term of third order: an estimate on the safe side.
         let error = mechanism.impulse(&mechanism.momentum(&((a3 - a2) * (h * third))));
         let pose = mechanism.normalised(&pose);
-        Step { motion: Motion { pose, velocity, memory: motion.memory }, residual: S::zero(), error }
+        Step { motion: Motion { pose, velocity, memory: motion.memory }, residual: S::zero(), error, drift: error * h }
     }
 }

@@ -31,6 +31,6 @@ impl<const PASSES: usize> Integrator for Sdirk2<PASSES> {
         let difference = (second.velocity - base.velocity) - (first.velocity - motion.velocity);
         let error = mechanism.impulse(&mechanism.momentum(&difference));
         let pose = mechanism.normalised(&second.pose);
-        Step { motion: Motion { pose, ..second }, residual: residual_1.max_of(residual_2), error }
+        Step { motion: Motion { pose, ..second }, residual: residual_1.max_of(residual_2), error, drift: error * h }
     }
 }

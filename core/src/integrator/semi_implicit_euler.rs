@@ -20,12 +20,12 @@ impl Integrator for SemiImplicitEuler {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        let start = mechanism.evaluated(t, &motion.pose, &motion.memory, &motion.velocity, h, S::one());
-        let velocity = motion.velocity + mechanism.velocity(&(start.force * h));
+        let (start, _) = mechanism.forces(t, &motion.pose, &motion.memory, &motion.velocity, h);
+        let velocity = motion.velocity + mechanism.velocity(&(start * h));
         let pose = mechanism.normalised(&mechanism.advanced(&motion.pose, &velocity, h));
-        let end = mechanism.evaluated(t + h, &pose, &motion.memory, &velocity, h, S::one());
+        let (end, _) = mechanism.forces(t + h, &pose, &motion.memory, &velocity, h);
         // Half the change of the force over the step is what the first order leaves out.
-        let error = mechanism.impulse(&((end.force - start.force) * (h * S::from_f64(0.5))));
-        Step { motion: Motion { pose, velocity, memory: motion.memory }, residual: S::zero(), error }
+        let error = mechanism.impulse(&((end - start) * (h * S::from_f64(0.5))));
+        Step { motion: Motion { pose, velocity, memory: motion.memory }, residual: S::zero(), error, drift: error * h }
     }
 }

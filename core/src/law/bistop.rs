@@ -2,20 +2,44 @@
 //!
 //! Two opposing pads of one pin are a slot: they share the offset and the sliding velocity.
 
-use super::{Elastic, Impact};
+use super::{Elastic, Impact, impact::NormalResponse};
 use crate::Scalar;
 
 /// What a slot does to its pin's partner, along the slot's axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlotResponse<S> {
+    /// The pad whose gap grows with the offset.
+    low: NormalResponse<S>,
+    /// The pad whose gap shrinks with the offset.
+    high: NormalResponse<S>,
+}
+
+impl<S: Scalar> SlotResponse<S> {
     /// Force on the body that carries the slot, along the axis (N).
-    pub force: S,
+    #[inline(always)]
+    pub fn force(&self) -> S {
+        self.high.force - self.low.force
+    }
+
     /// Sum of the two normal forces (N), which friction acts upon.
-    pub normal: S,
-    /// −∂force/∂u (N·s/m), for a body velocity u along the axis that also moves the offset by −a·u.
-    pub force_slope: S,
-    /// ∂normal/∂u (N·s/m), likewise.
-    pub normal_slope: S,
+    #[inline(always)]
+    pub fn normal(&self) -> S {
+        self.high.force + self.low.force
+    }
+
+    /// −∂force/∂u and ∂normal/∂u (N·s/m), for a body velocity u along the axis that also moves the offset by −a·u, `a` (s)
+    /// being the part of a step over which it does.
+    #[inline(always)]
+    pub fn impedances(&self, a: S) -> [S; 2] {
+        let (low, high) = (self.low.damping + a * self.low.stiffness, self.high.damping + a * self.high.stiffness);
+        [high + low, low - high]
+    }
+
+    /// −∂force/∂x and ∂normal/∂x (N/m), for a displacement x of the body along the axis, which moves the offset by −x.
+    #[inline(always)]
+    pub fn stiffnesses(&self) -> [S; 2] {
+        [self.high.stiffness + self.low.stiffness, self.low.stiffness - self.high.stiffness]
+    }
 }
 
 impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
@@ -23,18 +47,10 @@ impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
     ///
     /// `offset` (m) is the pin's displacement along the slot's axis as seen from the body that carries the slot:
     /// the lower gap is `lower + offset`, the upper `upper − offset`. `speed` u (m/s) is that of the body's material at
-    /// the pin, so the offset's rate is −u. `a` (s) is the part of a step over which u also moves the offset.
+    /// the pin, so the offset's rate is −u.
     #[inline(always)]
-    pub fn slot(&self, lower: S, upper: S, offset: S, speed: S, a: S) -> SlotResponse<S> {
-        let low = self.response(-(lower + offset), speed);
-        let high = self.response(offset - upper, -speed);
-        let (low_slope, high_slope) = (low.damping + a * low.stiffness, high.damping + a * high.stiffness);
-        SlotResponse {
-            force: high.force - low.force,
-            normal: high.force + low.force,
-            force_slope: high_slope + low_slope,
-            normal_slope: low_slope - high_slope,
-        }
+    pub fn slot(&self, lower: S, upper: S, offset: S, speed: S) -> SlotResponse<S> {
+        SlotResponse { low: self.response(-(lower + offset), speed), high: self.response(offset - upper, -speed) }
     }
 }
 
@@ -47,16 +63,21 @@ mod tests {
         let law = Impact::new(ThreeHalves::new(3e6f64).unwrap(), 1000.0, 1e-4).unwrap();
         let (lower, upper, a) = (-1e-5, 1e-5, 1e-4);
         for (offset, speed) in [(3e-5, -0.01), (-2e-5, 0.004), (0.0, 0.02), (1.5e-5, 0.001)] {
-            let at = |u: f64| law.slot(lower, upper, offset - a * (u - speed), u, a);
+            let at = |u: f64| law.slot(lower, upper, offset - a * (u - speed), u);
             let slot = at(speed);
             let low = law.response(-(lower + offset), speed).force;
             let high = law.response(offset - upper, -speed).force;
-            assert_eq!((slot.force, slot.normal), (high - low, high + low));
+            assert_eq!((slot.force(), slot.normal()), (high - low, high + low));
             let h = 1e-7;
-            let force_slope = -(at(speed + h).force - at(speed - h).force) / (2.0 * h);
-            let normal_slope = (at(speed + h).normal - at(speed - h).normal) / (2.0 * h);
-            assert!(libm::fabs(slot.force_slope - force_slope) < 1e-5 * (1.0 + force_slope));
-            assert!(libm::fabs(slot.normal_slope - normal_slope) < 1e-5 * (1.0 + libm::fabs(normal_slope)));
+            let force_slope = -(at(speed + h).force() - at(speed - h).force()) / (2.0 * h);
+            let normal_slope = (at(speed + h).normal() - at(speed - h).normal()) / (2.0 * h);
+            let [impedance, normal_impedance] = slot.impedances(a);
+            assert!(libm::fabs(impedance - force_slope) < 1e-5 * (1.0 + force_slope));
+            assert!(libm::fabs(normal_impedance - normal_slope) < 1e-5 * (1.0 + libm::fabs(normal_slope)));
+            let [stiffness, normal_stiffness] = slot.stiffnesses();
+            let [damping, normal_damping] = slot.impedances(0.0);
+            assert!(libm::fabs(damping + a * stiffness - impedance) <= 1e-12 * impedance);
+            assert!(libm::fabs(normal_damping + a * normal_stiffness - normal_impedance) <= 1e-12 * impedance);
         }
     }
 }

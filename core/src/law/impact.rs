@@ -4,7 +4,7 @@
 //! the depth `d`, lets the sum pull, and signs the damper so that it feeds energy. The law here is the one of the
 //! solver the authors ran, F = max(0, k·δ^e + c·S(δ/d)·δ̇) for δ > 0 with S clamped: full damping beyond `d`, no pull.
 
-use super::{Elastic, step::cubic};
+use super::{Elastic, step::risen};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// A one-sided contact.
@@ -14,6 +14,8 @@ pub struct Impact<S, E> {
     damping: S,
     /// 1/m: the inverse of the depth of full damping.
     per_depth: S,
+    /// Six times the damping over that depth (N·s/m²): with S' = 6s(1 − s) how fast the damper fades in.
+    fade_in: S,
 }
 
 /// A normal force and how it changes.
@@ -35,7 +37,8 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>> Impact<S, E> {
     pub fn new(elastic: E, damping: S, depth: S) -> Result<Self, ParameterError<S>> {
         let damping = bounded("contact.damping", damping, [0.0, 1e12])?;
         let depth = bounded("contact.depth", depth, [1e-9, 1e3])?;
-        Ok(Self { elastic, damping, per_depth: S::one() / depth })
+        let per_depth = S::one() / depth;
+        Ok(Self { elastic, damping, per_depth, fade_in: S::from_f64(6.0) * damping * per_depth })
     }
 }
 
@@ -47,10 +50,10 @@ impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
         // At depth 0 spring, damper and their slopes all vanish, so that no second test is needed outside contact.
         let depth = penetration.max_of(zero);
         let (spring, spring_slope) = self.elastic.force(depth);
-        let (fade, fade_slope) = cubic(depth * self.per_depth);
+        let (fade, rest) = risen(depth * self.per_depth);
         let damper = self.damping * fade;
         let force = spring + damper * rate;
-        let stiffness = spring_slope + self.damping * fade_slope * self.per_depth * rate;
+        let stiffness = spring_slope + self.fade_in * rest * rate;
         NormalResponse {
             force: force.max_of(zero),
             stiffness: force.select_gt(zero, stiffness, zero),

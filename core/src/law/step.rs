@@ -2,12 +2,18 @@
 
 use crate::Scalar;
 
-/// S(s) = s²(3 − 2s) with s clamped to [0, 1], and its slope dS/ds = 6s(1 − s).
+/// S(s) = s²(3 − 2s) with s clamped to [0, 1], and a sixth of its slope dS/ds = 6s(1 − s).
 #[inline(always)]
 pub fn cubic<S: Scalar>(s: S) -> (S, S) {
-    let (two, three, six) = (S::from_f64(2.0), S::from_f64(3.0), S::from_f64(6.0));
-    let s = s.within(S::zero(), S::one());
-    (s * s * (three - two * s), six * s * (S::one() - s))
+    risen(s.max_of(S::zero()))
+}
+
+/// The same for an s that is not negative.
+#[inline(always)]
+pub fn risen<S: Scalar>(s: S) -> (S, S) {
+    let s = s.select_gt(S::one(), S::one(), s);
+    let square = s * s;
+    (square * (S::from_f64(3.0) - (s + s)), s - square)
 }
 
 /// STEP(x, x0, h0, x1, h1): `h0` up to `x0`, `h1` from `x1` on, the cubic between. Needs x1 > x0.
@@ -27,7 +33,7 @@ mod tests {
         assert_eq!(step(0.5f64, 0.0, -1.0, 1.0, 1.0), 0.0);
         let (h, x) = (1e-6, 0.3f64);
         let difference = (cubic(x + h).0 - cubic(x - h).0) / (2.0 * h);
-        assert!(libm::fabs(cubic(x).1 - difference) < 1e-9);
+        assert!(libm::fabs(6.0 * cubic(x).1 - difference) < 1e-9);
         assert_eq!(cubic(-1.0).1, 0.0);
         assert_eq!(cubic(3.0f32).1, 0.0);
     }

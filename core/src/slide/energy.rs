@@ -4,10 +4,7 @@ use super::{Slide, split};
 use crate::{
     Scalar,
     integrator::MotionOf,
-    law::{
-        Elastic, Friction,
-        friction::{Contact, Rubbing},
-    },
+    law::{Elastic, Friction, friction::Rubbing},
     mechanism::Mechanism,
 };
 
@@ -61,18 +58,16 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
             let slots = [([left, right], [u.x, u.y, u.z]), ([wall, rail], [u.y, u.x, u.z])];
             for ((gaps, [along, sliding_0, sliding_1]), memory) in slots.into_iter().zip(memory) {
                 // The gaps of this pose, so that the slot stands at offset 0.
-                let slot = self.contact.slot(*gaps[0], *gaps[1], zero, along, zero);
+                let slot = self.contact.slot(*gaps[0], *gaps[1], zero, along);
                 let rubbing = Rubbing {
                     sliding: [sliding_0, sliding_1],
-                    normal: slot.normal,
-                    normal_slope: zero,
+                    normal: slot.normal(),
                     // Without grip the remembered force stands.
                     mass_rate: zero,
                     tangent_share: zero,
                 };
-                let mut contact = Contact { force: [zero; 3], impedance: [[zero; 3]; 3] };
-                self.friction.add(memory, &rubbing, &mut contact);
-                friction -= contact.force[1] * sliding_0 + contact.force[2] * sliding_1;
+                let (traction, _) = self.friction.traction(memory, &rubbing);
+                friction -= traction.force[0] * sliding_0 + traction.force[1] * sliding_1;
                 damping += self.contact.loss(-*gaps[0], along) + self.contact.loss(-*gaps[1], -along);
             }
         }

@@ -10,10 +10,12 @@ use super::{Failure, SceneArguments, print, print_json, text_table};
 use crate::{
     mobility::{contacts, degrees_of_freedom, rank_of_normals},
     number::{fixed, level, or_dash},
+    product::Product,
     scene::Scene,
     self_locking::{DriveSide, Guide, guide},
     sweep::classes,
     table2::derived,
+    tolerance::model::Quantity,
 };
 
 /// Validates a scene: degrees of freedom, gaps at n, the n that closes each pair, warnings.
@@ -40,6 +42,22 @@ struct Findings {
     n_star: Vec<Closing>,
     guide: Option<Guide>,
     warnings: Vec<String>,
+}
+
+/// A product without a slide.
+#[derive(Serialize)]
+struct ProductFindings {
+    title: String,
+    measures: Vec<Nominal>,
+    warnings: Vec<String>,
+}
+
+/// A measure at the drawing's nominal values.
+#[derive(Serialize)]
+struct Nominal {
+    name: String,
+    nominal: f64,
+    unit: &'static str,
 }
 
 /// A pair of gaps and the level that closes it.
@@ -74,9 +92,38 @@ impl Arguments {
         if !self.n.is_finite() {
             return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
         }
-        let findings = find(&self.scene.load(&[])?, self.n);
-        if self.scene.json { print_json(&findings) } else { print(&describe(&findings)) }
+        let file = self.scene.load_file(&[])?;
+        let of_product = file.product.as_ref().map(|product| product.warnings.clone()).unwrap_or_default();
+        if let Some(slide) = &file.slide {
+            let mut findings = find(slide, self.n);
+            findings.warnings.extend(of_product);
+            return if self.scene.json { print_json(&findings) } else { print(&describe(&findings)) };
+        }
+        let measures = file.product.map(nominal).unwrap_or_default();
+        let findings = ProductFindings { title: file.title, measures, warnings: of_product };
+        if self.scene.json { print_json(&findings) } else { print(&describe_product(&findings)) }
     }
+}
+
+fn nominal(product: Product) -> Vec<Nominal> {
+    let values = product.nominal_measures();
+    let measures = product.model.measures.into_iter().zip(values);
+    let nominal = measures.map(|(measure, value)| match measure.quantity {
+        Quantity::Length => Nominal { name: measure.name, nominal: value * 1e3, unit: "mm" },
+        Quantity::Angle => Nominal { name: measure.name, nominal: value.to_degrees(), unit: "°" },
+        Quantity::Ratio => Nominal { name: measure.name, nominal: value, unit: "" },
+    });
+    nominal.collect()
+}
+
+fn describe_product(findings: &ProductFindings) -> String {
+    let row = |measure: &Nominal| vec![measure.name.clone(), fixed(measure.nominal, 4), measure.unit.into()];
+    let rows: Vec<_> = findings.measures.iter().map(row).collect();
+    let mut text = format!("{}\n\n{}", findings.title, text_table(&["measure", "nominal", "unit"], &rows));
+    for warning in &findings.warnings {
+        let _ = writeln!(text, "\nwarning: {warning}");
+    }
+    text
 }
 
 fn find(scene: &Scene, n: f64) -> Findings {

@@ -2,6 +2,7 @@
 
 mod check;
 mod kernel;
+mod merge;
 mod precision;
 mod run;
 mod simulate;
@@ -11,6 +12,7 @@ mod table;
 mod tolerance;
 
 use std::{
+    borrow::Cow,
     io::{IsTerminal, Read, Write},
     path::{Path, PathBuf},
     process::ExitCode,
@@ -24,8 +26,9 @@ use crate::{
     files::{self, WriteError},
     force_table::TableError,
     interrupt,
-    scene::{CD_ROM_SLIDE, Override, Scene, SceneError},
+    scene::{CD_ROM_SLIDE, Override, SHIPPED, Scene, SceneError, SceneFile, shipped},
     simulate::SimulateError,
+    tolerance::run::RunError,
 };
 
 /// From a drawing's tolerances to a flashed force table.
@@ -58,6 +61,7 @@ enum Command {
     Table(table::Arguments),
     Kernel(kernel::Arguments),
     Precision(precision::Arguments),
+    Merge(merge::Arguments),
 }
 
 /// Why a command did not do its work.
@@ -89,6 +93,15 @@ impl From<SimulateError> for Failure {
     }
 }
 
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Interrupted { .. } | RunError::Write(_) | RunError::Header(_) => Self::Work(error.into()),
+            bad => Self::Input(bad.to_string()),
+        }
+    }
+}
+
 impl From<TableError> for Failure {
     fn from(error: TableError) -> Self {
         match error {
@@ -106,7 +119,7 @@ fn refused(error: WriteError) -> Failure {
 /// What every command takes.
 #[derive(Args)]
 struct SceneArguments {
-    /// Scene file (TOML); the CD-ROM slide if none is given.
+    /// Scene file (TOML), or the name of a shipped scene; the CD-ROM slide if none is given.
     scene: Option<PathBuf>,
     /// Sets a key of the scene, such as contact.stiffness=1000 or "slide.mass=90 g"; may be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
@@ -129,27 +142,46 @@ impl SceneArguments {
         files::check_writable(output).map_err(|error| Failure::Input(error.to_string()))
     }
 
-    /// Reads the scene, with `options` as further settings.
+    /// Reads the scene file, with `options` as further settings.
+    fn load_file(&self, options: &[Override]) -> Result<SceneFile, Failure> {
+        let (name, text) = self.text()?;
+        Ok(SceneFile::parse(&name, &text, &self.overrides(options))?)
+    }
+
+    /// Reads the slide of the scene, with `options` as further settings.
     fn load(&self, options: &[Override]) -> Result<Scene, Failure> {
-        let set = self.set.iter().map(|assignment| Override::set(assignment));
-        let overrides: Vec<_> = set.chain(options.iter().cloned()).collect();
-        let (name, text) = match &self.scene {
-            None => ("cd-rom-slide.toml".into(), CD_ROM_SLIDE.into()),
-            Some(path) => {
-                let unreadable = |why: &dyn std::fmt::Display| {
-                    Failure::Input(format!("cannot read the scene {}: {why}", path.display()))
-                };
-                let mut bytes = Vec::new();
-                let file = std::fs::File::open(path).map_err(|error| unreadable(&error))?;
-                file.take(SCENE_MOST + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
-                if bytes.len() as u64 > SCENE_MOST {
-                    return Err(unreadable(&format!("it is longer than {SCENE_MOST} bytes")));
-                }
-                let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
-                (path.display().to_string(), text)
+        let (name, text) = self.text()?;
+        Ok(Scene::parse(&name, &text, &self.overrides(options))?)
+    }
+
+    fn overrides(&self, options: &[Override]) -> Vec<Override> {
+        self.set.iter().map(|assignment| Override::set(assignment)).chain(options.iter().cloned()).collect()
+    }
+
+    /// Name and text of the scene: a file, or a shipped one by its name.
+    fn text(&self) -> Result<(String, Cow<'static, str>), Failure> {
+        let Some(path) = &self.scene else { return Ok(("cd-rom-slide.toml".into(), CD_ROM_SLIDE.into())) };
+        let unreadable =
+            |why: &dyn std::fmt::Display| Failure::Input(format!("cannot read the scene {}: {why}", path.display()));
+        let file = match std::fs::File::open(path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                let name = path.to_string_lossy();
+                let text = shipped(&name).ok_or_else(|| {
+                    let names: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
+                    unreadable(&format!("{error}; shipped scenes are {}", names.join(", ")))
+                })?;
+                return Ok((format!("{name}.toml"), text.into()));
             }
+            Err(error) => return Err(unreadable(&error)),
         };
-        Ok(Scene::parse(&name, &text, &overrides)?)
+        let mut bytes = Vec::new();
+        file.take(SCENE_MOST + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
+        if bytes.len() as u64 > SCENE_MOST {
+            return Err(unreadable(&format!("it is longer than {SCENE_MOST} bytes")));
+        }
+        let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
+        Ok((path.display().to_string(), text.into()))
     }
 }
 
@@ -224,6 +256,7 @@ pub fn main() -> ExitCode {
         Some(Command::Table(arguments)) => arguments.run(),
         Some(Command::Kernel(arguments)) => arguments.run(),
         Some(Command::Precision(arguments)) => arguments.run(),
+        Some(Command::Merge(arguments)) => arguments.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,6 +4,8 @@ use std::{fmt, ops::Range};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str};
 
+use crate::product::{contacts::PlacementError, dimension::ShapeError, expression::Fault, iso2768::BandError};
+
 use super::{GapError, LevelError};
 
 /// What is wrong with a scene. Keys are written in full, such as `slide.mass`; values as they were typed.
@@ -17,16 +19,21 @@ pub enum Problem {
     #[error("`--set` needs a key and a value")]
     Override,
     /// A key that no scene has.
-    #[error("unknown key `{key}`{}", similar.map(|key| format!(", did you mean `{key}`?")).unwrap_or_default())]
+    #[error("unknown key `{key}`{}", similar.as_ref().map(|key| format!(", did you mean `{key}`?")).unwrap_or_default())]
     UnknownKey {
         /// The key.
         key: String,
         /// A key that is spelt alike.
-        similar: Option<&'static str>,
+        similar: Option<String>,
     },
-    /// An override of a pin that the scene does not have.
-    #[error("there is no pin `{0}`")]
-    UnknownPin(String),
+    /// A name that nothing in the scene has.
+    #[error("there is no {of} `{name}`")]
+    UnknownName {
+        /// What it should be, such as "pin".
+        of: String,
+        /// The name.
+        name: String,
+    },
     /// A key that every scene needs.
     #[error("`{0}` is missing")]
     Missing(String),
@@ -99,6 +106,77 @@ pub enum Problem {
     /// Exact friction with a scheme that does not solve for forces.
     #[error("`run.integrator` is \"{0}\", which cannot do exact friction")]
     ExplicitFriction(String),
+    /// A name that is taken.
+    #[error("`{key}` is \"{name}\" again")]
+    Duplicate {
+        /// The key.
+        key: String,
+        /// The name.
+        name: String,
+    },
+    /// A tolerance without width, or a distribution that does not fit its tolerance.
+    #[error("`{key}`: {error}")]
+    Shape {
+        /// The key.
+        key: String,
+        /// Why not.
+        error: ShapeError,
+    },
+    /// A length without a general tolerance.
+    #[error("`{key}`: {error}")]
+    Band {
+        /// The key.
+        key: String,
+        /// Which.
+        error: BandError,
+    },
+    /// An expression that cannot be read or computed.
+    #[error("`{key}`: {fault}")]
+    Expression {
+        /// The key.
+        key: String,
+        /// Why not.
+        fault: Fault,
+    },
+    /// A lower limit that is not below the upper one.
+    #[error("`{key}` is {written}, which is not above the lower limit, {lower}")]
+    Limits {
+        /// The key of the upper limit.
+        key: String,
+        /// The upper limit.
+        written: String,
+        /// The lower limit.
+        lower: String,
+    },
+    /// Coefficients that no set of random variables can have.
+    #[error("the correlations contradict each other: their matrix is not positive definite")]
+    NotPositiveDefinite,
+    /// Something that drawings have and this program does not.
+    #[error("{what} is not supported")]
+    Unsupported {
+        /// What.
+        what: String,
+    },
+    /// A part, or a system of datums, without one definite place.
+    #[error("`{part}`: {error}")]
+    Placement {
+        /// Part or feature.
+        part: String,
+        /// Why.
+        error: PlacementError,
+    },
+    /// A part without a mate.
+    #[error("no mate places the part `{0}`: it is under-constrained")]
+    NotPlaced(String),
+    /// A part with two mates, or the first part with one.
+    #[error("the part `{0}` is placed already: it is over-constrained")]
+    PlacedTwice(String),
+    /// Mates that rest on each other.
+    #[error("the mates form a loop: {0}")]
+    Loop(String),
+    /// A scene of tolerances alone where motion is asked for.
+    #[error("the scene has no `slide`: there is nothing to move")]
+    NoSlide,
     /// Not a range of tolerance levels.
     #[error("`{key}`: {error}")]
     Levels {

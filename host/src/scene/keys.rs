@@ -5,93 +5,188 @@ use super::{
     tree::{Node, Value},
 };
 
-/// Every key, with its table.
-const KEYS: [&str; 27] = [
-    "title",
-    "slide.mass",
-    "slide.inertia_box",
-    "slide.gravity",
-    "contact.stiffness",
-    "contact.exponent",
-    "contact.damping",
-    "contact.depth",
-    "friction.law",
-    "friction.coefficient",
-    "friction.stick_band",
-    "drive.gain",
-    "drive.ramp_start",
-    "drive.ramp_end",
-    "drive.speed",
-    "drive.point",
-    "run.duration",
-    "run.step",
-    "run.integrator",
-    "sweep.n",
-    "drawing.clearance",
-    "pin.name",
-    "pin.position",
-    "pin.left",
-    "pin.right",
-    "pin.rail",
-    "pin.wall",
+/// A key, and the keys of the table (or the tables of the list) that it may hold.
+struct Key {
+    name: &'static str,
+    below: &'static [Key],
+}
+
+const fn key(name: &'static str) -> Key {
+    Key { name, below: &[] }
+}
+
+const fn table(name: &'static str, below: &'static [Key]) -> Key {
+    Key { name, below }
+}
+
+const DISTRIBUTION: Key =
+    table("distribution", &[key("kind"), key("mode"), key("shoulders"), key("skewness"), key("deviations")]);
+
+const TOLERANCED: &[Key] = &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge")];
+const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
+const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
+const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
+const ZONE: &[Key] = &[key("zone"), key("datum"), key("rule")];
+
+const PLANE: &[Key] = &[
+    key("name"),
+    key("at"),
+    key("normal"),
+    key("along"),
+    key("extents"),
+    table("offset", TOLERANCED),
+    table("flatness", ZONE),
+    table("straightness", ZONE),
+    table("parallelism", ZONE),
+    table("perpendicularity", ZONE),
+    table("angularity", ZONE),
+    table("position", ZONE),
+    table("profile", ZONE),
+    VECTORIAL,
+];
+const POINT: &[Key] = &[
+    key("name"),
+    key("at"),
+    key("normal"),
+    key("extents"),
+    table("offset", TOLERANCED),
+    table("flatness", ZONE),
+    table("position", ZONE),
+    table("profile", ZONE),
+    VECTORIAL,
+];
+const AXIS: &[Key] = &[
+    key("name"),
+    key("at"),
+    key("along"),
+    key("length"),
+    table("diameter", TOLERANCED),
+    table("straightness", ZONE),
+    table("parallelism", ZONE),
+    table("perpendicularity", ZONE),
+    table("angularity", ZONE),
+    table("position", ZONE),
+    VECTORIAL,
 ];
 
-/// Refuses a key below `node`, itself at the key `path`, that is not one of [`KEYS`].
-pub fn refuse_unknown(node: &Node<'_>, path: &str) -> Result<(), SceneError> {
+/// What drawings have and scenes do not.
+const UNSUPPORTED: [&str; 12] = [
+    "circularity",
+    "roundness",
+    "cylindricity",
+    "concentricity",
+    "coaxiality",
+    "symmetry",
+    "run_out",
+    "runout",
+    "total_run_out",
+    "line_profile",
+    "maximum_material",
+    "projected_zone",
+];
+
+/// Every key of a scene.
+const ROOT: &[Key] = &[
+    key("title"),
+    table("slide", &[key("mass"), key("inertia_box"), key("gravity")]),
+    table("contact", &[key("stiffness"), key("exponent"), key("damping"), key("depth")]),
+    table("friction", &[key("law"), key("coefficient"), key("stick_band")]),
+    table("drive", &[key("gain"), key("ramp_start"), key("ramp_end"), key("speed"), key("point")]),
+    table("run", &[key("duration"), key("step"), key("integrator")]),
+    table("sweep", &[key("n")]),
+    table("drawing", &[key("clearance")]),
+    table("pin", &[key("name"), key("position"), key("left"), key("right"), key("rail"), key("wall")]),
+    table("tolerance", &[key("general"), key("rule"), key("sigma")]),
+    table(
+        "dimension",
+        &[key("name"), key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge")],
+    ),
+    table(
+        "part",
+        &[key("name"), key("at"), key("turned"), table("plane", PLANE), table("point", POINT), table("axis", AXIS)],
+    ),
+    table(
+        "mate",
+        &[
+            key("part"),
+            key("contacts"),
+            table("move", &[key("along"), key("by")]),
+            table("turn", &[key("about"), key("at"), key("by")]),
+        ],
+    ),
+    table("measure", &[key("name"), key("is"), key("distance"), key("angle"), key("lower"), key("upper")]),
+    table("sum", &[key("name"), key("of")]),
+    table("correlation", &[key("of"), key("coefficient")]),
+];
+
+/// Refuses a key below the root `node` that no scene has.
+pub fn refuse_unknown(node: &Node<'_>) -> Result<(), SceneError> {
+    refuse(node, "", ROOT)
+}
+
+/// Refuses a key below `node`, itself at the key `path`, that is not one of `keys`.
+fn refuse(node: &Node<'_>, path: &str, keys: &[Key]) -> Result<(), SceneError> {
     match &node.value {
         Value::Table(entries) => entries.iter().try_for_each(|entry| {
-            let key = if path.is_empty() { entry.key.to_string() } else { format!("{path}.{}", entry.key) };
-            if KEYS.contains(&key.as_str()) {
-                Ok(())
-            } else if tables().any(|table| table == key) {
-                refuse_unknown(&entry.node, &key)
-            } else {
-                let similar = similar(&key);
-                Err(entry.place.error(Problem::UnknownKey { key, similar }, siblings(path)))
+            let name = join(path, &entry.key);
+            match keys.iter().find(|key| key.name == entry.key) {
+                Some(key) => refuse(&entry.node, &name, key.below),
+                None if UNSUPPORTED.contains(&&*entry.key) => {
+                    let known = "flatness, straightness, parallelism, perpendicularity, angularity, position, profile";
+                    Err(entry.place.error(Problem::Unsupported { what: entry.key.to_string() }, known))
+                }
+                None => {
+                    let similar = similar(&name);
+                    let allowed = keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ");
+                    Err(entry.place.error(Problem::UnknownKey { key: name, similar }, allowed))
+                }
             }
         }),
-        Value::List(nodes) => nodes.iter().try_for_each(|node| refuse_unknown(node, path)),
-        // Reading the table says that it is none.
+        Value::List(nodes) => nodes.iter().try_for_each(|node| refuse(node, path, keys)),
+        // Reading the value says that it is no table.
         _ => Ok(()),
     }
 }
 
-/// The tables that keys are in, each as often as it has keys.
-fn tables() -> impl Iterator<Item = &'static str> {
-    KEYS.iter().filter_map(|key| key.split_once('.')).map(|(table, _)| table)
+fn join(path: &str, name: &str) -> String {
+    if path.is_empty() { name.into() } else { format!("{path}.{name}") }
+}
+
+/// The full names of `keys` below `path` and of all that is below them.
+fn flat(keys: &[Key], path: &str, names: &mut Vec<String>) {
+    for key in keys {
+        let name = join(path, key.name);
+        flat(key.below, &name, names);
+        names.push(name);
+    }
 }
 
 /// The key that is spelt most like `unknown`, or has its last part in another table.
-fn similar(unknown: &str) -> Option<&'static str> {
+fn similar(unknown: &str) -> Option<String> {
     let last = |key: &str| key.rsplit('.').next().map(str::to_owned);
-    let distance = |key| if last(key) == last(unknown) { 1 } else { strsim::osa_distance(key, unknown) };
-    let candidates = KEYS.into_iter().chain(tables()).map(|key| (distance(key), key));
-    candidates.min().filter(|(distance, _)| *distance <= 2).map(|(_, key)| key)
-}
-
-/// The keys of a `table`, the root's if it is empty, for a message.
-fn siblings(table: &str) -> String {
-    let mut keys: Vec<_> = if table.is_empty() {
-        KEYS.iter().map(|key| key.split_once('.').map_or(*key, |(table, _)| table)).collect()
-    } else {
-        KEYS.iter().filter_map(|key| key.split_once('.')).filter(|(of, _)| *of == table).map(|(_, key)| key).collect()
-    };
-    keys.dedup();
-    keys.join(", ")
+    let distance = |key: &str| if last(key) == last(unknown) { 1 } else { strsim::osa_distance(key, unknown) };
+    let mut names = Vec::new();
+    flat(ROOT, "", &mut names);
+    let nearest = names.into_iter().map(|name| (distance(&name), name)).min_by_key(|(distance, _)| *distance);
+    nearest.filter(|(distance, _)| *distance <= 2).map(|(_, name)| name)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{siblings, similar};
+    use super::similar;
 
     #[test]
     fn misspelt_and_misplaced_keys_are_recognised() {
-        assert_eq!(similar("slide.mas"), Some("slide.mass"));
-        assert_eq!(similar("slied"), Some("slide"));
-        assert_eq!(similar("mass"), Some("slide.mass"));
-        assert_eq!(similar("slide.stiffness"), Some("contact.stiffness"));
-        assert_eq!(similar("colour"), None);
-        assert_eq!(siblings("sweep"), "n");
-        assert_eq!(siblings(""), "title, slide, contact, friction, drive, run, sweep, drawing, pin");
+        for (unknown, known) in [
+            ("slide.mas", Some("slide.mass")),
+            ("slied", Some("slide")),
+            ("mass", Some("slide.mass")),
+            ("slide.stiffness", Some("contact.stiffness")),
+            ("dimension.tolerence", Some("dimension.tolerance")),
+            ("skewness", Some("dimension.distribution.skewness")),
+            ("colour", None),
+        ] {
+            assert_eq!(similar(unknown).as_deref(), known);
+        }
     }
 }

@@ -4,13 +4,17 @@
 //! where they become SI.
 
 mod diagnostic;
+mod file;
 mod keys;
 mod levels;
 mod parse;
+mod pins;
+mod product;
+mod shipped;
 #[cfg(test)]
 mod tests;
 mod tree;
-mod unit;
+pub(crate) mod unit;
 mod value;
 
 use slipfit_core::{
@@ -24,11 +28,10 @@ use slipfit_core::{
 use crate::scheme::IntegratorKind;
 
 pub use diagnostic::{Problem, SceneError};
+pub use file::SceneFile;
 pub use levels::{LevelError, MOST_LEVELS, parse_levels};
 pub use parse::parse_every;
-
-/// The paper's slide, its ramp as printed: what every command works on without a scene.
-pub const CD_ROM_SLIDE: &str = include_str!("../../scenes/cd-rom-slide.toml");
+pub use shipped::{CD_ROM_SLIDE, SHIPPED, shipped};
 
 /// Which surfaces meet a pin, in the order of Table 2.
 pub const SURFACES: [&str; 4] = ["left", "right", "rail", "wall"];

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use slipfit_core::{
-    clearance::GapStatistics,
     drive::Drive,
     menu::{ContactData, FrictionData},
     slide::{CONTACTS, PINS, box_inertia},
@@ -12,7 +11,7 @@ use slipfit_core::{
 use crate::scheme::IntegratorKind;
 
 use super::{
-    LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError, SlideSpec, keys, parse_levels,
+    LevelRange, Override, PinSpec, Problem, RunSpec, Scene, SceneError, SlideSpec, parse_levels,
     tree::{Source, Value},
     unit::{self, Quantity},
     value::Field,
@@ -29,9 +28,7 @@ const STICK_BAND: Quantity = Quantity { units: unit::SPEED, range: [1e-7, 1000.0
 const GAIN: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
 const RAMP: Quantity = Quantity { units: unit::SECONDS, range: [-1000.0, 1000.0] };
 const SPEED: Quantity = Quantity { units: unit::SPEED, range: [-1e6, 1e6] };
-const POINT: Quantity = Quantity { units: unit::LENGTH, range: [-1e5, 1e5] };
-const MEAN: Quantity = Quantity { units: unit::LENGTH, range: [-100.0, 100.0] };
-const DEVIATION: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
+pub(super) const POINT: Quantity = Quantity { units: unit::LENGTH, range: [-1e5, 1e5] };
 const CLEARANCE: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
 const DURATION: Quantity = Quantity { units: unit::MILLISECONDS, range: [0.001, 1e6] };
 const STEP: Quantity = Quantity { units: unit::MICROSECONDS, range: [0.002, 1e4] };
@@ -44,43 +41,30 @@ const LEAST_MOMENT: f64 = 1e-12;
 const LEAST_RAMP: f64 = 1e-6;
 const MOST_STEPS: f64 = 50e6;
 
-impl Scene {
-    /// Reads the `text` of the scene file `file_name` with the `overrides` applied in order.
-    ///
-    /// # Errors
-    /// [`SceneError`] points at the first value, in the file or in an override, that makes no scene.
-    pub fn parse(file_name: &str, text: &str, overrides: &[Override]) -> Result<Self, SceneError> {
-        let mut tree = Source { name: file_name, text }.document()?;
-        for change in overrides {
-            tree.set(change)?;
-        }
-        keys::refuse_unknown(&tree, "")?;
-
-        let root = Field { key: String::new(), node: &tree };
-        let title = title(&root, file_name)?;
-        let slide = slide(&root.table("slide")?)?;
-        let contact = contact(&root.table("contact")?)?;
-        let friction = friction(&root.table("friction")?)?;
-        let sweep_table = root.table("sweep")?;
-        let scene = Self {
-            title,
-            slide,
-            contact,
-            friction,
-            drive: drive(&root.table("drive")?)?,
-            pins: pins(&root)?,
-            nominal_clearance: nominal_clearance(&root)?,
-            run: run(&root.table("run")?, &friction)?,
-            sweep: sweep(&sweep_table)?,
-        };
-        for i in [0, scene.sweep.count - 1] {
-            scene.check_gaps(&[scene.sweep.level(i); CONTACTS]).map_err(|error| {
-                let field = sweep_table.get("n").unwrap_or(sweep_table.clone());
-                field.error(Problem::Gap(error), "")
-            })?;
-        }
-        Ok(scene)
+/// Reads the slide and its run around the `pins`.
+pub(super) fn scene(root: &Field, title: String, pins: [PinSpec; PINS]) -> Result<Scene, SceneError> {
+    let slide = slide(&root.table("slide")?)?;
+    let contact = contact(&root.table("contact")?)?;
+    let friction = friction(&root.table("friction")?)?;
+    let sweep_table = root.table("sweep")?;
+    let scene = Scene {
+        title,
+        slide,
+        contact,
+        friction,
+        drive: drive(&root.table("drive")?)?,
+        pins,
+        nominal_clearance: nominal_clearance(root)?,
+        run: run(&root.table("run")?, &friction)?,
+        sweep: sweep(&sweep_table)?,
+    };
+    for i in [0, scene.sweep.count - 1] {
+        scene.check_gaps(&[scene.sweep.level(i); CONTACTS]).map_err(|error| {
+            let field = sweep_table.get("n").unwrap_or(sweep_table.clone());
+            field.error(Problem::Gap(error), "")
+        })?;
     }
+    Ok(scene)
 }
 
 /// Reads the interval (s) between samples from what follows `--every`: a number in ms or with its unit.
@@ -94,7 +78,7 @@ pub fn parse_every(text: &str) -> Result<f64, SceneError> {
     Field { key: String::new(), node: &tree }.number("every", &DURATION)
 }
 
-fn title(root: &Field, file_name: &str) -> Result<String, SceneError> {
+pub(super) fn title(root: &Field, file_name: &str) -> Result<String, SceneError> {
     let stem = Path::new(file_name).file_stem().unwrap_or_default().to_string_lossy();
     let title = root.get("title").map(|title| title.to_text()).transpose()?.unwrap_or(&stem);
     // A title is printed as it is; control characters would steer the terminal.
@@ -194,48 +178,6 @@ fn drive(table: &Field) -> Result<Drive<f64>, SceneError> {
         speed: table.number("speed", &SPEED)?,
         point_b: point.into(),
     })
-}
-
-fn pins(root: &Field) -> Result<[PinSpec; PINS], SceneError> {
-    const ALLOWED: &str = "one to four tables [[pin]]";
-    let list = root.require("pin", ALLOWED)?;
-    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(ALLOWED)) };
-    let wrong_length = |node: Field| node.error(Problem::Length { key: "pin".into(), found: nodes.len() }, ALLOWED);
-    if nodes.is_empty() {
-        return Err(wrong_length(list));
-    }
-    let mut pins = std::array::from_fn(|_| PinSpec { name: String::new(), position: [0.0; 3], gaps: [None; 4] });
-    for (i, node) in nodes.iter().enumerate() {
-        let table = Field { key: "pin".into(), node };
-        let found = pin(&table)?;
-        if pins.iter().take(i).any(|other| other.name == found.name) {
-            let name = table.get("name").unwrap_or(table);
-            let problem = Problem::OutOfRange { key: "pin.name".into(), written: format!("\"{}\" again", found.name) };
-            return Err(name.error(problem, "a name of its own for each pin"));
-        }
-        *pins.get_mut(i).ok_or_else(|| wrong_length(Field { key: "pin".into(), node }))? = found;
-    }
-    Ok(pins)
-}
-
-fn pin(table: &Field) -> Result<PinSpec, SceneError> {
-    table.expect_table()?;
-    let name = table.require("name", "a text in quotes, such as \"left front\"")?.to_text()?.into();
-    let mut gaps = [None; 4];
-    for (gap, surface) in gaps.iter_mut().zip(SURFACES) {
-        *gap = table.get(surface).map(|field| statistics(&field)).transpose()?;
-    }
-    Ok(PinSpec { name, position: table.numbers("position", &POINT)?, gaps })
-}
-
-fn statistics(field: &Field) -> Result<GapStatistics<f64>, SceneError> {
-    const ALLOWED: &str = "[mean, standard deviation] in mm";
-    let Value::List(nodes) = &field.node.value else { return Err(field.wrong_type(ALLOWED)) };
-    let [mean, deviation] = &nodes[..] else {
-        return Err(field.error(Problem::Length { key: field.key.clone(), found: nodes.len() }, ALLOWED));
-    };
-    let number = |node, quantity| Field { key: field.key.clone(), node }.to_number(quantity);
-    Ok(GapStatistics { mean: number(mean, &MEAN)?, deviation: number(deviation, &DEVIATION)? })
 }
 
 fn nominal_clearance(root: &Field) -> Result<Option<[f64; 2]>, SceneError> {

@@ -116,6 +116,19 @@ impl<'s> Place<'s> {
         self.source.text.get(self.span.clone()).unwrap_or_default()
     }
 
+    /// Where it begins in its text.
+    pub fn start(&self) -> usize {
+        self.span.start
+    }
+
+    /// The bytes `within` of the `text` that was read here: part of this place where the text stands as it is, between
+    /// its quotes, else all of it.
+    pub fn within(&self, text: &str, within: Range<usize>) -> Self {
+        let Some(offset) = self.text().find(text).filter(|_| !text.is_empty()) else { return self.clone() };
+        let start = self.span.start + offset;
+        Self { source: self.source, span: start + within.start..start + within.end }
+    }
+
     /// A `problem` at this place, and what is `allowed`.
     pub fn error(&self, problem: Problem, allowed: impl Into<String>) -> SceneError {
         SceneError::new(problem, allowed.into(), self.source.name, self.source.text, self.span.clone())
@@ -163,15 +176,27 @@ impl<'s> Node<'s> {
             _ => bare(),
         };
 
-        // A pin's name between the first dot and the last may have dots of its own.
-        let (section, rest) = key.split_once('.').map_or((None, key), |(first, rest)| (Some(first), rest));
-        let (pin, last) = rest.rsplit_once('.').map_or((None, rest), |(pin, last)| (Some(pin), last));
         let mut node = self;
-        for key_part in section.into_iter().chain(pin).chain([last]) {
-            node = node.child(key_part.trim(), &place)?;
+        let mut rest = Some(key.trim());
+        while let Some(path) = rest {
+            let part = node.first_part(path);
+            node = node.child(part.trim(), &place)?;
+            rest = path[part.len()..].strip_prefix('.');
         }
         *node = value;
         Ok(())
+    }
+
+    /// The part of the `path` that names a child: up to the next dot, or a name in a list, which may have dots.
+    fn first_part<'p>(&self, path: &'p str) -> &'p str {
+        let Value::List(nodes) = &self.value else { return path.split('.').next().unwrap_or(path) };
+        let names = nodes.iter().filter_map(Self::name);
+        let named =
+            names.filter(|name| path.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.')));
+        match named.map(str::len).max() {
+            Some(length) => &path[..length],
+            None => path.rsplit_once('.').map_or(path, |(first, _)| first),
+        }
     }
 
     /// The entry `key` of a table, made if it is not there, or the table of that name in a list.
@@ -189,7 +214,9 @@ impl<'s> Node<'s> {
             Value::List(nodes) => {
                 let names: Vec<_> = nodes.iter().filter_map(Self::name).collect();
                 let Some(at) = nodes.iter().position(|node| node.name() == Some(key)) else {
-                    return Err(place.error(Problem::UnknownPin(key.into()), names.join(", ")));
+                    let list = place.text().split('.').next().unwrap_or_default().trim();
+                    let problem = Problem::UnknownName { of: list.into(), name: key.into() };
+                    return Err(place.error(problem, names.join(", ")));
                 };
                 Ok(&mut nodes[at])
             }
@@ -197,8 +224,9 @@ impl<'s> Node<'s> {
         }
     }
 
+    /// By which a table in a list is found: its own name, a mate's that of its part.
     fn name(&self) -> Option<&str> {
-        match &self.get("name")?.value {
+        match &self.get("name").or_else(|| self.get("part"))?.value {
             Value::Text(name) => Some(name),
             _ => None,
         }

@@ -28,6 +28,8 @@ const MICROSECOND: Unit = per("µs", 1e6);
 pub const ONE: &[Unit] = &[si("")];
 /// Lengths.
 pub const LENGTH: &[Unit] = &[per("mm", 1e3), si("m"), per("cm", 1e2), per("µm", 1e6), per("nm", 1e9)];
+/// Angles.
+pub const ANGLE: &[Unit] = &[times("°", std::f64::consts::PI / 180.0), si("rad"), per("mrad", 1e3)];
 /// Masses.
 pub const MASS: &[Unit] = &[per("g", 1e3), si("kg"), per("mg", 1e6)];
 /// Times, in seconds unless they say otherwise.
@@ -70,6 +72,7 @@ pub fn plain(text: &str) -> String {
             // Micro sign and Greek letter.
             'µ' | 'μ' => ascii.push('u'),
             '²' => ascii.push_str("^2"),
+            '°' => ascii.push_str("deg"),
             '·' | '⋅' | '*' => {}
             other => ascii.push(other),
         }

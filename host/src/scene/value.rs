@@ -1,5 +1,7 @@
 //! Reading the value of one key: type, unit and range.
 
+use std::ops::Range;
+
 use super::{
     Problem, SceneError,
     tree::{Node, Value},
@@ -132,6 +134,15 @@ impl<'t, 's> Field<'t, 's> {
     /// A `problem` with this value.
     pub fn error(&self, problem: Problem, allowed: impl Into<String>) -> SceneError {
         self.node.place.error(problem, allowed)
+    }
+
+    /// A `problem` with the bytes `within` of this text.
+    pub fn error_within(&self, within: Range<usize>, problem: Problem, allowed: impl Into<String>) -> SceneError {
+        let text = match &self.node.value {
+            Value::Text(text) => text,
+            _ => "",
+        };
+        self.node.place.within(text, within).error(problem, allowed)
     }
 
     /// This value is not in its range; `unit` is meant if it has none.

@@ -2,6 +2,38 @@
 //!
 //! A [`model::Model`] turns random contributors into measures; it does not know how they are drawn. What draws them
 //! and makes statistics of the measures does not know what they mean.
+//!
+//! Drawing goes [`sampler`] (random numbers of a unit) → [`draw`] (its variables) → the model → [`tally`] (counts and
+//! sums) → [`forest`] (joined in a fixed shape).
 
+pub mod analysis;
+pub mod derivative;
+mod distribution;
+pub mod draw;
+pub mod estimate;
+#[cfg(test)]
+mod examples;
+pub mod experiment;
+pub mod file;
+pub mod forest;
+pub mod importance;
+pub mod indices;
+pub mod interval;
 pub mod lanes;
+pub mod linear;
 pub mod model;
+pub mod moments;
+pub mod normal;
+mod permutation;
+pub mod picture;
+pub mod quadrature;
+pub mod report;
+pub mod rss;
+pub mod run;
+pub mod sampler;
+pub mod sobol;
+pub mod study;
+pub mod tally;
+#[cfg(test)]
+mod tests;
+pub mod worst_case;

@@ -6,7 +6,7 @@
 //! ρ = κ·m/a, a the implicit part of the step, that is a displacement of a²·Δf/(κ·m), which vanishes with the square of the
 //! step. The cost depends on nothing.
 
-use super::{Contact, Friction, Rubbing};
+use super::{Friction, Rubbing, Traction};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// κ: how many times stiffer than the body's inertia a stick is. At 1 the yield of a 1 ms step costs 0.6 % of the peak
@@ -42,8 +42,8 @@ impl<S: Scalar> Friction<S> for Exact<S> {
     }
 
     #[inline(always)]
-    fn add(&self, memory: &[S; 2], rubbing: &Rubbing<S>, contact: &mut Contact<S>) -> [S; 2] {
-        return_mapping(memory, rubbing, [self.coefficient; 2], contact)
+    fn traction(&self, memory: &[S; 2], rubbing: &Rubbing<S>) -> (Traction<S>, [S; 2]) {
+        return_mapping(memory, rubbing, [self.coefficient; 2])
     }
 
     #[inline(always)]
@@ -59,15 +59,14 @@ impl<S: Scalar> Friction<S> for Exact<S> {
 }
 
 /// Brings the trial force λ − ρu back into the cone: it holds up to `coefficients[0]` times the normal force and slides
-/// with `coefficients[1]` times it. Adds the tangential part to `contact` and returns the force (N).
+/// with `coefficients[1]` times it. The memory is the force (N).
 #[inline(always)]
 pub(super) fn return_mapping<S: Scalar>(
     memory: &[S; 2],
     rubbing: &Rubbing<S>,
     [at_rest, sliding]: [S; 2],
-    contact: &mut Contact<S>,
-) -> [S; 2] {
-    let Rubbing { sliding: [x, y], normal, normal_slope, mass_rate, tangent_share } = *rubbing;
+) -> (Traction<S>, [S; 2]) {
+    let Rubbing { sliding: [x, y], normal, mass_rate, tangent_share } = *rubbing;
     let grip = S::from_f64(GRIP) * mass_rate;
     let trial = [memory[0] - grip * x, memory[1] - grip * y];
     let trial_squared = trial[0] * trial[0] + trial[1] * trial[1];
@@ -82,69 +81,57 @@ pub(super) fn return_mapping<S: Scalar>(
     let direction = [trial[0] * inverse, trial[1] * inverse];
     let along = grip * share;
     let turn = slides(tangent_share * along, S::zero());
-    let pull = slides(sliding * normal_slope, S::zero());
-    let shear = -turn * direction[0] * direction[1];
-    contact.force[1] = force[0];
-    contact.force[2] = force[1];
-    contact.impedance[1] = [-pull * direction[0], along - turn * direction[0] * direction[0], shear];
-    contact.impedance[2] = [-pull * direction[1], shear, along - turn * direction[1] * direction[1]];
-    force
+    let turned = [turn * direction[0], turn * direction[1]];
+    let pull = slides(-sliding, S::zero());
+    let traction = Traction {
+        force,
+        impedance: [along - turned[0] * direction[0], -turned[0] * direction[1], along - turned[1] * direction[1]],
+        per_normal: [pull * direction[0], pull * direction[1]],
+    };
+    (traction, force)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn traction(memory: [f64; 2], velocity: [f64; 3]) -> (Contact<f64>, [f64; 2]) {
-        let mut contact = Contact { force: [0.0; 3], impedance: [[0.0; 3]; 3] };
-        let rubbing = Rubbing {
-            sliding: [velocity[1], velocity[2]],
-            // A normal force of 2 N that grows by 5 N·s/m.
-            normal: 2.0 + 5.0 * velocity[0],
-            normal_slope: 5.0,
-            mass_rate: 80.0,
-            tangent_share: 1.0,
-        };
-        let memory = Exact::new(0.3).unwrap().add(&memory, &rubbing, &mut contact);
-        (contact, memory)
+    fn traction(memory: [f64; 2], normal: f64, sliding: [f64; 2]) -> (Traction<f64>, [f64; 2]) {
+        let rubbing = Rubbing { sliding, normal, mass_rate: 80.0, tangent_share: 1.0 };
+        Exact::new(0.3).unwrap().traction(&memory, &rubbing)
     }
 
     #[test]
     fn holds_a_load_without_motion() {
         for load in [[0.0, 0.0], [0.3, -0.2], [0.0, 0.599]] {
-            let (contact, memory) = traction(load, [0.0; 3]);
+            let (traction, memory) = traction(load, 2.0, [0.0; 2]);
             assert_eq!(memory, load);
-            assert_eq!([contact.force[1], contact.force[2]], load);
+            assert_eq!(traction.force, load);
         }
     }
 
     #[test]
     fn slides_with_the_full_force_against_the_motion() {
-        let (contact, _) = traction([0.0; 2], [0.0, 3.0, -4.0]);
-        assert!(libm::fabs(contact.force[1] + 0.36) < 1e-15 && libm::fabs(contact.force[2] - 0.48) < 1e-15);
+        let [x, y] = traction([0.0; 2], 2.0, [3.0, -4.0]).0.force;
+        assert!(libm::fabs(x + 0.36) < 1e-15 && libm::fabs(y - 0.48) < 1e-15);
         // Without load there is no friction, and nothing that is not finite.
-        let mut contact = Contact { force: [0.0; 3], impedance: [[0.0; 3]; 3] };
-        let idle =
-            Rubbing { sliding: [0.0; 2], normal: 0.0, normal_slope: 0.0, mass_rate: 80.0f32, tangent_share: 1.0 };
-        assert_eq!(Exact::new(0.3f32).unwrap().add(&[0.0; 2], &idle, &mut contact), [0.0; 2]);
-        assert!(contact.impedance.iter().flatten().all(|x| x.is_finite()));
+        let idle = Rubbing { sliding: [0.0; 2], normal: 0.0, mass_rate: 80.0f32, tangent_share: 1.0 };
+        let (traction, memory) = Exact::new(0.3f32).unwrap().traction(&[0.0; 2], &idle);
+        assert_eq!(memory, [0.0; 2]);
+        assert!(traction.impedance.iter().chain(&traction.per_normal).all(|x| x.is_finite()));
     }
 
     #[test]
     fn impedance_is_the_derivative() {
-        for (memory, velocity) in [([0.1, 0.2], [1e-3, 3e-5, -2e-5]), ([0.0, 0.0], [0.0, 0.02, 0.01])] {
-            let at = traction(memory, velocity).0;
-            for column in 0..3 {
-                let h = 1e-8;
-                let shifted = |h: f64| {
-                    let mut velocity = velocity;
-                    velocity[column] += h;
-                    traction(memory, velocity).0.force
-                };
-                for row in 1..3 {
-                    let slope = -(shifted(h)[row] - shifted(-h)[row]) / (2.0 * h);
-                    let found = at.impedance[row][column];
-                    assert!(libm::fabs(found - slope) <= 1e-4, "{row}{column} {found} {slope}");
+        let h = 1e-8;
+        for (memory, normal, sliding) in [([0.1, 0.2], 2.005, [3e-5, -2e-5]), ([0.0, 0.0], 2.0, [0.02, 0.01])] {
+            let at = traction(memory, normal, sliding).0;
+            let moved = |h: [f64; 3]| traction(memory, normal + h[0], [sliding[0] + h[1], sliding[1] + h[2]]).0.force;
+            let slope = |row: usize, h: [f64; 3]| -(moved(h)[row] - moved(h.map(|h| -h))[row]);
+            let [xx, xy, yy] = at.impedance;
+            for (row, found) in [[at.per_normal[0], xx, xy], [at.per_normal[1], xy, yy]].into_iter().enumerate() {
+                let slopes = [[h, 0.0, 0.0], [0.0, h, 0.0], [0.0, 0.0, h]].map(|h| slope(row, h) / 2.0e-8);
+                for (found, slope) in found.into_iter().zip(slopes) {
+                    assert!(libm::fabs(found - slope) <= 1e-4, "{row} {found} {slope}");
                 }
             }
         }
@@ -155,8 +142,8 @@ mod tests {
         for k in 0..1000u16 {
             let angle = f64::from(k) * 0.1;
             let speed = 1e-6 * f64::from(u32::from(k) * u32::from(k) % 9973);
-            let (contact, _) = traction([0.2, -0.1], [0.0, speed * libm::cos(angle), speed * libm::sin(angle)]);
-            assert!(libm::hypot(contact.force[1], contact.force[2]) <= 0.6 * (1.0 + 1e-15));
+            let [x, y] = traction([0.2, -0.1], 2.0, [speed * libm::cos(angle), speed * libm::sin(angle)]).0.force;
+            assert!(libm::hypot(x, y) <= 0.6 * (1.0 + 1e-15));
         }
     }
 }

@@ -10,14 +10,15 @@ pub use static_kinetic::StaticKinetic;
 
 use crate::Scalar;
 
-/// Traction of one contact on the body and its change with velocity, in the contact's own axes
-/// (0 the normal, 1 and 2 the tangents).
+/// What friction does to the body along the two tangents of a contact, and how that changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact<S> {
+pub struct Traction<S> {
     /// Force on the body (N).
-    pub force: [S; 3],
-    /// −∂force/∂u (N·s/m), near enough for Newton: rows are forces, columns velocities.
-    pub impedance: [[S; 3]; 3],
+    pub force: [S; 2],
+    /// −∂force/∂sliding (N·s/m), near enough for Newton: a symmetric matrix as its first, mixed and second entry.
+    pub impedance: [S; 3],
+    /// −∂force/∂normal.
+    pub per_normal: [S; 2],
 }
 
 /// What friction acts upon.
@@ -27,8 +28,6 @@ pub struct Rubbing<S> {
     pub sliding: [S; 2],
     /// Normal force (N).
     pub normal: S,
-    /// ∂normal/∂u (N·s/m) for a velocity u along the contact's axis.
-    pub normal_slope: S,
     /// Mass of the body over the implicit part of the step (kg/s = N·s/m).
     pub mass_rate: S,
     /// How the impedance is to change along the sliding direction: 1 the tangent of the law, 0 its secant.
@@ -46,8 +45,8 @@ pub trait Friction<S>: Copy {
     /// The memory of a contact that nothing has touched yet.
     fn fresh() -> Self::Memory;
 
-    /// Adds the tangential part to `contact`, whose normal part is there already, and returns the new memory.
-    fn add(&self, memory: &Self::Memory, rubbing: &Rubbing<S>, contact: &mut Contact<S>) -> Self::Memory;
+    /// The traction, and the memory if the motion is accepted.
+    fn traction(&self, memory: &Self::Memory, rubbing: &Rubbing<S>) -> (Traction<S>, Self::Memory);
 
     /// `base + weight·(to − from)`.
     fn shifted(base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
@@ -69,7 +68,10 @@ impl<S: Scalar> Friction<S> for Frictionless {
     fn fresh() {}
 
     #[inline(always)]
-    fn add(&self, (): &(), _: &Rubbing<S>, _: &mut Contact<S>) {}
+    fn traction(&self, (): &(), _: &Rubbing<S>) -> (Traction<S>, ()) {
+        let zero = S::zero();
+        (Traction { force: [zero; 2], impedance: [zero; 3], per_normal: [zero; 2] }, ())
+    }
 
     #[inline(always)]
     fn shifted((): &(), (): &(), (): &(), _: S) {}

@@ -1,6 +1,6 @@
 //! Regularised Coulomb friction: what multibody solvers use.
 
-use super::{Contact, Friction, Rubbing};
+use super::{Friction, Rubbing, Traction};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// Coulomb friction smoothed by STEP over the stick band: μ(s) = μ·w(3 − w²)/2 with w = s/v_s up to v_s, then μ.
@@ -47,16 +47,18 @@ impl<S: Scalar> Friction<S> for Regularised<S> {
     fn fresh() {}
 
     #[inline(always)]
-    fn add(&self, (): &(), rubbing: &Rubbing<S>, contact: &mut Contact<S>) {
-        let Rubbing { sliding: [x, y], normal, normal_slope, tangent_share, .. } = *rubbing;
+    fn traction(&self, (): &(), rubbing: &Rubbing<S>) -> (Traction<S>, ()) {
+        let Rubbing { sliding: [x, y], normal, tangent_share, .. } = *rubbing;
         let (ratio, ratio_slope) = self.per_speed(x * x + y * y);
         let along = ratio * normal;
         let turn = (tangent_share + tangent_share) * ratio_slope * normal;
-        let grip = ratio * normal_slope;
-        contact.force[1] = -along * x;
-        contact.force[2] = -along * y;
-        contact.impedance[1] = [grip * x, along + turn * x * x, turn * x * y];
-        contact.impedance[2] = [grip * y, turn * x * y, along + turn * y * y];
+        let (turn_x, turn_y) = (turn * x, turn * y);
+        let traction = Traction {
+            force: [-along * x, -along * y],
+            impedance: [along + turn_x * x, turn_x * y, along + turn_y * y],
+            per_normal: [ratio * x, ratio * y],
+        };
+        (traction, ())
     }
 
     #[inline(always)]
@@ -72,53 +74,41 @@ mod tests {
 
     const SHARE: f64 = 0.9;
 
-    fn traction(velocity: [f64; 3]) -> Contact<f64> {
-        let mut contact = Contact { force: [0.0; 3], impedance: [[0.0; 3]; 3] };
-        let rubbing = Rubbing {
-            sliding: [velocity[1], velocity[2]],
-            // A normal force of 2 N that grows by 5 N·s/m.
-            normal: 2.0 + 5.0 * velocity[0],
-            normal_slope: 5.0,
-            mass_rate: 80.0,
-            tangent_share: SHARE,
-        };
-        Regularised::new(0.3, 1e-4).unwrap().add(&(), &rubbing, &mut contact);
-        contact
+    fn traction(normal: f64, sliding: [f64; 2]) -> Traction<f64> {
+        let rubbing = Rubbing { sliding, normal, mass_rate: 80.0, tangent_share: SHARE };
+        Regularised::new(0.3, 1e-4).unwrap().traction(&(), &rubbing).0
     }
 
     #[test]
     fn follows_the_band_and_then_slides() {
         for w in [0.0, 0.25, 0.5, 1.0] {
-            let force = traction([0.0, 1e-4 * w, 0.0]).force[1];
+            let force = traction(2.0, [1e-4 * w, 0.0]).force[0];
             assert!(libm::fabs(force + 0.6 * w * (3.0 - w * w) / 2.0) < 1e-15);
         }
-        let sliding = traction([0.0, 3.0, -4.0]).force;
-        assert!(libm::fabs(sliding[1] + 0.36) < 1e-15 && libm::fabs(sliding[2] - 0.48) < 1e-15);
+        let sliding = traction(2.0, [3.0, -4.0]).force;
+        assert!(libm::fabs(sliding[0] + 0.36) < 1e-15 && libm::fabs(sliding[1] - 0.48) < 1e-15);
     }
 
     #[test]
     fn impedance_is_between_the_derivative_and_the_secant() {
-        for velocity in [[1e-3, 3e-5, -2e-5], [0.0, 0.02, 0.01], [1e-3, 0.0, 2e-4]] {
-            let at = traction(velocity);
-            let secant =
-                Regularised::new(0.3, 1e-4).unwrap().per_speed(velocity[1] * velocity[1] + velocity[2] * velocity[2]).0
-                    * (2.0 + 5.0 * velocity[0]);
-            for column in 0..3 {
-                let h = 1e-9;
-                let (mut up, mut down) = (velocity, velocity);
+        let normal = 2.0;
+        for sliding in [[3e-5, -2e-5], [0.02, 0.01], [0.0, 2e-4]] {
+            let at = traction(normal, sliding);
+            let [x, y] = sliding;
+            let secant = Regularised::new(0.3, 1e-4).unwrap().per_speed(x * x + y * y).0 * normal;
+            let h = 1e-9;
+            for (row, column, found) in
+                [(0, 0, at.impedance[0]), (0, 1, at.impedance[1]), (1, 0, at.impedance[1]), (1, 1, at.impedance[2])]
+            {
+                let (mut up, mut down) = (sliding, sliding);
                 up[column] += h;
                 down[column] -= h;
-                for row in 1..3 {
-                    let slope = -(traction(up).force[row] - traction(down).force[row]) / (2.0 * h);
-                    let secant = if row == column { secant } else { 0.0 };
-                    // The share acts on tangential velocities only; the normal force's part is exact.
-                    let slope = if column == 0 { slope } else { SHARE * slope + (1.0 - SHARE) * secant };
-                    let found = at.impedance[row][column];
-                    assert!(
-                        libm::fabs(found - slope) <= 1e-5 * (1.0 + libm::fabs(slope)),
-                        "{row}{column} {found} {slope}"
-                    );
-                }
+                let tangent = -(traction(normal, up).force[row] - traction(normal, down).force[row]) / (2.0 * h);
+                let slope = SHARE * tangent + (1.0 - SHARE) * if row == column { secant } else { 0.0 };
+                assert!(libm::fabs(found - slope) <= 1e-5 * (1.0 + libm::fabs(slope)), "{row}{column} {found} {slope}");
+            }
+            for (per_normal, force) in at.per_normal.into_iter().zip(at.force) {
+                assert!(libm::fabs(per_normal * normal + force) <= 1e-15);
             }
         }
     }
@@ -129,9 +119,9 @@ mod tests {
             let angle = f64::from(k) * 0.1;
             let speed = 1e-6 * f64::from(k * k % 997);
             let (x, y) = (speed * libm::cos(angle), speed * libm::sin(angle));
-            let force = traction([0.0, x, y]).force;
-            assert!(force[1] * x + force[2] * y <= 0.0);
-            assert!(libm::hypot(force[1], force[2]) <= 0.6 * (1.0 + 1e-15));
+            let force = traction(2.0, [x, y]).force;
+            assert!(force[0] * x + force[1] * y <= 0.0);
+            assert!(libm::hypot(force[0], force[1]) <= 0.6 * (1.0 + 1e-15));
         }
     }
 }

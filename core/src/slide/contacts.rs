@@ -1,0 +1,170 @@
+//! The sixteen contacts of the slide: forces at its pins, in body axes, and how they change.
+
+use nalgebra::Matrix3;
+
+use super::{SLOTS, Slide};
+use crate::{
+    Scalar, Vector3,
+    law::{Elastic, Friction, friction::Rubbing},
+    linear::{Blocks, cross_columns, cross_matrix, cross_rows},
+    pose::ToBody,
+};
+
+/// How forces are to be linearised.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way<S> {
+    /// Implicit part of the step (s): over it a velocity moves the slide.
+    pub a: S,
+    /// Mass over the implicit part that friction's memory yields over (kg/s).
+    pub mass_rate: S,
+    /// See [`Rubbing`].
+    pub tangent_share: S,
+}
+
+/// Where the slide is and how it moves, in body axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed<S> {
+    /// From the frame into the body.
+    pub to_body: ToBody<S>,
+    /// Displacement of the centre of mass (m).
+    pub displacement_b: Vector3<S>,
+    /// Velocity of the centre of mass (m/s).
+    pub velocity_b: Vector3<S>,
+    /// Angular velocity (rad/s).
+    pub rotation_b: Vector3<S>,
+}
+
+/// The force on the slide at one pin and its changes. Axes of the body; of the matrices rows are forces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PinForce<S> {
+    /// Force on the slide (N).
+    pub force: Vector3<S>,
+    /// −∂force/∂u (N·s/m) by the velocity of the slide's material at the pin, which also moves it over the time `a`.
+    pub impedance: Matrix3<S>,
+    /// −∂force/∂x (N/m) by the displacement of the slide's material at the pin, if `impedance` leaves it in place.
+    pub stiffness: Matrix3<S>,
+}
+
+/// What is collected of the pins' forces besides the forces.
+pub(super) trait Collect<S> {
+    /// Takes in the force at one pin, whose `lever` (m) reaches from the centre of mass.
+    fn collect(&mut self, lever: &Vector3<S>, pin: &PinForce<S>);
+}
+
+/// Nothing.
+impl<S> Collect<S> for () {
+    #[inline(always)]
+    fn collect(&mut self, _: &Vector3<S>, _: &PinForce<S>) {}
+}
+
+/// Their impedance.
+impl<S: Scalar> Collect<S> for Blocks<S> {
+    #[inline(always)]
+    fn collect(&mut self, lever: &Vector3<S>, pin: &PinForce<S>) {
+        self.add_at(lever, &pin.impedance);
+    }
+}
+
+/// Their impedance and stiffness, and that the force stays at the pin while the slide is displaced.
+impl<S: Scalar> Collect<S> for [Blocks<S>; 2] {
+    #[inline(always)]
+    fn collect(&mut self, lever: &Vector3<S>, pin: &PinForce<S>) {
+        self[0].add_at(lever, &pin.impedance);
+        self[1].add_at(lever, &pin.stiffness);
+        self[1].c -= cross_matrix(&pin.force);
+        self[1].d += cross_columns(&pin.force, &cross_matrix(lever));
+    }
+}
+
+/// A slot's part of that, its axis first, then the tangents.
+struct SlotForce<S> {
+    force: [S; 3],
+    /// Column of the axis.
+    impedance: [S; 3],
+    /// Between the tangents: first, mixed, second.
+    tangential: [S; 3],
+    /// The only column there is, that of the axis.
+    stiffness: [S; 3],
+}
+
+impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
+    /// The force and torque about the centre of mass that all contacts exert (N, N·m), in body axes.
+    #[inline(always)]
+    pub(super) fn contact_forces(
+        &self,
+        at: &Placed<S>,
+        memory: &mut [F::Memory; SLOTS],
+        way: Way<S>,
+        collection: &mut impl Collect<S>,
+    ) -> (Vector3<S>, Vector3<S>) {
+        let mut force = Vector3::zeros();
+        let mut torque = Vector3::zeros();
+        let pins = self.body.gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w);
+        for ((gaps, pin), memory) in pins.zip(memory.as_chunks_mut::<2>().0) {
+            let offset = at.to_body.change(*pin) - at.displacement_b;
+            let lever = *pin + offset;
+            let mut pin = self.pin(memory, *gaps, offset, at.velocity_b + at.rotation_b.cross(&lever), way);
+            force += pin.force;
+            torque += lever.cross(&pin.force);
+            // Where the slide turns, a displacement changes the velocity of its material at the pin by −ω × displacement.
+            pin.stiffness += cross_rows(&at.rotation_b, &pin.impedance);
+            collection.collect(&lever, &pin);
+        }
+        (force, torque)
+    }
+
+    /// The force at one pin for its `offset` (m) as seen from the slide and the velocity `u` (m/s) of the slide's material
+    /// there.
+    #[inline(always)]
+    fn pin(
+        &self,
+        [across_memory, up_memory]: &mut [F::Memory; 2],
+        [left, right, rail, wall]: [S; 4],
+        offset: Vector3<S>,
+        u: Vector3<S>,
+        way: Way<S>,
+    ) -> PinForce<S> {
+        let across = self.slot(across_memory, [left, right], offset.x, [u.x, u.y, u.z], way);
+        let up = self.slot(up_memory, [wall, rail], offset.y, [u.y, u.x, u.z], way);
+        let (f, g) = (across.force, up.force);
+        let ([xx, yx, zx], [yy, xy, zy]) = (across.impedance, up.impedance);
+        let ([a_yy, a_yz, a_zz], [u_xx, u_xz, u_zz]) = (across.tangential, up.tangential);
+        let ([k_xx, k_yx, k_zx], [k_yy, k_xy, k_zy]) = (across.stiffness, up.stiffness);
+        let zero = S::zero();
+        #[rustfmt::skip]
+        let (impedance, stiffness) = (
+            Matrix3::new(
+                xx + u_xx, xy, u_xz,
+                yx, yy + a_yy, a_yz,
+                zx + u_xz, zy + a_yz, a_zz + u_zz,
+            ),
+            Matrix3::new(
+                k_xx, k_xy, zero,
+                k_yx, k_yy, zero,
+                k_zx, k_zy, zero,
+            ),
+        );
+        PinForce { force: Vector3::new(f[0] + g[1], f[1] + g[0], f[2] + g[2]), impedance, stiffness }
+    }
+
+    #[inline(always)]
+    fn slot(&self, memory: &mut F::Memory, gaps: [S; 2], offset: S, [u, v, w]: [S; 3], way: Way<S>) -> SlotForce<S> {
+        let slot = self.contact.slot(gaps[0], gaps[1], offset, u);
+        let rubbing = Rubbing {
+            sliding: [v, w],
+            normal: slot.normal(),
+            mass_rate: way.mass_rate,
+            tangent_share: way.tangent_share,
+        };
+        let (traction, remembered) = self.friction.traction(memory, &rubbing);
+        *memory = remembered;
+        let [first, second] = traction.per_normal;
+        let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
+        SlotForce {
+            force: [slot.force(), traction.force[0], traction.force[1]],
+            impedance: column(slot.impedances(way.a)),
+            tangential: traction.impedance,
+            stiffness: column(slot.stiffnesses()),
+        }
+    }
+}

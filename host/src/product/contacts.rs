@@ -1,0 +1,232 @@
+//! A body on its contacts: where it comes to lie in each unit.
+
+use crate::tolerance::lanes::Lanes;
+
+use super::{
+    assembly::Assembly,
+    contact::{CONDITIONS, Contact, Freedoms, Rows},
+    feature::Located,
+    vector::Displacement,
+};
+
+/// Newton passes with the nominal Jacobian. Each gains the factor of the parts' rotations, a thousandth or less.
+const PASSES: usize = 3;
+/// Passes for the nominal place.
+const NOMINAL_PASSES: usize = 50;
+
+/// Contacts that leave a body no freedom.
+#[derive(Clone, Debug)]
+pub struct Contacts {
+    joined: Vec<Joined>,
+    centre: [f64; 3],
+    start: [f64; 6],
+    /// Of each contact, components of the displacement per condition.
+    gains: Vec<Vec<Gain>>,
+}
+
+/// A contact of two features.
+#[derive(Clone, Debug)]
+pub struct Joined {
+    /// Conditions.
+    pub contact: Contact,
+    /// The feature of the body.
+    pub own: Own,
+    /// The feature that it meets.
+    pub other: usize,
+}
+
+/// A feature of the body that is placed.
+#[derive(Clone, Copy, Debug)]
+pub enum Own {
+    /// As it was made.
+    Made(usize),
+    /// As it is nominally: a frame of datums is perfect.
+    Perfect(usize),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Gain {
+    condition: usize,
+    component: usize,
+    factor: f64,
+}
+
+/// Why a body has no definite place.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlacementError {
+    /// The contact with this index holds nothing that those before it leave free.
+    #[error("this contact holds nothing that the ones before it leave free: the part is over-constrained")]
+    Over(usize),
+    /// Too little is held.
+    #[error("the part is under-constrained: {left} of 6 freedoms are left, it can still {motion}")]
+    Under {
+        /// Freedoms left.
+        left: usize,
+        /// One of them.
+        motion: String,
+    },
+    /// The contacts cannot all close near the nominal place.
+    #[error("the contacts cannot be closed at the nominal values")]
+    Open,
+}
+
+impl Contacts {
+    /// Contacts, the first with precedence over the next; other freedoms are `fixed`: directions of shifts, and of
+    /// rotations about the centre.
+    ///
+    /// # Errors
+    /// [`PlacementError`].
+    pub fn new(
+        assembly: &Assembly,
+        nominal: &[Lanes],
+        contacts: Vec<Joined>,
+        fixed: &[[[f64; 3]; 2]],
+    ) -> Result<Self, PlacementError> {
+        let places = contacts.iter().map(|joined| joined.own.feature()).map(|i| assembly.features[i].nominal[0]);
+        let count = contacts.len().max(1) as f64;
+        let centre = places.clone().fold([0.0; 3], |sum, place| [0, 1, 2].map(|i| sum[i] + place[i] / count));
+        let spread = places.map(|place| (0..3).map(|i| (place[i] - centre[i]).abs()).fold(0.0, f64::max));
+        let reaches = contacts.iter().map(|joined| assembly.features[joined.own.feature()].reach);
+        let scale = Some(spread.chain(reaches).fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
+        let mut made = Self { joined: contacts, centre, start: [0.0; 6], gains: Vec::new() };
+
+        let located = assembly.locate(nominal);
+        for _ in 0..NOMINAL_PASSES {
+            made.linearise(assembly, &located, fixed, scale)?;
+            let start = made.start.map(Lanes::splat);
+            let change = made.correction(assembly, &located, &start);
+            for (component, change) in made.start.iter_mut().zip(change) {
+                *component -= change.0[0];
+            }
+            if change.iter().all(|change| change.0[0].abs() < 1e-15) {
+                break;
+            }
+        }
+        let residual = made.correction(assembly, &located, &made.start.map(Lanes::splat));
+        let closed = residual.iter().all(|change| change.0[0].abs() < 1e-12);
+        if closed { Ok(made) } else { Err(PlacementError::Open) }
+    }
+
+    /// Finds the gains at `self.start`.
+    fn linearise(
+        &mut self,
+        assembly: &Assembly,
+        located: &[Located],
+        fixed: &[[[f64; 3]; 2]],
+        scale: f64,
+    ) -> Result<(), PlacementError> {
+        const STEP: f64 = 1e-6;
+        let mut derivatives = vec![Rows::zeros(); self.joined.len()];
+        for component in 0..6 {
+            let step = if component < 3 { STEP * scale } else { STEP };
+            let mut moved = self.start.map(Lanes::splat);
+            moved[component].0[0] += step;
+            moved[component].0[1] -= step;
+            let displacement = Displacement::new(&moved, self.centre);
+            for (rows, joined) in derivatives.iter_mut().zip(&self.joined) {
+                for (row, condition) in joined.conditions(assembly, located, &displacement).iter().enumerate() {
+                    rows[(row, component)] = (condition.0[0] - condition.0[1]) / (2.0 * STEP * scale);
+                }
+            }
+        }
+        let mut freedoms = Freedoms::all();
+        let mut combinations = Vec::new();
+        for (i, rows) in derivatives.iter().enumerate() {
+            let held = freedoms.hold(rows);
+            if held.is_empty() {
+                return Err(PlacementError::Over(i));
+            }
+            combinations.extend(held.into_iter().map(|combination| (i, combination)));
+        }
+        for [shift, turn] in fixed {
+            let row = [shift[0], shift[1], shift[2], turn[0], turn[1], turn[2]];
+            let held = freedoms.hold(&Rows::from_fn(|i, column| if i == 0 { row[column] } else { 0.0 }));
+            if held.is_empty() {
+                return Err(PlacementError::Over(self.joined.len()));
+            }
+        }
+        if self.joined.iter().any(|joined| matches!(joined.own, Own::Perfect(_))) {
+            freedoms.hold_the_rest();
+        }
+        let Some(inverse) = freedoms.inverse() else {
+            let motion = freedoms.one().map(|motion| describe(motion.as_slice())).unwrap_or_default();
+            return Err(PlacementError::Under { left: freedoms.count(), motion });
+        };
+        let mut gains = vec![[[0.0; 6]; CONDITIONS]; self.joined.len()];
+        for (row, (contact, combination)) in combinations.iter().enumerate() {
+            for (gains, weight) in gains[*contact].iter_mut().zip(combination) {
+                for (component, gain) in gains.iter_mut().enumerate() {
+                    let unscaled = if component < 3 { 1.0 } else { 1.0 / scale };
+                    *gain += inverse[(component, row)] * weight * unscaled;
+                }
+            }
+        }
+        let greatest = gains.iter().flatten().flatten().fold(0.0, |most: f64, gain| most.max(gain.abs()));
+        let sparse = |gains: &[[f64; 6]; CONDITIONS]| -> Vec<Gain> {
+            let all = gains.iter().enumerate().flat_map(|(condition, row)| {
+                row.iter().enumerate().map(move |(component, factor)| Gain { condition, component, factor: *factor })
+            });
+            // What the difference quotients and the eigenvectors leave of a zero.
+            all.filter(|gain| gain.factor.abs() > 1e-8 * greatest).collect()
+        };
+        self.gains = gains.iter().map(sparse).collect();
+        Ok(())
+    }
+
+    /// What a Newton pass takes off the components of the displacement.
+    #[inline(always)]
+    fn correction(&self, assembly: &Assembly, located: &[Located], components: &[Lanes; 6]) -> [Lanes; 6] {
+        let displacement = Displacement::new(components, self.centre);
+        let mut change = [Lanes::ZERO; 6];
+        for (joined, gains) in self.joined.iter().zip(&self.gains) {
+            let conditions = joined.conditions(assembly, located, &displacement);
+            for gain in gains {
+                change[gain.component] += conditions[gain.condition] * gain.factor;
+            }
+        }
+        change
+    }
+
+    /// Where the body comes to lie.
+    #[inline(always)]
+    pub fn displacement(&self, assembly: &Assembly, located: &[Located]) -> Displacement {
+        let mut components = self.start.map(Lanes::splat);
+        for _ in 0..PASSES {
+            let change = self.correction(assembly, located, &components);
+            for (component, change) in components.iter_mut().zip(change) {
+                *component -= change;
+            }
+        }
+        Displacement::new(&components, self.centre)
+    }
+}
+
+impl Joined {
+    /// The conditions at a displacement of the body.
+    #[inline(always)]
+    fn conditions(&self, assembly: &Assembly, located: &[Located], displacement: &Displacement) -> [Lanes; CONDITIONS] {
+        let own = match self.own {
+            Own::Made(feature) => located[feature].displaced(displacement),
+            Own::Perfect(feature) => assembly.features[feature].perfect().displaced(displacement),
+        };
+        self.contact.conditions(&own, &located[self.other])
+    }
+}
+
+impl Own {
+    fn feature(self) -> usize {
+        let (Self::Made(feature) | Self::Perfect(feature)) = self;
+        feature
+    }
+}
+
+/// A motion in words, by its greatest part.
+fn describe(motion: &[f64]) -> String {
+    let (shift, turn) = motion.split_at(3);
+    let size = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>();
+    let (verb, part) = if size(turn) > size(shift) { ("turn about", turn) } else { ("move along", shift) };
+    let length = libm::sqrt(size(part));
+    let [x, y, z] = [0, 1, 2].map(|i| crate::number::fixed(part[i] / length, 2));
+    format!("{verb} ({x}, {y}, {z})")
+}

@@ -1,0 +1,274 @@
+//! Arithmetic expressions of dimensions and measures, such as `acos((a + c) / (e - c))`.
+//!
+//! Lengths, angles and plain numbers are told apart: a length cannot be added to an angle, `sqrt(a * b)` of two lengths
+//! is a length. A constant carries its unit (`3 mm`, `30°`) or is a plain number. A name with spaces stands in single
+//! quotes.
+
+mod grammar;
+mod kind;
+
+use std::ops::Range;
+
+use crate::tolerance::{lanes::Lanes, model::Quantity};
+
+pub use grammar::parse;
+pub use kind::Kind;
+
+/// The most intermediate results that wait for an operation.
+const DEPTH: usize = 16;
+
+/// A validated expression: operations on a stack.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    steps: Vec<Step>,
+    kind: Kind,
+}
+
+/// What a name in an expression stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A variable of the model.
+    Variable(usize),
+    /// An earlier measure.
+    Measure(usize),
+}
+
+/// An operation and the bytes of the text that it came from.
+#[derive(Clone, Debug)]
+struct Step {
+    operation: Operation,
+    place: Range<usize>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Operation {
+    Constant(f64),
+    Read(Source),
+    One(fn(f64) -> f64),
+    Two(fn(f64, f64) -> f64),
+    Negate,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+}
+
+/// What is wrong with an expression.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// Something else was expected.
+    #[error("expected {expected}, found {}", quoted(found))]
+    Expected {
+        /// What.
+        expected: &'static str,
+        /// What stands there; empty at the end.
+        found: String,
+    },
+    /// No dimension and no earlier measure has this name.
+    #[error("there is no dimension and no measure above called `{0}`")]
+    UnknownName(String),
+    /// No such function.
+    #[error("there is no function `{0}`")]
+    UnknownFunction(String),
+    /// No such unit.
+    #[error("`{0}` is no unit of a length or an angle")]
+    UnknownUnit(String),
+    /// Kinds that do not go together.
+    #[error("{operation} {}", one_or_both(kinds))]
+    Kinds {
+        /// What cannot be done.
+        operation: &'static str,
+        /// With what.
+        kinds: Vec<Kind>,
+    },
+    /// Not a length, an angle or a plain number.
+    #[error("the result is {0}, which is no measure")]
+    Result(Kind),
+    /// Nested too deeply.
+    #[error("the expression is nested too deeply")]
+    Depth,
+    /// Not finite at the nominal values.
+    #[error("{what} at the nominal values")]
+    NotFinite {
+        /// What happens.
+        what: &'static str,
+    },
+}
+
+fn quoted(text: &str) -> String {
+    if text.is_empty() { "the end".into() } else { format!("`{text}`") }
+}
+
+fn one_or_both(kinds: &[Kind]) -> String {
+    kinds.iter().map(Kind::to_string).collect::<Vec<_>>().join(" and ")
+}
+
+/// A [`Fault`], where it is, and what is allowed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExpressionError {
+    /// What is wrong.
+    pub fault: Fault,
+    /// Bytes of the expression.
+    pub place: Range<usize>,
+    /// What is allowed there, as a phrase.
+    pub allowed: &'static str,
+}
+
+impl Expression {
+    /// What kind of number it gives.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// What kind of measure it is.
+    pub fn quantity(&self) -> Quantity {
+        self.kind.quantity().unwrap_or(Quantity::Ratio)
+    }
+
+    /// Its value for the `variables` and the earlier `measures` (SI).
+    pub fn evaluate(&self, variables: &[Lanes], measures: &[Lanes]) -> Lanes {
+        self.trace(variables, measures, |_, _| ())
+    }
+
+    /// Whether the result and everything on the way to it is finite for these values.
+    ///
+    /// # Errors
+    /// [`ExpressionError`] points at the first operation whose result is not.
+    pub fn check(&self, variables: &[Lanes], measures: &[Lanes]) -> Result<(), ExpressionError> {
+        let mut first = None;
+        self.trace(variables, measures, |step, value| {
+            if !value.0[0].is_finite() && first.is_none() {
+                let what = match step.operation {
+                    Operation::Divide => "divides by zero",
+                    _ => "is not a finite number",
+                };
+                let allowed = "an expression that is finite at the nominal values";
+                first = Some(ExpressionError { fault: Fault::NotFinite { what }, place: step.place.clone(), allowed });
+            }
+        });
+        first.map_or(Ok(()), Err)
+    }
+
+    #[inline(always)]
+    fn trace(&self, variables: &[Lanes], measures: &[Lanes], mut look: impl FnMut(&Step, Lanes)) -> Lanes {
+        // Parsing has checked that no more than DEPTH wait and that every operation finds its operands.
+        let mut stack = [Lanes::ZERO; DEPTH];
+        let mut height = 0;
+        for step in &self.steps {
+            let (operands, value) = match step.operation {
+                Operation::Constant(value) => (0, Lanes::splat(value)),
+                Operation::Read(Source::Variable(i)) => (0, variables[i]),
+                Operation::Read(Source::Measure(i)) => (0, measures[i]),
+                Operation::One(function) => (1, stack[height - 1].map(function)),
+                Operation::Two(function) => {
+                    let (a, b) = (stack[height - 2], stack[height - 1]);
+                    (2, Lanes(std::array::from_fn(|lane| function(a.0[lane], b.0[lane]))))
+                }
+                Operation::Negate => (1, -stack[height - 1]),
+                Operation::Add => (2, stack[height - 2] + stack[height - 1]),
+                Operation::Subtract => (2, stack[height - 2] - stack[height - 1]),
+                Operation::Multiply => (2, stack[height - 2] * stack[height - 1]),
+                Operation::Divide => (2, stack[height - 2] / stack[height - 1]),
+            };
+            height -= operands;
+            stack[height] = value;
+            height += 1;
+            look(step, value);
+        }
+        stack[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Variables: a 2 mm, b 3 mm, φ 60°; measure `the gap` 0.5 mm.
+    fn value(text: &str) -> Result<(f64, Quantity), ExpressionError> {
+        let resolve = |name: &str| match name {
+            "a" => Some((Source::Variable(0), Kind::LENGTH)),
+            "b.c" => Some((Source::Variable(1), Kind::LENGTH)),
+            "φ" => Some((Source::Variable(2), Kind::ANGLE)),
+            "the gap" => Some((Source::Measure(0), Kind::LENGTH)),
+            _ => None,
+        };
+        let variables = [2e-3, 3e-3, std::f64::consts::FRAC_PI_3].map(Lanes::splat);
+        let measures = [Lanes::splat(0.5e-3)];
+        let expression = parse(text, resolve)?;
+        expression.check(&variables, &measures)?;
+        let value = expression.evaluate(&variables, &measures);
+        assert_eq!(value.0[0].to_bits(), value.0[7].to_bits());
+        Ok((value.0[0], expression.quantity()))
+    }
+
+    #[test]
+    fn arithmetic() {
+        for (text, expected, quantity) in [
+            ("a + b.c", 5e-3, Quantity::Length),
+            ("a - b.c - 'the gap'", -1.5e-3, Quantity::Length),
+            ("-a + 3 * b.c ÷ 2 × 1", 2.5e-3, Quantity::Length),
+            ("a − 1 mm + 10 µm + 0.001 cm + 1e-6 m", 1.021e-3, Quantity::Length),
+            ("2^3^2 / 2^-1", 1024.0, Quantity::Ratio),
+            ("-2^2", -4.0, Quantity::Ratio),
+            ("sqrt(a^2 + b.c * b.c)", libm::sqrt(13.0) * 1e-3, Quantity::Length),
+            ("(a * b.c)^0.5", libm::sqrt(6.0) * 1e-3, Quantity::Length),
+            ("sin(φ) * a", libm::sqrt(3.0) * 1e-3, Quantity::Length),
+            ("cos(60 deg) + tan(45°) - sin(0.5 rad) / sin(0.5)", 0.5, Quantity::Ratio),
+            ("acos(a / b.c) - asin(2 / 3) + atan(0)", libm::acos(2.0 / 3.0) - libm::asin(2.0 / 3.0), Quantity::Angle),
+            ("abs(a - b.c)", 1e-3, Quantity::Length),
+            ("min(a, b.c, 'the gap') + max(a, b.c)", 3.5e-3, Quantity::Length),
+            ("pi * 2 * a / a", std::f64::consts::TAU, Quantity::Ratio),
+            ("φ * a", 2e-3 * std::f64::consts::FRAC_PI_3, Quantity::Length),
+            ("φ / 1°", 60.0, Quantity::Ratio),
+        ] {
+            let (found, kind) = value(text).unwrap_or_else(|error| panic!("{text}: {}", error.fault));
+            assert!((found - expected).abs() < 1e-14 * expected.abs().max(1.0), "{text}: {found}, not {expected}");
+            assert_eq!(kind, quantity, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_pointed_at() {
+        for (text, marked, message) in [
+            ("", "", "expected a number, a name, a function or a parenthesis, found the end"),
+            ("a +", "", "expected a number, a name, a function or a parenthesis, found the end"),
+            ("a * / 2", "/", "found `/`"),
+            ("(a", "", "expected `)`, found the end"),
+            ("a b.c", "b.c", "expected an operator, found `b.c`"),
+            ("a ? 2", "?", "found `?`"),
+            ("'the gap", "'the gap", "expected a closing quote"),
+            ("a + c", "c", "no measure above called `c`"),
+            ("sinus(φ)", "sinus", "no function `sinus`"),
+            ("min()", ")", "found `)`"),
+            ("3 inch + a", "inch", "`inch` is no unit"),
+            ("1.2.3", "1.2.3", "expected a number"),
+            ("a + 3", "+", "cannot add a length and a plain number"),
+            ("a - φ", "-", "cannot subtract a length and an angle"),
+            ("sin(a)", "sin", "takes an angle or a plain number, not a length"),
+            ("acos(a)", "acos", "takes a plain number, not a length"),
+            ("a ^ b.c", "^", "cannot raise"),
+            ("max(a, 1)", "max", "cannot compare a length and a plain number"),
+            ("a * a", "a * a", "the result is a length to the power 2"),
+            ("a / (b.c - 3 mm)", "/", "divides by zero at the nominal"),
+            ("acos(b.c / a)", "acos", "is not a finite number at the nominal"),
+            ("sqrt(a - b.c) / sqrt(a)", "sqrt", "is not a finite number"),
+        ] {
+            let error = value(text).unwrap_err();
+            assert!(error.fault.to_string().contains(message), "{text}: {}", error.fault);
+            assert_eq!(&text[error.place.clone()], marked, "{text}");
+        }
+        for deep in ["(".repeat(10_000), "-".repeat(10_000), "a+(".repeat(20) + "a", "2^".repeat(10_000)] {
+            assert_eq!(value(&deep).unwrap_err().fault, Fault::Depth);
+        }
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_text_panics(text in "[a-z0-9+*/^()', .φ°-]{0,40}|.*") {
+            if let Err(error) = value(&text) {
+                assert!(text.get(error.place).is_some());
+            }
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Products: parts, features, tolerances and mates, and the measures that follow from them.
+//!
+//! A scene file states them (see `scenes/three-part-stack.toml` for the simplest); they become a
+//! [`Model`] of independent or correlated variables. SI units inside.
+
+pub mod assembly;
+pub mod contact;
+pub mod contacts;
+pub mod correlation;
+pub mod dimension;
+pub mod expression;
+pub mod feature;
+pub mod function;
+pub mod iso2768;
+pub mod pose;
+pub mod vector;
+
+use crate::tolerance::{lanes::Lanes, model::Model};
+
+/// What a scene file says of a product.
+pub struct Product {
+    /// Contributors, measures, and the function from one to the other.
+    pub model: Model,
+    /// The variables at the drawing's nominal values (SI), which need not be the middles of the tolerances.
+    pub nominal: Vec<f64>,
+    /// What the user should know before trusting a result.
+    pub warnings: Vec<String>,
+}
+
+impl Product {
+    /// The measures (SI) at the drawing's nominal values.
+    pub fn nominal_measures(&self) -> Vec<f64> {
+        let variables: Vec<_> = self.nominal.iter().map(|value| Lanes::splat(*value)).collect();
+        let mut measures = vec![Lanes::ZERO; self.model.measures.len()];
+        self.model.function.evaluate(&variables, &mut measures);
+        measures.iter().map(|measure| measure.0[0]).collect()
+    }
+}

@@ -1,0 +1,82 @@
+//! A scene file as a whole: a product with its tolerances, a slide that moves, or both.
+
+use slipfit_core::clearance::GapStatistics;
+
+use crate::{product::Product, tolerance::moments};
+
+use super::{
+    Override, Problem, Scene, SceneError, keys,
+    parse::{scene, title},
+    pins::{fill, pins, sums},
+    product::product,
+    tree::Source,
+    value::Field,
+};
+
+/// What a scene file describes.
+pub struct SceneFile {
+    /// Title, for plots and reports.
+    pub title: String,
+    /// Parts, tolerances and measures, if it has any.
+    pub product: Option<Product>,
+    /// The mechanism, if it has one. Gaps that are measures of the product have the moments that [`moments::of_measures`]
+    /// finds.
+    pub slide: Option<Scene>,
+}
+
+impl SceneFile {
+    /// Reads the `text` of the scene file `file_name` with the `overrides` applied in order.
+    ///
+    /// # Errors
+    /// [`SceneError`] points at the first value, in the file or in an override, that makes no scene.
+    pub fn parse(file_name: &str, text: &str, overrides: &[Override]) -> Result<Self, SceneError> {
+        let mut tree = Source { name: file_name, text }.document()?;
+        for change in overrides {
+            tree.set(change)?;
+        }
+        keys::refuse_unknown(&tree)?;
+
+        let root = Field { key: String::new(), node: &tree };
+        let title = title(&root, file_name)?;
+        let mut product = ["dimension", "part", "measure"]
+            .iter()
+            .any(|key| root.get(key).is_some())
+            .then(|| product(&root))
+            .transpose()?;
+        let of_slide = ["slide", "contact", "friction", "drive", "run", "sweep", "pin"];
+        if product.is_some() && of_slide.iter().all(|key| root.get(key).is_none()) {
+            return Ok(Self { title, product, slide: None });
+        }
+        root.table("slide")?;
+        let (mut pins, gap_measures) = pins(&root, product.as_ref().map(|product| &product.model))?;
+        if let Some(product) = product.as_mut().filter(|_| gap_measures.iter().flatten().any(Option::is_some)) {
+            let moments = moments::of_measures(&product.model);
+            let statistics: Vec<_> =
+                moments.iter().map(|of| GapStatistics { mean: of.mean, deviation: of.deviation }).collect();
+            fill(&mut pins, &gap_measures, &statistics);
+            product.model.sums.extend(sums(&pins, &gap_measures));
+        }
+        let slide = Some(scene(&root, title.clone(), pins)?);
+        Ok(Self { title, product, slide })
+    }
+}
+
+impl Scene {
+    /// Reads the slide of the scene file `file_name` from its `text`, with the `overrides` applied in order.
+    ///
+    /// # Errors
+    /// [`SceneError`] points at the first value, in the file or in an override, that makes no scene, or says that it
+    /// has no slide.
+    pub fn parse(file_name: &str, text: &str, overrides: &[Override]) -> Result<Self, SceneError> {
+        let file = SceneFile::parse(file_name, text, overrides)?;
+        file.slide.ok_or_else(|| no_slide(file_name, text))
+    }
+}
+
+/// There is nothing to move in the scene.
+fn no_slide(file_name: &str, text: &str) -> SceneError {
+    let first_line = 0..text.find('\n').unwrap_or(text.len());
+    let allowed = "a scene with [slide], [contact], [friction], [drive], [run], [sweep] and [[pin]]; \
+                   slipfit tolerance works on this one";
+    SceneError::new(Problem::NoSlide, allowed.into(), file_name, text, first_line)
+}

@@ -1,0 +1,139 @@
+//! Reads measures and sums of them.
+
+use crate::{
+    product::{
+        expression::{Expression, ExpressionError, Kind, Source, parse},
+        feature::Shape,
+        function::{Formula, Measures},
+    },
+    scene::{
+        Problem, SceneError,
+        unit::{self, Quantity},
+        value::Field,
+    },
+    tolerance::{
+        lanes::Lanes,
+        model::{Function, Measure, Quantity as Measured, Sum},
+    },
+};
+
+use super::{Draft, name, tables, texts};
+
+const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
+const ANGLE: Quantity = Quantity { units: unit::ANGLE, range: [-3600.0, 3600.0] };
+const RATIO: Quantity = Quantity { units: unit::ONE, range: [-1e12, 1e12] };
+
+/// Reads every `[[measure]]` and adds its formula to `function`.
+pub(super) fn measures(root: &Field, draft: &mut Draft, function: &mut Measures) -> Result<Vec<Measure>, SceneError> {
+    let mut measures = Vec::new();
+    for table in tables(root, "measure")? {
+        let (name, name_field) = name(&table)?;
+        let formula = formula(&table, draft, function)?;
+        let quantity = formula.quantity();
+        function.formulas.push(formula);
+        draft.name(&name_field, name, Source::Measure(measures.len()), Kind::of(quantity))?;
+        measures.push(Measure { name: name.into(), quantity, limits: limits(&table, quantity)? });
+    }
+    if measures.is_empty() {
+        return Err(root.error(Problem::Missing("measure".into()), "one or more tables [[measure]]"));
+    }
+    Ok(measures)
+}
+
+/// Reads the one of the keys `is`, `distance` and `angle` that a measure has.
+fn formula(table: &Field, draft: &Draft, function: &Measures) -> Result<Formula, SceneError> {
+    const ALLOWED: &str =
+        "one of: is = \"an expression\", distance = [\"PART.FEATURE\", \"PART.FEATURE\"], angle = […]";
+    let given: Vec<_> = ["is", "distance", "angle"].iter().filter_map(|key| Some((*key, table.get(key)?))).collect();
+    let (key, field) = match &given[..] {
+        [] => return Err(table.error(Problem::Missing(format!("{}.is", table.key)), ALLOWED)),
+        [only] => only,
+        [_, (_, second), ..] => {
+            let problem = Problem::Unsupported { what: "a measure of two kinds".into() };
+            return Err(second.error(problem, ALLOWED));
+        }
+    };
+    if *key == "is" {
+        return Ok(Formula::Expression(expression(field, draft, function)?));
+    }
+    let pair = texts(table, key, "a list of two features, PART.FEATURE")?;
+    let [(_, one), (_, two)] = &pair[..] else {
+        let problem = Problem::Length { key: field.key.clone(), found: pair.len() };
+        return Err(field.error(problem, "a list of two features, PART.FEATURE"));
+    };
+    let (one, two) = (draft.feature(one)?, draft.feature(two)?);
+    if *key == "angle" && [one, two].iter().any(|i| function.assembly.features[*i].shape == Shape::Point) {
+        return Err(field.error(Problem::Unsupported { what: "an angle of a point".into() }, "planes and axes"));
+    }
+    Ok(if *key == "angle" { Formula::Angle(one, two) } else { Formula::distance(&function.assembly, one, two) })
+}
+
+/// Reads an expression of what `draft` and the measures of `function` so far name; finite at the nominal values.
+fn expression(field: &Field, draft: &Draft, function: &Measures) -> Result<Expression, SceneError> {
+    let text = field.to_text()?;
+    let wrong = |error: ExpressionError| {
+        let problem = Problem::Expression { key: field.key.clone(), fault: error.fault };
+        field.error_within(error.place, problem, error.allowed)
+    };
+    let known =
+        |name: &str| draft.names.iter().find(|(known, ..)| known == name).map(|(_, source, kind)| (*source, *kind));
+    let expression = parse(text, known).map_err(wrong)?;
+    let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
+    let mut before = vec![Lanes::ZERO; function.formulas.len()];
+    function.evaluate(&nominal, &mut before);
+    expression.check(&nominal, &before).map_err(wrong)?;
+    Ok(expression)
+}
+
+/// The keys `lower` and `upper`.
+fn limits(table: &Field, quantity: Measured) -> Result<[Option<f64>; 2], SceneError> {
+    let quantity = match quantity {
+        Measured::Length => &LENGTH,
+        Measured::Angle => &ANGLE,
+        Measured::Ratio => &RATIO,
+    };
+    let (lower, upper) = (table.get("lower"), table.get("upper"));
+    let value = |field: &Option<Field>| field.as_ref().map(|field| field.to_number(quantity)).transpose();
+    let limits = [value(&lower)?, value(&upper)?];
+    if let ([Some(low), Some(high)], Some(lower), Some(upper)) = (limits, lower, upper)
+        && low >= high
+    {
+        let symbol = quantity.units[0].symbol;
+        let (key, written) = (upper.key.clone(), upper.written(symbol));
+        let problem = Problem::Limits { key, written, lower: lower.written(symbol) };
+        return Err(upper.error(problem, "an upper limit above the lower one"));
+    }
+    Ok(limits)
+}
+
+/// Reads every `[[sum]]`.
+pub(super) fn sums(root: &Field, measures: &[Measure]) -> Result<Vec<Sum>, SceneError> {
+    const ALLOWED: &str = "a list of measures";
+    let mut sums: Vec<Sum> = Vec::new();
+    for table in tables(root, "sum")? {
+        let (name, name_field) = name(&table)?;
+        if sums.iter().any(|sum| sum.name == name) {
+            let problem = Problem::Duplicate { key: name_field.key.clone(), name: name.into() };
+            return Err(name_field.error(problem, "a name of its own for each sum"));
+        }
+        let mut indices = Vec::new();
+        for (name, field) in texts(&table, "of", ALLOWED)? {
+            let at = measures.iter().position(|measure| measure.name == name);
+            let at = at.ok_or_else(|| {
+                let names: Vec<_> = measures.iter().map(|measure| measure.name.as_str()).collect();
+                field.error(Problem::UnknownName { of: "measure".into(), name: name.into() }, names.join(", "))
+            })?;
+            if indices.first().is_some_and(|first: &usize| measures[*first].quantity != measures[at].quantity) {
+                let problem = Problem::Choice { key: field.key.clone(), written: name.into() };
+                return Err(field.error(problem, "measures of one kind: lengths, angles or plain numbers"));
+            }
+            indices.push(at);
+        }
+        if indices.is_empty() {
+            let of = table.require("of", ALLOWED)?;
+            return Err(of.error(Problem::Length { key: of.key.clone(), found: 0 }, ALLOWED));
+        }
+        sums.push(Sum { name: name.into(), measures: indices });
+    }
+    Ok(sums)
+}

@@ -1,0 +1,251 @@
+//! Reads a product: dimensions, parts, mates, measures, correlations.
+//!
+//! ```toml
+//! [tolerance]                  # all of it may be left out
+//! general = "mH"               # ISO 2768 classes: sizes f m c v, geometry H K L
+//! rule = "sigma-zone"          # planes in their zones: or truncated, uniform-in-zone, translation
+//! sigma = 3                    # a tolerance of ±t is this many standard deviations
+//!
+//! [[dimension]]
+//! name = "height"
+//! value = 20                   # mm, or a text with its unit: "30°"
+//! tolerance = 0.1              # ±; or [-0.1, 0.3]; or an ISO 2768-1 class, such as "m"; or the general one
+//! distribution = "uniform"     # normal if left out
+//!
+//! [[measure]]
+//! name = "gap"
+//! is = "30 mm - height"        # names with spaces in single quotes
+//! lower = 9.8
+//!
+//! [[part]]                     # the first stays where it is, a mate places each other
+//! name = "box"                 # features in the part's frame; `at`, `turned` (z-x-z) place that in the assembly's
+//! plane = [                    # middle of the face, outward normal, direction of the first extent, extents in mm
+//!   { name = "rim", at = [0, 0, 20], normal = "+z", along = "+x", extents = [100, 60], flatness = 0.05 },
+//! ]
+//! point = [{ name = "tip", at = [9, 0, 20], normal = "+z", profile = { zone = 0.1, datum = "box.rim" } }]
+//! axis = [{ name = "pin", at = [0, 0, 22], along = "+z", length = 6, diameter = 4, position = 0.1 }]
+//!
+//! [[mate]]                     # the first contact has precedence over the next, as a first datum has
+//! part = "lid"
+//! contacts = [["lid.bottom", "box.rim"], ["lid.hole", "box.pin"]]
+//! turn = { about = "+z", by = "30°" }     # or move = { along, by }: holds a freedom that is meant to move
+//!
+//! [[measure]]                  # distances from a plane are positive outside of its material
+//! name = "height"
+//! distance = ["lid.tip", "box.rim"]       # or angle = [PLANE, PLANE]
+//! ```
+//!
+//! Tolerances of a feature: `flatness`, `straightness`, `parallelism`, `perpendicularity`, `angularity`, `position`,
+//! `profile` (the width of the zone, or zone, datum and rule), `offset` (± along the normal), `vectorial` (each component of
+//! the position and of the orientation vector). A plane or a point with none has the general flatness, if there is a
+//! class, unless it says `flatness = "none"`.
+
+#[cfg(test)]
+mod assembly_tests;
+mod callout;
+mod mate;
+mod measure;
+mod part;
+#[cfg(test)]
+mod tests;
+mod toleranced;
+
+use crate::{
+    product::{
+        Product,
+        assembly::Assembly,
+        correlation,
+        expression::{Kind, Source},
+        function::Measures,
+        iso2768::{General, WITHDRAWN},
+    },
+    tolerance::model::{Contributor, Model, Variation, ZoneRule},
+};
+
+use super::{
+    Problem, SceneError,
+    tree::Value,
+    unit::{self, Quantity},
+    value::Field,
+};
+
+const SIGMA: Quantity = Quantity { units: unit::ONE, range: [0.1, 100.0] };
+const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
+
+/// What holds for the whole product.
+#[derive(Clone, Copy)]
+struct Defaults {
+    general: General,
+    rule: ZoneRule,
+    sigma: f64,
+}
+
+/// A product in the making.
+struct Draft {
+    defaults: Defaults,
+    contributors: Vec<Contributor>,
+    /// Variables at their nominal values.
+    nominal: Vec<f64>,
+    /// What expressions can use.
+    names: Vec<(String, Source, Kind)>,
+    assembly: Assembly,
+    /// Names with the parts'.
+    feature_names: Vec<String>,
+    parts_of_features: Vec<usize>,
+    /// Datums that go together, and what they place.
+    datum_systems: Vec<(Vec<usize>, usize)>,
+}
+
+impl Draft {
+    /// Adds a `contributor` with its nominal value, or values, and gives its first variable.
+    fn add(&mut self, contributor: Contributor, nominal: &[f64]) -> usize {
+        self.contributors.push(contributor);
+        self.nominal.extend(nominal);
+        self.nominal.len() - nominal.len()
+    }
+
+    /// The feature that `field` names, as PART.FEATURE.
+    fn feature(&self, field: &Field) -> Result<usize, SceneError> {
+        let name = field.to_text()?;
+        self.feature_names.iter().position(|known| known == name).ok_or_else(|| {
+            let near = self.feature_names.iter().map(|known| (strsim::osa_distance(known, name), known)).min();
+            let hint = near.map(|(_, known)| format!(", such as {known}")).unwrap_or_default();
+            let problem = Problem::UnknownName { of: "feature above".into(), name: name.into() };
+            field.error(problem, format!("PART.FEATURE{hint}"))
+        })
+    }
+
+    /// Gives `name` to `source`, unless something else has it.
+    fn name(&mut self, field: &Field, name: &str, source: Source, kind: Kind) -> Result<(), SceneError> {
+        if self.names.iter().any(|(known, ..)| known == name) {
+            let problem = Problem::Duplicate { key: field.key.clone(), name: name.into() };
+            return Err(field.error(problem, "a name of its own for each dimension and measure"));
+        }
+        self.names.push((name.into(), source, kind));
+        Ok(())
+    }
+}
+
+/// Reads the product in `root`.
+pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
+    let mut draft = Draft {
+        defaults: defaults(root)?,
+        contributors: Vec::new(),
+        nominal: Vec::new(),
+        names: Vec::new(),
+        assembly: Assembly::default(),
+        feature_names: Vec::new(),
+        parts_of_features: Vec::new(),
+        datum_systems: Vec::new(),
+    };
+    for table in tables(root, "dimension")? {
+        toleranced::dimension(&table, &mut draft)?;
+    }
+    let mut parts = part::parts(root)?;
+    let mates = mate::mates(root, &mut parts)?;
+    part::features(&parts, &mut draft)?;
+    mates.iter().try_for_each(|mate| mate::place(mate, &parts, &mut draft))?;
+    let correlations = correlations(root, &draft.contributors)?;
+    let mut function = Measures { assembly: std::mem::take(&mut draft.assembly), formulas: Vec::new() };
+    let measures = measure::measures(root, &mut draft, &mut function)?;
+    let sums = measure::sums(root, &measures)?;
+    let mut warnings = Vec::new();
+    if draft.defaults.general.geometry.is_some() {
+        warnings.push(WITHDRAWN.to_owned());
+    }
+    let Draft { contributors, nominal, .. } = draft;
+    let model = Model { contributors, correlations, measures, sums, function: Box::new(function) };
+    Ok(Product { model, nominal, warnings })
+}
+
+fn defaults(root: &Field) -> Result<Defaults, SceneError> {
+    let mut defaults = Defaults { general: General::default(), rule: ZoneRule::SigmaZone, sigma: 3.0 };
+    let Some(table) = root.get("tolerance") else { return Ok(defaults) };
+    table.expect_table()?;
+    if let Some(field) = table.get("general") {
+        const ALLOWED: &str =
+            "ISO 2768 classes: f, m, c, v for sizes and H, K, L for geometry, such as \"mH\" or \"K\"";
+        let choice = |_| field.error(Problem::Choice { key: field.key.clone(), written: field.written("") }, ALLOWED);
+        defaults.general = field.to_text()?.parse().map_err(choice)?;
+    }
+    if let Some(field) = table.get("rule") {
+        defaults.rule = rule(&field)?;
+    }
+    if let Some(field) = table.get("sigma") {
+        defaults.sigma = field.to_number(&SIGMA)?;
+    }
+    Ok(defaults)
+}
+
+/// How a plane varies in its zone.
+fn rule(field: &Field) -> Result<ZoneRule, SceneError> {
+    match field.to_text()? {
+        "sigma-zone" => Ok(ZoneRule::SigmaZone),
+        "truncated" => Ok(ZoneRule::Truncated),
+        "uniform-in-zone" => Ok(ZoneRule::UniformInZone),
+        "translation" => Ok(ZoneRule::Translation),
+        _ => {
+            let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
+            Err(field.error(problem, "sigma-zone, truncated, uniform-in-zone, translation"))
+        }
+    }
+}
+
+/// The tables of the list `key`; none if it is not there.
+fn tables<'t, 's>(root: &Field<'t, 's>, key: &str) -> Result<Vec<Field<'t, 's>>, SceneError> {
+    let Some(list) = root.get(key) else { return Ok(Vec::new()) };
+    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(format!("tables [[{}]]", list.key))) };
+    let tables: Vec<_> = nodes.iter().map(|node| Field { key: list.key.clone(), node }).collect();
+    tables.iter().try_for_each(Field::expect_table)?;
+    Ok(tables)
+}
+
+/// The name of the table.
+fn name<'t, 's>(table: &Field<'t, 's>) -> Result<(&'t str, Field<'t, 's>), SceneError> {
+    const ALLOWED: &str = "a text in quotes, without single quotes in it";
+    let field = table.require("name", ALLOWED)?;
+    let name = field.to_text()?;
+    if name.trim().is_empty() || name.chars().any(|c| c == '\'' || c.is_control()) {
+        return Err(field.error(Problem::Choice { key: field.key.clone(), written: field.written("") }, ALLOWED));
+    }
+    Ok((name, field))
+}
+
+/// The texts of the list `key` in the `table`, each with its field.
+fn texts<'t, 's>(table: &Field<'t, 's>, key: &str, allowed: &str) -> Result<Vec<(&'t str, Field<'t, 's>)>, SceneError> {
+    let list = table.require(key, allowed)?;
+    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(allowed)) };
+    nodes.iter().map(|node| Field { key: list.key.clone(), node }).map(|field| Ok((field.to_text()?, field))).collect()
+}
+
+fn correlations(root: &Field, contributors: &[Contributor]) -> Result<Vec<(usize, usize, f64)>, SceneError> {
+    const ALLOWED: &str = "a list of two contributors, such as [\"a\", \"b\"]";
+    let mut correlations: Vec<(usize, usize, f64)> = Vec::new();
+    for table in tables(root, "correlation")? {
+        let mut pair = Vec::new();
+        for (name, field) in texts(&table, "of", ALLOWED)? {
+            let scalar = |c: &&Contributor| matches!(c.variation, Variation::Scalar { .. });
+            let at = contributors.iter().position(|contributor| contributor.name == name && scalar(&contributor));
+            pair.push(at.ok_or_else(|| {
+                let names: Vec<_> = contributors.iter().filter(scalar).map(|c| c.name.as_str()).collect();
+                let problem = Problem::UnknownName { of: "contributor of one variable".into(), name: name.into() };
+                field.error(problem, names.join(", "))
+            })?);
+        }
+        let of = table.require("of", ALLOWED)?;
+        let &[row, column] = &pair[..] else {
+            return Err(of.error(Problem::Length { key: of.key.clone(), found: pair.len() }, ALLOWED));
+        };
+        let same = |(a, b, _): &(usize, usize, f64)| [*a, *b] == [row, column] || [*a, *b] == [column, row];
+        if row == column || correlations.iter().any(same) {
+            let problem = Problem::Duplicate { key: of.key.clone(), name: contributors[column].name.clone() };
+            return Err(of.error(problem, "two different contributors, every pair once"));
+        }
+        let field = table.require("coefficient", "a number from -1 to 1")?;
+        correlations.push((row, column, field.to_number(&COEFFICIENT)?));
+        if !correlation::is_positive_definite(contributors.len(), &correlations) {
+            return Err(field.error(Problem::NotPositiveDefinite, "coefficients nearer to 0"));
+        }
+    }
+    Ok(correlations)
+}

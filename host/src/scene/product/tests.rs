@@ -1,0 +1,251 @@
+//! The shipped products against known numbers, and every kind of bad input.
+
+use crate::{
+    product::Product,
+    scene::{Override, Problem, SceneError, SceneFile, shipped},
+    tolerance::moments,
+    tolerance::{
+        lanes::{LANES, Lanes},
+        model::{Distribution, Quantity, Variation},
+    },
+};
+
+pub(super) fn parse(text: &str, overrides: &[&str]) -> Result<SceneFile, SceneError> {
+    let overrides: Vec<_> = overrides.iter().map(|text| Override::set(text)).collect();
+    SceneFile::parse("scene.toml", text, &overrides)
+}
+
+pub(super) fn product(name: &str, overrides: &[&str]) -> Product {
+    let file = parse(shipped(name).unwrap(), overrides).unwrap_or_else(|error| panic!("{error}"));
+    file.product.unwrap()
+}
+
+/// The measures with variable `i` at `value` (SI) and the others at their nominal values.
+pub(super) fn at(product: &Product, values: &[(usize, f64)]) -> Vec<f64> {
+    let mut variables: Vec<_> = product.nominal.iter().map(|value| Lanes::splat(*value)).collect();
+    for (i, value) in values {
+        variables[*i] = Lanes::splat(*value);
+    }
+    let mut measures = vec![Lanes::ZERO; product.model.measures.len()];
+    product.model.function.evaluate(&variables, &mut measures);
+    measures.iter().map(|measure| measure.0[LANES - 1]).collect()
+}
+
+/// Half widths and middles of the tolerances of dimensions.
+fn limits(product: &Product) -> Vec<[f64; 2]> {
+    let limits = product.model.contributors.iter().map(|contributor| match contributor.variation {
+        Variation::Scalar { limits, .. } => limits,
+        Variation::Zone(_) => panic!("a plane"),
+    });
+    limits.collect()
+}
+
+/// Linear worst case and RSS about the nominal values: half widths by the derivatives there.
+fn linear(product: &Product) -> [f64; 2] {
+    let half = |[lower, upper]: [f64; 2]| (upper - lower) / 2.0;
+    let effects = limits(product).into_iter().enumerate().map(|(i, limits)| {
+        let step = half(limits) * 1e-3;
+        let [up, down] = [step, -step].map(|step| at(product, &[(i, product.nominal[i] + step)])[0]);
+        (up - down) / 2e-3
+    });
+    let effects: Vec<f64> = effects.collect();
+    [effects.iter().map(|x| x.abs()).sum(), libm::sqrt(effects.iter().map(|x| x * x).sum())]
+}
+
+pub(super) fn close(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found}, not {expected}");
+}
+
+#[test]
+fn one_way_clutch() {
+    let clutch = product("clutch", &[]);
+    close(clutch.nominal_measures()[0].to_degrees(), 7.018_389_8, 5e-8);
+    let [worst, rss] = linear(&clutch).map(f64::to_degrees);
+    close(worst, 0.9806, 5e-5);
+    close(rss, 0.6579, 5e-5);
+    let [phi] = &moments::of_measures(&clutch.model)[..] else { panic!("one measure") };
+    // The exact mean is 7.014956°, to second order 7.01497°; the standard deviation to first order is the RSS's third.
+    close(phi.mean.to_degrees(), 7.014_956, 3e-5);
+    close(phi.deviation.to_degrees(), rss / 3.0, 1e-4);
+    let measure = &clutch.model.measures[0];
+    assert_eq!((measure.name.as_str(), measure.quantity), ("pressure angle", Quantity::Angle));
+    assert_eq!(
+        measure.limits,
+        ["6.0184", "8.0184"].map(|d| d.parse().ok().map(|d: f64| d * (std::f64::consts::PI / 180.0)))
+    );
+}
+
+#[test]
+fn linear_chain() {
+    let chain = product("linear-chain", &[]);
+    close(chain.nominal_measures()[0] * 1e3, 0.25, 1e-9);
+    let [worst, rss] = linear(&chain);
+    close(worst * 1e3, 0.383, 1e-9);
+    close(rss * 1e3, 0.17825, 5e-6);
+    let [play] = &moments::of_measures(&chain.model)[..] else { panic!("one measure") };
+    close(play.mean * 1e3, 0.4, 1e-9);
+    close(play.deviation * 1e3, 0.17825 / 3.0, 2e-6);
+}
+
+#[test]
+fn one_sided_worst_case() {
+    // 100 +0.3/−0.1 − 40 +0.2/−0.4: 60, worst case 59.7…60.7.
+    let text = "[[dimension]]\nname = \"a\"\nvalue = 100\ntolerance = [-0.1, 0.3]\n\
+                [[dimension]]\nname = \"b\"\nvalue = 40\ntolerance = [-0.4, 0.2]\n\
+                [[measure]]\nname = \"m\"\nis = \"a - b\"\n";
+    let stack = parse(text, &[]).unwrap().product.unwrap();
+    close(stack.nominal_measures()[0] * 1e3, 60.0, 1e-9);
+    let [a, b] = limits(&stack)[..] else { panic!("two dimensions") };
+    close(at(&stack, &[(0, a[0]), (1, b[1])])[0] * 1e3, 59.7, 1e-9);
+    close(at(&stack, &[(0, a[1]), (1, b[0])])[0] * 1e3, 60.7, 1e-9);
+}
+
+#[test]
+fn three_part_stack() {
+    let stack = product("three-part-stack", &[]);
+    close(stack.nominal_measures()[0] * 1e3, 0.5, 1e-9);
+    assert_eq!(limits(&stack)[2], [0.0195 - 0.0002, 0.0195 + 0.0002]);
+    // From the command line, by name.
+    let finer = product("three-part-stack", &["dimension.block A.tolerance=f", "measure.play.lower=0.05"]);
+    assert_eq!(limits(&finer)[1], [0.04 - 0.00015, 0.04 + 0.00015]);
+    assert_eq!(finer.model.measures[0].limits, [Some(0.05e-3), Some(1e-3)]);
+}
+
+#[test]
+fn distributions_and_correlation() {
+    let worn = product("worn-tool", &[]);
+    let kinds: Vec<_> = worn
+        .model
+        .contributors
+        .iter()
+        .map(|contributor| match &contributor.variation {
+            Variation::Scalar { distribution, .. } => distribution.clone(),
+            Variation::Zone(_) => panic!("a plane"),
+        })
+        .collect();
+    assert_eq!(kinds[0], Distribution::Uniform { limits: [0.05 - 1e-4, 0.05 + 1e-4] });
+    assert!(matches!(kinds[1], Distribution::TruncatedNormal { deviation, .. } if (deviation - 25e-6).abs() < 1e-18));
+    assert!(matches!(&kinds[2], Distribution::Table(values) if values.len() == 8 && values[0] == 2e-3 - 0.06e-3));
+    assert!(matches!(kinds[3], Distribution::Normal { deviation, .. } if (deviation - 0.2e-3 / 3.0).abs() < 1e-18));
+    assert!(matches!(kinds[5], Distribution::Skewed { skewness: 0.8, .. }));
+    assert!(matches!(kinds[6], Distribution::Triangular { limits: [a, b], .. } if (b - a - 0.4e-3).abs() < 1e-17));
+    // ISO 2768-1 m: 30′ at a shorter side of 12 mm.
+    assert!(
+        matches!(kinds[7], Distribution::Trapezoidal { limits: [a, b], .. } if ((b - a).to_degrees() - 1.0).abs() < 1e-12)
+    );
+    assert_eq!(worn.model.correlations, [(3, 4, 0.8)]);
+    assert_eq!(worn.model.sums[0].measures, [0, 1]);
+    // With the flanges' correlation left out, their variances add up without 2ρσ².
+    let [with, without] = [&worn.model, &product("worn-tool", &["correlation=[]"]).model]
+        .map(|model| moments::of_measures(model)[0].deviation);
+    close(with * with - without * without, 2.0 * 0.8 * (0.2e-3 / 3.0) * (0.2e-3 / 3.0), 1e-16);
+}
+
+#[test]
+fn only_a_slide_moves() {
+    let error = crate::scene::Scene::parse("clutch.toml", shipped("clutch").unwrap(), &[]).unwrap_err();
+    assert_eq!(error.problem(), &Problem::NoSlide);
+    assert!(parse(shipped("clutch").unwrap(), &[]).unwrap().slide.is_none());
+}
+
+/// A stack to spoil.
+const STACK: &str = r#"
+[tolerance]
+general = "mK"
+[[dimension]]
+name = "a"
+value = 10
+tolerance = 0.1
+[[dimension]]
+name = "b"
+value = 20
+distribution = { kind = "triangular", mode = 0.1 }
+[[dimension]]
+name = "phi"
+value = "30°"
+side = 20
+[[correlation]]
+of = ["a", "b"]
+coefficient = 0.5
+[[measure]]
+name = "m"
+is = "a + 'b' / 2"
+lower = 10
+upper = 30
+[[sum]]
+name = "s"
+of = ["m"]
+"#;
+
+#[test]
+fn the_stack_to_spoil_is_sound() {
+    let file = parse(STACK, &[]).unwrap();
+    assert!(file.product.unwrap().warnings[0].contains("withdrawn"));
+}
+
+#[test]
+fn bad_input_is_shown_with_its_place_and_what_is_allowed() {
+    let cases = [
+        ("\"mK\"", "\"xK\"", ["general = |\"xK\"", "is \"xK\"", "f, m, c, v"]),
+        ("general = \"mK\"", "rule = \"sigma\"", ["rule = |\"sigma", "is \"sigma\"", "sigma-zone, truncated"]),
+        ("general = \"mK\"", "sigma = 0", ["sigma = |0", "`tolerance.sigma` is 0", "0.1 to 100"]),
+        ("general = \"mK\"", "sigma = 3", ["|[[dimension]]\nname = \"b\"", "`dimension.tolerance` is missing", "±"]),
+        ("general", "generl", ["|generl", "did you mean `tolerance.general`", "general, rule, sigma"]),
+        ("value = 10", "value = true", ["value = |true", "is a boolean", "a number in mm"]),
+        ("value = 10", "value = inf", ["value = |inf", "not finite", "mm"]),
+        ("value = 10", "value = \"10 kg\"", ["value = |\"10 kg", "unit does not fit", "mm, m"]),
+        (
+            "value = 20",
+            "value = 0.2",
+            ["value = |0.2", "class m has no tolerance of a size for 0.2 mm", "from 0.5 up to 4000"],
+        ),
+        ("value = 20", "value = 4001", ["value = |4001", "for 4001 mm", "from 0.5 up to 4000 mm"]),
+        ("tolerance = 0.1", "tolerance = 0", ["tolerance = |0", "`dimension.tolerance` is 0 mm", "more than 0"]),
+        ("tolerance = 0.1", "tolerance = -0.1", ["tolerance = |-0.1", "is -0.1 mm", "more than 0"]),
+        ("tolerance = 0.1", "tolerance = [0.1, 0.1]", ["tolerance = |[0.1", "no width", "below the upper one"]),
+        ("tolerance = 0.1", "tolerance = \"x\"", ["tolerance = |\"x", "not a number", "mm"]),
+        ("tolerance = 0.1", "tolerance = 1e-18", ["tolerance = |1e-18", "no width", "±"]),
+        ("side = 20", "", ["|[[dimension]]\nname = \"phi", "`dimension.side` is missing", "shorter side"]),
+        ("mode = 0.1", "mode = 0.3", ["distribution = |{ kind", "the mode is not within", "±"]),
+        ("\"triangular\"", "\"bell\"", ["kind = |\"bell", "is \"bell\"", "normal, truncated-normal"]),
+        ("\"triangular\"", "\"table\"", ["|{ kind", "`dimension.distribution.deviations` is missing", "two or more"]),
+        ("name = \"phi\"", "name = \"a\"", ["name = |\"a\"\nvalue = \"30", "is \"a\" again", "a name of its own"]),
+        ("name = \"phi\"", "name = \"it's\"", ["name = |\"it's", "`dimension.name`", "without single quotes"]),
+        ("[\"a\", \"b\"]", "[\"a\", \"c\"]", ["[\"a\", |\"c\"]", "no contributor of one variable `c`", "a, b, phi"]),
+        ("[\"a\", \"b\"]", "[\"a\"]", ["of = |[\"a\"]\ncoef", "is a list of 1", "two contributors"]),
+        ("[\"a\", \"b\"]", "[\"a\", \"a\"]", ["of = |[\"a\", \"a\"]", "is \"a\" again", "every pair once"]),
+        ("coefficient = 0.5", "coefficient = 1", ["coefficient = |1", "not positive definite", "nearer to 0"]),
+        ("coefficient = 0.5", "coefficient = 1.1", ["coefficient = |1.1", "is 1.1", "-1 to 1"]),
+        ("a + 'b'", "a + 'c'", ["a + |'c' / 2", "no measure above called `c`", "a dimension"]),
+        ("a + 'b'", "a + + +", ["a + + + |/", "found `/`", "such as"]),
+        ("a + 'b'", "a + phi", ["a |+ phi", "cannot add a length and an angle", "one kind"]),
+        ("'b' / 2", "'b' / 0", ["'b' |/ 0", "divides by zero", "finite at the nominal"]),
+        ("a + 'b' / 2", "m", ["is = \"|m", "no measure above called `m`", "stands above"]),
+        ("upper = 30", "upper = 10", ["upper = |10", "which is not above the lower limit, 10 mm", "above the lower"]),
+        ("upper = 30", "upper = \"3°\"", ["upper = |\"3°", "unit does not fit", "mm"]),
+        ("[\"m\"]", "[\"n\"]", ["of = [|\"n\"]", "there is no measure `n`", "m"]),
+        ("[\"m\"]", "[]", ["of = |[]", "is a list of 0", "a list of measures"]),
+        ("is = \"a", "it = \"a", ["|it = ", "unknown key `measure.it`", "name, is"]),
+    ];
+    check_all(STACK, &cases);
+}
+
+/// Whether `text` with `from` replaced by `to` is refused at the bar in `marked`; else what happens.
+pub(super) fn check(text: &str, from: &str, to: &str, [marked, problem, allowed]: [&str; 3]) -> Result<(), String> {
+    assert!(text.contains(from), "{from}");
+    let text = text.replacen(from, to, 1);
+    let error = parse(&text, &[]).err().ok_or_else(|| format!("accepted: {to}"))?.to_string();
+    let start = text.find(&marked.replace('|', "")).unwrap_or_else(|| panic!("{marked}"));
+    let before = &text[..start + marked.find('|').unwrap()];
+    let column = before.chars().rev().take_while(|character| *character != '\n').count() + 1;
+    let place = format!(" scene.toml:{}:{column}\n", before.matches('\n').count() + 1);
+    let missing = [place.as_str(), problem, allowed].into_iter().find(|part| !error.contains(part));
+    missing.map_or(Ok(()), |part| Err(format!("{part} is not in\n{error}")))
+}
+
+/// Panics with all failures of cases.
+pub(super) fn check_all(text: &str, cases: &[(&str, &str, [&str; 3])]) {
+    let failures = cases.iter().filter_map(|(from, to, expected)| check(text, from, to, *expected).err());
+    let failures: Vec<_> = failures.collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n\n"));
+}

@@ -1,0 +1,22 @@
+//! The scenes that the program carries.
+
+/// The paper's slide, its ramp as printed: what every command works on without a scene.
+pub const CD_ROM_SLIDE: &str = include_str!("../../scenes/cd-rom-slide.toml");
+
+/// Names and texts of the shipped scenes.
+pub const SHIPPED: &[(&str, &str)] = &[
+    ("cd-rom-slide", CD_ROM_SLIDE),
+    ("cd-rom-slide-fast", include_str!("../../scenes/cd-rom-slide-fast.toml")),
+    ("cd-rom-slide-drawing", include_str!("../../scenes/cd-rom-slide-drawing.toml")),
+    ("three-part-stack", include_str!("../../scenes/three-part-stack.toml")),
+    ("clutch", include_str!("../../scenes/clutch.toml")),
+    ("linear-chain", include_str!("../../scenes/linear-chain.toml")),
+    ("three-locators", include_str!("../../scenes/three-locators.toml")),
+    ("lid-on-pins", include_str!("../../scenes/lid-on-pins.toml")),
+    ("worn-tool", include_str!("../../scenes/worn-tool.toml")),
+];
+
+/// The text of the shipped scene of this name.
+pub fn shipped(name: &str) -> Option<&'static str> {
+    SHIPPED.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}

@@ -1,0 +1,202 @@
+//! Everything that is found of a model: by formula, and by the units of a study.
+
+use slipfit_core::sampling::stream::derived;
+
+use super::{
+    derivative::expansion,
+    draw::Draw,
+    estimate::{Estimate, Joint, joint},
+    importance::{Failure, Tail, probability},
+    indices::{Indices, indices},
+    model::{Model, Sum, Variation},
+    moments::{Moments, moments, spreads},
+    normal::tail,
+    rss::{RootSumSquare, root_sum_square},
+    study::{Settings, Study, StudyError, Tally},
+    worst_case::{WorstCase, middle, reach, worst_case},
+};
+
+/// Share of the curvature in a measure's variance above which the measure counts as not linear.
+pub const LINEAR: f64 = 1e-6;
+/// What the seeds of everything but the study itself are derived with.
+const TAILS: u64 = 1 << 32;
+const INDICES: u64 = 2 << 32;
+
+/// What is found by formula and importance sampling, without the study's units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Theory {
+    /// Worst case of every measure.
+    pub worst_cases: Vec<WorstCase>,
+    /// Root sum of squares of every measure.
+    pub sums_of_squares: Vec<RootSumSquare>,
+    /// Moments of second order of every measure.
+    pub moments: Vec<Moments>,
+    /// What every contributor does to every measure, a row a measure.
+    pub sensitivities: Vec<Vec<Sensitivity>>,
+    /// Sobol' indices of the measures that are not linear; none with correlated contributors.
+    pub indices: Vec<Option<Indices>>,
+    /// P(below the lower limit), P(above the upper limit) of every measure.
+    pub tails: Vec<[Option<Tail>; 2]>,
+    /// Of every sum of the model.
+    pub closings: Vec<Closing>,
+}
+
+/// What a contributor does to a measure (SI).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// ∂measure/∂variable of a scalar at the middle of its limits: ∂measure/∂tolerance where a tolerance shifts the value.
+    pub slope: Option<f64>,
+    /// How far its whole tolerance moves the measure to either side: half of what the worst case gains by it.
+    pub reach: f64,
+}
+
+/// How probable it is that a sum of measures is negative.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Closing {
+    /// Mean and standard deviation of the sum, of second order (SI).
+    pub mean: f64,
+    /// Standard deviation with the model's own correlation.
+    pub deviation: f64,
+    /// By importance sampling, with the model's own correlation.
+    pub tail: Option<Tail>,
+    /// As if the sum were normal, with the model's own correlation.
+    pub normal: f64,
+    /// As if normal, and all measures moved together (ρ = +1): how eq. 9 tightens both sides of a gap.
+    pub together: f64,
+    /// As if normal, and all measures were independent (ρ = 0).
+    pub independent: f64,
+}
+
+/// Theory and study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Analysis {
+    /// What was drawn.
+    pub settings: Settings,
+    /// By formula.
+    pub theory: Theory,
+    /// By the study's units.
+    pub joint: Joint,
+}
+
+/// Where a probability comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Source {
+    /// Counted units.
+    Counted,
+    /// Importance sampling.
+    ImportanceSampling,
+}
+
+/// Draws all units and finds everything; `done` is called with the units of every block. Runs on the current pool.
+///
+/// # Errors
+/// [`StudyError`], if the model cannot be drawn or the settings do not fit.
+pub fn analyse(model: &Model, settings: Settings, done: impl Fn(u64) + Sync) -> Result<Analysis, StudyError> {
+    let study = Study::new(model, settings)?;
+    let mut tallies = study.empty();
+    study.add(0..settings.blocks(), &mut tallies, done);
+    conclude(&study, &tallies)
+}
+
+/// Finds everything from units that have been drawn.
+///
+/// # Errors
+/// [`StudyError`], if the model cannot be drawn.
+pub fn conclude(study: &Study, tallies: &[Tally]) -> Result<Analysis, StudyError> {
+    let Settings { seed, method, .. } = study.settings;
+    let joint = joint(study.model, method, study.frames(), tallies);
+    Ok(Analysis { settings: study.settings, theory: theory(study.model, seed)?, joint })
+}
+
+/// What needs no study. `seed` is for importance sampling and Sobol' indices.
+///
+/// # Errors
+/// [`StudyError`], if the model cannot be drawn.
+pub fn theory(model: &Model, seed: u64) -> Result<Theory, StudyError> {
+    let draw = Draw::new(model, seed)?;
+    let (means, deviations) = spreads(model);
+    let middles: Vec<f64> = model.contributors.iter().flat_map(|contributor| middle(&contributor.variation)).collect();
+    let around_mean = expansion(model, &means, &deviations);
+    let around_middle = expansion(model, &middles, &deviations);
+    let moments = moments(model, &around_mean, &means, &deviations);
+    let curved = moments.iter().any(|moments| moments.curved > LINEAR);
+    let all_indices = if curved && model.correlations.is_empty() {
+        indices(model, &draw, derived(seed, INDICES)).into_iter().map(Some).collect()
+    } else {
+        vec![None; model.measures.len()]
+    };
+    let mut number = TAILS;
+    let mut rare = |failure: Failure| {
+        number += 1;
+        probability(model, &draw, &failure, derived(seed, number))
+    };
+    let tails = model.measures.iter().enumerate().map(|(i, measure)| {
+        let [lower, upper] = measure.limits;
+        let mut tail = |limit: Option<f64>, above| rare(Failure { measures: vec![i], limit: limit?, above });
+        [tail(lower, false), tail(upper, true)]
+    });
+    let tails = tails.collect();
+    let closings = model.sums.iter().map(|sum| {
+        let tail = rare(Failure { measures: sum.measures.clone(), limit: 0.0, above: false });
+        closing(model, sum, &moments, &around_mean.slopes, &deviations, tail)
+    });
+    Ok(Theory {
+        closings: closings.collect(),
+        worst_cases: worst_case(model, &around_middle),
+        sums_of_squares: root_sum_square(model, &around_middle, &around_mean, &deviations),
+        sensitivities: around_middle.slopes.iter().map(|slopes| sensitivities(model, slopes)).collect(),
+        indices: all_indices.into_iter().zip(&moments).map(|(i, m)| i.filter(|_| m.curved > LINEAR)).collect(),
+        moments,
+        tails,
+    })
+}
+
+fn sensitivities(model: &Model, slopes: &[f64]) -> Vec<Sensitivity> {
+    let of = |(contributor, at): (&super::model::Contributor, usize)| {
+        let own = &slopes[at..at + contributor.variation.variables()];
+        let slope = matches!(contributor.variation, Variation::Scalar { .. }).then(|| own[0]);
+        Sensitivity { slope, reach: reach(&contributor.variation, own) }
+    };
+    model.contributors.iter().zip(model.offsets()).map(of).collect()
+}
+
+fn closing(
+    model: &Model,
+    sum: &Sum,
+    moments: &[Moments],
+    slopes: &[Vec<f64>],
+    deviations: &[f64],
+    rare: Option<Tail>,
+) -> Closing {
+    let members = || sum.measures.iter().map(|i| moments[*i]);
+    let mean: f64 = members().map(|moments| moments.mean).sum();
+    let together: f64 = members().map(|moments| moments.deviation).sum();
+    let independent = libm::sqrt(members().map(|moments| moments.deviation * moments.deviation).sum());
+    // Of first order: the sum's own slopes.
+    let moves: Vec<f64> = (0..deviations.len())
+        .map(|k| deviations[k] * sum.measures.iter().map(|i| slopes[*i][k]).sum::<f64>())
+        .collect();
+    let row = |row: &Vec<f64>| row.iter().zip(&moves).map(|(rho, other)| rho * other).sum::<f64>();
+    let variance: f64 = model.correlation().iter().zip(&moves).map(|(rhos, own)| own * row(rhos)).sum();
+    let deviation = libm::sqrt(variance.max(0.0));
+    let below = |deviation: f64| tail(mean / deviation);
+    Closing {
+        mean,
+        deviation,
+        tail: rare,
+        normal: below(deviation),
+        together: below(together),
+        independent: below(independent),
+    }
+}
+
+/// The better known of two estimates of a probability: a count is taken if its error is the smaller one.
+pub fn better(counted: &Estimate, tail: Option<&Tail>) -> (f64, Option<f64>, Source) {
+    match (tail, counted.error) {
+        (Some(tail), error) if !error.is_some_and(|error| counted.value > 0.0 && error < tail.error) => {
+            (tail.probability, Some(tail.error), Source::ImportanceSampling)
+        }
+        _ => (counted.value, counted.error, Source::Counted),
+    }
+}

@@ -1,0 +1,295 @@
+//! From random numbers to the variables of a model.
+//!
+//! Independent standard normal scores come first; a Gaussian copula correlates them, and every contributor makes its
+//! variables of its own. All that needs a probability works on these scores.
+
+use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
+
+use super::{
+    distribution::Marginal,
+    lanes::{LANES, Lanes},
+    model::{Model, Variation, ZoneRule},
+    normal::{Scores, tail},
+    quadrature::SIGMA_ZONE,
+};
+
+/// Why no unit of a model can be drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DrawError {
+    /// No joint distribution has these correlations.
+    #[error("the correlations are not positive definite: `{0}` depends on those before it")]
+    NotPositiveDefinite(String),
+    /// A correlation with a contributor that is not one variable.
+    #[error("`{0}` cannot be correlated: it is not a scalar")]
+    NotScalar(String),
+    /// Nothing varies or nothing is measured.
+    #[error("the model has no {0}")]
+    Empty(&'static str),
+}
+
+/// Draws the variables of a model's units.
+pub struct Draw {
+    seed: u64,
+    rules: Vec<Rule>,
+    correlated: Vec<Row>,
+    dimensions: usize,
+}
+
+/// Row of the Cholesky factor: a variable, and the weights of variables up to it.
+type Row = (usize, Vec<(usize, f64)>);
+
+enum Rule {
+    Scalar(Marginal),
+    Zone(ZoneRule),
+}
+
+/// P(|u| + |p| + |r| ≤ 1) of three normals with the standard deviation of [`SIGMA_ZONE`].
+pub const INSIDE: f64 = 0.989_559_252_225_155;
+
+impl Draw {
+    /// Of the units of `model` in a production `seed`.
+    ///
+    /// # Errors
+    /// [`DrawError`], if its correlations are impossible or there is nothing to draw.
+    pub fn new(model: &Model, seed: u64) -> Result<Self, DrawError> {
+        if model.contributors.is_empty() {
+            return Err(DrawError::Empty("contributors"));
+        }
+        if model.measures.is_empty() {
+            return Err(DrawError::Empty("measures"));
+        }
+        let rules = model.contributors.iter().map(|contributor| match &contributor.variation {
+            Variation::Scalar { distribution, .. } => Rule::Scalar(Marginal::new(distribution)),
+            Variation::Zone(rule) => Rule::Zone(*rule),
+        });
+        let dimensions = model.variables();
+        Ok(Self { seed, rules: rules.collect(), correlated: cholesky(model)?, dimensions })
+    }
+
+    /// How many variables, and so random numbers, a unit has.
+    pub fn dimensions(&self) -> usize {
+        self.dimensions
+    }
+
+    /// Variables of the units from `first` on, from their random `bits`.
+    pub fn variables(&self, first: u64, bits: &[[u64; LANES]], variables: &mut [Lanes]) {
+        let table = Scores::table();
+        for (variable, bits) in variables.iter_mut().zip(bits) {
+            *variable = table.lanes(*bits);
+        }
+        self.transform(variables);
+        let mut at = 0;
+        for (number, rule) in self.rules.iter().enumerate() {
+            if let Rule::Zone(ZoneRule::Truncated) = rule {
+                self.draw_again(first, number as u64, &mut variables[at..at + 3]);
+            }
+            at += rule.variables();
+        }
+    }
+
+    /// Turns independent standard normal scores into variables. Truncated zones are not truncated: see
+    /// [`Draw::is_inside`].
+    pub fn transform(&self, scores: &mut [Lanes]) {
+        // From the last on, so that the scores before are still independent.
+        for (variable, weights) in self.correlated.iter().rev() {
+            let sum = weights.iter().fold(Lanes::ZERO, |sum, (other, weight)| sum + scores[*other] * *weight);
+            scores[*variable] = sum;
+        }
+        let mut at = 0;
+        for rule in &self.rules {
+            match rule {
+                Rule::Scalar(marginal) => scores[at] = marginal.values(scores[at]),
+                Rule::Zone(ZoneRule::Translation) => scores[at] = scores[at] * (1.0 / 3.0),
+                Rule::Zone(ZoneRule::SigmaZone | ZoneRule::Truncated) => {
+                    scores[at..at + 3].iter_mut().for_each(|score| *score = *score * SIGMA_ZONE);
+                }
+                Rule::Zone(ZoneRule::UniformInZone) => {
+                    for lane in 0..LANES {
+                        let point = in_octahedron([0, 1, 2].map(|k| scores[at + k].0[lane]));
+                        point.into_iter().enumerate().for_each(|(k, value)| scores[at + k].0[lane] = value);
+                    }
+                }
+            }
+            at += rule.variables();
+        }
+    }
+
+    /// Which units have all their truncated zones inside, and how much more probable a unit is for it.
+    pub fn is_inside(&self, variables: &[Lanes]) -> ([bool; LANES], f64) {
+        let (mut inside, mut factor, mut at) = ([true; LANES], 1.0, 0);
+        for rule in &self.rules {
+            if let Rule::Zone(ZoneRule::Truncated) = rule {
+                for (lane, inside) in inside.iter_mut().enumerate() {
+                    *inside &= octahedral([0, 1, 2].map(|k| variables[at + k].0[lane])) <= 1.0;
+                }
+                factor /= INSIDE;
+            }
+            at += rule.variables();
+        }
+        (inside, factor)
+    }
+
+    /// Draws the zones that came out too wide again until they fit, from a stream of their unit and contributor.
+    fn draw_again(&self, first: u64, contributor: u64, zone: &mut [Lanes]) {
+        for lane in 0..LANES {
+            let mut value = [0, 1, 2].map(|k| zone[k].0[lane]);
+            if octahedral(value) <= 1.0 {
+                continue;
+            }
+            let mut stream = unit_stream(derived(self.seed, u64::MAX - contributor), first + lane as u64);
+            while octahedral(value) > 1.0 {
+                value = value.map(|_| SIGMA_ZONE * Scores::table().score(stream.next_u64()));
+            }
+            value.into_iter().enumerate().for_each(|(k, value)| zone[k].0[lane] = value);
+        }
+    }
+}
+
+impl Rule {
+    fn variables(&self) -> usize {
+        match self {
+            Self::Scalar(_) | Self::Zone(ZoneRule::Translation) => 1,
+            Self::Zone(_) => 3,
+        }
+    }
+}
+
+fn octahedral([u, p, r]: [f64; 3]) -> f64 {
+    u.abs() + p.abs() + r.abs()
+}
+
+/// A point uniform in the octahedron from three independent scores: Rosenblatt's transformation, in closed form.
+fn in_octahedron([u, p, r]: [f64; 3]) -> [f64; 3] {
+    let outside = |score: f64| 2.0 * tail(score.abs());
+    let left = libm::cbrt(outside(u));
+    let left_then = left * libm::sqrt(outside(p));
+    [(1.0 - left).copysign(u), (left - left_then).copysign(p), (left_then * (1.0 - outside(r))).copysign(r)]
+}
+
+impl Model {
+    /// How many variables its function takes.
+    pub fn variables(&self) -> usize {
+        self.contributors.iter().map(|contributor| contributor.variation.variables()).sum()
+    }
+
+    /// The first variable of every contributor.
+    pub fn offsets(&self) -> Vec<usize> {
+        let counts = self.contributors.iter().map(|contributor| contributor.variation.variables());
+        counts.scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect()
+    }
+
+    /// Correlation matrix of the scores of all variables, row by row.
+    pub fn correlation(&self) -> Vec<Vec<f64>> {
+        let (offsets, count) = (self.offsets(), self.variables());
+        let mut matrix: Vec<Vec<f64>> = (0..count).map(|i| (0..count).map(|j| f64::from(i == j)).collect()).collect();
+        for (one, other, coefficient) in &self.correlations {
+            let (i, j) = (offsets[*one], offsets[*other]);
+            matrix[i][j] = *coefficient;
+            matrix[j][i] = *coefficient;
+        }
+        matrix
+    }
+}
+
+/// Rows of the factor L of the correlation matrix L·Lᵀ that differ from those of the unit matrix.
+fn cholesky(model: &Model) -> Result<Vec<Row>, DrawError> {
+    let offsets = model.offsets();
+    let name = |variable: usize| {
+        let contributor = offsets.iter().rposition(|offset| *offset <= variable).unwrap_or(0);
+        model.contributors[contributor].name.clone()
+    };
+    let mut members: Vec<usize> = Vec::new();
+    for (one, other, _) in &model.correlations {
+        for contributor in [*one, *other] {
+            if model.contributors[contributor].variation.variables() != 1 {
+                return Err(DrawError::NotScalar(model.contributors[contributor].name.clone()));
+            }
+            members.push(offsets[contributor]);
+        }
+    }
+    members.sort_unstable();
+    members.dedup();
+    let matrix = model.correlation();
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for (i, variable) in members.iter().enumerate() {
+        let mut row = Vec::with_capacity(i + 1);
+        for (j, other) in members[..i].iter().enumerate() {
+            let known: f64 = row.iter().zip(&rows[j]).map(|(a, b): (&f64, &f64)| a * b).sum();
+            row.push((matrix[*variable][*other] - known) / rows[j][j]);
+        }
+        let rest = 1.0 - row.iter().map(|a| a * a).sum::<f64>();
+        if rest.is_nan() || rest <= 1e-12 {
+            return Err(DrawError::NotPositiveDefinite(name(*variable)));
+        }
+        row.push(libm::sqrt(rest));
+        rows.push(row);
+    }
+    let weighted = |row: Vec<f64>| members.iter().copied().zip(row).collect();
+    Ok(members.iter().copied().zip(rows.into_iter().map(weighted)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Draw, DrawError, INSIDE, octahedral};
+    use crate::tolerance::{
+        examples::{linear, normal},
+        lanes::LANES,
+        model::{Contributor, Model, Variation, ZoneRule},
+        sampler::{Method, Sampler},
+    };
+
+    fn units(model: &Model, count: u64) -> Vec<Vec<f64>> {
+        let draw = Draw::new(model, 5).unwrap();
+        let sampler = Sampler::new(Method::PseudoRandom, 5, draw.dimensions(), 1, count);
+        let mut bits = vec![[0; LANES]; draw.dimensions()];
+        let mut variables = vec![super::Lanes::ZERO; draw.dimensions()];
+        let mut units = Vec::new();
+        for first in (0..count).step_by(LANES) {
+            sampler.fill(first, &mut bits);
+            draw.variables(first, &bits, &mut variables);
+            units.extend((0..LANES).map(|lane| variables.iter().map(|variable| variable.0[lane]).collect::<Vec<_>>()));
+        }
+        units
+    }
+
+    fn zone(rule: ZoneRule) -> Model {
+        linear(vec![Contributor { name: "face".into(), variation: Variation::Zone(rule) }], vec![vec![1.0; 3]])
+    }
+
+    #[test]
+    fn zones_are_kept_and_filled_as_their_rule_says() {
+        let count = 40_000;
+        let inside = |units: &[Vec<f64>]| {
+            units.iter().filter(|unit| octahedral([unit[0], unit[1], unit[2]]) <= 1.0).count() as f64 / count as f64
+        };
+        let share = inside(&units(&zone(ZoneRule::SigmaZone), count));
+        let error = libm::sqrt(INSIDE * (1.0 - INSIDE) / count as f64);
+        assert!((share - INSIDE).abs() < 4.0 * error, "{share}");
+        assert!((INSIDE - 0.9894).abs() < 2e-4);
+        for rule in [ZoneRule::Truncated, ZoneRule::UniformInZone] {
+            let units = units(&zone(rule), count);
+            assert_eq!(inside(&units), 1.0);
+            let expected = super::super::quadrature::mean_and_deviation(&Variation::Zone(rule));
+            for k in 0..3 {
+                let square: f64 = units.iter().map(|unit| unit[k] * unit[k]).sum::<f64>() / count as f64;
+                assert!((square / expected[k][1] / expected[k][1] - 1.0).abs() < 0.04, "{rule:?} {k} {square}");
+            }
+        }
+        let nodes = super::super::quadrature::nodes(&Variation::Zone(ZoneRule::Truncated));
+        assert!((nodes.iter().map(|node| node.weight).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn correlations_are_those_asked_for() {
+        let mut model = linear((0..4).map(|_| normal("x", 0.0, 3.0)).collect(), vec![vec![1.0; 4]]);
+        model.correlations = vec![(0, 2, 0.8), (3, 2, -0.5), (0, 3, -0.3)];
+        let count = 40_000;
+        let units = units(&model, count);
+        for (i, j, expected) in [(0, 2, 0.8), (2, 3, -0.5), (0, 3, -0.3), (0, 1, 0.0), (2, 2, 1.0)] {
+            let product = units.iter().map(|unit| unit[i] * unit[j]).sum::<f64>() / count as f64;
+            assert!((product - expected).abs() < 4.0 * libm::sqrt((1.0 + expected * expected) / count as f64));
+        }
+        model.correlations = vec![(0, 2, 0.9), (3, 2, 0.9), (0, 3, -0.9)];
+        assert_eq!(Draw::new(&model, 0).err(), Some(DrawError::NotPositiveDefinite("x".into())));
+    }
+}

@@ -1,0 +1,210 @@
+//! A part of a study on disk: what a shard found, or how far a run has come.
+//!
+//! Little-endian: 8 bytes `SLIPSTDY`, version (u32), length of the header (u32), header (JSON: scene, settings, which
+//! blocks), tallies, CRC-32/ISO-HDLC of all before. Of each tally: units, rejected, measures, sums, then of each measure
+//! undefined, outside, extremes (f64), bins; closings; trees, and of each first block, height, sums (f64). Integers are
+//! LEB128. Everything that a reader allocates it has seen the bytes of.
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    forest::Forest,
+    model::Model,
+    study::{Settings, Tally},
+    tally::{BINS, Counts, MeasureCounts, Sums},
+};
+
+const MAGIC: &[u8; 8] = b"SLIPSTDY";
+const VERSION: u32 = 1;
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// The scene a study belongs to, as it was read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Source {
+    /// Name of the file, for messages.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+    /// What `--set` changed.
+    pub set: Vec<String>,
+}
+
+impl Source {
+    /// Whether it describes the same scene: the name may differ.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.text == other.text && self.set == other.set
+    }
+}
+
+/// Which part of a study.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header {
+    /// The scene.
+    pub source: Source,
+    /// What is drawn.
+    pub settings: Settings,
+    /// Which shard, from 1 on, of how many.
+    pub shard: [u64; 2],
+    /// Blocks of the shard that are done.
+    pub done: u64,
+}
+
+/// A header with what was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Which part.
+    pub header: Header,
+    /// One tally a replicate.
+    pub tallies: Vec<Tally>,
+}
+
+/// Why bytes are no part of a study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FormatError {
+    /// Something else.
+    #[error("it is not a study file")]
+    Foreign,
+    /// Made by another version.
+    #[error("its format is version {0}, allowed is {VERSION}")]
+    Version(u32),
+    /// Cut off or changed.
+    #[error("it is truncated or corrupted")]
+    Damaged,
+}
+
+impl Part {
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// If the header cannot be written as JSON, which never happens.
+    pub fn encode(&self) -> Result<Vec<u8>, serde_json::Error> {
+        let header = serde_json::to_vec(&self.header)?;
+        let mut out = MAGIC.to_vec();
+        out.extend(VERSION.to_le_bytes());
+        out.extend((header.len() as u32).to_le_bytes());
+        out.extend(header);
+        integer(&mut out, self.tallies.len() as u64);
+        for Tally { counts, sums } in &self.tallies {
+            for count in [counts.units, counts.rejected, counts.measures.len() as u64, counts.closed.len() as u64] {
+                integer(&mut out, count);
+            }
+            for measure in &counts.measures {
+                [measure.undefined].iter().chain(&measure.outside).for_each(|count| integer(&mut out, *count));
+                measure.extremes.iter().for_each(|extreme| out.extend(extreme.to_le_bytes()));
+                measure.bins.iter().for_each(|count| integer(&mut out, *count));
+            }
+            counts.closed.iter().for_each(|count| integer(&mut out, *count));
+            integer(&mut out, sums.nodes().len() as u64);
+            for (first, height, sums) in sums.nodes() {
+                integer(&mut out, first);
+                integer(&mut out, height.into());
+                sums.powers.iter().flatten().chain(&sums.products).for_each(|sum| out.extend(sum.to_le_bytes()));
+            }
+        }
+        out.extend(CRC.checksum(&out).to_le_bytes());
+        Ok(out)
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`FormatError`], if it is not whole.
+    pub fn decode(bytes: &[u8]) -> Result<Self, FormatError> {
+        if !bytes.starts_with(MAGIC) {
+            return Err(if MAGIC.starts_with(bytes) { FormatError::Damaged } else { FormatError::Foreign });
+        }
+        let (body, checksum) = bytes.split_last_chunk::<4>().ok_or(FormatError::Damaged)?;
+        if CRC.checksum(body) != u32::from_le_bytes(*checksum) {
+            return Err(FormatError::Damaged);
+        }
+        let mut reader = Reader(&body[MAGIC.len()..]);
+        let version = u32::from_le_bytes(reader.array()?);
+        if version != VERSION {
+            return Err(FormatError::Version(version));
+        }
+        let length = u32::from_le_bytes(reader.array()?) as usize;
+        let header = serde_json::from_slice(reader.bytes(length)?).map_err(|_| FormatError::Damaged)?;
+        let count = reader.count()?;
+        let tallies = (0..count).map(|_| reader.tally()).collect::<Result<_, _>>()?;
+        if reader.0.is_empty() { Ok(Self { header, tallies }) } else { Err(FormatError::Damaged) }
+    }
+
+    /// Whether its tallies have the shape that `model` and its settings give them.
+    pub fn fits(&self, model: &Model) -> bool {
+        let shape = |counts: &Counts| [counts.measures.len(), counts.closed.len()];
+        self.tallies.len() as u64 == self.header.settings.replicates
+            && self.tallies.iter().all(|tally| shape(&tally.counts) == [model.measures.len(), model.sums.len()])
+    }
+}
+
+fn integer(out: &mut Vec<u8>, mut value: u64) {
+    while value >= 0x80 {
+        out.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    out.push(value as u8);
+}
+
+struct Reader<'a>(&'a [u8]);
+
+impl<'a> Reader<'a> {
+    fn bytes(&mut self, count: usize) -> Result<&'a [u8], FormatError> {
+        let (bytes, rest) = self.0.split_at_checked(count).ok_or(FormatError::Damaged)?;
+        self.0 = rest;
+        Ok(bytes)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], FormatError> {
+        let (array, rest) = self.0.split_first_chunk::<N>().ok_or(FormatError::Damaged)?;
+        self.0 = rest;
+        Ok(*array)
+    }
+
+    fn number(&mut self) -> Result<f64, FormatError> {
+        self.array().map(f64::from_le_bytes)
+    }
+
+    fn integer(&mut self) -> Result<u64, FormatError> {
+        let mut value = 0;
+        for shift in (0..64).step_by(7) {
+            let [byte] = self.array()?;
+            value |= u64::from(byte & 0x7f) << shift;
+            if byte < 0x80 {
+                return Ok(value);
+            }
+        }
+        Err(FormatError::Damaged)
+    }
+
+    /// A number of things that take a byte each at least.
+    fn count(&mut self) -> Result<usize, FormatError> {
+        let count = self.integer()? as usize;
+        if count <= self.0.len() { Ok(count) } else { Err(FormatError::Damaged) }
+    }
+
+    fn tally(&mut self) -> Result<Tally, FormatError> {
+        let (units, rejected) = (self.integer()?, self.integer()?);
+        let (measures, closed) = (self.count()?, self.count()?);
+        let mut counts = Counts { units, rejected, measures: Vec::new(), closed: Vec::new() };
+        for _ in 0..measures {
+            let undefined = self.integer()?;
+            let outside = [self.integer()?, self.integer()?];
+            let extremes = [self.number()?, self.number()?];
+            let bins = (0..BINS).map(|_| self.integer()).collect::<Result<_, _>>()?;
+            counts.measures.push(MeasureCounts { undefined, outside, extremes, bins });
+        }
+        counts.closed = (0..closed).map(|_| self.integer()).collect::<Result<_, _>>()?;
+        let mut sums = Forest::default();
+        for _ in 0..self.count()? {
+            let (first, height) = (self.integer()?, self.integer()?);
+            let height = u32::try_from(height).ok().filter(|height| *height < 64).ok_or(FormatError::Damaged)?;
+            let mut node = Sums::new(measures);
+            for sum in node.powers.iter_mut().flatten().chain(&mut node.products) {
+                *sum = self.number()?;
+            }
+            sums.insert(first, height, node);
+        }
+        Ok(Tally { counts, sums })
+    }
+}

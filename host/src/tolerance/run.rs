@@ -1,0 +1,298 @@
+//! Runs of a study that can be split, stopped and gone on with.
+
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use super::{
+    file::{FormatError, Header, Part, Source},
+    model::Model,
+    study::{Settings, Study, StudyError, Tally, join},
+};
+use crate::files::{self, WriteError};
+
+/// How often a run saves how far it has come.
+const SAVE_EVERY: Duration = Duration::from_secs(2);
+/// How long it works before it looks up.
+const LOOK_UP_EVERY: Duration = Duration::from_millis(200);
+
+/// Why a run did not end.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A study that cannot be.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// A file that cannot be read.
+    #[error("cannot read {}: {error}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// A file that is not a whole part of a study.
+    #[error("{}: {error}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: FormatError,
+    },
+    /// A part of something else.
+    #[error("{} is of another {what} than {}", path.display(), other.display())]
+    Different {
+        /// The file.
+        path: PathBuf,
+        /// What differs.
+        what: &'static str,
+        /// What it should agree with.
+        other: PathBuf,
+    },
+    /// Shards that are not there.
+    #[error("of {count} shards these are missing: {}", list(missing))]
+    Missing {
+        /// How many there should be.
+        count: u64,
+        /// Which are missing, from 1 on.
+        missing: Vec<u64>,
+    },
+    /// A shard that is there twice.
+    #[error("shard {shard} is there twice: {} and {}", first.display(), second.display())]
+    Twice {
+        /// Which, from 1 on.
+        shard: u64,
+        /// One file.
+        first: PathBuf,
+        /// The other.
+        second: PathBuf,
+    },
+    /// A checkpoint instead of a result.
+    #[error("{} is unfinished: {done} of {of} blocks are done", path.display())]
+    Unfinished {
+        /// The file.
+        path: PathBuf,
+        /// Blocks done.
+        done: u64,
+        /// Blocks of the shard.
+        of: u64,
+    },
+    /// Somebody asked to stop.
+    #[error("interrupted{}", saved.as_ref().map(|path| format!("; {} is kept, --resume goes on", path.display())).unwrap_or_default())]
+    Interrupted {
+        /// Where the state was saved.
+        saved: Option<PathBuf>,
+    },
+    /// A file that cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The file's header.
+    #[error(transparent)]
+    Header(#[from] serde_json::Error),
+}
+
+fn list(numbers: &[u64]) -> String {
+    let shown: Vec<String> = numbers.iter().take(20).map(u64::to_string).collect();
+    let more = if numbers.len() > shown.len() { ", …" } else { "" };
+    shown.join(", ") + more
+}
+
+/// A shard of a study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// Which, from 1 on.
+    pub number: u64,
+    /// Of how many.
+    pub count: u64,
+}
+
+impl Shard {
+    /// The whole study.
+    pub const ALL: Self = Self { number: 1, count: 1 };
+
+    /// Its blocks.
+    pub fn blocks(self, settings: &Settings) -> Range<u64> {
+        let border = |k: u64| (u128::from(settings.blocks()) * u128::from(k) / u128::from(self.count)) as u64;
+        border(self.number - 1)..border(self.number)
+    }
+}
+
+impl std::str::FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let fields = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+        let (number, count): (u64, u64) = fields.ok_or("not of the form i/n, as in 1/4")?;
+        if count == 0 || count > 1 << 20 {
+            return Err(format!("{count} shards, allowed are 1 to {}", 1 << 20));
+        }
+        if number == 0 || number > count {
+            return Err(format!("shard {number} of {count}, allowed are 1 to {count}"));
+        }
+        Ok(Self { number, count })
+    }
+}
+
+/// Where a run keeps its state.
+pub struct Keep<'a> {
+    /// The file of the result.
+    pub out: &'a Path,
+    /// Whether to go on where an earlier run stopped.
+    pub resume: bool,
+}
+
+/// The file that holds how far the run that makes `out` has come.
+pub fn checkpoint(out: &Path) -> PathBuf {
+    let mut name = out.as_os_str().to_owned();
+    name.push(".partial");
+    name.into()
+}
+
+/// Works through a `shard` of `study`, on the current pool, and writes the result to `keep`'s file if there is one; `done`
+/// is called with units as they come. The bytes of the result depend neither on threads nor on interruptions.
+///
+/// # Errors
+/// [`RunError`].
+pub fn run(
+    study: &Study,
+    source: &Source,
+    shard: Shard,
+    keep: Option<&Keep>,
+    done: impl Fn(u64) + Sync,
+) -> Result<Vec<Tally>, RunError> {
+    let blocks = shard.blocks(&study.settings);
+    let shard = [shard.number, shard.count];
+    let header = Header { source: source.clone(), settings: study.settings, shard, done: 0 };
+    let mut part = Part { header, tallies: study.empty() };
+    if let Some(Keep { out, resume: true }) = keep {
+        for path in [out.to_path_buf(), checkpoint(out)] {
+            if path.exists() {
+                part = read_again(&path, &part, study)?;
+                break;
+            }
+        }
+    }
+    done(part.tallies.iter().map(|tally| tally.counts.units).sum());
+    let save = |part: &Part, path: &Path| -> Result<(), RunError> { Ok(files::write(path, &part.encode()?)?) };
+    let mut saved = Instant::now();
+    let mut round = rayon::current_num_threads() as u64;
+    while part.header.done < blocks.end - blocks.start {
+        let begin = Instant::now();
+        let start = blocks.start + part.header.done;
+        let end = (start + round).min(blocks.end);
+        study.add(start..end, &mut part.tallies, &done);
+        part.header.done = end - blocks.start;
+        if begin.elapsed() < LOOK_UP_EVERY {
+            round *= 2;
+        }
+        let stop = crate::interrupt::requested() && end < blocks.end;
+        if let Some(Keep { out, .. }) = keep.filter(|_| stop || (saved.elapsed() >= SAVE_EVERY && end < blocks.end)) {
+            save(&part, &checkpoint(out))?;
+            saved = Instant::now();
+        }
+        if stop {
+            return Err(RunError::Interrupted { saved: keep.map(|keep| checkpoint(keep.out)) });
+        }
+    }
+    if let Some(Keep { out, .. }) = keep {
+        save(&part, out)?;
+        // What is left of it would do no harm.
+        let _ = std::fs::remove_file(checkpoint(out));
+    }
+    Ok(part.tallies)
+}
+
+/// Reads a part of a study.
+///
+/// # Errors
+/// [`RunError`], if it cannot be read or is not whole.
+pub fn read(path: &Path) -> Result<Part, RunError> {
+    let bytes = std::fs::read(path).map_err(|error| RunError::Read { path: path.into(), error })?;
+    Part::decode(&bytes).map_err(|error| RunError::Format { path: path.into(), error })
+}
+
+fn read_again(path: &Path, expected: &Part, study: &Study) -> Result<Part, RunError> {
+    let part = read(path)?;
+    agrees(&part, path, &expected.header, Path::new("this run"))?;
+    if part.header.shard != expected.header.shard {
+        let what = "shard";
+        return Err(RunError::Different { path: path.into(), what, other: "this run".into() });
+    }
+    if part.fits(study.model) { Ok(part) } else { Err(damaged(path)) }
+}
+
+fn damaged(path: &Path) -> RunError {
+    RunError::Format { path: path.into(), error: FormatError::Damaged }
+}
+
+fn agrees(part: &Part, path: &Path, header: &Header, other: &Path) -> Result<(), RunError> {
+    let different = |what| Err(RunError::Different { path: path.into(), what, other: other.into() });
+    let (one, two) = (&part.header.settings, &header.settings);
+    if !part.header.source.is_same(&header.source) {
+        different("scene")
+    } else if one.seed != two.seed {
+        different("seed")
+    } else if one.method != two.method {
+        different("method")
+    } else if one != two {
+        different("number of samples")
+    } else {
+        Ok(())
+    }
+}
+
+/// The shards of one study, in any order, joined: a part that is the whole.
+///
+/// # Errors
+/// [`RunError`], if they are not all of one study, each once and finished.
+pub fn merge(paths: &[PathBuf]) -> Result<Part, RunError> {
+    let mut whole: Option<(Part, Vec<Option<&PathBuf>>)> = None;
+    for path in paths {
+        let part = read(path)?;
+        let [number, count] = part.header.shard;
+        if number == 0 || number > count || count > 1 << 20 {
+            return Err(damaged(path));
+        }
+        let blocks = Shard { number, count }.blocks(&part.header.settings);
+        if part.header.done != blocks.end - blocks.start {
+            let of = blocks.end - blocks.start;
+            return Err(RunError::Unfinished { path: path.clone(), done: part.header.done, of });
+        }
+        match &mut whole {
+            None => {
+                let mut seen = vec![None; count as usize];
+                seen[number as usize - 1] = Some(path);
+                whole = Some((part, seen));
+            }
+            Some((joined, seen)) => {
+                let first = seen.iter().flatten().next().map_or(path, |first| *first);
+                agrees(&part, path, &joined.header, first)?;
+                if seen.len() as u64 != count || part.tallies.len() != joined.tallies.len() {
+                    let what = "number of shards";
+                    return Err(RunError::Different { path: path.clone(), what, other: first.clone() });
+                }
+                if let Some(first) = seen[number as usize - 1].replace(path) {
+                    return Err(RunError::Twice { shard: number, first: first.clone(), second: path.clone() });
+                }
+                join(&mut joined.tallies, &part.tallies);
+            }
+        }
+    }
+    let Some((mut part, seen)) = whole else { return Err(RunError::Missing { count: 1, missing: vec![1] }) };
+    let missing: Vec<u64> = (1..).zip(&seen).filter(|(_, path)| path.is_none()).map(|(number, _)| number).collect();
+    if !missing.is_empty() {
+        return Err(RunError::Missing { count: seen.len() as u64, missing });
+    }
+    part.header.shard = [1, 1];
+    part.header.done = part.header.settings.blocks();
+    Ok(part)
+}
+
+/// Whether a merged part is of `model`.
+///
+/// # Errors
+/// [`RunError::Format`] if not.
+pub fn check(part: &Part, path: &Path, model: &Model) -> Result<(), RunError> {
+    if part.fits(model) { Ok(()) } else { Err(damaged(path)) }
+}

@@ -1,0 +1,89 @@
+//! Worst case: every contributor anywhere within its limits or its zone.
+
+use super::{
+    derivative::{Expansion, evaluate},
+    model::{Distribution, Model, Variation},
+};
+
+/// The most combinations of vertices that are tried.
+const MOST_VERTICES: usize = 1 << 16;
+
+/// Lowest and highest value of a measure (SI).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorstCase {
+    /// By its slopes at the middle of all limits; exact for a linear measure.
+    pub linear: [f64; 2],
+    /// Over all combinations of limits and of corners of zones, if there are not more than 65,536; exact for a measure
+    /// that is monotone in every contributor.
+    pub vertices: Option<[f64; 2]>,
+}
+
+/// The middle of a contributor's limits or zone.
+pub fn middle(variation: &Variation) -> Vec<f64> {
+    match variation {
+        Variation::Scalar { limits: [low, high], .. } => vec![0.5 * (low + high)],
+        zone @ Variation::Zone(_) => vec![0.0; zone.variables()],
+    }
+}
+
+/// How far a contributor moves a measure from the middle, at most, with `slopes` in its variables. In a zone |u| + |p| +
+/// |r| ≤ 1 that is at one of its corners.
+pub fn reach(variation: &Variation, slopes: &[f64]) -> f64 {
+    let most = slopes.iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
+    match variation {
+        Variation::Scalar { limits: [low, high], .. } => 0.5 * (high - low) * most,
+        Variation::Zone(_) => most,
+    }
+}
+
+/// Of every measure; `around` is expanded around the [`middle`] of all contributors.
+pub fn worst_case(model: &Model, around: &Expansion) -> Vec<WorstCase> {
+    let offsets = model.offsets();
+    let reach = |slopes: &[f64]| -> f64 {
+        let each = model.contributors.iter().zip(&offsets);
+        each.map(|(c, at)| reach(&c.variation, &slopes[*at..at + c.variation.variables()])).sum()
+    };
+    let vertices = by_vertices(model);
+    let measure = |(i, (value, slopes)): (usize, (&f64, &Vec<f64>))| WorstCase {
+        linear: [value - reach(slopes), value + reach(slopes)],
+        vertices: vertices.as_ref().map(|vertices| vertices[i]),
+    };
+    around.values.iter().zip(&around.slopes).enumerate().map(measure).collect()
+}
+
+fn by_vertices(model: &Model) -> Option<Vec<[f64; 2]>> {
+    let corners: Vec<Vec<Vec<f64>>> = model.contributors.iter().map(|c| corners(&c.variation)).collect();
+    let count = corners.iter().try_fold(1usize, |count, corners| count.checked_mul(corners.len()))?;
+    if count > MOST_VERTICES {
+        return None;
+    }
+    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; model.measures.len()];
+    let vertices: Vec<Vec<f64>> = (0..count)
+        .map(|mut number| {
+            let corner = |corners: &Vec<Vec<f64>>| {
+                let choice = number % corners.len();
+                number /= corners.len();
+                corners[choice].clone()
+            };
+            corners.iter().flat_map(corner).collect()
+        })
+        .collect();
+    for values in evaluate(model, &vertices) {
+        for ([low, high], value) in ranges.iter_mut().zip(values) {
+            (*low, *high) = (low.min(value), high.max(value));
+        }
+    }
+    Some(ranges)
+}
+
+fn corners(variation: &Variation) -> Vec<Vec<f64>> {
+    match variation {
+        Variation::Scalar { distribution: Distribution::Constant(value), .. } => vec![vec![*value]],
+        Variation::Scalar { limits, .. } => limits.iter().map(|limit| vec![*limit]).collect(),
+        zone @ Variation::Zone(_) => {
+            let count = zone.variables();
+            let corner = |k: usize, sign: f64| (0..count).map(|j| if j == k { sign } else { 0.0 }).collect();
+            (0..count).flat_map(|k| [corner(k, -1.0), corner(k, 1.0)]).collect()
+        }
+    }
+}
