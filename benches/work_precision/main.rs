@@ -156,7 +156,7 @@ fn controlled<I: Integrator>(solver: &'static str, slide: &CdRomSlide<f64>, mill
         };
         Entry { solver, setting: format!("{force:.0e} N"), work: Box::new(work) }
     };
-    [1e-2, 3e-3, 1e-3, 7e-4, 5e-4, 4e-4, 3e-4, 2e-4, 1e-4, 5e-5, 3e-5, 1e-5, 3e-6, 1e-6].map(entry).into()
+    [1e-2, 3e-3, 1e-3, 8e-4, 7e-4, 6e-4, 5e-4, 4e-4, 3e-4, 2e-4, 1e-4, 5e-5, 3e-5, 1e-5, 3e-6, 1e-6].map(entry).into()
 }
 
 struct KernelEntry {

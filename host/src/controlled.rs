@@ -61,11 +61,11 @@ pub struct Effort {
 const STEPS: [f64; 2] = [1e-9, 0.02];
 
 /// How much shorter than the estimate allows a step is.
-const SAFETY: f64 = 0.85;
+const SAFETY: f64 = 0.8;
 
 /// How much the next step may be shorter and longer. Contacts close and let go too suddenly for steps that grow faster:
-/// with a limit of 4 twice as many are refused.
-const CHANGES: [f64; 2] = [0.2, 2.0];
+/// with a limit of 4 twice as many are refused, and the stroke takes a third more of them.
+const CHANGES: [f64; 2] = [0.2, 1.5];
 
 /// First step (s).
 const FIRST_STEP: f64 = 2e-5;
