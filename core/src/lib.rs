@@ -23,6 +23,7 @@ mod linear;
 pub mod mechanism;
 pub mod menu;
 pub mod monitor;
+pub mod planar;
 pub mod pose;
 pub mod power;
 #[cfg(feature = "sampling")]
