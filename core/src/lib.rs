@@ -34,5 +34,5 @@ pub mod slide;
 pub mod table;
 
 pub use error::ParameterError;
-pub use nalgebra::{SVector, Vector3};
+pub use nalgebra::{SVector, Vector2, Vector3};
 pub use scalar::Scalar;

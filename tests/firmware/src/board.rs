@@ -1,4 +1,4 @@
-//! A Cortex-M4F under a debugger as the program's machine. The one file of the image with unsafe code.
+//! A Cortex-M4F under a debugger as a program's machine. The one file of the images with unsafe code.
 #![allow(unsafe_code, reason = "linker symbols, the painted stack and the fault handler")]
 
 use core::{
@@ -12,14 +12,14 @@ use cortex_m::{
     peripheral::{SYST, syst::SystClkSource},
     register::{fpscr, msp},
 };
-use cortex_m_rt::{ExceptionFrame, entry, exception};
+use cortex_m_rt::{ExceptionFrame, exception};
 use heapless::String;
 use semihosting::{
     io::{self, Stdout, Write as _},
     process,
 };
 
-use crate::program::{self, Machine};
+use crate::machine::Machine;
 
 /// Time of a tick of the system timer (ns): the board's processor clock of 25 MHz.
 const TICK: u32 = 40;
@@ -43,7 +43,8 @@ unsafe extern "C" {
     static mut _stack_end: u32;
 }
 
-struct Board {
+/// The board.
+pub struct Board {
     out: Stdout,
     /// Instructions of an empty measurement.
     overhead: u32,
@@ -101,11 +102,14 @@ fn flash() -> &'static [u8] {
     unsafe { slice::from_raw_parts(start, end.addr() - start.addr()) }
 }
 
-#[entry]
-fn main() -> ! {
+/// Runs `program` with the flash table's region, then ends the emulation.
+///
+/// # Panics
+/// If the processor rounds in another way than the host, or on a second call.
+pub fn boot(program: impl FnOnce(&mut Board, &[u8])) -> ! {
     let peripherals = Peripherals::take().expect("nobody has taken them before");
     assert_eq!(fpscr::read().bits() & FPSCR_MODES, 0, "FPSCR would give other bits than the host");
-    program::run(&mut Board::new(peripherals.SYST), flash());
+    program(&mut Board::new(peripherals.SYST), flash());
     process::exit(0)
 }
 

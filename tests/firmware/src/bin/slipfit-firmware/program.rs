@@ -1,12 +1,8 @@
 //! What image and host both run: the opening of the slide at several tolerance levels, its force predicted by the
 //! kernel and looked up in the table.
 
-use core::{
-    fmt::{Arguments, Write},
-    hint::black_box,
-};
+use core::hint::black_box;
 
-use heapless::String;
 use slipfit_core::{
     Scalar,
     integrator::{ImplicitEuler, Integrator},
@@ -18,9 +14,10 @@ use slipfit_core::{
 };
 use slipfit_problems::cd_rom::{self, STICK_BAND};
 
-use crate::{
+use slipfit_firmware::{
     count::Count,
     fingerprint::{Fingerprint, Remembered},
+    machine::{Machine, print},
 };
 
 /// The scheme that predicts.
@@ -48,18 +45,6 @@ const STEPS_A_LINE: u32 = 20;
 
 /// What stands for a table where there is none.
 const NO_TABLE: Option<&Table<'_, 2, F32Nodes<'_>>> = None;
-
-/// What the program needs of the machine it runs on.
-pub trait Machine {
-    /// Prints `line`, which ends in a newline.
-    fn print(&mut self, line: &str);
-
-    /// Does `work` and says how many instructions it took, if the machine can tell.
-    fn instructions(&mut self, work: impl FnOnce()) -> Option<u32>;
-
-    /// Does `work` and says how many bytes of stack it took, if the machine can tell.
-    fn stack(&mut self, work: impl FnOnce()) -> Option<u32>;
-}
 
 /// Instructions counted so far.
 #[derive(Default)]
@@ -183,11 +168,4 @@ fn step<F: Friction<f32>>(kernel: &SlideKernel<F>, state: &mut SlideState<F>) ->
 #[inline(never)]
 fn lookup<V: Nodes>(table: &Table<'_, 2, V>, at: [f32; 2]) -> Lookup {
     table.lookup(at)
-}
-
-/// Prints one line in one go, because every write stops the machine for its debugger.
-fn print(machine: &mut impl Machine, text: Arguments<'_>) {
-    let mut line = String::<128>::new();
-    writeln!(line, "{text}").expect("a line fits its buffer");
-    machine.print(&line);
 }
