@@ -30,7 +30,7 @@ impl Machine for Desk {
 ///
 /// # Errors
 /// If the file cannot be read or is larger than the flash kept for it.
-pub fn boot(program: impl FnOnce(&mut Desk, &[u8])) -> io::Result<()> {
+pub fn boot(program: impl FnOnce(&mut Desk, &'static [u8])) -> io::Result<()> {
     let mut flash = match env::args_os().nth(1) {
         Some(file) => fs::read(file)?,
         None => Vec::new(),
@@ -40,6 +40,6 @@ pub fn boot(program: impl FnOnce(&mut Desk, &[u8])) -> io::Result<()> {
     }
     // As the emulator has it; an erased flash would read 0xff.
     flash.resize(TABLE_LENGTH, 0);
-    program(&mut Desk, &flash);
+    program(&mut Desk, flash.leak());
     Ok(())
 }
