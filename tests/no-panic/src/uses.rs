@@ -3,12 +3,14 @@
 use core::hint::black_box;
 
 use slipfit_core::{
-    ParameterError,
+    ParameterError, Vector2,
+    axis::AxisBody,
     integrator::{Extrapolated, ImplicitEuler, Integrator, Sdirk2},
     kernel::Kernel,
-    law::{Elastic, Friction},
+    law::{Elastic, Exact, Friction, Impact, Slot, ThreeHalves},
     menu::SlideVisitor,
     monitor::{LevelBank, Limits, Monitor, Sample, Watch},
+    planar::{Planar, PlanarBody, PlanarPose},
     pose::Pose,
     slide::Slide,
     table::{Patrol, Slots, Table, TableError},
@@ -18,6 +20,7 @@ use slipfit_problems::cd_rom;
 /// All uses; every input may be anything, so that every error is reached too.
 pub fn all() {
     let _ = black_box(every_slide());
+    let _ = black_box(smaller_scenes());
     let _ = black_box(look_up());
     if cfg!(feature = "reachable-panic") {
         assert!(black_box(true));
@@ -47,6 +50,27 @@ fn step<E: Elastic<f32>, F: Friction<f32>, I: Integrator>(slide: Slide<f32, E, F
     black_box(kernel.step(&mut state));
     black_box(kernel.mechanism().gaps(&state.motion.pose));
     black_box(kernel.mechanism().drive().force(kernel.time(state.steps), state.motion.velocity.z));
+    Ok(())
+}
+
+/// Makes and steps a planar body and one on an axis.
+fn smaller_scenes() -> Result<(), ParameterError<f32>> {
+    let data = black_box(cd_rom::data(black_box(0.0)));
+    let contact = Impact::new(ThreeHalves::new(black_box(3e6))?, black_box(1e3), black_box(1e-4))?;
+    let slot = Slot::new(black_box(0.0), black_box(1e-4))?;
+    let body = black_box(PlanarBody {
+        mass: data.body.mass,
+        inertia: data.body.inertia_b.y,
+        gravity_w: Vector2::zeros(),
+        pins_w: [Vector2::zeros(); 4],
+        stops: [slot; 4],
+    });
+    let flat = Planar::new(body, contact, Exact::new(black_box(0.3))?, data.drive)?;
+    let kernel = Kernel::<f32, _, Extrapolated<2, 4>>::new(flat, black_box(1e-3))?;
+    black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
+    let driven = AxisBody::driven(black_box(1.0), black_box(0.0), slot, contact, data.drive)?;
+    let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(driven, black_box(1e-3))?;
+    black_box(kernel.step(&mut black_box(kernel.at_rest::<1>(0.0))));
     Ok(())
 }
 
