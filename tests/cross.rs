@@ -53,6 +53,15 @@ pub fn require_target() {
     assert!(installed, "the target {TARGET} is not installed; to install it: rustup target add {TARGET}");
 }
 
+/// Fails, saying what to install, where C programs for the target cannot be built.
+///
+/// # Panics
+/// As said.
+pub fn require_c_compiler() {
+    let found = Command::new("arm-none-eabi-gcc").arg("--version").output().is_ok();
+    assert!(found, "arm-none-eabi-gcc is not installed; to install it: apt-get install gcc-arm-none-eabi");
+}
+
 /// Fails, saying what to install, where images cannot be run.
 ///
 /// # Panics

@@ -8,7 +8,8 @@ use std::{
 };
 
 use slipfit::{
-    flash, force_table,
+    flash,
+    force_table::{self, Demand},
     scene::{CD_ROM_SLIDE, Scene},
     simulate::ScalarKind,
 };
@@ -110,6 +111,6 @@ fn on_target(table: Option<&Path>) -> String {
 /// The table that `slipfit run cd-rom-slide` makes: the paper's slide, over n from −3 to 5.
 fn table() -> Vec<u8> {
     let scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).expect("the shipped scene");
-    let (table, _) = force_table::make(&scene, ScalarKind::F64, || ()).expect("its table");
+    let (table, _) = force_table::make(&scene, ScalarKind::F64, Demand::Full, || ()).expect("its table");
     table.bytes
 }

@@ -6,10 +6,11 @@ use slipfit_core::{
     axis::AxisBody,
     integrator::{Extrapolated, ImplicitEuler, Integrator, Sdirk2},
     kernel::Kernel,
-    law::{Impact, ThreeHalves},
+    law::{Frictionless, Impact, ThreeHalves},
+    pose::Pose,
 };
 use slipfit_problems::{
-    cd_rom::STIFFNESS,
+    cd_rom::{self, STIFFNESS},
     laws::{BOUNCE_MASS, BOUNCES, Bounce, IMPACT_VALUES},
 };
 
@@ -137,4 +138,23 @@ fn bounces_converge_to_the_known_figures() {
         let euler = [5e-6, 5e-7].map(|h| deviation(&bounce::<ImplicitEuler<4>>(known.speed, h, 0.05), &known));
         assert!(euler[1] <= 0.3 * euler[0] + rounding, "{} m/s: {euler:?}", known.speed);
     }
+}
+
+/// Forces of a penetration beyond reason overflow when squared; what a step reports of itself must not be NaN then.
+#[test]
+fn reports_are_never_nan() {
+    fn check<I: Integrator>() {
+        for k in 0..1600u16 {
+            let mut data = cd_rom::data(0.0f32);
+            data.body.gaps[usize::from(k % 16)] = -f32::from(k / 16) / 100.0;
+            let kernel = Kernel::<f32, _, I>::new(cd_rom::with_friction(&data, Frictionless), 1e-3).unwrap();
+            let mut state = kernel.at_rest(Pose::nominal());
+            for _ in 0..20 {
+                let report = kernel.step(&mut state);
+                assert!(!report.residual.is_nan() && !report.error.is_nan(), "{} at {k}", I::NAME);
+            }
+        }
+    }
+    check::<ImplicitEuler<4>>();
+    check::<Extrapolated<2, 4>>();
 }

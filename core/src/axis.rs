@@ -1,19 +1,21 @@
-//! One body on one axis above one pad: the smallest mechanism.
+//! One body on one axis at one stop: the smallest mechanism.
 
 use crate::{
     ParameterError, SVector, Scalar,
+    drive::Push,
     error::bounded,
-    law::{Elastic, Impact},
+    law::{Elastic, Impact, Pad, Stop, stop::Resistance},
     mechanism::{Differentiated, Linearised, Mechanism},
 };
 
-/// A body that moves along one axis, with a pad below it.
+/// A body that moves along one axis, with a stop, by default a pad below it, and a drive, by default none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisBody<S, E> {
+pub struct AxisBody<S, E, C = Pad<S>, P = ()> {
     mass: S,
     gravity: S,
-    gap: S,
+    stop: C,
     contact: Impact<S, E>,
+    push: P,
 }
 
 impl<S: Scalar + PartialOrd, E: Elastic<S>> AxisBody<S, E> {
@@ -23,23 +25,35 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>> AxisBody<S, E> {
     /// # Errors
     /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
     pub fn new(mass: S, gravity: S, gap: S, contact: Impact<S, E>) -> Result<Self, ParameterError<S>> {
+        Self::driven(mass, gravity, Pad::new(gap)?, contact, ())
+    }
+}
+
+impl<S: Scalar + PartialOrd, E: Elastic<S>, C: Stop<S>, P: Push<S>> AxisBody<S, E, C, P> {
+    /// A body of `mass` (kg) with the acceleration `gravity` (m/s², along the axis) at `stop`, driven by `push`.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds. Stop and drive are validated
+    /// where they are made.
+    pub fn driven(mass: S, gravity: S, stop: C, contact: Impact<S, E>, push: P) -> Result<Self, ParameterError<S>> {
         Ok(Self {
             mass: bounded("mass", mass, [1e-6, 1e6])?,
             gravity: bounded("gravity", gravity, [-1e4, 1e4])?,
-            gap: bounded("gap", gap, [-1.0, 1e3])?,
+            stop,
             contact,
+            push,
         })
     }
 }
 
-impl<S: Scalar, E: Elastic<S>> AxisBody<S, E> {
-    /// Force of the pad on the body (N) at `position` (m) and `velocity` (m/s), both positive upwards.
+impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> AxisBody<S, E, C, P> {
+    /// Force of the stop on the body (N) at `position` (m) and `velocity` (m/s), all positive along the axis.
     pub fn pad_force(&self, position: S, velocity: S) -> S {
-        self.contact.response(-(self.gap + position), -velocity).force
+        self.stop.resistance(&self.contact, -position, velocity).force()
     }
 }
 
-impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
+impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> Mechanism<S, 1> for AxisBody<S, E, C, P> {
     /// Position (m), positive upwards.
     type Pose = S;
 
@@ -48,7 +62,7 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     /// Effective impedance (N·s/m).
     type Linearisation = S;
 
-    /// Damping (N·s/m) and stiffness (N/m) of the pad.
+    /// Damping (N·s/m), the drive's with it, and stiffness (N/m) of the stop.
     type Slopes = [S; 2];
 
     #[inline(always)]
@@ -119,12 +133,14 @@ impl<S: Scalar, E: Elastic<S>> Mechanism<S, 1> for AxisBody<S, E> {
     }
 
     #[inline(always)]
-    fn differentiated(&self, _: S, pose: &S, (): &(), velocity: &SVector<S, 1>) -> Differentiated<S, [S; 2], 1> {
-        let pad = self.contact.response(-(self.gap + *pose), -velocity.x);
+    fn differentiated(&self, t: S, pose: &S, (): &(), velocity: &SVector<S, 1>) -> Differentiated<S, [S; 2], 1> {
+        let stop = self.stop.resistance(&self.contact, -*pose, velocity.x);
+        let [damping, _] = stop.impedances(S::zero());
+        let [stiffness, _] = stop.stiffnesses();
         Differentiated {
-            force: SVector::<S, 1>::new(pad.force + self.mass * self.gravity),
-            per_time: SVector::zeros(),
-            slopes: [pad.damping, pad.stiffness],
+            force: SVector::<S, 1>::new(stop.force() + self.push.force(t, velocity.x) + self.mass * self.gravity),
+            per_time: SVector::<S, 1>::new(self.push.force_rate(t)),
+            slopes: [damping + self.push.gain(), stiffness],
         }
     }
 

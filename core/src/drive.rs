@@ -1,7 +1,8 @@
 //! The drive: a P-velocity controller behind a ramp (eq. 12).
 
 use crate::{
-    Scalar, Vector3,
+    ParameterError, Scalar, Vector3,
+    error::bounded,
     law::step::{cubic, step},
 };
 
@@ -20,6 +21,24 @@ pub struct Drive<S> {
     pub point_b: Vector3<S>,
 }
 
+impl<S: Scalar + PartialOrd> Drive<S> {
+    /// This drive, if its parameters can be stepped without failing.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    pub fn checked(self) -> Result<Self, ParameterError<S>> {
+        bounded("drive.gain", self.gain, [0.0, 1e9])?;
+        bounded("drive.ramp_start", self.ramp_start, [-1e6, 1e6])?;
+        bounded("drive.ramp_end", self.ramp_end, [self.ramp_start.to_f64(), 1e6])?;
+        bounded("drive.ramp_duration", self.ramp_end - self.ramp_start, [1e-6, 1e6])?;
+        bounded("drive.speed", self.speed, [-1e3, 1e3])?;
+        for component in self.point_b.iter() {
+            bounded("drive.point", *component, [-1e3, 1e3])?;
+        }
+        Ok(self)
+    }
+}
+
 impl<S: Scalar> Drive<S> {
     /// The commanded speed (m/s) at time `t` (s).
     #[inline(always)]
@@ -34,10 +53,63 @@ impl<S: Scalar> Drive<S> {
         S::from_f64(6.0) * self.speed * per_duration * cubic((t - self.ramp_start) * per_duration).1
     }
 
+    /// How fast the force (N/s) changes with time `t` (s) alone.
+    #[inline(always)]
+    pub fn force_rate(&self, t: S) -> S {
+        self.gain * self.command_rate(t)
+    }
+
     /// The force (N) along the frame's z at time `t` (s) and speed `v_z` (m/s) of the centre of mass.
     #[inline(always)]
     pub fn force(&self, t: S, v_z: S) -> S {
         self.gain * (self.command(t) - v_z)
+    }
+}
+
+/// What drives a body along its axis, as a menu of types so that a scene without a drive pays nothing.
+pub trait Push<S>: Copy {
+    /// The force (N) at time `t` (s) and speed `v` (m/s).
+    fn force(&self, t: S, v: S) -> S;
+
+    /// How fast the force (N/s) changes with time `t` (s) alone.
+    fn force_rate(&self, t: S) -> S;
+
+    /// How much less the force is (N·s/m) at a higher speed.
+    fn gain(&self) -> S;
+}
+
+impl<S: Scalar> Push<S> for Drive<S> {
+    #[inline(always)]
+    fn force(&self, t: S, v: S) -> S {
+        self.force(t, v)
+    }
+
+    #[inline(always)]
+    fn force_rate(&self, t: S) -> S {
+        self.force_rate(t)
+    }
+
+    #[inline(always)]
+    fn gain(&self) -> S {
+        self.gain
+    }
+}
+
+/// No drive.
+impl<S: Scalar> Push<S> for () {
+    #[inline(always)]
+    fn force(&self, _: S, _: S) -> S {
+        S::zero()
+    }
+
+    #[inline(always)]
+    fn force_rate(&self, _: S) -> S {
+        S::zero()
+    }
+
+    #[inline(always)]
+    fn gain(&self) -> S {
+        S::zero()
     }
 }
 

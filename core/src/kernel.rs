@@ -35,7 +35,7 @@ pub type StateOf<S, M, const D: usize> = State<S, <M as Mechanism<S, D>>::Pose, 
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Report<S> {
     /// Imbalance of momentum (N·s) that the Newton passes left in the worst stage.
-    /// Infinite if the step left the finite range: then the motion was held as it was.
+    /// Infinite if it left the finite range, never NaN. If the motion left it, the motion was held as it was.
     pub residual: S,
     /// Estimate of the momentum's error (N·s) made in this step; infinite likewise.
     pub error: S,
@@ -90,7 +90,7 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
             velocity: next.velocity.zip_map(&was.velocity, |new, old| finite.select_gt(zero, new, old)),
             memory,
         };
-        let or_infinite = |x: S| finite.select_gt(zero, x, S::one() / zero);
+        let or_infinite = |x: S| (finite + x * zero).select_gt(zero, x, S::one() / zero);
         Report { residual: or_infinite(residual), error: or_infinite(error) }
     }
 }

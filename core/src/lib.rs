@@ -7,7 +7,8 @@
 //! aided tolerance analysis and functional prototyping"; equation and table numbers are its own.
 //!
 //! Where to look: [`law`] holds one force law a file, [`slide`] the mechanism of the paper, [`integrator`] the
-//! fixed-step schemes, [`kernel`] what a controller calls once a step, [`table`] the flash table it may look up instead.
+//! fixed-step schemes, [`kernel`] what a controller calls once a step, [`table`] the flash table it may look up instead,
+//! [`monitor`] what tells a tight or jammed drive from a free one.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -21,14 +22,17 @@ pub mod law;
 mod linear;
 pub mod mechanism;
 pub mod menu;
+pub mod monitor;
+pub mod planar;
 pub mod pose;
 pub mod power;
 #[cfg(feature = "sampling")]
 pub mod sampling;
 mod scalar;
+pub mod scene;
 pub mod slide;
 pub mod table;
 
 pub use error::ParameterError;
-pub use nalgebra::{SVector, Vector3};
+pub use nalgebra::{SVector, Vector2, Vector3};
 pub use scalar::Scalar;

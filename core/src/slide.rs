@@ -92,14 +92,7 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         for gap in body.gaps {
             bounded("gap", gap, [-1.0, ABSENT])?;
         }
-        bounded("drive.gain", drive.gain, [0.0, 1e9])?;
-        bounded("drive.ramp_start", drive.ramp_start, [-1e6, 1e6])?;
-        bounded("drive.ramp_end", drive.ramp_end, [drive.ramp_start.to_f64(), 1e6])?;
-        bounded("drive.ramp_duration", drive.ramp_end - drive.ramp_start, [1e-6, 1e6])?;
-        bounded("drive.speed", drive.speed, [-1e3, 1e3])?;
-        for component in drive.point_b.iter() {
-            bounded("drive.point", *component, [-1e3, 1e3])?;
-        }
+        let drive = drive.checked()?;
         Ok(Self { body, contact, friction, drive, per_lever: S::one() / farthest })
     }
 }

@@ -16,6 +16,7 @@ pub mod files;
 pub mod flash;
 pub mod force_table;
 pub mod interrupt;
+pub mod kernel_source;
 mod layout;
 mod markup;
 pub mod mobility;

@@ -5,7 +5,9 @@ pub mod elastic;
 pub mod friction;
 pub mod impact;
 pub mod step;
+pub mod stop;
 
 pub use elastic::{Elastic, Linear, Power, ThreeHalves};
 pub use friction::{Exact, Friction, Frictionless, Regularised, StaticKinetic};
 pub use impact::{Impact, NormalResponse};
+pub use stop::{Pad, Slot, Stop};

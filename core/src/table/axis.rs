@@ -36,15 +36,18 @@ pub struct Axis {
     first: f32,
     last: f32,
     step: f32,
+    /// The first node, −0 for 0: what is subtracted from −0 must not leave −0, which would count as outside.
+    origin: f32,
     per_step: f32,
     last_cell: usize,
 }
 
-/// Where a coordinate lies: `fraction` of the way from node `cell` to the next one, 0 to 1 but for rounding.
+/// Where a coordinate lies: `fraction` of the way from node `cell` to the next one, 0 to 1.
 pub(super) struct Place {
     pub(super) cell: usize,
     pub(super) fraction: f32,
-    pub(super) clamped: bool,
+    /// Not 0 if the coordinate lies outside the axis.
+    pub(super) outside: u32,
 }
 
 impl Axis {
@@ -62,12 +65,15 @@ impl Axis {
         if !(first.is_finite() && last.is_finite()) {
             return Err(TableError::Header("first or last node"));
         }
-        // 1/step, but such that the last node as f32 has it is `top` steps away.
+        // 1/step, but such that the last node as f32 has it is `top` steps away, not more by rounding.
         let per_step = top / (last - first);
+        let per_step =
+            if per_step.is_finite() && (last - first) * per_step > top { per_step.next_down() } else { per_step };
         if !(step > 0.0 && per_step.is_finite() && first + step > first && last - step < last) {
             return Err(TableError::Header("step between nodes"));
         }
-        Ok(Self { kind, count, first, last, step, per_step, last_cell: count - 2 })
+        let origin = if first == 0.0 { -0.0 } else { first };
+        Ok(Self { kind, count, first, last, step, origin, per_step, last_cell: count - 2 })
     }
 
     /// What varies.
@@ -100,15 +106,20 @@ impl Axis {
         self.first + self.step * i as f32
     }
 
-    /// The place of `x`. NaN fails the first comparison, so that it ends at the low end, and differs from it.
+    /// The place of `x`. Beyond an end by less than f32 resolves in steps counts as inside; NaN is outside, in the first
+    /// cell.
+    ///
+    /// As integers the bits of numbers from 0 on are in the numbers' order, and those of negative ones are negative.
     #[inline(always)]
     pub(super) fn locate(&self, x: f32) -> Place {
-        let inside = if x >= self.first { x } else { self.first };
-        let inside = if inside <= self.last { inside } else { self.last };
-        let steps = (inside - self.first) * self.per_step;
+        const ONE: i32 = 1.0f32.to_bits().cast_signed();
+        let steps = (x - self.origin) * self.per_step;
         let whole = steps as u32 as usize;
         let cell = if whole < self.last_cell { whole } else { self.last_cell };
-        Place { cell, fraction: steps - cell as u32 as f32, clamped: inside != x }
+        let fraction = (steps - cell as u32 as f32).to_bits().cast_signed();
+        let raised = if fraction > 0 { fraction } else { 0 };
+        let inside = if raised < ONE { raised } else { ONE };
+        Place { cell, fraction: f32::from_bits(inside.cast_unsigned()), outside: (inside ^ fraction).cast_unsigned() }
     }
 }
 
@@ -132,18 +143,24 @@ mod tests {
             (f32::MIN, 0, 0.0, true),
             (inf, 2, 1.0, true),
             (-inf, 0, 0.0, true),
-            (f32::NAN, 0, 0.0, true),
+            (-0.0, 2, 0.0, false),
+            (f32::NAN, 0, 1.0, true),
+            (-f32::NAN, 0, 0.0, true),
         ] {
             let place = axis.locate(x);
-            assert_eq!((place.cell, place.fraction, place.clamped), (cell, fraction, clamped), "{x}");
+            assert_eq!((place.cell, place.fraction, place.outside != 0), (cell, fraction, clamped), "{x}");
         }
     }
 
     #[test]
     fn every_node_is_inside() {
-        let axis = Axis::new(AxisKind::Time, 0.05, 0.1, 1000).unwrap();
-        assert!((0..1000).all(|i| !axis.locate(axis.node(i)).clamped));
-        assert_eq!(axis.node(999), axis.last());
+        for first in [0.05, 0.0, -0.0, -7.3] {
+            let axis = Axis::new(AxisKind::Time, first, 0.1, 1000).unwrap();
+            assert!((0..1000).all(|i| axis.locate(axis.node(i)).outside == 0));
+            assert_eq!(axis.node(999), axis.last());
+        }
+        let axis = Axis::new(AxisKind::Time, 0.0, 0.1, 1000).unwrap();
+        assert!(axis.locate(-0.0).outside == 0 && axis.locate(-1e-30).outside != 0);
     }
 
     #[test]

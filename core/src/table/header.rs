@@ -3,12 +3,12 @@
 use heapless::Vec;
 
 use super::{
-    Axis, AxisKind, ChannelKind, Encoding, TableError,
+    Axis, AxisKind, Encoding, TableError,
     layout::{
         AXES_AT, AXES_LEAST, AXES_MOST, AXIS_COUNT_AT, AXIS_FIRST_AT, AXIS_KIND_AT, AXIS_NODES_AT, AXIS_SIZE,
-        AXIS_STEP_AT, CHANNEL_COUNT_AT, CHANNEL_ENCODING_AT, CHANNEL_ERROR_AT, CHANNEL_KIND_AT, CHANNEL_SCALE_AT,
-        CHANNEL_SIZE, CHANNELS, CHANNELS_AT, CHECKSUM_SIZE, HEADER_SIZE, I16_MOST, LENGTH_AT, MAGIC, MAGIC_AT,
-        SCENE_HASH_AT, VALUE_MOST, VERSION, VERSION_AT, checksum,
+        AXIS_STEP_AT, CHANNEL_RMS_AT, CHANNEL_SCALE_AT, CHANNEL_SIZE, CHANNEL_WORST_AT, CHANNELS, CHANNELS_AT,
+        CHECKSUM_SIZE, ENCODING_AT, HEADER_SIZE, I16_MOST, LENGTH_AT, MAGIC, MAGIC_AT, SCENE_HASH_AT, VALUE_MOST,
+        VERSION, VERSION_AT, checksum,
     },
 };
 
@@ -21,6 +21,8 @@ pub struct Header {
     pub length: usize,
     /// The axes, slowest first.
     pub axes: Vec<Axis, AXES_MOST>,
+    /// How values are stored.
+    pub encoding: Encoding,
     /// Force and velocity.
     pub channels: [ChannelRecord; CHANNELS],
 }
@@ -29,14 +31,12 @@ pub struct Header {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ChannelRecord {
-    /// What the channel is.
-    pub kind: ChannelKind,
-    /// How values are stored.
-    pub encoding: Encoding,
     /// What a stored value is multiplied with (N or m/s); 1 for [`Encoding::F32`].
     pub scale: f32,
     /// The worst interpolation error (N or m/s), measured when the table was made.
     pub worst_error: f32,
+    /// The root mean square of the interpolation error (N or m/s) where the table is used: after the drive has started.
+    pub rms_error: f32,
 }
 
 impl Header {
@@ -65,10 +65,8 @@ impl Header {
         if !(AXES_LEAST..=AXES_MOST).contains(&axis_count) {
             return Err(TableError::Header("number of axes"));
         }
-        let [channel_count] = field(region, CHANNEL_COUNT_AT)?;
-        if usize::from(channel_count) != CHANNELS {
-            return Err(TableError::Header("number of channels"));
-        }
+        let [encoding] = field(region, ENCODING_AT)?;
+        let encoding = Encoding::of(encoding).ok_or(TableError::Header("encoding"))?;
         let mut axes = Vec::new();
         for i in 0..AXES_MOST {
             let record: [u8; AXIS_SIZE] = field(region, AXES_AT + i * AXIS_SIZE)?;
@@ -78,12 +76,12 @@ impl Header {
                 return Err(TableError::Header("number of axes"));
             }
         }
-        let [force, velocity] = ChannelKind::ALL;
         let channels = [
-            channel(force, &field(region, CHANNELS_AT)?)?,
-            channel(velocity, &field(region, CHANNELS_AT + CHANNEL_SIZE)?)?,
+            channel(encoding, &field(region, CHANNELS_AT)?)?,
+            channel(encoding, &field(region, CHANNELS_AT + CHANNEL_SIZE)?)?,
         ];
-        Ok(Self { scene_hash: u64::from_le_bytes(field(region, SCENE_HASH_AT)?), length, axes, channels })
+        let scene_hash = u64::from_le_bytes(field(region, SCENE_HASH_AT)?);
+        Ok(Self { scene_hash, length, axes, encoding, channels })
     }
 }
 
@@ -106,15 +104,10 @@ fn axis(record: &[u8; AXIS_SIZE]) -> Result<Axis, TableError> {
     )
 }
 
-fn channel(kind: ChannelKind, record: &[u8; CHANNEL_SIZE]) -> Result<ChannelRecord, TableError> {
-    let [code] = field(record, CHANNEL_KIND_AT)?;
-    if code != kind as u8 {
-        return Err(TableError::Header("kind of channel"));
-    }
-    let [encoding, reserved @ ..] = field::<3>(record, CHANNEL_ENCODING_AT)?;
-    zero(&reserved, "reserved byte of a channel")?;
-    let encoding = Encoding::of(encoding).ok_or(TableError::Header("encoding"))?;
-    let scale = f32::from_le_bytes(field(record, CHANNEL_SCALE_AT)?);
+fn channel(encoding: Encoding, record: &[u8; CHANNEL_SIZE]) -> Result<ChannelRecord, TableError> {
+    let number = |at| field(record, at).map(f32::from_le_bytes);
+    let (scale, worst_error, rms_error) =
+        (number(CHANNEL_SCALE_AT)?, number(CHANNEL_WORST_AT)?, number(CHANNEL_RMS_AT)?);
     let scale_is_good = match encoding {
         Encoding::F32 => scale == 1.0,
         Encoding::I16 => scale > 0.0 && scale <= VALUE_MOST / f32::from(I16_MOST),
@@ -122,9 +115,11 @@ fn channel(kind: ChannelKind, record: &[u8; CHANNEL_SIZE]) -> Result<ChannelReco
     if !scale_is_good {
         return Err(TableError::Header("scale"));
     }
-    let worst_error = f32::from_le_bytes(field(record, CHANNEL_ERROR_AT)?);
     if !(worst_error >= 0.0 && worst_error.is_finite()) {
         return Err(TableError::Header("worst error"));
     }
-    Ok(ChannelRecord { kind, encoding, scale, worst_error })
+    if !(rms_error >= 0.0 && rms_error <= worst_error) {
+        return Err(TableError::Header("mean error"));
+    }
+    Ok(ChannelRecord { scale, worst_error, rms_error })
 }

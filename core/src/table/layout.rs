@@ -3,7 +3,7 @@
 /// What a table starts with.
 pub const MAGIC: [u8; 4] = *b"SLFT";
 /// The format version this crate reads.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 
 /// Offset of the magic.
 pub const MAGIC_AT: usize = 0;
@@ -11,8 +11,8 @@ pub const MAGIC_AT: usize = 0;
 pub const VERSION_AT: usize = 4;
 /// Offset of the number of axes, u8.
 pub const AXIS_COUNT_AT: usize = 6;
-/// Offset of the number of channels, u8.
-pub const CHANNEL_COUNT_AT: usize = 7;
+/// Offset of how values are stored, u8, see [`Encoding`](super::Encoding).
+pub const ENCODING_AT: usize = 7;
 /// Offset of the scene hash, u64.
 pub const SCENE_HASH_AT: usize = 8;
 /// Offset of the length in bytes, u32.
@@ -35,25 +35,21 @@ pub const AXIS_FIRST_AT: usize = 8;
 /// In an axis record: the distance between nodes, f32.
 pub const AXIS_STEP_AT: usize = 12;
 
-/// Offset of the first channel record.
+/// Offset of the force's record; the velocity's follows.
 pub const CHANNELS_AT: usize = AXES_AT + AXES_MOST * AXIS_SIZE;
-/// Number of channels.
+/// Number of channels: force, then velocity.
 pub const CHANNELS: usize = 2;
 /// Size of a channel record.
 pub const CHANNEL_SIZE: usize = 12;
-/// In a channel record: what it is, u8, see [`ChannelKind`](super::ChannelKind).
-pub const CHANNEL_KIND_AT: usize = 0;
-/// In a channel record: how values are stored, u8, see [`Encoding`](super::Encoding).
-pub const CHANNEL_ENCODING_AT: usize = 1;
 /// In a channel record: what a stored value is multiplied with, f32.
-pub const CHANNEL_SCALE_AT: usize = 4;
+pub const CHANNEL_SCALE_AT: usize = 0;
 /// In a channel record: the worst interpolation error, f32.
-pub const CHANNEL_ERROR_AT: usize = 8;
+pub const CHANNEL_WORST_AT: usize = 4;
+/// In a channel record: the root mean square of the interpolation error in use, f32.
+pub const CHANNEL_RMS_AT: usize = 8;
 
 /// Size of the header, and offset of the data.
 pub const HEADER_SIZE: usize = CHANNELS_AT + CHANNELS * CHANNEL_SIZE;
-/// Every channel's data starts at a multiple of this.
-pub const DATA_ALIGNMENT: usize = 4;
 /// Size of the checksum at the end.
 pub const CHECKSUM_SIZE: usize = 4;
 
@@ -65,8 +61,20 @@ pub const VALUE_MOST: f32 = 1e30;
 pub const I16_MOST: i16 = i16::MAX;
 
 /// The checksum, CRC-32/ISO-HDLC, of `bytes`.
-///
-/// Computed bit by bit: a table of remainders would speed up something done once, at the price of 1 KB of flash.
 pub fn checksum(bytes: &[u8]) -> u32 {
-    crc::Crc::<u32, crc::NoTable>::new(&crc::CRC_32_ISO_HDLC).checksum(bytes)
+    !continued(EMPTY, bytes)
+}
+
+/// The checksum's register before the first byte; its complement after the last one is the checksum.
+pub(super) const EMPTY: u32 = !0;
+
+/// The checksum's register after `bytes`.
+///
+/// Bit by bit: a table of remainders would speed up something done rarely, at the price of 1 KB of flash.
+pub(super) fn continued(register: u32, bytes: &[u8]) -> u32 {
+    bytes.iter().fold(register, |register, byte| {
+        (0..8).fold(register ^ u32::from(*byte), |register, _| {
+            register >> 1 ^ if register & 1 == 1 { 0xedb8_8320 } else { 0 }
+        })
+    })
 }

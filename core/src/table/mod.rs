@@ -3,20 +3,20 @@
 //! [`Table::open`] checks a table once, completely; what it returns cannot fail any more. Nothing is copied: values are
 //! decoded from the flash at each [`Table::lookup`], byte by byte, so that the region needs no alignment.
 //!
-//! # Layout, version 1
-//! Little-endian. Every field lies at a multiple of its own size. Offsets in bytes, here and in [`layout`]:
+//! # Layout, version 2
+//! Little-endian. Every field lies at a multiple of its own size, or of 4. Offsets in bytes, here and in [`layout`]:
 //!
 //! | offset | type | field |
 //! |---|---|---|
 //! | 0 | `[u8; 4]` | magic, "SLFT" |
-//! | 4 | u16 | format version, 1 |
+//! | 4 | u16 | format version, 2 |
 //! | 6 | u8 | number of axes, 2 or 3 |
-//! | 7 | u8 | number of channels, 2 |
+//! | 7 | u8 | how values are stored: 1 f32, 2 i16 |
 //! | 8 | u64 | hash of the scene and its laws |
 //! | 16 | u32 | length in bytes, from the magic to the end of the checksum |
 //! | 20, 36, 52 | axis | three records of 16 bytes; those of absent axes are all zero |
 //! | 68, 80 | channel | two records of 12 bytes: force (N), then velocity (m/s) |
-//! | 92 | data | the force's values, zero to three zero bytes, the velocity's values, zero to three zero bytes |
+//! | 92 | data | a node after the other, the last axis fastest: force and velocity of each |
 //! | length − 4 | u32 | checksum, CRC-32/ISO-HDLC, of all bytes before it |
 //!
 //! | in an axis | type | field |
@@ -29,46 +29,51 @@
 //!
 //! | in a channel | type | field |
 //! |---|---|---|
-//! | 0 | u8 | what it is: 1 force (N), 2 velocity (m/s) |
-//! | 1 | u8 | how values are stored: 1 f32, 2 i16 |
-//! | 2 | `[u8; 2]` | zero |
-//! | 4 | f32 | what a stored value is multiplied with: positive; 1 for f32 |
-//! | 8 | f32 | worst interpolation error (N or m/s), measured when the table was made |
+//! | 0 | f32 | what a stored value is multiplied with: positive; 1 for f32 |
+//! | 4 | f32 | worst interpolation error (N or m/s), measured when the table was made |
+//! | 8 | f32 | root mean square of that error (N or m/s) after the drive has started |
 //!
-//! Values are ordered with the last axis fastest, and each channel starts at a multiple of 4. No value exceeds 10³⁰ in
-//! magnitude. The table may lie in a larger region; what follows it is not looked at.
+//! No value exceeds 10³⁰ in magnitude. The table may lie in a larger region; what follows it is not looked at, but
+//! for the record at the end of a slot, see [`Slots`].
 //!
 //! *Compatibility:* a reader accepts its own version only. Whatever moves a byte or gives it another meaning raises the
 //! version.
 
 mod axis;
-mod channel;
 mod error;
 mod header;
 pub mod layout;
+mod nodes;
+mod patrol;
+mod slots;
 
-use channel::{Channel, Row};
 use layout::{CHANNELS, CHECKSUM_SIZE, HEADER_SIZE};
 
 pub use axis::{Axis, AxisKind};
-pub use channel::{ChannelKind, Encoding};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
+pub use nodes::{AnyNodes, ChannelKind, Encoding, F32Nodes, I16Nodes, Nodes};
+pub use patrol::Patrol;
+pub use slots::{RECORD_SIZE, Slots, record};
 
 /// A checked table over `N` axes, 2 or 3, in the region it was opened from.
+///
+/// `V` is how values are stored: either way unless [`Table::f32`] or [`Table::i16`] has made sure, after which a lookup
+/// need not ask and the other way leaves no code.
 #[derive(Clone, Copy, Debug)]
-pub struct Table<'a, const N: usize = 2> {
+pub struct Table<'a, const N: usize = 2, V = AnyNodes<'a>> {
+    /// The table alone, from the magic to the checksum.
+    bytes: &'a [u8],
     scene_hash: u64,
-    length: usize,
     axes: [Axis; N],
-    /// How many values apart two neighbours along each axis are.
+    /// How many nodes apart two neighbours along each axis are.
     strides: [usize; N],
     records: [ChannelRecord; CHANNELS],
-    channels: [Channel<'a>; CHANNELS],
+    nodes: V,
 }
 
 /// What a table says about one point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Lookup {
     /// Force (N).
@@ -92,30 +97,50 @@ impl<'a, const N: usize> Table<'a, N> {
         let found = header.axes.len();
         let axes = header.axes.into_array::<N>().map_err(|_| TableError::Axes { found })?;
 
-        let mut values = 1usize;
+        let mut count = 1usize;
         let mut strides = [0; N];
         for (stride, axis) in strides.iter_mut().zip(&axes).rev() {
-            *stride = values;
-            values = values.checked_mul(axis.count()).ok_or(TableError::Header("length"))?;
+            *stride = count;
+            count = count.checked_mul(axis.count()).ok_or(TableError::Header("length"))?;
         }
 
-        let data = region.get(HEADER_SIZE..header.length.saturating_sub(CHECKSUM_SIZE)).ok_or(TableError::Truncated)?;
-        let [force, velocity] = header.channels;
-        let (force, data) = Channel::split(&force, values, data)?;
-        let (velocity, data) = Channel::split(&velocity, values, data)?;
-        if !data.is_empty() {
-            return Err(TableError::Header("length"));
-        }
-        Ok(Self {
-            scene_hash: header.scene_hash,
-            length: header.length,
-            axes,
-            strides,
-            records: header.channels,
-            channels: [force, velocity],
-        })
+        let bytes = region.get(..header.length).ok_or(TableError::Truncated)?;
+        let data = bytes.get(HEADER_SIZE..header.length.saturating_sub(CHECKSUM_SIZE)).ok_or(TableError::Truncated)?;
+        let nodes = AnyNodes::new(header.encoding, &header.channels, count, data)?;
+        Ok(Self { bytes, scene_hash: header.scene_hash, axes, strides, records: header.channels, nodes })
     }
 
+    /// This table, if its values are f32.
+    pub fn f32(self) -> Option<Table<'a, N, F32Nodes<'a>>> {
+        match self.nodes {
+            AnyNodes::F32(nodes) => Some(self.with(nodes)),
+            AnyNodes::I16(_) => None,
+        }
+    }
+
+    /// This table, if its values are i16.
+    pub fn i16(self) -> Option<Table<'a, N, I16Nodes<'a>>> {
+        match self.nodes {
+            AnyNodes::I16(nodes) => Some(self.with(nodes)),
+            AnyNodes::F32(_) => None,
+        }
+    }
+
+    fn with<V>(self, nodes: V) -> Table<'a, N, V> {
+        let Self { bytes, scene_hash, axes, strides, records, .. } = self;
+        Table { bytes, scene_hash, axes, strides, records, nodes }
+    }
+
+    /// How values are stored.
+    pub fn encoding(&self) -> Encoding {
+        match self.nodes {
+            AnyNodes::F32(_) => Encoding::F32,
+            AnyNodes::I16(_) => Encoding::I16,
+        }
+    }
+}
+
+impl<const N: usize, V: Nodes> Table<'_, N, V> {
     /// This table, if it was made for the scene and laws that `hash` stands for.
     ///
     /// # Errors
@@ -126,33 +151,22 @@ impl<'a, const N: usize> Table<'a, N> {
 
     /// Force and velocity at the point `at`, one coordinate an axis, in the axes' order and units.
     ///
-    /// Multilinear between the nodes. Outside the grid the nearest point of the grid counts, for NaN the low end. Never
-    /// fails and is never NaN. Exact at a node whose distance from the first one, in steps, comes out whole in f32;
-    /// elsewhere rounding stays within (6·r + 16)·2⁻²⁴ of the channel's greatest magnitude, where r adds up, over all
-    /// axes, the number of nodes and how many steps the end farther from 0 is away from it.
+    /// Multilinear between the nodes. Outside the grid the nearest point of the grid counts, for NaN one of the lowest
+    /// cell. Never fails and is never NaN. Exact at a node, but for the last of an axis, whose distance from the first
+    /// one, in steps, comes out whole in f32; elsewhere rounding stays within (6·r + 16)·2⁻²⁴ of the channel's greatest
+    /// magnitude, where r adds up, over all axes, the number of nodes and how many steps the end farther from 0 is away
+    /// from it.
     #[inline]
     pub fn lookup(&self, at: [f32; N]) -> Lookup {
-        let mut rows = [Row { index: 0, weight: 1.0 }; ROWS];
-        let mut weights = [1.0, 0.0];
-        let mut clamped = false;
-        for (i, ((axis, stride), x)) in self.axes.iter().zip(self.strides).zip(at).enumerate() {
+        let (mut first, mut fractions, mut outside) = (0, [0.0; N], 0);
+        for (((axis, stride), x), fraction) in self.axes.iter().zip(self.strides).zip(at).zip(&mut fractions) {
             let place = axis.locate(x);
-            clamped |= place.clamped;
-            weights = [1.0 - place.fraction, place.fraction];
-            // The last axis picks two neighbours in each row; every other one doubles the number of rows.
-            for (k, row) in rows.iter_mut().enumerate() {
-                if i + 1 == N {
-                    row.index += place.cell;
-                } else {
-                    let upper = k >> i & 1;
-                    row.index += (place.cell + upper) * stride;
-                    row.weight *= if upper == 1 { place.fraction } else { 1.0 - place.fraction };
-                }
-            }
+            first += place.cell * stride;
+            *fraction = place.fraction;
+            outside |= place.outside;
         }
-        let rows = rows.get(..rows_of(N)).unwrap_or(&rows);
-        let [force, velocity] = self.channels.map(|channel| channel.sum(rows, weights));
-        Lookup { force, velocity, clamped }
+        let [force, velocity] = self.nodes.within(first, &self.strides, &fractions);
+        Lookup { force, velocity, clamped: outside != 0 }
     }
 
     /// The axes, slowest first.
@@ -172,14 +186,21 @@ impl<'a, const N: usize> Table<'a, N> {
 
     /// Length of the table (bytes); the region may be longer.
     pub fn length(&self) -> usize {
-        self.length
+        self.bytes.len()
     }
 }
 
-/// Rows of a cell of the greatest number of axes.
-const ROWS: usize = rows_of(layout::AXES_MOST);
-
-/// Pairs of neighbours along the last axis, at the corners of a cell over `axes` axes.
-const fn rows_of(axes: usize) -> usize {
-    1 << (axes - 1)
+impl<V: Nodes> Table<'_, 2, V> {
+    /// The force (N) at every node of the first axis, at `x` on the second; none outside of it.
+    #[inline]
+    pub fn forces(&self, x: f32) -> Option<impl Iterator<Item = f32>> {
+        let ([nodes, axis], [stride, _]) = (&self.axes, self.strides);
+        let place = axis.locate(x);
+        let firsts = (0..nodes.count()).map(move |i| place.cell + i * stride);
+        let force = move |first| {
+            let [force, _] = self.nodes.between(first, place.fraction);
+            force
+        };
+        (place.outside == 0).then(|| firsts.map(force))
+    }
 }

@@ -1,6 +1,7 @@
 //! The command line: one file a command, each with its arguments and its `run`.
 
 mod check;
+mod kernel;
 mod merge;
 mod precision;
 mod run;
@@ -50,7 +51,8 @@ Examples:
   slipfit simulate --n 2.5 --csv unit.csv  one unit, tighter by 2.5 sigma
   slipfit sweep --n 0:5:0.5 --set run.duration=1500
                                            at which n does the full stroke jam
-  slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)";
+  slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)
+  slipfit kernel -o scene.rs               the scene as a Rust constant and type for firmware";
 
 #[derive(Subcommand)]
 enum Command {
@@ -60,6 +62,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Sweep(sweep::Arguments),
     Table(table::Arguments),
+    Kernel(kernel::Arguments),
     Precision(precision::Arguments),
     Merge(merge::Arguments),
 }
@@ -106,7 +109,7 @@ impl From<TableError> for Failure {
     fn from(error: TableError) -> Self {
         match error {
             TableError::Simulate(error) => error.into(),
-            TableError::Flash(error) => Self::Input(error.to_string()),
+            TableError::Flash(_) | TableError::MaxError { .. } => Self::Input(error.to_string()),
         }
     }
 }
@@ -266,6 +269,7 @@ pub fn main() -> ExitCode {
         Some(Command::Simulate(arguments)) => arguments.run(),
         Some(Command::Sweep(arguments)) => arguments.run(),
         Some(Command::Table(arguments)) => arguments.run(),
+        Some(Command::Kernel(arguments)) => arguments.run(),
         Some(Command::Precision(arguments)) => arguments.run(),
         Some(Command::Merge(arguments)) => arguments.run(),
     };

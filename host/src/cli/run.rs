@@ -15,7 +15,8 @@ use super::{
 use crate::{
     export::sweep_csv,
     figure::{figure_8, figure_9, required_force},
-    files, force_table,
+    files,
+    force_table::{self, Demand},
     mobility::{contacts, rank_of_normals},
     outcome::Verdict,
     plot::PlotError,
@@ -71,7 +72,7 @@ impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let overrides: Vec<_> = self.levels.overrides().into_iter().collect();
         let (scene, product) = self.scene.load_with_product(&overrides)?;
-        force_table::check(&scene).map_err(|error| Failure::Input(error.to_string()))?;
+        force_table::check(&scene, Demand::Full).map_err(|error| Failure::Input(error.to_string()))?;
         let production = product.as_ref().map(|product| self.analyse(&scene.title, product)).transpose()?;
         let of_production = production.iter().flat_map(|production| {
             [MEASURES].into_iter().chain(production.pictures.iter().map(|picture| picture.file.as_str()))
@@ -83,7 +84,7 @@ impl Arguments {
         }
 
         let bar = progress("simulating", force_table::levels(&scene.sweep).count);
-        let made = self.threads.install(|| force_table::make(&scene, ScalarKind::F64, || bar.inc(1)))?;
+        let made = self.threads.install(|| force_table::make(&scene, ScalarKind::F64, Demand::Full, || bar.inc(1)))?;
         bar.finish_and_clear();
         let (table, sweep) = made?;
         let mut warnings = check::warnings(&scene, rank_of_normals(&contacts(&scene)), guide(&scene, 0.0).as_ref());

@@ -15,7 +15,7 @@ use crate::{
         TABLE_ADDRESS, TABLE_REGION,
         export::{EXTENSIONS, ExportError, render},
     },
-    force_table::{self, ForceTable},
+    force_table::{self, Demand, ForceTable},
     number::fixed,
 };
 
@@ -27,6 +27,10 @@ pub(super) struct Arguments {
     /// File to write; the extension says how: .bin .hex .h .rs
     #[arg(short, long, value_name = "FILE", default_value = "table.bin")]
     output: PathBuf,
+    /// Greatest error of force (N) from the ramp's start on: the smallest table that meets it is made, as multiples
+    /// of a scale (i16) or as numbers (f32).
+    #[arg(long, value_name = "N")]
+    max_error: Option<f64>,
     #[command(flatten)]
     levels: LevelArguments,
     #[command(flatten)]
@@ -41,6 +45,7 @@ struct Report {
     bytes: usize,
     levels: usize,
     instants: usize,
+    encoding: &'static str,
     scene_hash: String,
     worst_force_error_n: f64,
     worst_velocity_error_m_per_s: f64,
@@ -56,10 +61,14 @@ impl Arguments {
         if !EXTENSIONS.contains(&extension.as_str()) {
             return Err(Failure::Input(format!("--output: {}", ExportError::Extension { found: extension })));
         }
-        force_table::check(&scene).map_err(|error| Failure::Input(error.to_string()))?;
+        if let Some(error) = self.max_error.filter(|error| !(1e-9..=1e6).contains(error)) {
+            return Err(Failure::Input(format!("--max-error is {error}, allowed is 1e-9 to 1e6 N")));
+        }
+        let demand = self.max_error.map_or(Demand::Full, Demand::MaxError);
+        force_table::check(&scene, demand).map_err(|error| Failure::Input(error.to_string()))?;
         self.scene.check_output(&self.output)?;
         let bar = progress("simulating", force_table::levels(&scene.sweep).count);
-        let made = self.threads.install(|| force_table::make(&scene, self.stepping.scalar, || bar.inc(1)))?;
+        let made = self.threads.install(|| force_table::make(&scene, self.stepping.scalar, demand, || bar.inc(1)))?;
         bar.finish_and_clear();
         let (table, _) = made?;
         let file = render(&extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
@@ -72,6 +81,7 @@ impl Arguments {
                 bytes: table.bytes.len(),
                 levels: table.shape[0],
                 instants: table.shape[1],
+                encoding: table.encoding.name(),
                 scene_hash: format!("{:016x}", force_table::scene_hash(&scene)),
                 worst_force_error_n: force,
                 worst_velocity_error_m_per_s: velocity,
@@ -91,10 +101,11 @@ pub(super) fn describe(table: &ForceTable) -> String {
         format!("force {} mN, velocity {} mm/s", fixed(force * 1e3, 3), fixed(velocity * 1e3, 4))
     };
     format!(
-        "{} bytes of the {TABLE_REGION} in the TABLE region: {levels} levels of n by {instants} instants\n\
+        "{} bytes of the {TABLE_REGION} in the TABLE region: {levels} levels of n by {instants} instants, {}\n\
          Worst interpolation error from the ramp's start on: {}\n\
          Worst interpolation error, release included:        {}\n",
         table.bytes.len(),
+        table.encoding.name(),
         errors(table.worst_error_after_ramp_start),
         errors(table.worst_error),
     )

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use ihex::Record;
-use slipfit_core::table::{AxisKind, ChannelKind, Encoding, layout};
+use slipfit_core::table::{AxisKind, Encoding, layout};
 
 /// What can be written, by a file's extension.
 pub const EXTENSIONS: [&str; 4] = ["bin", "hex", "h", "rs"];
@@ -79,7 +79,7 @@ fn c_header(table: &[u8]) -> String {
     define("MAGIC_AT", layout::MAGIC_AT);
     define("VERSION_AT", layout::VERSION_AT);
     define("AXIS_COUNT_AT", layout::AXIS_COUNT_AT);
-    define("CHANNEL_COUNT_AT", layout::CHANNEL_COUNT_AT);
+    define("ENCODING_AT", layout::ENCODING_AT);
     define("SCENE_HASH_AT", layout::SCENE_HASH_AT);
     define("LENGTH_AT", layout::LENGTH_AT);
     define("AXES_AT", layout::AXES_AT);
@@ -95,20 +95,15 @@ fn c_header(table: &[u8]) -> String {
     define("CHANNELS_AT", layout::CHANNELS_AT);
     define("CHANNELS", layout::CHANNELS);
     define("CHANNEL_SIZE", layout::CHANNEL_SIZE);
-    define("CHANNEL_KIND_AT", layout::CHANNEL_KIND_AT);
-    define("CHANNEL_ENCODING_AT", layout::CHANNEL_ENCODING_AT);
     define("CHANNEL_SCALE_AT", layout::CHANNEL_SCALE_AT);
-    define("CHANNEL_ERROR_AT", layout::CHANNEL_ERROR_AT);
-    for kind in ChannelKind::ALL {
-        define(&format!("CHANNEL_{}", kind.name().to_uppercase()), kind as usize);
-    }
+    define("CHANNEL_WORST_AT", layout::CHANNEL_WORST_AT);
+    define("CHANNEL_RMS_AT", layout::CHANNEL_RMS_AT);
     for encoding in Encoding::ALL {
         define(&format!("ENCODING_{encoding:?}"), encoding as usize);
     }
     let hash = table.get(layout::SCENE_HASH_AT..layout::LENGTH_AT).unwrap_or_default();
     let hash: String = hash.iter().rev().map(|byte| format!("{byte:02x}")).collect();
     define("DATA_AT", layout::HEADER_SIZE);
-    define("DATA_ALIGNMENT", layout::DATA_ALIGNMENT);
     define("CHECKSUM_SIZE", layout::CHECKSUM_SIZE);
     define("SIZE", table.len());
     // Firmware compares it with the hash in the table that it finds.
@@ -121,13 +116,13 @@ const C_INTRODUCTION: &str = "\
  *
  * Numbers are little-endian. Offsets count bytes from the start of the table; those of an axis or channel, from the
  * start of its record. The table starts with the magic \"SLFT\" and these fields:
- *   version u16, axis count u8, channel count u8, scene hash u64, length u32 (up to the end of the checksum);
+ *   version u16, axis count u8, encoding u8, scene hash u64, length u32 (up to the end of the checksum);
  *   AXES_MOST axis records: kind u8, 3 zero bytes, nodes u32, first f32, step f32; absent axes are all zero;
- *   CHANNELS channel records, force (N) and velocity (m/s): kind u8, encoding u8, 2 zero bytes, scale f32, worst
- *   interpolation error f32.
- * From DATA_AT on come the force's values, then the velocity's, the last axis fastest, each channel padded with zeros
- * to DATA_ALIGNMENT. A value is the stored f32 or i16 times the channel's scale. The last CHECKSUM_SIZE bytes are the
- * CRC-32/ISO-HDLC of everything before them. Axes are in units of n (LEVEL), s (TIME), m (POSITION), m/s (VELOCITY).
+ *   CHANNELS channel records, force (N) and velocity (m/s): scale f32, worst interpolation error f32, root mean square
+ *   of that error f32.
+ * From DATA_AT on come force and velocity of each node, the last axis fastest. A value is the stored f32 or i16 times
+ * the channel's scale. The last CHECKSUM_SIZE bytes are the CRC-32/ISO-HDLC of everything before them. Axes are in
+ * units of n (LEVEL), s (TIME), m (POSITION), m/s (VELOCITY).
  */
 #ifndef SLIPFIT_TABLE_H
 #define SLIPFIT_TABLE_H
@@ -140,7 +135,7 @@ const C_ARRAY: &str = "
 #if defined(__GNUC__)
 __attribute__((aligned(4), unused))
 #endif
-static const uint8_t slipfit_table[SLIPFIT_TABLE_SIZE] = {
+static const uint8_t slipfit_table_bytes[SLIPFIT_TABLE_SIZE] = {
 ";
 
 /// A module's source with the table as `SLIPFIT_TABLE`.
@@ -243,16 +238,14 @@ mod tests {
         #include <string.h>
 
         int main(void) {
-            const uint8_t *length = slipfit_table + SLIPFIT_TABLE_LENGTH_AT;
-            fwrite(slipfit_table, 1, sizeof slipfit_table, stdout);
-            return memcmp(slipfit_table + SLIPFIT_TABLE_MAGIC_AT, "SLFT", 4) != 0
-                || slipfit_table[SLIPFIT_TABLE_VERSION_AT] != SLIPFIT_TABLE_FORMAT_VERSION
+            const uint8_t *length = slipfit_table_bytes + SLIPFIT_TABLE_LENGTH_AT;
+            fwrite(slipfit_table_bytes, 1, sizeof slipfit_table_bytes, stdout);
+            return memcmp(slipfit_table_bytes + SLIPFIT_TABLE_MAGIC_AT, "SLFT", 4) != 0
+                || slipfit_table_bytes[SLIPFIT_TABLE_VERSION_AT] != SLIPFIT_TABLE_FORMAT_VERSION
                 || length[0] + 256u * length[1] != SLIPFIT_TABLE_SIZE
-                || slipfit_table[SLIPFIT_TABLE_AXES_AT + SLIPFIT_TABLE_AXIS_KIND_AT] != SLIPFIT_TABLE_AXIS_LEVEL
-                || slipfit_table[SLIPFIT_TABLE_CHANNELS_AT + SLIPFIT_TABLE_CHANNEL_SIZE] != SLIPFIT_TABLE_CHANNEL_VELOCITY
-                || slipfit_table[SLIPFIT_TABLE_CHANNELS_AT + SLIPFIT_TABLE_CHANNEL_ENCODING_AT]
-                    != SLIPFIT_TABLE_ENCODING_I16
-                || (uintptr_t)slipfit_table % 4 != 0;
+                || slipfit_table_bytes[SLIPFIT_TABLE_AXES_AT + SLIPFIT_TABLE_AXIS_KIND_AT] != SLIPFIT_TABLE_AXIS_LEVEL
+                || slipfit_table_bytes[SLIPFIT_TABLE_ENCODING_AT] != SLIPFIT_TABLE_ENCODING_I16
+                || (uintptr_t)slipfit_table_bytes % 4 != 0;
         }
     "#;
 

@@ -7,7 +7,7 @@ use slipfit_core::{
 };
 
 /// To be raised when a law or an integrator changes its results: tables made before are refused then.
-const LAWS: u8 = 1;
+const LAWS: u8 = 2;
 
 /// CRC-64/XZ of everything that the entries of a table depend on, apart from its grid.
 ///
@@ -66,7 +66,7 @@ mod tests {
     #[test]
     fn is_what_it_was() {
         // Another value here refuses every table in the field: raise `LAWS` only on purpose.
-        assert_eq!(format!("{:016x}", hash(|_| ())), "1987cef818d3a923");
+        assert_eq!(format!("{:016x}", hash(|_| ())), "4e4594b206a8f39a");
     }
 
     #[test]

@@ -9,9 +9,9 @@ use slipfit_core::table::{
     Axis, AxisKind, ChannelKind, Encoding, TableError,
     layout::{
         AXES_AT, AXES_LEAST, AXES_MOST, AXIS_COUNT_AT, AXIS_FIRST_AT, AXIS_KIND_AT, AXIS_NODES_AT, AXIS_SIZE,
-        AXIS_STEP_AT, CHANNEL_COUNT_AT, CHANNEL_ENCODING_AT, CHANNEL_ERROR_AT, CHANNEL_KIND_AT, CHANNEL_SCALE_AT,
-        CHANNEL_SIZE, CHANNELS, CHANNELS_AT, CHECKSUM_SIZE, DATA_ALIGNMENT, HEADER_SIZE, I16_MOST, LENGTH_AT, MAGIC,
-        MAGIC_AT, SCENE_HASH_AT, VALUE_MOST, VERSION, VERSION_AT, checksum,
+        AXIS_STEP_AT, CHANNEL_RMS_AT, CHANNEL_SCALE_AT, CHANNEL_SIZE, CHANNEL_WORST_AT, CHANNELS, CHANNELS_AT,
+        CHECKSUM_SIZE, ENCODING_AT, HEADER_SIZE, I16_MOST, LENGTH_AT, MAGIC, MAGIC_AT, SCENE_HASH_AT, VALUE_MOST,
+        VERSION, VERSION_AT, checksum,
     },
 };
 
@@ -30,6 +30,8 @@ pub struct TableSpec {
     pub scene_hash: u64,
     /// Two or three axes, slowest first.
     pub axes: Vec<AxisSpec>,
+    /// How values are to be stored. I16 keeps a channel to within half a 32,767th of its greatest value.
+    pub encoding: Encoding,
     /// Force (N).
     pub force: ChannelSpec,
     /// Velocity (m/s).
@@ -54,10 +56,10 @@ pub struct AxisSpec {
 pub struct ChannelSpec {
     /// Values (N or m/s), the last axis fastest.
     pub values: Vec<f32>,
-    /// How they are to be stored. I16 keeps them to within half a 32,767th of the greatest.
-    pub encoding: Encoding,
     /// The worst interpolation error (N or m/s), 0 while it is not measured yet: the table has to be opened for that.
     pub worst_error: f32,
+    /// The root mean square of that error after the drive has started, likewise.
+    pub rms_error: f32,
 }
 
 /// Why there is no table.
@@ -105,13 +107,15 @@ pub enum FlashError {
         /// The value (N or m/s).
         value: f32,
     },
-    /// An interpolation error that is negative or not finite.
-    #[error("the worst interpolation error of {} is {error}", channel.name())]
-    WorstError {
+    /// An interpolation error that is negative or not finite, or a mean above the worst.
+    #[error("the interpolation error of {} is {worst} at worst and {rms} in the mean", channel.name())]
+    InterpolationError {
         /// Which channel.
         channel: ChannelKind,
-        /// The error (N or m/s).
-        error: f32,
+        /// The worst error (N or m/s).
+        worst: f32,
+        /// Its root mean square (N or m/s).
+        rms: f32,
     },
     /// It does not fit.
     #[error("the table takes {bytes} bytes, the TABLE region has {region}: use fewer nodes or i16")]
@@ -144,7 +148,7 @@ pub fn encode(spec: &TableSpec) -> Result<Vec<u8>, FlashError> {
     put(&mut bytes, MAGIC_AT, &MAGIC);
     put(&mut bytes, VERSION_AT, &VERSION.to_le_bytes());
     put(&mut bytes, AXIS_COUNT_AT, &[found as u8]);
-    put(&mut bytes, CHANNEL_COUNT_AT, &[CHANNELS as u8]);
+    put(&mut bytes, ENCODING_AT, &[spec.encoding as u8]);
     put(&mut bytes, SCENE_HASH_AT, &spec.scene_hash.to_le_bytes());
     for (i, axis) in spec.axes.iter().enumerate() {
         let at = AXES_AT + i * AXIS_SIZE;
@@ -153,21 +157,29 @@ pub fn encode(spec: &TableSpec) -> Result<Vec<u8>, FlashError> {
         put(&mut bytes, at + AXIS_FIRST_AT, &axis.first.to_le_bytes());
         put(&mut bytes, at + AXIS_STEP_AT, &axis.step.to_le_bytes());
     }
-    for (i, (kind, channel)) in ChannelKind::ALL.into_iter().zip([&spec.force, &spec.velocity]).enumerate() {
+    let channels = [&spec.force, &spec.velocity];
+    for (i, (kind, channel)) in ChannelKind::ALL.into_iter().zip(channels).enumerate() {
         channel.check(kind, nodes)?;
         let at = CHANNELS_AT + i * CHANNEL_SIZE;
-        put(&mut bytes, at + CHANNEL_KIND_AT, &[kind as u8]);
-        put(&mut bytes, at + CHANNEL_ENCODING_AT, &[channel.encoding as u8]);
-        put(&mut bytes, at + CHANNEL_SCALE_AT, &channel.scale().to_le_bytes());
-        put(&mut bytes, at + CHANNEL_ERROR_AT, &channel.worst_error.to_le_bytes());
-        channel.append(&mut bytes);
+        put(&mut bytes, at + CHANNEL_SCALE_AT, &channel.scale(spec.encoding).to_le_bytes());
+        put(&mut bytes, at + CHANNEL_WORST_AT, &channel.worst_error.to_le_bytes());
+        put(&mut bytes, at + CHANNEL_RMS_AT, &channel.rms_error.to_le_bytes());
     }
-
-    let length = bytes.len() + CHECKSUM_SIZE;
+    let length = nodes.saturating_mul(CHANNELS * spec.encoding.size()).saturating_add(HEADER_SIZE + CHECKSUM_SIZE);
     if length > TABLE_REGION {
         return Err(FlashError::TooLarge { bytes: length, region: TABLE_REGION });
     }
     put(&mut bytes, LENGTH_AT, &(length as u32).to_le_bytes());
+    let scales = channels.map(|channel| f64::from(channel.scale(spec.encoding)));
+    for (force, velocity) in spec.force.values.iter().zip(&spec.velocity.values) {
+        for (value, scale) in [force, velocity].into_iter().zip(scales) {
+            match spec.encoding {
+                Encoding::F32 => bytes.extend(value.to_le_bytes()),
+                // The scale is rounded, by so little that no value leaves the integers: `as` saturates beyond.
+                Encoding::I16 => bytes.extend(((f64::from(*value) / scale).round() as i16).to_le_bytes()),
+            }
+        }
+    }
     let sum = checksum(&bytes);
     bytes.extend(sum.to_le_bytes());
     Ok(bytes)
@@ -179,7 +191,7 @@ fn put(bytes: &mut [u8], at: usize, field: &[u8]) {
 
 impl ChannelSpec {
     fn check(&self, channel: ChannelKind, expected: usize) -> Result<(), FlashError> {
-        let (found, error) = (self.values.len(), self.worst_error);
+        let (found, worst, rms) = (self.values.len(), self.worst_error, self.rms_error);
         if found != expected {
             return Err(FlashError::Size { channel, found, expected });
         }
@@ -187,30 +199,21 @@ impl ChannelSpec {
         {
             return Err(FlashError::Value { channel, index, value });
         }
-        if error >= 0.0 && error.is_finite() { Ok(()) } else { Err(FlashError::WorstError { channel, error }) }
+        if worst.is_finite() && rms >= 0.0 && rms <= worst {
+            Ok(())
+        } else {
+            Err(FlashError::InterpolationError { channel, worst, rms })
+        }
     }
 
     /// What stored values are multiplied with: for i16 such that the greatest value takes the greatest integer.
-    fn scale(&self) -> f32 {
+    fn scale(&self, encoding: Encoding) -> f32 {
         let greatest = self.values.iter().fold(0.0, |greatest: f32, value| greatest.max(value.abs()));
-        match self.encoding {
+        match encoding {
             Encoding::F32 => 1.0,
             Encoding::I16 if greatest == 0.0 => 1.0,
             // A subnormal scale would keep too few digits.
             Encoding::I16 => (greatest / f32::from(I16_MOST)).max(f32::MIN_POSITIVE),
         }
-    }
-
-    /// Appends the values as they are stored, padded to the alignment of what follows.
-    fn append(&self, bytes: &mut Vec<u8>) {
-        let scale = f64::from(self.scale());
-        for value in &self.values {
-            match self.encoding {
-                Encoding::F32 => bytes.extend(value.to_le_bytes()),
-                // The scale is rounded, by so little that no value leaves the integers: `as` saturates beyond.
-                Encoding::I16 => bytes.extend(((f64::from(*value) / scale).round() as i16).to_le_bytes()),
-            }
-        }
-        bytes.resize(bytes.len().next_multiple_of(DATA_ALIGNMENT), 0);
     }
 }

@@ -1,4 +1,4 @@
-//! A Cortex-M4F under a debugger as the program's machine. The one file of the image with unsafe code.
+//! A Cortex-M4F under a debugger as a program's machine. The one file of the images with unsafe code.
 #![allow(unsafe_code, reason = "linker symbols, the painted stack and the fault handler")]
 
 use core::{
@@ -12,17 +12,17 @@ use cortex_m::{
     peripheral::{SYST, syst::SystClkSource},
     register::{fpscr, msp},
 };
-use cortex_m_rt::{ExceptionFrame, entry, exception};
+use cortex_m_rt::{ExceptionFrame, exception};
 use heapless::String;
 use semihosting::{
     io::{self, Stdout, Write as _},
     process,
 };
 
-use crate::program::{self, Machine};
+use crate::machine::Machine;
 
 /// Time of a tick of the system timer (ns): the board's processor clock of 25 MHz.
-const TICK: u32 = 40;
+pub const TICK: u32 = 40;
 
 /// Time of an instruction (ns): what the emulator is told by `-icount shift=7`. At more than twice a tick, the
 /// difference of two readings, right to less than a tick, gives the exact number of instructions.
@@ -43,10 +43,16 @@ unsafe extern "C" {
     static mut _stack_end: u32;
 }
 
-struct Board {
+/// The board.
+pub struct Board {
     out: Stdout,
+    timer: SYST,
     /// Instructions of an empty measurement.
     overhead: u32,
+    /// Words of stack that were free at the start.
+    painted: usize,
+    /// The deepest stack before the last painting (bytes).
+    deepest: u32,
 }
 
 impl Board {
@@ -55,7 +61,28 @@ impl Board {
         timer.set_reload(0x00ff_ffff);
         timer.clear_current();
         timer.enable_counter();
-        Self { out: io::stdout().expect("a debugger listens"), overhead: instructions(|| {}) }
+        let (overhead, painted) = (instructions(|| {}), paint());
+        Self { out: io::stdout().expect("a debugger listens"), timer, overhead, painted, deepest: 0 }
+    }
+}
+
+impl Board {
+    /// Has the system timer's interrupt called every `period` of [`TICK`]s.
+    pub fn tick_every(&mut self, period: u32) {
+        self.timer.set_reload(period - 1);
+        self.timer.clear_current();
+        self.timer.enable_interrupt();
+    }
+
+    /// Ends what [`tick_every`](Self::tick_every) began.
+    pub fn tick_no_more(&mut self) {
+        self.timer.disable_interrupt();
+    }
+
+    /// The deepest stack since the start (bytes), interrupts with it.
+    pub fn deepest_stack(&mut self) -> u32 {
+        self.deepest = self.deepest.max(used(self.painted));
+        self.deepest
     }
 }
 
@@ -71,18 +98,33 @@ impl Machine for Board {
 
     #[inline(never)]
     fn stack(&mut self, work: impl FnOnce()) -> Option<u32> {
-        let top = msp::read() as usize;
-        let end = &raw mut _stack_end;
-        let words = (top - end.addr()) / size_of::<u32>();
-        for i in 0..words {
-            // SAFETY: RAM between the program's data and the stack pointer is nobody's, and no interrupt is enabled.
-            unsafe { end.add(i).write_volatile(PAINT) };
-        }
+        // What was used so far is painted over.
+        self.deepest_stack();
+        let painted = paint();
         work();
-        // SAFETY: as above; `work` has left whatever it put there.
-        let unused = (0..words).take_while(|i| unsafe { end.add(*i).read_volatile() } == PAINT).count();
-        Some(((words - unused) * size_of::<u32>()) as u32)
+        Some(used(painted))
     }
+}
+
+/// Paints the unused stack; says how many words it has.
+#[inline(always)]
+fn paint() -> usize {
+    let end = &raw mut _stack_end;
+    let words = (msp::read() as usize - end.addr()) / size_of::<u32>();
+    for i in 0..words {
+        // SAFETY: RAM between the program's data and the stack pointer is nobody's; an interrupt that comes in between
+        // has left before the next word is painted.
+        unsafe { end.add(i).write_volatile(PAINT) };
+    }
+    words
+}
+
+/// Bytes of the `painted` words that are painted no more.
+fn used(painted: usize) -> u32 {
+    let end = &raw mut _stack_end;
+    // SAFETY: as in `paint`; whatever ran has left what it put there.
+    let unused = (0..painted).take_while(|i| unsafe { end.add(*i).read_volatile() } == PAINT).count();
+    ((painted - unused) * size_of::<u32>()) as u32
 }
 
 /// Instructions of `work` and of reading the timer, which counts down, 24 bits wide.
@@ -101,11 +143,14 @@ fn flash() -> &'static [u8] {
     unsafe { slice::from_raw_parts(start, end.addr() - start.addr()) }
 }
 
-#[entry]
-fn main() -> ! {
+/// Runs `program` with the flash table's region, then ends the emulation.
+///
+/// # Panics
+/// If the processor rounds in another way than the host, or on a second call.
+pub fn boot(program: impl FnOnce(&mut Board, &'static [u8])) -> ! {
     let peripherals = Peripherals::take().expect("nobody has taken them before");
     assert_eq!(fpscr::read().bits() & FPSCR_MODES, 0, "FPSCR would give other bits than the host");
-    program::run(&mut Board::new(peripherals.SYST), flash());
+    program(&mut Board::new(peripherals.SYST), flash());
     process::exit(0)
 }
 

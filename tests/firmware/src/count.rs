@@ -28,6 +28,13 @@ impl Count {
     }
 }
 
+impl Range {
+    /// The least and the greatest count.
+    pub fn ends(self) -> (u32, u32) {
+        (self.least, self.greatest)
+    }
+}
+
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.least == self.greatest {

@@ -1,13 +1,14 @@
-//! The host as the program's machine: the reference for the image.
+//! The host as a program's machine: the reference for the image.
 
 use std::{env, fs, io};
 
-use crate::program::{self, Machine};
+use crate::machine::Machine;
 
 /// Bytes of the TABLE region of `memory.x`.
 const TABLE_LENGTH: usize = 256 * 1024;
 
-struct Desk;
+/// The desk.
+pub struct Desk;
 
 impl Machine for Desk {
     fn print(&mut self, line: &str) {
@@ -25,8 +26,11 @@ impl Machine for Desk {
     }
 }
 
-/// Runs the program with the table in the file that the first argument names, if there is one.
-pub fn main() -> io::Result<()> {
+/// Runs `program` with the table in the file that the first argument names, if there is one.
+///
+/// # Errors
+/// If the file cannot be read or is larger than the flash kept for it.
+pub fn boot(program: impl FnOnce(&mut Desk, &'static [u8])) -> io::Result<()> {
     let mut flash = match env::args_os().nth(1) {
         Some(file) => fs::read(file)?,
         None => Vec::new(),
@@ -36,6 +40,6 @@ pub fn main() -> io::Result<()> {
     }
     // As the emulator has it; an erased flash would read 0xff.
     flash.resize(TABLE_LENGTH, 0);
-    program::run(&mut Desk, &flash);
+    program(&mut Desk, flash.leak());
     Ok(())
 }

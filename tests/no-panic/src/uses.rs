@@ -3,20 +3,24 @@
 use core::hint::black_box;
 
 use slipfit_core::{
-    ParameterError,
+    ParameterError, Vector2,
+    axis::AxisBody,
     integrator::{Extrapolated, ImplicitEuler, Integrator, Sdirk2},
     kernel::Kernel,
-    law::{Elastic, Friction},
+    law::{Elastic, Exact, Friction, Impact, Slot, ThreeHalves},
     menu::SlideVisitor,
+    monitor::{LevelBank, Limits, Monitor, Sample, Watch},
+    planar::{Planar, PlanarBody, PlanarPose},
     pose::Pose,
     slide::Slide,
-    table::{Table, TableError},
+    table::{Patrol, Slots, Table, TableError},
 };
 use slipfit_problems::cd_rom;
 
 /// All uses; every input may be anything, so that every error is reached too.
 pub fn all() {
     let _ = black_box(every_slide());
+    let _ = black_box(smaller_scenes());
     let _ = black_box(look_up());
     if cfg!(feature = "reachable-panic") {
         assert!(black_box(true));
@@ -49,6 +53,27 @@ fn step<E: Elastic<f32>, F: Friction<f32>, I: Integrator>(slide: Slide<f32, E, F
     Ok(())
 }
 
+/// Makes and steps a planar body and one on an axis.
+fn smaller_scenes() -> Result<(), ParameterError<f32>> {
+    let data = black_box(cd_rom::data(black_box(0.0)));
+    let contact = Impact::new(ThreeHalves::new(black_box(3e6))?, black_box(1e3), black_box(1e-4))?;
+    let slot = Slot::new(black_box(0.0), black_box(1e-4))?;
+    let body = black_box(PlanarBody {
+        mass: data.body.mass,
+        inertia: data.body.inertia_b.y,
+        gravity_w: Vector2::zeros(),
+        pins_w: [Vector2::zeros(); 4],
+        stops: [slot; 4],
+    });
+    let flat = Planar::new(body, contact, Exact::new(black_box(0.3))?, data.drive)?;
+    let kernel = Kernel::<f32, _, Extrapolated<2, 4>>::new(flat, black_box(1e-3))?;
+    black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
+    let driven = AxisBody::driven(black_box(1.0), black_box(0.0), slot, contact, data.drive)?;
+    let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(driven, black_box(1e-3))?;
+    black_box(kernel.step(&mut black_box(kernel.at_rest::<1>(0.0))));
+    Ok(())
+}
+
 /// Opens a table and looks it up.
 fn look_up() -> Result<(), TableError> {
     static REGION: [u8; 256] = [0; 256];
@@ -57,5 +82,21 @@ fn look_up() -> Result<(), TableError> {
     black_box(plane.lookup(black_box([0.0; 2])));
     let space = Table::<3>::open(region)?;
     black_box(space.lookup(black_box([0.0; 3])));
+    let slots = Slots::<2>::open(black_box([region, region]), black_box(0));
+    black_box(slots.spare());
+    black_box(Patrol::new(slots.newest()?).check(region, black_box(64)))?;
+    watch(&plane);
     Ok(())
+}
+
+/// Watches a drive by a table.
+fn watch(table: &Table<'_>) {
+    if let Ok(monitor) = Monitor::new(*table, black_box(0.0), black_box(Limits::for_noise(1e-3, 0.0))) {
+        let sample = black_box(Sample { time: 0.0, force: 0.0, speed: 0.0, command: 0.0 });
+        black_box(monitor.step(&mut black_box(Watch::default()), &sample));
+    }
+    if let Ok(mut bank) = LevelBank::<96>::new(table) {
+        bank.add(table, black_box(0.0), black_box(0.0));
+        black_box(black_box(&bank).estimate(table));
+    }
 }

@@ -12,7 +12,8 @@ use std::{
 const TARGETS: [&str; 1] = ["thumbv7em-none-eabihf"];
 
 /// Programs that tests run, and the Debian packages that have them.
-const PROGRAMS: [(&str, &str); 1] = [("qemu-system-arm", "qemu-system-arm")];
+const PROGRAMS: [(&str, &str); 2] =
+    [("qemu-system-arm", "qemu-system-arm"), ("arm-none-eabi-gcc", "gcc-arm-none-eabi")];
 
 /// The root of the repository.
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");

@@ -1,12 +1,8 @@
 //! What image and host both run: the opening of the slide at several tolerance levels, its force predicted by the
 //! kernel and looked up in the table.
 
-use core::{
-    fmt::{Arguments, Write},
-    hint::black_box,
-};
+use core::hint::black_box;
 
-use heapless::String;
 use slipfit_core::{
     Scalar,
     integrator::{ImplicitEuler, Integrator},
@@ -14,13 +10,14 @@ use slipfit_core::{
     law::{Exact, Friction, Regularised, ThreeHalves},
     pose::Pose,
     slide::Slide,
-    table::{Lookup, Table},
+    table::{F32Nodes, Lookup, Nodes, Table},
 };
 use slipfit_problems::cd_rom::{self, STICK_BAND};
 
-use crate::{
+use slipfit_firmware::{
     count::Count,
     fingerprint::{Fingerprint, Remembered},
+    machine::{Machine, print},
 };
 
 /// The scheme that predicts.
@@ -46,17 +43,8 @@ const STEPS: u32 = 200;
 /// Steps from one printed line to the next.
 const STEPS_A_LINE: u32 = 20;
 
-/// What the program needs of the machine it runs on.
-pub trait Machine {
-    /// Prints `line`, which ends in a newline.
-    fn print(&mut self, line: &str);
-
-    /// Does `work` and says how many instructions it took, if the machine can tell.
-    fn instructions(&mut self, work: impl FnOnce()) -> Option<u32>;
-
-    /// Does `work` and says how many bytes of stack it took, if the machine can tell.
-    fn stack(&mut self, work: impl FnOnce()) -> Option<u32>;
-}
+/// What stands for a table where there is none.
+const NO_TABLE: Option<&Table<'_, 2, F32Nodes<'_>>> = None;
 
 /// Instructions counted so far.
 #[derive(Default)]
@@ -76,14 +64,23 @@ pub fn run(machine: &mut impl Machine, flash: &[u8]) {
 
     let regularised = Regularised::new(COEFFICIENT, STICK_BAND as f32).expect("the law is in bounds");
     let exact = Exact::new(COEFFICIENT).expect("the law is in bounds");
-    all_levels(machine, "smoothed friction", regularised, table.as_ref().ok());
-    all_levels(machine, "exact friction", exact, None);
+    let law = "smoothed friction";
+    match table.ok().map(|table| (table.f32(), table.i16())) {
+        Some((Some(table), _)) => all_levels(machine, law, regularised, Some(&table)),
+        Some((_, Some(table))) => all_levels(machine, law, regularised, Some(&table)),
+        _ => all_levels(machine, law, regularised, NO_TABLE),
+    }
+    all_levels(machine, "exact friction", exact, NO_TABLE);
     print(machine, format_args!("done"));
 }
 
 /// Runs the opening at every level with one friction law.
-fn all_levels<F: Friction<f32>>(machine: &mut impl Machine, law: &str, friction: F, table: Option<&Table<'_>>)
-where
+fn all_levels<F: Friction<f32>, V: Nodes>(
+    machine: &mut impl Machine,
+    law: &str,
+    friction: F,
+    table: Option<&Table<'_, 2, V>>,
+) where
     F::Memory: Remembered,
 {
     print(machine, format_args!("\n== {law}"));
@@ -108,8 +105,13 @@ where
 }
 
 /// Runs the opening at tolerance level `n`.
-fn open<F: Friction<f32>>(machine: &mut impl Machine, n: f32, friction: F, table: Option<&Table<'_>>, costs: &mut Costs)
-where
+fn open<F: Friction<f32>, V: Nodes>(
+    machine: &mut impl Machine,
+    n: f32,
+    friction: F,
+    table: Option<&Table<'_, 2, V>>,
+    costs: &mut Costs,
+) where
     F::Memory: Remembered,
 {
     let (kernel, mut state) = at_rest(n, friction);
@@ -124,10 +126,11 @@ where
         let t = kernel.time(state.steps);
         let force = kernel.mechanism().drive().force(t, state.motion.velocity[2]);
 
-        let mut looked_up = None;
-        if let Some(table) = table {
-            costs.lookup.add(machine.instructions(|| looked_up = Some(lookup(table, [n, t]))));
-        }
+        let looked_up = table.map(|table| {
+            let mut found = Lookup::default();
+            costs.lookup.add(machine.instructions(|| found = lookup(table, [n, t])));
+            found
+        });
         if let Some(found) = looked_up {
             lookups.add(found.force);
             lookups.add(found.velocity);
@@ -163,13 +166,6 @@ fn step<F: Friction<f32>>(kernel: &SlideKernel<F>, state: &mut SlideState<F>) ->
 
 /// The lookup as a controller calls it, once in the image.
 #[inline(never)]
-fn lookup(table: &Table<'_>, at: [f32; 2]) -> Lookup {
+fn lookup<V: Nodes>(table: &Table<'_, 2, V>, at: [f32; 2]) -> Lookup {
     table.lookup(at)
-}
-
-/// Prints one line in one go, because every write stops the machine for its debugger.
-fn print(machine: &mut impl Machine, text: Arguments<'_>) {
-    let mut line = String::<128>::new();
-    writeln!(line, "{text}").expect("a line fits its buffer");
-    machine.print(&line);
 }

@@ -4,16 +4,15 @@
 //! print, but for the lines that start with `instructions` or `stack`, which only the image can count.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-mod count;
-mod fingerprint;
 mod program;
 
 #[cfg(target_os = "none")]
-mod board;
-#[cfg(not(target_os = "none"))]
-mod desk;
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    slipfit_firmware::board::boot(program::run)
+}
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::io::Result<()> {
-    desk::main()
+    slipfit_firmware::desk::boot(program::run)
 }

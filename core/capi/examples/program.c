@@ -1,0 +1,112 @@
+/* A controller's use of slipfit, the same on a host and on a Cortex-M4F: what it prints holds every bit. */
+#include "slipfit.h"
+
+#include "scene.h"
+#include "table.h"
+
+/* From the platform: prints a text. */
+void put(const char *text);
+
+#define STEPS 100000u
+#define STROKE 1500u
+
+static slipfit_predictor predictor;
+static slipfit_table table;
+static slipfit_monitor monitor;
+static slipfit_bank bank;
+
+static void put_hex(const char *name, uint64_t value) {
+    char text[18];
+    for (int i = 0; i < 16; i++) {
+        text[i] = "0123456789abcdef"[value >> (60 - 4 * i) & 15u];
+    }
+    text[16] = '\n';
+    text[17] = 0;
+    put(name);
+    put(" ");
+    put(text);
+}
+
+/* FNV-1a over the bits of a number. */
+static uint64_t add(uint64_t hash, float number) {
+    union {
+        float number;
+        uint8_t bytes[4];
+    } bits = {number};
+    for (int i = 0; i < 4; i++) {
+        hash = (hash ^ bits.bytes[i]) * 0x100000001b3ull;
+    }
+    return hash;
+}
+
+#define EMPTY 0xcbf29ce484222325ull
+
+static void predict(void) {
+    uint64_t hash = EMPTY;
+    uint32_t failed = (uint32_t)slipfit_predictor_init(&predictor, &slipfit_this_scene, 2.5f);
+    for (uint32_t i = 0; i < STEPS; i++) {
+        slipfit_prediction found;
+        failed |= (uint32_t)slipfit_predictor_step(&predictor);
+        failed |= (uint32_t)slipfit_predictor_read(&predictor, &found);
+        hash = add(add(add(add(hash, found.time), found.force), found.velocity), found.residual);
+    }
+    put_hex("predicted", hash);
+    put_hex("failed", failed);
+}
+
+static void watch(void) {
+    const slipfit_limits limits = {
+        .period = 1e-3f, .blind = 0.2f, .force_most = 3.5f, .hold = 0.01f,
+        .smoothing = 0.02f, .band = 0.5f, .margin = 0.01f, .rise = 0.5f,
+    };
+    uint64_t looked_up = EMPTY, watched = EMPTY;
+    uint32_t verdicts[4] = {0, 0, 0, 0};
+    uint32_t failed = (uint32_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_SCENE_HASH);
+    failed |= (uint32_t)slipfit_predictor_init(&predictor, &slipfit_this_scene, 2.25f);
+    failed |= (uint32_t)slipfit_monitor_init(&monitor, &table, 2.25f, &limits);
+    failed |= (uint32_t)slipfit_bank_init(&bank, &table);
+    for (uint32_t i = 0; i < STROKE; i++) {
+        slipfit_prediction at;
+        slipfit_lookup found;
+        slipfit_report report;
+        failed |= (uint32_t)slipfit_predictor_step(&predictor);
+        failed |= (uint32_t)slipfit_predictor_read(&predictor, &at);
+        failed |= (uint32_t)slipfit_table_look_up(&table, 2.25f, at.time, &found);
+        looked_up = add(add(add(looked_up, found.force), found.velocity), (float)found.clamped);
+        const slipfit_sample sample = {at.time, at.force, at.velocity, at.velocity + at.force / slipfit_this_scene.drive_gain};
+        failed |= (uint32_t)slipfit_monitor_step(&monitor, &sample, &report);
+        verdicts[report.verdict & 3u]++;
+        watched = add(add(watched, report.excess), report.band);
+        failed |= (uint32_t)slipfit_bank_add(&bank, &table, at.time, at.force);
+        failed |= (uint32_t)slipfit_table_check(&table, 64);
+    }
+    slipfit_estimate estimate;
+    failed |= (uint32_t)slipfit_bank_estimate(&bank, &table, &estimate);
+    put_hex("looked up", looked_up);
+    put_hex("watched", watched);
+    put_hex("blind", verdicts[SLIPFIT_BLIND]);
+    put_hex("free", verdicts[SLIPFIT_FREE]);
+    put_hex("tight", verdicts[SLIPFIT_TIGHT]);
+    put_hex("jam", verdicts[SLIPFIT_JAM]);
+    put_hex("estimate", add(add(add(EMPTY, estimate.level), estimate.low), estimate.high));
+    put_hex("failed", failed);
+}
+
+static void refuse(void) {
+    static uint64_t erased[sizeof table / 8 + 1];
+    slipfit_lookup found;
+    put_hex("null", (uint64_t)slipfit_predictor_init(0, &slipfit_this_scene, 0.0f));
+    put_hex("misaligned", (uint64_t)slipfit_predictor_step((slipfit_predictor *)((char *)&predictor + 1)));
+    put_hex("not made", (uint64_t)slipfit_table_look_up((const slipfit_table *)erased, 0.0f, 0.0f, &found));
+    put_hex("scene", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, 1));
+    put_hex("closed then", (uint64_t)slipfit_table_look_up(&table, 0.0f, 0.0f, &found));
+    put_hex("truncated", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE - 1, SLIPFIT_SCENE_HASH));
+    put_hex("foreign", (uint64_t)slipfit_table_open(&table, (const uint8_t *)erased, 64, SLIPFIT_SCENE_HASH));
+}
+
+int main(void) {
+    predict();
+    watch();
+    refuse();
+    return 0;
+}

@@ -1,0 +1,341 @@
+/* slipfit: the predictor, the flash table and the monitor. SI units. Generated from core/capi/src.
+ *
+ * Every object lives in memory of the caller's, which has to be written once (static memory is) before its first use;
+ * there is no global state. An interrupt and a thread may each use objects of their own. */
+
+#ifndef SLIPFIT_H
+#define SLIPFIT_H
+
+#include <stdint.h>
+
+// Smoothed Coulomb friction.
+#define SLIPFIT_FRICTION_REGULARISED 1
+
+// Coulomb friction with true stick.
+#define SLIPFIT_FRICTION_EXACT 2
+
+// Levels that a bank has room for.
+#define SLIPFIT_BANK_LEVELS_MOST 96
+
+// Too early to say.
+#define SLIPFIT_BLIND 0
+
+// As the table has it.
+#define SLIPFIT_FREE 1
+
+// More force than the table's for this unit's level, or rising away from it.
+#define SLIPFIT_TIGHT 2
+
+// Standing still against the command, or at the limit of force.
+#define SLIPFIT_JAM 3
+
+// 0 if a function did what it says, or why it did nothing.
+typedef int32_t slipfit_status;
+
+// Memory of a predictor; opaque.
+typedef struct slipfit_predictor {
+  uint64_t words[128];
+} slipfit_predictor;
+
+// A scene: a slide over the production, SI units, as `slipfit kernel SCENE -o scene.h` writes it.
+typedef struct slipfit_scene {
+  // Step (s).
+  float step;
+  // Mass (kg).
+  float mass;
+  // Principal moments of inertia about the centre of mass (kg·m²).
+  float inertia[3];
+  // Gravity (m/s²).
+  float gravity[3];
+  // Positions of the pins from the centre of mass (m): x, y, z of each.
+  float pins[4][3];
+  // Means of the gaps (m): left, right, rail, wall of each pin; 1e6 for none.
+  float gap_means[16];
+  // Standard deviations of the gaps (m).
+  float gap_deviations[16];
+  // Contact stiffness (N/m^e).
+  float stiffness;
+  // Contact exponent e; the library is built for 1.5.
+  float exponent;
+  // Contact damping (N·s/m).
+  float damping;
+  // Depth of full damping (m).
+  float depth;
+  // SLIPFIT_FRICTION_REGULARISED or SLIPFIT_FRICTION_EXACT; the library is built for one of the two.
+  uint32_t friction_law;
+  // Coefficient of friction.
+  float friction_coefficient;
+  // Stick band of smoothed friction (m/s); ignored by exact friction.
+  float friction_stick_band;
+  // Gain of the drive (N·s/m).
+  float drive_gain;
+  // Start and end of the drive's ramp (s).
+  float drive_ramp[2];
+  // Commanded speed at the end of the ramp (m/s).
+  float drive_speed;
+  // Where the drive pushes, from the centre of mass (m).
+  float drive_point[3];
+} slipfit_scene;
+
+// What a predictor says after a step.
+typedef struct slipfit_prediction {
+  // Time (s).
+  float time;
+  // Force of the drive (N).
+  float force;
+  // Velocity along the drive (m/s).
+  float velocity;
+  // Imbalance of momentum (N·s) that the step left; infinite if it was not finite.
+  float residual;
+} slipfit_prediction;
+
+// Memory of an open table; opaque. The table itself stays where it is.
+typedef struct slipfit_table {
+  uint64_t words[40];
+} slipfit_table;
+
+// Where an update goes.
+typedef struct slipfit_spare {
+  // The slot, 0 or 1.
+  uint32_t slot;
+  // The sequence number of its record: that number, then its complement, in the slot's last 8 bytes.
+  uint32_t sequence;
+} slipfit_spare;
+
+// What a table says about one point.
+typedef struct slipfit_lookup {
+  // Force (N).
+  float force;
+  // Velocity (m/s).
+  float velocity;
+  // 1 if the point lay outside the grid or was not a number, 0 if not.
+  uint32_t clamped;
+} slipfit_lookup;
+
+// Memory of a monitor; opaque.
+typedef struct slipfit_monitor {
+  uint64_t words[48];
+} slipfit_monitor;
+
+// Where free ends, and when a jam is one.
+typedef struct slipfit_limits {
+  // Time from one sample to the next (s).
+  float period;
+  // Until this time (s) of the motion only the force limit counts.
+  float blind;
+  // A force (N) beyond which it is a jam, either sign.
+  float force_most;
+  // How long (s) a jam's sign has to last before it is reported.
+  float hold;
+  // Time constant (s) over which force is averaged.
+  float smoothing;
+  // By how many levels a unit may be tighter than it is taken for.
+  float band;
+  // What the averaged force (N) may differ from the table's beyond that band.
+  float margin;
+  // How fast (N/s) the averaged force may rise away from the table's.
+  float rise;
+} slipfit_limits;
+
+// What the drive measures once a period.
+typedef struct slipfit_sample {
+  // Time since the motion's start (s).
+  float time;
+  // The drive's force (N).
+  float force;
+  // The speed along the drive (m/s).
+  float speed;
+  // The commanded speed (m/s).
+  float command;
+} slipfit_sample;
+
+// What a monitor says of a sample.
+typedef struct slipfit_report {
+  // SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_TIGHT or SLIPFIT_JAM.
+  uint32_t verdict;
+  // The force (N) that the table has for this unit now.
+  float expected;
+  // By how much (N) the averaged force may exceed it.
+  float band;
+  // By how much (N) it does.
+  float excess;
+  // How fast (N/s) that rises.
+  float rise;
+} slipfit_report;
+
+// Memory of a bank; opaque.
+typedef struct slipfit_bank {
+  uint64_t words[240];
+} slipfit_bank;
+
+// A tolerance level and how well it is known.
+typedef struct slipfit_estimate {
+  // The level that fits best.
+  float level;
+  // Its standard error; infinite if any level of the table would do.
+  float deviation;
+  // Ends of the interval of 95 % confidence.
+  float low;
+  // See `low`.
+  float high;
+  // Standard deviation (N) of the force from the table's at that level.
+  float residual;
+} slipfit_estimate;
+
+// Done.
+#define SLIPFIT_OK 0
+
+// A pointer is null.
+#define SLIPFIT_NULL 1
+
+// A pointer is not aligned as its type asks for.
+#define SLIPFIT_MISALIGNED 2
+
+// A length exceeds the address space.
+#define SLIPFIT_LENGTH 3
+
+// The object was not made, or making it failed.
+#define SLIPFIT_NOT_MADE 4
+
+// A parameter is not finite or out of bounds.
+#define SLIPFIT_PARAMETER 5
+
+// The scene asks for laws that the library was not built with.
+#define SLIPFIT_LAW 6
+
+// The motion left the finite range and was held where it was.
+#define SLIPFIT_NOT_FINITE 7
+
+// The region ends before the table does.
+#define SLIPFIT_TABLE_TRUNCATED 16
+
+// No table starts there.
+#define SLIPFIT_TABLE_MAGIC 17
+
+// The table has another version of the format.
+#define SLIPFIT_TABLE_VERSION 18
+
+// The table is damaged.
+#define SLIPFIT_TABLE_CHECKSUM 19
+
+// A field of the table's header is out of bounds.
+#define SLIPFIT_TABLE_HEADER 20
+
+// A value of the table is out of bounds.
+#define SLIPFIT_TABLE_VALUE 21
+
+// The table is over another number or kind of axes.
+#define SLIPFIT_TABLE_AXES 22
+
+// The table was made for another scene or other laws.
+#define SLIPFIT_TABLE_SCENE 23
+
+// The table has more levels than a bank.
+#define SLIPFIT_BANK_LEVELS 32
+
+// Too few samples for an estimate.
+#define SLIPFIT_BANK_SAMPLES 33
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// Makes a predictor in `*predictor` for a unit of tolerance level `n` of `*scene`, at rest at time 0.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*predictor` meanwhile.
+slipfit_status slipfit_predictor_init(struct slipfit_predictor *storage, const struct slipfit_scene *scene, float n);
+
+// Moves the predictor by one step; SLIPFIT_NOT_FINITE if the motion could not be moved and was held.
+//
+// # Safety
+// As for slipfit_predictor_init; the memory has been written before.
+slipfit_status slipfit_predictor_step(struct slipfit_predictor *storage);
+
+// What the predictor says now.
+//
+// # Safety
+// As for slipfit_predictor_step; nobody else uses `*prediction` meanwhile.
+slipfit_status slipfit_predictor_read(const struct slipfit_predictor *storage, struct slipfit_prediction *prediction);
+
+// Checks the table at `region` completely and opens it in `*storage`. `scene_hash` is what the table must have been
+// made for, SLIPFIT_TABLE_SCENE_HASH of its header.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; `length` bytes are at `region` and stay
+// as they are for as long as the table is used; nobody else uses `*storage` meanwhile.
+slipfit_status slipfit_table_open(struct slipfit_table *storage,
+                                  const uint8_t *region,
+                                  uint32_t length,
+                                  uint64_t scene_hash);
+
+// Opens the newer valid table of two slots of `length` bytes each, and says where the next update goes.
+//
+// # Safety
+// As for slipfit_table_open; nobody else uses `*spare` meanwhile.
+slipfit_status slipfit_slots_open(struct slipfit_table *storage,
+                                  const uint8_t *first,
+                                  const uint8_t *second,
+                                  uint32_t length,
+                                  uint64_t scene_hash,
+                                  struct slipfit_spare *spare);
+
+// Force and velocity of a unit of tolerance level `n` at the time `t` (s).
+//
+// # Safety
+// As for slipfit_table_open; the memory has been written before; nobody else uses `*lookup` meanwhile.
+slipfit_status slipfit_table_look_up(const struct slipfit_table *storage,
+                                     float n,
+                                     float t,
+                                     struct slipfit_lookup *lookup);
+
+// The cyclic check: looks at the next bytes, `most` at most. SLIPFIT_TABLE_CHECKSUM at the end of a round in which a
+// byte differed; call it again and again.
+//
+// # Safety
+// As for slipfit_table_open; the memory has been written before.
+slipfit_status slipfit_table_check(struct slipfit_table *storage, uint32_t most);
+
+// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table. A motion starts with a fresh one.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; the table has been written before; nobody
+// else uses `*storage` meanwhile.
+slipfit_status slipfit_monitor_init(struct slipfit_monitor *storage,
+                                    const struct slipfit_table *table,
+                                    float n,
+                                    const struct slipfit_limits *limits);
+
+// What a sample says, after those before it.
+//
+// # Safety
+// As for slipfit_monitor_init; nobody else uses `*report` meanwhile.
+slipfit_status slipfit_monitor_step(struct slipfit_monitor *storage,
+                                    const struct slipfit_sample *sample,
+                                    struct slipfit_report *report);
+
+// Makes an empty bank in `*storage` for an open table.
+//
+// # Safety
+// As for slipfit_monitor_init.
+slipfit_status slipfit_bank_init(struct slipfit_bank *storage, const struct slipfit_table *table);
+
+// Adds the force (N) measured at the time `t` (s) of a motion.
+//
+// # Safety
+// As for slipfit_monitor_init; the bank has been written before.
+slipfit_status slipfit_bank_add(struct slipfit_bank *storage, const struct slipfit_table *table, float t, float force);
+
+// The tolerance level that fits best.
+//
+// # Safety
+// As for slipfit_bank_add; nobody else uses `*estimate` meanwhile.
+slipfit_status slipfit_bank_estimate(const struct slipfit_bank *storage,
+                                     const struct slipfit_table *table,
+                                     struct slipfit_estimate *estimate);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* SLIPFIT_H */

@@ -1,0 +1,39 @@
+//! The predictor, the flash table and the monitor for C. The header is `include/slipfit.h`, generated from this crate.
+//!
+//! Every object lives in memory of the caller's: there is no global state, so that an interrupt and a thread may each use
+//! objects of their own at any time. An object must not be used from both at once. Nothing allocates, blocks or panics;
+//! every function checks its pointers, and that an object was made before it is used.
+#![no_std]
+#![allow(unsafe_code, reason = "the one crate that speaks C")]
+#![allow(non_camel_case_types, reason = "names as C has them")]
+
+#[cfg(not(target_os = "none"))]
+extern crate std;
+
+/// Makes a panic reachable, so that a test sees that no program links then.
+#[cfg(feature = "reachable-panic")]
+#[unsafe(no_mangle)]
+pub extern "C" fn slipfit_panic(divisor: u32) -> u32 {
+    1 / divisor
+}
+
+mod border;
+mod monitor;
+mod predictor;
+mod status;
+mod table;
+
+pub use monitor::*;
+pub use predictor::*;
+pub use status::*;
+pub use table::*;
+
+/// A program links only while no panic is reachable: this calls what nobody defines.
+#[cfg(target_os = "none")]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    unsafe extern "C" {
+        safe fn slipfit_panic_is_reachable() -> !;
+    }
+    slipfit_panic_is_reachable()
+}

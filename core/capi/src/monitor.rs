@@ -1,0 +1,237 @@
+//! The monitor, and the bank that estimates a unit's tolerance level.
+
+use slipfit_core::{
+    monitor::{BankError, LevelBank, Limits, Monitor, Sample, Verdict, Watch},
+    table::AnyNodes,
+};
+
+use crate::{
+    border::{Storage, input, make, object, object_mut, output},
+    status::{Refusal, SLIPFIT_BANK_LEVELS, SLIPFIT_BANK_SAMPLES, SLIPFIT_TABLE_AXES, slipfit_status, status},
+    table::slipfit_table,
+};
+
+/// Levels that a bank has room for.
+pub const SLIPFIT_BANK_LEVELS_MOST: u32 = 96;
+
+/// Too early to say.
+pub const SLIPFIT_BLIND: u32 = 0;
+/// As the table has it.
+pub const SLIPFIT_FREE: u32 = 1;
+/// More force than the table's for this unit's level, or rising away from it.
+pub const SLIPFIT_TIGHT: u32 = 2;
+/// Standing still against the command, or at the limit of force.
+pub const SLIPFIT_JAM: u32 = 3;
+
+/// Where free ends, and when a jam is one.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct slipfit_limits {
+    /// Time from one sample to the next (s).
+    pub period: f32,
+    /// Until this time (s) of the motion only the force limit counts.
+    pub blind: f32,
+    /// A force (N) beyond which it is a jam, either sign.
+    pub force_most: f32,
+    /// How long (s) a jam's sign has to last before it is reported.
+    pub hold: f32,
+    /// Time constant (s) over which force is averaged.
+    pub smoothing: f32,
+    /// By how many levels a unit may be tighter than it is taken for.
+    pub band: f32,
+    /// What the averaged force (N) may differ from the table's beyond that band.
+    pub margin: f32,
+    /// How fast (N/s) the averaged force may rise away from the table's.
+    pub rise: f32,
+}
+
+/// What the drive measures once a period.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct slipfit_sample {
+    /// Time since the motion's start (s).
+    pub time: f32,
+    /// The drive's force (N).
+    pub force: f32,
+    /// The speed along the drive (m/s).
+    pub speed: f32,
+    /// The commanded speed (m/s).
+    pub command: f32,
+}
+
+/// What a monitor says of a sample.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct slipfit_report {
+    /// SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_TIGHT or SLIPFIT_JAM.
+    pub verdict: u32,
+    /// The force (N) that the table has for this unit now.
+    pub expected: f32,
+    /// By how much (N) the averaged force may exceed it.
+    pub band: f32,
+    /// By how much (N) it does.
+    pub excess: f32,
+    /// How fast (N/s) that rises.
+    pub rise: f32,
+}
+
+/// A tolerance level and how well it is known.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct slipfit_estimate {
+    /// The level that fits best.
+    pub level: f32,
+    /// Its standard error; infinite if any level of the table would do.
+    pub deviation: f32,
+    /// Ends of the interval of 95 % confidence.
+    pub low: f32,
+    /// See `low`.
+    pub high: f32,
+    /// Standard deviation (N) of the force from the table's at that level.
+    pub residual: f32,
+}
+
+/// Memory of a monitor; opaque.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct slipfit_monitor {
+    words: [u64; 48],
+}
+
+/// Memory of a bank; opaque.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct slipfit_bank {
+    words: [u64; 240],
+}
+
+#[derive(Clone, Copy)]
+pub(crate) struct Watching {
+    monitor: Monitor<'static, AnyNodes<'static>>,
+    watch: Watch,
+}
+
+// SAFETY: plain words.
+unsafe impl Storage for slipfit_monitor {
+    type Object = Watching;
+    const MARK: u32 = 0x534c_4d31;
+}
+
+// SAFETY: plain words.
+unsafe impl Storage for slipfit_bank {
+    type Object = LevelBank<{ SLIPFIT_BANK_LEVELS_MOST as usize }>;
+    const MARK: u32 = 0x534c_4231;
+}
+
+impl From<BankError> for Refusal {
+    fn from(error: BankError) -> Self {
+        Self(match error {
+            BankError::Axes => SLIPFIT_TABLE_AXES,
+            BankError::Levels { .. } => SLIPFIT_BANK_LEVELS,
+        })
+    }
+}
+
+/// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table. A motion starts with a fresh one.
+///
+/// # Safety
+/// Pointers that are neither null nor misaligned point at what their types say; the table has been written before; nobody
+/// else uses `*storage` meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_monitor_init(
+    storage: *mut slipfit_monitor,
+    table: *const slipfit_table,
+    n: f32,
+    limits: *const slipfit_limits,
+) -> slipfit_status {
+    // SAFETY: the caller's promise.
+    status(|| unsafe {
+        make(storage, || {
+            let slipfit_limits { period, blind, force_most, hold, smoothing, band, margin, rise } = *input(limits)?;
+            let limits = Limits { period, blind, force_most, hold, smoothing, band, margin, rise };
+            Ok(Watching { monitor: Monitor::new(object(table)?.table, n, limits)?, watch: Watch::default() })
+        })
+    })
+}
+
+/// What a sample says, after those before it.
+///
+/// # Safety
+/// As for slipfit_monitor_init; nobody else uses `*report` meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_monitor_step(
+    storage: *mut slipfit_monitor,
+    sample: *const slipfit_sample,
+    report: *mut slipfit_report,
+) -> slipfit_status {
+    // SAFETY: the caller's promise.
+    status(|| unsafe {
+        output(report, || {
+            let slipfit_sample { time, force, speed, command } = *input(sample)?;
+            let Watching { monitor, watch } = object_mut(storage)?;
+            let report = monitor.step(watch, &Sample { time, force, speed, command });
+            Ok(slipfit_report {
+                verdict: match report.verdict {
+                    Verdict::Blind => SLIPFIT_BLIND,
+                    Verdict::Free => SLIPFIT_FREE,
+                    Verdict::Tight => SLIPFIT_TIGHT,
+                    Verdict::Jam => SLIPFIT_JAM,
+                },
+                expected: report.tightness.expected,
+                band: report.tightness.band,
+                excess: report.tightness.excess,
+                rise: report.tightness.rise,
+            })
+        })
+    })
+}
+
+/// Makes an empty bank in `*storage` for an open table.
+///
+/// # Safety
+/// As for slipfit_monitor_init.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_bank_init(storage: *mut slipfit_bank, table: *const slipfit_table) -> slipfit_status {
+    // SAFETY: the caller's promise.
+    status(|| unsafe { make(storage, || Ok(LevelBank::new(&object(table)?.table)?)) })
+}
+
+/// Adds the force (N) measured at the time `t` (s) of a motion.
+///
+/// # Safety
+/// As for slipfit_monitor_init; the bank has been written before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_bank_add(
+    storage: *mut slipfit_bank,
+    table: *const slipfit_table,
+    t: f32,
+    force: f32,
+) -> slipfit_status {
+    status(|| {
+        // SAFETY: the caller's promise.
+        let (bank, opened) = unsafe { (object_mut(storage)?, object(table)?) };
+        bank.add(&opened.table, t, force);
+        Ok(())
+    })
+}
+
+/// The tolerance level that fits best.
+///
+/// # Safety
+/// As for slipfit_bank_add; nobody else uses `*estimate` meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_bank_estimate(
+    storage: *const slipfit_bank,
+    table: *const slipfit_table,
+    estimate: *mut slipfit_estimate,
+) -> slipfit_status {
+    // SAFETY: the caller's promise.
+    status(|| unsafe {
+        output(estimate, || {
+            let found = object(storage)?.estimate(&object(table)?.table).ok_or(Refusal(SLIPFIT_BANK_SAMPLES))?;
+            let [low, high] = found.interval;
+            let slipfit_core::monitor::Estimate { level, deviation, residual, .. } = found;
+            Ok(slipfit_estimate { level, deviation, low, high, residual })
+        })
+    })
+}

@@ -1,0 +1,75 @@
+//! What functions return.
+
+use slipfit_core::{ParameterError, table::TableError};
+
+/// 0 if a function did what it says, or why it did nothing.
+pub type slipfit_status = i32;
+
+/// Done.
+pub const SLIPFIT_OK: slipfit_status = 0;
+/// A pointer is null.
+pub const SLIPFIT_NULL: slipfit_status = 1;
+/// A pointer is not aligned as its type asks for.
+pub const SLIPFIT_MISALIGNED: slipfit_status = 2;
+/// A length exceeds the address space.
+pub const SLIPFIT_LENGTH: slipfit_status = 3;
+/// The object was not made, or making it failed.
+pub const SLIPFIT_NOT_MADE: slipfit_status = 4;
+/// A parameter is not finite or out of bounds.
+pub const SLIPFIT_PARAMETER: slipfit_status = 5;
+/// The scene asks for laws that the library was not built with.
+pub const SLIPFIT_LAW: slipfit_status = 6;
+/// The motion left the finite range and was held where it was.
+pub const SLIPFIT_NOT_FINITE: slipfit_status = 7;
+/// The region ends before the table does.
+pub const SLIPFIT_TABLE_TRUNCATED: slipfit_status = 16;
+/// No table starts there.
+pub const SLIPFIT_TABLE_MAGIC: slipfit_status = 17;
+/// The table has another version of the format.
+pub const SLIPFIT_TABLE_VERSION: slipfit_status = 18;
+/// The table is damaged.
+pub const SLIPFIT_TABLE_CHECKSUM: slipfit_status = 19;
+/// A field of the table's header is out of bounds.
+pub const SLIPFIT_TABLE_HEADER: slipfit_status = 20;
+/// A value of the table is out of bounds.
+pub const SLIPFIT_TABLE_VALUE: slipfit_status = 21;
+/// The table is over another number or kind of axes.
+pub const SLIPFIT_TABLE_AXES: slipfit_status = 22;
+/// The table was made for another scene or other laws.
+pub const SLIPFIT_TABLE_SCENE: slipfit_status = 23;
+/// The table has more levels than a bank.
+pub const SLIPFIT_BANK_LEVELS: slipfit_status = 32;
+/// Too few samples for an estimate.
+pub const SLIPFIT_BANK_SAMPLES: slipfit_status = 33;
+
+/// Why a call did nothing.
+pub(crate) struct Refusal(pub(crate) slipfit_status);
+
+impl<S> From<ParameterError<S>> for Refusal {
+    fn from(_: ParameterError<S>) -> Self {
+        Self(SLIPFIT_PARAMETER)
+    }
+}
+
+impl From<TableError> for Refusal {
+    fn from(error: TableError) -> Self {
+        Self(match error {
+            TableError::Truncated => SLIPFIT_TABLE_TRUNCATED,
+            TableError::Magic => SLIPFIT_TABLE_MAGIC,
+            TableError::Version { .. } => SLIPFIT_TABLE_VERSION,
+            TableError::Checksum => SLIPFIT_TABLE_CHECKSUM,
+            TableError::Header(_) => SLIPFIT_TABLE_HEADER,
+            TableError::Value(_) => SLIPFIT_TABLE_VALUE,
+            TableError::Axes { .. } => SLIPFIT_TABLE_AXES,
+            TableError::Scene { .. } => SLIPFIT_TABLE_SCENE,
+        })
+    }
+}
+
+/// The status of a call that did `work`.
+pub(crate) fn status(work: impl FnOnce() -> Result<(), Refusal>) -> slipfit_status {
+    match work() {
+        Ok(()) => SLIPFIT_OK,
+        Err(Refusal(why)) => why,
+    }
+}

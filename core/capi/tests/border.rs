@@ -1,0 +1,276 @@
+//! Whatever C passes is answered by a status, and whatever a function writes is finite.
+#![allow(unsafe_code, reason = "calls the library as C does")]
+
+use std::{mem::MaybeUninit, ptr};
+
+use proptest::prelude::*;
+use slipfit_capi::*;
+use slipfit_core::table::{Table, layout};
+use slipfit_problems::cd_rom;
+
+/// What floating point has that a careless program trips over.
+const SPECIAL: [f32; 14] = [
+    f32::NAN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::MAX,
+    f32::MIN,
+    1e30,
+    -1e30,
+    0.0,
+    -0.0,
+    f32::MIN_POSITIVE,
+    1e-45,
+    -1e-45,
+    1e-40,
+    1.0,
+];
+
+/// Floats of a scene.
+const NUMBERS: usize = size_of::<slipfit_scene>() / size_of::<f32>();
+
+/// An object's memory as C has it before it is made.
+fn zeroed<T>() -> T {
+    // SAFETY: the library's types are plain words and numbers.
+    unsafe { MaybeUninit::zeroed().assume_init() }
+}
+
+fn scene() -> slipfit_scene {
+    let data = cd_rom::data(0.0f32);
+    slipfit_scene {
+        step: 1e-3,
+        mass: data.body.mass,
+        inertia: data.body.inertia_b.into(),
+        gravity: data.body.gravity_w.into(),
+        pins: data.body.pins_w.map(Into::into),
+        gap_means: data.body.gaps,
+        gap_deviations: [2e-5; 16],
+        stiffness: data.contact.stiffness,
+        exponent: data.contact.exponent,
+        damping: data.contact.damping,
+        depth: data.contact.depth,
+        friction_law: if cfg!(feature = "exact") { SLIPFIT_FRICTION_EXACT } else { SLIPFIT_FRICTION_REGULARISED },
+        friction_coefficient: 0.3,
+        friction_stick_band: 1e-4,
+        drive_gain: data.drive.gain,
+        drive_ramp: [data.drive.ramp_start, data.drive.ramp_end],
+        drive_speed: data.drive.speed,
+        drive_point: [0.0; 3],
+    }
+}
+
+/// The scene with the bits of some of its numbers changed, its laws' numbers too.
+fn changed(changes: &[(usize, u32)]) -> slipfit_scene {
+    let mut scene = scene();
+    for (place, bits) in changes {
+        // SAFETY: every field is a word of four bytes, for which every value will do.
+        unsafe { ptr::from_mut(&mut scene).cast::<u32>().add(place % NUMBERS).write(*bits) };
+    }
+    scene
+}
+
+/// Makes and steps a predictor: refused, or finite for ever.
+fn stays_finite(scene: &slipfit_scene, n: f32) -> Result<(), TestCaseError> {
+    let mut predictor = zeroed::<slipfit_predictor>();
+    // SAFETY: every pointer is to a local of its type.
+    unsafe {
+        let made = slipfit_predictor_init(&mut predictor, scene, n);
+        prop_assert!([SLIPFIT_OK, SLIPFIT_PARAMETER, SLIPFIT_LAW].contains(&made), "{made}");
+        for _ in 0..20 {
+            let stepped = slipfit_predictor_step(&mut predictor);
+            if made == SLIPFIT_OK {
+                prop_assert!([SLIPFIT_OK, SLIPFIT_NOT_FINITE].contains(&stepped), "{stepped}");
+            } else {
+                prop_assert_eq!(stepped, SLIPFIT_NOT_MADE);
+            }
+        }
+        let mut said = zeroed::<slipfit_prediction>();
+        if slipfit_predictor_read(&predictor, &mut said) == SLIPFIT_OK {
+            prop_assert!(said.time.is_finite() && said.velocity.is_finite() && !said.residual.is_nan(), "{said:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn special_numbers_in_every_place_of_a_scene() {
+    stays_finite(&scene(), 2.5).unwrap();
+    for place in 0..NUMBERS {
+        for special in SPECIAL {
+            stays_finite(&changed(&[(place, special.to_bits())]), 2.5).unwrap();
+        }
+    }
+    for n in SPECIAL {
+        stays_finite(&scene(), n).unwrap();
+    }
+}
+
+/// A table over 3 levels and 4 instants, in f32.
+fn table() -> Vec<u8> {
+    let mut bytes = Vec::from(*b"SLFT");
+    bytes.extend([2, 0, 2, 1]);
+    bytes.extend(7u64.to_le_bytes());
+    let length = layout::HEADER_SIZE + 12 * 8 + layout::CHECKSUM_SIZE;
+    bytes.extend((length as u32).to_le_bytes());
+    for (kind, count, step) in [(1u8, 3u32, 1.0f32), (2, 4, 0.1)] {
+        bytes.extend([kind, 0, 0, 0]);
+        bytes.extend(count.to_le_bytes());
+        bytes.extend([0.0f32, step].map(f32::to_le_bytes).concat());
+    }
+    bytes.extend([0; 16]);
+    bytes.extend([1.0f32, 0.0, 0.0, 1.0, 0.0, 0.0].map(f32::to_le_bytes).concat());
+    bytes.extend((0..24u8).flat_map(|i| f32::from(i).to_le_bytes()));
+    sealed(bytes)
+}
+
+/// The table with its checksum at the end.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    bytes.extend(layout::checksum(&bytes).to_le_bytes());
+    bytes
+}
+
+/// Everything that takes a table, with every number.
+fn uses_of_a_table(bytes: &'static [u8], numbers: &[f32]) -> Result<slipfit_status, TestCaseError> {
+    let mut table = zeroed::<slipfit_table>();
+    let (mut monitor, mut bank) = (zeroed::<slipfit_monitor>(), zeroed::<slipfit_bank>());
+    let (mut found, mut report, mut estimate) =
+        (zeroed::<slipfit_lookup>(), zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
+    let at = |i: usize| numbers[i % numbers.len()];
+    // SAFETY: every pointer is to a local of its type, and the bytes stay.
+    unsafe {
+        let opened = slipfit_table_open(&mut table, bytes.as_ptr(), bytes.len() as u32, 7);
+        let expected = if opened == SLIPFIT_OK { SLIPFIT_OK } else { SLIPFIT_NOT_MADE };
+        for (i, n) in numbers.iter().enumerate() {
+            prop_assert_eq!(slipfit_table_look_up(&table, *n, at(i + 1), &mut found), expected);
+            prop_assert!(found.force.is_finite() && found.velocity.is_finite() && found.clamped <= 1, "{found:?}");
+            let _ = slipfit_table_check(&mut table, n.to_bits());
+            let limits = slipfit_limits {
+                period: at(i + 1),
+                blind: at(i + 2),
+                force_most: at(i + 3),
+                hold: at(i + 4),
+                smoothing: at(i + 5),
+                band: at(i + 6),
+                margin: at(i + 7),
+                rise: at(i + 8),
+            };
+            let _ = slipfit_monitor_init(&mut monitor, &table, *n, &limits);
+            let sample = slipfit_sample { time: *n, force: at(i + 1), speed: at(i + 2), command: at(i + 3) };
+            if slipfit_monitor_step(&mut monitor, &sample, &mut report) == SLIPFIT_OK {
+                prop_assert!(report.verdict <= SLIPFIT_JAM && report.expected.is_finite(), "{report:?}");
+            }
+            let _ = slipfit_bank_init(&mut bank, &table);
+            for k in 0..40 {
+                let _ = slipfit_bank_add(&mut bank, &table, at(i + k), at(i * k));
+            }
+            if slipfit_bank_estimate(&bank, &table, &mut estimate) == SLIPFIT_OK {
+                let slipfit_estimate { low, level, high, .. } = estimate;
+                prop_assert!(low <= level && level <= high && low.is_finite() && high.is_finite(), "{estimate:?}");
+            }
+        }
+        Ok(opened)
+    }
+}
+
+#[test]
+fn special_numbers_in_every_call_with_a_table() {
+    assert_eq!(uses_of_a_table(table().leak(), &SPECIAL).unwrap(), SLIPFIT_OK);
+    // Within the table's grid too.
+    assert_eq!(uses_of_a_table(table().leak(), &[0.1, 0.25, 1e-3, f32::NAN, 0.3, -0.0, 1e-45]).unwrap(), SLIPFIT_OK);
+}
+
+#[test]
+fn every_short_length_is_refused() {
+    let whole: &'static [u8] = table().leak();
+    assert!(Table::<2>::open(whole).is_ok());
+    for length in 0..whole.len() {
+        let status = uses_of_a_table(&whole[..length], &[0.5]).unwrap();
+        assert!([SLIPFIT_TABLE_TRUNCATED, SLIPFIT_TABLE_MAGIC].contains(&status), "{length}: {status}");
+    }
+}
+
+#[test]
+fn null_and_misaligned_pointers_are_refused() {
+    let bytes: &'static [u8] = table().leak();
+    let length = bytes.len() as u32;
+    let (mut predictor, mut table) = (zeroed::<slipfit_predictor>(), zeroed::<slipfit_table>());
+    let (mut monitor, mut bank) = (zeroed::<slipfit_monitor>(), zeroed::<slipfit_bank>());
+    let (scene, limits, sample) = (scene(), zeroed::<slipfit_limits>(), zeroed::<slipfit_sample>());
+    let (mut said, mut found, mut spare) =
+        (zeroed::<slipfit_prediction>(), zeroed::<slipfit_lookup>(), zeroed::<slipfit_spare>());
+    let (mut report, mut estimate) = (zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
+    // SAFETY: what is neither null nor misaligned points at locals.
+    unsafe {
+        assert_eq!(slipfit_predictor_init(&mut predictor, &scene, 2.5), SLIPFIT_OK);
+        assert_eq!(slipfit_table_open(&mut table, bytes.as_ptr(), length, 7), SLIPFIT_OK);
+        assert_eq!(slipfit_bank_init(&mut bank, &table), SLIPFIT_OK);
+        // Each call with one bad pointer.
+        for (code, shift) in [(SLIPFIT_NULL, None), (SLIPFIT_MISALIGNED, Some(1))] {
+            let bad = |pointer: *mut u8| shift.map_or(ptr::null_mut(), |by| pointer.wrapping_add(by));
+            macro_rules! bad {
+                ($place:expr) => {
+                    bad(ptr::from_ref(&$place).cast_mut().cast()).cast()
+                };
+            }
+            let answers = [
+                slipfit_predictor_init(bad!(predictor), &scene, 2.5),
+                slipfit_predictor_init(&mut predictor, bad!(scene), 2.5),
+                slipfit_predictor_step(bad!(predictor)),
+                slipfit_predictor_read(bad!(predictor), &mut said),
+                slipfit_predictor_read(&predictor, bad!(said)),
+                slipfit_table_open(bad!(table), bytes.as_ptr(), length, 7),
+                slipfit_slots_open(bad!(table), bytes.as_ptr(), bytes.as_ptr(), length, 7, &mut spare),
+                slipfit_slots_open(&mut table, bytes.as_ptr(), bytes.as_ptr(), length, 7, bad!(spare)),
+                slipfit_table_look_up(bad!(table), 0.0, 0.0, &mut found),
+                slipfit_table_look_up(&table, 0.0, 0.0, bad!(found)),
+                slipfit_table_check(bad!(table), 1),
+                slipfit_monitor_init(bad!(monitor), &table, 1.0, &limits),
+                slipfit_monitor_init(&mut monitor, bad!(table), 1.0, bad!(limits)),
+                slipfit_monitor_init(&mut monitor, &table, 1.0, bad!(limits)),
+                slipfit_monitor_step(bad!(monitor), &sample, &mut report),
+                slipfit_monitor_step(&mut monitor, bad!(sample), &mut report),
+                slipfit_monitor_step(&mut monitor, &sample, bad!(report)),
+                slipfit_bank_init(bad!(bank), &table),
+                slipfit_bank_init(&mut bank, bad!(table)),
+                slipfit_bank_add(bad!(bank), &table, 0.0, 0.0),
+                slipfit_bank_estimate(bad!(bank), &table, &mut estimate),
+                slipfit_bank_estimate(&bank, &table, bad!(estimate)),
+            ];
+            for (i, answer) in answers.into_iter().enumerate() {
+                assert_eq!(answer, code, "call {i}");
+            }
+        }
+        for answer in [
+            slipfit_table_open(&mut table, ptr::null(), length, 7),
+            slipfit_slots_open(&mut table, ptr::null(), bytes.as_ptr(), length, 7, &mut spare),
+            slipfit_slots_open(&mut table, bytes.as_ptr(), ptr::null(), length, 7, &mut spare),
+        ] {
+            assert_eq!(answer, SLIPFIT_NULL);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+
+    #[test]
+    fn any_scene_is_refused_or_stays_finite(
+        changes in prop::collection::vec((0..NUMBERS, any::<u32>()), 0..6),
+        n in any::<f32>(),
+    ) {
+        stays_finite(&changed(&changes), n)?;
+    }
+
+    #[test]
+    fn any_table_is_refused_or_gives_finite_numbers(
+        changes in prop::collection::vec((0usize..188, any::<u8>()), 0..4),
+        numbers in prop::collection::vec(any::<f32>(), 1..12),
+    ) {
+        let mut bytes = table();
+        bytes.truncate(bytes.len() - layout::CHECKSUM_SIZE);
+        for (place, byte) in changes {
+            bytes[place] = byte;
+        }
+        uses_of_a_table(sealed(bytes).leak(), &numbers)?;
+    }
+}

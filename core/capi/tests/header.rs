@@ -1,0 +1,24 @@
+//! The committed header is what the crate's source says.
+
+use std::{fs, path::Path};
+
+#[test]
+fn the_header_is_current() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).unwrap();
+    let mut found = Vec::new();
+    let sources = ["status", "predictor", "table", "monitor"].map(|name| root.join(format!("src/{name}.rs")));
+    let mut builder = cbindgen::Builder::new().with_config(config);
+    for source in sources {
+        builder = builder.with_src(source);
+    }
+    builder.generate().unwrap().write(&mut found);
+    let (found, path) = (String::from_utf8(found).unwrap(), root.join("include/slipfit.h"));
+    if std::env::var_os("SLIPFIT_WRITE_HEADER").is_some() {
+        fs::write(&path, &found).unwrap();
+    }
+    assert!(
+        fs::read_to_string(&path).unwrap() == found,
+        "to write it: SLIPFIT_WRITE_HEADER=1 cargo test -p slipfit-capi"
+    );
+}

@@ -1,0 +1,220 @@
+//! Which tolerance level a unit has, from the force of one motion: least squares over all levels of the table at once.
+//!
+//! Between two levels the table is linear in n, so that the sum of squared residuals is a parabola there, known from
+//! three sums: of the squares at either level and of the products. Kept for every level of the table, they give the best
+//! level whatever it is, without a first guess and without the samples. Noise of unknown strength is estimated from what
+//! the best level leaves, and widened if neighbouring residuals are correlated: then the model errs, not the sensor.
+
+use crate::table::{AxisKind, Nodes, Table};
+
+/// χ² of one degree of freedom that 95 % stay below.
+const CHI_SQUARED: f32 = 3.841_459;
+
+/// Samples of a batch, which tells how correlated residuals are.
+const BATCH: u32 = 32;
+
+/// Over how many samples the table's own interpolation error counts as correlated.
+const TABLE_SAMPLES: f32 = 20.0;
+
+/// Why a bank cannot be made for a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum BankError {
+    /// The table is not one over level and time.
+    Axes,
+    /// The table has more levels than the bank.
+    Levels {
+        /// Levels of the table.
+        found: usize,
+        /// Levels that the bank has room for.
+        most: usize,
+    },
+}
+
+impl core::fmt::Display for BankError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Axes => f.write_str("the table is not one over tolerance level and time"),
+            Self::Levels { found, most } => write!(f, "the table has {found} levels, allowed are at most {most}"),
+        }
+    }
+}
+
+impl core::error::Error for BankError {}
+
+/// A level and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Estimate {
+    /// The level n that fits best.
+    pub level: f32,
+    /// Its standard error: the interval's width over 2·1.96, infinite if any level of the table would do.
+    pub deviation: f32,
+    /// Where n lies with 95 % confidence; ends at the table's ends.
+    pub interval: [f32; 2],
+    /// Standard deviation (N) of the force from the table's at that level.
+    pub residual: f32,
+}
+
+/// Running sums for a table of up to `LEVELS` levels.
+#[derive(Clone, Copy, Debug)]
+pub struct LevelBank<const LEVELS: usize> {
+    sums: [Sums; LEVELS],
+    /// Levels of the table.
+    count: usize,
+    samples: u32,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    /// Residuals of the batch so far (N).
+    batch: f32,
+    /// Of squared residuals (N²).
+    squares: f32,
+    /// Of residuals times those of the next level (N²).
+    products: f32,
+    /// Of squared sums over whole batches (N²).
+    batches: f32,
+}
+
+impl<const LEVELS: usize> LevelBank<LEVELS> {
+    /// A bank for `table`, without samples.
+    ///
+    /// # Errors
+    /// [`BankError`] if the table is not over level and time or has more levels.
+    pub fn new<V: Nodes>(table: &Table<'_, 2, V>) -> Result<Self, BankError> {
+        let [levels, times] = table.axes();
+        if levels.kind() != AxisKind::Level || times.kind() != AxisKind::Time {
+            return Err(BankError::Axes);
+        }
+        let (found, most) = (levels.count(), LEVELS);
+        if found > most {
+            return Err(BankError::Levels { found, most });
+        }
+        Ok(Self { sums: [Sums::default(); LEVELS], count: found, samples: 0 })
+    }
+
+    /// Adds the `force` (N) measured at `time` (s) of a motion; one that is not finite or not in the table is passed
+    /// over. The same work for every sample, in proportion to the levels.
+    #[inline]
+    pub fn add<V: Nodes>(&mut self, table: &Table<'_, 2, V>, time: f32, force: f32) {
+        let Some(forces) = table.forces(time).filter(|_| force.abs() <= 1e6) else { return };
+        self.samples = self.samples.saturating_add(1);
+        let ends = self.samples.is_multiple_of(BATCH);
+        let mut before: Option<(&mut Sums, f32)> = None;
+        for (sums, expected) in self.sums.iter_mut().zip(forces) {
+            let residual = force - expected;
+            if let Some((lower, lower_residual)) = before {
+                lower.products += lower_residual * residual;
+            }
+            sums.squares += residual * residual;
+            sums.batch += residual;
+            if ends {
+                sums.batches += sums.batch * sums.batch;
+                sums.batch = 0.0;
+            }
+            before = Some((sums, residual));
+        }
+    }
+
+    /// The level that fits best; none before the tenth sample.
+    pub fn estimate<V: Nodes>(&self, table: &Table<'_, 2, V>) -> Option<Estimate> {
+        let [levels, _] = table.axes();
+        let cells = || {
+            let sums = self.sums.get(..self.count).unwrap_or_default();
+            sums.windows(2).zip(0u32..).filter_map(|(pair, i)| {
+                let [lower, upper] = pair else { return None };
+                Some((Parabola::of(lower, upper), levels.first() + levels.step() * i as f32, lower, upper))
+            })
+        };
+        if self.samples < 10 {
+            return None;
+        }
+        let mut best: Option<(f32, f32, f32, f32)> = None;
+        for (parabola, first, lower, upper) in cells() {
+            let at = parabola.lowest();
+            let least = parabola.value(at);
+            if best.is_none_or(|(other, ..)| least < other) {
+                let near = if at < 0.5 { lower } else { upper };
+                best = Some((least, first + levels.step() * at, near.batches, near.squares));
+            }
+        }
+        let (least, level, batches, squares) = best?;
+        let degrees = (self.samples - 1) as f32;
+        let variance = least / degrees;
+        // Correlated residuals add up: sums over a batch vary more than those of independent ones.
+        let whole = (self.samples / BATCH * BATCH) as f32;
+        let together = if whole > 0.0 { batches * degrees / (whole * squares) } else { BATCH as f32 };
+        let together = if together > 1.0 { together } else { 1.0 };
+        let [force, _] = table.channels();
+        let table_error = force.rms_error;
+        let limit = least + CHI_SQUARED * (variance * together + TABLE_SAMPLES * table_error * table_error);
+
+        let (mut low, mut high) = (level, level);
+        for (parabola, first, ..) in cells() {
+            if let Some([from, to]) = parabola.below(limit) {
+                let (from, to) = (first + levels.step() * from, first + levels.step() * to);
+                low = if from < low { from } else { low };
+                high = if to > high { to } else { high };
+            }
+        }
+        let any = low <= levels.first() && high >= levels.last();
+        let deviation = if any { f32::INFINITY } else { (high - low) / (2.0 * 1.959_964) };
+        Some(Estimate { level, deviation, interval: [low, high], residual: crate::Scalar::sqrt(variance) })
+    }
+}
+
+/// A sum of squares over a cell: c − 2·b·x + a·x², x from 0 at its lower level to 1 at its upper one.
+struct Parabola {
+    a: f32,
+    b: f32,
+    c: f32,
+}
+
+impl Parabola {
+    fn of(lower: &Sums, upper: &Sums) -> Self {
+        let a = lower.squares - 2.0 * lower.products + upper.squares;
+        // A sum of squares, but for rounding.
+        Self { a: if a > 0.0 { a } else { 0.0 }, b: lower.squares - lower.products, c: lower.squares }
+    }
+
+    fn value(&self, x: f32) -> f32 {
+        let value = self.c + x * (self.a * x - 2.0 * self.b);
+        if value > 0.0 { value } else { 0.0 }
+    }
+
+    /// Where it is least, within the cell.
+    fn lowest(&self) -> f32 {
+        if self.b <= 0.0 {
+            0.0
+        } else if self.b < self.a {
+            self.b / self.a
+        } else {
+            1.0
+        }
+    }
+
+    /// Where it is at most `limit`, within the cell.
+    fn below(&self, limit: f32) -> Option<[f32; 2]> {
+        let lowest = self.lowest();
+        if self.value(lowest) > limit {
+            return None;
+        }
+        let ends = [0.0, 1.0].map(|end| {
+            if self.value(end) <= limit {
+                return end;
+            }
+            let (mut inside, mut outside) = (lowest, end);
+            for _ in 0..20 {
+                let middle = 0.5 * (inside + outside);
+                if self.value(middle) <= limit {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+            }
+            outside
+        });
+        Some(ends)
+    }
+}

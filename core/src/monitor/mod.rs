@@ -1,0 +1,181 @@
+//! Watches a running drive by its flash table: free, tight or jammed, and which tolerance level the unit has.
+//!
+//! [`Monitor`] holds what does not change, [`Watch`] what does; [`LevelBank`] estimates n from a stroke. Work and memory
+//! of a sample are bounded, and no run is stored.
+//!
+//! ```
+//! # use slipfit_core::{monitor::{Limits, Monitor, Sample, Watch, Verdict}, table::{Nodes, Table}};
+//! # fn interrupt<V: Nodes>(table: Table<'_, 2, V>) -> Result<(), slipfit_core::ParameterError<f32>> {
+//! let limits = Limits { blind: 0.2, ..Limits::for_noise(1e-3, 0.02) };
+//! let monitor = Monitor::new(table, 2.5, limits)?; // parameters
+//! let mut watch = Watch::default(); // state
+//! let sample = Sample { time: 0.3, force: 0.25, speed: 0.01, command: 0.02 };
+//! let report = monitor.step(&mut watch, &sample);
+//! assert!(report.verdict != Verdict::Jam);
+//! # Ok(()) }
+//! ```
+
+mod jam;
+mod level;
+mod tight;
+
+use crate::{
+    ParameterError,
+    error::bounded,
+    table::{Nodes, Table},
+};
+
+pub use jam::JamWatch;
+pub use level::{BankError, Estimate, LevelBank};
+pub use tight::{TightWatch, Tightness};
+
+/// What the drive measures once a period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Sample {
+    /// Time since the motion's start, the table's time (s).
+    pub time: f32,
+    /// The drive's force (N).
+    pub force: f32,
+    /// The slide's speed along the drive (m/s).
+    pub speed: f32,
+    /// The commanded speed (m/s).
+    pub command: f32,
+}
+
+/// Where free ends, and when a jam is one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Limits {
+    /// Time from one sample to the next (s).
+    pub period: f32,
+    /// Until this time (s) of the motion only the force limit counts: it covers breakaway, before which a slide creeps
+    /// at any speed.
+    pub blind: f32,
+    /// A force (N) beyond which it is a jam, either sign.
+    pub force_most: f32,
+    /// How long (s) a jam's sign has to last before it is reported; noise on a single sample is none.
+    pub hold: f32,
+    /// Time constant (s) over which force is averaged before it is compared with the table's.
+    pub smoothing: f32,
+    /// By how many levels a unit may be tighter than it is taken for.
+    pub band: f32,
+    /// What the averaged force (N) may differ from the table's beyond that band, for noise.
+    pub margin: f32,
+    /// How fast (N/s) the averaged force may rise away from the table's.
+    pub rise: f32,
+}
+
+impl Limits {
+    /// Limits for samples a `period` (s) apart with white noise of standard deviation `noise` (N) on the force: averages
+    /// over 20 periods, five standard deviations of what the average leaves of the noise, jams held for ten periods,
+    /// no blind time and no force limit.
+    pub fn for_noise(period: f32, noise: f32) -> Self {
+        let smoothing = 20.0 * period;
+        // An average over τ leaves √(T/2τ) of white noise.
+        let margin = 5.0 * noise * 0.158;
+        Self {
+            period,
+            blind: 0.0,
+            force_most: 1e9,
+            hold: 10.0 * period,
+            smoothing,
+            band: 0.5,
+            margin,
+            rise: margin / smoothing,
+        }
+    }
+}
+
+/// What a sample says about the drive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Verdict {
+    /// Too early to say.
+    #[default]
+    Blind,
+    /// As the table has it.
+    Free,
+    /// More force than the table's for this unit's level, or rising away from it.
+    Tight,
+    /// Standing still against the command, or at the limit of force.
+    Jam,
+}
+
+/// A monitor's answer to a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Report {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Force against the table's band.
+    pub tightness: Tightness,
+}
+
+/// Everything about a monitored drive that does not change during a motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Monitor<'a, V> {
+    table: Table<'a, 2, V>,
+    level: f32,
+    limits: Limits,
+}
+
+/// Everything that changes. A motion starts with a fresh one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Watch {
+    /// Towards tight.
+    pub tight: TightWatch,
+    /// Towards a jam.
+    pub jam: JamWatch,
+}
+
+impl<'a, V: Nodes> Monitor<'a, V> {
+    /// A monitor of a unit of tolerance level `level` by `table`, over level and time.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is out of bounds or not finite; the level has to lie on the
+    /// table's axis.
+    pub fn new(table: Table<'a, 2, V>, level: f32, limits: Limits) -> Result<Self, ParameterError<f32>> {
+        let [levels, _] = table.axes();
+        bounded("monitor.level", level, [f64::from(levels.first()), f64::from(levels.last())])?;
+        bounded("monitor.period", limits.period, [1e-6, 1.0])?;
+        bounded("monitor.blind", limits.blind, [0.0, 1e6])?;
+        bounded("monitor.force_most", limits.force_most, [1e-6, 1e9])?;
+        bounded("monitor.hold", limits.hold, [0.0, 10.0])?;
+        bounded("monitor.smoothing", limits.smoothing, [0.0, 10.0])?;
+        bounded("monitor.band", limits.band, [0.0, 100.0])?;
+        bounded("monitor.margin", limits.margin, [0.0, 1e9])?;
+        bounded("monitor.rise", limits.rise, [0.0, 1e12])?;
+        Ok(Self { table, level, limits })
+    }
+
+    /// The level the unit is taken for.
+    pub fn level(&self) -> f32 {
+        self.level
+    }
+
+    /// Takes the unit for what `estimate` says from now on, if that is within the band of what it was taken for; says
+    /// whether it was. A unit that has left its band is tight, not to be got used to.
+    pub fn adapt(&mut self, estimate: &Estimate) -> bool {
+        let within = (estimate.level - self.level).abs() <= self.limits.band && estimate.deviation <= self.limits.band;
+        if within {
+            self.level = estimate.level;
+        }
+        within
+    }
+
+    /// What `sample` says, after those that `watch` has seen. A sample that is not finite is passed over.
+    #[inline]
+    pub fn step(&self, watch: &mut Watch, sample: &Sample) -> Report {
+        let tightness = watch.tight.step(&self.table, self.level, &self.limits, sample);
+        let is_blind = sample.time.is_nan() || sample.time < self.limits.blind;
+        let is_jammed = watch.jam.step(&self.limits, sample, is_blind);
+        let verdict = match (is_jammed, is_blind, tightness.is_tight()) {
+            (true, ..) => Verdict::Jam,
+            (_, true, _) => Verdict::Blind,
+            (.., true) => Verdict::Tight,
+            _ => Verdict::Free,
+        };
+        Report { verdict, tightness }
+    }
+}

@@ -1,0 +1,423 @@
+//! The planar body as integrators see it.
+
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+
+use super::{Planar, PlanarPose};
+use crate::{
+    SVector, Scalar,
+    law::{Elastic, Friction, Stop, friction::Rubbing, stop::Resistance},
+    linear::inverse,
+    mechanism::{Differentiated, Linearised, Mechanism},
+};
+
+/// Rᵀ − I by its diagonal and the sine: what carries a frame vector into the body, less the vector itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Turn<S> {
+    less: S,
+    sine: S,
+}
+
+impl<S: Scalar> Turn<S> {
+    #[inline(always)]
+    fn of([w, v]: [S; 2]) -> Self {
+        let twice = v * (S::from_f64(2.0) / (w * w + v * v));
+        Self { less: twice * v, sine: twice * w }
+    }
+
+    #[inline(always)]
+    fn change(&self, p: Vector2<S>) -> Vector2<S> {
+        Vector2::new(-self.less * p.x - self.sine * p.y, self.sine * p.x - self.less * p.y)
+    }
+
+    #[inline(always)]
+    fn to_body(self, p: Vector2<S>) -> Vector2<S> {
+        p + self.change(p)
+    }
+
+    #[inline(always)]
+    fn to_frame(self, p: Vector2<S>) -> Vector2<S> {
+        p + Self { sine: -self.sine, ..self }.change(p)
+    }
+}
+
+/// y × `p`.
+#[inline(always)]
+fn turned<S: Scalar>(p: Vector2<S>) -> Vector2<S> {
+    Vector2::new(p.y, -p.x)
+}
+
+/// Force and torque of the force `f` at `lever`.
+#[inline(always)]
+fn at<S: Scalar>(lever: Vector2<S>, f: Vector2<S>) -> Vector3<S> {
+    Vector3::new(f.x, f.y, turned(lever).dot(&f))
+}
+
+/// What the force −`matrix`·(v + ω·y × `lever`), acting at `lever`, means for force and torque by v and ω.
+#[inline(always)]
+fn spread<S: Scalar>(lever: Vector2<S>, matrix: &Matrix2<S>) -> Matrix3<S> {
+    let [x, z]: [[S; 2]; 2] = matrix.data.0;
+    let (x, z) = (Vector2::from(x), Vector2::from(z));
+    let arm = turned(lever);
+    Matrix3::from_columns(&[at(lever, x), at(lever, z), at(lever, x * arm.x + z * arm.y)])
+}
+
+#[inline(always)]
+fn split<S: Scalar>(v: &SVector<S, 3>) -> (Vector2<S>, S) {
+    (Vector2::new(v.x, v.y), v.z)
+}
+
+#[inline(always)]
+fn join<S: Scalar>(v: Vector2<S>, w: S) -> SVector<S, 3> {
+    SVector::<S, 3>::new(v.x, v.y, w)
+}
+
+/// The inverse of the linearised balance of forces in body axes, and the turn that leads there.
+#[derive(Clone, Copy, Debug)]
+pub struct Linearisation<S> {
+    inverse: Matrix3<S>,
+    turn: Turn<S>,
+}
+
+impl<S: Scalar> Default for Linearisation<S> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self { inverse: Matrix3::zeros(), turn: Turn::default() }
+    }
+}
+
+/// −∂force/∂velocity and −∂force/∂displacement in body axes, and the turn that leads there.
+#[derive(Clone, Copy, Debug)]
+pub struct Slopes<S> {
+    damping: Matrix3<S>,
+    stiffness: Matrix3<S>,
+    turn: Turn<S>,
+}
+
+/// How forces are to be linearised; see [`Rubbing`].
+#[derive(Clone, Copy)]
+struct Way<S> {
+    a: S,
+    mass_rate: S,
+    tangent_share: S,
+}
+
+/// Where the body is and how it moves, in its axes.
+#[derive(Clone, Copy)]
+struct Placed<S> {
+    turn: Turn<S>,
+    displacement_b: Vector2<S>,
+    velocity_b: Vector2<S>,
+    rotation: S,
+}
+
+/// The force at one pin and −∂force/∂(u, x), by the velocity and the displacement of the material there.
+struct PinForce<S> {
+    lever: Vector2<S>,
+    force: Vector2<S>,
+    impedance: Matrix2<S>,
+    stiffness: Matrix2<S>,
+}
+
+impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Planar<S, C, E, F, PINS> {
+    #[inline(always)]
+    fn placed(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>) -> Placed<S> {
+        let (v_w, rotation) = split(velocity);
+        let turn = Turn::of(pose.half_turn);
+        Placed { displacement_b: turn.to_body(pose.displacement_w), velocity_b: turn.to_body(v_w), rotation, turn }
+    }
+
+    /// Force and torque of all contacts (N, N·m), in body axes; `collect` sees them pin by pin.
+    #[inline(always)]
+    fn contact_forces(
+        &self,
+        placed: &Placed<S>,
+        memory: &mut [F::Memory; PINS],
+        way: Way<S>,
+        mut collect: impl FnMut(&PinForce<S>),
+    ) -> Vector3<S> {
+        let mut sum = Vector3::zeros();
+        for ((pin, stop), memory) in self.body.pins_w.iter().zip(&self.body.stops).zip(memory) {
+            let offset = placed.turn.change(*pin) - placed.displacement_b;
+            let lever = *pin + offset;
+            let u = placed.velocity_b + turned(lever) * placed.rotation;
+            let stop = stop.resistance(&self.contact, offset.x, u.x);
+            let rubbing = Rubbing {
+                sliding: [u.y, S::zero()],
+                normal: stop.normal(),
+                mass_rate: way.mass_rate,
+                tangent_share: way.tangent_share,
+            };
+            let (traction, remembered) = self.friction.traction(memory, &rubbing);
+            *memory = remembered;
+            let [along, _] = traction.per_normal;
+            let ([own, normal], [own_stiffness, normal_stiffness]) = (stop.impedances(way.a), stop.stiffnesses());
+            let zero = S::zero();
+            let pin = PinForce {
+                lever,
+                force: Vector2::new(stop.force(), traction.force[0]),
+                impedance: Matrix2::new(own, zero, along * normal, traction.impedance[0]),
+                stiffness: Matrix2::new(own_stiffness, zero, along * normal_stiffness, zero),
+            };
+            sum += at(lever, pin.force);
+            collect(&pin);
+        }
+        sum
+    }
+
+    /// Force and torque of a drive force of 1 N, in body axes.
+    #[inline(always)]
+    fn pull(&self, turn: Turn<S>) -> Vector3<S> {
+        let z_b = turn.to_body(Vector2::new(S::zero(), S::one()));
+        at(self.point_b(), z_b)
+    }
+
+    #[inline(always)]
+    fn point_b(&self) -> Vector2<S> {
+        Vector2::new(self.drive.point_b.x, self.drive.point_b.z)
+    }
+
+    /// Force in the frame and torque of `body`, given in body axes, with gravity.
+    #[inline(always)]
+    fn total(&self, turn: Turn<S>, body: Vector3<S>) -> SVector<S, 3> {
+        let (f_b, torque) = split(&body);
+        join(turn.to_frame(f_b) + self.body.gravity_w * self.body.mass, torque)
+    }
+
+    /// The mass matrix times `rate` (1/s).
+    #[inline(always)]
+    fn inertia(&self, rate: S) -> Matrix3<S> {
+        let mass = self.body.mass * rate;
+        Matrix3::from_diagonal(&Vector3::new(mass, mass, self.body.inertia * rate))
+    }
+
+    /// That the drive gives way by its gain to the speed along itself.
+    #[inline(always)]
+    fn give(&self, pull: &Vector3<S>) -> Matrix3<S> {
+        let along = *pull * self.drive.gain;
+        Matrix3::from_columns(&[along * pull.x, along * pull.y, Vector3::zeros()])
+    }
+}
+
+impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Mechanism<S, 3>
+    for Planar<S, C, E, F, PINS>
+{
+    type Pose = PlanarPose<S>;
+    type Memory = [F::Memory; PINS];
+    type Linearisation = Linearisation<S>;
+    type Slopes = Slopes<S>;
+
+    #[inline(always)]
+    fn advanced(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>, dt: S) -> PlanarPose<S> {
+        let PlanarPose { displacement_w, half_turn } = self.moved(pose, velocity, dt);
+        let half = velocity.z * dt * S::from_f64(0.5);
+        let scale = S::one() / (S::one() + half * half);
+        PlanarPose { displacement_w, half_turn: half_turn.map(|x| x * scale) }
+    }
+
+    #[inline(always)]
+    fn moved(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>, dt: S) -> PlanarPose<S> {
+        let (v_w, rotation) = split(velocity);
+        let [w, v] = pose.half_turn;
+        let half = rotation * dt * S::from_f64(0.5);
+        PlanarPose { displacement_w: pose.displacement_w + v_w * dt, half_turn: [w - v * half, v + w * half] }
+    }
+
+    #[inline(always)]
+    fn shifted(&self, base: &PlanarPose<S>, from: &PlanarPose<S>, to: &PlanarPose<S>, weight: S) -> PlanarPose<S> {
+        let [w, v] = base.half_turn;
+        PlanarPose {
+            displacement_w: base.displacement_w + (to.displacement_w - from.displacement_w) * weight,
+            half_turn: [
+                w + (to.half_turn[0] - from.half_turn[0]) * weight,
+                v + (to.half_turn[1] - from.half_turn[1]) * weight,
+            ],
+        }
+    }
+
+    #[inline(always)]
+    fn memory_shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory {
+        let mut memory = *base;
+        for ((pin, from), to) in memory.iter_mut().zip(from).zip(to) {
+            *pin = F::shifted(pin, from, to, weight);
+        }
+        memory
+    }
+
+    #[inline(always)]
+    fn normalised(&self, pose: &PlanarPose<S>) -> PlanarPose<S> {
+        let [w, v] = pose.half_turn;
+        let scale = S::from_f64(0.5) * (S::from_f64(3.0) - (w * w + v * v));
+        PlanarPose { half_turn: [w * scale, v * scale], ..*pose }
+    }
+
+    #[inline(always)]
+    fn fresh(&self) -> Self::Memory {
+        [F::fresh(); PINS]
+    }
+
+    #[inline(always)]
+    fn selected(
+        &self,
+        condition: S,
+        (yes, yes_memory): (&PlanarPose<S>, &Self::Memory),
+        (no, no_memory): (&PlanarPose<S>, &Self::Memory),
+    ) -> (PlanarPose<S>, Self::Memory) {
+        let pick = |y: S, n: S| condition.select_gt(S::zero(), y, n);
+        let mut memory = *no_memory;
+        for (pin, yes) in memory.iter_mut().zip(yes_memory) {
+            *pin = F::selected(condition, yes, pin);
+        }
+        let pose = PlanarPose {
+            displacement_w: yes.displacement_w.zip_map(&no.displacement_w, pick),
+            half_turn: [pick(yes.half_turn[0], no.half_turn[0]), pick(yes.half_turn[1], no.half_turn[1])],
+        };
+        (pose, memory)
+    }
+
+    #[inline(always)]
+    fn nought(&self, pose: &PlanarPose<S>) -> S {
+        let [w, v] = pose.half_turn;
+        let zero = S::zero();
+        pose.displacement_w.x * zero + pose.displacement_w.y * zero + w * zero + v * zero
+    }
+
+    /// As for the slide: rounded to the last place of 4 m/s.
+    #[inline(always)]
+    fn settled(&self, velocity: &SVector<S, 3>) -> SVector<S, 3> {
+        if !F::STICKS {
+            return *velocity;
+        }
+        let unit = S::from_f64(4.0);
+        let round = |x: S, unit: S| (x + unit) - unit;
+        let (v_w, rotation) = split(velocity);
+        join(v_w.map(|x| round(x, unit)), round(rotation, unit * self.per_lever))
+    }
+
+    #[inline(always)]
+    fn momentum(&self, velocity: &SVector<S, 3>) -> SVector<S, 3> {
+        let (v_w, rotation) = split(velocity);
+        join(v_w * self.body.mass, rotation * self.body.inertia)
+    }
+
+    #[inline(always)]
+    fn velocity(&self, momentum: &SVector<S, 3>) -> SVector<S, 3> {
+        let (p_w, l) = split(momentum);
+        join(p_w / self.body.mass, l / self.body.inertia)
+    }
+
+    #[inline(always)]
+    fn forces(
+        &self,
+        t: S,
+        pose: &PlanarPose<S>,
+        memory: &Self::Memory,
+        velocity: &SVector<S, 3>,
+        a: S,
+    ) -> (SVector<S, 3>, Self::Memory) {
+        let placed = self.placed(pose, velocity);
+        let mut memory = *memory;
+        let way = Way { a, mass_rate: self.body.mass / a, tangent_share: S::one() };
+        let contacts = self.contact_forces(&placed, &mut memory, way, |_| {});
+        let push = self.pull(placed.turn) * self.drive.force(t, velocity.y);
+        (self.total(placed.turn, contacts + push), memory)
+    }
+
+    #[inline(always)]
+    fn linearised(
+        &self,
+        t: S,
+        pose: &PlanarPose<S>,
+        memory: &Self::Memory,
+        velocity: &SVector<S, 3>,
+        a: S,
+        tangent_share: S,
+    ) -> Linearised<S, Linearisation<S>, 3> {
+        let placed = self.placed(pose, velocity);
+        let rate = S::one() / a;
+        let pull = self.pull(placed.turn);
+        let mut balance = self.inertia(rate) + self.give(&pull);
+        let way = Way { a, mass_rate: self.body.mass * rate, tangent_share };
+        let contacts =
+            self.contact_forces(&placed, &mut { *memory }, way, |pin| balance += spread(pin.lever, &pin.impedance));
+        Linearised {
+            force: self.total(placed.turn, contacts + pull * self.drive.force(t, velocity.y)),
+            linearisation: Linearisation { inverse: inverse(&balance), turn: placed.turn },
+        }
+    }
+
+    #[inline(always)]
+    fn solve(&self, linearisation: &Linearisation<S>, residual: &SVector<S, 3>) -> SVector<S, 3> {
+        let Linearisation { inverse, turn } = linearisation;
+        let (f_w, torque) = split(residual);
+        let (v_b, rotation) = split(&(inverse * join(turn.to_body(f_w), torque)));
+        join(turn.to_frame(v_b), rotation)
+    }
+
+    #[inline(always)]
+    fn impulse(&self, imbalance: &SVector<S, 3>) -> S {
+        let (p, l) = split(imbalance);
+        let at_lever = l * self.per_lever;
+        (p.dot(&p) + at_lever * at_lever).sqrt()
+    }
+
+    #[inline(always)]
+    fn differentiated(
+        &self,
+        t: S,
+        pose: &PlanarPose<S>,
+        memory: &Self::Memory,
+        velocity: &SVector<S, 3>,
+    ) -> Differentiated<S, Slopes<S>, 3> {
+        let placed = self.placed(pose, velocity);
+        let (mut damping, mut stiffness) = (Matrix3::zeros(), Matrix3::zeros());
+        let swirl = turned(placed.velocity_b);
+        let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
+        let contacts = self.contact_forces(&placed, &mut { *memory }, way, |pin| {
+            let PinForce { lever, force, impedance, .. } = pin;
+            damping += spread(*lever, impedance);
+            // Where the body turns, a displacement changes the velocity of its material at the pin.
+            let [x, z]: [[S; 2]; 2] = impedance.data.0;
+            let (x, z) = (Vector2::from(x), Vector2::from(z));
+            let carried = Matrix2::from_columns(&[z * placed.rotation, -x * placed.rotation]);
+            stiffness += spread(*lever, &(pin.stiffness + carried));
+            // A turn changes the velocity that the contact sees and takes the force along, which stays at the pin.
+            let turn = at(*lever, impedance * swirl) + at(Vector2::zeros(), turned(*force));
+            let stays = turned(*force);
+            let (left, right) = (Vector3::zeros(), Vector3::new(-stays.x, -stays.y, -stays.dot(&turned(*lever))));
+            stiffness -= Matrix3::from_columns(&[left, left, turn]);
+            stiffness += Matrix3::from_columns(&[left, left, right]).transpose();
+        });
+        let pull = self.pull(placed.turn);
+        let push = self.drive.force(t, velocity.y);
+        damping += self.give(&pull);
+        // The drive's force does not turn with the body.
+        stiffness[(2, 2)] += turned(self.point_b()).dot(&turned(Vector2::new(pull.x, pull.y))) * push;
+        let (per_time, torque_per_time) = split(&(pull * self.drive.force_rate(t)));
+        Differentiated {
+            force: self.total(placed.turn, contacts + pull * push),
+            per_time: join(placed.turn.to_frame(per_time), torque_per_time),
+            slopes: Slopes { damping, stiffness, turn: placed.turn },
+        }
+    }
+
+    #[inline(always)]
+    fn linearisation(&self, slopes: &Slopes<S>, a: S) -> Linearisation<S> {
+        let balance = self.inertia(S::one() / a) + slopes.damping + slopes.stiffness * a;
+        Linearisation { inverse: inverse(&balance), turn: slopes.turn }
+    }
+
+    #[inline(always)]
+    fn pushed(&self, slopes: &Slopes<S>, displacement: &SVector<S, 3>) -> SVector<S, 3> {
+        let (x_w, turn) = split(displacement);
+        let (force_b, torque) = split(&(slopes.stiffness * join(slopes.turn.to_body(x_w), turn)));
+        join(-slopes.turn.to_frame(force_b), -torque)
+    }
+
+    /// With the angle θ of [`PlanarPose`] moved explicitly, tan(θ/2) is what `moved` adds, so that θ̇ = ω·(1 + θ²/4).
+    #[inline(always)]
+    fn rate(&self, displacement: &SVector<S, 3>, velocity: &SVector<S, 3>) -> SVector<S, 3> {
+        let (v_w, rotation) = split(velocity);
+        let half = displacement.z * S::from_f64(0.5);
+        join(v_w, rotation + half * half * rotation)
+    }
+}

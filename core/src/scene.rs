@@ -1,0 +1,70 @@
+//! A scene as a constant: every unit of a production, until its tolerance level is known.
+
+use crate::{
+    Scalar, Vector3,
+    clearance::GapStatistics,
+    drive::Drive,
+    menu::{ContactData, FrictionData, SlideData},
+    slide::{Body, CONTACTS, PINS},
+};
+
+/// A slide over the production, SI units: what [`SlideData`] holds, but gaps by their statistics.
+///
+/// `slipfit kernel` writes one for a scene file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneData<S> {
+    /// Mass (kg).
+    pub mass: S,
+    /// Principal moments of inertia about the centre of mass (kg·m²), along the body's axes.
+    pub inertia_b: [S; 3],
+    /// Gravity (m/s²).
+    pub gravity_w: [S; 3],
+    /// Pins, from the centre of mass at the nominal pose (m).
+    pub pins_w: [[S; 3]; PINS],
+    /// Means of the gaps at the nominal pose (m), in the order of [`Body::gaps`]; [`ABSENT`](crate::slide::ABSENT) for
+    /// none.
+    pub gap_means: [S; CONTACTS],
+    /// Standard deviations of the gaps (m); 0 where there is none.
+    pub gap_deviations: [S; CONTACTS],
+    /// Contact law.
+    pub contact: ContactData<S>,
+    /// Friction law.
+    pub friction: FrictionData<S>,
+    /// Gain of the drive (N·s/m).
+    pub drive_gain: S,
+    /// Start and end of the drive's ramp (s).
+    pub drive_ramp: [S; 2],
+    /// Commanded speed at the end of the ramp (m/s).
+    pub drive_speed: S,
+    /// Where the drive pushes, from the centre of mass (m).
+    pub drive_point_b: [S; 3],
+}
+
+impl<S: Scalar> SceneData<S> {
+    /// The unit of tolerance level `n`: its gaps are x − n·σ (eq. 9), computed in `S`.
+    pub fn at(&self, n: S) -> SlideData<S> {
+        let mut gaps = self.gap_means;
+        for ((gap, mean), deviation) in gaps.iter_mut().zip(self.gap_means).zip(self.gap_deviations) {
+            *gap = GapStatistics { mean, deviation }.at(n);
+        }
+        let [ramp_start, ramp_end] = self.drive_ramp;
+        SlideData {
+            body: Body {
+                mass: self.mass,
+                inertia_b: Vector3::from(self.inertia_b),
+                gravity_w: Vector3::from(self.gravity_w),
+                pins_w: self.pins_w.map(Vector3::from),
+                gaps,
+            },
+            contact: self.contact,
+            friction: self.friction,
+            drive: Drive {
+                gain: self.drive_gain,
+                ramp_start,
+                ramp_end,
+                speed: self.drive_speed,
+                point_b: Vector3::from(self.drive_point_b),
+            },
+        }
+    }
+}

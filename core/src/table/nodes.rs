@@ -1,0 +1,242 @@
+//! The table's values: force and velocity of a node side by side, decoded where they lie.
+
+use super::{
+    ChannelRecord, TableError,
+    layout::{CHANNELS, VALUE_MOST},
+};
+
+/// What a channel is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ChannelKind {
+    /// Force (N).
+    Force,
+    /// Velocity (m/s).
+    Velocity,
+}
+
+impl ChannelKind {
+    /// All kinds, in the order in which a table has them.
+    pub const ALL: [Self; CHANNELS] = [Self::Force, Self::Velocity];
+
+    /// The quantity's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Force => "force",
+            Self::Velocity => "velocity",
+        }
+    }
+}
+
+/// How values are stored; the discriminant is what a table stores.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum Encoding {
+    /// As they are.
+    F32 = 1,
+    /// As multiples of the channel's scale.
+    I16 = 2,
+}
+
+impl Encoding {
+    /// All encodings.
+    pub const ALL: [Self; 2] = [Self::F32, Self::I16];
+
+    /// The encoding stored as `code`.
+    pub fn of(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|encoding| *encoding as u8 == code)
+    }
+
+    /// The type's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::I16 => "i16",
+        }
+    }
+
+    /// Size of a stored value (bytes).
+    pub fn size(self) -> usize {
+        match self {
+            Self::F32 => size_of::<f32>(),
+            Self::I16 => size_of::<i16>(),
+        }
+    }
+}
+
+/// Every node of a table where it lies, however it is stored.
+pub trait Nodes: Copy {
+    /// Force and velocity (N, m/s) at the `fractions` of the cell whose lowest node is `first`; nodes along an axis are
+    /// its stride apart.
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS];
+
+    /// Force and velocity (N, m/s) `fraction` of the way from the node `first` to the one that follows it.
+    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS];
+}
+
+/// Nodes of two f32.
+#[derive(Clone, Copy, Debug)]
+pub struct F32Nodes<'a>(&'a [[u8; 8]]);
+
+/// Nodes of two i16.
+#[derive(Clone, Copy, Debug)]
+pub struct I16Nodes<'a> {
+    nodes: &'a [[u8; 4]],
+    /// What integers are multiplied with.
+    scales: [f32; CHANNELS],
+}
+
+/// Nodes of either kind, known when the table is opened.
+#[derive(Clone, Copy, Debug)]
+pub enum AnyNodes<'a> {
+    /// Two f32 each.
+    F32(F32Nodes<'a>),
+    /// Two i16 each.
+    I16(I16Nodes<'a>),
+}
+
+impl<'a> AnyNodes<'a> {
+    /// The `count` nodes that `data` consists of.
+    ///
+    /// # Errors
+    /// If `data` has another length, or a value is out of bounds.
+    pub(super) fn new(
+        encoding: Encoding,
+        records: &[ChannelRecord; CHANNELS],
+        count: usize,
+        data: &'a [u8],
+    ) -> Result<Self, TableError> {
+        if count.checked_mul(CHANNELS * encoding.size()) != Some(data.len()) {
+            return Err(TableError::Header("length"));
+        }
+        // The scale bounds integers.
+        Ok(match encoding {
+            Encoding::F32 => {
+                let nodes = data.as_chunks().0;
+                for node in nodes {
+                    for (value, channel) in floats(node).into_iter().zip(ChannelKind::ALL) {
+                        if value.is_nan() || value.abs() > VALUE_MOST {
+                            return Err(TableError::Value(channel.name()));
+                        }
+                    }
+                }
+                Self::F32(F32Nodes(nodes))
+            }
+            Encoding::I16 => {
+                Self::I16(I16Nodes { nodes: data.as_chunks().0, scales: records.map(|record| record.scale) })
+            }
+        })
+    }
+}
+
+impl Nodes for AnyNodes<'_> {
+    #[inline(always)]
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
+        match self {
+            Self::F32(nodes) => nodes.within(first, strides, fractions),
+            Self::I16(nodes) => nodes.within(first, strides, fractions),
+        }
+    }
+
+    // Called for every level of a bank: one copy of either way will do.
+    #[inline(never)]
+    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
+        match self {
+            Self::F32(nodes) => nodes.between(first, fraction),
+            Self::I16(nodes) => nodes.between(first, fraction),
+        }
+    }
+}
+
+impl Nodes for F32Nodes<'_> {
+    #[inline(always)]
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
+        cell(self.0, first, strides, fractions, Self::blend)
+    }
+
+    #[inline(always)]
+    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
+        pair(self.0, first).map(|pair| Self::blend(pair, fraction)).unwrap_or_default()
+    }
+}
+
+impl F32Nodes<'_> {
+    #[inline(always)]
+    fn blend([a, b]: &[[u8; 8]; 2], fraction: f32) -> [f32; CHANNELS] {
+        blended(floats(a), floats(b), fraction)
+    }
+}
+
+impl Nodes for I16Nodes<'_> {
+    #[inline(always)]
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
+        self.scaled(cell(self.nodes, first, strides, fractions, Self::blend))
+    }
+
+    #[inline(always)]
+    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
+        self.scaled(pair(self.nodes, first).map(|pair| Self::blend(pair, fraction)).unwrap_or_default())
+    }
+}
+
+impl I16Nodes<'_> {
+    #[inline(always)]
+    fn blend([a, b]: &[[u8; 4]; 2], fraction: f32) -> [f32; CHANNELS] {
+        blended(integers(a), integers(b), fraction)
+    }
+
+    #[inline(always)]
+    fn scaled(&self, [force, velocity]: [f32; CHANNELS]) -> [f32; CHANNELS] {
+        [self.scales[0] * force, self.scales[1] * velocity]
+    }
+}
+
+#[inline(always)]
+fn pair<T>(nodes: &[T], first: usize) -> Option<&[T; 2]> {
+    nodes.get(first..)?.first_chunk()
+}
+
+/// What [`Nodes::within`] gives, with `blend` between two neighbours along the last axis.
+///
+/// Every node is there, since the grid's size was checked; but the compiler does not know and would add a panic.
+#[inline(always)]
+fn cell<T: Copy>(
+    nodes: &[T],
+    first: usize,
+    strides: &[usize],
+    fractions: &[f32],
+    blend: impl Fn(&[T; 2], f32) -> [f32; CHANNELS],
+) -> [f32; CHANNELS] {
+    let face = |first: usize, row: usize, across, along| {
+        let rest = nodes.get(first..)?;
+        let upper = rest.get(row..)?.first_chunk()?;
+        Some(blended(blend(rest.first_chunk()?, along), blend(upper, along), across))
+    };
+    let found = match (strides, fractions) {
+        ([row, _], [across, along]) => face(first, *row, *across, *along),
+        ([layer, row, _], [up, across, along]) => {
+            let lower = face(first, *row, *across, *along);
+            let upper = face(first.wrapping_add(*layer), *row, *across, *along);
+            lower.zip(upper).map(|(lower, upper)| blended(lower, upper, *up))
+        }
+        _ => None,
+    };
+    found.unwrap_or_default()
+}
+
+#[inline(always)]
+fn floats(&[a, b, c, d, e, f, g, h]: &[u8; 8]) -> [f32; CHANNELS] {
+    [f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h])]
+}
+
+#[inline(always)]
+fn integers(&[a, b, c, d]: &[u8; 4]) -> [f32; CHANNELS] {
+    [f32::from(i16::from_le_bytes([a, b])), f32::from(i16::from_le_bytes([c, d]))]
+}
+
+/// `fraction` of the way from `a` to `b`.
+#[inline(always)]
+fn blended(a: [f32; CHANNELS], b: [f32; CHANNELS], fraction: f32) -> [f32; CHANNELS] {
+    [a[0] + fraction * (b[0] - a[0]), a[1] + fraction * (b[1] - a[1])]
+}

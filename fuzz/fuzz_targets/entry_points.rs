@@ -1,0 +1,111 @@
+//! The C entry points, in any order, with any numbers, on objects made and not made: a status, never a crash.
+#![no_main]
+#![allow(unsafe_code, reason = "calls the library as C does")]
+
+use std::{mem::MaybeUninit, ptr};
+
+use libfuzzer_sys::fuzz_target;
+use slipfit_capi::*;
+use slipfit_core::table::layout;
+use slipfit_problems::cd_rom;
+
+/// An object's memory as C has it before it is made.
+fn zeroed<T>() -> T {
+    // SAFETY: the library's types are plain words and numbers.
+    unsafe { MaybeUninit::zeroed().assume_init() }
+}
+
+/// A scene that can be stepped.
+fn scene() -> slipfit_scene {
+    let data = cd_rom::data(0.0f32);
+    slipfit_scene {
+        step: 1e-3,
+        mass: data.body.mass,
+        inertia: data.body.inertia_b.into(),
+        gravity: data.body.gravity_w.into(),
+        pins: data.body.pins_w.map(Into::into),
+        gap_means: data.body.gaps,
+        gap_deviations: [2e-5; 16],
+        stiffness: data.contact.stiffness,
+        exponent: data.contact.exponent,
+        damping: data.contact.damping,
+        depth: data.contact.depth,
+        friction_law: SLIPFIT_FRICTION_REGULARISED,
+        friction_coefficient: 0.3,
+        friction_stick_band: 1e-4,
+        drive_gain: data.drive.gain,
+        drive_ramp: [data.drive.ramp_start, data.drive.ramp_end],
+        drive_speed: data.drive.speed,
+        drive_point: [0.0; 3],
+    }
+}
+
+/// Puts `bits` into one of the words of a value that is plain numbers.
+fn change<T: Copy>(value: &mut T, place: u32, bits: u32) {
+    let words = size_of::<T>() / size_of::<u32>();
+    // SAFETY: all bits will do for plain numbers, and the place is one of its words.
+    unsafe { ptr::from_mut(value).cast::<u32>().add(place as usize % words).write(bits) };
+}
+
+/// The checksum and the fixed fields that a table of this length has to have.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let length = bytes.len();
+    if length >= layout::HEADER_SIZE + layout::CHECKSUM_SIZE {
+        bytes[..4].copy_from_slice(&layout::MAGIC);
+        bytes[layout::VERSION_AT..][..2].copy_from_slice(&layout::VERSION.to_le_bytes());
+        bytes[layout::SCENE_HASH_AT..][..8].fill(0);
+        bytes[layout::LENGTH_AT..][..4].copy_from_slice(&(length as u32).to_le_bytes());
+        let body = length - layout::CHECKSUM_SIZE;
+        let checksum = layout::checksum(&bytes[..body]);
+        bytes[body..].copy_from_slice(&checksum.to_le_bytes());
+    }
+    bytes
+}
+
+fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
+    let (bytes, calls) = input;
+    let bytes = sealed(bytes);
+    let (mut predictor, mut table) = (zeroed::<slipfit_predictor>(), zeroed::<slipfit_table>());
+    let (mut monitor, mut bank) = (zeroed::<slipfit_monitor>(), zeroed::<slipfit_bank>());
+    let (mut said, mut found, mut spare) =
+        (zeroed::<slipfit_prediction>(), zeroed::<slipfit_lookup>(), zeroed::<slipfit_spare>());
+    let (mut report, mut estimate) = (zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
+    let (length, half) = (bytes.len() as u32, bytes.len() / 2);
+    let (mut scene, mut limits) = (scene(), zeroed::<slipfit_limits>());
+    limits.period = 1e-3;
+    limits.force_most = 3.0;
+    // SAFETY: every pointer is to a local of its type, or null; the bytes outlive the table.
+    unsafe {
+        for (call, x, y) in calls {
+            let sample = slipfit_sample { time: x, force: y, speed: y, command: x };
+            let status = match call % 16 {
+                0 => slipfit_predictor_init(&mut predictor, &scene, x),
+                1 => slipfit_predictor_step(&mut predictor),
+                2 => slipfit_predictor_read(&predictor, &mut said),
+                3 => slipfit_table_open(&mut table, bytes.as_ptr(), length, 0),
+                4 => {
+                    let second = bytes.as_ptr().add(half);
+                    slipfit_slots_open(&mut table, bytes.as_ptr(), second, half as u32, 0, &mut spare)
+                }
+                5 => slipfit_table_look_up(&table, x, y, &mut found),
+                6 => slipfit_table_check(&mut table, x.to_bits()),
+                7 => slipfit_monitor_init(&mut monitor, &table, x, &limits),
+                8 => slipfit_monitor_step(&mut monitor, &sample, &mut report),
+                9 => slipfit_bank_init(&mut bank, &table),
+                10 => slipfit_bank_add(&mut bank, &table, x, y),
+                11 => slipfit_bank_estimate(&bank, &table, &mut estimate),
+                12 => {
+                    change(&mut scene, x.to_bits(), y.to_bits());
+                    SLIPFIT_OK
+                }
+                13 => {
+                    change(&mut limits, x.to_bits(), y.to_bits());
+                    SLIPFIT_OK
+                }
+                14 => slipfit_predictor_init(ptr::null_mut(), &scene, x),
+                _ => slipfit_table_look_up(&table, x, y, ptr::null_mut()),
+            };
+            assert!((SLIPFIT_OK..=SLIPFIT_BANK_SAMPLES).contains(&status));
+        }
+    }
+});

@@ -1,0 +1,56 @@
+//! `slipfit kernel`: the scene as source text for firmware.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{Failure, SceneArguments, print, print_json, simulate::SteppingArguments};
+use crate::{
+    files,
+    force_table::scene_hash,
+    kernel_source::{EXTENSIONS, c_header, rust_source},
+};
+
+/// Writes the scene as a constant and a type, for firmware to compile.
+#[derive(Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// File to write; the extension says for whom: .rs for slipfit-core, .h for the C library
+    #[arg(short, long, value_name = "FILE", default_value = "scene.rs")]
+    output: PathBuf,
+    #[command(flatten)]
+    stepping: SteppingArguments,
+}
+
+#[derive(Serialize)]
+struct Report {
+    file: String,
+    scene_hash: String,
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        let scene = self.scene.load(&self.stepping.overrides())?;
+        let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let text = match extension.as_str() {
+            "rs" => rust_source(&scene),
+            "h" => c_header(&scene),
+            _ => {
+                let allowed = EXTENSIONS.join(", .");
+                return Err(Failure::Input(format!(
+                    "--output: a scene is not written as {extension:?}; allowed are .{allowed}"
+                )));
+            }
+        };
+        self.scene.check_output(&self.output)?;
+        files::write(&self.output, text.as_bytes())?;
+        let (file, scene_hash) = (self.output.display().to_string(), format!("{:016x}", scene_hash(&scene)));
+        if self.scene.json {
+            print_json(&Report { file, scene_hash })
+        } else {
+            print(&format!("{file}, scene hash {scene_hash}"))
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! The C library: one C program, compiled for the host and for the emulated Cortex-M4F, prints the same bits as Rust; it
+//! links only while no panic is reachable, and its image stays small and free of double precision.
+
+use std::{
+    fmt::Write,
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+    sync::LazyLock,
+};
+
+use slipfit::{
+    flash::export,
+    force_table::{self, Demand},
+    kernel_source,
+    scene::{CD_ROM_SLIDE, Override, Scene},
+    simulate::ScalarKind,
+};
+use slipfit_core::{
+    integrator::ImplicitEuler,
+    kernel::{Kernel, Report},
+    monitor::{LevelBank, Limits, Monitor, Sample, Verdict, Watch},
+    pose::Pose,
+    table::Table,
+};
+use slipfit_problems::cd_rom;
+use slipfit_tests::cross::{self, TARGET, cargo, finished, printed};
+
+const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// How C is compiled: as strictly as it goes, and never with fused multiply-add.
+const STRICT: [&str; 8] =
+    ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2", "-ffp-contract=off", "-Wno-unused-variable"];
+
+static SCENE: LazyLock<Scene> = LazyLock::new(|| {
+    let set = ["run.duration=1500", "run.step=\"1ms\"", "run.integrator=implicit-euler"];
+    let overrides: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
+    let levels = Override::option("", "sweep.n", "1:3.5:0.5");
+    Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[overrides, vec![levels]].concat()).expect("the shipped scene")
+});
+
+static TABLE: LazyLock<Vec<u8>> =
+    LazyLock::new(|| force_table::make(&SCENE, ScalarKind::F64, Demand::Full, || ()).expect("its table").0.bytes);
+
+/// A folder with what the program includes.
+static HEADERS: LazyLock<PathBuf> = LazyLock::new(|| {
+    let folder = Path::new(FOLDER).join("capi");
+    fs::create_dir_all(&folder).expect("a folder of the test's own");
+    let table = export::render("h", &TABLE, 0).expect("a header");
+    fs::write(folder.join("table.h"), table).expect("the folder takes files");
+    fs::write(folder.join("scene.h"), kernel_source::c_header(&SCENE)).expect("the folder takes files");
+    folder
+});
+
+/// The library, built with `options`.
+fn library(options: &[&str]) -> PathBuf {
+    printed(cargo(FOLDER).args(["build", "--release", "-p", "slipfit-capi"]).args(options));
+    let target = if options.contains(&TARGET) { TARGET } else { "" };
+    Path::new(FOLDER).join("cross").join(target).join("release/libslipfit_capi.a")
+}
+
+/// A C compiler that finds every header.
+fn compiler(name: &str) -> Command {
+    let mut compiler = Command::new(name);
+    compiler.current_dir(ROOT).args(STRICT).args(["-Icore/capi/include", "-I"]).arg(&*HEADERS);
+    compiler
+}
+
+/// The compiler of an image for the target, up to its libraries.
+fn compiler_for_target(image: &Path) -> Command {
+    cross::require_c_compiler();
+    let mut compiler = compiler("arm-none-eabi-gcc");
+    compiler
+        .args(["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16", "-ffreestanding", "-nostdlib"])
+        .args(["-Wl,--gc-sections", "-Tcore/capi/examples/m4.ld", "-L."])
+        .args(["core/capi/examples/program.c", "core/capi/examples/m4.c"])
+        .arg("-o")
+        .arg(image);
+    compiler
+}
+
+/// The program's image for the target.
+static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
+    cross::require_target();
+    let image = Path::new(FOLDER).join("capi.elf");
+    let library = library(&["--target", TARGET]);
+    printed(compiler_for_target(&image).arg(library).arg("-lgcc"));
+    image
+});
+
+#[test]
+fn the_same_bits_from_c_on_host_and_target_and_from_rust() {
+    let program = Path::new(FOLDER).join("capi-program");
+    let mut compiler = compiler("cc");
+    compiler.args(["core/capi/examples/program.c", "core/capi/examples/desk.c", "-o"]).arg(&program);
+    printed(compiler.arg(library(&[])));
+    let on_host = printed(&mut Command::new(&program));
+    let expected = in_rust();
+    assert!(on_host.starts_with(&expected), "C on the left, Rust on the right:\n{on_host}\n{expected}");
+
+    cross::require_emulator();
+    let on_target = printed(Command::new(Path::new(ROOT).join(".cargo/qemu")).arg(&*IMAGE));
+    assert_eq!(on_host, on_target);
+
+    let refusals: Vec<_> = on_host.strip_prefix(&expected).unwrap_or_default().lines().collect();
+    let codes = ["null", "misaligned", "not made", "scene", "closed then", "truncated", "foreign"].into_iter();
+    let codes = codes.zip([1, 2, 4, 23, 4, 16, 17]).map(|(name, code)| format!("{name} {code:016x}"));
+    assert_eq!(refusals, codes.collect::<Vec<_>>());
+}
+
+/// FNV-1a over the bits of numbers.
+fn hashed(numbers: impl IntoIterator<Item = f32>) -> u64 {
+    let bytes = numbers.into_iter().flat_map(|number| number.to_bits().to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
+/// What the C program prints of its predictions, computed by the kernel itself.
+fn in_rust() -> String {
+    let kernel = |n| {
+        let unit = kernel_source::scene_data(&SCENE).at(n);
+        Kernel::<f32, _, ImplicitEuler<4>>::new(cd_rom::from_data(&unit), 1e-3).expect("the step is in bounds")
+    };
+    let run = |n: f32, steps: u32| {
+        let kernel = kernel(n);
+        let mut state = kernel.at_rest(Pose::nominal());
+        (0..steps).map(move |_| {
+            let Report { residual, .. } = kernel.step(&mut state);
+            let (time, velocity) = (kernel.time(state.steps), state.motion.velocity.z);
+            [time, kernel.mechanism().drive().force(time, velocity), velocity, residual]
+        })
+    };
+    let mut text = String::new();
+    let mut line = |name: &str, value: u64| {
+        let _ = writeln!(text, "{name} {value:016x}");
+    };
+    line("predicted", hashed(run(2.5, 100_000).flatten()));
+    line("failed", 0);
+
+    let table = Table::<2>::open(&TABLE).expect("its own table");
+    let limits = Limits {
+        period: 1e-3,
+        blind: 0.2,
+        force_most: 3.5,
+        hold: 0.01,
+        smoothing: 0.02,
+        band: 0.5,
+        margin: 0.01,
+        rise: 0.5,
+    };
+    let monitor = Monitor::new(table, 2.25, limits).expect("the limits are in bounds");
+    let mut bank = LevelBank::<96>::new(&table).expect("the table has few levels");
+    let (mut watch, mut verdicts) = (Watch::default(), [0; 4]);
+    let (mut looked_up, mut watched) = (Vec::new(), Vec::new());
+    for [time, force, speed, _] in run(2.25, 1500) {
+        let found = table.lookup([2.25, time]);
+        looked_up.extend([found.force, found.velocity, f32::from(u8::from(found.clamped))]);
+        let command = speed + force / kernel_source::scene_data(&SCENE).drive_gain;
+        let report = monitor.step(&mut watch, &Sample { time, force, speed, command });
+        verdicts[match report.verdict {
+            Verdict::Blind => 0,
+            Verdict::Free => 1,
+            Verdict::Tight => 2,
+            Verdict::Jam => 3,
+        }] += 1;
+        watched.extend([report.tightness.excess, report.tightness.band]);
+        bank.add(&table, time, force);
+    }
+    let estimate = bank.estimate(&table).expect("a stroke of samples");
+    line("looked up", hashed(looked_up));
+    line("watched", hashed(watched));
+    for (name, count) in ["blind", "free", "tight", "jam"].into_iter().zip(verdicts) {
+        line(name, count);
+    }
+    let [low, high] = estimate.interval;
+    line("estimate", hashed([estimate.level, low, high]));
+    line("failed", 0);
+    text
+}
+
+#[test]
+fn a_program_links_only_without_panics() {
+    // It links as it is: that is what IMAGE does.
+    assert!(IMAGE.exists());
+    // The other way round: with one panic in reach it does not, and for this reason.
+    let library =
+        library(&["--target", TARGET, "--features", "reachable-panic", "--target-dir", &format!("{FOLDER}/panic")]);
+    let library = Path::new(FOLDER).join("panic").join(library.strip_prefix(Path::new(FOLDER).join("cross")).unwrap());
+    let image = Path::new(FOLDER).join("panics.elf");
+    let mut compiler = compiler_for_target(&image);
+    let output = finished(compiler.arg("-Wl,--undefined=slipfit_panic").arg(library).arg("-lgcc"));
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && errors.contains("slipfit_panic_is_reachable"), "{errors}");
+}
+
+/// Symbols of the image with their sizes (bytes), read-only and code.
+fn symbols() -> Vec<(String, u32)> {
+    let text = printed(Command::new("arm-none-eabi-nm").args(["--print-size", "--demangle"]).arg(&*IMAGE));
+    let parsed = text.lines().filter_map(|line| {
+        let mut words = line.splitn(4, ' ').skip(1);
+        let (size, kind, name) = (words.next()?, words.next()?, words.next()?);
+        let size = u32::from_str_radix(size, 16).ok()?;
+        ["t", "T", "r", "R", "W"].contains(&kind).then(|| (name.to_owned(), size))
+    });
+    parsed.collect()
+}
+
+#[test]
+fn the_linked_image_has_no_double_precision() {
+    let all = printed(Command::new("arm-none-eabi-nm").arg(&*IMAGE));
+    for soft in
+        ["__aeabi_d", "__aeabi_f2d", "__aeabi_i2d", "__aeabi_ui2d", "__aeabi_l2d", "__aeabi_cd", "__adddf3", "__muldf3"]
+    {
+        assert!(!all.contains(soft), "{soft}:\n{all}");
+    }
+    let code = printed(Command::new("arm-none-eabi-objdump").args(["-d", "--no-show-raw-insn"]).arg(&*IMAGE));
+    assert!(!code.contains(".f64"), "an instruction of double precision");
+    assert!(code.contains(".f32"), "single precision is what there is");
+}
+
+/// Code and constants of the library after `--gc-sections`: everything but the program and its platform.
+#[test]
+fn the_library_takes_the_recorded_flash() {
+    let program = [
+        "slipfit_table_bytes",
+        "slipfit_this_scene",
+        "vectors",
+        "main",
+        "put",
+        "reset",
+        "run",
+        "fault",
+        "put_hex",
+        "add",
+    ];
+    let library: Vec<_> = symbols().into_iter().filter(|(name, _)| !program.contains(&name.as_str())).collect();
+    let whole: u32 = library.iter().map(|(_, size)| size).sum();
+    let exported = library.iter().filter(|(name, _)| name.starts_with("slipfit_"));
+    let mut lines: Vec<_> = exported.map(|(name, size)| format!("{size:6} {name}")).collect();
+    lines.sort_unstable_by(|a, b| b.cmp(a));
+    let step = library.iter().find(|(name, _)| name == "slipfit_predictor_step").map_or(0, |(_, size)| *size);
+    assert!(whole - step <= 16 * 1024, "{whole} bytes\n{library:#?}");
+    insta::assert_snapshot!("flash", format!("{whole:6} bytes in all\n{}\n", lines.join("\n")));
+}

@@ -1,0 +1,140 @@
+//! What the interrupt does once a millisecond: measure, predict, watch.
+
+use slipfit_core::{
+    ParameterError,
+    kernel::{Kernel, StateOf},
+    law::{Exact, Impact, ThreeHalves},
+    menu::ContactData,
+    monitor::{LevelBank, Limits, Monitor, Sample, Verdict, Watch},
+    pose::Pose,
+    sampling::{
+        normal::score,
+        stream::{Rng, Xoshiro256PlusPlus, unit_stream},
+    },
+    slide::Slide,
+    table::{F32Nodes, Patrol, Table},
+};
+
+use crate::scene::{Predictor, SCENE, STEP, Unit, predictor};
+
+/// The flash table and the region it lies in.
+pub type Flashed = (Table<'static>, &'static [u8]);
+
+/// Bytes of the table that are checked in a period: once round in a second.
+const PATROL: usize = 256;
+
+/// Steps in which the unit itself moves through a period, finer than the predictor's.
+const PLANT_STEPS: u32 = 4;
+
+/// A unit on its rig.
+#[derive(Clone, Copy, Debug)]
+pub struct Rig {
+    /// Its tolerance level.
+    pub level: f32,
+    /// Its friction coefficient over the scene's.
+    pub friction: f32,
+    /// The tolerance level it is taken for.
+    pub taken_for: f32,
+    /// Standard deviation of the noise of its force sensor (N).
+    pub noise: f32,
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+/// What there is to say of a period.
+#[derive(Clone, Copy, Debug)]
+pub struct Record {
+    /// Periods since the motion's start.
+    pub periods: u32,
+    /// Measured force (N).
+    pub measured: f32,
+    /// Force that the kernel predicts for the level the unit is taken for (N).
+    pub predicted: f32,
+    /// Force that the table has for it (N).
+    pub expected: f32,
+    /// The monitor's verdict.
+    pub verdict: Verdict,
+    /// What the clock counted while predicting and watching.
+    pub cost: u32,
+}
+
+/// The plant and all that watches it.
+pub struct Control {
+    plant: Predictor,
+    plant_state: StateOf<f32, Unit, 6>,
+    random: Xoshiro256PlusPlus,
+    noise: f32,
+    predictor: Predictor,
+    state: StateOf<f32, Unit, 6>,
+    monitor: Monitor<'static, F32Nodes<'static>>,
+    watch: Watch,
+    /// Over all levels of the table.
+    pub bank: LevelBank<32>,
+    table: Table<'static, 2, F32Nodes<'static>>,
+    patrol: Patrol,
+    region: &'static [u8],
+    /// Rounds in which the table had changed.
+    pub damaged: u32,
+}
+
+/// The kernel of a unit whose friction is `factor` times the scene's.
+fn plant(level: f32, factor: f32) -> Result<Predictor, ParameterError<f32>> {
+    let unit = SCENE.at(level);
+    let ContactData { stiffness, damping, depth, .. } = unit.contact;
+    let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
+    let friction = Exact::new(unit.friction.coefficient() * factor)?;
+    Kernel::new(Slide::new(unit.body, contact, friction, unit.drive)?, STEP / PLANT_STEPS as f32)
+}
+
+impl Control {
+    /// At rest at the motion's start.
+    ///
+    /// # Panics
+    /// If the rig is out of bounds or the table is not one in f32 over few levels and time.
+    pub fn new(rig: &Rig, (flashed, region): Flashed) -> Self {
+        let plant = plant(rig.level, rig.friction).expect("the unit is in bounds");
+        let predictor = predictor(rig.taken_for).expect("the level is in bounds");
+        let table = flashed.f32().expect("the table's values are f32");
+        let limits = Limits { blind: 0.2, force_most: 3.5, ..Limits::for_noise(STEP, rig.noise) };
+        Self {
+            plant_state: plant.at_rest(Pose::nominal()),
+            plant,
+            random: unit_stream(rig.seed, 0),
+            noise: rig.noise,
+            state: predictor.at_rest(Pose::nominal()),
+            predictor,
+            monitor: Monitor::new(table, rig.taken_for, limits).expect("the limits are in bounds"),
+            watch: Watch::default(),
+            bank: LevelBank::new(&table).expect("the table is over few levels and time"),
+            table,
+            patrol: Patrol::new(&flashed),
+            region,
+            damaged: 0,
+        }
+    }
+
+    /// One period. `clock` counts; what simulates the unit and its sensor is not counted.
+    pub fn tick(&mut self, clock: impl Fn() -> u32) -> Record {
+        for _ in 0..PLANT_STEPS {
+            self.plant.step(&mut self.plant_state);
+        }
+        let drive = self.plant.mechanism().drive();
+        // Of the predictor's step that follows.
+        let time = self.predictor.time(self.state.steps.saturating_add(1));
+        let speed = self.plant_state.motion.velocity.z;
+        let measured = drive.force(time, speed) + self.noise * score::<f32>(self.random.next_u64());
+        let sample = Sample { time, force: measured, speed, command: drive.command(time) };
+
+        let start = clock();
+        self.predictor.step(&mut self.state);
+        let predicted = self.predictor.mechanism().drive().force(time, self.state.motion.velocity.z);
+        let report = self.monitor.step(&mut self.watch, &sample);
+        self.bank.add(&self.table, time, measured);
+        if self.patrol.check(self.region, PATROL).is_err() {
+            self.damaged = self.damaged.saturating_add(1);
+        }
+        let cost = clock().wrapping_sub(start);
+        let (periods, expected) = (self.state.steps, report.tightness.expected);
+        Record { periods, measured, predicted, expected, verdict: report.verdict, cost }
+    }
+}

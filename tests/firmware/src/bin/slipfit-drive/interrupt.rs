@@ -1,0 +1,78 @@
+//! The system timer's interrupt, and what it shares with the main loop.
+
+use core::cell::RefCell;
+
+use cortex_m::peripheral::SYST;
+use cortex_m_rt::exception;
+use critical_section::Mutex;
+use heapless::Deque;
+use slipfit_firmware::board::{Board, TICK};
+
+use crate::{
+    control::{Control, Record},
+    program::{PERIODS, Ticking},
+};
+
+/// Time of an instruction (ns): what this image's emulator is told by `-icount shift=3`, fast enough for 1 kHz.
+const INSTRUCTION: u32 = 8;
+
+/// Ticks of a period of 1 ms.
+const PERIOD: u32 = 1_000_000 / TICK;
+
+/// What the interrupt works on, and what it has to say.
+struct Shared {
+    control: Option<Control>,
+    left: u32,
+    records: Deque<Record, 4>,
+    /// Records that the main loop was too slow for.
+    lost: u32,
+}
+
+static SHARED: Mutex<RefCell<Shared>> =
+    Mutex::new(RefCell::new(Shared { control: None, left: 0, records: Deque::new(), lost: 0 }));
+
+fn with<T>(work: impl FnOnce(&mut Shared) -> T) -> T {
+    critical_section::with(|section| work(&mut SHARED.borrow_ref_mut(section)))
+}
+
+#[exception]
+fn SysTick() {
+    with(|shared| {
+        let Some(control) = shared.control.as_mut().filter(|_| shared.left > 0) else { return };
+        // The timer counts down, once a period.
+        let record = control.tick(|| PERIOD - SYST::get_current());
+        shared.left -= 1;
+        shared.lost += u32::from(shared.records.push_back(record).is_err());
+    });
+}
+
+impl Ticking for Board {
+    fn ticks(&mut self, control: Control, mut show: impl FnMut(&mut Self, &Record)) -> Control {
+        with(|shared| {
+            shared.control = Some(control);
+            shared.left = PERIODS;
+        });
+        self.tick_every(PERIOD);
+        loop {
+            let (record, is_over) = with(|shared| (shared.records.pop_front(), shared.left == 0));
+            match record {
+                Some(record) => show(self, &record),
+                None if is_over => break,
+                None => cortex_m::asm::wfi(),
+            }
+        }
+        self.tick_no_more();
+        with(|shared| {
+            assert_eq!(shared.lost, 0, "the main loop was too slow");
+            shared.control.take().expect("it was put there above")
+        })
+    }
+
+    fn cost(&self, record: &Record) -> Option<u32> {
+        Some(record.cost * TICK / INSTRUCTION)
+    }
+
+    fn deepest_stack(&mut self) -> Option<u32> {
+        Some(self.deepest_stack())
+    }
+}

@@ -1,0 +1,50 @@
+//! A drive at work on a Cortex-M4F: a 1 kHz interrupt predicts and watches a simulated unit, the main loop prints.
+//!
+//! `cargo qemu-drive TABLE` runs the image with a table of the scene in `tests/reference/scene.rs`.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod control;
+mod program;
+#[rustfmt::skip]
+#[allow(dead_code, reason = "its hash is that of a table of its own step")]
+#[path = "../../../../reference/scene.rs"]
+mod scene;
+
+#[cfg(target_os = "none")]
+mod interrupt;
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    slipfit_firmware::board::boot(program::run)
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() -> std::io::Result<()> {
+    slipfit_firmware::desk::boot(program::run)
+}
+
+/// On the desk periods follow each other at once.
+#[cfg(not(target_os = "none"))]
+impl program::Ticking for slipfit_firmware::desk::Desk {
+    fn ticks(
+        &mut self,
+        mut control: control::Control,
+        mut show: impl FnMut(&mut Self, &control::Record),
+    ) -> control::Control {
+        for _ in 0..program::PERIODS {
+            let record = control.tick(|| 0);
+            show(self, &record);
+        }
+        control
+    }
+
+    /// The desk's clock stands still.
+    fn cost(&self, record: &control::Record) -> Option<u32> {
+        (record.cost > 0).then_some(record.cost)
+    }
+
+    fn deepest_stack(&mut self) -> Option<u32> {
+        None
+    }
+}

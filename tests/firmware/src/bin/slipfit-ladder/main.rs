@@ -1,0 +1,17 @@
+//! What a step takes, for a ladder of scene types on a Cortex-M4F.
+//!
+//! `cargo qemu-ladder` runs the image.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod program;
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    slipfit_firmware::board::boot(program::run)
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() -> std::io::Result<()> {
+    slipfit_firmware::desk::boot(program::run)
+}

@@ -1,0 +1,148 @@
+//! A ladder of scene types, each with less than the one above: what a scene does not need is not paid for.
+
+use core::{fmt::Display, hint::black_box};
+
+use slipfit_core::{
+    Vector2,
+    axis::AxisBody,
+    drive::Drive,
+    integrator::ImplicitEuler,
+    kernel::{Kernel, Report, StateOf},
+    law::{Elastic, Exact, Friction, Frictionless, Impact, Linear, Pad, Power, Regularised, Slot, ThreeHalves},
+    mechanism::Mechanism,
+    menu::SlideData,
+    planar::{Planar, PlanarBody, PlanarPose},
+    pose::Pose,
+    slide::{PINS, Slide},
+};
+use slipfit_problems::cd_rom::{self, STICK_BAND};
+
+use slipfit_firmware::{
+    count::Count,
+    fingerprint::Fingerprint,
+    machine::{Machine, print},
+};
+
+/// The scheme of every rung.
+type Scheme = ImplicitEuler<4>;
+
+/// Step (s), and steps that are counted.
+const STEP: f32 = 1e-3;
+const STEPS: u32 = 200;
+
+/// Coefficient of friction, where there is any.
+const COEFFICIENT: f32 = 0.3;
+
+/// Tolerance level of every rung.
+const LEVEL: f32 = 2.5;
+
+type Unit<E, F> = Slide<f32, E, F>;
+type Flat = Planar<f32, Slot<f32>, ThreeHalves<f32>, Frictionless, PINS>;
+type Driven = AxisBody<f32, ThreeHalves<f32>, Slot<f32>, Drive<f32>>;
+type Ball = AxisBody<f32, Linear<f32>, Pad<f32>>;
+
+/// A step of mechanism `M`.
+type StepFn<M, const D: usize> = fn(&Kernel<f32, M, Scheme>, &mut StateOf<f32, M, D>) -> Report<f32>;
+
+/// The step of one rung as a controller calls it: a function of its own, whose size can be told.
+macro_rules! rungs {
+    ($($name:ident: $mechanism:ty, $axes:literal;)*) => {$(
+        #[inline(never)]
+        fn $name(kernel: &Kernel<f32, $mechanism, Scheme>, state: &mut StateOf<f32, $mechanism, $axes>) -> Report<f32> {
+            kernel.step(state)
+        }
+    )*};
+}
+
+rungs! {
+    slide_general_exponent: Unit<Power<f32>, Exact<f32>>, 6;
+    slide_exact: Unit<ThreeHalves<f32>, Exact<f32>>, 6;
+    slide_smoothed: Unit<ThreeHalves<f32>, Regularised<f32>>, 6;
+    slide_frictionless: Unit<ThreeHalves<f32>, Frictionless>, 6;
+    planar_frictionless: Flat, 3;
+    axis_slot_driven: Driven, 1;
+    axis_pad_linear: Ball, 1;
+}
+
+/// Runs 200 steps of 1 ms on every rung.
+pub fn run(machine: &mut impl Machine, _: &[u8]) {
+    let exact = Exact::new(COEFFICIENT).expect("the law is in bounds");
+    let smoothed = Regularised::new(COEFFICIENT, STICK_BAND as f32).expect("the law is in bounds");
+    let data = cd_rom::data(LEVEL);
+    let law = data.contact;
+    let power = Power::new(law.stiffness, law.exponent).expect("the law is in bounds");
+    let three_halves = ThreeHalves::new(law.stiffness).expect("the law is in bounds");
+    let (nominal, drive) = (Pose::nominal(), data.drive);
+    rung(machine, "slide_general_exponent", slide(power, exact), nominal, slide_general_exponent);
+    rung(machine, "slide_exact", slide(three_halves, exact), nominal, slide_exact);
+    rung(machine, "slide_smoothed", slide(three_halves, smoothed), nominal, slide_smoothed);
+    rung(machine, "slide_frictionless", slide(three_halves, Frictionless), nominal, slide_frictionless);
+
+    let contact = impact(three_halves);
+    let body = PlanarBody {
+        mass: data.body.mass,
+        inertia: data.body.inertia_b.y,
+        gravity_w: Vector2::zeros(),
+        pins_w: data.body.pins_w.map(|pin| Vector2::new(pin.x, pin.z)),
+        stops: [0, 1, 2, 3].map(|pin| {
+            let [left, right] = [data.body.gaps[4 * pin], data.body.gaps[4 * pin + 1]];
+            Slot::new(left, right).expect("the gaps are in bounds")
+        }),
+    };
+    let flat = Planar::new(body, contact, Frictionless, drive).expect("the body is in bounds");
+    rung(machine, "planar_frictionless", flat, PlanarPose::nominal(), planar_frictionless);
+
+    // Off its slot's middle, and pushed against the end.
+    let slot = Slot::new(1e-5, 1e-4).expect("the gaps are in bounds");
+    let driven = AxisBody::driven(data.body.mass, 0.0, slot, contact, drive).expect("the body is in bounds");
+    rung(machine, "axis_slot_driven", driven, 0.0, axis_slot_driven);
+    let linear = Linear::new(2e4).expect("the law is in bounds");
+    let ball = AxisBody::new(data.body.mass, -9.81, 0.0, impact(linear)).expect("the body is in bounds");
+    rung(machine, "axis_pad_linear", ball, 1e-3, axis_pad_linear);
+}
+
+fn impact<E: Elastic<f32>>(elastic: E) -> Impact<f32, E> {
+    let law = cd_rom::data(LEVEL).contact;
+    Impact::new(elastic, law.damping, law.depth).expect("the law is in bounds")
+}
+
+fn slide<E: Elastic<f32>, F: Friction<f32>>(elastic: E, friction: F) -> Unit<E, F> {
+    let SlideData { body, drive, .. } = cd_rom::data(LEVEL);
+    Slide::new(body, impact(elastic), friction, drive).expect("the slide is in bounds")
+}
+
+/// Steps `mechanism` from `pose` and says what that takes.
+fn rung<M: Mechanism<f32, D>, const D: usize>(
+    machine: &mut impl Machine,
+    name: impl Display,
+    mechanism: M,
+    pose: M::Pose,
+    step: StepFn<M, D>,
+) {
+    let kernel = black_box(Kernel::new(mechanism, STEP).expect("the step is in bounds"));
+    let mut state = kernel.at_rest(pose);
+    let (mut count, mut velocities) = (Count::default(), Fingerprint::default());
+    while state.steps < STEPS {
+        count.add(counted(machine, &kernel, &mut state, step));
+        state.motion.velocity.iter().for_each(|velocity| velocities.add(*velocity));
+    }
+    let (parameters, bytes) = (size_of_val(&kernel), size_of_val(&state));
+    print(machine, format_args!("{name}: parameters {parameters} bytes, state {bytes} bytes, {velocities}"));
+    if let Some(range) = count.range() {
+        print(machine, format_args!("instructions of {name}: {range}"));
+    }
+    if let Some(bytes) = machine.stack(|| _ = black_box(step(&kernel, &mut state))) {
+        print(machine, format_args!("stack of {name}: {bytes} bytes"));
+    }
+}
+
+/// Instructions of one step. A function of its own, so that what is around the step is the same in every pass of a loop.
+#[inline(never)]
+fn counted<K, T>(
+    machine: &mut impl Machine,
+    kernel: &K,
+    state: &mut T,
+    step: fn(&K, &mut T) -> Report<f32>,
+) -> Option<u32> {
+    machine.instructions(|| _ = black_box(step(kernel, state)))
+}

@@ -1,0 +1,11 @@
+//! What the images share: the board they run on, and the desk on which the same programs print what they must print.
+#![cfg_attr(target_os = "none", no_std)]
+
+pub mod count;
+pub mod fingerprint;
+pub mod machine;
+
+#[cfg(target_os = "none")]
+pub mod board;
+#[cfg(not(target_os = "none"))]
+pub mod desk;

@@ -1,0 +1,69 @@
+//! What `slipfit kernel` writes compiles, and its kernel is the menu's, bit for bit.
+
+use std::{fs, path::Path};
+
+use slipfit::{
+    kernel_source::{rust_source, scene_data},
+    scene::{CD_ROM_SLIDE, Override, Scene},
+};
+use slipfit_core::{
+    integrator::ImplicitEuler,
+    kernel::Kernel,
+    law::{Elastic, Friction},
+    menu::SlideVisitor,
+    pose::Pose,
+    slide::Slide,
+};
+
+#[rustfmt::skip]
+#[path = "reference/scene.rs"]
+mod scene;
+
+fn described() -> Scene {
+    let set = ["friction.law=exact", "run.step=\"1ms\"", "run.integrator=implicit-euler"].map(Override::set);
+    Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &set).expect("the shipped scene")
+}
+
+#[test]
+fn the_committed_scene_is_current() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/scene.rs");
+    let found = rust_source(&described());
+    if std::env::var_os("SLIPFIT_WRITE_SCENE").is_some() {
+        fs::write(&path, &found).expect("the repository takes files");
+    }
+    let committed = fs::read_to_string(&path).expect("a file of the repository");
+    assert!(committed == found, "to write it: SLIPFIT_WRITE_SCENE=1 cargo test --test kernel");
+}
+
+/// Bits of a velocity after every step.
+struct Bits;
+
+impl SlideVisitor<f32> for Bits {
+    type Output = Vec<u32>;
+
+    fn visit<E: Elastic<f32>, F: Friction<f32>>(self, slide: Slide<f32, E, F>) -> Vec<u32> {
+        let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(slide, 1e-3).expect("the step is in bounds");
+        let mut state = kernel.at_rest(Pose::nominal());
+        let step = |_| {
+            kernel.step(&mut state);
+            state.motion.velocity.z.to_bits()
+        };
+        (0..1500).map(step).collect()
+    }
+}
+
+#[test]
+fn its_kernel_is_the_menus() {
+    assert_eq!(scene_data(&described()), scene::SCENE);
+    for n in [-3.0f32, 0.0, 2.5, 5.0] {
+        let kernel = scene::predictor(n).expect("the scene is in bounds");
+        let mut state = kernel.at_rest(Pose::nominal());
+        let expected = scene::SCENE.at(n).visit(Bits).expect("the scene is in bounds");
+        assert!(expected.iter().all(|bits| {
+            kernel.step(&mut state);
+            state.motion.velocity.z.to_bits() == *bits
+        }));
+    }
+    assert!(scene::predictor(f32::NAN).is_err() && scene::predictor(1e9).is_err());
+    assert_ne!(scene::SCENE_HASH, 0);
+}

@@ -1,0 +1,124 @@
+//! What a scene does not need is left out: a ladder of scene types on the emulated Cortex-M4F, each cheaper than the one
+//! above.
+
+use std::{collections::BTreeMap, fmt::Write, path::Path, process::Command, sync::LazyLock};
+
+use slipfit_tests::cross::{self, TARGET, cargo, printed};
+
+const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
+
+/// Scene types, from the dearest to the cheapest.
+const RUNGS: [&str; 7] = [
+    "slide_general_exponent",
+    "slide_exact",
+    "slide_smoothed",
+    "slide_frictionless",
+    "planar_frictionless",
+    "axis_slot_driven",
+    "axis_pad_linear",
+];
+
+/// What the image printed.
+static ON_TARGET: LazyLock<String> = LazyLock::new(|| {
+    cross::require_target();
+    cross::require_emulator();
+    printed(ladder().args(["--release", "--target", TARGET]))
+});
+
+fn ladder() -> Command {
+    let mut cargo = cargo(FOLDER);
+    cargo.args(["run", "-p", "slipfit-firmware", "--bin", "slipfit-ladder"]);
+    cargo
+}
+
+/// The machine code of every rung's step, a line an instruction.
+static CODE: LazyLock<BTreeMap<&str, String>> = LazyLock::new(|| {
+    // It has been built.
+    assert!(!ON_TARGET.is_empty());
+    cross::require_c_compiler();
+    let image = Path::new(FOLDER).join("cross").join(TARGET).join("release/slipfit-ladder");
+    let all =
+        printed(Command::new("arm-none-eabi-objdump").args(["-d", "--no-show-raw-insn", "--demangle"]).arg(image));
+    let code = |rung| {
+        let mut bodies =
+            all.split("\n\n").filter(|body| body.lines().any(|line| line.ends_with(&format!("::{rung}>:"))));
+        let body = bodies.next().unwrap_or_else(|| panic!("no function of its own: {rung}"));
+        (rung, body.lines().filter(|line| line.contains(":\t")).flat_map(|line| [line, "\n"]).collect())
+    };
+    RUNGS.map(code).into()
+});
+
+/// A rung's costs.
+#[derive(Clone, Copy, Debug)]
+struct Costs {
+    instructions: u32,
+    code: u32,
+    stack: u32,
+    state: u32,
+    parameters: u32,
+}
+
+fn costs(rung: &str) -> Costs {
+    let number = |before: &str, after: &str| -> u32 {
+        let mut found =
+            ON_TARGET.lines().filter_map(|line| line.split_once(before)?.1.split_once(after)?.0.parse().ok());
+        found.next().unwrap_or_else(|| panic!("no number after {before}:\n{}", *ON_TARGET))
+    };
+    let address = |line: &str| u32::from_str_radix(line.split_once(':')?.0.trim(), 16).ok();
+    let mut addresses = CODE[rung].lines().map(|line| address(line).expect("an address"));
+    let (first, last) = (addresses.next().expect("code"), addresses.next_back().expect("code"));
+    Costs {
+        instructions: number(&format!("instructions of {rung}: "), ", the same every time"),
+        code: last + 4 - first,
+        stack: number(&format!("stack of {rung}: "), " bytes"),
+        state: {
+            let line = ON_TARGET.lines().find(|line| line.starts_with(&format!("{rung}: "))).expect("a line");
+            let state = line.split_once("state ").and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
+            state.expect("its bytes")
+        },
+        parameters: number(&format!("{rung}: parameters "), " bytes"),
+    }
+}
+
+#[test]
+fn each_rung_is_cheaper_than_the_one_above() {
+    let mut table = String::from("scene type              instructions   code B   stack B   state B   parameters B\n");
+    for rung in RUNGS {
+        let Costs { instructions, code, stack, state, parameters } = costs(rung);
+        let _ = writeln!(table, "{rung:24}{instructions:12}{code:9}{stack:10}{state:10}{parameters:15}");
+    }
+    for pair in RUNGS.windows(2) {
+        let (above, below) = (costs(pair[0]), costs(pair[1]));
+        assert!(below.instructions < above.instructions && below.code < above.code, "{pair:?}\n{table}");
+        assert!(below.stack < above.stack && below.state <= above.state, "{pair:?}\n{table}");
+    }
+    insta::assert_snapshot!("costs", table);
+}
+
+/// A step is one function that calls none but to copy memory, so that its constants tell what is in it.
+#[test]
+fn what_is_left_out_is_not_there() {
+    // High halves of the first guess of a reciprocal root and of √½, from which logarithms start.
+    let has = |rung: &str, constant: u32| {
+        let (half, word) = (format!("#{}", constant >> 16), format!("{constant:#010x}"));
+        CODE[rung].lines().any(|line| line.contains("movt") && line.contains(&half) || line.contains(&word))
+    };
+    let (root, logarithm) = (0x5f37_5a86, 0x3f35_04f3);
+    for rung in RUNGS {
+        for call in CODE[rung].lines().filter(|line| line.contains("\tbl\t") || line.contains("\tblx\t")) {
+            assert!(call.contains("<__aeabi_mem"), "{rung}: {call}");
+        }
+        assert_eq!(has(rung, logarithm), rung == "slide_general_exponent", "logarithm in {rung}");
+        assert_eq!(has(rung, root), rung != "axis_pad_linear", "root in {rung}");
+    }
+    // Exact friction remembers two forces a slot, other laws nothing.
+    assert_eq!(costs("slide_exact").state - costs("slide_smoothed").state, 8 * 2 * 4);
+    assert_eq!(costs("slide_smoothed").state, costs("slide_frictionless").state);
+}
+
+#[test]
+fn host_and_target_compute_the_same() {
+    let on_host = printed(&mut ladder());
+    let on_target = ON_TARGET.lines().filter(|line| !line.starts_with("instructions ") && !line.starts_with("stack "));
+    assert_eq!(on_host.lines().collect::<Vec<_>>(), on_target.collect::<Vec<_>>());
+}
