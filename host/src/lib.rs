@@ -6,6 +6,7 @@
 pub mod audit;
 mod chart;
 pub mod cli;
+pub mod confirm;
 pub mod controlled;
 pub mod deviation;
 #[cfg(test)]

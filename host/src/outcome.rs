@@ -26,6 +26,16 @@ pub struct Trajectory {
     pub worst_residual: f64,
 }
 
+impl Trajectory {
+    /// The greatest difference of the drive force from the time `from` (s) on, over the greatest force of `other`, which is
+    /// sampled at the same times.
+    pub fn greatest_difference(&self, other: &Self, from: f64) -> f64 {
+        let peak = other.force.iter().fold(f64::MIN_POSITIVE, |most, force| most.max(force.abs()));
+        let late = self.t.iter().zip(self.force.iter().zip(&other.force)).filter(|(t, _)| **t >= from - 1e-9);
+        late.fold(0.0f64, |most, (_, (force, other))| most.max((force - other).abs())) / peak
+    }
+}
+
 /// Whether the unit does its job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]

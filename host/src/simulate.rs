@@ -147,7 +147,7 @@ fn started(
         settings,
         observer: Observer::new(scene.drive, settings.run.duration),
         auditor,
-        watch: Watch::new(settings.run.step, scene.slide.mass, scene.drive.gain, scene.drive.ramp_start),
+        watch: Watch::new(settings.run.step, scene.slide.mass, &scene.drive),
         per_sample: per_sample as u32,
     };
     match settings.scalar {

@@ -7,7 +7,8 @@ use slipfit_core::{
 };
 
 use crate::{
-    outcome::{Outcome, Trajectory, Verdict},
+    confirm::confirmed,
+    outcome::{Outcome, Trajectory},
     scene::Scene,
     simulate::{Settings, SimulateError, simulate},
     trust::Trust,
@@ -48,35 +49,14 @@ pub fn classes(gaps: &[f64; CONTACTS]) -> [Option<GapClass>; CONTACTS] {
     gaps.map(|gap| (gap < ABSENT / 2.0).then(|| GapClass::of(gap)))
 }
 
-/// Runs one unit and, if it comes to a verdict, once more at half the step: where the two disagree the verdict is
-/// undecided.
+/// Runs one unit and, if it comes to a verdict or its steps leave doubt, once more at half the step.
 ///
 /// # Errors
 /// See [`SimulateError`].
 pub fn level(scene: &Scene, n: f64, settings: &Settings) -> Result<Level, SimulateError> {
     let gaps = scene.gaps_at(&[n; CONTACTS]);
-    let mut run = simulate(scene, &gaps, settings)?;
-    run.outcome.verdict = confirmed(scene, &gaps, settings, &run.outcome)?;
+    let run = confirmed(scene, &gaps, settings, simulate(scene, &gaps, settings)?)?;
     Ok(Level { n, trajectory: run.trajectory, outcome: run.outcome, trust: run.trust, classes: classes(&gaps) })
-}
-
-/// The verdict of `outcome`, if a run at half the step gives the same.
-///
-/// # Errors
-/// See [`SimulateError`].
-pub fn confirmed(
-    scene: &Scene,
-    gaps: &[f64; CONTACTS],
-    settings: &Settings,
-    outcome: &Outcome,
-) -> Result<Verdict, SimulateError> {
-    if outcome.verdict == Verdict::Undecided {
-        return Ok(Verdict::Undecided);
-    }
-    let mut half = *settings;
-    half.run.step /= 2.0;
-    let again = simulate(scene, gaps, &half)?.outcome.verdict;
-    Ok(if again == outcome.verdict { again } else { Verdict::Undecided })
 }
 
 /// Runs every level of `levels`, on all threads of the current pool; `done` is called after each. The result does

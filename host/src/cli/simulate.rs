@@ -13,13 +13,13 @@ use super::{
 };
 use crate::{
     audit::Audit,
+    confirm::confirmed,
     export, files,
     number::{fixed, level, or_dash, ten_digits},
     outcome::{Outcome, Trajectory, Verdict},
     scene::{Override, Scene, parse_every},
     scheme::IntegratorKind,
     simulate::{Run, ScalarKind, Settings, audited, simulate},
-    sweep::confirmed,
     trust::Trust,
 };
 
@@ -104,10 +104,7 @@ impl Arguments {
         let settings = Settings { run: scene.run, every, scalar: self.stepping.scalar, tolerance: self.error };
         let gaps = scene.gaps_at(&n);
         let run = if self.audit { audited } else { simulate };
-        let mut run = run(&scene, &gaps, &settings)?;
-        if self.error.is_none() {
-            run.outcome.verdict = confirmed(&scene, &gaps, &settings, &run.outcome)?;
-        }
+        let run = confirmed(&scene, &gaps, &settings, run(&scene, &gaps, &settings)?)?;
         if let Some(path) = &self.csv {
             files::write(path, &export::trajectory_csv(&run.trajectory)?)?;
         }

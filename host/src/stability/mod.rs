@@ -1,7 +1,7 @@
 //! The stability map: how far from the paper's slide a fixed step still holds, and whether a run that does not hold says so.
 //!
-//! Every point is run with an account of its energy, once more with a quarter of the step in f64 for its error, and once
-//! at rest: without a drive and with no gap closed, where nothing may gain energy. Points are independent and their
+//! Every point is run as a user runs it with an account of its energy, once more with a quarter of the step in f64 for its
+//! error, and once at rest: without a drive and with no gap closed, where nothing may gain energy. Points are independent and their
 //! random numbers a function of seed and index, so that the map does not depend on the number of threads.
 
 mod factor;
@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::{
+    confirm::confirmed,
     scene::Scene,
     simulate::{Run, ScalarKind, SimulateError, audited, simulate},
 };
@@ -60,6 +61,8 @@ pub struct Indicators {
     pub imbalance: f64,
     /// See [`Trust`](crate::trust::Trust).
     pub doubtful_force: f64,
+    /// See [`Trust`](crate::trust::Trust).
+    pub difference: Option<f64>,
     /// Greatest force error from 50 ms on over the peak force, against a quarter of the step; infinite if that did not
     /// stay finite.
     pub error: f64,
@@ -128,22 +131,25 @@ pub fn one_at_a_time_count() -> usize {
     SCHEMES.len() * FACTORS.iter().map(|factor| factor.range.values().len()).sum::<usize>()
 }
 
+/// The random point `index` under `seed`: a combination of all factors and schemes, and the factors' values.
+pub fn random_setup(scene: &Scene, seed: u64, index: usize) -> (Vec<f64>, Setup) {
+    let mut generator = SplitMix64::new(seed, index as u64);
+    let mut setup = Setup::new(scene.clone(), LEVEL);
+    setup.scene.run.integrator = SCHEMES[(generator.share() * SCHEMES.len() as f64) as usize];
+    let values: Vec<f64> = FACTORS.iter().map(|factor| factor.range.at(generator.share())).collect();
+    for (factor, value) in FACTORS.iter().zip(&values) {
+        (factor.set)(&mut setup, *value);
+    }
+    (values, setup)
+}
+
 /// `count` random combinations of all factors and schemes. `done` is called after each point.
 ///
 /// # Errors
 /// As for [`one_at_a_time`].
 pub fn random(scene: &Scene, seed: u64, count: usize, done: impl Fn() + Sync) -> Result<Vec<Point>, SimulateError> {
-    let point = |i: usize| {
-        let mut generator = SplitMix64::new(seed, i as u64);
-        let mut setup = Setup::new(scene.clone(), LEVEL);
-        setup.scene.run.integrator = SCHEMES[(generator.share() * SCHEMES.len() as f64) as usize];
-        let values: Vec<f64> = FACTORS.iter().map(|factor| factor.range.at(generator.share())).collect();
-        for (factor, value) in FACTORS.iter().zip(&values) {
-            (factor.set)(&mut setup, *value);
-        }
-        ("random", values, setup)
-    };
-    judged((0..count).map(point).collect(), done)
+    let points = (0..count).map(|i| random_setup(scene, seed, i));
+    judged(points.map(|(values, setup)| ("random", values, setup)).collect(), done)
 }
 
 fn judged(points: Vec<(&'static str, Vec<f64>, Setup)>, done: impl Fn() + Sync) -> Result<Vec<Point>, SimulateError> {
@@ -171,6 +177,7 @@ fn finite(run: Result<Run, SimulateError>) -> Result<Option<Run>, SimulateError>
 fn indicators(setup: &Setup) -> Result<Option<Indicators>, SimulateError> {
     let (gaps, settings) = (setup.gaps(), setup.settings());
     let Some(run) = finite(audited(&setup.scene, &gaps, &settings))? else { return Ok(None) };
+    let run = confirmed(&setup.scene, &gaps, &settings, run)?;
     let mut finer = settings;
     finer.run.step /= 4.0;
     finer.scalar = ScalarKind::F64;
@@ -185,17 +192,10 @@ fn indicators(setup: &Setup) -> Result<Option<Indicators>, SimulateError> {
         rise: at_rest.and_then(|run| run.audit).map_or(f64::INFINITY, |audit| audit.relative_rise()),
         imbalance: run.trust.imbalance,
         doubtful_force: run.trust.doubtful_force,
-        error: finer.map_or(f64::INFINITY, |finer| late_error(&run, &finer)),
+        difference: run.trust.difference,
+        error: finer.map_or(f64::INFINITY, |finer| run.trajectory.greatest_difference(&finer.trajectory, LATE)),
         warned: !run.trust.is_sound(),
     }))
-}
-
-/// The greatest difference of the drive force from 50 ms on, over the peak of the finer run.
-fn late_error(run: &Run, finer: &Run) -> f64 {
-    let (run, finer) = (&run.trajectory, &finer.trajectory);
-    let peak = finer.force.iter().fold(f64::MIN_POSITIVE, |most, force| most.max(force.abs()));
-    let late = run.t.iter().zip(run.force.iter().zip(&finer.force)).filter(|(t, _)| **t >= LATE - 1e-9);
-    late.fold(0.0f64, |most, (_, (force, finer))| most.max((force - finer).abs())) / peak
 }
 
 /// How many points have each grade, in the order of [`Grade`].
