@@ -76,12 +76,10 @@ pub fn stability_csv<'a>(points: impl Iterator<Item = &'a stability::Point>) -> 
         let values: Vec<String> = point.values.iter().map(|value| ten_digits(*value)).collect();
         let names = [point.integrator.into(), point.factor.into(), values.join(" "), format!("{:?}", point.grade())];
         let numbers = point.indicators.map(|at| {
-            let numbers = [at.error, at.defect, at.filling, at.rise, at.imbalance, at.doubtful_force].map(Some);
-            numbers
-                .into_iter()
-                .chain([at.difference])
-                .map(|number| number.map_or_else(String::new, ten_digits))
-                .collect::<Vec<_>>()
+            let [error, defect, filling, rise, imbalance, doubt] =
+                [at.error, at.defect, at.filling, at.rise, at.imbalance, at.doubtful_force].map(ten_digits);
+            let difference = at.difference.map(ten_digits).unwrap_or_default();
+            [error, defect, filling, rise, imbalance, doubt, difference]
         });
         writer.write_record(names.iter().chain(&numbers.unwrap_or_default()))?;
     }
