@@ -67,6 +67,7 @@ fn the_defect_falls_with_the_order_of_the_method() {
         (IntegratorKind::ImplicitEuler, 1.0),
         (IntegratorKind::Sdirk2, 2.0),
         (IntegratorKind::Extrapolated, 2.0),
+        (IntegratorKind::Rodas3, 3.0),
     ];
     for (integrator, order) in schemes {
         let [coarse, fine] = smooth_defects(integrator, &["friction.stick_band=100"]);
