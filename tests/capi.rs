@@ -89,13 +89,18 @@ static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
     image
 });
 
-#[test]
-fn the_same_bits_from_c_on_host_and_target_and_from_rust() {
-    let program = Path::new(FOLDER).join("capi-program");
+/// What the program prints on the host, linked with `library`.
+fn on_host(name: &str, library: &Path) -> String {
+    let program = Path::new(FOLDER).join(name);
     let mut compiler = compiler("cc");
     compiler.args(["core/capi/examples/program.c", "core/capi/examples/desk.c", "-o"]).arg(&program);
-    printed(compiler.arg(library(&[])));
-    let on_host = printed(&mut Command::new(&program));
+    printed(compiler.arg(library));
+    printed(&mut Command::new(&program))
+}
+
+#[test]
+fn the_same_bits_from_c_on_host_and_target_and_from_rust() {
+    let on_host = on_host("capi-program", &library(&[]));
     let expected = in_rust();
     assert!(on_host.starts_with(&expected), "C on the left, Rust on the right:\n{on_host}\n{expected}");
 
@@ -107,6 +112,23 @@ fn the_same_bits_from_c_on_host_and_target_and_from_rust() {
     let codes = ["null", "misaligned", "not made", "scene", "closed then", "truncated", "foreign"].into_iter();
     let codes = codes.zip([1, 2, 4, 23, 4, 16, 17]).map(|(name, code)| format!("{name} {code:016x}"));
     assert_eq!(refusals, codes.collect::<Vec<_>>());
+}
+
+/// Neither what the compiler optimises nor what the processor offers, fused multiply-add for one, changes a bit.
+#[test]
+fn the_same_bits_at_every_optimisation_and_for_every_processor() {
+    let baseline = on_host("capi-program-baseline", &library(&[]));
+    for (name, variable, value) in [
+        ("unoptimised", "CARGO_PROFILE_RELEASE_OPT_LEVEL", "0"),
+        ("small", "CARGO_PROFILE_RELEASE_OPT_LEVEL", "s"),
+        ("native", "CARGO_ENCODED_RUSTFLAGS", "-Ctarget-cpu=native"),
+    ] {
+        let folder = Path::new(FOLDER).join(name);
+        let mut cargo = cargo(&folder.to_string_lossy());
+        printed(cargo.args(["build", "--release", "-p", "slipfit-capi"]).env(variable, value));
+        let library = folder.join("cross/release/libslipfit_capi.a");
+        assert_eq!(baseline, on_host(&format!("capi-program-{name}"), &library), "{name}");
+    }
 }
 
 /// FNV-1a over the bits of numbers.
@@ -207,15 +229,7 @@ fn symbols() -> Vec<(String, u32)> {
 
 #[test]
 fn the_linked_image_has_no_double_precision() {
-    let all = printed(Command::new("arm-none-eabi-nm").arg(&*IMAGE));
-    for soft in
-        ["__aeabi_d", "__aeabi_f2d", "__aeabi_i2d", "__aeabi_ui2d", "__aeabi_l2d", "__aeabi_cd", "__adddf3", "__muldf3"]
-    {
-        assert!(!all.contains(soft), "{soft}:\n{all}");
-    }
-    let code = printed(Command::new("arm-none-eabi-objdump").args(["-d", "--no-show-raw-insn"]).arg(&*IMAGE));
-    assert!(!code.contains(".f64"), "an instruction of double precision");
-    assert!(code.contains(".f32"), "single precision is what there is");
+    cross::assert_single_precision(&IMAGE);
 }
 
 /// Code and constants of the library after `--gc-sections`: everything but the program and its platform.

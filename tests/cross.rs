@@ -2,7 +2,7 @@
 
 use std::{
     env,
-    path::Path,
+    path::{Path, PathBuf},
     process::{Command, Output, Stdio},
 };
 
@@ -69,4 +69,26 @@ pub fn require_c_compiler() {
 pub fn require_emulator() {
     let found = Command::new("qemu-system-arm").arg("--version").output().is_ok();
     assert!(found, "qemu-system-arm is not installed; to install it: apt-get install qemu-system-arm");
+}
+
+/// An image of Rust, built and run before.
+pub fn image(folder: &str, name: &str) -> PathBuf {
+    Path::new(folder).join("cross").join(TARGET).join("release").join(name)
+}
+
+/// Asserts that nothing in `image` computes in double precision, which would be a hundred times as slow.
+///
+/// # Panics
+/// If something does, or nothing computes in single precision.
+pub fn assert_single_precision(image: &Path) {
+    require_c_compiler();
+    let symbols = printed(Command::new("arm-none-eabi-nm").arg("--demangle").arg(image));
+    let of_double =
+        ["__aeabi_d", "__aeabi_cd", "__aeabi_f2d", "__aeabi_i2d", "__aeabi_ui2d", "__aeabi_l2d", "__aeabi_ul2d"];
+    for soft in of_double.into_iter().chain(["adddf3", "subdf3", "muldf3", "divdf3"]) {
+        assert!(!symbols.contains(soft), "{soft} in {}", image.display());
+    }
+    let code = printed(Command::new("arm-none-eabi-objdump").args(["-d", "--no-show-raw-insn"]).arg(image));
+    assert!(!code.contains(".f64"), "an instruction of double precision in {}", image.display());
+    assert!(code.contains(".f32"), "single precision is what there is in {}", image.display());
 }

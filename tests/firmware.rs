@@ -19,7 +19,7 @@ const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 
 static TABLE: LazyLock<PathBuf> = LazyLock::new(|| {
     let file = Path::new(FOLDER).join("firmware.bin");
-    fs::write(&file, table()).expect("the test's folder takes files");
+    fs::write(&file, table(Demand::Full)).expect("the test's folder takes files");
     file
 });
 
@@ -62,6 +62,21 @@ fn every_step_takes_the_recorded_instructions() {
     assert_eq!(steps.len(), 2, "{counts}");
     assert!(steps.iter().all(|step| step.ends_with(", the same every time")), "{counts}");
     insta::assert_snapshot!("counts", counts);
+}
+
+#[test]
+fn a_lookup_of_integers_takes_the_recorded_instructions() {
+    let file = Path::new(FOLDER).join("firmware-i16.bin");
+    fs::write(&file, table(Demand::MaxError(0.01))).expect("the test's folder takes files");
+    let printed = on_target(Some(&file));
+    let mut counts = printed.lines().filter(|line| line.starts_with("instructions of a lookup"));
+    insta::assert_snapshot!("integers", counts.next().expect("the image counts"));
+}
+
+#[test]
+fn the_image_has_no_double_precision() {
+    assert!(!ON_TARGET.is_empty(), "it has been built");
+    cross::assert_single_precision(&cross::image(FOLDER, "slipfit-firmware"));
 }
 
 /// memory.x is the only place that decides; what repeats its numbers is held against it.
@@ -108,9 +123,9 @@ fn on_target(table: Option<&Path>) -> String {
     printed(cargo(FOLDER).args(["run", "--release", "-p", "slipfit-firmware", "--target", TARGET, "--"]).args(table))
 }
 
-/// The table that `slipfit run cd-rom-slide` makes: the paper's slide, over n from −3 to 5.
-fn table() -> Vec<u8> {
+/// The table of the paper's slide over n from −3 to 5, with [`Demand::Full`] the one that `slipfit run` makes.
+fn table(demand: Demand) -> Vec<u8> {
     let scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).expect("the shipped scene");
-    let (table, _) = force_table::make(&scene, ScalarKind::F64, Demand::Full, || ()).expect("its table");
+    let (table, _) = force_table::make(&scene, ScalarKind::F64, demand, || ()).expect("its table");
     table.bytes
 }

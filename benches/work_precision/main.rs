@@ -144,7 +144,12 @@ fn controlled<I: Integrator>(solver: &'static str, slide: &CdRomSlide<f64>, mill
         let work = move || {
             let body = cd_rom::data::<f64>(0.0).body;
             let sensitivity = Sensitivity { mass: body.mass, gain: slide.drive().gain };
-            let rest = Motion { pose: Pose::nominal(), velocity: SVector::zeros(), memory: slide.fresh() };
+            let rest = Motion {
+                pose: Pose::nominal(),
+                velocity: SVector::zeros(),
+                acceleration: SVector::zeros(),
+                memory: slide.fresh(),
+            };
             let duration = f64::from(milliseconds) * 1e-3;
             let mut knots = Vec::new();
             let start = Instant::now();

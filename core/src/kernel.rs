@@ -68,7 +68,15 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
     where
         M: Mechanism<S, D>,
     {
-        State { steps: 0, motion: Motion { pose, velocity: SVector::zeros(), memory: self.mechanism.fresh() } }
+        State {
+            steps: 0,
+            motion: Motion {
+                pose,
+                velocity: SVector::zeros(),
+                acceleration: SVector::zeros(),
+                memory: self.mechanism.fresh(),
+            },
+        }
     }
 
     /// Moves `state` by one step. The count of steps stops at its greatest value, after which time stands still.
@@ -77,17 +85,19 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
     where
         M: Mechanism<S, D>,
     {
-        let was = state.motion;
+        let was = &state.motion;
         let Step { motion: next, residual, error, .. } =
-            I::step(&self.mechanism, self.time(state.steps), self.step, &was);
+            I::step(&self.mechanism, self.time(state.steps), self.step, was);
         let zero = S::zero();
-        let nought = next.velocity.iter().fold(self.mechanism.nought(&next.pose), |sum, v| sum + *v * zero);
+        let rates = next.velocity + next.acceleration;
+        let nought = rates.iter().fold(self.mechanism.nought(&next.pose), |sum, v| sum + *v) * zero;
         let finite = S::one() + nought;
         let (pose, memory) = self.mechanism.selected(finite, (&next.pose, &next.memory), (&was.pose, &was.memory));
         state.steps = state.steps.saturating_add(1);
         state.motion = Motion {
             pose,
             velocity: next.velocity.zip_map(&was.velocity, |new, old| finite.select_gt(zero, new, old)),
+            acceleration: next.acceleration.zip_map(&was.acceleration, |new, old| finite.select_gt(zero, new, old)),
             memory,
         };
         let or_infinite = |x: S| (finite + x * zero).select_gt(zero, x, S::one() / zero);

@@ -29,6 +29,9 @@ pub trait Scalar:
     /// A count of steps as a number, exact below 2²⁴ for f32.
     fn from_count(count: u32) -> Self;
 
+    /// The nearest value to `word`/2⁶⁴.
+    fn from_word(word: u64) -> Self;
+
     /// `yes` where `self > other`, else `no` (also where either is NaN). Both sides are computed.
     fn select_gt(self, other: Self, yes: Self, no: Self) -> Self;
 
@@ -85,6 +88,11 @@ impl Scalar for f32 {
     }
 
     #[inline(always)]
+    fn from_word(word: u64) -> Self {
+        word as f32 * (1.0 / 18_446_744_073_709_551_616.0)
+    }
+
+    #[inline(always)]
     fn select_gt(self, other: Self, yes: Self, no: Self) -> Self {
         if self > other { yes } else { no }
     }
@@ -133,6 +141,11 @@ impl Scalar for f64 {
     #[inline(always)]
     fn from_count(count: u32) -> Self {
         f64::from(count)
+    }
+
+    #[inline(always)]
+    fn from_word(word: u64) -> Self {
+        word as f64 * (1.0 / 18_446_744_073_709_551_616.0)
     }
 
     #[inline(always)]

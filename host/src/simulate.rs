@@ -173,7 +173,12 @@ impl SlideVisitor<f64> for Controlled<'_> {
         let Self { scene, settings, tolerance } = self;
         let duration = settings.run.duration;
         let sensitivity = Sensitivity { mass: scene.slide.mass, gain: scene.drive.gain };
-        let rest = Motion { pose: Pose::nominal(), velocity: SVector::zeros(), memory: slide.fresh() };
+        let rest = Motion {
+            pose: Pose::nominal(),
+            velocity: SVector::zeros(),
+            acceleration: SVector::zeros(),
+            memory: slide.fresh(),
+        };
         let mut knots = Vec::new();
         let start = Instant::now();
         // A law that sticks remembers its force from step to step, which only a solved step can follow.

@@ -4,7 +4,7 @@
 //! extrapolation takes out the errors of first, second, … order. The last two columns differ by the error of the one
 //! before: an estimate for nothing. With one Newton pass a part this is the extrapolated linearly implicit Euler scheme.
 
-use super::{Integrator, Motion, MotionOf, Step, StepOf, shifted, stage};
+use super::{Integrator, Motion, MotionOf, NO_CHORD, Step, StepOf, shifted, stage};
 use crate::{Scalar, mechanism::Mechanism};
 
 /// `COLUMNS` columns (at least 2), `PASSES` Newton passes a part.
@@ -31,7 +31,8 @@ impl<const COLUMNS: usize, const PASSES: usize> Integrator for Extrapolated<COLU
             let a = h / S::from_count(parts);
             let mut end = *motion;
             for part in 1..=parts {
-                let at = stage::<S, M, D, PASSES>(mechanism, t + a * S::from_count(part), a, &end, end.velocity);
+                let at =
+                    stage::<S, M, D, PASSES, NO_CHORD>(mechanism, t + a * S::from_count(part), a, &end, end.velocity);
                 end = at.motion;
                 residual = at.residual.max_of(residual);
             }

@@ -3,6 +3,14 @@
 use super::{Integrator, Motion, MotionOf, Step, StepOf, stage};
 use crate::{Scalar, mechanism::Mechanism};
 
+/// The third pass is a chord: it takes the linearisation of the second, for half the cost.
+///
+/// On the slide's openings at 1 ms with exact friction, n = 0.5…4, four passes with a chord err by 0.5…3.8 % of the peak
+/// force throughout and four full ones by 0.5…4.1 %, after the release by the same 0.02…0.28 %, which is the scheme's first
+/// order; at n = 5 and 6 by 8.9 and 14 % against 7.0 and 11 % throughout, at n = −2 by 0.54 % against 0.19 %. A chord
+/// before or after errs more, and so does any in an extrapolated scheme.
+const CHORD: usize = 2;
+
 /// Implicit Euler with `PASSES` Newton passes; with one pass it is the linearly implicit scheme.
 #[derive(Clone, Copy, Debug)]
 pub struct ImplicitEuler<const PASSES: usize>;
@@ -19,12 +27,10 @@ impl<const PASSES: usize> Integrator for ImplicitEuler<PASSES> {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        let (start, _) = mechanism.forces(t, &motion.pose, &motion.memory, &motion.velocity, h);
-        let end = stage::<S, M, D, PASSES>(mechanism, t + h, h, motion, motion.velocity);
-        // Half the change of the force over the step is what the first order leaves out; the linearisation takes the stiff
-        // part out of it again, which the scheme damps and does not follow.
-        let rate = S::one() / h;
-        let change = mechanism.momentum(&(end.motion.velocity - motion.velocity)) * rate - start;
+        let end = stage::<S, M, D, PASSES, CHORD>(mechanism, t + h, h, motion, motion.velocity);
+        // Half the change of the force from the last step's end is what the first order leaves out; the linearisation takes
+        // the stiff part out of it again, which the scheme damps and does not follow.
+        let change = mechanism.momentum(&(end.motion.acceleration - motion.acceleration));
         let left_out = mechanism.solve(&end.linearisation, &(change * S::from_f64(0.5)));
         let error = mechanism.impulse(&mechanism.momentum(&left_out));
         let pose = mechanism.normalised(&end.motion.pose);

@@ -26,6 +26,9 @@ pub struct Motion<S, P, R, const D: usize> {
     pub pose: P,
     /// Generalised velocities.
     pub velocity: SVector<S, D>,
+    /// Accelerations (m/s², rad/s²) that the last step ended with as far as its scheme knows, zero before the first: what
+    /// the next step's change of force is told from.
+    pub acceleration: SVector<S, D>,
     /// Memory of the force laws.
     pub memory: R,
 }
@@ -89,8 +92,8 @@ type StageOf<S, M, const D: usize> =
 /// the peak force off, this schedule 0.02 %. The tenth of the secant in the other passes keeps them from starting one: with
 /// a stick band of 0.1 µm/s, tangents in the last two passes end up to 70 % off, this schedule 0.02 %.
 #[inline(always)]
-fn tangent_share<S: Scalar>(pass: usize) -> S {
-    S::from_f64(if pass == 1 { 0.0 } else { 0.9 })
+fn tangent_share<S: Scalar>(full_pass: usize) -> S {
+    S::from_f64(if full_pass == 1 { 0.0 } else { 0.9 })
 }
 
 /// An iterate that leaves more than this times the least imbalance so far, or one that is not finite, is taken back, and
@@ -104,10 +107,13 @@ const WORSE: f64 = 2.0;
 /// See [`WORSE`].
 const SHORTER: f64 = 0.25;
 
+/// For [`stage`]: no pass is a chord.
+const NO_CHORD: usize = usize::MAX;
+
 /// The motion Q = Q₀ + a·Q̇, V = V₀ + a·M⁻¹·force(t, Q, V) from `base` = (Q₀, V₀), after `PASSES` Newton passes that
-/// start at the velocity `guess`.
+/// start at the velocity `guess`. The pass `CHORD`, not the first, takes the linearisation of the one before.
 #[inline(always)]
-fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize>(
+fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, const CHORD: usize>(
     mechanism: &M,
     t: S,
     a: S,
@@ -118,15 +124,34 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize>(
     let mut velocity = guess;
     let (mut kept, mut update) = (SVector::zeros(), SVector::zeros());
     let mut least = S::one() / zero;
-    let mut linearisation = M::Linearisation::default();
-    for pass in 0..PASSES {
+    let (mut linearisation, mut memory) = (M::Linearisation::default(), base.memory);
+    let mut full_passes = 0;
+    let mut pass = 0;
+    // Kept from the compiler, which would repeat the body of a small mechanism for every pass.
+    let passes = core::hint::black_box(PASSES);
+    let (size, better) = loop {
         let pose = mechanism.advanced(&base.pose, &velocity, a);
-        let at = mechanism.linearised(t, &pose, &base.memory, &velocity, a, tangent_share(pass));
+        let force = if pass == CHORD || pass == passes {
+            // The memory of an iterate that is only worse holds as well, because the next step brings it back into the cone.
+            let (force, remembered) = mechanism.forces(t, &pose, &base.memory, &velocity, a);
+            memory = remembered;
+            force
+        } else {
+            let share = tangent_share(full_passes);
+            let at = mechanism.linearised(t, &pose, &base.memory, &velocity, a, share);
+            full_passes += 1;
+            linearisation = at.linearisation;
+            at.force
+        };
         let change = velocity - base.velocity;
-        let imbalance = mechanism.momentum(&change) * rate - at.force;
+        let imbalance = mechanism.momentum(&change) * rate - force;
         let size = mechanism.impulse(&imbalance);
-        let next = mechanism.solve(&at.linearisation, &imbalance);
-        let better = next.iter().fold(S::from_f64(WORSE) * least - size + size * zero, |sum, x| sum + *x * zero);
+        if pass == passes {
+            break (size, S::from_f64(WORSE) * least - size + size * zero);
+        }
+        let next = mechanism.solve(&linearisation, &imbalance);
+        let nought = next.iter().fold(size, |sum, x| sum + *x) * zero;
+        let better = S::from_f64(WORSE) * least - size + nought;
         let shortened = better.select_gt(zero, S::one(), S::from_f64(SHORTER));
         // Weights, because a choice of vectors becomes a copy that takes longer for one than for the other.
         let taken = better.select_gt(zero, S::one(), zero);
@@ -134,20 +159,13 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize>(
         update = next.zip_map(&update, |new, old| better.select_gt(zero, new, old)) * shortened;
         least = better.select_gt(zero, least.select_gt(size, size, least), least);
         velocity = mechanism.settled(&(base.velocity + (kept - update)));
-        linearisation = at.linearisation;
-    }
-    let pose = mechanism.advanced(&base.pose, &velocity, a);
-    let (force, memory) = mechanism.forces(t, &pose, &base.memory, &velocity, a);
-    let imbalance = mechanism.momentum(&(velocity - base.velocity)) * rate - force;
-    let size = mechanism.impulse(&imbalance);
-    let finite = S::one() + size * zero;
-    let better = finite * (S::from_f64(WORSE) * least - size);
-    // The memory of an iterate that is only worse holds as well, because the next step brings it back into the cone.
-    let (_, memory) = mechanism.selected(finite, (&pose, &memory), (&pose, &base.memory));
+        pass += 1;
+    };
     let velocity = velocity.zip_map(&(base.velocity + kept), |new, old| better.select_gt(zero, new, old));
     let pose = mechanism.advanced(&base.pose, &velocity, a);
+    let acceleration = (velocity - base.velocity) * rate;
     let residual = a * better.select_gt(zero, size, S::from_f64(WORSE) * least);
-    Stage { motion: Motion { pose, velocity, memory }, residual, linearisation }
+    Stage { motion: Motion { pose, velocity, acceleration, memory }, residual, linearisation }
 }
 
 /// `base + weight·(to − from)`.
@@ -162,6 +180,7 @@ fn shifted<S: Scalar, M: Mechanism<S, D>, const D: usize>(
     Motion {
         pose: mechanism.shifted(&base.pose, &from.pose, &to.pose, weight),
         velocity: base.velocity + (to.velocity - from.velocity) * weight,
+        acceleration: base.acceleration + (to.acceleration - from.acceleration) * weight,
         memory: mechanism.memory_shifted(&base.memory, &from.memory, &to.memory, weight),
     }
 }

@@ -62,7 +62,12 @@ impl Integrator for Rodas3 {
 
         let pose = mechanism.normalised(&mechanism.moved(&motion.pose, &moved.place, S::one()));
         Step {
-            motion: Motion { pose, velocity: motion.velocity + moved.velocity, memory: motion.memory },
+            motion: Motion {
+                pose,
+                velocity: motion.velocity + moved.velocity,
+                acceleration: moved.velocity * per_step,
+                memory: motion.memory,
+            },
             residual: S::zero(),
             error: mechanism.impulse(&inertia(&fourth)),
             drift: mechanism.impulse(&mechanism.momentum(&fourth.place)),

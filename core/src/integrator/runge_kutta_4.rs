@@ -46,6 +46,7 @@ impl Integrator for RungeKutta4 {
         // The two slopes at the middle differ by a term of third order: an estimate on the safe side.
         let error = mechanism.impulse(&mechanism.momentum(&((a3 - a2) * (h * third))));
         let pose = mechanism.normalised(&pose);
-        Step { motion: Motion { pose, velocity, memory: motion.memory }, residual: S::zero(), error, drift: error * h }
+        let motion = Motion { pose, velocity, acceleration: a4, memory: motion.memory };
+        Step { motion, residual: S::zero(), error, drift: error * h }
     }
 }

@@ -1,6 +1,6 @@
 //! SDIRK2: second order, L-stable, two stages with γ = 1 − √½ (Alexander 1977).
 
-use super::{Integrator, Motion, MotionOf, Stage, Step, StepOf, shifted, stage};
+use super::{Integrator, Motion, MotionOf, NO_CHORD, Stage, Step, StepOf, shifted, stage};
 use crate::{Scalar, mechanism::Mechanism};
 
 /// SDIRK2 with `PASSES` Newton passes a stage.
@@ -22,11 +22,11 @@ impl<const PASSES: usize> Integrator for Sdirk2<PASSES> {
         let gamma = 1.0 - core::f64::consts::FRAC_1_SQRT_2;
         let a = h * S::from_f64(gamma);
         let Stage { motion: first, residual: residual_1, .. } =
-            stage::<S, M, D, PASSES>(mechanism, t + a, a, motion, motion.velocity);
+            stage::<S, M, D, PASSES, NO_CHORD>(mechanism, t + a, a, motion, motion.velocity);
         // Base of the second stage: the first stage's slope over (1 − γ)·h.
         let base = shifted(mechanism, motion, motion, &first, S::from_f64((1.0 - gamma) / gamma));
         let Stage { motion: second, residual: residual_2, .. } =
-            stage::<S, M, D, PASSES>(mechanism, t + h, a, &base, first.velocity);
+            stage::<S, M, D, PASSES, NO_CHORD>(mechanism, t + h, a, &base, first.velocity);
         // Against the first-order solution that takes the first stage's slope for the whole step.
         let difference = (second.velocity - base.velocity) - (first.velocity - motion.velocity);
         let error = mechanism.impulse(&mechanism.momentum(&difference));

@@ -26,6 +26,7 @@ impl Integrator for SemiImplicitEuler {
         let (end, _) = mechanism.forces(t + h, &pose, &motion.memory, &velocity, h);
         // Half the change of the force over the step is what the first order leaves out.
         let error = mechanism.impulse(&((end - start) * (h * S::from_f64(0.5))));
-        Step { motion: Motion { pose, velocity, memory: motion.memory }, residual: S::zero(), error, drift: error * h }
+        let motion = Motion { pose, velocity, acceleration: mechanism.velocity(&end), memory: motion.memory };
+        Step { motion, residual: S::zero(), error, drift: error * h }
     }
 }

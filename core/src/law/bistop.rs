@@ -31,14 +31,14 @@ impl<S: Scalar> SlotResponse<S> {
     /// being the part of a step over which it does.
     #[inline(always)]
     pub fn impedances(&self, a: S) -> [S; 2] {
-        let (low, high) = (self.low.damping + a * self.low.stiffness, self.high.damping + a * self.high.stiffness);
+        let (low, high) = (self.low.impedance(a), self.high.impedance(a));
         [high + low, low - high]
     }
 
     /// −∂force/∂x and ∂normal/∂x (N/m), for a displacement x of the body along the axis, which moves the offset by −x.
     #[inline(always)]
     pub fn stiffnesses(&self) -> [S; 2] {
-        [self.high.stiffness + self.low.stiffness, self.low.stiffness - self.high.stiffness]
+        [self.high.stiffness() + self.low.stiffness(), self.low.stiffness() - self.high.stiffness()]
     }
 }
 

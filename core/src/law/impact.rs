@@ -23,10 +23,29 @@ pub struct Impact<S, E> {
 pub struct NormalResponse<S> {
     /// Force (N), ≥ 0: surfaces push, they never pull.
     pub force: S,
+    /// ∂F/∂δ (N/m) where they push.
+    pushing_stiffness: S,
+    /// ∂F/∂δ̇ (N·s/m) where they push.
+    pushing_damping: S,
+}
+
+impl<S: Scalar> NormalResponse<S> {
     /// ∂F/∂δ (N/m).
-    pub stiffness: S,
-    /// ∂F/∂δ̇ (N·s/m).
-    pub damping: S,
+    #[inline(always)]
+    pub fn stiffness(&self) -> S {
+        self.if_pushing(self.pushing_stiffness)
+    }
+
+    /// ∂F/∂δ̇ (N·s/m) at a rate that also changes the penetration over the time `a` (s).
+    #[inline(always)]
+    pub fn impedance(&self, a: S) -> S {
+        self.if_pushing(self.pushing_damping + a * self.pushing_stiffness)
+    }
+
+    #[inline(always)]
+    fn if_pushing(&self, slope: S) -> S {
+        self.force.select_gt(S::zero(), slope, S::zero())
+    }
 }
 
 impl<S: Scalar + PartialOrd, E: Elastic<S>> Impact<S, E> {
@@ -54,11 +73,7 @@ impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
         let damper = self.damping * fade;
         let force = spring + damper * rate;
         let stiffness = spring_slope + self.fade_in * rest * rate;
-        NormalResponse {
-            force: force.max_of(zero),
-            stiffness: force.select_gt(zero, stiffness, zero),
-            damping: force.select_gt(zero, damper, zero),
-        }
+        NormalResponse { force: force.max_of(zero), pushing_stiffness: stiffness, pushing_damping: damper }
     }
 
     /// Elastic energy (J) stored at `penetration` (m, positive inside).

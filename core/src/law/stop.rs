@@ -70,13 +70,12 @@ impl<S: Scalar> Resistance<S> for NormalResponse<S> {
 
     #[inline(always)]
     fn impedances(&self, a: S) -> [S; 2] {
-        let impedance = self.damping + a * self.stiffness;
-        [impedance, -impedance]
+        [self.impedance(a), -self.impedance(a)]
     }
 
     #[inline(always)]
     fn stiffnesses(&self) -> [S; 2] {
-        [self.stiffness, -self.stiffness]
+        [self.stiffness(), -self.stiffness()]
     }
 }
 

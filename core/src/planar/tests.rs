@@ -63,9 +63,10 @@ fn agrees<F: Friction<f64>, I: Integrator>(friction: F, step: f64) {
 
 #[test]
 fn moves_as_the_slide_in_its_plane() {
-    agrees::<_, ImplicitEuler<4>>(Frictionless, 1e-4);
+    // So many passes that both converge: what they leave depends on how the angle is linearised.
+    agrees::<_, ImplicitEuler<6>>(Frictionless, 1e-4);
     agrees::<_, Extrapolated<2, 4>>(Regularised::new(0.1, 1e-4).unwrap(), 1e-4);
-    agrees::<_, ImplicitEuler<4>>(Exact::new(0.1).unwrap(), 1e-4);
+    agrees::<_, ImplicitEuler<6>>(Exact::new(0.1).unwrap(), 1e-4);
     agrees::<_, Rodas3>(Regularised::new(0.1, 1e-3).unwrap(), 2e-5);
 }
 

@@ -116,7 +116,7 @@ pub fn score<S: Scalar>(bits: u64) -> S {
     let above = bits | 1;
     let below = above.wrapping_neg();
     let tail = if above < below { above } else { below };
-    let magnitude = upper_score(S::from_f64(tail as f64 * (1.0 / 18_446_744_073_709_551_616.0)));
+    let magnitude = upper_score(S::from_word(tail));
     if above < below { -magnitude } else { magnitude }
 }
 

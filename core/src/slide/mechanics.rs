@@ -108,7 +108,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     fn nought(&self, pose: &Pose<S>) -> S {
         let zero = S::zero();
         let Pose { displacement_w: r, orientation: q } = pose;
-        r.x * zero + r.y * zero + r.z * zero + q.w * zero + q.v.x * zero + q.v.y * zero + q.v.z * zero
+        (r.x + r.y + r.z + q.w + q.v.x + q.v.y + q.v.z) * zero
     }
 
     /// Velocities are rounded to the last place of 4 m/s (4e-16 m/s in f64, 2e-7 m/s in f32): what rounding of the

@@ -66,8 +66,6 @@ pub struct Table<'a, const N: usize = 2, V = AnyNodes<'a>> {
     bytes: &'a [u8],
     scene_hash: u64,
     axes: [Axis; N],
-    /// How many nodes apart two neighbours along each axis are.
-    strides: [usize; N],
     records: [ChannelRecord; CHANNELS],
     nodes: V,
 }
@@ -98,16 +96,14 @@ impl<'a, const N: usize> Table<'a, N> {
         let axes = header.axes.into_array::<N>().map_err(|_| TableError::Axes { found })?;
 
         let mut count = 1usize;
-        let mut strides = [0; N];
-        for (stride, axis) in strides.iter_mut().zip(&axes).rev() {
-            *stride = count;
+        for axis in &axes {
             count = count.checked_mul(axis.count()).ok_or(TableError::Header("length"))?;
         }
 
         let bytes = region.get(..header.length).ok_or(TableError::Truncated)?;
         let data = bytes.get(HEADER_SIZE..header.length.saturating_sub(CHECKSUM_SIZE)).ok_or(TableError::Truncated)?;
         let nodes = AnyNodes::new(header.encoding, &header.channels, count, data)?;
-        Ok(Self { bytes, scene_hash: header.scene_hash, axes, strides, records: header.channels, nodes })
+        Ok(Self { bytes, scene_hash: header.scene_hash, axes, records: header.channels, nodes })
     }
 
     /// This table, if its values are f32.
@@ -127,8 +123,8 @@ impl<'a, const N: usize> Table<'a, N> {
     }
 
     fn with<V>(self, nodes: V) -> Table<'a, N, V> {
-        let Self { bytes, scene_hash, axes, strides, records, .. } = self;
-        Table { bytes, scene_hash, axes, strides, records, nodes }
+        let Self { bytes, scene_hash, axes, records, .. } = self;
+        Table { bytes, scene_hash, axes, records, nodes }
     }
 
     /// How values are stored.
@@ -159,13 +155,14 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
     #[inline]
     pub fn lookup(&self, at: [f32; N]) -> Lookup {
         let (mut first, mut fractions, mut outside) = (0, [0.0; N], 0);
-        for (((axis, stride), x), fraction) in self.axes.iter().zip(self.strides).zip(at).zip(&mut fractions) {
+        for ((axis, x), fraction) in self.axes.iter().zip(at).zip(&mut fractions) {
             let place = axis.locate(x);
-            first += place.cell * stride;
+            first = first * axis.count() + place.cell;
             *fraction = place.fraction;
             outside |= place.outside;
         }
-        let [force, velocity] = self.nodes.within(first, &self.strides, &fractions);
+        let counts = self.axes.each_ref().map(|axis| axis.count());
+        let Some([force, velocity]) = self.nodes.within(first, &counts, &fractions) else { return Lookup::default() };
         Lookup { force, velocity, clamped: outside != 0 }
     }
 
@@ -194,9 +191,9 @@ impl<V: Nodes> Table<'_, 2, V> {
     /// The force (N) at every node of the first axis, at `x` on the second; none outside of it.
     #[inline]
     pub fn forces(&self, x: f32) -> Option<impl Iterator<Item = f32>> {
-        let ([nodes, axis], [stride, _]) = (&self.axes, self.strides);
+        let [nodes, axis] = &self.axes;
         let place = axis.locate(x);
-        let firsts = (0..nodes.count()).map(move |i| place.cell + i * stride);
+        let firsts = (0..nodes.count()).map(move |i| place.cell + i * axis.count());
         let force = move |first| {
             let [force, _] = self.nodes.between(first, place.fraction);
             force

@@ -67,9 +67,14 @@ impl Encoding {
 
 /// Every node of a table where it lies, however it is stored.
 pub trait Nodes: Copy {
-    /// Force and velocity (N, m/s) at the `fractions` of the cell whose lowest node is `first`; nodes along an axis are
-    /// its stride apart.
-    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS];
+    /// Force and velocity (N, m/s) at the `fractions` of the cell whose lowest node is `first`; `counts` says how many
+    /// nodes each axis has, the slowest first.
+    fn within<const N: usize>(
+        &self,
+        first: usize,
+        counts: &[usize; N],
+        fractions: &[f32; N],
+    ) -> Option<[f32; CHANNELS]>;
 
     /// Force and velocity (N, m/s) `fraction` of the way from the node `first` to the one that follows it.
     fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS];
@@ -132,10 +137,15 @@ impl<'a> AnyNodes<'a> {
 
 impl Nodes for AnyNodes<'_> {
     #[inline(always)]
-    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
+    fn within<const N: usize>(
+        &self,
+        first: usize,
+        counts: &[usize; N],
+        fractions: &[f32; N],
+    ) -> Option<[f32; CHANNELS]> {
         match self {
-            Self::F32(nodes) => nodes.within(first, strides, fractions),
-            Self::I16(nodes) => nodes.within(first, strides, fractions),
+            Self::F32(nodes) => nodes.within(first, counts, fractions),
+            Self::I16(nodes) => nodes.within(first, counts, fractions),
         }
     }
 
@@ -151,8 +161,13 @@ impl Nodes for AnyNodes<'_> {
 
 impl Nodes for F32Nodes<'_> {
     #[inline(always)]
-    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
-        cell(self.0, first, strides, fractions, Self::blend)
+    fn within<const N: usize>(
+        &self,
+        first: usize,
+        counts: &[usize; N],
+        fractions: &[f32; N],
+    ) -> Option<[f32; CHANNELS]> {
+        cell(self.0, first, counts, fractions, Self::blend)
     }
 
     #[inline(always)]
@@ -170,8 +185,13 @@ impl F32Nodes<'_> {
 
 impl Nodes for I16Nodes<'_> {
     #[inline(always)]
-    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> [f32; CHANNELS] {
-        self.scaled(cell(self.nodes, first, strides, fractions, Self::blend))
+    fn within<const N: usize>(
+        &self,
+        first: usize,
+        counts: &[usize; N],
+        fractions: &[f32; N],
+    ) -> Option<[f32; CHANNELS]> {
+        cell(self.nodes, first, counts, fractions, Self::blend).map(|found| self.scaled(found))
     }
 
     #[inline(always)]
@@ -204,25 +224,24 @@ fn pair<T>(nodes: &[T], first: usize) -> Option<&[T; 2]> {
 fn cell<T: Copy>(
     nodes: &[T],
     first: usize,
-    strides: &[usize],
+    counts: &[usize],
     fractions: &[f32],
     blend: impl Fn(&[T; 2], f32) -> [f32; CHANNELS],
-) -> [f32; CHANNELS] {
+) -> Option<[f32; CHANNELS]> {
     let face = |first: usize, row: usize, across, along| {
         let rest = nodes.get(first..)?;
         let upper = rest.get(row..)?.first_chunk()?;
         Some(blended(blend(rest.first_chunk()?, along), blend(upper, along), across))
     };
-    let found = match (strides, fractions) {
-        ([row, _], [across, along]) => face(first, *row, *across, *along),
-        ([layer, row, _], [up, across, along]) => {
+    match (counts, fractions) {
+        ([_, row], [across, along]) => face(first, *row, *across, *along),
+        ([_, rows, row], [up, across, along]) => {
             let lower = face(first, *row, *across, *along);
-            let upper = face(first.wrapping_add(*layer), *row, *across, *along);
+            let upper = face(first.wrapping_add(rows.wrapping_mul(*row)), *row, *across, *along);
             lower.zip(upper).map(|(lower, upper)| blended(lower, upper, *up))
         }
         _ => None,
-    };
-    found.unwrap_or_default()
+    }
 }
 
 #[inline(always)]

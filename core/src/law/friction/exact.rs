@@ -53,6 +53,8 @@ impl<S: Scalar> Friction<S> for Exact<S> {
 
     #[inline(always)]
     fn selected(condition: S, yes: &[S; 2], no: &[S; 2]) -> [S; 2] {
+        // Asked of each memory by itself, because one question for all becomes a branch.
+        let condition = condition + (yes[0] + yes[1]) * S::zero();
         let pick = |i: usize| condition.select_gt(S::zero(), yes[i], no[i]);
         [pick(0), pick(1)]
     }
@@ -78,15 +80,16 @@ pub(super) fn return_mapping<S: Scalar>(
     let share = slides(sliding * normal * inverse, S::one());
     let force = [trial[0] * share, trial[1] * share];
 
-    let direction = [trial[0] * inverse, trial[1] * inverse];
+    // Of the trial force where it slides, else zero.
+    let scale = slides(inverse, S::zero());
+    let direction = [trial[0] * scale, trial[1] * scale];
     let along = grip * share;
-    let turn = slides(tangent_share * along, S::zero());
+    let turn = tangent_share * along;
     let turned = [turn * direction[0], turn * direction[1]];
-    let pull = slides(-sliding, S::zero());
     let traction = Traction {
         force,
         impedance: [along - turned[0] * direction[0], -turned[0] * direction[1], along - turned[1] * direction[1]],
-        per_normal: [pull * direction[0], pull * direction[1]],
+        per_normal: [-sliding * direction[0], -sliding * direction[1]],
     };
     (traction, force)
 }

@@ -37,6 +37,7 @@ const COEFFICIENT: f32 = 0.3;
 const LEVEL: f32 = 2.5;
 
 type Unit<E, F> = Slide<f32, E, F>;
+type FullSlide = Unit<ThreeHalves<f32>, Exact<f32>>;
 type Flat = Planar<f32, Slot<f32>, ThreeHalves<f32>, Frictionless, PINS>;
 type Driven = AxisBody<f32, ThreeHalves<f32>, Slot<f32>, Drive<f32>>;
 type Ball = AxisBody<f32, Linear<f32>, Pad<f32>>;
@@ -75,6 +76,7 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) {
     let (nominal, drive) = (Pose::nominal(), data.drive);
     rung(machine, "slide_general_exponent", slide(power, exact), nominal, slide_general_exponent);
     rung(machine, "slide_exact", slide(three_halves, exact), nominal, slide_exact);
+    full_pass(machine, slide(three_halves, exact));
     rung(machine, "slide_smoothed", slide(three_halves, smoothed), nominal, slide_smoothed);
     rung(machine, "slide_frictionless", slide(three_halves, Frictionless), nominal, slide_frictionless);
 
@@ -99,6 +101,32 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) {
     let linear = Linear::new(2e4).expect("the law is in bounds");
     let ball = AxisBody::new(data.body.mass, -9.81, 0.0, impact(linear)).expect("the body is in bounds");
     rung(machine, "axis_pad_linear", ball, 1e-3, axis_pad_linear);
+}
+
+/// Says what a Newton pass of the full slide takes, its linearisation and solution included: a step of two passes less one of
+/// a single pass.
+fn full_pass(machine: &mut impl Machine, slide: FullSlide) {
+    let one = Kernel::<f32, _, ImplicitEuler<1>>::new(slide, STEP).expect("the step is in bounds");
+    let two = Kernel::<f32, _, ImplicitEuler<2>>::new(slide, STEP).expect("the step is in bounds");
+    let (mut state, mut other) = (one.at_rest(Pose::nominal()), two.at_rest(Pose::nominal()));
+    let one = counted(machine, black_box(&one), &mut state, one_pass);
+    let two = counted(machine, black_box(&two), &mut other, two_passes);
+    if let (Some(one), Some(two)) = (one, two) {
+        print(machine, format_args!("instructions of a pass: {}", two - one));
+    }
+}
+
+#[inline(never)]
+fn one_pass(kernel: &Kernel<f32, FullSlide, ImplicitEuler<1>>, state: &mut StateOf<f32, FullSlide, 6>) -> Report<f32> {
+    kernel.step(state)
+}
+
+#[inline(never)]
+fn two_passes(
+    kernel: &Kernel<f32, FullSlide, ImplicitEuler<2>>,
+    state: &mut StateOf<f32, FullSlide, 6>,
+) -> Report<f32> {
+    kernel.step(state)
 }
 
 fn impact<E: Elastic<f32>>(elastic: E) -> Impact<f32, E> {
