@@ -35,11 +35,11 @@ impl SampleAxis {
         AxisSpec { kind: self.kind, first, step, count: self.at.len().div_ceil(stride) }
     }
 
-    /// Strides, shortest first, whose last node is the last sample.
+    /// Strides, shortest first, whose last node is the last sample; of two cells at least, unless the finest has one.
     fn strides(&self) -> impl Iterator<Item = usize> {
         let intervals = self.at.len().saturating_sub(1);
-        (1..=intervals / 2)
-            .filter(move |stride| intervals.is_multiple_of(*stride) && stride.is_multiple_of(self.per_node))
+        let divides = move |stride: &usize| intervals.is_multiple_of(*stride) && stride.is_multiple_of(self.per_node);
+        (1..=self.per_node.max(intervals / 2)).filter(divides)
     }
 }
 
@@ -170,7 +170,7 @@ impl<const N: usize> Samples<N> {
                 let (error, bytes) = (best.worst_error_in_use[0], best.bytes.len());
                 Err(TableError::MaxError { asked, best: error, bytes })
             }
-            // No grid divides the samples: the whole one says what is wrong.
+            // No grid divides the samples or fits: the whole one says what is wrong.
             None => Ok(self.built(scene_hash, full)?),
         }
     }
@@ -274,9 +274,15 @@ mod tests {
         let counts: Vec<_> = table.axes.iter().map(|axis| (axis.first, axis.step, axis.count)).collect();
         assert_eq!(counts, [(-1.0, 0.5, 3), (0.0, 1.0, 5), (0.5, 0.25, 2)]);
         assert_eq!((table.worst_error, table.rms_error), ([0.0; 2], [0.0; 2]));
-        // The smallest grid: two cells along the longer axes cannot be had with fewer nodes, a stride of all has no cell left.
-        let small = samples.table(1, Demand::MaxError(1e-6)).unwrap_err();
-        assert!(matches!(small, TableError::Flash(_)) || matches!(small, TableError::MaxError { .. }), "{small}");
+        // Stored as i16, half a unit of the greatest of 4 N at most.
+        let small = samples.table(1, Demand::MaxError(1e-3)).unwrap();
+        assert_eq!(
+            (small.encoding, small.axes.iter().map(|axis| axis.count).collect()),
+            (Encoding::I16, vec![3, 3, 2])
+        );
+        // A parabola is missed by a quarter half way between nodes a unit apart.
+        let refused = self::samples(|[_, z, _]| z * z, |_| Stage::InUse).table(1, Demand::MaxError(0.24)).unwrap_err();
+        assert!(matches!(refused, TableError::MaxError { best: 0.25, .. }), "{refused}");
     }
 
     #[test]
@@ -289,7 +295,7 @@ mod tests {
         };
         let in_use = bumpy(|_| Stage::InUse);
         assert_eq!((in_use.worst_error, in_use.worst_error_in_use), ([2.0, 4.0], [2.0, 4.0]));
-        let rms = 2.0 / f64::from(5 * 17 * 3).sqrt();
+        let rms = 2.0 / libm::sqrt(f64::from(5 * 17 * 3));
         assert!((in_use.rms_error[0] - rms).abs() < 1e-12);
         // Before its use, and where a slide nearby has stopped, it counts for the whole table only.
         let before = bumpy(|[_, z, _]| if z < 1.5 { Stage::Before } else { Stage::InUse });

@@ -18,17 +18,18 @@ pub(super) struct Passage {
 }
 
 impl Passage {
-    /// Of a `run` commanded to `speed` (m/s), at every `step` (m); linear between its samples.
-    pub fn of(run: &Trajectory, speed: f64, step: f64) -> Self {
+    /// Of a `run` commanded to `speed` (m/s), at every `step` up to `most` (m); linear between its samples.
+    pub fn of(run: &Trajectory, speed: f64, step: f64, most: f64) -> Self {
         let along = if speed < 0.0 { -1.0 } else { 1.0 };
         let (mut reach, mut breakaway) = (0.0f64, 0.0);
         let greater = |one: f64, other: f64| if other * along > one * along { other } else { one };
         let mut passed = vec![[0.0; 2]];
         for (i, z) in run.z.iter().map(|z| z * along).enumerate() {
             // First passage: the sample before lies short of every place that is still to be passed.
-            while z >= passed.len() as f64 * step && i > 0 {
+            let next = |passed: &[[f64; 2]]| passed.len() as f64 * step;
+            while i > 0 && z >= next(&passed) && next(&passed) < most + 0.5 * step {
                 let from = run.z[i - 1] * along;
-                let part = (passed.len() as f64 * step - from) / (z - from);
+                let part = (next(&passed) - from) / (z - from);
                 let at = |values: &[f64]| values[i - 1] + part * (values[i] - values[i - 1]);
                 passed.push([at(&run.force), at(&run.vz)]);
             }
@@ -50,15 +51,15 @@ mod tests {
     fn passage(samples: &[[f64; 3]], speed: f64) -> Passage {
         let column = |k: usize| samples.iter().map(|sample| sample[k]).collect::<Vec<f64>>();
         let run = Trajectory { z: column(0), force: column(1), vz: column(2), ..Trajectory::default() };
-        Passage::of(&run, speed, 1.0)
+        Passage::of(&run, speed, 1.0, 3.0)
     }
 
     #[test]
     fn linear_between_samples_and_many_places_in_one_of_them() {
-        let found = passage(&[[0.0, 0.0, 0.0], [0.5, 8.0, 1.0], [3.0, 3.0, 6.0], [3.5, 2.0, 6.0]], 0.1);
+        let found = passage(&[[0.0, 0.0, 0.0], [0.5, 8.0, 1.0], [3.0, 3.0, 6.0], [4.5, 2.0, 6.0]], 0.1);
         // The greatest force before place 1 is left behind, at rest.
         assert_eq!(found.passed, [[8.0, 0.0], [7.0, 2.0], [5.0, 4.0], [3.0, 6.0]]);
-        assert_eq!((found.reach, found.last_force), (3.5, 2.0));
+        assert_eq!((found.reach, found.last_force), (4.5, 2.0));
     }
 
     #[test]

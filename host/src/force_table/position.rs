@@ -25,7 +25,7 @@ use super::{
     scene_hash,
 };
 use crate::{
-    flash::{FlashError, TABLE_REGION},
+    flash::TABLE_REGION,
     number::ten_digits,
     outcome::Verdict,
     scene::{LevelRange, Scene},
@@ -42,6 +42,12 @@ pub const SAMPLE: f64 = STEP / SUBSAMPLES as f64;
 /// coarser tables.
 const WHOLE: usize = 20;
 
+/// The longest stroke (m).
+const STROKE_MOST: f64 = 1.0;
+
+/// The most runs of a table.
+const RUNS_MOST: usize = 200_000;
+
 /// A table over position, and what there is to say of it.
 #[derive(Clone, Debug)]
 pub struct PositionTable {
@@ -57,7 +63,7 @@ pub struct Wish<'a> {
     /// Commanded speeds (m/s), if it is to be over these as well.
     pub speeds: Option<&'a LevelRange>,
     /// Where its axis ends (m), up to a step farther. If not given: where the slowest unit is that runs at least at half its
-    /// commanded speed when its run ends, in whole multiples of 5 mm; or where the farthest is if none runs.
+    /// commanded speed when its run ends, in whole multiples of 5 mm and at most 1 m; or where the farthest is if none runs.
     pub stroke: Option<f64>,
     /// Its size.
     pub demand: Demand,
@@ -112,8 +118,11 @@ pub enum PositionError {
         duration: f64,
     },
     /// A stroke that no axis can have.
-    #[error("the stroke is {} mm, allowed is {} to 10000 mm", mm(*.0), mm(STEP))]
+    #[error("the stroke is {} mm, allowed is {} to {} mm", mm(*.0), mm(STEP), mm(STROKE_MOST))]
     Stroke(f64),
+    /// More runs than [`RUNS_MOST`].
+    #[error("levels and speeds, with those half way between, make {0} runs, allowed are at most {RUNS_MOST}")]
+    TooMany(usize),
     /// Speeds in both directions, or none at all.
     #[error("speeds from {} to {} mm/s: all have to be positive, or all negative", mm(*first), mm(*last))]
     Direction {
@@ -131,7 +140,7 @@ fn run_speeds(scene: &Scene, speeds: Option<&LevelRange>) -> Vec<f64> {
 
 /// How many runs a table takes.
 pub fn runs(scene: &Scene, speeds: Option<&LevelRange>) -> usize {
-    levels(&scene.sweep).count * run_speeds(scene, speeds).len()
+    levels(&scene.sweep).count.saturating_mul(speeds.map_or(1, |speeds| levels(speeds).count))
 }
 
 fn position_axis(samples: usize, per_node: usize) -> SampleAxis {
@@ -139,26 +148,11 @@ fn position_axis(samples: usize, per_node: usize) -> SampleAxis {
     SampleAxis { kind: AxisKind::Position, at, step: SAMPLE, per_node }
 }
 
-/// Calls one of two with the axes of a table whose positions are `position`: without speeds, or with them.
-fn with_axes<T>(
-    scene: &Scene,
-    speeds: Option<&LevelRange>,
-    position: SampleAxis,
-    two: impl FnOnce([SampleAxis; 2]) -> T,
-    three: impl FnOnce([SampleAxis; 3]) -> T,
-) -> T {
-    let level = SampleAxis::halved(AxisKind::Level, &scene.sweep);
-    match speeds {
-        None => two([level, position]),
-        Some(speeds) => three([level, position, SampleAxis::halved(AxisKind::Velocity, speeds)]),
-    }
-}
-
 /// Whether there can be the table of `scene` that is wished for, found out before any run.
 ///
 /// # Errors
 /// [`TableError`] if the run ends before the drive's ramp, speeds have no common direction, the stroke is out of bounds,
-/// there are fewer than two levels or speeds, or two positions are too many for the region of flash.
+/// there are too many runs, fewer than two levels or speeds, or two positions are too many for the region of flash.
 pub fn check(scene: &Scene, &Wish { speeds, stroke, demand }: &Wish<'_>) -> Result<(), TableError> {
     let (duration, ramp_end) = (scene.run.duration, scene.drive.ramp_end);
     if duration <= ramp_end {
@@ -170,18 +164,20 @@ pub fn check(scene: &Scene, &Wish { speeds, stroke, demand }: &Wish<'_>) -> Resu
             return Err(PositionError::Direction { first, last }.into());
         }
     }
-    if let Some(stroke) = stroke.filter(|stroke| !(STEP..=10.0).contains(stroke)) {
+    if let Some(stroke) = stroke.filter(|stroke| !(STEP..=STROKE_MOST).contains(stroke)) {
         return Err(PositionError::Stroke(stroke).into());
     }
+    let runs = runs(scene, speeds);
+    if runs > RUNS_MOST {
+        return Err(PositionError::TooMany(runs).into());
+    }
+    let level = SampleAxis::halved(AxisKind::Level, &scene.sweep);
     let shortest = position_axis(SUBSAMPLES + 1, SUBSAMPLES);
-    let checked = |result: Result<(), FlashError>| Ok(result?);
-    with_axes(
-        scene,
-        speeds,
-        shortest,
-        |axes| checked(grid::check(&axes, demand)),
-        |axes| checked(grid::check(&axes, demand)),
-    )
+    match speeds {
+        None => grid::check(&[level, shortest], demand)?,
+        Some(speeds) => grid::check(&[level, shortest, SampleAxis::halved(AxisKind::Velocity, speeds)], demand)?,
+    }
+    Ok(())
 }
 
 /// Simulates the stroke of every level and speed (m/s) of `scene` and makes the table of them that is wished for; `done` is
@@ -210,7 +206,7 @@ pub fn make(
             let scene = Scene { drive: Drive { speed, ..scene.drive }, ..scene.clone() };
             let run = simulate(&scene, &scene.gaps_at(&[n; CONTACTS]), &settings)?;
             done();
-            let passage = Passage::of(&run.trajectory, speed, SAMPLE);
+            let passage = Passage::of(&run.trajectory, speed, SAMPLE, STROKE_MOST);
             let reach = Reach { n, speed, z: passage.reach, verdict: run.outcome.verdict };
             Ok((passage, reach))
         })
@@ -219,26 +215,24 @@ pub fn make(
     let steps = steps(&reaches, stroke, scene.run.duration)?;
     let samples = steps * SUBSAMPLES + 1;
 
-    let values = || {
-        let sample = |passage: &Passage, k: usize| match passage.passed.get(k) {
-            Some(values) => Sample { values: *values, stage: Stage::InUse },
-            None => Sample { values: [passage.last_force, 0.0], stage: Stage::Beyond },
-        };
-        let level = |speeds: &[Passage]| -> Vec<Sample> {
-            (0..samples).flat_map(|k| speeds.iter().map(move |passage| sample(passage, k))).collect()
-        };
-        passages.chunks(speeds_of_runs.len()).flat_map(level).collect()
+    let sample = |passage: &Passage, k: usize| match passage.passed.get(k) {
+        Some(values) => Sample { values: *values, stage: Stage::InUse },
+        None => Sample { values: [passage.last_force, 0.0], stage: Stage::Beyond },
     };
+    let level = |speeds: &[Passage]| -> Vec<Sample> {
+        (0..samples).flat_map(|k| speeds.iter().map(move |passage| sample(passage, k))).collect()
+    };
+    let values = passages.chunks(speeds_of_runs.len()).flat_map(level).collect();
     let nodes = scene.sweep.count * speeds.map_or(1, |speeds| speeds.count);
     let position = position_axis(samples, per_node(nodes, steps, demand));
-    let hash = scene_hash(scene);
-    let table = with_axes(
-        scene,
-        speeds,
-        position,
-        |axes| Samples { axes, values: values() }.table(hash, demand),
-        |axes| Samples { axes, values: values() }.table(hash, demand),
-    )?;
+    let (hash, level) = (scene_hash(scene), SampleAxis::halved(AxisKind::Level, &scene.sweep));
+    let table = match speeds {
+        None => Samples { axes: [level, position], values }.table(hash, demand)?,
+        Some(speeds) => {
+            let axes = [level, position, SampleAxis::halved(AxisKind::Velocity, speeds)];
+            Samples { axes, values }.table(hash, demand)?
+        }
+    };
 
     let short = reaches.iter().zip(&passages).enumerate().filter(|(i, (_, passage))| {
         let [level, speed] = [i / speeds_of_runs.len(), i % speeds_of_runs.len()];
@@ -255,7 +249,7 @@ fn steps(reaches: &[Reach], stroke: Option<f64>, duration: f64) -> Result<usize,
     // Margins for rounding.
     let steps = match stroke {
         Some(stroke) => (stroke / STEP - 1e-9).ceil() as usize,
-        None => match (slowest.unwrap_or(&farthest).z / STEP + 1e-9) as usize {
+        None => match (slowest.unwrap_or(&farthest).z.min(STROKE_MOST) / STEP + 1e-9) as usize {
             short if short < WHOLE => short,
             long => long / WHOLE * WHOLE,
         },
