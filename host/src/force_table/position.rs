@@ -120,7 +120,7 @@ pub enum PositionError {
     /// A stroke that no axis can have.
     #[error("the stroke is {} mm, allowed is {} to {} mm", mm(*.0), mm(STEP), mm(STROKE_MOST))]
     Stroke(f64),
-    /// More runs than [`RUNS_MOST`].
+    /// More runs than anyone waits for.
     #[error("levels and speeds, with those half way between, make {0} runs, allowed are at most {RUNS_MOST}")]
     TooMany(usize),
     /// Speeds in both directions, or none at all.
