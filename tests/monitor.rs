@@ -7,14 +7,15 @@ use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use slipfit::{
+    flash::{AxisSpec, ChannelSpec, TableSpec, encode},
     force_table::{self, Demand},
     outcome::Trajectory,
     scene::{CD_ROM_SLIDE, Override, Scene},
     simulate::{ScalarKind, Settings, simulate},
 };
 use slipfit_core::{
-    monitor::{BankError, Estimate, LevelBank, Limits, Monitor, Report, Sample, Verdict, Watch},
-    table::Table,
+    monitor::{BankError, Estimate, LevelBank, Limits, Monitor, MonitorError, Report, Sample, Verdict, Watch},
+    table::{AxisKind, Encoding, Table, TableError},
 };
 
 const SEEDS: u64 = 1000;
@@ -233,6 +234,21 @@ fn never_adapts_outside_its_band() {
 fn refuses_what_it_cannot_watch() {
     let table = Table::open(&STROKE_TABLE).unwrap();
     assert_eq!(LevelBank::<8>::new(&table).unwrap_err(), BankError::Levels { found: 14, most: 8 });
+    let axes = [(AxisKind::Level, 0.0, 1.0), (AxisKind::Position, 0.0, 1e-3)];
+    let axes = axes.map(|(kind, first, step)| AxisSpec { kind, first, step, count: 3 });
+    let channel = ChannelSpec { values: vec![1.0; 9], worst_error: 0.0, rms_error: 0.0 };
+    let over_position = TableSpec {
+        scene_hash: 0,
+        axes: axes.into(),
+        encoding: Encoding::F32,
+        force: channel.clone(),
+        velocity: channel,
+    };
+    let over_position = encode(&over_position).unwrap();
+    let over_position = Table::open(&over_position).unwrap();
+    let kind = TableError::Kind { axis: 1, found: AxisKind::Position, asked: AxisKind::Time };
+    assert_eq!(LevelBank::<8>::new(&over_position).unwrap_err(), BankError::Table(kind));
+    assert_eq!(Monitor::new(over_position, 1.0, limits(0.01)).unwrap_err(), MonitorError::Table(kind));
     for (level, limits) in [
         (f32::NAN, limits(0.01)),
         (5.0, limits(0.01)),

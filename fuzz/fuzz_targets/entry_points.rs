@@ -82,10 +82,10 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
                 0 => slipfit_predictor_init(&mut predictor, &scene, x),
                 1 => slipfit_predictor_step(&mut predictor),
                 2 => slipfit_predictor_read(&predictor, &mut said),
-                3 => slipfit_table_open(&mut table, bytes.as_ptr(), length, 0),
+                3 => slipfit_table_open(&mut table, bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 0),
                 4 => {
                     let second = bytes.as_ptr().add(half);
-                    slipfit_slots_open(&mut table, bytes.as_ptr(), second, half as u32, 0, &mut spare)
+                    slipfit_slots_open(&mut table, bytes.as_ptr(), second, half as u32, SLIPFIT_AXIS_TIME, 0, &mut spare)
                 }
                 5 => slipfit_table_look_up(&table, x, y, &mut found),
                 6 => slipfit_table_check(&mut table, x.to_bits()),

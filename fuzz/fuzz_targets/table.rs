@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use slipfit_core::table::{Patrol, Slots, Table, layout};
+use slipfit_core::table::{AxisKind, Patrol, Slots, Table, layout};
 
 fuzz_target!(|input: (Vec<u8>, [f32; 3])| {
     let (mut bytes, at) = input;
@@ -32,6 +32,6 @@ fn opened(bytes: &[u8], [a, b, c]: [f32; 3]) {
         assert!(found.force.is_finite() && found.velocity.is_finite());
     }
     let (first, second) = bytes.split_at(bytes.len() / 2);
-    let (slot, _) = Slots::<2>::open([first, second], 0).spare();
+    let (slot, _) = Slots::<2>::open([first, second], [AxisKind::Level, AxisKind::Time], 0).spare();
     assert!(slot < 2);
 }

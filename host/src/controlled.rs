@@ -42,8 +42,8 @@ pub struct Sensitivity {
 pub struct Knot {
     /// Time (s).
     pub t: f64,
-    /// Velocity along z (m/s), displacements across and up (m).
-    pub values: [f64; 3],
+    /// Velocity along z (m/s), displacements across, up and along z (m).
+    pub values: [f64; 4],
 }
 
 /// What an integration took.
@@ -81,7 +81,7 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, 6, Pose = Pose<f64>>>(
 ) -> Effort {
     let knot = |t: f64, motion: &MotionOf<f64, M, 6>| {
         let r = motion.pose.displacement_w;
-        Knot { t, values: [motion.velocity.z, r.x, r.y] }
+        Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] }
     };
     let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
     knots.push(knot(t, &motion));
@@ -111,7 +111,7 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, 6, Pose = Pose<f64>>>(
 }
 
 /// The values of [`Knot`] at ascending `times` (s) within the `knots`, of which there are at least two.
-pub fn sampled(knots: &[Knot], times: impl Iterator<Item = f64>) -> Vec<[f64; 3]> {
+pub fn sampled(knots: &[Knot], times: impl Iterator<Item = f64>) -> Vec<[f64; 4]> {
     let mut i = 0;
     times
         .map(|t| {
@@ -124,10 +124,10 @@ pub fn sampled(knots: &[Knot], times: impl Iterator<Item = f64>) -> Vec<[f64; 3]
 }
 
 /// The values at time `t` between the knots `i` and `i + 1`.
-fn between(knots: &[Knot], i: usize, t: f64) -> [f64; 3] {
+fn between(knots: &[Knot], i: usize, t: f64) -> [f64; 4] {
     let (from, to) = (knots[i], knots[i + 1]);
     let h = to.t - from.t;
-    [0, 1, 2].map(|k| {
+    [0, 1, 2, 3].map(|k| {
         let slopes = [slope(knots, i, k), slope(knots, i + 1, k)];
         hermite((t - from.t) / h, [from.values[k], to.values[k]], slopes.map(|slope| slope * h))
     })
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn parabolas_are_met_exactly_between_uneven_knots() {
         let y = |t: f64| 1.0 + t * (2.0 - 3.0 * t);
-        let knots: Vec<_> = [0.0, 0.1, 0.4, 0.5, 1.0].map(|t| Knot { t, values: [y(t), 0.0, t] }).into();
+        let knots: Vec<_> = [0.0, 0.1, 0.4, 0.5, 1.0].map(|t| Knot { t, values: [y(t), 0.0, t, 0.0] }).into();
         let times = [0.1, 0.25, 0.4, 0.45, 0.5];
         for (t, found) in times.into_iter().zip(sampled(&knots, times.into_iter())) {
             assert!((found[0] - y(t)).abs() < 1e-14 && (found[2] - t).abs() < 1e-14, "{t}: {found:?}");

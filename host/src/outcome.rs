@@ -22,6 +22,8 @@ pub struct Trajectory {
     pub x: Vec<f64>,
     /// Displacement of the centre of mass up (m).
     pub y: Vec<f64>,
+    /// Displacement of the centre of mass along z (m).
+    pub z: Vec<f64>,
     /// The greatest residual of any step (N·s).
     pub worst_residual: f64,
 }

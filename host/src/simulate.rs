@@ -193,7 +193,7 @@ impl SlideVisitor<f64> for Controlled<'_> {
         let time = |i: usize| (i as f64 * between).min(duration);
         let mut trajectory = Trajectory { worst_residual: effort.worst_residual, ..Trajectory::default() };
         let mut observer = Observer::new(scene.drive, duration);
-        for (i, [vz, x, y]) in controlled::sampled(&knots, (0..=count).map(time)).into_iter().enumerate() {
+        for (i, [vz, x, y, z]) in controlled::sampled(&knots, (0..=count).map(time)).into_iter().enumerate() {
             let t = time(i);
             let force = scene.drive.force(t, vz);
             observer.observe(t, vz, force);
@@ -203,6 +203,7 @@ impl SlideVisitor<f64> for Controlled<'_> {
                 trajectory.force.push(force);
                 trajectory.x.push(x);
                 trajectory.y.push(y);
+                trajectory.z.push(z);
             }
         }
         let last = knots.last().map_or(0.0, |knot| knot.values[0]);
@@ -266,6 +267,7 @@ where
                 trajectory.force.push(force);
                 trajectory.x.push(r.x.to_f64());
                 trajectory.y.push(r.y.to_f64());
+                trajectory.z.push(r.z.to_f64());
             }
             if state.steps == steps {
                 let integration = start.elapsed();

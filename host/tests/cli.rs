@@ -149,6 +149,38 @@ fn every_form_of_the_table_is_written() {
     assert!(table.lookup([1.0, 0.2]).force > 0.2);
 }
 
+#[test]
+fn tables_over_position_and_speed_name_their_axes() {
+    let folder = tempfile::tempdir().unwrap();
+    let stroke = ["--set", "run.duration=700", "--n", "0:2:1", "--step", "500us", "--json"];
+    let table = |options: &[&str]| {
+        let arguments = [&["table", "cd-rom-slide-fast", "-o", "table.bin"], options, &stroke].concat();
+        json(folder.path(), &arguments)
+    };
+    let axes = |report: &serde_json::Value| -> Vec<String> {
+        let axes = report["axes"].as_array().unwrap();
+        axes.iter()
+            .map(|axis| format!("{} {} {}", axis["kind"], axis["unit"], axis["count"]).replace('"', ""))
+            .collect()
+    };
+    assert_eq!(axes(&table(&[])), ["level 1 3", "time s 351"]);
+    let report = table(&["--over", "position", "--stroke", "25"]);
+    assert_eq!(axes(&report), ["level 1 3", "position m 101"]);
+    assert_eq!(report["axes"][1]["step"].as_f64().map(|step| step as f32), Some(0.25e-3));
+    assert!(report["rms_force_error_n"].as_f64() < report["worst_force_error_in_use_n"].as_f64());
+    // The tightest of the three jams before.
+    assert_eq!((&report["short"][0]["n"], &report["short"][0]["verdict"]), (&2.0.into(), &"jammed".into()));
+    let bytes = std::fs::read(folder.path().join("table.bin")).unwrap();
+    let found = slipfit_core::table::Table::<2>::open(&bytes).unwrap().lookup([0.0, 0.01]);
+    assert!(found.force > 0.2 && found.velocity > 0.05, "{found:?}");
+    let report = table(&["--over", "position,speed", "--speeds", "60:100:20", "--stroke", "15"]);
+    assert_eq!(axes(&report), ["level 1 3", "position m 61", "speed m/s 3"]);
+
+    let arguments = ["table", "cd-rom-slide-fast", "--over", "position", "--stroke", "25"];
+    let text = stdout(&slipfit(folder.path(), &[&arguments, &stroke[..6]].concat()));
+    assert!(text.contains("n = +2 at 100.0 mm/s jams at z = ") && text.contains("holds the last force"), "{text}");
+}
+
 /// Every kind of bad input: exit code 2, a message that names the thing, nothing written.
 #[test]
 fn bad_input_is_refused_by_name() {
@@ -196,6 +228,26 @@ fn bad_input_is_refused_by_name() {
         (&["fly"], "fly"),
         (&["table", "-o", "table.txt"], ".hex"),
         (&["table", "-o", "nowhere/table.bin"], "nowhere"),
+        (&["table", "--over", "place"], "--over"),
+        (&["table", "--over", "position"], "the run of 200 ms ends before the drive's ramp does, at 1000 ms"),
+        (&["table", "--over", "position,speed"], "needs --speeds"),
+        (&["table", "--speeds", "50:100:10"], "--speeds is for --over position,speed"),
+        (&["table", "--over", "position", "--speeds", "50:100:10"], "--speeds is for --over position,speed"),
+        (&["table", "--over", "position,speed", "--speeds", "100:50:10"], "--speeds 100:50:10: the last, 50, is below"),
+        (
+            &["table", "--over", "position,speed", "--speeds", "100", "--set", "run.duration=1500"],
+            "the Velocity axis has 1",
+        ),
+        (
+            &["table", "--over", "position,speed", "--speeds=-50:50:10", "--set", "run.duration=1500"],
+            "speeds from -50 to 50 mm/s",
+        ),
+        (&["table", "--stroke", "60"], "--stroke is for --over position"),
+        (&["table", "--over", "position", "--stroke", "0", "--set", "run.duration=1500"], "the stroke is 0 mm"),
+        (
+            &["table", "cd-rom-slide-fast", "--over", "position", "--stroke", "60", "--n", "1:2:1", "--step", "500us"],
+            "no slide comes 60 mm far",
+        ),
         (&["simulate", "--step", "0"], "--step 0"),
         (&["simulate", "--step", "1s"], "--step 1s"),
         (&["simulate", "--every", "130us", "--step", "100us"], "multiple of the step"),

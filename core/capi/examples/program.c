@@ -61,7 +61,8 @@ static void watch(void) {
     };
     uint64_t looked_up = EMPTY, watched = EMPTY;
     uint32_t verdicts[4] = {0, 0, 0, 0};
-    uint32_t failed = (uint32_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_SCENE_HASH);
+    uint32_t failed = (uint32_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_AXIS_TIME,
+                                                   SLIPFIT_SCENE_HASH);
     failed |= (uint32_t)slipfit_predictor_init(&predictor, &slipfit_this_scene, 2.25f);
     failed |= (uint32_t)slipfit_monitor_init(&monitor, &table, 2.25f, &limits);
     failed |= (uint32_t)slipfit_bank_init(&bank, &table);
@@ -98,10 +99,11 @@ static void refuse(void) {
     put_hex("null", (uint64_t)slipfit_predictor_init(0, &slipfit_this_scene, 0.0f));
     put_hex("misaligned", (uint64_t)slipfit_predictor_step((slipfit_predictor *)((char *)&predictor + 1)));
     put_hex("not made", (uint64_t)slipfit_table_look_up((const slipfit_table *)erased, 0.0f, 0.0f, &found));
-    put_hex("scene", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, 1));
+    put_hex("scene", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_AXIS_TIME, 1));
+    put_hex("position", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_AXIS_POSITION, SLIPFIT_SCENE_HASH));
     put_hex("closed then", (uint64_t)slipfit_table_look_up(&table, 0.0f, 0.0f, &found));
-    put_hex("truncated", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE - 1, SLIPFIT_SCENE_HASH));
-    put_hex("foreign", (uint64_t)slipfit_table_open(&table, (const uint8_t *)erased, 64, SLIPFIT_SCENE_HASH));
+    put_hex("truncated", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE - 1, SLIPFIT_AXIS_TIME, SLIPFIT_SCENE_HASH));
+    put_hex("foreign", (uint64_t)slipfit_table_open(&table, (const uint8_t *)erased, 64, SLIPFIT_AXIS_TIME, SLIPFIT_SCENE_HASH));
 }
 
 int main(void) {

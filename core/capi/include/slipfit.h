@@ -14,6 +14,12 @@
 // Coulomb friction with true stick.
 #define SLIPFIT_FRICTION_EXACT 2
 
+// The second axis of a table is time (s).
+#define SLIPFIT_AXIS_TIME 2
+
+// The second axis of a table is position (m), from the motion's start on.
+#define SLIPFIT_AXIS_POSITION 3
+
 // Levels that a bank has room for.
 #define SLIPFIT_BANK_LEVELS_MOST 96
 
@@ -89,10 +95,15 @@ typedef struct slipfit_prediction {
   float residual;
 } slipfit_prediction;
 
-// Memory of an open table; opaque. The table itself stays where it is.
+// Memory of an open table over two axes; opaque. The table itself stays where it is.
 typedef struct slipfit_table {
   uint64_t words[40];
 } slipfit_table;
+
+// Memory of an open table over three axes; opaque. The table itself stays where it is.
+typedef struct slipfit_table3 {
+  uint64_t words[48];
+} slipfit_table3;
 
 // Where an update goes.
 typedef struct slipfit_spare {
@@ -224,11 +235,14 @@ typedef struct slipfit_estimate {
 // A value of the table is out of bounds.
 #define SLIPFIT_TABLE_VALUE 21
 
-// The table is over another number or kind of axes.
+// The table is over another number of axes.
 #define SLIPFIT_TABLE_AXES 22
 
 // The table was made for another scene or other laws.
 #define SLIPFIT_TABLE_SCENE 23
+
+// The table is over another quantity than asked for: over position instead of time, say.
+#define SLIPFIT_TABLE_KIND 24
 
 // The table has more levels than a bank.
 #define SLIPFIT_BANK_LEVELS 32
@@ -258,8 +272,8 @@ slipfit_status slipfit_predictor_step(struct slipfit_predictor *storage);
 // As for slipfit_predictor_step; nobody else uses `*prediction` meanwhile.
 slipfit_status slipfit_predictor_read(const struct slipfit_predictor *storage, struct slipfit_prediction *prediction);
 
-// Checks the table at `region` completely and opens it in `*storage`. `scene_hash` is what the table must have been
-// made for, SLIPFIT_TABLE_SCENE_HASH of its header.
+// Checks the table at `region` completely and opens it in `*storage`. It must be over tolerance level and `over`,
+// SLIPFIT_AXIS_TIME or SLIPFIT_AXIS_POSITION, and made for `scene_hash`, SLIPFIT_TABLE_SCENE_HASH of its header.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; `length` bytes are at `region` and stay
@@ -267,9 +281,19 @@ slipfit_status slipfit_predictor_read(const struct slipfit_predictor *storage, s
 slipfit_status slipfit_table_open(struct slipfit_table *storage,
                                   const uint8_t *region,
                                   uint32_t length,
+                                  uint32_t over,
                                   uint64_t scene_hash);
 
-// Opens the newer valid table of two slots of `length` bytes each, and says where the next update goes.
+// As slipfit_table_open, a table over tolerance level, position and commanded speed.
+//
+// # Safety
+// As for slipfit_table_open.
+slipfit_status slipfit_table3_open(struct slipfit_table3 *storage,
+                                   const uint8_t *region,
+                                   uint32_t length,
+                                   uint64_t scene_hash);
+
+// Opens the newer valid table, as slipfit_table_open has it, of two slots of `length` bytes each, and says where the next update goes.
 //
 // # Safety
 // As for slipfit_table_open; nobody else uses `*spare` meanwhile.
@@ -277,17 +301,28 @@ slipfit_status slipfit_slots_open(struct slipfit_table *storage,
                                   const uint8_t *first,
                                   const uint8_t *second,
                                   uint32_t length,
+                                  uint32_t over,
                                   uint64_t scene_hash,
                                   struct slipfit_spare *spare);
 
-// Force and velocity of a unit of tolerance level `n` at the time `t` (s).
+// Force and velocity of a unit of tolerance level `n` at `at`, the time (s) or position (m) since the motion's start.
 //
 // # Safety
 // As for slipfit_table_open; the memory has been written before; nobody else uses `*lookup` meanwhile.
 slipfit_status slipfit_table_look_up(const struct slipfit_table *storage,
                                      float n,
-                                     float t,
+                                     float at,
                                      struct slipfit_lookup *lookup);
+
+// Force and velocity of a unit of tolerance level `n` at the position `z` (m), commanded to `speed` (m/s).
+//
+// # Safety
+// As for slipfit_table_look_up.
+slipfit_status slipfit_table3_look_up(const struct slipfit_table3 *storage,
+                                      float n,
+                                      float z,
+                                      float speed,
+                                      struct slipfit_lookup *lookup);
 
 // The cyclic check: looks at the next bytes, `most` at most. SLIPFIT_TABLE_CHECKSUM at the end of a round in which a
 // byte differed; call it again and again.
@@ -296,7 +331,13 @@ slipfit_status slipfit_table_look_up(const struct slipfit_table *storage,
 // As for slipfit_table_open; the memory has been written before.
 slipfit_status slipfit_table_check(struct slipfit_table *storage, uint32_t most);
 
-// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table. A motion starts with a fresh one.
+// As slipfit_table_check, of a table over three axes.
+//
+// # Safety
+// As for slipfit_table_check.
+slipfit_status slipfit_table3_check(struct slipfit_table3 *storage, uint32_t most);
+
+// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table over time. A motion starts with a fresh one.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; the table has been written before; nobody
@@ -314,7 +355,7 @@ slipfit_status slipfit_monitor_step(struct slipfit_monitor *storage,
                                     const struct slipfit_sample *sample,
                                     struct slipfit_report *report);
 
-// Makes an empty bank in `*storage` for an open table.
+// Makes an empty bank in `*storage` for an open table over time.
 //
 // # Safety
 // As for slipfit_monitor_init.

@@ -7,7 +7,7 @@ use slipfit_core::{
 
 use crate::{
     border::{Storage, input, make, object, object_mut, output},
-    status::{Refusal, SLIPFIT_BANK_LEVELS, SLIPFIT_BANK_SAMPLES, SLIPFIT_TABLE_AXES, slipfit_status, status},
+    status::{Refusal, SLIPFIT_BANK_LEVELS, SLIPFIT_BANK_SAMPLES, slipfit_status, status},
     table::slipfit_table,
 };
 
@@ -125,14 +125,14 @@ unsafe impl Storage for slipfit_bank {
 
 impl From<BankError> for Refusal {
     fn from(error: BankError) -> Self {
-        Self(match error {
-            BankError::Axes => SLIPFIT_TABLE_AXES,
-            BankError::Levels { .. } => SLIPFIT_BANK_LEVELS,
-        })
+        match error {
+            BankError::Table(error) => error.into(),
+            BankError::Levels { .. } => Self(SLIPFIT_BANK_LEVELS),
+        }
     }
 }
 
-/// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table. A motion starts with a fresh one.
+/// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table over time. A motion starts with a fresh one.
 ///
 /// # Safety
 /// Pointers that are neither null nor misaligned point at what their types say; the table has been written before; nobody
@@ -186,7 +186,7 @@ pub unsafe extern "C" fn slipfit_monitor_step(
     })
 }
 
-/// Makes an empty bank in `*storage` for an open table.
+/// Makes an empty bank in `*storage` for an open table over time.
 ///
 /// # Safety
 /// As for slipfit_monitor_init.

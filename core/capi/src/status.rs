@@ -1,6 +1,6 @@
 //! What functions return.
 
-use slipfit_core::{ParameterError, table::TableError};
+use slipfit_core::{ParameterError, monitor::MonitorError, table::TableError};
 
 /// 0 if a function did what it says, or why it did nothing.
 pub type slipfit_status = i32;
@@ -33,10 +33,12 @@ pub const SLIPFIT_TABLE_CHECKSUM: slipfit_status = 19;
 pub const SLIPFIT_TABLE_HEADER: slipfit_status = 20;
 /// A value of the table is out of bounds.
 pub const SLIPFIT_TABLE_VALUE: slipfit_status = 21;
-/// The table is over another number or kind of axes.
+/// The table is over another number of axes.
 pub const SLIPFIT_TABLE_AXES: slipfit_status = 22;
 /// The table was made for another scene or other laws.
 pub const SLIPFIT_TABLE_SCENE: slipfit_status = 23;
+/// The table is over another quantity than asked for: over position instead of time, say.
+pub const SLIPFIT_TABLE_KIND: slipfit_status = 24;
 /// The table has more levels than a bank.
 pub const SLIPFIT_BANK_LEVELS: slipfit_status = 32;
 /// Too few samples for an estimate.
@@ -61,8 +63,18 @@ impl From<TableError> for Refusal {
             TableError::Header(_) => SLIPFIT_TABLE_HEADER,
             TableError::Value(_) => SLIPFIT_TABLE_VALUE,
             TableError::Axes { .. } => SLIPFIT_TABLE_AXES,
+            TableError::Kind { .. } => SLIPFIT_TABLE_KIND,
             TableError::Scene { .. } => SLIPFIT_TABLE_SCENE,
         })
+    }
+}
+
+impl From<MonitorError> for Refusal {
+    fn from(error: MonitorError) -> Self {
+        match error {
+            MonitorError::Table(error) => error.into(),
+            MonitorError::Parameter(error) => error.into(),
+        }
     }
 }
 

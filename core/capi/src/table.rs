@@ -1,17 +1,29 @@
-//! The flash table over tolerance level and time.
+//! The flash table over tolerance level and time or position, and the one over position and commanded speed.
 
-use slipfit_core::table::{Patrol, Slots, Table};
+use slipfit_core::table::{AxisKind, Patrol, Slots, Table};
 
 use crate::{
     border::{Storage, bytes, make, object, object_mut, output},
-    status::{Refusal, SLIPFIT_TABLE_CHECKSUM, slipfit_status, status},
+    status::{Refusal, SLIPFIT_PARAMETER, SLIPFIT_TABLE_CHECKSUM, slipfit_status, status},
 };
 
-/// Memory of an open table; opaque. The table itself stays where it is.
+/// The second axis of a table is time (s).
+pub const SLIPFIT_AXIS_TIME: u32 = 2;
+/// The second axis of a table is position (m), from the motion's start on.
+pub const SLIPFIT_AXIS_POSITION: u32 = 3;
+
+/// Memory of an open table over two axes; opaque. The table itself stays where it is.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct slipfit_table {
     words: [u64; 40],
+}
+
+/// Memory of an open table over three axes; opaque. The table itself stays where it is.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct slipfit_table3 {
+    words: [u64; 48],
 }
 
 /// What a table says about one point.
@@ -36,8 +48,8 @@ pub struct slipfit_spare {
     pub sequence: u32,
 }
 
-pub(crate) struct Opened {
-    pub(crate) table: Table<'static>,
+pub(crate) struct Opened<const N: usize> {
+    pub(crate) table: Table<'static, N>,
     region: &'static [u8],
     /// Bytes of the table that the cyclic check has seen.
     patrol: Patrol,
@@ -45,16 +57,43 @@ pub(crate) struct Opened {
 
 // SAFETY: plain words.
 unsafe impl Storage for slipfit_table {
-    type Object = Opened;
+    type Object = Opened<2>;
     const MARK: u32 = 0x534c_5431;
 }
 
-fn opened(table: Table<'static>, region: &'static [u8]) -> Opened {
+// SAFETY: plain words.
+unsafe impl Storage for slipfit_table3 {
+    type Object = Opened<3>;
+    const MARK: u32 = 0x534c_5433;
+}
+
+fn opened<const N: usize>(table: Table<'static, N>, region: &'static [u8]) -> Opened<N> {
     Opened { patrol: Patrol::new(&table), table, region }
 }
 
-/// Checks the table at `region` completely and opens it in `*storage`. `scene_hash` is what the table must have been
-/// made for, SLIPFIT_TABLE_SCENE_HASH of its header.
+impl<const N: usize> Opened<N> {
+    fn look_up(&self, at: [f32; N]) -> slipfit_lookup {
+        let found = self.table.lookup(at);
+        slipfit_lookup { force: found.force, velocity: found.velocity, clamped: found.clamped.into() }
+    }
+
+    fn check(&mut self, most: u32) -> Result<(), Refusal> {
+        let most = usize::try_from(most).unwrap_or(usize::MAX);
+        self.patrol.check(self.region, most).map(drop).map_err(|_| Refusal(SLIPFIT_TABLE_CHECKSUM))
+    }
+}
+
+/// The axes of a table whose second one is `over`.
+fn axes(over: u32) -> Result<[AxisKind; 2], Refusal> {
+    match over {
+        SLIPFIT_AXIS_TIME => Ok([AxisKind::Level, AxisKind::Time]),
+        SLIPFIT_AXIS_POSITION => Ok([AxisKind::Level, AxisKind::Position]),
+        _ => Err(Refusal(SLIPFIT_PARAMETER)),
+    }
+}
+
+/// Checks the table at `region` completely and opens it in `*storage`. It must be over tolerance level and `over`,
+/// SLIPFIT_AXIS_TIME or SLIPFIT_AXIS_POSITION, and made for `scene_hash`, SLIPFIT_TABLE_SCENE_HASH of its header.
 ///
 /// # Safety
 /// Pointers that are neither null nor misaligned point at what their types say; `length` bytes are at `region` and stay
@@ -64,18 +103,40 @@ pub unsafe extern "C" fn slipfit_table_open(
     storage: *mut slipfit_table,
     region: *const u8,
     length: u32,
+    over: u32,
     scene_hash: u64,
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
     status(|| unsafe {
         make(storage, || {
             let region = bytes(region, length)?;
-            Ok(opened(Table::open(region)?.expect_scene(scene_hash)?, region))
+            Ok(opened(Table::open(region)?.expect_axes(axes(over)?)?.expect_scene(scene_hash)?, region))
         })
     })
 }
 
-/// Opens the newer valid table of two slots of `length` bytes each, and says where the next update goes.
+/// As slipfit_table_open, a table over tolerance level, position and commanded speed.
+///
+/// # Safety
+/// As for slipfit_table_open.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_table3_open(
+    storage: *mut slipfit_table3,
+    region: *const u8,
+    length: u32,
+    scene_hash: u64,
+) -> slipfit_status {
+    // SAFETY: the caller's promise.
+    status(|| unsafe {
+        make(storage, || {
+            let region = bytes(region, length)?;
+            let axes = [AxisKind::Level, AxisKind::Position, AxisKind::Velocity];
+            Ok(opened(Table::open(region)?.expect_axes(axes)?.expect_scene(scene_hash)?, region))
+        })
+    })
+}
+
+/// Opens the newer valid table, as slipfit_table_open has it, of two slots of `length` bytes each, and says where the next update goes.
 ///
 /// # Safety
 /// As for slipfit_table_open; nobody else uses `*spare` meanwhile.
@@ -85,13 +146,14 @@ pub unsafe extern "C" fn slipfit_slots_open(
     first: *const u8,
     second: *const u8,
     length: u32,
+    over: u32,
     scene_hash: u64,
     spare: *mut slipfit_spare,
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
     status(|| unsafe {
         let regions = [bytes(first, length)?, bytes(second, length)?];
-        let slots = Slots::<2>::open(regions, scene_hash);
+        let slots = Slots::<2>::open(regions, axes(over)?, scene_hash);
         let (slot, sequence) = slots.spare();
         output(spare, || Ok(slipfit_spare { slot: slot as u32, sequence }))?;
         let [first, second] = regions;
@@ -100,7 +162,7 @@ pub unsafe extern "C" fn slipfit_slots_open(
     })
 }
 
-/// Force and velocity of a unit of tolerance level `n` at the time `t` (s).
+/// Force and velocity of a unit of tolerance level `n` at `at`, the time (s) or position (m) since the motion's start.
 ///
 /// # Safety
 /// As for slipfit_table_open; the memory has been written before; nobody else uses `*lookup` meanwhile.
@@ -108,16 +170,27 @@ pub unsafe extern "C" fn slipfit_slots_open(
 pub unsafe extern "C" fn slipfit_table_look_up(
     storage: *const slipfit_table,
     n: f32,
-    t: f32,
+    at: f32,
     lookup: *mut slipfit_lookup,
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
-    status(|| unsafe {
-        output(lookup, || {
-            let found = object(storage)?.table.lookup([n, t]);
-            Ok(slipfit_lookup { force: found.force, velocity: found.velocity, clamped: found.clamped.into() })
-        })
-    })
+    status(|| unsafe { output(lookup, || Ok(object(storage)?.look_up([n, at]))) })
+}
+
+/// Force and velocity of a unit of tolerance level `n` at the position `z` (m), commanded to `speed` (m/s).
+///
+/// # Safety
+/// As for slipfit_table_look_up.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_table3_look_up(
+    storage: *const slipfit_table3,
+    n: f32,
+    z: f32,
+    speed: f32,
+    lookup: *mut slipfit_lookup,
+) -> slipfit_status {
+    // SAFETY: the caller's promise.
+    status(|| unsafe { output(lookup, || Ok(object(storage)?.look_up([n, z, speed]))) })
 }
 
 /// The cyclic check: looks at the next bytes, `most` at most. SLIPFIT_TABLE_CHECKSUM at the end of a round in which a
@@ -127,10 +200,16 @@ pub unsafe extern "C" fn slipfit_table_look_up(
 /// As for slipfit_table_open; the memory has been written before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn slipfit_table_check(storage: *mut slipfit_table, most: u32) -> slipfit_status {
-    status(|| {
-        // SAFETY: the caller's promise.
-        let opened = unsafe { object_mut(storage)? };
-        let most = usize::try_from(most).unwrap_or(usize::MAX);
-        opened.patrol.check(opened.region, most).map(drop).map_err(|_| Refusal(SLIPFIT_TABLE_CHECKSUM))
-    })
+    // SAFETY: the caller's promise.
+    status(|| unsafe { object_mut(storage)?.check(most) })
+}
+
+/// As slipfit_table_check, of a table over three axes.
+///
+/// # Safety
+/// As for slipfit_table_check.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_table3_check(storage: *mut slipfit_table3, most: u32) -> slipfit_status {
+    // SAFETY: the caller's promise.
+    status(|| unsafe { object_mut(storage)?.check(most) })
 }

@@ -5,7 +5,7 @@ use std::{mem::MaybeUninit, ptr};
 
 use proptest::prelude::*;
 use slipfit_capi::*;
-use slipfit_core::table::{Table, layout};
+use slipfit_core::table::{AxisKind, Table, layout};
 use slipfit_problems::cd_rom;
 
 /// What floating point has that a careless program trips over.
@@ -105,22 +105,28 @@ fn special_numbers_in_every_place_of_a_scene() {
     }
 }
 
-/// A table over 3 levels and 4 instants, in f32.
-fn table() -> Vec<u8> {
+/// A table in f32 whose values count up: along each axis its nodes and their distance, from 0 on.
+fn table_over(axes: &[(AxisKind, u32, f32)]) -> Vec<u8> {
+    let nodes: u32 = axes.iter().map(|(_, count, _)| count).product();
     let mut bytes = Vec::from(*b"SLFT");
-    bytes.extend([2, 0, 2, 1]);
+    bytes.extend([2, 0, axes.len() as u8, 1]);
     bytes.extend(7u64.to_le_bytes());
-    let length = layout::HEADER_SIZE + 12 * 8 + layout::CHECKSUM_SIZE;
+    let length = layout::HEADER_SIZE + nodes as usize * 8 + layout::CHECKSUM_SIZE;
     bytes.extend((length as u32).to_le_bytes());
-    for (kind, count, step) in [(1u8, 3u32, 1.0f32), (2, 4, 0.1)] {
-        bytes.extend([kind, 0, 0, 0]);
+    for (kind, count, step) in axes {
+        bytes.extend([*kind as u8, 0, 0, 0]);
         bytes.extend(count.to_le_bytes());
-        bytes.extend([0.0f32, step].map(f32::to_le_bytes).concat());
+        bytes.extend([0.0, *step].map(f32::to_le_bytes).concat());
     }
-    bytes.extend([0; 16]);
+    bytes.resize(layout::CHANNELS_AT, 0);
     bytes.extend([1.0f32, 0.0, 0.0, 1.0, 0.0, 0.0].map(f32::to_le_bytes).concat());
-    bytes.extend((0..24u8).flat_map(|i| f32::from(i).to_le_bytes()));
+    bytes.extend((0..2 * nodes).flat_map(|i| (i as f32).to_le_bytes()));
     sealed(bytes)
+}
+
+/// A table over 3 levels and 4 instants.
+fn table() -> Vec<u8> {
+    table_over(&[(AxisKind::Level, 3, 1.0), (AxisKind::Time, 4, 0.1)])
 }
 
 /// The table with its checksum at the end.
@@ -138,7 +144,7 @@ fn uses_of_a_table(bytes: &'static [u8], numbers: &[f32]) -> Result<slipfit_stat
     let at = |i: usize| numbers[i % numbers.len()];
     // SAFETY: every pointer is to a local of its type, and the bytes stay.
     unsafe {
-        let opened = slipfit_table_open(&mut table, bytes.as_ptr(), bytes.len() as u32, 7);
+        let opened = slipfit_table_open(&mut table, bytes.as_ptr(), bytes.len() as u32, SLIPFIT_AXIS_TIME, 7);
         let expected = if opened == SLIPFIT_OK { SLIPFIT_OK } else { SLIPFIT_NOT_MADE };
         for (i, n) in numbers.iter().enumerate() {
             prop_assert_eq!(slipfit_table_look_up(&table, *n, at(i + 1), &mut found), expected);
@@ -190,6 +196,67 @@ fn every_short_length_is_refused() {
 }
 
 #[test]
+fn a_table_over_position_is_no_table_over_time() {
+    assert_eq!([SLIPFIT_AXIS_TIME, SLIPFIT_AXIS_POSITION], [AxisKind::Time as u32, AxisKind::Position as u32]);
+    let bytes: &'static [u8] = table_over(&[(AxisKind::Level, 3, 1.0), (AxisKind::Position, 4, 0.1)]).leak();
+    let length = bytes.len() as u32;
+    let (mut table, mut found, mut spare) =
+        (zeroed::<slipfit_table>(), zeroed::<slipfit_lookup>(), zeroed::<slipfit_spare>());
+    let (mut monitor, mut bank, limits) =
+        (zeroed::<slipfit_monitor>(), zeroed::<slipfit_bank>(), zeroed::<slipfit_limits>());
+    // SAFETY: every pointer is to a local of its type, and the bytes stay.
+    unsafe {
+        let mut open = |over| {
+            let slots = slipfit_slots_open(&mut table, bytes.as_ptr(), bytes.as_ptr(), length, over, 7, &mut spare);
+            assert_eq!(slipfit_table_open(&mut table, bytes.as_ptr(), length, over, 7), slots, "{over}");
+            slots
+        };
+        assert_eq!(open(SLIPFIT_AXIS_TIME), SLIPFIT_TABLE_KIND);
+        for none in [0, 1, 4, 5, u32::MAX] {
+            assert_eq!(open(none), SLIPFIT_PARAMETER);
+        }
+        assert_eq!(open(SLIPFIT_AXIS_POSITION), SLIPFIT_OK);
+        assert_eq!(slipfit_table_look_up(&table, 1.0, 0.1, &mut found), SLIPFIT_OK);
+        assert_eq!(found, slipfit_lookup { force: 10.0, velocity: 11.0, clamped: 0 });
+        // What works on time does not take it.
+        assert_eq!(slipfit_monitor_init(&mut monitor, &table, 1.0, &limits), SLIPFIT_TABLE_KIND);
+        assert_eq!(slipfit_bank_init(&mut bank, &table), SLIPFIT_TABLE_KIND);
+    }
+}
+
+#[test]
+fn a_table_over_three_axes() {
+    let axes = [(AxisKind::Level, 3, 1.0), (AxisKind::Position, 4, 0.1), (AxisKind::Velocity, 2, 0.05)];
+    let bytes: &'static [u8] = table_over(&axes).leak();
+    let length = bytes.len() as u32;
+    let (mut plane, mut table) = (zeroed::<slipfit_table>(), zeroed::<slipfit_table3>());
+    let mut found = zeroed::<slipfit_lookup>();
+    // SAFETY: every pointer is to a local of its type, and the bytes stay.
+    unsafe {
+        let refused = slipfit_table_open(&mut plane, bytes.as_ptr(), length, SLIPFIT_AXIS_POSITION, 7);
+        assert_eq!(refused, SLIPFIT_TABLE_AXES);
+        assert_eq!(slipfit_table3_look_up(&table, 1.0, 0.1, 0.05, &mut found), SLIPFIT_NOT_MADE);
+        assert_eq!(slipfit_table3_check(&mut table, 1), SLIPFIT_NOT_MADE);
+        assert_eq!(slipfit_table3_open(&mut table, bytes.as_ptr(), length, 8), SLIPFIT_TABLE_SCENE);
+        assert_eq!(slipfit_table3_open(&mut table, ptr::null(), length, 7), SLIPFIT_NULL);
+        assert_eq!(slipfit_table3_open(&mut table, bytes.as_ptr(), length - 1, 7), SLIPFIT_TABLE_TRUNCATED);
+        assert_eq!(slipfit_table3_open(&mut table, bytes.as_ptr(), length, 7), SLIPFIT_OK);
+        assert_eq!(slipfit_table3_look_up(&table, 1.0, 0.1, 0.05, &mut found), SLIPFIT_OK);
+        assert_eq!(found, slipfit_lookup { force: 22.0, velocity: 23.0, clamped: 0 });
+        for special in SPECIAL {
+            assert_eq!(slipfit_table3_look_up(&table, special, special, special, &mut found), SLIPFIT_OK);
+            assert!(found.force.is_finite() && found.velocity.is_finite());
+        }
+        for _ in 0..4 {
+            assert_eq!(slipfit_table3_check(&mut table, length / 2), SLIPFIT_OK);
+        }
+        let other = table_over(&[(AxisKind::Level, 3, 1.0), (AxisKind::Time, 4, 0.1), (AxisKind::Velocity, 2, 0.05)]);
+        let other: &'static [u8] = other.leak();
+        assert_eq!(slipfit_table3_open(&mut table, other.as_ptr(), length, 7), SLIPFIT_TABLE_KIND);
+    }
+}
+
+#[test]
 fn null_and_misaligned_pointers_are_refused() {
     let bytes: &'static [u8] = table().leak();
     let length = bytes.len() as u32;
@@ -202,7 +269,7 @@ fn null_and_misaligned_pointers_are_refused() {
     // SAFETY: what is neither null nor misaligned points at locals.
     unsafe {
         assert_eq!(slipfit_predictor_init(&mut predictor, &scene, 2.5), SLIPFIT_OK);
-        assert_eq!(slipfit_table_open(&mut table, bytes.as_ptr(), length, 7), SLIPFIT_OK);
+        assert_eq!(slipfit_table_open(&mut table, bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 7), SLIPFIT_OK);
         assert_eq!(slipfit_bank_init(&mut bank, &table), SLIPFIT_OK);
         // Each call with one bad pointer.
         for (code, shift) in [(SLIPFIT_NULL, None), (SLIPFIT_MISALIGNED, Some(1))] {
@@ -218,9 +285,25 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_predictor_step(bad!(predictor)),
                 slipfit_predictor_read(bad!(predictor), &mut said),
                 slipfit_predictor_read(&predictor, bad!(said)),
-                slipfit_table_open(bad!(table), bytes.as_ptr(), length, 7),
-                slipfit_slots_open(bad!(table), bytes.as_ptr(), bytes.as_ptr(), length, 7, &mut spare),
-                slipfit_slots_open(&mut table, bytes.as_ptr(), bytes.as_ptr(), length, 7, bad!(spare)),
+                slipfit_table_open(bad!(table), bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 7),
+                slipfit_slots_open(
+                    bad!(table),
+                    bytes.as_ptr(),
+                    bytes.as_ptr(),
+                    length,
+                    SLIPFIT_AXIS_TIME,
+                    7,
+                    &mut spare,
+                ),
+                slipfit_slots_open(
+                    &mut table,
+                    bytes.as_ptr(),
+                    bytes.as_ptr(),
+                    length,
+                    SLIPFIT_AXIS_TIME,
+                    7,
+                    bad!(spare),
+                ),
                 slipfit_table_look_up(bad!(table), 0.0, 0.0, &mut found),
                 slipfit_table_look_up(&table, 0.0, 0.0, bad!(found)),
                 slipfit_table_check(bad!(table), 1),
@@ -241,9 +324,9 @@ fn null_and_misaligned_pointers_are_refused() {
             }
         }
         for answer in [
-            slipfit_table_open(&mut table, ptr::null(), length, 7),
-            slipfit_slots_open(&mut table, ptr::null(), bytes.as_ptr(), length, 7, &mut spare),
-            slipfit_slots_open(&mut table, bytes.as_ptr(), ptr::null(), length, 7, &mut spare),
+            slipfit_table_open(&mut table, ptr::null(), length, SLIPFIT_AXIS_TIME, 7),
+            slipfit_slots_open(&mut table, ptr::null(), bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 7, &mut spare),
+            slipfit_slots_open(&mut table, bytes.as_ptr(), ptr::null(), length, SLIPFIT_AXIS_TIME, 7, &mut spare),
         ] {
             assert_eq!(answer, SLIPFIT_NULL);
         }

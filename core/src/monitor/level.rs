@@ -5,7 +5,7 @@
 //! level whatever it is, without a first guess and without the samples. Noise of unknown strength is estimated from what
 //! the best level leaves, and widened if neighbouring residuals are correlated: then the model errs, not the sensor.
 
-use crate::table::{AxisKind, Nodes, Table};
+use crate::table::{AxisKind, Nodes, Table, TableError};
 
 /// χ² of one degree of freedom that 95 % stay below.
 const CHI_SQUARED: f32 = 3.841_459;
@@ -20,8 +20,8 @@ const TABLE_SAMPLES: f32 = 20.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum BankError {
-    /// The table is not one over level and time.
-    Axes,
+    /// The table is not one over tolerance level and time.
+    Table(TableError),
     /// The table has more levels than the bank.
     Levels {
         /// Levels of the table.
@@ -34,7 +34,7 @@ pub enum BankError {
 impl core::fmt::Display for BankError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Axes => f.write_str("the table is not one over tolerance level and time"),
+            Self::Table(error) => write!(f, "no table over tolerance level and time: {error}"),
             Self::Levels { found, most } => write!(f, "the table has {found} levels, allowed are at most {most}"),
         }
     }
@@ -83,10 +83,8 @@ impl<const LEVELS: usize> LevelBank<LEVELS> {
     /// # Errors
     /// [`BankError`] if the table is not over level and time or has more levels.
     pub fn new<V: Nodes>(table: &Table<'_, 2, V>) -> Result<Self, BankError> {
-        let [levels, times] = table.axes();
-        if levels.kind() != AxisKind::Level || times.kind() != AxisKind::Time {
-            return Err(BankError::Axes);
-        }
+        table.expect_axes([AxisKind::Level, AxisKind::Time]).map_err(BankError::Table)?;
+        let [levels, _] = table.axes();
         let (found, most) = (levels.count(), LEVELS);
         if found > most {
             return Err(BankError::Levels { found, most });

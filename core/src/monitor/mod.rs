@@ -5,7 +5,7 @@
 //!
 //! ```
 //! # use slipfit_core::{monitor::{Limits, Monitor, Sample, Watch, Verdict}, table::{Nodes, Table}};
-//! # fn interrupt<V: Nodes>(table: Table<'_, 2, V>) -> Result<(), slipfit_core::ParameterError<f32>> {
+//! # fn interrupt<V: Nodes>(table: Table<'_, 2, V>) -> Result<(), slipfit_core::monitor::MonitorError> {
 //! let limits = Limits { blind: 0.2, ..Limits::for_noise(1e-3, 0.02) };
 //! let monitor = Monitor::new(table, 2.5, limits)?; // parameters
 //! let mut watch = Watch::default(); // state
@@ -22,7 +22,7 @@ mod tight;
 use crate::{
     ParameterError,
     error::bounded,
-    table::{Nodes, Table},
+    table::{AxisKind, Nodes, Table, TableError},
 };
 
 pub use jam::JamWatch;
@@ -102,6 +102,33 @@ pub enum Verdict {
     Jam,
 }
 
+/// Why there is no monitor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum MonitorError {
+    /// The table is not one over tolerance level and time.
+    Table(TableError),
+    /// The level or a limit is out of bounds.
+    Parameter(ParameterError<f32>),
+}
+
+impl core::fmt::Display for MonitorError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Table(error) => write!(f, "no table over tolerance level and time: {error}"),
+            Self::Parameter(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for MonitorError {}
+
+impl From<ParameterError<f32>> for MonitorError {
+    fn from(error: ParameterError<f32>) -> Self {
+        Self::Parameter(error)
+    }
+}
+
 /// A monitor's answer to a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -133,9 +160,10 @@ impl<'a, V: Nodes> Monitor<'a, V> {
     /// A monitor of a unit of tolerance level `level` by `table`, over level and time.
     ///
     /// # Errors
-    /// [`ParameterError`] names the first parameter that is out of bounds or not finite; the level has to lie on the
-    /// table's axis.
-    pub fn new(table: Table<'a, 2, V>, level: f32, limits: Limits) -> Result<Self, ParameterError<f32>> {
+    /// [`MonitorError`] if the table is over anything else, or names the first parameter that is out of bounds or not
+    /// finite; the level has to lie on the table's axis.
+    pub fn new(table: Table<'a, 2, V>, level: f32, limits: Limits) -> Result<Self, MonitorError> {
+        let table = table.expect_axes([AxisKind::Level, AxisKind::Time]).map_err(MonitorError::Table)?;
         let [levels, _] = table.axes();
         bounded("monitor.level", level, [f64::from(levels.first()), f64::from(levels.last())])?;
         bounded("monitor.period", limits.period, [1e-6, 1.0])?;

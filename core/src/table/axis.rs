@@ -13,7 +13,7 @@ pub enum AxisKind {
     Time = 2,
     /// Position z (m).
     Position = 3,
-    /// Velocity (m/s).
+    /// Commanded speed (m/s): the one that the drive's ramp leads to, not the slide's own.
     Velocity = 4,
 }
 
@@ -24,6 +24,26 @@ impl AxisKind {
     /// The kind stored as `code`.
     pub fn of(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| *kind as u8 == code)
+    }
+
+    /// The quantity's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Level => "level",
+            Self::Time => "time",
+            Self::Position => "position",
+            Self::Velocity => "speed",
+        }
+    }
+
+    /// The quantity's unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Level => "1",
+            Self::Time => "s",
+            Self::Position => "m",
+            Self::Velocity => "m/s",
+        }
     }
 }
 

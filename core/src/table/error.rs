@@ -1,6 +1,6 @@
 //! What opening a table refuses.
 
-use super::layout::VERSION;
+use super::{AxisKind, layout::VERSION};
 
 /// Why bytes are not the table asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,15 @@ pub enum TableError {
         /// The number found.
         found: usize,
     },
+    /// A table over other quantities.
+    Kind {
+        /// Which axis, from 0 on.
+        axis: usize,
+        /// What it is over.
+        found: AxisKind,
+        /// What is asked for.
+        asked: AxisKind,
+    },
     /// A table for another scene or other laws.
     Scene {
         /// The hash found.
@@ -43,6 +52,9 @@ impl core::fmt::Display for TableError {
             Self::Header(field) => write!(f, "bad {field}"),
             Self::Value(channel) => write!(f, "a value of the {channel} is out of bounds"),
             Self::Axes { found } => write!(f, "a table over {found} axes, another number is asked for"),
+            Self::Kind { axis, found, asked } => {
+                write!(f, "axis {axis} is over {}, asked for is {}", found.name(), asked.name())
+            }
             Self::Scene { found } => write!(f, "made for another scene or other laws (hash {found:#018x})"),
         }
     }

@@ -35,7 +35,8 @@ pub struct ChannelRecord {
     pub scale: f32,
     /// The worst interpolation error (N or m/s), measured when the table was made.
     pub worst_error: f32,
-    /// The root mean square of the interpolation error (N or m/s) where the table is used: after the drive has started.
+    /// The root mean square of the interpolation error (N or m/s) where the table is used: after the drive has started and,
+    /// over position, where no slide stops short.
     pub rms_error: f32,
 }
 

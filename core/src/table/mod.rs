@@ -21,7 +21,7 @@
 //!
 //! | in an axis | type | field |
 //! |---|---|---|
-//! | 0 | u8 | what varies: 1 tolerance level n, 2 time t (s), 3 position z (m), 4 velocity (m/s) |
+//! | 0 | u8 | what varies: 1 tolerance level n, 2 time t (s), 3 position z (m), 4 commanded speed (m/s) |
 //! | 1 | `[u8; 3]` | zero |
 //! | 4 | u32 | number of nodes, 2 to 2¹⁶ |
 //! | 8 | f32 | first node |
@@ -31,7 +31,7 @@
 //! |---|---|---|
 //! | 0 | f32 | what a stored value is multiplied with: positive; 1 for f32 |
 //! | 4 | f32 | worst interpolation error (N or m/s), measured when the table was made |
-//! | 8 | f32 | root mean square of that error (N or m/s) after the drive has started |
+//! | 8 | f32 | root mean square of that error (N or m/s) in use: after the drive has started, where no slide stops short |
 //!
 //! No value exceeds 10³⁰ in magnitude. The table may lie in a larger region; what follows it is not looked at, but
 //! for the record at the end of a slot, see [`Slots`].
@@ -143,6 +143,20 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
     /// [`TableError::Scene`] if it was made for others.
     pub fn expect_scene(self, hash: u64) -> Result<Self, TableError> {
         if self.scene_hash == hash { Ok(self) } else { Err(TableError::Scene { found: self.scene_hash }) }
+    }
+
+    /// This table, if its axes are over the quantities `kinds`, slowest first: a point's coordinates are bare numbers, and
+    /// a time would be looked up among positions.
+    ///
+    /// # Errors
+    /// [`TableError::Kind`] names the first axis that is over another quantity.
+    pub fn expect_axes(self, kinds: [AxisKind; N]) -> Result<Self, TableError> {
+        let found = self.axes.iter().map(Axis::kind);
+        let other = found.zip(kinds).enumerate().find(|(_, (found, asked))| found != asked);
+        match other {
+            None => Ok(self),
+            Some((axis, (found, asked))) => Err(TableError::Kind { axis, found, asked }),
+        }
     }
 
     /// Force and velocity at the point `at`, one coordinate an axis, in the axes' order and units.

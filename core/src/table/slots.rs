@@ -4,13 +4,13 @@
 //! [`RECORD_SIZE`] bytes hold the sequence number (u32, little-endian) and the number's complement, or are erased. An
 //! update goes in this order, and a power cut after any byte of it leaves a valid table:
 //! 1. take the slot that [`Slots::spare`] names and the number that it gives, and erase that slot;
-//! 2. write the table into it and check it there, by [`Table::open`] and [`Table::expect_scene`];
+//! 2. write the table into it and check it there, by [`Table::open`], [`Table::expect_axes`] and [`Table::expect_scene`];
 //! 3. write the [`record`] to the slot's end.
 //!
 //! The record only says which of two valid tables is the newer one. Without it, as flashed in the factory or cut off
 //! before the last step, a table is older than any that has one.
 
-use super::{Table, TableError};
+use super::{AxisKind, Table, TableError};
 
 /// Size of the record at the end of a slot (bytes), and its alignment: a double word, which is what many flash memories
 /// write at once.
@@ -24,12 +24,10 @@ pub struct Slots<'a, const N: usize = 2> {
 }
 
 impl<'a, const N: usize> Slots<'a, N> {
-    /// Checks both slots completely; valid is a table made for the scene and laws that `scene_hash` stands for.
-    pub fn open(slots: [&'a [u8]; 2], scene_hash: u64) -> Self {
-        Self {
-            tables: slots.map(|slot| Table::open(slot).and_then(|table| table.expect_scene(scene_hash))),
-            sequences: slots.map(sequence),
-        }
+    /// Checks both slots completely; valid is a table over `axes` made for the scene and laws that `scene_hash` stands for.
+    pub fn open(slots: [&'a [u8]; 2], axes: [AxisKind; N], scene_hash: u64) -> Self {
+        let opened = |slot| Table::open(slot)?.expect_axes(axes)?.expect_scene(scene_hash);
+        Self { tables: slots.map(opened), sequences: slots.map(sequence) }
     }
 
     /// Which slot counts: the valid one, the newer of two, the first if nothing says which that is.

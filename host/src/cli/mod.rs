@@ -109,7 +109,9 @@ impl From<TableError> for Failure {
     fn from(error: TableError) -> Self {
         match error {
             TableError::Simulate(error) => error.into(),
-            TableError::Flash(_) | TableError::MaxError { .. } => Self::Input(error.to_string()),
+            TableError::Flash(_) | TableError::MaxError { .. } | TableError::Position(_) => {
+                Self::Input(error.to_string())
+            }
         }
     }
 }

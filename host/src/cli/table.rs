@@ -1,9 +1,10 @@
 //! `slipfit table`: the flash table.
 
-use std::path::PathBuf;
+use std::{fmt::Write, path::PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde::Serialize;
+use slipfit_core::table::AxisKind;
 
 use super::{
     Failure, SceneArguments, ThreadArguments, print, print_json, progress, simulate::SteppingArguments,
@@ -12,11 +13,16 @@ use super::{
 use crate::{
     files,
     flash::{
-        TABLE_ADDRESS, TABLE_REGION,
+        AxisSpec, TABLE_ADDRESS, TABLE_REGION,
         export::{EXTENSIONS, ExportError, render},
     },
-    force_table::{self, Demand, ForceTable},
-    number::fixed,
+    force_table::{
+        self, Demand, ForceTable,
+        position::{self, PositionTable, Reach, Wish},
+    },
+    number::{fixed, level},
+    outcome::Verdict,
+    scene::{LevelRange, Scene, parse_levels},
 };
 
 /// Makes the flash table and says how large it is and how well it interpolates.
@@ -27,8 +33,20 @@ pub(super) struct Arguments {
     /// File to write; the extension says how: .bin .hex .h .rs
     #[arg(short, long, value_name = "FILE", default_value = "table.bin")]
     output: PathBuf,
-    /// Greatest error of force (N) from the ramp's start on: the smallest table that meets it is made, as multiples
-    /// of a scale (i16) or as numbers (f32).
+    /// What force is looked up by, beside the tolerance level. Over position a whole stroke is simulated: set a
+    /// run.duration that is long enough.
+    #[arg(long, value_enum, default_value_t)]
+    over: Over,
+    /// Commanded speeds (mm/s) of a table over position,speed; each takes the place of drive.speed.
+    #[arg(long, value_name = "A:B:STEP", allow_hyphen_values = true)]
+    speeds: Option<String>,
+    /// Where the positions of a table end (mm). If not given: where the slowest unit is that runs at least at half its
+    /// commanded speed when its run ends.
+    #[arg(long, value_name = "MM")]
+    stroke: Option<f64>,
+    /// Greatest error of force (N) where the table is used, over time from the ramp's start on, over position where every
+    /// slide nearby comes to: the smallest table that meets it is made, as multiples of a scale (i16) or as numbers
+    /// (f32).
     #[arg(long, value_name = "N")]
     max_error: Option<f64>,
     #[command(flatten)]
@@ -39,18 +57,50 @@ pub(super) struct Arguments {
     threads: ThreadArguments,
 }
 
+/// What a table is over, beside the tolerance level.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Over {
+    /// Time since the motion's start.
+    #[default]
+    Time,
+    /// How far the slide has come.
+    Position,
+    /// How far it has come, and the speed it is commanded to.
+    #[value(name = "position,speed")]
+    PositionAndSpeed,
+}
+
 #[derive(Serialize)]
 struct Report {
     file: String,
     bytes: usize,
-    levels: usize,
-    instants: usize,
+    axes: Vec<AxisReport>,
     encoding: &'static str,
     scene_hash: String,
     worst_force_error_n: f64,
     worst_velocity_error_m_per_s: f64,
-    worst_force_error_after_ramp_start_n: f64,
-    worst_velocity_error_after_ramp_start_m_per_s: f64,
+    worst_force_error_in_use_n: f64,
+    worst_velocity_error_in_use_m_per_s: f64,
+    rms_force_error_n: f64,
+    rms_velocity_error_m_per_s: f64,
+    /// Units that do not come to the last position, in SI units; over position only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    short: Option<Vec<Reach>>,
+}
+
+#[derive(Serialize)]
+struct AxisReport {
+    kind: &'static str,
+    unit: &'static str,
+    first: f32,
+    step: f32,
+    count: usize,
+}
+
+impl From<&AxisSpec> for AxisReport {
+    fn from(&AxisSpec { kind, first, step, count }: &AxisSpec) -> Self {
+        Self { kind: kind.name(), unit: kind.unit(), first, step, count }
+    }
 }
 
 impl Arguments {
@@ -65,48 +115,145 @@ impl Arguments {
             return Err(Failure::Input(format!("--max-error is {error}, allowed is 1e-9 to 1e6 N")));
         }
         let demand = self.max_error.map_or(Demand::Full, Demand::MaxError);
-        force_table::check(&scene, demand).map_err(|error| Failure::Input(error.to_string()))?;
-        self.scene.check_output(&self.output)?;
-        let bar = progress("simulating", force_table::levels(&scene.sweep).count);
-        let made = self.threads.install(|| force_table::make(&scene, self.stepping.scalar, demand, || bar.inc(1)))?;
-        bar.finish_and_clear();
-        let (table, _) = made?;
+        let speeds = self.speeds()?;
+        let stroke = self.stroke.map(|stroke| stroke * 1e-3);
+        if stroke.is_some() && self.over == Over::Time {
+            return Err(Failure::Input("--stroke is for --over position".into()));
+        }
+        let (table, over_position) = match self.over {
+            Over::Time => (self.over_time(&scene, demand)?, None),
+            Over::Position | Over::PositionAndSpeed => {
+                let made = self.over_position(&scene, &Wish { speeds: speeds.as_ref(), stroke, demand })?;
+                (made.table.clone(), Some(made))
+            }
+        };
         let file = render(&extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
         files::write(&self.output, &file)?;
         if self.scene.json {
             let [force, velocity] = table.worst_error;
-            let [force_after, velocity_after] = table.worst_error_after_ramp_start;
+            let [force_in_use, velocity_in_use] = table.worst_error_in_use;
+            let [rms_force, rms_velocity] = table.rms_error;
             print_json(&Report {
                 file: self.output.display().to_string(),
                 bytes: table.bytes.len(),
-                levels: table.shape[0],
-                instants: table.shape[1],
+                axes: table.axes.iter().map(AxisReport::from).collect(),
                 encoding: table.encoding.name(),
                 scene_hash: format!("{:016x}", force_table::scene_hash(&scene)),
                 worst_force_error_n: force,
                 worst_velocity_error_m_per_s: velocity,
-                worst_force_error_after_ramp_start_n: force_after,
-                worst_velocity_error_after_ramp_start_m_per_s: velocity_after,
+                worst_force_error_in_use_n: force_in_use,
+                worst_velocity_error_in_use_m_per_s: velocity_in_use,
+                rms_force_error_n: rms_force,
+                rms_velocity_error_m_per_s: rms_velocity,
+                short: over_position.map(|made| made.short),
             })
         } else {
-            print(&format!("{}\n{}", self.output.display(), describe(&table)))
+            let short = over_position.map_or_else(String::new, |made| describe_short(&scene, &made.short));
+            print(&format!("{}\n{}{short}", self.output.display(), describe(&table)))
         }
+    }
+
+    /// The speeds asked for (m/s).
+    fn speeds(&self) -> Result<Option<LevelRange>, Failure> {
+        match (&self.speeds, self.over) {
+            (None, Over::Time | Over::Position) => Ok(None),
+            (Some(text), Over::PositionAndSpeed) => {
+                let range = parse_levels(text).map_err(|error| Failure::Input(format!("--speeds {text}: {error}")))?;
+                Ok(Some(LevelRange { first: range.first * 1e-3, step: range.step * 1e-3, count: range.count }))
+            }
+            (Some(_), _) => Err(Failure::Input("--speeds is for --over position,speed".into())),
+            (None, Over::PositionAndSpeed) => {
+                Err(Failure::Input("--over position,speed needs --speeds, such as --speeds 50:150:25 (mm/s)".into()))
+            }
+        }
+    }
+
+    fn over_time(&self, scene: &Scene, demand: Demand) -> Result<ForceTable, Failure> {
+        force_table::check(scene, demand).map_err(|error| Failure::Input(error.to_string()))?;
+        self.scene.check_output(&self.output)?;
+        let bar = progress("simulating", force_table::levels(&scene.sweep).count);
+        let made = self.threads.install(|| force_table::make(scene, self.stepping.scalar, demand, || bar.inc(1)))?;
+        bar.finish_and_clear();
+        let (table, _) = made?;
+        Ok(table)
+    }
+
+    fn over_position(&self, scene: &Scene, wish: &Wish<'_>) -> Result<PositionTable, Failure> {
+        position::check(scene, wish)?;
+        self.scene.check_output(&self.output)?;
+        let bar = progress("simulating", position::runs(scene, wish.speeds));
+        let made = self.threads.install(|| position::make(scene, wish, self.stepping.scalar, || bar.inc(1)))?;
+        bar.finish_and_clear();
+        Ok(made?)
     }
 }
 
 /// Size and interpolation error in words.
 pub(super) fn describe(table: &ForceTable) -> String {
-    let [levels, instants] = table.shape;
+    let nodes = |axis: &AxisSpec| {
+        let what = match axis.kind {
+            AxisKind::Level => "levels of n",
+            AxisKind::Time => "instants",
+            AxisKind::Position => "positions",
+            AxisKind::Velocity => "speeds",
+        };
+        format!("{} {what}", axis.count)
+    };
     let errors = |[force, velocity]: [f64; 2]| {
         format!("force {} mN, velocity {} mm/s", fixed(force * 1e3, 3), fixed(velocity * 1e3, 4))
     };
+    let [in_use, rms, whole] = if table.axes.iter().any(|axis| axis.kind == AxisKind::Time) {
+        [
+            " from the ramp's start on: ",
+            "Its root mean square:                             ",
+            ", release included:        ",
+        ]
+    } else {
+        [
+            " where every slide comes to: ",
+            "Its root mean square:                               ",
+            ", the rest included:         ",
+        ]
+    };
     format!(
-        "{} bytes of the {TABLE_REGION} in the TABLE region: {levels} levels of n by {instants} instants, {}\n\
-         Worst interpolation error from the ramp's start on: {}\n\
-         Worst interpolation error, release included:        {}\n",
+        "{} bytes of the {TABLE_REGION} in the TABLE region: {}, {}\n\
+         Worst interpolation error{in_use}{}\n\
+         {rms}{}\n\
+         Worst interpolation error{whole}{}\n",
         table.bytes.len(),
+        table.axes.iter().map(nodes).collect::<Vec<_>>().join(" by "),
         table.encoding.name(),
-        errors(table.worst_error_after_ramp_start),
+        errors(table.worst_error_in_use),
+        errors(table.rms_error),
         errors(table.worst_error),
     )
+}
+
+/// Which units come short, in words: a line for neighbouring levels with the same verdict.
+fn describe_short(scene: &Scene, short: &[Reach]) -> String {
+    let mut text = String::new();
+    let mut by_speed = short.to_vec();
+    // Stable: by level within a speed.
+    by_speed.sort_by(|one, other| one.speed.total_cmp(&other.speed));
+    let belong = |one: &Reach, other: &Reach| {
+        one.speed == other.speed && one.verdict == other.verdict && other.n - one.n < 1.5 * scene.sweep.step
+    };
+    let range = |[one, other]: [String; 2]| if one == other { one } else { format!("{one} to {other}") };
+    for group in by_speed.chunk_by(belong) {
+        let ends = [group[0], group[group.len() - 1]];
+        let (least, most) =
+            group.iter().fold((f64::MAX, f64::MIN), |(least, most), at| (at.z.min(least), at.z.max(most)));
+        let levels = range(ends.map(|end| level(end.n)));
+        let places = range([least, most].map(|z| fixed(z * 1e3, 2)));
+        let speed = fixed(ends[0].speed * 1e3, 1);
+        let what = match ends[0].verdict {
+            Verdict::Jammed => format!("jams at z = {places} mm"),
+            other => format!("{other} and is at z = {places} mm after {} ms", fixed(scene.run.duration * 1e3, 0)),
+        };
+        let _ = writeln!(text, "n = {levels} at {speed} mm/s {what}");
+    }
+    if !short.is_empty() {
+        text += "Beyond, the table holds the last force and velocity 0.\n";
+    }
+    text
 }

@@ -209,6 +209,12 @@ fn refuses_other_scenes_axes_versions_and_no_table() {
     assert_eq!(Table::<2>::open(&bytes).unwrap_err(), TableError::Axes { found: 3 });
     let scene = Table::<3>::open(&bytes).unwrap().expect_scene(1).unwrap_err();
     assert_eq!(scene, TableError::Scene { found: 0x0123_4567_89ab_cdef });
+    let kinds = [AxisKind::Level, AxisKind::Position, AxisKind::Time];
+    let kind = Table::<3>::open(&bytes).unwrap().expect_axes(kinds).unwrap_err();
+    assert_eq!(kind, TableError::Kind { axis: 1, found: AxisKind::Time, asked: AxisKind::Position });
+    assert_eq!(kind.to_string(), "axis 1 is over time, asked for is position");
+    let kinds = [AxisKind::Level, AxisKind::Time, AxisKind::Position];
+    assert!(Table::<3>::open(&bytes).unwrap().expect_axes(kinds).is_ok());
     bytes[layout::VERSION_AT] = 3;
     assert_eq!(refusal(&bytes), Some(TableError::Version { found: 3 }));
     assert_eq!(refusal(&[0xff; 4096]), Some(TableError::Magic));

@@ -1,16 +1,16 @@
-//! Ranges of tolerance levels, `FIRST:LAST:STEP`.
+//! Ranges of tolerance levels, or of other numbers, `FIRST:LAST:STEP`.
 
 use super::LevelRange;
 
 /// The most levels of a sweep.
 pub const MOST_LEVELS: usize = 100_000;
 
-/// What is not a range of tolerance levels.
+/// What is not a range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LevelError {
     /// Neither one number nor three.
-    #[error("\"{0}\" is neither FIRST:LAST:STEP, such as -3:5:0.1, nor one level")]
+    #[error("\"{0}\" is neither FIRST:LAST:STEP, such as -3:5:0.1, nor one number")]
     Form(String),
     /// A part that is not a number.
     #[error("\"{0}\" is not a number")]
@@ -18,26 +18,26 @@ pub enum LevelError {
     /// NaN or infinite.
     #[error("{0} is not finite")]
     NotFinite(f64),
-    /// The last level is below the first.
-    #[error("the last level, {last}, is below the first, {first}")]
+    /// The last is below the first.
+    #[error("the last, {last}, is below the first, {first}")]
     Backwards {
-        /// First level.
+        /// The first.
         first: f64,
-        /// Last level.
+        /// The last.
         last: f64,
     },
     /// The step is not positive.
     #[error("the step is {0}, it must be positive")]
     Step(f64),
     /// More than [`MOST_LEVELS`].
-    #[error("the step of {step} makes more than {MOST_LEVELS} levels")]
+    #[error("the step of {step} makes more than {MOST_LEVELS} values")]
     TooMany {
         /// The step.
         step: f64,
     },
 }
 
-/// Reads `FIRST:LAST:STEP`, both ends included, or a single level.
+/// Reads `FIRST:LAST:STEP`, both ends included, or a single number.
 ///
 /// # Errors
 /// [`LevelError`] if a part is not a finite number, the step is not positive, the range runs backwards, or it has more

@@ -13,7 +13,7 @@ use slipfit_core::{
     planar::{Planar, PlanarBody, PlanarPose},
     pose::Pose,
     slide::Slide,
-    table::{Patrol, Slots, Table, TableError},
+    table::{AxisKind, Patrol, Slots, Table, TableError},
 };
 use slipfit_problems::cd_rom;
 
@@ -78,11 +78,12 @@ fn smaller_scenes() -> Result<(), ParameterError<f32>> {
 fn look_up() -> Result<(), TableError> {
     static REGION: [u8; 256] = [0; 256];
     let region: &[u8] = black_box(&REGION);
-    let plane = Table::<2>::open(region)?.expect_scene(black_box(0))?;
+    let axes = black_box([AxisKind::Level, AxisKind::Time]);
+    let plane = Table::<2>::open(region)?.expect_axes(axes)?.expect_scene(black_box(0))?;
     black_box(plane.lookup(black_box([0.0; 2])));
     let space = Table::<3>::open(region)?;
     black_box(space.lookup(black_box([0.0; 3])));
-    let slots = Slots::<2>::open(black_box([region, region]), black_box(0));
+    let slots = Slots::<2>::open(black_box([region, region]), axes, black_box(0));
     black_box(slots.spare());
     black_box(Patrol::new(slots.newest()?).check(region, black_box(64)))?;
     watch(&plane);

@@ -1,10 +1,11 @@
 //! Updates of a table in two slots, cut off at every byte, and the cyclic check.
 
-use slipfit_core::table::{Encoding, Patrol, Slots, Table, TableError, layout, record};
+use slipfit_core::table::{AxisKind, Encoding, Patrol, Slots, Table, TableError, layout, record};
 
 use super::{TableSpec, encode, small};
 
 const HASH: u64 = 0x0123_4567_89ab_cdef;
+const AXES: [AxisKind; 2] = [AxisKind::Level, AxisKind::Time];
 
 /// Size of a slot in these tests (bytes).
 const SLOT: usize = 320;
@@ -22,7 +23,7 @@ impl Flash {
     }
 
     fn open(&self) -> Slots<'_> {
-        Slots::open(self.slots.each_ref().map(|slot| slot.as_slice()), HASH)
+        Slots::open(self.slots.each_ref().map(|slot| slot.as_slice()), AXES, HASH)
     }
 
     /// One byte, unless the power is gone.
@@ -77,12 +78,16 @@ fn the_newer_valid_table_counts() {
     }
     assert_eq!(flash.open().spare(), (0, 5));
 
-    // The older one again as soon as the newer one is damaged, or for another scene.
+    // The older one again as soon as the newer one is damaged, or for another scene or over other quantities.
     flash.slots[1][100] ^= 1;
     assert_eq!(number(flash.open().newest().unwrap()), 5.0);
-    let foreign = encode(&TableSpec { scene_hash: 1, ..small(2, Encoding::F32) }).unwrap();
-    flash.update(&foreign, false);
-    assert_eq!((number(flash.open().newest().unwrap()), flash.open().spare()), (5.0, (1, 4)));
+    let of_another_scene = TableSpec { scene_hash: 1, ..small(2, Encoding::F32) };
+    let mut over_position = small(2, Encoding::F32);
+    over_position.axes[1].kind = AxisKind::Position;
+    for foreign in [of_another_scene, over_position] {
+        flash.update(&encode(&foreign).unwrap(), false);
+        assert_eq!((number(flash.open().newest().unwrap()), flash.open().spare()), (5.0, (1, 4)));
+    }
     flash.slots[0][100] ^= 1;
     assert_eq!(flash.open().newest().unwrap_err(), TableError::Checksum);
 }

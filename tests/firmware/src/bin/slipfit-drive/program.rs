@@ -1,6 +1,9 @@
 //! Strokes of units on their rig: one that is what it is taken for, one with more friction, one that jams.
 
-use slipfit_core::{monitor::Verdict, table::Table};
+use slipfit_core::{
+    monitor::Verdict,
+    table::{AxisKind, Table},
+};
 use slipfit_firmware::{
     count::Count,
     machine::{Machine, print},
@@ -46,7 +49,9 @@ pub trait Ticking: Machine {
 
 /// Runs all strokes.
 pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) {
-    let table = match Table::open(flash).and_then(|table| table.expect_scene(TABLE_HASH)) {
+    let axes = [AxisKind::Level, AxisKind::Time];
+    let opened = Table::open(flash).and_then(|table| table.expect_axes(axes)?.expect_scene(TABLE_HASH));
+    let table = match opened {
         Ok(table) => table,
         Err(error) => return print(machine, format_args!("no table: {error}")),
     };

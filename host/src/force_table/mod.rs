@@ -1,0 +1,92 @@
+//! Force tables: runs at many tolerance levels on the grid of a flash table, with its interpolation error measured.
+//!
+//! A table is over level and [`time`], or over level and [`position`], or over level, position and commanded speed.
+
+mod grid;
+mod passage;
+pub mod position;
+pub mod time;
+
+use slipfit_core::{slide::CONTACTS, table::Encoding};
+use thiserror::Error;
+
+use crate::{
+    flash::{self, AxisSpec, FlashError},
+    scene::{LevelRange, Scene},
+    simulate::SimulateError,
+};
+
+pub use time::{check, make, settings};
+
+/// Samples of a run from one node of the finest table to the next; those between serve the error only.
+const SUBSAMPLES: usize = 4;
+
+/// A finished table and how well it does.
+#[derive(Clone, Debug)]
+pub struct ForceTable {
+    /// As flashed.
+    pub bytes: Vec<u8>,
+    /// Its axes, slowest first.
+    pub axes: Vec<AxisSpec>,
+    /// How values are stored.
+    pub encoding: Encoding,
+    /// Worst interpolation error: force (N), velocity (m/s); looked for at every level (and speed) and half way between,
+    /// at every instant or position and at least three times between.
+    pub worst_error: [f64; 2],
+    /// The same where the table is used: over time from the ramp's start on, after the release of stored compression;
+    /// over position where every slide nearby comes to.
+    pub worst_error_in_use: [f64; 2],
+    /// Root mean square of the error where the table is used.
+    pub rms_error: [f64; 2],
+}
+
+/// What a table is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Demand {
+    /// Every level and, if its region of flash has room, every [`time::STEP`] or [`position::STEP`], in f32.
+    Full,
+    /// The smallest table whose force errs by this much (N) at most where it is used.
+    MaxError(f64),
+}
+
+/// Why there is no table.
+#[derive(Debug, Error)]
+pub enum TableError {
+    /// A unit could not be simulated.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// The format cannot hold it.
+    #[error(transparent)]
+    Flash(#[from] FlashError),
+    /// No table of the scene's levels errs so little.
+    #[error(
+        "no table errs by at most {asked} N; the best that fits the TABLE region errs by {best} N in {bytes} bytes"
+    )]
+    MaxError {
+        /// The greatest error asked for (N).
+        asked: f64,
+        /// The least error found (N).
+        best: f64,
+        /// Length of that table.
+        bytes: usize,
+    },
+    /// There are no runs that a table over position can be made of.
+    #[error(transparent)]
+    Position(#[from] position::PositionError),
+}
+
+/// The levels (or speeds) that a table needs: those of its axis with one half way between each two, which only serve the
+/// error.
+pub fn levels(axis: &LevelRange) -> LevelRange {
+    LevelRange { first: axis.first, step: axis.step / 2.0, count: 2 * axis.count - 1 }
+}
+
+/// What a table of `scene` is stamped with.
+pub fn scene_hash(scene: &Scene) -> u64 {
+    let deviations: Vec<f64> =
+        scene.pins.iter().flat_map(|pin| pin.gaps.map(|gap| gap.map_or(0.0, |gap| gap.deviation))).collect();
+    let mut all = [0.0; CONTACTS];
+    all.iter_mut().zip(deviations).for_each(|(slot, deviation)| *slot = deviation);
+    let data = scene.slide_data::<f64>(&scene.gaps_at(&[0.0; CONTACTS]));
+    flash::scene_hash(&data, &all, scene.run.integrator.name(), scene.run.step)
+}

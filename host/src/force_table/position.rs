@@ -1,0 +1,276 @@
+//! Tables over tolerance level and position, and over commanded speed as well: for a drive that knows where its slide is,
+//! not when it started.
+//!
+//! *Position* z is how far the slide's centre of mass has come along the drive's direction from its start. A node holds the
+//! force with which a slide, started from rest at z = 0, first passes it. The node at z = 0 holds the greatest force until
+//! the slide has come by [`SAMPLE`], its breakaway: before that the force rises while the slide stays where it is. Where a
+//! slide jams or its run ends, the nodes beyond hold its last force and velocity 0; there force is no function of place, and
+//! what is interpolated from such nodes counts towards the worst error but not towards the error in use.
+//!
+//! *Commanded speed* is the scene's `drive.speed`, set for each run; the ramp takes as long as the scene has it.
+
+use rayon::prelude::*;
+use slipfit_core::{
+    drive::Drive,
+    slide::CONTACTS,
+    table::{AxisKind, layout},
+};
+use thiserror::Error;
+
+use super::{
+    Demand, ForceTable, SUBSAMPLES, TableError,
+    grid::{self, Sample, SampleAxis, Samples, Stage},
+    levels,
+    passage::Passage,
+    scene_hash,
+};
+use crate::{
+    flash::TABLE_REGION,
+    number::ten_digits,
+    outcome::Verdict,
+    scene::{LevelRange, Scene},
+    simulate::{ScalarKind, Settings, SimulateError, simulate},
+};
+
+/// Distance of the table's positions (m), unless its region of flash has too little room.
+pub const STEP: f64 = 0.25e-3;
+
+/// Distance (m) of the samples of a run.
+pub const SAMPLE: f64 = STEP / SUBSAMPLES as f64;
+
+/// Steps of which an axis without a given end has a whole multiple if it is longer, 5 mm: a number with many divisors, for
+/// coarser tables.
+const WHOLE: usize = 20;
+
+/// The longest stroke (m).
+const STROKE_MOST: f64 = 1.0;
+
+/// The most runs of a table.
+const RUNS_MOST: usize = 200_000;
+
+/// A table over position, and what there is to say of it.
+#[derive(Clone, Debug)]
+pub struct PositionTable {
+    /// The table.
+    pub table: ForceTable,
+    /// Units of the table's levels (and speeds) that do not come to the end of its axis, by level, then by speed.
+    pub short: Vec<Reach>,
+}
+
+/// What a table over position is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wish<'a> {
+    /// Commanded speeds (m/s), if it is to be over these as well.
+    pub speeds: Option<&'a LevelRange>,
+    /// Where its axis ends (m), up to a step farther. If not given: where the slowest unit is that runs at least at half its
+    /// commanded speed when its run ends, in whole multiples of 5 mm and at most 1 m; or where the farthest is if none runs.
+    pub stroke: Option<f64>,
+    /// Its size.
+    pub demand: Demand,
+}
+
+/// How far a unit comes.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Reach {
+    /// Tolerance level.
+    pub n: f64,
+    /// Commanded speed (m/s).
+    pub speed: f64,
+    /// Farthest position (m).
+    pub z: f64,
+    /// Whether it moves when the run ends.
+    pub verdict: Verdict,
+}
+
+/// Metres in mm (or seconds in ms) as they were typed.
+fn mm(metres: f64) -> String {
+    ten_digits(metres * 1e3)
+}
+
+/// Why there are no runs that a table over position can be made of.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PositionError {
+    /// The drive does not come to its speed.
+    #[error(
+        "the run of {} ms ends before the drive's ramp does, at {} ms: a table over position takes a stroke, \
+         such as --set run.duration=1500",
+        mm(*duration),
+        mm(*ramp_end)
+    )]
+    Ramp {
+        /// Duration of the run (s).
+        duration: f64,
+        /// End of the ramp (s).
+        ramp_end: f64,
+    },
+    /// No unit comes to the end of the axis.
+    #[error(
+        "no slide comes {} mm far: in {} ms the farthest, at n = {} and {} mm/s, comes {:.3} mm; \
+         take a longer run.duration, other levels or a faster drive",
+        mm(*asked), mm(*duration), farthest.n, mm(farthest.speed), farthest.z * 1e3
+    )]
+    TooFar {
+        /// Where the axis is to end (m).
+        asked: f64,
+        /// Who comes farthest.
+        farthest: Reach,
+        /// Duration of the run (s).
+        duration: f64,
+    },
+    /// A stroke that no axis can have.
+    #[error("the stroke is {} mm, allowed is {} to {} mm", mm(*.0), mm(STEP), mm(STROKE_MOST))]
+    Stroke(f64),
+    /// More runs than anyone waits for.
+    #[error("levels and speeds, with those half way between, make {0} runs, allowed are at most {RUNS_MOST}")]
+    TooMany(usize),
+    /// Speeds in both directions, or none at all.
+    #[error("speeds from {} to {} mm/s: all have to be positive, or all negative", mm(*first), mm(*last))]
+    Direction {
+        /// First speed (m/s).
+        first: f64,
+        /// Last speed (m/s).
+        last: f64,
+    },
+}
+
+/// The speeds that runs are made at: with those between, or the scene's alone.
+fn run_speeds(scene: &Scene, speeds: Option<&LevelRange>) -> Vec<f64> {
+    speeds.map_or_else(|| vec![scene.drive.speed], |speeds| levels(speeds).levels())
+}
+
+/// How many runs a table takes.
+pub fn runs(scene: &Scene, speeds: Option<&LevelRange>) -> usize {
+    levels(&scene.sweep).count.saturating_mul(speeds.map_or(1, |speeds| levels(speeds).count))
+}
+
+fn position_axis(samples: usize, per_node: usize) -> SampleAxis {
+    let at = (0..samples).map(|i| i as f64 * SAMPLE).collect();
+    SampleAxis { kind: AxisKind::Position, at, step: SAMPLE, per_node }
+}
+
+/// Whether there can be the table of `scene` that is wished for, found out before any run.
+///
+/// # Errors
+/// [`TableError`] if the run ends before the drive's ramp, speeds have no common direction, the stroke is out of bounds,
+/// there are too many runs, fewer than two levels or speeds, or two positions are too many for the region of flash.
+pub fn check(scene: &Scene, &Wish { speeds, stroke, demand }: &Wish<'_>) -> Result<(), TableError> {
+    let (duration, ramp_end) = (scene.run.duration, scene.drive.ramp_end);
+    if duration <= ramp_end {
+        return Err(PositionError::Ramp { duration, ramp_end }.into());
+    }
+    if let Some(speeds) = speeds {
+        let (first, last) = (speeds.first, speeds.level(speeds.count - 1));
+        if first * last <= 0.0 {
+            return Err(PositionError::Direction { first, last }.into());
+        }
+    }
+    if let Some(stroke) = stroke.filter(|stroke| !(STEP..=STROKE_MOST).contains(stroke)) {
+        return Err(PositionError::Stroke(stroke).into());
+    }
+    let runs = runs(scene, speeds);
+    if runs > RUNS_MOST {
+        return Err(PositionError::TooMany(runs).into());
+    }
+    let level = SampleAxis::halved(AxisKind::Level, &scene.sweep);
+    let shortest = position_axis(SUBSAMPLES + 1, SUBSAMPLES);
+    match speeds {
+        None => grid::check(&[level, shortest], demand)?,
+        Some(speeds) => grid::check(&[level, shortest, SampleAxis::halved(AxisKind::Velocity, speeds)], demand)?,
+    }
+    Ok(())
+}
+
+/// Simulates the stroke of every level and speed (m/s) of `scene` and makes the table of them that is wished for; `done` is
+/// called after each of the [`runs`].
+///
+/// # Errors
+/// Those of [`check`] and of the runs; if no slide comes far enough; if no table errs as little as asked for.
+pub fn make(
+    scene: &Scene,
+    wish: &Wish<'_>,
+    scalar: ScalarKind,
+    done: impl Fn() + Sync,
+) -> Result<PositionTable, TableError> {
+    check(scene, wish)?;
+    let &Wish { speeds, stroke, demand } = wish;
+    let speeds_of_runs = run_speeds(scene, speeds);
+    let units: Vec<_> = levels(&scene.sweep)
+        .levels()
+        .into_iter()
+        .flat_map(|n| speeds_of_runs.iter().map(move |speed| (n, *speed)))
+        .collect();
+    let settings = Settings::fixed(scene.run, scene.run.step, scalar);
+    let runs: Vec<Result<(Passage, Reach), SimulateError>> = units
+        .par_iter()
+        .map(|&(n, speed)| {
+            let scene = Scene { drive: Drive { speed, ..scene.drive }, ..scene.clone() };
+            let run = simulate(&scene, &scene.gaps_at(&[n; CONTACTS]), &settings)?;
+            done();
+            let passage = Passage::of(&run.trajectory, speed, SAMPLE, STROKE_MOST);
+            let reach = Reach { n, speed, z: passage.reach, verdict: run.outcome.verdict };
+            Ok((passage, reach))
+        })
+        .collect();
+    let (passages, reaches): (Vec<Passage>, Vec<Reach>) = runs.into_iter().collect::<Result<_, _>>()?;
+    let steps = steps(&reaches, stroke, scene.run.duration)?;
+    let samples = steps * SUBSAMPLES + 1;
+
+    let sample = |passage: &Passage, k: usize| match passage.passed.get(k) {
+        Some(values) => Sample { values: *values, stage: Stage::InUse },
+        None => Sample { values: [passage.last_force, 0.0], stage: Stage::Beyond },
+    };
+    let level = |speeds: &[Passage]| -> Vec<Sample> {
+        (0..samples).flat_map(|k| speeds.iter().map(move |passage| sample(passage, k))).collect()
+    };
+    let values = passages.chunks(speeds_of_runs.len()).flat_map(level).collect();
+    let nodes = scene.sweep.count * speeds.map_or(1, |speeds| speeds.count);
+    let position = position_axis(samples, per_node(nodes, steps, demand));
+    let (hash, level) = (scene_hash(scene), SampleAxis::halved(AxisKind::Level, &scene.sweep));
+    let table = match speeds {
+        None => Samples { axes: [level, position], values }.table(hash, demand)?,
+        Some(speeds) => {
+            let axes = [level, position, SampleAxis::halved(AxisKind::Velocity, speeds)];
+            Samples { axes, values }.table(hash, demand)?
+        }
+    };
+
+    let short = reaches.iter().zip(&passages).enumerate().filter(|(i, (_, passage))| {
+        let [level, speed] = [i / speeds_of_runs.len(), i % speeds_of_runs.len()];
+        level.is_multiple_of(2) && speed.is_multiple_of(2) && passage.passed.len() < samples
+    });
+    Ok(PositionTable { table, short: short.map(|(_, (reach, _))| *reach).collect() })
+}
+
+/// How many steps an axis has, see [`Wish::stroke`].
+fn steps(reaches: &[Reach], stroke: Option<f64>, duration: f64) -> Result<usize, PositionError> {
+    let by_place = |one: &&Reach, other: &&Reach| one.z.total_cmp(&other.z);
+    let farthest = *reaches.iter().max_by(by_place).expect("there are levels");
+    let slowest = reaches.iter().filter(|reach| reach.verdict == Verdict::Runs).min_by(by_place);
+    // Margins for rounding.
+    let steps = match stroke {
+        Some(stroke) => (stroke / STEP - 1e-9).ceil() as usize,
+        None => match (slowest.unwrap_or(&farthest).z.min(STROKE_MOST) / STEP + 1e-9) as usize {
+            short if short < WHOLE => short,
+            long => long / WHOLE * WHOLE,
+        },
+    };
+    let asked = stroke.unwrap_or(STEP);
+    if steps == 0 || farthest.z < asked {
+        return Err(PositionError::TooFar { asked, farthest, duration });
+    }
+    Ok(steps)
+}
+
+/// Samples from a position of the finest table to the next: for a full one, the least whole number of steps with which
+/// `others` nodes at each of the positions over `steps` fit their region.
+fn per_node(others: usize, steps: usize, demand: Demand) -> usize {
+    let fits = |coarser: &usize| {
+        let bytes = (steps / coarser + 1).saturating_mul(others).saturating_mul(2 * size_of::<f32>());
+        bytes + layout::HEADER_SIZE + layout::CHECKSUM_SIZE <= TABLE_REGION
+    };
+    let coarser = match demand {
+        Demand::Full => (1..=steps).find(fits).unwrap_or(1),
+        Demand::MaxError(_) => 1,
+    };
+    coarser * SUBSAMPLES
+}
