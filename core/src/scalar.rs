@@ -186,7 +186,7 @@ mod tests {
     fn f32_reciprocal_root_meets_its_bound() {
         let mut worst = 0.0f64;
         for exponent in -126..127 {
-            for step in 0..997u16 {
+            for step in (0..997u16).step_by(if cfg!(miri) { 100 } else { 1 }) {
                 let mantissa = 1.0 + f64::from(step) / 997.0;
                 let x = (mantissa * libm::exp2(f64::from(exponent))) as f32;
                 let exact = 1.0 / libm::sqrt(f64::from(x));

@@ -111,6 +111,8 @@ pub enum Shape {
     Diamond,
     /// Upright cross.
     Plus,
+    /// Both crosses.
+    Star,
 }
 
 impl Panel {

@@ -8,9 +8,13 @@ use crate::{
     simulate::{Run, ScalarKind, Settings, SimulateError, simulate},
 };
 
+/// A step (s) above which a second run is always made: it costs little, and errors of single steps do not tell how far the
+/// slide strays over thousands of them.
+const COARSE: f64 = 100e-6;
+
 /// `run`, made by `settings`, held against a run with half the step in double precision: its verdict is undecided where the
 /// two disagree, and its trust takes in how far their forces part. A run in double precision without a verdict whose steps
-/// leave no doubt needs no second run, nor does error control.
+/// are fine and leave no doubt needs no second run, nor does error control.
 ///
 /// # Errors
 /// See [`SimulateError`]; a second run that leaves the finite range is as far off as can be.
@@ -23,7 +27,8 @@ pub fn confirmed(
     let decided = run.outcome.verdict != Verdict::Undecided;
     // Steps do not see what single precision has rounded away.
     let single = settings.scalar == ScalarKind::F32;
-    if settings.tolerance.is_some() || !(single || decided || run.trust.leaves_doubt()) {
+    let coarse = settings.run.step > COARSE;
+    if settings.tolerance.is_some() || !(single || coarse || decided || run.trust.leaves_doubt()) {
         return Ok(run);
     }
     let mut half = Settings { scalar: ScalarKind::F64, ..*settings };

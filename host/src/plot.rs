@@ -67,7 +67,7 @@ const GUIDE: RGBColor = RGBColor(150, 150, 150);
 const GRID: RGBColor = RGBColor(228, 228, 228);
 const MARK: RGBColor = RGBColor(38, 84, 124);
 /// Kinds by their number (Okabe and Ito: told apart by every eye), with the shapes of their marks.
-const KINDS: [(RGBColor, Shape); 7] = [
+const KINDS: [(RGBColor, Shape); 8] = [
     (RGBColor(0, 114, 178), Shape::Dot),
     (RGBColor(213, 94, 0), Shape::Triangle),
     (RGBColor(0, 158, 115), Shape::Square),
@@ -75,6 +75,7 @@ const KINDS: [(RGBColor, Shape); 7] = [
     (RGBColor(230, 159, 0), Shape::Cross),
     (RGBColor(34, 34, 34), Shape::Ring),
     (RGBColor(86, 180, 233), Shape::Plus),
+    (RGBColor(102, 51, 153), Shape::Star),
 ];
 const FONTS: &str = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif";
 
@@ -261,6 +262,8 @@ fn draw_marks(root: &Area, plot: &Plot<'_>, series: &Series, radius: i32) -> Res
 fn draw_mark(root: &Area, shape: Shape, (x, y): (i32, i32), r: i32, colour: RGBColor) -> Result<(), PlotError> {
     let (filled, line) = (colour.filled(), colour.stroke_width(fine(1) * 3 / 2));
     let stroke = |a: (i32, i32), b: (i32, i32)| root.draw(&PathElement::new([a, b], line));
+    let cross = || stroke((x - r, y - r), (x + r, y + r)).and_then(|()| stroke((x - r, y + r), (x + r, y - r)));
+    let plus = || stroke((x - r, y), (x + r, y)).and_then(|()| stroke((x, y - r), (x, y + r)));
     match shape {
         Shape::Dot => root.draw(&Circle::new((x, y), r, filled)),
         Shape::Ring => root
@@ -274,8 +277,9 @@ fn draw_mark(root: &Area, shape: Shape, (x, y): (i32, i32), r: i32, colour: RGBC
             let r = r * 5 / 4;
             root.draw(&Polygon::new([(x - r, y), (x, y - r), (x + r, y), (x, y + r)], filled))
         }
-        Shape::Cross => stroke((x - r, y - r), (x + r, y + r)).and_then(|()| stroke((x - r, y + r), (x + r, y - r))),
-        Shape::Plus => stroke((x - r, y), (x + r, y)).and_then(|()| stroke((x, y - r), (x, y + r))),
+        Shape::Cross => cross(),
+        Shape::Plus => plus(),
+        Shape::Star => cross().and_then(|()| plus()),
     }
     .map_err(backend)
 }

@@ -70,14 +70,21 @@ pub fn stability_map(single: &[Point], random: &[Point], title: &str) -> String 
         let y = height - 44.0;
         text(&mut svg, [16.0, y - 6.0], "start", &format!("{} random combinations of all factors", random.len()));
         let mut x = 16.0;
+        let mut few = Vec::new();
         for (grade, count) in tally(random) {
             let width = (WIDTH - 32.0) * count as f64 / random.len() as f64;
             if count > 0 {
                 cell(&mut svg, [x, y, width], grade);
+            }
+            if width > 40.0 {
                 text(&mut svg, [x + width / 2.0, y + 26.0], "middle", &count.to_string());
+            } else if count > 0 {
+                few.push(format!("{count} {}", look(grade).1));
             }
             x += width;
         }
+        // Beside the heading, because there is no room below.
+        text(&mut svg, [WIDTH - 16.0, y - 6.0], "end", &few.join(", "));
     }
     svg + "</svg>\n"
 }

@@ -50,7 +50,8 @@ fn agrees<F: Friction<f64>, I: Integrator>(friction: F, step: f64) {
     let slide = Kernel::<f64, _, I>::new(slide, step).unwrap();
     let flat = Kernel::<f64, _, I>::new(flat, step).unwrap();
     let (mut a, mut b) = (slide.at_rest::<6>(Pose::nominal()), flat.at_rest::<3>(PlanarPose::nominal()));
-    for _ in 0..2000 {
+    // An interpreter that looks for undefined behaviour has no time for a whole motion.
+    for _ in 0..if cfg!(miri) { 20 } else { 2000 } {
         slide.step(&mut a);
         flat.step(&mut b);
         let (v, w) = (a.motion.velocity, b.motion.velocity);
@@ -58,7 +59,7 @@ fn agrees<F: Friction<f64>, I: Integrator>(friction: F, step: f64) {
         assert!(miss.iter().all(|miss| libm::fabs(*miss) < 1e-8), "{miss:?} at {}", a.steps);
     }
     let turned = libm::fabs(b.motion.pose.half_turn[1]);
-    assert!(turned > 1e-5 && b.motion.velocity.y > 0.01, "it turns and moves: {turned}");
+    assert!(cfg!(miri) || turned > 1e-5 && b.motion.velocity.y > 0.01, "it turns and moves: {turned}");
 }
 
 #[test]

@@ -55,7 +55,7 @@ fn panel(problem: &Problem, truth: &Truth, names: &[&str], points: &[&Point]) ->
             let missing = own().filter(|point| place(point, floor).is_none()).map(|point| point.setting);
             if let (ScalarKind::F64, Some(least)) = (scalar, missing.reduce(f64::min)) {
                 let knob = own().next().map(|point| point.knob.typeset(least));
-                lost.push(format!("{name} from {}", knob.unwrap_or_default()));
+                lost.push(format!("{name} ≥ {}", knob.unwrap_or_default()));
             }
             if !drawn.is_empty() {
                 series.push(Series { label: (*name).to_owned(), look, points: drawn });
@@ -66,7 +66,7 @@ fn panel(problem: &Problem, truth: &Truth, names: &[&str], points: &[&Point]) ->
     if let Some((first, last)) = ends {
         series.push(Series { label: String::new(), look: Look::Guide, points: vec![(first, floor), (last, floor)] });
     }
-    let note = if lost.is_empty() { String::new() } else { format!("lost: {} up", lost.join(", ")) };
+    let note = if lost.is_empty() { String::new() } else { format!("lost: {}", lost.join(", ")) };
     Panel { y_label: format!("{}, max error (% of the peak force)", problem.name), note, series, markers: Vec::new() }
 }
 
