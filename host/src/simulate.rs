@@ -87,7 +87,7 @@ pub enum SimulateError {
     #[error("{0}")]
     Parameter(String),
     /// Samples do not fall on steps.
-    #[error("samples every {every} s do not fall on steps of {step} s: choose a multiple of the step")]
+    #[error("samples every {every} s do not fall on steps of {step} s: --every has to be a multiple of the step")]
     Every {
         /// Interval of the samples (s).
         every: f64,

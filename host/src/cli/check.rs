@@ -95,6 +95,7 @@ impl Arguments {
         let file = self.scene.load_file(&[])?;
         let of_product = file.product.as_ref().map(|product| product.warnings.clone()).unwrap_or_default();
         if let Some(slide) = &file.slide {
+            slide.check_gaps(&[self.n; CONTACTS]).map_err(|error| Failure::Input(format!("--n: {error}")))?;
             let mut findings = find(slide, self.n);
             findings.warnings.extend(of_product);
             return if self.scene.json { print_json(&findings) } else { print(&describe(&findings)) };

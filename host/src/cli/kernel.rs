@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, SceneArguments, print, print_json, simulate::SteppingArguments};
+use super::{Failure, SceneArguments, print, print_json, simulate::SchemeArguments};
 use crate::{
     files,
     force_table::scene_hash,
@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "FILE", default_value = "scene.rs")]
     output: PathBuf,
     #[command(flatten)]
-    stepping: SteppingArguments,
+    scheme: SchemeArguments,
 }
 
 #[derive(Serialize)]
@@ -32,7 +32,7 @@ struct Report {
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let scene = self.scene.load(&self.stepping.overrides())?;
+        let scene = self.scene.load(&self.scheme.overrides())?;
         let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let text = match extension.as_str() {
             "rs" => rust_source(&scene),

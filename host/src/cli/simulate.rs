@@ -48,21 +48,35 @@ pub(super) struct Arguments {
     error: Option<f64>,
 }
 
-/// How to step, where it differs from the scene.
+/// How to step, where it differs from the scene, and in which numbers.
 #[derive(Args)]
 pub(super) struct SteppingArguments {
+    #[command(flatten)]
+    scheme: SchemeArguments,
+    /// Number type: f32 is the controller's.
+    #[arg(long, value_enum, default_value_t)]
+    pub scalar: ScalarKind,
+}
+
+/// How to step, where it differs from the scene.
+#[derive(Args)]
+pub(super) struct SchemeArguments {
     /// Step, such as 100us (a bare number is µs).
     #[arg(long, allow_hyphen_values = true)]
     step: Option<String>,
     /// Scheme.
     #[arg(long, value_enum)]
     integrator: Option<IntegratorKind>,
-    /// Number type: f32 is the controller's.
-    #[arg(long, value_enum, default_value_t)]
-    pub scalar: ScalarKind,
 }
 
 impl SteppingArguments {
+    /// The options as settings of the scene.
+    pub fn overrides(&self) -> Vec<Override> {
+        self.scheme.overrides()
+    }
+}
+
+impl SchemeArguments {
     /// The options as settings of the scene.
     pub fn overrides(&self) -> Vec<Override> {
         let step = self.step.as_ref().map(|step| Override::option("--step", "run.step", step));

@@ -126,15 +126,19 @@ pub(super) fn for_people(scene: &Scene, sweep: &Sweep) -> String {
     if sweep.levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided) {
         let _ = writeln!(text, "\nundecided{}", why_undecided(scene, Verdict::Undecided));
     }
-    let doubtful: Vec<_> = sweep.levels.iter().filter(|level| !level.trust.is_sound()).collect();
-    if let Some(step) = doubtful.iter().filter_map(|level| level.trust.better_step).reduce(f64::min) {
-        let levels: Vec<String> = doubtful.iter().map(|at| level(at.n)).collect();
-        let _ = writeln!(
-            text,
-            "\nwarning: the step is too large at n = {}; take --step {}us",
-            levels.join(", "),
-            (step * 1e6).max(1.0)
-        );
+    let doubtful: Vec<_> = sweep.levels.iter().filter(|level| !level.trust.is_sound()).map(|at| level(at.n)).collect();
+    if let Some(step) = better_step(sweep) {
+        text += &too_large(&format!(" at n = {}", doubtful.join(", ")), step);
     }
     text
+}
+
+/// A step (s) that should do for every level, where one is too large.
+pub(super) fn better_step(sweep: &Sweep) -> Option<f64> {
+    sweep.levels.iter().filter_map(|level| level.trust.better_step).reduce(f64::min)
+}
+
+/// A warning that the step is too large `wherever`, and that `better` (s) should do.
+pub(super) fn too_large(wherever: &str, better: f64) -> String {
+    format!("\nwarning: the step is too large{wherever}; take --step {}us\n", (better * 1e6).max(1.0))
 }

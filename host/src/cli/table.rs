@@ -7,8 +7,9 @@ use serde::Serialize;
 use slipfit_core::table::AxisKind;
 
 use super::{
-    Failure, SceneArguments, ThreadArguments, print, print_json, progress, simulate::SteppingArguments,
-    sweep::LevelArguments,
+    Failure, SceneArguments, ThreadArguments, print, print_json, progress,
+    simulate::SteppingArguments,
+    sweep::{LevelArguments, better_step, too_large},
 };
 use crate::{
     files,
@@ -42,12 +43,12 @@ pub(super) struct Arguments {
     speeds: Option<String>,
     /// Where the positions of a table end (mm). If not given: where the slowest unit is that runs at least at half its
     /// commanded speed when its run ends.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     stroke: Option<f64>,
     /// Greatest error of force (N) where the table is used, over time from the ramp's start on, over position where every
     /// slide nearby comes to: the smallest table that meets it is made, as multiples of a scale (i16) or as numbers
     /// (f32).
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     max_error: Option<f64>,
     #[command(flatten)]
     levels: LevelArguments,
@@ -83,6 +84,9 @@ struct Report {
     worst_velocity_error_in_use_m_per_s: f64,
     rms_force_error_n: f64,
     rms_velocity_error_m_per_s: f64,
+    /// A step that should do, where the scene's is too large.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    better_step_s: Option<f64>,
     /// Units that do not come to the last position, in SI units; over position only.
     #[serde(skip_serializing_if = "Option::is_none")]
     short: Option<Vec<Reach>>,
@@ -120,11 +124,14 @@ impl Arguments {
         if stroke.is_some() && self.over == Over::Time {
             return Err(Failure::Input("--stroke is for --over position".into()));
         }
-        let (table, over_position) = match self.over {
-            Over::Time => (self.over_time(&scene, demand)?, None),
+        let (table, short, better_step) = match self.over {
+            Over::Time => {
+                let (table, better_step) = self.over_time(&scene, demand)?;
+                (table, None, better_step)
+            }
             Over::Position | Over::PositionAndSpeed => {
                 let made = self.over_position(&scene, &Wish { speeds: speeds.as_ref(), stroke, demand })?;
-                (made.table.clone(), Some(made))
+                (made.table, Some(made.short), made.better_step)
             }
         };
         let file = render(&extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
@@ -145,11 +152,13 @@ impl Arguments {
                 worst_velocity_error_in_use_m_per_s: velocity_in_use,
                 rms_force_error_n: rms_force,
                 rms_velocity_error_m_per_s: rms_velocity,
-                short: over_position.map(|made| made.short),
+                better_step_s: better_step,
+                short,
             })
         } else {
-            let short = over_position.map_or_else(String::new, |made| describe_short(&scene, &made.short));
-            print(&format!("{}\n{}{short}", self.output.display(), describe(&table)))
+            let short = short.map_or_else(String::new, |short| describe_short(&scene, &short));
+            let warning = better_step.map_or_else(String::new, |step| too_large(" for some of the runs", step));
+            print(&format!("{}\n{}{short}{warning}", self.output.display(), describe(&table)))
         }
     }
 
@@ -168,14 +177,15 @@ impl Arguments {
         }
     }
 
-    fn over_time(&self, scene: &Scene, demand: Demand) -> Result<ForceTable, Failure> {
+    /// The table, and a step (s) that should do where the scene's is too large.
+    fn over_time(&self, scene: &Scene, demand: Demand) -> Result<(ForceTable, Option<f64>), Failure> {
         force_table::check(scene, demand).map_err(|error| Failure::Input(error.to_string()))?;
         self.scene.check_output(&self.output)?;
         let bar = progress("simulating", force_table::levels(&scene.sweep).count);
         let made = self.threads.install(|| force_table::make(scene, self.stepping.scalar, demand, || bar.inc(1)))?;
         bar.finish_and_clear();
-        let (table, _) = made?;
-        Ok(table)
+        let (table, sweep) = made?;
+        Ok((table, better_step(&sweep)))
     }
 
     fn over_position(&self, scene: &Scene, wish: &Wish<'_>) -> Result<PositionTable, Failure> {

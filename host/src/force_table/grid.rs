@@ -220,17 +220,19 @@ impl<const N: usize> Samples<N> {
         place
     }
 
-    /// Whether the `i`-th sample counts as one in use: it is, and no node that it is interpolated from lies beyond where a
-    /// slide stopped. `None` beyond the grid's last nodes.
+    /// Whether the `i`-th sample counts as one in use: it is, and no node of the finest table that it is interpolated from
+    /// lies beyond where a slide stopped, so that a coarser one is judged by the same samples. `None` beyond the last nodes
+    /// of `grid`.
     fn in_use(&self, i: usize, grid: &Grid<N>) -> Option<bool> {
         let place = self.place(i);
-        let node = |axis: usize, is_upper: bool| {
-            let (at, stride) = (place[axis], grid.strides[axis]);
-            (if is_upper { at.div_ceil(stride) } else { at / stride }) * stride
-        };
-        if (0..N).any(|axis| node(axis, true) >= self.axes[axis].at.len()) {
+        let upper = |axis: usize, stride: usize| place[axis].div_ceil(stride) * stride;
+        if (0..N).any(|axis| upper(axis, grid.strides[axis]) >= self.axes[axis].at.len()) {
             return None;
         }
+        let node = |axis: usize, is_upper: bool| {
+            let stride = self.axes[axis].per_node;
+            if is_upper { upper(axis, stride) } else { place[axis] / stride * stride }
+        };
         // A bit an axis says which end of the cell a corner has there.
         let mut corners = (0..1 << N).map(|corner: usize| {
             (0..N).fold(0, |index, axis| index * self.axes[axis].at.len() + node(axis, corner >> axis & 1 == 1))
@@ -304,6 +306,10 @@ mod tests {
         assert_eq!((beside.worst_error, beside.worst_error_in_use), ([2.0, 4.0], [0.0; 2]));
         let elsewhere = bumpy(|[n, z, _]| if n == -1.0 && z > 2.0 { Stage::Beyond } else { Stage::InUse });
         assert_eq!(elsewhere.worst_error_in_use, [2.0, 4.0]);
+        // A coarser table counts what the finest does, though it interpolates the bump from where the slide has stopped.
+        let beyond = |[n, z, _]: [f64; 3]| if n == -1.0 && z > 2.0 { Stage::Beyond } else { Stage::InUse };
+        let samples = samples(|place| if at(place) { 3.0 } else { 1.0 }, beyond);
+        assert!(matches!(samples.table(1, Demand::MaxError(1.5)), Err(TableError::MaxError { best: 2.0, .. })));
     }
 
     #[test]

@@ -25,11 +25,13 @@ use super::{
     scene_hash,
 };
 use crate::{
+    confirm::confirmed,
     flash::TABLE_REGION,
     number::ten_digits,
     outcome::Verdict,
     scene::{LevelRange, Scene},
     simulate::{ScalarKind, Settings, SimulateError, simulate},
+    trust::Trust,
 };
 
 /// Distance of the table's positions (m), unless its region of flash has too little room.
@@ -55,6 +57,8 @@ pub struct PositionTable {
     pub table: ForceTable,
     /// Units of the table's levels (and speeds) that do not come to the end of its axis, by level, then by speed.
     pub short: Vec<Reach>,
+    /// A step (s) that should do for all runs, where one is too large; `None` if all are sound.
+    pub better_step: Option<f64>,
 }
 
 /// What a table over position is to be.
@@ -154,10 +158,6 @@ fn position_axis(samples: usize, per_node: usize) -> SampleAxis {
 /// [`TableError`] if the run ends before the drive's ramp, speeds have no common direction, the stroke is out of bounds,
 /// there are too many runs, fewer than two levels or speeds, or two positions are too many for the region of flash.
 pub fn check(scene: &Scene, &Wish { speeds, stroke, demand }: &Wish<'_>) -> Result<(), TableError> {
-    let (duration, ramp_end) = (scene.run.duration, scene.drive.ramp_end);
-    if duration <= ramp_end {
-        return Err(PositionError::Ramp { duration, ramp_end }.into());
-    }
     if let Some(speeds) = speeds {
         let (first, last) = (speeds.first, speeds.level(speeds.count - 1));
         if first * last <= 0.0 {
@@ -166,6 +166,10 @@ pub fn check(scene: &Scene, &Wish { speeds, stroke, demand }: &Wish<'_>) -> Resu
     }
     if let Some(stroke) = stroke.filter(|stroke| !(STEP..=STROKE_MOST).contains(stroke)) {
         return Err(PositionError::Stroke(stroke).into());
+    }
+    let (duration, ramp_end) = (scene.run.duration, scene.drive.ramp_end);
+    if duration <= ramp_end {
+        return Err(PositionError::Ramp { duration, ramp_end }.into());
     }
     let runs = runs(scene, speeds);
     if runs > RUNS_MOST {
@@ -200,20 +204,25 @@ pub fn make(
         .flat_map(|n| speeds_of_runs.iter().map(move |speed| (n, *speed)))
         .collect();
     let settings = Settings::fixed(scene.run, scene.run.step, scalar);
-    let runs: Vec<Result<(Passage, Reach), SimulateError>> = units
+    let runs: Vec<Result<(Passage, (Reach, Trust)), SimulateError>> = units
         .par_iter()
         .map(|&(n, speed)| {
             let scene = Scene { drive: Drive { speed, ..scene.drive }, ..scene.clone() };
-            let run = simulate(&scene, &scene.gaps_at(&[n; CONTACTS]), &settings)?;
+            let gaps = scene.gaps_at(&[n; CONTACTS]);
+            let run = confirmed(&scene, &gaps, &settings, simulate(&scene, &gaps, &settings)?)?;
             done();
             let passage = Passage::of(&run.trajectory, speed, SAMPLE, STROKE_MOST);
             let reach = Reach { n, speed, z: passage.reach, verdict: run.outcome.verdict };
-            Ok((passage, reach))
+            Ok((passage, (reach, run.trust)))
         })
         .collect();
-    let (passages, reaches): (Vec<Passage>, Vec<Reach>) = runs.into_iter().collect::<Result<_, _>>()?;
+    let (passages, judged): (Vec<Passage>, Vec<_>) = runs.into_iter().collect::<Result<_, _>>()?;
+    let (reaches, trusts): (Vec<Reach>, Vec<Trust>) = judged.into_iter().unzip();
     let steps = steps(&reaches, stroke, scene.run.duration)?;
-    let samples = steps * SUBSAMPLES + 1;
+    let nodes = scene.sweep.count * speeds.map_or(1, |speeds| speeds.count);
+    let per_node = per_node(nodes, steps, demand);
+    // Up to the first node that is not short of the end.
+    let samples = (steps * SUBSAMPLES).next_multiple_of(per_node) + 1;
 
     let sample = |passage: &Passage, k: usize| match passage.passed.get(k) {
         Some(values) => Sample { values: *values, stage: Stage::InUse },
@@ -223,8 +232,7 @@ pub fn make(
         (0..samples).flat_map(|k| speeds.iter().map(move |passage| sample(passage, k))).collect()
     };
     let values = passages.chunks(speeds_of_runs.len()).flat_map(level).collect();
-    let nodes = scene.sweep.count * speeds.map_or(1, |speeds| speeds.count);
-    let position = position_axis(samples, per_node(nodes, steps, demand));
+    let position = position_axis(samples, per_node);
     let (hash, level) = (scene_hash(scene), SampleAxis::halved(AxisKind::Level, &scene.sweep));
     let table = match speeds {
         None => Samples { axes: [level, position], values }.table(hash, demand)?,
@@ -238,7 +246,9 @@ pub fn make(
         let [level, speed] = [i / speeds_of_runs.len(), i % speeds_of_runs.len()];
         level.is_multiple_of(2) && speed.is_multiple_of(2) && passage.passed.len() < samples
     });
-    Ok(PositionTable { table, short: short.map(|(_, (reach, _))| *reach).collect() })
+    let short = short.map(|(_, (reach, _))| *reach).collect();
+    let better_step = trusts.iter().filter_map(|trust| trust.better_step).reduce(f64::min);
+    Ok(PositionTable { table, short, better_step })
 }
 
 /// How many steps an axis has, see [`Wish::stroke`].
@@ -265,7 +275,7 @@ fn steps(reaches: &[Reach], stroke: Option<f64>, duration: f64) -> Result<usize,
 /// `others` nodes at each of the positions over `steps` fit their region.
 fn per_node(others: usize, steps: usize, demand: Demand) -> usize {
     let fits = |coarser: &usize| {
-        let bytes = (steps / coarser + 1).saturating_mul(others).saturating_mul(2 * size_of::<f32>());
+        let bytes = (steps.div_ceil(*coarser) + 1).saturating_mul(others).saturating_mul(2 * size_of::<f32>());
         bytes + layout::HEADER_SIZE + layout::CHECKSUM_SIZE <= TABLE_REGION
     };
     let coarser = match demand {
