@@ -204,7 +204,7 @@ pub fn make(
         .flat_map(|n| speeds_of_runs.iter().map(move |speed| (n, *speed)))
         .collect();
     let settings = Settings::fixed(scene.run, scene.run.step, scalar);
-    let runs: Vec<Result<(Passage, (Reach, Trust)), SimulateError>> = units
+    let runs: Vec<Result<_, SimulateError>> = units
         .par_iter()
         .map(|&(n, speed)| {
             let scene = Scene { drive: Drive { speed, ..scene.drive }, ..scene.clone() };
