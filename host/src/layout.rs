@@ -2,6 +2,11 @@
 
 use std::ops::Range;
 
+/// Least and greatest of `values`; `None` of none.
+pub fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values.map(|value| (value, value)).reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
+}
+
 /// An interval with round ticks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ticks {

@@ -2,6 +2,7 @@
 
 use super::{Point, Problem, Truth};
 use crate::{
+    layout::extent,
     number::{level, typeset},
     plot::{Chart, Look, Panel, PlotError, Scale, Series, line_chart},
     scene::Scene,
@@ -74,8 +75,4 @@ fn panel(problem: &Problem, truth: &Truth, names: &[&str], points: &[&Point]) ->
 fn place(point: &Point, floor: f64) -> Option<(f64, f64)> {
     let error = point.max_percent.filter(|error| *error <= LOST)?;
     Some((point.run_ms?, error.max(floor * 1e-3)))
-}
-
-fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    values.map(|value| (value, value)).reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
 }
