@@ -3,7 +3,9 @@
 //! x is across, z the opening direction, the angle turns about y = z × x. The frame carries the pins, each meets a
 //! [`Stop`] of the body whose axis is the body's x; see [`slide`](crate::slide) for gaps and offsets.
 
+mod contacts;
 mod mechanics;
+mod turn;
 
 use nalgebra::Vector2;
 

@@ -2,64 +2,17 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
-use super::{Planar, PlanarPose};
+use super::{
+    Planar, PlanarPose,
+    contacts::{PinForce, Placed, Way},
+    turn::{Turn, at, spread, turned},
+};
 use crate::{
     SVector, Scalar,
-    law::{Elastic, Friction, Stop, friction::Rubbing, stop::Resistance},
+    law::{Elastic, Friction, Stop},
     linear::inverse,
     mechanism::{Differentiated, Linearised, Mechanism},
 };
-
-/// Rᵀ − I by its diagonal and the sine: what carries a frame vector into the body, less the vector itself.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Turn<S> {
-    less: S,
-    sine: S,
-}
-
-impl<S: Scalar> Turn<S> {
-    #[inline(always)]
-    fn of([w, v]: [S; 2]) -> Self {
-        let twice = v * (S::from_f64(2.0) / (w * w + v * v));
-        Self { less: twice * v, sine: twice * w }
-    }
-
-    #[inline(always)]
-    fn change(&self, p: Vector2<S>) -> Vector2<S> {
-        Vector2::new(-self.less * p.x - self.sine * p.y, self.sine * p.x - self.less * p.y)
-    }
-
-    #[inline(always)]
-    fn to_body(self, p: Vector2<S>) -> Vector2<S> {
-        p + self.change(p)
-    }
-
-    #[inline(always)]
-    fn to_frame(self, p: Vector2<S>) -> Vector2<S> {
-        p + Self { sine: -self.sine, ..self }.change(p)
-    }
-}
-
-/// y × `p`.
-#[inline(always)]
-fn turned<S: Scalar>(p: Vector2<S>) -> Vector2<S> {
-    Vector2::new(p.y, -p.x)
-}
-
-/// Force and torque of the force `f` at `lever`.
-#[inline(always)]
-fn at<S: Scalar>(lever: Vector2<S>, f: Vector2<S>) -> Vector3<S> {
-    Vector3::new(f.x, f.y, turned(lever).dot(&f))
-}
-
-/// What the force −`matrix`·(v + ω·y × `lever`), acting at `lever`, means for force and torque by v and ω.
-#[inline(always)]
-fn spread<S: Scalar>(lever: Vector2<S>, matrix: &Matrix2<S>) -> Matrix3<S> {
-    let [x, z]: [[S; 2]; 2] = matrix.data.0;
-    let (x, z) = (Vector2::from(x), Vector2::from(z));
-    let arm = turned(lever);
-    Matrix3::from_columns(&[at(lever, x), at(lever, z), at(lever, x * arm.x + z * arm.y)])
-}
 
 #[inline(always)]
 fn split<S: Scalar>(v: &SVector<S, 3>) -> (Vector2<S>, S) {
@@ -93,75 +46,12 @@ pub struct Slopes<S> {
     turn: Turn<S>,
 }
 
-/// How forces are to be linearised; see [`Rubbing`].
-#[derive(Clone, Copy)]
-struct Way<S> {
-    a: S,
-    mass_rate: S,
-    tangent_share: S,
-}
-
-/// Where the body is and how it moves, in its axes.
-#[derive(Clone, Copy)]
-struct Placed<S> {
-    turn: Turn<S>,
-    displacement_b: Vector2<S>,
-    velocity_b: Vector2<S>,
-    rotation: S,
-}
-
-/// The force at one pin and −∂force/∂(u, x), by the velocity and the displacement of the material there.
-struct PinForce<S> {
-    lever: Vector2<S>,
-    force: Vector2<S>,
-    impedance: Matrix2<S>,
-    stiffness: Matrix2<S>,
-}
-
 impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Planar<S, C, E, F, PINS> {
     #[inline(always)]
     fn placed(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>) -> Placed<S> {
         let (v_w, rotation) = split(velocity);
         let turn = Turn::of(pose.half_turn);
         Placed { displacement_b: turn.to_body(pose.displacement_w), velocity_b: turn.to_body(v_w), rotation, turn }
-    }
-
-    /// Force and torque of all contacts (N, N·m), in body axes; `collect` sees them pin by pin.
-    #[inline(always)]
-    fn contact_forces(
-        &self,
-        placed: &Placed<S>,
-        memory: &mut [F::Memory; PINS],
-        way: Way<S>,
-        mut collect: impl FnMut(&PinForce<S>),
-    ) -> Vector3<S> {
-        let mut sum = Vector3::zeros();
-        for ((pin, stop), memory) in self.body.pins_w.iter().zip(&self.body.stops).zip(memory) {
-            let offset = placed.turn.change(*pin) - placed.displacement_b;
-            let lever = *pin + offset;
-            let u = placed.velocity_b + turned(lever) * placed.rotation;
-            let stop = stop.resistance(&self.contact, offset.x, u.x);
-            let rubbing = Rubbing {
-                sliding: [u.y, S::zero()],
-                normal: stop.normal(),
-                mass_rate: way.mass_rate,
-                tangent_share: way.tangent_share,
-            };
-            let (traction, remembered) = self.friction.traction(memory, &rubbing);
-            *memory = remembered;
-            let [along, _] = traction.per_normal;
-            let ([own, normal], [own_stiffness, normal_stiffness]) = (stop.impedances(way.a), stop.stiffnesses());
-            let zero = S::zero();
-            let pin = PinForce {
-                lever,
-                force: Vector2::new(stop.force(), traction.force[0]),
-                impedance: Matrix2::new(own, zero, along * normal, traction.impedance[0]),
-                stiffness: Matrix2::new(own_stiffness, zero, along * normal_stiffness, zero),
-            };
-            sum += at(lever, pin.force);
-            collect(&pin);
-        }
-        sum
     }
 
     /// Force and torque of a drive force of 1 N, in body axes.
