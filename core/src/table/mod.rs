@@ -52,7 +52,7 @@ use layout::{CHANNELS, CHECKSUM_SIZE, HEADER_SIZE};
 pub use axis::{Axis, AxisKind};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
-pub use nodes::{AnyNodes, ChannelKind, Encoding, F32Nodes, I16Nodes, Nodes};
+pub use nodes::{AnyNodes, ChannelKind, Encoding, F32Nodes, I16Nodes, Nodes, Values};
 pub use patrol::Patrol;
 pub use slots::{RECORD_SIZE, Slots, record};
 

@@ -65,19 +65,17 @@ impl Encoding {
     }
 }
 
+/// Force (N) and velocity (m/s).
+pub type Values = [f32; CHANNELS];
+
 /// Every node of a table where it lies, however it is stored.
 pub trait Nodes: Copy {
     /// Force and velocity (N, m/s) at the `fractions` of the cell whose lowest node is `first`; `counts` says how many
-    /// nodes each axis has, the slowest first.
-    fn within<const N: usize>(
-        &self,
-        first: usize,
-        counts: &[usize; N],
-        fractions: &[f32; N],
-    ) -> Option<[f32; CHANNELS]>;
+    /// nodes each axis has, the slowest first. `None` outside the grid, where an open table never looks.
+    fn within<const N: usize>(&self, first: usize, counts: &[usize; N], fractions: &[f32; N]) -> Option<Values>;
 
     /// Force and velocity (N, m/s) `fraction` of the way from the node `first` to the one that follows it.
-    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS];
+    fn between(&self, first: usize, fraction: f32) -> Values;
 }
 
 /// Nodes of two f32.
@@ -137,12 +135,7 @@ impl<'a> AnyNodes<'a> {
 
 impl Nodes for AnyNodes<'_> {
     #[inline(always)]
-    fn within<const N: usize>(
-        &self,
-        first: usize,
-        counts: &[usize; N],
-        fractions: &[f32; N],
-    ) -> Option<[f32; CHANNELS]> {
+    fn within<const N: usize>(&self, first: usize, counts: &[usize; N], fractions: &[f32; N]) -> Option<Values> {
         match self {
             Self::F32(nodes) => nodes.within(first, counts, fractions),
             Self::I16(nodes) => nodes.within(first, counts, fractions),
@@ -151,7 +144,7 @@ impl Nodes for AnyNodes<'_> {
 
     // Called for every level of a bank: one copy of either way will do.
     #[inline(never)]
-    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
+    fn between(&self, first: usize, fraction: f32) -> Values {
         match self {
             Self::F32(nodes) => nodes.between(first, fraction),
             Self::I16(nodes) => nodes.between(first, fraction),
@@ -161,53 +154,43 @@ impl Nodes for AnyNodes<'_> {
 
 impl Nodes for F32Nodes<'_> {
     #[inline(always)]
-    fn within<const N: usize>(
-        &self,
-        first: usize,
-        counts: &[usize; N],
-        fractions: &[f32; N],
-    ) -> Option<[f32; CHANNELS]> {
+    fn within<const N: usize>(&self, first: usize, counts: &[usize; N], fractions: &[f32; N]) -> Option<Values> {
         cell(self.0, first, counts, fractions, Self::blend)
     }
 
     #[inline(always)]
-    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
+    fn between(&self, first: usize, fraction: f32) -> Values {
         pair(self.0, first).map(|pair| Self::blend(pair, fraction)).unwrap_or_default()
     }
 }
 
 impl F32Nodes<'_> {
     #[inline(always)]
-    fn blend([a, b]: &[[u8; 8]; 2], fraction: f32) -> [f32; CHANNELS] {
+    fn blend([a, b]: &[[u8; 8]; 2], fraction: f32) -> Values {
         blended(floats(a), floats(b), fraction)
     }
 }
 
 impl Nodes for I16Nodes<'_> {
     #[inline(always)]
-    fn within<const N: usize>(
-        &self,
-        first: usize,
-        counts: &[usize; N],
-        fractions: &[f32; N],
-    ) -> Option<[f32; CHANNELS]> {
+    fn within<const N: usize>(&self, first: usize, counts: &[usize; N], fractions: &[f32; N]) -> Option<Values> {
         cell(self.nodes, first, counts, fractions, Self::blend).map(|found| self.scaled(found))
     }
 
     #[inline(always)]
-    fn between(&self, first: usize, fraction: f32) -> [f32; CHANNELS] {
+    fn between(&self, first: usize, fraction: f32) -> Values {
         self.scaled(pair(self.nodes, first).map(|pair| Self::blend(pair, fraction)).unwrap_or_default())
     }
 }
 
 impl I16Nodes<'_> {
     #[inline(always)]
-    fn blend([a, b]: &[[u8; 4]; 2], fraction: f32) -> [f32; CHANNELS] {
+    fn blend([a, b]: &[[u8; 4]; 2], fraction: f32) -> Values {
         blended(integers(a), integers(b), fraction)
     }
 
     #[inline(always)]
-    fn scaled(&self, [force, velocity]: [f32; CHANNELS]) -> [f32; CHANNELS] {
+    fn scaled(&self, [force, velocity]: Values) -> Values {
         [self.scales[0] * force, self.scales[1] * velocity]
     }
 }
@@ -226,8 +209,8 @@ fn cell<T: Copy>(
     first: usize,
     counts: &[usize],
     fractions: &[f32],
-    blend: impl Fn(&[T; 2], f32) -> [f32; CHANNELS],
-) -> Option<[f32; CHANNELS]> {
+    blend: impl Fn(&[T; 2], f32) -> Values,
+) -> Option<Values> {
     let face = |first: usize, row: usize, across, along| {
         let rest = nodes.get(first..)?;
         let upper = rest.get(row..)?.first_chunk()?;
@@ -245,17 +228,17 @@ fn cell<T: Copy>(
 }
 
 #[inline(always)]
-fn floats(&[a, b, c, d, e, f, g, h]: &[u8; 8]) -> [f32; CHANNELS] {
+fn floats(&[a, b, c, d, e, f, g, h]: &[u8; 8]) -> Values {
     [f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h])]
 }
 
 #[inline(always)]
-fn integers(&[a, b, c, d]: &[u8; 4]) -> [f32; CHANNELS] {
+fn integers(&[a, b, c, d]: &[u8; 4]) -> Values {
     [f32::from(i16::from_le_bytes([a, b])), f32::from(i16::from_le_bytes([c, d]))]
 }
 
 /// `fraction` of the way from `a` to `b`.
 #[inline(always)]
-fn blended(a: [f32; CHANNELS], b: [f32; CHANNELS], fraction: f32) -> [f32; CHANNELS] {
+fn blended(a: Values, b: Values, fraction: f32) -> Values {
     [a[0] + fraction * (b[0] - a[0]), a[1] + fraction * (b[1] - a[1])]
 }
