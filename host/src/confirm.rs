@@ -46,3 +46,28 @@ pub fn confirmed(
     run.trust = run.trust.compared(difference, settings.run.step);
     Ok(run)
 }
+
+#[cfg(test)]
+mod tests {
+    use slipfit_core::slide::CONTACTS;
+
+    use super::{COARSE, confirmed};
+    use crate::{
+        scene::{CD_ROM_SLIDE, Scene},
+        simulate::{ScalarKind, Settings, simulate},
+    };
+
+    #[test]
+    fn a_coarse_step_is_always_held_against_half_of_it() {
+        let mut scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).unwrap();
+        let gaps = scene.gaps_at(&[0.0; CONTACTS]);
+        let mut difference = |step: f64| {
+            scene.run.step = step;
+            let settings = Settings::fixed(scene.run, 1e-3, ScalarKind::F64);
+            confirmed(&scene, &gaps, &settings, simulate(&scene, &gaps, &settings).unwrap()).unwrap().trust.difference
+        };
+        // The opening at n = 0 comes to no verdict, and its steps leave no doubt.
+        assert_eq!(difference(COARSE / 2.0), None);
+        assert!(difference(2.0 * COARSE).is_some_and(|difference| difference < 5e-3));
+    }
+}

@@ -49,7 +49,7 @@ pub fn classes(gaps: &[f64; CONTACTS]) -> [Option<GapClass>; CONTACTS] {
     gaps.map(|gap| (gap < ABSENT / 2.0).then(|| GapClass::of(gap)))
 }
 
-/// Runs one unit and, if it comes to a verdict or its steps leave doubt, once more at half the step.
+/// Runs one unit, and once more with half the step where [`confirmed`] does.
 ///
 /// # Errors
 /// See [`SimulateError`].

@@ -70,12 +70,14 @@ impl<S: Scalar> Resistance<S> for NormalResponse<S> {
 
     #[inline(always)]
     fn impedances(&self, a: S) -> [S; 2] {
-        [self.impedance(a), -self.impedance(a)]
+        let impedance = self.impedance(a);
+        [impedance, -impedance]
     }
 
     #[inline(always)]
     fn stiffnesses(&self) -> [S; 2] {
-        [self.stiffness(), -self.stiffness()]
+        let stiffness = self.stiffness();
+        [stiffness, -stiffness]
     }
 }
 
