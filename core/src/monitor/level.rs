@@ -198,21 +198,24 @@ impl Parabola {
         if self.value(lowest) > limit {
             return None;
         }
-        let ends = [0.0, 1.0].map(|end| {
-            if self.value(end) <= limit {
-                return end;
+        Some([0.0, 1.0].map(|end| self.crossing(lowest, end, limit)))
+    }
+
+    /// Where it crosses `limit` on the way from `inside` to `end`; `end` if it does not.
+    #[inline(never)]
+    fn crossing(&self, mut inside: f32, end: f32, limit: f32) -> f32 {
+        if self.value(end) <= limit {
+            return end;
+        }
+        let mut outside = end;
+        for _ in 0..20 {
+            let middle = 0.5 * (inside + outside);
+            if self.value(middle) <= limit {
+                inside = middle;
+            } else {
+                outside = middle;
             }
-            let (mut inside, mut outside) = (lowest, end);
-            for _ in 0..20 {
-                let middle = 0.5 * (inside + outside);
-                if self.value(middle) <= limit {
-                    inside = middle;
-                } else {
-                    outside = middle;
-                }
-            }
-            outside
-        });
-        Some(ends)
+        }
+        outside
     }
 }

@@ -70,11 +70,29 @@ pub(super) const EMPTY: u32 = !0;
 
 /// The checksum's register after `bytes`.
 ///
-/// Bit by bit: a table of remainders would speed up something done rarely, at the price of 1 KB of flash.
+/// Four bits at a time: eight would be twice as fast, at the price of 1 KB of flash.
+#[inline(never)]
 pub(super) fn continued(register: u32, bytes: &[u8]) -> u32 {
     bytes.iter().fold(register, |register, byte| {
-        (0..8).fold(register ^ u32::from(*byte), |register, _| {
-            register >> 1 ^ if register & 1 == 1 { 0xedb8_8320 } else { 0 }
-        })
+        let register = register ^ u32::from(*byte);
+        let register = register >> 4 ^ NIBBLES[(register & 15) as usize];
+        register >> 4 ^ NIBBLES[(register & 15) as usize]
     })
 }
+
+/// What four bits shifted out of the register do to it.
+const NIBBLES: [u32; 16] = {
+    let mut nibbles = [0; 16];
+    let mut i = 0;
+    while i < 16 {
+        let mut register = i as u32;
+        let mut bit = 0;
+        while bit < 4 {
+            register = register >> 1 ^ if register & 1 == 1 { 0xedb8_8320 } else { 0 };
+            bit += 1;
+        }
+        nibbles[i] = register;
+        i += 1;
+    }
+    nibbles
+};
