@@ -95,9 +95,11 @@ fn each_rung_is_cheaper_than_the_one_above() {
     insta::assert_snapshot!("costs", table);
 }
 
-/// What a drive controller can spare at 1 kHz: about 14 % of 168 MHz at 1.48 cycles an instruction.
+/// What a drive controller can spare at 1 kHz: about 14 % of 168 MHz at 1.48 cycles an instruction, and a stack of 512 bytes,
+/// beyond which exact friction goes by its memory of 64.
 #[test]
 fn the_full_slide_keeps_its_budget() {
+    assert!(costs("slide_smoothed").stack <= 512 && costs("slide_exact").stack <= 640);
     assert!(costs("slide_exact").instructions <= 16_000);
     let pass = ON_TARGET.lines().find_map(|line| line.strip_prefix("instructions of a pass: ")?.parse::<u32>().ok());
     let pass = pass.expect("the image says so");

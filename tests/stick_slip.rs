@@ -52,9 +52,10 @@ impl Mechanism<f64, 1> for OnBelt {
         StaticKinetic::<f64>::fresh()
     }
 
-    fn selected(&self, condition: f64, yes: (&f64, &[f64; 2]), no: (&f64, &[f64; 2])) -> (f64, [f64; 2]) {
-        let (pose, memory) = if condition > 0.0 { yes } else { no };
-        (*pose, *memory)
+    fn adopt(&self, condition: f64, next: (&f64, &[f64; 2]), kept: (&mut f64, &mut [f64; 2])) {
+        if condition > 0.0 {
+            (*kept.0, *kept.1) = (*next.0, *next.1);
+        }
     }
 
     fn nought(&self, pose: &f64) -> f64 {
@@ -76,9 +77,13 @@ impl Mechanism<f64, 1> for OnBelt {
         memory: &[f64; 2],
         velocity: &SVector<f64, 1>,
         a: f64,
-    ) -> (SVector<f64, 1>, [f64; 2]) {
+        remembered: Option<&mut [f64; 2]>,
+    ) -> SVector<f64, 1> {
         let (traction, memory) = self.friction.traction(memory, &self.rubbing(velocity, self.mass / a, 1.0));
-        (SVector::<f64, 1>::new(traction.force[0] - self.stiffness * pose), memory)
+        if let Some(remembered) = remembered {
+            *remembered = memory;
+        }
+        SVector::<f64, 1>::new(traction.force[0] - self.stiffness * pose)
     }
 
     fn linearised(
@@ -92,7 +97,7 @@ impl Mechanism<f64, 1> for OnBelt {
     ) -> Linearised<f64, f64, 1> {
         let rubbing = self.rubbing(velocity, self.mass / a, tangent_share);
         Linearised {
-            force: self.forces(t, pose, memory, velocity, a).0,
+            force: self.forces(t, pose, memory, velocity, a, None),
             linearisation: self.linearisation(&self.friction.traction(memory, &rubbing).0.impedance[0], a),
         }
     }
@@ -114,7 +119,7 @@ impl Mechanism<f64, 1> for OnBelt {
     ) -> Differentiated<f64, f64, 1> {
         let rubbing = self.rubbing(velocity, 0.0, 1.0);
         Differentiated {
-            force: self.forces(t, pose, memory, velocity, 1.0).0,
+            force: self.forces(t, pose, memory, velocity, 1.0, None),
             per_time: SVector::zeros(),
             slopes: self.friction.traction(memory, &rubbing).0.impedance[0],
         }

@@ -92,8 +92,8 @@ impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> Mechanism<S, 1> for AxisB
     fn fresh(&self) {}
 
     #[inline(always)]
-    fn selected(&self, condition: S, (yes, ()): (&S, &()), (no, ()): (&S, &())) -> (S, ()) {
-        (condition.select_gt(S::zero(), *yes, *no), ())
+    fn adopt(&self, condition: S, (next, ()): (&S, &()), (kept, ()): (&mut S, &mut ())) {
+        *kept = next.or_old(condition, *kept);
     }
 
     #[inline(always)]
@@ -112,8 +112,8 @@ impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> Mechanism<S, 1> for AxisB
     }
 
     #[inline(always)]
-    fn forces(&self, t: S, pose: &S, memory: &(), velocity: &SVector<S, 1>, _: S) -> (SVector<S, 1>, ()) {
-        (self.differentiated(t, pose, memory, velocity).force, ())
+    fn forces(&self, t: S, pose: &S, memory: &(), velocity: &SVector<S, 1>, _: S, _: Option<&mut ()>) -> SVector<S, 1> {
+        self.differentiated(t, pose, memory, velocity).force
     }
 
     #[inline(always)]

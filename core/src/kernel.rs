@@ -85,21 +85,18 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
     where
         M: Mechanism<S, D>,
     {
-        let was = &state.motion;
         let Step { motion: next, residual, error, .. } =
-            I::step(&self.mechanism, self.time(state.steps), self.step, was);
+            I::step(&self.mechanism, self.time(state.steps), self.step, &state.motion);
         let zero = S::zero();
         let rates = next.velocity + next.acceleration;
         let nought = rates.iter().fold(self.mechanism.nought(&next.pose), |sum, v| sum + *v) * zero;
         let finite = S::one() + nought;
-        let (pose, memory) = self.mechanism.selected(finite, (&next.pose, &next.memory), (&was.pose, &was.memory));
         state.steps = state.steps.saturating_add(1);
-        state.motion = Motion {
-            pose,
-            velocity: next.velocity.zip_map(&was.velocity, |new, old| finite.select_gt(zero, new, old)),
-            acceleration: next.acceleration.zip_map(&was.acceleration, |new, old| finite.select_gt(zero, new, old)),
-            memory,
-        };
+        let motion = &mut state.motion;
+        self.mechanism.adopt(finite, (&next.pose, &next.memory), (&mut motion.pose, &mut motion.memory));
+        let either = |new: S, old| new.or_old(finite, old);
+        motion.velocity = next.velocity.zip_map(&motion.velocity, either);
+        motion.acceleration = next.acceleration.zip_map(&motion.acceleration, either);
         let or_infinite = |x: S| (finite + x * zero).select_gt(zero, x, S::one() / zero);
         Report { residual: or_infinite(residual), error: or_infinite(error) }
     }

@@ -58,13 +58,8 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// The memory of laws that nothing has happened to yet.
     fn fresh(&self) -> Self::Memory;
 
-    /// `yes` where `condition` > 0, else `no` (also where it is NaN).
-    fn selected(
-        &self,
-        condition: S,
-        yes: (&Self::Pose, &Self::Memory),
-        no: (&Self::Pose, &Self::Memory),
-    ) -> (Self::Pose, Self::Memory);
+    /// Makes `kept` `next`, number by number where it is finite and `condition` > 0. In place, since a copy would take stack.
+    fn adopt(&self, condition: S, next: (&Self::Pose, &Self::Memory), kept: (&mut Self::Pose, &mut Self::Memory));
 
     /// 0 if all coordinates of `pose` are finite, else NaN.
     fn nought(&self, pose: &Self::Pose) -> S;
@@ -80,7 +75,8 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// M⁻¹·`momentum`: generalised velocities (m/s, rad/s).
     fn velocity(&self, momentum: &SVector<S, D>) -> SVector<S, D>;
 
-    /// Forces (N, N·m) at time `t` (s) and the memory if the motion is accepted; `a` (s) is the implicit part of the step.
+    /// Forces (N, N·m) at time `t` (s); `a` (s) is the implicit part of the step. `remembered` becomes the memory if the
+    /// motion is accepted.
     fn forces(
         &self,
         t: S,
@@ -88,7 +84,8 @@ pub trait Mechanism<S: Scalar, const D: usize> {
         memory: &Self::Memory,
         velocity: &SVector<S, D>,
         a: S,
-    ) -> (SVector<S, D>, Self::Memory);
+        remembered: Option<&mut Self::Memory>,
+    ) -> SVector<S, D>;
 
     /// Forces at time `t` (s), and how momentum/`a` − force changes with the velocity, through the pose too. Of the
     /// friction's change along the sliding direction the linearisation takes `tangent_share` from the law's tangent, the

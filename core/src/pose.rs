@@ -75,15 +75,15 @@ impl<S: Scalar> Pose<S> {
         }
     }
 
-    /// `yes` where `condition` > 0, else `no` (also where it is NaN).
+    /// `self` where it is finite and `condition` > 0, else `old`, number by number.
     #[inline(always)]
-    pub fn selected(condition: S, yes: &Self, no: &Self) -> Self {
-        let pick = |y: S, n: S| condition.select_gt(S::zero(), y, n);
+    pub fn or_old(&self, condition: S, old: &Self) -> Self {
+        let either = |new: S, old| new.or_old(condition, old);
         Self {
-            displacement_w: yes.displacement_w.zip_map(&no.displacement_w, pick),
+            displacement_w: self.displacement_w.zip_map(&old.displacement_w, either),
             orientation: Orientation {
-                w: pick(yes.orientation.w, no.orientation.w),
-                v: yes.orientation.v.zip_map(&no.orientation.v, pick),
+                w: either(self.orientation.w, old.orientation.w),
+                v: self.orientation.v.zip_map(&old.orientation.v, either),
             },
         }
     }

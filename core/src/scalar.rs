@@ -52,6 +52,15 @@ pub trait Scalar:
     /// False for NaN and the infinities. A lane is finite if all of its numbers are.
     fn is_finite(self) -> bool;
 
+    /// `self` where it is finite and `condition` > 0, else `old`.
+    ///
+    /// Each number asks for itself, because compilers make of one question for many a branch, or a choice of addresses for
+    /// which both sides must be in memory.
+    #[inline(always)]
+    fn or_old(self, condition: Self, old: Self) -> Self {
+        (condition + self * Self::zero()).select_gt(Self::zero(), self, old)
+    }
+
     /// The larger of `self` and `other`, `other` where `self` is NaN.
     #[inline(always)]
     fn max_of(self, other: Self) -> Self {

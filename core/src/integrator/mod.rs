@@ -130,12 +130,12 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
     // Kept from the compiler, which would repeat the body of a small mechanism for every pass.
     let passes = core::hint::black_box(PASSES);
     let (size, better) = loop {
+        // So that parameters are read where they are used: before the loop they would all be copied to the stack.
+        let (mechanism, base) = core::hint::black_box((mechanism, base));
         let pose = mechanism.advanced(&base.pose, &velocity, a);
         let force = if pass == CHORD || pass == passes {
             // The memory of an iterate that is only worse holds as well, because the next step brings it back into the cone.
-            let (force, remembered) = mechanism.forces(t, &pose, &base.memory, &velocity, a);
-            memory = remembered;
-            force
+            mechanism.forces(t, &pose, &base.memory, &velocity, a, Some(&mut memory))
         } else {
             let share = tangent_share(full_passes);
             let at = mechanism.linearised(t, &pose, &base.memory, &velocity, a, share);

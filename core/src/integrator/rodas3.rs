@@ -38,7 +38,7 @@ impl Integrator for Rodas3 {
         let forces = |at: &Part<S, D>| {
             let pose = mechanism.moved(&motion.pose, &at.place, S::one());
             let velocity = motion.velocity + at.velocity;
-            let (force, _) = mechanism.forces(end, &pose, &motion.memory, &velocity, h);
+            let force = mechanism.forces(end, &pose, &motion.memory, &velocity, h, None);
             (mechanism.rate(&at.place, &velocity), force)
         };
         let per_step = S::one() / h;

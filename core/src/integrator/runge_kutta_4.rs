@@ -22,7 +22,7 @@ impl Integrator for RungeKutta4 {
     ) -> StepOf<S, M, D> {
         let (half, third, sixth) = (S::from_f64(0.5), S::from_f64(1.0 / 3.0), S::from_f64(1.0 / 6.0));
         let acceleration = |t: S, pose: &M::Pose, velocity: &SVector<S, D>| {
-            mechanism.velocity(&mechanism.forces(t, pose, &motion.memory, velocity, h).0)
+            mechanism.velocity(&mechanism.forces(t, pose, &motion.memory, velocity, h, None))
         };
         let (q1, v1) = (motion.pose, motion.velocity);
         let a1 = acceleration(t, &q1, &v1);

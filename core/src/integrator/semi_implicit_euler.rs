@@ -20,10 +20,10 @@ impl Integrator for SemiImplicitEuler {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        let (start, _) = mechanism.forces(t, &motion.pose, &motion.memory, &motion.velocity, h);
+        let start = mechanism.forces(t, &motion.pose, &motion.memory, &motion.velocity, h, None);
         let velocity = motion.velocity + mechanism.velocity(&(start * h));
         let pose = mechanism.normalised(&mechanism.advanced(&motion.pose, &velocity, h));
-        let (end, _) = mechanism.forces(t + h, &pose, &motion.memory, &velocity, h);
+        let end = mechanism.forces(t + h, &pose, &motion.memory, &velocity, h, None);
         // Half the change of the force over the step is what the first order leaves out.
         let error = mechanism.impulse(&((end - start) * (h * S::from_f64(0.5))));
         let motion = Motion { pose, velocity, acceleration: mechanism.velocity(&end), memory: motion.memory };

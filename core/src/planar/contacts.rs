@@ -29,11 +29,13 @@ pub(super) struct Placed<S> {
 }
 
 /// The force at one pin and −∂force/∂(u, x), by the velocity and the displacement of the material there.
-pub(super) struct PinForce<S> {
+pub(super) struct PinForce<S, M> {
     pub lever: Vector2<S>,
     pub force: Vector2<S>,
     pub impedance: Matrix2<S>,
     pub stiffness: Matrix2<S>,
+    /// What friction remembers if the motion is accepted.
+    pub memory: M,
 }
 
 impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Planar<S, C, E, F, PINS> {
@@ -42,9 +44,9 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Pl
     pub(super) fn contact_forces(
         &self,
         placed: &Placed<S>,
-        memory: &mut [F::Memory; PINS],
+        memory: &[F::Memory; PINS],
         way: Way<S>,
-        mut collect: impl FnMut(&PinForce<S>),
+        mut collect: impl FnMut(&PinForce<S, F::Memory>),
     ) -> Vector3<S> {
         let mut sum = Vector3::zeros();
         for ((pin, stop), memory) in self.body.pins_w.iter().zip(&self.body.stops).zip(memory) {
@@ -58,8 +60,7 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Pl
                 mass_rate: way.mass_rate,
                 tangent_share: way.tangent_share,
             };
-            let (traction, remembered) = self.friction.traction(memory, &rubbing);
-            *memory = remembered;
+            let (traction, memory) = self.friction.traction(memory, &rubbing);
             let [along, _] = traction.per_normal;
             let ([own, normal], [own_stiffness, normal_stiffness]) = (stop.impedances(way.a), stop.stiffnesses());
             let zero = S::zero();
@@ -68,6 +69,7 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Pl
                 force: Vector2::new(stop.force(), traction.force[0]),
                 impedance: Matrix2::new(own, zero, along * normal, traction.impedance[0]),
                 stiffness: Matrix2::new(own_stiffness, zero, along * normal_stiffness, zero),
+                memory,
             };
             sum += at(lever, pin.force);
             collect(&pin);

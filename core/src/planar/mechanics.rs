@@ -146,22 +146,20 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Me
     }
 
     #[inline(always)]
-    fn selected(
+    fn adopt(
         &self,
         condition: S,
-        (yes, yes_memory): (&PlanarPose<S>, &Self::Memory),
-        (no, no_memory): (&PlanarPose<S>, &Self::Memory),
-    ) -> (PlanarPose<S>, Self::Memory) {
-        let pick = |y: S, n: S| condition.select_gt(S::zero(), y, n);
-        let mut memory = *no_memory;
-        for (pin, yes) in memory.iter_mut().zip(yes_memory) {
-            *pin = F::selected(condition, yes, pin);
-        }
-        let pose = PlanarPose {
-            displacement_w: yes.displacement_w.zip_map(&no.displacement_w, pick),
-            half_turn: [pick(yes.half_turn[0], no.half_turn[0]), pick(yes.half_turn[1], no.half_turn[1])],
+        (next, next_memory): (&PlanarPose<S>, &Self::Memory),
+        (kept, memory): (&mut PlanarPose<S>, &mut Self::Memory),
+    ) {
+        let either = |new: S, old| new.or_old(condition, old);
+        *kept = PlanarPose {
+            displacement_w: next.displacement_w.zip_map(&kept.displacement_w, either),
+            half_turn: [either(next.half_turn[0], kept.half_turn[0]), either(next.half_turn[1], kept.half_turn[1])],
         };
-        (pose, memory)
+        for (pin, next) in memory.iter_mut().zip(next_memory) {
+            *pin = F::or_old(next, condition, pin);
+        }
     }
 
     #[inline(always)]
@@ -203,13 +201,18 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Me
         memory: &Self::Memory,
         velocity: &SVector<S, 3>,
         a: S,
-    ) -> (SVector<S, 3>, Self::Memory) {
+        remembered: Option<&mut Self::Memory>,
+    ) -> SVector<S, 3> {
         let placed = self.placed(pose, velocity);
-        let mut memory = *memory;
+        let mut pins = remembered.into_iter().flatten();
         let way = Way { a, mass_rate: self.body.mass / a, tangent_share: S::one() };
-        let contacts = self.contact_forces(&placed, &mut memory, way, |_| {});
+        let contacts = self.contact_forces(&placed, memory, way, |pin| {
+            if let Some(slot) = pins.next() {
+                *slot = pin.memory;
+            }
+        });
         let push = self.pull(placed.turn) * self.drive.force(t, velocity.y);
-        (self.total(placed.turn, contacts + push), memory)
+        self.total(placed.turn, contacts + push)
     }
 
     #[inline(always)]
@@ -227,8 +230,7 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Me
         let pull = self.pull(placed.turn);
         let mut balance = self.inertia(rate) + self.give(&pull);
         let way = Way { a, mass_rate: self.body.mass * rate, tangent_share };
-        let contacts =
-            self.contact_forces(&placed, &mut { *memory }, way, |pin| balance += spread(pin.lever, &pin.impedance));
+        let contacts = self.contact_forces(&placed, memory, way, |pin| balance += spread(pin.lever, &pin.impedance));
         Linearised {
             force: self.total(placed.turn, contacts + pull * self.drive.force(t, velocity.y)),
             linearisation: Linearisation { inverse: inverse(&balance), turn: placed.turn },
@@ -262,7 +264,7 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Me
         let (mut damping, mut stiffness) = (Matrix3::zeros(), Matrix3::zeros());
         let swirl = turned(placed.velocity_b);
         let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
-        let contacts = self.contact_forces(&placed, &mut { *memory }, way, |pin| {
+        let contacts = self.contact_forces(&placed, memory, way, |pin| {
             let PinForce { lever, force, impedance, .. } = pin;
             damping += spread(*lever, impedance);
             // Where the body turns, a displacement changes the velocity of its material at the pin.

@@ -76,7 +76,7 @@ fn slopes_are_derivatives() {
     let (_, flat) = both(Regularised::new(0.3, 1e-2).unwrap());
     let nominal = PlanarPose { displacement_w: Vector2::new(2e-5, 0.01), half_turn: [1.0, 2e-4] };
     let velocity = SVector::<f64, 3>::new(0.01, 0.005, 0.3);
-    let force = |pose: &PlanarPose<f64>, v: &SVector<f64, 3>| flat.forces(0.05, pose, &[(); 4], v, 1e-3).0;
+    let force = |pose: &PlanarPose<f64>, v: &SVector<f64, 3>| flat.forces(0.05, pose, &[(); 4], v, 1e-3, None);
     let slopes = flat.differentiated(0.05, &nominal, &[(); 4], &velocity).slopes;
     let solve = flat.linearisation(&slopes, 1e-3);
     for axis in 0..3 {

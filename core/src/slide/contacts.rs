@@ -6,7 +6,7 @@ use super::{SLOTS, Slide};
 use crate::{
     Scalar, Vector3,
     law::{Elastic, Friction, friction::Rubbing},
-    linear::{Blocks, cross_columns, cross_matrix, cross_rows},
+    linear::cross_rows,
     pose::ToBody,
 };
 
@@ -35,49 +35,21 @@ pub(super) struct Placed<S> {
 }
 
 /// The force on the slide at one pin and its changes. Axes of the body; of the matrices rows are forces.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PinForce<S> {
+pub(super) struct PinForce<S, M> {
+    /// Where it acts, from the centre of mass (m).
+    pub lever: Vector3<S>,
     /// Force on the slide (N).
     pub force: Vector3<S>,
     /// −∂force/∂u (N·s/m) by the velocity of the slide's material at the pin, which also moves it over the time `a`.
     pub impedance: Matrix3<S>,
     /// −∂force/∂x (N/m) by the displacement of the slide's material at the pin, if `impedance` leaves it in place.
     pub stiffness: Matrix3<S>,
-}
-
-/// What is collected of the pins' forces besides the forces.
-pub(super) trait Collect<S> {
-    /// Takes in the force at one pin, whose `lever` (m) reaches from the centre of mass.
-    fn collect(&mut self, lever: &Vector3<S>, pin: &PinForce<S>);
-}
-
-/// Nothing.
-impl<S> Collect<S> for () {
-    #[inline(always)]
-    fn collect(&mut self, _: &Vector3<S>, _: &PinForce<S>) {}
-}
-
-/// Their impedance.
-impl<S: Scalar> Collect<S> for Blocks<S> {
-    #[inline(always)]
-    fn collect(&mut self, lever: &Vector3<S>, pin: &PinForce<S>) {
-        self.add_at(lever, &pin.impedance);
-    }
-}
-
-/// Their impedance and stiffness, and that the force stays at the pin while the slide is displaced.
-impl<S: Scalar> Collect<S> for [Blocks<S>; 2] {
-    #[inline(always)]
-    fn collect(&mut self, lever: &Vector3<S>, pin: &PinForce<S>) {
-        self[0].add_at(lever, &pin.impedance);
-        self[1].add_at(lever, &pin.stiffness);
-        self[1].c -= cross_matrix(&pin.force);
-        self[1].d += cross_columns(&pin.force, &cross_matrix(lever));
-    }
+    /// What friction in its slots remembers if the motion is accepted.
+    pub memory: [M; 2],
 }
 
 /// A slot's part of that, its axis first, then the tangents.
-struct SlotForce<S> {
+struct SlotForce<S, M> {
     force: [S; 3],
     /// Column of the axis.
     impedance: [S; 3],
@@ -85,45 +57,47 @@ struct SlotForce<S> {
     tangential: [S; 3],
     /// The only column there is, that of the axis.
     stiffness: [S; 3],
+    memory: M,
 }
 
 impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
-    /// The force and torque about the centre of mass that all contacts exert (N, N·m), in body axes.
+    /// The force and torque about the centre of mass that all contacts exert (N, N·m), in body axes; `collect` sees them
+    /// pin by pin.
     #[inline(always)]
     pub(super) fn contact_forces(
         &self,
         at: &Placed<S>,
-        memory: &mut [F::Memory; SLOTS],
+        memory: &[F::Memory; SLOTS],
         way: Way<S>,
-        collection: &mut impl Collect<S>,
+        mut collect: impl FnMut(&PinForce<S, F::Memory>),
     ) -> (Vector3<S>, Vector3<S>) {
         let mut force = Vector3::zeros();
         let mut torque = Vector3::zeros();
         let pins = self.body.gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w);
-        for ((gaps, pin), memory) in pins.zip(memory.as_chunks_mut::<2>().0) {
+        for ((gaps, pin), memory) in pins.zip(memory.as_chunks::<2>().0) {
             let offset = at.to_body.change(*pin) - at.displacement_b;
             let lever = *pin + offset;
-            let mut pin = self.pin(memory, *gaps, offset, at.velocity_b + at.rotation_b.cross(&lever), way);
+            let mut pin = self.pin(memory, *gaps, (lever, offset), at.velocity_b + at.rotation_b.cross(&lever), way);
             force += pin.force;
             torque += lever.cross(&pin.force);
             // Where the slide turns, a displacement changes the velocity of its material at the pin by −ω × displacement.
             pin.stiffness += cross_rows(&at.rotation_b, &pin.impedance);
-            collection.collect(&lever, &pin);
+            collect(&pin);
         }
         (force, torque)
     }
 
-    /// The force at one pin for its `offset` (m) as seen from the slide and the velocity `u` (m/s) of the slide's material
-    /// there.
+    /// The force at one pin for its `lever` and `offset` (m) as seen from the slide and the velocity `u` (m/s) of the
+    /// slide's material there.
     #[inline(always)]
     fn pin(
         &self,
-        [across_memory, up_memory]: &mut [F::Memory; 2],
+        [across_memory, up_memory]: &[F::Memory; 2],
         [left, right, rail, wall]: [S; 4],
-        offset: Vector3<S>,
+        (lever, offset): (Vector3<S>, Vector3<S>),
         u: Vector3<S>,
         way: Way<S>,
-    ) -> PinForce<S> {
+    ) -> PinForce<S, F::Memory> {
         let across = self.slot(across_memory, [left, right], offset.x, [u.x, u.y, u.z], way);
         let up = self.slot(up_memory, [wall, rail], offset.y, [u.y, u.x, u.z], way);
         let (f, g) = (across.force, up.force);
@@ -144,11 +118,24 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
                 k_zx, k_zy, zero,
             ),
         );
-        PinForce { force: Vector3::new(f[0] + g[1], f[1] + g[0], f[2] + g[2]), impedance, stiffness }
+        PinForce {
+            lever,
+            force: Vector3::new(f[0] + g[1], f[1] + g[0], f[2] + g[2]),
+            impedance,
+            stiffness,
+            memory: [across.memory, up.memory],
+        }
     }
 
     #[inline(always)]
-    fn slot(&self, memory: &mut F::Memory, gaps: [S; 2], offset: S, [u, v, w]: [S; 3], way: Way<S>) -> SlotForce<S> {
+    fn slot(
+        &self,
+        memory: &F::Memory,
+        gaps: [S; 2],
+        offset: S,
+        [u, v, w]: [S; 3],
+        way: Way<S>,
+    ) -> SlotForce<S, F::Memory> {
         let slot = self.contact.slot(gaps[0], gaps[1], offset, u);
         let rubbing = Rubbing {
             sliding: [v, w],
@@ -156,8 +143,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
             mass_rate: way.mass_rate,
             tangent_share: way.tangent_share,
         };
-        let (traction, remembered) = self.friction.traction(memory, &rubbing);
-        *memory = remembered;
+        let (traction, memory) = self.friction.traction(memory, &rubbing);
         let [first, second] = traction.per_normal;
         let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
         SlotForce {
@@ -165,6 +151,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
             impedance: column(slot.impedances(way.a)),
             tangential: traction.impedance,
             stiffness: column(slot.stiffnesses()),
+            memory,
         }
     }
 }

@@ -91,17 +91,16 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     }
 
     #[inline(always)]
-    fn selected(
+    fn adopt(
         &self,
         condition: S,
-        (yes, yes_memory): (&Pose<S>, &[F::Memory; SLOTS]),
-        (no, no_memory): (&Pose<S>, &[F::Memory; SLOTS]),
-    ) -> (Pose<S>, [F::Memory; SLOTS]) {
-        let mut memory = *no_memory;
-        for (slot, yes) in memory.iter_mut().zip(yes_memory) {
-            *slot = F::selected(condition, yes, slot);
+        (next, next_memory): (&Pose<S>, &[F::Memory; SLOTS]),
+        (kept, memory): (&mut Pose<S>, &mut [F::Memory; SLOTS]),
+    ) {
+        *kept = next.or_old(condition, kept);
+        for (slot, next) in memory.iter_mut().zip(next_memory) {
+            *slot = F::or_old(next, condition, slot);
         }
-        (Pose::selected(condition, yes, no), memory)
     }
 
     #[inline(always)]
@@ -144,13 +143,18 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         memory: &[F::Memory; SLOTS],
         velocity: &SVector<S, 6>,
         a: S,
-    ) -> (SVector<S, 6>, [F::Memory; SLOTS]) {
+        remembered: Option<&mut [F::Memory; SLOTS]>,
+    ) -> SVector<S, 6> {
         let at = placed(pose, velocity);
-        let mut memory = *memory;
+        let mut pins = remembered.into_iter().flat_map(|slots| slots.as_chunks_mut::<2>().0);
         let way = Way { a, mass_rate: self.body.mass / a, tangent_share: S::one() };
-        let contacts = self.contact_forces(&at, &mut memory, way, &mut ());
+        let contacts = self.contact_forces(&at, memory, way, |pin| {
+            if let Some(slots) = pins.next() {
+                *slots = pin.memory;
+            }
+        });
         let push = self.pull(&at.to_body).times(self.drive.force(t, velocity.z));
-        (self.total(&at, contacts, push), memory)
+        self.total(&at, contacts, push)
     }
 
     #[inline(always)]
@@ -169,7 +173,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         let mut blocks = self.inertia(rate);
         pull.add_to(&mut blocks, self.drive.gain);
         let way = Way { a, mass_rate: self.body.mass * rate, tangent_share };
-        let contacts = self.contact_forces(&at, &mut { *memory }, way, &mut blocks);
+        let contacts = self.contact_forces(&at, memory, way, |pin| blocks.add_at(&pin.lever, &pin.impedance));
         Linearised {
             force: self.total(&at, contacts, pull.times(self.drive.force(t, velocity.z))),
             linearisation: Linearisation { factors: blocks.factorised(), to_body: at.to_body },
@@ -200,10 +204,15 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         let at = placed(pose, velocity);
         let zero = Vector3::zeros();
         let pull = self.pull(&at.to_body);
-        let mut slopes = [Blocks::diagonal(zero, zero); 2];
+        let [mut damping, mut stiffness] = [Blocks::diagonal(zero, zero); 2];
         let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
-        let contacts = self.contact_forces(&at, &mut { *memory }, way, &mut slopes);
-        let [mut damping, mut stiffness] = slopes;
+        let contacts = self.contact_forces(&at, memory, way, |pin| {
+            damping.add_at(&pin.lever, &pin.impedance);
+            stiffness.add_at(&pin.lever, &pin.stiffness);
+            // The force stays at the pin while the slide is displaced.
+            stiffness.c -= cross_matrix(&pin.force);
+            stiffness.d += cross_columns(&pin.force, &cross_matrix(&pin.lever));
+        });
         // A turn θ changes the velocity that the contacts see by −θ × v.
         stiffness.b -= cross_rows(&at.velocity_b, &damping.a);
         stiffness.d -= cross_rows(&at.velocity_b, &damping.c);

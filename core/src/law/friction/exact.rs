@@ -52,11 +52,8 @@ impl<S: Scalar> Friction<S> for Exact<S> {
     }
 
     #[inline(always)]
-    fn selected(condition: S, yes: &[S; 2], no: &[S; 2]) -> [S; 2] {
-        // Asked of each memory by itself, because one question for all becomes a branch.
-        let condition = condition + (yes[0] + yes[1]) * S::zero();
-        let pick = |i: usize| condition.select_gt(S::zero(), yes[i], no[i]);
-        [pick(0), pick(1)]
+    fn or_old(new: &[S; 2], condition: S, old: &[S; 2]) -> [S; 2] {
+        [new[0].or_old(condition, old[0]), new[1].or_old(condition, old[1])]
     }
 }
 

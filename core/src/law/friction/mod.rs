@@ -51,8 +51,8 @@ pub trait Friction<S>: Copy {
     /// `base + weight·(to − from)`.
     fn shifted(base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
 
-    /// `yes` where `condition` > 0, else `no` (also where it is NaN).
-    fn selected(condition: S, yes: &Self::Memory, no: &Self::Memory) -> Self::Memory;
+    /// `new` where it is finite and `condition` > 0, else `old`, number by number.
+    fn or_old(new: &Self::Memory, condition: S, old: &Self::Memory) -> Self::Memory;
 }
 
 /// No friction.
@@ -77,5 +77,5 @@ impl<S: Scalar> Friction<S> for Frictionless {
     fn shifted((): &(), (): &(), (): &(), _: S) {}
 
     #[inline(always)]
-    fn selected(_: S, (): &(), (): &()) {}
+    fn or_old((): &(), _: S, (): &()) {}
 }

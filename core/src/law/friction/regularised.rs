@@ -65,7 +65,7 @@ impl<S: Scalar> Friction<S> for Regularised<S> {
     fn shifted((): &(), (): &(), (): &(), _: S) {}
 
     #[inline(always)]
-    fn selected(_: S, (): &(), (): &()) {}
+    fn or_old((): &(), _: S, (): &()) {}
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ impl<S: Scalar> Friction<S> for StaticKinetic<S> {
     }
 
     #[inline(always)]
-    fn selected(condition: S, yes: &[S; 2], no: &[S; 2]) -> [S; 2] {
-        Exact::<S>::selected(condition, yes, no)
+    fn or_old(new: &[S; 2], condition: S, old: &[S; 2]) -> [S; 2] {
+        Exact::<S>::or_old(new, condition, old)
     }
 }
