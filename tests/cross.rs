@@ -76,6 +76,23 @@ pub fn image(folder: &str, name: &str) -> PathBuf {
     Path::new(folder).join("cross").join(TARGET).join("release").join(name)
 }
 
+/// The machine code of every function in `image` whose name ends in `name`, a line an instruction.
+///
+/// # Panics
+/// If there is none.
+pub fn code(image: &Path, name: &str) -> Vec<String> {
+    require_c_compiler();
+    let mut objdump = Command::new("arm-none-eabi-objdump");
+    let all = printed(objdump.args(["-d", "--no-show-raw-insn", "--demangle"]).arg(image));
+    let title = format!("::{name}>:");
+    let bodies = all.split("\n\n").filter(|body| body.lines().any(|line| line.ends_with(&title)));
+    let instructions =
+        |body: &str| body.lines().filter(|line| line.contains(":\t")).flat_map(|line| [line, "\n"]).collect();
+    let found: Vec<_> = bodies.map(instructions).collect();
+    assert!(!found.is_empty(), "no function of its own: {name}");
+    found
+}
+
 /// Asserts that nothing in `image` computes in double precision, which would be a hundred times as slow.
 ///
 /// # Panics

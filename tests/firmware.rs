@@ -73,6 +73,31 @@ fn a_lookup_of_integers_takes_the_recorded_instructions() {
     insta::assert_snapshot!("integers", counts.next().expect("the image counts"));
 }
 
+/// From its first instruction to its return, whatever the way: nothing is called, and no branch leads back.
+#[test]
+fn a_lookup_has_at_most_120_instructions() {
+    assert!(!ON_TARGET.is_empty(), "it has been built");
+    let lookups = cross::code(&cross::image(FOLDER, "slipfit-firmware"), "program::lookup");
+    assert_eq!(lookups.len(), 2, "in f32 and in i16");
+    for code in lookups {
+        // Between functions the linker fills up.
+        let (code, _) = code.rsplit_once("\tpop\t").expect("a return");
+        let instructions = code.lines().count();
+        assert!(instructions <= 120, "{instructions}\n{code}");
+        let address = |word: &str| u32::from_str_radix(word, 16).expect("an address");
+        for line in code.lines() {
+            let mut columns = line.split('\t');
+            let at = columns.next().map_or(0, |at| address(at.trim().trim_end_matches(':')));
+            let operation = columns.next().unwrap_or_default();
+            assert!(!operation.starts_with("bl"), "{line}");
+            if operation.starts_with('b') && !operation.starts_with("bi") {
+                let to = columns.next().and_then(|to| to.split(' ').next()).map_or(0, address);
+                assert!(to > at, "{line}");
+            }
+        }
+    }
+}
+
 #[test]
 fn the_image_has_no_double_precision() {
     assert!(!ON_TARGET.is_empty(), "it has been built");

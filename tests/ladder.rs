@@ -35,17 +35,8 @@ fn ladder() -> Command {
 static CODE: LazyLock<BTreeMap<&str, String>> = LazyLock::new(|| {
     // It has been built.
     assert!(!ON_TARGET.is_empty());
-    cross::require_c_compiler();
     let image = cross::image(FOLDER, "slipfit-ladder");
-    let all =
-        printed(Command::new("arm-none-eabi-objdump").args(["-d", "--no-show-raw-insn", "--demangle"]).arg(image));
-    let code = |rung| {
-        let mut bodies =
-            all.split("\n\n").filter(|body| body.lines().any(|line| line.ends_with(&format!("::{rung}>:"))));
-        let body = bodies.next().unwrap_or_else(|| panic!("no function of its own: {rung}"));
-        (rung, body.lines().filter(|line| line.contains(":\t")).flat_map(|line| [line, "\n"]).collect())
-    };
-    RUNGS.map(code).into()
+    RUNGS.map(|rung| (rung, cross::code(&image, rung).remove(0))).into()
 });
 
 /// A rung's costs.
