@@ -1,7 +1,13 @@
 //! The drive at work on the emulated Cortex-M4F: what it says is what it says on the desk, and what it said before.
 
-use std::{fs, path::Path, process::Command};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+    sync::LazyLock,
+};
 
+use defmt_decoder::{DecodeError, Table};
 use slipfit::{
     force_table::{self, Demand},
     scene::{CD_ROM_SLIDE, Override, Scene},
@@ -11,26 +17,32 @@ use slipfit_tests::cross::{self, TARGET, cargo, printed};
 
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 
-fn drive(table: &Path, options: &[&str]) -> String {
-    let mut cargo: Command = cargo(FOLDER);
-    printed(cargo.args(["run", "-p", "slipfit-firmware", "--bin", "slipfit-drive"]).args(options).arg("--").arg(table))
-}
-
-#[test]
-fn says_what_it_said_and_what_the_desk_says() {
+/// The file of the table that the drive works with.
+static TABLE: LazyLock<PathBuf> = LazyLock::new(|| {
     let mut set = ["friction.law=exact", "run.duration=1500"].map(Override::set).to_vec();
     set.push(Override::option("", "sweep.n", "1:3:0.1"));
     let scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &set).expect("the shipped scene");
     let (table, _) = force_table::make(&scene, ScalarKind::F64, Demand::Full, || ()).expect("its table");
     let file = Path::new(FOLDER).join("drive.bin");
     fs::write(&file, table.bytes).expect("the test's folder takes files");
+    file
+});
 
+/// The drive with its table, its target folder in `folder`.
+fn drive(folder: &str, options: &[&str]) -> Command {
+    let mut cargo = cargo(folder);
+    cargo.args(["run", "-p", "slipfit-firmware", "--bin", "slipfit-drive"]).args(options).arg("--").arg(&*TABLE);
+    cargo
+}
+
+#[test]
+fn says_what_it_said_and_what_the_desk_says() {
     cross::require_target();
     cross::require_emulator();
-    let on_target = drive(&file, &["--release", "--target", TARGET]);
+    let on_target = printed(&mut drive(FOLDER, &["--release", "--target", TARGET]));
     let counted = |line: &&str| line.starts_with("instructions ") || line.starts_with("stack ");
     let same: Vec<_> = on_target.lines().filter(|line| !counted(line)).collect();
-    assert_eq!(same, drive(&file, &[]).lines().collect::<Vec<_>>());
+    assert_eq!(same, printed(&mut drive(FOLDER, &[])).lines().collect::<Vec<_>>());
     insta::assert_snapshot!("log", on_target);
 
     // Free where the unit is what it is taken for, tight with more friction, a jam where it jams.
@@ -40,4 +52,28 @@ fn says_what_it_said_and_what_the_desk_says() {
     assert!(ends[2].contains("first jam at Some("), "{}", ends[2]);
     cross::assert_single_precision(&cross::image(FOLDER, "slipfit-drive"));
     assert_eq!(on_target.matches("table damaged in 0 rounds").count(), 3);
+}
+
+/// The same log as frames, which only the image's own file can decode.
+#[test]
+fn says_the_same_in_frames() {
+    cross::require_target();
+    cross::require_emulator();
+    let folder = format!("{FOLDER}/defmt");
+    let output = cross::finished(&mut drive(&folder, &["--release", "--target", TARGET, "--features", "defmt"]));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+
+    let image = fs::read(cross::image(&folder, "slipfit-drive")).expect("it has been built");
+    let table = Table::parse(&image).expect("a file with defmt's symbols").expect("defmt's symbols");
+    let mut decoder = table.new_stream_decoder();
+    decoder.received(&output.stdout);
+    let mut lines = Vec::new();
+    loop {
+        match decoder.decode() {
+            Ok(frame) => lines.push(frame.display_message().to_string()),
+            Err(DecodeError::UnexpectedEof) => break,
+            Err(DecodeError::Malformed) => panic!("a frame that is none after\n{}", lines.join("\n")),
+        }
+    }
+    insta::assert_snapshot!("frames", format!("{} bytes\n{}\n", output.stdout.len(), lines.join("\n")));
 }

@@ -14,4 +14,7 @@ fn main() {
     println!("cargo::rerun-if-changed={}", root.join("memory.x").display());
     println!("cargo::rustc-link-search={}", root.display());
     println!("cargo::rustc-link-arg-bins=-Tlink.x");
+    if env::var_os("CARGO_FEATURE_DEFMT").is_some() {
+        println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
+    }
 }

@@ -1,11 +1,9 @@
 //! A Cortex-M4F under a debugger as a program's machine. The one file of the images with unsafe code.
 #![allow(unsafe_code, reason = "linker symbols, the painted stack and the fault handler")]
 
-use core::{
-    fmt::{Display, Write as _},
-    panic::PanicInfo,
-    slice,
-};
+#[cfg(not(feature = "defmt"))]
+use core::fmt::{Display, Write as _};
+use core::{panic::PanicInfo, slice};
 
 use cortex_m::{
     Peripherals,
@@ -13,6 +11,7 @@ use cortex_m::{
     register::{fpscr, msp},
 };
 use cortex_m_rt::{ExceptionFrame, exception};
+#[cfg(not(feature = "defmt"))]
 use heapless::String;
 use semihosting::{
     io::{self, Stdout, Write as _},
@@ -155,6 +154,7 @@ pub fn boot(program: impl FnOnce(&mut Board, &'static [u8])) -> ! {
 }
 
 /// Prints why, and ends the emulation as failed: it must never hang.
+#[cfg(not(feature = "defmt"))]
 fn fail(why: impl Display) -> ! {
     let mut line = String::<512>::new();
     // A text that is too long loses its end.
@@ -165,12 +165,31 @@ fn fail(why: impl Display) -> ! {
     process::exit(1)
 }
 
+#[cfg(not(feature = "defmt"))]
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
     fail(info)
 }
 
+#[cfg(not(feature = "defmt"))]
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     fail(format_args!("hard fault at {:#010x}", frame.pc()))
+}
+
+/// Says where and not why, so that no code that formats text is left.
+#[cfg(feature = "defmt")]
+#[panic_handler]
+fn panic(info: &PanicInfo<'_>) -> ! {
+    if let Some(at) = info.location() {
+        defmt::error!("panicked at {=str}:{=u32}", at.file(), at.line());
+    }
+    process::exit(1)
+}
+
+#[cfg(feature = "defmt")]
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    defmt::error!("hard fault at {=u32:#010x}", frame.pc());
+    process::exit(1)
 }

@@ -28,6 +28,7 @@ const PLANT_STEPS: u32 = 4;
 
 /// A unit on its rig.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Rig {
     /// Its tolerance level.
     pub level: f32,
@@ -43,6 +44,7 @@ pub struct Rig {
 
 /// What there is to say of a period.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Record {
     /// Periods since the motion's start.
     pub periods: u32,

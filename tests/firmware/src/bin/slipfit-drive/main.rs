@@ -1,6 +1,7 @@
 //! A drive at work on a Cortex-M4F: a 1 kHz interrupt predicts and watches a simulated unit, the main loop prints.
 //!
-//! `cargo qemu-drive TABLE` runs the image with a table of the scene in `tests/reference/scene.rs`.
+//! `cargo qemu-drive TABLE` runs the image with a table of the scene in `tests/reference/scene.rs`. With the feature `defmt`
+//! the image's log is not text but frames, which `defmt-print` decodes on the desk.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod control;
@@ -12,6 +13,13 @@ mod scene;
 
 #[cfg(target_os = "none")]
 mod interrupt;
+
+#[cfg(not(all(feature = "defmt", target_os = "none")))]
+#[path = "text.rs"]
+mod say;
+#[cfg(all(feature = "defmt", target_os = "none"))]
+#[path = "frames.rs"]
+mod say;
 
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]

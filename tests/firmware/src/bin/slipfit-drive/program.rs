@@ -1,15 +1,18 @@
 //! Strokes of units on their rig: one that is what it is taken for, one with more friction, one that jams.
 
 use slipfit_core::{
-    monitor::Verdict,
+    monitor::{Estimate, Verdict},
     table::{AxisKind, Table},
 };
 use slipfit_firmware::{
-    count::Count,
-    machine::{Machine, print},
+    count::{Count, Range},
+    machine::Machine,
 };
 
-use crate::control::{Control, Record, Rig};
+use crate::{
+    control::{Control, Record, Rig},
+    say,
+};
 
 /// What the table must be stamped with: the scene of the kernel, but simulated in steps of 50 µs by the scheme of the
 /// desk.
@@ -23,7 +26,7 @@ const PERIODS_A_LINE: u32 = 100;
 
 /// Clock and cycles of the drive that the load is given for (Hz): instructions take 1.48 cycles at zero wait states.
 const CLOCK: f32 = 168e6;
-const CYCLES: f32 = 1.48;
+pub const CYCLES: f32 = 1.48;
 
 /// 2 % of the peak force (N).
 const NOISE: f32 = 0.02;
@@ -53,50 +56,65 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) {
     let opened = Table::open(flash).and_then(|table| table.expect_axes(axes)?.expect_scene(TABLE_HASH));
     let table = match opened {
         Ok(table) => table,
-        Err(error) => return print(machine, format_args!("no table: {error}")),
+        Err(error) => return say::refused(machine, error),
     };
     let mut costs = Count::default();
     for (name, rig) in RIGS {
-        let Rig { level, friction, taken_for, .. } = rig;
-        print(machine, format_args!("\n== {name}: n = {level}, friction {friction}, taken for n = {taken_for}"));
-        print(machine, format_args!(" t (ms)  measured (N)  kernel (N)   table (N)  verdict"));
+        say::rig(machine, name, &rig);
         let mut firsts = Firsts::default();
         let mut control = machine.ticks(Control::new(&rig, (table, flash)), |machine, record| {
             costs.add(machine.cost(record));
             firsts.see(record);
-            let Record { periods, measured, predicted, expected, verdict, .. } = record;
-            if periods.is_multiple_of(PERIODS_A_LINE) {
-                let line = format_args!("{periods:7}{measured:14.4}{predicted:12.4}{expected:12.4}  {verdict:?}");
-                print(machine, line);
+            if record.periods.is_multiple_of(PERIODS_A_LINE) {
+                say::record(machine, record);
             }
         });
-        print(machine, format_args!("first tight at {:?} ms, first jam at {:?} ms", firsts.tight, firsts.jam));
-        if let Some(estimate) = control.bank.estimate(&table) {
-            let [low, high] = estimate.interval;
-            print(machine, format_args!("n = {:.3}, with 95 % between {low:.3} and {high:.3}", estimate.level));
-        }
-        print(machine, format_args!("table damaged in {} rounds", control.damaged));
-        if let Some(bytes) = machine.stack(|| _ = control.tick(|| 0)) {
-            print(machine, format_args!("stack of a period: {bytes} bytes"));
-        }
+        let (estimate, damaged) = (control.bank.estimate(&table), control.damaged);
+        let stack = machine.stack(|| _ = control.tick(|| 0));
+        say::stroke(machine, &Stroke { firsts, estimate, damaged, stack });
     }
-    print(machine, format_args!(""));
-    if let Some((least, greatest)) = costs.range().map(|range| range.ends()) {
-        print(machine, format_args!("instructions of a period: {least} to {greatest}"));
-        let load = greatest as f32 * CYCLES * 1e3 / CLOCK * 100.0;
-        print(machine, format_args!("instructions at 1 kHz, {CYCLES} cycles each: {load:.1} % of 168 MHz"));
-    }
-    if let Some(bytes) = machine.deepest_stack() {
-        print(machine, format_args!("stack of everything: {bytes} bytes, control of {}", size_of::<Control>()));
-    }
-    print(machine, format_args!("done"));
+    let instructions = costs.range().map(Range::ends);
+    let load = instructions.map(|(_, greatest)| greatest as f32 * CYCLES * 1e3 / CLOCK * 100.0);
+    let (stack, control) = (machine.deepest_stack(), size_of::<Control>());
+    say::everything(machine, &Everything { instructions, load, stack, control });
+}
+
+/// What there is to say of a stroke.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Stroke {
+    /// When verdicts were first given.
+    pub firsts: Firsts,
+    /// The unit's tolerance level, from all of the stroke.
+    pub estimate: Option<Estimate>,
+    /// Rounds in which the table had changed.
+    pub damaged: u32,
+    /// Stack of a period (bytes).
+    pub stack: Option<u32>,
+}
+
+/// What there is to say in the end.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Everything {
+    /// The least and the greatest number of instructions of a period.
+    pub instructions: Option<(u32, u32)>,
+    /// What that is of the drive's clock (%), at most.
+    pub load: Option<f32>,
+    /// The deepest stack since the start (bytes).
+    pub stack: Option<u32>,
+    /// What of it the control takes (bytes).
+    pub control: usize,
 }
 
 /// When a verdict was first given (ms).
-#[derive(Default)]
-struct Firsts {
-    tight: Option<u32>,
-    jam: Option<u32>,
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Firsts {
+    /// Tight.
+    pub tight: Option<u32>,
+    /// Jammed.
+    pub jam: Option<u32>,
 }
 
 impl Firsts {
