@@ -8,12 +8,13 @@ use slipfit_tests::cross::{self, TARGET, cargo, printed};
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 
 /// Scene types, from the dearest to the cheapest.
-const RUNGS: [&str; 7] = [
+const RUNGS: [&str; 8] = [
     "slide_general_exponent",
     "slide_exact",
     "slide_smoothed",
     "slide_frictionless",
-    "planar_frictionless",
+    "planar_smoothed",
+    "planar_journal",
     "axis_slot_driven",
     "axis_pad_linear",
 ];

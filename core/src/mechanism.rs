@@ -1,6 +1,25 @@
 //! What an integrator sees of a scene: generalised velocities, momenta, forces and their linearisation.
 
-use crate::{SVector, Scalar};
+use crate::{SVector, Scalar, law::friction::Rubbing};
+
+/// How forces are to be linearised.
+#[derive(Clone, Copy, Debug)]
+pub struct Way<S> {
+    /// Implicit part of the step (s): over it a velocity moves the body.
+    pub a: S,
+    /// Mass over the implicit part that friction's memory yields over (kg/s).
+    pub mass_rate: S,
+    /// See [`Rubbing`].
+    pub tangent_share: S,
+}
+
+impl<S: Scalar> Way<S> {
+    /// What friction acts upon at a contact with the velocity `sliding` (m/s) of the body and the force `normal` (N).
+    #[inline(always)]
+    pub fn rubbing(&self, sliding: [S; 2], normal: S) -> Rubbing<S> {
+        Rubbing { sliding, normal, mass_rate: self.mass_rate, tangent_share: self.tangent_share }
+    }
+}
 
 /// Forces at one motion and their linearisation.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,12 @@
-//! A body in a plane on stops across its way: what is left of the slide where it neither lifts, pitches nor rolls.
+//! A body in a plane on pins: what is left of the slide where it neither lifts, pitches nor rolls, or what swings on
+//! journals.
 //!
 //! x is across, z the opening direction, the angle turns about y = z × x. The frame carries the pins, each meets a
-//! [`Stop`] of the body whose axis is the body's x; see [`slide`](crate::slide) for gaps and offsets.
+//! [`Joint`] of the body: a stop [`Across`], or a [`Journal`]; see [`slide`](crate::slide) for gaps and offsets.
 
 mod contacts;
+mod joint;
+mod journal;
 mod mechanics;
 mod turn;
 
@@ -13,8 +16,11 @@ use crate::{
     ParameterError, Scalar,
     drive::Drive,
     error::bounded,
-    law::{Elastic, Friction, Impact, Stop},
+    law::{Elastic, Friction, Impact},
 };
+
+pub use joint::{Across, Joint, JointForce};
+pub use journal::Journal;
 
 /// Everything about a planar body but its laws, SI units. Vectors are (x, z).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +34,7 @@ pub struct PlanarBody<S, C, const PINS: usize> {
     /// Pins, from the centre of mass at the nominal pose (m).
     pub pins_w: [Vector2<S>; PINS],
     /// What each pin meets.
-    pub stops: [C; PINS],
+    pub joints: [C; PINS],
 }
 
 /// A planar body with its normal law, friction law and drive.
@@ -60,12 +66,12 @@ impl<S: Scalar> PlanarPose<S> {
     }
 }
 
-impl<S: Scalar + PartialOrd, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Planar<S, C, E, F, PINS> {
+impl<S: Scalar + PartialOrd, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Planar<S, C, E, F, PINS> {
     /// A planar body of parameters that can be stepped without failing.
     ///
     /// # Errors
-    /// [`ParameterError`] names the first parameter of `body` or `drive` that is not finite or out of bounds. Stops and
-    /// laws are validated where they are made.
+    /// [`ParameterError`] names the first parameter of `body` or `drive` that is not finite or out of bounds. Joints
+    /// and laws are validated where they are made.
     pub fn new(
         body: PlanarBody<S, C, PINS>,
         contact: Impact<S, E>,
@@ -89,7 +95,7 @@ impl<S: Scalar + PartialOrd, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PI
     }
 }
 
-impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Planar<S, C, E, F, PINS> {
+impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Planar<S, C, E, F, PINS> {
     /// The drive.
     pub fn drive(&self) -> &Drive<S> {
         &self.drive

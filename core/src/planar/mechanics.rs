@@ -3,15 +3,15 @@
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use super::{
-    Planar, PlanarPose,
-    contacts::{PinForce, Placed, Way},
+    Joint, JointForce, Planar, PlanarPose,
+    contacts::Placed,
     turn::{Turn, at, spread, turned},
 };
 use crate::{
     SVector, Scalar,
-    law::{Elastic, Friction, Stop},
+    law::{Elastic, Friction},
     linear::inverse,
-    mechanism::{Differentiated, Linearised, Mechanism},
+    mechanism::{Differentiated, Linearised, Mechanism, Way},
 };
 
 #[inline(always)]
@@ -46,7 +46,7 @@ pub struct Slopes<S> {
     turn: Turn<S>,
 }
 
-impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Planar<S, C, E, F, PINS> {
+impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Planar<S, C, E, F, PINS> {
     #[inline(always)]
     fn placed(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>) -> Placed<S> {
         let (v_w, rotation) = split(velocity);
@@ -88,7 +88,7 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Pl
     }
 }
 
-impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Mechanism<S, 3>
+impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Mechanism<S, 3>
     for Planar<S, C, E, F, PINS>
 {
     type Pose = PlanarPose<S>;
@@ -206,9 +206,9 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Me
         let placed = self.placed(pose, velocity);
         let mut pins = remembered.into_iter().flatten();
         let way = Way { a, mass_rate: self.body.mass / a, tangent_share: S::one() };
-        let contacts = self.contact_forces(&placed, memory, way, |pin| {
+        let contacts = self.contact_forces(&placed, memory, way, |_, joint| {
             if let Some(slot) = pins.next() {
-                *slot = pin.memory;
+                *slot = joint.memory;
             }
         });
         let push = self.pull(placed.turn) * self.drive.force(t, velocity.y);
@@ -230,7 +230,8 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Me
         let pull = self.pull(placed.turn);
         let mut balance = self.inertia(rate) + self.give(&pull);
         let way = Way { a, mass_rate: self.body.mass * rate, tangent_share };
-        let contacts = self.contact_forces(&placed, memory, way, |pin| balance += spread(pin.lever, &pin.impedance));
+        let contacts =
+            self.contact_forces(&placed, memory, way, |lever, joint| balance += spread(lever, &joint.impedance));
         Linearised {
             force: self.total(placed.turn, contacts + pull * self.drive.force(t, velocity.y)),
             linearisation: Linearisation { inverse: inverse(&balance), turn: placed.turn },
@@ -264,18 +265,18 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> Me
         let (mut damping, mut stiffness) = (Matrix3::zeros(), Matrix3::zeros());
         let swirl = turned(placed.velocity_b);
         let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
-        let contacts = self.contact_forces(&placed, memory, way, |pin| {
-            let PinForce { lever, force, impedance, .. } = pin;
-            damping += spread(*lever, impedance);
+        let contacts = self.contact_forces(&placed, memory, way, |lever, joint| {
+            let JointForce { force, impedance, .. } = joint;
+            damping += spread(lever, impedance);
             // Where the body turns, a displacement changes the velocity of its material at the pin.
             let [x, z]: [[S; 2]; 2] = impedance.data.0;
             let (x, z) = (Vector2::from(x), Vector2::from(z));
             let carried = Matrix2::from_columns(&[z * placed.rotation, -x * placed.rotation]);
-            stiffness += spread(*lever, &(pin.stiffness + carried));
+            stiffness += spread(lever, &(joint.stiffness + carried));
             // A turn changes the velocity that the contact sees and takes the force along, which stays at the pin.
-            let turn = at(*lever, impedance * swirl) + at(Vector2::zeros(), turned(*force));
+            let turn = at(lever, impedance * swirl) + at(Vector2::zeros(), turned(*force));
             let stays = turned(*force);
-            let (left, right) = (Vector3::zeros(), Vector3::new(-stays.x, -stays.y, -stays.dot(&turned(*lever))));
+            let (left, right) = (Vector3::zeros(), Vector3::new(-stays.x, -stays.y, -stays.dot(&turned(lever))));
             stiffness -= Matrix3::from_columns(&[left, left, turn]);
             stiffness += Matrix3::from_columns(&[left, left, right]).transpose();
         });

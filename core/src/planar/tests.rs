@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Planar, PlanarBody, PlanarPose};
+use super::{Across, Planar, PlanarBody, PlanarPose};
 use crate::{
     SVector, Vector3,
     drive::Drive,
@@ -15,7 +15,7 @@ use crate::{
 };
 
 type Contact = Impact<f64, ThreeHalves<f64>>;
-type Flat<F> = Planar<f64, Slot<f64>, ThreeHalves<f64>, F, 4>;
+type Flat<F> = Planar<f64, Across<Slot<f64>>, ThreeHalves<f64>, F, 4>;
 
 const GAPS: [[f64; 2]; 4] = [[1e-5, -2e-5], [2e-4, 1e-4], [-1e-5, 1e-5], [3e-5, 2e-4]];
 const PINS: [[f64; 2]; 4] = [[-0.062, -0.018], [0.062, -0.018], [-0.062, 0.018], [0.062, 0.018]];
@@ -40,7 +40,7 @@ fn both<F: Friction<f64>>(friction: F) -> (Slide<f64, ThreeHalves<f64>, F>, Flat
         inertia: 3e-4,
         gravity_w: Vector2::new(2.0, 0.5),
         pins_w: PINS.map(Vector2::from),
-        stops: GAPS.map(|[lower, upper]| Slot::new(lower, upper).unwrap()),
+        joints: GAPS.map(|[lower, upper]| Across(Slot::new(lower, upper).unwrap())),
     };
     (Slide::new(body, contact, friction, drive).unwrap(), Planar::new(flat, contact, friction, drive).unwrap())
 }

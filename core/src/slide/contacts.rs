@@ -5,21 +5,11 @@ use nalgebra::Matrix3;
 use super::{SLOTS, Slide};
 use crate::{
     Scalar, Vector3,
-    law::{Elastic, Friction, friction::Rubbing},
+    law::{Elastic, Friction},
     linear::cross_rows,
+    mechanism::Way,
     pose::ToBody,
 };
-
-/// How forces are to be linearised.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Way<S> {
-    /// Implicit part of the step (s): over it a velocity moves the slide.
-    pub a: S,
-    /// Mass over the implicit part that friction's memory yields over (kg/s).
-    pub mass_rate: S,
-    /// See [`Rubbing`].
-    pub tangent_share: S,
-}
 
 /// Where the slide is and how it moves, in body axes.
 #[derive(Clone, Copy, Debug)]
@@ -137,13 +127,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         way: Way<S>,
     ) -> SlotForce<S, F::Memory> {
         let slot = self.contact.slot(gaps[0], gaps[1], offset, u);
-        let rubbing = Rubbing {
-            sliding: [v, w],
-            normal: slot.normal(),
-            mass_rate: way.mass_rate,
-            tangent_share: way.tangent_share,
-        };
-        let (traction, memory) = self.friction.traction(memory, &rubbing);
+        let (traction, memory) = self.friction.traction(memory, &way.rubbing([v, w], slot.normal()));
         let [first, second] = traction.per_normal;
         let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
         SlotForce {

@@ -2,16 +2,12 @@
 
 use nalgebra::Matrix3;
 
-use super::{
-    SLOTS, Slide,
-    contacts::{Placed, Way},
-    join, split,
-};
+use super::{SLOTS, Slide, contacts::Placed, join, split};
 use crate::{
     SVector, Scalar, Vector3,
     law::{Elastic, Friction},
     linear::{Blocks, Factors, cross_columns, cross_matrix, cross_rows},
-    mechanism::{Differentiated, Linearised, Mechanism},
+    mechanism::{Differentiated, Linearised, Mechanism, Way},
     pose::{Pose, ToBody},
 };
 

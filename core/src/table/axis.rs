@@ -164,12 +164,13 @@ mod tests {
             (inf, 2, 1.0, true),
             (-inf, 0, 0.0, true),
             (-0.0, 2, 0.0, false),
-            (f32::NAN, 0, 1.0, true),
-            (-f32::NAN, 0, 0.0, true),
         ] {
             let place = axis.locate(x);
             assert_eq!((place.cell, place.fraction, place.outside != 0), (cell, fraction, clamped), "{x}");
         }
+        // Which end of the cell follows from NaN's sign, which arithmetic may change.
+        let place = axis.locate(f32::NAN);
+        assert!(place.cell == 0 && [0.0, 1.0].contains(&place.fraction) && place.outside != 0);
     }
 
     #[test]

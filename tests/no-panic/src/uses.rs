@@ -10,7 +10,7 @@ use slipfit_core::{
     law::{Elastic, Exact, Friction, Impact, Slot, ThreeHalves},
     menu::SlideVisitor,
     monitor::{LevelBank, Limits, Monitor, Sample, Watch},
-    planar::{Planar, PlanarBody, PlanarPose},
+    planar::{Across, Journal, Planar, PlanarBody, PlanarPose},
     pose::Pose,
     slide::Slide,
     table::{AxisKind, Patrol, Slots, Table, TableError},
@@ -63,10 +63,16 @@ fn smaller_scenes() -> Result<(), ParameterError<f32>> {
         inertia: data.body.inertia_b.y,
         gravity_w: Vector2::zeros(),
         pins_w: [Vector2::zeros(); 4],
-        stops: [slot; 4],
+        joints: [Across(slot); 4],
     });
     let flat = Planar::new(body, contact, Exact::new(black_box(0.3))?, data.drive)?;
     let kernel = Kernel::<f32, _, Extrapolated<2, 4>>::new(flat, black_box(1e-3))?;
+    black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
+    let joints = [Journal::new(black_box(1e-5))?; 4];
+    let PlanarBody { mass, inertia, gravity_w, pins_w, .. } = body;
+    let swing = PlanarBody { mass, inertia, gravity_w, pins_w, joints };
+    let swing = Planar::new(swing, contact, Exact::new(black_box(0.3))?, data.drive)?;
+    let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(swing, black_box(1e-3))?;
     black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
     let driven = AxisBody::driven(black_box(1.0), black_box(0.0), slot, contact, data.drive)?;
     let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(driven, black_box(1e-3))?;

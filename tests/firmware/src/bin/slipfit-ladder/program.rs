@@ -11,7 +11,7 @@ use slipfit_core::{
     law::{Elastic, Exact, Friction, Frictionless, Impact, Linear, Pad, Power, Regularised, Slot, ThreeHalves},
     mechanism::Mechanism,
     menu::SlideData,
-    planar::{Planar, PlanarBody, PlanarPose},
+    planar::{Across, Journal, Planar, PlanarBody, PlanarPose},
     pose::Pose,
     slide::{PINS, Slide},
 };
@@ -38,7 +38,8 @@ const LEVEL: f32 = 2.5;
 
 type Unit<E, F> = Slide<f32, E, F>;
 type FullSlide = Unit<ThreeHalves<f32>, Exact<f32>>;
-type Flat = Planar<f32, Slot<f32>, ThreeHalves<f32>, Frictionless, PINS>;
+type Flat = Planar<f32, Across<Slot<f32>>, ThreeHalves<f32>, Regularised<f32>, PINS>;
+type Lever = Planar<f32, Journal<f32>, ThreeHalves<f32>, Frictionless, 1>;
 type Driven = AxisBody<f32, ThreeHalves<f32>, Slot<f32>, Drive<f32>>;
 type Ball = AxisBody<f32, Linear<f32>, Pad<f32>>;
 
@@ -60,7 +61,8 @@ rungs! {
     slide_exact: Unit<ThreeHalves<f32>, Exact<f32>>, 6;
     slide_smoothed: Unit<ThreeHalves<f32>, Regularised<f32>>, 6;
     slide_frictionless: Unit<ThreeHalves<f32>, Frictionless>, 6;
-    planar_frictionless: Flat, 3;
+    planar_smoothed: Flat, 3;
+    planar_journal: Lever, 3;
     axis_slot_driven: Driven, 1;
     axis_pad_linear: Ball, 1;
 }
@@ -86,13 +88,22 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) {
         inertia: data.body.inertia_b.y,
         gravity_w: Vector2::zeros(),
         pins_w: data.body.pins_w.map(|pin| Vector2::new(pin.x, pin.z)),
-        stops: [0, 1, 2, 3].map(|pin| {
+        joints: [0, 1, 2, 3].map(|pin| {
             let [left, right] = [data.body.gaps[4 * pin], data.body.gaps[4 * pin + 1]];
-            Slot::new(left, right).expect("the gaps are in bounds")
+            Across(Slot::new(left, right).expect("the gaps are in bounds"))
         }),
     };
-    let flat = Planar::new(body, contact, Frictionless, drive).expect("the body is in bounds");
-    rung(machine, "planar_frictionless", flat, PlanarPose::nominal(), planar_frictionless);
+    let flat = Planar::new(body, contact, smoothed, drive).expect("the body is in bounds");
+    rung(machine, "planar_smoothed", flat, PlanarPose::nominal(), planar_smoothed);
+    let lever = PlanarBody {
+        mass: body.mass,
+        inertia: body.inertia,
+        gravity_w: Vector2::new(0.0, -9.81),
+        pins_w: [body.pins_w[0]],
+        joints: [Journal::new(1e-5).expect("the clearance is in bounds")],
+    };
+    let lever = Planar::new(lever, contact, Frictionless, drive).expect("the body is in bounds");
+    rung(machine, "planar_journal", lever, PlanarPose::nominal(), planar_journal);
 
     // Off its slot's middle, and pushed against the end.
     let slot = Slot::new(1e-5, 1e-4).expect("the gaps are in bounds");
