@@ -293,7 +293,8 @@ slipfit_status slipfit_table3_open(struct slipfit_table3 *storage,
                                    uint32_t length,
                                    uint64_t scene_hash);
 
-// Opens the newer valid table, as slipfit_table_open has it, of two slots of `length` bytes each, and says where the next update goes.
+// Opens the newer valid table, as slipfit_table_open has it, of two slots of `length` bytes each, and says where the next
+// update goes.
 //
 // # Safety
 // As for slipfit_table_open; nobody else uses `*spare` meanwhile.

@@ -136,7 +136,8 @@ pub unsafe extern "C" fn slipfit_table3_open(
     })
 }
 
-/// Opens the newer valid table, as slipfit_table_open has it, of two slots of `length` bytes each, and says where the next update goes.
+/// Opens the newer valid table, as slipfit_table_open has it, of two slots of `length` bytes each, and says where the next
+/// update goes.
 ///
 /// # Safety
 /// As for slipfit_table_open; nobody else uses `*spare` meanwhile.
