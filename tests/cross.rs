@@ -20,6 +20,7 @@ pub fn cargo(folder: &str) -> Command {
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env_remove("CARGO_BUILD_TARGET")
+        .env_remove("DEFMT_LOG")
         .stdin(Stdio::null());
     cargo
 }

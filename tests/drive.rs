@@ -54,11 +54,12 @@ fn says_what_it_said_and_what_the_desk_says() {
     assert_eq!(on_target.matches("table damaged in 0 rounds").count(), 3);
 }
 
-/// The same log as frames, which only the image's own file can decode.
+/// The log as frames, which only the image's own file can decode: of every period that the text shows the same numbers.
 #[test]
 fn says_the_same_in_frames() {
     cross::require_target();
     cross::require_emulator();
+    let text = printed(&mut drive(FOLDER, &[]));
     let folder = format!("{FOLDER}/defmt");
     let output = cross::finished(&mut drive(&folder, &["--release", "--target", TARGET, "--features", "defmt"]));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -75,5 +76,19 @@ fn says_the_same_in_frames() {
             Err(DecodeError::Malformed) => panic!("a frame that is none after\n{}", lines.join("\n")),
         }
     }
+    let shown = |line: &&str| line.starts_with("   ");
+    let mut periods = text.lines().filter(shown);
+    for record in lines.iter().filter(|line| line.starts_with("Record ")) {
+        let value = |name: &str| {
+            let (_, value) = record.split_once(&format!("{name}: ")).expect("its name");
+            value.split([',', ' ']).next().expect("its value")
+        };
+        let number = |name: &str| value(name).parse::<f32>().expect("a number");
+        let [measured, predicted, expected] = ["measured", "predicted", "expected"].map(number);
+        let (periods_so_far, verdict) = (value("periods"), value("verdict"));
+        let line = format!("{periods_so_far:>7}{measured:14.4}{predicted:12.4}{expected:12.4}  {verdict}");
+        assert_eq!(periods.next(), Some(line.as_str()));
+    }
+    assert_eq!(periods.next(), None);
     insta::assert_snapshot!("frames", format!("{} bytes\n{}\n", output.stdout.len(), lines.join("\n")));
 }

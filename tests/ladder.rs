@@ -88,7 +88,7 @@ fn each_rung_is_cheaper_than_the_one_above() {
 }
 
 /// What a drive controller can spare at 1 kHz: about 14 % of 168 MHz at 1.48 cycles an instruction, and a stack of 512 bytes,
-/// beyond which exact friction goes by its memory of 64.
+/// or 640 with exact friction, which remembers.
 #[test]
 fn the_full_slide_keeps_its_budget() {
     assert!(costs("slide_smoothed").stack <= 512 && costs("slide_exact").stack <= 640);

@@ -1,7 +1,7 @@
 //! Stick-slip on a belt: a body on a spring that a belt drags along until it lets go.
 
 use slipfit_core::{
-    SVector,
+    SVector, Scalar,
     integrator::{Extrapolated, Integrator, Sdirk2},
     kernel::Kernel,
     law::{Friction, StaticKinetic, friction::Rubbing},
@@ -53,9 +53,8 @@ impl Mechanism<f64, 1> for OnBelt {
     }
 
     fn adopt(&self, condition: f64, next: (&f64, &[f64; 2]), kept: (&mut f64, &mut [f64; 2])) {
-        if condition > 0.0 {
-            (*kept.0, *kept.1) = (*next.0, *next.1);
-        }
+        *kept.0 = next.0.or_old(condition, *kept.0);
+        *kept.1 = StaticKinetic::or_old(next.1, condition, kept.1);
     }
 
     fn nought(&self, pose: &f64) -> f64 {

@@ -94,8 +94,8 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// M⁻¹·`momentum`: generalised velocities (m/s, rad/s).
     fn velocity(&self, momentum: &SVector<S, D>) -> SVector<S, D>;
 
-    /// Forces (N, N·m) at time `t` (s); `a` (s) is the implicit part of the step. `remembered` becomes the memory if the
-    /// motion is accepted.
+    /// Forces (N, N·m) at time `t` (s); `a` (s) is the implicit part of the step. Writes to `remembered` what the laws
+    /// remember if the motion is accepted.
     fn forces(
         &self,
         t: S,

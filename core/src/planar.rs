@@ -19,7 +19,7 @@ use crate::{
     law::{Elastic, Friction, Impact},
 };
 
-pub use joint::{Across, Joint, JointForce};
+pub use joint::{Across, Joint, JointForce, Moment, SeenPin};
 pub use journal::Journal;
 
 /// Everything about a planar body but its laws, SI units. Vectors are (x, z).

@@ -130,8 +130,9 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
     // Kept from the compiler, which would repeat the body of a small mechanism for every pass.
     let passes = core::hint::black_box(PASSES);
     let (size, better) = loop {
-        // So that parameters are read where they are used: before the loop they would all be copied to the stack.
-        let (mechanism, base) = core::hint::black_box((mechanism, base));
+        // So that parameters are read where they are used: before the loop they would all be copied to the stack. Those of a
+        // body on one axis fit into registers.
+        let (mechanism, base) = if D > 1 { core::hint::black_box((mechanism, base)) } else { (mechanism, base) };
         let pose = mechanism.advanced(&base.pose, &velocity, a);
         let force = if pass == CHORD || pass == passes {
             // The memory of an iterate that is only worse holds as well, because the next step brings it back into the cone.

@@ -3,8 +3,8 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::{
-    Joint, JointForce, Planar,
-    turn::{Turn, at, turned},
+    Joint, JointForce, Planar, SeenPin,
+    turn::{Turn, turned},
 };
 use crate::{
     Scalar,
@@ -37,8 +37,9 @@ impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> P
             let offset = placed.turn.change(*pin) - placed.displacement_b;
             let lever = *pin + offset;
             let u = placed.velocity_b + turned(lever) * placed.rotation;
-            let joint = joint.force((&self.contact, &self.friction), memory, offset, u, way);
-            sum += at(lever, joint.force);
+            let pin = SeenPin { offset, u, rotation: placed.rotation };
+            let joint = joint.force((&self.contact, &self.friction), memory, &pin, way);
+            sum += joint.about(lever);
             collect(lever, &joint);
         }
         sum

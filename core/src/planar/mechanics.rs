@@ -1,11 +1,11 @@
 //! The planar body as integrators see it.
 
-use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::{
-    Joint, JointForce, Planar, PlanarPose,
+    Joint, Planar, PlanarPose,
     contacts::Placed,
-    turn::{Turn, at, spread, turned},
+    turn::{Turn, at, turned},
 };
 use crate::{
     SVector, Scalar,
@@ -230,8 +230,7 @@ impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> M
         let pull = self.pull(placed.turn);
         let mut balance = self.inertia(rate) + self.give(&pull);
         let way = Way { a, mass_rate: self.body.mass * rate, tangent_share };
-        let contacts =
-            self.contact_forces(&placed, memory, way, |lever, joint| balance += spread(lever, &joint.impedance));
+        let contacts = self.contact_forces(&placed, memory, way, |lever, joint| balance += joint.damping(lever));
         Linearised {
             force: self.total(placed.turn, contacts + pull * self.drive.force(t, velocity.y)),
             linearisation: Linearisation { inverse: inverse(&balance), turn: placed.turn },
@@ -266,16 +265,11 @@ impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> M
         let swirl = turned(placed.velocity_b);
         let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
         let contacts = self.contact_forces(&placed, memory, way, |lever, joint| {
-            let JointForce { force, impedance, .. } = joint;
-            damping += spread(lever, impedance);
-            // Where the body turns, a displacement changes the velocity of its material at the pin.
-            let [x, z]: [[S; 2]; 2] = impedance.data.0;
-            let (x, z) = (Vector2::from(x), Vector2::from(z));
-            let carried = Matrix2::from_columns(&[z * placed.rotation, -x * placed.rotation]);
-            stiffness += spread(lever, &(joint.stiffness + carried));
+            damping += joint.damping(lever);
+            stiffness += joint.stiffness(lever, placed.rotation);
             // A turn changes the velocity that the contact sees and takes the force along, which stays at the pin.
-            let turn = at(lever, impedance * swirl) + at(Vector2::zeros(), turned(*force));
-            let stays = turned(*force);
+            let stays = turned(joint.force);
+            let turn = joint.by_velocity(lever, swirl) + at(Vector2::zeros(), stays);
             let (left, right) = (Vector3::zeros(), Vector3::new(-stays.x, -stays.y, -stays.dot(&turned(lever))));
             stiffness -= Matrix3::from_columns(&[left, left, turn]);
             stiffness += Matrix3::from_columns(&[left, left, right]).transpose();

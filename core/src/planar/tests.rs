@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Across, Planar, PlanarBody, PlanarPose};
+use super::{Across, Joint, Journal, Planar, PlanarBody, PlanarPose};
 use crate::{
     SVector, Vector3,
     drive::Drive,
@@ -73,8 +73,23 @@ fn moves_as_the_slide_in_its_plane() {
 
 #[test]
 fn slopes_are_derivatives() {
-    let (_, flat) = both(Regularised::new(0.3, 1e-2).unwrap());
+    let friction = Regularised::new(0.3, 1e-2).unwrap();
+    let (_, flat) = both(friction);
     let nominal = PlanarPose { displacement_w: Vector2::new(2e-5, 0.01), half_turn: [1.0, 2e-4] };
+    slopes(flat, nominal);
+
+    let Planar { body, contact, drive, .. } = flat;
+    let PlanarBody { mass, inertia, gravity_w, pins_w, .. } = body;
+    let joints = [1e-5, 2e-5, 3e-5, 4e-5].map(|clearance| Journal::new(clearance, 5e-3).unwrap());
+    let swing = PlanarBody { mass, inertia, gravity_w, pins_w, joints };
+    let off = PlanarPose { displacement_w: Vector2::new(4e-5, -3e-5), ..nominal };
+    slopes(Planar::new(swing, contact, friction, drive).unwrap(), off);
+}
+
+fn slopes<C: Joint<f64>, F: Friction<f64, Memory = ()>>(
+    flat: Planar<f64, C, ThreeHalves<f64>, F, 4>,
+    nominal: PlanarPose<f64>,
+) {
     let velocity = SVector::<f64, 3>::new(0.01, 0.005, 0.3);
     let force = |pose: &PlanarPose<f64>, v: &SVector<f64, 3>| flat.forces(0.05, pose, &[(); 4], v, 1e-3, None);
     let slopes = flat.differentiated(0.05, &nominal, &[(); 4], &velocity).slopes;

@@ -1,6 +1,6 @@
 //! Turning in the plane, and forces at a lever.
 
-use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 use crate::Scalar;
 
@@ -46,11 +46,9 @@ pub(super) fn at<S: Scalar>(lever: Vector2<S>, f: Vector2<S>) -> Vector3<S> {
     Vector3::new(f.x, f.y, turned(lever).dot(&f))
 }
 
-/// What the force −`matrix`·(v + ω·y × `lever`), acting at `lever`, means for force and torque by v and ω.
+/// What something that goes by v + ω·y × `lever` means by v and ω: `columns` are those of the velocity's parts.
 #[inline(always)]
-pub(super) fn spread<S: Scalar>(lever: Vector2<S>, matrix: &Matrix2<S>) -> Matrix3<S> {
-    let [x, z]: [[S; 2]; 2] = matrix.data.0;
-    let (x, z) = (Vector2::from(x), Vector2::from(z));
+pub(super) fn spread<S: Scalar>(lever: Vector2<S>, [x, z]: [Vector3<S>; 2]) -> Matrix3<S> {
     let arm = turned(lever);
-    Matrix3::from_columns(&[at(lever, x), at(lever, z), at(lever, x * arm.x + z * arm.y)])
+    Matrix3::from_columns(&[x, z, x * arm.x + z * arm.y])
 }

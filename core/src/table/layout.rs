@@ -81,7 +81,7 @@ pub(super) fn continued(register: u32, bytes: &[u8]) -> u32 {
 }
 
 /// What four bits shifted out of the register do to it.
-const NIBBLES: [u32; 16] = {
+static NIBBLES: [u32; 16] = {
     let mut nibbles = [0; 16];
     let mut i = 0;
     while i < 16 {

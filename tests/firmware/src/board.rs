@@ -3,6 +3,8 @@
 
 #[cfg(not(feature = "defmt"))]
 use core::fmt::{Display, Write as _};
+#[cfg(feature = "defmt")]
+use core::sync::atomic::{AtomicBool, Ordering};
 use core::{panic::PanicInfo, slice};
 
 use cortex_m::{
@@ -177,19 +179,23 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     fail(format_args!("hard fault at {:#010x}", frame.pc()))
 }
 
-/// Says where and not why, so that no code that formats text is left.
+/// Says where, for the desk to look up why. Once: it may be the log itself that panics.
 #[cfg(feature = "defmt")]
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    if let Some(at) = info.location() {
+    static PANICKED: AtomicBool = AtomicBool::new(false);
+    if let Some(at) = info.location().filter(|_| !PANICKED.swap(true, Ordering::Relaxed)) {
         defmt::error!("panicked at {=str}:{=u32}", at.file(), at.line());
     }
     process::exit(1)
 }
 
+/// It may have come in the middle of a frame, so that it speaks on another stream.
 #[cfg(feature = "defmt")]
 #[exception]
-unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    defmt::error!("hard fault at {=u32:#010x}", frame.pc());
+unsafe fn HardFault(_: &ExceptionFrame) -> ! {
+    if let Ok(mut errors) = io::stderr() {
+        let _ = errors.write_all(b"hard fault\n");
+    }
     process::exit(1)
 }

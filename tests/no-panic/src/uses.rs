@@ -68,7 +68,7 @@ fn smaller_scenes() -> Result<(), ParameterError<f32>> {
     let flat = Planar::new(body, contact, Exact::new(black_box(0.3))?, data.drive)?;
     let kernel = Kernel::<f32, _, Extrapolated<2, 4>>::new(flat, black_box(1e-3))?;
     black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
-    let joints = [Journal::new(black_box(1e-5))?; 4];
+    let joints = [Journal::new(black_box(1e-5), black_box(5e-3))?; 4];
     let PlanarBody { mass, inertia, gravity_w, pins_w, .. } = body;
     let swing = PlanarBody { mass, inertia, gravity_w, pins_w, joints };
     let swing = Planar::new(swing, contact, Exact::new(black_box(0.3))?, data.drive)?;

@@ -24,8 +24,10 @@ pub const PERIODS: u32 = 1500;
 /// Periods from one printed line to the next.
 const PERIODS_A_LINE: u32 = 100;
 
-/// Clock and cycles of the drive that the load is given for (Hz): instructions take 1.48 cycles at zero wait states.
-const CLOCK: f32 = 168e6;
+/// Clock of the drive that the load is given for (Hz).
+pub const CLOCK: f32 = 168e6;
+
+/// Cycles of an instruction on average, at zero wait states.
 pub const CYCLES: f32 = 1.48;
 
 /// 2 % of the peak force (N).

@@ -5,7 +5,7 @@ use slipfit_firmware::machine::{Machine, print};
 
 use crate::{
     control::{Record, Rig},
-    program::{CYCLES, Everything, Stroke},
+    program::{CLOCK, CYCLES, Everything, Stroke},
 };
 
 /// That there is no table to work with.
@@ -48,7 +48,8 @@ pub fn everything(machine: &mut impl Machine, everything: &Everything) {
         print(machine, format_args!("instructions of a period: {least} to {greatest}"));
     }
     if let Some(load) = load {
-        print(machine, format_args!("instructions at 1 kHz, {CYCLES} cycles each: {load:.1} % of 168 MHz"));
+        let clock = CLOCK / 1e6;
+        print(machine, format_args!("instructions at 1 kHz, {CYCLES} cycles each: {load:.1} % of {clock} MHz"));
     }
     if let Some(bytes) = stack {
         print(machine, format_args!("stack of everything: {bytes} bytes, control of {control}"));

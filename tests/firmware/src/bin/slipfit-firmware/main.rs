@@ -6,6 +6,9 @@
 
 mod program;
 
+#[cfg(all(feature = "defmt", target_os = "none"))]
+compile_error!("this image prints text, which must not share a stream with frames: only slipfit-drive logs by defmt");
+
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {

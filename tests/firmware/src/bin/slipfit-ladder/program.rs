@@ -100,7 +100,7 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) {
         inertia: body.inertia,
         gravity_w: Vector2::new(0.0, -9.81),
         pins_w: [body.pins_w[0]],
-        joints: [Journal::new(1e-5).expect("the clearance is in bounds")],
+        joints: [Journal::new(1e-5, 5e-3).expect("the journal is in bounds")],
     };
     let lever = Planar::new(lever, contact, Frictionless, drive).expect("the body is in bounds");
     rung(machine, "planar_journal", lever, PlanarPose::nominal(), planar_journal);
