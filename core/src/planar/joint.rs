@@ -41,9 +41,9 @@ pub struct JointForce<S, M> {
 pub struct Moment<S> {
     /// Torque on the body (N·m).
     pub torque: S,
-    /// −∂torque/∂u (N·s), as [`JointForce::impedance`].
+    /// −∂torque/∂u (N·s), as the impedance of the force.
     pub impedance: Vector2<S>,
-    /// −∂torque/∂x (N), as [`JointForce::stiffness`].
+    /// −∂torque/∂x (N), as the stiffness of the force.
     pub stiffness: Vector2<S>,
     /// −∂force/∂ω (N·s) by the angular velocity.
     pub force_by_rotation: Vector2<S>,
