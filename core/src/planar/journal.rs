@@ -1,9 +1,9 @@
 //! A journal: a hole of the body around a pin, the paper's cylindrical joint (Fig. 3).
 //!
 //! With the radial clearance q and the pin's middle off the hole's by ρ, the gap is q − |ρ|, and its normal n is along ρ.
-//! The hole's wall pushes the body along n and rubs along the tangent t = y × n, where the body's material moves with
-//! u·t + R·ω: R is the radius of the pin, at whose rim they meet. So friction also has the torque R times itself about the
-//! pin. Where the pin is inside there is no force, and so none where ρ = 0 has no direction.
+//! The pin pushes the hole's wall, and so the body, along n. It rubs along the tangent t = y × n against u·t + R·ω, the
+//! velocity of the body's material at the rim of the pin, whose radius is R; so friction also has the torque R times itself
+//! about the pin. Where the pin is inside there is no force, and so none where ρ = 0 has no direction.
 
 use nalgebra::{Matrix2, Vector2};
 
