@@ -54,6 +54,20 @@ fn says_what_it_said_and_what_the_desk_says() {
     assert_eq!(on_target.matches("table damaged in 0 rounds").count(), 3);
 }
 
+#[test]
+fn fails_without_its_table() {
+    cross::require_target();
+    cross::require_emulator();
+    let other = Path::new(FOLDER).join("other.bin");
+    fs::write(&other, b"SLFT").expect("the test's folder takes files");
+    for options in [&["--release", "--target", TARGET][..], &[]] {
+        let mut cargo = cargo(FOLDER);
+        cargo.args(["run", "-p", "slipfit-firmware", "--bin", "slipfit-drive"]).args(options).arg("--").arg(&other);
+        let output = cross::finished(&mut cargo);
+        assert!(!output.status.success() && output.stdout.starts_with(b"no table: "), "{output:?}");
+    }
+}
+
 /// The log as frames, which only the image's own file can decode: of every period that the text shows the same numbers.
 #[test]
 fn says_the_same_in_frames() {

@@ -39,7 +39,9 @@ pub struct PlanarBody<S, C, const PINS: usize> {
 
 /// A planar body with its normal law, friction law and drive.
 ///
-/// Generalised velocities are the velocity of the centre of mass in the frame (m/s) and the angular velocity (rad/s).
+/// The three generalised velocities are the velocity of the centre of mass in the frame, (x, z) in m/s, and the angular
+/// velocity (rad/s). `S` is the number type, `C` the [`Joint`], `E` the normal law, `F` the friction law. A drive of gain 0
+/// is none; its point counts by its x and z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planar<S, C, E, F, const PINS: usize> {
     body: PlanarBody<S, C, PINS>,
@@ -50,7 +52,7 @@ pub struct Planar<S, C, E, F, const PINS: usize> {
     per_lever: S,
 }
 
-/// Displacement from the nominal pose.
+/// Displacement from the nominal pose. The body has turned by twice the angle whose cosine and sine `half_turn` holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanarPose<S> {
     /// Displacement of the centre of mass (m), (x, z).

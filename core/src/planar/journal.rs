@@ -26,11 +26,12 @@ pub struct Journal<S> {
 }
 
 impl<S: Scalar + PartialOrd> Journal<S> {
-    /// A journal of the radial `clearance` (m) around a pin of `radius` (m), 0 for a point, on which turning rubs nothing.
+    /// A journal of the radial `clearance` (m), by which the hole's radius exceeds the pin's, around a pin of `radius` (m),
+    /// 0 for a point, on which turning rubs nothing.
     ///
     /// # Errors
-    /// If either is not finite or out of bounds, 1e-9…1 m for the clearance and 0…10 m for the radius: a pin that is as wide
-    /// as its hole or wider is not held by a contact at one point.
+    /// If either is not finite or out of bounds, 1e-9…1 m for the clearance and 0…10 m for the radius. There is no journal
+    /// without clearance: its pin would not meet the hole at one point.
     pub fn new(clearance: S, radius: S) -> Result<Self, ParameterError<S>> {
         Ok(Self {
             clearance: bounded("journal.clearance", clearance, [1e-9, 1.0])?,

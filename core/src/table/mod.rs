@@ -83,7 +83,7 @@ pub struct Lookup {
 }
 
 impl<'a, const N: usize> Table<'a, N> {
-    /// Checks the table that `region` starts with.
+    /// Checks the table that `region` starts with. The number of axes must be said: `Table::<2>::open(region)`.
     ///
     /// Any single flipped bit is refused. Takes time in proportion to the table's length, most of it for the checksum.
     ///

@@ -144,15 +144,15 @@ fn flash() -> &'static [u8] {
     unsafe { slice::from_raw_parts(start, end.addr() - start.addr()) }
 }
 
-/// Runs `program` with the flash table's region, then ends the emulation.
+/// Runs `program` with the flash table's region, then ends the emulation, as failed if it says so by `false`.
 ///
 /// # Panics
 /// If the processor rounds in another way than the host, or on a second call.
-pub fn boot(program: impl FnOnce(&mut Board, &'static [u8])) -> ! {
+pub fn boot(program: impl FnOnce(&mut Board, &'static [u8]) -> bool) -> ! {
     let peripherals = Peripherals::take().expect("nobody has taken them before");
     assert_eq!(fpscr::read().bits() & FPSCR_MODES, 0, "FPSCR would give other bits than the host");
-    program(&mut Board::new(peripherals.SYST), flash());
-    process::exit(0)
+    let done = program(&mut Board::new(peripherals.SYST), flash());
+    process::exit(i32::from(!done))
 }
 
 /// Prints why, and ends the emulation as failed: it must never hang.

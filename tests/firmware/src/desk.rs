@@ -1,6 +1,6 @@
 //! The host as a program's machine: the reference for the image.
 
-use std::{env, fs, io};
+use std::{env, fs, io, process::ExitCode};
 
 use crate::machine::Machine;
 
@@ -26,13 +26,13 @@ impl Machine for Desk {
     }
 }
 
-/// Runs `program` with the table in the file that the first argument names, if there is one.
+/// Runs `program` with the table in the file that the first argument names, if there is one. It fails by `false`.
 ///
 /// # Errors
 /// If the file cannot be read or is larger than the flash kept for it.
-pub fn boot(program: impl FnOnce(&mut Desk, &'static [u8])) -> io::Result<()> {
+pub fn boot(program: impl FnOnce(&mut Desk, &'static [u8]) -> bool) -> io::Result<ExitCode> {
     let mut flash = match env::args_os().nth(1) {
-        Some(file) => fs::read(file)?,
+        Some(file) => fs::read(&file).map_err(|error| io::Error::other(format!("{}: {error}", file.display())))?,
         None => Vec::new(),
     };
     if flash.len() > TABLE_LENGTH {
@@ -40,6 +40,6 @@ pub fn boot(program: impl FnOnce(&mut Desk, &'static [u8])) -> io::Result<()> {
     }
     // As the emulator has it; an erased flash would read 0xff.
     flash.resize(TABLE_LENGTH, 0);
-    program(&mut Desk, flash.leak());
-    Ok(())
+    let done = program(&mut Desk, flash.leak());
+    Ok(if done { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

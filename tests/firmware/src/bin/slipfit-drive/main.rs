@@ -28,7 +28,7 @@ fn main() -> ! {
 }
 
 #[cfg(not(target_os = "none"))]
-fn main() -> std::io::Result<()> {
+fn main() -> std::io::Result<std::process::ExitCode> {
     slipfit_firmware::desk::boot(program::run)
 }
 

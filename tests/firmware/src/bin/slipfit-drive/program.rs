@@ -52,13 +52,16 @@ pub trait Ticking: Machine {
     fn deepest_stack(&mut self) -> Option<u32>;
 }
 
-/// Runs all strokes.
-pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) {
+/// Runs all strokes; `false` without a table.
+pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
     let axes = [AxisKind::Level, AxisKind::Time];
     let opened = Table::open(flash).and_then(|table| table.expect_axes(axes)?.expect_scene(TABLE_HASH));
     let table = match opened {
         Ok(table) => table,
-        Err(error) => return say::refused(machine, error),
+        Err(error) => {
+            say::refused(machine, error);
+            return false;
+        }
     };
     let mut costs = Count::default();
     for (name, rig) in RIGS {
@@ -79,6 +82,7 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) {
     let load = instructions.map(|(_, greatest)| greatest as f32 * CYCLES * 1e3 / CLOCK * 100.0);
     let (stack, control) = (machine.deepest_stack(), size_of::<Control>());
     say::everything(machine, &Everything { instructions, load, stack, control });
+    true
 }
 
 /// What there is to say of a stroke.

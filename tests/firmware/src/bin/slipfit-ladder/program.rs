@@ -68,7 +68,7 @@ rungs! {
 }
 
 /// Runs 200 steps of 1 ms on every rung.
-pub fn run(machine: &mut impl Machine, _: &[u8]) {
+pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     let exact = Exact::new(COEFFICIENT).expect("the law is in bounds");
     let smoothed = Regularised::new(COEFFICIENT, STICK_BAND as f32).expect("the law is in bounds");
     let data = cd_rom::data(LEVEL);
@@ -112,6 +112,7 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) {
     let linear = Linear::new(2e4).expect("the law is in bounds");
     let ball = AxisBody::new(data.body.mass, -9.81, 0.0, impact(linear)).expect("the body is in bounds");
     rung(machine, "axis_pad_linear", ball, 1e-3, axis_pad_linear);
+    true
 }
 
 /// Says what a Newton pass of the full slide takes, its linearisation and solution included: a step of two passes less one of
