@@ -1,12 +1,14 @@
 //! Whatever C passes is answered by a status, and whatever a function writes is finite.
 #![allow(unsafe_code, reason = "calls the library as C does")]
 
-use std::{mem::MaybeUninit, ptr};
+mod common;
 
+use std::ptr;
+
+use common::zeroed;
 use proptest::prelude::*;
 use slipfit_capi::*;
 use slipfit_core::table::{AxisKind, Table, layout};
-use slipfit_problems::cd_rom;
 
 /// What floating point has that a careless program trips over.
 const SPECIAL: [f32; 14] = [
@@ -29,34 +31,8 @@ const SPECIAL: [f32; 14] = [
 /// Floats of a scene.
 const NUMBERS: usize = size_of::<slipfit_scene>() / size_of::<f32>();
 
-/// An object's memory as C has it before it is made.
-fn zeroed<T>() -> T {
-    // SAFETY: the library's types are plain words and numbers.
-    unsafe { MaybeUninit::zeroed().assume_init() }
-}
-
 fn scene() -> slipfit_scene {
-    let data = cd_rom::data(0.0f32);
-    slipfit_scene {
-        step: 1e-3,
-        mass: data.body.mass,
-        inertia: data.body.inertia_b.into(),
-        gravity: data.body.gravity_w.into(),
-        pins: data.body.pins_w.map(Into::into),
-        gap_means: data.body.gaps,
-        gap_deviations: [2e-5; 16],
-        stiffness: data.contact.stiffness,
-        exponent: data.contact.exponent,
-        damping: data.contact.damping,
-        depth: data.contact.depth,
-        friction_law: if cfg!(feature = "exact") { SLIPFIT_FRICTION_EXACT } else { SLIPFIT_FRICTION_REGULARISED },
-        friction_coefficient: 0.3,
-        friction_stick_band: 1e-4,
-        drive_gain: data.drive.gain,
-        drive_ramp: [data.drive.ramp_start, data.drive.ramp_end],
-        drive_speed: data.drive.speed,
-        drive_point: [0.0; 3],
-    }
+    common::scene(if cfg!(feature = "exact") { SLIPFIT_FRICTION_EXACT } else { SLIPFIT_FRICTION_REGULARISED })
 }
 
 /// The scene with the bits of some of its numbers changed, its laws' numbers too.

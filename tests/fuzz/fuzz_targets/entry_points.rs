@@ -2,43 +2,16 @@
 #![no_main]
 #![allow(unsafe_code, reason = "calls the library as C does")]
 
-use std::{mem::MaybeUninit, ptr};
+use std::ptr;
 
 use libfuzzer_sys::fuzz_target;
 use slipfit_capi::*;
 use slipfit_core::table::layout;
-use slipfit_problems::cd_rom;
 
-/// An object's memory as C has it before it is made.
-fn zeroed<T>() -> T {
-    // SAFETY: the library's types are plain words and numbers.
-    unsafe { MaybeUninit::zeroed().assume_init() }
-}
+#[path = "../../../core/capi/tests/common/mod.rs"]
+mod common;
 
-/// A scene that can be stepped.
-fn scene() -> slipfit_scene {
-    let data = cd_rom::data(0.0f32);
-    slipfit_scene {
-        step: 1e-3,
-        mass: data.body.mass,
-        inertia: data.body.inertia_b.into(),
-        gravity: data.body.gravity_w.into(),
-        pins: data.body.pins_w.map(Into::into),
-        gap_means: data.body.gaps,
-        gap_deviations: [2e-5; 16],
-        stiffness: data.contact.stiffness,
-        exponent: data.contact.exponent,
-        damping: data.contact.damping,
-        depth: data.contact.depth,
-        friction_law: SLIPFIT_FRICTION_REGULARISED,
-        friction_coefficient: 0.3,
-        friction_stick_band: 1e-4,
-        drive_gain: data.drive.gain,
-        drive_ramp: [data.drive.ramp_start, data.drive.ramp_end],
-        drive_speed: data.drive.speed,
-        drive_point: [0.0; 3],
-    }
-}
+use common::{scene, zeroed};
 
 /// Puts `bits` into one of the words of a value that is plain numbers.
 fn change<T: Copy>(value: &mut T, place: u32, bits: u32) {
@@ -71,7 +44,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
         (zeroed::<slipfit_prediction>(), zeroed::<slipfit_lookup>(), zeroed::<slipfit_spare>());
     let (mut report, mut estimate) = (zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
     let (length, half) = (bytes.len() as u32, bytes.len() / 2);
-    let (mut scene, mut limits) = (scene(), zeroed::<slipfit_limits>());
+    let (mut scene, mut limits) = (scene(SLIPFIT_FRICTION_REGULARISED), zeroed::<slipfit_limits>());
     limits.period = 1e-3;
     limits.force_most = 3.0;
     // SAFETY: every pointer is to a local of its type, or null; the bytes outlive the table.
@@ -85,7 +58,15 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
                 3 => slipfit_table_open(&mut table, bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 0),
                 4 => {
                     let second = bytes.as_ptr().add(half);
-                    slipfit_slots_open(&mut table, bytes.as_ptr(), second, half as u32, SLIPFIT_AXIS_TIME, 0, &mut spare)
+                    slipfit_slots_open(
+                        &mut table,
+                        bytes.as_ptr(),
+                        second,
+                        half as u32,
+                        SLIPFIT_AXIS_TIME,
+                        0,
+                        &mut spare,
+                    )
                 }
                 5 => slipfit_table_look_up(&table, x, y, &mut found),
                 6 => slipfit_table_check(&mut table, x.to_bits()),
