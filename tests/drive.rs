@@ -28,10 +28,10 @@ static TABLE: LazyLock<PathBuf> = LazyLock::new(|| {
     file
 });
 
-/// The drive with its table, its target folder in `folder`.
-fn drive(folder: &str, options: &[&str]) -> Command {
+/// The drive with a table, its target folder in `folder`.
+fn drive(folder: &str, options: &[&str], table: &Path) -> Command {
     let mut cargo = cargo(folder);
-    cargo.args(["run", "-p", "slipfit-firmware", "--bin", "slipfit-drive"]).args(options).arg("--").arg(&*TABLE);
+    cargo.args(["run", "-p", "slipfit-firmware", "--bin", "slipfit-drive"]).args(options).arg("--").arg(table);
     cargo
 }
 
@@ -39,10 +39,10 @@ fn drive(folder: &str, options: &[&str]) -> Command {
 fn says_what_it_said_and_what_the_desk_says() {
     cross::require_target();
     cross::require_emulator();
-    let on_target = printed(&mut drive(FOLDER, &["--release", "--target", TARGET]));
+    let on_target = printed(&mut drive(FOLDER, &["--release", "--target", TARGET], &TABLE));
     let counted = |line: &&str| line.starts_with("instructions ") || line.starts_with("stack ");
     let same: Vec<_> = on_target.lines().filter(|line| !counted(line)).collect();
-    assert_eq!(same, printed(&mut drive(FOLDER, &[])).lines().collect::<Vec<_>>());
+    assert_eq!(same, printed(&mut drive(FOLDER, &[], &TABLE)).lines().collect::<Vec<_>>());
     insta::assert_snapshot!("log", on_target);
 
     // Free where the unit is what it is taken for, tight with more friction, a jam where it jams.
@@ -61,9 +61,7 @@ fn fails_without_its_table() {
     let other = Path::new(FOLDER).join("other.bin");
     fs::write(&other, b"SLFT").expect("the test's folder takes files");
     for options in [&["--release", "--target", TARGET][..], &[]] {
-        let mut cargo = cargo(FOLDER);
-        cargo.args(["run", "-p", "slipfit-firmware", "--bin", "slipfit-drive"]).args(options).arg("--").arg(&other);
-        let output = cross::finished(&mut cargo);
+        let output = cross::finished(&mut drive(FOLDER, options, &other));
         assert!(!output.status.success() && output.stdout.starts_with(b"no table: "), "{output:?}");
     }
 }
@@ -73,9 +71,10 @@ fn fails_without_its_table() {
 fn says_the_same_in_frames() {
     cross::require_target();
     cross::require_emulator();
-    let text = printed(&mut drive(FOLDER, &[]));
+    let text = printed(&mut drive(FOLDER, &[], &TABLE));
     let folder = format!("{FOLDER}/defmt");
-    let output = cross::finished(&mut drive(&folder, &["--release", "--target", TARGET, "--features", "defmt"]));
+    let output =
+        cross::finished(&mut drive(&folder, &["--release", "--target", TARGET, "--features", "defmt"], &TABLE));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 
     let image = fs::read(cross::image(&folder, "slipfit-drive")).expect("it has been built");
