@@ -201,7 +201,7 @@ impl Parabola {
         Some([0.0, 1.0].map(|end| self.crossing(lowest, end, limit)))
     }
 
-    /// Where it crosses `limit` on the way from `inside` to `end`; `end` if it does not.
+    /// Where it crosses `limit` on the way from `inside` to `end`; `end` if it does not. One copy in the code serves both ends.
     #[inline(never)]
     fn crossing(&self, mut inside: f32, end: f32, limit: f32) -> f32 {
         if self.value(end) <= limit {
