@@ -46,6 +46,8 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// Points with a legend.
     pub markers: Vec<Markers>,
+    /// A distribution behind all else: places along the abscissa, ascending, and heights between 0 and 1 of the panel.
+    pub shade: Vec<(f64, f64)>,
 }
 
 /// A line.

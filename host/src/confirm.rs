@@ -1,73 +1,81 @@
-//! A second look: what a run with half the step says of a run.
+//! A second look: what a better run says of a run.
 
 use slipfit_core::slide::CONTACTS;
 
 use crate::{
+    desk,
     outcome::Verdict,
     scene::Scene,
-    simulate::{Run, ScalarKind, Settings, SimulateError, simulate},
+    simulate::{Run, Settings, SimulateError, Solver, simulate},
 };
 
-/// A step (s) above which a second run is always made: it costs little, and errors of single steps do not tell how far the
-/// slide strays over thousands of them.
-const COARSE: f64 = 100e-6;
+/// How much finer than the desk's run the one is that it is held against.
+const FINER: f64 = 0.1;
 
-/// `run`, made by `settings`, held against a run with half the step in double precision: its verdict is undecided where the
-/// two disagree, and its trust takes in how far their forces part. A run in double precision without a verdict whose steps
-/// are fine and leave no doubt needs no second run, nor does error control.
+/// `run`, made by `settings`, held against a better one: a run of the desk against one at a tenth of its tolerance, a run of
+/// the controller against the desk's. Its verdict is undecided where the two disagree, and its trust takes in how far their
+/// forces part.
 ///
 /// # Errors
-/// See [`SimulateError`]; a second run that leaves the finite range is as far off as can be.
-pub fn confirmed(
-    scene: &Scene,
-    gaps: &[f64; CONTACTS],
-    settings: &Settings,
-    mut run: Run,
-) -> Result<Run, SimulateError> {
-    let decided = run.outcome.verdict != Verdict::Undecided;
-    // Steps do not see what single precision has rounded away.
-    let single = settings.scalar == ScalarKind::F32;
-    let coarse = settings.run.step > COARSE;
-    if settings.tolerance.is_some() || !(single || coarse || decided || run.trust.leaves_doubt()) {
-        return Ok(run);
-    }
-    let mut half = Settings { scalar: ScalarKind::F64, ..*settings };
-    half.run.step /= 2.0;
-    let (verdict, difference) = match simulate(scene, gaps, &half) {
-        Ok(half) => {
-            (half.outcome.verdict, run.trajectory.greatest_difference(&half.trajectory, scene.drive.ramp_start))
-        }
-        Err(SimulateError::NotFinite { .. }) => (Verdict::Undecided, f64::MAX),
-        Err(other) => return Err(other),
+/// See [`SimulateError`].
+pub fn confirmed(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, run: Run) -> Result<Run, SimulateError> {
+    let tolerance = match settings.solver {
+        Solver::Desk { tolerance } => FINER * tolerance,
+        Solver::Controller(_) => desk::tolerance(scene),
     };
-    if verdict != run.outcome.verdict {
+    Ok(against(&simulate(scene, gaps, &settings.to(tolerance))?, scene, settings, run))
+}
+
+/// `run`, made by `settings`, held against the `better` one, which is sampled at the same times.
+pub fn against(better: &Run, scene: &Scene, settings: &Settings, mut run: Run) -> Run {
+    if better.outcome.verdict != run.outcome.verdict {
         run.outcome.verdict = Verdict::Undecided;
     }
-    run.trust = run.trust.compared(difference, settings.run.step);
-    Ok(run)
+    let difference = run.trajectory.greatest_difference(&better.trajectory, scene.drive.ramp_start);
+    let step = match settings.solver {
+        Solver::Desk { .. } => None,
+        Solver::Controller(spec) => Some(spec.step),
+    };
+    run.trust = run.trust.compared(difference, step);
+    run
 }
 
 #[cfg(test)]
 mod tests {
     use slipfit_core::slide::CONTACTS;
 
-    use super::{COARSE, confirmed};
+    use super::confirmed;
     use crate::{
-        scene::{CD_ROM_SLIDE, Scene},
-        simulate::{ScalarKind, Settings, simulate},
+        example,
+        outcome::Verdict,
+        simulate::{Settings, simulate},
     };
 
     #[test]
-    fn a_coarse_step_is_always_held_against_half_of_it() {
-        let mut scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).unwrap();
-        let gaps = scene.gaps_at(&[0.0; CONTACTS]);
-        let mut difference = |step: f64| {
-            scene.run.step = step;
-            let settings = Settings::fixed(scene.run, 1e-3, ScalarKind::F64);
-            confirmed(&scene, &gaps, &settings, simulate(&scene, &gaps, &settings).unwrap()).unwrap().trust.difference
+    fn a_controller_is_held_against_the_desk_and_the_desk_against_a_finer_run() {
+        let scene = example::cd_rom();
+        let gaps = scene.gaps_at(&[2.5; CONTACTS]);
+        let difference = |settings: Settings| {
+            let run = simulate(&scene, &gaps, &settings).unwrap();
+            confirmed(&scene, &gaps, &settings, run).unwrap().trust.difference.unwrap()
         };
-        // The opening at n = 0 comes to no verdict, and its steps leave no doubt.
-        assert_eq!(difference(COARSE / 2.0), None);
-        assert!(difference(2.0 * COARSE).is_some_and(|difference| difference < 5e-3));
+        let desk = difference(Settings::desk(&scene, 1e-3));
+        let controller = difference(Settings::controller(&scene, 1e-3));
+        assert!(desk < 2e-5 && (1e-4..1e-2).contains(&controller), "{desk} {controller}");
+    }
+
+    #[test]
+    fn a_verdict_that_a_finer_run_does_not_share_is_none() {
+        let mut scene = example::cd_rom();
+        scene.run.duration = scene.stroke_duration().unwrap();
+        let gaps = scene.gaps_at(&[2.5; CONTACTS]);
+        // So coarse that it does not see the slide run.
+        let settings = Settings::desk(&scene, 1e-3);
+        let fine = confirmed(&scene, &gaps, &settings, simulate(&scene, &gaps, &settings).unwrap()).unwrap();
+        assert_eq!(fine.outcome.verdict, Verdict::Runs);
+        let mut wrong = fine.clone();
+        wrong.outcome.verdict = Verdict::Jammed;
+        let judged = super::against(&fine, &scene, &settings, wrong);
+        assert_eq!(judged.outcome.verdict, Verdict::Undecided);
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::{
     scene::{CD_ROM_SLIDE, LevelRange, Scene},
-    simulate::{ScalarKind, Settings},
-    sweep::Sweep,
+    simulate::Settings,
+    sweep::{Keep, Sweep},
 };
 
 /// The scene of the paper.
@@ -15,7 +15,6 @@ pub fn cd_rom() -> Scene {
 pub fn sweep(levels: LevelRange, duration: f64, ramp_end: f64) -> Sweep {
     let mut scene = cd_rom();
     scene.drive.ramp_end = ramp_end;
-    (scene.run.duration, scene.run.step) = (duration, 1e-4);
-    let settings = Settings::fixed(scene.run, 1e-3, ScalarKind::F64);
-    crate::sweep::sweep(&scene, &levels.levels(), &settings, || ()).unwrap()
+    scene.run.duration = duration;
+    crate::sweep::sweep(&scene, &levels.levels(), &Settings::desk(&scene, 1e-3), Keep::Samples, || ()).unwrap()
 }

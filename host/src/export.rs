@@ -1,16 +1,24 @@
 //! Results as CSV.
 
-use crate::{number::ten_digits, outcome::Trajectory, precision, scene::Scene, stability, sweep::Sweep};
+use crate::{
+    number::ten_digits,
+    outcome::{Moment, Trajectory},
+    precision,
+    scene::Scene,
+    stability,
+    sweep::Sweep,
+};
 
-/// `t,vz,force,x,y` in s, m/s, N, m, m, ten digits.
+/// `t,vz,force,x,y,z` in s, m/s, N, m, m, m, ten digits.
 ///
 /// # Errors
 /// Those of the writer, none in memory.
 pub fn trajectory_csv(trajectory: &Trajectory) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["t", "vz", "force", "x", "y"])?;
+    writer.write_record(["t", "vz", "force", "x", "y", "z"])?;
     for (i, t) in trajectory.t.iter().enumerate() {
-        let columns = [*t, trajectory.vz[i], trajectory.force[i], trajectory.x[i], trajectory.y[i]];
+        let Trajectory { vz, force, x, y, z, .. } = trajectory;
+        let columns = [*t, vz[i], force[i], x[i], y[i], z[i]];
         writer.write_record(columns.map(ten_digits))?;
     }
     Ok(writer.into_inner()?)
@@ -22,18 +30,36 @@ pub fn trajectory_csv(trajectory: &Trajectory) -> anyhow::Result<Vec<u8>> {
 /// Those of the writer, none in memory.
 pub fn sweep_csv(scene: &Scene, sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let figures = ["n", "breakaway_s", "peak_force_N", "settled_force_N", "final_velocity_m_per_s", "verdict"];
+    let figures = [
+        "n",
+        "breakaway_s",
+        "peak_force_N",
+        "settled_force_N",
+        "final_velocity_m_per_s",
+        "end_s",
+        "travel_m",
+        "tips_m",
+        "slows_m",
+        "stops_m",
+        "verdict",
+    ];
     let names = scene.contact_names();
     writer.write_record(figures.into_iter().chain(names.iter().map(String::as_str)))?;
     for level in &sweep.levels {
         let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
         let classes = level.classes.map(|class| class.map_or_else(String::new, |class| class.to_string()));
+        let place = |moment: Option<Moment>| optional(moment.map(|moment| moment.z));
         let figures = [
             ten_digits(level.n),
             optional(level.outcome.breakaway),
             optional(level.outcome.peak_force),
             optional(level.outcome.settled_force),
             ten_digits(level.outcome.final_velocity),
+            ten_digits(level.outcome.end.t),
+            ten_digits(level.outcome.end.z),
+            place(level.outcome.tips),
+            place(level.outcome.slows),
+            place(level.outcome.stops),
             level.outcome.verdict.to_string(),
         ];
         writer.write_record(figures.iter().chain(&classes))?;

@@ -1,4 +1,5 @@
-//! The figures of a sweep: the paper's Figs. 8 and 9, and the force that a level needs.
+//! The figures of a sweep, velocity and force over time (the paper's Figs. 8 and 9) and verdict and force over n, and those
+//! of one unit.
 
 use crate::{
     number::{level, typeset},
@@ -7,20 +8,50 @@ use crate::{
     sweep::{Level, Sweep},
 };
 
-/// Velocity over time at every level (Fig. 8) as SVG.
+/// Velocity over time at every level as SVG.
 ///
 /// # Errors
 /// [`PlotError`], if the sweep is empty or not finite.
-pub fn figure_8(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
+pub fn velocities(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
     over_time(sweep, title, "velocity of the slide", "mm/s", |run| run.vz.iter().map(|v| v * 1e3).collect())
 }
 
-/// Drive force over time at every level (Fig. 9) as SVG.
+/// Drive force over time at every level as SVG.
 ///
 /// # Errors
 /// [`PlotError`], if the sweep is empty or not finite.
-pub fn figure_9(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
+pub fn forces(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
     over_time(sweep, title, "drive force", "N", |run| run.force.clone())
+}
+
+/// Velocity and drive force of one unit over time as SVG.
+///
+/// # Errors
+/// [`PlotError`], if the run has no sample or is not finite.
+pub fn unit_over_time(run: &Trajectory, title: &str, n: &[f64]) -> Result<String, PlotError> {
+    let panel = |y_label: &str, values: Vec<f64>| Panel {
+        y_label: y_label.to_owned(),
+        series: vec![Series {
+            label: String::new(),
+            look: Look::Kind(0),
+            points: run.t.iter().map(|t| t * 1e3).zip(values).collect(),
+        }],
+        ..Panel::default()
+    };
+    let n = match n {
+        [one] => level(*one),
+        _ => "one for each gap".to_owned(),
+    };
+    line_chart(&Chart {
+        title: title.to_owned(),
+        subtitle: format!("one unit, n = {}", typeset(&n)),
+        x_label: "time (ms)".to_owned(),
+        scale: Scale::Linear,
+        panels: vec![
+            panel("velocity of the slide (mm/s)", run.vz.iter().map(|v| v * 1e3).collect()),
+            panel("drive force (N)", run.force.clone()),
+        ],
+    })
 }
 
 fn over_time(
@@ -45,21 +76,29 @@ fn over_time(
     })
 }
 
-/// Peak force and breakaway time over the levels as SVG, the marks telling the verdicts.
+/// Peak force and breakaway time over the levels as SVG, the marks telling the verdicts, with the share of the production at
+/// each level behind the forces: n counts standard deviations, so that it is the standard normal density.
 ///
 /// # Errors
 /// [`PlotError`], if the sweep is empty or not finite.
-pub fn required_force(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
-    let force = over_n(sweep, "peak drive force (N)", |outcome| outcome.peak_force);
+pub fn verdicts(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
+    let mut force = over_n(sweep, "peak drive force (N)", |outcome| outcome.peak_force);
     let mut breakaway = over_n(sweep, "breakaway (ms)", |outcome| outcome.breakaway.map(|t| t * 1e3));
+    if let (Some(first), Some(last)) = (sweep.levels.first(), sweep.levels.last()) {
+        const POINTS: usize = 120;
+        let place = |i: usize| first.n + (last.n - first.n) * i as f64 / POINTS as f64;
+        force.shade = (0..=POINTS).map(place).map(|n| (n, 0.9 * libm::exp(-0.5 * n * n))).collect();
+    }
     // The legend above the forces serves both panels.
     breakaway.markers.iter_mut().for_each(|markers| markers.label.clear());
+    // Nothing breaks away where everything jams.
+    let panels = if breakaway.points().next().is_some() { vec![force, breakaway] } else { vec![force] };
     line_chart(&Chart {
         title: title.to_owned(),
-        subtitle: format!("required force and breakaway, {}", levels(sweep)),
+        subtitle: format!("verdict and force, {}; behind, how many units are drawn at each level", levels(sweep)),
         x_label: "tolerance level n".to_owned(),
         scale: Scale::Linear,
-        panels: vec![force, breakaway],
+        panels,
     })
 }
 
@@ -120,7 +159,7 @@ pub(crate) fn word(verdict: Verdict) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::{figure_8, figure_9, required_force};
+    use super::{forces, unit_over_time, velocities, verdicts};
     use crate::{example, outcome::Verdict, scene::LevelRange};
 
     #[test]
@@ -129,9 +168,9 @@ mod tests {
         sweep.levels[0].outcome.verdict = Verdict::Jammed;
         sweep.levels[0].outcome.breakaway = None;
         for (svg, words) in [
-            (figure_8(&sweep, "a slide"), ["velocity of the slide (mm/s)", "n = +2.5"]),
-            (figure_9(&sweep, "a slide"), ["drive force (N)", "n = \u{2212}1"]),
-            (required_force(&sweep, "a slide"), ["peak drive force (N)", "jammed"]),
+            (velocities(&sweep, "a slide"), ["velocity of the slide (mm/s)", "n = +2.5"]),
+            (forces(&sweep, "a slide"), ["drive force (N)", "n = \u{2212}1"]),
+            (verdicts(&sweep, "a slide"), ["peak drive force (N)", "jammed"]),
         ] {
             let svg = svg.unwrap();
             let document = roxmltree::Document::parse(&svg).unwrap();
@@ -140,9 +179,11 @@ mod tests {
                 assert!(found, "{word}");
             }
         }
+        let unit = unit_over_time(&sweep.levels[0].trajectory, "a slide", &[-1.0]).unwrap();
+        assert!(unit.contains("n = \u{2212}1") && unit.contains("drive force (N)"));
         sweep.levels.truncate(1);
-        assert!(required_force(&sweep, "a slide").is_ok());
+        assert!(verdicts(&sweep, "a slide").is_ok());
         sweep.levels.clear();
-        assert!(figure_8(&sweep, "a slide").is_err());
+        assert!(velocities(&sweep, "a slide").is_err());
     }
 }

@@ -68,10 +68,11 @@ pub fn rust_source(scene: &Scene) -> String {
         ),
         _ => ("Frictionless", "Frictionless", "Frictionless".into(), "FrictionData::None".into()),
     };
-    let (scheme, scheme_type) = match scene.run.integrator {
+    let (scheme, scheme_type) = match scene.controller.integrator {
         IntegratorKind::SemiImplicitEuler => ("SemiImplicitEuler", "SemiImplicitEuler"),
         IntegratorKind::RungeKutta4 => ("RungeKutta4", "RungeKutta4"),
         IntegratorKind::Rodas3 => ("Rodas3", "Rodas3"),
+        IntegratorKind::Rodas4 => ("Rodas4", "Rodas4"),
         IntegratorKind::LinearlyImplicitEuler => ("ImplicitEuler", "ImplicitEuler<1>"),
         IntegratorKind::ImplicitEuler => ("ImplicitEuler", "ImplicitEuler<4>"),
         IntegratorKind::Sdirk2 => ("Sdirk2", "Sdirk2<4>"),
@@ -94,7 +95,7 @@ pub fn rust_source(scene: &Scene) -> String {
         drive_point_b,
         ..
     } = data;
-    let step = scene.run.step as f32;
+    let step = scene.controller.step as f32;
     let hash = scene_hash(scene);
     let title = title(scene);
     format!(
@@ -146,7 +147,7 @@ pub fn c_header(scene: &Scene) -> String {
         let _ = writeln!(text, "    .{name} = {value},");
     };
     let number = |value: f32| format!("{value:?}f");
-    field("step", &number(scene.run.step as f32));
+    field("step", &number(scene.controller.step as f32));
     field("mass", &number(data.mass));
     field("inertia", &list(&data.inertia_b));
     field("gravity", &list(&data.gravity_w));

@@ -3,12 +3,15 @@
 //! The command line is in [`cli`], one file a command; everything it prints is computed by the modules beside it.
 #![forbid(unsafe_code)]
 
+pub mod answer;
 pub mod audit;
 mod chart;
 pub mod cli;
 pub mod confirm;
-pub mod controlled;
+pub mod controller;
+pub mod desk;
 pub mod deviation;
+pub mod error_control;
 #[cfg(test)]
 mod example;
 pub mod export;
@@ -18,6 +21,7 @@ pub mod flash;
 pub mod force_table;
 pub mod interrupt;
 pub mod kernel_source;
+mod laws;
 mod layout;
 mod markup;
 pub mod mobility;

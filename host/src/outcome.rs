@@ -3,11 +3,19 @@
 use serde::Serialize;
 use slipfit_core::drive::Drive;
 
+use crate::scene::RunSpec;
+
 /// Speed (m/s) whose last upward crossing is the breakaway. Bursts of released compression stay below it.
 pub const BREAKAWAY_SPEED: f64 = 0.2e-3;
 
 /// Length (s) of the end of a run over which a force must be steady to count as settled.
 pub const SETTLED_WINDOW: f64 = 0.020;
+
+/// Share of the commanded speed from which a unit runs.
+pub const RUNS: f64 = 0.5;
+
+/// Share of the commanded speed below which it is jammed.
+pub const JAMMED: f64 = 0.01;
 
 /// A run sampled at equal intervals, SI units. All vectors have the same length.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -24,13 +32,21 @@ pub struct Trajectory {
     pub y: Vec<f64>,
     /// Displacement of the centre of mass along z (m).
     pub z: Vec<f64>,
-    /// The greatest residual of any step (N·s).
-    pub worst_residual: f64,
 }
 
 impl Trajectory {
+    /// Adds a sample at time `t` (s): velocity along z (m/s), displacements across, up and along z (m), and force (N).
+    pub fn push(&mut self, t: f64, [vz, x, y, z]: [f64; 4], force: f64) {
+        self.t.push(t);
+        self.vz.push(vz);
+        self.force.push(force);
+        self.x.push(x);
+        self.y.push(y);
+        self.z.push(z);
+    }
+
     /// The greatest difference of the drive force from the time `from` (s) on, over the greatest force of `other`, which is
-    /// sampled at the same times.
+    /// sampled at the same times. Where one of them ends earlier, the rest does not count.
     pub fn greatest_difference(&self, other: &Self, from: f64) -> f64 {
         let peak = other.force.iter().fold(f64::MIN_POSITIVE, |most, force| most.max(force.abs()));
         let late = self.t.iter().zip(self.force.iter().zip(&other.force)).filter(|(t, _)| **t >= from - 1e-9);
@@ -48,7 +64,7 @@ pub enum Verdict {
     Crawls,
     /// Below 1 %.
     Jammed,
-    /// The run ends before the ramp does, nothing is commanded, or a run at half the step says otherwise.
+    /// The run ends before the ramp does, nothing is commanded, or a finer run says otherwise.
     Undecided,
 }
 
@@ -63,7 +79,16 @@ impl std::fmt::Display for Verdict {
     }
 }
 
-/// Figures of one unit. Speeds and forces count along the commanded direction.
+/// When and where something happens on the way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Moment {
+    /// Time (s).
+    pub t: f64,
+    /// Travel (m) along the drive's direction.
+    pub z: f64,
+}
+
+/// Figures of one unit. Speeds, forces and travel count along the commanded direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Outcome {
     /// Breakaway time (s): the last upward crossing of 0.2 mm/s after the ramp's start; `None` if there is none.
@@ -74,84 +99,159 @@ pub struct Outcome {
     pub settled_force: Option<f64>,
     /// Velocity at the end (m/s).
     pub final_velocity: f64,
-    /// The verdict.
+    /// The end of the run: at the stroke's end, or when its time is over.
+    pub end: Moment,
+    /// Whether the run came to the end of the stroke; `None` where the scene states no stroke.
+    pub stroke_reached: Option<bool>,
+    /// From where on the unit is slower than half of the command, if it is so at the end and was faster before.
+    pub slows: Option<Moment>,
+    /// From where on it is slower than 1 % of the command, likewise.
+    pub stops: Option<Moment>,
+    /// Where the slide tips: the first keeper wall that meets its pin after the ramp's start, having been free until then.
+    pub tips: Option<Moment>,
+    /// The verdict, at the end.
     pub verdict: Verdict,
 }
 
-/// Watches a run step by step and keeps its figures, not the run.
+/// An instant of a run. Velocity, force and travel along the frame's z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// Time (s).
+    pub t: f64,
+    /// Velocity (m/s).
+    pub vz: f64,
+    /// Drive force (N).
+    pub force: f64,
+    /// Displacement (m).
+    pub z: f64,
+}
+
+/// Watches a run instant by instant and keeps its figures, not the run.
 #[derive(Clone, Debug)]
 pub struct Observer {
     drive: Drive<f64>,
-    window_start: f64,
-    last: Option<(f64, f64)>,
+    run: RunSpec,
+    last: Option<Instant>,
     breakaway: Option<f64>,
     peak: Option<f64>,
-    window: Option<Window>,
+    /// Below which the unit was seen last: half of the command, and 1 % of it.
+    below: [Below; 2],
+    tips: Option<Moment>,
+    /// Times and forces of the last [`SETTLED_WINDOW`].
+    window: std::collections::VecDeque<(f64, f64)>,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Window {
-    least: f64,
-    greatest: f64,
-    sum: f64,
-    count: f64,
+/// Whether a unit is slower than a share of its command, and since when.
+#[derive(Clone, Copy, Debug, Default)]
+struct Below {
+    was_above: bool,
+    since: Option<Moment>,
+}
+
+impl Below {
+    fn observe(&mut self, is_below: bool, at: Moment) {
+        if !is_below {
+            *self = Self { was_above: true, since: None };
+        } else if self.was_above && self.since.is_none() {
+            self.since = Some(at);
+        }
+    }
 }
 
 impl Observer {
-    /// For a run of `duration` (s) under `drive`.
-    pub fn new(drive: Drive<f64>, duration: f64) -> Self {
-        // A hair early, so that rounding of the time cannot cost the first sample of the window.
-        let window_start = duration - SETTLED_WINDOW * (1.0 + 1e-9);
-        Self { drive, window_start, last: None, breakaway: None, peak: None, window: None }
+    /// For a `run` under `drive`.
+    pub fn new(drive: Drive<f64>, run: RunSpec) -> Self {
+        let below = [Below::default(); 2];
+        let window = std::collections::VecDeque::new();
+        Self { drive, run, last: None, breakaway: None, peak: None, below, tips: None, window }
     }
 
-    /// 1 or −1: the direction of the command. Speeds and forces count along it.
+    /// 1 or −1: the direction of the command. Speeds, forces and travel count along it.
     fn along(&self) -> f64 {
         if self.drive.speed < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Takes note of the time `t` (s), the velocity `vz` (m/s) and the drive force (N). Times ascend.
-    pub fn observe(&mut self, t: f64, vz: f64, force: f64) {
-        let (vz, force) = (vz * self.along(), force * self.along());
+    /// Whether a slide displaced by `z` (m) has come to the end of the stroke.
+    pub fn is_at_end(&self, z: f64) -> bool {
+        self.run.stroke.is_some_and(|stroke| z * self.along() >= stroke)
+    }
+
+    /// Takes note of an instant. Times ascend.
+    pub fn observe(&mut self, at: Instant) {
+        let along = self.along();
+        let now = Instant { vz: at.vz * along, force: at.force * along, z: at.z * along, ..at };
+        let Instant { t, vz, force, z } = now;
         if t >= self.drive.ramp_start {
-            if let Some((before, speed)) = self.last
-                && speed < BREAKAWAY_SPEED
+            if let Some(before) = self.last
+                && before.t >= self.drive.ramp_start
+                && before.vz < BREAKAWAY_SPEED
                 && vz >= BREAKAWAY_SPEED
             {
-                self.breakaway = Some(before + (t - before) * (BREAKAWAY_SPEED - speed) / (vz - speed));
+                self.breakaway = Some(before.t + (t - before.t) * (BREAKAWAY_SPEED - before.vz) / (vz - before.vz));
             }
-            self.last = Some((t, vz));
             self.peak = Some(self.peak.map_or(force, |peak| peak.max(force)));
+            let command = self.drive.command(t) * along;
+            for (below, share) in self.below.iter_mut().zip([RUNS, JAMMED]) {
+                // A release burst is no motion.
+                let is_below = vz < (share * command).max(BREAKAWAY_SPEED);
+                below.observe(is_below, Moment { t, z });
+            }
         }
-        if t >= self.window_start {
-            let so_far = self.window.unwrap_or(Window { least: force, greatest: force, sum: 0.0, count: 0.0 });
-            self.window = Some(Window {
-                least: so_far.least.min(force),
-                greatest: so_far.greatest.max(force),
-                sum: so_far.sum + force,
-                count: so_far.count + 1.0,
-            });
+        self.last = Some(now);
+        self.window.push_back((t, force));
+        // A hair early, so that rounding of the time cannot cost the first sample of the window.
+        while self.window.front().is_some_and(|first| first.0 < t - SETTLED_WINDOW * (1.0 + 1e-9)) {
+            self.window.pop_front();
         }
     }
 
-    /// The figures of a run that ended at `t` (s) with `vz` (m/s).
-    pub fn outcome(&self, t: f64, vz: f64) -> Outcome {
-        let settled_force = self.window.and_then(|window| {
-            let mean = window.sum / window.count;
-            (window.greatest - window.least < 0.01 * mean.abs()).then_some(mean)
-        });
-        let (vz, command) = (vz * self.along(), self.drive.speed.abs());
+    /// Takes note that the slide tips at time `t` (s), displaced by `z` (m). The first time counts.
+    pub fn tips(&mut self, t: f64, z: f64) {
+        let z = z * self.along();
+        self.tips.get_or_insert(Moment { t, z });
+    }
+
+    /// The mean force (N) over the window, if it varies by less than 1 %.
+    fn settled(&self) -> Option<f64> {
+        let forces = || self.window.iter().map(|(_, force)| *force);
+        let (least, greatest) = (forces().reduce(f64::min)?, forces().reduce(f64::max)?);
+        let pairs = || self.window.iter().zip(self.window.iter().skip(1));
+        let duration: f64 = pairs().map(|(one, next)| next.0 - one.0).sum();
+        let sum: f64 = pairs().map(|(one, next)| (next.0 - one.0) * (one.1 + next.1) / 2.0).sum();
+        let mean = if duration > 0.0 { sum / duration } else { least };
+        (greatest - least < 0.01 * mean.abs()).then_some(mean)
+    }
+
+    /// The figures of the run, which ended with the last instant observed.
+    pub fn outcome(&self) -> Outcome {
+        let Instant { t, vz, z, .. } = self.last.unwrap_or(Instant { t: 0.0, vz: 0.0, force: 0.0, z: 0.0 });
+        let is_at_end = self.run.stroke.map(|stroke| z >= stroke);
+        let command = self.drive.command(t) * self.along();
         let share = vz / command;
-        let verdict = if t < self.drive.ramp_end || command == 0.0 {
+        // At the stroke's end what the command is by then counts.
+        let over = t >= self.drive.ramp_end || is_at_end == Some(true);
+        let verdict = if !over || command <= 0.0 {
             Verdict::Undecided
-        } else if share >= 0.5 {
+        } else if share >= RUNS {
             Verdict::Runs
-        } else if share >= 0.01 {
+        } else if share >= JAMMED {
             Verdict::Crawls
         } else {
             Verdict::Jammed
         };
-        Outcome { breakaway: self.breakaway, peak_force: self.peak, settled_force, final_velocity: vz, verdict }
+        let [slows, stops] = self.below.map(|below| below.since.filter(|_| over));
+        Outcome {
+            breakaway: self.breakaway,
+            peak_force: self.peak,
+            settled_force: self.settled(),
+            final_velocity: vz,
+            end: Moment { t, z },
+            stroke_reached: is_at_end,
+            slows,
+            stops,
+            tips: self.tips,
+            verdict,
+        }
     }
 }
 
@@ -160,15 +260,22 @@ mod tests {
     use super::*;
     use slipfit_core::Vector3;
 
-    fn observe(speed: impl Fn(f64) -> f64, duration: f64) -> Outcome {
+    fn run(duration: f64, stroke: Option<f64>) -> RunSpec {
+        RunSpec { duration, stroke, error: 1e-6 }
+    }
+
+    /// The outcome of a slide with this `speed` over time, seen every `every` (s).
+    fn observe(speed: impl Fn(f64) -> f64, duration: f64, every: f64) -> Outcome {
         let drive = Drive { gain: 40.0, ramp_start: 0.05, ramp_end: 1.0, speed: 0.1, point_b: Vector3::zeros() };
-        let mut observer = Observer::new(drive, duration);
-        let steps = (duration * 1e4).round() as u32;
+        let mut observer = Observer::new(drive, run(duration, None));
+        let steps = (duration / every).round() as u32;
+        let mut z = 0.0;
         for k in 0..=steps {
-            let t = f64::from(k) * 1e-4;
-            observer.observe(t, speed(t), drive.force(t, speed(t)));
+            let t = f64::from(k) * every;
+            z += speed(t) * every;
+            observer.observe(Instant { t, vz: speed(t), force: drive.force(t, speed(t)), z });
         }
-        observer.outcome(duration, speed(duration))
+        observer.outcome()
     }
 
     #[test]
@@ -180,26 +287,64 @@ mod tests {
             t if t > 0.7 => 0.05 * (t - 0.7),
             _ => 0.0,
         };
-        let outcome = observe(speed, 1.5);
+        let outcome = observe(speed, 1.5, 1e-4);
         assert!((outcome.breakaway.unwrap() - 0.704).abs() < 1e-9, "{outcome:?}");
-        assert_eq!(observe(|_| 0.0, 1.5).breakaway, None);
+        assert_eq!(observe(|_| 0.0, 1.5, 1e-4).breakaway, None);
     }
 
     #[test]
     fn verdicts_follow_the_share_of_the_commanded_speed() {
         for (v, verdict) in [(0.05, Verdict::Runs), (0.049, Verdict::Crawls), (0.001, Verdict::Crawls)] {
-            assert_eq!(observe(|_| v, 1.5).verdict, verdict);
+            assert_eq!(observe(|_| v, 1.5, 1e-4).verdict, verdict);
         }
-        assert_eq!(observe(|_| 0.000_99, 1.0).verdict, Verdict::Jammed);
-        assert_eq!(observe(|_| 0.1, 0.999).verdict, Verdict::Undecided);
+        assert_eq!(observe(|_| 0.000_99, 1.0, 1e-4).verdict, Verdict::Jammed);
+        assert_eq!(observe(|_| 0.1, 0.999, 1e-4).verdict, Verdict::Undecided);
     }
 
     #[test]
-    fn settles_only_if_steady() {
-        let steady = observe(|_| 0.0, 1.5);
-        assert!((steady.settled_force.unwrap() - 4.0).abs() < 1e-9);
-        assert_eq!(steady.peak_force, Some(4.0));
-        assert_eq!(observe(|t| 0.01 * t, 0.5).settled_force, None);
-        assert_eq!(observe(|_| 0.0, 0.04).peak_force, None);
+    fn settles_only_if_steady_however_often_it_is_seen() {
+        for every in [1e-4, 3e-3, 7e-3] {
+            let steady = observe(|_| 0.0, 1.5, every);
+            assert!((steady.settled_force.unwrap() - 4.0).abs() < 1e-9, "{every}: {steady:?}");
+            assert_eq!(steady.peak_force, Some(4.0));
+            assert_eq!(observe(|t| 0.01 * t, 0.5, every).settled_force, None);
+        }
+        assert_eq!(observe(|_| 0.0, 0.04, 1e-4).peak_force, None);
+    }
+
+    #[test]
+    fn tells_where_a_unit_slows_and_stops() {
+        // At full speed until 1.2 s, then ever slower, and still from 1.4 s on.
+        let speed = |t: f64| match t {
+            t if t < 1.0 => 0.1 * t,
+            t if t < 1.2 => 0.1,
+            t if t < 1.4 => 0.1 * (1.4 - t) / 0.2,
+            _ => 0.0,
+        };
+        let Outcome { slows, stops, verdict, end, .. } = observe(speed, 1.5, 1e-4);
+        let (slows, stops) = (slows.unwrap(), stops.unwrap());
+        assert!((slows.t - 1.3).abs() < 2e-4 && (slows.z - 0.0775).abs() < 1e-4, "{slows:?}");
+        // 0.2 mm/s is the least speed that counts as motion, 1 % of the command is more.
+        assert!((stops.t - 1.398).abs() < 2e-4 && (stops.z - 0.08).abs() < 1e-4, "{stops:?}");
+        assert_eq!(verdict, Verdict::Jammed);
+        assert!((end.z - 0.08).abs() < 1e-4);
+        // What never moved does not stop anywhere, and what recovers does not either.
+        assert_eq!(observe(|_| 0.0, 1.5, 1e-4).stops, None);
+        let recovers = observe(|t| if (1.1..1.2).contains(&t) { 0.0 } else { 0.1 }, 1.5, 1e-4);
+        assert_eq!((recovers.slows, recovers.stops), (None, None));
+    }
+
+    #[test]
+    fn the_stroke_ends_the_run_in_either_direction() {
+        for direction in [1.0, -1.0] {
+            let speed = 0.1 * direction;
+            let drive = Drive { gain: 40.0, ramp_start: 0.0, ramp_end: 0.1, speed, point_b: Vector3::zeros() };
+            let mut observer = Observer::new(drive, run(1.0, Some(0.02)));
+            assert!(!observer.is_at_end(0.019 * direction) && observer.is_at_end(0.0201 * direction));
+            observer.observe(Instant { t: 0.2, vz: speed, force: 0.0, z: 0.02 * direction });
+            let outcome = observer.outcome();
+            assert_eq!((outcome.stroke_reached, outcome.verdict), (Some(true), Verdict::Runs));
+            assert!((outcome.end.z - 0.02).abs() < 1e-15);
+        }
     }
 }

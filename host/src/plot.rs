@@ -64,6 +64,7 @@ const INK: RGBColor = RGBColor(34, 34, 34);
 const SOFT: RGBColor = RGBColor(96, 96, 96);
 const GUIDE: RGBColor = RGBColor(150, 150, 150);
 const GRID: RGBColor = RGBColor(228, 228, 228);
+const SHADE: RGBColor = RGBColor(236, 240, 245);
 const MARK: RGBColor = RGBColor(38, 84, 124);
 /// Kinds by their number (Okabe and Ito: told apart by every eye), with the shapes of their marks.
 const KINDS: [(RGBColor, Shape); 8] = [
@@ -175,6 +176,12 @@ fn draw_panel(root: &Area, area: &Area, panel: &Panel, x: &Axis, y: &Axis) -> Re
         };
         plot.draw(&PathElement::new(points, style)).map_err(backend)
     };
+    if let (Some((first, _)), Some((last, _))) = (panel.shade.first(), panel.shade.last()) {
+        let height = |share: f64| y.low + share * (y.high - y.low);
+        let outline = panel.shade.iter().map(|(x, share)| (*x, height(*share)));
+        let outline = std::iter::once((*first, y.low)).chain(outline).chain([(*last, y.low)]).collect::<Vec<_>>();
+        plot.draw(&Polygon::new(outline, SHADE.filled())).map_err(backend)?;
+    }
     let levels: Vec<&Series> = panel.series.iter().filter(|series| series.level().is_some()).collect();
     let chosen = chosen(&levels.iter().filter_map(|series| series.level()).collect::<Vec<_>>(), LABELLED);
     let colours = Colours::over(&levels);

@@ -1,9 +1,33 @@
-//! The fixed-step schemes a scene can ask for, with their numbers of passes.
+//! What a controller can compute with: fixed-step schemes with their numbers of passes, and number types.
 
 use clap::{ValueEnum, builder::PossibleValue};
 use slipfit_core::integrator::{
-    Extrapolated, ImplicitEuler, Integrator, Rodas3, RungeKutta4, Sdirk2, SemiImplicitEuler,
+    Extrapolated, ImplicitEuler, Integrator, Rodas3, Rodas4, RungeKutta4, Sdirk2, SemiImplicitEuler,
 };
+
+/// The number type of a fixed-step run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ScalarKind {
+    /// Single precision, the controller's.
+    #[default]
+    F32,
+    /// Double precision.
+    F64,
+}
+
+impl ScalarKind {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::F32, Self::F64];
+
+    /// Its name in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
 
 /// A scheme by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +38,8 @@ pub enum IntegratorKind {
     RungeKutta4,
     /// Third order, linearly implicit.
     Rodas3,
+    /// Fourth order, linearly implicit.
+    Rodas4,
     /// First order, one Newton pass.
     LinearlyImplicitEuler,
     /// First order, four Newton passes.
@@ -35,12 +61,13 @@ pub trait IntegratorVisitor {
 
 impl IntegratorKind {
     /// All of them, the cheapest step first.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::SemiImplicitEuler,
         Self::RungeKutta4,
         Self::LinearlyImplicitEuler,
         Self::Rodas3,
         Self::ImplicitEuler,
+        Self::Rodas4,
         Self::Sdirk2,
         Self::Extrapolated,
     ];
@@ -51,6 +78,7 @@ impl IntegratorKind {
             Self::SemiImplicitEuler => visitor.visit::<SemiImplicitEuler>(),
             Self::RungeKutta4 => visitor.visit::<RungeKutta4>(),
             Self::Rodas3 => visitor.visit::<Rodas3>(),
+            Self::Rodas4 => visitor.visit::<Rodas4>(),
             Self::LinearlyImplicitEuler => visitor.visit::<ImplicitEuler<1>>(),
             Self::ImplicitEuler => visitor.visit::<ImplicitEuler<4>>(),
             Self::Sdirk2 => visitor.visit::<Sdirk2<4>>(),

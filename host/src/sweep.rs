@@ -10,7 +10,7 @@ use crate::{
     confirm::confirmed,
     outcome::{Outcome, Trajectory},
     scene::Scene,
-    simulate::{Settings, SimulateError, simulate},
+    simulate::{Run, Settings, SimulateError, Solved, simulate},
     trust::Trust,
 };
 
@@ -21,9 +21,11 @@ pub struct Level {
     pub n: f64,
     /// The run, sampled.
     pub trajectory: Trajectory,
-    /// Its figures, the verdict confirmed at half the step.
+    /// Its figures, the verdict confirmed by a better run.
     pub outcome: Outcome,
-    /// What the run says about its step.
+    /// What computed it.
+    pub solved: Solved,
+    /// How far the run can be trusted.
     pub trust: Trust,
     /// Class of each gap in the order of Table 2; `None` where there is no contact.
     pub classes: [Option<GapClass>; CONTACTS],
@@ -49,14 +51,24 @@ pub fn classes(gaps: &[f64; CONTACTS]) -> [Option<GapClass>; CONTACTS] {
     gaps.map(|gap| (gap < ABSENT / 2.0).then(|| GapClass::of(gap)))
 }
 
-/// Runs one unit, and once more with half the step where [`confirmed`] does.
+/// Runs one unit, and once more as [`confirmed`] does.
 ///
 /// # Errors
 /// See [`SimulateError`].
 pub fn level(scene: &Scene, n: f64, settings: &Settings) -> Result<Level, SimulateError> {
     let gaps = scene.gaps_at(&[n; CONTACTS]);
     let run = confirmed(scene, &gaps, settings, simulate(scene, &gaps, settings)?)?;
-    Ok(Level { n, trajectory: run.trajectory, outcome: run.outcome, trust: run.trust, classes: classes(&gaps) })
+    let Run { trajectory, outcome, solved, trust, .. } = run;
+    Ok(Level { n, trajectory, outcome, solved, trust, classes: classes(&gaps) })
+}
+
+/// What a sweep keeps of each run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keep {
+    /// Figures and samples.
+    Samples,
+    /// Figures alone.
+    Figures,
 }
 
 /// Runs every level of `levels`, on all threads of the current pool; `done` is called after each. The result does
@@ -68,14 +80,18 @@ pub fn sweep(
     scene: &Scene,
     levels: &[f64],
     settings: &Settings,
+    keep: Keep,
     done: impl Fn() + Sync,
 ) -> Result<Sweep, SimulateError> {
     let levels: Vec<Result<Level, SimulateError>> = levels
         .par_iter()
         .map(|&n| {
-            let level = level(scene, n, settings);
+            let mut level = level(scene, n, settings)?;
+            if keep == Keep::Figures {
+                level.trajectory = Trajectory::default();
+            }
             done();
-            level
+            Ok(level)
         })
         .collect();
     Ok(Sweep { levels: levels.into_iter().collect::<Result<_, _>>()? })

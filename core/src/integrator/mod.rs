@@ -6,6 +6,8 @@
 mod extrapolated;
 mod implicit_euler;
 mod rodas3;
+mod rodas4;
+mod rosenbrock;
 mod runge_kutta_4;
 mod sdirk2;
 mod semi_implicit_euler;
@@ -13,6 +15,7 @@ mod semi_implicit_euler;
 pub use extrapolated::Extrapolated;
 pub use implicit_euler::ImplicitEuler;
 pub use rodas3::Rodas3;
+pub use rodas4::Rodas4;
 pub use runge_kutta_4::RungeKutta4;
 pub use sdirk2::Sdirk2;
 pub use semi_implicit_euler::SemiImplicitEuler;

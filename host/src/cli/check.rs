@@ -6,10 +6,10 @@ use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
-use super::{Failure, SceneArguments, print, print_json, text_table};
+use super::{Failure, JSON_VERSION, SceneArguments, print, print_json, text_table, warn};
 use crate::{
     mobility::{contacts, degrees_of_freedom, rank_of_normals},
-    number::{fixed, level, or_dash},
+    number::{fixed, level},
     product::Product,
     scene::Scene,
     self_locking::{DriveSide, Guide, guide},
@@ -30,6 +30,7 @@ pub(super) struct Arguments {
 
 #[derive(Serialize)]
 struct Findings {
+    json_version: u32,
     title: String,
     parts: u32,
     n_cl: u32,
@@ -47,6 +48,7 @@ struct Findings {
 /// A product without a slide.
 #[derive(Serialize)]
 struct ProductFindings {
+    json_version: u32,
     title: String,
     measures: Vec<Nominal>,
     warnings: Vec<String>,
@@ -98,11 +100,22 @@ impl Arguments {
             slide.check_gaps(&[self.n; CONTACTS]).map_err(|error| Failure::Input(format!("--n: {error}")))?;
             let mut findings = find(slide, self.n);
             findings.warnings.extend(of_product);
-            return if self.scene.json { print_json(&findings) } else { print(&describe(&findings)) };
+            if self.scene.json {
+                return print_json(&findings);
+            }
+            print(&describe(&findings))?;
+            warn(&findings.warnings);
+            return Ok(());
         }
         let measures = file.product.map(nominal).unwrap_or_default();
-        let findings = ProductFindings { title: file.title, measures, warnings: of_product };
-        if self.scene.json { print_json(&findings) } else { print(&describe_product(&findings)) }
+        let findings =
+            ProductFindings { json_version: JSON_VERSION, title: file.title, measures, warnings: of_product };
+        if self.scene.json {
+            return print_json(&findings);
+        }
+        print(&describe_product(&findings))?;
+        warn(&findings.warnings);
+        Ok(())
     }
 }
 
@@ -120,11 +133,7 @@ fn nominal(product: Product) -> Vec<Nominal> {
 fn describe_product(findings: &ProductFindings) -> String {
     let row = |measure: &Nominal| vec![measure.name.clone(), fixed(measure.nominal, 4), measure.unit.into()];
     let rows: Vec<_> = findings.measures.iter().map(row).collect();
-    let mut text = format!("{}\n\n{}", findings.title, text_table(&["measure", "nominal", "unit"], &rows));
-    for warning in &findings.warnings {
-        let _ = writeln!(text, "\nwarning: {warning}");
-    }
-    text
+    format!("{}\n\n{}", findings.title, text_table(&["measure", "nominal", "unit"], &rows))
 }
 
 fn find(scene: &Scene, n: f64) -> Findings {
@@ -137,6 +146,7 @@ fn find(scene: &Scene, n: f64) -> Findings {
     let guide = guide(scene, n);
     let (normal_law, friction_law, kernel_why) = kernel(scene);
     Findings {
+        json_version: JSON_VERSION,
         title: scene.title.clone(),
         parts: 2,
         n_cl,
@@ -146,7 +156,7 @@ fn find(scene: &Scene, n: f64) -> Findings {
         kernel_why,
         n,
         gaps: gap_reports(scene, &gaps),
-        warnings: warnings(scene, n_cl, guide.as_ref()),
+        warnings: warnings(n_cl, guide.as_ref()).into_iter().chain(clearance_notes(scene)).collect(),
         n_star,
         guide,
     }
@@ -168,13 +178,21 @@ fn kernel(scene: &Scene) -> (&'static str, &'static str, String) {
     (normal, friction, format!("exponent {} needs {cost}; friction: {why}", scene.contact.exponent))
 }
 
-/// What a designer should know before trusting a run.
-pub(super) fn warnings(scene: &Scene, n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
+/// What a designer should know of `scene` before trusting a run.
+pub(super) fn warnings_of(scene: &Scene) -> Vec<String> {
+    warnings(rank_of_normals(&contacts(scene)), guide(scene, 0.0).as_ref())
+}
+
+fn warnings(n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
     let mut warnings = Vec::new();
     match degrees_of_freedom(2, &[], n_cl) {
         1 => {}
-        n if n < 1 => warnings.push(format!("{n} degrees of freedom are left: the slide cannot move")),
-        n => warnings.push(format!("{n} degrees of freedom are left: more than the travel is free")),
+        n if n < 1 => warnings.push(format!(
+            "{n} degrees of freedom are left: the contacts hold the slide, so that it cannot travel; leave contacts out"
+        )),
+        n => warnings.push(format!(
+            "{n} degrees of freedom are left: more than the travel is free, so that the slide may swing or fall; add contacts"
+        )),
     }
     if let Some(guide) = guide.filter(|guide| guide.warn) {
         let critical = guide.critical_friction.unwrap_or(f64::INFINITY);
@@ -190,6 +208,12 @@ pub(super) fn warnings(scene: &Scene, n_cl: u32, guide: Option<&Guide>) -> Vec<S
             fixed(guide.drive_distance * 1e3, 1)
         ));
     }
+    warnings
+}
+
+/// Where the drawing's clearances are not those that the gaps add up to.
+pub(super) fn clearance_notes(scene: &Scene) -> Vec<String> {
+    let mut notes = Vec::new();
     if let Some(nominal) = scene.nominal_clearance {
         let pins = derived(scene, 0.0).pins;
         let across: Vec<f64> = pins.iter().filter_map(|pin| Some(pin.across?.clearance)).collect();
@@ -198,7 +222,7 @@ pub(super) fn warnings(scene: &Scene, n_cl: u32, guide: Option<&Guide>) -> Vec<S
             let [least, greatest] =
                 [f64::min, f64::max].map(|pick| sums.iter().copied().reduce(pick).unwrap_or(nominal));
             if (least - nominal).abs().max((greatest - nominal).abs()) > 0.005e-3 {
-                warnings.push(format!(
+                notes.push(format!(
                     "the drawing states a clearance of {} mm {pair}, the gaps add up to {} to {} mm: the gaps count",
                     fixed(nominal * 1e3, 2),
                     fixed(least * 1e3, 4),
@@ -207,7 +231,27 @@ pub(super) fn warnings(scene: &Scene, n_cl: u32, guide: Option<&Guide>) -> Vec<S
             }
         }
     }
-    warnings
+    notes
+}
+
+/// Whether the slide locks, in words.
+fn locking(guide: &Guide) -> String {
+    let friction = guide.friction;
+    let Some(critical) = guide.critical_friction else {
+        return "Self-locking: no, the drive passes through the guide line.".into();
+    };
+    let [critical, locks] = [fixed(critical, 4), if guide.warn { "yes" } else { "no" }.to_owned()];
+    match guide.side {
+        DriveSide::Beyond => format!(
+            "Self-locking: {locks}, the drive passes beyond the other resistances and locks where friction reaches L/(2b) = \
+             {critical}; here it is {friction}."
+        ),
+        DriveSide::Edge => format!(
+            "Self-locking: on the edge, the drive passes on the line of the other resistances; any offset outwards locks \
+             it where friction reaches L/(2b) = {critical}; here it is {friction}."
+        ),
+        DriveSide::Short => "Self-locking: no, the drive passes short of the other resistances and never locks.".into(),
+    }
 }
 
 fn describe(findings: &Findings) -> String {
@@ -227,23 +271,14 @@ fn describe(findings: &Findings) -> String {
         let _ = writeln!(text, "The product closes at n* = {}: {} {}", fixed(closing.n, 4), closing.pin, closing.pair);
     }
     if let Some(guide) = &findings.guide {
-        let case = match guide.side {
-            DriveSide::Beyond => "beyond the line of the other resistances: it locks from there on",
-            DriveSide::Edge => "on the line of the other resistances: on the edge",
-            DriveSide::Short => "short of the line of the other resistances: it never locks",
-        };
         let _ = writeln!(
             text,
-            "Guide line at x = {} mm, {} mm long, driven {} mm beside it, {case}; critical friction L/(2b) = {}, here {}",
+            "Guide line at x = {} mm, {} mm long, driven {} mm beside it.\n{}",
             fixed(guide.line_x * 1e3, 1),
             fixed(guide.length * 1e3, 1),
             fixed(guide.drive_distance * 1e3, 1),
-            or_dash(guide.critical_friction, |x| fixed(x, 4)),
-            guide.friction
+            locking(guide)
         );
-    }
-    for warning in &findings.warnings {
-        let _ = writeln!(text, "\nwarning: {warning}");
     }
     text
 }

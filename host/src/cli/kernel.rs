@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, SceneArguments, print, print_json, simulate::SchemeArguments};
+use super::{Failure, JSON_VERSION, SceneArguments, print, print_json, simulate::ControllerArguments};
 use crate::{
     files,
     force_table::scene_hash,
@@ -21,18 +21,19 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "FILE", default_value = "scene.rs")]
     output: PathBuf,
     #[command(flatten)]
-    scheme: SchemeArguments,
+    controller: ControllerArguments,
 }
 
 #[derive(Serialize)]
 struct Report {
+    json_version: u32,
     file: String,
     scene_hash: String,
 }
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let scene = self.scene.load(&self.scheme.overrides())?;
+        let scene = self.scene.load(&self.controller.overrides())?;
         let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let text = match extension.as_str() {
             "rs" => rust_source(&scene),
@@ -48,7 +49,7 @@ impl Arguments {
         files::write(&self.output, text.as_bytes())?;
         let (file, scene_hash) = (self.output.display().to_string(), format!("{:016x}", scene_hash(&scene)));
         if self.scene.json {
-            print_json(&Report { file, scene_hash })
+            print_json(&Report { json_version: JSON_VERSION, file, scene_hash })
         } else {
             print(&format!("{file}, scene hash {scene_hash}"))
         }

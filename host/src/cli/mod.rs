@@ -49,8 +49,8 @@ Examples:
   slipfit check my-slide.toml              is the scene sound, when does a gap close
   slipfit tolerance three-part-stack       how a product's measures vary, and what from
   slipfit simulate --n 2.5 --csv unit.csv  one unit, tighter by 2.5 sigma
-  slipfit sweep --n 0:5:0.5 --set run.duration=1500
-                                           at which n does the full stroke jam
+  slipfit sweep --stroke --n 0:5:0.5 --plot force.svg
+                                           at which n does the whole stroke jam
   slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)
   slipfit kernel -o scene.rs               the scene as a Rust constant and type for firmware";
 
@@ -91,7 +91,9 @@ impl From<SimulateError> for Failure {
     fn from(error: SimulateError) -> Self {
         match error {
             SimulateError::Parameter(_) | SimulateError::Every { .. } => Self::Input(error.to_string()),
-            SimulateError::NotFinite { .. } | SimulateError::Interrupted => Self::Work(error.into()),
+            SimulateError::NotFinite { .. } | SimulateError::Unsolved { .. } | SimulateError::Interrupted => {
+                Self::Work(error.into())
+            }
         }
     }
 }
@@ -151,6 +153,11 @@ impl SceneArguments {
             return Err(Failure::Input(format!("cannot write {}: it is the scene", output.display())));
         }
         files::check_writable(output).map_err(|error| Failure::Input(error.to_string()))
+    }
+
+    /// Whether all `outputs`, each with the option that asks for it, can be written, and none is the scene or another.
+    fn check_outputs(&self, outputs: &[(&str, &Path)]) -> Result<(), Failure> {
+        outputs.iter().try_for_each(|(_, path)| self.check_output(path))
     }
 
     /// Reads the scene file, with `options` as further settings.
@@ -237,6 +244,21 @@ fn print(text: &str) -> Result<(), Failure> {
     written.and_then(|()| out.flush()).map_err(|error| anyhow::Error::from(error).context("standard output").into())
 }
 
+/// The version of what `--json` prints: raised when a field is renamed, removed or means something else.
+const JSON_VERSION: u32 = 1;
+
+/// Tells a person of `warnings`, on standard error whatever the command.
+fn warn(warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Those of the `options` that were given, with their paths.
+fn given<'a, const N: usize>(options: [(&'a str, &'a Option<PathBuf>); N]) -> Vec<(&'a str, &'a Path)> {
+    options.into_iter().filter_map(|(name, path)| Some((name, path.as_deref()?))).collect()
+}
+
 /// Prints `value` as JSON.
 fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     print(&serde_json::to_string_pretty(value).map_err(anyhow::Error::from)?)
@@ -258,7 +280,17 @@ fn text_table(heading: &[&str], rows: &[Vec<String>]) -> String {
 
 /// Runs the command that the process was started with.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        // Help and version are asked for; a full disk must not pass unnoticed.
+        Err(asked) if !asked.use_stderr() => {
+            let mut out = std::io::stdout();
+            let text = if out.is_terminal() { asked.render().ansi().to_string() } else { asked.render().to_string() };
+            let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+            return ExitCode::from(u8::from(written.is_err()));
+        }
+        Err(wrong) => wrong.exit(),
+    };
     if let Err(error) = interrupt::install() {
         eprintln!("error: {error}");
         return ExitCode::from(1);

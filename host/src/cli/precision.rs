@@ -6,7 +6,9 @@ use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
-use super::{Failure, SceneArguments, print, print_json, progress, stability::MapArguments, text_table};
+use super::{
+    Failure, JSON_VERSION, SceneArguments, given, print, print_json, progress, stability::MapArguments, text_table,
+};
 use crate::{
     deviation::Deviation,
     export::precision_csv,
@@ -40,6 +42,7 @@ pub(super) struct Arguments {
 
 #[derive(Serialize)]
 struct Report<'a> {
+    json_version: u32,
     title: &'a str,
     n: f64,
     /// How well the truth is known, by problem (%).
@@ -60,9 +63,7 @@ impl Arguments {
         if !self.n.is_finite() {
             return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
         }
-        for path in [&self.csv, &self.plot].into_iter().flatten() {
-            self.scene.check_output(path)?;
-        }
+        self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
         if self.map.stability {
             return self.map.run(&scene, self.scene.json, self.csv.as_deref(), self.plot.as_deref());
         }
@@ -77,7 +78,7 @@ impl Arguments {
         if self.scene.json {
             let floor = |(problem, truth): &(Problem, Truth)| Floor { problem: problem.name, percent: truth.floor };
             let floors = problems.iter().map(floor).collect();
-            print_json(&Report { title: &scene.title, n: self.n, floors, points: &points })
+            print_json(&Report { json_version: JSON_VERSION, title: &scene.title, n: self.n, floors, points: &points })
         } else {
             print(&describe(&scene, self.n, &problems, &points))
         }

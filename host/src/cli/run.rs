@@ -1,4 +1,4 @@
-//! `slipfit run`: the main job, from tolerances to a flash table and a report.
+//! `slipfit run`: the main job, from tolerances to a flash table and a report. Its first lines are the answer.
 
 use std::{fmt::Write, path::PathBuf};
 
@@ -6,24 +6,29 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    DRAWING, Failure, SceneArguments, ThreadArguments, check, print, print_json, progress, refused,
+    DRAWING, Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, print, print_json, progress, refused,
     simulate::why_undecided,
-    sweep::{LevelArguments, LevelReport, for_machines, for_people},
+    sweep::{LevelArguments, LevelReport, answer, doubts, for_machines},
     table,
-    tolerance::{DEFAULT, PAPER_LEVEL},
+    tolerance::DEFAULT,
+    warn,
 };
 use crate::{
+    answer::{Range, ranges},
     export::sweep_csv,
-    figure::{figure_8, figure_9, required_force},
+    figure::{forces, velocities, verdicts},
     files,
-    force_table::{self, Demand},
-    mobility::{contacts, rank_of_normals},
+    force_table::{self, Demand, ForceTable},
+    number::{fixed, three_digits},
     outcome::Verdict,
     plot::PlotError,
     product::Product,
     report::{Figure, Flash, Production, ReportInput, report},
+    scene::Scene,
     self_locking::guide,
-    simulate::ScalarKind,
+    simulate::Settings,
+    sweep::{Keep, Sweep, sweep},
+    table2::derived,
     tolerance::{
         analysis::conclude,
         picture::pictures,
@@ -33,21 +38,19 @@ use crate::{
     },
 };
 
-/// What is written of the slide.
-const OUTPUTS: [&str; 5] = ["table.bin", "sweep.csv", "fig8.svg", "fig9.svg", "report.html"];
 /// The statistics of the product's measures.
 const MEASURES: &str = "tolerance.csv";
 
-/// The main job: tolerances, sweep over n, flash table, figures, report.
+/// The main job: does the product work, from which tolerance level on not, and what force does it take?
 ///
-/// Starts from the drawing of the paper's slide unless a scene is given. Of a scene with a product, the tolerance analysis is
-/// written, too: tolerance.csv, contributors.svg, correlation.svg and a histogram for every measure.
+/// Starts from the drawing of the paper's slide unless a scene is given. Analyses the tolerances, simulates the opening and
+/// the whole stroke at every level, makes the flash table and a page with all pictures.
 #[derive(Args)]
 #[command(mut_arg("scene", |arg| arg.default_value(DRAWING)))]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Folder for table.bin, sweep.csv, fig8.svg, fig9.svg, report.html and what the product's analysis gives.
+    /// Folder for report.html, table.bin, sweep.csv, the figures and what the product's analysis gives.
     #[arg(long, value_name = "DIR", default_value = "slipfit-out")]
     out: PathBuf,
     #[command(flatten)]
@@ -58,14 +61,33 @@ pub(super) struct Arguments {
 
 #[derive(Serialize)]
 struct Report {
+    json_version: u32,
     title: String,
     files: Vec<String>,
     table_bytes: usize,
     worst_force_error_n: f64,
+    /// The answer: neighbouring levels with the same verdict.
+    ranges: Vec<Range>,
+    /// The stroke, or the run where no stroke is stated.
     levels: Vec<LevelReport>,
     /// How the product's measures vary, as `slipfit tolerance --json` shows it.
     tolerance: Option<Measures>,
     warnings: Vec<String>,
+}
+
+/// All that was simulated.
+struct Simulated {
+    table: ForceTable,
+    opening: Sweep,
+    /// Where the scene states a stroke that the opening does not come to the end of.
+    stroke: Option<Sweep>,
+}
+
+impl Simulated {
+    /// What verdicts are given by.
+    fn judged(&self) -> &Sweep {
+        self.stroke.as_ref().unwrap_or(&self.opening)
+    }
 }
 
 impl Arguments {
@@ -74,77 +96,152 @@ impl Arguments {
         let (scene, product) = self.scene.load_with_product(&overrides)?;
         force_table::check(&scene, Demand::Full).map_err(|error| Failure::Input(error.to_string()))?;
         let production = product.as_ref().map(|product| self.analyse(&scene.title, product)).transpose()?;
-        let of_production = production.iter().flat_map(|production| {
-            [MEASURES].into_iter().chain(production.pictures.iter().map(|picture| picture.file.as_str()))
-        });
+        let made = !self.out.exists();
         files::prepare_folder(&self.out).map_err(refused)?;
-        let paths: Vec<_> = OUTPUTS.into_iter().chain(of_production).map(|name| self.out.join(name)).collect();
-        for path in &paths {
-            self.scene.check_output(path)?;
+        let done = self.fill(&scene, product, production);
+        if made && done.is_err() {
+            // Only if nothing was written.
+            let _ = std::fs::remove_dir(&self.out);
         }
+        done
+    }
 
-        let bar = progress("simulating", force_table::levels(&scene.sweep).count);
-        let made = self.threads.install(|| force_table::make(&scene, ScalarKind::F64, Demand::Full, || bar.inc(1)))?;
-        bar.finish_and_clear();
-        let (table, sweep) = made?;
-        let mut warnings = check::warnings(&scene, rank_of_normals(&contacts(&scene)), guide(&scene, 0.0).as_ref());
+    fn fill(&self, scene: &Scene, product: Option<Product>, production: Option<Production>) -> Result<(), Failure> {
+        let simulated = self.simulate(scene)?;
+        let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings));
-        if sweep.levels.iter().all(|level| level.outcome.verdict == Verdict::Undecided) {
-            warnings.push(format!("no level comes to a verdict{}", why_undecided(&scene, Verdict::Undecided)));
+        warnings.extend(doubts(simulated.judged()));
+        let undecided = |level: &crate::sweep::Level| level.outcome.verdict == Verdict::Undecided;
+        if simulated.judged().levels.iter().any(undecided) {
+            warnings.push(format!("not every level comes to a verdict{}", why_undecided(scene, Verdict::Undecided)));
+        }
+        if simulated.stroke.is_none() && scene.run.stroke.is_none() {
+            warnings.push(
+                "the scene states no stroke, so that its verdicts depend on run.duration; state one, such as run.stroke = 80"
+                    .into(),
+            );
         }
 
-        let captioned = |caption: &str, svg: Result<String, PlotError>| -> Result<Figure, Failure> {
-            Ok(Figure { caption: caption.into(), svg: svg.map_err(anyhow::Error::from)? })
-        };
-        let mut figures = vec![
-            captioned("Velocity of the slide over time (Fig. 8 of the paper).", figure_8(&sweep, &scene.title))?,
-            captioned("Drive force over time (Fig. 9 of the paper).", figure_9(&sweep, &scene.title))?,
-        ];
-        if sweep.levels.iter().any(|level| level.outcome.peak_force.is_some()) {
-            let caption = "Peak drive force and breakaway over the level.";
-            figures.push(captioned(caption, required_force(&sweep, &scene.title))?);
-        }
-        let [worst_force_error, worst_velocity_error] = table.worst_error;
+        let answer = self.answer(scene, &simulated, production.as_ref());
+        let figures = figures(scene, &simulated)?;
+        let ForceTable { worst_error_in_use: [worst_force_error, worst_velocity_error], .. } = simulated.table;
+        let mut notes = warnings.clone();
+        notes.extend(check::clearance_notes(scene));
         let page = report(&ReportInput {
-            scene: &scene,
-            sweep: &sweep,
-            figures: &figures,
-            n: PAPER_LEVEL,
-            flash: Some(Flash { bytes: table.bytes.len(), worst_force_error, worst_velocity_error }),
+            scene,
+            sweep: simulated.judged(),
+            answer: &answer,
+            figures: &figures.iter().map(|(_, figure)| figure.clone()).collect::<Vec<_>>(),
+            n: derived(scene, 0.0).tightest().map_or(0.0, |tightest| (tightest.n * 100.0).round() / 100.0),
+            flash: Some(Flash { bytes: simulated.table.bytes.len(), worst_force_error, worst_velocity_error }),
             production: production.as_ref(),
-            notes: &warnings,
+            notes: &notes,
         });
-        let [velocity, force] = [&figures[0], &figures[1]].map(|figure| figure.svg.clone().into_bytes());
-        let mut contents = vec![table.bytes.clone(), sweep_csv(&scene, &sweep)?, velocity, force, page.into_bytes()];
+        let mut files: Vec<(String, Vec<u8>)> = vec![
+            ("report.html".into(), page.into_bytes()),
+            ("table.bin".into(), simulated.table.bytes.clone()),
+            ("sweep.csv".into(), sweep_csv(scene, simulated.judged())?),
+        ];
+        files.extend(figures.into_iter().map(|(name, figure)| (name.to_owned(), figure.svg.into_bytes())));
         if let Some(Production { report, pictures }) = &production {
-            contents.push(measures_csv(report)?);
-            contents.extend(pictures.iter().map(|picture| picture.svg.clone().into_bytes()));
+            files.push((MEASURES.into(), measures_csv(report)?));
+            files.extend(pictures.iter().map(|picture| (picture.file.clone(), picture.svg.clone().into_bytes())));
         }
-        for (path, bytes) in paths.iter().zip(&contents) {
+        warnings.extend(self.strangers(&files));
+        let paths: Vec<_> = files.iter().map(|(name, _)| self.out.join(name)).collect();
+        let named: Vec<_> = paths.iter().map(|path| ("--out", path.as_path())).collect();
+        self.scene.check_outputs(&named)?;
+        for (path, (_, bytes)) in paths.iter().zip(&files) {
             files::write(path, bytes)?;
         }
-        let files: Vec<_> = paths.iter().map(|path| path.display().to_string()).collect();
         if self.scene.json {
             return print_json(&Report {
+                json_version: JSON_VERSION,
                 title: scene.title.clone(),
-                files,
-                table_bytes: table.bytes.len(),
-                worst_force_error_n: table.worst_error[0],
-                levels: for_machines(&scene, &sweep),
+                files: paths.iter().map(|path| path.display().to_string()).collect(),
+                table_bytes: simulated.table.bytes.len(),
+                worst_force_error_n: simulated.table.worst_error[0],
+                ranges: ranges(simulated.judged()),
+                levels: for_machines(scene, simulated.judged()),
                 tolerance: production.map(|production| production.report),
                 warnings,
             });
         }
-        let mut text = format!("{}\n\n{}\n", scene.title, for_people(&scene, &sweep));
-        let _ = writeln!(text, "{}", table::describe(&table));
-        if let Some(Production { report, .. }) = &production {
-            let _ = writeln!(text, "{} measures of {} units analysed\n", report.measures.len(), report.samples);
+        print(&format!("{}\n\n{answer}", scene.title))?;
+        warn(&warnings);
+        Ok(())
+    }
+
+    /// The opening with its table, and the stroke.
+    fn simulate(&self, scene: &Scene) -> Result<Simulated, Failure> {
+        let duration = scene.stroke_duration().filter(|duration| *duration > scene.run.duration);
+        let levels = scene.sweep.levels();
+        let opening = force_table::levels(&scene.sweep).count;
+        let bar = progress("simulating", opening + duration.map_or(0, |_| levels.len()));
+        let made = self.threads.install(|| {
+            let (table, opening) = force_table::make(scene, Demand::Full, || bar.inc(1))?;
+            let stroke = duration.map(|duration| {
+                let mut scene = scene.clone();
+                scene.run.duration = duration;
+                sweep(&scene, &levels, &Settings::desk(&scene, 1e-3), Keep::Samples, || bar.inc(1))
+            });
+            Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()? })
+        })??;
+        bar.finish_and_clear();
+        Ok(made)
+    }
+
+    /// At most fifteen lines: what the product does at which levels, what closes first and how probable that is, what to
+    /// change, and where to look.
+    fn answer(&self, scene: &Scene, simulated: &Simulated, production: Option<&Production>) -> String {
+        let mut text = answer(simulated.judged());
+        text.push('\n');
+        let derived = derived(scene, 0.0);
+        let closes = derived.tightest();
+        if let Some(tightest) = closes {
+            let (pin, direction) = (tightest.pin, tightest.direction);
+            let _ = writeln!(text, "Closes first    {pin} {direction}, at n* = {}", fixed(tightest.n, 3));
         }
-        for warning in &warnings {
-            let _ = writeln!(text, "warning: {warning}\n");
+        let sums = production.map(|production| &production.report.sums[..]).unwrap_or_default();
+        let likeliest = sums.iter().max_by(|one, other| one.model.dpm.total_cmp(&other.model.dpm));
+        if let Some(sum) = likeliest {
+            let [drawn, together] = [sum.model.dpm, sum.eq9_ppm].map(ppm);
+            let _ = writeln!(
+                text,
+                "How probable    {drawn} by the drawing ({}); {together} if its gaps move together (eq. 9)",
+                sum.name
+            );
         }
-        let _ = writeln!(text, "Wrote {}", files.join(" "));
-        print(&text)
+        let _ = writeln!(
+            text,
+            "What to change  {}",
+            advice(scene, simulated.judged(), closes.map(|at| at.pin), production)
+        );
+        let error = simulated.table.worst_error_in_use[0];
+        let _ = writeln!(
+            text,
+            "Flash table     {} bytes, {} ms, force within {} mN from the ramp's start on",
+            simulated.table.bytes.len(),
+            fixed(scene.run.duration * 1e3, 0),
+            fixed(error * 1e3, 2)
+        );
+        if let Some(warning) = table::coarse(scene, &simulated.table) {
+            let _ = writeln!(text, "                {warning}");
+        }
+        let _ = writeln!(text, "Look at         {}", self.out.join("report.html").display());
+        text
+    }
+
+    /// A warning of files in the output folder that this run did not write.
+    fn strangers(&self, files: &[(String, Vec<u8>)]) -> Option<String> {
+        let mut names: Vec<String> = std::fs::read_dir(&self.out)
+            .ok()?
+            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+            .filter(|name| !files.iter().any(|(own, _)| own == name))
+            .collect();
+        names.sort();
+        let out = self.out.display();
+        (!names.is_empty()).then(|| format!("{out} also holds what this run did not write: {}", names.join(", ")))
     }
 
     /// Draws and analyses as `slipfit tolerance` does unless it is asked for something else.
@@ -161,4 +258,65 @@ impl Arguments {
         let pictures = pictures(&report, &study, &tallies).map_err(anyhow::Error::from)?;
         Ok(Production { report, pictures })
     }
+}
+
+/// Defects per million, to three digits or as less than can matter.
+fn ppm(value: f64) -> String {
+    if value < 1e-6 { "below 1e-6 ppm".into() } else { format!("{} ppm", three_digits(value)) }
+}
+
+/// What to change, by what goes wrong at which levels.
+fn advice(scene: &Scene, sweep: &Sweep, closes: Option<&str>, production: Option<&Production>) -> String {
+    let bad = |level: &&crate::sweep::Level| matches!(level.outcome.verdict, Verdict::Crawls | Verdict::Jammed);
+    let runs = || sweep.levels.iter().filter(|level| level.outcome.verdict == Verdict::Runs);
+    let Some(worst) = sweep.levels.iter().filter(bad).min_by(|one, other| one.n.abs().total_cmp(&other.n.abs())) else {
+        return "nothing: it runs at every level".into();
+    };
+    if let Some(critical) = guide(scene, 0.0).filter(|guide| guide.warn).and_then(|guide| guide.critical_friction) {
+        return format!(
+            "bring friction below {} (it is {}), lengthen the guide, or drive nearer to it: it self-locks",
+            fixed(critical, 3),
+            scene.friction.coefficient()
+        );
+    }
+    let looser = runs().next().is_none_or(|first| worst.n < first.n);
+    let side = if looser { "loose" } else { "tight" };
+    let gap = |measure: &&crate::tolerance::report::MeasureReport| closes.is_some_and(|pin| measure.name.contains(pin));
+    let widest = production.and_then(|production| {
+        let measures = production.report.measures.iter().filter(gap);
+        measures.max_by(|one, other| one.sd.total_cmp(&other.sd))?.contributors.first()
+    });
+    match widest {
+        Some(widest) => {
+            format!("{side} units go wrong first, from n = {}; start with the tolerance of {}", worst.n, widest.name)
+        }
+        None => format!("{side} units go wrong first, from n = {}", worst.n),
+    }
+}
+
+/// The pictures of the page and the files they go to.
+fn figures(scene: &Scene, simulated: &Simulated) -> Result<Vec<(&'static str, Figure)>, Failure> {
+    let captioned = |caption: &str, svg: Result<String, PlotError>| -> Result<Figure, Failure> {
+        Ok(Figure { caption: caption.into(), svg: svg.map_err(anyhow::Error::from)? })
+    };
+    let title = &scene.title;
+    let mut figures = Vec::new();
+    if simulated.judged().levels.iter().any(|level| level.outcome.peak_force.is_some()) {
+        let caption = "Each mark is a tolerance level: its shape says whether the slide runs, its height what force that takes. \
+                       Behind: how many units of the production are drawn at that level, if its gaps move together.";
+        figures.push(("verdict.svg", captioned(caption, verdicts(simulated.judged(), title))?));
+    }
+    let caption = "The opening: how fast the slide moves while the drive starts. Compressed gaps are released in the first \
+                   milliseconds; from the ramp's start on the slide breaks away, the earlier the less it takes.";
+    figures.push(("opening-velocity.svg", captioned(caption, velocities(&simulated.opening, title))?));
+    let caption = "The opening: the force of the drive, which the flash table holds.";
+    figures.push(("opening-force.svg", captioned(caption, forces(&simulated.opening, title))?));
+    if let Some(stroke) = &simulated.stroke {
+        let caption = "The whole stroke: how fast the slide moves. A line that falls away is a slide that tips, slows or jams; \
+                       one that ends early has come to the end of the stroke.";
+        figures.push(("stroke-velocity.svg", captioned(caption, velocities(stroke, title))?));
+        let caption = "The whole stroke: the force of the drive. It rises where the slide is slower than commanded.";
+        figures.push(("stroke-force.svg", captioned(caption, forces(stroke, title))?));
+    }
+    Ok(figures)
 }

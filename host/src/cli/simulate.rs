@@ -7,23 +7,30 @@ use serde::Serialize;
 use slipfit_core::{clearance::GapClass, slide::CONTACTS};
 
 use super::{
-    Failure, SceneArguments,
-    check::{GapReport, gap_reports},
-    print, print_json, text_table,
+    Failure, JSON_VERSION, SceneArguments,
+    check::{self, GapReport, gap_reports},
+    given, print, print_json, text_table, warn,
 };
 use crate::{
+    answer::on_the_way,
     audit::Audit,
     confirm::confirmed,
-    export, files,
+    controller::audited,
+    export,
+    figure::unit_over_time,
+    files,
     number::{fixed, level, or_dash, ten_digits},
     outcome::{Outcome, Trajectory, Verdict},
     scene::{Override, Scene, parse_every},
-    scheme::IntegratorKind,
-    simulate::{Run, ScalarKind, Settings, audited, simulate},
+    scheme::{IntegratorKind, ScalarKind},
+    simulate::{Run, Settings, SimulateError, Solved, simulate},
     trust::Trust,
 };
 
 /// Simulates one unit: velocity and drive force over time.
+///
+/// The desk computes it by error-controlled steps and says how far the controller's fixed steps are off. With --step,
+/// --integrator, --scalar or --audit the run shown is the controller's, held against the desk's.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -32,127 +39,188 @@ pub(super) struct Arguments {
     /// right, rail, wall of each pin.
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true, default_value = "0")]
     n: Vec<f64>,
-    /// Writes t,vz,force,x,y in s, m/s, N, m, m.
+    /// Writes t,vz,force,x,y,z in s, m/s, N, m, m, m.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Draws velocity and force over time as SVG.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
     /// Interval of the samples, such as 1ms or 500us.
     #[arg(long, default_value = "1ms", allow_hyphen_values = true)]
     every: String,
-    /// Prints where the energy went: work, gains, losses, and what the scheme lost or made up.
+    /// Prints where the energy went in the controller's run: work, gains, losses, and what the scheme lost or made up.
     #[arg(long)]
     audit: bool,
     #[command(flatten)]
-    stepping: SteppingArguments,
-    /// Error-controlled steps instead of fixed ones: the error of the drive force (N) that a step may make, such as 1e-4.
-    #[arg(long, value_name = "N", conflicts_with_all = ["step", "integrator", "scalar", "audit"], allow_hyphen_values = true)]
-    error: Option<f64>,
-}
-
-/// How to step, where it differs from the scene, and in which numbers.
-#[derive(Args)]
-pub(super) struct SteppingArguments {
+    length: LengthArguments,
     #[command(flatten)]
-    scheme: SchemeArguments,
-    /// Number type: f32 is the controller's.
-    #[arg(long, value_enum, default_value_t)]
-    pub scalar: ScalarKind,
+    controller: ControllerArguments,
 }
 
-/// How to step, where it differs from the scene.
+/// How long runs are and how well the desk knows them, where it differs from the scene.
 #[derive(Args)]
-pub(super) struct SchemeArguments {
-    /// Step, such as 100us (a bare number is µs).
-    #[arg(long, allow_hyphen_values = true)]
-    step: Option<String>,
-    /// Scheme.
-    #[arg(long, value_enum)]
-    integrator: Option<IntegratorKind>,
+pub(super) struct LengthArguments {
+    /// Runs the whole stroke (run.stroke) instead of run.duration.
+    #[arg(long)]
+    stroke: bool,
+    /// Error of the drive force that a step of the desk may make, as a share of the drive's greatest force, such as 1e-6.
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
+    error: Option<String>,
 }
 
-impl SteppingArguments {
+impl LengthArguments {
     /// The options as settings of the scene.
-    pub fn overrides(&self) -> Vec<Override> {
-        self.scheme.overrides()
+    pub fn overrides(&self) -> Option<Override> {
+        self.error.as_ref().map(|error| Override::option("--error", "run.error", error))
+    }
+
+    /// `scene` with the run that is asked for.
+    pub fn applied(&self, mut scene: Scene) -> Result<Scene, Failure> {
+        if self.stroke {
+            scene.run.duration = scene.stroke_duration().ok_or_else(|| {
+                let why = "the scene states no run.stroke, or its drive no speed";
+                Failure::Input(format!("--stroke: {why}; state one, such as --set run.stroke=80"))
+            })?;
+        }
+        Ok(scene)
     }
 }
 
-impl SchemeArguments {
+/// How the controller computes, where it differs from the scene.
+#[derive(Args)]
+pub(super) struct ControllerArguments {
+    /// The controller's step, such as 1ms (a bare number is µs).
+    #[arg(long, allow_hyphen_values = true)]
+    step: Option<String>,
+    /// The controller's scheme.
+    #[arg(long, value_enum)]
+    integrator: Option<IntegratorKind>,
+    /// The controller's number type.
+    #[arg(long, value_enum)]
+    scalar: Option<ScalarKind>,
+}
+
+impl ControllerArguments {
+    /// Whether any of them was given.
+    pub fn given(&self) -> bool {
+        self.step.is_some() || self.integrator.is_some() || self.scalar.is_some()
+    }
+
     /// The options as settings of the scene.
     pub fn overrides(&self) -> Vec<Override> {
-        let step = self.step.as_ref().map(|step| Override::option("--step", "run.step", step));
-        let integrator = self.integrator.map(|kind| Override::option("--integrator", "run.integrator", kind.name()));
-        step.into_iter().chain(integrator).collect()
+        let step = self.step.as_ref().map(|step| Override::option("--step", "controller.step", step));
+        let name = |kind: IntegratorKind| Override::option("--integrator", "controller.integrator", kind.name());
+        let scalar = self.scalar.map(|kind| Override::option("--scalar", "controller.scalar", kind.name()));
+        step.into_iter().chain(self.integrator.map(name)).chain(scalar).collect()
     }
 }
 
 #[derive(Serialize)]
 struct Report<'a> {
+    json_version: u32,
     title: &'a str,
     n: &'a [f64],
-    integrator: &'static str,
-    scalar: ScalarKind,
-    step_s: f64,
     duration_s: f64,
+    /// What computed the run.
+    solver: Solved,
     integration_ms: f64,
     #[serde(flatten)]
     outcome: Outcome,
     gaps: Vec<GapReport>,
     trust: Trust,
+    /// How the controller does; not where the run is its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    controller: Option<ControllerReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     audit_j: Option<Audit>,
+    warnings: &'a [String],
     samples: &'a Trajectory,
+}
+
+/// How a controller's run does against the desk's.
+#[derive(Serialize)]
+struct ControllerReport {
+    solver: Solved,
+    verdict: Verdict,
+    trust: Trust,
 }
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let scene = self.scene.load(&self.stepping.overrides())?;
+        let overrides: Vec<_> = self.controller.overrides().into_iter().chain(self.length.overrides()).collect();
+        let scene = self.length.applied(self.scene.load(&overrides)?)?;
         let n = levels(&self.n)?;
         scene.check_gaps(&n).map_err(|error| Failure::Input(format!("--n: {error}")))?;
         let every = parse_every(&self.every)?;
-        if let Some(path) = &self.csv {
-            self.scene.check_output(path)?;
-        }
-        if let Some(error) = self.error.filter(|error| !(1e-12..=1e3).contains(error)) {
-            return Err(Failure::Input(format!("--error is {error}, allowed is 1e-12 to 1e3 N")));
-        }
-        let settings = Settings { run: scene.run, every, scalar: self.stepping.scalar, tolerance: self.error };
+        self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
         let gaps = scene.gaps_at(&n);
+        let by_controller = self.audit || self.controller.given();
+        let settings = if by_controller { Settings::controller(&scene, every) } else { Settings::desk(&scene, every) };
         let run = if self.audit { audited } else { simulate };
         let run = confirmed(&scene, &gaps, &settings, run(&scene, &gaps, &settings)?)?;
+        let controller = if by_controller { None } else { Some(controllers(&scene, &gaps)) };
+        let controller = controller.transpose()?;
         if let Some(path) = &self.csv {
             files::write(path, &export::trajectory_csv(&run.trajectory)?)?;
         }
+        if let Some(path) = &self.plot {
+            let svg = unit_over_time(&run.trajectory, &scene.title, &self.n).map_err(anyhow::Error::from)?;
+            files::write(path, svg.as_bytes())?;
+        }
+        let mut warnings = check::warnings_of(&scene);
+        warnings.extend(run.trust.warning());
         if self.scene.json {
+            let controller = controller.flatten().map(|run| ControllerReport {
+                solver: run.solved,
+                verdict: run.outcome.verdict,
+                trust: run.trust,
+            });
             print_json(&Report {
+                json_version: JSON_VERSION,
                 title: &scene.title,
                 n: &self.n,
-                integrator: scene.run.integrator.name(),
-                scalar: self.stepping.scalar,
-                step_s: scene.run.step,
                 duration_s: scene.run.duration,
+                solver: run.solved,
                 integration_ms: run.integration.as_secs_f64() * 1e3,
                 outcome: run.outcome,
                 gaps: gap_reports(&scene, &gaps),
                 trust: run.trust,
+                controller,
                 audit_j: run.audit,
+                warnings: &warnings,
                 samples: &run.trajectory,
             })
         } else {
-            print(&self.describe(&scene, &run, &gap_reports(&scene, &gaps)))
+            let controller = controller.as_ref().map(Option::as_ref);
+            print(&self.describe(&scene, &run, controller, &gap_reports(&scene, &gaps)))?;
+            warn(&warnings);
+            Ok(())
         }
     }
 
-    fn describe(&self, scene: &Scene, run: &Run, gaps: &[GapReport]) -> String {
+    /// The run in words. `controller` is how the controller's run does beside it: not there where the run is its own, `None`
+    /// where it left the finite range.
+    fn describe(&self, scene: &Scene, run: &Run, controller: Option<Option<&Run>>, gaps: &[GapReport]) -> String {
         let mut text = String::new();
-        let Outcome { breakaway, peak_force, settled_force, final_velocity, verdict } = run.outcome;
+        let Outcome { breakaway, peak_force, settled_force, final_velocity, end, stroke_reached, verdict, .. } =
+            run.outcome;
         let n: Vec<String> = self.n.iter().map(|&n| level(n)).collect();
-        let integration = run.integration.as_secs_f64() * 1e3;
+        let way = on_the_way(&run.outcome);
         let _ = writeln!(text, "{}, n = {}\n", scene.title, n.join(", "));
+        let _ = writeln!(text, "Verdict         {verdict}{}", why_undecided(scene, verdict));
         let _ = writeln!(text, "Breakaway       {} ms", or_dash(breakaway, |t| fixed(t * 1e3, 2)));
         let _ = writeln!(text, "Peak force      {} N", or_dash(peak_force, |f| fixed(f, 4)));
         let _ = writeln!(text, "Settled force   {} N", or_dash(settled_force, |f| fixed(f, 4)));
         let _ = writeln!(text, "Final velocity  {} mm/s", fixed(final_velocity * 1e3, 3));
-        let _ = writeln!(text, "Verdict         {verdict}{}", why_undecided(scene, verdict));
+        let reached = match stroke_reached {
+            Some(true) => ", the end of the stroke",
+            Some(false) | None => "",
+        };
+        let [z, t] = [end.z, end.t].map(|x| x * 1e3);
+        let _ = writeln!(text, "Travel          {} mm in {} ms{reached}", fixed(z, 3), fixed(t, 1));
+        if !way.is_empty() {
+            let _ = writeln!(text, "On the way      {way}");
+        }
         let classes = |class| {
             let of_class = gaps.iter().filter(|gap| gap.class == class);
             of_class.map(|gap| gap.name.as_str()).collect::<Vec<_>>().join(", ")
@@ -163,29 +231,40 @@ impl Arguments {
                 let _ = writeln!(text, "Gaps {class:10} {names}");
             }
         }
-        let how = match self.error {
-            Some(error) => format!("error-controlled to {error:e} N a step"),
-            None => format!(
-                "in steps of {} µs, {}, {}",
-                ten_digits(scene.run.step * 1e6),
-                scene.run.integrator.name(),
-                self.stepping.scalar.name()
-            ),
-        };
-        let _ = writeln!(
-            text,
-            "\n{} ms {how}: integrated in {} ms, worst residual {:.1e} N·s",
-            ten_digits(scene.run.duration * 1e3),
-            fixed(integration, 2),
-            run.trajectory.worst_residual
-        );
+        let percent = |trust: &Trust| or_dash(trust.difference, |share| format!("{:.2} %", share * 100.0));
+        let integration = fixed(run.integration.as_secs_f64() * 1e3, 2);
+        let _ = writeln!(text, "\nComputed by {} in {integration} ms", run.solved.describe());
+        match controller {
+            None => {
+                let off = percent(&run.trust);
+                let _ =
+                    writeln!(text, "Its force errs by {off} of the peak, from the ramp's start on, against the desk's");
+            }
+            Some(Some(controller)) => {
+                let (off, how) = (percent(&controller.trust), controller.solved.describe());
+                let _ = writeln!(text, "Beside it {how}: its force errs by {off} of the peak from the ramp's start on");
+            }
+            Some(None) => {
+                text += "Beside it the controller: its motion leaves the finite range; take a smaller --step\n";
+            }
+        }
         if let Some(audit) = &run.audit {
             let _ = write!(text, "\n{}", describe_audit(audit));
         }
-        if let Some(warning) = run.trust.warning() {
-            let _ = writeln!(text, "\nwarning: {warning}");
-        }
         text
+    }
+}
+
+/// The run of the scene's controller held against the desk's; `None` where it leaves the finite range.
+fn controllers(scene: &Scene, gaps: &[f64; CONTACTS]) -> Result<Option<Run>, SimulateError> {
+    // Samples on its own steps, a millisecond apart or a step where that is longer.
+    let step = scene.controller.step;
+    let every = (1e-3 / step).round().max(1.0) * step;
+    let settings = Settings::controller(scene, every);
+    match simulate(scene, gaps, &settings) {
+        Ok(run) => confirmed(scene, gaps, &settings, run).map(Some),
+        Err(SimulateError::NotFinite { .. }) => Ok(None),
+        Err(other) => Err(other),
     }
 }
 
@@ -221,12 +300,15 @@ pub(super) fn why_undecided(scene: &Scene, verdict: Verdict) -> String {
     }
     let [end, ramp] = [scene.run.duration, scene.drive.ramp_end].map(|t| ten_digits(t * 1e3));
     if scene.run.duration < scene.drive.ramp_end {
-        let stroke = ten_digits((scene.drive.ramp_end + 0.5) * 1e3);
-        format!(" (the run ends at {end} ms, the ramp at {ramp} ms; --set run.duration={stroke} runs the stroke)")
+        let advice = match scene.stroke_duration() {
+            Some(_) => "--stroke runs the whole stroke".to_owned(),
+            None => format!("--set run.duration={} runs on", ten_digits((scene.drive.ramp_end + 0.5) * 1e3)),
+        };
+        format!(" (the run ends at {end} ms, the ramp at {ramp} ms; {advice})")
     } else if scene.drive.speed == 0.0 {
         " (nothing is commanded)".into()
     } else {
-        " (a run at half the step came to another verdict: take a smaller step)".into()
+        " (a finer run came to another verdict: take a smaller --error, or a smaller --step of the controller)".into()
     }
 }
 

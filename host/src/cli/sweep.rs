@@ -6,22 +6,27 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Failure, SceneArguments, ThreadArguments, print, print_json, progress,
-    simulate::{SteppingArguments, why_undecided},
-    text_table,
+    Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, given, print, print_json, progress,
+    simulate::{ControllerArguments, LengthArguments, why_undecided},
+    text_table, warn,
 };
 use crate::{
+    answer::{Range, on_the_way, ranges},
     export::sweep_csv,
+    figure::verdicts,
     files,
     number::{fixed, level, or_dash},
     outcome::{Outcome, Verdict},
     scene::{Override, Scene},
-    simulate::Settings,
-    sweep::{Sweep, sweep},
+    simulate::{Settings, Solved},
+    sweep::{Keep, Level, Sweep, sweep},
     trust::Trust,
 };
 
-/// Simulates the slide at many tolerance levels: breakaway, required force, does it jam.
+/// Simulates the slide at many tolerance levels: breakaway, required force, does it jam, and where.
+///
+/// The desk computes it by error-controlled steps; with --step, --integrator or --scalar the controller does, held against
+/// the desk.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -31,8 +36,13 @@ pub(super) struct Arguments {
     /// Writes the figures over n as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Draws verdict and force over n as SVG.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
     #[command(flatten)]
-    stepping: SteppingArguments,
+    length: LengthArguments,
+    #[command(flatten)]
+    controller: ControllerArguments,
     #[command(flatten)]
     threads: ThreadArguments,
 }
@@ -58,6 +68,7 @@ pub(super) struct LevelReport {
     n: f64,
     #[serde(flatten)]
     outcome: Outcome,
+    solver: Solved,
     trust: Trust,
     compressed: usize,
     zero: usize,
@@ -66,48 +77,79 @@ pub(super) struct LevelReport {
     classes: BTreeMap<String, String>,
 }
 
+#[derive(Serialize)]
+struct Report {
+    json_version: u32,
+    title: String,
+    ranges: Vec<Range>,
+    levels: Vec<LevelReport>,
+    warnings: Vec<String>,
+}
+
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let overrides: Vec<_> = self.stepping.overrides().into_iter().chain(self.levels.overrides()).collect();
-        let scene = self.scene.load(&overrides)?;
-        if let Some(path) = &self.csv {
-            self.scene.check_output(path)?;
-        }
-        // Samples are not shown: only the run's ends are kept.
-        let settings = Settings::fixed(scene.run, scene.run.duration, self.stepping.scalar);
+        let of_run = self.controller.overrides().into_iter().chain(self.length.overrides());
+        let overrides: Vec<_> = of_run.chain(self.levels.overrides()).collect();
+        let scene = self.length.applied(self.scene.load(&overrides)?)?;
+        self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
+        let settings = if self.controller.given() {
+            let step = scene.controller.step;
+            Settings::controller(&scene, (1e-3 / step).round().max(1.0) * step)
+        } else {
+            Settings::desk(&scene, 1e-3)
+        };
         let levels = scene.sweep.levels();
         let bar = progress("simulating", levels.len());
-        let result = self.threads.install(|| sweep(&scene, &levels, &settings, || bar.inc(1)))??;
+        let swept = self.threads.install(|| sweep(&scene, &levels, &settings, Keep::Figures, || bar.inc(1)))?;
         bar.finish_and_clear();
+        let swept = swept?;
         if let Some(path) = &self.csv {
-            files::write(path, &sweep_csv(&scene, &result)?)?;
+            files::write(path, &sweep_csv(&scene, &swept)?)?;
         }
+        if let Some(path) = &self.plot {
+            files::write(path, verdicts(&swept, &scene.title).map_err(anyhow::Error::from)?.as_bytes())?;
+        }
+        let mut warnings = check::warnings_of(&scene);
+        warnings.extend(doubts(&swept));
         if self.scene.json {
-            print_json(&for_machines(&scene, &result))
-        } else {
-            print(&format!("{}\n\n{}", scene.title, for_people(&scene, &result)))
+            return print_json(&Report {
+                json_version: JSON_VERSION,
+                title: scene.title.clone(),
+                ranges: ranges(&swept),
+                levels: for_machines(&scene, &swept),
+                warnings,
+            });
         }
+        print(&format!("{}\n\n{}\n{}", scene.title, answer(&swept), for_people(&scene, &swept)))?;
+        warn(&warnings);
+        Ok(())
     }
+}
+
+/// From which level to which the slide runs, crawls and jams: a line each.
+pub(super) fn answer(sweep: &Sweep) -> String {
+    ranges(sweep).iter().map(|range| range.describe() + "\n").collect()
 }
 
 /// The levels of a sweep as JSON wants them.
 pub(super) fn for_machines(scene: &Scene, sweep: &Sweep) -> Vec<LevelReport> {
-    let report = |level: &crate::sweep::Level| {
+    let report = |level: &Level| {
         let [compressed, zero, free] = level.class_counts();
         let named = scene.contact_names().into_iter().zip(level.classes);
         let classes = named.filter_map(|(name, class)| Some((name, class?.to_string()))).collect();
-        LevelReport { n: level.n, outcome: level.outcome, trust: level.trust, compressed, zero, free, classes }
+        let Level { n, outcome, solved: solver, trust, .. } = *level;
+        LevelReport { n, outcome, solver, trust, compressed, zero, free, classes }
     };
     sweep.levels.iter().map(report).collect()
 }
 
 /// The levels of a sweep as a table.
-pub(super) fn for_people(scene: &Scene, sweep: &Sweep) -> String {
+fn for_people(scene: &Scene, sweep: &Sweep) -> String {
     let rows: Vec<Vec<String>> = sweep
         .levels
         .iter()
         .map(|at| {
-            let Outcome { breakaway, peak_force, settled_force, final_velocity, verdict } = at.outcome;
+            let Outcome { breakaway, peak_force, settled_force, final_velocity, end, verdict, .. } = at.outcome;
             let [compressed, zero, free] = at.class_counts();
             vec![
                 level(at.n),
@@ -115,30 +157,40 @@ pub(super) fn for_people(scene: &Scene, sweep: &Sweep) -> String {
                 or_dash(peak_force, |f| fixed(f, 4)),
                 or_dash(settled_force, |f| fixed(f, 4)),
                 fixed(final_velocity * 1e3, 3),
+                fixed(end.z * 1e3, 2),
                 verdict.to_string(),
                 format!("{compressed}/{zero}/{free}"),
+                on_the_way(&at.outcome),
             ]
         })
         .collect();
-    let heading =
-        ["n", "breakaway, ms", "peak, N", "settled, N", "final, mm/s", "verdict", "gaps compressed/zero/free"];
+    let heading = [
+        "n",
+        "breakaway, ms",
+        "peak, N",
+        "settled, N",
+        "final, mm/s",
+        "travel, mm",
+        "verdict",
+        "gaps compressed/zero/free",
+        "on the way",
+    ];
     let mut text = text_table(&heading, &rows);
     if sweep.levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided) {
         let _ = writeln!(text, "\nundecided{}", why_undecided(scene, Verdict::Undecided));
     }
-    let doubtful: Vec<_> = sweep.levels.iter().filter(|level| !level.trust.is_sound()).map(|at| level(at.n)).collect();
-    if let Some(step) = better_step(sweep) {
-        text += &too_large(&format!(" at n = {}", doubtful.join(", ")), step);
-    }
     text
 }
 
-/// A step (s) that should do for every level, where one is too large.
-pub(super) fn better_step(sweep: &Sweep) -> Option<f64> {
-    sweep.levels.iter().filter_map(|level| level.trust.better_step).reduce(f64::min)
-}
-
-/// A warning that the step is too large `wherever`, and that `better` (s) should do.
-pub(super) fn too_large(wherever: &str, better: f64) -> String {
-    format!("\nwarning: the step is too large{wherever}; take --step {}us\n", (better * 1e6).max(1.0))
+/// A warning for the levels whose runs cannot be trusted, with the advice of the worst.
+pub(super) fn doubts(sweep: &Sweep) -> Option<String> {
+    let doubtful: Vec<&Level> = sweep.levels.iter().filter(|level| !level.trust.is_sound()).collect();
+    let worst = doubtful.iter().max_by(|one, other| {
+        let [one, other] = [one, other].map(|level| level.trust.difference.unwrap_or_default());
+        one.total_cmp(&other)
+    })?;
+    let levels = doubtful.iter().map(|at| level(at.n)).collect::<Vec<_>>().join(", ");
+    let warning = worst.trust.warning()?;
+    let levels = if doubtful.len() > 12 { format!("{} levels", doubtful.len()) } else { format!("n = {levels}") };
+    Some(format!("at {levels}, worst at n = {}: {warning}", level(worst.n)))
 }

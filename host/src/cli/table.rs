@@ -1,15 +1,18 @@
 //! `slipfit table`: the flash table.
 
-use std::{fmt::Write, path::PathBuf};
+use std::{
+    fmt::Write,
+    path::{Path, PathBuf},
+};
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use slipfit_core::table::AxisKind;
 
 use super::{
-    Failure, SceneArguments, ThreadArguments, print, print_json, progress,
-    simulate::SteppingArguments,
-    sweep::{LevelArguments, better_step, too_large},
+    Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, print, print_json, progress,
+    sweep::{LevelArguments, doubts},
+    warn,
 };
 use crate::{
     files,
@@ -52,8 +55,9 @@ pub(super) struct Arguments {
     max_error: Option<f64>,
     #[command(flatten)]
     levels: LevelArguments,
-    #[command(flatten)]
-    stepping: SteppingArguments,
+    /// Draws the table's force over its second axis at every level, as SVG.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
     #[command(flatten)]
     threads: ThreadArguments,
 }
@@ -73,6 +77,7 @@ enum Over {
 
 #[derive(Serialize)]
 struct Report {
+    json_version: u32,
     file: String,
     bytes: usize,
     axes: Vec<AxisReport>,
@@ -84,12 +89,10 @@ struct Report {
     worst_velocity_error_in_use_m_per_s: f64,
     rms_force_error_n: f64,
     rms_velocity_error_m_per_s: f64,
-    /// A step that should do, where the scene's is too large.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    better_step_s: Option<f64>,
     /// Units that do not come to the last position, in SI units; over position only.
     #[serde(skip_serializing_if = "Option::is_none")]
     short: Option<Vec<Reach>>,
+    warnings: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -109,7 +112,7 @@ impl From<&AxisSpec> for AxisReport {
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let overrides: Vec<_> = self.stepping.overrides().into_iter().chain(self.levels.overrides()).collect();
+        let overrides: Vec<_> = self.levels.overrides().into_iter().collect();
         let scene = self.scene.load(&overrides)?;
         let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if !EXTENSIONS.contains(&extension.as_str()) {
@@ -124,23 +127,35 @@ impl Arguments {
         if stroke.is_some() && self.over == Over::Time {
             return Err(Failure::Input("--stroke is for --over position".into()));
         }
-        let (table, short, better_step) = match self.over {
+        let outputs: Vec<_> = std::iter::once(("--output", self.output.as_path()))
+            .chain(self.plot.iter().map(|path| ("--plot", path.as_path())))
+            .collect();
+        let (table, short, doubt) = match self.over {
             Over::Time => {
-                let (table, better_step) = self.over_time(&scene, demand)?;
-                (table, None, better_step)
+                let (table, doubt) = self.over_time(&scene, demand, &outputs)?;
+                (table, None, doubt)
             }
             Over::Position | Over::PositionAndSpeed => {
-                let made = self.over_position(&scene, &Wish { speeds: speeds.as_ref(), stroke, demand })?;
-                (made.table, Some(made.short), made.better_step)
+                let wish = Wish { speeds: speeds.as_ref(), stroke, demand };
+                let made = self.over_position(&scene, &wish, &outputs)?;
+                (made.table, Some(made.short), made.warning)
             }
         };
+        let mut warnings = check::warnings_of(&scene);
+        warnings.extend(doubt);
+        warnings.extend(coarse(&scene, &table));
         let file = render(&extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
         files::write(&self.output, &file)?;
+        if let Some(path) = &self.plot {
+            let svg = force_table::picture(&table, &scene.title).map_err(anyhow::Error::from)?;
+            files::write(path, svg.as_bytes())?;
+        }
         if self.scene.json {
             let [force, velocity] = table.worst_error;
             let [force_in_use, velocity_in_use] = table.worst_error_in_use;
             let [rms_force, rms_velocity] = table.rms_error;
             print_json(&Report {
+                json_version: JSON_VERSION,
                 file: self.output.display().to_string(),
                 bytes: table.bytes.len(),
                 axes: table.axes.iter().map(AxisReport::from).collect(),
@@ -152,13 +167,14 @@ impl Arguments {
                 worst_velocity_error_in_use_m_per_s: velocity_in_use,
                 rms_force_error_n: rms_force,
                 rms_velocity_error_m_per_s: rms_velocity,
-                better_step_s: better_step,
                 short,
+                warnings,
             })
         } else {
             let short = short.map_or_else(String::new, |short| describe_short(&scene, &short));
-            let warning = better_step.map_or_else(String::new, |step| too_large(" for some of the runs", step));
-            print(&format!("{}\n{}{short}{warning}", self.output.display(), describe(&table)))
+            print(&format!("{}\n{}{short}", self.output.display(), describe(&table)))?;
+            warn(&warnings);
+            Ok(())
         }
     }
 
@@ -177,25 +193,51 @@ impl Arguments {
         }
     }
 
-    /// The table, and a step (s) that should do where the scene's is too large.
-    fn over_time(&self, scene: &Scene, demand: Demand) -> Result<(ForceTable, Option<f64>), Failure> {
+    /// The table, and a warning where a run cannot be trusted.
+    fn over_time(
+        &self,
+        scene: &Scene,
+        demand: Demand,
+        outputs: &[(&str, &Path)],
+    ) -> Result<(ForceTable, Option<String>), Failure> {
         force_table::check(scene, demand).map_err(|error| Failure::Input(error.to_string()))?;
-        self.scene.check_output(&self.output)?;
+        self.scene.check_outputs(outputs)?;
         let bar = progress("simulating", force_table::levels(&scene.sweep).count);
-        let made = self.threads.install(|| force_table::make(scene, self.stepping.scalar, demand, || bar.inc(1)))?;
+        let made = self.threads.install(|| force_table::make(scene, demand, || bar.inc(1)))?;
         bar.finish_and_clear();
         let (table, sweep) = made?;
-        Ok((table, better_step(&sweep)))
+        Ok((table, doubts(&sweep)))
     }
 
-    fn over_position(&self, scene: &Scene, wish: &Wish<'_>) -> Result<PositionTable, Failure> {
+    fn over_position(
+        &self,
+        scene: &Scene,
+        wish: &Wish<'_>,
+        outputs: &[(&str, &Path)],
+    ) -> Result<PositionTable, Failure> {
         position::check(scene, wish)?;
-        self.scene.check_output(&self.output)?;
+        self.scene.check_outputs(outputs)?;
         let bar = progress("simulating", position::runs(scene, wish.speeds));
-        let made = self.threads.install(|| position::make(scene, wish, self.stepping.scalar, || bar.inc(1)))?;
+        let made = self.threads.install(|| position::make(scene, wish, || bar.inc(1)))?;
         bar.finish_and_clear();
         Ok(made?)
     }
+}
+
+/// Share of the drive's greatest force from which a table's error is worth a warning.
+const COARSE: f64 = 0.05;
+
+/// A warning where the table errs by much of what the drive can push.
+pub(super) fn coarse(scene: &Scene, table: &ForceTable) -> Option<String> {
+    let ([error, _], greatest) = (table.worst_error_in_use, scene.greatest_force());
+    (error > COARSE * greatest).then(|| {
+        format!(
+            "the table errs by up to {} N where it is used, {} % of the drive's greatest force: neighbouring levels do \
+             different things there; take the levels of one verdict, such as --n 1:3:0.1, or finer ones",
+            fixed(error, 3),
+            fixed(error / greatest * 100.0, 0)
+        )
+    })
 }
 
 /// Size and interpolation error in words.

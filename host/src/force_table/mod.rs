@@ -4,6 +4,7 @@
 
 mod grid;
 mod passage;
+mod picture;
 pub mod position;
 pub mod time;
 
@@ -16,6 +17,7 @@ use crate::{
     simulate::SimulateError,
 };
 
+pub use picture::picture;
 pub use time::{check, make, settings};
 
 /// Samples of a run from one node of the finest table to the next; those between serve the error only.
@@ -81,12 +83,13 @@ pub fn levels(axis: &LevelRange) -> LevelRange {
     LevelRange { first: axis.first, step: axis.step / 2.0, count: 2 * axis.count - 1 }
 }
 
-/// What a table of `scene` is stamped with.
+/// What a table of `scene` and the kernel of its controller are stamped with: the physics of every unit. How the desk and
+/// the controller compute is no part of it, because a table holds for whatever predicts the same scene.
 pub fn scene_hash(scene: &Scene) -> u64 {
     let deviations: Vec<f64> =
         scene.pins.iter().flat_map(|pin| pin.gaps.map(|gap| gap.map_or(0.0, |gap| gap.deviation))).collect();
     let mut all = [0.0; CONTACTS];
     all.iter_mut().zip(deviations).for_each(|(slot, deviation)| *slot = deviation);
     let data = scene.slide_data::<f64>(&scene.gaps_at(&[0.0; CONTACTS]));
-    flash::scene_hash(&data, &all, scene.run.integrator.name(), scene.run.step)
+    flash::scene_hash(&data, &all)
 }

@@ -30,8 +30,7 @@ use crate::{
     number::ten_digits,
     outcome::Verdict,
     scene::{LevelRange, Scene},
-    simulate::{ScalarKind, Settings, SimulateError, simulate},
-    trust::Trust,
+    simulate::{Settings, SimulateError, simulate},
 };
 
 /// Distance of the table's positions (m), unless its region of flash has too little room.
@@ -39,6 +38,9 @@ pub const STEP: f64 = 0.25e-3;
 
 /// Distance (m) of the samples of a run.
 pub const SAMPLE: f64 = STEP / SUBSAMPLES as f64;
+
+/// Interval (s) of the samples of a run, between which it is taken as straight.
+const EVERY: f64 = 50e-6;
 
 /// Steps of which an axis without a given end has a whole multiple if it is longer, 5 mm: a number with many divisors, for
 /// coarser tables.
@@ -57,8 +59,8 @@ pub struct PositionTable {
     pub table: ForceTable,
     /// Units of the table's levels (and speeds) that do not come to the end of its axis, by level, then by speed.
     pub short: Vec<Reach>,
-    /// A step (s) that should do for all runs, where one is too large; `None` if all are sound.
-    pub better_step: Option<f64>,
+    /// Levels at which the desk's tolerance is too loose, by the warning of the first.
+    pub warning: Option<String>,
 }
 
 /// What a table over position is to be.
@@ -189,12 +191,7 @@ pub fn check(scene: &Scene, &Wish { speeds, stroke, demand }: &Wish<'_>) -> Resu
 ///
 /// # Errors
 /// Those of [`check`] and of the runs; if no slide comes far enough; if no table errs as little as asked for.
-pub fn make(
-    scene: &Scene,
-    wish: &Wish<'_>,
-    scalar: ScalarKind,
-    done: impl Fn() + Sync,
-) -> Result<PositionTable, TableError> {
+pub fn make(scene: &Scene, wish: &Wish<'_>, done: impl Fn() + Sync) -> Result<PositionTable, TableError> {
     check(scene, wish)?;
     let &Wish { speeds, stroke, demand } = wish;
     let speeds_of_runs = run_speeds(scene, speeds);
@@ -203,7 +200,7 @@ pub fn make(
         .into_iter()
         .flat_map(|n| speeds_of_runs.iter().map(move |speed| (n, *speed)))
         .collect();
-    let settings = Settings::fixed(scene.run, scene.run.step, scalar);
+    let settings = Settings::desk(scene, EVERY);
     let runs: Vec<Result<_, SimulateError>> = units
         .par_iter()
         .map(|&(n, speed)| {
@@ -213,11 +210,11 @@ pub fn make(
             done();
             let passage = Passage::of(&run.trajectory, speed, SAMPLE, STROKE_MOST);
             let reach = Reach { n, speed, z: passage.reach, verdict: run.outcome.verdict };
-            Ok((passage, (reach, run.trust)))
+            Ok((passage, (reach, run.trust.warning())))
         })
         .collect();
     let (passages, judged): (Vec<Passage>, Vec<_>) = runs.into_iter().collect::<Result<_, _>>()?;
-    let (reaches, trusts): (Vec<Reach>, Vec<Trust>) = judged.into_iter().unzip();
+    let (reaches, warnings): (Vec<Reach>, Vec<Option<String>>) = judged.into_iter().unzip();
     let steps = steps(&reaches, stroke, scene.run.duration)?;
     let nodes = scene.sweep.count * speeds.map_or(1, |speeds| speeds.count);
     let per_node = per_node(nodes, steps, demand);
@@ -247,8 +244,7 @@ pub fn make(
         level.is_multiple_of(2) && speed.is_multiple_of(2) && passage.passed.len() < samples
     });
     let short = short.map(|(_, (reach, _))| *reach).collect();
-    let better_step = trusts.iter().filter_map(|trust| trust.better_step).reduce(f64::min);
-    Ok(PositionTable { table, short, better_step })
+    Ok(PositionTable { table, short, warning: warnings.into_iter().flatten().next() })
 }
 
 /// How many steps an axis has, see [`Wish::stroke`].

@@ -10,24 +10,20 @@ use super::{
 use crate::{
     flash::{self, FlashError},
     outcome::Trajectory,
-    scene::{RunSpec, Scene},
-    simulate::{ScalarKind, Settings},
-    sweep::{Level, Sweep, sweep},
+    scene::Scene,
+    simulate::Settings,
+    sweep::{Keep, Level, Sweep, sweep},
 };
 
-/// Distance of the table's instants (s), unless the step asks for more.
+/// Distance of the table's instants (s).
 pub const STEP: f64 = 1e-3;
 
 /// How runs for a table are sampled: at its instants and three times between them. Instants are [`STEP`] apart; for a full
 /// table, the least multiple of it up to ten with which the table fits its region.
-pub fn settings(scene: &Scene, scalar: ScalarKind, demand: Demand) -> Settings {
-    let RunSpec { duration, step, .. } = scene.run;
-    let every = |coarser: u32| {
-        let between = STEP * f64::from(coarser) / SUBSAMPLES as f64;
-        (between / step - 1e-9).ceil().max(1.0) * step
-    };
+pub fn settings(scene: &Scene, demand: Demand) -> Settings {
+    let every = |coarser: u32| STEP * f64::from(coarser) / SUBSAMPLES as f64;
     let fits = |coarser: &u32| {
-        let instants = duration / (every(*coarser) * SUBSAMPLES as f64) + 1.0;
+        let instants = scene.run.duration / (every(*coarser) * SUBSAMPLES as f64) + 1.0;
         let bytes = instants * scene.sweep.count as f64 * (2 * size_of::<f32>()) as f64;
         bytes + (layout::HEADER_SIZE + layout::CHECKSUM_SIZE) as f64 <= flash::TABLE_REGION as f64
     };
@@ -35,7 +31,7 @@ pub fn settings(scene: &Scene, scalar: ScalarKind, demand: Demand) -> Settings {
         Demand::Full => (1..=10).find(fits).unwrap_or(1),
         Demand::MaxError(_) => 1,
     };
-    Settings::fixed(scene.run, every(coarser), scalar)
+    Settings::desk(scene, every(coarser))
 }
 
 /// Levels of `scene` and instants `at` (s) that `settings` sample.
@@ -44,14 +40,18 @@ fn axes(scene: &Scene, settings: &Settings, at: Vec<f64>) -> [SampleAxis; 2] {
     [SampleAxis::halved(AxisKind::Level, &scene.sweep), instants]
 }
 
+/// How many instants `settings` sample.
+fn instants(scene: &Scene, settings: &Settings) -> usize {
+    (scene.run.duration / settings.every * (1.0 + 1e-9)) as usize + 1
+}
+
 /// Whether a table of `scene` fits its region of flash, found out before any run.
 ///
 /// # Errors
 /// [`FlashError`] if not, or if there are fewer than two levels or instants.
 pub fn check(scene: &Scene, demand: Demand) -> Result<(), FlashError> {
-    let settings = settings(scene, ScalarKind::F64, demand);
-    let samples = (scene.run.duration / settings.every * (1.0 + 1e-9)) as usize + 1;
-    let at = (0..samples).map(|i| i as f64 * settings.every).collect();
+    let settings = settings(scene, demand);
+    let at = (0..instants(scene, &settings)).map(|i| i as f64 * settings.every).collect();
     grid::check(&axes(scene, &settings, at), demand)
 }
 
@@ -61,13 +61,22 @@ pub fn check(scene: &Scene, demand: Demand) -> Result<(), FlashError> {
 /// If the sweep has fewer than two levels or instants, the table is larger than its region of flash, or none errs as
 /// little as asked for.
 fn build(scene: &Scene, sweep: &Sweep, settings: &Settings, demand: Demand) -> Result<ForceTable, TableError> {
+    let at: Vec<f64> = (0..instants(scene, settings)).map(|i| i as f64 * settings.every).collect();
     let sample = |run: &Trajectory, i: usize| {
-        let stage = if run.t[i] >= scene.drive.ramp_start { Stage::InUse } else { Stage::Before };
-        Sample { values: [run.force[i], run.vz[i]], stage }
+        let before = at[i] < scene.drive.ramp_start;
+        // Where a slide has come to its stroke's end, the table holds what it came there with.
+        let Some(last) = run.t.len().checked_sub(1) else {
+            return Sample { values: [0.0; 2], stage: Stage::Beyond };
+        };
+        let stage = match (i > last, before) {
+            (true, _) => Stage::Beyond,
+            (false, true) => Stage::Before,
+            (false, false) => Stage::InUse,
+        };
+        Sample { values: [run.force[i.min(last)], run.vz[i.min(last)]], stage }
     };
-    let runs = || sweep.levels.iter().map(|level| &level.trajectory);
-    let at = runs().next().map_or_else(Vec::new, |run| run.t.clone());
-    let values = runs().flat_map(|run| (0..run.t.len()).map(move |i| sample(run, i))).collect();
+    let runs = sweep.levels.iter().map(|level| &level.trajectory);
+    let values = runs.flat_map(|run| (0..at.len()).map(|i| sample(run, i)).collect::<Vec<_>>()).collect();
     Samples { axes: axes(scene, settings, at), values }.table(scene_hash(scene), demand)
 }
 
@@ -83,7 +92,6 @@ fn nodes(sweep: &Sweep) -> Sweep {
             x: thin(&run.x),
             y: thin(&run.y),
             z: thin(&run.z),
-            worst_residual: run.worst_residual,
         };
         Level { trajectory, ..level.clone() }
     });
@@ -96,13 +104,8 @@ fn nodes(sweep: &Sweep) -> Sweep {
 /// # Errors
 /// Those of the runs; if there are fewer than two levels or instants, the table is larger than its region of flash, or none
 /// errs as little as asked for.
-pub fn make(
-    scene: &Scene,
-    scalar: ScalarKind,
-    demand: Demand,
-    done: impl Fn() + Sync,
-) -> Result<(ForceTable, Sweep), TableError> {
-    let settings = settings(scene, scalar, demand);
-    let sweep = sweep(scene, &levels(&scene.sweep).levels(), &settings, done)?;
+pub fn make(scene: &Scene, demand: Demand, done: impl Fn() + Sync) -> Result<(ForceTable, Sweep), TableError> {
+    let settings = settings(scene, demand);
+    let sweep = sweep(scene, &levels(&scene.sweep).levels(), &settings, Keep::Samples, done)?;
     Ok((build(scene, &sweep, &settings, demand)?, nodes(&sweep)))
 }

@@ -68,7 +68,7 @@ fn panel(problem: &Problem, truth: &Truth, names: &[&str], points: &[&Point]) ->
         series.push(Series { label: String::new(), look: Look::Guide, points: vec![(first, floor), (last, floor)] });
     }
     let note = if lost.is_empty() { String::new() } else { format!("lost: {}", lost.join(", ")) };
-    Panel { y_label: format!("{}, max error (% of the peak force)", problem.name), note, series, markers: Vec::new() }
+    Panel { y_label: format!("{}, max error (% of the peak force)", problem.name), note, series, ..Panel::default() }
 }
 
 /// Where a point is drawn; `None` for one that is lost.

@@ -13,15 +13,14 @@ pub use solver::{Knob, Solver, solvers};
 
 use crate::{
     deviation::Deviation,
-    scene::Scene,
-    scheme::IntegratorKind,
+    scene::{RunSpec, Scene},
     simulate::{Run, ScalarKind, Settings, SimulateError, simulate},
 };
 
 /// Interval of the samples that are compared (s).
 pub const EVERY: f64 = 1e-3;
-/// Step (s) of the finest run.
-const FINEST_STEP: f64 = 2e-6;
+/// Error of force (N) that a step of the finest run may make.
+const FINEST: f64 = 1e-9;
 
 /// A stretch of motion to be simulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +41,7 @@ pub const STROKE: Problem = Problem { name: "stroke", duration: 1.5 };
 pub struct Truth {
     /// Drive force (N) every millisecond.
     pub force: Vec<f64>,
-    /// How far two fine runs, the finest of the same scheme and one of another, are off: errors below are not known.
+    /// How far a run at ten times the tolerance is off: errors below are not known.
     pub floor: Deviation,
 }
 
@@ -73,22 +72,18 @@ pub struct Point {
     pub blew_up_at_s: Option<f64>,
 }
 
-/// The motion that far finer runs tend to, and how well it is known.
-///
-/// Two steps of a second-order scheme are extrapolated to none.
+/// The motion that ever finer runs of the desk tend to, and how well it is known.
 ///
 /// # Errors
 /// See [`SimulateError`].
 pub fn truth(scene: &Scene, gaps: &[f64; CONTACTS], problem: Problem) -> Result<Truth, SimulateError> {
-    let force = |integrator, step| {
-        fixed_step(scene, gaps, problem.duration, integrator, step, ScalarKind::F64).map(|run| run.trajectory.force)
+    let force = |tolerance| {
+        let settings = Settings::desk(scene, EVERY).to(tolerance);
+        run_of(scene, gaps, problem.duration, settings).map(|run| run.trajectory.force)
     };
-    let fine = force(IntegratorKind::Extrapolated, 2.0 * FINEST_STEP)?;
-    let finest = force(IntegratorKind::Extrapolated, FINEST_STEP)?;
-    let limit: Vec<f64> = finest.iter().zip(&fine).map(|(finest, fine)| finest + (finest - fine) / 3.0).collect();
-    let other = force(IntegratorKind::Sdirk2, FINEST_STEP)?;
-    let floor = Deviation::between(&finest, &limit).worst(Deviation::between(&other, &limit));
-    Ok(Truth { force: limit, floor })
+    let (fine, finest) = (force(10.0 * FINEST)?, force(FINEST)?);
+    let floor = Deviation::between(&fine, &finest);
+    Ok(Truth { force: finest, floor })
 }
 
 /// Runs `solver` at `setting` again and again until the least run time can be trusted.
@@ -153,16 +148,10 @@ pub fn quickest_within<'a>(points: impl IntoIterator<Item = &'a Point>, percent:
     within.min_by(|a, b| a.run_ms.unwrap_or(f64::INFINITY).total_cmp(&b.run_ms.unwrap_or(f64::INFINITY)))
 }
 
-fn fixed_step(
-    scene: &Scene,
-    gaps: &[f64; CONTACTS],
-    duration: f64,
-    integrator: IntegratorKind,
-    step: f64,
-    scalar: ScalarKind,
-) -> Result<Run, SimulateError> {
-    let run = crate::scene::RunSpec { duration, step, integrator };
-    simulate(scene, gaps, &Settings::fixed(run, EVERY, scalar))
+/// `duration` (s) of `scene` as `solver` computes it, whatever its stroke.
+fn run_of(scene: &Scene, gaps: &[f64; CONTACTS], duration: f64, settings: Settings) -> Result<Run, SimulateError> {
+    let run = RunSpec { duration, stroke: None, ..scene.run };
+    simulate(scene, gaps, &Settings { run, every: EVERY, ..settings })
 }
 
 #[cfg(test)]
@@ -170,7 +159,7 @@ mod tests {
     use slipfit_core::{menu::FrictionData, slide::CONTACTS};
 
     use super::*;
-    use crate::example;
+    use crate::{example, scheme::IntegratorKind};
 
     const SHORT: Problem = Problem { name: "opening", duration: 0.06 };
 

@@ -3,12 +3,12 @@
 use serde::Serialize;
 use slipfit_core::{menu::FrictionData, slide::CONTACTS};
 
-use super::{EVERY, fixed_step};
+use super::{EVERY, run_of};
 use crate::{
     number::three_digits,
-    scene::{RunSpec, Scene},
+    scene::{ControllerSpec, Scene},
     scheme::IntegratorKind,
-    simulate::{Run, ScalarKind, Settings, SimulateError, simulate},
+    simulate::{Run, ScalarKind, Settings, SimulateError},
 };
 
 /// Steps of all fixed-step schemes (s).
@@ -60,7 +60,8 @@ impl Solver {
             knob: Knob::StepS,
             settings: STEPS.iter().chain(finer).copied().collect(),
             work: Box::new(move |scene, gaps, duration, step, scalar| {
-                fixed_step(scene, gaps, duration, kind, step, scalar)
+                let controller = ControllerSpec { step, integrator: kind, scalar };
+                run_of(scene, gaps, duration, Settings::desk(scene, EVERY).by(controller))
             }),
         }
     }
@@ -70,10 +71,8 @@ impl Solver {
             name: "error-controlled",
             knob: Knob::ForceN,
             settings: TOLERANCES.to_vec(),
-            work: Box::new(|scene, gaps, duration, tolerance, scalar| {
-                let run = RunSpec { duration, ..scene.run };
-                let settings = Settings { tolerance: Some(tolerance), ..Settings::fixed(run, EVERY, scalar) };
-                simulate(scene, gaps, &settings)
+            work: Box::new(|scene, gaps, duration, tolerance, _| {
+                run_of(scene, gaps, duration, Settings::desk(scene, EVERY).to(tolerance))
             }),
         }
     }

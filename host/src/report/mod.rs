@@ -9,7 +9,7 @@ mod production;
 pub use self::production::Production;
 use self::{
     clearances::{derived_columns, given},
-    html::{figure, list, marked, optional, plain, real, table, tr, typed},
+    html::{figure, list, marked, optional, real, table, tr, typed},
 };
 use crate::{
     markup::escape,
@@ -26,9 +26,11 @@ pub struct ReportInput<'a> {
     pub scene: &'a Scene,
     /// Its sweep.
     pub sweep: &'a Sweep,
+    /// What it comes to, as plain lines; empty for none.
+    pub answer: &'a str,
     /// Pictures, in order.
     pub figures: &'a [Figure],
-    /// The tolerance level of Table 2's derived columns; 3.43 in the paper.
+    /// The tolerance level at which sums and differences of gaps are shown.
     pub n: f64,
     /// How the product's measures vary, if the scene has a product.
     pub production: Option<&'a Production>,
@@ -62,11 +64,14 @@ pub struct Flash {
 pub fn report(input: &ReportInput) -> String {
     let title = escape(&input.scene.title);
     let table = derived(input.scene, input.n);
+    let (first, others) = input.figures.split_at(input.figures.len().min(1));
     let sections = [
-        summary(input, &table),
+        verdict(input.answer),
+        first.iter().map(|Figure { caption, svg }| figure(caption, svg)).collect(),
         notes(input.notes),
-        figures(input.figures),
+        figures(others),
         levels(input.sweep),
+        summary(input, &table),
         input.production.map(production::section).unwrap_or_default(),
         given(input.scene, input.production.is_some()),
         derived_columns(&table),
@@ -76,14 +81,19 @@ pub fn report(input: &ReportInput) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n\
          <style>\n{}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n\
-         <p class=\"lead\">Tolerance levels, drive force and clearances of the mechanism</p>\n{}</main>\n</body>\n</html>\n",
+         {}</main>\n</body>\n</html>\n",
         include_str!("page.css"),
         sections.concat(),
     )
 }
 
+/// The answer, line by line.
+fn verdict(answer: &str) -> String {
+    if answer.is_empty() { String::new() } else { format!("<pre class=\"answer\">{}</pre>\n", escape(answer)) }
+}
+
 fn summary(input: &ReportInput, table: &Table2) -> String {
-    let ReportInput { scene, sweep, .. } = input;
+    let ReportInput { sweep, .. } = input;
     let mut facts = Vec::new();
     if let (Some(first), Some(last)) = (sweep.levels.first(), sweep.levels.last()) {
         let range = format!("{} levels, n = {} to {}", sweep.levels.len(), typed(first.n), typed(last.n));
@@ -94,17 +104,15 @@ fn summary(input: &ReportInput, table: &Table2) -> String {
         }
         facts.push(("Verdicts", verdicts(sweep)));
     }
-    facts.push((
-        "Time",
-        format!("{} ms in steps of {} µs", plain(scene.run.duration * 1e3), plain(scene.run.step * 1e6)),
-    ));
-    facts.push(("Integrator", scene.run.integrator.name().to_owned()));
+    if let Some(level) = sweep.levels.first() {
+        facts.push(("Computed by", level.solved.describe() + ", each level held against a run at a tenth of that"));
+    }
     if let Some(tightest) = table.tightest() {
         let (n, pin) = (real(tightest.n, 4), escape(tightest.pin));
         facts.push(("First pair to close", format!("{pin}, {}, at n* = {n}", tightest.direction)));
     }
     let facts: String = facts.iter().map(|(name, fact)| format!("<dt>{name}</dt><dd>{fact}</dd>\n")).collect();
-    format!("<dl>\n{facts}</dl>\n")
+    format!("<h2>What was done</h2>\n<dl>\n{facts}</dl>\n")
 }
 
 fn verdicts(sweep: &Sweep) -> String {
@@ -151,7 +159,8 @@ fn levels(sweep: &Sweep) -> String {
         <tr class=\"sub\"><th scope=\"col\">compressed</th><th scope=\"col\">zero</th><th scope=\"col\">free</th></tr>\n";
     let caption =
         "n &gt; 0 tightens every gap, n &lt; 0 loosens it. A dash: no breakaway, or a force that has not settled.";
-    format!("<h2>Levels</h2>\n{}", table(caption, head, &sweep.levels.iter().map(row).collect::<String>()))
+    let table = table(caption, head, &sweep.levels.iter().map(row).collect::<String>());
+    format!("<h2>Levels</h2>\n<details>\n<summary>All {} levels</summary>\n{table}</details>\n", sweep.levels.len())
 }
 
 fn flash(flash: &Flash) -> String {
@@ -169,7 +178,7 @@ mod tests {
     use super::{Figure, Flash, ReportInput, report};
     use crate::{
         example,
-        figure::{figure_8, figure_9, required_force},
+        figure::{forces, velocities, verdicts},
         scene::LevelRange,
         sweep::Sweep,
     };
@@ -180,7 +189,7 @@ mod tests {
         scene.title = "<script>alert(\"slide\")</script> & co".to_owned();
         scene.pins[0].name = "left <back>".to_owned();
         let sweep = example::sweep(LevelRange { first: -1.0, step: 1.75, count: 3 }, 0.1, 0.1);
-        let figures = [figure_8, figure_9, required_force].map(|figure| Figure {
+        let figures = [verdicts, velocities, forces].map(|figure| Figure {
             caption: "caption of <i>a figure</i>".to_owned(),
             svg: figure(&sweep, &scene.title).unwrap(),
         });
@@ -189,6 +198,7 @@ mod tests {
         report(&ReportInput {
             scene: &scene,
             sweep: &sweep,
+            answer: "n = 1 … 2 runs & <b>",
             figures: &figures,
             n: 3.43,
             production: None,
@@ -204,7 +214,7 @@ mod tests {
         for absent in ["<script", "<i>a figure", "left <back>", "a < b", "src=", "href=", "url(", "@import", "NaN"] {
             assert!(!html.contains(absent), "{absent}");
         }
-        for present in ["&lt;script&gt;", "left &lt;back&gt;", "a &lt; b", "&amp; co"] {
+        for present in ["&lt;script&gt;", "left &lt;back&gt;", "a &lt; b", "&amp; co", "runs &amp; &lt;b&gt;"] {
             assert!(html.contains(present), "{present}");
         }
     }
@@ -227,8 +237,17 @@ mod tests {
     fn leaves_out_what_there_is_not() {
         let (scene, sweep) = (example::cd_rom(), Sweep { levels: Vec::new() });
         let (production, flash) = (None, None);
-        let html =
-            report(&ReportInput { scene: &scene, sweep: &sweep, figures: &[], n: 0.0, production, flash, notes: &[] });
+        let input = ReportInput {
+            scene: &scene,
+            sweep: &sweep,
+            answer: "",
+            figures: &[],
+            n: 0.0,
+            production,
+            flash,
+            notes: &[],
+        };
+        let html = report(&input);
         assert!(!["Figures", "Notes", "Flash table", "NaN", "inf"].iter().any(|absent| html.contains(absent)));
     }
 }

@@ -104,7 +104,7 @@ pub enum Problem {
         written: String,
     },
     /// Exact friction with a scheme that does not solve for forces.
-    #[error("`run.integrator` is \"{0}\", which cannot do exact friction")]
+    #[error("`controller.integrator` is \"{0}\", which cannot do exact friction")]
     ExplicitFriction(String),
     /// A name that is taken.
     #[error("`{key}` is \"{name}\" again")]
@@ -188,14 +188,6 @@ pub enum Problem {
     /// Tolerance levels at which a gap is out of bounds.
     #[error("`sweep.n`: {0}")]
     Gap(GapError),
-    /// A step that does not divide the run.
-    #[error("`run.step` is {step}, which does not divide `run.duration`, {duration}")]
-    Indivisible {
-        /// The step.
-        step: String,
-        /// The duration.
-        duration: String,
-    },
 }
 
 /// A [`Problem`] with the place it was found at and what is allowed there.

@@ -43,7 +43,7 @@ impl SceneFile {
             .any(|key| root.get(key).is_some())
             .then(|| product(&root))
             .transpose()?;
-        let of_slide = ["slide", "contact", "friction", "drive", "run", "sweep", "pin"];
+        let of_slide = ["slide", "contact", "friction", "drive", "run", "controller", "sweep", "pin"];
         if product.is_some() && of_slide.iter().all(|key| root.get(key).is_none()) {
             return Ok(Self { title, product, slide: None });
         }

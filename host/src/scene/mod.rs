@@ -25,7 +25,7 @@ use slipfit_core::{
     slide::{ABSENT, Body, CONTACTS, PINS, box_inertia},
 };
 
-use crate::scheme::IntegratorKind;
+use crate::scheme::{IntegratorKind, ScalarKind};
 
 pub use diagnostic::{Problem, SceneError};
 pub use file::SceneFile;
@@ -53,8 +53,10 @@ pub struct Scene {
     pub pins: [PinSpec; PINS],
     /// Nominal clearances stated on the drawing, [across, up and down] (m); information only.
     pub nominal_clearance: Option<[f64; 2]>,
-    /// One run.
+    /// What is simulated.
     pub run: RunSpec,
+    /// How the controller computes it.
+    pub controller: ControllerSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
 }
@@ -103,15 +105,26 @@ pub struct PinSpec {
     pub gaps: [Option<GapStatistics<f64>>; 4],
 }
 
-/// One run.
+/// What is simulated, and how well the desk has to know it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunSpec {
-    /// Simulated time (s).
+    /// The longest simulated time (s).
     pub duration: f64,
+    /// Travel (m) along the drive's direction at which a run ends; `None` where the scene states none.
+    pub stroke: Option<f64>,
+    /// Error of the drive force that a step of the desk may make, as a share of the drive's greatest force.
+    pub error: f64,
+}
+
+/// How the controller computes: steps of one length by one scheme in one number type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ControllerSpec {
     /// Step (s).
     pub step: f64,
     /// Scheme.
     pub integrator: IntegratorKind,
+    /// Number type.
+    pub scalar: ScalarKind,
 }
 
 /// Equidistant tolerance levels: `first`, `first + step`, …, up to `last`.
@@ -153,6 +166,19 @@ pub struct GapError {
 }
 
 impl Scene {
+    /// The greatest force (N) of the drive: what it pushes with when the slide is blocked at full speed.
+    pub fn greatest_force(&self) -> f64 {
+        (self.drive.gain * self.drive.speed).abs()
+    }
+
+    /// The time (s) after which a run of the whole stroke is over: the ramp, then the stroke at the commanded speed. A slide
+    /// that runs at half of that speed or slower does not come to its end. `None` where no stroke is stated or nothing is
+    /// commanded.
+    pub fn stroke_duration(&self) -> Option<f64> {
+        let speed = self.drive.speed.abs();
+        self.run.stroke.filter(|_| speed > 0.0).map(|stroke| self.drive.ramp_end.max(0.0) + stroke / speed)
+    }
+
     /// Names of the sixteen contacts, such as "left front rail"; those that the scene leaves out too.
     pub fn contact_names(&self) -> [String; CONTACTS] {
         std::array::from_fn(|i| format!("{} {}", self.pins[i / 4].name, SURFACES[i % 4]))

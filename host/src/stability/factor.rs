@@ -3,9 +3,9 @@
 use slipfit_core::{menu::FrictionData, slide::CONTACTS};
 
 use crate::{
-    scene::Scene,
-    scheme::IntegratorKind,
-    simulate::{ScalarKind, Settings},
+    scene::{ControllerSpec, Scene},
+    scheme::{IntegratorKind, ScalarKind},
+    simulate::Settings,
 };
 
 /// One point of the map: a scene with the unit to be simulated.
@@ -17,14 +17,16 @@ pub struct Setup {
     pub n: f64,
     /// How much every gap is narrowed beyond that (m).
     pub interference: f64,
-    /// Number type.
-    pub scalar: ScalarKind,
 }
 
+/// Step (s) of the points that vary something else: fine enough that most of them hold.
+pub const STEP: f64 = 50e-6;
+
 impl Setup {
-    /// `scene` at the tolerance level `n`, in f64.
+    /// `scene` at the tolerance level `n`, in steps of [`STEP`] in f64.
     pub fn new(scene: Scene, n: f64) -> Self {
-        Self { scene, n, interference: 0.0, scalar: ScalarKind::F64 }
+        let controller = ControllerSpec { step: STEP, scalar: ScalarKind::F64, ..scene.controller };
+        Self { scene: Scene { controller, ..scene }, n, interference: 0.0 }
     }
 
     /// The gaps (m).
@@ -34,8 +36,7 @@ impl Setup {
 
     /// Settings that sample every millisecond, or every step if that is longer.
     pub fn settings(&self) -> Settings {
-        let step = self.scene.run.step;
-        Settings::fixed(self.scene.run, step.max(1e-3), self.scalar)
+        Settings::controller(&self.scene, self.scene.controller.step.max(1e-3))
     }
 }
 
@@ -131,7 +132,7 @@ pub const FACTORS: [Factor; 13] = [
     Factor {
         name: "step, µs",
         range: Range::These(&[10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0]),
-        set: |setup, x| setup.scene.run.step = x * 1e-6,
+        set: |setup, x| setup.scene.controller.step = x * 1e-6,
     },
     Factor { name: "f32, f64", range: Range::These(&[32.0, 64.0]), set: set_scalar },
 ];
@@ -182,5 +183,5 @@ fn set_gravity(setup: &mut Setup, share: f64) {
 }
 
 fn set_scalar(setup: &mut Setup, bits: f64) {
-    setup.scalar = if bits == 32.0 { ScalarKind::F32 } else { ScalarKind::F64 };
+    setup.scene.controller.scalar = if bits == 32.0 { ScalarKind::F32 } else { ScalarKind::F64 };
 }

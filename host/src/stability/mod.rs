@@ -1,7 +1,7 @@
 //! The stability map: how far from the paper's slide a fixed step still holds, and whether a run that does not hold says so.
 //!
-//! Every point is run as a user runs it with an account of its energy, once more with a quarter of the step in f64 for its
-//! error, and once at rest: without a drive and with no gap closed, where nothing may gain energy. Points are independent and their
+//! Every point is run as the controller runs it with an account of its energy, once more by the desk for its error, and once
+//! at rest: without a drive and with no gap closed, where nothing may gain energy. Points are independent and their
 //! random numbers a function of seed and index, so that the map does not depend on the number of threads.
 
 mod factor;
@@ -11,12 +11,13 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::{
-    confirm::confirmed,
+    confirm::against,
+    controller::audited,
     scene::Scene,
-    simulate::{Run, ScalarKind, SimulateError, audited, simulate},
+    simulate::{Run, Settings, SimulateError, simulate},
 };
 
-pub use factor::{FACTORS, Factor, Range, SCHEMES, Setup, Zero};
+pub use factor::{FACTORS, Factor, Range, SCHEMES, STEP, Setup, Zero};
 use generator::SplitMix64;
 
 /// Tolerance level of the points that vary something else.
@@ -63,8 +64,7 @@ pub struct Indicators {
     pub doubtful_force: f64,
     /// See [`Trust`](crate::trust::Trust).
     pub difference: Option<f64>,
-    /// Greatest force error from 50 ms on over the peak force, against a quarter of the step; infinite if that did not
-    /// stay finite.
+    /// Greatest force error from 50 ms on over the peak force, against the desk; infinite if the desk found no end.
     pub error: f64,
     /// Whether the run itself says that its step is too large.
     pub warned: bool,
@@ -117,7 +117,7 @@ pub fn one_at_a_time(scene: &Scene, done: impl Fn() + Sync) -> Result<Vec<Point>
         FACTORS.into_iter().flat_map(move |factor| {
             factor.range.values().into_iter().map(move |value| {
                 let mut setup = Setup::new(scene.clone(), LEVEL);
-                setup.scene.run.integrator = scheme;
+                setup.scene.controller.integrator = scheme;
                 (factor.set)(&mut setup, value);
                 (factor.name, vec![value], setup)
             })
@@ -135,7 +135,7 @@ pub fn one_at_a_time_count() -> usize {
 pub fn random_setup(scene: &Scene, seed: u64, index: usize) -> (Vec<f64>, Setup) {
     let mut generator = SplitMix64::new(seed, index as u64);
     let mut setup = Setup::new(scene.clone(), LEVEL);
-    setup.scene.run.integrator = SCHEMES[(generator.share() * SCHEMES.len() as f64) as usize];
+    setup.scene.controller.integrator = SCHEMES[(generator.share() * SCHEMES.len() as f64) as usize];
     let values: Vec<f64> = FACTORS.iter().map(|factor| factor.range.at(generator.share())).collect();
     for (factor, value) in FACTORS.iter().zip(&values) {
         (factor.set)(&mut setup, *value);
@@ -156,7 +156,7 @@ fn judged(points: Vec<(&'static str, Vec<f64>, Setup)>, done: impl Fn() + Sync) 
     let judged: Vec<Result<Point, SimulateError>> = points
         .into_par_iter()
         .map(|(factor, values, setup)| {
-            let integrator = setup.scene.run.integrator.name();
+            let integrator = setup.scene.controller.integrator.name();
             let indicators = indicators(&setup);
             done();
             Ok(Point { integrator, factor, values, indicators: indicators? })
@@ -165,11 +165,11 @@ fn judged(points: Vec<(&'static str, Vec<f64>, Setup)>, done: impl Fn() + Sync) 
     judged.into_iter().collect()
 }
 
-/// The run, unless it left the finite range.
+/// The run, unless it left the finite range or the desk found no step short enough.
 fn finite(run: Result<Run, SimulateError>) -> Result<Option<Run>, SimulateError> {
     match run {
         Ok(run) => Ok(Some(run)),
-        Err(SimulateError::NotFinite { .. }) => Ok(None),
+        Err(SimulateError::NotFinite { .. } | SimulateError::Unsolved { .. }) => Ok(None),
         Err(other) => Err(other),
     }
 }
@@ -177,11 +177,11 @@ fn finite(run: Result<Run, SimulateError>) -> Result<Option<Run>, SimulateError>
 fn indicators(setup: &Setup) -> Result<Option<Indicators>, SimulateError> {
     let (gaps, settings) = (setup.gaps(), setup.settings());
     let Some(run) = finite(audited(&setup.scene, &gaps, &settings))? else { return Ok(None) };
-    let run = confirmed(&setup.scene, &gaps, &settings, run)?;
-    let mut finer = settings;
-    finer.run.step /= 4.0;
-    finer.scalar = ScalarKind::F64;
-    let finer = finite(simulate(&setup.scene, &gaps, &finer))?;
+    let truth = finite(simulate(&setup.scene, &gaps, &Settings::desk(&setup.scene, settings.every)))?;
+    let run = match &truth {
+        Some(truth) => against(truth, &setup.scene, &settings, run),
+        None => run,
+    };
     let mut undriven = setup.scene.clone();
     undriven.drive.gain = 0.0;
     let at_rest = finite(audited(&undriven, &gaps.map(|gap| gap.max(REST_GAP)), &settings))?;
@@ -193,7 +193,7 @@ fn indicators(setup: &Setup) -> Result<Option<Indicators>, SimulateError> {
         imbalance: run.trust.imbalance,
         doubtful_force: run.trust.doubtful_force,
         difference: run.trust.difference,
-        error: finer.map_or(f64::INFINITY, |finer| run.trajectory.greatest_difference(&finer.trajectory, LATE)),
+        error: truth.map_or(f64::INFINITY, |truth| run.trajectory.greatest_difference(&truth.trajectory, LATE)),
         warned: !run.trust.is_sound(),
     }))
 }

@@ -28,7 +28,7 @@ use crate::{
     },
 };
 
-pub(super) use output::{OutputArguments, PAPER_LEVEL};
+pub(super) use output::OutputArguments;
 
 /// What is drawn unless something else is asked for: as many units as in the paper.
 pub(super) const DEFAULT: Settings = Settings { method: Method::PseudoRandom, samples: 5000, replicates: 1, seed: 1 };

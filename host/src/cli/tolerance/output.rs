@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// The paper's tolerance level, which just closes its tightest pair.
-pub(in crate::cli) const PAPER_LEVEL: f64 = 3.43;
+const PAPER_LEVEL: f64 = 3.43;
 
 fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|n: &f64| n.is_finite()).ok_or_else(|| "allowed is any finite number".into())

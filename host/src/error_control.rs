@@ -5,11 +5,15 @@
 //! themselves are no use, because a stiff contact turns a velocity's last digits into large ones. Deterministic: the same
 //! scene and tolerance give the same bits.
 
+use std::ops::ControlFlow;
+
 use slipfit_core::{
     integrator::{Integrator, MotionOf},
     mechanism::Mechanism,
     pose::Pose,
 };
+
+use crate::interrupt;
 
 /// How well each step has to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,45 +51,65 @@ pub struct Knot {
 }
 
 /// What an integration took.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Effort {
     /// Accepted steps.
     pub accepted: u32,
     /// Refused steps.
     pub refused: u32,
-    /// Worst residual of an accepted step (N·s).
-    pub worst_residual: f64,
+}
+
+/// Why an integration did not come to its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stopped {
+    /// No step from this time (s) on meets the tolerance, however short.
+    Unsolved(f64),
+    /// Stopped from outside.
+    Interrupted,
 }
 
 /// Least and greatest step (s).
-const STEPS: [f64; 2] = [1e-9, 0.02];
+const STEPS: [f64; 2] = [1e-12, 0.02];
+
+/// More steps than any scene takes that can be solved; beyond, the step has stalled.
+const STEPS_MOST: u32 = 20_000_000;
 
 /// How much shorter than the estimate allows a step is.
 const SAFETY: f64 = 0.8;
 
-/// How much the next step may be shorter and longer. Contacts close and let go too suddenly for steps that grow faster:
-/// with a limit of 4 twice as many are refused, and the stroke takes a third more of them.
-const CHANGES: [f64; 2] = [0.2, 1.5];
+/// How much the next step may be shorter and longer. Contacts close and open too suddenly for steps that grow faster.
+const CHANGES: [f64; 2] = [0.2, 2.0];
 
 /// First step (s).
 const FIRST_STEP: f64 = 2e-5;
 
-/// Integrates `mechanism` from `start` at time 0 over `duration` (s) into `knots`, the start among them.
+/// Steps between two looks at whether somebody asked to stop.
+const STEPS_PER_LOOK: u32 = 256;
+
+/// Integrates `mechanism` from `start` at time 0 over `duration` (s) or until `accept` breaks, which sees the start and the
+/// motion at the end of each accepted step.
+///
+/// # Errors
+/// See [`Stopped`].
 pub fn integrate<I: Integrator, M: Mechanism<f64, 6, Pose = Pose<f64>>>(
     mechanism: &M,
     start: MotionOf<f64, M, 6>,
     duration: f64,
     sensitivity: Sensitivity,
     tolerance: Tolerance,
-    knots: &mut Vec<Knot>,
-) -> Effort {
+    mut accept: impl FnMut(Knot, &MotionOf<f64, M, 6>) -> ControlFlow<()>,
+) -> Result<Effort, Stopped> {
     let knot = |t: f64, motion: &MotionOf<f64, M, 6>| {
         let r = motion.pose.displacement_w;
         Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] }
     };
     let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
-    knots.push(knot(t, &motion));
-    while t < duration {
+    let mut flow = accept(knot(t, &motion), &motion);
+    while t < duration && flow.is_continue() {
+        let tried = effort.accepted + effort.refused;
+        if tried.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
+            return Err(Stopped::Interrupted);
+        }
         // A last step that would leave a splinter takes it along.
         let length = if t + 1.01 * h >= duration { duration - t } else { h };
         let step = I::step(mechanism, t, length, &motion);
@@ -97,17 +121,19 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, 6, Pose = Pose<f64>>>(
         let error = if error.is_finite() { error } else { 1e12 };
         let factor = (SAFETY * libm::pow(error.max(1e-12), -1.0 / f64::from(I::ORDER))).clamp(CHANGES[0], CHANGES[1]);
         h = (length * factor).clamp(STEPS[0], STEPS[1]);
-        if error > 1.0 && length > STEPS[0] {
+        if error > 1.0 {
+            if length <= STEPS[0] || tried >= STEPS_MOST {
+                return Err(Stopped::Unsolved(t));
+            }
             effort.refused += 1;
             continue;
         }
         effort.accepted += 1;
-        effort.worst_residual = effort.worst_residual.max(step.residual);
         t = if length == duration - t { duration } else { t + length };
         motion = step.motion;
-        knots.push(knot(t, &motion));
+        flow = accept(knot(t, &motion), &motion);
     }
-    effort
+    Ok(effort)
 }
 
 /// The values of [`Knot`] at ascending `times` (s) within the `knots`, of which there are at least two.
@@ -123,8 +149,8 @@ pub fn sampled(knots: &[Knot], times: impl Iterator<Item = f64>) -> Vec<[f64; 4]
         .collect()
 }
 
-/// The values at time `t` between the knots `i` and `i + 1`.
-fn between(knots: &[Knot], i: usize, t: f64) -> [f64; 4] {
+/// The values at time `t` (s) between the knots `i` and `i + 1`.
+pub fn between(knots: &[Knot], i: usize, t: f64) -> [f64; 4] {
     let (from, to) = (knots[i], knots[i + 1]);
     let h = to.t - from.t;
     [0, 1, 2, 3].map(|k| {

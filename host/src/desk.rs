@@ -1,0 +1,231 @@
+//! The desk: one unit by error-controlled steps, the truth that a controller is held against.
+//!
+//! Exact friction has no derivative at rest, which error control needs. The desk takes the regularised law instead, with
+//! a stick band that follows the tolerance: a band of [`STICK_BANDS`] times the error of speed that a step may make. The result
+//! tends to exact friction as the tolerance does to zero, at the cost of the regularised law; a narrower band would make
+//! steps chatter between sticking and sliding. What creep within the band changes is part of the difference to a run at a
+//! tenth of the tolerance.
+
+use std::{ops::ControlFlow, time::Instant as Clock};
+
+use slipfit_core::{
+    SVector,
+    integrator::{Integrator, Motion, Rodas4},
+    law::{Elastic, Friction},
+    mechanism::Mechanism,
+    menu::{FrictionData, SlideVisitor},
+    pose::Pose,
+    slide::{CONTACTS, Slide},
+};
+
+use crate::{
+    error_control::{Knot, Sensitivity, Stopped, Tolerance, between, integrate, sampled},
+    outcome::{Instant, Observer, Trajectory},
+    scene::Scene,
+    scheme::ScalarKind,
+    simulate::{Run, Settings, SimulateError, Solved},
+    trust::Trust,
+};
+
+/// See the module's text.
+const STICK_BANDS: f64 = 4.0;
+
+/// Bounds of the stick band (m/s) that stands for true stick.
+const STICK_BAND: [f64; 2] = [1e-9, 1e-4];
+
+/// Instants between two knots at which a run is looked at for its figures, the second knot among them.
+const LOOKS: u32 = 4;
+
+/// The least error of force (N) that a step is held to, where the drive has no force.
+const LEAST_TOLERANCE: f64 = 1e-9;
+
+/// The error of force (N) that a step of `scene` may make: the scene's share of the drive's greatest force, or of the slide's
+/// weight where nothing is commanded.
+pub fn tolerance(scene: &Scene) -> f64 {
+    let [x, y, z] = scene.slide.gravity;
+    let weight = scene.slide.mass * libm::sqrt(x * x + y * y + z * z);
+    let greatest = if scene.greatest_force() > 0.0 { scene.greatest_force() } else { weight };
+    (scene.run.error * greatest).max(LEAST_TOLERANCE)
+}
+
+/// The stick band (m/s) that stands for true stick at this `tolerance` (N); `None` unless friction is exact.
+fn stick_band(scene: &Scene, tolerance: f64) -> Option<f64> {
+    let band = STICK_BANDS * tolerance / scene.drive.gain.max(f64::MIN_POSITIVE);
+    matches!(scene.friction, FrictionData::Exact { .. }).then(|| band.clamp(STICK_BAND[0], STICK_BAND[1]))
+}
+
+/// Runs the slide of `scene` with the given `gaps` (m), each step held to an error of force of `tolerance` (N).
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn run(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, tolerance: f64) -> Result<Run, SimulateError> {
+    let mut data = scene.slide_data::<f64>(gaps);
+    let stick_band = stick_band(scene, tolerance);
+    if let (FrictionData::Exact { coefficient }, Some(stick_band)) = (data.friction, stick_band) {
+        data.friction = FrictionData::Regularised { coefficient, stick_band };
+    }
+    let solved = Solved {
+        by: "desk",
+        integrator: Rodas4::NAME,
+        scalar: ScalarKind::F64,
+        step_s: None,
+        tolerance_n: Some(tolerance),
+        stick_band_m_per_s: stick_band,
+        effort: Default::default(),
+        worst_residual: 0.0,
+    };
+    let run = data.visit(Desk { scene, settings, tolerance: Tolerance::of_force(tolerance), solved })?;
+    Ok(run?)
+}
+
+/// A run whose slide's type is to be known.
+struct Desk<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    tolerance: Tolerance,
+    solved: Solved,
+}
+
+impl SlideVisitor<f64> for Desk<'_> {
+    type Output = Result<Run, Stopped>;
+
+    fn visit<E: Elastic<f64>, F: Friction<f64>>(self, slide: Slide<f64, E, F>) -> Self::Output {
+        let Self { scene, settings, tolerance, mut solved } = self;
+        let sensitivity = Sensitivity { mass: scene.slide.mass, gain: scene.drive.gain };
+        let rest = Motion {
+            pose: Pose::nominal(),
+            velocity: SVector::zeros(),
+            acceleration: SVector::zeros(),
+            memory: slide.fresh(),
+        };
+        let mut observer = Observer::new(scene.drive, settings.run);
+        let mut keepers = Keepers::default();
+        let mut knots: Vec<Knot> = Vec::new();
+        let start = Clock::now();
+        let duration = settings.run.duration;
+        let effort = integrate::<Rodas4, _>(&slide, rest, duration, sensitivity, tolerance, |knot, motion| {
+            knots.push(knot);
+            if knot.t >= scene.drive.ramp_start && keepers.meet(&slide.gaps(&motion.pose)) {
+                observer.tips(knot.t, knot.values[3]);
+            }
+            if observer.is_at_end(knot.values[3]) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        let integration = start.elapsed();
+        solved.effort = effort;
+
+        let end = end(&knots, &observer);
+        for i in 0..knots.len() - 1 {
+            let [from, to] = [knots[i].t, knots[i + 1].t];
+            let first = if i == 0 { 0 } else { 1 };
+            for look in first..=LOOKS {
+                let t = (from + (to - from) * f64::from(look) / f64::from(LOOKS)).min(end);
+                let [vz, _, _, z] = between(&knots, i, t);
+                observer.observe(Instant { t, vz, force: scene.drive.force(t, vz), z });
+                if t == end {
+                    break;
+                }
+            }
+        }
+        let mut trajectory = Trajectory::default();
+        let count = (end / settings.every * (1.0 + 1e-12)).floor() as usize;
+        let time = |i: usize| (i as f64 * settings.every).min(end);
+        for (i, values) in sampled(&knots, (0..=count).map(time)).into_iter().enumerate() {
+            trajectory.push(time(i), values, scene.drive.force(time(i), values[0]));
+        }
+        let outcome = observer.outcome();
+        Ok(Run { trajectory, outcome, solved, trust: Trust::default(), audit: None, integration })
+    }
+}
+
+/// When (s) the run ends: where the stroke does, between the last two knots, or with the last.
+fn end(knots: &[Knot], observer: &Observer) -> f64 {
+    let last = knots.len() - 1;
+    if !observer.is_at_end(knots[last].values[3]) {
+        return knots[last].t;
+    }
+    let [mut before, mut after] = [knots[last - 1].t, knots[last].t];
+    for _ in 0..60 {
+        let middle = 0.5 * (before + after);
+        if observer.is_at_end(between(knots, last - 1, middle)[3]) { after = middle } else { before = middle }
+    }
+    after
+}
+
+/// The keeper walls of the pins, as far as they have been free.
+#[derive(Default)]
+struct Keepers {
+    were_free: [bool; CONTACTS / 4],
+}
+
+impl Keepers {
+    /// Whether one of them, free until now, meets its pin at these `gaps` (m).
+    fn meet(&mut self, gaps: &[f64; CONTACTS]) -> bool {
+        let keepers = gaps.iter().skip(3).step_by(4);
+        let mut meets = false;
+        for (was_free, gap) in self.were_free.iter_mut().zip(keepers) {
+            meets |= *was_free && *gap <= 0.0;
+            *was_free |= *gap > 0.0;
+        }
+        meets
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfit_core::{menu::FrictionData, slide::CONTACTS};
+
+    use super::tolerance;
+    use crate::{
+        example,
+        outcome::Verdict,
+        simulate::{Settings, simulate},
+    };
+
+    #[test]
+    fn the_stroke_ends_a_run_and_its_verdict_does_not_change_with_a_longer_one() {
+        let mut scene = example::cd_rom();
+        let gaps = scene.gaps_at(&[2.5; CONTACTS]);
+        let mut outcome = |duration: f64| {
+            scene.run.duration = duration;
+            simulate(&scene, &gaps, &Settings::desk(&scene, 1e-3)).unwrap()
+        };
+        let [run, longer] = [1.8, 3.0].map(&mut outcome);
+        assert_eq!(run, crate::simulate::Run { integration: run.integration, ..longer });
+        let stroke = scene.run.stroke.unwrap();
+        assert_eq!((run.outcome.stroke_reached, run.outcome.verdict), (Some(true), Verdict::Runs));
+        assert!((run.outcome.end.z - stroke).abs() < 1e-9, "{:?}", run.outcome);
+        assert!(run.trajectory.z.iter().all(|z| *z <= stroke));
+        assert!(run.outcome.end.t - run.trajectory.t.last().unwrap() < 1e-3);
+    }
+
+    #[test]
+    fn figures_do_not_depend_on_how_often_a_run_is_sampled() {
+        let mut scene = example::cd_rom();
+        scene.run.duration = 1.5;
+        let gaps = scene.gaps_at(&[4.0; CONTACTS]);
+        let outcome = |every: f64| simulate(&scene, &gaps, &Settings::desk(&scene, every)).unwrap().outcome;
+        assert_eq!(outcome(1e-3), outcome(0.1));
+    }
+
+    #[test]
+    fn nothing_commanded_is_held_to_a_share_of_the_weight() {
+        let mut scene = example::cd_rom();
+        assert!((tolerance(&scene) - 4e-6).abs() < 1e-18);
+        scene.drive.speed = 0.0;
+        assert!((tolerance(&scene) - 0.0818 * 9.81 * 1e-6).abs() < 1e-18);
+    }
+
+    /// A slide held by friction alone: at rest for exact friction. The desk's creeps, by less than its stick band.
+    #[test]
+    fn what_exact_friction_holds_creeps_by_less_than_the_stick_band() {
+        let mut scene = example::cd_rom();
+        scene.friction = FrictionData::Exact { coefficient: 0.3 };
+        scene.drive.speed = 0.002;
+        scene.run.duration = 1.5;
+        let gaps = scene.gaps_at(&[0.0; CONTACTS]).map(|gap| gap.max(1e-5));
+        let run = simulate(&scene, &gaps, &Settings::desk(&scene, 1e-3)).unwrap();
+        let band = run.solved.stick_band_m_per_s.unwrap();
+        let creep = run.trajectory.vz.last().unwrap();
+        assert!(creep.abs() < band && band < 1e-8, "{creep} {band}");
+    }
+}

@@ -1,0 +1,116 @@
+//! Contact laws chosen at run time, for fixed steps at the desk: one type for every scene instead of one for each
+//! combination of laws, scheme and number type. The laws themselves are core's, and so are the bits.
+
+use slipfit_core::{
+    ParameterError, Scalar,
+    law::{
+        Elastic, Exact, Friction, Frictionless, Impact, Linear, Power, Regularised, ThreeHalves, friction::Rubbing,
+        friction::Traction,
+    },
+    menu::{ContactData, FrictionData, FrictionType, NormalType, SlideData},
+    slide::Slide,
+};
+
+/// Any elastic law of the menu.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnyElastic<S> {
+    /// e = 1.
+    Linear(Linear<S>),
+    /// e = 3/2.
+    ThreeHalves(ThreeHalves<S>),
+    /// Any other exponent.
+    Power(Power<S>),
+}
+
+impl<S: Scalar + PartialOrd> AnyElastic<S> {
+    /// The cheapest law that covers `contact`.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the parameter that is not finite or out of bounds.
+    pub fn new(contact: &ContactData<S>) -> Result<Self, ParameterError<S>> {
+        let ContactData { stiffness, exponent, .. } = *contact;
+        Ok(match contact.normal_type() {
+            NormalType::Linear => Self::Linear(Linear::new(stiffness)?),
+            NormalType::ThreeHalves => Self::ThreeHalves(ThreeHalves::new(stiffness)?),
+            NormalType::Power => Self::Power(Power::new(stiffness, exponent)?),
+        })
+    }
+}
+
+impl<S: Scalar> Elastic<S> for AnyElastic<S> {
+    #[inline]
+    fn force(&self, depth: S) -> (S, S) {
+        match self {
+            Self::Linear(law) => law.force(depth),
+            Self::ThreeHalves(law) => law.force(depth),
+            Self::Power(law) => law.force(depth),
+        }
+    }
+
+    fn energy(&self, depth: S) -> S {
+        match self {
+            Self::Linear(law) => law.energy(depth),
+            Self::ThreeHalves(law) => law.energy(depth),
+            Self::Power(law) => law.energy(depth),
+        }
+    }
+}
+
+/// Any friction law without internal variables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnySliding<S> {
+    /// None.
+    Frictionless,
+    /// Regularised Coulomb friction.
+    Regularised(Regularised<S>),
+}
+
+impl<S: Scalar> Friction<S> for AnySliding<S> {
+    type Memory = ();
+
+    const STICKS: bool = false;
+
+    fn fresh() {}
+
+    #[inline]
+    fn traction(&self, (): &(), rubbing: &Rubbing<S>) -> (Traction<S>, ()) {
+        match self {
+            Self::Frictionless => Frictionless.traction(&(), rubbing),
+            Self::Regularised(law) => law.traction(&(), rubbing),
+        }
+    }
+
+    fn shifted((): &(), (): &(), (): &(), _: S) {}
+
+    fn or_old((): &(), _: S, (): &()) {}
+}
+
+/// A slide whose laws were chosen at run time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnySlide<S> {
+    /// Friction without internal variables.
+    Sliding(Slide<S, AnyElastic<S>, AnySliding<S>>),
+    /// Exact Coulomb friction.
+    Sticking(Slide<S, AnyElastic<S>, Exact<S>>),
+}
+
+impl<S: Scalar + PartialOrd> AnySlide<S> {
+    /// The slide that `data` describes.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    pub fn new(data: &SlideData<S>) -> Result<Self, ParameterError<S>> {
+        let SlideData { body, contact, friction, drive } = *data;
+        let normal = Impact::new(AnyElastic::new(&contact)?, contact.damping, contact.depth)?;
+        Ok(match (friction.friction_type(), friction) {
+            (FrictionType::Exact, FrictionData::Exact { coefficient }) => {
+                Self::Sticking(Slide::new(body, normal, Exact::new(coefficient)?, drive)?)
+            }
+            (FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
+                let friction = AnySliding::Regularised(Regularised::new(coefficient, stick_band)?);
+                Self::Sliding(Slide::new(body, normal, friction, drive)?)
+            }
+            _ => Self::Sliding(Slide::new(body, normal, AnySliding::Frictionless, drive)?),
+        })
+    }
+}
