@@ -14,7 +14,6 @@ use slipfit::{
     force_table::{self, Demand},
     kernel_source,
     scene::{CD_ROM_SLIDE, Override, Scene},
-    simulate::ScalarKind,
 };
 use slipfit_core::{
     integrator::ImplicitEuler,
@@ -34,14 +33,14 @@ const STRICT: [&str; 8] =
     ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2", "-ffp-contract=off", "-Wno-unused-variable"];
 
 static SCENE: LazyLock<Scene> = LazyLock::new(|| {
-    let set = ["run.duration=1500", "run.step=\"1ms\"", "run.integrator=implicit-euler"];
+    let set = ["run.duration=1500"];
     let overrides: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
     let levels = Override::option("", "sweep.n", "1:3.5:0.5");
     Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[overrides, vec![levels]].concat()).expect("the shipped scene")
 });
 
 static TABLE: LazyLock<Vec<u8>> =
-    LazyLock::new(|| force_table::make(&SCENE, ScalarKind::F64, Demand::Full, || ()).expect("its table").0.bytes);
+    LazyLock::new(|| force_table::make(&SCENE, Demand::Full, || ()).expect("its table").0.bytes);
 
 /// A folder with what the program includes.
 static HEADERS: LazyLock<PathBuf> = LazyLock::new(|| {

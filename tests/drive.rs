@@ -11,7 +11,6 @@ use defmt_decoder::{DecodeError, Table};
 use slipfit::{
     force_table::{self, Demand},
     scene::{CD_ROM_SLIDE, Override, Scene},
-    simulate::ScalarKind,
 };
 use slipfit_tests::cross::{self, TARGET, cargo, printed};
 
@@ -22,7 +21,7 @@ static TABLE: LazyLock<PathBuf> = LazyLock::new(|| {
     let mut set = ["friction.law=exact", "run.duration=1500"].map(Override::set).to_vec();
     set.push(Override::option("", "sweep.n", "1:3:0.1"));
     let scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &set).expect("the shipped scene");
-    let (table, _) = force_table::make(&scene, ScalarKind::F64, Demand::Full, || ()).expect("its table");
+    let (table, _) = force_table::make(&scene, Demand::Full, || ()).expect("its table");
     let file = Path::new(FOLDER).join("drive.bin");
     fs::write(&file, table.bytes).expect("the test's folder takes files");
     file

@@ -11,7 +11,6 @@ use slipfit::{
     flash,
     force_table::{self, Demand},
     scene::{CD_ROM_SLIDE, Scene},
-    simulate::ScalarKind,
 };
 use slipfit_tests::cross::{self, TARGET, cargo, printed};
 
@@ -152,6 +151,6 @@ fn on_target(table: Option<&Path>) -> String {
 /// The table of the paper's slide over n from −3 to 5, with [`Demand::Full`] the one that `slipfit run` makes.
 fn table(demand: Demand) -> Vec<u8> {
     let scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).expect("the shipped scene");
-    let (table, _) = force_table::make(&scene, ScalarKind::F64, demand, || ()).expect("its table");
+    let (table, _) = force_table::make(&scene, demand, || ()).expect("its table");
     table.bytes
 }

@@ -20,7 +20,7 @@ use slipfit_core::{
 mod scene;
 
 fn described() -> Scene {
-    let set = ["friction.law=exact", "run.step=\"1ms\"", "run.integrator=implicit-euler"].map(Override::set);
+    let set = ["friction.law=exact"].map(Override::set);
     Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &set).expect("the shipped scene")
 }
 

@@ -11,7 +11,7 @@ use slipfit::{
     force_table::{self, Demand},
     outcome::Trajectory,
     scene::{CD_ROM_SLIDE, Override, Scene},
-    simulate::{ScalarKind, Settings, simulate},
+    simulate::{Settings, simulate},
 };
 use slipfit_core::{
     monitor::{BankError, Estimate, LevelBank, Limits, Monitor, MonitorError, Report, Sample, Verdict, Watch},
@@ -28,11 +28,7 @@ const START: f64 = 0.05;
 
 /// The paper's slide, run for `duration` (ms), with a table over `levels`.
 fn scene(duration: &str, levels: &str, settings: &[&str]) -> Scene {
-    let mut overrides = vec![
-        Override::option("", "run.duration", duration),
-        Override::option("", "run.step", "250us"),
-        Override::option("", "sweep.n", levels),
-    ];
+    let mut overrides = vec![Override::option("", "run.duration", duration), Override::option("", "sweep.n", levels)];
     overrides.extend(settings.iter().map(|setting| Override::set(setting)));
     Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &overrides).unwrap()
 }
@@ -40,11 +36,11 @@ fn scene(duration: &str, levels: &str, settings: &[&str]) -> Scene {
 /// The table of `scene` whose force errs by `error` (N) at most. A stroke has events of a few milliseconds that no table
 /// of 256 KB resolves better than to a tenth of a newton.
 fn table(scene: &Scene, error: f64) -> Vec<u8> {
-    force_table::make(scene, ScalarKind::F64, Demand::MaxError(error), || ()).unwrap().0.bytes
+    force_table::make(scene, Demand::MaxError(error), || ()).unwrap().0.bytes
 }
 
 fn run(scene: &Scene, n: f64) -> Trajectory {
-    let settings = Settings::fixed(scene.run, PERIOD, ScalarKind::F64);
+    let settings = Settings::desk(scene, PERIOD);
     simulate(scene, &scene.gaps_at(&[n; 16]), &settings).unwrap().trajectory
 }
 
@@ -127,7 +123,7 @@ fn without_noise_the_interval_covers_too() {
 #[test]
 fn an_opening_tells_less_but_its_interval_covers() {
     let opening = scene("200", "-3:5:0.1", &[]);
-    let bytes = force_table::make(&opening, ScalarKind::F64, Demand::Full, || ()).unwrap().0.bytes;
+    let bytes = force_table::make(&opening, Demand::Full, || ()).unwrap().0.bytes;
     let runs: Vec<_> = (-12..=18).map(|i| 0.25 * f64::from(i) + 0.03).map(|n| (n, run(&opening, n))).collect();
     for part in [0.0, 0.001, 0.02, 0.1] {
         let (rms, covered, width) = judged(&bytes, &runs, part);

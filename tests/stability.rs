@@ -4,9 +4,10 @@ use rayon::prelude::*;
 use slipfit::{
     audit::Audit,
     confirm::confirmed,
-    scene::{CD_ROM_SLIDE, Override, Scene},
-    scheme::IntegratorKind,
-    simulate::{ScalarKind, Settings, audited, simulate},
+    controller::audited,
+    scene::{CD_ROM_SLIDE, ControllerSpec, Override, Scene},
+    scheme::{IntegratorKind, ScalarKind},
+    simulate::{Settings, simulate},
     stability::{self, Grade},
 };
 use slipfit_core::slide::CONTACTS;
@@ -18,9 +19,8 @@ fn scene(settings: &[&str]) -> Scene {
 
 /// The account of the slide with all gaps at `gap` (m).
 fn account(scene: &Scene, gap: f64, integrator: IntegratorKind, step: f64) -> Audit {
-    let mut run = scene.run;
-    (run.integrator, run.step) = (integrator, step);
-    let settings = Settings::fixed(run, 1e-3, ScalarKind::F64);
+    let spec = ControllerSpec { step, integrator, scalar: ScalarKind::F64 };
+    let settings = Settings::desk(scene, 1e-3).by(spec);
     audited(scene, &[gap; CONTACTS], &settings).unwrap().audit.unwrap()
 }
 
@@ -68,6 +68,7 @@ fn the_defect_falls_with_the_order_of_the_method() {
         (IntegratorKind::Sdirk2, 2.0),
         (IntegratorKind::Extrapolated, 2.0),
         (IntegratorKind::Rodas3, 3.0),
+        (IntegratorKind::Rodas4, 4.0),
     ];
     for (integrator, order) in schemes {
         let [coarse, fine] = smooth_defects(integrator, &["friction.stick_band=100"]);
@@ -99,11 +100,10 @@ fn runs_with_too_large_a_step_say_so() {
     let mut wrong = 0;
     for integrator in stability::SCHEMES {
         for (scene, n, step) in cases {
-            let mut run = scene.run;
-            (run.integrator, run.step) = (integrator, step);
-            let settings = Settings::fixed(run, 5e-3, ScalarKind::F64);
+            let spec = ControllerSpec { step, integrator, scalar: ScalarKind::F64 };
+            let settings = Settings::desk(scene, 5e-3).by(spec);
             let gaps = scene.gaps_at(&[n; CONTACTS]);
-            let truth = simulate(scene, &gaps, &Settings { tolerance: Some(1e-7), ..settings }).unwrap();
+            let truth = simulate(scene, &gaps, &settings.to(1e-7)).unwrap();
             let run = confirmed(scene, &gaps, &settings, simulate(scene, &gaps, &settings).unwrap()).unwrap();
             let error = run.trajectory.greatest_difference(&truth.trajectory, scene.drive.ramp_start);
             println!("{integrator:?} n = {n} at {step} s: {error:.1e} {:?}", run.trust);
@@ -117,13 +117,13 @@ fn runs_with_too_large_a_step_say_so() {
 
 /// Combinations of extremes, each far outside what a slide is made of.
 #[test]
-fn every_random_scene_stays_finite_at_the_default_step() {
+fn every_random_scene_stays_finite_in_steps_of_50_microseconds() {
     let scene = scene(&[]);
     (0..400).into_par_iter().for_each(|i| {
         let (values, mut setup) = stability::random_setup(&scene, 2, i);
-        setup.scene.run.step = scene.run.step;
+        setup.scene.controller.step = stability::STEP;
         let run = simulate(&setup.scene, &setup.gaps(), &setup.settings());
-        assert!(run.is_ok(), "{:?} {values:?}: {:?}", setup.scene.run.integrator, run.err());
+        assert!(run.is_ok(), "{:?} {values:?}: {:?}", setup.scene.controller.integrator, run.err());
     });
 }
 

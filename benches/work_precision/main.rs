@@ -9,16 +9,19 @@
 mod cvode_peer;
 mod diffsol_peer;
 
-use std::time::{Duration, Instant};
+use std::{
+    ops::ControlFlow,
+    time::{Duration, Instant},
+};
 
 use cvode_peer::Cvode;
 use slipfit::{
-    controlled::{Sensitivity, Tolerance, integrate, sampled},
+    error_control::{Sensitivity, Tolerance, integrate, sampled},
     scheme::{IntegratorKind, IntegratorVisitor},
 };
 use slipfit_core::{
     SVector,
-    integrator::{Extrapolated, Integrator, Motion, Rodas3},
+    integrator::{Integrator, Motion, Rodas3, Rodas4},
     kernel::Kernel,
     mechanism::Mechanism,
     pose::Pose,
@@ -98,8 +101,8 @@ fn compare(reference: &Reference, cvode: Option<&Cvode>, all: bool) {
     let slide = cd_rom::slide(reference.n);
     let milliseconds = (reference.duration * 1e3).round() as u32;
     let mut entries = kernels(&slide, milliseconds);
-    entries.extend(controlled::<Rodas3>("controlled rodas3", &slide, milliseconds));
-    entries.extend(controlled::<Extrapolated<3, 3>>("controlled extrapolated", &slide, milliseconds));
+    entries.extend(controlled::<Rodas3>("error control, rodas3", &slide, milliseconds));
+    entries.extend(controlled::<Rodas4>("error control, rodas4", &slide, milliseconds));
     entries.extend(diffsol_peer::entries(&slide, milliseconds));
     entries.extend(cvode.map(|cvode| cvode.entries(milliseconds)).into_iter().flatten());
     let findings: Vec<Finding> = entries.iter().filter_map(|entry| measure(entry, reference)).collect();
@@ -153,15 +156,20 @@ fn controlled<I: Integrator>(solver: &'static str, slide: &CdRomSlide<f64>, mill
             let duration = f64::from(milliseconds) * 1e-3;
             let mut knots = Vec::new();
             let start = Instant::now();
-            integrate::<I, _>(&slide, rest, duration, sensitivity, Tolerance::of_force(force), &mut knots);
+            let tolerance = Tolerance::of_force(force);
+            integrate::<I, _>(&slide, rest, duration, sensitivity, tolerance, |knot, _| {
+                knots.push(knot);
+                ControlFlow::Continue(())
+            })
+            .ok()?;
             let times = (0..=milliseconds).map(|k| f64::from(k) * 1e-3);
             let values = sampled(&knots, times.clone());
             let force = times.zip(values).map(|(t, [vz, ..])| slide.drive().force(t, vz)).collect();
             Some(Achieved { force, time: start.elapsed() })
         };
-        Entry { solver, setting: format!("{force:.0e} N"), work: Box::new(work) }
+        Entry { solver, setting: format!("{force:.1e} N"), work: Box::new(work) }
     };
-    [1e-2, 3e-3, 1e-3, 8e-4, 7e-4, 6e-4, 5e-4, 4e-4, 3e-4, 2e-4, 1e-4, 5e-5, 3e-5, 1e-5, 3e-6, 1e-6].map(entry).into()
+    (0..41).map(|i| entry(1e-2 * libm::pow(10.0, -0.1 * f64::from(i)))).collect()
 }
 
 struct KernelEntry {

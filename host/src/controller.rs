@@ -5,7 +5,7 @@ use std::time::Instant as Clock;
 use slipfit_core::{
     Scalar,
     integrator::Integrator,
-    kernel::Kernel,
+    kernel::{Kernel, Report, StateOf},
     law::{Elastic, Friction},
     mechanism::Mechanism,
     pose::Pose,
@@ -91,9 +91,18 @@ impl Stepper<'_> {
         let integrator = self.spec.integrator;
         match slide {
             AnySlide::Sliding(slide) => integrator.visit(Started { stepper: self, slide }),
-            AnySlide::Sticking(slide) => integrator.visit(Started { stepper: self, slide }),
+            AnySlide::Sticking(slide) => integrator.visit_implicit(Started { stepper: self, slide }),
         }
     }
+}
+
+/// One step, in a function of its own: compiled once for each type, not into every loop around it.
+#[inline(never)]
+fn step_of<S: Scalar + PartialOrd, M: Mechanism<S, 6>, I: Integrator>(
+    kernel: &Kernel<S, M, I>,
+    state: &mut StateOf<S, M, 6>,
+) -> Report<S> {
+    kernel.step(state)
 }
 
 /// A stepper whose slide's type is known.
@@ -159,7 +168,7 @@ where
             if state.steps.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
                 return Err(SimulateError::Interrupted);
             }
-            let report = kernel.step(&mut state);
+            let report = step_of(&kernel, &mut state);
             let residual = report.residual.to_f64();
             if !residual.is_finite() {
                 return Err(SimulateError::NotFinite { time: t, step });

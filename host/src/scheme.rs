@@ -79,10 +79,20 @@ impl IntegratorKind {
             Self::RungeKutta4 => visitor.visit::<RungeKutta4>(),
             Self::Rodas3 => visitor.visit::<Rodas3>(),
             Self::Rodas4 => visitor.visit::<Rodas4>(),
+            Self::LinearlyImplicitEuler | Self::ImplicitEuler | Self::Sdirk2 | Self::Extrapolated => {
+                self.visit_implicit(visitor)
+            }
+        }
+    }
+
+    /// The same for a law that sticks, which only implicit schemes can follow. No code is made for the others, which scenes
+    /// refuse; implicit Euler would stand for them.
+    pub fn visit_implicit<V: IntegratorVisitor>(self, visitor: V) -> V::Output {
+        match self {
             Self::LinearlyImplicitEuler => visitor.visit::<ImplicitEuler<1>>(),
-            Self::ImplicitEuler => visitor.visit::<ImplicitEuler<4>>(),
             Self::Sdirk2 => visitor.visit::<Sdirk2<4>>(),
             Self::Extrapolated => visitor.visit::<Extrapolated<2, 4>>(),
+            _ => visitor.visit::<ImplicitEuler<4>>(),
         }
     }
 

@@ -43,14 +43,24 @@ fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
     }
     // From the drawing: what the dynamics give, and what the tolerance analysis of 18 measures gives.
     let mut expected: Vec<String> = (1..=18).map(|i| format!("histogram-{i}.svg")).collect();
-    let others =
-        ["contributors.svg", "correlation.svg", "fig8.svg", "fig9.svg", "report.html", "sweep.csv", "table.bin"];
-    expected.extend(others.iter().chain(&["tolerance.csv"]).map(|name| (*name).to_owned()));
+    let of_slide = [
+        "opening-force.svg",
+        "opening-velocity.svg",
+        "report.html",
+        "stroke-force.svg",
+        "stroke-velocity.svg",
+        "sweep.csv",
+        "table.bin",
+        "verdict.svg",
+    ];
+    expected.extend(
+        of_slide.iter().chain(&["contributors.svg", "correlation.svg", "tolerance.csv"]).map(|name| (*name).to_owned()),
+    );
     expected.sort();
     assert_eq!(files(&folder.path().join("one")), expected);
     // Of Table 2 as given, there is no product to analyse.
     stdout(&slipfit(folder.path(), &["run", "cd-rom-slide", "--out", "given", "--n", "0:4:1"]));
-    assert_eq!(files(&folder.path().join("given")), ["fig8.svg", "fig9.svg", "report.html", "sweep.csv", "table.bin"]);
+    assert_eq!(files(&folder.path().join("given")), of_slide);
     for name in files(&folder.path().join("one")) {
         let [one, two, eight] = ["one", "two", "eight"].map(|out| std::fs::read(folder.path().join(out).join(&name)));
         let one = one.unwrap();
@@ -67,9 +77,9 @@ fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
 }
 
 #[test]
-fn a_stroke_s_table_takes_longer_steps_and_gives_verdicts() {
+fn a_stroke_s_table_has_fewer_instants_and_gives_verdicts() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["run", "--json", "--n", "0:5:0.25", "--set", "run.duration=1500", "--set", "run.step=500"];
+    let arguments = ["run", "--json", "--n", "0:5:0.25", "--set", "run.duration=1500"];
     let report = json(folder.path(), &arguments);
     assert!(report["table_bytes"].as_u64().unwrap() < 256 * 1024);
     let verdicts: Vec<_> = report["levels"].as_array().unwrap().iter().map(|level| &level["verdict"]).collect();
@@ -118,7 +128,7 @@ fn a_run_is_sampled_as_asked_and_json_carries_its_figures() {
     assert_eq!(report["verdict"], "undecided");
     let csv = std::fs::read_to_string(folder.path().join("run.csv")).unwrap();
     let lines: Vec<_> = csv.lines().collect();
-    assert_eq!((lines[0], lines.len()), ("t,vz,force,x,y", 202));
+    assert_eq!((lines[0], lines.len()), ("t,vz,force,x,y,z", 202));
     assert!(lines[201].starts_with("0.2,"));
     let sixteen = ["2.5"; 16].join(",");
     let each = json(folder.path(), &["simulate", "--n", &sixteen, "--step", "1ms", "--json", "--scalar", "f32"]);
@@ -140,7 +150,7 @@ fn tolerance_gives_table_2_in_millimetres() {
 fn every_form_of_the_table_is_written() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["table.bin", "table.hex", "table.h", "table.rs"] {
-        let text = stdout(&slipfit(folder.path(), &["table", "-o", name, "--n", "0:2:1", "--step", "100us"]));
+        let text = stdout(&slipfit(folder.path(), &["table", "-o", name, "--n", "0:2:1"]));
         assert!(text.contains("Worst interpolation error"), "{text}");
     }
     assert_eq!(files(folder.path()), ["table.bin", "table.h", "table.hex", "table.rs"]);
@@ -152,7 +162,7 @@ fn every_form_of_the_table_is_written() {
 #[test]
 fn tables_over_position_and_speed_name_their_axes() {
     let folder = tempfile::tempdir().unwrap();
-    let stroke = ["--set", "run.duration=700", "--n", "0:2:1", "--step", "500us", "--json"];
+    let stroke = ["--set", "run.duration=700", "--n", "0:2:1", "--json"];
     let table = |options: &[&str]| {
         let arguments = [&["table", "cd-rom-slide-fast", "-o", "table.bin"], options, &stroke].concat();
         json(folder.path(), &arguments)
@@ -164,7 +174,7 @@ fn tables_over_position_and_speed_name_their_axes() {
             .collect()
     };
     assert_eq!(axes(&table(&[])), ["level 1 3", "time s 351"]);
-    let report = table(&["--over", "position", "--stroke", "25"]);
+    let report = table(&["--over", "position", "--end", "25"]);
     assert_eq!(axes(&report), ["level 1 3", "position m 101"]);
     assert_eq!(report["axes"][1]["step"].as_f64().map(|step| step as f32), Some(0.25e-3));
     assert!(report["rms_force_error_n"].as_f64() < report["worst_force_error_in_use_n"].as_f64());
@@ -173,11 +183,11 @@ fn tables_over_position_and_speed_name_their_axes() {
     let bytes = std::fs::read(folder.path().join("table.bin")).unwrap();
     let found = slipfit_core::table::Table::<2>::open(&bytes).unwrap().lookup([0.0, 0.01]);
     assert!(found.force > 0.2 && found.velocity > 0.05, "{found:?}");
-    let report = table(&["--over", "position,speed", "--speeds", "60:100:20", "--stroke", "15"]);
+    let report = table(&["--over", "position,speed", "--speeds", "60:100:20", "--end", "15"]);
     assert_eq!(axes(&report), ["level 1 3", "position m 61", "speed m/s 3"]);
 
-    let arguments = ["table", "cd-rom-slide-fast", "--over", "position", "--stroke", "25"];
-    let text = stdout(&slipfit(folder.path(), &[&arguments, &stroke[..6]].concat()));
+    let arguments = ["table", "cd-rom-slide-fast", "--over", "position", "--end", "25"];
+    let text = stdout(&slipfit(folder.path(), &[&arguments, &stroke[..4]].concat()));
     assert!(text.contains("n = +2 at 100.0 mm/s jams at z = ") && text.contains("holds the last force"), "{text}");
 }
 
@@ -195,6 +205,7 @@ fn bad_input_is_refused_by_name() {
     let broken = scene("broken.toml", "[slide\nmass = 1");
     std::fs::write(folder.path().join("latin.toml"), [0xe9, 0x0a]).unwrap();
     scene("unit.toml", shipped);
+    scene("no-stroke.toml", &shipped.replace("stroke = 80 ", ""));
     std::fs::create_dir_all(folder.path().join("taken/report.html")).unwrap();
     let before = files(folder.path());
 
@@ -214,9 +225,13 @@ fn bad_input_is_refused_by_name() {
         (&["run", "--set", "contact.exponent=0.9"], "contact.exponent"),
         (&["run", "--set", "slide.colour=1"], "slide.colour"),
         (&["run", "--set", "friction.law=sticky"], "sticky"),
-        (&["run", "--set", "friction.law=exact", "--set", "run.integrator=rk4"], "cannot do exact friction"),
-        (&["run", "--set", "run.step=0"], "run.step"),
-        (&["run", "--set", "run.duration=0.01"], "run.step"),
+        (&["run", "--set", "friction.law=exact", "--set", "controller.integrator=rk4"], "cannot do exact friction"),
+        (&["run", "--set", "controller.step=0"], "controller.step"),
+        (&["run", "--set", "run.step=50"], "unknown key `run.step`, did you mean `controller.step`?"),
+        (&["run", "--set", "run.stroke=-80"], "run.stroke"),
+        (&["simulate", "--error", "2"], "--error 2"),
+        (&["sweep", "--n", "1e300"], "--n 1e300"),
+        (&["simulate", "--stroke", "--set", "drive.speed=0"], "--stroke: "),
         (&["run", "--n", ""], "--n"),
         (&["run", "--n", "5:0:1"], "--n"),
         (&["run", "--n", "0:100:0.01"], "TABLE region"),
@@ -229,24 +244,24 @@ fn bad_input_is_refused_by_name() {
         (&["table", "-o", "table.txt"], ".hex"),
         (&["table", "-o", "nowhere/table.bin"], "nowhere"),
         (&["table", "--over", "place"], "--over"),
-        (&["table", "--over", "position"], "the run of 200 ms ends before the drive's ramp does, at 1000 ms"),
+        (
+            &["table", "no-stroke.toml", "--over", "position"],
+            "the run of 200 ms ends before the drive's ramp does, at 1000 ms",
+        ),
         (&["table", "--over", "position,speed"], "needs --speeds"),
         (&["table", "--speeds", "50:100:10"], "--speeds is for --over position,speed"),
         (&["table", "--over", "position", "--speeds", "50:100:10"], "--speeds is for --over position,speed"),
         (&["table", "--over", "position,speed", "--speeds", "100:50:10"], "--speeds 100:50:10: the last, 50, is below"),
-        (
-            &["table", "--over", "position,speed", "--speeds", "100", "--set", "run.duration=1500"],
-            "the Velocity axis has 1",
-        ),
+        (&["table", "--over", "position,speed", "--speeds", "100"], "the Velocity axis has 1"),
         (
             &["table", "--over", "position,speed", "--speeds=-50:50:10", "--set", "run.duration=1500"],
             "speeds from -50 to 50 mm/s",
         ),
-        (&["table", "--stroke", "60"], "--stroke is for --over position"),
-        (&["table", "--over", "position", "--stroke", "0", "--set", "run.duration=1500"], "the stroke is 0 mm"),
+        (&["table", "--end", "60"], "--end is for --over position"),
+        (&["table", "--over", "position", "--end", "0"], "the stroke is 0 mm"),
         (
-            &["table", "cd-rom-slide-fast", "--over", "position", "--stroke", "60", "--n", "1:2:1", "--step", "500us"],
-            "no slide comes 60 mm far",
+            &["table", "cd-rom-slide-fast", "--over", "position", "--end", "90", "--n", "1:2:1"],
+            "no slide comes 90 mm far",
         ),
         (&["simulate", "--step", "0"], "--step 0"),
         (&["simulate", "--step", "1s"], "--step 1s"),

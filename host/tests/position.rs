@@ -8,8 +8,8 @@ use slipfit::{
         position::{self, PositionError, PositionTable, SAMPLE, Wish},
     },
     outcome::Verdict,
-    scene::{LevelRange, Override, Scene, shipped},
-    simulate::{ScalarKind, Settings, simulate},
+    scene::{LevelRange, Override, RunSpec, Scene, shipped},
+    simulate::{Settings, simulate},
 };
 use slipfit_core::{
     drive::Drive,
@@ -17,12 +17,18 @@ use slipfit_core::{
     table::{AxisKind, Table},
 };
 
-/// The fast slide's stroke at `levels`, in steps of 250 µs.
+/// The fast slide's stroke at `levels`.
 fn scene(levels: &str, settings: &[&str]) -> Scene {
-    let mut overrides: Vec<_> = ["run.duration=700", "run.step=250"].map(Override::set).into();
+    let mut overrides: Vec<_> = ["run.duration=700"].map(Override::set).into();
     overrides.extend(settings.iter().map(|setting| Override::set(setting)));
     overrides.push(Override::option("", "sweep.n", levels));
     Scene::parse("cd-rom-slide-fast.toml", shipped("cd-rom-slide-fast").unwrap(), &overrides).unwrap()
+}
+
+/// Runs as tables over position are made from, past the stroke's end.
+fn at_every_step(scene: &Scene) -> Settings {
+    let run = RunSpec { stroke: None, ..scene.run };
+    Settings { run, ..Settings::desk(scene, 50e-6) }
 }
 
 const WISH: Wish<'_> = Wish { speeds: None, stroke: None, demand: Demand::Full };
@@ -31,13 +37,13 @@ const WISH: Wish<'_> = Wish { speeds: None, stroke: None, demand: Demand::Full }
 const SPEEDS: LevelRange = LevelRange { first: 0.06, step: 0.02, count: 3 };
 
 fn made(scene: &Scene, wish: &Wish<'_>) -> PositionTable {
-    position::make(scene, wish, ScalarKind::F64, || ()).unwrap()
+    position::make(scene, wish, || ()).unwrap()
 }
 
 /// Force and velocity of the unit `n` commanded to `speed` (m/s) where it first comes to `z` (m).
 fn passing(scene: &Scene, n: f64, speed: f64, places: &[f64]) -> Vec<[f64; 2]> {
     let scene = Scene { drive: Drive { speed, ..scene.drive }, ..scene.clone() };
-    let settings = Settings::fixed(scene.run, scene.run.step, ScalarKind::F64);
+    let settings = at_every_step(&scene);
     let run = simulate(&scene, &scene.gaps_at(&[n; CONTACTS]), &settings).unwrap().trajectory;
     let found = places.iter().map(|place| {
         let i = run.z.iter().position(|z| z >= place).unwrap();
@@ -98,7 +104,7 @@ fn nodes_are_what_a_run_does_where_it_passes() {
 fn the_node_at_the_start_holds_the_breakaway() {
     let (scene, made) = &*OVER_POSITION;
     let table = Table::<2>::open(&made.table.bytes).unwrap();
-    let settings = Settings::fixed(scene.run, scene.run.step, ScalarKind::F64);
+    let settings = at_every_step(&scene);
     let run = simulate(scene, &scene.gaps_at(&[2.0; CONTACTS]), &settings).unwrap().trajectory;
     let leaving = run.z.iter().take_while(|z| **z < SAMPLE).count();
     let greatest = run.force[..leaving].iter().copied().fold(0.0, f64::max);
@@ -197,13 +203,13 @@ fn a_table_is_made_as_small_as_its_error_allows() {
     };
     assert!((end(&small) - 0.02).abs() < 1e-8 && (end(&full) - 0.02).abs() < 1e-8);
     let none = Wish { demand: Demand::MaxError(1e-9), ..wish };
-    let refused = position::make(&scene, &none, ScalarKind::F64, || ()).unwrap_err();
+    let refused = position::make(&scene, &none, || ()).unwrap_err();
     assert!(matches!(refused, TableError::MaxError { .. }), "{refused}");
 }
 
 #[test]
 fn runs_that_come_nowhere_are_refused() {
-    let refused = |scene: &Scene, wish: &Wish<'_>| match position::make(scene, wish, ScalarKind::F64, || ()) {
+    let refused = |scene: &Scene, wish: &Wish<'_>| match position::make(scene, wish, || ()) {
         Err(TableError::Position(error)) => error,
         other => panic!("{other:?}"),
     };

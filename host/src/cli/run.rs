@@ -38,6 +38,17 @@ use crate::{
     },
 };
 
+/// What is written of the mechanism, the page first.
+const OUTPUTS: [&str; 8] = [
+    "report.html",
+    "table.bin",
+    "sweep.csv",
+    "verdict.svg",
+    "opening-velocity.svg",
+    "opening-force.svg",
+    "stroke-velocity.svg",
+    "stroke-force.svg",
+];
 /// The statistics of the product's measures.
 const MEASURES: &str = "tolerance.csv";
 
@@ -98,6 +109,11 @@ impl Arguments {
         let production = product.as_ref().map(|product| self.analyse(&scene.title, product)).transpose()?;
         let made = !self.out.exists();
         files::prepare_folder(&self.out).map_err(refused)?;
+        let pictures = production.iter().flat_map(|production| &production.pictures);
+        let names = OUTPUTS.into_iter().chain([MEASURES]).chain(pictures.map(|picture| picture.file.as_str()));
+        let paths: Vec<_> = names.map(|name| self.out.join(name)).collect();
+        let named: Vec<_> = paths.iter().map(|path| ("--out", path.as_path())).collect();
+        self.scene.check_outputs(&named)?;
         let done = self.fill(&scene, product, production);
         if made && done.is_err() {
             // Only if nothing was written.
@@ -138,9 +154,9 @@ impl Arguments {
             notes: &notes,
         });
         let mut files: Vec<(String, Vec<u8>)> = vec![
-            ("report.html".into(), page.into_bytes()),
-            ("table.bin".into(), simulated.table.bytes.clone()),
-            ("sweep.csv".into(), sweep_csv(scene, simulated.judged())?),
+            (OUTPUTS[0].into(), page.into_bytes()),
+            (OUTPUTS[1].into(), simulated.table.bytes.clone()),
+            (OUTPUTS[2].into(), sweep_csv(scene, simulated.judged())?),
         ];
         files.extend(figures.into_iter().map(|(name, figure)| (name.to_owned(), figure.svg.into_bytes())));
         if let Some(Production { report, pictures }) = &production {
@@ -149,8 +165,6 @@ impl Arguments {
         }
         warnings.extend(self.strangers(&files));
         let paths: Vec<_> = files.iter().map(|(name, _)| self.out.join(name)).collect();
-        let named: Vec<_> = paths.iter().map(|path| ("--out", path.as_path())).collect();
-        self.scene.check_outputs(&named)?;
         for (path, (_, bytes)) in paths.iter().zip(&files) {
             files::write(path, bytes)?;
         }
@@ -228,7 +242,7 @@ impl Arguments {
         if let Some(warning) = table::coarse(scene, &simulated.table) {
             let _ = writeln!(text, "                {warning}");
         }
-        let _ = writeln!(text, "Look at         {}", self.out.join("report.html").display());
+        let _ = writeln!(text, "Look at         {}", self.out.join(OUTPUTS[0]).display());
         text
     }
 
@@ -304,19 +318,19 @@ fn figures(scene: &Scene, simulated: &Simulated) -> Result<Vec<(&'static str, Fi
     if simulated.judged().levels.iter().any(|level| level.outcome.peak_force.is_some()) {
         let caption = "Each mark is a tolerance level: its shape says whether the slide runs, its height what force that takes. \
                        Behind: how many units of the production are drawn at that level, if its gaps move together.";
-        figures.push(("verdict.svg", captioned(caption, verdicts(simulated.judged(), title))?));
+        figures.push((OUTPUTS[3], captioned(caption, verdicts(simulated.judged(), title))?));
     }
     let caption = "The opening: how fast the slide moves while the drive starts. Compressed gaps are released in the first \
                    milliseconds; from the ramp's start on the slide breaks away, the earlier the less it takes.";
-    figures.push(("opening-velocity.svg", captioned(caption, velocities(&simulated.opening, title))?));
+    figures.push((OUTPUTS[4], captioned(caption, velocities(&simulated.opening, title))?));
     let caption = "The opening: the force of the drive, which the flash table holds.";
-    figures.push(("opening-force.svg", captioned(caption, forces(&simulated.opening, title))?));
+    figures.push((OUTPUTS[5], captioned(caption, forces(&simulated.opening, title))?));
     if let Some(stroke) = &simulated.stroke {
         let caption = "The whole stroke: how fast the slide moves. A line that falls away is a slide that tips, slows or jams; \
                        one that ends early has come to the end of the stroke.";
-        figures.push(("stroke-velocity.svg", captioned(caption, velocities(stroke, title))?));
+        figures.push((OUTPUTS[6], captioned(caption, velocities(stroke, title))?));
         let caption = "The whole stroke: the force of the drive. It rises where the slide is slower than commanded.";
-        figures.push(("stroke-force.svg", captioned(caption, forces(stroke, title))?));
+        figures.push((OUTPUTS[7], captioned(caption, forces(stroke, title))?));
     }
     Ok(figures)
 }

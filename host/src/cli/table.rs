@@ -37,17 +37,16 @@ pub(super) struct Arguments {
     /// File to write; the extension says how: .bin .hex .h .rs
     #[arg(short, long, value_name = "FILE", default_value = "table.bin")]
     output: PathBuf,
-    /// What force is looked up by, beside the tolerance level. Over position a whole stroke is simulated: set a
-    /// run.duration that is long enough.
+    /// What force is looked up by, beside the tolerance level. Over position the whole stroke is simulated.
     #[arg(long, value_enum, default_value_t)]
     over: Over,
     /// Commanded speeds (mm/s) of a table over position,speed; each takes the place of drive.speed.
     #[arg(long, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: Option<String>,
-    /// Where the positions of a table end (mm). If not given: where the slowest unit is that runs at least at half its
-    /// commanded speed when its run ends.
+    /// Where the positions of a table end (mm). If not given: at the end of the stroke, or where the slowest unit is that
+    /// runs at least at half its commanded speed when its run ends.
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
-    stroke: Option<f64>,
+    end: Option<f64>,
     /// Greatest error of force (N) where the table is used, over time from the ramp's start on, over position where every
     /// slide nearby comes to: the smallest table that meets it is made, as multiples of a scale (i16) or as numbers
     /// (f32).
@@ -123,9 +122,14 @@ impl Arguments {
         }
         let demand = self.max_error.map_or(Demand::Full, Demand::MaxError);
         let speeds = self.speeds()?;
-        let stroke = self.stroke.map(|stroke| stroke * 1e-3);
-        if stroke.is_some() && self.over == Over::Time {
-            return Err(Failure::Input("--stroke is for --over position".into()));
+        let end = self.end.map(|end| end * 1e-3);
+        if end.is_some() && self.over == Over::Time {
+            return Err(Failure::Input("--end is for --over position".into()));
+        }
+        let mut scene = scene;
+        if self.over != Over::Time {
+            let duration = scene.stroke_duration().unwrap_or(scene.run.duration);
+            scene.run.duration = duration.max(scene.run.duration);
         }
         let outputs: Vec<_> = std::iter::once(("--output", self.output.as_path()))
             .chain(self.plot.iter().map(|path| ("--plot", path.as_path())))
@@ -136,7 +140,7 @@ impl Arguments {
                 (table, None, doubt)
             }
             Over::Position | Over::PositionAndSpeed => {
-                let wish = Wish { speeds: speeds.as_ref(), stroke, demand };
+                let wish = Wish { speeds: speeds.as_ref(), stroke: end, demand };
                 let made = self.over_position(&scene, &wish, &outputs)?;
                 (made.table, Some(made.short), made.warning)
             }

@@ -63,7 +63,7 @@ mod tests {
     #[test]
     fn is_what_it_was() {
         // Another value here refuses every table in the field: raise `LAWS` only on purpose.
-        assert_eq!(format!("{:016x}", hash(|_| ())), "4e4594b206a8f39a");
+        assert_eq!(format!("{:016x}", hash(|_| ())), "83f741c20cd1f0bd");
     }
 
     #[test]

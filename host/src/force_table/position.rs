@@ -29,7 +29,7 @@ use crate::{
     flash::TABLE_REGION,
     number::ten_digits,
     outcome::Verdict,
-    scene::{LevelRange, Scene},
+    scene::{LevelRange, RunSpec, Scene},
     simulate::{Settings, SimulateError, simulate},
 };
 
@@ -69,7 +69,8 @@ pub struct Wish<'a> {
     /// Commanded speeds (m/s), if it is to be over these as well.
     pub speeds: Option<&'a LevelRange>,
     /// Where its axis ends (m), up to a step farther. If not given: where the slowest unit is that runs at least at half its
-    /// commanded speed when its run ends, in whole multiples of 5 mm and at most 1 m; or where the farthest is if none runs.
+    /// commanded speed when its run ends, at most at the end of the scene's stroke, in whole multiples of 5 mm and at most 1 m;
+    /// or where the farthest is if none runs.
     pub stroke: Option<f64>,
     /// Its size.
     pub demand: Demand,
@@ -99,7 +100,7 @@ pub enum PositionError {
     /// The drive does not come to its speed.
     #[error(
         "the run of {} ms ends before the drive's ramp does, at {} ms: a table over position takes a stroke, \
-         such as --set run.duration=1500",
+         so state a run.stroke or a longer run.duration",
         mm(*duration),
         mm(*ramp_end)
     )]
@@ -200,7 +201,9 @@ pub fn make(scene: &Scene, wish: &Wish<'_>, done: impl Fn() + Sync) -> Result<Po
         .into_iter()
         .flat_map(|n| speeds_of_runs.iter().map(move |speed| (n, *speed)))
         .collect();
-    let settings = Settings::desk(scene, EVERY);
+    // Past the stroke's end, so that the last node is passed.
+    let run = RunSpec { stroke: None, ..scene.run };
+    let settings = Settings { run, ..Settings::desk(scene, EVERY) };
     let runs: Vec<Result<_, SimulateError>> = units
         .par_iter()
         .map(|&(n, speed)| {
@@ -215,7 +218,7 @@ pub fn make(scene: &Scene, wish: &Wish<'_>, done: impl Fn() + Sync) -> Result<Po
         .collect();
     let (passages, judged): (Vec<Passage>, Vec<_>) = runs.into_iter().collect::<Result<_, _>>()?;
     let (reaches, warnings): (Vec<Reach>, Vec<Option<String>>) = judged.into_iter().unzip();
-    let steps = steps(&reaches, stroke, scene.run.duration)?;
+    let steps = steps(&reaches, [stroke, scene.run.stroke], scene.run.duration)?;
     let nodes = scene.sweep.count * speeds.map_or(1, |speeds| speeds.count);
     let per_node = per_node(nodes, steps, demand);
     // Up to the first node that is not short of the end.
@@ -247,20 +250,22 @@ pub fn make(scene: &Scene, wish: &Wish<'_>, done: impl Fn() + Sync) -> Result<Po
     Ok(PositionTable { table, short, warning: warnings.into_iter().flatten().next() })
 }
 
-/// How many steps an axis has, see [`Wish::stroke`].
-fn steps(reaches: &[Reach], stroke: Option<f64>, duration: f64) -> Result<usize, PositionError> {
+/// How many steps an axis has, see [`Wish::stroke`]: to where it is `asked` to end, or as far as units run, at most to the end
+/// of the scene's `stroke` (m).
+fn steps(reaches: &[Reach], [asked, stroke]: [Option<f64>; 2], duration: f64) -> Result<usize, PositionError> {
     let by_place = |one: &&Reach, other: &&Reach| one.z.total_cmp(&other.z);
     let farthest = *reaches.iter().max_by(by_place).expect("there are levels");
     let slowest = reaches.iter().filter(|reach| reach.verdict == Verdict::Runs).min_by(by_place);
     // Margins for rounding.
-    let steps = match stroke {
-        Some(stroke) => (stroke / STEP - 1e-9).ceil() as usize,
-        None => match (slowest.unwrap_or(&farthest).z.min(STROKE_MOST) / STEP + 1e-9) as usize {
+    let most = stroke.unwrap_or(STROKE_MOST).min(STROKE_MOST);
+    let steps = match asked {
+        Some(asked) => (asked / STEP - 1e-9).ceil() as usize,
+        None => match (slowest.unwrap_or(&farthest).z.min(most) / STEP + 1e-9) as usize {
             short if short < WHOLE => short,
             long => long / WHOLE * WHOLE,
         },
     };
-    let asked = stroke.unwrap_or(STEP);
+    let asked = asked.unwrap_or(STEP);
     if steps == 0 || farthest.z < asked {
         return Err(PositionError::TooFar { asked, farthest, duration });
     }

@@ -65,9 +65,3 @@ pub fn optional(value: Option<f64>, decimals: usize) -> String {
 pub fn mm(length: Option<f64>) -> String {
     optional(length.map(|length| length * 1e3), 4)
 }
-
-/// Without trailing zeros.
-pub fn plain(value: f64) -> String {
-    let digits = fixed(value, 3);
-    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
-}

@@ -1,6 +1,6 @@
 //! What is wrong with a scene, and where.
 
-use std::{fmt, ops::Range};
+use std::{cell::RefCell, fmt, ops::Range};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str};
 
@@ -190,12 +190,76 @@ pub enum Problem {
     Gap(GapError),
 }
 
-/// A [`Problem`] with the place it was found at and what is allowed there.
+impl Problem {
+    /// Whether the problem lies in one value or key alone, so that it stands whatever else is wrong.
+    fn stands_alone(&self) -> bool {
+        !matches!(
+            self,
+            Self::OutOfRange { .. }
+                | Self::Exponent { .. }
+                | Self::Limits { .. }
+                | Self::NotPositiveDefinite
+                | Self::Placement { .. }
+                | Self::NotPlaced(_)
+                | Self::PlacedTwice(_)
+                | Self::Loop(_)
+                | Self::Gap(_)
+        )
+    }
+}
+
+/// What has been found wrong with a scene so far. Reading goes on behind a wrong value, so that all of them are told at once.
+#[derive(Debug, Default)]
+pub struct Found(RefCell<Vec<SceneError>>);
+
+impl Found {
+    /// What `result` holds, or `instead` after its error is noted.
+    pub fn recover<T>(&self, result: Result<T, SceneError>, instead: T) -> T {
+        result.unwrap_or_else(|error| {
+            self.note(error);
+            instead
+        })
+    }
+
+    /// Takes note of an error.
+    pub fn note(&self, error: SceneError) {
+        self.0.borrow_mut().push(error);
+    }
+
+    /// Whether something is wrong.
+    pub fn any(&self) -> bool {
+        !self.0.borrow().is_empty()
+    }
+
+    /// `result`, unless something was noted: then all of that, with the error of `result` where it would stand without it.
+    pub fn conclude<T>(&self, result: Result<T, SceneError>) -> Result<T, SceneError> {
+        let mut all: Vec<SceneError> = self.0.take();
+        match result {
+            Ok(value) if all.is_empty() => return Ok(value),
+            Err(error) if all.is_empty() || error.problem().stands_alone() => all.push(error),
+            Ok(_) | Err(_) => {}
+        }
+        let mut reports = Vec::new();
+        for report in all.into_iter().flat_map(|error| error.0) {
+            if !reports.contains(&report) {
+                reports.push(report);
+            }
+        }
+        // The file before the command line, each from its beginning.
+        reports.sort_by_key(|report| (report.name == COMMAND_LINE, report.text.clone(), report.span.start));
+        Err(SceneError(reports))
+    }
+}
+
+/// What settings on the command line are called in messages.
+pub const COMMAND_LINE: &str = "command line";
+
+/// What is wrong with a scene: one [`Problem`] or several, each with the place it was found at and what is allowed there.
 ///
 /// Displays as several lines for a terminal: the problem; file, line and column; the line with a pointer; what is
-/// allowed.
+/// allowed. A blank line stands between problems.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SceneError(Box<Report>);
+pub struct SceneError(Vec<Report>);
 
 #[derive(Clone, Debug, PartialEq)]
 struct Report {
@@ -213,22 +277,28 @@ impl SceneError {
         let floor = |at: usize| (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
         let start = floor(span.start);
         let span = start..floor(span.end).max(start);
-        Self(Box::new(Report { problem, allowed, name: name.into(), text: text.into(), span }))
+        Self(vec![Report { problem, allowed, name: name.into(), text: text.into(), span }])
     }
 
-    /// What is wrong.
+    /// What is wrong first.
     pub fn problem(&self) -> &Problem {
-        &self.0.problem
+        &self.0[0].problem
     }
 
-    /// What is allowed instead, as a phrase; empty if the problem says it.
-    pub fn allowed(&self) -> &str {
-        &self.0.allowed
+    /// All that is wrong, in the order of the text.
+    pub fn problems(&self) -> impl Iterator<Item = &Problem> {
+        self.0.iter().map(|report| &report.problem)
     }
 
     /// The message for a terminal, in colour if `color`.
     pub fn render(&self, color: bool) -> String {
-        let Report { problem, allowed, name, text, span } = &*self.0;
+        self.0.iter().map(|report| report.render(color)).collect::<Vec<_>>().join("\n\n")
+    }
+}
+
+impl Report {
+    fn render(&self, color: bool) -> String {
+        let Self { problem, allowed, name, text, span } = self;
         let pointer = AnnotationKind::Primary.span(span.clone());
         let snippet = Snippet::source(text).path(name).annotation(pointer);
         let group = Level::ERROR.primary_title(problem.to_string()).element(snippet);

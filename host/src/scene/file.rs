@@ -5,11 +5,13 @@ use slipfit_core::clearance::GapStatistics;
 use crate::{product::Product, tolerance::moments};
 
 use super::{
-    Override, Problem, Scene, SceneError, keys,
+    Override, Problem, Scene, SceneError,
+    diagnostic::Found,
+    keys,
     parse::{scene, title},
     pins::{fill, pins, sums},
     product::product,
-    tree::Source,
+    tree::{Node, Source},
     value::Field,
 };
 
@@ -28,15 +30,20 @@ impl SceneFile {
     /// Reads the `text` of the scene file `file_name` with the `overrides` applied in order.
     ///
     /// # Errors
-    /// [`SceneError`] points at the first value, in the file or in an override, that makes no scene.
+    /// [`SceneError`] points at every value, in the file or in an override, that makes no scene.
     pub fn parse(file_name: &str, text: &str, overrides: &[Override]) -> Result<Self, SceneError> {
-        let mut tree = Source { name: file_name, text }.document()?;
+        let found = Found::default();
+        let mut tree = Source { name: file_name, text, found: &found }.document()?;
         for change in overrides {
             tree.set(change)?;
         }
-        keys::refuse_unknown(&tree)?;
+        keys::note_unknown(&tree);
+        found.conclude(Self::read(&tree, file_name))
+    }
 
-        let root = Field { key: String::new(), node: &tree };
+    /// Reads the scene from its `tree`. What is wrong with single values is noted there.
+    fn read(tree: &Node<'_>, file_name: &str) -> Result<Self, SceneError> {
+        let root = Field { key: String::new(), node: tree };
         let title = title(&root, file_name)?;
         let mut product = ["dimension", "part", "measure"]
             .iter()
@@ -49,7 +56,10 @@ impl SceneFile {
         }
         root.table("slide")?;
         let (mut pins, gap_measures) = pins(&root, product.as_ref().map(|product| &product.model))?;
-        if let Some(product) = product.as_mut().filter(|_| gap_measures.iter().flatten().any(Option::is_some)) {
+        // With values that stand for wrong ones there is nothing to compute.
+        let sound = !tree.place.found().any();
+        if let Some(product) = product.as_mut().filter(|_| sound && gap_measures.iter().flatten().any(Option::is_some))
+        {
             let moments = moments::of_measures(&product.model);
             let statistics: Vec<_> =
                 moments.iter().map(|of| GapStatistics { mean: of.mean, deviation: of.deviation }).collect();

@@ -1,7 +1,7 @@
 //! The keys of a scene file.
 
 use super::{
-    Problem, SceneError,
+    Problem,
     tree::{Node, Value},
 };
 
@@ -120,32 +120,33 @@ const ROOT: &[Key] = &[
     table("correlation", &[key("of"), key("coefficient")]),
 ];
 
-/// Refuses a key below the root `node` that no scene has.
-pub fn refuse_unknown(node: &Node<'_>) -> Result<(), SceneError> {
-    refuse(node, "", ROOT)
+/// Notes every key below the root `node` that no scene has.
+pub fn note_unknown(node: &Node<'_>) {
+    note(node, "", ROOT);
 }
 
-/// Refuses a key below `node`, itself at the key `path`, that is not one of `keys`.
-fn refuse(node: &Node<'_>, path: &str, keys: &[Key]) -> Result<(), SceneError> {
+/// Notes every key below `node`, itself at the key `path`, that is not one of `keys`.
+fn note(node: &Node<'_>, path: &str, keys: &[Key]) {
+    let found = node.place.found();
     match &node.value {
-        Value::Table(entries) => entries.iter().try_for_each(|entry| {
+        Value::Table(entries) => entries.iter().for_each(|entry| {
             let name = join(path, &entry.key);
             match keys.iter().find(|key| key.name == entry.key) {
-                Some(key) => refuse(&entry.node, &name, key.below),
+                Some(key) => note(&entry.node, &name, key.below),
                 None if UNSUPPORTED.contains(&&*entry.key) => {
                     let known = "flatness, straightness, parallelism, perpendicularity, angularity, position, profile";
-                    Err(entry.place.error(Problem::Unsupported { what: entry.key.to_string() }, known))
+                    found.note(entry.place.error(Problem::Unsupported { what: entry.key.to_string() }, known));
                 }
                 None => {
                     let similar = similar(&name);
                     let allowed = keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ");
-                    Err(entry.place.error(Problem::UnknownKey { key: name, similar }, allowed))
+                    found.note(entry.place.error(Problem::UnknownKey { key: name, similar }, allowed));
                 }
             }
         }),
-        Value::List(nodes) => nodes.iter().try_for_each(|node| refuse(node, path, keys)),
+        Value::List(nodes) => nodes.iter().for_each(|node| note(node, path, keys)),
         // Reading the value says that it is no table.
-        _ => Ok(()),
+        _ => {}
     }
 }
 

@@ -11,7 +11,9 @@ use slipfit_core::{
 use crate::scheme::{IntegratorKind, ScalarKind};
 
 use super::{
-    ControllerSpec, LevelRange, Override, PinSpec, Problem, RunSpec, Scene, SceneError, SlideSpec, parse_levels,
+    ControllerSpec, LevelRange, Override, PinSpec, Problem, RunSpec, Scene, SceneError, SlideSpec,
+    diagnostic::{COMMAND_LINE, Found},
+    parse_levels,
     tree::{Source, Value},
     unit::{self, Quantity},
     value::Field,
@@ -51,9 +53,15 @@ const LEAST_RAMP: f64 = 1e-6;
 
 /// Reads the slide and its run around the `pins`.
 pub(super) fn scene(root: &Field, title: String, pins: [PinSpec; PINS]) -> Result<Scene, SceneError> {
-    let slide = slide(&root.table("slide")?)?;
-    let contact = contact(&root.table("contact")?)?;
-    let friction = friction(&root.table("friction")?)?;
+    let found = root.found();
+    let nothing = SlideSpec { mass: 1.0, inertia_box: [1.0; 3], gravity: [0.0; 3] };
+    let slide = found.recover(root.table("slide").and_then(|table| slide(&table)), nothing);
+    let nothing = ContactData { stiffness: 1.0, exponent: 1.0, damping: 0.0, depth: 1.0 };
+    let contact = found.recover(root.table("contact").and_then(|table| contact(&table)), nothing);
+    let friction = found.recover(root.table("friction").and_then(|table| friction(&table)), FrictionData::None);
+    let controller = found.recover(controller(root, &friction), DEFAULT_CONTROLLER);
+    let nothing = RunSpec { duration: 1.0, stroke: None, error: DEFAULT_ERROR };
+    let run = found.recover(root.table("run").and_then(|table| run(&table)), nothing);
     let sweep_table = root.table("sweep")?;
     let scene = Scene {
         title,
@@ -63,8 +71,8 @@ pub(super) fn scene(root: &Field, title: String, pins: [PinSpec; PINS]) -> Resul
         drive: drive(&root.table("drive")?)?,
         pins,
         nominal_clearance: nominal_clearance(root)?,
-        run: run(&root.table("run")?)?,
-        controller: controller(root, &friction)?,
+        run,
+        controller,
         sweep: sweep(&sweep_table)?,
     };
     for i in [0, scene.sweep.count - 1] {
@@ -82,9 +90,10 @@ pub(super) fn scene(root: &Field, title: String, pins: [PinSpec; PINS]) -> Resul
 /// [`SceneError`] points into the option.
 pub fn parse_every(text: &str) -> Result<f64, SceneError> {
     let change = Override::option("--every", "every", text);
-    let mut tree = Source { name: "command line", text: "" }.document()?;
+    let found = Found::default();
+    let mut tree = Source { name: COMMAND_LINE, text: "", found: &found }.document()?;
     tree.set(&change)?;
-    Field { key: String::new(), node: &tree }.number("every", &DURATION)
+    found.conclude(Field { key: String::new(), node: &tree }.number("every", &DURATION))
 }
 
 pub(super) fn title(root: &Field, file_name: &str) -> Result<String, SceneError> {

@@ -55,6 +55,12 @@ pub(super) fn pins(root: &Field, model: Option<&Model>) -> Result<([PinSpec; PIN
             let problem = Problem::OutOfRange { key: "pin.name".into(), written: format!("\"{}\" again", found.name) };
             return Err(name.error(problem, "a name of its own for each pin"));
         }
+        if let Some(other) = pins.iter().take(i).find(|other| other.position == found.position) {
+            let position = table.get("position").unwrap_or(table);
+            let written = format!("{}, where the pin \"{}\" is", position.written("mm"), other.name);
+            let problem = Problem::OutOfRange { key: "pin.position".into(), written };
+            return Err(position.error(problem, "a place of its own for each pin"));
+        }
         *pins.get_mut(i).ok_or_else(|| wrong_length(Field { key: "pin".into(), node }))? = found;
         measures[i] = of_measures;
     }

@@ -7,7 +7,10 @@ use toml::{
     de::{DeInteger, DeTable, DeValue},
 };
 
-use super::{Override, Problem, SceneError};
+use super::{
+    Override, Problem, SceneError,
+    diagnostic::{COMMAND_LINE, Found},
+};
 
 /// A text and what it is called in messages.
 #[derive(Clone, Copy)]
@@ -16,6 +19,8 @@ pub struct Source<'s> {
     pub name: &'s str,
     /// Text.
     pub text: &'s str,
+    /// What is found wrong with it.
+    pub found: &'s Found,
 }
 
 /// Bytes of a source.
@@ -116,6 +121,11 @@ impl<'s> Place<'s> {
         self.source.text.get(self.span.clone()).unwrap_or_default()
     }
 
+    /// What is found wrong with the scene.
+    pub fn found(&self) -> &'s Found {
+        self.source.found
+    }
+
     /// Where it begins in its text.
     pub fn start(&self) -> usize {
         self.span.start
@@ -155,7 +165,7 @@ impl<'s> Node<'s> {
 
     /// Replaces or adds the key that `change` names. The value is TOML, else a bare text.
     pub fn set(&mut self, change: &'s Override) -> Result<(), SceneError> {
-        let source = Source { name: "command line", text: &change.text };
+        let source = Source { name: COMMAND_LINE, text: &change.text, found: self.place.source.found };
         let text = source.text;
         let start = text.find(' ').map_or(text.len(), |space| space + 1);
         let (key, place, value) = match change.key {

@@ -99,6 +99,12 @@ impl Quantity {
         format!("{least} to {greatest} {}", self.units[0].symbol).trim_end().into()
     }
 
+    /// Some value (SI) in range, to stand for one that is wrong.
+    pub fn some(&self) -> f64 {
+        let [least, greatest] = self.range;
+        self.units[0].to_si(1.0f64.clamp(least, greatest))
+    }
+
     /// Whether `value` (SI) is in range.
     pub fn covers(&self, value: f64) -> bool {
         let [least, greatest] = self.range.map(|bound| self.units[0].to_si(bound));

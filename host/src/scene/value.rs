@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::{
     Problem, SceneError,
+    diagnostic::Found,
     tree::{Node, Value},
     unit::Quantity,
 };
@@ -50,9 +51,17 @@ impl<'t, 's> Field<'t, 's> {
         if matches!(self.node.value, Value::Table(_)) { Ok(()) } else { Err(self.wrong_type("a table")) }
     }
 
-    /// The number `key` (SI) in the table `self`.
+    /// What is found wrong with the scene.
+    pub fn found(&self) -> &'s Found {
+        self.node.place.found()
+    }
+
+    /// The number `key` (SI) in the table `self`; where it is missing, that is noted and another stands for it.
     pub fn number(&self, key: &str, quantity: &Quantity) -> Result<f64, SceneError> {
-        self.require(key, &quantity.units())?.to_number(quantity)
+        match self.require(key, &quantity.units()) {
+            Ok(field) => field.to_number(quantity),
+            Err(error) => Ok(self.found().recover(Err(error), quantity.some())),
+        }
     }
 
     /// The list of numbers `key` (SI) in the table `self`.
@@ -60,8 +69,12 @@ impl<'t, 's> Field<'t, 's> {
         self.require(key, &list_of::<N>(quantity))?.to_numbers(quantity)
     }
 
-    /// This as a number (SI).
+    /// This as a number (SI). What is wrong with it is noted, and another number stands for it.
     pub fn to_number(&self, quantity: &Quantity) -> Result<f64, SceneError> {
+        Ok(self.found().recover(self.as_number(quantity), quantity.some()))
+    }
+
+    fn as_number(&self, quantity: &Quantity) -> Result<f64, SceneError> {
         let measure = self.measure(&quantity.units())?;
         let unit = match measure.unit {
             None => quantity.units.first(),
