@@ -7,6 +7,7 @@
 //! sums) → [`forest`] (joined in a fixed shape).
 
 pub mod analysis;
+mod binomial;
 pub mod derivative;
 mod distribution;
 pub mod draw;

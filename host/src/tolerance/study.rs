@@ -60,6 +60,9 @@ pub enum StudyError {
     /// More units than Sobol' points have values.
     #[error("{0} samples a replicate, Sobol' points at most 2^{DIGITS}")]
     SobolSamples(u64),
+    /// Somebody asked to stop while results were worked out.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// A model with all that it takes to draw any of its units.
