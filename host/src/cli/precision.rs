@@ -60,9 +60,9 @@ impl Arguments {
         if !self.n.is_finite() {
             return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
         }
-        for path in [&self.csv, &self.plot].into_iter().flatten() {
-            self.scene.check_output(path)?;
-        }
+        let outputs = [("--csv", &self.csv), ("--plot", &self.plot)];
+        let outputs: Vec<_> = outputs.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?))).collect();
+        self.scene.check_outputs(&outputs)?;
         if self.map.stability {
             return self.map.run(&scene, self.scene.json, self.csv.as_deref(), self.plot.as_deref());
         }

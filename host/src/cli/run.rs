@@ -79,9 +79,8 @@ impl Arguments {
         });
         files::prepare_folder(&self.out).map_err(refused)?;
         let paths: Vec<_> = OUTPUTS.into_iter().chain(of_production).map(|name| self.out.join(name)).collect();
-        for path in &paths {
-            self.scene.check_output(path)?;
-        }
+        let outputs: Vec<_> = paths.iter().map(|path| ("--out", path.as_path())).collect();
+        self.scene.check_outputs(&outputs)?;
 
         let bar = progress("simulating", force_table::levels(&scene.sweep).count);
         let made = self.threads.install(|| force_table::make(&scene, ScalarKind::F64, Demand::Full, || bar.inc(1)))?;

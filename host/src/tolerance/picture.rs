@@ -33,6 +33,18 @@ pub struct Picture {
     pub svg: String,
 }
 
+const CONTRIBUTORS: &str = "contributors.svg";
+const CORRELATION: &str = "correlation.svg";
+
+fn histogram_file(i: usize) -> String {
+    format!("histogram-{}.svg", i + 1)
+}
+
+/// Names of the files of all pictures of `measures` measures.
+pub fn file_names(measures: usize) -> impl Iterator<Item = String> {
+    [CONTRIBUTORS, CORRELATION].map(str::to_owned).into_iter().chain((0..measures).map(histogram_file))
+}
+
 /// All pictures: contributors, correlations, and a histogram for every measure.
 ///
 /// # Errors
@@ -40,12 +52,11 @@ pub struct Picture {
 pub fn pictures(report: &Report, study: &Study, tallies: &[Tally]) -> Result<Vec<Picture>, PlotError> {
     let picture = |file: &str, caption: &str, svg| Picture { file: file.into(), caption: caption.into(), svg };
     let histogram = |(i, measure): (usize, &MeasureReport)| {
-        let file = format!("histogram-{}.svg", i + 1);
-        Ok(picture(&file, &format!("{} over the production.", measure.name), histogram_svg(report, study, tallies, i)?))
+        Ok(picture(&histogram_file(i), &format!("{} over the production.", measure.name), histogram_svg(report, study, tallies, i)?))
     };
     let all = [
-        picture("contributors.svg", "What the measures' variances come from.", contributors_svg(report)),
-        picture("correlation.svg", "Which measures vary together.", correlation_svg(report)),
+        picture(CONTRIBUTORS, "What the measures' variances come from.", contributors_svg(report)),
+        picture(CORRELATION, "Which measures vary together.", correlation_svg(report)),
     ];
     all.into_iter().map(Ok).chain(report.measures.iter().enumerate().map(histogram)).collect()
 }
