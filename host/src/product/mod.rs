@@ -11,6 +11,7 @@ pub mod dimension;
 pub mod expression;
 pub mod feature;
 pub mod function;
+pub mod iso286;
 pub mod iso2768;
 pub mod pose;
 pub mod vector;
