@@ -3,7 +3,7 @@
 use super::html::{figure, list, optional, real, table, tr};
 use crate::{
     markup::escape,
-    number::{three_digits, typeset},
+    number::{per_million, typeset},
     tolerance::{
         picture::Picture,
         report::{MeasureReport, Report, SumReport},
@@ -25,7 +25,7 @@ fn head(columns: &[&str]) -> String {
 }
 
 fn ppm(number: f64) -> String {
-    typeset(&three_digits(number))
+    typeset(&per_million(number))
 }
 
 /// Tables and pictures.
@@ -48,7 +48,7 @@ fn measures(report: &Report) -> String {
     let row = |m: &MeasureReport| {
         let mut cells = vec![named(m)];
         cells.extend([m.mean, m.sd].map(|x| real(x, 4)));
-        cells.extend([m.skew, m.kurtosis].map(|x| real(x, 3)));
+        cells.extend([m.skew, m.kurtosis].map(|x| optional(x, 3)));
         cells.extend([m.q00135, m.median, m.q99865].map(|x| real(x, 4)));
         if report.limited() {
             cells.extend([m.pp, m.ppk].map(|x| optional(x, 3)));

@@ -1,18 +1,20 @@
 //! Everything that is found of a model: by formula, and by the units of a study.
 
+use rayon::prelude::*;
 use slipfit_core::sampling::stream::derived;
 
 use super::{
     derivative::expansion,
     draw::Draw,
     estimate::{Estimate, Joint, joint},
-    importance::{Failure, Tail, probability},
+    failure::Failure,
     indices::{Indices, indices},
     model::{Model, Sum, Variation},
     moments::{Moments, moments, spreads},
-    normal::tail,
+    normal,
     rss::{RootSumSquare, root_sum_square},
     study::{Settings, Study, StudyError, Tally},
+    tail::{Source, Tail, probability},
     tensor::{self, Exact},
     worst_case::{WorstCase, middle, reach, worst_case},
 };
@@ -81,16 +83,6 @@ pub struct Analysis {
     pub joint: Joint,
 }
 
-/// Where a probability comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Source {
-    /// Counted units.
-    Counted,
-    /// Importance sampling.
-    ImportanceSampling,
-}
-
 /// Draws all units and finds everything; `done` is called with the units of every block. Runs on the current pool.
 ///
 /// # Errors
@@ -105,18 +97,19 @@ pub fn analyse(model: &Model, settings: Settings, done: impl Fn(u64) + Sync) -> 
 /// Finds everything from units that have been drawn.
 ///
 /// # Errors
-/// [`StudyError`], if the model cannot be drawn.
+/// [`StudyError`], if the model cannot be drawn or somebody asked to stop.
 pub fn conclude(study: &Study, tallies: &[Tally]) -> Result<Analysis, StudyError> {
     let Settings { seed, method, .. } = study.settings;
     let joint = joint(study.model, method, study.frames(), tallies);
-    Ok(Analysis { settings: study.settings, theory: theory(study.model, seed)?, joint })
+    Ok(Analysis { settings: study.settings, theory: theory(study.model, seed, Some(&joint))?, joint })
 }
 
-/// What needs no study. `seed` is for importance sampling and Sobol' indices.
+/// What needs no study. `seed` is for importance sampling and Sobol' indices; no probability contradicts what was
+/// `counted`.
 ///
 /// # Errors
-/// [`StudyError`], if the model cannot be drawn.
-pub fn theory(model: &Model, seed: u64) -> Result<Theory, StudyError> {
+/// [`StudyError`], if the model cannot be drawn or somebody asked to stop.
+pub fn theory(model: &Model, seed: u64, counted: Option<&Joint>) -> Result<Theory, StudyError> {
     let draw = Draw::new(model, seed)?;
     let (means, deviations) = spreads(model);
     let middles: Vec<f64> = model.contributors.iter().flat_map(|contributor| middle(&contributor.variation)).collect();
@@ -124,26 +117,19 @@ pub fn theory(model: &Model, seed: u64) -> Result<Theory, StudyError> {
     let around_middle = expansion(model, &middles, &deviations);
     let moments = moments(model, &around_mean, &means, &deviations);
     let curved = moments.iter().any(|moments| moments.curved > LINEAR);
+    stop_if_asked()?;
     let all_indices = if curved && model.correlations.is_empty() {
         indices(model, &draw, derived(seed, INDICES)).into_iter().map(Some).collect()
     } else {
         vec![None; model.measures.len()]
     };
     let exact = if curved { tensor::of_measures(model) } else { vec![None; model.measures.len()] };
-    let mut number = TAILS;
-    let mut rare = |failure: Failure| {
-        number += 1;
-        probability(model, &draw, &failure, derived(seed, number))
-    };
-    let tails = model.measures.iter().enumerate().map(|(i, measure)| {
-        let [lower, upper] = measure.limits;
-        let mut tail = |limit: Option<f64>, above| rare(Failure { measures: vec![i], limit: limit?, above });
-        [tail(lower, false), tail(upper, true)]
-    });
-    let tails = tails.collect();
-    let closings = model.sums.iter().map(|sum| {
-        let tail = rare(Failure { measures: sum.measures.clone(), limit: 0.0, above: false });
-        closing(model, sum, &moments, &around_mean.slopes, &deviations, tail)
+    let rare = rare(model, &draw, seed, counted)?;
+    let (tails, sums) = rare.split_at(2 * model.measures.len());
+    let tails = tails.chunks(2).map(|sides| [sides[0].clone(), sides[1].clone()]).collect();
+    let closings = model.sums.iter().zip(sums);
+    let closings = closings.map(|(sum, tail)| {
+        closing(model, sum, &moments, &around_mean.slopes, &deviations, tail.clone())
     });
     Ok(Theory {
         closings: closings.collect(),
@@ -155,6 +141,33 @@ pub fn theory(model: &Model, seed: u64) -> Result<Theory, StudyError> {
         moments,
         tails,
     })
+}
+
+/// The probabilities of all failures: below and above of every measure, then those of the sums. Each has a seed of its own,
+/// so that they can be found side by side.
+fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Result<Vec<Option<Tail>>, StudyError> {
+    let sides = model.measures.iter().enumerate().flat_map(|(i, measure)| {
+        [0, 1].map(|side| {
+            let limit = measure.limits[side]?;
+            let hits = counted.map(|joint| joint.measures[i].outside_counts(side));
+            Some((Failure { measures: vec![i], limit, above: side == 1 }, hits))
+        })
+    });
+    let sums = model.sums.iter().enumerate().map(|(i, sum)| {
+        let hits = counted.map(|joint| (joint.closed_counts.0[i], joint.closed_counts.1));
+        Some((Failure { measures: sum.measures.clone(), limit: 0.0, above: false }, hits))
+    });
+    let failures: Vec<_> = sides.chain(sums).enumerate().collect();
+    let of = |(number, failure): (usize, Option<(Failure, Option<(u64, u64)>)>)| {
+        stop_if_asked()?;
+        let Some((failure, hits)) = failure else { return Ok(None) };
+        Ok(probability(model, draw, &failure, derived(seed, TAILS + number as u64), hits))
+    };
+    failures.into_par_iter().map(of).collect()
+}
+
+fn stop_if_asked() -> Result<(), StudyError> {
+    if crate::interrupt::requested() { Err(StudyError::Interrupted) } else { Ok(()) }
 }
 
 fn sensitivities(model: &Model, slopes: &[f64]) -> Vec<Sensitivity> {
@@ -185,7 +198,7 @@ fn closing(
     let row = |row: &Vec<f64>| row.iter().zip(&moves).map(|(rho, other)| rho * other).sum::<f64>();
     let variance: f64 = model.correlation().iter().zip(&moves).map(|(rhos, own)| own * row(rhos)).sum();
     let deviation = libm::sqrt(variance.max(0.0));
-    let below = |deviation: f64| tail(mean / deviation);
+    let below = |deviation: f64| normal::tail(mean / deviation);
     Closing {
         mean,
         deviation,
@@ -200,7 +213,7 @@ fn closing(
 pub fn better(counted: &Estimate, tail: Option<&Tail>) -> (f64, Option<f64>, Source) {
     match (tail, counted.error) {
         (Some(tail), error) if !error.is_some_and(|error| counted.value > 0.0 && error < tail.error) => {
-            (tail.probability, Some(tail.error), Source::ImportanceSampling)
+            (tail.probability, Some(tail.error), tail.source)
         }
         _ => (counted.value, counted.error, Source::Counted),
     }

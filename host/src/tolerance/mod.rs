@@ -15,6 +15,7 @@ pub mod estimate;
 #[cfg(test)]
 mod examples;
 pub mod experiment;
+pub mod failure;
 pub mod file;
 pub mod forest;
 pub mod importance;
@@ -28,14 +29,19 @@ pub mod normal;
 mod permutation;
 pub mod picture;
 pub mod quadrature;
+mod regions;
 pub mod report;
 pub mod rss;
 pub mod run;
 pub mod sampler;
 pub mod sobol;
 pub mod study;
+mod subset;
+pub mod tail;
 pub mod tally;
 pub mod tensor;
+#[cfg(test)]
+mod tail_tests;
 #[cfg(test)]
 mod tests;
 pub mod worst_case;

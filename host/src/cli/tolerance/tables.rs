@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::{
     cli::text_table,
-    number::{fixed, or_dash, three_digits},
+    number::{fixed, or_dash, per_million, three_digits},
     tolerance::{
         estimate::Estimate,
         report::{MeasureReport, Report, SumReport},
@@ -41,11 +41,11 @@ fn drawn(report: &Report) -> String {
         let unit = if m.unit.is_empty() { String::new() } else { format!(", {}", m.unit) };
         let mut row = vec![format!("{}{unit}", m.name)];
         row.extend([m.mean, m.sd].map(real));
-        row.extend([m.skew, m.kurtosis].map(|x| fixed(x, 3)));
+        row.extend([m.skew, m.kurtosis].map(|x| or_dash(x, |x| fixed(x, 3))));
         row.extend([m.min, m.q00135, m.median, m.q99865, m.max].map(real));
         if report.limited() {
             row.extend([m.pp, m.ppk].map(|x| or_dash(x, |x| fixed(x, 3))));
-            row.extend(m.dpm.map(|side| or_dash(side.map(|side| side.dpm), three_digits)));
+            row.extend(m.dpm.map(|side| or_dash(side.map(|side| side.dpm), per_million)));
         }
         row
     };
@@ -98,10 +98,10 @@ fn sums(report: &Report) -> String {
             real(s.mean),
             real(s.sd),
             or_dash(s.correlation, |rho| fixed(rho, 3)),
-            three_digits(s.model.dpm),
+            per_million(s.model.dpm),
             or_dash(s.model.error, |error| format!("±{}", three_digits(error))),
-            three_digits(s.eq9_ppm),
-            three_digits(s.independent_ppm),
+            per_million(s.eq9_ppm),
+            per_million(s.independent_ppm),
         ]
     };
     let heading = ["sum < 0", "mean", "σ", "ρ", "ppm", "error", "eq. 9 (ρ = 1)", "ρ = 0"];

@@ -4,18 +4,28 @@ use super::{Defects, Estimates, MeasureReport, Quadrature, Report, Rss, SecondOr
 use crate::tolerance::{
     analysis::{Analysis, better},
     estimate::Estimate,
-    importance::Tail,
+    importance::REPLICATES,
+    interval::student_factor,
     model::{Contributor, Model, Quantity, Sum},
     sampler::Method,
+    tail::{Source, Tail},
 };
 
 fn defects(counted: &Estimate, tail: Option<&Tail>) -> Defects {
     let (probability, error, source) = better(counted, tail);
+    let interval = match (source, error) {
+        (Source::ImportanceSampling | Source::SubsetSimulation, Some(error)) => {
+            let half = student_factor(REPLICATES as usize) * error;
+            [probability - half, probability + half].map(|end| Some(end.clamp(0.0, 1.0)))
+        }
+        _ => counted.interval,
+    };
     Defects {
         dpm: probability * 1e6,
         error: error.map(|error| error * 1e6),
         source,
-        reliability: tail.map(|tail| tail.reliability),
+        interval: interval.map(|end| end.map(|end| end * 1e6)),
+        reliability: tail.and_then(|tail| tail.reliability),
         evaluations: tail.map(|tail| tail.evaluations),
     }
 }
@@ -97,8 +107,8 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         unit: measure.quantity.unit(),
         mean: estimates.mean.value,
         sd: estimates.sd.value,
-        skew: found.skewness.value,
-        kurtosis: found.kurtosis.value,
+        skew: found.skewness.map(|skewness| skewness.value),
+        kurtosis: found.kurtosis.map(|kurtosis| kurtosis.value),
         min: scaled(found.extremes[0]),
         max: scaled(found.extremes[1]),
         q00135: q00135.value,
@@ -106,8 +116,8 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         q99865: q99865.value,
         undefined: found.undefined,
         limits: measure.limits.map(|limit| limit.map(scaled)),
-        pp: found.pp.map(|pp| pp.value),
-        ppk: found.ppk.map(|ppk| ppk.value),
+        pp: found.pp.map(|pp| pp.value).filter(|pp| pp.is_finite()),
+        ppk: found.ppk.map(|ppk| ppk.value).filter(|ppk| ppk.is_finite()),
         dpm: [0, 1].map(|side| found.outside[side].map(|counted| defects(&counted, tails[side].as_ref()))),
         good: found.good.map(|good| good.value),
         estimates,
@@ -118,8 +128,8 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
             mean: scaled(moments.mean),
             mean_shift: scaled(moments.shift),
             sd: scaled(moments.deviation),
-            skew: moments.skewness,
-            kurtosis: moments.kurtosis,
+            skew: Some(moments.skewness).filter(|skewness| skewness.is_finite()),
+            kurtosis: Some(moments.kurtosis).filter(|kurtosis| kurtosis.is_finite()),
         },
         quadrature: theory.exact[i].map(|exact| Quadrature {
             mean: scaled(exact.mean),
@@ -150,6 +160,15 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
         if moments.curved >= NOTED {
             let percent = moments.curved * 100.0;
             notes.push(format!("{} is not linear: {percent:.2} % of its variance is curvature", measure.name));
+        }
+    }
+    for (measure, (tails, found)) in model.measures.iter().zip(analysis.theory.tails.iter().zip(&analysis.joint.measures)) {
+        let unknown = |(tail, counted): (&Option<Tail>, &Option<Estimate>)| tail.is_none() && counted.is_some();
+        if tails.iter().zip(&found.outside).any(unknown) {
+            notes.push(format!(
+                "{}: no sampled figure of its defects agrees with itself and with the units, these are counted ones",
+                measure.name
+            ));
         }
     }
     for (measure, found) in model.measures.iter().zip(&analysis.joint.measures) {

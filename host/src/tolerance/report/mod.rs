@@ -6,7 +6,7 @@ mod fill;
 use serde::Serialize;
 
 pub use self::{csv::measures_csv, fill::report};
-use super::{analysis::Source, estimate::Estimate, model::Quantity, sampler::Method};
+use super::{estimate::Estimate, model::Quantity, sampler::Method, tail::Source};
 
 /// All of an analysis.
 #[derive(Clone, Debug, Serialize)]
@@ -51,10 +51,10 @@ pub struct MeasureReport {
     pub mean: f64,
     /// Standard deviation.
     pub sd: f64,
-    /// Skewness.
-    pub skew: f64,
-    /// Kurtosis; 3 for a normal.
-    pub kurtosis: f64,
+    /// Skewness, if it varies.
+    pub skew: Option<f64>,
+    /// Kurtosis, if it varies; 3 for a normal.
+    pub kurtosis: Option<f64>,
     /// Least value.
     pub min: f64,
     /// Greatest value.
@@ -100,8 +100,8 @@ pub struct MeasureReport {
 pub struct Estimates {
     pub mean: Estimate,
     pub sd: Estimate,
-    pub skew: Estimate,
-    pub kurtosis: Estimate,
+    pub skew: Option<Estimate>,
+    pub kurtosis: Option<Estimate>,
     pub q00135: Estimate,
     pub median: Estimate,
     pub q99865: Estimate,
@@ -122,9 +122,11 @@ pub struct Defects {
     pub error: Option<f64>,
     /// Where the number comes from.
     pub source: Source,
-    /// Reliability index: distance of the most probable defect in standard deviations.
+    /// Lower and upper end of the 95 % interval.
+    pub interval: [Option<f64>; 2],
+    /// Reliability index: distance of the most probable defect in standard deviations, if that was reached.
     pub reliability: Option<f64>,
-    /// Evaluations that importance sampling took.
+    /// Evaluations that importance sampling and subset simulation took.
     pub evaluations: Option<u64>,
 }
 
@@ -144,8 +146,8 @@ pub struct SecondOrder {
     pub mean: f64,
     pub mean_shift: f64,
     pub sd: f64,
-    pub skew: f64,
-    pub kurtosis: f64,
+    pub skew: Option<f64>,
+    pub kurtosis: Option<f64>,
 }
 
 /// Moments by quadrature.
