@@ -7,6 +7,7 @@ use super::{
     derivative::expansion,
     draw::Draw,
     estimate::{Estimate, Joint, joint},
+    extremes::{extremes, reaches},
     failure::Failure,
     indices::{Indices, indices},
     model::{Model, Sum, Variation},
@@ -49,9 +50,11 @@ pub struct Theory {
 /// What a contributor does to a measure (SI).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity {
-    /// ∂measure/∂variable of a scalar at the middle of its limits: ∂measure/∂tolerance where a tolerance shifts the value.
+    /// ∂measure/∂variable of a scalar at the middle of its limits, ∂measure/∂tolerance where a tolerance shifts the value;
+    /// none where slopes do not describe the measure.
     pub slope: Option<f64>,
-    /// How far its whole tolerance moves the measure to either side: half of what the worst case gains by it.
+    /// How far its whole tolerance moves the measure to either side: half of what the worst case gains by it, or of the range
+    /// that it has alone where slopes do not describe the measure.
     pub reach: f64,
 }
 
@@ -116,7 +119,8 @@ pub fn theory(model: &Model, seed: u64, counted: Option<&Joint>) -> Result<Theor
     let around_mean = expansion(model, &means, &deviations);
     let around_middle = expansion(model, &middles, &deviations);
     let moments = moments(model, &around_mean, &means, &deviations);
-    let curved = moments.iter().any(|moments| moments.curved > LINEAR);
+    let bends = |moments: &Moments| moments.curved > LINEAR || !moments.described;
+    let curved = moments.iter().any(bends);
     stop_if_asked()?;
     let all_indices = if curved && model.correlations.is_empty() {
         indices(model, &draw, derived(seed, INDICES)).into_iter().map(Some).collect()
@@ -124,20 +128,31 @@ pub fn theory(model: &Model, seed: u64, counted: Option<&Joint>) -> Result<Theor
         vec![None; model.measures.len()]
     };
     let exact = if curved { tensor::of_measures(model) } else { vec![None; model.measures.len()] };
+    let mut worst_cases = worst_case(model, &around_middle);
+    let mut sensitivities: Vec<Vec<Sensitivity>> =
+        around_middle.slopes.iter().map(|slopes| sensitivities(model, slopes)).collect();
+    for i in (0..moments.len()).filter(|i| !moments[*i].described) {
+        stop_if_asked()?;
+        let [low, high] = worst_cases[i].vertices.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
+        let [least, greatest] = extremes(model, i);
+        worst_cases[i].searched = Some([low.min(least), high.max(greatest)]);
+        let reaches = reaches(model, i).into_iter();
+        sensitivities[i] = reaches.map(|reach| Sensitivity { slope: None, reach }).collect();
+    }
     let rare = rare(model, &draw, seed, counted)?;
     let (tails, sums) = rare.split_at(2 * model.measures.len());
     let tails = tails.chunks(2).map(|sides| [sides[0].clone(), sides[1].clone()]).collect();
     let closings = model.sums.iter().zip(sums);
     let closings = closings.map(|(sum, tail)| {
-        closing(model, sum, &moments, &around_mean.slopes, &deviations, tail.clone())
+        closing(model, sum, &moments, &around_mean.slopes, &deviations, tail.clone(), counted)
     });
     Ok(Theory {
         closings: closings.collect(),
-        worst_cases: worst_case(model, &around_middle),
+        worst_cases,
         sums_of_squares: root_sum_square(model, &around_middle, &around_mean, &deviations),
-        sensitivities: around_middle.slopes.iter().map(|slopes| sensitivities(model, slopes)).collect(),
-        exact: exact.into_iter().zip(&moments).map(|(e, m)| e.filter(|_| m.curved > LINEAR)).collect(),
-        indices: all_indices.into_iter().zip(&moments).map(|(i, m)| i.filter(|_| m.curved > LINEAR)).collect(),
+        sensitivities,
+        exact: exact.into_iter().zip(&moments).map(|(e, m)| e.filter(|_| bends(m))).collect(),
+        indices: all_indices.into_iter().zip(&moments).map(|(i, m)| i.filter(|_| bends(m))).collect(),
         moments,
         tails,
     })
@@ -186,10 +201,12 @@ fn closing(
     slopes: &[Vec<f64>],
     deviations: &[f64],
     rare: Option<Tail>,
+    counted: Option<&Joint>,
 ) -> Closing {
     let members = || sum.measures.iter().map(|i| moments[*i]);
     let mean: f64 = members().map(|moments| moments.mean).sum();
     let together: f64 = members().map(|moments| moments.deviation).sum();
+    let described = members().all(|moments| moments.described);
     let independent = libm::sqrt(members().map(|moments| moments.deviation * moments.deviation).sum());
     // Of first order: the sum's own slopes.
     let moves: Vec<f64> = (0..deviations.len())
@@ -197,7 +214,13 @@ fn closing(
         .collect();
     let row = |row: &Vec<f64>| row.iter().zip(&moves).map(|(rho, other)| rho * other).sum::<f64>();
     let variance: f64 = model.correlation().iter().zip(&moves).map(|(rhos, own)| own * row(rhos)).sum();
-    let deviation = libm::sqrt(variance.max(0.0));
+    let of_first_order = libm::sqrt(variance.max(0.0));
+    // Where slopes do not describe a member, as the units have it.
+    let deviation = counted.filter(|_| !described).map_or(of_first_order, |joint| {
+        let product = |i: &usize, j: &usize| moments[*i].deviation * moments[*j].deviation * joint.correlation[*i][*j];
+        let row = |i: &usize| sum.measures.iter().map(|j| product(i, j)).sum::<f64>();
+        libm::sqrt(sum.measures.iter().map(row).sum::<f64>().max(0.0))
+    });
     let below = |deviation: f64| normal::tail(mean / deviation);
     Closing {
         mean,

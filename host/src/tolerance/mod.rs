@@ -15,6 +15,7 @@ pub mod estimate;
 #[cfg(test)]
 mod examples;
 pub mod experiment;
+mod extremes;
 pub mod failure;
 pub mod file;
 pub mod forest;

@@ -121,8 +121,8 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
 fn contributors_svg(report: &Report) -> String {
     const MOST: usize = 8;
     let shown = |m: &MeasureReport| -> Vec<(String, f64)> {
-        let shares = m.contributors.iter().filter(|share| share.percent.abs() >= 0.05).take(MOST);
-        shares.map(|share| (share.name.clone(), share.percent)).collect()
+        let shares = m.contributors.iter().filter_map(|share| Some((share.name.clone(), share.percent?)));
+        shares.filter(|(_, percent)| percent.abs() >= 0.05).take(MOST).collect()
     };
     let blocks: Vec<_> = report.measures.iter().map(|m| (m, shown(m))).filter(|(_, s)| !s.is_empty()).collect();
     let height = HEAD + blocks.iter().map(|(_, shares)| ROW * (shares.len() as f64 + 1.5)).sum::<f64>();
@@ -133,7 +133,7 @@ fn contributors_svg(report: &Report) -> String {
     let (low, high) = (percents().fold(0.0, f64::min), percents().fold(100.0, f64::max));
     let scale = 520.0 / (high - low);
     let zero = left - scale * low;
-    let mut svg = document(left + 600.0, height, &report.title, "contributors, % of the variance of first order");
+    let mut svg = document(left + 600.0, height, &report.title, "contributors, % of the variance");
     let mut y = HEAD;
     for (measure, shares) in blocks {
         text(&mut svg, [16.0, y + 14.0], "start", "font-weight=\"bold\"", &measure.name);

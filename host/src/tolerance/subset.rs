@@ -55,14 +55,15 @@ pub fn run(state: &mut LimitState, units: usize, seed: u64) -> Option<Run> {
         order.sort_by(|one, other| margins[*one].total_cmp(&margins[*other]));
         let chains = units / LENGTH;
         let threshold = margins[order[chains - 1]];
-        // On a level part of the margin many units are as good as the last.
-        let below = margins.iter().filter(|margin| **margin <= threshold).count();
-        if below == units || !threshold.is_finite() {
+        // On a level part of the margin many units are as good as the last: all of them make up the next level.
+        let below: Vec<usize> = (0..units).filter(|unit| margins[*unit] <= threshold).collect();
+        if below.len() == units || !threshold.is_finite() {
             return None;
         }
-        probability *= below as f64 / units as f64;
+        probability *= below.len() as f64 / units as f64;
+        let start = |chain: usize| below[chain * below.len() / chains];
         let starts: Vec<(Vec<f64>, f64)> =
-            order[..chains].iter().map(|unit| (points[*unit].clone(), margins[*unit])).collect();
+            (0..chains).map(start).map(|unit| (points[unit].clone(), margins[unit])).collect();
         (points, margins) = grown(state, &starts, threshold, &mut spread, derived(seed, level));
     }
     None

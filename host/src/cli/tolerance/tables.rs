@@ -63,8 +63,10 @@ fn by_formula(report: &Report) -> String {
     let row = |m: &MeasureReport| {
         let [low, high] = m.worst_case.map(real);
         let mut row = vec![m.name.clone(), plus_minus(&m.estimates.mean), plus_minus(&m.estimates.sd)];
-        row.extend([format!("{low} … {high}"), format!("{} ± {}", real(m.rss.middle), real(m.rss.tolerance))]);
-        row.extend([m.rss.sd, m.second_order.mean, m.second_order.sd].map(real));
+        let rss = m.rss.map_or_else(|| "-".into(), |rss| format!("{} ± {}", real(rss.middle), real(rss.tolerance)));
+        row.extend([format!("{low} … {high}"), rss]);
+        let second = m.second_order;
+        row.extend([m.rss.map(|r| r.sd), second.map(|s| s.mean), second.map(|s| s.sd)].map(|x| or_dash(x, real)));
         if by_quadrature {
             row.extend([m.quadrature.map(|q| q.mean), m.quadrature.map(|q| q.sd)].map(|x| or_dash(x, real)));
         }
@@ -81,9 +83,11 @@ fn by_formula(report: &Report) -> String {
 fn contributors(report: &Report) -> String {
     let mut text = "Contributors, % of variance\n".to_owned();
     for m in &report.measures {
-        let most = m.contributors.iter().filter(|share| share.percent.abs() >= 1.0).take(6);
-        let most: Vec<String> = most.map(|share| format!("{} {}", share.name, fixed(share.percent, 1))).collect();
-        let _ = writeln!(text, "  {}: {}", m.name, most.join(", "));
+        let shares = m.contributors.iter().filter_map(|share| Some((&share.name, share.percent?)));
+        let most = shares.filter(|(_, percent)| percent.abs() >= 1.0).take(6);
+        let most: Vec<String> = most.map(|(name, percent)| format!("{name} {}", fixed(percent, 1))).collect();
+        let by = if m.rss.is_some() { "" } else { " (Sobol')" };
+        let _ = writeln!(text, "  {}{by}: {}", m.name, most.join(", "));
     }
     text
 }
@@ -99,7 +103,7 @@ fn sums(report: &Report) -> String {
             real(s.sd),
             or_dash(s.correlation, |rho| fixed(rho, 3)),
             per_million(s.model.dpm),
-            or_dash(s.model.error, |error| format!("±{}", three_digits(error))),
+            or_dash(s.model.error.filter(|_| s.model.dpm >= 1e-6), |error| format!("±{}", three_digits(error))),
             per_million(s.eq9_ppm),
             per_million(s.independent_ppm),
         ]

@@ -127,6 +127,14 @@ impl PlainMeasure<'_> {
     /// The point below which a value lies with `probability`, linear within its bin.
     pub fn quantile(&self, probability: f64) -> f64 {
         let rank = probability * self.units as f64;
+        // Units that share an extreme are not spread over its bin.
+        for (side, beyond) in [rank, self.units as f64 - rank].into_iter().enumerate() {
+            let parts = self.parts.iter().filter(|part| part.extremes[side] == self.extremes[side]);
+            let at: u64 = parts.map(|part| part.at_extremes[side]).sum();
+            if at > 1 && beyond <= at as f64 {
+                return self.extremes[side];
+            }
+        }
         let ([before, within], [low, high]) = self.ends(rank);
         let share = if within > 0 { ((rank - before as f64) / within as f64).clamp(0.0, 1.0) } else { 0.5 };
         low + (high - low) * share

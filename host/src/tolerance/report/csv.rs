@@ -61,10 +61,10 @@ pub fn measures_csv(report: &Report) -> anyhow::Result<Vec<u8>> {
             m.good,
             Some(m.worst_case[0]),
             Some(m.worst_case[1]),
-            Some(m.rss.middle),
-            Some(m.rss.tolerance),
-            Some(m.second_order.mean),
-            Some(m.second_order.sd),
+            m.rss.map(|rss| rss.middle),
+            m.rss.map(|rss| rss.tolerance),
+            m.second_order.map(|moments| moments.mean),
+            m.second_order.map(|moments| moments.sd),
         ];
         let record = [m.name.clone(), m.unit.into()].into_iter().chain(numbers.map(optional));
         writer.write_record(record)?;

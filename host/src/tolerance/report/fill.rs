@@ -69,12 +69,19 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
     let factor = measure.quantity.factor();
     let scaled = |value: f64| value * factor;
     let (rss, moments, tails) = (&theory.sums_of_squares[i], theory.moments[i], &theory.tails[i]);
+    let described = moments.described;
+    let total: f64 = theory.indices[i].as_ref().map_or(0.0, |indices| indices.total.iter().sum());
+    let percent = |k: usize| match &theory.indices[i] {
+        _ if described => Some(rss.shares[k] * 100.0),
+        Some(indices) if total > 0.0 => Some(indices.total[k] / total * 100.0),
+        _ => None,
+    };
     let contributor = |(k, contributor): (usize, &Contributor)| {
         let sensitivity = theory.sensitivities[i][k];
         let indices = theory.indices[i].as_ref();
         Share {
             name: contributor.name.clone(),
-            percent: rss.shares[k] * 100.0,
+            percent: percent(k),
             // Per mm or radian: a length over a length has no factor.
             slope: sensitivity
                 .slope
@@ -85,7 +92,8 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         }
     };
     let mut contributors: Vec<Share> = model.contributors.iter().enumerate().map(contributor).collect();
-    contributors.sort_by(|one, other| other.percent.total_cmp(&one.percent));
+    let size = |share: &Share| share.percent.unwrap_or(0.0);
+    contributors.sort_by(|one, other| size(other).total_cmp(&size(one)));
     let [q00135, median, q99865] = found.points.map(|point| point.scaled(factor));
     let per_million = |share: Option<Estimate>| share.map(|share| share.scaled(1e6));
     let estimates = Estimates {
@@ -121,16 +129,20 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         dpm: [0, 1].map(|side| found.outside[side].map(|counted| defects(&counted, tails[side].as_ref()))),
         good: found.good.map(|good| good.value),
         estimates,
-        worst_case: theory.worst_cases[i].linear.map(scaled),
+        worst_case: theory.worst_cases[i].searched.unwrap_or(theory.worst_cases[i].linear).map(scaled),
         worst_case_vertices: theory.worst_cases[i].vertices.map(|range| range.map(scaled)),
-        rss: Rss { middle: scaled(rss.middle), tolerance: scaled(rss.tolerance), sd: scaled(rss.deviation) },
-        second_order: SecondOrder {
+        rss: described.then(|| Rss {
+            middle: scaled(rss.middle),
+            tolerance: scaled(rss.tolerance),
+            sd: scaled(rss.deviation),
+        }),
+        second_order: described.then(|| SecondOrder {
             mean: scaled(moments.mean),
             mean_shift: scaled(moments.shift),
             sd: scaled(moments.deviation),
             skew: Some(moments.skewness).filter(|skewness| skewness.is_finite()),
             kurtosis: Some(moments.kurtosis).filter(|kurtosis| kurtosis.is_finite()),
-        },
+        }),
         quadrature: theory.exact[i].map(|exact| Quadrature {
             mean: scaled(exact.mean),
             sd: scaled(exact.deviation),
@@ -157,7 +169,13 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
         notes.push("one replicate of a design has no standard error: see --replicates".into());
     }
     for (measure, moments) in model.measures.iter().zip(&analysis.theory.moments) {
-        if moments.curved >= NOTED {
+        if !moments.described {
+            notes.push(format!(
+                "{} has a kink or a fold where it varies, as a radius or an angle has at 0: slopes do not describe it; its \
+                 worst case is by a search, its contributors are by Sobol' indices",
+                measure.name
+            ));
+        } else if moments.curved >= NOTED {
             let percent = moments.curved * 100.0;
             notes.push(format!("{} is not linear: {percent:.2} % of its variance is curvature", measure.name));
         }

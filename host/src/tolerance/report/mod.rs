@@ -80,14 +80,15 @@ pub struct MeasureReport {
     pub good: Option<f64>,
     /// The same numbers with standard errors and 95 % intervals.
     pub estimates: Estimates,
-    /// Worst case by slopes.
+    /// Worst case by slopes; by a search where these do not describe the measure.
     pub worst_case: [f64; 2],
     /// Worst case over all combinations of limits, where these are few.
     pub worst_case_vertices: Option<[f64; 2]>,
-    /// Root sum of squares: value at the middle of the limits, half the tolerance, standard deviation of first order.
-    pub rss: Rss,
-    /// Moments of second order.
-    pub second_order: SecondOrder,
+    /// Root sum of squares: value at the middle of the limits, half the tolerance, standard deviation of first order; none
+    /// where slopes do not describe the measure.
+    pub rss: Option<Rss>,
+    /// Moments of second order; none where a quadratic does not describe the measure.
+    pub second_order: Option<SecondOrder>,
     /// Moments by quadrature, where the measure is not linear and its variables are few: as good as exact.
     pub quadrature: Option<Quadrature>,
     /// By contributor, largest share first.
@@ -165,8 +166,9 @@ pub struct Quadrature {
 pub struct Share {
     /// Name.
     pub name: String,
-    /// Share in the variance of first order, in %.
-    pub percent: f64,
+    /// Share in the variance of first order, in %; where slopes do not describe the measure, of the total Sobol' indices, if
+    /// there are any.
+    pub percent: Option<f64>,
     /// ∂measure/∂tolerance: per mm (or radian) that a scalar moves.
     pub slope: Option<f64>,
     /// How far the whole tolerance moves the measure to either side.
