@@ -15,6 +15,32 @@ pub struct WriteError {
     source: std::io::Error,
 }
 
+/// Outputs that would replace an input or each other.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Coincidence {
+    /// An output that would replace what the command reads.
+    #[error("{output}: cannot write {}: it is {input}", path.display())]
+    Input {
+        /// What asks for the output.
+        output: String,
+        /// Its path.
+        path: PathBuf,
+        /// What the same file is for.
+        input: String,
+    },
+    /// Two outputs of which the second would replace the first.
+    #[error("{one} and {other} are one file: {}", path.display())]
+    Twice {
+        /// What asks for the first.
+        one: String,
+        /// What asks for the second.
+        other: String,
+        /// Path of the second.
+        path: PathBuf,
+    },
+}
+
 fn failed<'a>(path: &'a Path) -> impl FnOnce(std::io::Error) -> WriteError + 'a {
     move |source| WriteError { path: path.into(), source }
 }
@@ -53,6 +79,55 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
         return Err(WriteError { path: path.into(), source: std::io::ErrorKind::IsADirectory.into() });
     }
     if is_stream(path) { Ok(()) } else { temporary_beside(&resolved(path)).map(drop) }
+}
+
+/// Whether none of a command's `outputs`, files and folders, is one of its `inputs` or another output, by whatever way
+/// their paths lead there. Each comes with what names it to the user, such as `--csv`. Devices and pipes take any number
+/// of outputs.
+///
+/// # Errors
+/// [`Coincidence`] names the first two that are one.
+pub fn check_distinct(inputs: &[(&str, &Path)], outputs: &[(&str, &Path)]) -> Result<(), Coincidence> {
+    let inputs: Vec<_> = inputs.iter().map(|(name, path)| (*name, destination(path))).collect();
+    let mut before: Vec<(&str, PathBuf)> = Vec::with_capacity(outputs.len());
+    for (name, path) in outputs.iter().filter(|(_, path)| !is_stream(path)) {
+        let target = destination(path);
+        if let Some((input, _)) = inputs.iter().find(|(_, input)| *input == target) {
+            let (output, input) = (name.to_string(), input.to_string());
+            return Err(Coincidence::Input { output, path: path.into(), input });
+        }
+        if let Some((one, _)) = before.iter().find(|(_, other)| *other == target) {
+            let (one, other) = (one.to_string(), name.to_string());
+            return Err(Coincidence::Twice { one, other, path: path.into() });
+        }
+        before.push((name, target));
+    }
+    Ok(())
+}
+
+/// Where a path leads, through links and `..`, whether or not anything is there yet.
+fn destination(path: &Path) -> PathBuf {
+    /// Longer chains of links are loops.
+    const MOST_LINKS: usize = 40;
+    let mut path = std::path::absolute(path).unwrap_or_else(|_| path.into());
+    for _ in 0..MOST_LINKS {
+        match std::fs::read_link(&path) {
+            // A link that leads nowhere yet.
+            Ok(target) if std::fs::canonicalize(&path).is_err() => {
+                path = path.parent().unwrap_or(Path::new("/")).join(target);
+            }
+            _ => break,
+        }
+    }
+    if let Ok(found) = std::fs::canonicalize(&path) {
+        return found;
+    }
+    match (path.parent(), path.components().next_back()) {
+        (Some(parent), Some(std::path::Component::ParentDir)) => destination(parent).parent().map(Path::to_path_buf),
+        (Some(parent), Some(name)) => Some(destination(parent).join(name)),
+        _ => None,
+    }
+    .unwrap_or(path)
 }
 
 /// Writes `bytes` under a temporary name beside `path` and renames it; straight into a device or a pipe.
@@ -109,6 +184,41 @@ mod tests {
         std::os::unix::fs::symlink("/dev/null", &null).unwrap();
         write(&null, b"gone").unwrap();
         assert!(null.is_symlink() && !std::fs::metadata(&null).unwrap().is_file());
+    }
+
+    #[test]
+    fn outputs_that_coincide_are_found_by_whatever_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        write(&at("scene"), b"x").unwrap();
+        let check = |inputs: &[&str], outputs: &[&str]| {
+            let [inputs, outputs] =
+                [inputs, outputs].map(|names| names.iter().map(|name| at(name)).collect::<Vec<_>>());
+            let named = |paths: &'_ [PathBuf]| paths.iter().map(|path| ("x", path.clone())).collect::<Vec<_>>();
+            let (inputs, outputs) = (named(&inputs), named(&outputs));
+            let [inputs, outputs] = [&inputs, &outputs]
+                .map(|all| all.iter().map(|(name, path)| (*name, path.as_path())).collect::<Vec<_>>());
+            check_distinct(&inputs, &outputs)
+        };
+        assert!(check(&["scene"], &["a", "b"]).is_ok());
+        assert!(matches!(check(&["scene"], &["a", "./scene"]), Err(Coincidence::Input { .. })));
+        assert!(matches!(check(&[], &["new", "./new"]), Err(Coincidence::Twice { .. })));
+        std::fs::create_dir(at("below")).unwrap();
+        assert!(matches!(check(&[], &["new", "below/../new"]), Err(Coincidence::Twice { .. })));
+        assert!(matches!(check(&[], &["new", "none/../new"]), Err(Coincidence::Twice { .. })));
+        #[cfg(unix)]
+        {
+            for (to, link) in
+                [("scene", "to scene"), ("later", "to later"), ("below", "to below"), ("/dev/null", "null")]
+            {
+                std::os::unix::fs::symlink(to, at(link)).unwrap();
+            }
+            assert!(matches!(check(&["scene"], &["to scene"]), Err(Coincidence::Input { .. })));
+            assert!(matches!(check(&["to scene"], &["scene"]), Err(Coincidence::Input { .. })));
+            assert!(matches!(check(&[], &["to later", "later"]), Err(Coincidence::Twice { .. })));
+            assert!(matches!(check(&[], &["to below/new", "below/new"]), Err(Coincidence::Twice { .. })));
+            assert!(check(&[], &["null", "null"]).is_ok());
+        }
     }
 
     #[test]

@@ -46,6 +46,11 @@ pub fn three_digits(x: f64) -> String {
     }
 }
 
+/// Defects per million in three digits. Nobody can tell a millionth of one from nothing.
+pub fn per_million(ppm: f64) -> String {
+    if ppm > 0.0 && ppm < 1e-6 { "below 1e-6".to_owned() } else { three_digits(ppm) }
+}
+
 /// What is there through `format`, else a dash.
 pub fn or_dash(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
     value.map_or_else(|| "-".to_owned(), format)
@@ -53,7 +58,7 @@ pub fn or_dash(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{fixed, level, ten_digits, three_digits, typeset};
+    use super::{fixed, level, per_million, ten_digits, three_digits, typeset};
 
     #[test]
     fn ten_digits_are_short() {
@@ -67,6 +72,14 @@ mod tests {
         assert_eq!(
             [0.0, 0.012_345, 1.0, 99.96, 1234.0, 4.44e-7, 2e12].map(three_digits),
             ["0", "0.0123", "1", "100", "1230", "4.4e-7", "2.0e12"]
+        );
+    }
+
+    #[test]
+    fn hardly_any_defects_have_no_number() {
+        assert_eq!(
+            [0.0, 4.1e-80, 9.9e-7, 1.2e-6, 302.0].map(per_million),
+            ["0", "below 1e-6", "below 1e-6", "1.2e-6", "302"]
         );
     }
 

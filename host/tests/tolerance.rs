@@ -105,7 +105,7 @@ const SPOILT: &[Spoilt] = &[
         "`dimension.tolerance` is 0 mm",
     ),
     spoilt("three-part-stack", ["tolerance = 0.2", "tolerance = -0.2"], "-0.2", "is -0.2 mm"),
-    spoilt("three-part-stack", ["[-0.1, 0.3]", "[0.3, -0.1]"], "[0.3", "no width"),
+    spoilt("three-part-stack", ["[-0.1, 0.3]", "[0.3, -0.1]"], "[0.3", "the lower limit is above the upper one"),
     spoilt("three-part-stack", ["value = 19.5", "value = 4000.1"], "4000.1", "for 4000.1 mm"),
     spoilt("three-part-stack", ["value = 19.5", "value = 0.4"], "0.4", "for 0.4 mm"),
     spoilt("three-part-stack", ["channel - 'block A' -", "channel - - ) -"], ") -", "found `)`"),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Failure, refused, tolerance::OutputArguments};
+use super::{Failure, tolerance::OutputArguments};
 use crate::{
     files,
     scene::{Override, SceneFile},
@@ -39,10 +39,9 @@ impl Arguments {
         let nothing = || Failure::Input(format!("{}: the scene describes no product", source.name));
         let model = &file.product.as_ref().ok_or_else(nothing)?.model;
         check(&part, self.files.first().map_or(Path::new(""), |path| path), model)?;
-        for path in self.outputs.paths().chain(&self.out) {
-            files::check_writable(path).map_err(refused)?;
-        }
-        self.outputs.prepare()?;
+        let shards: Vec<_> = self.files.iter().map(|path| ("one of the shards", path.as_path())).collect();
+        let own: Vec<_> = self.out.iter().map(|path| ("--out", path.as_path())).collect();
+        self.outputs.prepare(&shards, &own, model.measures.len())?;
         let study = Study::new(model, part.header.settings).map_err(RunError::from)?;
         if let Some(path) = &self.out {
             files::write(path, &part.encode().map_err(RunError::from)?)?;

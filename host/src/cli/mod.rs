@@ -23,13 +23,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 use thiserror::Error;
 
 use crate::{
-    files::{self, WriteError},
+    files::{self, Coincidence, WriteError},
     force_table::TableError,
     interrupt,
     product::Product,
     scene::{Override, SHIPPED, Scene, SceneError, SceneFile, shipped},
     simulate::SimulateError,
-    tolerance::run::RunError,
+    tolerance::{run::RunError, study::StudyError},
 };
 
 /// From a drawing's tolerances to a flashed force table.
@@ -87,6 +87,12 @@ impl From<WriteError> for Failure {
     }
 }
 
+impl From<Coincidence> for Failure {
+    fn from(error: Coincidence) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
 impl From<SimulateError> for Failure {
     fn from(error: SimulateError) -> Self {
         match error {
@@ -101,7 +107,10 @@ impl From<SimulateError> for Failure {
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
-            RunError::Interrupted { .. } | RunError::Write(_) | RunError::Header(_) => Self::Work(error.into()),
+            RunError::Interrupted { .. }
+            | RunError::Study(StudyError::Interrupted)
+            | RunError::Write(_)
+            | RunError::Header(_) => Self::Work(error.into()),
             bad => Self::Input(bad.to_string()),
         }
     }
@@ -148,16 +157,13 @@ const SCENE_MOST: u64 = 1 << 20;
 impl SceneArguments {
     /// Whether `output` can be written and is not the scene itself.
     fn check_output(&self, output: &Path) -> Result<(), Failure> {
-        let same = |scene: &Path| scene.canonicalize().is_ok_and(|s| output.canonicalize().is_ok_and(|o| s == o));
-        if same(&self.scene) {
-            return Err(Failure::Input(format!("cannot write {}: it is the scene", output.display())));
-        }
-        files::check_writable(output).map_err(|error| Failure::Input(error.to_string()))
+        self.check_outputs(&[("output", output)])
     }
 
     /// Whether all `outputs`, each with the option that asks for it, can be written, and none is the scene or another.
     fn check_outputs(&self, outputs: &[(&str, &Path)]) -> Result<(), Failure> {
-        outputs.iter().try_for_each(|(_, path)| self.check_output(path))
+        files::check_distinct(&[("the scene", &self.scene)], outputs)?;
+        outputs.iter().try_for_each(|(_, path)| files::check_writable(path).map_err(refused))
     }
 
     /// Reads the scene file, with `options` as further settings.

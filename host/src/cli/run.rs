@@ -19,7 +19,7 @@ use crate::{
     figure::{forces, velocities, verdicts},
     files,
     force_table::{self, Demand, ForceTable},
-    number::{fixed, three_digits},
+    number::{fixed, per_million},
     outcome::Verdict,
     plot::PlotError,
     product::Product,
@@ -219,7 +219,7 @@ impl Arguments {
         let sums = production.map(|production| &production.report.sums[..]).unwrap_or_default();
         let likeliest = sums.iter().max_by(|one, other| one.model.dpm.total_cmp(&other.model.dpm));
         if let Some(sum) = likeliest {
-            let [drawn, together] = [sum.model.dpm, sum.eq9_ppm].map(ppm);
+            let [drawn, together] = [sum.model.dpm, sum.eq9_ppm].map(|ppm| per_million(ppm) + " ppm");
             let _ = writeln!(
                 text,
                 "How probable    {drawn} by the drawing ({}); {together} if its gaps move together (eq. 9)",
@@ -272,11 +272,6 @@ impl Arguments {
         let pictures = pictures(&report, &study, &tallies).map_err(anyhow::Error::from)?;
         Ok(Production { report, pictures })
     }
-}
-
-/// Defects per million, to three digits or as less than can matter.
-fn ppm(value: f64) -> String {
-    if value < 1e-6 { "below 1e-6 ppm".into() } else { format!("{} ppm", three_digits(value)) }
 }
 
 /// What to change, by what goes wrong at which levels.

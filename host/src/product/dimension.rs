@@ -61,6 +61,9 @@ pub enum ShapeError {
     /// No room between the limits.
     #[error("the tolerance has no width")]
     Width,
+    /// Limits in the wrong order.
+    #[error("the lower limit is above the upper one")]
+    Reversed,
     /// A mode outside of the limits.
     #[error("the mode is not within the tolerance")]
     Mode,
@@ -82,12 +85,15 @@ impl Toleranced {
     /// `nominal` with the lower and upper `deviations` from it and a `shape`.
     ///
     /// # Errors
-    /// [`ShapeError`] if the tolerance has no width or the shape does not fit in.
+    /// [`ShapeError`] if the tolerance has no width or is reversed, or the shape does not fit in.
     pub fn new(nominal: f64, deviations: [f64; 2], shape: &Shape) -> Result<Self, ShapeError> {
         let mut limits = deviations.map(|deviation| nominal + deviation);
         let [lower, upper] = limits;
         let mean = (lower + upper) / 2.0;
         let within = |value: f64| lower <= value && value <= upper;
+        if deviations[0] > deviations[1] {
+            return Err(ShapeError::Reversed);
+        }
         if !matches!(shape, Shape::Constant | Shape::Table(_)) && (deviations[0] >= deviations[1] || lower >= upper) {
             return Err(ShapeError::Width);
         }
@@ -178,7 +184,7 @@ mod tests {
     fn shapes_that_do_not_fit_are_refused() {
         let error = |deviations, shape| Toleranced::new(1.0, deviations, &shape).unwrap_err();
         assert_eq!(error([0.0, 0.0], Shape::Uniform), ShapeError::Width);
-        assert_eq!(error([0.1, -0.1], Shape::Normal { sigma: 3.0 }), ShapeError::Width);
+        assert_eq!(error([0.1, -0.1], Shape::Normal { sigma: 3.0 }), ShapeError::Reversed);
         assert_eq!(error([-1e-20, 1e-20], Shape::Uniform), ShapeError::Width);
         assert_eq!(error([-0.1, 0.1], Shape::Triangular { mode: Some(0.2) }), ShapeError::Mode);
         assert_eq!(error([-0.1, 0.1], Shape::Trapezoidal { shoulders: [0.05, -0.05] }), ShapeError::Shoulders);

@@ -12,6 +12,7 @@ pub mod expression;
 pub mod feature;
 pub mod function;
 pub mod iso2768;
+pub mod iso286;
 pub mod pose;
 pub mod vector;
 

@@ -3,7 +3,7 @@
 use super::html::{figure, list, optional, real, table, tr};
 use crate::{
     markup::escape,
-    number::{three_digits, typeset},
+    number::{per_million, typeset},
     tolerance::{
         picture::Picture,
         report::{MeasureReport, Report, SumReport},
@@ -25,7 +25,7 @@ fn head(columns: &[&str]) -> String {
 }
 
 fn ppm(number: f64) -> String {
-    typeset(&three_digits(number))
+    typeset(&per_million(number))
 }
 
 /// Tables and pictures.
@@ -48,7 +48,7 @@ fn measures(report: &Report) -> String {
     let row = |m: &MeasureReport| {
         let mut cells = vec![named(m)];
         cells.extend([m.mean, m.sd].map(|x| real(x, 4)));
-        cells.extend([m.skew, m.kurtosis].map(|x| real(x, 3)));
+        cells.extend([m.skew, m.kurtosis].map(|x| optional(x, 3)));
         cells.extend([m.q00135, m.median, m.q99865].map(|x| real(x, 4)));
         if report.limited() {
             cells.extend([m.pp, m.ppk].map(|x| optional(x, 3)));
@@ -65,9 +65,11 @@ fn beside(report: &Report) -> String {
     let columns = ["measure", "worst case", "RSS", "mean, 2nd order", "σ, 2nd order"];
     let row = |m: &MeasureReport| {
         let [low, high] = m.worst_case.map(|x| real(x, 4));
-        let [middle, tolerance, mean, deviation] =
-            [m.rss.middle, m.rss.tolerance, m.second_order.mean, m.second_order.sd].map(|x| real(x, 4));
-        let cells = [named(m), format!("{low} … {high}"), format!("{middle} ± {tolerance}"), mean, deviation];
+        let rss =
+            m.rss.map_or_else(|| "–".to_owned(), |rss| format!("{} ± {}", real(rss.middle, 4), real(rss.tolerance, 4)));
+        let second = m.second_order;
+        let [mean, deviation] = [second.map(|s| s.mean), second.map(|s| s.sd)].map(|x| optional(x, 4));
+        let cells = [named(m), format!("{low} … {high}"), rss, mean, deviation];
         tr("", &cells)
     };
     let caption = "Without random numbers: worst case, root sum of squares, moments of second order.";

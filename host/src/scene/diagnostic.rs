@@ -4,7 +4,9 @@ use std::{cell::RefCell, fmt, ops::Range};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str};
 
-use crate::product::{contacts::PlacementError, dimension::ShapeError, expression::Fault, iso2768::BandError};
+use crate::product::{
+    contacts::PlacementError, dimension::ShapeError, expression::Fault, iso286::ClassError, iso2768::BandError,
+};
 
 use super::{GapError, LevelError};
 
@@ -129,6 +131,14 @@ pub enum Problem {
         key: String,
         /// Which.
         error: BandError,
+    },
+    /// A class of ISO 286 that gives no limits.
+    #[error("`{key}`: {error}")]
+    Class {
+        /// The key.
+        key: String,
+        /// Why.
+        error: ClassError,
     },
     /// An expression that cannot be read or computed.
     #[error("`{key}`: {fault}")]

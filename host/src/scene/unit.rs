@@ -27,7 +27,8 @@ const MICROSECOND: Unit = per("µs", 1e6);
 /// A plain number.
 pub const ONE: &[Unit] = &[si("")];
 /// Lengths.
-pub const LENGTH: &[Unit] = &[per("mm", 1e3), si("m"), per("cm", 1e2), per("µm", 1e6), per("nm", 1e9)];
+pub const LENGTH: &[Unit] =
+    &[per("mm", 1e3), si("m"), per("cm", 1e2), per("µm", 1e6), per("nm", 1e9), times("in", 0.0254)];
 /// Angles.
 pub const ANGLE: &[Unit] = &[times("°", std::f64::consts::PI / 180.0), si("rad"), per("mrad", 1e3)];
 /// Masses.
@@ -120,6 +121,7 @@ mod tests {
     fn decimals_are_rounded_once() {
         assert_eq!(MASS[0].to_si(81.8), 81.8 / 1000.0);
         assert_eq!(LENGTH[0].to_si(0.0404), 0.0404 / 1000.0);
+        assert_eq!(LENGTH[5].to_si(0.5), 0.0127);
         assert_eq!(MICROSECONDS[0].to_si(50.0), 50e-6);
         assert_eq!(DAMPING[0].to_si(0.04), 40.0);
     }

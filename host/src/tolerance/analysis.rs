@@ -1,18 +1,21 @@
 //! Everything that is found of a model: by formula, and by the units of a study.
 
+use rayon::prelude::*;
 use slipfit_core::sampling::stream::derived;
 
 use super::{
     derivative::expansion,
     draw::Draw,
     estimate::{Estimate, Joint, joint},
-    importance::{Failure, Tail, probability},
+    extremes::{extremes, reaches},
+    failure::Failure,
     indices::{Indices, indices},
     model::{Model, Sum, Variation},
     moments::{Moments, moments, spreads},
-    normal::tail,
+    normal,
     rss::{RootSumSquare, root_sum_square},
     study::{Settings, Study, StudyError, Tally},
+    tail::{Source, Tail, probability},
     tensor::{self, Exact},
     worst_case::{WorstCase, middle, reach, worst_case},
 };
@@ -47,9 +50,11 @@ pub struct Theory {
 /// What a contributor does to a measure (SI).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity {
-    /// ∂measure/∂variable of a scalar at the middle of its limits: ∂measure/∂tolerance where a tolerance shifts the value.
+    /// ∂measure/∂variable of a scalar at the middle of its limits, ∂measure/∂tolerance where a tolerance shifts the value;
+    /// none where slopes do not describe the measure.
     pub slope: Option<f64>,
-    /// How far its whole tolerance moves the measure to either side: half of what the worst case gains by it.
+    /// How far its whole tolerance moves the measure to either side: half of what the worst case gains by it, or of the range
+    /// that it has alone where slopes do not describe the measure.
     pub reach: f64,
 }
 
@@ -81,16 +86,6 @@ pub struct Analysis {
     pub joint: Joint,
 }
 
-/// Where a probability comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Source {
-    /// Counted units.
-    Counted,
-    /// Importance sampling.
-    ImportanceSampling,
-}
-
 /// Draws all units and finds everything; `done` is called with the units of every block. Runs on the current pool.
 ///
 /// # Errors
@@ -105,56 +100,88 @@ pub fn analyse(model: &Model, settings: Settings, done: impl Fn(u64) + Sync) -> 
 /// Finds everything from units that have been drawn.
 ///
 /// # Errors
-/// [`StudyError`], if the model cannot be drawn.
+/// [`StudyError`], if the model cannot be drawn or somebody asked to stop.
 pub fn conclude(study: &Study, tallies: &[Tally]) -> Result<Analysis, StudyError> {
     let Settings { seed, method, .. } = study.settings;
     let joint = joint(study.model, method, study.frames(), tallies);
-    Ok(Analysis { settings: study.settings, theory: theory(study.model, seed)?, joint })
+    Ok(Analysis { settings: study.settings, theory: theory(study.model, seed, Some(&joint))?, joint })
 }
 
-/// What needs no study. `seed` is for importance sampling and Sobol' indices.
+/// What needs no study. `seed` is for importance sampling and Sobol' indices; no probability contradicts what was
+/// `counted`.
 ///
 /// # Errors
-/// [`StudyError`], if the model cannot be drawn.
-pub fn theory(model: &Model, seed: u64) -> Result<Theory, StudyError> {
+/// [`StudyError`], if the model cannot be drawn or somebody asked to stop.
+pub fn theory(model: &Model, seed: u64, counted: Option<&Joint>) -> Result<Theory, StudyError> {
     let draw = Draw::new(model, seed)?;
     let (means, deviations) = spreads(model);
     let middles: Vec<f64> = model.contributors.iter().flat_map(|contributor| middle(&contributor.variation)).collect();
     let around_mean = expansion(model, &means, &deviations);
     let around_middle = expansion(model, &middles, &deviations);
     let moments = moments(model, &around_mean, &means, &deviations);
-    let curved = moments.iter().any(|moments| moments.curved > LINEAR);
+    let bends = |moments: &Moments| moments.curved > LINEAR || !moments.described;
+    let curved = moments.iter().any(bends);
+    stop_if_asked()?;
     let all_indices = if curved && model.correlations.is_empty() {
         indices(model, &draw, derived(seed, INDICES)).into_iter().map(Some).collect()
     } else {
         vec![None; model.measures.len()]
     };
     let exact = if curved { tensor::of_measures(model) } else { vec![None; model.measures.len()] };
-    let mut number = TAILS;
-    let mut rare = |failure: Failure| {
-        number += 1;
-        probability(model, &draw, &failure, derived(seed, number))
-    };
-    let tails = model.measures.iter().enumerate().map(|(i, measure)| {
-        let [lower, upper] = measure.limits;
-        let mut tail = |limit: Option<f64>, above| rare(Failure { measures: vec![i], limit: limit?, above });
-        [tail(lower, false), tail(upper, true)]
-    });
-    let tails = tails.collect();
-    let closings = model.sums.iter().map(|sum| {
-        let tail = rare(Failure { measures: sum.measures.clone(), limit: 0.0, above: false });
-        closing(model, sum, &moments, &around_mean.slopes, &deviations, tail)
-    });
+    let mut worst_cases = worst_case(model, &around_middle);
+    let mut sensitivities: Vec<Vec<Sensitivity>> =
+        around_middle.slopes.iter().map(|slopes| sensitivities(model, slopes)).collect();
+    for i in (0..moments.len()).filter(|i| !moments[*i].described) {
+        stop_if_asked()?;
+        let [low, high] = worst_cases[i].vertices.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
+        let [least, greatest] = extremes(model, i);
+        worst_cases[i].searched = Some([low.min(least), high.max(greatest)]);
+        let reaches = reaches(model, i).into_iter();
+        sensitivities[i] = reaches.map(|reach| Sensitivity { slope: None, reach }).collect();
+    }
+    let rare = rare(model, &draw, seed, counted)?;
+    let (tails, sums) = rare.split_at(2 * model.measures.len());
+    let tails = tails.chunks(2).map(|sides| [sides[0].clone(), sides[1].clone()]).collect();
+    let closings = model.sums.iter().zip(sums);
+    let closings = closings
+        .map(|(sum, tail)| closing(model, sum, &moments, &around_mean.slopes, &deviations, tail.clone(), counted));
     Ok(Theory {
         closings: closings.collect(),
-        worst_cases: worst_case(model, &around_middle),
+        worst_cases,
         sums_of_squares: root_sum_square(model, &around_middle, &around_mean, &deviations),
-        sensitivities: around_middle.slopes.iter().map(|slopes| sensitivities(model, slopes)).collect(),
-        exact: exact.into_iter().zip(&moments).map(|(e, m)| e.filter(|_| m.curved > LINEAR)).collect(),
-        indices: all_indices.into_iter().zip(&moments).map(|(i, m)| i.filter(|_| m.curved > LINEAR)).collect(),
+        sensitivities,
+        exact: exact.into_iter().zip(&moments).map(|(e, m)| e.filter(|_| bends(m))).collect(),
+        indices: all_indices.into_iter().zip(&moments).map(|(i, m)| i.filter(|_| bends(m))).collect(),
         moments,
         tails,
     })
+}
+
+/// The probabilities of all failures: below and above of every measure, then those of the sums. Each has a seed of its own,
+/// so that they can be found side by side.
+fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Result<Vec<Option<Tail>>, StudyError> {
+    let sides = model.measures.iter().enumerate().flat_map(|(i, measure)| {
+        [0, 1].map(|side| {
+            let limit = measure.limits[side]?;
+            let hits = counted.map(|joint| joint.measures[i].outside_counts(side));
+            Some((Failure { measures: vec![i], limit, above: side == 1 }, hits))
+        })
+    });
+    let sums = model.sums.iter().enumerate().map(|(i, sum)| {
+        let hits = counted.map(|joint| (joint.closed_counts.0[i], joint.closed_counts.1));
+        Some((Failure { measures: sum.measures.clone(), limit: 0.0, above: false }, hits))
+    });
+    let failures: Vec<_> = sides.chain(sums).enumerate().collect();
+    let of = |(number, failure): (usize, Option<(Failure, Option<(u64, u64)>)>)| {
+        stop_if_asked()?;
+        let Some((failure, hits)) = failure else { return Ok(None) };
+        Ok(probability(model, draw, &failure, derived(seed, TAILS + number as u64), hits))
+    };
+    failures.into_par_iter().map(of).collect()
+}
+
+fn stop_if_asked() -> Result<(), StudyError> {
+    if crate::interrupt::requested() { Err(StudyError::Interrupted) } else { Ok(()) }
 }
 
 fn sensitivities(model: &Model, slopes: &[f64]) -> Vec<Sensitivity> {
@@ -173,10 +200,12 @@ fn closing(
     slopes: &[Vec<f64>],
     deviations: &[f64],
     rare: Option<Tail>,
+    counted: Option<&Joint>,
 ) -> Closing {
     let members = || sum.measures.iter().map(|i| moments[*i]);
     let mean: f64 = members().map(|moments| moments.mean).sum();
     let together: f64 = members().map(|moments| moments.deviation).sum();
+    let described = members().all(|moments| moments.described);
     let independent = libm::sqrt(members().map(|moments| moments.deviation * moments.deviation).sum());
     // Of first order: the sum's own slopes.
     let moves: Vec<f64> = (0..deviations.len())
@@ -184,8 +213,14 @@ fn closing(
         .collect();
     let row = |row: &Vec<f64>| row.iter().zip(&moves).map(|(rho, other)| rho * other).sum::<f64>();
     let variance: f64 = model.correlation().iter().zip(&moves).map(|(rhos, own)| own * row(rhos)).sum();
-    let deviation = libm::sqrt(variance.max(0.0));
-    let below = |deviation: f64| tail(mean / deviation);
+    let of_first_order = libm::sqrt(variance.max(0.0));
+    // Where slopes do not describe a member, as the units have it.
+    let deviation = counted.filter(|_| !described).map_or(of_first_order, |joint| {
+        let product = |i: &usize, j: &usize| moments[*i].deviation * moments[*j].deviation * joint.correlation[*i][*j];
+        let row = |i: &usize| sum.measures.iter().map(|j| product(i, j)).sum::<f64>();
+        libm::sqrt(sum.measures.iter().map(row).sum::<f64>().max(0.0))
+    });
+    let below = |deviation: f64| normal::tail(mean / deviation);
     Closing {
         mean,
         deviation,
@@ -200,7 +235,7 @@ fn closing(
 pub fn better(counted: &Estimate, tail: Option<&Tail>) -> (f64, Option<f64>, Source) {
     match (tail, counted.error) {
         (Some(tail), error) if !error.is_some_and(|error| counted.value > 0.0 && error < tail.error) => {
-            (tail.probability, Some(tail.error), Source::ImportanceSampling)
+            (tail.probability, Some(tail.error), tail.source)
         }
         _ => (counted.value, counted.error, Source::Counted),
     }

@@ -10,7 +10,7 @@ use super::{
     lanes::{LANES, Lanes},
     model::{Model, Variation, ZoneRule},
     normal::{Scores, tail},
-    quadrature::SIGMA_ZONE,
+    quadrature::{SIGMA_DISC, SIGMA_ZONE},
 };
 
 /// Why no unit of a model can be drawn.
@@ -41,10 +41,13 @@ type Row = (usize, Vec<(usize, f64)>);
 enum Rule {
     Scalar(Marginal),
     Zone(ZoneRule),
+    Disc(ZoneRule),
 }
 
 /// P(|u| + |p| + |r| ≤ 1) of three normals with the standard deviation of [`SIGMA_ZONE`].
 pub const INSIDE: f64 = 0.989_559_252_225_155;
+/// P(x² + y² ≤ 1) of two normals with a standard deviation of a third: 1 − exp(−9/2).
+pub const INSIDE_DISC: f64 = 0.988_891_003_461_758;
 
 impl Draw {
     /// Of the units of `model` in a production `seed`.
@@ -61,6 +64,7 @@ impl Draw {
         let rules = model.contributors.iter().map(|contributor| match &contributor.variation {
             Variation::Scalar { distribution, .. } => Rule::Scalar(Marginal::new(distribution)),
             Variation::Zone(rule) => Rule::Zone(*rule),
+            Variation::Disc(rule) => Rule::Disc(*rule),
         });
         let dimensions = model.variables();
         Ok(Self { seed, rules: rules.collect(), correlated: cholesky(model)?, dimensions })
@@ -80,8 +84,11 @@ impl Draw {
         self.transform(variables);
         let mut at = 0;
         for (number, rule) in self.rules.iter().enumerate() {
-            if let Rule::Zone(ZoneRule::Truncated) = rule {
-                self.draw_again(first, number as u64, &mut variables[at..at + 3]);
+            let own = &mut variables[at..at + rule.variables()];
+            match rule {
+                Rule::Zone(ZoneRule::Truncated) => self.draw_again(first, number as u64, own, SIGMA_ZONE, octahedral),
+                Rule::Disc(ZoneRule::Truncated) => self.draw_again(first, number as u64, own, SIGMA_DISC, circular),
+                _ => (),
             }
             at += rule.variables();
         }
@@ -103,6 +110,13 @@ impl Draw {
                 Rule::Zone(ZoneRule::SigmaZone | ZoneRule::Truncated) => {
                     scores[at..at + 3].iter_mut().for_each(|score| *score = *score * SIGMA_ZONE);
                 }
+                Rule::Disc(ZoneRule::UniformInZone) => {
+                    for lane in 0..LANES {
+                        let point = in_disc([0, 1].map(|k| scores[at + k].0[lane]));
+                        point.into_iter().enumerate().for_each(|(k, value)| scores[at + k].0[lane] = value);
+                    }
+                }
+                Rule::Disc(_) => scores[at..at + 2].iter_mut().for_each(|score| *score = *score * SIGMA_DISC),
                 Rule::Zone(ZoneRule::UniformInZone) => {
                     for lane in 0..LANES {
                         let point = in_octahedron([0, 1, 2].map(|k| scores[at + k].0[lane]));
@@ -118,29 +132,43 @@ impl Draw {
     pub fn is_inside(&self, variables: &[Lanes]) -> ([bool; LANES], f64) {
         let (mut inside, mut factor, mut at) = ([true; LANES], 1.0, 0);
         for rule in &self.rules {
-            if let Rule::Zone(ZoneRule::Truncated) = rule {
+            let own = &variables[at..at + rule.variables()];
+            let (reach, share): (fn(&[f64]) -> f64, f64) = match rule {
+                Rule::Zone(ZoneRule::Truncated) => (octahedral, INSIDE),
+                Rule::Disc(ZoneRule::Truncated) => (circular, INSIDE_DISC),
+                _ => (|_| 0.0, 1.0),
+            };
+            if share < 1.0 {
                 for (lane, inside) in inside.iter_mut().enumerate() {
-                    *inside &= octahedral([0, 1, 2].map(|k| variables[at + k].0[lane])) <= 1.0;
+                    *inside &= reach(&own.iter().map(|variable| variable.0[lane]).collect::<Vec<_>>()) <= 1.0;
                 }
-                factor /= INSIDE;
+                factor /= share;
             }
             at += rule.variables();
         }
         (inside, factor)
     }
 
-    /// Draws the zones that came out too wide again until they fit, from a stream of their unit and contributor.
-    fn draw_again(&self, first: u64, contributor: u64, zone: &mut [Lanes]) {
+    /// Draws zones that came out too wide again until they `reach` no further than 1, from a stream of their unit and
+    /// contributor.
+    fn draw_again(
+        &self,
+        first: u64,
+        contributor: u64,
+        zone: &mut [Lanes],
+        deviation: f64,
+        reach: impl Fn(&[f64]) -> f64,
+    ) {
         for lane in 0..LANES {
-            let mut value = [0, 1, 2].map(|k| zone[k].0[lane]);
-            if octahedral(value) <= 1.0 {
+            let mut value: Vec<f64> = zone.iter().map(|variable| variable.0[lane]).collect();
+            if reach(&value) <= 1.0 {
                 continue;
             }
             let mut stream = unit_stream(derived(self.seed, u64::MAX - contributor), first + lane as u64);
-            while octahedral(value) > 1.0 {
-                value = value.map(|_| SIGMA_ZONE * Scores::table().score(stream.next_u64()));
+            while reach(&value) > 1.0 {
+                value.iter_mut().for_each(|x| *x = deviation * Scores::table().score(stream.next_u64()));
             }
-            value.into_iter().enumerate().for_each(|(k, value)| zone[k].0[lane] = value);
+            zone.iter_mut().zip(value).for_each(|(variable, x)| variable.0[lane] = x);
         }
     }
 }
@@ -149,13 +177,25 @@ impl Rule {
     fn variables(&self) -> usize {
         match self {
             Self::Scalar(_) | Self::Zone(ZoneRule::Translation) => 1,
+            Self::Disc(_) => 2,
             Self::Zone(_) => 3,
         }
     }
 }
 
-fn octahedral([u, p, r]: [f64; 3]) -> f64 {
-    u.abs() + p.abs() + r.abs()
+fn octahedral(zone: &[f64]) -> f64 {
+    zone.iter().map(|x| x.abs()).sum()
+}
+
+fn circular(disc: &[f64]) -> f64 {
+    libm::sqrt(disc.iter().map(|x| x * x).sum())
+}
+
+/// A point uniform in the disc from two independent scores: in their direction, at the radius of the same probability.
+fn in_disc([x, y]: [f64; 2]) -> [f64; 2] {
+    let square = x * x + y * y;
+    let scale = if square > 0.0 { libm::sqrt(-libm::expm1(-0.5 * square) / square) } else { 0.0 };
+    [x * scale, y * scale]
 }
 
 /// A point uniform in the octahedron from three independent scores: Rosenblatt's transformation, in closed form.
@@ -259,9 +299,8 @@ mod tests {
     #[test]
     fn zones_are_kept_and_filled_as_their_rule_says() {
         let count = 40_000;
-        let inside = |units: &[Vec<f64>]| {
-            units.iter().filter(|unit| octahedral([unit[0], unit[1], unit[2]]) <= 1.0).count() as f64 / count as f64
-        };
+        let inside =
+            |units: &[Vec<f64>]| units.iter().filter(|unit| octahedral(unit) <= 1.0).count() as f64 / count as f64;
         let share = inside(&units(&zone(ZoneRule::SigmaZone), count));
         let error = libm::sqrt(INSIDE * (1.0 - INSIDE) / count as f64);
         assert!((share - INSIDE).abs() < 4.0 * error, "{share}");
@@ -276,6 +315,31 @@ mod tests {
         }
         let nodes = super::super::quadrature::nodes(&Variation::Zone(ZoneRule::Truncated));
         assert!((nodes.iter().map(|node| node.weight).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn discs_are_kept_and_filled_as_their_rule_says() {
+        let count = 40_000;
+        let of = |rule| {
+            linear(vec![Contributor { name: "axis".into(), variation: Variation::Disc(rule) }], vec![vec![1.0; 2]])
+        };
+        for (rule, deviation) in [
+            (ZoneRule::SigmaZone, 1.0 / 3.0),
+            (ZoneRule::Translation, 1.0 / 3.0),
+            // σ² = (1 − 4.5·e^−4.5/(1 − e^−4.5))/9.
+            (ZoneRule::Truncated, libm::sqrt((1.0 - 4.5 * libm::exp(-4.5) / super::INSIDE_DISC) / 9.0)),
+            (ZoneRule::UniformInZone, 0.5),
+        ] {
+            let units = units(&of(rule), count);
+            let inside = units.iter().filter(|unit| super::circular(unit) <= 1.0).count() as f64 / count as f64;
+            let expected = if deviation * 3.0 == 1.0 { super::INSIDE_DISC } else { 1.0 };
+            assert!((inside - expected).abs() < 4.0 * libm::sqrt(0.011 / count as f64), "{rule:?} {inside}");
+            for (k, known) in super::super::quadrature::mean_and_deviation(&Variation::Disc(rule)).iter().enumerate() {
+                let square: f64 = units.iter().map(|unit| unit[k] * unit[k]).sum::<f64>() / count as f64;
+                assert!((libm::sqrt(square) / deviation - 1.0).abs() < 0.02, "{rule:?} {k} {square}");
+                assert!(known[0].abs() < 1e-12 && (known[1] / deviation - 1.0).abs() < 1e-9, "{rule:?} {known:?}");
+            }
+        }
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! Designed experiments: a few units at chosen values instead of many random ones.
 //!
 //! Factors are variables at two or three levels: scalars at their limits (and the middle between), variables of a zone
-//! at ±1/3 (and 0), so that all corners of the design lie on the zone's boundary. Orthogonal arrays are Taguchi's: L4, L8, …
+//! at ±1/3 (and 0), of a disc at ±1/√2, so that all corners of the design lie on the zone's boundary. Orthogonal arrays are Taguchi's: L4, L8, …
 //! of strength 2 for two levels, L9, L27, … for three; columns are the linear functions of the run's digits.
+
+use std::f64::consts::FRAC_1_SQRT_2;
 
 use serde::Serialize;
 
@@ -72,10 +74,11 @@ pub fn experiment(model: &Model, design: Design) -> Result<Experiment, DesignErr
                 factors.push((centre.len(), 0.5 * (high - low), contributor.name.clone()));
                 centre.push(0.5 * (low + high));
             }
-            zone @ Variation::Zone(_) => {
+            zone @ (Variation::Zone(_) | Variation::Disc(_)) => {
                 let count = zone.variables();
+                let half = if matches!(zone, Variation::Disc(_)) { FRAC_1_SQRT_2 } else { 1.0 / count as f64 };
                 for _ in 0..count {
-                    factors.push((centre.len(), 1.0 / count as f64, contributor.name.clone()));
+                    factors.push((centre.len(), half, contributor.name.clone()));
                     centre.push(0.0);
                 }
             }

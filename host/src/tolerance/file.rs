@@ -2,7 +2,7 @@
 //!
 //! Little-endian: 8 bytes `SLIPSTDY`, version (u32), length of the header (u32), header (JSON: scene, settings, which
 //! blocks), tallies, CRC-32/ISO-HDLC of all before. Of each tally: units, rejected, measures, sums, then of each measure
-//! undefined, outside, extremes (f64), bins; closings; trees, and of each first block, height, sums (f64). Integers are
+//! undefined, outside, extremes (f64), units at the extremes, bins; closings; trees, and of each first block, height, sums (f64). Integers are
 //! LEB128. Everything that a reader allocates it has seen the bytes of.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -16,7 +16,7 @@ use super::{
 };
 
 const MAGIC: &[u8; 8] = b"SLIPSTDY";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// The scene a study belongs to, as it was read.
@@ -92,6 +92,7 @@ impl Part {
             for measure in &counts.measures {
                 [measure.undefined].iter().chain(&measure.outside).for_each(|count| integer(&mut out, *count));
                 measure.extremes.iter().for_each(|extreme| out.extend(extreme.to_le_bytes()));
+                measure.at_extremes.iter().for_each(|count| integer(&mut out, *count));
                 measure.bins.iter().for_each(|count| integer(&mut out, *count));
             }
             counts.closed.iter().for_each(|count| integer(&mut out, *count));
@@ -191,8 +192,9 @@ impl<'a> Reader<'a> {
             let undefined = self.integer()?;
             let outside = [self.integer()?, self.integer()?];
             let extremes = [self.number()?, self.number()?];
+            let at_extremes = [self.integer()?, self.integer()?];
             let bins = (0..BINS).map(|_| self.integer()).collect::<Result<_, _>>()?;
-            counts.measures.push(MeasureCounts { undefined, outside, extremes, bins });
+            counts.measures.push(MeasureCounts { undefined, outside, extremes, at_extremes, bins });
         }
         counts.closed = (0..closed).map(|_| self.integer()).collect::<Result<_, _>>()?;
         let mut sums = Forest::default();

@@ -7,6 +7,7 @@
 //! sums) → [`forest`] (joined in a fixed shape).
 
 pub mod analysis;
+mod binomial;
 pub mod derivative;
 mod distribution;
 pub mod draw;
@@ -14,6 +15,8 @@ pub mod estimate;
 #[cfg(test)]
 mod examples;
 pub mod experiment;
+mod extremes;
+pub mod failure;
 pub mod file;
 pub mod forest;
 pub mod importance;
@@ -27,12 +30,17 @@ pub mod normal;
 mod permutation;
 pub mod picture;
 pub mod quadrature;
+mod regions;
 pub mod report;
 pub mod rss;
 pub mod run;
 pub mod sampler;
 pub mod sobol;
 pub mod study;
+mod subset;
+pub mod tail;
+#[cfg(test)]
+mod tail_tests;
 pub mod tally;
 pub mod tensor;
 #[cfg(test)]

@@ -45,18 +45,22 @@ pub enum Variation {
     /// A plane in its zone of width t: offset u = 2w/t and tilts p = αb/t, r = βa/t, with |u| + |p| + |r| ≤ 1 inside
     /// the zone. Three variables u, p, r (one, u, for [`ZoneRule::Translation`]).
     Zone(ZoneRule),
+    /// The axis of a pin or hole in its cylindrical zone of diameter t: offsets x, y over t/2 (or tilts, measured at its
+    /// end), with x² + y² ≤ 1 inside the zone. Two variables.
+    Disc(ZoneRule),
 }
 
-/// How a plane varies in its zone.
+/// How a plane or an axis varies in its zone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZoneRule {
-    /// u, p, r independent normals of standard deviation 1/(3√3): a corner of the face has t/6.
+    /// u, p, r independent normals of standard deviation 1/(3√3): a corner of the face has t/6. In a disc x, y independent
+    /// normals of standard deviation 1/3: the axis has t/6 along any direction.
     SigmaZone,
     /// The same, drawn again until inside the zone.
     Truncated,
-    /// Uniform in the octahedron.
+    /// Uniform in the octahedron or the disc.
     UniformInZone,
-    /// Offset only: u normal of standard deviation 1/3.
+    /// Offset only: u normal of standard deviation 1/3; a disc as by [`ZoneRule::SigmaZone`].
     Translation,
 }
 

@@ -4,13 +4,20 @@
 //! ½ tr A², 3 bᵀAb + tr A³, 12 bᵀA²b + 3 tr A⁴. A contributor that is not normal then has the cumulants of its own part of the
 //! quadratic exchanged for those by quadrature. So they are exact for normal variables, and for a linear measure whatever
 //! its variables are.
+//!
+//! A quadratic knows nothing of a kink or a fold, such as that of a radius or an angle at 0. Where it does not describe units
+//! drawn at random, their own moments are taken.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    derivative::{Expansion, expansion, mixed},
+    derivative::{Expansion, evaluate, expansion, mixed},
+    draw::Draw,
+    lanes::{LANES, Lanes},
     model::{Distribution, Model, Variation, ZoneRule},
     quadrature::{Node, mean_and_deviation, nodes},
+    sampler::{Method, Sampler},
+    sobol::MOST_DIMENSIONS,
 };
 
 /// Moments of one measure (SI).
@@ -28,6 +35,8 @@ pub struct Moments {
     pub kurtosis: f64,
     /// Share of the curvature in the variance: 0 for a linear measure.
     pub curved: f64,
+    /// Whether the quadratic describes units drawn at random: not where the measure has a kink or a fold.
+    pub described: bool,
 }
 
 /// Means and standard deviations of all variables.
@@ -36,17 +45,57 @@ pub fn spreads(model: &Model) -> (Vec<f64>, Vec<f64>) {
     spreads.map(|[mean, deviation]| (mean, deviation)).unzip()
 }
 
-/// Of every measure.
+/// Of every measure; drawn where the quadratic does not describe it.
 pub fn of_measures(model: &Model) -> Vec<Moments> {
     let (means, deviations) = spreads(model);
     moments(model, &expansion(model, &means, &deviations), &means, &deviations)
 }
 
-/// Of every measure; `around` is expanded around `means`.
+/// Units whose moments are taken where there is no formula.
+const DRAWN: u64 = 1 << 16;
+/// Units that show whether the quadratic describes a measure.
+const WITNESSES: u64 = 128;
+/// How far the quadratic may be off, root mean square over the spread of the measure.
+const OFF: f64 = 0.05;
+/// What they are drawn with.
+const SEED: u64 = 1;
+
+/// Variables of `count` units by scrambled Sobol' points, where these have coordinates enough; none if none can be drawn.
+fn units(model: &Model, count: u64) -> Vec<Vec<f64>> {
+    let Ok(draw) = Draw::new(model, SEED) else { return Vec::new() };
+    let dimensions = draw.dimensions();
+    let method = if dimensions > MOST_DIMENSIONS { Method::PseudoRandom } else { Method::ScrambledSobol };
+    let sampler = Sampler::new(method, SEED, dimensions, 1, count);
+    let mut bits = vec![[0; LANES]; dimensions];
+    let mut variables = vec![Lanes::ZERO; dimensions];
+    let mut units = Vec::with_capacity(count as usize);
+    for first in (0..count).step_by(LANES) {
+        sampler.fill(first, &mut bits);
+        draw.variables(first, &bits, &mut variables);
+        units.extend((0..LANES).map(|lane| variables.iter().map(|variable| variable.0[lane]).collect()));
+    }
+    units
+}
+
+/// Mean, standard deviation, skewness and kurtosis of the values that are numbers.
+fn of_values(values: impl Iterator<Item = f64> + Clone) -> [f64; 4] {
+    let values = values.filter(|value| value.is_finite());
+    let count = values.clone().count() as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    let [second, third, fourth] =
+        [2, 3, 4].map(|power| values.clone().map(|x| libm::pow(x - mean, f64::from(power))).sum::<f64>() / count);
+    let deviation = libm::sqrt(second);
+    [mean, deviation, third / (second * deviation), fourth / (second * second)]
+}
+
+/// Of every measure, drawn where the quadratic does not describe it; `around` is expanded around `means`.
 pub fn moments(model: &Model, around: &Expansion, means: &[f64], deviations: &[f64]) -> Vec<Moments> {
     let mixed = mixed(model, means, deviations);
     let factor = factor(model);
     let groups: Vec<Group> = groups(model, means);
+    let witnesses = units(model, WITNESSES);
+    let witnessed = evaluate(model, &witnesses);
+    let apart = DMatrix::from_fn(means.len(), witnesses.len(), |k, unit| witnesses[unit][k] - means[k]);
     let measure = |i: usize| {
         let count = means.len();
         let mut hessian = DMatrix::from_diagonal(&DVector::from_column_slice(&around.curvatures[i]));
@@ -55,6 +104,17 @@ pub fn moments(model: &Model, around: &Expansion, means: &[f64], deviations: &[f
             hessian[(*k, *j)] = derivatives[i];
         }
         let slopes = DVector::from_column_slice(&around.slopes[i]);
+        let bent = &hessian * &apart;
+        let error = |unit: usize| {
+            let (x, bent) = (apart.column(unit), bent.column(unit));
+            let found = witnessed[unit][i] - (around.values[i] + slopes.dot(&x) + 0.5 * x.dot(&bent));
+            found * found
+        };
+        let square = (0..witnesses.len()).map(error).sum::<f64>() / witnesses.len().max(1) as f64;
+        let [_, spread, ..] = of_values(witnessed.iter().map(|unit| unit[i]));
+        // What varies by rounding alone is described well enough.
+        let least = 1e-12 * around.values[i].abs();
+        let described = witnesses.is_empty() || libm::sqrt(square) <= (OFF * spread).max(least);
         let b = DVector::from_fn(count, |k, _| slopes[k] * deviations[k]);
         let a = DMatrix::from_fn(count, count, |j, k| hessian[(j, k)] * deviations[j] * deviations[k]);
         let (b, a) = match &factor {
@@ -83,9 +143,18 @@ pub fn moments(model: &Model, around: &Expansion, means: &[f64], deviations: &[f
             skewness: third / (variance * libm::sqrt(variance)),
             kurtosis: 3.0 + fourth / (variance * variance),
             curved: if variance > 0.0 { curved / variance } else { 0.0 },
+            described,
         }
     };
-    (0..model.measures.len()).map(measure).collect()
+    let mut moments: Vec<Moments> = (0..model.measures.len()).map(measure).collect();
+    if moments.iter().any(|moments| !moments.described) {
+        let values = evaluate(model, &units(model, DRAWN));
+        for (i, found) in moments.iter_mut().enumerate().filter(|(_, found)| !found.described) {
+            let [mean, deviation, skewness, kurtosis] = of_values(values.iter().map(|unit| unit[i]));
+            *found = Moments { mean, shift: mean - around.values[i], deviation, skewness, kurtosis, ..*found };
+        }
+    }
+    moments
 }
 
 /// The first four cumulants of b·z + ½ zᵀAz.
@@ -137,6 +206,7 @@ fn groups(model: &Model, means: &[f64]) -> Vec<Group> {
             &contributor.variation,
             Variation::Scalar { distribution: Distribution::Normal { .. } | Distribution::Constant(_), .. }
                 | Variation::Zone(ZoneRule::SigmaZone | ZoneRule::Translation)
+                | Variation::Disc(ZoneRule::SigmaZone | ZoneRule::Translation)
         );
         if normal || correlated(number) {
             return None;

@@ -33,6 +33,18 @@ pub struct Picture {
     pub svg: String,
 }
 
+const CONTRIBUTORS: &str = "contributors.svg";
+const CORRELATION: &str = "correlation.svg";
+
+fn histogram_file(i: usize) -> String {
+    format!("histogram-{}.svg", i + 1)
+}
+
+/// Names of the files of all pictures of `measures` measures.
+pub fn file_names(measures: usize) -> impl Iterator<Item = String> {
+    [CONTRIBUTORS, CORRELATION].map(str::to_owned).into_iter().chain((0..measures).map(histogram_file))
+}
+
 /// All pictures: contributors, correlations, and a histogram for every measure.
 ///
 /// # Errors
@@ -40,12 +52,15 @@ pub struct Picture {
 pub fn pictures(report: &Report, study: &Study, tallies: &[Tally]) -> Result<Vec<Picture>, PlotError> {
     let picture = |file: &str, caption: &str, svg| Picture { file: file.into(), caption: caption.into(), svg };
     let histogram = |(i, measure): (usize, &MeasureReport)| {
-        let file = format!("histogram-{}.svg", i + 1);
-        Ok(picture(&file, &format!("{} over the production.", measure.name), histogram_svg(report, study, tallies, i)?))
+        Ok(picture(
+            &histogram_file(i),
+            &format!("{} over the production.", measure.name),
+            histogram_svg(report, study, tallies, i)?,
+        ))
     };
     let all = [
-        picture("contributors.svg", "What the measures' variances come from.", contributors_svg(report)),
-        picture("correlation.svg", "Which measures vary together.", correlation_svg(report)),
+        picture(CONTRIBUTORS, "What the measures' variances come from.", contributors_svg(report)),
+        picture(CORRELATION, "Which measures vary together.", correlation_svg(report)),
     ];
     all.into_iter().map(Ok).chain(report.measures.iter().enumerate().map(histogram)).collect()
 }
@@ -110,8 +125,8 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
 fn contributors_svg(report: &Report) -> String {
     const MOST: usize = 8;
     let shown = |m: &MeasureReport| -> Vec<(String, f64)> {
-        let shares = m.contributors.iter().filter(|share| share.percent.abs() >= 0.05).take(MOST);
-        shares.map(|share| (share.name.clone(), share.percent)).collect()
+        let shares = m.contributors.iter().filter_map(|share| Some((share.name.clone(), share.percent?)));
+        shares.filter(|(_, percent)| percent.abs() >= 0.05).take(MOST).collect()
     };
     let blocks: Vec<_> = report.measures.iter().map(|m| (m, shown(m))).filter(|(_, s)| !s.is_empty()).collect();
     let height = HEAD + blocks.iter().map(|(_, shares)| ROW * (shares.len() as f64 + 1.5)).sum::<f64>();
@@ -122,7 +137,7 @@ fn contributors_svg(report: &Report) -> String {
     let (low, high) = (percents().fold(0.0, f64::min), percents().fold(100.0, f64::max));
     let scale = 520.0 / (high - low);
     let zero = left - scale * low;
-    let mut svg = document(left + 600.0, height, &report.title, "contributors, % of the variance of first order");
+    let mut svg = document(left + 600.0, height, &report.title, "contributors, % of the variance");
     let mut y = HEAD;
     for (measure, shares) in blocks {
         text(&mut svg, [16.0, y + 14.0], "start", "font-weight=\"bold\"", &measure.name);

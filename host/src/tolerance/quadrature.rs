@@ -28,6 +28,9 @@ pub fn nodes(variation: &Variation) -> Vec<Node> {
         Variation::Zone(ZoneRule::Translation) => line(&normal_pieces(-REACH, REACH), |z| (z / 3.0, density(z))),
         Variation::Zone(ZoneRule::SigmaZone) => Vec::new(),
         Variation::Zone(ZoneRule::UniformInZone) => octahedron(|_| 1.0),
+        Variation::Disc(ZoneRule::SigmaZone | ZoneRule::Translation) => Vec::new(),
+        Variation::Disc(ZoneRule::UniformInZone) => disc(|_| 1.0),
+        Variation::Disc(ZoneRule::Truncated) => disc(|square| libm::exp(-4.5 * square)),
         Variation::Zone(ZoneRule::Truncated) => {
             octahedron(|at| libm::exp(-13.5 * at.iter().map(|x| x * x).sum::<f64>()))
         }
@@ -124,6 +127,20 @@ fn octahedron(density: impl Fn([f64; 3]) -> f64) -> Vec<Node> {
     nodes
 }
 
+/// The disc x² + y² ≤ 1 with the given `density` of the squared radius: Gauss's points along it, equal angles.
+fn disc(density: impl Fn(f64) -> f64) -> Vec<Node> {
+    const ANGLES: usize = 16;
+    let mut nodes = Vec::new();
+    for (radius, weight) in [0.0, 0.5].into_iter().flat_map(|from| piece(from, from + 0.5)) {
+        for angle in 0..ANGLES {
+            let angle = std::f64::consts::TAU * (angle as f64 + 0.5) / ANGLES as f64;
+            let at = [radius * libm::cos(angle), radius * libm::sin(angle), 0.0];
+            nodes.push(Node { weight: weight * radius * density(radius * radius), at });
+        }
+    }
+    nodes
+}
+
 /// Gauss–Legendre points between `from` and `to`, with weights that add up to its length.
 fn piece(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
@@ -149,6 +166,9 @@ pub fn mean_and_deviation(variation: &Variation) -> Vec<[f64; 2]> {
     if let Variation::Zone(ZoneRule::SigmaZone) = variation {
         return vec![[0.0, SIGMA_ZONE]; 3];
     }
+    if let Variation::Disc(ZoneRule::SigmaZone | ZoneRule::Translation) = variation {
+        return vec![[0.0, SIGMA_DISC]; 2];
+    }
     if let Variation::Scalar { distribution: Distribution::Normal { mean, deviation }, .. } = variation {
         return vec![[*mean, *deviation]];
     }
@@ -164,12 +184,15 @@ pub fn mean_and_deviation(variation: &Variation) -> Vec<[f64; 2]> {
 
 /// Standard deviation 1/(3√3) of u, p and r in a sigma-zone: a corner of the face has a sixth of the zone.
 pub const SIGMA_ZONE: f64 = 0.192_450_089_729_875_26;
+/// Standard deviation of x and y in a disc: a sixth of the zone's diameter.
+pub const SIGMA_DISC: f64 = 1.0 / 3.0;
 
 impl Variation {
     /// How many variables it has.
     pub fn variables(&self) -> usize {
         match self {
             Self::Scalar { .. } | Self::Zone(ZoneRule::Translation) => 1,
+            Self::Disc(_) => 2,
             Self::Zone(_) => 3,
         }
     }

@@ -78,6 +78,9 @@ pub enum RunError {
         /// Blocks of the shard.
         of: u64,
     },
+    /// What an interrupted run left behind, which this one would replace.
+    #[error("{} is there from an interrupted run: --resume goes on with it; remove it to begin anew", .0.display())]
+    Left(PathBuf),
     /// Somebody asked to stop.
     #[error("interrupted{}", saved.as_ref().map(|path| format!("; {} is kept, --resume goes on", path.display())).unwrap_or_default())]
     Interrupted {
@@ -172,6 +175,9 @@ pub fn run(
                 break;
             }
         }
+    }
+    if let Some(left) = keep.filter(|keep| !keep.resume).map(|keep| checkpoint(keep.out)).filter(|path| path.exists()) {
+        return Err(RunError::Left(left));
     }
     done(part.tallies.iter().map(|tally| tally.counts.units).sum());
     let save = |part: &Part, path: &Path| -> Result<(), RunError> { Ok(files::write(path, &part.encode()?)?) };

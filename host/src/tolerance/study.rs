@@ -19,6 +19,8 @@ use super::{
 pub const BLOCK: u64 = 4096;
 /// Units that find where a measure lies and how far it spreads before any are counted.
 const PILOT: u64 = 256;
+/// The same for measures that do not vary in those.
+const LONG_PILOT: u64 = 1 << 16;
 /// The most units of a study.
 pub const MOST_UNITS: u64 = 1 << 40;
 
@@ -60,6 +62,9 @@ pub enum StudyError {
     /// More units than Sobol' points have values.
     #[error("{0} samples a replicate, Sobol' points at most 2^{DIGITS}")]
     SobolSamples(u64),
+    /// Somebody asked to stop while results were worked out.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// A model with all that it takes to draw any of its units.
@@ -158,12 +163,23 @@ impl<'a> Study<'a> {
         room.measures
     }
 
-    /// Frames of every measure from a few pseudo-random units.
+    /// Frames of every measure from a few pseudo-random units; from more, if one does not vary in these, as a gap that is
+    /// rarely open.
     fn pilot(&self) -> Vec<Frame> {
-        let sampler = Sampler::new(Method::PseudoRandom, self.settings.seed, self.draw.dimensions(), 1, PILOT);
+        let few = self.frames_of(PILOT);
+        if few.iter().all(|(_, varies)| *varies) {
+            return few.into_iter().map(|(frame, _)| frame).collect();
+        }
+        let many = self.frames_of(LONG_PILOT);
+        few.into_iter().zip(many).map(|((few, varies), (many, _))| if varies { few } else { many }).collect()
+    }
+
+    /// Frames of every measure from `units` pseudo-random units, and whether it varies in these.
+    fn frames_of(&self, units: u64) -> Vec<(Frame, bool)> {
+        let sampler = Sampler::new(Method::PseudoRandom, self.settings.seed, self.draw.dimensions(), 1, units);
         let mut room = Room::new(self);
         let mut values = vec![Vec::new(); self.model.measures.len()];
-        for first in (0..PILOT).step_by(LANES) {
+        for first in (0..units).step_by(LANES) {
             room.work(self, &sampler, first);
             for (values, measures) in values.iter_mut().zip(&room.measures) {
                 values.extend(measures.0.iter().copied().filter(|value| value.is_finite()));
@@ -176,16 +192,9 @@ impl<'a> Study<'a> {
             // What does not vary but for rounding is seen at the size of its own value.
             let least = 1e-12 * origin.abs();
             let scale = libm::sqrt(square);
-            Frame {
-                origin,
-                scale: if scale > least {
-                    scale
-                } else if origin != 0.0 {
-                    origin.abs()
-                } else {
-                    1.0
-                },
-            }
+            let varies = scale > least;
+            let constant = if origin != 0.0 { origin.abs() } else { 1.0 };
+            (Frame { origin, scale: if varies { scale } else { constant } }, varies)
         };
         values.into_iter().map(frame).collect()
     }

@@ -53,6 +53,8 @@ pub struct MeasureCounts {
     pub outside: [u64; 2],
     /// Least and greatest value.
     pub extremes: [f64; 2],
+    /// Units that have exactly these values: many where something stops, such as a gap at nothing.
+    pub at_extremes: [u64; 2],
     /// Units a bin; bin k is centred (k − 1280)/128 standard deviations from the frame's origin.
     pub bins: Vec<u64>,
 }
@@ -78,6 +80,7 @@ impl Counts {
             undefined: 0,
             outside: [0; 2],
             extremes: [f64::INFINITY, f64::NEG_INFINITY],
+            at_extremes: [0; 2],
             bins: vec![0; BINS],
         };
         Self { units: 0, rejected: 0, measures: vec![measure; model.measures.len()], closed: vec![0; model.sums.len()] }
@@ -92,8 +95,21 @@ impl Counts {
             one.undefined += other.undefined;
             add(&mut one.outside, &other.outside);
             add(&mut one.bins, &other.bins);
-            let [low, high] = other.extremes;
-            one.extremes = [one.extremes[0].min(low), one.extremes[1].max(high)];
+            one.stretch(other.extremes, other.at_extremes);
+        }
+    }
+}
+
+impl MeasureCounts {
+    /// Takes in the extremes of other units, and how many have them.
+    fn stretch(&mut self, [least, greatest]: [f64; 2], at: [u64; 2]) {
+        let further = [least < self.extremes[0], greatest > self.extremes[1]];
+        for ((side, other), further) in [least, greatest].into_iter().enumerate().zip(further) {
+            if further {
+                (self.extremes[side], self.at_extremes[side]) = (other, at[side]);
+            } else if other == self.extremes[side] {
+                self.at_extremes[side] += at[side];
+            }
         }
     }
 }
@@ -168,7 +184,11 @@ const NAN_BIN: usize = 0;
 
 fn count(values: &[f64], limits: [Option<f64>; 2], counts: &mut MeasureCounts, rejected: &mut [bool]) {
     let ([least, greatest], sum) = range(values);
-    counts.extremes = [counts.extremes[0].min(least), counts.extremes[1].max(greatest)];
+    // Hardly any tile has new ones.
+    if least <= counts.extremes[0] || greatest >= counts.extremes[1] {
+        let equal = |extreme: f64| values.iter().filter(|value| **value == extreme).count() as u64;
+        counts.stretch([least, greatest], [equal(least), equal(greatest)]);
+    }
     if !sum.is_finite() {
         for (value, rejected) in values.iter().zip(rejected.iter_mut()) {
             counts.undefined += u64::from(value.is_nan());

@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use super::{
     derivative::evaluate,
     model::{Distribution, Model, Variation, ZoneRule},
-    quadrature::{Node, SIGMA_ZONE, nodes},
+    quadrature::{Node, SIGMA_DISC, SIGMA_ZONE, nodes},
 };
 
 /// Points a variable; the rule is exact for polynomials of degree 17.
@@ -70,7 +70,9 @@ fn of_variables(variation: &Variation, points: usize) -> Option<Vec<Vec<Point>>>
             Some(vec![rule(&nodes(variation), points)])
         }
         Variation::Zone(ZoneRule::SigmaZone) => Some(vec![of_normal(SIGMA_ZONE); 3]),
-        Variation::Zone(ZoneRule::Truncated | ZoneRule::UniformInZone) => None,
+        Variation::Disc(ZoneRule::SigmaZone | ZoneRule::Translation) => Some(vec![of_normal(SIGMA_DISC); 2]),
+        Variation::Zone(ZoneRule::Truncated | ZoneRule::UniformInZone)
+        | Variation::Disc(ZoneRule::Truncated | ZoneRule::UniformInZone) => None,
     }
 }
 

@@ -1,11 +1,13 @@
 //! Models with known answers, through everything.
 
 use super::{
-    analysis::{Analysis, analyse},
+    analysis::{Analysis, Theory, analyse},
     estimate::{Estimate, quantile},
     examples::{MM, chain, clutch, left_front, linear, normal, normals, rectangulars, scalar},
-    model::{Distribution, Model},
-    normal::tail,
+    lanes::Lanes,
+    model::{Distribution, Function, Model},
+    normal::{density, tail},
+    report::report,
     sampler::Method,
     study::{Settings, Study, StudyError, join},
 };
@@ -46,14 +48,14 @@ fn chain_of_seven() {
     close(moments.kurtosis, 3.0, 1e-6);
     near(&joint.measures[0].mean, moments.mean);
     near(&joint.measures[0].deviation, moments.deviation);
-    near(&joint.measures[0].skewness, 0.0);
-    near(&joint.measures[0].kurtosis, 3.0);
+    near(&joint.measures[0].skewness.unwrap(), 0.0);
+    near(&joint.measures[0].kurtosis.unwrap(), 3.0);
     assert!(theory.indices[0].is_none());
     // 6.73 standard deviations: nothing to count, and a flat border.
     let expected = tail(0.4 * MM / rss.deviation);
     for side in &theory.tails[0] {
         let side = side.as_ref().unwrap();
-        close(side.first_order / expected, 1.0, 1e-6);
+        close(side.first_order.unwrap() / expected, 1.0, 1e-6);
         close(side.probability / expected, 1.0, 4.0 * side.error / expected);
         assert!(side.error / expected < 0.01 && side.evaluations <= 20_000);
     }
@@ -97,8 +99,8 @@ fn one_way_clutch() {
     let factor = 1f64.to_degrees();
     near(&measure.mean.scaled(factor), 7.014_956);
     near(&measure.deviation.scaled(factor), 0.219_670);
-    near(&measure.skewness, -0.09439);
-    near(&measure.kurtosis, 3.0239);
+    near(&measure.skewness.unwrap(), -0.09439);
+    near(&measure.kurtosis.unwrap(), 3.0239);
     for (tail, ppm) in theory.tails[0].iter().zip([11.395, 0.5185]) {
         let tail = tail.as_ref().unwrap();
         assert!(tail.evaluations <= 20_000);
@@ -253,6 +255,63 @@ fn impossible_studies_are_refused() {
 }
 
 #[test]
+fn a_constant_measure_has_no_shape() {
+    let third = scalar("x", Distribution::Constant(0.1), [0.1; 2]);
+    let model = linear(vec![third, normal("y", 0.0, 1.0)], vec![vec![3.0, 0.0], vec![0.0, 1.0]]);
+    let measures = analysed(&model).joint.measures;
+    assert!(measures[0].skewness.is_none() && measures[0].kurtosis.is_none());
+    assert!(measures[1].skewness.is_some() && measures[1].kurtosis.is_some());
+}
+
+/// |x|, max(0, x − 3), min(x, y) and a parabola of standard normals.
+struct Kinks;
+
+impl Function for Kinks {
+    fn evaluate(&self, variables: &[Lanes], measures: &mut [Lanes]) {
+        let [x, y] = [variables[0], variables[1]];
+        measures[0] = x.map(f64::abs);
+        measures[1] = (x - Lanes::splat(3.0)).map(|x| x.max(0.0));
+        measures[2] = Lanes(std::array::from_fn(|lane| x.0[lane].min(y.0[lane])));
+        measures[3] = x + y * 0.5 + x * x * 0.01;
+    }
+}
+
+#[test]
+fn kinks_are_told_from_bends() {
+    let mut model = linear(vec![normal("x", 0.0, 3.0), normal("y", 0.0, 3.0)], vec![vec![1.0; 2]; 4]);
+    model.function = Box::new(Kinks);
+    let analysis = analysed(&model);
+    let Theory { moments, worst_cases, sums_of_squares, .. } = &analysis.theory;
+    assert_eq!(moments.iter().map(|of| of.described).collect::<Vec<_>>(), [false, false, false, true]);
+    // Half a normal; the lesser of two.
+    let pi = std::f64::consts::PI;
+    close(moments[0].mean, libm::sqrt(2.0 / pi), 1e-4);
+    close(moments[0].deviation, libm::sqrt(1.0 - 2.0 / pi), 1e-4);
+    close(moments[2].mean, -1.0 / libm::sqrt(pi), 2e-4);
+    close(moments[2].deviation, libm::sqrt(1.0 - 1.0 / pi), 2e-4);
+    for (worst, expected) in worst_cases.iter().zip([[0.0, 3.0], [0.0, 0.0], [-3.0, 3.0]]) {
+        for (found, expected) in worst.searched.unwrap().into_iter().zip(expected) {
+            close(found, expected, 1e-6);
+        }
+    }
+    let report = report("", &model, &analysis);
+    assert!(report.measures[..3].iter().all(|m| m.rss.is_none() && m.second_order.is_none()));
+    assert!(report.measures[3].rss.is_some() && sums_of_squares.len() == 4);
+    let shares = |i: usize| {
+        let contributors = &report.measures[i].contributors;
+        ["x", "y"].map(|name| contributors.iter().find(|share| share.name == name).unwrap().percent.unwrap())
+    };
+    assert_eq!(shares(0).map(|percent| percent.round()), [100.0, 0.0]);
+    assert!(shares(2).iter().all(|percent| (percent - 50.0).abs() < 1.0), "{:?}", shares(2));
+    assert!(report.notes.iter().filter(|note| note.contains("kink or a fold")).count() == 3);
+    // Nearly all units have no more than nothing, all those of the first pilot among them.
+    let gap = &analysis.joint.measures[1];
+    assert_eq!(gap.points[..2].iter().map(|point| point.value).collect::<Vec<_>>(), [0.0, 0.0]);
+    close(gap.points[2].value, 0.0, 1e-2);
+    near(&gap.mean, density(3.0) - 3.0 * tail(3.0));
+}
+
+#[test]
 fn measures_that_cannot_be_computed_are_counted() {
     let mut model = clutch();
     // A roller so large that half of the units have no angle.
@@ -263,5 +322,5 @@ fn measures_that_cannot_be_computed_are_counted() {
     let measure = &analysed(&model).joint.measures[0];
     assert_eq!(measure.units + measure.undefined, MC.samples);
     close(measure.undefined as f64 / MC.samples as f64, 0.5, 0.01);
-    assert!(measure.mean.value.is_finite() && measure.kurtosis.value.is_finite());
+    assert!(measure.mean.value.is_finite() && measure.kurtosis.is_some());
 }

@@ -13,26 +13,29 @@ const MOST_VERTICES: usize = 1 << 16;
 pub struct WorstCase {
     /// By its slopes at the middle of all limits; exact for a linear measure.
     pub linear: [f64; 2],
-    /// Over all combinations of limits and of corners of zones, if there are not more than 65,536; exact for a measure
-    /// that is monotone in every contributor.
+    /// Over all combinations of limits and of corners of zones, if there are not more than 65,536 and no disc, which has
+    /// none; exact for a measure that is monotone in every contributor.
     pub vertices: Option<[f64; 2]>,
+    /// By a search over corners, rims and the inside, where slopes do not describe the measure.
+    pub searched: Option<[f64; 2]>,
 }
 
 /// The middle of a contributor's limits or zone.
 pub fn middle(variation: &Variation) -> Vec<f64> {
     match variation {
         Variation::Scalar { limits: [low, high], .. } => vec![0.5 * (low + high)],
-        zone @ Variation::Zone(_) => vec![0.0; zone.variables()],
+        zone @ (Variation::Zone(_) | Variation::Disc(_)) => vec![0.0; zone.variables()],
     }
 }
 
 /// How far a contributor moves a measure from the middle, at most, with `slopes` in its variables. In a zone |u| + |p| +
-/// |r| ≤ 1 that is at one of its corners.
+/// |r| ≤ 1 that is at one of its corners, in a disc on its rim.
 pub fn reach(variation: &Variation, slopes: &[f64]) -> f64 {
     let most = slopes.iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
     match variation {
         Variation::Scalar { limits: [low, high], .. } => 0.5 * (high - low) * most,
         Variation::Zone(_) => most,
+        Variation::Disc(_) => libm::sqrt(slopes.iter().map(|slope| slope * slope).sum()),
     }
 }
 
@@ -47,11 +50,15 @@ pub fn worst_case(model: &Model, around: &Expansion) -> Vec<WorstCase> {
     let measure = |(i, (value, slopes)): (usize, (&f64, &Vec<f64>))| WorstCase {
         linear: [value - reach(slopes), value + reach(slopes)],
         vertices: vertices.as_ref().map(|vertices| vertices[i]),
+        searched: None,
     };
     around.values.iter().zip(&around.slopes).enumerate().map(measure).collect()
 }
 
 fn by_vertices(model: &Model) -> Option<Vec<[f64; 2]>> {
+    if model.contributors.iter().any(|contributor| matches!(contributor.variation, Variation::Disc(_))) {
+        return None;
+    }
     let corners: Vec<Vec<Vec<f64>>> = model.contributors.iter().map(|c| corners(&c.variation)).collect();
     let count = corners.iter().try_fold(1usize, |count, corners| count.checked_mul(corners.len()))?;
     if count > MOST_VERTICES {
@@ -80,7 +87,7 @@ fn corners(variation: &Variation) -> Vec<Vec<f64>> {
     match variation {
         Variation::Scalar { distribution: Distribution::Constant(value), .. } => vec![vec![*value]],
         Variation::Scalar { limits, .. } => limits.iter().map(|limit| vec![*limit]).collect(),
-        zone @ Variation::Zone(_) => {
+        zone @ (Variation::Zone(_) | Variation::Disc(_)) => {
             let count = zone.variables();
             let corner = |k: usize, sign: f64| (0..count).map(|j| if j == k { sign } else { 0.0 }).collect();
             (0..count).flat_map(|k| [corner(k, -1.0), corner(k, 1.0)]).collect()

@@ -151,10 +151,9 @@ impl Arguments {
         let settings = self.settings()?;
         let study = Study::new(model, settings).map_err(RunError::from)?;
         let partial = self.out.as_deref().map(checkpoint);
-        for path in [&self.out, &partial, &self.draws].into_iter().flatten().chain(self.outputs.paths()) {
-            self.scene.check_output(path)?;
-        }
-        self.outputs.prepare()?;
+        let own = [("--out", &self.out), ("the checkpoint of --out", &partial), ("--draws", &self.draws)];
+        let own: Vec<_> = own.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?))).collect();
+        self.outputs.prepare(&[("the scene", &self.scene.scene)], &own, model.measures.len())?;
         let (name, text) = self.scene.text()?;
         let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
         let shard = self.shard.unwrap_or(Shard::ALL);
@@ -207,6 +206,9 @@ fn draws_csv(study: &Study, bar: &ProgressBar) -> anyhow::Result<Vec<u8>> {
             writer.write_record(std::iter::once((first + lane as u64).to_string()).chain(fields))?;
         }
         bar.inc(units);
+        if crate::interrupt::requested() {
+            return Err(RunError::Interrupted { saved: None }.into());
+        }
     }
     bar.finish_and_clear();
     Ok(writer.into_inner()?)

@@ -1,6 +1,6 @@
 //! What an analysis prints and writes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
@@ -12,7 +12,7 @@ use crate::{
     scene::Scene,
     tolerance::{
         analysis::conclude,
-        picture::pictures,
+        picture::{file_names, pictures},
         report::{self, measures_csv},
         run::RunError,
         study::{Study, Tally},
@@ -41,14 +41,23 @@ pub(in crate::cli) struct OutputArguments {
 }
 
 impl OutputArguments {
-    /// The files to be written.
-    pub fn paths(&self) -> impl Iterator<Item = &PathBuf> {
-        self.csv.iter()
-    }
-
-    /// Makes the folder for pictures.
-    pub fn prepare(&self) -> Result<(), Failure> {
-        self.plots.as_deref().map_or(Ok(()), |folder| files::prepare_folder(folder).map_err(refused))
+    /// Whether what is written of `measures` measures, and the `files` that other options ask for, can be written, and
+    /// none is an input or another output. Makes the folder for pictures.
+    pub fn prepare(
+        &self,
+        inputs: &[(&str, &Path)],
+        files: &[(&'static str, &Path)],
+        measures: usize,
+    ) -> Result<(), Failure> {
+        let files: Vec<_> =
+            files.iter().copied().chain(self.csv.iter().map(|path| ("--csv", path.as_path()))).collect();
+        let folder = self.plots.as_deref();
+        let pictures: Vec<_> =
+            folder.map_or_else(Vec::new, |dir| file_names(measures).map(|name| dir.join(name)).collect());
+        let plots = folder.into_iter().chain(pictures.iter().map(PathBuf::as_path)).map(|path| ("--plots", path));
+        files::check_distinct(inputs, &files.iter().copied().chain(plots).collect::<Vec<_>>())?;
+        files.iter().try_for_each(|(_, path)| files::check_writable(path).map_err(refused))?;
+        folder.map_or(Ok(()), |folder| files::prepare_folder(folder).map_err(refused))
     }
 
     /// The option given that asks for a file, if any does.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::{
     cli::text_table,
-    number::{fixed, or_dash, three_digits},
+    number::{fixed, or_dash, per_million, three_digits},
     tolerance::{
         estimate::Estimate,
         report::{MeasureReport, Report, SumReport},
@@ -41,11 +41,11 @@ fn drawn(report: &Report) -> String {
         let unit = if m.unit.is_empty() { String::new() } else { format!(", {}", m.unit) };
         let mut row = vec![format!("{}{unit}", m.name)];
         row.extend([m.mean, m.sd].map(real));
-        row.extend([m.skew, m.kurtosis].map(|x| fixed(x, 3)));
+        row.extend([m.skew, m.kurtosis].map(|x| or_dash(x, |x| fixed(x, 3))));
         row.extend([m.min, m.q00135, m.median, m.q99865, m.max].map(real));
         if report.limited() {
             row.extend([m.pp, m.ppk].map(|x| or_dash(x, |x| fixed(x, 3))));
-            row.extend(m.dpm.map(|side| or_dash(side.map(|side| side.dpm), three_digits)));
+            row.extend(m.dpm.map(|side| or_dash(side.map(|side| side.dpm), per_million)));
         }
         row
     };
@@ -63,8 +63,10 @@ fn by_formula(report: &Report) -> String {
     let row = |m: &MeasureReport| {
         let [low, high] = m.worst_case.map(real);
         let mut row = vec![m.name.clone(), plus_minus(&m.estimates.mean), plus_minus(&m.estimates.sd)];
-        row.extend([format!("{low} … {high}"), format!("{} ± {}", real(m.rss.middle), real(m.rss.tolerance))]);
-        row.extend([m.rss.sd, m.second_order.mean, m.second_order.sd].map(real));
+        let rss = m.rss.map_or_else(|| "-".into(), |rss| format!("{} ± {}", real(rss.middle), real(rss.tolerance)));
+        row.extend([format!("{low} … {high}"), rss]);
+        let second = m.second_order;
+        row.extend([m.rss.map(|r| r.sd), second.map(|s| s.mean), second.map(|s| s.sd)].map(|x| or_dash(x, real)));
         if by_quadrature {
             row.extend([m.quadrature.map(|q| q.mean), m.quadrature.map(|q| q.sd)].map(|x| or_dash(x, real)));
         }
@@ -81,9 +83,11 @@ fn by_formula(report: &Report) -> String {
 fn contributors(report: &Report) -> String {
     let mut text = "Contributors, % of variance\n".to_owned();
     for m in &report.measures {
-        let most = m.contributors.iter().filter(|share| share.percent.abs() >= 1.0).take(6);
-        let most: Vec<String> = most.map(|share| format!("{} {}", share.name, fixed(share.percent, 1))).collect();
-        let _ = writeln!(text, "  {}: {}", m.name, most.join(", "));
+        let shares = m.contributors.iter().filter_map(|share| Some((&share.name, share.percent?)));
+        let most = shares.filter(|(_, percent)| percent.abs() >= 1.0).take(6);
+        let most: Vec<String> = most.map(|(name, percent)| format!("{name} {}", fixed(percent, 1))).collect();
+        let by = if m.rss.is_some() { "" } else { " (Sobol')" };
+        let _ = writeln!(text, "  {}{by}: {}", m.name, most.join(", "));
     }
     text
 }
@@ -98,10 +102,10 @@ fn sums(report: &Report) -> String {
             real(s.mean),
             real(s.sd),
             or_dash(s.correlation, |rho| fixed(rho, 3)),
-            three_digits(s.model.dpm),
-            or_dash(s.model.error, |error| format!("±{}", three_digits(error))),
-            three_digits(s.eq9_ppm),
-            three_digits(s.independent_ppm),
+            per_million(s.model.dpm),
+            or_dash(s.model.error.filter(|_| s.model.dpm >= 1e-6), |error| format!("±{}", three_digits(error))),
+            per_million(s.eq9_ppm),
+            per_million(s.independent_ppm),
         ]
     };
     let heading = ["sum < 0", "mean", "σ", "ρ", "ppm", "error", "eq. 9 (ρ = 1)", "ρ = 0"];

@@ -9,7 +9,7 @@ use super::{DEPTH, Expression, ExpressionError, Fault, Kind, Operation, Source, 
 /// The deepest nesting of parentheses, signs and powers.
 const NESTING: usize = 64;
 const FUNCTIONS: &str = "sqrt, sin, cos, tan, asin, acos, atan, abs, min, max";
-const UNITS: &str = "mm, m, cm, µm, nm, °, rad, or none";
+const UNITS: &str = "mm, m, cm, µm, nm, in, °, rad, mrad, or none";
 const OPERAND: &str = "a number, a name, a function or a parenthesis";
 
 /// Reads the expression `text`; `resolve` says what a name stands for.
@@ -243,6 +243,12 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
 
     /// A call of the function `name`, its opening parenthesis taken.
     fn call(&mut self, name: &str, place: Range<usize>) -> Result<Kind, ExpressionError> {
+        let unknown =
+            |place| Err(ExpressionError { fault: Fault::UnknownFunction(name.into()), place, allowed: FUNCTIONS });
+        // Before its arguments, which may well look like mistakes.
+        if !FUNCTIONS.split(", ").any(|known| known == name) {
+            return unknown(place);
+        }
         let first = self.sum()?;
         let comparison: Option<fn(f64, f64) -> f64> = match name {
             "min" => Some(|a, b| if a.is_nan() || a < b { a } else { b }),
@@ -276,7 +282,7 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
             "asin" | "acos" | "atan" => {
                 return Err(kinds("takes a plain number, not", &[first], place, "such as acos(a / b)"));
             }
-            _ => return Err(ExpressionError { fault: Fault::UnknownFunction(name.into()), place, allowed: FUNCTIONS }),
+            _ => return unknown(place),
         };
         self.push(Operation::One(function), place, 1)?;
         Ok(kind)

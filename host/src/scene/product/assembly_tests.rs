@@ -4,8 +4,8 @@ use super::tests::{at, check_all, close, parse, product};
 use crate::{
     product::Product,
     scene::{Scene, SceneFile, shipped},
-    tolerance::model::{Distribution, Variation, ZoneRule},
-    tolerance::{derivative::expansion, moments},
+    tolerance::model::{Variation, ZoneRule},
+    tolerance::{analysis, derivative::expansion, moments},
 };
 
 fn variable(product: &Product, name: &str) -> usize {
@@ -16,6 +16,7 @@ fn variable(product: &Product, name: &str) -> usize {
         }
         first += match contributor.variation {
             Variation::Scalar { .. } | Variation::Zone(ZoneRule::Translation) => 1,
+            Variation::Disc(_) => 2,
             Variation::Zone(_) => 3,
         };
     }
@@ -153,20 +154,70 @@ fn general_geometry_and_datums() {
             "table.back perpendicularity",
             "table.back flatness",
             "block.bottom flatness",
-            "block.bore perpendicularity 1",
-            "block.bore perpendicularity 2",
-            "block.bore position 1",
-            "block.bore position 2",
+            "block.bore perpendicularity",
+            "block.bore position",
         ]
     );
     // K: flatness 0.2 mm on 100 mm; half of it is u = 1.
     let raised = at(&block, &[(0, 1.0)])[0];
     close(raised, 20e-3, 1e-12);
-    let position = match &block.model.contributors[6].variation {
-        Variation::Scalar { distribution, limits } => (distribution.clone(), *limits),
-        Variation::Zone(_) => panic!("a plane"),
-    };
-    assert_eq!(position, (Distribution::Normal { mean: 0.0, deviation: 0.2e-3 / 6.0 }, [-0.1e-3, 0.1e-3]));
+    assert_eq!(block.model.contributors[5].variation, Variation::Disc(ZoneRule::SigmaZone));
+}
+
+/// Two holes 50 mm apart along a slant, each anywhere in its cylindrical zone.
+const HOLES: &str = r#"
+[[part]]
+name = "plate"
+plane = [{ name = "face", at = [0, 0, 0], normal = "-z", along = "+x", extents = [80, 80] }]
+axis = [
+  { name = "one", at = [0, 0, 5], along = "+z", length = 10, position = { zone = 0.2, datum = "plate.face" } },
+  { name = "two", at = [30, 40, 5], along = "+z", length = 10, position = { zone = 0.2, datum = "plate.face" } },
+  { name = "same", at = [0, 0, 5], along = "+z", length = 10, position = { zone = 0.2, datum = "plate.face" } },
+]
+[[measure]]
+name = "apart"
+distance = ["plate.one", "plate.two"]
+[[measure]]
+name = "off"
+distance = ["plate.one", "plate.same"]
+"#;
+
+#[test]
+fn a_cylindrical_zone_is_a_disc() {
+    let plate = parse(HOLES, &[]).unwrap().product.unwrap();
+    let theory = analysis::theory(&plate.model, 1, None).unwrap();
+    // Each axis gives a tenth of a millimetre along any direction, not a square's diagonal.
+    let [low, high] = theory.worst_cases[0].linear;
+    close(low * 1e3, 49.8, 1e-6);
+    close(high * 1e3, 50.2, 1e-6);
+    close(theory.moments[0].deviation * 1e3, 0.2 / 6.0 * libm::sqrt(2.0), 1e-6);
+    for (share, expected) in theory.sums_of_squares[0].shares.iter().zip([0.5, 0.5, 0.0]) {
+        close(*share, expected, 1e-6);
+    }
+    // The distance of two axes that coincide on the drawing is a radius: Rayleigh's distribution.
+    assert!(theory.moments[0].described && !theory.moments[1].described);
+    let spread = 0.2 / 6.0 * libm::sqrt(2.0);
+    close(theory.moments[1].mean * 1e3, spread * libm::sqrt(std::f64::consts::FRAC_PI_2), 2e-4 * spread);
+    close(theory.moments[1].deviation * 1e3, spread * libm::sqrt(2.0 - std::f64::consts::FRAC_PI_2), 2e-4 * spread);
+    let [least, greatest] = theory.worst_cases[1].searched.unwrap();
+    close(least, 0.0, 1e-9);
+    close(greatest * 1e3, 0.2, 1e-6);
+    let total = &theory.indices[1].as_ref().unwrap().total;
+    close(total[0] / (total[0] + total[2]), 0.5, 0.02);
+    close(total[1], 0.0, 1e-9);
+}
+
+#[test]
+fn an_angle_at_its_end_is_a_fold() {
+    let lid = product("lid-on-pins", &[]);
+    let theory = analysis::theory(&lid.model, 1, None).unwrap();
+    let moments = theory.moments[2];
+    assert!(!moments.described && theory.moments[0].described && theory.moments[3].described);
+    close(moments.mean.to_degrees(), 179.927, 1e-3);
+    let [least, greatest] = theory.worst_cases[2].searched.unwrap().map(f64::to_degrees);
+    close(greatest, 180.0, 1e-6);
+    // Of 100,000 units the least has 179.7.
+    assert!((179.0..179.7).contains(&least), "{least}");
 }
 
 #[test]

@@ -182,14 +182,15 @@ fn zone(
     match made.feature.shape {
         Shape::Point => shift(made, callout, &sixth, direction, draft),
         Shape::Axis => {
-            for (i, side) in sides.into_iter().enumerate() {
-                let name = format!("{callout} {}", i + 1);
+            let rule = field.get("rule").as_ref().map_or(Ok(draft.defaults.rule), rule)?;
+            let name = format!("{} {callout}", made.name);
+            let first = draft.add(Contributor { name, variation: Variation::Disc(rule) }, &[0.0; 2]);
+            for (variable, side) in (first..).zip(sides) {
                 if limits == Limits::Location {
-                    shift(made, &name, &sixth, side, draft);
+                    made.feature.shift(variable, side, width / 2.0);
                 } else {
                     // As far as the end of the axis leaves its nominal line.
-                    let variable = draft.add(sixth.contributor(format!("{} {name}", made.name)), &[0.0]);
-                    made.feature.tilt(variable, side, 2.0 / extents[0]);
+                    made.feature.tilt(variable, side, width / extents[0]);
                 }
             }
         }

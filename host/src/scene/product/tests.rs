@@ -148,6 +148,24 @@ fn only_a_slide_moves() {
     assert!(parse(shipped("clutch").unwrap(), &[]).unwrap().slide.is_none());
 }
 
+#[test]
+fn inches_and_fits_are_tolerances() {
+    let scene = |value: &str, tolerance: &str| {
+        let text = format!(
+            "[[dimension]]\nname = \"d\"\nvalue = {value}\ntolerance = {tolerance}\n[[measure]]\nname = \"m\"\nis = \"d\"\n"
+        );
+        let product = parse(&text, &[]).unwrap().product.unwrap();
+        let Variation::Scalar { limits, .. } = product.model.contributors[0].variation else { panic!("a scalar") };
+        limits.map(|limit| (limit * 1e9).round() / 1e6)
+    };
+    assert_eq!(scene("\"0.5 in\"", "\"0.01 in\""), [12.446, 12.954]);
+    assert_eq!(scene("25", "\"H7\""), [25.0, 25.021]);
+    assert_eq!(scene("25", "\"g6\""), [24.980, 24.993]);
+    assert_eq!(scene("500", "\"K7\""), [499.955, 500.018]);
+    assert_eq!(scene("\"1 in\"", "\"p6\""), [25.422, 25.435]);
+    assert_eq!(scene("120", "\"f\""), [119.85, 120.15]);
+}
+
 /// A stack to spoil.
 const STACK: &str = r#"
 [tolerance]
@@ -200,10 +218,21 @@ fn bad_input_is_shown_with_its_place_and_what_is_allowed() {
             ["value = |0.2", "class m has no tolerance of a size for 0.2 mm", "from 0.5 up to 4000"],
         ),
         ("value = 20", "value = 4001", ["value = |4001", "for 4001 mm", "from 0.5 up to 4000 mm"]),
-        ("tolerance = 0.1", "tolerance = 0", ["tolerance = |0", "`dimension.tolerance` is 0 mm", "more than 0"]),
+        ("tolerance = 0.1", "tolerance = 0", ["tolerance = |0", "`dimension.tolerance` is 0 mm", "\"constant\""]),
+        ("tolerance = 0.1", "tolerance = [0.3, -0.1]", ["tolerance = |[0.3", "lower limit is above", "[-0.1, 0.3]"]),
+        ("tolerance = 0.1", "tolerance = \"K9\"", ["tolerance = |\"K9", "no class K9 for 10 mm", "H7 or g6"]),
+        (
+            "value = 10\ntolerance = 0.1",
+            "value = 501\ntolerance = \"H7\"",
+            ["value = |501", "up to 500 mm, not 501", "H7"],
+        ),
         ("tolerance = 0.1", "tolerance = -0.1", ["tolerance = |-0.1", "is -0.1 mm", "more than 0"]),
         ("tolerance = 0.1", "tolerance = [0.1, 0.1]", ["tolerance = |[0.1", "no width", "below the upper one"]),
-        ("tolerance = 0.1", "tolerance = \"x\"", ["tolerance = |\"x", "not a number", "mm"]),
+        (
+            "tolerance = 0.1",
+            "tolerance = \"x\"",
+            ["tolerance = |\"x", "is \"x\"", "ISO 286 class with its size: H7, g6"],
+        ),
         ("tolerance = 0.1", "tolerance = 1e-18", ["tolerance = |1e-18", "no width", "±"]),
         ("side = 20", "", ["|[[dimension]]\nname = \"phi", "`dimension.side` is missing", "shorter side"]),
         ("mode = 0.1", "mode = 0.3", ["distribution = |{ kind", "the mode is not within", "±"]),

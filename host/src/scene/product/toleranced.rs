@@ -4,6 +4,7 @@ use crate::{
     product::{
         dimension::{Shape, ShapeError, Toleranced},
         expression::{Kind, Source},
+        iso286,
         iso2768::{self, BandError, General, SizeClass},
     },
     scene::{
@@ -22,7 +23,10 @@ const ANGLE: Quantity = Quantity { units: unit::ANGLE, range: [-3600.0, 3600.0] 
 pub(super) const RATIO: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
 const SKEWNESS: Quantity = Quantity { units: unit::ONE, range: [-10.0, 10.0] };
 
-const TOLERANCE: &str = "± as one number, [lower, upper] deviations, or a class of ISO 2768-1: f, m, c, v";
+const TOLERANCE: &str = "± as one number in mm or a text with its unit, \"0.004 in\"; [lower, upper] deviations; a class \
+                         of ISO 2768-1: f, m, c, v; an ISO 286 class with its size: H7, g6";
+/// The same of what has no size.
+const DEVIATION: &str = "± as one number, or [lower, upper] deviations, in mm or as texts with their units";
 const SHAPES: &str = "normal, truncated-normal, uniform, triangular, trapezoidal, skewed, table, constant";
 
 /// Reads a `[[dimension]]`.
@@ -61,12 +65,12 @@ pub(super) fn offset(field: &Field, draft: &Draft) -> Result<Toleranced, SceneEr
 /// Reads a deviation from 0: a tolerance, or a table of `tolerance`, `sigma` and `distribution`.
 pub(super) fn deviation(field: &Field, quantity: &Quantity, draft: &Draft) -> Result<Toleranced, SceneError> {
     let tolerance = match field.node.value {
-        Value::Table(_) => field.require("tolerance", TOLERANCE)?,
+        Value::Table(_) => field.require("tolerance", DEVIATION)?,
         _ => field.clone(),
     };
     let shape = shape(field, quantity, draft.defaults.sigma)?;
-    Toleranced::new(0.0, deviations(&tolerance, quantity)?, &shape)
-        .map_err(|error| field.error(Problem::Shape { key: field.key.clone(), error }, TOLERANCE))
+    Toleranced::new(0.0, deviations(&tolerance, quantity, DEVIATION)?, &shape)
+        .map_err(|error| field.error(Problem::Shape { key: field.key.clone(), error }, DEVIATION))
 }
 
 /// Reads the keys `tolerance`, `sigma`, `distribution`, `side` and `edge` of a table, and its `value`.
@@ -83,9 +87,10 @@ pub(super) fn toleranced(table: &Field, value: &Field, draft: &Draft) -> Result<
             let problem = Problem::Shape { key: field.key.clone(), error: ShapeError::Excess };
             return Err(field.error(problem, "no tolerance with this distribution"));
         }
-        (Some(field), _) => match class(field) {
-            Some(class) => general(table, value, kind, nominal, class)?,
-            None => deviations(field, quantity)?,
+        (Some(field), _) => match (class(field), fit(field)) {
+            (Some(class), _) => general(table, value, kind, nominal, class)?,
+            (None, Some(class)) => of_fit(field, value, kind, nominal, &class)?,
+            (None, None) => deviations(field, quantity, TOLERANCE)?,
         },
         (None, _) => match draft.defaults.general.size {
             Some(class) => general(table, value, kind, nominal, class)?,
@@ -107,18 +112,61 @@ fn class(field: &Field) -> Option<SizeClass> {
     }
 }
 
-/// Lower and upper deviation.
-pub(super) fn deviations(field: &Field, quantity: &Quantity) -> Result<[f64; 2], SceneError> {
-    if !matches!(field.node.value, Value::List(_)) {
-        let half = positive(field, quantity)?;
-        return Ok([-half, half]);
+/// The class of ISO 286 that a tolerance names.
+fn fit(field: &Field) -> Option<iso286::Class> {
+    let Value::Text(text) = &field.node.value else { return None };
+    text.trim().parse().ok()
+}
+
+/// The deviations of a class of ISO 286 for the size `nominal` (m).
+fn of_fit(
+    field: &Field,
+    value: &Field,
+    kind: Kind,
+    nominal: f64,
+    class: &iso286::Class,
+) -> Result<[f64; 2], SceneError> {
+    if kind != Kind::LENGTH {
+        let problem = Problem::Unsupported { what: format!("the class {} of an angle", class.name()) };
+        return Err(field.error(problem, TOLERANCE));
     }
-    let [lower, upper] = field.to_numbers(quantity)?;
-    if lower >= upper {
-        let problem = Problem::Shape { key: field.key.clone(), error: ShapeError::Width };
-        return Err(field.error(problem, "a lower deviation that is below the upper one, such as [-0.1, 0.3]"));
+    // The digits that the conversion to metres made up would push a size over the end of its range.
+    let size = (nominal * 1e12).round() / 1e9;
+    let deviations = class.deviations(size).map_err(|error| {
+        let at = if matches!(error, iso286::ClassError::Size(_)) { value } else { field };
+        at.error(Problem::Class { key: at.key.clone(), error }, iso286::ALLOWED)
+    })?;
+    Ok(deviations.map(|mm| mm / 1e3))
+}
+
+/// Lower and upper deviation; `allowed` is all that may be written.
+fn deviations(field: &Field, quantity: &Quantity, allowed: &str) -> Result<[f64; 2], SceneError> {
+    let plain = |problem| field.error(problem, allowed);
+    match &field.node.value {
+        Value::List(_) => {
+            let [lower, upper] = field.to_numbers(quantity)?;
+            if lower >= upper {
+                let error = if lower > upper { ShapeError::Reversed } else { ShapeError::Width };
+                let problem = Problem::Shape { key: field.key.clone(), error };
+                return Err(field.error(problem, "a lower deviation that is below the upper one, such as [-0.1, 0.3]"));
+            }
+            Ok([lower, upper])
+        }
+        Value::Text(text) if !text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) => {
+            Err(plain(Problem::Choice { key: field.key.clone(), written: field.written("") }))
+        }
+        Value::Text(_) | Value::Number(_) => {
+            let half = field.to_number(quantity)?;
+            if half > 0.0 {
+                return Ok([-half, half]);
+            }
+            let written = field.written(quantity.units[0].symbol);
+            let problem = Problem::OutOfRange { key: field.key.clone(), written };
+            let constant = "more than 0; distribution = \"constant\" without a tolerance is for what does not vary";
+            Err(field.error(problem, if half == 0.0 { constant } else { "more than 0" }))
+        }
+        _ => Err(field.wrong_type(allowed)),
     }
-    Ok([lower, upper])
 }
 
 /// A width or half of one: more than 0.

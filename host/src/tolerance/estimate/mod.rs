@@ -59,10 +59,10 @@ pub struct Statistics {
     pub mean: Estimate,
     /// Standard deviation.
     pub deviation: Estimate,
-    /// Skewness.
-    pub skewness: Estimate,
-    /// Kurtosis; 3 for a normal.
-    pub kurtosis: Estimate,
+    /// Skewness, if the measure varies.
+    pub skewness: Option<Estimate>,
+    /// Kurtosis, if the measure varies; 3 for a normal.
+    pub kurtosis: Option<Estimate>,
     /// Least and greatest value.
     pub extremes: [f64; 2],
     /// The points of [`POINTS`], good to a 128th of a standard deviation beside their error.
@@ -75,6 +75,16 @@ pub struct Statistics {
     pub outside: [Option<Estimate>; 2],
     /// Share of units within the limits.
     pub good: Option<Estimate>,
+    /// Units below the lower and above the upper limit, of all units.
+    hits: [u64; 2],
+    all: u64,
+}
+
+impl Statistics {
+    /// Units beyond a limit, lower or upper, and all units.
+    pub fn outside_counts(&self, side: usize) -> (u64, u64) {
+        (self.hits[side], self.all)
+    }
 }
 
 /// Statistics of all measures together.
@@ -86,6 +96,8 @@ pub struct Joint {
     pub correlation: Vec<Vec<f64>>,
     /// P(sum < 0) of each of the model's sums.
     pub closed: Vec<Estimate>,
+    /// Units in which each of these sums is negative, and all units.
+    pub closed_counts: (Vec<u64>, u64),
     /// Share of units with all measures defined and within their limits, if any has limits.
     pub good: Option<Estimate>,
 }
@@ -101,6 +113,7 @@ pub fn joint(model: &Model, method: Method, frames: &[Frame], tallies: &[Tally])
         measures: (0..model.measures.len()).map(|i| statistics(&model.measures[i], i, &all, &errors)).collect(),
         correlation: all.correlation(),
         closed: (0..model.sums.len()).map(|i| share(&|plain| (plain.closed[i], plain.units))).collect(),
+        closed_counts: (all.closed.clone(), all.units),
         good: limited.then(|| share(&|plain| (plain.units - plain.rejected, plain.units))),
     }
 }
@@ -130,8 +143,14 @@ fn statistics(measure: &Measure, i: usize, all: &Plain, errors: &Errors) -> Stat
             error: Some(deviation * libm::sqrt(((at.kurtosis - 1.0) / (4.0 * units)).max(0.0))),
             ..between(deviation, interval::deviation(deviation, units))
         }),
-        skewness: estimate(&|plain| plain.skewness, &|value| Estimate::with_error(value, libm::sqrt(6.0 / units))),
-        kurtosis: estimate(&|plain| plain.kurtosis, &|value| Estimate::with_error(value, libm::sqrt(24.0 / units))),
+        skewness: at
+            .skewness
+            .is_finite()
+            .then(|| estimate(&|plain| plain.skewness, &|value| Estimate::with_error(value, libm::sqrt(6.0 / units)))),
+        kurtosis: at
+            .kurtosis
+            .is_finite()
+            .then(|| estimate(&|plain| plain.kurtosis, &|value| Estimate::with_error(value, libm::sqrt(24.0 / units)))),
         extremes: at.extremes,
         points: POINTS.map(|p| {
             let ends = interval::ranks(p, at.units).map(|rank| at.enclosed(rank));
@@ -152,6 +171,8 @@ fn statistics(measure: &Measure, i: usize, all: &Plain, errors: &Errors) -> Stat
         }),
         outside: [0, 1].map(|side| measure.limits[side].map(|_| share(&|plain| plain.outside[side]))),
         good: limited.then(|| share(&|plain| plain.units - plain.outside[0] - plain.outside[1])),
+        hits: at.outside,
+        all: all.units,
     }
 }
 

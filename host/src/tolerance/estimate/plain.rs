@@ -20,7 +20,9 @@ pub(super) struct PlainMeasure<'a> {
     pub outside: [u64; 2],
     pub mean: f64,
     pub deviation: f64,
+    /// Not a number for a measure that does not vary.
     pub skewness: f64,
+    /// The same.
     pub kurtosis: f64,
     pub extremes: [f64; 2],
     pub frame: Frame,
@@ -41,18 +43,22 @@ impl<'a> Plain<'a> {
             let variance = (m2 - m1 * m1).max(0.0);
             let third = m3 - 3.0 * m1 * m2 + 2.0 * m1 * m1 * m1;
             let fourth = m4 - 4.0 * m1 * m3 + 6.0 * m1 * m1 * m2 - 3.0 * m1 * m1 * m1 * m1;
+            let extremes = [
+                parts.iter().map(|part| part.extremes[0]).fold(f64::INFINITY, f64::min),
+                parts.iter().map(|part| part.extremes[1]).fold(f64::NEG_INFINITY, f64::max),
+            ];
+            // What varies by rounding alone has no shape.
+            let constant = extremes[1] - extremes[0] <= 1e-12 * extremes[0].abs().max(extremes[1].abs());
+            let shape = |moment: f64| if constant { f64::NAN } else { moment };
             PlainMeasure {
                 units,
                 undefined,
                 outside: [0, 1].map(|side| parts.iter().map(|part| part.outside[side]).sum()),
                 mean: frame.origin + frame.scale * m1,
                 deviation: frame.scale * libm::sqrt(variance * n / (n - 1.0)),
-                skewness: third / (variance * libm::sqrt(variance)),
-                kurtosis: fourth / (variance * variance),
-                extremes: [
-                    parts.iter().map(|part| part.extremes[0]).fold(f64::INFINITY, f64::min),
-                    parts.iter().map(|part| part.extremes[1]).fold(f64::NEG_INFINITY, f64::max),
-                ],
+                skewness: shape(third / (variance * libm::sqrt(variance))),
+                kurtosis: shape(fourth / (variance * variance)),
+                extremes,
                 frame: *frame,
                 parts,
             }
@@ -121,6 +127,14 @@ impl PlainMeasure<'_> {
     /// The point below which a value lies with `probability`, linear within its bin.
     pub fn quantile(&self, probability: f64) -> f64 {
         let rank = probability * self.units as f64;
+        // Units that share an extreme are not spread over its bin.
+        for (side, beyond) in [rank, self.units as f64 - rank].into_iter().enumerate() {
+            let parts = self.parts.iter().filter(|part| part.extremes[side] == self.extremes[side]);
+            let at: u64 = parts.map(|part| part.at_extremes[side]).sum();
+            if at > 1 && beyond <= at as f64 {
+                return self.extremes[side];
+            }
+        }
         let ([before, within], [low, high]) = self.ends(rank);
         let share = if within > 0 { ((rank - before as f64) / within as f64).clamp(0.0, 1.0) } else { 0.5 };
         low + (high - low) * share

@@ -45,8 +45,8 @@ pub fn measures_csv(report: &Report) -> anyhow::Result<Vec<u8>> {
             m.estimates.mean.error,
             Some(m.sd),
             m.estimates.sd.error,
-            Some(m.skew),
-            Some(m.kurtosis),
+            m.skew,
+            m.kurtosis,
             Some(m.min),
             Some(m.q00135),
             Some(m.median),
@@ -61,10 +61,10 @@ pub fn measures_csv(report: &Report) -> anyhow::Result<Vec<u8>> {
             m.good,
             Some(m.worst_case[0]),
             Some(m.worst_case[1]),
-            Some(m.rss.middle),
-            Some(m.rss.tolerance),
-            Some(m.second_order.mean),
-            Some(m.second_order.sd),
+            m.rss.map(|rss| rss.middle),
+            m.rss.map(|rss| rss.tolerance),
+            m.second_order.map(|moments| moments.mean),
+            m.second_order.map(|moments| moments.sd),
         ];
         let record = [m.name.clone(), m.unit.into()].into_iter().chain(numbers.map(optional));
         writer.write_record(record)?;

@@ -4,18 +4,28 @@ use super::{Defects, Estimates, MeasureReport, Quadrature, Report, Rss, SecondOr
 use crate::tolerance::{
     analysis::{Analysis, better},
     estimate::Estimate,
-    importance::Tail,
+    importance::REPLICATES,
+    interval::student_factor,
     model::{Contributor, Model, Quantity, Sum},
     sampler::Method,
+    tail::{Source, Tail},
 };
 
 fn defects(counted: &Estimate, tail: Option<&Tail>) -> Defects {
     let (probability, error, source) = better(counted, tail);
+    let interval = match (source, error) {
+        (Source::ImportanceSampling | Source::SubsetSimulation, Some(error)) => {
+            let half = student_factor(REPLICATES as usize) * error;
+            [probability - half, probability + half].map(|end| Some(end.clamp(0.0, 1.0)))
+        }
+        _ => counted.interval,
+    };
     Defects {
         dpm: probability * 1e6,
         error: error.map(|error| error * 1e6),
         source,
-        reliability: tail.map(|tail| tail.reliability),
+        interval: interval.map(|end| end.map(|end| end * 1e6)),
+        reliability: tail.and_then(|tail| tail.reliability),
         evaluations: tail.map(|tail| tail.evaluations),
     }
 }
@@ -59,12 +69,19 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
     let factor = measure.quantity.factor();
     let scaled = |value: f64| value * factor;
     let (rss, moments, tails) = (&theory.sums_of_squares[i], theory.moments[i], &theory.tails[i]);
+    let described = moments.described;
+    let total: f64 = theory.indices[i].as_ref().map_or(0.0, |indices| indices.total.iter().sum());
+    let percent = |k: usize| match &theory.indices[i] {
+        _ if described => Some(rss.shares[k] * 100.0),
+        Some(indices) if total > 0.0 => Some(indices.total[k] / total * 100.0),
+        _ => None,
+    };
     let contributor = |(k, contributor): (usize, &Contributor)| {
         let sensitivity = theory.sensitivities[i][k];
         let indices = theory.indices[i].as_ref();
         Share {
             name: contributor.name.clone(),
-            percent: rss.shares[k] * 100.0,
+            percent: percent(k),
             // Per mm or radian: a length over a length has no factor.
             slope: sensitivity
                 .slope
@@ -75,7 +92,8 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         }
     };
     let mut contributors: Vec<Share> = model.contributors.iter().enumerate().map(contributor).collect();
-    contributors.sort_by(|one, other| other.percent.total_cmp(&one.percent));
+    let size = |share: &Share| share.percent.unwrap_or(0.0);
+    contributors.sort_by(|one, other| size(other).total_cmp(&size(one)));
     let [q00135, median, q99865] = found.points.map(|point| point.scaled(factor));
     let per_million = |share: Option<Estimate>| share.map(|share| share.scaled(1e6));
     let estimates = Estimates {
@@ -97,8 +115,8 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         unit: measure.quantity.unit(),
         mean: estimates.mean.value,
         sd: estimates.sd.value,
-        skew: found.skewness.value,
-        kurtosis: found.kurtosis.value,
+        skew: found.skewness.map(|skewness| skewness.value),
+        kurtosis: found.kurtosis.map(|kurtosis| kurtosis.value),
         min: scaled(found.extremes[0]),
         max: scaled(found.extremes[1]),
         q00135: q00135.value,
@@ -106,21 +124,25 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         q99865: q99865.value,
         undefined: found.undefined,
         limits: measure.limits.map(|limit| limit.map(scaled)),
-        pp: found.pp.map(|pp| pp.value),
-        ppk: found.ppk.map(|ppk| ppk.value),
+        pp: found.pp.map(|pp| pp.value).filter(|pp| pp.is_finite()),
+        ppk: found.ppk.map(|ppk| ppk.value).filter(|ppk| ppk.is_finite()),
         dpm: [0, 1].map(|side| found.outside[side].map(|counted| defects(&counted, tails[side].as_ref()))),
         good: found.good.map(|good| good.value),
         estimates,
-        worst_case: theory.worst_cases[i].linear.map(scaled),
+        worst_case: theory.worst_cases[i].searched.unwrap_or(theory.worst_cases[i].linear).map(scaled),
         worst_case_vertices: theory.worst_cases[i].vertices.map(|range| range.map(scaled)),
-        rss: Rss { middle: scaled(rss.middle), tolerance: scaled(rss.tolerance), sd: scaled(rss.deviation) },
-        second_order: SecondOrder {
+        rss: described.then(|| Rss {
+            middle: scaled(rss.middle),
+            tolerance: scaled(rss.tolerance),
+            sd: scaled(rss.deviation),
+        }),
+        second_order: described.then(|| SecondOrder {
             mean: scaled(moments.mean),
             mean_shift: scaled(moments.shift),
             sd: scaled(moments.deviation),
-            skew: moments.skewness,
-            kurtosis: moments.kurtosis,
-        },
+            skew: Some(moments.skewness).filter(|skewness| skewness.is_finite()),
+            kurtosis: Some(moments.kurtosis).filter(|kurtosis| kurtosis.is_finite()),
+        }),
         quadrature: theory.exact[i].map(|exact| Quadrature {
             mean: scaled(exact.mean),
             sd: scaled(exact.deviation),
@@ -147,9 +169,26 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
         notes.push("one replicate of a design has no standard error: see --replicates".into());
     }
     for (measure, moments) in model.measures.iter().zip(&analysis.theory.moments) {
-        if moments.curved >= NOTED {
+        if !moments.described {
+            notes.push(format!(
+                "{} has a kink or a fold where it varies, as a radius or an angle has at 0: slopes do not describe it; its \
+                 worst case is by a search, its contributors are by Sobol' indices",
+                measure.name
+            ));
+        } else if moments.curved >= NOTED {
             let percent = moments.curved * 100.0;
             notes.push(format!("{} is not linear: {percent:.2} % of its variance is curvature", measure.name));
+        }
+    }
+    for (measure, (tails, found)) in
+        model.measures.iter().zip(analysis.theory.tails.iter().zip(&analysis.joint.measures))
+    {
+        let unknown = |(tail, counted): (&Option<Tail>, &Option<Estimate>)| tail.is_none() && counted.is_some();
+        if tails.iter().zip(&found.outside).any(unknown) {
+            notes.push(format!(
+                "{}: no sampled figure of its defects agrees with itself and with the units, these are counted ones",
+                measure.name
+            ));
         }
     }
     for (measure, found) in model.measures.iter().zip(&analysis.joint.measures) {

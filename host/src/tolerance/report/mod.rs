@@ -6,7 +6,7 @@ mod fill;
 use serde::Serialize;
 
 pub use self::{csv::measures_csv, fill::report};
-use super::{analysis::Source, estimate::Estimate, model::Quantity, sampler::Method};
+use super::{estimate::Estimate, model::Quantity, sampler::Method, tail::Source};
 
 /// All of an analysis.
 #[derive(Clone, Debug, Serialize)]
@@ -51,10 +51,10 @@ pub struct MeasureReport {
     pub mean: f64,
     /// Standard deviation.
     pub sd: f64,
-    /// Skewness.
-    pub skew: f64,
-    /// Kurtosis; 3 for a normal.
-    pub kurtosis: f64,
+    /// Skewness, if it varies.
+    pub skew: Option<f64>,
+    /// Kurtosis, if it varies; 3 for a normal.
+    pub kurtosis: Option<f64>,
     /// Least value.
     pub min: f64,
     /// Greatest value.
@@ -80,14 +80,15 @@ pub struct MeasureReport {
     pub good: Option<f64>,
     /// The same numbers with standard errors and 95 % intervals.
     pub estimates: Estimates,
-    /// Worst case by slopes.
+    /// Worst case by slopes; by a search where these do not describe the measure.
     pub worst_case: [f64; 2],
     /// Worst case over all combinations of limits, where these are few.
     pub worst_case_vertices: Option<[f64; 2]>,
-    /// Root sum of squares: value at the middle of the limits, half the tolerance, standard deviation of first order.
-    pub rss: Rss,
-    /// Moments of second order.
-    pub second_order: SecondOrder,
+    /// Root sum of squares: value at the middle of the limits, half the tolerance, standard deviation of first order; none
+    /// where slopes do not describe the measure.
+    pub rss: Option<Rss>,
+    /// Moments of second order; none where a quadratic does not describe the measure.
+    pub second_order: Option<SecondOrder>,
     /// Moments by quadrature, where the measure is not linear and its variables are few: as good as exact.
     pub quadrature: Option<Quadrature>,
     /// By contributor, largest share first.
@@ -100,8 +101,8 @@ pub struct MeasureReport {
 pub struct Estimates {
     pub mean: Estimate,
     pub sd: Estimate,
-    pub skew: Estimate,
-    pub kurtosis: Estimate,
+    pub skew: Option<Estimate>,
+    pub kurtosis: Option<Estimate>,
     pub q00135: Estimate,
     pub median: Estimate,
     pub q99865: Estimate,
@@ -122,9 +123,11 @@ pub struct Defects {
     pub error: Option<f64>,
     /// Where the number comes from.
     pub source: Source,
-    /// Reliability index: distance of the most probable defect in standard deviations.
+    /// Lower and upper end of the 95 % interval.
+    pub interval: [Option<f64>; 2],
+    /// Reliability index: distance of the most probable defect in standard deviations, if that was reached.
     pub reliability: Option<f64>,
-    /// Evaluations that importance sampling took.
+    /// Evaluations that importance sampling and subset simulation took.
     pub evaluations: Option<u64>,
 }
 
@@ -144,8 +147,8 @@ pub struct SecondOrder {
     pub mean: f64,
     pub mean_shift: f64,
     pub sd: f64,
-    pub skew: f64,
-    pub kurtosis: f64,
+    pub skew: Option<f64>,
+    pub kurtosis: Option<f64>,
 }
 
 /// Moments by quadrature.
@@ -163,8 +166,9 @@ pub struct Quadrature {
 pub struct Share {
     /// Name.
     pub name: String,
-    /// Share in the variance of first order, in %.
-    pub percent: f64,
+    /// Share in the variance of first order, in %; where slopes do not describe the measure, of the total Sobol' indices, if
+    /// there are any.
+    pub percent: Option<f64>,
     /// ∂measure/∂tolerance: per mm (or radian) that a scalar moves.
     pub slope: Option<f64>,
     /// How far the whole tolerance moves the measure to either side.
