@@ -172,7 +172,7 @@ fn in_rust() -> String {
         rise: 0.5,
     };
     let monitor = Monitor::new(table, 2.25, limits).expect("the limits are in bounds");
-    let mut bank = LevelBank::<96>::new(&table).expect("the table has few levels");
+    let mut bank = LevelBank::<_, 96>::new(table).expect("the table has few levels");
     let (mut watch, mut verdicts) = (Watch::default(), [0; 4]);
     let (mut looked_up, mut watched) = (Vec::new(), Vec::new());
     for [time, force, speed, _] in run(2.25, 1500) {
@@ -187,9 +187,9 @@ fn in_rust() -> String {
             Verdict::Jam => 3,
         }] += 1;
         watched.extend([report.tightness.excess, report.tightness.band]);
-        bank.add(&table, time, force);
+        bank.add(time, force);
     }
-    let estimate = bank.estimate(&table).expect("a stroke of samples");
+    let estimate = bank.estimate().expect("a stroke of samples");
     line("looked up", hashed(looked_up));
     line("watched", hashed(watched));
     for (name, count) in ["blind", "free", "tight", "jam"].into_iter().zip(verdicts) {

@@ -78,11 +78,11 @@ static void watch(void) {
         failed |= (uint32_t)slipfit_monitor_step(&monitor, &sample, &report);
         verdicts[report.verdict & 3u]++;
         watched = add(add(watched, report.excess), report.band);
-        failed |= (uint32_t)slipfit_bank_add(&bank, &table, at.time, at.force);
+        failed |= (uint32_t)slipfit_bank_add(&bank, at.time, at.force);
         failed |= (uint32_t)slipfit_table_check(&table, 64);
     }
     slipfit_estimate estimate;
-    failed |= (uint32_t)slipfit_bank_estimate(&bank, &table, &estimate);
+    failed |= (uint32_t)slipfit_bank_estimate(&bank, &estimate);
     put_hex("looked up", looked_up);
     put_hex("watched", watched);
     put_hex("blind", verdicts[SLIPFIT_BLIND]);

@@ -143,9 +143,9 @@ fn uses_of_a_table(bytes: &'static [u8], numbers: &[f32]) -> Result<slipfit_stat
             }
             let _ = slipfit_bank_init(&mut bank, &table);
             for k in 0..40 {
-                let _ = slipfit_bank_add(&mut bank, &table, at(i + k), at(i * k));
+                let _ = slipfit_bank_add(&mut bank, at(i + k), at(i * k));
             }
-            if slipfit_bank_estimate(&bank, &table, &mut estimate) == SLIPFIT_OK {
+            if slipfit_bank_estimate(&bank, &mut estimate) == SLIPFIT_OK {
                 let slipfit_estimate { low, level, high, .. } = estimate;
                 prop_assert!(low <= level && level <= high && low.is_finite() && high.is_finite(), "{estimate:?}");
             }
@@ -291,9 +291,9 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_monitor_step(&mut monitor, &sample, bad!(report)),
                 slipfit_bank_init(bad!(bank), &table),
                 slipfit_bank_init(&mut bank, bad!(table)),
-                slipfit_bank_add(bad!(bank), &table, 0.0, 0.0),
-                slipfit_bank_estimate(bad!(bank), &table, &mut estimate),
-                slipfit_bank_estimate(&bank, &table, bad!(estimate)),
+                slipfit_bank_add(bad!(bank), 0.0, 0.0),
+                slipfit_bank_estimate(bad!(bank), &mut estimate),
+                slipfit_bank_estimate(&bank, bad!(estimate)),
             ];
             for (i, answer) in answers.into_iter().enumerate() {
                 assert_eq!(answer, code, "call {i}");

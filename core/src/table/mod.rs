@@ -41,6 +41,8 @@
 
 mod axis;
 mod error;
+#[cfg(test)]
+pub(crate) mod example;
 mod header;
 pub mod layout;
 mod nodes;

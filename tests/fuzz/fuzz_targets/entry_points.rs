@@ -73,8 +73,8 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
                 7 => slipfit_monitor_init(&mut monitor, &table, x, &limits),
                 8 => slipfit_monitor_step(&mut monitor, &sample, &mut report),
                 9 => slipfit_bank_init(&mut bank, &table),
-                10 => slipfit_bank_add(&mut bank, &table, x, y),
-                11 => slipfit_bank_estimate(&bank, &table, &mut estimate),
+                10 => slipfit_bank_add(&mut bank, x, y),
+                11 => slipfit_bank_estimate(&bank, &mut estimate),
                 12 => {
                     change(&mut scene, x.to_bits(), y.to_bits());
                     SLIPFIT_OK

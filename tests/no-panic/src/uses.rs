@@ -102,8 +102,8 @@ fn watch(table: &Table<'_>) {
         let sample = black_box(Sample { time: 0.0, force: 0.0, speed: 0.0, command: 0.0 });
         black_box(monitor.step(&mut black_box(Watch::default()), &sample));
     }
-    if let Ok(mut bank) = LevelBank::<96>::new(table) {
-        bank.add(table, black_box(0.0), black_box(0.0));
-        black_box(black_box(&bank).estimate(table));
+    if let Ok(mut bank) = LevelBank::<_, 96>::new(*table) {
+        bank.add(black_box(0.0), black_box(0.0));
+        black_box(black_box(&bank).estimate());
     }
 }

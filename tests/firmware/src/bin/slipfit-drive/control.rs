@@ -71,7 +71,7 @@ pub struct Control {
     monitor: Monitor<'static, F32Nodes<'static>>,
     watch: Watch,
     /// Over all levels of the table.
-    pub bank: LevelBank<32>,
+    pub bank: LevelBank<'static, F32Nodes<'static>, 32>,
     table: Table<'static, 2, F32Nodes<'static>>,
     patrol: Patrol,
     region: &'static [u8],
@@ -107,7 +107,7 @@ impl Control {
             predictor,
             monitor: Monitor::new(table, rig.taken_for, limits).expect("the limits are in bounds"),
             watch: Watch::default(),
-            bank: LevelBank::new(&table).expect("the table is over few levels and time"),
+            bank: LevelBank::new(table).expect("the table is over few levels and time"),
             table,
             patrol: Patrol::new(&flashed),
             region,
@@ -131,7 +131,7 @@ impl Control {
         self.predictor.step(&mut self.state);
         let predicted = self.predictor.mechanism().drive().force(time, self.state.motion.velocity.z);
         let report = self.monitor.step(&mut self.watch, &sample);
-        self.bank.add(&self.table, time, measured);
+        self.bank.add(time, measured);
         if self.patrol.check(self.region, PATROL).is_err() {
             self.damaged = self.damaged.saturating_add(1);
         }

@@ -74,7 +74,7 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
                 say::record(machine, record);
             }
         });
-        let (estimate, damaged) = (control.bank.estimate(&table), control.damaged);
+        let (estimate, damaged) = (control.bank.estimate(), control.damaged);
         let stack = machine.stack(|| _ = control.tick(|| 0));
         say::stroke(machine, &Stroke { firsts, estimate, damaged, stack });
     }
