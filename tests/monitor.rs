@@ -234,7 +234,11 @@ fn never_adapts_outside_its_band() {
     // Nor off the table's axis, where all lookups clamp.
     let wide = Limits { band: 10.0, ..limits(0.02) };
     let mut monitor = Monitor::new(Table::open(&STROKE_TABLE).unwrap(), 2.0, wide).unwrap();
-    assert!(!monitor.adapt(&estimate(0.7, 0.1)) && !monitor.adapt(&estimate(3.6, 0.1)) && monitor.adapt(&estimate(0.8, 0.1)));
+    assert!(
+        !monitor.adapt(&estimate(0.7, 0.1))
+            && !monitor.adapt(&estimate(3.6, 0.1))
+            && monitor.adapt(&estimate(0.8, 0.1))
+    );
 }
 
 #[test]

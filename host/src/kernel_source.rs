@@ -113,7 +113,7 @@ pub fn rust_source(scene: &Scene) -> String {
          drive_ramp: {drive_ramp:?},\n    drive_speed: {drive_speed:?},\n    drive_point_b: {drive_point_b:?},\n}};\n\n\
          /// The kernel of a unit of tolerance level `n`.\n///\n/// # Errors\n\
          /// If a gap at that level, or `n`, is out of bounds.\n\
-         pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {{\n    let unit = SCENE.at(n);\n    \
+         pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {{\n    let unit = SCENE.at(n)?;\n    \
          let ContactData {{ stiffness, {exponent}damping, depth, .. }} = unit.contact;\n    \
          let contact = Impact::new({made_elastic}, damping, depth)?;\n    \
          Kernel::new(Slide::new(unit.body, contact, {made_friction}, unit.drive)?, STEP)\n}}\n"
@@ -146,6 +146,7 @@ pub fn c_header(scene: &Scene) -> String {
         let _ = writeln!(text, "    .{name} = {value},");
     };
     let number = |value: f32| format!("{value:?}f");
+    field("scheme", "SLIPFIT_SCHEME_IMPLICIT_EULER");
     field("step", &number(scene.run.step as f32));
     field("mass", &number(data.mass));
     field("inertia", &list(&data.inertia_b));
@@ -184,7 +185,8 @@ mod tests {
         let scene = scene(&[]);
         let data = scene_data(&scene);
         for n in [-3.0f32, 0.0, 2.5] {
-            let (constant, host) = (data.at(n), scene.slide_data::<f32>(&scene.gaps_at(&[n.into(); CONTACTS])));
+            let (constant, host) =
+                (data.at(n).unwrap(), scene.slide_data::<f32>(&scene.gaps_at(&[n.into(); CONTACTS])));
             // On the target gaps are computed in f32: to the last place of a millimetre, 6e-11 m.
             let gaps = constant.body.gaps.iter().zip(host.body.gaps);
             assert!(gaps.into_iter().all(|(a, b)| (a - b).abs() <= 1.2e-10), "{n}");

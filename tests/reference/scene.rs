@@ -44,7 +44,7 @@ pub const SCENE: SceneData<f32> = SceneData {
 /// # Errors
 /// If a gap at that level, or `n`, is out of bounds.
 pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
-    let unit = SCENE.at(n);
+    let unit = SCENE.at(n)?;
     let ContactData { stiffness, damping, depth, .. } = unit.contact;
     let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
     Kernel::new(Slide::new(unit.body, contact, Exact::new(0.3)?, unit.drive)?, STEP)

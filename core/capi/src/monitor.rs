@@ -201,11 +201,7 @@ pub unsafe extern "C" fn slipfit_bank_init(storage: *mut slipfit_bank, table: *c
 /// # Safety
 /// As for slipfit_monitor_init; the bank has been written before.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn slipfit_bank_add(
-    storage: *mut slipfit_bank,
-    t: f32,
-    force: f32,
-) -> slipfit_status {
+pub unsafe extern "C" fn slipfit_bank_add(storage: *mut slipfit_bank, t: f32, force: f32) -> slipfit_status {
     status(|| {
         // SAFETY: the caller's promise.
         unsafe { object_mut(storage)? }.add(t, force);

@@ -22,12 +22,7 @@ pub(crate) fn table_of_integers(axes: &[(AxisKind, u32, f32)], force: impl Fn(u3
     sealed(axes, Encoding::I16, 1e-3, values)
 }
 
-fn sealed(
-    axes: &[(AxisKind, u32, f32)],
-    encoding: Encoding,
-    scale: f32,
-    values: impl Iterator<Item = u8>,
-) -> Vec<u8> {
+fn sealed(axes: &[(AxisKind, u32, f32)], encoding: Encoding, scale: f32, values: impl Iterator<Item = u8>) -> Vec<u8> {
     let values: Vec<u8> = values.collect();
     let length = layout::HEADER_SIZE + values.len() + layout::CHECKSUM_SIZE;
     let mut bytes = Vec::from(layout::MAGIC);
