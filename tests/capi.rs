@@ -49,7 +49,8 @@ static HEADERS: LazyLock<PathBuf> = LazyLock::new(|| {
     fs::create_dir_all(&folder).expect("a folder of the test's own");
     let table = export::render("h", &TABLE, 0).expect("a header");
     fs::write(folder.join("table.h"), table).expect("the folder takes files");
-    fs::write(folder.join("scene.h"), kernel_source::c_header(&SCENE)).expect("the folder takes files");
+    fs::write(folder.join("scene.h"), kernel_source::c_header(&SCENE, 0).expect("an exponent of 1.5"))
+        .expect("the folder takes files");
     folder
 });
 

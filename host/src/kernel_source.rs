@@ -44,8 +44,20 @@ fn title(scene: &Scene) -> String {
     scene.title.split_whitespace().collect::<Vec<_>>().join(" ").replace("*/", "* /")
 }
 
+/// Why a scene is not written for the C library.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CError {
+    /// Another exponent than the library is built for.
+    #[error("contact.exponent is {found}, the C library is built for 1.5; .rs knows every exponent")]
+    Exponent {
+        /// The exponent.
+        found: f32,
+    },
+}
+
 /// A Rust module with the scene as `SCENE`, its kernel's type as `Predictor` and `predictor(n)`, which makes one.
-pub fn rust_source(scene: &Scene) -> String {
+/// `table_hash` is what its flash tables are stamped with.
+pub fn rust_source(scene: &Scene, table_hash: u64) -> String {
     let data = scene_data(scene);
     let (elastic, made_elastic) = match data.contact.normal_type() {
         NormalType::Linear => ("Linear", "Linear::new(stiffness)?"),
@@ -105,7 +117,9 @@ pub fn rust_source(scene: &Scene) -> String {
          pub type Unit = Slide<f32, {elastic}<f32>, {friction_type}>;\n\n\
          /// The kernel's type.\npub type Predictor = Kernel<f32, Unit, {scheme_type}>;\n\n\
          /// Step (s).\npub const STEP: f32 = {step:?};\n\n\
-         /// What a flash table of this scene is stamped with.\npub const SCENE_HASH: u64 = {hash:#018x};\n\n\
+         /// What stands for this scene, its laws, the kernel's scheme and its step.\npub const SCENE_HASH: u64 = {hash:#018x};\n\n\
+         /// What a flash table of this scene is stamped with, made by the scheme and step of the desk.\n\
+         pub const TABLE_HASH: u64 = {table_hash:#018x};\n\n\
          /// The slide over the production.\n#[rustfmt::skip]\npub const SCENE: SceneData<f32> = SceneData {{\n    \
          mass: {mass:?},\n    inertia_b: {inertia_b:?},\n    gravity_w: {gravity_w:?},\n    pins_w: {pins_w:?},\n    \
          gap_means: {gap_means:?},\n    gap_deviations: {gap_deviations:?},\n    \
@@ -120,9 +134,18 @@ pub fn rust_source(scene: &Scene) -> String {
     )
 }
 
-/// A C header with the scene as `slipfit_this_scene`, to be included after `slipfit.h`.
-pub fn c_header(scene: &Scene) -> String {
-    let data = scene_data(scene);
+/// A C header with the scene as `slipfit_this_scene`, to be included after `slipfit.h`. Its scheme is the C library's,
+/// implicit Euler, whichever `scene` names. `table_hash` is what its flash tables are stamped with.
+///
+/// # Errors
+/// [`CError`] names what the library cannot do.
+pub fn c_header(scene: &Scene, table_hash: u64) -> Result<String, CError> {
+    let mut scene = scene.clone();
+    scene.run.integrator = IntegratorKind::ImplicitEuler;
+    let (scene, data) = (&scene, scene_data(&scene));
+    if data.contact.normal_type() != NormalType::ThreeHalves {
+        return Err(CError::Exponent { found: data.contact.exponent });
+    }
     let list = |values: &[f32]| {
         let texts: Vec<_> = values.iter().map(|value| format!("{value:?}f")).collect();
         format!("{{{}}}", texts.join(", "))
@@ -137,8 +160,10 @@ pub fn c_header(scene: &Scene) -> String {
     };
     let mut text = format!(
         "/* {}: a scene for firmware, to be included after slipfit.h. SI units. */\n#ifndef SLIPFIT_SCENE_H\n\
-         #define SLIPFIT_SCENE_H\n\n/* What a flash table of this scene is stamped with. */\n\
-         #define SLIPFIT_SCENE_HASH {:#018x}ull\n\nstatic const slipfit_scene slipfit_this_scene = {{\n",
+         #define SLIPFIT_SCENE_H\n\n/* What stands for this scene, its laws, the predictor's scheme and its step. */\n\
+         #define SLIPFIT_SCENE_HASH {:#018x}ull\n\n\
+         /* What a flash table of this scene is stamped with, made by the scheme and step of the desk. */\n\
+         #define SLIPFIT_TABLE_HASH {table_hash:#018x}ull\n\nstatic const slipfit_scene slipfit_this_scene = {{\n",
         title(scene),
         scene_hash(scene)
     );
@@ -165,15 +190,18 @@ pub fn c_header(scene: &Scene) -> String {
     field("drive_ramp", &list(&data.drive_ramp));
     field("drive_speed", &number(data.drive_speed));
     field("drive_point", &list(&data.drive_point_b));
-    text + "};\n\n#endif\n"
+    Ok(text + "};\n\n#endif\n")
 }
 
 #[cfg(test)]
 mod tests {
     use slipfit_core::slide::CONTACTS;
 
-    use super::{c_header, rust_source, scene_data};
-    use crate::scene::{CD_ROM_SLIDE, Override, Scene};
+    use super::{CError, c_header, rust_source, scene_data};
+    use crate::{
+        force_table::scene_hash,
+        scene::{CD_ROM_SLIDE, Override, Scene},
+    };
 
     fn scene(settings: &[&str]) -> Scene {
         let overrides: Vec<_> = settings.iter().map(|setting| Override::set(setting)).collect();
@@ -205,10 +233,35 @@ mod tests {
             ("friction.law=exact", "Slide<f32, ThreeHalves<f32>, Exact<f32>>"),
             ("friction.law=none", "Slide<f32, ThreeHalves<f32>, Frictionless>"),
         ] {
-            let text = rust_source(&scene(&[setting]));
+            let text = rust_source(&scene(&[setting]), 7);
             assert!(text.contains(&format!("pub type Unit = {unit};")), "{text}");
-            assert_eq!(text, rust_source(&scene(&[setting])));
+            assert_eq!(text, rust_source(&scene(&[setting]), 7));
         }
-        assert!(c_header(&scene(&[])).contains("    .mass = 0.0818f,\n"));
+        assert!(c_header(&scene(&[]), 7).unwrap().contains("    .mass = 0.0818f,\n"));
+    }
+
+    #[test]
+    fn c_gets_what_its_library_does() {
+        for (exponent, setting) in
+            [(2.0, "contact.exponent=2"), (1.0, "contact.exponent=1"), (1.7, "contact.exponent=1.7")]
+        {
+            assert_eq!(c_header(&scene(&[setting]), 7), Err(CError::Exponent { found: exponent }));
+        }
+        // Whatever scheme the scene names for the desk: that of the library, and its hash.
+        let stamped = |settings: &[&str]| {
+            let text = c_header(&scene(settings), 0x0123_4567_89ab_cdef).unwrap();
+            assert!(text.contains("    .scheme = SLIPFIT_SCHEME_IMPLICIT_EULER,\n"));
+            assert!(text.contains("#define SLIPFIT_TABLE_HASH 0x0123456789abcdefull\n"));
+            let (_, hash) = text.split_once("#define SLIPFIT_SCENE_HASH ").unwrap();
+            hash.split_once("ull").unwrap().0.to_owned()
+        };
+        let implicit = format!("{:#018x}", scene_hash(&scene(&["run.integrator=implicit-euler"])));
+        for scheme in ["run.integrator=extrapolated", "run.integrator=sdirk2", "run.integrator=implicit-euler"] {
+            assert_eq!(stamped(&[scheme]), implicit, "{scheme}");
+        }
+        assert_ne!(stamped(&["run.step=\"1ms\""]), implicit);
+        for law in ["exact", "regularised", "none"] {
+            assert!(c_header(&scene(&[&format!("friction.law={law}")]), 7).is_ok());
+        }
     }
 }

@@ -12,11 +12,8 @@ use slipfit_firmware::{
 use crate::{
     control::{Control, Record, Rig},
     say,
+    scene::TABLE_HASH,
 };
-
-/// What the table must be stamped with: the scene of the kernel, but simulated in steps of 50 µs by the scheme of the
-/// desk.
-const TABLE_HASH: u64 = 0x60ae4a547f71e143;
 
 /// Periods of a stroke.
 pub const PERIODS: u32 = 1500;
