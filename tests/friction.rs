@@ -53,7 +53,7 @@ fn holds<I: Integrator>(step: f64) {
         settled::<I, _>(cd_rom::with_friction(&loaded(0.99), Exact::new(COEFFICIENT).unwrap()), step, 10.0);
     let (z, v) = (state.motion.pose.displacement_w.z, state.motion.velocity.z);
     eprintln!("0.99: last change at {:.3} s, z {z:e} m, v {v:e} m/s", f64::from(changed) * step);
-    assert!(f64::from(changed) * step < 9.0, "still moving: {:?}", state.motion.velocity);
+    assert!(f64::from(changed) * step <= 0.155, "still moving: {:?}", state.motion.velocity);
     assert!(v.abs() < 1e-12 && z.abs() < 2e-6, "{z} {v}");
     let (state, _) = settled::<I, _>(cd_rom::with_friction(&loaded(1.01), Exact::new(COEFFICIENT).unwrap()), step, 0.5);
     // 1 % of the load accelerates the slide by 0.03 m/s².
@@ -64,8 +64,37 @@ fn holds<I: Integrator>(step: f64) {
 #[test]
 fn exact_friction_holds_below_breakaway_without_any_change_and_moves_above() {
     holds::<ImplicitEuler<4>>(1e-3);
+    holds::<ImplicitEuler<4>>(2.5e-4);
     holds::<Sdirk2<4>>(1e-3);
     holds::<Extrapolated<2, 4>>(1e-3);
+}
+
+/// At steps so short that a force makes less of a velocity than rounding at 1 ms takes away, f32 moves as it should, either way.
+#[test]
+fn exact_friction_does_not_freeze_at_short_steps() {
+    for share in [0.1f32, -0.1] {
+        for step in [1e-6f32, 1e-7, 1e-8] {
+            let mut data = cd_rom::data(-3.0f32);
+            for gaps in data.body.gaps.as_chunks_mut::<4>().0 {
+                gaps[2] = 0.0;
+            }
+            let acceleration = share * COEFFICIENT as f32 * 9.81;
+            data.drive.gain = 1e-3;
+            data.drive.speed = acceleration * data.body.mass / data.drive.gain;
+            (data.drive.ramp_start, data.drive.ramp_end) = (-2.0, -1.0);
+            let slide = cd_rom::with_friction(&data, Exact::new(COEFFICIENT as f32).unwrap());
+            let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(slide, step).unwrap();
+            let mut state = kernel.at_rest(Pose::nominal());
+            for _ in 0..100 {
+                kernel.step(&mut state);
+            }
+            // Its rails carry nothing yet.
+            let velocity = state.motion.velocity;
+            let [along, down] = [velocity.z / (100.0 * step), velocity.y / (100.0 * step)];
+            assert!((along / acceleration - 1.0).abs() < 0.01, "{share} {step}: {along} {acceleration}");
+            assert!((down / -9.81 - 1.0).abs() < 0.01, "{share} {step}: {down}");
+        }
+    }
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn its_kernel_is_the_menus() {
     for n in [-3.0f32, 0.0, 2.5, 5.0] {
         let kernel = scene::predictor(n).expect("the scene is in bounds");
         let mut state = kernel.at_rest(Pose::nominal());
-        let expected = scene::SCENE.at(n).visit(Bits).expect("the scene is in bounds");
+        let expected = scene::SCENE.at(n).and_then(|unit| unit.visit(Bits)).expect("the scene is in bounds");
         assert!(expected.iter().all(|bits| {
             kernel.step(&mut state);
             state.motion.velocity.z.to_bits() == *bits

@@ -120,27 +120,60 @@ fn what_is_left_out_is_not_there() {
     assert_eq!(costs("slide_smoothed").state, costs("slide_frictionless").state);
 }
 
-/// Branches count passes and pins: none follows from comparing floating-point numbers, whose flags `vmrs` hands over.
+/// What sets the integer flags, so that they are not those of numbers any more.
+const SETS_FLAGS: [&str; 22] = [
+    "cmp", "cmn", "tst", "teq", "adds", "adcs", "subs", "sbcs", "rsbs", "muls", "movs", "mvns", "ands", "orrs", "orns",
+    "eors", "bics", "lsls", "lsrs", "asrs", "rors", "rrxs",
+];
+
+/// Conditional branches of machine code (a line an instruction), and the first that follows from comparing floating-point
+/// numbers, whose flags `vmrs` hands over.
+fn branches(code: &str) -> (usize, Option<&str>) {
+    let conditions = ["eq", "ne", "gt", "ge", "lt", "le", "mi", "pl", "hi", "hs", "lo", "ls", "cs", "cc", "vs", "vc"];
+    let (mut of_numbers, mut count, mut first) = (false, 0, None);
+    for line in code.lines() {
+        let operation = line.split('\t').nth(1).unwrap_or_default().split('.').next().unwrap_or_default();
+        if operation.strip_prefix('b').is_some_and(|condition| conditions.contains(&condition)) {
+            count += 1;
+            first = first.or(of_numbers.then_some(line));
+        } else if operation == "vmrs" {
+            of_numbers = true;
+        } else if SETS_FLAGS.contains(&operation) {
+            of_numbers = false;
+        }
+    }
+    (count, first)
+}
+
+/// Branches count passes and pins.
 #[test]
 fn no_branch_depends_on_the_state() {
-    let conditions = ["eq", "ne", "gt", "ge", "lt", "le", "mi", "pl", "hi", "ls", "cs", "cc", "vs", "vc"];
     for rung in RUNGS {
-        let mut of_numbers = false;
-        let mut branches = 0;
-        for line in CODE[rung].lines() {
-            let mut words = line.split('\t').skip(1);
-            let operation = words.next().unwrap_or_default().split('.').next().unwrap_or_default();
-            if operation == "vmrs" {
-                of_numbers = true;
-            } else if operation.starts_with("cmp") || operation.ends_with('s') && !operation.starts_with('v') {
-                of_numbers = false;
-            } else if operation.strip_prefix('b').is_some_and(|condition| conditions.contains(&condition)) {
-                assert!(!of_numbers, "{rung}: {line}");
-                branches += 1;
+        let (count, of_numbers) = branches(&CODE[rung]);
+        assert_eq!(of_numbers, None, "{rung}");
+        assert!(count > 0, "{rung} has loops");
+    }
+}
+
+#[test]
+fn a_branch_on_numbers_is_found() {
+    let line = |operation: &str| format!("  1000:\t{operation}\t0x2000 <step>\n");
+    let code = |operations: &[&str]| operations.iter().map(|operation| line(operation)).collect::<String>();
+    let conditions = ["eq", "ne", "gt", "ge", "lt", "le", "mi", "pl", "hi", "hs", "lo", "ls", "cs", "cc", "vs", "vc"];
+    for branch in conditions.map(|condition| format!("b{condition}")) {
+        for branch in [branch.clone(), format!("{branch}.n"), format!("{branch}.w")] {
+            assert_eq!(branches(&code(&["subs", &branch])), (1, None), "{branch}");
+            // What is done where numbers compared so, in an IT block, sets no flags.
+            for between in [&["vadd.f32"][..], &["it", "movls"], &["strcs"], &["vmovvs.f32"], &["mrs"], &["b", "bl"]] {
+                let text = code(&[&["vcmp.f32", "vmrs"], between, &[&branch]].concat());
+                assert_eq!(branches(&text), (1, Some(line(&branch).trim_end_matches('\n'))), "{between:?}");
+            }
+            for between in ["cmp", "cmp.w", "subs", "lsls", "bics", "muls"] {
+                assert_eq!(branches(&code(&["vmrs", between, &branch])), (1, None), "{between}");
             }
         }
-        assert!(branches > 0, "{rung} has loops");
     }
+    assert_eq!(branches(&code(&["vmrs", "b", "bl", "blx", "bx", "bfi", "bic"])), (0, None));
 }
 
 #[test]

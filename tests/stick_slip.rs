@@ -169,6 +169,6 @@ fn periods_are_the_known_ones() {
         ("slide-sized, extrapolated", 0.059749, period::<Extrapolated<2, 4>>(slide_sized(), 2e-6, 0.4)),
     ] {
         eprintln!("{name}: {found:.6} s, known {known} s");
-        assert!((found / known - 1.0).abs() <= 1e-3, "{name}: {found} {known}");
+        assert!((found / known - 1.0).abs() <= 5e-5, "{name}: {found} {known}");
     }
 }

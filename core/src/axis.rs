@@ -33,15 +33,15 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>, C: Stop<S>, P: Push<S>> AxisBody<S, 
     /// A body of `mass` (kg) with the acceleration `gravity` (m/s², along the axis) at `stop`, driven by `push`.
     ///
     /// # Errors
-    /// [`ParameterError`] names the first parameter that is not finite or out of bounds. Stop and drive are validated
-    /// where they are made.
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds, of the drive too. The stop is
+    /// validated where it is made.
     pub fn driven(mass: S, gravity: S, stop: C, contact: Impact<S, E>, push: P) -> Result<Self, ParameterError<S>> {
         Ok(Self {
             mass: bounded("mass", mass, [1e-6, 1e6])?,
             gravity: bounded("gravity", gravity, [-1e4, 1e4])?,
             stop,
             contact,
-            push,
+            push: push.checked()?,
         })
     }
 }
@@ -152,5 +152,32 @@ impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> Mechanism<S, 1> for AxisB
     #[inline(always)]
     fn pushed(&self, [_, stiffness]: &[S; 2], displacement: &SVector<S, 1>) -> SVector<S, 1> {
         displacement * -*stiffness
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::AxisBody;
+    use crate::{
+        Vector3,
+        drive::Drive,
+        law::{Impact, Pad, ThreeHalves},
+    };
+
+    #[test]
+    fn refuses_a_drive_that_is_none() {
+        let contact = Impact::new(ThreeHalves::new(3e6f32).unwrap(), 1000.0, 1e-4).unwrap();
+        let good = Drive { gain: 40.0, ramp_start: 0.05, ramp_end: 1.0, speed: 0.1, point_b: Vector3::zeros() };
+        let made = |drive| AxisBody::driven(0.1, 0.0, Pad::new(0.0).unwrap(), contact, drive).map(drop);
+        assert_eq!(made(good), Ok(()));
+        for (bad, parameter) in [
+            (Drive { gain: f32::NAN, ..good }, "drive.gain"),
+            (Drive { gain: -1.0, ..good }, "drive.gain"),
+            (Drive { ramp_end: 0.05, ..good }, "drive.ramp_duration"),
+            (Drive { ramp_end: 0.0, ..good }, "drive.ramp_end"),
+            (Drive { speed: f32::INFINITY, ..good }, "drive.speed"),
+        ] {
+            assert_eq!(made(bad).unwrap_err().parameter, parameter);
+        }
     }
 }

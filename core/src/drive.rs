@@ -68,6 +68,14 @@ impl<S: Scalar> Drive<S> {
 
 /// What drives a body along its axis, as a menu of types so that a scene without a drive pays nothing.
 pub trait Push<S>: Copy {
+    /// This drive, if it can be stepped without failing.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    fn checked(self) -> Result<Self, ParameterError<S>>
+    where
+        S: PartialOrd;
+
     /// The force (N) at time `t` (s) and speed `v` (m/s).
     fn force(&self, t: S, v: S) -> S;
 
@@ -79,6 +87,13 @@ pub trait Push<S>: Copy {
 }
 
 impl<S: Scalar> Push<S> for Drive<S> {
+    fn checked(self) -> Result<Self, ParameterError<S>>
+    where
+        S: PartialOrd,
+    {
+        self.checked()
+    }
+
     #[inline(always)]
     fn force(&self, t: S, v: S) -> S {
         self.force(t, v)
@@ -97,6 +112,10 @@ impl<S: Scalar> Push<S> for Drive<S> {
 
 /// No drive.
 impl<S: Scalar> Push<S> for () {
+    fn checked(self) -> Result<Self, ParameterError<S>> {
+        Ok(())
+    }
+
     #[inline(always)]
     fn force(&self, _: S, _: S) -> S {
         S::zero()

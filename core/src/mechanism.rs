@@ -42,6 +42,26 @@ pub struct Differentiated<S, L, const D: usize> {
     pub slopes: L,
 }
 
+/// Accelerations are rounded to the last place of this (m/s²): 9e-13 m/s² in f64, 5e-4 m/s² in f32.
+const SETTLED: f64 = 4000.0;
+
+/// The greatest speed (m/s) to whose last place velocities are rounded.
+const SETTLED_MOST: f64 = 4.0;
+
+/// The speed (m/s) to whose last place [`settled`] rounds velocities over the implicit part `a` (s) of a step. What rounding of
+/// the contact forces stirs up in it stays below, and grows with it; so does what a force that counts makes of a velocity.
+#[inline(always)]
+pub(crate) fn settling<S: Scalar>(a: S) -> S {
+    let unit = a * S::from_f64(SETTLED);
+    unit.select_gt(S::from_f64(SETTLED_MOST), S::from_f64(SETTLED_MOST), unit)
+}
+
+/// `x` rounded to about the last place of `unit`, the same either way: nearer to zero than a quarter of that it is zero.
+#[inline(always)]
+pub(crate) fn settled<S: Scalar>(x: S, unit: S) -> S {
+    (((x + unit) - unit) + ((x - unit) + unit)) * S::from_f64(0.5)
+}
+
 /// A mechanism with `D` generalised velocities.
 ///
 /// Implicit schemes solve momentum(V) − momentum(V₀) = a·force(t, Q, V) with Q = advanced(Q₀, V, a) for V. `a` (s) is
@@ -83,8 +103,9 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// 0 if all coordinates of `pose` are finite, else NaN.
     fn nought(&self, pose: &Self::Pose) -> S;
 
-    /// `velocity` with what can only be rounding taken out of it, where the mechanism can be truly at rest.
-    fn settled(&self, velocity: &SVector<S, D>) -> SVector<S, D> {
+    /// `velocity` with what can only be rounding taken out of it, where the mechanism can be truly at rest; `a` (s) is the
+    /// implicit part of the step.
+    fn settled(&self, velocity: &SVector<S, D>, _a: S) -> SVector<S, D> {
         *velocity
     }
 
@@ -144,5 +165,38 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// moves with `velocity`. It is the velocity at no displacement, and everywhere where coordinates are straight.
     fn rate(&self, _displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         *velocity
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{settled, settling};
+
+    #[test]
+    fn rounding_to_rest_is_the_same_either_way() {
+        let mut bits = 1u32;
+        for _ in 0..20_000 {
+            bits = bits.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let x = f32::from_bits(bits >> 1);
+            if x.is_finite() && x < 1e6 {
+                for unit in [settling(1e-3f32), settling(1e-7), 0.3] {
+                    assert_eq!(settled(-x, unit), -settled(x, unit), "{x:e} {unit}");
+                    assert!((settled(x, unit) - x).abs() <= 1.2e-7 * unit.max(x), "{x:e} {unit}");
+                }
+            }
+        }
+        for (x, zero) in [(1.1e-7f32, true), (2.5e-7, false)] {
+            assert_eq!([settled(x, 4.0) == 0.0, settled(-x, 4.0) == 0.0], [zero; 2]);
+        }
+    }
+
+    #[test]
+    fn it_shrinks_with_the_step() {
+        assert_eq!(settling(1.0f64), 4.0);
+        assert_eq!(settling(1e-4f64), 0.4);
+        // What 0.01 m/s² makes of a velocity in one step stays.
+        for step in [1e-3f32, 1e-5, 1e-7, 1e-9] {
+            assert!(settled(0.01 * step, settling(step)) > 0.0, "{step}");
+        }
     }
 }

@@ -1,9 +1,10 @@
 //! A scene as a constant: every unit of a production, until its tolerance level is known.
 
 use crate::{
-    Scalar, Vector3,
+    ParameterError, Scalar, Vector3,
     clearance::GapStatistics,
     drive::Drive,
+    error::bounded,
     menu::{ContactData, FrictionData, SlideData},
     slide::{Body, CONTACTS, PINS},
 };
@@ -24,7 +25,7 @@ pub struct SceneData<S> {
     /// Means of the gaps at the nominal pose (m), in the order of [`Body::gaps`]; [`ABSENT`](crate::slide::ABSENT) for
     /// none.
     pub gap_means: [S; CONTACTS],
-    /// Standard deviations of the gaps (m); 0 where there is none.
+    /// Standard deviations of the gaps (m), not negative; 0 where there is none.
     pub gap_deviations: [S; CONTACTS],
     /// Contact law.
     pub contact: ContactData<S>,
@@ -40,15 +41,18 @@ pub struct SceneData<S> {
     pub drive_point_b: [S; 3],
 }
 
-impl<S: Scalar> SceneData<S> {
+impl<S: Scalar + PartialOrd> SceneData<S> {
     /// The unit of tolerance level `n`: its gaps are x − n·σ (eq. 9), computed in `S`.
-    pub fn at(&self, n: S) -> SlideData<S> {
+    ///
+    /// # Errors
+    /// [`ParameterError`] if a deviation is negative, above 1 m or not finite. All else is validated where a slide is made.
+    pub fn at(&self, n: S) -> Result<SlideData<S>, ParameterError<S>> {
         let mut gaps = self.gap_means;
         for ((gap, mean), deviation) in gaps.iter_mut().zip(self.gap_means).zip(self.gap_deviations) {
-            *gap = GapStatistics { mean, deviation }.at(n);
+            *gap = GapStatistics { mean, deviation: bounded("gap.deviation", deviation, [0.0, 1.0])? }.at(n);
         }
         let [ramp_start, ramp_end] = self.drive_ramp;
-        SlideData {
+        Ok(SlideData {
             body: Body {
                 mass: self.mass,
                 inertia_b: Vector3::from(self.inertia_b),
@@ -65,6 +69,34 @@ impl<S: Scalar> SceneData<S> {
                 speed: self.drive_speed,
                 point_b: Vector3::from(self.drive_point_b),
             },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::slide::ABSENT;
+
+    #[test]
+    fn refuses_deviations_that_are_none() {
+        let scene = |deviation: f32| SceneData {
+            mass: 0.1,
+            inertia_b: [1e-4; 3],
+            gravity_w: [0.0; 3],
+            pins_w: [[0.0; 3]; PINS],
+            gap_means: [ABSENT as f32; CONTACTS],
+            gap_deviations: [deviation; CONTACTS],
+            contact: ContactData { stiffness: 1e6, exponent: 1.5, damping: 1e3, depth: 1e-4 },
+            friction: FrictionData::None,
+            drive_gain: 0.0,
+            drive_ramp: [0.0, 1.0],
+            drive_speed: 0.0,
+            drive_point_b: [0.0; 3],
+        };
+        for bad in [-1e-9, -1.0, 1.1, f32::NAN, f32::INFINITY] {
+            assert_eq!(scene(bad).at(0.0).unwrap_err().parameter, "gap.deviation", "{bad}");
         }
+        assert!(scene(0.0).at(3.0).is_ok() && scene(-0.0).at(3.0).is_ok() && scene(1e-5).at(3.0).is_ok());
     }
 }

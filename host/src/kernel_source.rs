@@ -44,6 +44,17 @@ fn title(scene: &Scene) -> String {
     scene.title.split_whitespace().collect::<Vec<_>>().join(" ").replace("*/", "* /")
 }
 
+/// Why a scene is not written for the C library.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CError {
+    /// Another exponent than the library is built for.
+    #[error("contact.exponent is {found}, the C library is built for 1.5; .rs knows every exponent")]
+    Exponent {
+        /// The exponent.
+        found: f32,
+    },
+}
+
 /// A Rust module with the scene as `SCENE`, its kernel's type as `Predictor` and `predictor(n)`, which makes one.
 pub fn rust_source(scene: &Scene) -> String {
     let data = scene_data(scene);
@@ -114,16 +125,23 @@ pub fn rust_source(scene: &Scene) -> String {
          drive_ramp: {drive_ramp:?},\n    drive_speed: {drive_speed:?},\n    drive_point_b: {drive_point_b:?},\n}};\n\n\
          /// The kernel of a unit of tolerance level `n`.\n///\n/// # Errors\n\
          /// If a gap at that level, or `n`, is out of bounds.\n\
-         pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {{\n    let unit = SCENE.at(n);\n    \
+         pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {{\n    let unit = SCENE.at(n)?;\n    \
          let ContactData {{ stiffness, {exponent}damping, depth, .. }} = unit.contact;\n    \
          let contact = Impact::new({made_elastic}, damping, depth)?;\n    \
          Kernel::new(Slide::new(unit.body, contact, {made_friction}, unit.drive)?, STEP)\n}}\n"
     )
 }
 
-/// A C header with the scene as `slipfit_this_scene`, to be included after `slipfit.h`.
-pub fn c_header(scene: &Scene) -> String {
+/// A C header with the scene as `slipfit_this_scene`, to be included after `slipfit.h`. Its scheme is the C library's,
+/// implicit Euler, whichever `scene` names.
+///
+/// # Errors
+/// [`CError`] names what the library cannot do.
+pub fn c_header(scene: &Scene) -> Result<String, CError> {
     let data = scene_data(scene);
+    if data.contact.normal_type() != NormalType::ThreeHalves {
+        return Err(CError::Exponent { found: data.contact.exponent });
+    }
     let list = |values: &[f32]| {
         let texts: Vec<_> = values.iter().map(|value| format!("{value:?}f")).collect();
         format!("{{{}}}", texts.join(", "))
@@ -147,6 +165,7 @@ pub fn c_header(scene: &Scene) -> String {
         let _ = writeln!(text, "    .{name} = {value},");
     };
     let number = |value: f32| format!("{value:?}f");
+    field("scheme", "SLIPFIT_SCHEME_IMPLICIT_EULER");
     field("step", &number(scene.controller.step as f32));
     field("mass", &number(data.mass));
     field("inertia", &list(&data.inertia_b));
@@ -165,15 +184,18 @@ pub fn c_header(scene: &Scene) -> String {
     field("drive_ramp", &list(&data.drive_ramp));
     field("drive_speed", &number(data.drive_speed));
     field("drive_point", &list(&data.drive_point_b));
-    text + "};\n\n#endif\n"
+    Ok(text + "};\n\n#endif\n")
 }
 
 #[cfg(test)]
 mod tests {
     use slipfit_core::slide::CONTACTS;
 
-    use super::{c_header, rust_source, scene_data};
-    use crate::scene::{CD_ROM_SLIDE, Override, Scene};
+    use super::{CError, c_header, rust_source, scene_data};
+    use crate::{
+        force_table::scene_hash,
+        scene::{CD_ROM_SLIDE, Override, Scene},
+    };
 
     fn scene(settings: &[&str]) -> Scene {
         let overrides: Vec<_> = settings.iter().map(|setting| Override::set(setting)).collect();
@@ -185,7 +207,8 @@ mod tests {
         let scene = scene(&[]);
         let data = scene_data(&scene);
         for n in [-3.0f32, 0.0, 2.5] {
-            let (constant, host) = (data.at(n), scene.slide_data::<f32>(&scene.gaps_at(&[n.into(); CONTACTS])));
+            let (constant, host) =
+                (data.at(n).unwrap(), scene.slide_data::<f32>(&scene.gaps_at(&[n.into(); CONTACTS])));
             // On the target gaps are computed in f32: to the last place of a millimetre, 6e-11 m.
             let gaps = constant.body.gaps.iter().zip(host.body.gaps);
             assert!(gaps.into_iter().all(|(a, b)| (a - b).abs() <= 1.2e-10), "{n}");
@@ -208,6 +231,21 @@ mod tests {
             assert!(text.contains(&format!("pub type Unit = {unit};")), "{text}");
             assert_eq!(text, rust_source(&scene(&[setting])));
         }
-        assert!(c_header(&scene(&[])).contains("    .mass = 0.0818f,\n"));
+        assert!(c_header(&scene(&[])).unwrap().contains("    .mass = 0.0818f,\n"));
+    }
+
+    #[test]
+    fn c_gets_what_its_library_does() {
+        for (exponent, setting) in
+            [(2.0, "contact.exponent=2"), (1.0, "contact.exponent=1"), (1.7, "contact.exponent=1.7")]
+        {
+            assert_eq!(c_header(&scene(&[setting])), Err(CError::Exponent { found: exponent }));
+        }
+        let text = c_header(&scene(&[])).unwrap();
+        assert!(text.contains("    .scheme = SLIPFIT_SCHEME_IMPLICIT_EULER,\n"));
+        assert!(text.contains(&format!("#define SLIPFIT_SCENE_HASH {:#018x}ull\n", scene_hash(&scene(&[])))));
+        for law in ["exact", "regularised", "none"] {
+            assert!(c_header(&scene(&[&format!("friction.law={law}")])).is_ok());
+        }
     }
 }

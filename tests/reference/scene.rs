@@ -19,8 +19,11 @@ pub type Predictor = Kernel<f32, Unit, ImplicitEuler<4>>;
 /// Step (s).
 pub const STEP: f32 = 0.001;
 
-/// What a flash table of this scene is stamped with.
+/// What stands for this scene, its laws, the kernel's scheme and its step.
 pub const SCENE_HASH: u64 = 0x3808ee1f05646aed;
+
+/// What a flash table of this scene is stamped with, made by the scheme and step of the desk.
+pub const TABLE_HASH: u64 = 0x60ae4a547f71e143;
 
 /// The slide over the production.
 #[rustfmt::skip]
@@ -44,7 +47,7 @@ pub const SCENE: SceneData<f32> = SceneData {
 /// # Errors
 /// If a gap at that level, or `n`, is out of bounds.
 pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
-    let unit = SCENE.at(n);
+    let unit = SCENE.at(n)?;
     let ContactData { stiffness, damping, depth, .. } = unit.contact;
     let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
     Kernel::new(Slide::new(unit.body, contact, Exact::new(0.3)?, unit.drive)?, STEP)

@@ -12,6 +12,7 @@ void put(const char *text);
 
 static slipfit_predictor predictor;
 static slipfit_table table;
+static slipfit_scrubber scrubber;
 static slipfit_monitor monitor;
 static slipfit_bank bank;
 
@@ -63,6 +64,8 @@ static void watch(void) {
     uint32_t verdicts[4] = {0, 0, 0, 0};
     uint32_t failed = (uint32_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_AXIS_TIME,
                                                    SLIPFIT_SCENE_HASH);
+    uint32_t rounds = 0;
+    failed |= (uint32_t)slipfit_scrubber_init(&scrubber, &table);
     failed |= (uint32_t)slipfit_predictor_init(&predictor, &slipfit_this_scene, 2.25f);
     failed |= (uint32_t)slipfit_monitor_init(&monitor, &table, 2.25f, &limits);
     failed |= (uint32_t)slipfit_bank_init(&bank, &table);
@@ -78,24 +81,36 @@ static void watch(void) {
         failed |= (uint32_t)slipfit_monitor_step(&monitor, &sample, &report);
         verdicts[report.verdict & 3u]++;
         watched = add(add(watched, report.excess), report.band);
-        failed |= (uint32_t)slipfit_bank_add(&bank, &table, at.time, at.force);
-        failed |= (uint32_t)slipfit_table_check(&table, 64);
+        failed |= (uint32_t)slipfit_bank_add(&bank, at.time, at.force);
+        failed |= (uint32_t)slipfit_scrubber_check(&scrubber, 64, &rounds);
     }
     slipfit_estimate estimate;
-    failed |= (uint32_t)slipfit_bank_estimate(&bank, &table, &estimate);
+    failed |= (uint32_t)slipfit_bank_estimate(&bank, &estimate);
     put_hex("looked up", looked_up);
     put_hex("watched", watched);
     put_hex("blind", verdicts[SLIPFIT_BLIND]);
     put_hex("free", verdicts[SLIPFIT_FREE]);
     put_hex("tight", verdicts[SLIPFIT_TIGHT]);
     put_hex("jam", verdicts[SLIPFIT_JAM]);
+    put_hex("rounds", rounds);
     put_hex("estimate", add(add(add(EMPTY, estimate.level), estimate.low), estimate.high));
     put_hex("failed", failed);
+}
+
+/* What an update writes to the end of its slot. */
+static void record(void) {
+    slipfit_record made;
+    uint64_t hash = slipfit_record_make(&made, 16, 7) == SLIPFIT_OK ? EMPTY : 0;
+    for (uint32_t i = 0; i < made.size; i++) {
+        hash = (hash ^ made.bytes[i]) * 0x100000001b3ull;
+    }
+    put_hex("record", hash);
 }
 
 static void refuse(void) {
     static uint64_t erased[sizeof table / 8 + 1];
     slipfit_lookup found;
+    slipfit_spare spare = {0, 0, 0};
     put_hex("null", (uint64_t)slipfit_predictor_init(0, &slipfit_this_scene, 0.0f));
     put_hex("misaligned", (uint64_t)slipfit_predictor_step((slipfit_predictor *)((char *)&predictor + 1)));
     put_hex("not made", (uint64_t)slipfit_table_look_up((const slipfit_table *)erased, 0.0f, 0.0f, &found));
@@ -103,12 +118,15 @@ static void refuse(void) {
     put_hex("position", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_AXIS_POSITION, SLIPFIT_SCENE_HASH));
     put_hex("closed then", (uint64_t)slipfit_table_look_up(&table, 0.0f, 0.0f, &found));
     put_hex("truncated", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE - 1, SLIPFIT_AXIS_TIME, SLIPFIT_SCENE_HASH));
+    put_hex("closed slots", (uint64_t)slipfit_slots_open(&table, &(slipfit_slots){0, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, 8}, SLIPFIT_AXIS_TIME, SLIPFIT_SCENE_HASH, &spare));
+    put_hex("spare", spare.slot + (uint64_t)spare.sequence + spare.room);
     put_hex("foreign", (uint64_t)slipfit_table_open(&table, (const uint8_t *)erased, 64, SLIPFIT_AXIS_TIME, SLIPFIT_SCENE_HASH));
 }
 
 int main(void) {
     predict();
     watch();
+    record();
     refuse();
     return 0;
 }

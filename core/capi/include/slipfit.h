@@ -1,12 +1,16 @@
 /* slipfit: the predictor, the flash table and the monitor. SI units. Generated from core/capi/src.
  *
  * Every object lives in memory of the caller's, which has to be written once (static memory is) before its first use;
- * there is no global state. An interrupt and a thread may each use objects of their own. */
+ * there is no global state. Calls that take an object by a const pointer only read it, so that an interrupt and a thread
+ * may make them at once; any other call needs the object to itself. Whatever is made of a table keeps what it needs of it. */
 
 #ifndef SLIPFIT_H
 #define SLIPFIT_H
 
 #include <stdint.h>
+
+// Implicit Euler with four Newton passes.
+#define SLIPFIT_SCHEME_IMPLICIT_EULER 1
 
 // Smoothed Coulomb friction.
 #define SLIPFIT_FRICTION_REGULARISED 1
@@ -20,6 +24,9 @@
 // The second axis of a table is position (m), from the motion's start on.
 #define SLIPFIT_AXIS_POSITION 3
 
+// The greatest programming word (bytes).
+#define SLIPFIT_WORD_MOST 32
+
 // Levels that a bank has room for.
 #define SLIPFIT_BANK_LEVELS_MOST 96
 
@@ -29,7 +36,7 @@
 // As the table has it.
 #define SLIPFIT_FREE 1
 
-// More force than the table's for this unit's level, or rising away from it.
+// More force in the direction of the command than the table's for this unit's level, or rising away from it.
 #define SLIPFIT_TIGHT 2
 
 // Standing still against the command, or at the limit of force.
@@ -45,6 +52,8 @@ typedef struct slipfit_predictor {
 
 // A scene: a slide over the production, SI units, as `slipfit kernel SCENE -o scene.h` writes it.
 typedef struct slipfit_scene {
+  // SLIPFIT_SCHEME_IMPLICIT_EULER.
+  uint32_t scheme;
   // Step (s).
   float step;
   // Mass (kg).
@@ -57,7 +66,7 @@ typedef struct slipfit_scene {
   float pins[4][3];
   // Means of the gaps (m): left, right, rail, wall of each pin; 1e6 for none.
   float gap_means[16];
-  // Standard deviations of the gaps (m).
+  // Standard deviations of the gaps (m), not negative.
   float gap_deviations[16];
   // Contact stiffness (N/m^e).
   float stiffness;
@@ -105,14 +114,6 @@ typedef struct slipfit_table3 {
   uint64_t words[48];
 } slipfit_table3;
 
-// Where an update goes.
-typedef struct slipfit_spare {
-  // The slot, 0 or 1.
-  uint32_t slot;
-  // The sequence number of its record: that number, then its complement, in the slot's last 8 bytes.
-  uint32_t sequence;
-} slipfit_spare;
-
 // What a table says about one point.
 typedef struct slipfit_lookup {
   // Force (N).
@@ -122,6 +123,42 @@ typedef struct slipfit_lookup {
   // 1 if the point lay outside the grid or was not a number, 0 if not.
   uint32_t clamped;
 } slipfit_lookup;
+
+// Two slots of flash, of which each can be erased on its own.
+typedef struct slipfit_slots {
+  // The first slot; null if it cannot be read: flash with an error-correcting code faults where a word was cut off. Such a
+  // slot holds no finished update.
+  const uint8_t *first;
+  // The second slot, likewise.
+  const uint8_t *second;
+  // Length of each (bytes).
+  uint32_t length;
+  // The programming word of the flash (bytes): 1, 2, 4, 8, 16 or 32.
+  uint32_t word;
+} slipfit_slots;
+
+// Where an update goes.
+typedef struct slipfit_spare {
+  // The slot, 0 or 1.
+  uint32_t slot;
+  // The sequence number of its record, for slipfit_record_make.
+  uint32_t sequence;
+  // How long the table may be (bytes).
+  uint32_t room;
+} slipfit_spare;
+
+// The end of a slot, which says that the table in it is the newest.
+typedef struct slipfit_record {
+  // How many bytes it has: whole programming words.
+  uint32_t size;
+  // The bytes, to be written to the last `size` bytes of the slot.
+  uint8_t bytes[32];
+} slipfit_record;
+
+// Memory of a cyclic check; opaque.
+typedef struct slipfit_scrubber {
+  uint64_t words[8];
+} slipfit_scrubber;
 
 // Memory of a monitor; opaque.
 typedef struct slipfit_monitor {
@@ -168,7 +205,7 @@ typedef struct slipfit_report {
   float expected;
   // By how much (N) the averaged force may exceed it.
   float band;
-  // By how much (N) it does.
+  // By how much (N) it does, in the direction of the command.
   float excess;
   // How fast (N/s) that rises.
   float rise;
@@ -211,11 +248,14 @@ typedef struct slipfit_estimate {
 // A parameter is not finite or out of bounds.
 #define SLIPFIT_PARAMETER 5
 
-// The scene asks for laws that the library was not built with.
+// The scene asks for laws or a scheme that the library was not built with.
 #define SLIPFIT_LAW 6
 
 // The motion left the finite range and was held where it was.
 #define SLIPFIT_NOT_FINITE 7
+
+// The scene's step is too large for the unit.
+#define SLIPFIT_STEP 8
 
 // The region ends before the table does.
 #define SLIPFIT_TABLE_TRUNCATED 16
@@ -244,6 +284,9 @@ typedef struct slipfit_estimate {
 // The table is over another quantity than asked for: over position instead of time, say.
 #define SLIPFIT_TABLE_KIND 24
 
+// The slot has no room for the record behind its table, or does not end between programming words.
+#define SLIPFIT_TABLE_SLOT 25
+
 // The table has more levels than a bank.
 #define SLIPFIT_BANK_LEVELS 32
 
@@ -254,11 +297,15 @@ typedef struct slipfit_estimate {
 extern "C" {
 #endif // __cplusplus
 
-// Makes a predictor in `*predictor` for a unit of tolerance level `n` of `*scene`, at rest at time 0.
+// Makes a predictor in `*predictor` for a unit of tolerance level `n` of `*scene`, at rest at time 0. It is tried over its
+// first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a
+// tenth of its greatest, or the motion cannot be moved.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*predictor` meanwhile.
-slipfit_status slipfit_predictor_init(struct slipfit_predictor *storage, const struct slipfit_scene *scene, float n);
+slipfit_status slipfit_predictor_init(struct slipfit_predictor *storage,
+                                      const struct slipfit_scene *scene,
+                                      float n);
 
 // Moves the predictor by one step; SLIPFIT_NOT_FINITE if the motion could not be moved and was held.
 //
@@ -293,19 +340,6 @@ slipfit_status slipfit_table3_open(struct slipfit_table3 *storage,
                                    uint32_t length,
                                    uint64_t scene_hash);
 
-// Opens the newer valid table, as slipfit_table_open has it, of two slots of `length` bytes each, and says where the next
-// update goes.
-//
-// # Safety
-// As for slipfit_table_open; nobody else uses `*spare` meanwhile.
-slipfit_status slipfit_slots_open(struct slipfit_table *storage,
-                                  const uint8_t *first,
-                                  const uint8_t *second,
-                                  uint32_t length,
-                                  uint32_t over,
-                                  uint64_t scene_hash,
-                                  struct slipfit_spare *spare);
-
 // Force and velocity of a unit of tolerance level `n` at `at`, the time (s) or position (m) since the motion's start.
 //
 // # Safety
@@ -325,18 +359,48 @@ slipfit_status slipfit_table3_look_up(const struct slipfit_table3 *storage,
                                       float speed,
                                       struct slipfit_lookup *lookup);
 
-// The cyclic check: looks at the next bytes, `most` at most. SLIPFIT_TABLE_CHECKSUM at the end of a round in which a
-// byte differed; call it again and again.
+// Opens the newer valid table, as slipfit_table_open has it, of two slots, and says where the next update goes: erase that
+// slot, write the table to its start, open it there, then write what slipfit_record_make gives to its end. A power cut at any
+// moment of it leaves a valid table.
+//
+// If it fails no table is open, and `*spare` is as it was. Without any valid table an update goes to slot 0 with number 0.
 //
 // # Safety
-// As for slipfit_table_open; the memory has been written before.
-slipfit_status slipfit_table_check(struct slipfit_table *storage, uint32_t most);
+// As for slipfit_table_open; nobody else uses `*spare` meanwhile.
+slipfit_status slipfit_slots_open(struct slipfit_table *storage,
+                                  const struct slipfit_slots *slots,
+                                  uint32_t over,
+                                  uint64_t scene_hash,
+                                  struct slipfit_spare *spare);
 
-// As slipfit_table_check, of a table over three axes.
+// The record of a sequence number for flash with programming words of `word` bytes.
 //
 // # Safety
-// As for slipfit_table_check.
-slipfit_status slipfit_table3_check(struct slipfit_table3 *storage, uint32_t most);
+// If `record` is neither null nor misaligned, memory for it is there, and nobody else uses it meanwhile.
+slipfit_status slipfit_record_make(struct slipfit_record *record, uint32_t word, uint32_t sequence);
+
+// Makes a cyclic check of an open table in `*storage`. The table is only read, at any time and by anybody.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; the table has been written before; nobody
+// else uses `*storage` meanwhile.
+slipfit_status slipfit_scrubber_init(struct slipfit_scrubber *storage,
+                                     const struct slipfit_table *table);
+
+// As slipfit_scrubber_init, of a table over three axes.
+//
+// # Safety
+// As for slipfit_scrubber_init.
+slipfit_status slipfit_scrubber_init3(struct slipfit_scrubber *storage, const struct slipfit_table3 *table);
+
+// Looks at the next bytes of the table, `most` at most but at least one, and sets `*rounds` one up at the end of a round,
+// whatever was found in it. SLIPFIT_TABLE_CHECKSUM at the end of a round in which a byte differed; call it again and again.
+//
+// # Safety
+// As for slipfit_scrubber_init; the memory has been written before; nobody else uses `*rounds` meanwhile.
+slipfit_status slipfit_scrubber_check(struct slipfit_scrubber *storage,
+                                      uint32_t most,
+                                      uint32_t *rounds);
 
 // Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table over time. A motion starts with a fresh one.
 //
@@ -356,7 +420,7 @@ slipfit_status slipfit_monitor_step(struct slipfit_monitor *storage,
                                     const struct slipfit_sample *sample,
                                     struct slipfit_report *report);
 
-// Makes an empty bank in `*storage` for an open table over time.
+// Makes an empty bank in `*storage` for an open table over time, which it goes by until it is made anew.
 //
 // # Safety
 // As for slipfit_monitor_init.
@@ -366,15 +430,13 @@ slipfit_status slipfit_bank_init(struct slipfit_bank *storage, const struct slip
 //
 // # Safety
 // As for slipfit_monitor_init; the bank has been written before.
-slipfit_status slipfit_bank_add(struct slipfit_bank *storage, const struct slipfit_table *table, float t, float force);
+slipfit_status slipfit_bank_add(struct slipfit_bank *storage, float t, float force);
 
 // The tolerance level that fits best.
 //
 // # Safety
 // As for slipfit_bank_add; nobody else uses `*estimate` meanwhile.
-slipfit_status slipfit_bank_estimate(const struct slipfit_bank *storage,
-                                     const struct slipfit_table *table,
-                                     struct slipfit_estimate *estimate);
+slipfit_status slipfit_bank_estimate(const struct slipfit_bank *storage, struct slipfit_estimate *estimate);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,7 +1,7 @@
 //! The predictor, the flash table and the monitor for C. The header is `include/slipfit.h`, generated from this crate.
 //!
-//! Every object lives in memory of the caller's: there is no global state, so that an interrupt and a thread may each use
-//! objects of their own at any time. An object must not be used from both at once. Nothing allocates, blocks or panics;
+//! Every object lives in memory of the caller's: there is no global state. Calls that take an object by a const pointer only
+//! read it, so that an interrupt and a thread may make them at once; any other call needs the object to itself. Nothing allocates, blocks or panics;
 //! every function checks its pointers, and that an object was made before it is used.
 #![no_std]
 #![allow(unsafe_code, reason = "the one crate that speaks C")]
@@ -20,11 +20,15 @@ pub extern "C" fn slipfit_panic(divisor: u32) -> u32 {
 mod border;
 mod monitor;
 mod predictor;
+mod scrubber;
+mod slots;
 mod status;
 mod table;
 
 pub use monitor::*;
 pub use predictor::*;
+pub use scrubber::*;
+pub use slots::*;
 pub use status::*;
 pub use table::*;
 

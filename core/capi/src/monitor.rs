@@ -18,7 +18,7 @@ pub const SLIPFIT_BANK_LEVELS_MOST: u32 = 96;
 pub const SLIPFIT_BLIND: u32 = 0;
 /// As the table has it.
 pub const SLIPFIT_FREE: u32 = 1;
-/// More force than the table's for this unit's level, or rising away from it.
+/// More force in the direction of the command than the table's for this unit's level, or rising away from it.
 pub const SLIPFIT_TIGHT: u32 = 2;
 /// Standing still against the command, or at the limit of force.
 pub const SLIPFIT_JAM: u32 = 3;
@@ -69,7 +69,7 @@ pub struct slipfit_report {
     pub expected: f32,
     /// By how much (N) the averaged force may exceed it.
     pub band: f32,
-    /// By how much (N) it does.
+    /// By how much (N) it does, in the direction of the command.
     pub excess: f32,
     /// How fast (N/s) that rises.
     pub rise: f32,
@@ -119,7 +119,7 @@ unsafe impl Storage for slipfit_monitor {
 
 // SAFETY: plain words.
 unsafe impl Storage for slipfit_bank {
-    type Object = LevelBank<{ SLIPFIT_BANK_LEVELS_MOST as usize }>;
+    type Object = LevelBank<'static, AnyNodes<'static>, { SLIPFIT_BANK_LEVELS_MOST as usize }>;
     const MARK: u32 = 0x534c_4231;
 }
 
@@ -186,14 +186,14 @@ pub unsafe extern "C" fn slipfit_monitor_step(
     })
 }
 
-/// Makes an empty bank in `*storage` for an open table over time.
+/// Makes an empty bank in `*storage` for an open table over time, which it goes by until it is made anew.
 ///
 /// # Safety
 /// As for slipfit_monitor_init.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn slipfit_bank_init(storage: *mut slipfit_bank, table: *const slipfit_table) -> slipfit_status {
     // SAFETY: the caller's promise.
-    status(|| unsafe { make(storage, || Ok(LevelBank::new(&object(table)?.table)?)) })
+    status(|| unsafe { make(storage, || Ok(LevelBank::new(object(table)?.table)?)) })
 }
 
 /// Adds the force (N) measured at the time `t` (s) of a motion.
@@ -201,16 +201,10 @@ pub unsafe extern "C" fn slipfit_bank_init(storage: *mut slipfit_bank, table: *c
 /// # Safety
 /// As for slipfit_monitor_init; the bank has been written before.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn slipfit_bank_add(
-    storage: *mut slipfit_bank,
-    table: *const slipfit_table,
-    t: f32,
-    force: f32,
-) -> slipfit_status {
+pub unsafe extern "C" fn slipfit_bank_add(storage: *mut slipfit_bank, t: f32, force: f32) -> slipfit_status {
     status(|| {
         // SAFETY: the caller's promise.
-        let (bank, opened) = unsafe { (object_mut(storage)?, object(table)?) };
-        bank.add(&opened.table, t, force);
+        unsafe { object_mut(storage)? }.add(t, force);
         Ok(())
     })
 }
@@ -222,13 +216,12 @@ pub unsafe extern "C" fn slipfit_bank_add(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn slipfit_bank_estimate(
     storage: *const slipfit_bank,
-    table: *const slipfit_table,
     estimate: *mut slipfit_estimate,
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
     status(|| unsafe {
         output(estimate, || {
-            let found = object(storage)?.estimate(&object(table)?.table).ok_or(Refusal(SLIPFIT_BANK_SAMPLES))?;
+            let found = object(storage)?.estimate().ok_or(Refusal(SLIPFIT_BANK_SAMPLES))?;
             let [low, high] = found.interval;
             let slipfit_core::monitor::Estimate { level, deviation, residual, .. } = found;
             Ok(slipfit_estimate { level, deviation, low, high, residual })

@@ -12,7 +12,7 @@ use slipfit_core::{
 
 use crate::{
     border::{Storage, input, make, object, object_mut, output},
-    status::{Refusal, SLIPFIT_LAW, SLIPFIT_NOT_FINITE, SLIPFIT_OK, slipfit_status, status},
+    status::{Refusal, SLIPFIT_LAW, SLIPFIT_NOT_FINITE, SLIPFIT_STEP, slipfit_status, status},
 };
 
 #[cfg(feature = "exact")]
@@ -26,6 +26,8 @@ type Unit = Slide<f32, ThreeHalves<f32>, Friction>;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct slipfit_scene {
+    /// SLIPFIT_SCHEME_IMPLICIT_EULER.
+    pub scheme: u32,
     /// Step (s).
     pub step: f32,
     /// Mass (kg).
@@ -38,7 +40,7 @@ pub struct slipfit_scene {
     pub pins: [[f32; 3]; 4],
     /// Means of the gaps (m): left, right, rail, wall of each pin; 1e6 for none.
     pub gap_means: [f32; 16],
-    /// Standard deviations of the gaps (m).
+    /// Standard deviations of the gaps (m), not negative.
     pub gap_deviations: [f32; 16],
     /// Contact stiffness (N/m^e).
     pub stiffness: f32,
@@ -63,6 +65,9 @@ pub struct slipfit_scene {
     /// Where the drive pushes, from the centre of mass (m).
     pub drive_point: [f32; 3],
 }
+
+/// Implicit Euler with four Newton passes.
+pub const SLIPFIT_SCHEME_IMPLICIT_EULER: u32 = 1;
 
 /// Smoothed Coulomb friction.
 pub const SLIPFIT_FRICTION_REGULARISED: u32 = 1;
@@ -144,19 +149,61 @@ fn friction(data: FrictionData<f32>) -> Result<Friction, Refusal> {
     }
 }
 
+/// Periods of the scene's step over which a predictor is tried before it is made: as long as the release of stored compression
+/// takes in steps of 1 ms.
+const TRIAL: u32 = 50;
+
+/// By how much of the greatest force half the step may change the drive's force in the trial.
+const TRIAL_ERROR: f32 = 0.1;
+
+impl Predictor {
+    fn new(slide: Unit, step: f32) -> Result<Self, Refusal> {
+        let kernel = Kernel::new(slide, step)?;
+        let report = Report { residual: 0.0, error: 0.0 };
+        Ok(Self { state: kernel.at_rest(Pose::nominal()), kernel, report })
+    }
+
+    /// One step; whether the motion could be moved. One copy in the code serves the trial too.
+    #[inline(never)]
+    fn advance(&mut self) -> bool {
+        self.report = self.kernel.step(&mut self.state);
+        self.report.residual.is_finite()
+    }
+
+    /// Force of the drive (N).
+    fn force(&self) -> f32 {
+        self.kernel.mechanism().drive().force(self.kernel.time(self.state.steps), self.state.motion.velocity.z)
+    }
+
+    /// Whether the step follows the first instants, in which a tight unit lets go of what it is compressed by: as well as half
+    /// the step.
+    fn holds(mut self, mut fine: Self, greatest: f32) -> bool {
+        (0..TRIAL).all(|_| {
+            let moved = self.advance() & fine.advance() & fine.advance();
+            moved && (self.force() - fine.force()).abs() <= TRIAL_ERROR * greatest
+        })
+    }
+}
+
 fn predictor(scene: &slipfit_scene, n: f32) -> Result<Predictor, Refusal> {
-    let unit = scene.data()?.at(n);
-    if unit.contact.normal_type() != NormalType::ThreeHalves {
+    let unit = scene.data()?.at(n)?;
+    if scene.scheme != SLIPFIT_SCHEME_IMPLICIT_EULER || unit.contact.normal_type() != NormalType::ThreeHalves {
         return Err(Refusal(SLIPFIT_LAW));
     }
     let ContactData { stiffness, damping, depth, .. } = unit.contact;
     let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
     let slide = Slide::new(unit.body, contact, friction(unit.friction)?, unit.drive)?;
-    let kernel = Kernel::new(slide, scene.step)?;
-    Ok(Predictor { state: kernel.at_rest(Pose::nominal()), kernel, report: Report { residual: 0.0, error: 0.0 } })
+    let made = Predictor::new(slide, scene.step)?;
+    let fine = Predictor::new(slide, 0.5 * scene.step)?;
+    // What the drive can push with, and the weight.
+    let [x, y, z] = scene.gravity.map(|part| part * scene.mass);
+    let greatest = (scene.drive_gain * scene.drive_speed).abs() + x.abs() + y.abs() + z.abs();
+    if made.holds(fine, greatest) { Ok(made) } else { Err(Refusal(SLIPFIT_STEP)) }
 }
 
-/// Makes a predictor in `*predictor` for a unit of tolerance level `n` of `*scene`, at rest at time 0.
+/// Makes a predictor in `*predictor` for a unit of tolerance level `n` of `*scene`, at rest at time 0. It is tried over its
+/// first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a
+/// tenth of its greatest, or the motion cannot be moved.
 ///
 /// # Safety
 /// Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*predictor` meanwhile.
@@ -176,17 +223,11 @@ pub unsafe extern "C" fn slipfit_predictor_init(
 /// As for slipfit_predictor_init; the memory has been written before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn slipfit_predictor_step(storage: *mut slipfit_predictor) -> slipfit_status {
-    let mut outcome = SLIPFIT_OK;
-    let done = status(|| {
+    status(|| {
         // SAFETY: the caller's promise.
-        let predictor = unsafe { object_mut(storage)? };
-        predictor.report = predictor.kernel.step(&mut predictor.state);
-        if !predictor.report.residual.is_finite() {
-            outcome = SLIPFIT_NOT_FINITE;
-        }
-        Ok(())
-    });
-    if done == SLIPFIT_OK { outcome } else { done }
+        let moved = unsafe { object_mut(storage)? }.advance();
+        if moved { Ok(()) } else { Err(Refusal(SLIPFIT_NOT_FINITE)) }
+    })
 }
 
 /// What the predictor says now.
@@ -201,10 +242,10 @@ pub unsafe extern "C" fn slipfit_predictor_read(
     // SAFETY: the caller's promise.
     status(|| unsafe {
         output(prediction, || {
-            let Predictor { kernel, state, report } = object(storage)?;
+            let predictor = object(storage)?;
+            let Predictor { kernel, state, report } = predictor;
             let (time, velocity) = (kernel.time(state.steps), state.motion.velocity.z);
-            let force = kernel.mechanism().drive().force(time, velocity);
-            Ok(slipfit_prediction { time, force, velocity, residual: report.residual })
+            Ok(slipfit_prediction { time, force: predictor.force(), velocity, residual: report.residual })
         })
     })
 }

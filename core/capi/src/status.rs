@@ -17,10 +17,12 @@ pub const SLIPFIT_LENGTH: slipfit_status = 3;
 pub const SLIPFIT_NOT_MADE: slipfit_status = 4;
 /// A parameter is not finite or out of bounds.
 pub const SLIPFIT_PARAMETER: slipfit_status = 5;
-/// The scene asks for laws that the library was not built with.
+/// The scene asks for laws or a scheme that the library was not built with.
 pub const SLIPFIT_LAW: slipfit_status = 6;
 /// The motion left the finite range and was held where it was.
 pub const SLIPFIT_NOT_FINITE: slipfit_status = 7;
+/// The scene's step is too large for the unit.
+pub const SLIPFIT_STEP: slipfit_status = 8;
 /// The region ends before the table does.
 pub const SLIPFIT_TABLE_TRUNCATED: slipfit_status = 16;
 /// No table starts there.
@@ -39,6 +41,8 @@ pub const SLIPFIT_TABLE_AXES: slipfit_status = 22;
 pub const SLIPFIT_TABLE_SCENE: slipfit_status = 23;
 /// The table is over another quantity than asked for: over position instead of time, say.
 pub const SLIPFIT_TABLE_KIND: slipfit_status = 24;
+/// The slot has no room for the record behind its table, or does not end between programming words.
+pub const SLIPFIT_TABLE_SLOT: slipfit_status = 25;
 /// The table has more levels than a bank.
 pub const SLIPFIT_BANK_LEVELS: slipfit_status = 32;
 /// Too few samples for an estimate.
@@ -65,6 +69,9 @@ impl From<TableError> for Refusal {
             TableError::Axes { .. } => SLIPFIT_TABLE_AXES,
             TableError::Kind { .. } => SLIPFIT_TABLE_KIND,
             TableError::Scene { .. } => SLIPFIT_TABLE_SCENE,
+            TableError::Slot { .. } => SLIPFIT_TABLE_SLOT,
+            // Only a slot given as null cannot be read, and the other one is told of first.
+            TableError::Unreadable => SLIPFIT_NULL,
         })
     }
 }

@@ -1,10 +1,10 @@
 //! The flash table over tolerance level and time or position, and the one over position and commanded speed.
 
-use slipfit_core::table::{AxisKind, Patrol, Slots, Table};
+use slipfit_core::table::{AxisKind, Table};
 
 use crate::{
-    border::{Storage, bytes, make, object, object_mut, output},
-    status::{Refusal, SLIPFIT_PARAMETER, SLIPFIT_TABLE_CHECKSUM, slipfit_status, status},
+    border::{Storage, bytes, make, object, output},
+    status::{Refusal, SLIPFIT_PARAMETER, slipfit_status, status},
 };
 
 /// The second axis of a table is time (s).
@@ -38,21 +38,10 @@ pub struct slipfit_lookup {
     pub clamped: u32,
 }
 
-/// Where an update goes.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct slipfit_spare {
-    /// The slot, 0 or 1.
-    pub slot: u32,
-    /// The sequence number of its record: that number, then its complement, in the slot's last 8 bytes.
-    pub sequence: u32,
-}
-
 pub(crate) struct Opened<const N: usize> {
     pub(crate) table: Table<'static, N>,
-    region: &'static [u8],
-    /// Bytes of the table that the cyclic check has seen.
-    patrol: Patrol,
+    /// Where it lies.
+    pub(crate) region: &'static [u8],
 }
 
 // SAFETY: plain words.
@@ -67,24 +56,15 @@ unsafe impl Storage for slipfit_table3 {
     const MARK: u32 = 0x534c_5433;
 }
 
-fn opened<const N: usize>(table: Table<'static, N>, region: &'static [u8]) -> Opened<N> {
-    Opened { patrol: Patrol::new(&table), table, region }
-}
-
 impl<const N: usize> Opened<N> {
     fn look_up(&self, at: [f32; N]) -> slipfit_lookup {
         let found = self.table.lookup(at);
         slipfit_lookup { force: found.force, velocity: found.velocity, clamped: found.clamped.into() }
     }
-
-    fn check(&mut self, most: u32) -> Result<(), Refusal> {
-        let most = usize::try_from(most).unwrap_or(usize::MAX);
-        self.patrol.check(self.region, most).map(drop).map_err(|_| Refusal(SLIPFIT_TABLE_CHECKSUM))
-    }
 }
 
 /// The axes of a table whose second one is `over`.
-fn axes(over: u32) -> Result<[AxisKind; 2], Refusal> {
+pub(crate) fn axes(over: u32) -> Result<[AxisKind; 2], Refusal> {
     match over {
         SLIPFIT_AXIS_TIME => Ok([AxisKind::Level, AxisKind::Time]),
         SLIPFIT_AXIS_POSITION => Ok([AxisKind::Level, AxisKind::Position]),
@@ -110,7 +90,7 @@ pub unsafe extern "C" fn slipfit_table_open(
     status(|| unsafe {
         make(storage, || {
             let region = bytes(region, length)?;
-            Ok(opened(Table::open(region)?.expect_axes(axes(over)?)?.expect_scene(scene_hash)?, region))
+            Ok(Opened { table: Table::open(region)?.expect_axes(axes(over)?)?.expect_scene(scene_hash)?, region })
         })
     })
 }
@@ -131,35 +111,8 @@ pub unsafe extern "C" fn slipfit_table3_open(
         make(storage, || {
             let region = bytes(region, length)?;
             let axes = [AxisKind::Level, AxisKind::Position, AxisKind::Velocity];
-            Ok(opened(Table::open(region)?.expect_axes(axes)?.expect_scene(scene_hash)?, region))
+            Ok(Opened { table: Table::open(region)?.expect_axes(axes)?.expect_scene(scene_hash)?, region })
         })
-    })
-}
-
-/// Opens the newer valid table, as slipfit_table_open has it, of two slots of `length` bytes each, and says where the next
-/// update goes.
-///
-/// # Safety
-/// As for slipfit_table_open; nobody else uses `*spare` meanwhile.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn slipfit_slots_open(
-    storage: *mut slipfit_table,
-    first: *const u8,
-    second: *const u8,
-    length: u32,
-    over: u32,
-    scene_hash: u64,
-    spare: *mut slipfit_spare,
-) -> slipfit_status {
-    // SAFETY: the caller's promise.
-    status(|| unsafe {
-        let regions = [bytes(first, length)?, bytes(second, length)?];
-        let slots = Slots::<2>::open(regions, axes(over)?, scene_hash);
-        let (slot, sequence) = slots.spare();
-        output(spare, || Ok(slipfit_spare { slot: slot as u32, sequence }))?;
-        let [first, second] = regions;
-        // The newest table is never in the spare slot.
-        make(storage, || Ok(opened(*slots.newest()?, if slot == 0 { second } else { first })))
     })
 }
 
@@ -192,25 +145,4 @@ pub unsafe extern "C" fn slipfit_table3_look_up(
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
     status(|| unsafe { output(lookup, || Ok(object(storage)?.look_up([n, z, speed]))) })
-}
-
-/// The cyclic check: looks at the next bytes, `most` at most. SLIPFIT_TABLE_CHECKSUM at the end of a round in which a
-/// byte differed; call it again and again.
-///
-/// # Safety
-/// As for slipfit_table_open; the memory has been written before.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn slipfit_table_check(storage: *mut slipfit_table, most: u32) -> slipfit_status {
-    // SAFETY: the caller's promise.
-    status(|| unsafe { object_mut(storage)?.check(most) })
-}
-
-/// As slipfit_table_check, of a table over three axes.
-///
-/// # Safety
-/// As for slipfit_table_check.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn slipfit_table3_check(storage: *mut slipfit_table3, most: u32) -> slipfit_status {
-    // SAFETY: the caller's promise.
-    status(|| unsafe { object_mut(storage)?.check(most) })
 }

@@ -51,7 +51,7 @@ fn stays_finite(scene: &slipfit_scene, n: f32) -> Result<(), TestCaseError> {
     // SAFETY: every pointer is to a local of its type.
     unsafe {
         let made = slipfit_predictor_init(&mut predictor, scene, n);
-        prop_assert!([SLIPFIT_OK, SLIPFIT_PARAMETER, SLIPFIT_LAW].contains(&made), "{made}");
+        prop_assert!([SLIPFIT_OK, SLIPFIT_PARAMETER, SLIPFIT_LAW, SLIPFIT_STEP].contains(&made), "{made}");
         for _ in 0..20 {
             let stepped = slipfit_predictor_step(&mut predictor);
             if made == SLIPFIT_OK {
@@ -79,6 +79,28 @@ fn special_numbers_in_every_place_of_a_scene() {
     for n in SPECIAL {
         stays_finite(&scene(), n).unwrap();
     }
+}
+
+#[test]
+fn what_cannot_be_stepped_is_refused() {
+    let mut predictor = zeroed::<slipfit_predictor>();
+    // SAFETY: every pointer is to a local of its type.
+    let mut made = |scene: &slipfit_scene, n| unsafe { slipfit_predictor_init(&mut predictor, scene, n) };
+    for n in [-3.0, 0.0, 2.5, 5.0, 8.0] {
+        assert_eq!(made(&scene(), n), SLIPFIT_OK, "{n}");
+    }
+    // What such a unit lets go of, compressed by 10 mm and more, steps of 1 ms do not follow; steps of 0.1 ms do for a while.
+    for n in [500.0, 2e3, 1e4] {
+        assert_eq!(made(&scene(), n), SLIPFIT_STEP, "{n}");
+    }
+    assert_eq!(made(&slipfit_scene { step: 1e-4, ..scene() }, 500.0), SLIPFIT_OK);
+    assert_eq!(made(&scene(), 1e6), SLIPFIT_PARAMETER);
+    for scheme in [0, 2, u32::MAX] {
+        assert_eq!(made(&slipfit_scene { scheme, ..scene() }, 2.5), SLIPFIT_LAW);
+    }
+    let mut negative = scene();
+    negative.gap_deviations[7] = -1e-9;
+    assert_eq!(made(&negative, 2.5), SLIPFIT_PARAMETER);
 }
 
 /// A table in f32 whose values count up: along each axis its nodes and their distance, from 0 on.
@@ -111,12 +133,18 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
+/// Two slots, as long as the first.
+fn slots(first: &'static [u8], second: &'static [u8], word: u32) -> slipfit_slots {
+    slipfit_slots { first: first.as_ptr(), second: second.as_ptr(), length: first.len() as u32, word }
+}
+
 /// Everything that takes a table, with every number.
 fn uses_of_a_table(bytes: &'static [u8], numbers: &[f32]) -> Result<slipfit_status, TestCaseError> {
     let mut table = zeroed::<slipfit_table>();
     let (mut monitor, mut bank) = (zeroed::<slipfit_monitor>(), zeroed::<slipfit_bank>());
     let (mut found, mut report, mut estimate) =
         (zeroed::<slipfit_lookup>(), zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
+    let (mut scrubber, mut rounds) = (zeroed::<slipfit_scrubber>(), 0);
     let at = |i: usize| numbers[i % numbers.len()];
     // SAFETY: every pointer is to a local of its type, and the bytes stay.
     unsafe {
@@ -125,7 +153,8 @@ fn uses_of_a_table(bytes: &'static [u8], numbers: &[f32]) -> Result<slipfit_stat
         for (i, n) in numbers.iter().enumerate() {
             prop_assert_eq!(slipfit_table_look_up(&table, *n, at(i + 1), &mut found), expected);
             prop_assert!(found.force.is_finite() && found.velocity.is_finite() && found.clamped <= 1, "{found:?}");
-            let _ = slipfit_table_check(&mut table, n.to_bits());
+            let _ = slipfit_scrubber_init(&mut scrubber, &table);
+            let _ = slipfit_scrubber_check(&mut scrubber, n.to_bits(), &mut rounds);
             let limits = slipfit_limits {
                 period: at(i + 1),
                 blind: at(i + 2),
@@ -143,9 +172,9 @@ fn uses_of_a_table(bytes: &'static [u8], numbers: &[f32]) -> Result<slipfit_stat
             }
             let _ = slipfit_bank_init(&mut bank, &table);
             for k in 0..40 {
-                let _ = slipfit_bank_add(&mut bank, &table, at(i + k), at(i * k));
+                let _ = slipfit_bank_add(&mut bank, at(i + k), at(i * k));
             }
-            if slipfit_bank_estimate(&bank, &table, &mut estimate) == SLIPFIT_OK {
+            if slipfit_bank_estimate(&bank, &mut estimate) == SLIPFIT_OK {
                 let slipfit_estimate { low, level, high, .. } = estimate;
                 prop_assert!(low <= level && level <= high && low.is_finite() && high.is_finite(), "{estimate:?}");
             }
@@ -174,7 +203,9 @@ fn every_short_length_is_refused() {
 #[test]
 fn a_table_over_position_is_no_table_over_time() {
     assert_eq!([SLIPFIT_AXIS_TIME, SLIPFIT_AXIS_POSITION], [AxisKind::Time as u32, AxisKind::Position as u32]);
-    let bytes: &'static [u8] = table_over(&[(AxisKind::Level, 3, 1.0), (AxisKind::Position, 4, 0.1)]).leak();
+    let mut bytes = table_over(&[(AxisKind::Level, 3, 1.0), (AxisKind::Position, 4, 0.1)]);
+    bytes.resize(bytes.len() + 8, 0xff);
+    let bytes: &'static [u8] = bytes.leak();
     let length = bytes.len() as u32;
     let (mut table, mut found, mut spare) =
         (zeroed::<slipfit_table>(), zeroed::<slipfit_lookup>(), zeroed::<slipfit_spare>());
@@ -183,9 +214,9 @@ fn a_table_over_position_is_no_table_over_time() {
     // SAFETY: every pointer is to a local of its type, and the bytes stay.
     unsafe {
         let mut open = |over| {
-            let slots = slipfit_slots_open(&mut table, bytes.as_ptr(), bytes.as_ptr(), length, over, 7, &mut spare);
-            assert_eq!(slipfit_table_open(&mut table, bytes.as_ptr(), length, over, 7), slots, "{over}");
-            slots
+            let opened = slipfit_table_open(&mut table, bytes.as_ptr(), length, over, 7);
+            assert_eq!(slipfit_slots_open(&mut table, &slots(bytes, bytes, 1), over, 7, &mut spare), opened, "{over}");
+            opened
         };
         assert_eq!(open(SLIPFIT_AXIS_TIME), SLIPFIT_TABLE_KIND);
         for none in [0, 1, 4, 5, u32::MAX] {
@@ -206,13 +237,13 @@ fn a_table_over_three_axes() {
     let bytes: &'static [u8] = table_over(&axes).leak();
     let length = bytes.len() as u32;
     let (mut plane, mut table) = (zeroed::<slipfit_table>(), zeroed::<slipfit_table3>());
-    let mut found = zeroed::<slipfit_lookup>();
+    let (mut found, mut scrubber, mut rounds) = (zeroed::<slipfit_lookup>(), zeroed::<slipfit_scrubber>(), 0);
     // SAFETY: every pointer is to a local of its type, and the bytes stay.
     unsafe {
         let refused = slipfit_table_open(&mut plane, bytes.as_ptr(), length, SLIPFIT_AXIS_POSITION, 7);
         assert_eq!(refused, SLIPFIT_TABLE_AXES);
         assert_eq!(slipfit_table3_look_up(&table, 1.0, 0.1, 0.05, &mut found), SLIPFIT_NOT_MADE);
-        assert_eq!(slipfit_table3_check(&mut table, 1), SLIPFIT_NOT_MADE);
+        assert_eq!(slipfit_scrubber_init3(&mut scrubber, &table), SLIPFIT_NOT_MADE);
         assert_eq!(slipfit_table3_open(&mut table, bytes.as_ptr(), length, 8), SLIPFIT_TABLE_SCENE);
         assert_eq!(slipfit_table3_open(&mut table, ptr::null(), length, 7), SLIPFIT_NULL);
         assert_eq!(slipfit_table3_open(&mut table, bytes.as_ptr(), length - 1, 7), SLIPFIT_TABLE_TRUNCATED);
@@ -223,9 +254,11 @@ fn a_table_over_three_axes() {
             assert_eq!(slipfit_table3_look_up(&table, special, special, special, &mut found), SLIPFIT_OK);
             assert!(found.force.is_finite() && found.velocity.is_finite());
         }
+        assert_eq!(slipfit_scrubber_init3(&mut scrubber, &table), SLIPFIT_OK);
         for _ in 0..4 {
-            assert_eq!(slipfit_table3_check(&mut table, length / 2), SLIPFIT_OK);
+            assert_eq!(slipfit_scrubber_check(&mut scrubber, length / 2, &mut rounds), SLIPFIT_OK);
         }
+        assert_eq!(rounds, 2);
         let other = table_over(&[(AxisKind::Level, 3, 1.0), (AxisKind::Time, 4, 0.1), (AxisKind::Velocity, 2, 0.05)]);
         let other: &'static [u8] = other.leak();
         assert_eq!(slipfit_table3_open(&mut table, other.as_ptr(), length, 7), SLIPFIT_TABLE_KIND);
@@ -242,11 +275,16 @@ fn null_and_misaligned_pointers_are_refused() {
     let (mut said, mut found, mut spare) =
         (zeroed::<slipfit_prediction>(), zeroed::<slipfit_lookup>(), zeroed::<slipfit_spare>());
     let (mut report, mut estimate) = (zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
+    let (mut scrubber, mut rounds, record) = (zeroed::<slipfit_scrubber>(), 0, zeroed::<slipfit_record>());
+    let both = slots(bytes, bytes, 8);
+    let neither = slipfit_slots { first: ptr::null(), second: ptr::null(), ..both };
+    let mut other_bank = zeroed::<slipfit_bank>();
     // SAFETY: what is neither null nor misaligned points at locals.
     unsafe {
         assert_eq!(slipfit_predictor_init(&mut predictor, &scene, 2.5), SLIPFIT_OK);
         assert_eq!(slipfit_table_open(&mut table, bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 7), SLIPFIT_OK);
         assert_eq!(slipfit_bank_init(&mut bank, &table), SLIPFIT_OK);
+        assert_eq!(slipfit_scrubber_init(&mut scrubber, &table), SLIPFIT_OK);
         // Each call with one bad pointer.
         for (code, shift) in [(SLIPFIT_NULL, None), (SLIPFIT_MISALIGNED, Some(1))] {
             let bad = |pointer: *mut u8| shift.map_or(ptr::null_mut(), |by| pointer.wrapping_add(by));
@@ -262,27 +300,15 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_predictor_read(bad!(predictor), &mut said),
                 slipfit_predictor_read(&predictor, bad!(said)),
                 slipfit_table_open(bad!(table), bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 7),
-                slipfit_slots_open(
-                    bad!(table),
-                    bytes.as_ptr(),
-                    bytes.as_ptr(),
-                    length,
-                    SLIPFIT_AXIS_TIME,
-                    7,
-                    &mut spare,
-                ),
-                slipfit_slots_open(
-                    &mut table,
-                    bytes.as_ptr(),
-                    bytes.as_ptr(),
-                    length,
-                    SLIPFIT_AXIS_TIME,
-                    7,
-                    bad!(spare),
-                ),
+                slipfit_slots_open(bad!(table), &both, SLIPFIT_AXIS_TIME, 7, &mut spare),
+                slipfit_slots_open(&mut table, bad!(both), SLIPFIT_AXIS_TIME, 7, &mut spare),
+                slipfit_slots_open(&mut table, &both, SLIPFIT_AXIS_TIME, 7, bad!(spare)),
+                slipfit_record_make(bad!(record), 8, 0),
                 slipfit_table_look_up(bad!(table), 0.0, 0.0, &mut found),
                 slipfit_table_look_up(&table, 0.0, 0.0, bad!(found)),
-                slipfit_table_check(bad!(table), 1),
+                slipfit_scrubber_init(bad!(scrubber), &table),
+                slipfit_scrubber_init(&mut scrubber, bad!(table)),
+                slipfit_scrubber_check(bad!(scrubber), 1, &mut rounds),
                 slipfit_monitor_init(bad!(monitor), &table, 1.0, &limits),
                 slipfit_monitor_init(&mut monitor, bad!(table), 1.0, bad!(limits)),
                 slipfit_monitor_init(&mut monitor, &table, 1.0, bad!(limits)),
@@ -290,10 +316,10 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_monitor_step(&mut monitor, bad!(sample), &mut report),
                 slipfit_monitor_step(&mut monitor, &sample, bad!(report)),
                 slipfit_bank_init(bad!(bank), &table),
-                slipfit_bank_init(&mut bank, bad!(table)),
-                slipfit_bank_add(bad!(bank), &table, 0.0, 0.0),
-                slipfit_bank_estimate(bad!(bank), &table, &mut estimate),
-                slipfit_bank_estimate(&bank, &table, bad!(estimate)),
+                slipfit_bank_init(&mut other_bank, bad!(table)),
+                slipfit_bank_add(bad!(bank), 0.0, 0.0),
+                slipfit_bank_estimate(bad!(bank), &mut estimate),
+                slipfit_bank_estimate(&bank, bad!(estimate)),
             ];
             for (i, answer) in answers.into_iter().enumerate() {
                 assert_eq!(answer, code, "call {i}");
@@ -301,11 +327,129 @@ fn null_and_misaligned_pointers_are_refused() {
         }
         for answer in [
             slipfit_table_open(&mut table, ptr::null(), length, SLIPFIT_AXIS_TIME, 7),
-            slipfit_slots_open(&mut table, ptr::null(), bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 7, &mut spare),
-            slipfit_slots_open(&mut table, bytes.as_ptr(), ptr::null(), length, SLIPFIT_AXIS_TIME, 7, &mut spare),
+            slipfit_slots_open(&mut table, &neither, SLIPFIT_AXIS_TIME, 7, &mut spare),
         ] {
             assert_eq!(answer, SLIPFIT_NULL);
         }
+    }
+}
+
+/// An update as C does it, on flash of every programming word.
+#[test]
+fn an_update_of_two_slots() {
+    let axes = [(AxisKind::Level, 3, 1.0), (AxisKind::Time, 4, 0.1)];
+    for word in [1, 2, 4, 8, 16, 32] {
+        let old = table_over(&axes);
+        let length = old.len().next_multiple_of(32) + 64;
+        let (mut first, mut second) = (vec![0xff; length], vec![0xff; length]);
+        first[..old.len()].copy_from_slice(&old);
+        let (mut table, mut spare) = (zeroed::<slipfit_table>(), zeroed::<slipfit_spare>());
+        let (mut record, mut found) = (zeroed::<slipfit_record>(), zeroed::<slipfit_lookup>());
+        // SAFETY: every pointer is to a local of its type, and the bytes outlive the table.
+        unsafe {
+            let mut open = |first: &[u8], second: &[u8]| {
+                let slots =
+                    slipfit_slots { first: first.as_ptr(), second: second.as_ptr(), length: length as u32, word };
+                assert_eq!(slipfit_slots_open(&mut table, &slots, SLIPFIT_AXIS_TIME, 7, &mut spare), SLIPFIT_OK);
+                assert_eq!(slipfit_table_look_up(&table, 0.0, 0.0, &mut found), SLIPFIT_OK);
+                (found.force, spare)
+            };
+            let room = length as u32 - word.max(8);
+            assert_eq!(open(&first, &second), (0.0, slipfit_spare { slot: 1, sequence: 0, room }));
+            second[..old.len()].copy_from_slice(&old);
+            second[layout::HEADER_SIZE..][..4].copy_from_slice(&5.0f32.to_le_bytes());
+            let checksum = layout::checksum(&second[..old.len() - 4]).to_le_bytes();
+            second[old.len() - 4..old.len()].copy_from_slice(&checksum);
+            assert_eq!(open(&first, &second).0, 0.0);
+            assert_eq!(slipfit_record_make(&mut record, word, 0), SLIPFIT_OK);
+            assert_eq!(record.size, word.max(8));
+            second[length - record.size as usize..].copy_from_slice(&record.bytes[..record.size as usize]);
+            assert_eq!(open(&first, &second), (5.0, slipfit_spare { slot: 0, sequence: 1, room }));
+            // A slot that cannot be read: the other one counts.
+            let slots = slipfit_slots { first: first.as_ptr(), second: ptr::null(), length: length as u32, word };
+            assert_eq!(slipfit_slots_open(&mut table, &slots, SLIPFIT_AXIS_TIME, 7, &mut spare), SLIPFIT_OK);
+            assert_eq!(spare, slipfit_spare { slot: 1, sequence: 0, room });
+        }
+    }
+}
+
+#[test]
+fn slots_that_do_not_open_leave_nothing_open_and_say_nothing() {
+    let bytes: &'static [u8] = table().leak();
+    let (mut table, mut found) = (zeroed::<slipfit_table>(), zeroed::<slipfit_lookup>());
+    let untouched = slipfit_spare { slot: 77, sequence: 78, room: 79 };
+    let both = slots(bytes, bytes, 8);
+    let erased: &'static [u8] = &[0xff; 400];
+    let null = ptr::null();
+    for (slots, over, hash, status) in [
+        // Table and record do not fit.
+        (both, SLIPFIT_AXIS_TIME, 7, SLIPFIT_TABLE_SLOT),
+        (slots(erased, erased, 8), SLIPFIT_AXIS_TIME, 7, SLIPFIT_TABLE_MAGIC),
+        (both, SLIPFIT_AXIS_POSITION, 7, SLIPFIT_TABLE_KIND),
+        (both, 0, 7, SLIPFIT_PARAMETER),
+        (both, SLIPFIT_AXIS_TIME, 8, SLIPFIT_TABLE_SCENE),
+        (slipfit_slots { word: 0, ..both }, SLIPFIT_AXIS_TIME, 7, SLIPFIT_PARAMETER),
+        (slipfit_slots { word: 24, ..both }, SLIPFIT_AXIS_TIME, 7, SLIPFIT_PARAMETER),
+        (slipfit_slots { word: 64, ..both }, SLIPFIT_AXIS_TIME, 7, SLIPFIT_PARAMETER),
+        (slipfit_slots { length: 10, ..both }, SLIPFIT_AXIS_TIME, 7, SLIPFIT_TABLE_TRUNCATED),
+        (slipfit_slots { first: null, ..both }, SLIPFIT_AXIS_TIME, 7, SLIPFIT_TABLE_SLOT),
+        (slipfit_slots { second: null, ..both }, SLIPFIT_AXIS_TIME, 7, SLIPFIT_TABLE_SLOT),
+        (slipfit_slots { first: null, second: null, ..both }, SLIPFIT_AXIS_TIME, 7, SLIPFIT_NULL),
+    ] {
+        // SAFETY: every pointer is to a local of its type, and the bytes stay.
+        unsafe {
+            let opened = slipfit_table_open(&mut table, bytes.as_ptr(), bytes.len() as u32, SLIPFIT_AXIS_TIME, 7);
+            assert_eq!(opened, SLIPFIT_OK);
+            let mut spare = untouched;
+            assert_eq!(slipfit_slots_open(&mut table, &slots, over, hash, &mut spare), status);
+            assert_eq!(spare, untouched);
+            assert_eq!(slipfit_table_look_up(&table, 0.0, 0.0, &mut found), SLIPFIT_NOT_MADE);
+            // Nor if what it says has nowhere to go.
+            let _ = slipfit_table_open(&mut table, bytes.as_ptr(), bytes.len() as u32, SLIPFIT_AXIS_TIME, 7);
+            assert_eq!(slipfit_slots_open(&mut table, &slots, over, hash, ptr::null_mut()), SLIPFIT_NULL);
+            assert_eq!(slipfit_table_look_up(&table, 0.0, 0.0, &mut found), SLIPFIT_NOT_MADE);
+        }
+    }
+}
+
+/// The check is an object of its own: the table is only read, while an interrupt looks it up as well as by the check itself.
+#[test]
+fn a_scrubber_finds_what_changes_and_counts_its_rounds() {
+    let mut bytes = table();
+    let length = bytes.len();
+    let (mut table, mut scrubber, mut rounds) = (zeroed::<slipfit_table>(), zeroed::<slipfit_scrubber>(), 41u32);
+    let pointer = bytes.as_mut_ptr();
+    // SAFETY: every pointer is to a local of its type, and the bytes outlive the table; only a raw pointer changes them, while
+    // no call is under way.
+    unsafe {
+        assert_eq!(slipfit_table_open(&mut table, pointer, length as u32, SLIPFIT_AXIS_TIME, 7), SLIPFIT_OK);
+        assert_eq!(slipfit_scrubber_check(&mut scrubber, 1, &mut rounds), SLIPFIT_NOT_MADE);
+        assert_eq!(slipfit_scrubber_init(&mut scrubber, &table), SLIPFIT_OK);
+        let mut found = zeroed::<slipfit_lookup>();
+        let mut round = |most: u32| {
+            let before = rounds;
+            loop {
+                assert_eq!(slipfit_table_look_up(&table, 1.0, 0.1, &mut found), SLIPFIT_OK);
+                let status = slipfit_scrubber_check(&mut scrubber, most, &mut rounds);
+                if rounds != before {
+                    assert_eq!(rounds, before + 1);
+                    return status;
+                }
+                assert_eq!(status, SLIPFIT_OK);
+            }
+        };
+        for most in [0, 1, 64, u32::MAX] {
+            assert_eq!(round(most), SLIPFIT_OK);
+        }
+        // In the data, and in the stored checksum. Flash changes by itself; an interpreter of Rust calls that undefined.
+        for place in [layout::HEADER_SIZE, length - 1].into_iter().take(if cfg!(miri) { 0 } else { 2 }) {
+            *pointer.add(place) ^= 1;
+            assert_eq!(round(64), SLIPFIT_TABLE_CHECKSUM);
+            *pointer.add(place) ^= 1;
+            assert_eq!(round(64), SLIPFIT_OK);
+        }
+        assert_eq!(rounds, 41 + if cfg!(miri) { 4 } else { 8 });
+        assert_eq!(slipfit_scrubber_check(&mut scrubber, 1, ptr::null_mut()), SLIPFIT_NULL);
     }
 }
 

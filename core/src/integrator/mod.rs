@@ -162,7 +162,7 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
         kept = change * taken + kept * (S::one() - taken);
         update = next.zip_map(&update, |new, old| better.select_gt(zero, new, old)) * shortened;
         least = better.select_gt(zero, least.select_gt(size, size, least), least);
-        velocity = mechanism.settled(&(base.velocity + (kept - update)));
+        velocity = mechanism.settled(&(base.velocity + (kept - update)), a);
         pass += 1;
     };
     let velocity = velocity.zip_map(&(base.velocity + kept), |new, old| better.select_gt(zero, new, old));

@@ -18,18 +18,22 @@ pub struct JamWatch {
 
 impl JamWatch {
     /// Whether there is a jam at `sample`: speed below a tenth of the command for [`Limits::hold`] after it was above, or
-    /// force beyond its limit for as long.
+    /// force beyond its limit for as long. Without a command a slide may stand. What is not measured neither counts nor
+    /// starts anew.
     #[inline]
     pub(super) fn step(&mut self, limits: &Limits, sample: &Sample, is_blind: bool) -> bool {
         let least = STANDING * sample.command.abs();
         // Speed the wrong way is no motion with the command.
-        let along = if sample.command < 0.0 { -sample.speed } else { sample.speed };
-        self.has_moved |= !is_blind && least > 0.0 && along > least;
-        let stands = self.has_moved && along < least;
-        let pushes = sample.force.abs() > limits.force_most;
-        self.standing = if stands { self.standing + limits.period } else { 0.0 };
-        self.pushing = if pushes { self.pushing + limits.period } else { 0.0 };
-        (stands && self.standing > limits.hold) || (pushes && self.pushing > limits.hold)
+        let along = sample.along(sample.speed);
+        if along.is_finite() && least.is_finite() {
+            self.has_moved |= !is_blind && least > 0.0 && along > least;
+            let stands = self.has_moved && least > 0.0 && along < least;
+            self.standing = if stands { self.standing + limits.period } else { 0.0 };
+        }
+        if let Some(force) = sample.measured_force() {
+            self.pushing = if force.abs() > limits.force_most { self.pushing + limits.period } else { 0.0 };
+        }
+        self.standing > limits.hold || self.pushing > limits.hold
     }
 }
 
@@ -37,22 +41,67 @@ impl JamWatch {
 mod tests {
     use super::{JamWatch, Limits, Sample};
 
+    fn limits() -> Limits {
+        Limits { hold: 0.0095, force_most: 3.0, ..Limits::for_noise(1e-3, 0.0) }
+    }
+
+    fn at(force: f32, speed: f32) -> Sample {
+        Sample { time: 1.0, force, speed, command: 0.1 }
+    }
+
+    /// A watch that has seen the slide move.
+    fn moving() -> JamWatch {
+        let mut watch = JamWatch::default();
+        assert!(!watch.step(&limits(), &at(1.0, 0.05), false));
+        watch
+    }
+
+    /// After how many of `samples` a jam is first reported.
+    fn reported(mut watch: JamWatch, mut samples: impl Iterator<Item = Sample>) -> Option<usize> {
+        samples.position(|sample| watch.step(&limits(), &sample, false))
+    }
+
     #[test]
     fn holds_before_it_reports() {
-        let limits = Limits { hold: 0.0095, force_most: 3.0, ..Limits::for_noise(1e-3, 0.0) };
-        let at = |force, speed| Sample { time: 1.0, force, speed, command: 0.1 };
-        let mut watch = JamWatch::default();
         // Never moved: no jam, however long.
-        assert!((0..100).all(|_| !watch.step(&limits, &at(1.0, 0.0), false)));
+        assert_eq!(reported(JamWatch::default(), [at(1.0, 0.0); 100].into_iter()), None);
         // Moved while blind does not count either.
-        assert!(!watch.step(&limits, &at(1.0, 0.05), true) && !watch.step(&limits, &at(1.0, 0.0), false));
-        assert!(!watch.step(&limits, &at(1.0, 0.05), false));
-        let reports: [bool; 12] = core::array::from_fn(|_| watch.step(&limits, &at(1.0, 0.0), false));
-        assert_eq!(reports.iter().position(|report| *report), Some(9));
+        let mut watch = JamWatch::default();
+        assert!(!watch.step(&limits(), &at(1.0, 0.05), true) && !watch.step(&limits(), &at(1.0, 0.0), false));
+        assert_eq!(reported(watch, [at(1.0, 0.0); 100].into_iter()), None);
+        assert_eq!(reported(moving(), [at(1.0, 0.0); 12].into_iter()), Some(9));
         // Over as soon as it moves.
-        assert!(!watch.step(&limits, &at(1.0, 0.05), false));
-        let reports: [bool; 12] = core::array::from_fn(|_| watch.step(&limits, &at(-3.1, 0.05), false));
-        assert_eq!(reports.iter().position(|report| *report), Some(9));
-        assert!((0..100).all(|_| !watch.step(&limits, &at(f32::NAN, f32::NAN), false)));
+        let mut watch = moving();
+        assert!((0..12).map(|_| watch.step(&limits(), &at(1.0, 0.0), false)).last().unwrap());
+        assert!(!watch.step(&limits(), &at(1.0, 0.05), false));
+        assert_eq!(reported(watch, [at(-3.1, 0.05); 12].into_iter()), Some(9));
+    }
+
+    #[test]
+    fn without_a_command_a_slide_may_stand() {
+        for (command, speed) in [(0.0, -1e-6), (0.0, 0.0), (0.0, 1e-6), (-0.0, -1e-6), (-0.0, 1e-6)] {
+            let rest = Sample { command, ..at(0.0, speed) };
+            assert_eq!(reported(moving(), [rest; 1000].into_iter()), None, "{command} {speed}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_measured_hides_no_jam_and_makes_none() {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN] {
+            // Every tenth number of a jam is missing: reported one sample later, and then at every sample.
+            let gaps = |i: usize, good: f32| if i % 10 == 5 { bad } else { good };
+            let (force, speed) = ((0..100).map(|i| at(gaps(i, 3.1), 0.05)), (0..100).map(|i| at(0.0, gaps(i, 0.0))));
+            assert_eq!(reported(moving(), force.clone()), Some(10), "force {bad}");
+            let mut watch = moving();
+            assert_eq!(force.filter(|sample| watch.step(&limits(), sample, false)).count(), 90, "force {bad}");
+            // A speed is taken as it is, however great, if it is finite.
+            if !bad.is_finite() {
+                assert_eq!(reported(moving(), speed), Some(10), "speed {bad}");
+            }
+            // Nothing but gaps is no jam.
+            assert_eq!(reported(moving(), [at(bad, 0.05); 100].into_iter()), None, "force {bad}");
+            let gap = Sample { command: bad, ..at(0.0, f32::NAN) };
+            assert_eq!(reported(moving(), [gap; 100].into_iter()), None, "command {bad}");
+        }
     }
 }

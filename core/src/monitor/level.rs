@@ -56,9 +56,10 @@ pub struct Estimate {
     pub residual: f32,
 }
 
-/// Running sums for a table of up to `LEVELS` levels.
+/// Running sums for a table of up to `LEVELS` levels, which the bank keeps: sums of residuals mean nothing to another one.
 #[derive(Clone, Copy, Debug)]
-pub struct LevelBank<const LEVELS: usize> {
+pub struct LevelBank<'a, V, const LEVELS: usize> {
+    table: Table<'a, 2, V>,
     sums: [Sums; LEVELS],
     /// Levels of the table.
     count: usize,
@@ -77,26 +78,26 @@ struct Sums {
     batches: f32,
 }
 
-impl<const LEVELS: usize> LevelBank<LEVELS> {
+impl<'a, V: Nodes, const LEVELS: usize> LevelBank<'a, V, LEVELS> {
     /// A bank for `table`, without samples.
     ///
     /// # Errors
     /// [`BankError`] if the table is not over level and time or has more levels.
-    pub fn new<V: Nodes>(table: &Table<'_, 2, V>) -> Result<Self, BankError> {
-        table.expect_axes([AxisKind::Level, AxisKind::Time]).map_err(BankError::Table)?;
+    pub fn new(table: Table<'a, 2, V>) -> Result<Self, BankError> {
+        let table = table.expect_axes([AxisKind::Level, AxisKind::Time]).map_err(BankError::Table)?;
         let [levels, _] = table.axes();
         let (found, most) = (levels.count(), LEVELS);
         if found > most {
             return Err(BankError::Levels { found, most });
         }
-        Ok(Self { sums: [Sums::default(); LEVELS], count: found, samples: 0 })
+        Ok(Self { table, sums: [Sums::default(); LEVELS], count: found, samples: 0 })
     }
 
-    /// Adds the `force` (N) measured at `time` (s) of a motion; one that is not finite or not in the table is passed
+    /// Adds the `force` (N) measured at `time` (s) of a motion; one beyond 10⁶ N, not finite or not in the table is passed
     /// over. The same work for every sample, in proportion to the levels.
     #[inline]
-    pub fn add<V: Nodes>(&mut self, table: &Table<'_, 2, V>, time: f32, force: f32) {
-        let Some(forces) = table.forces(time).filter(|_| force.abs() <= 1e6) else { return };
+    pub fn add(&mut self, time: f32, force: f32) {
+        let Some(forces) = self.table.forces(time).filter(|_| force.abs() <= 1e6) else { return };
         self.samples = self.samples.saturating_add(1);
         let ends = self.samples.is_multiple_of(BATCH);
         let mut before: Option<(&mut Sums, f32)> = None;
@@ -116,8 +117,8 @@ impl<const LEVELS: usize> LevelBank<LEVELS> {
     }
 
     /// The level that fits best; none before the tenth sample.
-    pub fn estimate<V: Nodes>(&self, table: &Table<'_, 2, V>) -> Option<Estimate> {
-        let [levels, _] = table.axes();
+    pub fn estimate(&self) -> Option<Estimate> {
+        let [levels, _] = self.table.axes();
         let cells = || {
             let sums = self.sums.get(..self.count).unwrap_or_default();
             sums.windows(2).zip(0u32..).filter_map(|(pair, i)| {
@@ -144,7 +145,7 @@ impl<const LEVELS: usize> LevelBank<LEVELS> {
         let whole = (self.samples / BATCH * BATCH) as f32;
         let together = if whole > 0.0 { batches * degrees / (whole * squares) } else { BATCH as f32 };
         let together = if together > 1.0 { together } else { 1.0 };
-        let [force, _] = table.channels();
+        let [force, _] = self.table.channels();
         let table_error = force.rms_error;
         let limit = least + CHI_SQUARED * (variance * together + TABLE_SAMPLES * table_error * table_error);
 

@@ -43,6 +43,21 @@ pub struct Sample {
     pub command: f32,
 }
 
+/// The greatest force (N), either sign, that counts as measured.
+const FORCE_MOST: f32 = 1e9;
+
+impl Sample {
+    /// The force (N); none if it is not finite or exceeds 10⁹ N, which nothing measures.
+    pub(crate) fn measured_force(&self) -> Option<f32> {
+        (self.force.abs() <= FORCE_MOST).then_some(self.force)
+    }
+
+    /// What is `x` along the axis, in the direction of the command.
+    pub(crate) fn along(&self, x: f32) -> f32 {
+        if self.command < 0.0 { -x } else { x }
+    }
+}
+
 /// Where free ends, and when a jam is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -58,7 +73,7 @@ pub struct Limits {
     pub hold: f32,
     /// Time constant (s) over which force is averaged before it is compared with the table's.
     pub smoothing: f32,
-    /// By how many levels a unit may be tighter than it is taken for.
+    /// By how many levels a unit may be tighter than it is taken for, and off the level that the monitor was made for.
     pub band: f32,
     /// What the averaged force (N) may differ from the table's beyond that band, for noise.
     pub margin: f32,
@@ -77,7 +92,7 @@ impl Limits {
         Self {
             period,
             blind: 0.0,
-            force_most: 1e9,
+            force_most: FORCE_MOST,
             hold: 10.0 * period,
             smoothing,
             band: 0.5,
@@ -96,7 +111,7 @@ pub enum Verdict {
     Blind,
     /// As the table has it.
     Free,
-    /// More force than the table's for this unit's level, or rising away from it.
+    /// More force in the direction of the command than the table's for this unit's level, or rising away from it.
     Tight,
     /// Standing still against the command, or at the limit of force.
     Jam,
@@ -143,6 +158,8 @@ pub struct Report {
 #[derive(Clone, Copy, Debug)]
 pub struct Monitor<'a, V> {
     table: Table<'a, 2, V>,
+    /// The level the unit was taken for at first: its band is about that.
+    reference: f32,
     level: f32,
     limits: Limits,
 }
@@ -168,13 +185,13 @@ impl<'a, V: Nodes> Monitor<'a, V> {
         bounded("monitor.level", level, [f64::from(levels.first()), f64::from(levels.last())])?;
         bounded("monitor.period", limits.period, [1e-6, 1.0])?;
         bounded("monitor.blind", limits.blind, [0.0, 1e6])?;
-        bounded("monitor.force_most", limits.force_most, [1e-6, 1e9])?;
+        bounded("monitor.force_most", limits.force_most, [1e-6, f64::from(FORCE_MOST)])?;
         bounded("monitor.hold", limits.hold, [0.0, 10.0])?;
         bounded("monitor.smoothing", limits.smoothing, [0.0, 10.0])?;
         bounded("monitor.band", limits.band, [0.0, 100.0])?;
         bounded("monitor.margin", limits.margin, [0.0, 1e9])?;
         bounded("monitor.rise", limits.rise, [0.0, 1e12])?;
-        Ok(Self { table, level, limits })
+        Ok(Self { table, reference: level, level, limits })
     }
 
     /// The level the unit is taken for.
@@ -182,21 +199,27 @@ impl<'a, V: Nodes> Monitor<'a, V> {
         self.level
     }
 
-    /// Takes the unit for what `estimate` says from now on, if that is within the band of what it was taken for; says
-    /// whether it was. A unit that has left its band is tight, not to be got used to.
+    /// Takes the unit for what `estimate` says from now on, if that is on the table's axis and within the band of the level
+    /// that the monitor was made for; says whether it was. The band does not move along: a unit that leaves it, at once or
+    /// motion by motion, is tight, not to be got used to.
     pub fn adapt(&mut self, estimate: &Estimate) -> bool {
-        let within = (estimate.level - self.level).abs() <= self.limits.band && estimate.deviation <= self.limits.band;
+        let [levels, _] = self.table.axes();
+        let within = (estimate.level - self.reference).abs() <= self.limits.band
+            && estimate.deviation <= self.limits.band
+            && estimate.level >= levels.first()
+            && estimate.level <= levels.last();
         if within {
             self.level = estimate.level;
         }
         within
     }
 
-    /// What `sample` says, after those that `watch` has seen. A sample that is not finite is passed over.
+    /// What `sample` says, after those that `watch` has seen. A number that is not finite, and a force beyond 10⁹ N, is
+    /// passed over: what goes by it stays as it was.
     #[inline]
     pub fn step(&self, watch: &mut Watch, sample: &Sample) -> Report {
         let tightness = watch.tight.step(&self.table, self.level, &self.limits, sample);
-        let is_blind = sample.time.is_nan() || sample.time < self.limits.blind;
+        let is_blind = !sample.time.is_finite() || sample.time < self.limits.blind;
         let is_jammed = watch.jam.step(&self.limits, sample, is_blind);
         let verdict = match (is_jammed, is_blind, tightness.is_tight()) {
             (true, ..) => Verdict::Jam,

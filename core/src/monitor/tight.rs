@@ -3,12 +3,14 @@
 use super::{Limits, Sample};
 use crate::table::{Nodes, Table};
 
-/// Averages of the force beyond the table's (N).
+/// Averages of the force beyond the table's (N), along the axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TightWatch {
-    excess: f32,
+    beyond: f32,
     /// The average of the average, so that the two tell how it rises.
     slower: f32,
+    /// Whether the last command that was not zero leads backwards.
+    is_backwards: bool,
 }
 
 /// Force against the table's band.
@@ -19,7 +21,7 @@ pub struct Tightness {
     pub expected: f32,
     /// By how much (N) the averaged force may exceed it.
     pub band: f32,
-    /// By how much (N) it does.
+    /// By how much (N) it does, in the direction of the command.
     pub excess: f32,
     /// How fast (N/s) that rises.
     pub rise: f32,
@@ -48,15 +50,68 @@ impl TightWatch {
         let tighter = table.lookup([level + limits.band, sample.time]).force;
         let apart = (tighter - expected).abs();
         let band = apart + limits.margin;
-        let beyond = sample.force - expected;
-        let beyond = if beyond.is_finite() { beyond } else { self.excess };
+        if sample.command != 0.0 && sample.command.is_finite() {
+            self.is_backwards = sample.command < 0.0;
+        }
         let per_step = 1.0 / (limits.smoothing + limits.period);
         let weight = limits.period * per_step;
-        self.excess += weight * (beyond - self.excess);
-        self.slower += weight * (self.excess - self.slower);
-        let rise = (self.excess - self.slower) * per_step;
+        if let Some(force) = sample.measured_force().filter(|_| sample.time.is_finite()) {
+            self.beyond += weight * (force - expected - self.beyond);
+            self.slower += weight * (self.beyond - self.slower);
+        }
+        let rise = (self.beyond - self.slower) * per_step;
+        let (excess, rise) = if self.is_backwards { (-self.beyond, -rise) } else { (self.beyond, rise) };
         // What the band itself allows within its time is no alarm.
         let is_fast = rise > limits.rise + apart * per_step;
-        Tightness { expected, band, excess: self.excess, rise, is_fast }
+        Tightness { expected, band, excess, rise, is_fast }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Limits, Sample, TightWatch, Tightness};
+    use crate::table::{AxisKind, Table, example};
+
+    /// 1 N at level 0 and 2 N at level 1, times `factor`, for all of a second.
+    fn last(factor: f32, samples: impl Iterator<Item = Sample>) -> Tightness {
+        let axes = [(AxisKind::Level, 2, 1.0), (AxisKind::Time, 2, 1.0)];
+        let bytes = example::table(&axes, |node| factor * if node < 2 { 1.0 } else { 2.0 });
+        let table = Table::<2>::open(&bytes).unwrap();
+        let limits = Limits { margin: 0.1, rise: 1e6, ..Limits::for_noise(1e-3, 0.0) };
+        let mut watch = TightWatch::default();
+        samples.map(|sample| watch.step(&table, 0.0, &limits, &sample)).last().unwrap()
+    }
+
+    #[test]
+    fn more_force_is_tight_whichever_way_the_drive_runs() {
+        for way in [1.0, -1.0] {
+            let stroke = |force: f32, command: f32| {
+                let sample = Sample { time: 0.5, force: way * force, speed: way * 0.1, command: way * command };
+                last(way, [sample; 500].into_iter())
+            };
+            for (force, tight) in [(1.0, false), (1.5, false), (1.7, true), (0.2, false), (-1.0, false)] {
+                assert_eq!(stroke(force, 0.1).is_tight(), tight, "{way} {force}");
+                assert!((stroke(force, 0.1).excess - (force - 1.0)).abs() < 1e-5);
+            }
+            // Where the command ends, the way stays.
+            let sample = |command| Sample { time: 0.5, force: way * 1.7, speed: 0.0, command };
+            assert!(last(way, [sample(way * 0.1), sample(0.0)].into_iter().cycle().take(500)).is_tight());
+        }
+    }
+
+    #[test]
+    fn no_force_leaves_anything_behind_that_is_not_finite() {
+        let sample = |force| Sample { time: 0.5, force, speed: 0.1, command: 0.1 };
+        let free = last(1.0, [sample(1.0); 500].into_iter());
+        for bad in [f32::MAX, f32::INFINITY, f32::NAN] {
+            let glitches = [sample(1.0), sample(bad), sample(-bad), sample(1.0)];
+            assert_eq!(last(1.0, glitches.into_iter().cycle().take(500)), free, "{bad}");
+        }
+        // A sample whose time is unknown is compared with nothing.
+        let lost = [f32::NAN, f32::INFINITY].map(|time| Sample { time, ..sample(1.7) });
+        assert_eq!(last(1.0, lost.into_iter().cycle().take(500).chain([sample(1.0)])), free);
+        let greatest = [sample(1e9), sample(-1e9)].into_iter().cycle().take(500);
+        let Tightness { excess, rise, .. } = last(1.0, greatest);
+        assert!(excess.is_finite() && rise.is_finite());
     }
 }

@@ -11,7 +11,7 @@ use crate::{
     SVector, Scalar,
     law::{Elastic, Friction},
     linear::inverse,
-    mechanism::{Differentiated, Linearised, Mechanism, Way},
+    mechanism::{Differentiated, Linearised, Mechanism, Way, settled, settling},
 };
 
 #[inline(always)]
@@ -169,16 +169,15 @@ impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> M
         pose.displacement_w.x * zero + pose.displacement_w.y * zero + w * zero + v * zero
     }
 
-    /// As for the slide: rounded to the last place of 4 m/s.
+    /// As for the slide.
     #[inline(always)]
-    fn settled(&self, velocity: &SVector<S, 3>) -> SVector<S, 3> {
+    fn settled(&self, velocity: &SVector<S, 3>, a: S) -> SVector<S, 3> {
         if !F::STICKS {
             return *velocity;
         }
-        let unit = S::from_f64(4.0);
-        let round = |x: S, unit: S| (x + unit) - unit;
+        let unit = settling(a);
         let (v_w, rotation) = split(velocity);
-        join(v_w.map(|x| round(x, unit)), round(rotation, unit * self.per_lever))
+        join(v_w.map(|x| settled(x, unit)), settled(rotation, unit * self.per_lever))
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use crate::{
     SVector, Scalar, Vector3,
     law::{Elastic, Friction},
     linear::{Blocks, Factors, cross_columns, cross_matrix, cross_rows},
-    mechanism::{Differentiated, Linearised, Mechanism, Way},
+    mechanism::{Differentiated, Linearised, Mechanism, Way, settled, settling},
     pose::{Pose, ToBody},
 };
 
@@ -106,17 +106,16 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         (r.x + r.y + r.z + q.w + q.v.x + q.v.y + q.v.z) * zero
     }
 
-    /// Velocities are rounded to the last place of 4 m/s (4e-16 m/s in f64, 2e-7 m/s in f32): what rounding of the
-    /// contact forces stirs up stays below, and a body that sticks comes to rest to the last bit.
+    /// Velocities are rounded to the last place of what [`settling`] says, so that a body that sticks comes to rest to the
+    /// last bit.
     #[inline(always)]
-    fn settled(&self, velocity: &SVector<S, 6>) -> SVector<S, 6> {
+    fn settled(&self, velocity: &SVector<S, 6>, a: S) -> SVector<S, 6> {
         if !F::STICKS {
             return *velocity;
         }
         let (v_w, w_b) = split(velocity);
-        let round = |x: S, unit: S| (x + unit) - unit;
-        let unit = S::from_f64(4.0);
-        join(v_w.map(|x| round(x, unit)), w_b.map(|x| round(x, unit * self.per_lever)))
+        let unit = settling(a);
+        join(v_w.map(|x| settled(x, unit)), w_b.map(|x| settled(x, unit * self.per_lever)))
     }
 
     #[inline(always)]

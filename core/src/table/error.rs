@@ -40,6 +40,15 @@ pub enum TableError {
         /// The hash found.
         found: u64,
     },
+    /// A slot that has no room for the record behind its table, or does not end between programming words.
+    Slot {
+        /// Its length (bytes).
+        length: usize,
+        /// The least length for this table.
+        least: usize,
+    },
+    /// A slot that cannot be read.
+    Unreadable,
 }
 
 impl core::fmt::Display for TableError {
@@ -55,6 +64,10 @@ impl core::fmt::Display for TableError {
             Self::Kind { axis, found, asked } => {
                 write!(f, "axis {axis} is over {}, asked for is {}", found.name(), asked.name())
             }
+            Self::Slot { length, least } => {
+                write!(f, "a slot of {length} bytes, table and record take {least}, in whole programming words")
+            }
+            Self::Unreadable => f.write_str("the slot cannot be read"),
             Self::Scene { found } => write!(f, "made for another scene or other laws (hash {found:#018x})"),
         }
     }

@@ -41,11 +41,17 @@
 
 mod axis;
 mod error;
+#[cfg(test)]
+pub(crate) mod example;
 mod header;
 pub mod layout;
 mod nodes;
-mod patrol;
+mod scrubber;
 mod slots;
+#[cfg(test)]
+mod tests;
+#[cfg(feature = "embedded-storage")]
+mod update;
 
 use layout::{CHANNELS, CHECKSUM_SIZE, HEADER_SIZE};
 
@@ -53,8 +59,10 @@ pub use axis::{Axis, AxisKind};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
 pub use nodes::{AnyNodes, ChannelKind, Encoding, F32Nodes, I16Nodes, Nodes, Values};
-pub use patrol::Patrol;
-pub use slots::{RECORD_SIZE, Slots, record};
+pub use scrubber::Scrubber;
+pub use slots::{RECORD_SIZE, Record, Slots, WORD_MOST, Word};
+#[cfg(feature = "embedded-storage")]
+pub use update::{Update, UpdateError, is_readable};
 
 /// A checked table over `N` axes, 2 or 3, in the region it was opened from.
 ///

@@ -10,6 +10,8 @@ use crate::{
     files,
     force_table::scene_hash,
     kernel_source::{EXTENSIONS, c_header, rust_source},
+    scene::ControllerSpec,
+    scheme::{IntegratorKind, ScalarKind},
 };
 
 /// Writes the scene as a constant and a type, for firmware to compile.
@@ -34,10 +36,20 @@ struct Report {
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let scene = self.scene.load(&self.controller.overrides())?;
+        let ControllerSpec { integrator, scalar, .. } = scene.controller;
+        if scalar != ScalarKind::F32 {
+            return Err(Failure::Input("controller.scalar is f64, kernels for firmware compute in f32".into()));
+        }
         let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let text = match extension.as_str() {
             "rs" => rust_source(&scene),
-            "h" => c_header(&scene),
+            "h" if integrator != IntegratorKind::ImplicitEuler => {
+                let (asked, known) = (integrator.name(), IntegratorKind::ImplicitEuler.name());
+                return Err(Failure::Input(format!(
+                    "controller.integrator is {asked}, the C library steps by {known}; --integrator {known} takes that"
+                )));
+            }
+            "h" => c_header(&scene).map_err(|error| Failure::Input(error.to_string()))?,
             _ => {
                 let allowed = EXTENSIONS.join(", .");
                 return Err(Failure::Input(format!(
@@ -45,7 +57,7 @@ impl Arguments {
                 )));
             }
         };
-        self.scene.check_output(&self.output)?;
+        self.scene.check_outputs(&[("--output", &self.output)])?;
         files::write(&self.output, text.as_bytes())?;
         let (file, scene_hash) = (self.output.display().to_string(), format!("{:016x}", scene_hash(&scene)));
         if self.scene.json {

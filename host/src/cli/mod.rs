@@ -155,11 +155,6 @@ struct SceneArguments {
 const SCENE_MOST: u64 = 1 << 20;
 
 impl SceneArguments {
-    /// Whether `output` can be written and is not the scene itself.
-    fn check_output(&self, output: &Path) -> Result<(), Failure> {
-        self.check_outputs(&[("output", output)])
-    }
-
     /// Whether all `outputs`, each with the option that asks for it, can be written, and none is the scene or another.
     fn check_outputs(&self, outputs: &[(&str, &Path)]) -> Result<(), Failure> {
         files::check_distinct(&[("the scene", &self.scene)], outputs)?;

@@ -101,14 +101,18 @@ fn c_header(table: &[u8]) -> String {
     for encoding in Encoding::ALL {
         define(&format!("ENCODING_{encoding:?}"), encoding as usize);
     }
-    let hash = table.get(layout::SCENE_HASH_AT..layout::LENGTH_AT).unwrap_or_default();
-    let hash: String = hash.iter().rev().map(|byte| format!("{byte:02x}")).collect();
     define("DATA_AT", layout::HEADER_SIZE);
     define("CHECKSUM_SIZE", layout::CHECKSUM_SIZE);
     define("SIZE", table.len());
     // Firmware compares it with the hash in the table that it finds.
-    let _ = writeln!(text, "#define SLIPFIT_TABLE_SCENE_HASH 0x{hash}ull");
+    let _ = writeln!(text, "#define SLIPFIT_TABLE_SCENE_HASH 0x{}ull", hash(table));
     text + C_ARRAY + &array(table) + "};\n\n#endif\n"
+}
+
+/// The hash that a table is stamped with, in hexadecimal.
+fn hash(table: &[u8]) -> String {
+    let hash = table.get(layout::SCENE_HASH_AT..layout::LENGTH_AT).unwrap_or_default();
+    hash.iter().rev().map(|byte| format!("{byte:02x}")).collect()
 }
 
 const C_INTRODUCTION: &str = "\
@@ -140,9 +144,10 @@ static const uint8_t slipfit_table_bytes[SLIPFIT_TABLE_SIZE] = {
 
 /// A module's source with the table as `SLIPFIT_TABLE`.
 fn rust_source(table: &[u8]) -> String {
-    let size = table.len();
+    let (size, hash) = (table.len(), hash(table));
     format!(
         "// A slipfit flash table: force and velocity over a grid, for `slipfit_core::table::Table::open`.\n\n\
+         /// What it is stamped with; to be compared with the scene's `SCENE_HASH`.\npub const SLIPFIT_TABLE_HASH: u64 = 0x{hash};\n\n\
          #[repr(C, align(4))]\nstruct Aligned([u8; {size}]);\n\n\
          /// The table, at an address that is a multiple of 4.\n\
          pub static SLIPFIT_TABLE: &[u8; {size}] = &ALIGNED.0;\n\n\
@@ -267,6 +272,7 @@ mod tests {
 
         fn main() -> std::io::Result<()> {
             assert_eq!(table::SLIPFIT_TABLE.as_ptr().addr() % 4, 0);
+            assert_eq!(table::SLIPFIT_TABLE_HASH.to_le_bytes(), table::SLIPFIT_TABLE[8..16]);
             std::io::Write::write_all(&mut std::io::stdout(), table::SLIPFIT_TABLE)
         }
     "#;

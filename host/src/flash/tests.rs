@@ -3,8 +3,6 @@
 use proptest::prelude::*;
 use slipfit_core::table::{AxisKind, Encoding, Header, Lookup, Table, TableError, layout};
 
-mod slots;
-
 use super::{AxisSpec, ChannelSpec, FlashError, TABLE_REGION, TableSpec, encode};
 
 const BOTH: [Encoding; 2] = [Encoding::F32, Encoding::I16];

@@ -42,6 +42,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
     let (mut monitor, mut bank) = (zeroed::<slipfit_monitor>(), zeroed::<slipfit_bank>());
     let (mut said, mut found, mut spare) =
         (zeroed::<slipfit_prediction>(), zeroed::<slipfit_lookup>(), zeroed::<slipfit_spare>());
+    let (mut scrubber, mut rounds) = (zeroed::<slipfit_scrubber>(), 0);
     let (mut report, mut estimate) = (zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
     let (length, half) = (bytes.len() as u32, bytes.len() / 2);
     let (mut scene, mut limits) = (scene(SLIPFIT_FRICTION_REGULARISED), zeroed::<slipfit_limits>());
@@ -58,23 +59,18 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
                 3 => slipfit_table_open(&mut table, bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 0),
                 4 => {
                     let second = bytes.as_ptr().add(half);
-                    slipfit_slots_open(
-                        &mut table,
-                        bytes.as_ptr(),
-                        second,
-                        half as u32,
-                        SLIPFIT_AXIS_TIME,
-                        0,
-                        &mut spare,
-                    )
+                    let slots =
+                        slipfit_slots { first: bytes.as_ptr(), second, length: half as u32, word: x.to_bits() % 40 };
+                    slipfit_slots_open(&mut table, &slots, SLIPFIT_AXIS_TIME, 0, &mut spare)
                 }
                 5 => slipfit_table_look_up(&table, x, y, &mut found),
-                6 => slipfit_table_check(&mut table, x.to_bits()),
+                6 if y > 0.0 => slipfit_scrubber_init(&mut scrubber, &table),
+                6 => slipfit_scrubber_check(&mut scrubber, x.to_bits(), &mut rounds),
                 7 => slipfit_monitor_init(&mut monitor, &table, x, &limits),
                 8 => slipfit_monitor_step(&mut monitor, &sample, &mut report),
                 9 => slipfit_bank_init(&mut bank, &table),
-                10 => slipfit_bank_add(&mut bank, &table, x, y),
-                11 => slipfit_bank_estimate(&bank, &table, &mut estimate),
+                10 => slipfit_bank_add(&mut bank, x, y),
+                11 => slipfit_bank_estimate(&bank, &mut estimate),
                 12 => {
                     change(&mut scene, x.to_bits(), y.to_bits());
                     SLIPFIT_OK

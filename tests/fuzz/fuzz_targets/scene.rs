@@ -81,5 +81,5 @@ fuzz_target!(|input: Input| {
         drive_point_b: triple(17),
     };
     // Refusals are answers too.
-    let _ = scene.at(n).visit(Stepped);
+    let _ = scene.at(n).and_then(|unit| unit.visit(Stepped));
 });

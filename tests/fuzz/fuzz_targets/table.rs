@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use slipfit_core::table::{AxisKind, Patrol, Slots, Table, layout};
+use slipfit_core::table::{AxisKind, Scrubber, Slots, Table, Word, layout};
 
 fuzz_target!(|input: (Vec<u8>, [f32; 3])| {
     let (mut bytes, at) = input;
@@ -24,14 +24,15 @@ fn opened(bytes: &[u8], [a, b, c]: [f32; 3]) {
     if let Ok(table) = Table::<2>::open(bytes) {
         let found = table.lookup([a, b]);
         assert!(found.force.is_finite() && found.velocity.is_finite());
-        let mut patrol = Patrol::new(&table);
-        while !patrol.check(bytes, 64).expect("it has just been checked") {}
+        let mut scrubber = Scrubber::new(&table);
+        while !scrubber.check(bytes, 64).expect("it has just been checked") {}
     }
     if let Ok(table) = Table::<3>::open(bytes) {
         let found = table.lookup([a, b, c]);
         assert!(found.force.is_finite() && found.velocity.is_finite());
     }
     let (first, second) = bytes.split_at(bytes.len() / 2);
-    let (slot, _) = Slots::<2>::open([first, second], [AxisKind::Level, AxisKind::Time], 0).spare();
+    let word = Word::of(1 << (bytes.len() % 6)).expect("a power of two up to 32");
+    let (slot, _) = Slots::<2>::open([Some(first), Some(second)], word, [AxisKind::Level, AxisKind::Time], 0).spare();
     assert!(slot < 2);
 }

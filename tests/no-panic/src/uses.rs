@@ -13,7 +13,7 @@ use slipfit_core::{
     planar::{Across, Journal, Planar, PlanarBody, PlanarPose},
     pose::Pose,
     slide::Slide,
-    table::{AxisKind, Patrol, Slots, Table, TableError},
+    table::{AxisKind, Scrubber, Slots, Table, TableError, Word},
 };
 use slipfit_problems::cd_rom;
 
@@ -89,9 +89,11 @@ fn look_up() -> Result<(), TableError> {
     black_box(plane.lookup(black_box([0.0; 2])));
     let space = Table::<3>::open(region)?;
     black_box(space.lookup(black_box([0.0; 3])));
-    let slots = Slots::<2>::open(black_box([region, region]), axes, black_box(0));
+    let word = Word::of(black_box(16)).ok_or(TableError::Unreadable)?;
+    let slots = Slots::<2>::open(black_box([Some(region), Some(region)]), word, axes, black_box(0));
     black_box(slots.spare());
-    black_box(Patrol::new(slots.newest()?).check(region, black_box(64)))?;
+    black_box(word.record(black_box(0)).bytes());
+    black_box(Scrubber::new(slots.newest()?).check(region, black_box(64)))?;
     watch(&plane);
     Ok(())
 }
@@ -102,8 +104,8 @@ fn watch(table: &Table<'_>) {
         let sample = black_box(Sample { time: 0.0, force: 0.0, speed: 0.0, command: 0.0 });
         black_box(monitor.step(&mut black_box(Watch::default()), &sample));
     }
-    if let Ok(mut bank) = LevelBank::<96>::new(table) {
-        bank.add(table, black_box(0.0), black_box(0.0));
-        black_box(black_box(&bank).estimate(table));
+    if let Ok(mut bank) = LevelBank::<_, 96>::new(*table) {
+        bank.add(black_box(0.0), black_box(0.0));
+        black_box(black_box(&bank).estimate());
     }
 }

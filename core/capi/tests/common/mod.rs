@@ -2,7 +2,7 @@
 
 use std::mem::MaybeUninit;
 
-use slipfit_capi::slipfit_scene;
+use slipfit_capi::{SLIPFIT_SCHEME_IMPLICIT_EULER, slipfit_scene};
 use slipfit_problems::cd_rom;
 
 /// An object's memory as C has it before it is made.
@@ -15,13 +15,14 @@ pub fn zeroed<T>() -> T {
 pub fn scene(friction_law: u32) -> slipfit_scene {
     let data = cd_rom::data(0.0f32);
     slipfit_scene {
+        scheme: SLIPFIT_SCHEME_IMPLICIT_EULER,
         step: 1e-3,
         mass: data.body.mass,
         inertia: data.body.inertia_b.into(),
         gravity: data.body.gravity_w.into(),
         pins: data.body.pins_w.map(Into::into),
         gap_means: data.body.gaps,
-        gap_deviations: [2e-5; 16],
+        gap_deviations: cd_rom::TABLE_2.map(|[_, deviation]| (deviation / 1000.0) as f32),
         stiffness: data.contact.stiffness,
         exponent: data.contact.exponent,
         damping: data.contact.damping,

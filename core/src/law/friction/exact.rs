@@ -73,7 +73,8 @@ pub(super) fn return_mapping<S: Scalar>(
     let limit_squared = limit * limit;
     // The least square keeps the root finite where there is neither load nor trial.
     let inverse = trial_squared.max_of(limit_squared).max_of(S::from_f64(1e-30)).rsqrt();
-    let slides = |yes: S, no: S| trial_squared.select_gt(limit_squared, yes, no);
+    // Without a load it slides, with no force, and nothing is stiff.
+    let slides = |yes: S, no: S| limit_squared.select_gt(trial_squared, no, yes);
     let share = slides(sliding * normal * inverse, S::one());
     let force = [trial[0] * share, trial[1] * share];
 
@@ -118,6 +119,17 @@ mod tests {
         let (traction, memory) = Exact::new(0.3f32).unwrap().traction(&[0.0; 2], &idle);
         assert_eq!(memory, [0.0; 2]);
         assert!(traction.impedance.iter().chain(&traction.per_normal).all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn an_unloaded_contact_does_not_stick() {
+        for sliding in [[0.0; 2], [1e-9, 0.0], [0.1, -0.2]] {
+            let (traction, memory) = traction([0.0; 2], 0.0, sliding);
+            assert_eq!((traction.force.map(f64::abs), traction.impedance.map(f64::abs)), ([0.0; 2], [0.0; 3]));
+            assert_eq!(memory.map(f64::abs), [0.0; 2]);
+        }
+        let (loaded, _) = traction([0.0; 2], 1.0, [0.0; 2]);
+        assert_eq!(loaded.impedance, [800.0, 0.0, 800.0]);
     }
 
     #[test]

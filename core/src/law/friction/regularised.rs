@@ -117,7 +117,7 @@ mod tests {
     fn opposes_sliding_and_stays_in_the_cone() {
         for k in 0..1000u16 {
             let angle = f64::from(k) * 0.1;
-            let speed = 1e-6 * f64::from(k * k % 997);
+            let speed = 1e-6 * f64::from(u32::from(k) * u32::from(k) % 997);
             let (x, y) = (speed * libm::cos(angle), speed * libm::sin(angle));
             let force = traction(2.0, [x, y]).force;
             assert!(force[0] * x + force[1] * y <= 0.0);

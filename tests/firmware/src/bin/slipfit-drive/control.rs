@@ -12,7 +12,7 @@ use slipfit_core::{
         stream::{Rng, Xoshiro256PlusPlus, unit_stream},
     },
     slide::Slide,
-    table::{F32Nodes, Patrol, Table},
+    table::{F32Nodes, Scrubber, Table},
 };
 
 use crate::scene::{Predictor, SCENE, STEP, Unit, predictor};
@@ -21,7 +21,7 @@ use crate::scene::{Predictor, SCENE, STEP, Unit, predictor};
 pub type Flashed = (Table<'static>, &'static [u8]);
 
 /// Bytes of the table that are checked in a period: once round in a second.
-const PATROL: usize = 256;
+const SCRUBBED: usize = 256;
 
 /// Steps in which the unit itself moves through a period, finer than the predictor's.
 const PLANT_STEPS: u32 = 4;
@@ -71,9 +71,9 @@ pub struct Control {
     monitor: Monitor<'static, F32Nodes<'static>>,
     watch: Watch,
     /// Over all levels of the table.
-    pub bank: LevelBank<32>,
+    pub bank: LevelBank<'static, F32Nodes<'static>, 32>,
     table: Table<'static, 2, F32Nodes<'static>>,
-    patrol: Patrol,
+    scrubber: Scrubber,
     region: &'static [u8],
     /// Rounds in which the table had changed.
     pub damaged: u32,
@@ -81,7 +81,7 @@ pub struct Control {
 
 /// The kernel of a unit whose friction is `factor` times the scene's.
 fn plant(level: f32, factor: f32) -> Result<Predictor, ParameterError<f32>> {
-    let unit = SCENE.at(level);
+    let unit = SCENE.at(level)?;
     let ContactData { stiffness, damping, depth, .. } = unit.contact;
     let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
     let friction = Exact::new(unit.friction.coefficient() * factor)?;
@@ -107,9 +107,9 @@ impl Control {
             predictor,
             monitor: Monitor::new(table, rig.taken_for, limits).expect("the limits are in bounds"),
             watch: Watch::default(),
-            bank: LevelBank::new(&table).expect("the table is over few levels and time"),
+            bank: LevelBank::new(table).expect("the table is over few levels and time"),
             table,
-            patrol: Patrol::new(&flashed),
+            scrubber: Scrubber::new(&flashed),
             region,
             damaged: 0,
         }
@@ -131,8 +131,8 @@ impl Control {
         self.predictor.step(&mut self.state);
         let predicted = self.predictor.mechanism().drive().force(time, self.state.motion.velocity.z);
         let report = self.monitor.step(&mut self.watch, &sample);
-        self.bank.add(&self.table, time, measured);
-        if self.patrol.check(self.region, PATROL).is_err() {
+        self.bank.add(time, measured);
+        if self.scrubber.check(self.region, SCRUBBED).is_err() {
             self.damaged = self.damaged.saturating_add(1);
         }
         let cost = clock().wrapping_sub(start);

@@ -12,11 +12,8 @@ use slipfit_firmware::{
 use crate::{
     control::{Control, Record, Rig},
     say,
+    scene::SCENE_HASH,
 };
-
-/// What the table must be stamped with: the scene of the kernel, but simulated in steps of 50 µs by the scheme of the
-/// desk.
-const TABLE_HASH: u64 = 0x60ae4a547f71e143;
 
 /// Periods of a stroke.
 pub const PERIODS: u32 = 1500;
@@ -55,7 +52,7 @@ pub trait Ticking: Machine {
 /// Runs all strokes; `false` without a table.
 pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
     let axes = [AxisKind::Level, AxisKind::Time];
-    let opened = Table::open(flash).and_then(|table| table.expect_axes(axes)?.expect_scene(TABLE_HASH));
+    let opened = Table::open(flash).and_then(|table| table.expect_axes(axes)?.expect_scene(SCENE_HASH));
     let table = match opened {
         Ok(table) => table,
         Err(error) => {
@@ -74,7 +71,7 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
                 say::record(machine, record);
             }
         });
-        let (estimate, damaged) = (control.bank.estimate(&table), control.damaged);
+        let (estimate, damaged) = (control.bank.estimate(), control.damaged);
         let stack = machine.stack(|| _ = control.tick(|| 0));
         say::stroke(machine, &Stroke { firsts, estimate, damaged, stack });
     }

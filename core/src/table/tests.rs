@@ -1,0 +1,54 @@
+//! The reader, on bytes laid out by hand: whatever the machine's own byte order.
+
+use std::vec::Vec;
+
+use super::{AxisKind, Encoding, Table, TableError, example, layout};
+
+const PLANE: [(AxisKind, u32, f32); 2] = [(AxisKind::Level, 3, 1.0), (AxisKind::Time, 4, 0.5)];
+const SPACE: [(AxisKind, u32, f32); 3] =
+    [(AxisKind::Level, 3, 1.0), (AxisKind::Position, 4, 0.5), (AxisKind::Velocity, 2, 0.25)];
+
+#[test]
+fn the_layout_is_little_endian() {
+    let bytes = example::table(&PLANE, |node| node as f32);
+    assert_eq!(bytes[..8], [b'S', b'L', b'F', b'T', layout::VERSION as u8, 0, 2, 1]);
+    assert_eq!(bytes[layout::SCENE_HASH_AT..][..8], [7, 0, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(bytes[layout::AXES_AT..][..16], [1, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x80, 0x3f]);
+    // The second node's force and velocity.
+    assert_eq!(bytes[layout::HEADER_SIZE + 8..][..8], [0, 0, 0x80, 0x3f, 0xcd, 0xcc, 0xcc, 0x3d]);
+    // The checksum of "123456789", as its specification has it.
+    assert_eq!(layout::checksum(b"123456789"), 0xcbf4_3926);
+}
+
+#[test]
+fn reads_values_of_either_kind() {
+    let single = example::table(&PLANE, |node| node as f32);
+    let integers = example::table_of_integers(&PLANE, |node| 1000 * node as i16 - 300);
+    let [single, integers] = [&single, &integers].map(|bytes| Table::<2>::open(bytes).unwrap());
+    assert_eq!([single.encoding(), integers.encoding()], [Encoding::F32, Encoding::I16]);
+    for (at, force) in [([0.0, 0.0], 0.0), ([1.0, 0.5], 5.0), ([1.5, 0.75], 7.5), ([9.0, 9.0], 11.0)] {
+        assert_eq!(single.lookup(at).force, force);
+        assert!((single.lookup(at).velocity - 0.1 * force).abs() < 1e-6);
+        assert!((integers.lookup(at).force - (force - 0.3)).abs() < 1e-5);
+        assert!((integers.lookup(at).velocity - 0.1 * (force - 0.3)).abs() < 1e-5);
+    }
+    let forces: Vec<f32> = single.forces(0.25).unwrap().collect();
+    assert_eq!(forces, [0.5, 4.5, 8.5]);
+    let bytes = example::table(&SPACE, |node| node as f32);
+    assert_eq!(Table::<3>::open(&bytes).unwrap().lookup([1.0, 0.5, 0.25]).force, 11.0);
+}
+
+#[test]
+fn refuses_every_flipped_bit_and_every_short_length() {
+    let mut bytes = example::table_of_integers(&PLANE, |node| node as i16);
+    assert!(Table::<2>::open(&bytes).is_ok());
+    for length in 0..bytes.len() {
+        let error = Table::<2>::open(&bytes[..length]).unwrap_err();
+        assert!(matches!(error, TableError::Truncated), "{length}: {error}");
+    }
+    for bit in (0..bytes.len() * 8).step_by(if cfg!(miri) { 11 } else { 1 }) {
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        assert!(Table::<2>::open(&bytes).is_err(), "{bit}");
+        bytes[bit / 8] ^= 1 << (bit % 8);
+    }
+}
