@@ -8,6 +8,7 @@
 
 pub mod analysis;
 mod binomial;
+pub mod copula;
 pub mod derivative;
 mod distribution;
 pub mod draw;
@@ -39,10 +40,10 @@ pub mod sobol;
 pub mod study;
 mod subset;
 pub mod tail;
-pub mod tally;
-pub mod tensor;
 #[cfg(test)]
 mod tail_tests;
+pub mod tally;
+pub mod tensor;
 #[cfg(test)]
 mod tests;
 pub mod worst_case;
