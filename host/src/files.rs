@@ -142,7 +142,17 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let target = resolved(path);
     let mut file = temporary_beside(&target)?;
     file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(failed(path))?;
-    file.persist(&target).map_err(|error| failed(path)(error.error)).map(drop)
+    file.persist(&target).map_err(|error| failed(path)(error.error)).map(drop)?;
+    sync_folder(&target);
+    Ok(())
+}
+
+/// Makes a new name last through a power cut, where the system can: not all can open a folder.
+fn sync_folder(file: &Path) {
+    if let Some(folder) = file.parent() {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let _ = std::fs::File::open(folder).and_then(|folder| folder.sync_all());
+    }
 }
 
 /// Makes the folder `path`, its parents too, and checks that files can be written there.
@@ -192,11 +202,12 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         write(&at("scene"), b"x").unwrap();
         let check = |inputs: &[&str], outputs: &[&str]| {
-            let [inputs, outputs] = [inputs, outputs].map(|names| names.iter().map(|name| at(name)).collect::<Vec<_>>());
+            let [inputs, outputs] =
+                [inputs, outputs].map(|names| names.iter().map(|name| at(name)).collect::<Vec<_>>());
             let named = |paths: &'_ [PathBuf]| paths.iter().map(|path| ("x", path.clone())).collect::<Vec<_>>();
             let (inputs, outputs) = (named(&inputs), named(&outputs));
-            let [inputs, outputs] =
-                [&inputs, &outputs].map(|all| all.iter().map(|(name, path)| (*name, path.as_path())).collect::<Vec<_>>());
+            let [inputs, outputs] = [&inputs, &outputs]
+                .map(|all| all.iter().map(|(name, path)| (*name, path.as_path())).collect::<Vec<_>>());
             check_distinct(&inputs, &outputs)
         };
         assert!(check(&["scene"], &["a", "b"]).is_ok());
@@ -207,7 +218,9 @@ mod tests {
         assert!(matches!(check(&[], &["new", "none/../new"]), Err(Coincidence::Twice { .. })));
         #[cfg(unix)]
         {
-            for (to, link) in [("scene", "to scene"), ("later", "to later"), ("below", "to below"), ("/dev/null", "null")] {
+            for (to, link) in
+                [("scene", "to scene"), ("later", "to later"), ("below", "to below"), ("/dev/null", "null")]
+            {
                 std::os::unix::fs::symlink(to, at(link)).unwrap();
             }
             assert!(matches!(check(&["scene"], &["to scene"]), Err(Coincidence::Input { .. })));

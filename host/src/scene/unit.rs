@@ -27,7 +27,8 @@ const MICROSECOND: Unit = per("µs", 1e6);
 /// A plain number.
 pub const ONE: &[Unit] = &[si("")];
 /// Lengths.
-pub const LENGTH: &[Unit] = &[per("mm", 1e3), si("m"), per("cm", 1e2), per("µm", 1e6), per("nm", 1e9), times("in", 0.0254)];
+pub const LENGTH: &[Unit] =
+    &[per("mm", 1e3), si("m"), per("cm", 1e2), per("µm", 1e6), per("nm", 1e9), times("in", 0.0254)];
 /// Angles.
 pub const ANGLE: &[Unit] = &[times("°", std::f64::consts::PI / 180.0), si("rad"), per("mrad", 1e3)];
 /// Masses.
@@ -61,7 +62,9 @@ impl Unit {
 
     /// Whether `text` means this unit, in its common spellings: um, N*s/mm, Ns/mm, m/s^2.
     pub fn is(self, text: &str) -> bool {
-        plain(self.symbol) == plain(text)
+        // A point stands for a product; left out or a star instead it may be, but not put in.
+        const POINTS: [char; 3] = ['·', '⋅', '*'];
+        plain(self.symbol) == plain(text) && (self.symbol.contains(POINTS) || !text.contains(POINTS))
     }
 }
 
@@ -127,6 +130,7 @@ mod tests {
         for text in ["µs", "μs", "us"] {
             assert!(MICROSECONDS[0].is(text), "{text}");
         }
+        assert!(!LENGTH[0].is("m*m") && !LENGTH[0].is("m·m"));
         assert!(ACCELERATION[0].is("m/s^2") && !ACCELERATION[0].is("m/s") && !LENGTH[0].is("MM"));
     }
 
