@@ -77,7 +77,10 @@ mod tests {
 
     #[test]
     fn hardly_any_defects_have_no_number() {
-        assert_eq!([0.0, 4.1e-80, 9.9e-7, 1.2e-6, 302.0].map(per_million), ["0", "below 1e-6", "below 1e-6", "1.2e-6", "302"]);
+        assert_eq!(
+            [0.0, 4.1e-80, 9.9e-7, 1.2e-6, 302.0].map(per_million),
+            ["0", "below 1e-6", "below 1e-6", "1.2e-6", "302"]
+        );
     }
 
     #[test]

@@ -11,8 +11,8 @@ pub mod dimension;
 pub mod expression;
 pub mod feature;
 pub mod function;
-pub mod iso286;
 pub mod iso2768;
+pub mod iso286;
 pub mod pose;
 pub mod vector;
 

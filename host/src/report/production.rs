@@ -65,10 +65,8 @@ fn beside(report: &Report) -> String {
     let columns = ["measure", "worst case", "RSS", "mean, 2nd order", "σ, 2nd order"];
     let row = |m: &MeasureReport| {
         let [low, high] = m.worst_case.map(|x| real(x, 4));
-        let rss = m.rss.map_or_else(
-            || "–".to_owned(),
-            |rss| format!("{} ± {}", real(rss.middle, 4), real(rss.tolerance, 4)),
-        );
+        let rss =
+            m.rss.map_or_else(|| "–".to_owned(), |rss| format!("{} ± {}", real(rss.middle, 4), real(rss.tolerance, 4)));
         let second = m.second_order;
         let [mean, deviation] = [second.map(|s| s.mean), second.map(|s| s.sd)].map(|x| optional(x, 4));
         let cells = [named(m), format!("{low} … {high}"), rss, mean, deviation];

@@ -143,9 +143,8 @@ pub fn theory(model: &Model, seed: u64, counted: Option<&Joint>) -> Result<Theor
     let (tails, sums) = rare.split_at(2 * model.measures.len());
     let tails = tails.chunks(2).map(|sides| [sides[0].clone(), sides[1].clone()]).collect();
     let closings = model.sums.iter().zip(sums);
-    let closings = closings.map(|(sum, tail)| {
-        closing(model, sum, &moments, &around_mean.slopes, &deviations, tail.clone(), counted)
-    });
+    let closings = closings
+        .map(|(sum, tail)| closing(model, sum, &moments, &around_mean.slopes, &deviations, tail.clone(), counted));
     Ok(Theory {
         closings: closings.collect(),
         worst_cases,
@@ -157,6 +156,9 @@ pub fn theory(model: &Model, seed: u64, counted: Option<&Joint>) -> Result<Theor
         tails,
     })
 }
+
+/// Units that failed, and all units.
+type Hits = (u64, u64);
 
 /// The probabilities of all failures: below and above of every measure, then those of the sums. Each has a seed of its own,
 /// so that they can be found side by side.
@@ -173,7 +175,7 @@ fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Resul
         Some((Failure { measures: sum.measures.clone(), limit: 0.0, above: false }, hits))
     });
     let failures: Vec<_> = sides.chain(sums).enumerate().collect();
-    let of = |(number, failure): (usize, Option<(Failure, Option<(u64, u64)>)>)| {
+    let of = |(number, failure): (usize, Option<(Failure, Option<Hits>)>)| {
         stop_if_asked()?;
         let Some((failure, hits)) = failure else { return Ok(None) };
         Ok(probability(model, draw, &failure, derived(seed, TAILS + number as u64), hits))

@@ -147,13 +147,11 @@ mod tests {
             let all_but_one = limits(units - 1, units, SIDE);
             assert_eq!(all_but_one, [1.0 - one[1], 1.0 - one[0]]);
             // Poisson's limits for rare hits; the binomial ones are wider by about a part in the number of units.
-            for (hits, [lower, upper]) in
-                [
-                    (1, [0.025_317_807_984, 5.571_643_390_939]),
-                    (12, [6.200_575_108_722, 20.961_585_048_177]),
-                    (60, [45.786_320_950_007, 77.231_893_406_643]),
-                ]
-            {
+            for (hits, [lower, upper]) in [
+                (1, [0.025_317_807_984, 5.571_643_390_939]),
+                (12, [6.200_575_108_722, 20.961_585_048_177]),
+                (60, [45.786_320_950_007, 77.231_893_406_643]),
+            ] {
                 let found = limits(hits, units, SIDE);
                 close(found[0] * n, lower, 1e-11 + 20.0 / n);
                 close(found[1] * n, upper, 1e-11 + 20.0 / n);

@@ -34,10 +34,11 @@ pub fn reaches(model: &Model, measure: usize) -> Vec<f64> {
     let of = |(contributor, at): (&Contributor, usize)| {
         let points: Vec<_> = moves(&contributor.variation, at, &centre);
         let values = evaluate(model, &points);
-        let (low, high) = values.iter().map(|value| value[measure]).filter(|value| value.is_finite()).fold(
-            (f64::INFINITY, f64::NEG_INFINITY),
-            |(low, high), value| (low.min(value), high.max(value)),
-        );
+        let (low, high) = values
+            .iter()
+            .map(|value| value[measure])
+            .filter(|value| value.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
         if low <= high { 0.5 * (high - low) } else { 0.0 }
     };
     model.contributors.iter().zip(model.offsets()).map(of).collect()
@@ -72,7 +73,7 @@ fn climbed(model: &Model, measure: usize, sign: f64, mut point: Vec<f64>) -> f64
                 }
             }
         }
-        if !(best - before > 1e-12 * best.abs()) && !before.is_nan() {
+        if best - before <= 1e-12 * best.abs() {
             break;
         }
     }

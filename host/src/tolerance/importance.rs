@@ -73,7 +73,8 @@ impl Mixture {
         let method = if dimensions > MOST_DIMENSIONS { Method::PseudoRandom } else { Method::ScrambledSobol };
         let all = UNITS.max(UNITS_EACH * self.points.len() as u64) as f64;
         // Whole groups, and the weights that these have.
-        let groups: Vec<u64> = self.weights.iter().map(|w| libm::ceil(w * all / LANES as f64).max(1.0) as u64).collect();
+        let groups: Vec<u64> =
+            self.weights.iter().map(|w| libm::ceil(w * all / LANES as f64).max(1.0) as u64).collect();
         let units = (LANES as u64 * groups.iter().sum::<u64>()) as f64;
         self.weights = groups.iter().map(|groups| (groups * LANES as u64) as f64 / units).collect();
         let factor = state.factor();

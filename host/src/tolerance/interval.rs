@@ -88,7 +88,10 @@ mod tests {
             let units = libm::pow(10.0, f64::from(power));
             let half = 1.959_963_985 / libm::sqrt(2.0 * units);
             let [low, high] = deviation(1.0, units);
-            assert!(((1.0 - low) / half - 1.0).abs() < 0.02 && ((high - 1.0) / half - 1.0).abs() < 0.02, "{low} {high}");
+            assert!(
+                ((1.0 - low) / half - 1.0).abs() < 0.02 && ((high - 1.0) / half - 1.0).abs() < 0.02,
+                "{low} {high}"
+            );
         }
         let factors: Vec<f64> = (2..=1024).map(student_factor).collect();
         assert!((factors[0] - 12.706_205).abs() < 1e-5 && factors.is_sorted_by(|a, b| a > b));

@@ -52,7 +52,11 @@ pub fn file_names(measures: usize) -> impl Iterator<Item = String> {
 pub fn pictures(report: &Report, study: &Study, tallies: &[Tally]) -> Result<Vec<Picture>, PlotError> {
     let picture = |file: &str, caption: &str, svg| Picture { file: file.into(), caption: caption.into(), svg };
     let histogram = |(i, measure): (usize, &MeasureReport)| {
-        Ok(picture(&histogram_file(i), &format!("{} over the production.", measure.name), histogram_svg(report, study, tallies, i)?))
+        Ok(picture(
+            &histogram_file(i),
+            &format!("{} over the production.", measure.name),
+            histogram_svg(report, study, tallies, i)?,
+        ))
     };
     let all = [
         picture(CONTRIBUTORS, "What the measures' variances come from.", contributors_svg(report)),

@@ -45,7 +45,8 @@ pub fn is_straight(state: &mut LimitState, seed: u64) -> bool {
     };
     let lengths = (1..=8).flat_map(|length| [-f64::from(length), f64::from(length)]);
     let points: Vec<Vec<f64>> = lengths.map(along).chain((0..48).map(|number| random(number, 3.0))).collect();
-    let linear = |(point, margin): (&Vec<f64>, f64)| (margin - value - dot(&slopes, point)).abs() <= STRAIGHT * steepness;
+    let linear =
+        |(point, margin): (&Vec<f64>, f64)| (margin - value - dot(&slopes, point)).abs() <= STRAIGHT * steepness;
     if points.iter().zip(state.at(&points)).all(linear) {
         return true;
     }

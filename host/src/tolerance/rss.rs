@@ -30,7 +30,9 @@ pub fn root_sum_square(model: &Model, middle: &Expansion, mean: &Expansion, devi
         .zip(&offsets)
         .flat_map(|(contributor, at)| match &contributor.variation {
             Variation::Scalar { limits: [low, high], .. } => vec![0.5 * (high - low)],
-            zone @ (Variation::Zone(_) | Variation::Disc(_)) => deviations[*at..at + zone.variables()].iter().map(|d| 3.0 * d).collect(),
+            zone @ (Variation::Zone(_) | Variation::Disc(_)) => {
+                deviations[*at..at + zone.variables()].iter().map(|d| 3.0 * d).collect()
+            }
         })
         .collect();
     let measure = |i: usize| {

@@ -6,11 +6,7 @@
 
 use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
 
-use super::{
-    failure::LimitState,
-    lanes::LANES,
-    normal::Scores,
-};
+use super::{failure::LimitState, lanes::LANES, normal::Scores};
 
 /// Share of the units that go on to the next level.
 const SHARE: f64 = 0.125;
@@ -81,8 +77,7 @@ fn grown(
     let (mut points, mut margins) = (Vec::new(), Vec::new());
     let mut accepted = 0;
     for (group, starts) in starts.chunks(LANES).enumerate() {
-        let mut streams: Vec<_> =
-            (0..LANES).map(|lane| unit_stream(seed, (group * LANES + lane) as u64)).collect();
+        let mut streams: Vec<_> = (0..LANES).map(|lane| unit_stream(seed, (group * LANES + lane) as u64)).collect();
         let mut chain = starts.to_vec();
         for _ in 1..LENGTH {
             let step = spread.min(1.0);

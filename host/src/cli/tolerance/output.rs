@@ -49,9 +49,11 @@ impl OutputArguments {
         files: &[(&'static str, &Path)],
         measures: usize,
     ) -> Result<(), Failure> {
-        let files: Vec<_> = files.iter().copied().chain(self.csv.iter().map(|path| ("--csv", path.as_path()))).collect();
+        let files: Vec<_> =
+            files.iter().copied().chain(self.csv.iter().map(|path| ("--csv", path.as_path()))).collect();
         let folder = self.plots.as_deref();
-        let pictures: Vec<_> = folder.map_or_else(Vec::new, |dir| file_names(measures).map(|name| dir.join(name)).collect());
+        let pictures: Vec<_> =
+            folder.map_or_else(Vec::new, |dir| file_names(measures).map(|name| dir.join(name)).collect());
         let plots = folder.into_iter().chain(pictures.iter().map(PathBuf::as_path)).map(|path| ("--plots", path));
         files::check_distinct(inputs, &files.iter().copied().chain(plots).collect::<Vec<_>>())?;
         files.iter().try_for_each(|(_, path)| files::check_writable(path).map_err(refused))?;

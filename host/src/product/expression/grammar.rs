@@ -243,9 +243,8 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
 
     /// A call of the function `name`, its opening parenthesis taken.
     fn call(&mut self, name: &str, place: Range<usize>) -> Result<Kind, ExpressionError> {
-        let unknown = |place| {
-            Err(ExpressionError { fault: Fault::UnknownFunction(name.into()), place, allowed: FUNCTIONS })
-        };
+        let unknown =
+            |place| Err(ExpressionError { fault: Fault::UnknownFunction(name.into()), place, allowed: FUNCTIONS });
         // Before its arguments, which may well look like mistakes.
         if !FUNCTIONS.split(", ").any(|known| known == name) {
             return unknown(place);

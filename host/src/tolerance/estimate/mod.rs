@@ -143,12 +143,14 @@ fn statistics(measure: &Measure, i: usize, all: &Plain, errors: &Errors) -> Stat
             error: Some(deviation * libm::sqrt(((at.kurtosis - 1.0) / (4.0 * units)).max(0.0))),
             ..between(deviation, interval::deviation(deviation, units))
         }),
-        skewness: at.skewness.is_finite().then(|| {
-            estimate(&|plain| plain.skewness, &|value| Estimate::with_error(value, libm::sqrt(6.0 / units)))
-        }),
-        kurtosis: at.kurtosis.is_finite().then(|| {
-            estimate(&|plain| plain.kurtosis, &|value| Estimate::with_error(value, libm::sqrt(24.0 / units)))
-        }),
+        skewness: at
+            .skewness
+            .is_finite()
+            .then(|| estimate(&|plain| plain.skewness, &|value| Estimate::with_error(value, libm::sqrt(6.0 / units)))),
+        kurtosis: at
+            .kurtosis
+            .is_finite()
+            .then(|| estimate(&|plain| plain.kurtosis, &|value| Estimate::with_error(value, libm::sqrt(24.0 / units)))),
         extremes: at.extremes,
         points: POINTS.map(|p| {
             let ends = interval::ranks(p, at.units).map(|rank| at.enclosed(rank));

@@ -180,7 +180,9 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
             notes.push(format!("{} is not linear: {percent:.2} % of its variance is curvature", measure.name));
         }
     }
-    for (measure, (tails, found)) in model.measures.iter().zip(analysis.theory.tails.iter().zip(&analysis.joint.measures)) {
+    for (measure, (tails, found)) in
+        model.measures.iter().zip(analysis.theory.tails.iter().zip(&analysis.joint.measures))
+    {
         let unknown = |(tail, counted): (&Option<Tail>, &Option<Estimate>)| tail.is_none() && counted.is_some();
         if tails.iter().zip(&found.outside).any(unknown) {
             notes.push(format!(
