@@ -142,7 +142,17 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let target = resolved(path);
     let mut file = temporary_beside(&target)?;
     file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(failed(path))?;
-    file.persist(&target).map_err(|error| failed(path)(error.error)).map(drop)
+    file.persist(&target).map_err(|error| failed(path)(error.error)).map(drop)?;
+    sync_folder(&target);
+    Ok(())
+}
+
+/// Makes a new name last through a power cut, where the system can: not all can open a folder.
+fn sync_folder(file: &Path) {
+    if let Some(folder) = file.parent() {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let _ = std::fs::File::open(folder).and_then(|folder| folder.sync_all());
+    }
 }
 
 /// Makes the folder `path`, its parents too, and checks that files can be written there.

@@ -247,6 +247,60 @@ fn what_does_not_belong_together_is_not_merged() {
 }
 
 #[test]
+fn no_output_replaces_an_input_or_another_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for number in ["1", "2"] {
+        let (shard, out) = (format!("{number}/2"), format!("p{number}"));
+        done(folder, &["tolerance", "clutch", "--samples", "20000", "--shard", &shard, "--out", &out]);
+    }
+    std::fs::write(folder.join("scene.toml"), shipped("clutch").unwrap()).unwrap();
+    let one = "are one file";
+    let cases: &[(&[&str], &str)] = &[
+        (&["merge", "p1", "p2", "--out", "p1"], "it is one of the shards"),
+        (&["merge", "p1", "p2", "--csv", "./p2"], "it is one of the shards"),
+        (&["merge", "p1", "p2", "--out", "m", "--csv", "m"], one),
+        (&["merge", "p1", "p2", "--csv", "m", "--plots", "m"], one),
+        (&["tolerance", "clutch", "--csv", "a", "--draws", "a"], one),
+        (&["tolerance", "clutch", "--out", "x", "--csv", "./x"], one),
+        (&["tolerance", "clutch", "--out", "x", "--draws", "x.partial"], one),
+        (&["tolerance", "clutch", "--plots", "x", "--csv", "x/histogram-1.svg"], one),
+        (&["tolerance", "scene.toml", "--draws", "none/../scene.toml"], "it is the scene"),
+        (&["simulate", "scene.toml", "--csv", "scene.toml"], "no slide"),
+        (&["precision", "--csv", "a", "--plot", "a"], one),
+    ];
+    for (arguments, said) in cases {
+        refused(folder, arguments, &[said]);
+    }
+    done(folder, &["merge", "p1", "p2", "--out", "m", "--csv", "m.csv"]);
+}
+
+#[test]
+fn a_checkpoint_is_not_dropped_without_a_word() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("o.partial"), b"work of hours").unwrap();
+    refused(folder, &["tolerance", "clutch", "--out", "o"], &["o.partial", "--resume", "remove it"]);
+}
+
+#[test]
+fn what_nearly_always_fails_is_shown_as_that() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let scene = ["tolerance", "three-part-stack", "--json", "--set", "dimension.block A.value=50"];
+    let measure = &json(folder, &scene)["measures"][0];
+    let ppm: Vec<_> = measure["dpm"].as_array().unwrap().iter().map(|side| side["dpm"].as_f64()).collect();
+    assert!((ppm[0].unwrap() - 1e6).abs() < 1.0 && ppm[1].is_none_or(|ppm| ppm < 1.0), "{measure}");
+    let scene = "[[dimension]]\nname = \"d\"\nvalue = 5\ntolerance = 0.1\ndistribution = \"uniform\"\n\
+                 [[measure]]\nname = \"fixed\"\nis = \"3 mm + 0 * d\"\nupper = 4\n";
+    std::fs::write(folder.join("fixed.toml"), scene).unwrap();
+    let measure = &json(folder, &["tolerance", "fixed.toml", "--json"])["measures"][0];
+    assert!(measure["skew"].is_null() && measure["kurtosis"].is_null() && measure["sd"] == 0.0, "{measure}");
+    let text = done(folder, &["tolerance", "fixed.toml"]);
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+}
+
+#[test]
 fn a_killed_run_is_resumed_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -205,7 +205,7 @@ pub fn run_out(class: GeometryClass) -> f64 {
     RUN_OUT[class as usize] / 1e3
 }
 
-/// Zone width (m) of parallelism: the larger of the ± `size` tolerance and the `flatness` (m).
+/// Zone width (m) of parallelism: the larger of the whole tolerance of the `size` and the `flatness` (m).
 pub fn parallelism(size: f64, flatness: f64) -> f64 {
     size.max(flatness)
 }

@@ -97,7 +97,7 @@ const ROOT: &[Key] = &[
     table("sweep", &[key("n")]),
     table("drawing", &[key("clearance")]),
     table("pin", &[key("name"), key("position"), key("left"), key("right"), key("rail"), key("wall")]),
-    table("tolerance", &[key("general"), key("rule"), key("sigma")]),
+    table("tolerance", &[key("general"), key("rule"), key("sigma"), key("correlation")]),
     table(
         "dimension",
         &[key("name"), key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge")],

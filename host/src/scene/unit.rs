@@ -62,7 +62,9 @@ impl Unit {
 
     /// Whether `text` means this unit, in its common spellings: um, N*s/mm, Ns/mm, m/s^2.
     pub fn is(self, text: &str) -> bool {
-        plain(self.symbol) == plain(text)
+        // A point stands for a product; left out or a star instead it may be, but not put in.
+        const POINTS: [char; 3] = ['·', '⋅', '*'];
+        plain(self.symbol) == plain(text) && (self.symbol.contains(POINTS) || !text.contains(POINTS))
     }
 }
 
@@ -134,6 +136,7 @@ mod tests {
         for text in ["µs", "μs", "us"] {
             assert!(MICROSECONDS[0].is(text), "{text}");
         }
+        assert!(!LENGTH[0].is("m*m") && !LENGTH[0].is("m·m"));
         assert!(ACCELERATION[0].is("m/s^2") && !ACCELERATION[0].is("m/s") && !LENGTH[0].is("MM"));
     }
 

@@ -157,6 +157,9 @@ pub fn theory(model: &Model, seed: u64, counted: Option<&Joint>) -> Result<Theor
     })
 }
 
+/// Units that failed, and all units.
+type Hits = (u64, u64);
+
 /// The probabilities of all failures: below and above of every measure, then those of the sums. Each has a seed of its own,
 /// so that they can be found side by side.
 fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Result<Vec<Option<Tail>>, StudyError> {
@@ -172,7 +175,7 @@ fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Resul
         Some((Failure { measures: sum.measures.clone(), limit: 0.0, above: false }, hits))
     });
     let failures: Vec<_> = sides.chain(sums).enumerate().collect();
-    let of = |(number, failure): (usize, Option<(Failure, Option<(u64, u64)>)>)| {
+    let of = |(number, failure): (usize, Option<(Failure, Option<Hits>)>)| {
         stop_if_asked()?;
         let Some((failure, hits)) = failure else { return Ok(None) };
         Ok(probability(model, draw, &failure, derived(seed, TAILS + number as u64), hits))

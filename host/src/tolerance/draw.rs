@@ -6,6 +6,7 @@
 use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
 
 use super::{
+    copula,
     distribution::Marginal,
     lanes::{LANES, Lanes},
     model::{Model, Variation, ZoneRule},
@@ -219,13 +220,31 @@ impl Model {
     }
 
     /// Correlation matrix of the scores of all variables, row by row.
+    fn correlation_of_scores(&self) -> Vec<Vec<f64>> {
+        self.matrix(|_, _, coefficient| coefficient)
+    }
+
+    /// Correlation matrix of all variables themselves, row by row.
     pub fn correlation(&self) -> Vec<Vec<f64>> {
+        self.matrix(|one, other, coefficient| {
+            match [one, other].map(|contributor| &self.contributors[contributor].variation) {
+                [Variation::Scalar { distribution: one, .. }, Variation::Scalar { distribution: other, .. }] => {
+                    copula::of_values(one, other, coefficient)
+                }
+                // Zones are normal where they are correlated at all.
+                _ => coefficient,
+            }
+        })
+    }
+
+    /// A symmetric matrix with ones on its diagonal and something `of` each correlated pair and its coefficient.
+    fn matrix(&self, of: impl Fn(usize, usize, f64) -> f64) -> Vec<Vec<f64>> {
         let (offsets, count) = (self.offsets(), self.variables());
         let mut matrix: Vec<Vec<f64>> = (0..count).map(|i| (0..count).map(|j| f64::from(i == j)).collect()).collect();
         for (one, other, coefficient) in &self.correlations {
             let (i, j) = (offsets[*one], offsets[*other]);
-            matrix[i][j] = *coefficient;
-            matrix[j][i] = *coefficient;
+            matrix[i][j] = of(*one, *other, *coefficient);
+            matrix[j][i] = matrix[i][j];
         }
         matrix
     }
@@ -249,7 +268,7 @@ fn cholesky(model: &Model) -> Result<Vec<Row>, DrawError> {
     }
     members.sort_unstable();
     members.dedup();
-    let matrix = model.correlation();
+    let matrix = model.correlation_of_scores();
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for (i, variable) in members.iter().enumerate() {
         let mut row = Vec::with_capacity(i + 1);

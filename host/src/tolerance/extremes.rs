@@ -73,7 +73,7 @@ fn climbed(model: &Model, measure: usize, sign: f64, mut point: Vec<f64>) -> f64
                 }
             }
         }
-        if !(best - before > 1e-12 * best.abs()) && !before.is_nan() {
+        if best - before <= 1e-12 * best.abs() {
             break;
         }
     }

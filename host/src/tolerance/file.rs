@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     forest::Forest,
     model::Model,
+    sampler,
     study::{Settings, Tally},
     tally::{BINS, Counts, MeasureCounts, Sums},
 };
@@ -40,6 +41,8 @@ impl Source {
 /// Which part of a study.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
+    /// Version of the sampler.
+    pub sampler: u32,
     /// The scene.
     pub source: Source,
     /// What is drawn.
@@ -68,6 +71,9 @@ pub enum FormatError {
     /// Made by another version.
     #[error("its format is version {0}, allowed is {VERSION}")]
     Version(u32),
+    /// Drawn by another version.
+    #[error("its units are of version {0} of the sampler, allowed is {allowed}", allowed = sampler::VERSION)]
+    Sampler(u32),
     /// Cut off or changed.
     #[error("it is truncated or corrupted")]
     Damaged,
@@ -125,7 +131,10 @@ impl Part {
             return Err(FormatError::Version(version));
         }
         let length = u32::from_le_bytes(reader.array()?) as usize;
-        let header = serde_json::from_slice(reader.bytes(length)?).map_err(|_| FormatError::Damaged)?;
+        let header: Header = serde_json::from_slice(reader.bytes(length)?).map_err(|_| FormatError::Damaged)?;
+        if header.sampler != sampler::VERSION {
+            return Err(FormatError::Sampler(header.sampler));
+        }
         let count = reader.count()?;
         let tallies = (0..count).map(|_| reader.tally()).collect::<Result<_, _>>()?;
         if reader.0.is_empty() { Ok(Self { header, tallies }) } else { Err(FormatError::Damaged) }

@@ -8,6 +8,7 @@
 
 pub mod analysis;
 mod binomial;
+pub mod copula;
 pub mod derivative;
 mod distribution;
 pub mod draw;

@@ -9,6 +9,7 @@ use std::{
 use super::{
     file::{FormatError, Header, Part, Source},
     model::Model,
+    sampler,
     study::{Settings, Study, StudyError, Tally, join},
 };
 use crate::files::{self, WriteError};
@@ -166,7 +167,7 @@ pub fn run(
 ) -> Result<Vec<Tally>, RunError> {
     let blocks = shard.blocks(&study.settings);
     let shard = [shard.number, shard.count];
-    let header = Header { source: source.clone(), settings: study.settings, shard, done: 0 };
+    let header = Header { sampler: sampler::VERSION, source: source.clone(), settings: study.settings, shard, done: 0 };
     let mut part = Part { header, tallies: study.empty() };
     if let Some(Keep { out, resume: true }) = keep {
         for path in [out.to_path_buf(), checkpoint(out)] {
@@ -202,8 +203,8 @@ pub fn run(
         }
     }
     if let Some(Keep { out, .. }) = keep {
+        // On disk for good, its folder too, before the checkpoint goes. What is left of that would do no harm.
         save(&part, out)?;
-        // What is left of it would do no harm.
         let _ = std::fs::remove_file(checkpoint(out));
     }
     Ok(part.tallies)

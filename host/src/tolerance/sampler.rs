@@ -12,6 +12,10 @@ use super::{
     sobol::{Directions, key, scrambled},
 };
 
+/// Version of what units are drawn with: of random numbers, scores, distributions and zones. Units of one version are not
+/// those of another.
+pub const VERSION: u32 = 2;
+
 /// How the units of a study are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

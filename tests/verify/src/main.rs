@@ -93,7 +93,8 @@ fn install(packages: &[&str]) -> bool {
         command.args(["DEBIAN_FRONTEND=noninteractive", "apt-get"]);
         command
     };
-    runs(apt_get().arg("update")) && runs(apt_get().args(["install", "--yes", "--no-install-recommends"]).args(packages))
+    runs(apt_get().arg("update"))
+        && runs(apt_get().args(["install", "--yes", "--no-install-recommends"]).args(packages))
 }
 
 /// Runs the tests of the whole workspace.

@@ -3,18 +3,13 @@
 use crate::{
     product::{
         assembly::{Carried, Placement},
-        contact::Contact,
+        contact::{Contact, cross, unit},
         contacts::{Joined, Own},
         dimension::Toleranced,
         feature::Shape,
         iso2768,
     },
-    scene::{
-        Problem, SceneError,
-        tree::Value,
-        unit::{self, Quantity},
-        value::Field,
-    },
+    scene::{Problem, SceneError, tree::Value, unit as units, unit::Quantity, value::Field},
     tolerance::{
         lanes::Lanes,
         model::{Contributor, Variation, ZoneRule},
@@ -23,7 +18,7 @@ use crate::{
 
 use super::{Draft, part::FeatureDraft, rule, toleranced};
 
-const WIDTH: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 1e7] };
+const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
 const ZONE: &str = "the width of its zone in mm, or { zone = …, datum = [\"…\"], rule = \"…\" }";
 
 /// What a geometric tolerance limits.
@@ -95,7 +90,8 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
     }
 
     let index = draft.assembly.features.len();
-    let FeatureDraft { name, feature, part, table, .. } = made;
+    let FeatureDraft { name, feature, part, table, sides, extents, .. } = made;
+    draft.faces.push((sides, extents));
     draft.assembly.features.push(feature);
     draft.feature_names.push(name);
     draft.parts_of_features.push(part);
@@ -153,18 +149,35 @@ fn width(
     let class = draft.defaults.general.geometry.ok_or_else(missing)?;
     let [a, b] = made.extents.ok_or_else(missing)?;
     let longer = a.max(b);
-    let of_datum = datums.iter().map(|datum| 2.0 * draft.assembly.features[*datum].reach).fold(longer, f64::min);
     let found = match callout {
         "flatness" | "straightness" => iso2768::flatness(class, longer),
-        "perpendicularity" => iso2768::perpendicularity(class, of_datum),
+        "perpendicularity" => iso2768::perpendicularity(class, shorter_leg(made, [a, b], datums, draft)),
         "parallelism" => {
             let size = made.table.get("offset").map(|offset| toleranced::offset(&offset, draft)).transpose()?;
-            let half = size.map_or(0.0, |size| (size.limits[1] - size.limits[0]) / 2.0);
-            iso2768::flatness(class, longer).map(|flatness| iso2768::parallelism(half, flatness))
+            let whole = size.map_or(0.0, |size| size.limits[1] - size.limits[0]);
+            iso2768::flatness(class, longer).map(|flatness| iso2768::parallelism(whole, flatness))
         }
         _ => return Err(missing()),
     };
     found.map_err(|error| toleranced::band(field, error))
+}
+
+/// The shorter leg (m) of the right angles that a feature with some `extents` makes with its datums: how far either face
+/// goes away from the line in which they meet.
+fn shorter_leg(made: &FeatureDraft, extents: [f64; 2], datums: &[usize], draft: &Draft) -> f64 {
+    let leg = |shape: Shape, line: [f64; 3], sides: [[f64; 3]; 2], extents: [f64; 2]| {
+        let across = |side: [f64; 3]| cross(side, line).iter().map(|x| x * x).sum::<f64>();
+        let [a, b] = [0, 1].map(|i| extents[i] * libm::sqrt(across(sides[i])));
+        if shape == Shape::Axis { extents[0] } else { a + b }
+    };
+    let of_datum = |datum: &usize| {
+        let feature = &draft.assembly.features[*datum];
+        let line = unit(cross(made.feature.nominal[1], feature.nominal[1]))?;
+        let own = leg(made.feature.shape, line, made.sides, extents);
+        let (sides, size) = draft.faces[*datum];
+        Some(size.map_or(own, |size| own.min(leg(feature.shape, line, sides, size))))
+    };
+    datums.iter().filter_map(of_datum).fold(extents[0].max(extents[1]), f64::min)
 }
 
 /// Lets the feature vary in a zone of `width` (m).

@@ -5,6 +5,7 @@
 //! general = "mH"               # ISO 2768 classes: sizes f m c v, geometry H K L
 //! rule = "sigma-zone"          # planes in their zones: or truncated, uniform-in-zone, translation
 //! sigma = 3                    # a tolerance of ±t is this many standard deviations
+//! correlation = "pearson"      # what a [[correlation]] is of: values, or "spearman", their ranks
 //!
 //! [[dimension]]
 //! name = "height"
@@ -51,6 +52,7 @@ mod tests;
 mod toleranced;
 
 use crate::{
+    number::fixed,
     product::{
         Product,
         assembly::Assembly,
@@ -59,7 +61,10 @@ use crate::{
         function::Measures,
         iso2768::{General, WITHDRAWN},
     },
-    tolerance::model::{Contributor, Model, Variation, ZoneRule},
+    tolerance::{
+        copula::{self, Coefficient},
+        model::{Contributor, Model, Variation, ZoneRule},
+    },
 };
 
 use super::{
@@ -80,6 +85,9 @@ struct Defaults {
     sigma: f64,
 }
 
+/// Directions in which a feature extends, and how far (m), if it says so.
+type Face = ([[f64; 3]; 2], Option<[f64; 2]>);
+
 /// A product in the making.
 struct Draft {
     defaults: Defaults,
@@ -92,6 +100,8 @@ struct Draft {
     /// Names with the parts'.
     feature_names: Vec<String>,
     parts_of_features: Vec<usize>,
+    /// How they extend.
+    faces: Vec<Face>,
     /// Datums that go together, and what they place.
     datum_systems: Vec<(Vec<usize>, usize)>,
 }
@@ -136,6 +146,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         assembly: Assembly::default(),
         feature_names: Vec::new(),
         parts_of_features: Vec::new(),
+        faces: Vec::new(),
         datum_systems: Vec::new(),
     };
     for table in tables(root, "dimension")? {
@@ -220,10 +231,23 @@ fn texts<'t, 's>(table: &Field<'t, 's>, key: &str, allowed: &str) -> Result<Vec<
 
 fn correlations(root: &Field, contributors: &[Contributor]) -> Result<Vec<(usize, usize, f64)>, SceneError> {
     const ALLOWED: &str = "a list of two contributors, such as [\"a\", \"b\"]";
+    let kind = match root.get("tolerance").and_then(|table| table.get("correlation")) {
+        None => Coefficient::Values,
+        Some(field) => match field.to_text()? {
+            "pearson" => Coefficient::Values,
+            "spearman" => Coefficient::Ranks,
+            _ => {
+                let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
+                return Err(field.error(problem, "pearson: of the values, or spearman: of their ranks"));
+            }
+        },
+    };
     let mut correlations: Vec<(usize, usize, f64)> = Vec::new();
-    for table in tables(root, "correlation")? {
+    let mut fields = Vec::new();
+    let tables = tables(root, "correlation")?;
+    for table in &tables {
         let mut pair = Vec::new();
-        for (name, field) in texts(&table, "of", ALLOWED)? {
+        for (name, field) in texts(table, "of", ALLOWED)? {
             let scalar = |c: &&Contributor| matches!(c.variation, Variation::Scalar { .. });
             let at = contributors.iter().position(|contributor| contributor.name == name && scalar(&contributor));
             pair.push(at.ok_or_else(|| {
@@ -242,8 +266,25 @@ fn correlations(root: &Field, contributors: &[Contributor]) -> Result<Vec<(usize
             return Err(of.error(problem, "two different contributors, every pair once"));
         }
         let field = table.require("coefficient", "a number from -1 to 1")?;
-        correlations.push((row, column, field.to_number(&COEFFICIENT)?));
-        if !correlation::is_positive_definite(contributors.len(), &correlations) {
+        let stated = field.to_number(&COEFFICIENT)?;
+        let of = [row, column].map(|i| match &contributors[i].variation {
+            Variation::Scalar { distribution, .. } => Some(distribution),
+            Variation::Zone(_) | Variation::Disc(_) => None,
+        });
+        let scores = match of {
+            [Some(one), Some(other)] => copula::of_scores(one, other, kind, stated).map_err(|[least, greatest]| {
+                let [least, greatest] = [least, greatest].map(|end| fixed(end, 3));
+                field.out_of_range("", format!("between {least} and {greatest} for these two distributions"))
+            })?,
+            _ => stated,
+        };
+        correlations.push((row, column, scores));
+        fields.push(field);
+    }
+    // As a whole: a part of a possible matrix with nothing beside it need not be one.
+    if !correlation::is_positive_definite(contributors.len(), &correlations) {
+        let greatest = correlations.iter().zip(&fields).max_by(|a, b| a.0.2.abs().total_cmp(&b.0.2.abs()));
+        if let Some((_, field)) = greatest {
             return Err(field.error(Problem::NotPositiveDefinite, "coefficients nearer to 0"));
         }
     }

@@ -5,8 +5,11 @@ use crate::{
     scene::{Override, Problem, SceneError, SceneFile, shipped},
     tolerance::moments,
     tolerance::{
+        analysis::analyse,
         lanes::{LANES, Lanes},
         model::{Distribution, Quantity, Variation},
+        sampler::Method,
+        study::Settings,
     },
 };
 
@@ -35,7 +38,7 @@ pub(super) fn at(product: &Product, values: &[(usize, f64)]) -> Vec<f64> {
 fn limits(product: &Product) -> Vec<[f64; 2]> {
     let limits = product.model.contributors.iter().map(|contributor| match contributor.variation {
         Variation::Scalar { limits, .. } => limits,
-        Variation::Zone(_) => panic!("a plane"),
+        Variation::Zone(_) | Variation::Disc(_) => panic!("a plane or an axis"),
     });
     limits.collect()
 }
@@ -120,7 +123,7 @@ fn distributions_and_correlation() {
         .iter()
         .map(|contributor| match &contributor.variation {
             Variation::Scalar { distribution, .. } => distribution.clone(),
-            Variation::Zone(_) => panic!("a plane"),
+            Variation::Zone(_) | Variation::Disc(_) => panic!("a plane or an axis"),
         })
         .collect();
     assert_eq!(kinds[0], Distribution::Uniform { limits: [0.05 - 1e-4, 0.05 + 1e-4] });
@@ -139,6 +142,84 @@ fn distributions_and_correlation() {
     let [with, without] = [&worn.model, &product("worn-tool", &["correlation=[]"]).model]
         .map(|model| moments::of_measures(model)[0].deviation);
     close(with * with - without * without, 2.0 * 0.8 * (0.2e-3 / 3.0) * (0.2e-3 / 3.0), 1e-16);
+}
+
+/// Three dimensions, each pair correlated by the same coefficient.
+fn three(distribution: &str, kind: &str, coefficient: f64) -> String {
+    let dimension = |name: &str| {
+        format!("[[dimension]]\nname = \"{name}\"\nvalue = 5\ntolerance = 0.3\ndistribution = {distribution}\n")
+    };
+    let pair = |one: &str, other: &str| {
+        format!("[[correlation]]\nof = [\"{one}\", \"{other}\"]\ncoefficient = {coefficient}\n")
+    };
+    format!(
+        "[tolerance]\ncorrelation = \"{kind}\"\n{}{}{}{}{}{}[[measure]]\nname = \"m\"\nis = \"a + b + c\"\n",
+        dimension("a"),
+        dimension("b"),
+        dimension("c"),
+        pair("a", "b"),
+        pair("a", "c"),
+        pair("b", "c"),
+    )
+}
+
+#[test]
+fn correlations_are_checked_as_a_whole_and_mean_one_thing() {
+    let deviation = |text: &str| moments::of_measures(&parse(text, &[]).unwrap().product.unwrap().model)[0].deviation;
+    let sum = |sigma: f64, rho: f64| sigma * libm::sqrt(3.0 + 6.0 * rho);
+    // The first two of these alone would be impossible with nothing between b and c.
+    close(deviation(&three("\"normal\"", "pearson", 0.75)), sum(1e-4, 0.75), 1e-12);
+    assert!(parse(&three("\"normal\"", "pearson", -0.51), &[]).is_err());
+    let uniform = 0.3e-3 / libm::sqrt(3.0);
+    // Of uniform values ranks and values have the same correlation; of skewed ones they do not.
+    for kind in ["pearson", "spearman"] {
+        close(deviation(&three("\"uniform\"", kind, 0.6)), sum(uniform, 0.6), 1e-10);
+    }
+    let skewed = "{ kind = \"skewed\", skewness = 2 }";
+    close(deviation(&three(skewed, "pearson", 0.6)), sum(1e-4, 0.6), 1e-10);
+    assert!(deviation(&three(skewed, "spearman", 0.6)) < 0.999 * sum(1e-4, 0.6));
+    // The units have it, too.
+    for kind in ["pearson", "spearman"] {
+        let product = parse(&three(skewed, kind, 0.6), &[]).unwrap().product.unwrap();
+        let settings = Settings { method: Method::PseudoRandom, samples: 100_000, replicates: 1, seed: 1 };
+        let found = analyse(&product.model, settings, |_| ()).unwrap().joint.measures[0].deviation;
+        let expected = deviation(&three(skewed, kind, 0.6));
+        assert!((found.value - expected).abs() < 4.0 * found.error.unwrap(), "{kind}: {found:?} {expected}");
+    }
+    let error = parse(&three(skewed, "pearson", -0.9), &[]).err().unwrap().to_string();
+    assert!(error.contains("between -0.7") && error.contains("1.000"), "{error}");
+}
+
+/// A wall 400 × 10 on a floor 400 × 80.
+const WALL: &str = r#"
+[tolerance]
+general = "mK"
+[[part]]
+name = "box"
+plane = [
+  { name = "floor", at = [0, 0, 0], normal = "+z", along = "+x", extents = [400, 80], flatness = "none" },
+  { name = "wall", at = [0, 40, 5], normal = "-y", along = "+x", extents = [400, 10], flatness = "none", perpendicularity = { datum = "box.floor" } },
+  { name = "roof", at = [0, 0, 10], normal = "-z", along = "+x", extents = [400, 80], offset = { value = 0, tolerance = 0.4 }, flatness = "none", parallelism = { datum = "box.floor" } },
+]
+[[measure]]
+name = "corner"
+angle = ["box.wall", "box.floor"]
+[[measure]]
+name = "roof"
+angle = ["box.roof", "box.floor"]
+"#;
+
+#[test]
+fn general_perpendicularity_goes_by_the_shorter_leg_and_parallelism_by_the_whole_size() {
+    let wall = parse(WALL, &[]).unwrap().product.unwrap();
+    let first = |name: &str| wall.model.contributors.iter().position(|c| c.name == name).unwrap();
+    let offset = |name: &str| wall.model.offsets()[first(name)];
+    // Class K up to 100 mm: 0.4 mm over the wall's height of 10 mm.
+    let leant = at(&wall, &[(offset("box.wall perpendicularity") + 2, 1.0)])[0];
+    close((leant - std::f64::consts::FRAC_PI_2).abs(), libm::atan(0.4 / 10.0), 1e-9);
+    // ± 0.4 mm is 0.8 mm in all, more than the flatness of 0.4 mm: half of it at either end of 80 mm.
+    let tilted = at(&wall, &[(offset("box.roof parallelism") + 2, 1.0)])[1];
+    close(std::f64::consts::PI - tilted, libm::atan(0.8 / 80.0), 1e-6);
 }
 
 #[test]
@@ -243,7 +324,7 @@ fn bad_input_is_shown_with_its_place_and_what_is_allowed() {
         ("[\"a\", \"b\"]", "[\"a\", \"c\"]", ["[\"a\", |\"c\"]", "no contributor of one variable `c`", "a, b, phi"]),
         ("[\"a\", \"b\"]", "[\"a\"]", ["of = |[\"a\"]\ncoef", "is a list of 1", "two contributors"]),
         ("[\"a\", \"b\"]", "[\"a\", \"a\"]", ["of = |[\"a\", \"a\"]", "is \"a\" again", "every pair once"]),
-        ("coefficient = 0.5", "coefficient = 1", ["coefficient = |1", "not positive definite", "nearer to 0"]),
+        ("coefficient = 0.5", "coefficient = 1", ["coefficient = |1", "is 1", "between -0.9"]),
         ("coefficient = 0.5", "coefficient = 1.1", ["coefficient = |1.1", "is 1.1", "-1 to 1"]),
         ("a + 'b'", "a + 'c'", ["a + |'c' / 2", "no measure above called `c`", "a dimension"]),
         ("a + 'b'", "a + + +", ["a + + + |/", "found `/`", "such as"]),
