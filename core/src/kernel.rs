@@ -116,8 +116,10 @@ mod tests {
         law::{Impact, Pad, ThreeHalves},
     };
 
+    type Driven = AxisBody<f32, ThreeHalves<f32>, Pad<f32>, Drive<f32>>;
+
     /// A body of 0.1 kg that is driven along an axis, towards a pad 1 mm ahead.
-    fn kernel() -> Kernel<f32, AxisBody<f32, ThreeHalves<f32>, Pad<f32>, Drive<f32>>, ImplicitEuler<4>> {
+    fn kernel() -> Kernel<f32, Driven, ImplicitEuler<4>> {
         let contact = Impact::new(ThreeHalves::new(3e6).unwrap(), 1000.0, 1e-4).unwrap();
         let drive = Drive { gain: 40.0, ramp_start: 0.05, ramp_end: 1.0, speed: -0.1, point_b: Vector3::zeros() };
         let body = AxisBody::driven(0.1, 0.0, Pad::new(1e-3).unwrap(), contact, drive).unwrap();

@@ -110,7 +110,6 @@ static void record(void) {
 static void refuse(void) {
     static uint64_t erased[sizeof table / 8 + 1];
     slipfit_lookup found;
-    slipfit_spare spare = {0, 0, 0};
     put_hex("null", (uint64_t)slipfit_predictor_init(0, &slipfit_this_scene, 0.0f));
     put_hex("misaligned", (uint64_t)slipfit_predictor_step((slipfit_predictor *)((char *)&predictor + 1)));
     put_hex("not made", (uint64_t)slipfit_table_look_up((const slipfit_table *)erased, 0.0f, 0.0f, &found));
@@ -118,8 +117,6 @@ static void refuse(void) {
     put_hex("position", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_AXIS_POSITION, SLIPFIT_SCENE_HASH));
     put_hex("closed then", (uint64_t)slipfit_table_look_up(&table, 0.0f, 0.0f, &found));
     put_hex("truncated", (uint64_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE - 1, SLIPFIT_AXIS_TIME, SLIPFIT_SCENE_HASH));
-    put_hex("closed slots", (uint64_t)slipfit_slots_open(&table, &(slipfit_slots){0, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, 8}, SLIPFIT_AXIS_TIME, SLIPFIT_SCENE_HASH, &spare));
-    put_hex("spare", spare.slot + (uint64_t)spare.sequence + spare.room);
     put_hex("foreign", (uint64_t)slipfit_table_open(&table, (const uint8_t *)erased, 64, SLIPFIT_AXIS_TIME, SLIPFIT_SCENE_HASH));
 }
 
