@@ -90,6 +90,85 @@ fn a_stroke_s_table_has_fewer_instants_and_gives_verdicts() {
 }
 
 #[test]
+fn the_main_job_answers_in_its_first_lines_and_leaves_no_level_undecided() {
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["cd-rom-slide-drawing", "cd-rom-slide", "cd-rom-slide-fast"] {
+        let output = slipfit(folder.path(), &["run", scene, "--n", "-3:5:0.5", "--out", scene]);
+        let text = stdout(&output);
+        assert!(text.lines().count() <= 15, "{text}");
+        for part in ["n = ", "runs", "Closes first    left front across", "What to change", "Look at", "report.html"] {
+            assert!(text.contains(part), "{part}\n{text}");
+        }
+        assert!(!text.contains("undecided"), "{text}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("warning: self-locking"), "{text}");
+        let page = std::fs::read_to_string(folder.path().join(scene).join("report.html")).unwrap();
+        assert!(page.contains("class=\"answer\"") && page.contains("<details>"));
+        for word in ["the paper", "Fig. 8", "Fig. 9"] {
+            assert!(!page.contains(word), "{word} in the report of {scene}");
+        }
+    }
+    // What an earlier run of another scene has left is told of.
+    let again = slipfit(folder.path(), &["run", "cd-rom-slide", "--n", "0:4:1", "--out", "cd-rom-slide-drawing"]);
+    let warnings = String::from_utf8_lossy(&again.stderr).into_owned();
+    assert!(warnings.contains("also holds what this run did not write: contributors.svg"), "{warnings}");
+}
+
+#[test]
+fn a_table_across_two_worlds_warns() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = slipfit(folder.path(), &["table", "--over", "position", "--n", "0:4:1"]);
+    assert!(output.status.success());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("neighbouring levels do different things"));
+}
+
+#[test]
+fn pictures_are_drawn_when_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, words) in [
+        (&["simulate", "--n", "1", "--plot", "a.svg"][..], "drive force (N)"),
+        (&["sweep", "--n", "0:2:1", "--plot", "a.svg"], "verdict and force"),
+        (&["table", "--n", "0:2:1", "--plot", "a.svg"], "as the flash table gives it"),
+        (&["table", "--n", "0:2:1", "--over", "position", "--plot", "a.svg"], "position (mm)"),
+    ] {
+        stdout(&slipfit(folder.path(), arguments));
+        let svg = std::fs::read_to_string(folder.path().join("a.svg")).unwrap();
+        assert!(svg.contains(words) && roxmltree::Document::parse(&svg).is_ok(), "{arguments:?}");
+        std::fs::remove_file(folder.path().join("a.svg")).unwrap();
+    }
+    // One file cannot hold two outputs.
+    for arguments in [["simulate", "--csv", "a", "--plot", "a"], ["sweep", "--csv", "a", "--plot", "./a"]] {
+        let output = slipfit(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(!folder.path().join("a").exists());
+    }
+}
+
+#[test]
+fn machines_are_told_the_version_the_solver_and_the_warnings() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = json(folder.path(), &["simulate", "--n", "2.5", "--json"]);
+    assert_eq!((&report["json_version"], &report["solver"]["by"]), (&1.into(), &"desk".into()));
+    assert!(report["solver"]["accepted"].as_u64().unwrap() > 50 && report["solver"]["tolerance_n"] == 4e-6);
+    assert_eq!(report["controller"]["solver"]["integrator"], "implicit-euler");
+    assert!(report["controller"]["trust"]["difference"].as_f64().unwrap() < 0.01);
+    assert!(report["warnings"][0].as_str().unwrap().contains("self-locking"));
+    let report = json(folder.path(), &["sweep", "--n", "0:1:1", "--stroke", "--json"]);
+    assert_eq!((&report["json_version"], &report["ranges"][0]["verdict"]), (&1.into(), &"jammed".into()));
+    assert!(report["levels"][0]["stops"]["z"].as_f64().unwrap() > 0.03, "{report}");
+    for command in [&["check"][..], &["kernel"], &["table", "--n", "0:1:1"], &["run", "--n", "0:1:1"]] {
+        let report = json(folder.path(), &[command, &["--json"]].concat());
+        assert_eq!(report["json_version"], 1, "{command:?}");
+    }
+}
+
+#[test]
+fn help_into_a_full_disk_fails() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let mut help = Command::new(env!("CARGO_BIN_EXE_slipfit"));
+    assert_eq!(help.arg("--help").stdout(full).status().unwrap().code(), Some(1));
+}
+
+#[test]
 fn check_counts_degrees_of_freedom_and_names_the_tightest_pair() {
     let folder = tempfile::tempdir().unwrap();
     let found = json(folder.path(), &["check", "--json"]);

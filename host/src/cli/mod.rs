@@ -234,6 +234,8 @@ fn progress(what: &'static str, length: usize) -> ProgressBar {
         bar.set_style(style);
     }
     bar.set_message(what);
+    // Shown from the first moment on, not from the first unit that is done.
+    bar.enable_steady_tick(std::time::Duration::from_millis(250));
     bar
 }
 
