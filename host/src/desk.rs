@@ -36,16 +36,27 @@ const STICK_BAND: [f64; 2] = [1e-9, 1e-4];
 /// Instants between two knots at which a run is looked at for its figures, the second knot among them.
 const LOOKS: u32 = 4;
 
+/// How much a narrow stick band may tighten the tolerance.
+const NARROWEST: f64 = 0.01;
+
 /// The least error of force (N) that a step is held to, where the drive has no force.
 const LEAST_TOLERANCE: f64 = 1e-9;
 
 /// The error of force (N) that a step of `scene` may make: the scene's share of the drive's greatest force, or of the slide's
-/// weight where nothing is commanded.
+/// weight where nothing is commanded; less where a narrow stick band asks for it.
 pub fn tolerance(scene: &Scene) -> f64 {
     let [x, y, z] = scene.slide.gravity;
     let weight = scene.slide.mass * libm::sqrt(x * x + y * y + z * z);
     let greatest = if scene.greatest_force() > 0.0 { scene.greatest_force() } else { weight };
-    (scene.run.error * greatest).max(LEAST_TOLERANCE)
+    // A stated stick band has to be resolved, or steps chatter within it.
+    let resolving = match scene.friction {
+        FrictionData::Regularised { stick_band, .. } if scene.drive.gain > 0.0 => {
+            scene.drive.gain * stick_band / STICK_BANDS
+        }
+        _ => f64::INFINITY,
+    };
+    let share = scene.run.error * greatest;
+    share.min(resolving.max(share * NARROWEST)).max(LEAST_TOLERANCE)
 }
 
 /// The stick band (m/s) that stands for true stick at this `tolerance` (N); `None` unless friction is exact.
@@ -210,9 +221,16 @@ mod tests {
     #[test]
     fn nothing_commanded_is_held_to_a_share_of_the_weight() {
         let mut scene = example::cd_rom();
-        assert!((tolerance(&scene) - 4e-6).abs() < 1e-18);
+        assert!((tolerance(&scene) - 2e-6).abs() < 1e-18);
         scene.drive.speed = 0.0;
-        assert!((tolerance(&scene) - 0.0818 * 9.81 * 1e-6).abs() < 1e-18);
+        assert!((tolerance(&scene) - 0.0818 * 9.81 * 5e-7).abs() < 1e-18);
+    }
+
+    #[test]
+    fn a_narrow_stick_band_is_resolved() {
+        let mut scene = example::cd_rom();
+        scene.friction = FrictionData::Regularised { coefficient: 0.3, stick_band: 1e-7 };
+        assert!((tolerance(&scene) - 40.0 * 1e-7 / 4.0).abs() < 1e-18);
     }
 
     /// A slide held by friction alone: at rest for exact friction. The desk's creeps, by less than its stick band.

@@ -73,3 +73,38 @@ impl Integrator for Rodas4 {
         step::<Self, S, M, D>(mechanism, t, h, motion)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Rodas4;
+    use crate::{
+        axis::AxisBody,
+        integrator::{Integrator, Rodas3},
+        kernel::Kernel,
+        law::{Impact, Linear, Slot},
+    };
+
+    /// How far from the closed form a mass between two springs is that falls from their middle, after 0.1 s in steps of `h` (s).
+    fn error<I: Integrator>(h: f64) -> f64 {
+        let (mass, stiffness) = (0.1, 100.0);
+        let law = Impact::new(Linear::new(stiffness / 2.0).unwrap(), 0.0, 1.0).unwrap();
+        let held = Slot::new(-1.0, -1.0).unwrap();
+        let body = AxisBody::driven(mass, -9.81, held, law, ()).unwrap();
+        let kernel = Kernel::<f64, _, I>::new(body, h).unwrap();
+        let mut state = kernel.at_rest(0.0);
+        while state.steps < (0.1 / h + 0.5) as u32 {
+            kernel.step(&mut state);
+        }
+        let swing = -9.81 * mass / stiffness;
+        libm::fabs(state.motion.pose - swing * (1.0 - libm::cos(0.1 * libm::sqrt(stiffness / mass))))
+    }
+
+    #[test]
+    fn errors_fall_with_the_order() {
+        let order = |coarse: f64, fine: f64| libm::log2(coarse / fine);
+        let four = order(error::<Rodas4>(5e-4), error::<Rodas4>(2.5e-4));
+        let three = order(error::<Rodas3>(2e-3), error::<Rodas3>(1e-3));
+        assert!((3.8..4.3).contains(&four) && (2.8..3.3).contains(&three), "{four} {three}");
+        assert!(error::<Rodas4>(1e-3) < 1e-8);
+    }
+}

@@ -181,7 +181,8 @@ impl Arguments {
                 warnings,
             });
         }
-        print(&format!("{}\n\n{answer}", scene.title))?;
+        let page = self.out.join(OUTPUTS[0]);
+        print(&format!("{}\n\n{answer}Look at         {}", scene.title, page.display()))?;
         warn(&warnings);
         Ok(())
     }
@@ -242,7 +243,6 @@ impl Arguments {
         if let Some(warning) = table::coarse(scene, &simulated.table) {
             let _ = writeln!(text, "                {warning}");
         }
-        let _ = writeln!(text, "Look at         {}", self.out.join(OUTPUTS[0]).display());
         text
     }
 

@@ -255,6 +255,15 @@ impl Found {
                 reports.push(report);
             }
         }
+        // A key that is misspelt is not missing as well.
+        let misspelt: Vec<String> = reports
+            .iter()
+            .filter_map(|report| match &report.problem {
+                Problem::UnknownKey { similar, .. } => similar.clone(),
+                _ => None,
+            })
+            .collect();
+        reports.retain(|report| !matches!(&report.problem, Problem::Missing(key) if misspelt.contains(key)));
         // The file before the command line, each from its beginning.
         reports.sort_by_key(|report| (report.name == COMMAND_LINE, report.text.clone(), report.span.start));
         Err(SceneError(reports))

@@ -34,6 +34,12 @@ impl Setup {
         self.scene.gaps_at(&[self.n; CONTACTS]).map(|gap| gap - self.interference)
     }
 
+    /// The controller with a quarter of the step in f64.
+    pub fn finer(&self) -> ControllerSpec {
+        let ControllerSpec { step, integrator, .. } = self.scene.controller;
+        ControllerSpec { step: step / 4.0, integrator, scalar: ScalarKind::F64 }
+    }
+
     /// Settings that sample every millisecond, or every step if that is longer.
     pub fn settings(&self) -> Settings {
         Settings::controller(&self.scene, self.scene.controller.step.max(1e-3))

@@ -1,7 +1,7 @@
 //! The stability map: how far from the paper's slide a fixed step still holds, and whether a run that does not hold says so.
 //!
-//! Every point is run as the controller runs it with an account of its energy, once more by the desk for its error, and once
-//! at rest: without a drive and with no gap closed, where nothing may gain energy. Points are independent and their
+//! Every point is run as the controller runs it with an account of its energy, once more by the desk, or else with a quarter of
+//! the step, for its error, and once at rest: without a drive and with no gap closed, where nothing may gain energy. Points are independent and their
 //! random numbers a function of seed and index, so that the map does not depend on the number of threads.
 
 mod factor;
@@ -64,7 +64,8 @@ pub struct Indicators {
     pub doubtful_force: f64,
     /// See [`Trust`](crate::trust::Trust).
     pub difference: Option<f64>,
-    /// Greatest force error from 50 ms on over the peak force, against the desk; infinite if the desk found no end.
+    /// Greatest force error from 50 ms on over the peak force, against the desk; infinite if there is nothing to hold
+    /// it against.
     pub error: f64,
     /// Whether the run itself says that its step is too large.
     pub warned: bool,
@@ -177,7 +178,11 @@ fn finite(run: Result<Run, SimulateError>) -> Result<Option<Run>, SimulateError>
 fn indicators(setup: &Setup) -> Result<Option<Indicators>, SimulateError> {
     let (gaps, settings) = (setup.gaps(), setup.settings());
     let Some(run) = finite(audited(&setup.scene, &gaps, &settings))? else { return Ok(None) };
-    let truth = finite(simulate(&setup.scene, &gaps, &Settings::desk(&setup.scene, settings.every)))?;
+    let truth = match finite(simulate(&setup.scene, &gaps, &Settings::desk(&setup.scene, settings.every)))? {
+        Some(truth) => Some(truth),
+        // Where nothing is smooth enough for error control.
+        None => finite(simulate(&setup.scene, &gaps, &settings.by(setup.finer())))?,
+    };
     let run = match &truth {
         Some(truth) => against(truth, &setup.scene, &settings, run),
         None => run,
