@@ -1,6 +1,5 @@
 //! The contact law at single points and over single bounces, against values computed elsewhere.
 
-use slipfit::scene::{CD_ROM_SLIDE, Scene};
 use slipfit_core::{
     SVector, Scalar,
     axis::AxisBody,
