@@ -106,8 +106,8 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         (r.x + r.y + r.z + q.w + q.v.x + q.v.y + q.v.z) * zero
     }
 
-    /// Velocities are rounded to the last place of what [`settling`] says, so that a body that sticks comes to rest to the
-    /// last bit.
+    /// Velocities are rounded to the last place of what an acceleration of 4000 m/s² makes of them, of 4 m/s at most: a body
+    /// that sticks comes to rest to the last bit.
     #[inline(always)]
     fn settled(&self, velocity: &SVector<S, 6>, a: S) -> SVector<S, 6> {
         if !F::STICKS {

@@ -72,7 +72,6 @@ pub struct Control {
     watch: Watch,
     /// Over all levels of the table.
     pub bank: LevelBank<'static, F32Nodes<'static>, 32>,
-    table: Table<'static, 2, F32Nodes<'static>>,
     scrubber: Scrubber,
     region: &'static [u8],
     /// Rounds in which the table had changed.
@@ -108,7 +107,6 @@ impl Control {
             monitor: Monitor::new(table, rig.taken_for, limits).expect("the limits are in bounds"),
             watch: Watch::default(),
             bank: LevelBank::new(table).expect("the table is over few levels and time"),
-            table,
             scrubber: Scrubber::new(&flashed),
             region,
             damaged: 0,
