@@ -104,7 +104,7 @@ fn nodes_are_what_a_run_does_where_it_passes() {
 fn the_node_at_the_start_holds_the_breakaway() {
     let (scene, made) = &*OVER_POSITION;
     let table = Table::<2>::open(&made.table.bytes).unwrap();
-    let settings = at_every_step(&scene);
+    let settings = at_every_step(scene);
     let run = simulate(scene, &scene.gaps_at(&[2.0; CONTACTS]), &settings).unwrap().trajectory;
     let leaving = run.z.iter().take_while(|z| **z < SAMPLE).count();
     let greatest = run.force[..leaving].iter().copied().fold(0.0, f64::max);

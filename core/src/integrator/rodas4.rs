@@ -15,7 +15,7 @@ use crate::{Scalar, mechanism::Mechanism};
 pub struct Rodas4;
 
 /// What the last two stages and the result share.
-const LAST: [f64; 4] = [1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950];
+const LAST: [f64; 4] = [1.221224509226641, 6.019134481288629, 12.53708332932087, -0.687886036105895];
 
 impl Tableau for Rodas4 {
     const GAMMA: f64 = 0.25;
@@ -39,7 +39,7 @@ impl Tableau for Rodas4 {
             force_at: Some(&LAST),
             time: 1.0,
             time_rate: 0.0,
-            coupling: &[7.496443313967647, -10.24680431464352, -33.99990352819905, 11.70890893206160],
+            coupling: &[7.496443313967647, -10.24680431464352, -33.99990352819905, 11.7089089320616],
         },
         StageOf {
             force_at: Some(&[LAST[0], LAST[1], LAST[2], LAST[3], 1.0]),
