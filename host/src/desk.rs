@@ -1,7 +1,7 @@
 //! The desk: one unit by error-controlled steps, the truth that a controller is held against.
 //!
 //! Exact friction has no derivative at rest, which error control needs. The desk takes the regularised law instead, with
-//! a stick band that follows the tolerance: a band of [`STICK_BANDS`] times the error of speed that a step may make. The result
+//! a stick band that follows the tolerance: a band of four times the error of speed that a step may make. The result
 //! tends to exact friction as the tolerance does to zero, at the cost of the regularised law; a narrower band would make
 //! steps chatter between sticking and sliding. What creep within the band changes is part of the difference to a run at a
 //! tenth of the tolerance.
@@ -27,7 +27,7 @@ use crate::{
     trust::Trust,
 };
 
-/// See the module's text.
+/// Stick bands in the error of speed that a step may make; see the top of the file.
 const STICK_BANDS: f64 = 4.0;
 
 /// Bounds of the stick band (m/s) that stands for true stick.

@@ -38,7 +38,7 @@ impl<S: Scalar + PartialOrd> AnyElastic<S> {
 }
 
 impl<S: Scalar> Elastic<S> for AnyElastic<S> {
-    #[inline]
+    #[inline(always)]
     fn force(&self, depth: S) -> (S, S) {
         match self {
             Self::Linear(law) => law.force(depth),
@@ -72,7 +72,7 @@ impl<S: Scalar> Friction<S> for AnySliding<S> {
 
     fn fresh() {}
 
-    #[inline]
+    #[inline(always)]
     fn traction(&self, (): &(), rubbing: &Rubbing<S>) -> (Traction<S>, ()) {
         match self {
             Self::Frictionless => Frictionless.traction(&(), rubbing),

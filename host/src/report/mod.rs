@@ -89,7 +89,12 @@ pub fn report(input: &ReportInput) -> String {
 
 /// The answer, line by line.
 fn verdict(answer: &str) -> String {
-    if answer.is_empty() { String::new() } else { format!("<pre class=\"answer\">{}</pre>\n", escape(answer)) }
+    if answer.is_empty() {
+        return String::new();
+    }
+    // Line by line: what escapes a text takes control characters out of it.
+    let lines: Vec<String> = answer.lines().map(escape).collect();
+    format!("<pre class=\"answer\">{}</pre>\n", lines.join("\n"))
 }
 
 fn summary(input: &ReportInput, table: &Table2) -> String {
@@ -198,7 +203,7 @@ mod tests {
         report(&ReportInput {
             scene: &scene,
             sweep: &sweep,
-            answer: "n = 1 … 2 runs & <b>",
+            answer: "n = 1 … 2 runs & <b>\nCloses first",
             figures: &figures,
             n: 3.43,
             production: None,
@@ -214,7 +219,9 @@ mod tests {
         for absent in ["<script", "<i>a figure", "left <back>", "a < b", "src=", "href=", "url(", "@import", "NaN"] {
             assert!(!html.contains(absent), "{absent}");
         }
-        for present in ["&lt;script&gt;", "left &lt;back&gt;", "a &lt; b", "&amp; co", "runs &amp; &lt;b&gt;"] {
+        for present in
+            ["&lt;script&gt;", "left &lt;back&gt;", "a &lt; b", "&amp; co", "runs &amp; &lt;b&gt;\nCloses first</pre>"]
+        {
             assert!(html.contains(present), "{present}");
         }
     }
