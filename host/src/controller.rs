@@ -90,6 +90,8 @@ impl Stepper<'_> {
     fn visit_any<S: Scalar + PartialOrd + std::fmt::Display>(self, slide: AnySlide<S>) -> Result<Run, SimulateError> {
         let integrator = self.spec.integrator;
         match slide {
+            AnySlide::ThreeHalvesRegularised(slide) => integrator.visit(Started { stepper: self, slide }),
+            AnySlide::ThreeHalvesExact(slide) => integrator.visit_implicit(Started { stepper: self, slide }),
             AnySlide::Sliding(slide) => integrator.visit(Started { stepper: self, slide }),
             AnySlide::Sticking(slide) => integrator.visit_implicit(Started { stepper: self, slide }),
         }
