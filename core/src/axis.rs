@@ -102,12 +102,12 @@ impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> Mechanism<S, 1> for AxisB
     }
 
     #[inline(always)]
-    fn momentum(&self, velocity: &SVector<S, 1>) -> SVector<S, 1> {
+    fn momentum(&self, _: &S, velocity: &SVector<S, 1>) -> SVector<S, 1> {
         velocity * self.mass
     }
 
     #[inline(always)]
-    fn velocity(&self, momentum: &SVector<S, 1>) -> SVector<S, 1> {
+    fn velocity(&self, _: &S, momentum: &SVector<S, 1>) -> SVector<S, 1> {
         momentum / self.mass
     }
 

@@ -34,8 +34,9 @@ pub mod sampling;
 mod scalar;
 pub mod scene;
 pub mod slide;
+pub mod system;
 pub mod table;
 
 pub use error::ParameterError;
-pub use nalgebra::{SVector, Vector2, Vector3};
+pub use nalgebra::{SMatrix, SVector, Vector2, Vector3};
 pub use scalar::Scalar;

@@ -109,11 +109,18 @@ pub trait Mechanism<S: Scalar, const D: usize> {
         *velocity
     }
 
-    /// M·`velocity`: generalised momentum (N·s, N·m·s).
-    fn momentum(&self, velocity: &SVector<S, D>) -> SVector<S, D>;
+    /// M·`velocity` at `pose`: generalised momentum (N·s, N·m·s).
+    fn momentum(&self, pose: &Self::Pose, velocity: &SVector<S, D>) -> SVector<S, D>;
 
-    /// M⁻¹·`momentum`: generalised velocities (m/s, rad/s).
-    fn velocity(&self, momentum: &SVector<S, D>) -> SVector<S, D>;
+    /// M⁻¹·`momentum` at `pose`: generalised velocities (m/s, rad/s).
+    fn velocity(&self, pose: &Self::Pose, momentum: &SVector<S, D>) -> SVector<S, D>;
+
+    /// What has at the pose `start` the effect (m/s², rad/s²) that `force` (N, N·m) has at `pose`: `force` itself where the
+    /// mass matrix is the same everywhere.
+    #[inline(always)]
+    fn referred(&self, _start: &Self::Pose, _pose: &Self::Pose, force: SVector<S, D>) -> SVector<S, D> {
+        force
+    }
 
     /// Forces (N, N·m) at time `t` (s); `a` (s) is the implicit part of the step. Writes to `remembered` what the laws
     /// remember if the motion is accepted.

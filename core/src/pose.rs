@@ -115,6 +115,12 @@ impl<S: Scalar> Pose<S> {
 }
 
 impl<S: Scalar> ToBody<S> {
+    /// Rᵀ.
+    #[inline(always)]
+    pub fn matrix(&self) -> Matrix3<S> {
+        self.change + Matrix3::identity()
+    }
+
     /// The frame's z axis in body axes.
     #[inline(always)]
     pub fn z_axis(&self) -> Vector3<S> {

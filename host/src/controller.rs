@@ -177,7 +177,7 @@ where
             }
             worst_residual = worst_residual.max(residual);
             let slide = kernel.mechanism();
-            let momentum = slide.impulse(&slide.momentum(&state.motion.velocity));
+            let momentum = slide.impulse(&slide.momentum(&state.motion.pose, &state.motion.velocity));
             watch.observe(t, [residual, report.error.to_f64()], momentum.to_f64(), force);
         }
     }

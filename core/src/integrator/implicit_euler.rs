@@ -30,9 +30,9 @@ impl<const PASSES: usize> Integrator for ImplicitEuler<PASSES> {
         let end = stage::<S, M, D, PASSES, CHORD>(mechanism, t + h, h, motion, motion.velocity);
         // Half the change of the force from the last step's end is what the first order leaves out; the linearisation takes
         // the stiff part out of it again, which the scheme damps and does not follow.
-        let change = mechanism.momentum(&(end.motion.acceleration - motion.acceleration));
+        let change = mechanism.momentum(&end.motion.pose, &(end.motion.acceleration - motion.acceleration));
         let left_out = mechanism.solve(&end.linearisation, &(change * S::from_f64(0.5)));
-        let error = mechanism.impulse(&mechanism.momentum(&left_out));
+        let error = mechanism.impulse(&mechanism.momentum(&end.motion.pose, &left_out));
         let pose = mechanism.normalised(&end.motion.pose);
         Step { motion: Motion { pose, ..end.motion }, residual: end.residual, error, drift: error * h }
     }

@@ -148,7 +148,7 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
             at.force
         };
         let change = velocity - base.velocity;
-        let imbalance = mechanism.momentum(&change) * rate - force;
+        let imbalance = mechanism.momentum(&pose, &change) * rate - force;
         let size = mechanism.impulse(&imbalance);
         if pass == passes {
             break (size, S::from_f64(WORSE) * least - size + size * zero);

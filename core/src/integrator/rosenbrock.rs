@@ -79,13 +79,14 @@ pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
             let at = Part::weighted(&parts, weights);
             let pose = mechanism.moved(&motion.pose, &at.place, S::one());
             let velocity = motion.velocity + at.velocity;
-            force = mechanism.forces(t + S::from_f64(stage.time) * h, &pose, &motion.memory, &velocity, h, None);
+            let there = mechanism.forces(t + S::from_f64(stage.time) * h, &pose, &motion.memory, &velocity, h, None);
+            force = mechanism.referred(&motion.pose, &pose, there);
             rate = mechanism.rate(&at.place, &velocity);
         }
         let before = Part::weighted(&parts, stage.coupling);
         let rate = rate + before.place * per_step;
         let changing = start.per_time * (S::from_f64(stage.time_rate) * h);
-        let force = force + changing + mechanism.momentum(&before.velocity) * per_step;
+        let force = force + changing + mechanism.momentum(&motion.pose, &before.velocity) * per_step;
         // The equation of the place is solved for first.
         let velocity = mechanism.solve(&linearisation, &(force + mechanism.pushed(&start.slopes, &(rate * a))));
         last = Part { place: (velocity + rate) * a, velocity };
@@ -103,7 +104,7 @@ pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
             memory: motion.memory,
         },
         residual: S::zero(),
-        error: mechanism.impulse(&mechanism.momentum(&last.velocity)),
-        drift: mechanism.impulse(&mechanism.momentum(&last.place)),
+        error: mechanism.impulse(&mechanism.momentum(&motion.pose, &last.velocity)),
+        drift: mechanism.impulse(&mechanism.momentum(&motion.pose, &last.place)),
     }
 }

@@ -22,7 +22,7 @@ impl Integrator for RungeKutta4 {
     ) -> StepOf<S, M, D> {
         let (half, third, sixth) = (S::from_f64(0.5), S::from_f64(1.0 / 3.0), S::from_f64(1.0 / 6.0));
         let acceleration = |t: S, pose: &M::Pose, velocity: &SVector<S, D>| {
-            mechanism.velocity(&mechanism.forces(t, pose, &motion.memory, velocity, h, None))
+            mechanism.velocity(pose, &mechanism.forces(t, pose, &motion.memory, velocity, h, None))
         };
         let (q1, v1) = (motion.pose, motion.velocity);
         let a1 = acceleration(t, &q1, &v1);
@@ -43,9 +43,9 @@ impl Integrator for RungeKutta4 {
         for (from, to, weight) in [(&q2, &p2, third), (&q3, &p3, third), (&q4, &p4, sixth)] {
             pose = mechanism.shifted(&pose, from, to, weight);
         }
-        // The two slopes at the middle differ by a term of third order: an estimate on the safe side.
-        let error = mechanism.impulse(&mechanism.momentum(&((a3 - a2) * (h * third))));
         let pose = mechanism.normalised(&pose);
+        // The two slopes at the middle differ by a term of third order: an estimate on the safe side.
+        let error = mechanism.impulse(&mechanism.momentum(&pose, &((a3 - a2) * (h * third))));
         let motion = Motion { pose, velocity, acceleration: a4, memory: motion.memory };
         Step { motion, residual: S::zero(), error, drift: error * h }
     }

@@ -21,12 +21,12 @@ impl Integrator for SemiImplicitEuler {
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
         let start = mechanism.forces(t, &motion.pose, &motion.memory, &motion.velocity, h, None);
-        let velocity = motion.velocity + mechanism.velocity(&(start * h));
+        let velocity = motion.velocity + mechanism.velocity(&motion.pose, &(start * h));
         let pose = mechanism.normalised(&mechanism.advanced(&motion.pose, &velocity, h));
         let end = mechanism.forces(t + h, &pose, &motion.memory, &velocity, h, None);
         // Half the change of the force over the step is what the first order leaves out.
         let error = mechanism.impulse(&((end - start) * (h * S::from_f64(0.5))));
-        let motion = Motion { pose, velocity, acceleration: mechanism.velocity(&end), memory: motion.memory };
+        let motion = Motion { pose, velocity, acceleration: mechanism.velocity(&pose, &end), memory: motion.memory };
         Step { motion, residual: S::zero(), error, drift: error * h }
     }
 }

@@ -181,13 +181,13 @@ impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> M
     }
 
     #[inline(always)]
-    fn momentum(&self, velocity: &SVector<S, 3>) -> SVector<S, 3> {
+    fn momentum(&self, _: &PlanarPose<S>, velocity: &SVector<S, 3>) -> SVector<S, 3> {
         let (v_w, rotation) = split(velocity);
         join(v_w * self.body.mass, rotation * self.body.inertia)
     }
 
     #[inline(always)]
-    fn velocity(&self, momentum: &SVector<S, 3>) -> SVector<S, 3> {
+    fn velocity(&self, _: &PlanarPose<S>, momentum: &SVector<S, 3>) -> SVector<S, 3> {
         let (p_w, l) = split(momentum);
         join(p_w / self.body.mass, l / self.body.inertia)
     }

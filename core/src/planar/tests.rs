@@ -105,7 +105,7 @@ fn slopes<C: Joint<f64>, F: Friction<f64, Memory = ()>>(
         // The linearised balance is M/a − ∂force/∂V with the pose moved over a.
         let balance = |sign: f64| {
             let v = velocity + displacement * sign;
-            flat.momentum(&v) / 1e-3 - force(&flat.moved(&nominal, &(displacement * (sign * 1e-3)), 1.0), &v)
+            flat.momentum(&nominal, &v) / 1e-3 - force(&flat.moved(&nominal, &(displacement * (sign * 1e-3)), 1.0), &v)
         };
         let back = flat.solve(&solve, &((balance(1.0) - balance(-1.0)) / 2.0));
         assert!((back - displacement).norm() <= 1e-5 * 1e-9, "{axis}: {back}");

@@ -33,7 +33,7 @@ pub struct Power<S> {
 impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     /// The energy at `motion`.
     pub fn energy(&self, motion: &MotionOf<S, Self, 6>) -> Energy<S> {
-        let momentum = self.momentum(&motion.velocity);
+        let momentum = self.momentum(&motion.pose, &motion.velocity);
         let gaps = self.gaps(&motion.pose);
         Energy {
             kinetic: motion.velocity.dot(&momentum) / S::from_f64(2.0),

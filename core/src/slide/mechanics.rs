@@ -119,13 +119,13 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     }
 
     #[inline(always)]
-    fn momentum(&self, velocity: &SVector<S, 6>) -> SVector<S, 6> {
+    fn momentum(&self, _: &Pose<S>, velocity: &SVector<S, 6>) -> SVector<S, 6> {
         let (v_w, w_b) = split(velocity);
         join(v_w * self.body.mass, w_b.component_mul(&self.body.inertia_b))
     }
 
     #[inline(always)]
-    fn velocity(&self, momentum: &SVector<S, 6>) -> SVector<S, 6> {
+    fn velocity(&self, _: &Pose<S>, momentum: &SVector<S, 6>) -> SVector<S, 6> {
         let (p_w, l_b) = split(momentum);
         join(p_w / self.body.mass, l_b.component_div(&self.body.inertia_b))
     }

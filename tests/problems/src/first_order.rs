@@ -28,7 +28,7 @@ pub fn rates<E: Elastic<f64>, F: Friction<f64>>(slide: &Slide<f64, E, F>, t: f64
     let pose = Pose { displacement_w: Vector3::new(x, y, z), orientation: Orientation { w, v: Vector3::new(a, b, c) } };
     let velocity = SVector::<f64, 6>::from_column_slice(velocity);
     let force = slide.forces(t, &pose, &slide.fresh(), &velocity, 1.0, None);
-    let acceleration = slide.velocity(&force);
+    let acceleration = slide.velocity(&pose, &force);
     // So far along the slope that nothing of it is lost beside the orientation itself.
     let far = 1024.0 * 1024.0 * 1024.0;
     let turned = slide.moved(&pose, &velocity, far).orientation;

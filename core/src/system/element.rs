@@ -1,0 +1,289 @@
+//! Elements: a link that measures and a law that answers.
+
+use super::{Bodies, assembly::Assembly};
+use crate::{SMatrix, SVector, Scalar, mechanism::Way};
+
+/// What an element sees: `R` lengths and angles, how fast they change, and how they go by the coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<S, const R: usize, const D: usize> {
+    /// x (m, rad); zero where a law needs the rate alone.
+    pub place: SVector<S, R>,
+    /// ẋ (m/s, rad/s).
+    pub rate: SVector<S, R>,
+    /// Λ = ∂ẋ/∂V.
+    pub gradient: SMatrix<S, R, D>,
+}
+
+/// What a law answers: forces along what it sees and how they change.
+#[derive(Clone, Copy, Debug)]
+pub struct Response<S, const R: usize> {
+    /// φ (N, N·m): its power is φ·ẋ.
+    pub force: SVector<S, R>,
+    /// −∂φ/∂ẋ; rows are forces.
+    pub impedance: SMatrix<S, R, R>,
+    /// −∂φ/∂x; rows are forces.
+    pub stiffness: SMatrix<S, R, R>,
+    /// ∂φ/∂t.
+    pub per_time: SVector<S, R>,
+}
+
+/// Measures `R` lengths and angles of bodies `B`.
+pub trait Link<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usize> {
+    /// What there is to see.
+    fn seen(&self, bodies: &B, placed: &B::Placed) -> Seen<S, R, D>;
+
+    /// Adds −∂(Λᵀφ)/∂Q for a `force` φ that is held to `stiffness`.
+    fn add_carried(
+        &self,
+        at: (&B, &B::Placed),
+        seen: &Seen<S, R, D>,
+        force: &SVector<S, R>,
+        stiffness: &mut SMatrix<S, D, D>,
+    );
+
+    /// ∂(Λ·V)/∂Q, the velocities V being held.
+    fn swept(&self, bodies: &B, placed: &B::Placed) -> SMatrix<S, R, D>;
+}
+
+/// A force law of `R` lengths and angles.
+pub trait Law<S: Scalar, const R: usize> {
+    /// What it remembers from one step to the next; `()` where nothing.
+    type Memory: Copy + core::fmt::Debug + PartialEq;
+
+    /// Whether it can hold bodies at rest.
+    const STICKS: bool;
+
+    /// The memory of a law that nothing has happened to yet.
+    fn fresh() -> Self::Memory;
+
+    /// The forces at `place` and `rate` at time `t` (s), and the memory if the motion is accepted.
+    fn response(
+        &self,
+        t: S,
+        place: &SVector<S, R>,
+        rate: &SVector<S, R>,
+        memory: &Self::Memory,
+        way: Way<S>,
+    ) -> (Response<S, R>, Self::Memory);
+
+    /// `base + weight·(to − from)`.
+    fn shifted(base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
+
+    /// `new` where it is finite and `condition` > 0, else `old`, number by number.
+    fn or_old(new: &Self::Memory, condition: S, old: &Self::Memory) -> Self::Memory;
+}
+
+/// A law at a link that measures `R` lengths and angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element<L, W, const R: usize> {
+    /// What it measures.
+    pub link: L,
+    /// What it answers.
+    pub law: W,
+}
+
+/// Elements that act on bodies `B`: one, an array, a slice, or a tuple of such.
+pub trait Elements<S: Scalar, B: Bodies<S, D>, const D: usize> {
+    /// What their laws remember.
+    type Memory: Copy;
+
+    /// Whether one of them can hold bodies at rest.
+    const STICKS: bool;
+
+    /// The memory of laws that nothing has happened to yet.
+    fn fresh(&self) -> Self::Memory;
+
+    /// Adds the forces at time `t` (s) to `sum`, and writes what the laws remember if the motion is accepted.
+    fn act(
+        &self,
+        way: (S, Way<S>),
+        at: (&B, &B::Placed),
+        memory: &Self::Memory,
+        remembered: Option<&mut Self::Memory>,
+        sum: &mut impl Assembly<S, D>,
+    );
+
+    /// `base + weight·(to − from)`.
+    fn shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
+
+    /// Makes `kept` `next`, number by number where it is finite and `condition` > 0.
+    fn adopt(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory);
+}
+
+impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usize, const R: usize> Elements<S, B, D>
+    for Element<L, W, R>
+{
+    type Memory = W::Memory;
+
+    const STICKS: bool = W::STICKS;
+
+    #[inline(always)]
+    fn fresh(&self) -> W::Memory {
+        W::fresh()
+    }
+
+    #[inline(always)]
+    fn act(
+        &self,
+        (t, way): (S, Way<S>),
+        (bodies, placed): (&B, &B::Placed),
+        memory: &W::Memory,
+        remembered: Option<&mut W::Memory>,
+        sum: &mut impl Assembly<S, D>,
+    ) {
+        let seen = self.link.seen(bodies, placed);
+        let (response, next) = self.law.response(t, &seen.place, &seen.rate, memory, way);
+        if let Some(slot) = remembered {
+            *slot = next;
+        }
+        sum.add(&self.link, (bodies, placed), &seen, &response);
+    }
+
+    #[inline(always)]
+    fn shifted(&self, base: &W::Memory, from: &W::Memory, to: &W::Memory, weight: S) -> W::Memory {
+        W::shifted(base, from, to, weight)
+    }
+
+    #[inline(always)]
+    fn adopt(&self, condition: S, next: &W::Memory, kept: &mut W::Memory) {
+        *kept = W::or_old(next, condition, kept);
+    }
+}
+
+impl<S: Scalar, B: Bodies<S, D>, const D: usize> Elements<S, B, D> for () {
+    type Memory = ();
+
+    const STICKS: bool = false;
+
+    #[inline(always)]
+    fn fresh(&self) {}
+
+    #[inline(always)]
+    fn act(
+        &self,
+        _: (S, Way<S>),
+        _: (&B, &B::Placed),
+        (): &(),
+        _: Option<&mut ()>,
+        _: &mut impl Assembly<S, D>,
+    ) {
+    }
+
+    #[inline(always)]
+    fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
+
+    #[inline(always)]
+    fn adopt(&self, _: S, (): &(), (): &mut ()) {}
+}
+
+impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, F: Elements<S, B, D>, const D: usize> Elements<S, B, D>
+    for (E, F)
+{
+    type Memory = (E::Memory, F::Memory);
+
+    const STICKS: bool = E::STICKS || F::STICKS;
+
+    #[inline(always)]
+    fn fresh(&self) -> Self::Memory {
+        (self.0.fresh(), self.1.fresh())
+    }
+
+    #[inline(always)]
+    fn act(
+        &self,
+        way: (S, Way<S>),
+        at: (&B, &B::Placed),
+        memory: &Self::Memory,
+        remembered: Option<&mut Self::Memory>,
+        sum: &mut impl Assembly<S, D>,
+    ) {
+        let (first, second) = match remembered {
+            Some((first, second)) => (Some(first), Some(second)),
+            None => (None, None),
+        };
+        self.0.act(way, at, &memory.0, first, sum);
+        self.1.act(way, at, &memory.1, second, sum);
+    }
+
+    #[inline(always)]
+    fn shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory {
+        (self.0.shifted(&base.0, &from.0, &to.0, weight), self.1.shifted(&base.1, &from.1, &to.1, weight))
+    }
+
+    #[inline(always)]
+    fn adopt(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory) {
+        self.0.adopt(condition, &next.0, &mut kept.0);
+        self.1.adopt(condition, &next.1, &mut kept.1);
+    }
+}
+
+impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: usize> Elements<S, B, D> for [E; N] {
+    type Memory = [E::Memory; N];
+
+    const STICKS: bool = E::STICKS;
+
+    #[inline(always)]
+    fn fresh(&self) -> Self::Memory {
+        self.each_ref().map(E::fresh)
+    }
+
+    #[inline(always)]
+    fn act(
+        &self,
+        way: (S, Way<S>),
+        at: (&B, &B::Placed),
+        memory: &Self::Memory,
+        remembered: Option<&mut Self::Memory>,
+        sum: &mut impl Assembly<S, D>,
+    ) {
+        let mut slots = remembered.into_iter().flatten();
+        for (element, memory) in self.iter().zip(memory) {
+            element.act(way, at, memory, slots.next(), sum);
+        }
+    }
+
+    #[inline(always)]
+    fn shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory {
+        let mut shifted = *base;
+        for (((element, shifted), from), to) in self.iter().zip(&mut shifted).zip(from).zip(to) {
+            *shifted = element.shifted(shifted, from, to, weight);
+        }
+        shifted
+    }
+
+    #[inline(always)]
+    fn adopt(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory) {
+        for ((element, next), kept) in self.iter().zip(next).zip(kept) {
+            element.adopt(condition, next, kept);
+        }
+    }
+}
+
+/// Elements chosen at run time, whose laws remember nothing.
+impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Memory = ()>, const D: usize> Elements<S, B, D> for &[E] {
+    type Memory = ();
+
+    const STICKS: bool = false;
+
+    fn fresh(&self) {}
+
+    #[inline(always)]
+    fn act(
+        &self,
+        way: (S, Way<S>),
+        at: (&B, &B::Placed),
+        (): &(),
+        _: Option<&mut ()>,
+        sum: &mut impl Assembly<S, D>,
+    ) {
+        for element in *self {
+            element.act(way, at, &(), None, sum);
+        }
+    }
+
+    #[inline(always)]
+    fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
+
+    #[inline(always)]
+    fn adopt(&self, _: S, (): &(), (): &mut ()) {}
+}

@@ -1,0 +1,79 @@
+//! Drives: a P-velocity controller behind a ramp (eq. 12), as a force or as a torque.
+
+use super::{Law, Response};
+use crate::{SMatrix, SVector, Scalar, drive::Push, mechanism::Way};
+
+/// A drive that pushes along the first number of its link and goes by the speed of the second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pusher<P>(pub P);
+
+/// A drive that turns: about the one number of its link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor<P>(pub P);
+
+impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
+    type Memory = ();
+
+    const STICKS: bool = false;
+
+    #[inline(always)]
+    fn fresh() {}
+
+    #[inline(always)]
+    fn response(
+        &self,
+        t: S,
+        _: &SVector<S, 2>,
+        rate: &SVector<S, 2>,
+        (): &(),
+        _: Way<S>,
+    ) -> (Response<S, 2>, ()) {
+        let zero = S::zero();
+        let response = Response {
+            force: SVector::<S, 2>::new(self.0.force(t, rate[1]), zero),
+            impedance: SMatrix::<S, 2, 2>::new(zero, self.0.gain(), zero, zero),
+            stiffness: SMatrix::zeros(),
+            per_time: SVector::<S, 2>::new(self.0.force_rate(t), zero),
+        };
+        (response, ())
+    }
+
+    #[inline(always)]
+    fn shifted((): &(), (): &(), (): &(), _: S) {}
+
+    #[inline(always)]
+    fn or_old((): &(), _: S, (): &()) {}
+}
+
+impl<S: Scalar, P: Push<S>> Law<S, 1> for Motor<P> {
+    type Memory = ();
+
+    const STICKS: bool = false;
+
+    #[inline(always)]
+    fn fresh() {}
+
+    #[inline(always)]
+    fn response(
+        &self,
+        t: S,
+        _: &SVector<S, 1>,
+        rate: &SVector<S, 1>,
+        (): &(),
+        _: Way<S>,
+    ) -> (Response<S, 1>, ()) {
+        let response = Response {
+            force: SVector::<S, 1>::new(self.0.force(t, rate.x)),
+            impedance: SMatrix::<S, 1, 1>::new(self.0.gain()),
+            stiffness: SMatrix::zeros(),
+            per_time: SVector::<S, 1>::new(self.0.force_rate(t)),
+        };
+        (response, ())
+    }
+
+    #[inline(always)]
+    fn shifted((): &(), (): &(), (): &(), _: S) {}
+
+    #[inline(always)]
+    fn or_old((): &(), _: S, (): &()) {}
+}

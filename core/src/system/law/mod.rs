@@ -1,0 +1,88 @@
+//! Force laws of elements, one a file.
+
+mod drive;
+mod journal;
+mod pin;
+mod ring;
+mod spring;
+mod wall;
+
+pub use drive::{Motor, Pusher};
+pub use journal::Journal;
+pub use pin::Pin;
+pub use ring::Ring;
+pub use spring::Spring;
+pub use wall::{Pad, Wall};
+
+use super::{Law, Response};
+use crate::{
+    SMatrix, SVector, Scalar,
+    law::{Friction, Normal, NormalResponse},
+    mechanism::Way,
+};
+
+/// The laws of a contact: along its normal and along its tangents.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<N, F> {
+    /// Along the normal.
+    pub normal: N,
+    /// Along the tangents.
+    pub friction: F,
+}
+
+/// A contact at one motion and its derivatives by `K` numbers.
+struct Touch<S, M, const K: usize> {
+    force: S,
+    force_slope: SVector<S, K>,
+    /// Friction on the body that slides, along two tangents.
+    traction: [S; 2],
+    traction_slopes: [SVector<S, K>; 2],
+    memory: M,
+}
+
+impl<N, F> Contact<N, F> {
+    /// The forces at `penetration` and its `rate` and at the `sliding` velocities, whose derivatives by `K` numbers are given.
+    #[inline(always)]
+    fn touch<S: Scalar, const K: usize>(
+        &self,
+        memory: &F::Memory,
+        way: Way<S>,
+        [penetration, rate]: [(S, SVector<S, K>); 2],
+        [first, second]: [(S, SVector<S, K>); 2],
+    ) -> Touch<S, F::Memory, K>
+    where
+        N: Normal<S>,
+        F: Friction<S>,
+    {
+        let zero = S::zero();
+        let pressed: NormalResponse<S> = self.normal.response(penetration.0, rate.0);
+        let force_slope = penetration.1 * pressed.stiffness() + rate.1 * pressed.impedance(zero);
+        let (traction, memory) = self.friction.traction(memory, &way.rubbing([first.0, second.0], pressed.force));
+        // A law that sticks also does so without load, which counts for nothing.
+        let [own, mixed, other] = traction.impedance.map(|x| pressed.force.select_gt(zero, x, zero));
+        let [by_first, by_second] = traction.per_normal;
+        let traction_slopes = [
+            -(force_slope * by_first + first.1 * own + second.1 * mixed),
+            -(force_slope * by_second + first.1 * mixed + second.1 * other),
+        ];
+        Touch { force: pressed.force, force_slope, traction: traction.force, traction_slopes, memory }
+    }
+}
+
+/// The unit vector along `k` of `K` numbers, `value` long.
+#[inline(always)]
+fn along<S: Scalar, const K: usize>(k: usize, value: S) -> SVector<S, K> {
+    let mut vector = SVector::zeros();
+    vector[k] = value;
+    vector
+}
+
+/// A response without change with time.
+#[inline(always)]
+fn steady<S: Scalar, const R: usize>(
+    force: SVector<S, R>,
+    impedance: SMatrix<S, R, R>,
+    stiffness: SMatrix<S, R, R>,
+) -> Response<S, R> {
+    Response { force, impedance, stiffness, per_time: SVector::zeros() }
+}

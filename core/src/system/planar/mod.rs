@@ -1,0 +1,20 @@
+//! Bodies in a plane on ideal joints: trees of turning and sliding coordinates.
+//!
+//! x and y span the plane, angles turn from x to y. Angles are those of bodies in the frame, not between bodies, so that a
+//! point's place is a sum of turned arms and its second derivatives are those arms again.
+
+mod links;
+mod point;
+mod tree;
+
+pub use links::{Across, Along, Between, Turning};
+pub use point::Point;
+pub use tree::{Coordinate, Placed, PlanarTree, Rigid};
+
+use crate::{Scalar, Vector2};
+
+/// `p` turned by a right angle from x to y.
+#[inline(always)]
+pub(crate) fn left<S: Scalar>(p: &Vector2<S>) -> Vector2<S> {
+    Vector2::new(-p.y, p.x)
+}

@@ -1,0 +1,356 @@
+//! What elements in space see.
+
+use nalgebra::Matrix3;
+
+use super::{FreeBodies, Placed, bodies::PlacedBody};
+use crate::{
+    SMatrix, SVector, Scalar, Vector3,
+    linear::cross_matrix,
+    system::{Link, Seen},
+};
+
+/// A point of a body, or of the frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Port<S> {
+    /// Which body; `None` for the frame.
+    pub body: Option<usize>,
+    /// The point (m) from the body's centre of mass, in its axes; in the frame from its origin.
+    pub lever: Vector3<S>,
+}
+
+/// A point of one body as seen from another, in the axes of the latter: displacement (m) since the nominal poses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seat<S> {
+    /// The point.
+    pub point: Port<S>,
+    /// The body that it is seen from; `None` for the frame.
+    pub from: Option<usize>,
+}
+
+/// The same, in axes that are turned against those of the body, and with the rotation of the point's body against it: the
+/// first three are lengths, the last three angles of which the rates alone are told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turned<S> {
+    /// The point and where it is seen from.
+    pub seat: Seat<S>,
+    /// The axes, columns in the body's axes.
+    pub axes: Matrix3<S>,
+    /// Place (m) of the point in these axes at the nominal poses.
+    pub offset: Vector3<S>,
+}
+
+/// A point of a body along an axis of the frame, and the body's centre of mass, whose speed along it counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Along<S> {
+    /// The body.
+    pub body: usize,
+    /// Where the force acts (m), from the centre of mass in the body's axes.
+    pub lever: Vector3<S>,
+    /// Direction in the frame, of unit length.
+    pub axis_w: Vector3<S>,
+}
+
+/// How fast a body turns about an axis of the frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct About<S> {
+    /// The body.
+    pub body: usize,
+    /// Direction in the frame, of unit length.
+    pub axis_w: Vector3<S>,
+}
+
+/// A point seen from a body, with what its derivatives are made of.
+struct View<S> {
+    /// Displacement since the nominal poses, in the axes of the body that it is seen from (m).
+    displacement: Vector3<S>,
+    /// From that body's centre of mass, in its axes (m).
+    lever: Vector3<S>,
+    /// From the point's body into these axes.
+    across: Matrix3<S>,
+    /// From the frame into these axes.
+    to_seat: Matrix3<S>,
+    /// Velocity of the centres of mass against each other, in these axes (m/s).
+    velocity: Vector3<S>,
+    /// Angular velocities, each in its body's axes (rad/s).
+    rotations: [Vector3<S>; 2],
+}
+
+impl<S: Scalar> Seat<S> {
+    #[inline(always)]
+    fn view<const N: usize, const D: usize>(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> View<S> {
+        let still = PlacedBody {
+            to_frame: Matrix3::identity(),
+            displacement_w: Vector3::zeros(),
+            velocity_w: Vector3::zeros(),
+            rotation_b: Vector3::zeros(),
+        };
+        let get = |body: Option<usize>| body.map_or(still, |body| placed.bodies[body]);
+        let centre = |body: Option<usize>| body.map_or(Vector3::zeros(), |body| bodies.bodies()[body].centre_w);
+        let (of, from) = (get(self.point.body), get(self.from));
+        let nominal = centre(self.point.body) + self.point.lever - centre(self.from);
+        let moved = of.displacement_w + (of.to_frame * self.point.lever - self.point.lever) - from.displacement_w;
+        let to_seat = from.to_frame.transpose();
+        let displacement = (to_seat * nominal - nominal) + to_seat * moved;
+        View {
+            displacement,
+            lever: nominal + displacement,
+            across: to_seat * of.to_frame,
+            to_seat,
+            velocity: to_seat * (of.velocity_w - from.velocity_w),
+            rotations: [of.rotation_b, from.rotation_b],
+        }
+    }
+
+    #[inline(always)]
+    fn gradient<const R: usize, const D: usize>(&self, view: &View<S>) -> SMatrix<S, R, D> {
+        let mut gradient = SMatrix::<S, R, D>::zeros();
+        if let Some(i) = self.point.body {
+            put(&mut gradient, (0, 6 * i), &view.to_seat);
+            put(&mut gradient, (0, 6 * i + 3), &-(view.across * cross_matrix(&self.point.lever)));
+        }
+        if let Some(i) = self.from {
+            put(&mut gradient, (0, 6 * i), &-view.to_seat);
+            put(&mut gradient, (0, 6 * i + 3), &cross_matrix(&view.lever));
+        }
+        gradient
+    }
+
+    /// Subtracts ∂(Λᵀφ)/∂Q for the `force` φ (N) from `stiffness`.
+    #[inline(always)]
+    fn carry<const D: usize>(
+        &self,
+        view: &View<S>,
+        gradient: &SMatrix<S, 3, D>,
+        force: &Vector3<S>,
+        stiffness: &mut SMatrix<S, D, D>,
+    ) {
+        let turned = cross_matrix(force);
+        let to_frame = view.to_seat.transpose();
+        if let Some(i) = self.point.body {
+            let arm = cross_matrix(&self.point.lever);
+            let force_b = view.across.tr_mul(force);
+            sub(stiffness, (6 * i + 3, 6 * i + 3), &(arm * cross_matrix(&force_b)));
+            if let Some(j) = self.from {
+                sub(stiffness, (6 * i, 6 * j + 3), &-(to_frame * turned));
+                sub(stiffness, (6 * i + 3, 6 * j + 3), &-(arm * view.across.tr_mul(&turned)));
+            }
+        }
+        if let Some(j) = self.from {
+            sub(stiffness, (6 * j, 6 * j + 3), &(to_frame * turned));
+            let mut rows = stiffness.fixed_rows_mut::<3>(6 * j + 3);
+            rows -= turned * gradient;
+        }
+    }
+
+    /// ∂(Λ·V)/∂Q.
+    #[inline(always)]
+    fn sweep<const R: usize, const D: usize>(
+        &self,
+        view: &View<S>,
+        gradient: &SMatrix<S, 3, D>,
+        swept: &mut SMatrix<S, R, D>,
+    ) {
+        let [of, from] = &view.rotations;
+        let carried = of.cross(&self.point.lever);
+        if let Some(j) = self.from {
+            let mut rows = swept.fixed_rows_mut::<3>(0);
+            rows -= cross_matrix(from) * gradient;
+            add(swept, (0, 6 * j + 3), &cross_matrix(&(view.velocity + view.across * carried)));
+        }
+        if let Some(i) = self.point.body {
+            sub(swept, (0, 6 * i + 3), &(view.across * cross_matrix(&carried)));
+        }
+    }
+}
+
+impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 3> for Seat<S> {
+    #[inline(always)]
+    fn seen(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Seen<S, 3, D> {
+        let view = self.view(bodies, placed);
+        let gradient = self.gradient(&view);
+        Seen { place: view.displacement, rate: gradient * placed.rates, gradient }
+    }
+
+    #[inline(always)]
+    fn add_carried(
+        &self,
+        (bodies, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        seen: &Seen<S, 3, D>,
+        force: &SVector<S, 3>,
+        stiffness: &mut SMatrix<S, D, D>,
+    ) {
+        self.carry(&self.view(bodies, placed), &seen.gradient, force, stiffness);
+    }
+
+    #[inline(always)]
+    fn swept(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> SMatrix<S, 3, D> {
+        let view = self.view(bodies, placed);
+        let mut swept = SMatrix::zeros();
+        self.sweep(&view, &self.gradient(&view), &mut swept);
+        swept
+    }
+}
+
+impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 6> for Turned<S> {
+    #[inline(always)]
+    fn seen(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Seen<S, 6, D> {
+        let view = self.seat.view(bodies, placed);
+        let mut gradient = SMatrix::<S, 6, D>::zeros();
+        let lengths: SMatrix<S, 3, D> = self.seat.gradient(&view);
+        gradient.fixed_rows_mut::<3>(0).copy_from(&self.axes.tr_mul(&lengths));
+        if let Some(i) = self.seat.point.body {
+            put(&mut gradient, (3, 6 * i + 3), &self.axes.tr_mul(&view.across));
+        }
+        if let Some(j) = self.seat.from {
+            put(&mut gradient, (3, 6 * j + 3), &-self.axes.transpose());
+        }
+        let place = self.axes.tr_mul(&view.displacement) + self.offset;
+        let mut all = SVector::<S, 6>::zeros();
+        all.fixed_rows_mut::<3>(0).copy_from(&place);
+        Seen { place: all, rate: gradient * placed.rates, gradient }
+    }
+
+    #[inline(always)]
+    fn add_carried(
+        &self,
+        (bodies, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: &Seen<S, 6, D>,
+        force: &SVector<S, 6>,
+        stiffness: &mut SMatrix<S, D, D>,
+    ) {
+        let view = self.seat.view(bodies, placed);
+        let push = self.axes * Vector3::new(force[0], force[1], force[2]);
+        let moment = self.axes * Vector3::new(force[3], force[4], force[5]);
+        self.seat.carry(&view, &self.seat.gradient(&view), &push, stiffness);
+        if let Some(i) = self.seat.point.body {
+            sub(stiffness, (6 * i + 3, 6 * i + 3), &cross_matrix(&view.across.tr_mul(&moment)));
+            if let Some(j) = self.seat.from {
+                sub(stiffness, (6 * i + 3, 6 * j + 3), &-view.across.tr_mul(&cross_matrix(&moment)));
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn swept(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> SMatrix<S, 6, D> {
+        let view = self.seat.view(bodies, placed);
+        let mut lengths = SMatrix::<S, 3, D>::zeros();
+        self.seat.sweep(&view, &self.seat.gradient(&view), &mut lengths);
+        let mut swept = SMatrix::<S, 6, D>::zeros();
+        swept.fixed_rows_mut::<3>(0).copy_from(&self.axes.tr_mul(&lengths));
+        let rotation = view.across * view.rotations[0];
+        if let Some(j) = self.seat.from {
+            put(&mut swept, (3, 6 * j + 3), &self.axes.tr_mul(&cross_matrix(&rotation)));
+        }
+        if let Some(i) = self.seat.point.body {
+            sub(&mut swept, (3, 6 * i + 3), &self.axes.tr_mul(&(view.across * cross_matrix(&view.rotations[0]))));
+        }
+        swept
+    }
+}
+
+impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 2> for Along<S> {
+    #[inline(always)]
+    fn seen(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Seen<S, 2, D> {
+        let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w);
+        let arm = self.lever.cross(&axis_b);
+        let mut gradient = SMatrix::<S, 2, D>::zeros();
+        for k in 0..3 {
+            gradient[(0, 6 * self.body + k)] = self.axis_w[k];
+            gradient[(1, 6 * self.body + k)] = self.axis_w[k];
+            gradient[(0, 6 * self.body + 3 + k)] = arm[k];
+        }
+        Seen { place: SVector::zeros(), rate: gradient * placed.rates, gradient }
+    }
+
+    #[inline(always)]
+    fn add_carried(
+        &self,
+        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: &Seen<S, 2, D>,
+        force: &SVector<S, 2>,
+        stiffness: &mut SMatrix<S, D, D>,
+    ) {
+        let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w) * force[0];
+        let at = 6 * self.body + 3;
+        sub(stiffness, (at, at), &(cross_matrix(&self.lever) * cross_matrix(&axis_b)));
+    }
+
+    #[inline(always)]
+    fn swept(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> SMatrix<S, 2, D> {
+        let at = &placed.bodies[self.body];
+        let axis_b = at.to_frame.tr_mul(&self.axis_w);
+        // ω·(lever × axis), the axis turning against the body: ∂axis = axis × θ.
+        let by_turn = axis_b.cross(&self.lever.cross(&at.rotation_b));
+        let mut swept = SMatrix::<S, 2, D>::zeros();
+        for k in 0..3 {
+            swept[(0, 6 * self.body + 3 + k)] = by_turn[k];
+        }
+        swept
+    }
+}
+
+impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 1> for About<S> {
+    #[inline(always)]
+    fn seen(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Seen<S, 1, D> {
+        let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w);
+        let mut gradient = SMatrix::<S, 1, D>::zeros();
+        for k in 0..3 {
+            gradient[(0, 6 * self.body + 3 + k)] = axis_b[k];
+        }
+        Seen { place: SVector::zeros(), rate: gradient * placed.rates, gradient }
+    }
+
+    #[inline(always)]
+    fn add_carried(
+        &self,
+        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: &Seen<S, 1, D>,
+        force: &SVector<S, 1>,
+        stiffness: &mut SMatrix<S, D, D>,
+    ) {
+        let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w) * force[0];
+        let at = 6 * self.body + 3;
+        sub(stiffness, (at, at), &cross_matrix(&axis_b));
+    }
+
+    #[inline(always)]
+    fn swept(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> SMatrix<S, 1, D> {
+        let at = &placed.bodies[self.body];
+        // ω·axis with ∂axis = axis × θ.
+        let by_turn = at.rotation_b.cross(&at.to_frame.tr_mul(&self.axis_w));
+        let mut swept = SMatrix::<S, 1, D>::zeros();
+        for k in 0..3 {
+            swept[(0, 6 * self.body + 3 + k)] = by_turn[k];
+        }
+        swept
+    }
+}
+
+#[inline(always)]
+fn put<S: Scalar, const R: usize, const D: usize>(
+    matrix: &mut SMatrix<S, R, D>,
+    at: (usize, usize),
+    block: &Matrix3<S>,
+) {
+    matrix.fixed_view_mut::<3, 3>(at.0, at.1).copy_from(block);
+}
+
+#[inline(always)]
+fn add<S: Scalar, const R: usize, const D: usize>(
+    matrix: &mut SMatrix<S, R, D>,
+    at: (usize, usize),
+    block: &Matrix3<S>,
+) {
+    let mut view = matrix.fixed_view_mut::<3, 3>(at.0, at.1);
+    view += block;
+}
+
+#[inline(always)]
+fn sub<S: Scalar, const R: usize, const D: usize>(
+    matrix: &mut SMatrix<S, R, D>,
+    at: (usize, usize),
+    block: &Matrix3<S>,
+) {
+    let mut view = matrix.fixed_view_mut::<3, 3>(at.0, at.1);
+    view -= block;
+}

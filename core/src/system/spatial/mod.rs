@@ -1,0 +1,10 @@
+//! Free bodies in space.
+//!
+//! Generalised velocities are, body by body, the velocity of the centre of mass in the frame (m/s) and the angular
+//! velocity in the body (rad/s), so that the mass matrix is constant and free flight is exact.
+
+mod bodies;
+mod links;
+
+pub use bodies::{FreeBodies, Placed, PlacedBody, Rigid};
+pub use links::{About, Along, Port, Seat, Turned};

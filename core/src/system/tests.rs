@@ -1,0 +1,180 @@
+//! Derivatives against differences, for every link and law.
+
+use super::{
+    Bodies, Element, Elements, System,
+    law::{Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
+    planar::{self, Coordinate, PlanarTree, Point},
+    spatial::{self, FreeBodies, Port, Seat, Turned},
+};
+use crate::{
+    SVector, Vector2, Vector3,
+    drive::Drive,
+    law::{Impact, Regularised, ThreeHalves},
+    mechanism::Mechanism,
+};
+use nalgebra::Matrix3;
+
+type Rubbing = Contact<Impact<f64, ThreeHalves<f64>>, Regularised<f64>>;
+
+fn contact() -> Rubbing {
+    Contact {
+        normal: Impact::new(ThreeHalves::new(3e4).unwrap(), 20.0, 0.01).unwrap(),
+        friction: Regularised::new(0.4, 0.05).unwrap(),
+    }
+}
+
+fn drive() -> Drive<f64> {
+    Drive { gain: 3.0, ramp_start: 0.0, ramp_end: 1.0, speed: 0.7, point_b: Vector3::zeros() }
+}
+
+/// Numbers in −½…½.
+fn numbers() -> impl FnMut() -> f64 {
+    let mut seed = 7u32;
+    move || {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(seed) / 4_294_967_296.0 - 0.5
+    }
+}
+
+/// Compares `differentiated` with differences at random motions, of which some have the elements touch.
+fn check<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
+    system: &System<B, E>,
+    start: B::Pose,
+    scale: f64,
+    touches: impl Fn(&SVector<f64, D>) -> bool,
+) {
+    let mut next = numbers();
+    let (t, h, memory) = (0.3, 1e-6, system.fresh());
+    let mut touched = 0;
+    for _ in 0..100 {
+        let at = SVector::<f64, D>::from_fn(|_, _| next() * scale);
+        let v = SVector::<f64, D>::from_fn(|_, _| next());
+        let pose = system.normalised(&system.moved(&start, &at, 1.0));
+        let found = system.differentiated(t, &pose, &memory, &v);
+        let acceleration = system.velocity(&pose, &found.force);
+        let residual = |t: f64, turn: &SVector<f64, D>, v: &SVector<f64, D>| {
+            let there = system.moved(&pose, turn, 1.0);
+            system.forces(t, &there, &memory, v, 1.0, None) - system.momentum(&there, &acceleration)
+        };
+        let zero = SVector::zeros();
+        touched += u32::from(touches(&found.force));
+        let close = |found: SVector<f64, D>, expected: SVector<f64, D>, what: &str| {
+            let size = 1.0 + found.norm() + expected.norm();
+            assert!((found - expected).norm() < 2e-5 * size, "{what}: {found} {expected}");
+        };
+        close(found.per_time, (residual(t + h, &zero, &v) - residual(t - h, &zero, &v)) / (2.0 * h), "time");
+        for k in 0..D {
+            let mut step = zero;
+            step[k] = h;
+            let by_place = (residual(t, &step, &v) - residual(t, &-step, &v)) / (2.0 * h);
+            close(-found.slopes.stiffness.column(k), by_place, "place");
+            let by_rate = (residual(t, &zero, &(v + step)) - residual(t, &zero, &(v - step))) / (2.0 * h);
+            close(-found.slopes.damping.column(k), by_rate, "velocity");
+        }
+    }
+    assert!((20..=100).contains(&touched), "{touched}");
+}
+
+#[test]
+fn planar_derivatives_are_those_of_the_forces() {
+    let slide = |on, x: f64, y: f64| Coordinate::Slide { on, axis: Vector2::new(x, y) };
+    let coordinates = [Coordinate::Turn, Coordinate::Turn, slide(Some(1), 0.6, 0.8), slide(None, 0.0, 1.0), Coordinate::Turn];
+    let on = |point: Point<f64, 5>, k: usize| point.on(k, &coordinates[k]);
+    let crank = on(Point::fixed(Vector2::new(0.1, 0.0)), 0);
+    let rod = on(crank.plus(Vector2::new(0.3, 0.1)), 1);
+    let slider = on(rod.plus(Vector2::new(0.2, 0.0)), 2);
+    let lift = on(on(Point::fixed(Vector2::new(0.5, 0.2)), 3), 4);
+    let body = |mass, centre| planar::Rigid { mass, inertia: 0.02, centre };
+    let bodies = [
+        body(0.5, crank.plus(Vector2::new(0.1, 0.0))),
+        body(0.7, rod.plus(Vector2::new(0.1, 0.02))),
+        body(0.3, slider.plus(Vector2::new(0.0, 0.05))),
+        body(0.4, lift.plus(Vector2::new(0.03, 0.05))),
+    ];
+    let tree = PlanarTree::new(coordinates, &bodies, Vector2::new(1.0, -9.81)).unwrap();
+    let start = tree.pose([0.3, -0.4, 0.05, 0.02, 0.1], |x| [libm::cos(x / 2.0), libm::sin(x / 2.0)]);
+    let pin = lift.plus(Vector2::new(0.1, 0.1));
+    let elements = (
+        (
+            Element::<_, _, 4> {
+                link: planar::Between { hole: slider.plus(Vector2::new(0.15, 0.0)), pin },
+                law: Journal { clearance: 0.05, radius: 0.02, contact: contact() },
+            },
+            Element::<_, _, 2> {
+                link: planar::Across { point: pin, seat: rod, normal: Vector2::new(0.8, -0.6) },
+                law: Pad { gap: -0.1, contact: contact() },
+            },
+        ),
+        (
+            Element::<_, _, 1> {
+                link: planar::Turning { body: Some(1), against: Some(0) },
+                law: Spring { stiffness: 3.0, damping: 0.2, rest: 0.1 },
+            },
+            (
+                Element::<_, _, 2> {
+                    link: planar::Along { point: pin, sensor: lift, axis: Vector2::new(0.0, 1.0) },
+                    law: Pusher(drive()),
+                },
+                Element::<_, _, 1> { link: planar::Turning { body: Some(0), against: None }, law: Motor(drive()) },
+            ),
+        ),
+    );
+    check(&System::new(tree, elements), start, 0.3, |force| force.norm() > 20.0);
+}
+
+#[test]
+fn spatial_derivatives_are_those_of_the_forces() {
+    let body = |mass, x: f64| spatial::Rigid {
+        mass,
+        inertia_b: Vector3::new(0.02, 0.03, 0.04),
+        centre_w: Vector3::new(x, 0.1, 0.0),
+    };
+    let bodies = FreeBodies::<f64, 2, 12>::new([body(0.5, 0.0), body(0.8, 0.3)], Vector3::new(0.0, -9.81, 0.0)).unwrap();
+    let port = |body, x, y, z| Port { body, lever: Vector3::new(x, y, z) };
+    let axes = crate::pose::Pose::nominal().advanced(Vector3::zeros(), Vector3::new(0.4, 0.9, -0.7), 1.0);
+    let elements = (
+        [
+            Element::<_, _, 3> {
+                link: Seat { point: port(None, 0.1, 0.2, 0.3), from: Some(0) },
+                law: Pin { gaps: [0.02, 0.03, 0.01, 0.05], contact: contact() },
+            },
+            Element::<_, _, 3> {
+                link: Seat { point: port(Some(1), 0.2, 0.1, -0.1), from: Some(0) },
+                law: Pin { gaps: [0.02, -0.01, 0.01, 0.05], contact: contact() },
+            },
+            Element::<_, _, 3> {
+                link: Seat { point: port(Some(1), 0.2, 0.1, -0.1), from: None },
+                law: Pin { gaps: [0.02, -0.01, 0.01, 0.05], contact: contact() },
+            },
+        ],
+        (
+            Element::<_, _, 3> {
+                link: Seat { point: port(Some(0), -0.2, 0.1, 0.1), from: Some(1) },
+                law: Wall { axis: 2, sign: -1.0, gap: 0.01, contact: contact() },
+            },
+            (
+                Element::<_, _, 6> {
+                    link: Turned {
+                        seat: Seat { point: port(Some(1), 0.1, 0.1, -0.1), from: Some(0) },
+                        axes: axes.to_body().matrix(),
+                        offset: Vector3::new(0.01, 0.0, 0.02),
+                    },
+                    law: Ring { clearance: 0.02, radius: 0.05, contact: contact() },
+                },
+                (
+                    Element::<_, _, 2> {
+                        link: spatial::Along { body: 1, lever: Vector3::new(0.1, -0.2, 0.3), axis_w: Vector3::z() },
+                        law: Pusher(drive()),
+                    },
+                    Element::<_, _, 1> {
+                        link: spatial::About { body: 0, axis_w: Vector3::new(0.6, 0.0, 0.8) },
+                        law: Motor(drive()),
+                    },
+                ),
+            ),
+        ),
+    );
+    let start = bodies.nominal();
+    check(&System::new(bodies, elements), start, 0.1, |force| force.norm() > 20.0);
+    let _: Matrix3<f64> = axes.to_body().matrix();
+}
