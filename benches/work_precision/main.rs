@@ -16,7 +16,7 @@ use std::{
 
 use cvode_peer::Cvode;
 use slipfit::{
-    error_control::{Sensitivity, Tolerance, integrate, sampled},
+    error_control::{Knot, Sensitivity, Tolerance, integrate, sampled},
     scheme::{IntegratorKind, IntegratorVisitor},
 };
 use slipfit_core::{
@@ -157,8 +157,10 @@ fn controlled<I: Integrator>(solver: &'static str, slide: &CdRomSlide<f64>, mill
             let mut knots = Vec::new();
             let start = Instant::now();
             let tolerance = Tolerance::of_force(force);
-            integrate::<I, _>(&slide, rest, duration, sensitivity, tolerance, |knot, _| {
-                knots.push(knot);
+            let error = |step: &_, length| sensitivity.error(tolerance, step, length);
+            integrate::<I, _, 6>(&slide, rest, duration, error, |t, motion| {
+                let r = motion.pose.displacement_w;
+                knots.push(Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] });
                 ControlFlow::Continue(())
             })
             .ok()?;

@@ -153,6 +153,13 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// One number for an imbalance of momentum (N·s): angular components over a length of the mechanism.
     fn impulse(&self, imbalance: &SVector<S, D>) -> S;
 
+    /// One number (N·s) for a change of velocity, or with the place of which it is the rate (N·s²), at `pose`: the impulse that
+    /// makes it.
+    #[inline(always)]
+    fn weighed(&self, pose: &Self::Pose, change: &SVector<S, D>) -> S {
+        self.impulse(&self.momentum(pose, change))
+    }
+
     /// Forces at time `t` (s) and their derivatives, for laws without memory.
     fn differentiated(
         &self,

@@ -111,15 +111,17 @@ impl SlideVisitor<f64> for Desk<'_> {
         };
         let mut observer = Observer::new(scene.drive, settings.run);
         let mut keepers = Keepers::default();
-        let mut knots: Vec<Knot> = Vec::new();
+        let mut knots: Vec<Knot<[f64; 4]>> = Vec::new();
         let start = Clock::now();
         let duration = settings.run.duration;
-        let effort = integrate::<Rodas4, _>(&slide, rest, duration, sensitivity, tolerance, |knot, motion| {
-            knots.push(knot);
-            if knot.t >= scene.drive.ramp_start && keepers.meet(&slide.gaps(&motion.pose)) {
-                observer.tips(knot.t, knot.values[3]);
+        let error = |step: &_, length| sensitivity.error(tolerance, step, length);
+        let effort = integrate::<Rodas4, _, 6>(&slide, rest, duration, error, |t, motion| {
+            let r = motion.pose.displacement_w;
+            knots.push(Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] });
+            if t >= scene.drive.ramp_start && keepers.meet(&slide.gaps(&motion.pose)) {
+                observer.tips(t, r.z);
             }
-            if observer.is_at_end(knot.values[3]) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if observer.is_at_end(r.z) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         let integration = start.elapsed();
         solved.effort = effort;
@@ -149,7 +151,7 @@ impl SlideVisitor<f64> for Desk<'_> {
 }
 
 /// When (s) the run ends: where the stroke does, between the last two knots, or with the last.
-fn end(knots: &[Knot], observer: &Observer) -> f64 {
+fn end(knots: &[Knot<[f64; 4]>], observer: &Observer) -> f64 {
     let last = knots.len() - 1;
     if !observer.is_at_end(knots[last].values[3]) {
         return knots[last].t;

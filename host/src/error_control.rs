@@ -8,9 +8,8 @@
 use std::ops::ControlFlow;
 
 use slipfit_core::{
-    integrator::{Integrator, MotionOf},
+    integrator::{Integrator, MotionOf, Step, StepOf},
     mechanism::Mechanism,
-    pose::Pose,
 };
 
 use crate::interrupt;
@@ -41,13 +40,42 @@ pub struct Sensitivity {
     pub gain: f64,
 }
 
+/// What is kept of a motion: some numbers that change smoothly.
+pub trait Values: Copy {
+    /// Number `k`.
+    fn get(&self, k: usize) -> f64;
+
+    /// The same numbers, each given by its index.
+    fn with(&self, value: impl Fn(usize) -> f64) -> Self;
+}
+
+impl<const K: usize> Values for [f64; K] {
+    fn get(&self, k: usize) -> f64 {
+        self[k]
+    }
+
+    fn with(&self, value: impl Fn(usize) -> f64) -> Self {
+        std::array::from_fn(value)
+    }
+}
+
 /// The end of an accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Knot {
+pub struct Knot<V> {
     /// Time (s).
     pub t: f64,
-    /// Velocity along z (m/s), displacements across, up and along z (m).
-    pub values: [f64; 4],
+    /// What is kept of the motion.
+    pub values: V,
+}
+
+impl Sensitivity {
+    /// The error of a `step` of `length` (s), of which `tolerance` allows 1.
+    pub fn error<P, R, const D: usize>(&self, tolerance: Tolerance, step: &Step<f64, P, R, D>, length: f64) -> f64 {
+        // What Newton left counts like an error of the scheme: without it, a stage that has not converged would pass.
+        let velocity_error = step.error.max(step.residual) / self.mass;
+        let place_error = step.drift.max(step.residual * length) / self.mass;
+        (self.gain * velocity_error / tolerance.force).max(place_error / tolerance.position)
+    }
 }
 
 /// What an integration took.
@@ -87,24 +115,19 @@ const FIRST_STEP: f64 = 2e-5;
 const STEPS_PER_LOOK: u32 = 256;
 
 /// Integrates `mechanism` from `start` at time 0 over `duration` (s) or until `accept` breaks, which sees the start and the
-/// motion at the end of each accepted step.
+/// motion at the end of each accepted step. A step is accepted if `error`, which also sees its length (s), is at most 1.
 ///
 /// # Errors
 /// See [`Stopped`].
-pub fn integrate<I: Integrator, M: Mechanism<f64, 6, Pose = Pose<f64>>>(
+pub fn integrate<I: Integrator, M: Mechanism<f64, D>, const D: usize>(
     mechanism: &M,
-    start: MotionOf<f64, M, 6>,
+    start: MotionOf<f64, M, D>,
     duration: f64,
-    sensitivity: Sensitivity,
-    tolerance: Tolerance,
-    mut accept: impl FnMut(Knot, &MotionOf<f64, M, 6>) -> ControlFlow<()>,
+    error: impl Fn(&StepOf<f64, M, D>, f64) -> f64,
+    mut accept: impl FnMut(f64, &MotionOf<f64, M, D>) -> ControlFlow<()>,
 ) -> Result<Effort, Stopped> {
-    let knot = |t: f64, motion: &MotionOf<f64, M, 6>| {
-        let r = motion.pose.displacement_w;
-        Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] }
-    };
     let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
-    let mut flow = accept(knot(t, &motion), &motion);
+    let mut flow = accept(t, &motion);
     while t < duration && flow.is_continue() {
         let tried = effort.accepted + effort.refused;
         if tried.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
@@ -113,12 +136,8 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, 6, Pose = Pose<f64>>>(
         // A last step that would leave a splinter takes it along.
         let length = if t + 1.01 * h >= duration { duration - t } else { h };
         let step = I::step(mechanism, t, length, &motion);
-        // What Newton left counts like an error of the scheme: without it, a stage that has not converged would pass.
-        let velocity_error = step.error.max(step.residual) / sensitivity.mass;
-        let place_error = step.drift.max(step.residual * length) / sensitivity.mass;
-        let error = (sensitivity.gain * velocity_error / tolerance.force).max(place_error / tolerance.position);
         // A step whose estimate is not a number is the worst of all.
-        let error = if error.is_finite() { error } else { 1e12 };
+        let error = Some(error(&step, length)).filter(|error| error.is_finite()).unwrap_or(1e12);
         let factor = (SAFETY * libm::pow(error.max(1e-12), -1.0 / f64::from(I::ORDER))).clamp(CHANGES[0], CHANGES[1]);
         h = (length * factor).clamp(STEPS[0], STEPS[1]);
         if tried >= STEPS_MOST || (error > 1.0 && length <= STEPS[0]) {
@@ -131,13 +150,13 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, 6, Pose = Pose<f64>>>(
         effort.accepted += 1;
         t = if length == duration - t { duration } else { t + length };
         motion = step.motion;
-        flow = accept(knot(t, &motion), &motion);
+        flow = accept(t, &motion);
     }
     Ok(effort)
 }
 
 /// The values of [`Knot`] at ascending `times` (s) within the `knots`, of which there are at least two.
-pub fn sampled(knots: &[Knot], times: impl Iterator<Item = f64>) -> Vec<[f64; 4]> {
+pub fn sampled<V: Values>(knots: &[Knot<V>], times: impl Iterator<Item = f64>) -> Vec<V> {
     let mut i = 0;
     times
         .map(|t| {
@@ -150,12 +169,12 @@ pub fn sampled(knots: &[Knot], times: impl Iterator<Item = f64>) -> Vec<[f64; 4]
 }
 
 /// The values at time `t` (s) between the knots `i` and `i + 1`.
-pub fn between(knots: &[Knot], i: usize, t: f64) -> [f64; 4] {
+pub fn between<V: Values>(knots: &[Knot<V>], i: usize, t: f64) -> V {
     let (from, to) = (knots[i], knots[i + 1]);
     let h = to.t - from.t;
-    [0, 1, 2, 3].map(|k| {
+    from.values.with(|k| {
         let slopes = [slope(knots, i, i, k), slope(knots, i + 1, i, k)];
-        hermite((t - from.t) / h, [from.values[k], to.values[k]], slopes.map(|slope| slope * h))
+        hermite((t - from.t) / h, [from.values.get(k), to.values.get(k)], slopes.map(|slope| slope * h))
     })
 }
 
@@ -165,9 +184,9 @@ const EVENT: f64 = 4.0;
 
 /// Slope of value `k` at knot `i`, an end of the step from knot `of`: that of the parabola through the knot and its neighbours, or,
 /// at an event and at either end, through three knots on the step's own side; of the chord where there are only two.
-fn slope(knots: &[Knot], i: usize, of: usize, k: usize) -> f64 {
+fn slope<V: Values>(knots: &[Knot<V>], i: usize, of: usize, k: usize) -> f64 {
     let length = |j: usize| knots[j + 1].t - knots[j].t;
-    let chord = |j: usize| (knots[j + 1].values[k] - knots[j].values[k]) / length(j);
+    let chord = |j: usize| (knots[j + 1].values.get(k) - knots[j].values.get(k)) / length(j);
     let last = knots.len() - 2;
     // The step on the other side of the knot, and the next one on this side.
     let (other, further) = if i == of { (of.checked_sub(1), Some(of + 1)) } else { (Some(of + 1), of.checked_sub(1)) };

@@ -24,6 +24,7 @@ pub mod kernel_source;
 mod laws;
 mod layout;
 mod markup;
+pub mod mechanism;
 pub mod mobility;
 pub mod number;
 pub mod outcome;

@@ -40,7 +40,7 @@ impl<const COLUMNS: usize, const PASSES: usize> Integrator for Extrapolated<COLU
                 // Rows of parts n and n − k cancel the k-th error term with the weight 1/(n/(n − k) − 1) = (n − k)/k.
                 let weight = S::from_count(parts - column) / S::from_count(column);
                 let better = shifted(mechanism, &end, above, &end, weight);
-                error = mechanism.impulse(&mechanism.momentum(&better.pose, &(better.velocity - end.velocity)));
+                error = mechanism.weighed(&better.pose, &(better.velocity - end.velocity));
                 *above = end;
                 end = better;
             }

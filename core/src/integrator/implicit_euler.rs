@@ -32,7 +32,7 @@ impl<const PASSES: usize> Integrator for ImplicitEuler<PASSES> {
         // the stiff part out of it again, which the scheme damps and does not follow.
         let change = mechanism.momentum(&end.motion.pose, &(end.motion.acceleration - motion.acceleration));
         let left_out = mechanism.solve(&end.linearisation, &(change * S::from_f64(0.5)));
-        let error = mechanism.impulse(&mechanism.momentum(&end.motion.pose, &left_out));
+        let error = mechanism.weighed(&end.motion.pose, &left_out);
         let pose = mechanism.normalised(&end.motion.pose);
         Step { motion: Motion { pose, ..end.motion }, residual: end.residual, error, drift: error * h }
     }

@@ -104,7 +104,7 @@ pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
             memory: motion.memory,
         },
         residual: S::zero(),
-        error: mechanism.impulse(&mechanism.momentum(&motion.pose, &last.velocity)),
-        drift: mechanism.impulse(&mechanism.momentum(&motion.pose, &last.place)),
+        error: mechanism.weighed(&motion.pose, &last.velocity),
+        drift: mechanism.weighed(&motion.pose, &last.place),
     }
 }

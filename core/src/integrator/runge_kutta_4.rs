@@ -45,7 +45,7 @@ impl Integrator for RungeKutta4 {
         }
         let pose = mechanism.normalised(&pose);
         // The two slopes at the middle differ by a term of third order: an estimate on the safe side.
-        let error = mechanism.impulse(&mechanism.momentum(&pose, &((a3 - a2) * (h * third))));
+        let error = mechanism.weighed(&pose, &((a3 - a2) * (h * third)));
         let motion = Motion { pose, velocity, acceleration: a4, memory: motion.memory };
         Step { motion, residual: S::zero(), error, drift: error * h }
     }

@@ -29,7 +29,7 @@ impl<const PASSES: usize> Integrator for Sdirk2<PASSES> {
             stage::<S, M, D, PASSES, NO_CHORD>(mechanism, t + h, a, &base, first.velocity);
         // Against the first-order solution that takes the first stage's slope for the whole step.
         let difference = (second.velocity - base.velocity) - (first.velocity - motion.velocity);
-        let error = mechanism.impulse(&mechanism.momentum(&second.pose, &difference));
+        let error = mechanism.weighed(&second.pose, &difference);
         let pose = mechanism.normalised(&second.pose);
         Step { motion: Motion { pose, ..second }, residual: residual_1.max_of(residual_2), error, drift: error * h }
     }

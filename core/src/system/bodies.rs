@@ -56,6 +56,6 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// The least mass (kg) that an element may meet: what friction that sticks yields by.
     fn least_mass(&self) -> S;
 
-    /// 1 for a coordinate that is a length, 1 over a length (1/m) for an angle: what makes momenta comparable.
+    /// 1 for a coordinate that is a length, 1 over a length (1/m) for an angle: what makes momenta, and speeds, comparable.
     fn per_lever(&self) -> &SVector<S, D>;
 }

@@ -16,6 +16,7 @@ mod lu;
 pub mod planar;
 pub mod spatial;
 
+pub use assembly::Assembly;
 pub use bodies::Bodies;
 pub use element::{Element, Elements, Law, Link, Response, Seen};
 pub use lu::Lu;
@@ -179,6 +180,13 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     fn impulse(&self, imbalance: &SVector<S, D>) -> S {
         let weighted = imbalance.component_mul(self.bodies.per_lever());
         weighted.dot(&weighted).sqrt()
+    }
+
+    /// The least mass times the speed, angles by their levers: what counts is each coordinate, not what it weighs.
+    #[inline(always)]
+    fn weighed(&self, _: &B::Pose, change: &SVector<S, D>) -> S {
+        let speeds = change.component_div(self.bodies.per_lever());
+        self.bodies.least_mass() * speeds.dot(&speeds).sqrt()
     }
 
     #[inline(always)]

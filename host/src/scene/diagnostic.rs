@@ -187,6 +187,35 @@ pub enum Problem {
     /// A scene of tolerances alone where motion is asked for.
     #[error("the scene has no `slide`: there is nothing to move")]
     NoSlide,
+    /// A joint, spring or pair of bodies that is one body.
+    #[error("`{key}` joins \"{name}\" to itself")]
+    JoinedToItself {
+        /// The key.
+        key: String,
+        /// The body.
+        name: String,
+    },
+    /// A body that nothing holds.
+    #[error("nothing joins the body \"{body}\" to another")]
+    Floating {
+        /// The body.
+        body: String,
+    },
+    /// Joints without play that hold each other.
+    #[error("the joint \"{joint}\" closes a loop of joints without play")]
+    IdealLoop {
+        /// The joint.
+        joint: String,
+    },
+    /// A joint that is nowhere near its bodies.
+    #[error("the joint \"{joint}\" is far from the bodies that it joins")]
+    Far {
+        /// The joint.
+        joint: String,
+    },
+    /// A mechanism as a whole.
+    #[error("{0}")]
+    Mechanism(String),
     /// Not a range of tolerance levels.
     #[error("`{key}`: {error}")]
     Levels {
@@ -213,6 +242,8 @@ impl Problem {
                 | Self::NotPlaced(_)
                 | Self::PlacedTwice(_)
                 | Self::Loop(_)
+                | Self::IdealLoop { .. }
+                | Self::Mechanism(_)
                 | Self::Gap(_)
         )
     }

@@ -2,12 +2,12 @@
 
 use slipfit_core::clearance::GapStatistics;
 
-use crate::{product::Product, tolerance::moments};
+use crate::{mechanism::Mechanism, product::Product, tolerance::moments};
 
 use super::{
     Override, Problem, Scene, SceneError,
     diagnostic::Found,
-    keys,
+    keys, mechanism,
     parse::{scene, title},
     pins::{fill, pins, sums},
     product::product,
@@ -24,6 +24,8 @@ pub struct SceneFile {
     /// The mechanism, if it has one. Gaps that are measures of the product have the moments that [`moments::of_measures`]
     /// finds.
     pub slide: Option<Scene>,
+    /// The mechanism, if it is made of bodies and joints of its own.
+    pub mechanism: Option<Mechanism>,
 }
 
 impl SceneFile {
@@ -51,8 +53,12 @@ impl SceneFile {
             .then(|| product(&root))
             .transpose()?;
         let of_slide = ["slide", "contact", "friction", "drive", "run", "controller", "sweep", "pin"];
-        if product.is_some() && of_slide.iter().all(|key| root.get(key).is_none()) {
-            return Ok(Self { title, product, slide: None });
+        if product.is_some() && !mechanism::is_mechanism(&root) && of_slide.iter().all(|key| root.get(key).is_none()) {
+            return Ok(Self { title, product, slide: None, mechanism: None });
+        }
+        if mechanism::is_mechanism(&root) {
+            let mechanism = mechanism::mechanism(&root, title.clone(), product.as_ref())?;
+            return Ok(Self { title, product, slide: None, mechanism: Some(mechanism) });
         }
         root.table("slide")?;
         let (mut pins, gap_measures) = pins(&root, product.as_ref().map(|product| &product.model))?;
@@ -67,7 +73,7 @@ impl SceneFile {
             product.model.sums.extend(sums(&pins, &gap_measures));
         }
         let slide = Some(scene(&root, title.clone(), pins)?);
-        Ok(Self { title, product, slide })
+        Ok(Self { title, product, slide, mechanism: None })
     }
 
     /// The slide of the scene file `file_name` and the product it belongs to, if the scene has one.

@@ -69,6 +69,9 @@ const AXIS: &[Key] = &[
     VECTORIAL,
 ];
 
+const CONTACT: &[Key] = &[key("stiffness"), key("exponent"), key("damping"), key("depth")];
+const FRICTION: &[Key] = &[key("law"), key("coefficient"), key("stick_band")];
+
 /// What drawings have and scenes do not.
 const UNSUPPORTED: [&str; 12] = [
     "circularity",
@@ -89,9 +92,46 @@ const UNSUPPORTED: [&str; 12] = [
 const ROOT: &[Key] = &[
     key("title"),
     table("slide", &[key("mass"), key("inertia_box"), key("gravity")]),
-    table("contact", &[key("stiffness"), key("exponent"), key("damping"), key("depth")]),
-    table("friction", &[key("law"), key("coefficient"), key("stick_band")]),
-    table("drive", &[key("gain"), key("ramp_start"), key("ramp_end"), key("speed"), key("point")]),
+    table("contact", CONTACT),
+    table("friction", FRICTION),
+    table(
+        "drive",
+        &[
+            key("gain"),
+            key("ramp_start"),
+            key("ramp_end"),
+            key("speed"),
+            key("point"),
+            key("name"),
+            key("pushes"),
+            key("turns"),
+            key("axis"),
+        ],
+    ),
+    table("mechanism", &[key("space"), key("gravity")]),
+    table("body", &[key("name"), key("mass"), key("inertia"), key("centre"), key("angle"), key("spin"), key("speed")]),
+    table(
+        "joint",
+        &[
+            key("name"),
+            key("kind"),
+            key("between"),
+            key("at"),
+            key("axis"),
+            key("normal"),
+            key("clearance"),
+            key("radius"),
+            key("length"),
+            key("width"),
+            key("left"),
+            key("right"),
+            key("rail"),
+            key("wall"),
+            table("contact", CONTACT),
+            table("friction", FRICTION),
+        ],
+    ),
+    table("spring", &[key("name"), key("between"), key("stiffness"), key("damping")]),
     table("run", &[key("duration"), key("stroke"), key("error")]),
     table("controller", &[key("step"), key("integrator"), key("scalar")]),
     table("sweep", &[key("n")]),

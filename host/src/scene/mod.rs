@@ -7,6 +7,7 @@ mod diagnostic;
 mod file;
 mod keys;
 mod levels;
+mod mechanism;
 mod parse;
 mod pins;
 mod product;

@@ -27,9 +27,9 @@ const DAMPING: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
 const DEPTH: Quantity = Quantity { units: unit::LENGTH, range: [1e-6, 1000.0] };
 const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [0.0, 100.0] };
 const STICK_BAND: Quantity = Quantity { units: unit::SPEED, range: [1e-7, 1000.0] };
-const GAIN: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
-const RAMP: Quantity = Quantity { units: unit::SECONDS, range: [-1000.0, 1000.0] };
-const SPEED: Quantity = Quantity { units: unit::SPEED, range: [-1e6, 1e6] };
+pub(super) const GAIN: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
+pub(super) const RAMP: Quantity = Quantity { units: unit::SECONDS, range: [-1000.0, 1000.0] };
+pub(super) const SPEED: Quantity = Quantity { units: unit::SPEED, range: [-1e6, 1e6] };
 pub(super) const POINT: Quantity = Quantity { units: unit::LENGTH, range: [-1e5, 1e5] };
 const CLEARANCE: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
 const DURATION: Quantity = Quantity { units: unit::MILLISECONDS, range: [0.001, 1e6] };
@@ -49,7 +49,7 @@ const STIFFNESS: [f64; 2] = [1e-9, 1e20];
 /// kg·m²: what the slide's kernel takes.
 const LEAST_MOMENT: f64 = 1e-12;
 /// s: what the slide's kernel takes.
-const LEAST_RAMP: f64 = 1e-6;
+pub(super) const LEAST_RAMP: f64 = 1e-6;
 
 /// Reads the slide and its run around the `pins`.
 pub(super) fn scene(root: &Field, title: String, pins: [PinSpec; PINS]) -> Result<Scene, SceneError> {
@@ -113,7 +113,7 @@ fn slide(table: &Field) -> Result<SlideSpec, SceneError> {
     Ok(SlideSpec { mass, inertia_box, gravity: table.numbers("gravity", &GRAVITY)? })
 }
 
-fn contact(table: &Field) -> Result<ContactData<f64>, SceneError> {
+pub(super) fn contact(table: &Field) -> Result<ContactData<f64>, SceneError> {
     let exponent = table.number("exponent", &EXPONENT)?;
     Ok(ContactData {
         stiffness: stiffness(table, exponent)?,
@@ -158,7 +158,7 @@ fn stiffness_unit(unit: &str) -> Option<(&str, f64)> {
     matches!(length, "mm" | "m").then_some((length, power))
 }
 
-fn friction(table: &Field) -> Result<FrictionData<f64>, SceneError> {
+pub(super) fn friction(table: &Field) -> Result<FrictionData<f64>, SceneError> {
     const LAWS: &str = "regularised, exact, none";
     let law = table.require("law", LAWS)?;
     let (key, written) = (law.key.clone(), law.written(""));
@@ -204,7 +204,7 @@ fn nominal_clearance(root: &Field) -> Result<Option<[f64; 2]>, SceneError> {
     drawing.get("clearance").map(|field| field.to_numbers(&CLEARANCE)).transpose()
 }
 
-fn run(table: &Field) -> Result<RunSpec, SceneError> {
+pub(super) fn run(table: &Field) -> Result<RunSpec, SceneError> {
     Ok(RunSpec {
         duration: table.number("duration", &DURATION)?,
         stroke: table.get("stroke").map(|field| field.to_number(&STROKE)).transpose()?,

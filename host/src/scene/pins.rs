@@ -82,7 +82,7 @@ fn pin(table: &Field, model: Option<&Model>) -> Result<(PinSpec, [Option<usize>;
 }
 
 /// The index of the measure that `field` names, a length.
-fn length(field: &Field, model: Option<&Model>) -> Result<usize, SceneError> {
+pub(super) fn length(field: &Field, model: Option<&Model>) -> Result<usize, SceneError> {
     let name = field.to_text()?;
     let measures = model.map(|model| &model.measures[..]).unwrap_or_default();
     let at = measures.iter().position(|measure| measure.name == name && measure.quantity == Kind::Length);
@@ -94,7 +94,7 @@ fn length(field: &Field, model: Option<&Model>) -> Result<usize, SceneError> {
     })
 }
 
-fn statistics(field: &Field) -> Result<GapStatistics<f64>, SceneError> {
+pub(super) fn statistics(field: &Field) -> Result<GapStatistics<f64>, SceneError> {
     const ALLOWED: &str = "[mean, standard deviation] in mm";
     let Value::List(nodes) = &field.node.value else { return Err(field.wrong_type(ALLOWED)) };
     let [mean, deviation] = &nodes[..] else {

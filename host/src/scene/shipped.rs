@@ -14,6 +14,13 @@ pub const SHIPPED: &[(&str, &str)] = &[
     ("three-locators", include_str!("../../scenes/three-locators.toml")),
     ("lid-on-pins", include_str!("../../scenes/lid-on-pins.toml")),
     ("worn-tool", include_str!("../../scenes/worn-tool.toml")),
+    ("slider-crank", include_str!("../../scenes/slider-crank.toml")),
+    ("slider-crank-guide", include_str!("../../scenes/slider-crank-guide.toml")),
+    ("four-bar", include_str!("../../scenes/four-bar.toml")),
+    ("woodpecker-toy", include_str!("../../scenes/woodpecker-toy.toml")),
+    ("linear-guide", include_str!("../../scenes/linear-guide.toml")),
+    ("telescopic-drawer", include_str!("../../scenes/telescopic-drawer.toml")),
+    ("hatch", include_str!("../../scenes/hatch.toml")),
 ];
 
 /// The text of the shipped scene of this name.

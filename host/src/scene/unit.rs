@@ -43,6 +43,15 @@ pub const MICROSECONDS: &[Unit] = &[MICROSECOND, MILLISECOND, si("s")];
 pub const SPEED: &[Unit] = &[per("mm/s", 1e3), si("m/s")];
 /// Accelerations.
 pub const ACCELERATION: &[Unit] = &[si("m/s²"), per("mm/s²", 1e3)];
+/// Moments of inertia.
+pub const INERTIA: &[Unit] = &[per("g·mm²", 1e9), si("kg·m²"), per("kg·mm²", 1e6)];
+/// Angular velocities.
+pub const ROTATION: &[Unit] =
+    &[si("rad/s"), times("°/s", std::f64::consts::PI / 180.0), times("1/min", std::f64::consts::PI / 30.0)];
+/// Gains and dampings about an axis: torques for an angular velocity.
+pub const TORQUE_GAIN: &[Unit] = &[si("N·m·s/rad"), per("N·mm·s/rad", 1e3)];
+/// Stiffnesses about an axis.
+pub const TORSION: &[Unit] = &[si("N·m/rad"), per("N·mm/rad", 1e3)];
 /// Dampings and gains: forces for a speed.
 pub const DAMPING: &[Unit] = &[times("N·s/mm", 1e3), si("N·s/m")];
 

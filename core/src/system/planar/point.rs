@@ -46,11 +46,6 @@ impl<S: Scalar, const D: usize> Point<S, D> {
         }
         self
     }
-
-    /// How far (m) arms reach at most.
-    pub(super) fn reach(&self) -> S {
-        self.arms.iter().fold(S::zero(), |reach, arm| reach + arm.dot(arm).sqrt())
-    }
 }
 
 /// A point at a pose and motion.

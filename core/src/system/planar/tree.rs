@@ -63,16 +63,20 @@ impl<S: Scalar + PartialOrd, const D: usize> PlanarTree<S, D> {
         let none = Rigid { mass: S::zero(), inertia: S::zero(), centre: Point::fixed(Vector2::zeros()) };
         let mut all = [none; D];
         let mut least_mass = S::from_f64(1e6);
-        let mut lever = S::from_f64(1e-6);
+        let mut levers = [S::from_f64(1e-6); D];
         for (slot, body) in all.iter_mut().zip(bodies) {
             let mass = bounded("mass", body.mass, [1e-9, 1e6])?;
             bounded("inertia", body.inertia, [0.0, 1e9])?;
             least_mass = least_mass.select_gt(mass, mass, least_mass);
-            lever = lever.max_of(body.centre.reach()).max_of((body.inertia / mass).sqrt());
+            for (k, (lever, arm)) in levers.iter_mut().zip(&body.centre.arms).enumerate() {
+                let turns = body.centre.turn == Some(k);
+                let gyration = if turns { (body.inertia / mass).sqrt() } else { S::zero() };
+                *lever = lever.max_of(arm.dot(arm).sqrt()).max_of(gyration);
+            }
             *slot = *body;
         }
         let mut per_lever = SVector::<S, D>::zeros();
-        for (weight, coordinate) in per_lever.iter_mut().zip(&coordinates) {
+        for ((weight, coordinate), lever) in per_lever.iter_mut().zip(&coordinates).zip(levers) {
             *weight = match coordinate {
                 Coordinate::Turn => S::one() / lever,
                 Coordinate::Slide { .. } => S::one(),
@@ -93,9 +97,15 @@ impl<S: Scalar, const D: usize> PlanarTree<S, D> {
         self.bodies.split_at_checked(self.count).map_or(&[], |(bodies, _)| bodies)
     }
 
-    /// The length (m) by which angles are compared with displacements.
-    pub fn lever(&self) -> S {
-        S::one() / self.per_lever.iter().fold(S::one(), |least, x| x.select_gt(least, *x, least))
+    /// Where a point is (m) and how fast it moves (m/s).
+    pub fn motion_of(&self, point: &Point<S, D>, placed: &Placed<S, D>) -> [Vector2<S>; 2] {
+        let at = At::of(self, point, placed);
+        [at.place, at.gradient * placed.rates]
+    }
+
+    /// By which length (m) the angle `k` is compared with displacements; 1 for a displacement.
+    pub fn lever(&self, k: usize) -> S {
+        self.per_lever.get(k).map_or(S::one(), |per_lever| S::one() / *per_lever)
     }
 
     /// The pose with the given angles (rad) and displacements (m).

@@ -75,9 +75,9 @@ impl<S: Scalar, const N: usize, const D: usize> FreeBodies<S, N, D> {
         [Pose::nominal(); N]
     }
 
-    /// The greatest length (m) by which angles are compared with displacements.
-    pub fn lever(&self) -> S {
-        S::one() / self.per_lever.iter().fold(S::from_f64(1e9), |least, x| x.select_gt(least, least, *x))
+    /// By which length (m) angles of body `i` are compared with displacements.
+    pub fn lever(&self, i: usize) -> S {
+        self.per_lever.get(6 * i + 3).map_or(S::one(), |per_lever| S::one() / *per_lever)
     }
 
     #[inline(always)]

@@ -1,0 +1,122 @@
+//! What is told of a motion: drives and bodies, column by column.
+
+use nalgebra::Vector3;
+use slipfit_core::{SVector, system::Bodies, system::planar::PlanarTree};
+
+use super::{Action, Mechanism, Mounts, mounts::flat};
+
+/// Coordinates and their rates at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<const D: usize> {
+    /// Generalised velocities (m/s, rad/s).
+    pub rates: [f64; D],
+    /// Displacements (m) and angles (rad) from the drawn pose; in space rotation vectors.
+    pub places: [f64; D],
+}
+
+impl<const D: usize> crate::error_control::Values for State<D> {
+    fn get(&self, k: usize) -> f64 {
+        *self.rates.iter().chain(&self.places).nth(k).unwrap_or(&0.0)
+    }
+
+    fn with(&self, value: impl Fn(usize) -> f64) -> Self {
+        Self { rates: std::array::from_fn(&value), places: std::array::from_fn(|k| value(D + k)) }
+    }
+}
+
+/// How one body moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyMotion {
+    /// Displacement of the centre of mass (m).
+    pub displacement: Vector3<f64>,
+    /// Rotation vector from the drawn pose (rad); in a plane its third part is the angle.
+    pub turn: Vector3<f64>,
+    /// Velocity of the centre of mass (m/s).
+    pub velocity: Vector3<f64>,
+    /// Angular velocity in the frame (rad/s).
+    pub spin: Vector3<f64>,
+}
+
+/// The bodies of a mechanism in a plane.
+pub fn planar<const D: usize>(
+    mechanism: &Mechanism,
+    mounts: &Mounts,
+    tree: &PlanarTree<f64, D>,
+    state: &State<D>,
+) -> Vec<BodyMotion> {
+    let pose = tree.pose(state.places, |angle| [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]);
+    let placed = tree.placed(&pose, &SVector::from(state.rates));
+    let body = |(i, body): (usize, &super::Body)| {
+        let drawn = flat(body.centre);
+        let [place, velocity] = tree.motion_of(&mounts.point(Some(i), drawn), &placed);
+        let moved = place - drawn;
+        let about = |values: &[f64; D]| Vector3::z() * mounts.turn(Some(i)).map_or(0.0, |turn| values[turn]);
+        BodyMotion {
+            displacement: Vector3::new(moved.x, moved.y, 0.0),
+            turn: about(&state.places),
+            velocity: Vector3::new(velocity.x, velocity.y, 0.0),
+            spin: about(&state.rates),
+        }
+    };
+    mechanism.bodies.iter().enumerate().map(body).collect()
+}
+
+/// The free bodies of a mechanism in space.
+pub fn spatial<const D: usize>(state: &State<D>) -> Vec<BodyMotion> {
+    let vector = |values: &[f64]| Vector3::new(values[0], values[1], values[2]);
+    let bodies = state.rates.as_chunks::<6>().0.iter().zip(state.places.as_chunks::<6>().0);
+    let body = |(rates, places): (&[f64; 6], &[f64; 6])| {
+        let turn = vector(&places[3..]);
+        BodyMotion {
+            displacement: vector(places),
+            turn,
+            velocity: vector(rates),
+            spin: nalgebra::Rotation3::from_scaled_axis(turn) * vector(&rates[3..]),
+        }
+    };
+    bodies.map(body).collect()
+}
+
+impl Mechanism {
+    /// Names of the columns of [`row`](Self::row), with their units.
+    pub fn columns(&self) -> Vec<String> {
+        let drives = self.drives.iter().map(|drive| match drive.action {
+            Action::Pushes { .. } => format!("{}.force (N)", drive.name),
+            Action::Turns { .. } => format!("{}.torque (N·m)", drive.name),
+        });
+        let of_body: &[&str] = if self.planar {
+            &["x (m)", "y (m)", "angle (rad)", "vx (m/s)", "vy (m/s)", "spin (rad/s)"]
+        } else {
+            &["x (m)", "y (m)", "z (m)", "ax (rad)", "ay (rad)", "az (rad)", "vx (m/s)", "vy (m/s)", "vz (m/s)"]
+        };
+        let bodies = self.bodies.iter().flat_map(|body| of_body.iter().map(|what| format!("{}.{what}", body.name)));
+        std::iter::once("t (s)".to_owned()).chain(drives).chain(bodies).collect()
+    }
+
+    /// Force or torque of each drive at time `t` (s).
+    pub fn drive_values<'a>(&'a self, t: f64, motions: &'a [BodyMotion]) -> impl Iterator<Item = f64> + 'a {
+        self.drives.iter().map(move |named| {
+            let motion = &motions[named.body];
+            let speed = match named.action {
+                Action::Pushes { axis } => motion.velocity.dot(&Vector3::from(axis)),
+                Action::Turns { axis } => motion.spin.dot(&Vector3::from(axis)),
+            };
+            named.drive.force(t, speed)
+        })
+    }
+
+    /// What is told of the motion at time `t` (s), in the order of [`columns`](Self::columns).
+    pub fn row(&self, t: f64, motions: &[BodyMotion]) -> Vec<f64> {
+        let mut row = vec![t];
+        row.extend(self.drive_values(t, motions));
+        for motion in motions {
+            if self.planar {
+                let BodyMotion { displacement: d, turn, velocity: v, spin } = motion;
+                row.extend([d.x, d.y, turn.z, v.x, v.y, spin.z]);
+            } else {
+                row.extend(motion.displacement.iter().chain(&motion.turn).chain(&motion.velocity));
+            }
+        }
+        row
+    }
+}

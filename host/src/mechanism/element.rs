@@ -1,0 +1,126 @@
+//! Elements chosen at run time: the laws and links are core's, and so are the bits.
+
+use slipfit_core::{
+    ParameterError,
+    drive::Drive,
+    law::{Impact, Regularised},
+    mechanism::Way,
+    menu::FrictionData,
+    system::{
+        Assembly, Bodies, Element, Elements,
+        law::{Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
+        planar::{self, PlanarTree},
+        spatial::{self, FreeBodies},
+    },
+};
+
+use super::Laws;
+use crate::laws::{AnyElastic, AnySliding};
+
+/// Any contact without internal variables.
+pub type AnyContact = Contact<Impact<f64, AnyElastic<f64>>, AnySliding<f64>>;
+
+/// The contact of `laws`; true stick is stood for by the `stick_band` (m/s).
+///
+/// # Errors
+/// [`ParameterError`] names the parameter that is not finite or out of bounds.
+pub fn contact(laws: &Laws, stick_band: f64) -> Result<AnyContact, ParameterError<f64>> {
+    let normal = Impact::new(AnyElastic::new(&laws.contact)?, laws.contact.damping, laws.contact.depth)?;
+    let regularised = |coefficient, band| Ok(AnySliding::Regularised(Regularised::new(coefficient, band)?));
+    let friction = match laws.friction {
+        FrictionData::None => AnySliding::Frictionless,
+        FrictionData::Regularised { coefficient, stick_band } => regularised(coefficient, stick_band)?,
+        FrictionData::Exact { coefficient } => regularised(coefficient, stick_band)?,
+    };
+    Ok(Contact { normal, friction })
+}
+
+/// An element in a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlanarElement<const D: usize> {
+    /// A hole around a pin.
+    Journal(Element<planar::Between<f64, D>, Journal<f64, Impact<f64, AnyElastic<f64>>, AnySliding<f64>>, 4>),
+    /// A point before a line.
+    Pad(Element<planar::Across<f64, D>, Pad<f64, Impact<f64, AnyElastic<f64>>, AnySliding<f64>>, 2>),
+    /// A torsion spring.
+    Spring(Element<planar::Turning, Spring<f64>, 1>),
+    /// A torque.
+    Motor(Element<planar::Turning, Motor<Drive<f64>>, 1>),
+    /// A force.
+    Pusher(Element<planar::Along<f64, D>, Pusher<Drive<f64>>, 2>),
+}
+
+/// An element in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpatialElement {
+    /// A pin between walls.
+    Pin(Element<spatial::Seat<f64>, Pin<f64, AnyElastic<f64>, AnySliding<f64>>, 3>),
+    /// A point before a wall.
+    Wall(Element<spatial::Seat<f64>, Wall<f64, Impact<f64, AnyElastic<f64>>, AnySliding<f64>>, 3>),
+    /// A ring around a rod.
+    Ring(Element<spatial::Turned<f64>, Ring<f64, Impact<f64, AnyElastic<f64>>, AnySliding<f64>>, 6>),
+    /// A torque.
+    Motor(Element<spatial::About<f64>, Motor<Drive<f64>>, 1>),
+    /// A force.
+    Pusher(Element<spatial::Along<f64>, Pusher<Drive<f64>>, 2>),
+}
+
+impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
+    type Memory = ();
+
+    const STICKS: bool = false;
+
+    fn fresh(&self) {}
+
+    #[inline(always)]
+    fn act(
+        &self,
+        way: (f64, Way<f64>),
+        at: (&PlanarTree<f64, D>, &planar::Placed<f64, D>),
+        (): &(),
+        _: Option<&mut ()>,
+        sum: &mut impl Assembly<f64, D>,
+    ) {
+        match self {
+            Self::Journal(element) => element.act(way, at, &(), None, sum),
+            Self::Pad(element) => element.act(way, at, &(), None, sum),
+            Self::Spring(element) => element.act(way, at, &(), None, sum),
+            Self::Motor(element) => element.act(way, at, &(), None, sum),
+            Self::Pusher(element) => element.act(way, at, &(), None, sum),
+        }
+    }
+
+    fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
+
+    fn adopt(&self, _: f64, (): &(), (): &mut ()) {}
+}
+
+impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
+    type Memory = ();
+
+    const STICKS: bool = false;
+
+    fn fresh(&self) {}
+
+    #[inline(always)]
+    fn act(
+        &self,
+        way: (f64, Way<f64>),
+        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
+        (): &(),
+        _: Option<&mut ()>,
+        sum: &mut impl Assembly<f64, D>,
+    ) {
+        match self {
+            Self::Pin(element) => element.act(way, at, &[(); 2], None, sum),
+            Self::Wall(element) => element.act(way, at, &(), None, sum),
+            Self::Ring(element) => element.act(way, at, &(), None, sum),
+            Self::Motor(element) => element.act(way, at, &(), None, sum),
+            Self::Pusher(element) => element.act(way, at, &(), None, sum),
+        }
+    }
+
+    fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
+
+    fn adopt(&self, _: f64, (): &(), (): &mut ()) {}
+}

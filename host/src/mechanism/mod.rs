@@ -1,0 +1,236 @@
+//! Mechanisms of any make: bodies, joints with or without play, springs and drives, as one value.
+//!
+//! Everything is described in one drawn pose, in which all axes are those of the frame. In a mechanism that lies in a plane
+//! x and y span the plane and angles turn from x to y; the others are in space.
+
+mod columns;
+mod element;
+mod gaps;
+mod mounts;
+mod planar;
+mod run;
+mod spatial;
+
+pub use gaps::{GapError, Gaps};
+pub use mounts::{MountError, Mounts};
+pub use run::{MechanismRun, Rest, RunError, Samples, run};
+
+use slipfit_core::{
+    clearance::GapStatistics,
+    drive::Drive,
+    menu::{ContactData, FrictionData},
+};
+
+/// Which bodies there are, what joins them, and what is to be simulated. SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mechanism {
+    /// Title, for plots and reports.
+    pub title: String,
+    /// Whether it lies in a plane.
+    pub planar: bool,
+    /// Gravity (m/s²).
+    pub gravity: [f64; 3],
+    /// Moving bodies.
+    pub bodies: Vec<Body>,
+    /// Joints.
+    pub joints: Vec<Joint>,
+    /// Torsion springs.
+    pub springs: Vec<Spring>,
+    /// Drives.
+    pub drives: Vec<NamedDrive>,
+    /// Gaps of the joints with play, over the production.
+    pub gaps: Vec<Gap>,
+    /// Simulated time (s).
+    pub duration: f64,
+    /// Error of a speed that a step may make, as a share of the mechanism's own speed.
+    pub error: f64,
+}
+
+/// A rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Name.
+    pub name: String,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Principal moments of inertia about the centre of mass (kg·m²); in a plane the last alone counts.
+    pub inertia: [f64; 3],
+    /// Centre of mass in the drawn pose (m).
+    pub centre: [f64; 3],
+    /// How it starts.
+    pub start: Start,
+}
+
+/// How a body in a plane starts, as far as its own ideal joint lets it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Angle from the drawn pose (rad).
+    pub angle: f64,
+    /// Angular velocity (rad/s).
+    pub spin: f64,
+    /// Speed along the joint's axis (m/s).
+    pub speed: f64,
+}
+
+/// A body, or the frame where there is none.
+pub type Port = Option<usize>;
+
+/// A joint of two bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Name.
+    pub name: String,
+    /// The bodies that it joins.
+    pub between: [Port; 2],
+    /// Where it is in the drawn pose (m).
+    pub at: [f64; 3],
+    /// What it is.
+    pub kind: JointKind,
+    /// Laws of its contacts.
+    pub laws: Laws,
+}
+
+/// Laws of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Laws {
+    /// Along the normal.
+    pub contact: ContactData<f64>,
+    /// Along the tangents.
+    pub friction: FrictionData<f64>,
+}
+
+/// What a joint is. Axes and normals are of unit length, in the drawn pose.
+#[derive(Clone, Debug, PartialEq)]
+pub enum JointKind {
+    /// The bodies are one.
+    Fixed,
+    /// They turn about the place.
+    Revolute,
+    /// They slide along an axis.
+    Prismatic {
+        /// Direction.
+        axis: [f64; 3],
+    },
+    /// They slide along an axis of the first body and turn about the place.
+    PinSlot {
+        /// Direction.
+        axis: [f64; 3],
+    },
+    /// A revolute joint with play, in a plane: a hole of the first body around a pin of the second.
+    Journal {
+        /// Its gap: the radial clearance.
+        gap: usize,
+        /// Radius of the pin (m).
+        radius: f64,
+    },
+    /// A prismatic joint with play, in a plane: a rectangle of the first body between two parallel lines of the second.
+    Guide {
+        /// Its gap, on either side.
+        gap: usize,
+        /// Direction of the lines.
+        axis: [f64; 3],
+        /// Edges of the rectangle along and across the axis (m).
+        edges: [f64; 2],
+    },
+    /// A cylindrical joint with play, in space: a plain bearing of the first body around a rod of the second.
+    Bearing {
+        /// Its gap: the radial clearance.
+        gap: usize,
+        /// Direction of the rod.
+        axis: [f64; 3],
+        /// Length of the bearing (m).
+        length: f64,
+        /// Radius of the rod (m).
+        radius: f64,
+    },
+    /// A pin of the first body between walls of the second, in space: to the left (normal +x), right (−x), rail (−y) and
+    /// keeper (+y).
+    Track {
+        /// Their gaps; `None` where there is no such wall.
+        gaps: [Option<usize>; 4],
+    },
+    /// A point of the first body before a wall of the second.
+    Stop {
+        /// Its gap.
+        gap: usize,
+        /// The wall's outward normal, towards the point.
+        normal: [f64; 3],
+    },
+}
+
+impl JointKind {
+    /// Whether it leaves no play.
+    pub fn is_ideal(&self) -> bool {
+        matches!(self, Self::Fixed | Self::Revolute | Self::Prismatic { .. } | Self::PinSlot { .. })
+    }
+
+    /// What scene files call it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Revolute | Self::Journal { .. } => "revolute",
+            Self::Prismatic { .. } | Self::Guide { .. } => "prismatic",
+            Self::PinSlot { .. } => "pin-slot",
+            Self::Bearing { .. } => "cylindrical",
+            Self::Track { .. } => "track",
+            Self::Stop { .. } => "stop",
+        }
+    }
+}
+
+/// A torsion spring between two bodies, relaxed in the drawn pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// Name.
+    pub name: String,
+    /// The bodies.
+    pub between: [Port; 2],
+    /// Stiffness (N·m/rad).
+    pub stiffness: f64,
+    /// Damping (N·m·s/rad).
+    pub damping: f64,
+}
+
+/// A drive with its name: a P-velocity controller behind a ramp (eq. 12).
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedDrive {
+    /// Name.
+    pub name: String,
+    /// The body that it drives, from the frame.
+    pub body: usize,
+    /// The controller. For a torque gain and speed are in N·m·s/rad and rad/s, and the point counts for nothing.
+    pub drive: Drive<f64>,
+    /// How it acts.
+    pub action: Action,
+}
+
+/// How a drive acts on its body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    /// As a force along an axis of the frame, at the drive's point; it goes by the speed of the centre of mass.
+    Pushes {
+        /// Direction, of unit length.
+        axis: [f64; 3],
+    },
+    /// As a torque about an axis of the frame; it goes by the angular velocity.
+    Turns {
+        /// Direction, of unit length; in a plane it is the plane's normal.
+        axis: [f64; 3],
+    },
+}
+
+/// A gap over the production.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    /// Name: the joint's, and where it has several the wall's.
+    pub name: String,
+    /// Mean and standard deviation (m).
+    pub statistics: GapStatistics<f64>,
+}
+
+impl Mechanism {
+    /// The name of a body or of the frame.
+    pub fn name_of(&self, port: Port) -> &str {
+        port.and_then(|body| self.bodies.get(body)).map_or("frame", |body| &body.name)
+    }
+}

@@ -1,0 +1,163 @@
+//! How ideal joints hang bodies in a plane on each other and on the frame: coordinates and points.
+
+use slipfit_core::{
+    Vector2,
+    system::planar::{Coordinate, Point},
+};
+
+use super::{Joint, JointKind, Mechanism, Port};
+
+/// Most coordinates of a mechanism in a plane.
+pub const MOST: usize = 6;
+
+/// What makes no tree.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MountError {
+    /// A joint that closes a loop of ideal joints.
+    #[error("the joint \"{joint}\" closes a loop of joints without play")]
+    Loop {
+        /// Its name.
+        joint: String,
+    },
+    /// More coordinates than there is room for.
+    #[error("the mechanism has {found} coordinates, allowed are {MOST}")]
+    Coordinates {
+        /// How many.
+        found: usize,
+    },
+}
+
+/// A coordinate and whose it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Owned {
+    /// The coordinate.
+    pub coordinate: Coordinate<f64>,
+    /// The body that it moves first.
+    pub body: usize,
+}
+
+/// A body's place in the tree.
+#[derive(Clone, Debug, PartialEq)]
+struct Mount {
+    /// A point of the body.
+    point: Point<f64, MOST>,
+    /// Where that is in the drawn pose (m).
+    drawn: Vector2<f64>,
+}
+
+/// The tree of a mechanism in a plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mounts {
+    coordinates: Vec<Owned>,
+    bodies: Vec<Mount>,
+}
+
+impl Mounts {
+    /// The tree of `mechanism`, which lies in a plane. A body without ideal joint is free, with three coordinates.
+    ///
+    /// # Errors
+    /// See [`MountError`].
+    pub fn of(mechanism: &Mechanism) -> Result<Self, MountError> {
+        let mut bodies: Vec<Option<Mount>> = vec![None; mechanism.bodies.len()];
+        let mut coordinates = Vec::new();
+        let mut used = vec![false; mechanism.joints.len()];
+        let ideal = |i: usize| mechanism.joints[i].kind.is_ideal();
+        loop {
+            let known = |port: Port, bodies: &[Option<Mount>]| port.is_none_or(|body| bodies[body].is_some());
+            let next = (0..used.len()).find(|&i| {
+                !used[i] && ideal(i) && mechanism.joints[i].between.iter().any(|port| known(*port, &bodies))
+            });
+            if let Some(i) = next {
+                used[i] = true;
+                let joint = &mechanism.joints[i];
+                let [first, second] = joint.between.map(|port| known(port, &bodies));
+                let ([parent, _], Some(child)) = (if first { (joint.between, joint.between[1]) } else { (flipped(joint), joint.between[0]) })
+                else {
+                    return Err(MountError::Loop { joint: joint.name.clone() });
+                };
+                if first && second {
+                    return Err(MountError::Loop { joint: joint.name.clone() });
+                }
+                let parent = parent.and_then(|body| bodies[body].clone()).unwrap_or_else(frame);
+                bodies[child] = Some(hung(&parent, joint, child, &mut coordinates)?);
+            } else if let Some(free) = bodies.iter().position(Option::is_none) {
+                bodies[free] = Some(afloat(mechanism.bodies[free].centre, free, &mut coordinates)?);
+            } else {
+                break;
+            }
+        }
+        Ok(Self { coordinates, bodies: bodies.into_iter().flatten().collect() })
+    }
+
+    /// The coordinates, with whose they are.
+    pub fn coordinates(&self) -> &[Owned] {
+        &self.coordinates
+    }
+
+    /// The point of a body, or of the frame, that is `at` (m) in the drawn pose.
+    pub fn point<const D: usize>(&self, port: Port, at: Vector2<f64>) -> Point<f64, D> {
+        let point = match port {
+            Some(body) => {
+                let Mount { point, drawn } = &self.bodies[body];
+                point.plus(at - drawn)
+            }
+            None => Point::fixed(at),
+        };
+        let mut narrow = Point { turn: point.turn, base: point.base, ..Point::fixed(at) };
+        narrow.moves.copy_from_slice(&point.moves[..D]);
+        narrow.arms.copy_from_slice(&point.arms[..D]);
+        narrow
+    }
+
+    /// The coordinate that turns a body; `None` for the frame and what does not turn.
+    pub fn turn(&self, port: Port) -> Option<usize> {
+        port.and_then(|body| self.bodies[body].point.turn)
+    }
+}
+
+fn frame() -> Mount {
+    Mount { point: Point::fixed(Vector2::zeros()), drawn: Vector2::zeros() }
+}
+
+fn flipped(joint: &Joint) -> [Port; 2] {
+    [joint.between[1], joint.between[0]]
+}
+
+/// In the plane.
+pub fn flat([x, y, _]: [f64; 3]) -> Vector2<f64> {
+    Vector2::new(x, y)
+}
+
+/// The mount of `child` on `parent` by `joint`.
+fn hung(parent: &Mount, joint: &Joint, child: usize, coordinates: &mut Vec<Owned>) -> Result<Mount, MountError> {
+    let at = flat(joint.at);
+    let mut point = parent.point.plus(at - parent.drawn);
+    let slide = |axis: [f64; 3]| Coordinate::Slide { on: point.turn, axis: flat(axis) };
+    let wanted: &[Coordinate<f64>] = match joint.kind {
+        JointKind::Revolute => &[Coordinate::Turn],
+        JointKind::Prismatic { axis } => &[slide(axis)],
+        JointKind::PinSlot { axis } => &[slide(axis), Coordinate::Turn],
+        _ => &[],
+    };
+    for coordinate in wanted {
+        point = point.on(add(coordinates, *coordinate, child)?, coordinate);
+    }
+    Ok(Mount { point, drawn: at })
+}
+
+/// The mount of a free body.
+fn afloat(centre: [f64; 3], body: usize, coordinates: &mut Vec<Owned>) -> Result<Mount, MountError> {
+    let drawn = flat(centre);
+    let mut point = Point::fixed(drawn);
+    let along = |axis| Coordinate::Slide { on: None, axis };
+    for coordinate in [along(Vector2::x()), along(Vector2::y()), Coordinate::Turn] {
+        point = point.on(add(coordinates, coordinate, body)?, &coordinate);
+    }
+    Ok(Mount { point, drawn })
+}
+
+/// The index of a new `coordinate`.
+fn add(coordinates: &mut Vec<Owned>, coordinate: Coordinate<f64>, body: usize) -> Result<usize, MountError> {
+    coordinates.push(Owned { coordinate, body });
+    if coordinates.len() > MOST { Err(MountError::Coordinates { found: coordinates.len() }) } else { Ok(coordinates.len() - 1) }
+}

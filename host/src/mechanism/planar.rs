@@ -1,0 +1,108 @@
+//! A mechanism in a plane as core computes with it.
+
+use slipfit_core::{
+    ParameterError, Vector2,
+    system::{
+        Element,
+        law::{Journal, Motor, Pad, Pusher, Spring},
+        planar::{Across, Along, Between, Coordinate, PlanarTree, Rigid, Turning},
+    },
+};
+
+use super::{
+    Action, JointKind, Mechanism, Mounts,
+    element::{PlanarElement, contact},
+    mounts::flat,
+};
+
+/// The bodies of `mechanism` on their `mounts`. Bodies that are one by fixed joints are put together.
+///
+/// # Errors
+/// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+pub fn bodies<const D: usize>(mechanism: &Mechanism, mounts: &Mounts) -> Result<PlanarTree<f64, D>, ParameterError<f64>> {
+    let mut rigid: Vec<(Vector2<f64>, usize, Rigid<f64, D>)> = Vec::new();
+    for (i, body) in mechanism.bodies.iter().enumerate() {
+        let drawn = flat(body.centre);
+        let centre = mounts.point::<D>(Some(i), drawn);
+        let inertia = body.inertia[2];
+        match rigid.iter_mut().find(|(_, _, one)| one.centre.turn == centre.turn && one.centre.moves == centre.moves) {
+            Some((place, first, one)) => {
+                let mass = one.mass + body.mass;
+                let apart = drawn - *place;
+                *place += apart * (body.mass / mass);
+                one.inertia += inertia + apart.dot(&apart) * one.mass * body.mass / mass;
+                *one = Rigid { mass, inertia: one.inertia, centre: mounts.point(Some(*first), *place) };
+            }
+            None => rigid.push((drawn, i, Rigid { mass: body.mass, inertia, centre })),
+        }
+    }
+    let rigid: Vec<_> = rigid.into_iter().map(|(_, _, body)| body).collect();
+    let mut coordinates = [Coordinate::Turn; D];
+    for (coordinate, owned) in coordinates.iter_mut().zip(mounts.coordinates()) {
+        *coordinate = owned.coordinate;
+    }
+    PlanarTree::new(coordinates, &rigid, flat(mechanism.gravity))
+}
+
+/// What acts on the bodies of `mechanism` with the given `gaps` (m); a stick band (m/s) stands for true stick.
+///
+/// # Errors
+/// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+pub fn elements<const D: usize>(
+    mechanism: &Mechanism,
+    mounts: &Mounts,
+    gaps: &[f64],
+    stick_band: f64,
+) -> Result<Vec<PlanarElement<D>>, ParameterError<f64>> {
+    let mut elements = Vec::new();
+    for joint in &mechanism.joints {
+        let [first, second] = joint.between;
+        let at = flat(joint.at);
+        match joint.kind {
+            JointKind::Journal { gap, radius } => {
+                let link = Between { hole: mounts.point(first, at), pin: mounts.point(second, at) };
+                let law = Journal { clearance: gaps[gap], radius, contact: contact(&joint.laws, stick_band)? };
+                elements.push(PlanarElement::Journal(Element { link, law }));
+            }
+            JointKind::Guide { gap, axis, edges: [along, across] } => {
+                let axis = flat(axis);
+                let up = Vector2::new(-axis.y, axis.x);
+                for (side, end) in [(0.5, 0.5), (0.5, -0.5), (-0.5, 0.5), (-0.5, -0.5)] {
+                    let corner = at + axis * (along * end) + up * (across * side);
+                    let seat = at + up * (across * side);
+                    let normal = up * if side > 0.0 { -1.0 } else { 1.0 };
+                    let link = Across { point: mounts.point(first, corner), seat: mounts.point(second, seat), normal };
+                    let law = Pad { gap: gaps[gap], contact: contact(&joint.laws, stick_band)? };
+                    elements.push(PlanarElement::Pad(Element { link, law }));
+                }
+            }
+            JointKind::Stop { gap, normal } => {
+                let link = Across { point: mounts.point(first, at), seat: mounts.point(second, at), normal: flat(normal) };
+                let law = Pad { gap: gaps[gap], contact: contact(&joint.laws, stick_band)? };
+                elements.push(PlanarElement::Pad(Element { link, law }));
+            }
+            _ => {}
+        }
+    }
+    for spring in &mechanism.springs {
+        let [body, against] = spring.between.map(|port| mounts.turn(port));
+        let law = Spring { stiffness: spring.stiffness, damping: spring.damping, rest: 0.0 };
+        elements.push(PlanarElement::Spring(Element { link: Turning { body, against }, law }));
+    }
+    for named in &mechanism.drives {
+        let drive = named.drive.checked()?;
+        elements.push(match named.action {
+            Action::Turns { .. } => {
+                let link = Turning { body: mounts.turn(Some(named.body)), against: None };
+                PlanarElement::Motor(Element { link, law: Motor(drive) })
+            }
+            Action::Pushes { axis } => {
+                let centre = flat(mechanism.bodies[named.body].centre);
+                let point = centre + Vector2::new(drive.point_b.x, drive.point_b.y);
+                let [point, sensor] = [point, centre].map(|at| mounts.point(Some(named.body), at));
+                PlanarElement::Pusher(Element { link: Along { point, sensor, axis: flat(axis) }, law: Pusher(drive) })
+            }
+        });
+    }
+    Ok(elements)
+}

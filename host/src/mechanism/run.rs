@@ -1,0 +1,249 @@
+//! The desk: one unit of any mechanism by error-controlled steps.
+
+use std::{
+    ops::ControlFlow,
+    time::{Duration, Instant},
+};
+
+use slipfit_core::{
+    ParameterError, SVector,
+    integrator::{Integrator, Motion, Rodas4, Step},
+    mechanism::Mechanism as _,
+    pose::Pose,
+    system::{Bodies, Elements, System, planar::Coordinate},
+};
+use thiserror::Error;
+
+use super::{
+    Action, Mechanism, MountError, Mounts,
+    columns::{self, BodyMotion, State},
+    planar, spatial,
+};
+use crate::error_control::{Effort, Knot, Stopped, integrate, sampled};
+
+/// How long (s) an error of speed may last: what makes an error of place of it.
+const LASTING: f64 = 1.2e-3;
+
+/// Stick bands in the error of speed that a step may make.
+const STICK_BANDS: f64 = 4.0;
+
+/// The speed (m/s) of a mechanism that neither a drive nor its start nor gravity moves.
+const SLOWEST: f64 = 1e-3;
+
+/// Why a unit has no run.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum RunError {
+    /// The joints are no tree.
+    #[error(transparent)]
+    Mounts(#[from] MountError),
+    /// More bodies than there is room for.
+    #[error("a mechanism in space has {0} bodies, allowed are 1 to {most}", most = spatial::MOST)]
+    Bodies(usize),
+    /// A parameter that core refuses.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError<f64>),
+    /// No step from this time (s) on meets the tolerance.
+    #[error("from t = {0} s on no step meets the tolerance, however short: the contacts may be too stiff for their masses")]
+    Unsolved(f64),
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<Stopped> for RunError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Unsolved(t) => Self::Unsolved(t),
+            Stopped::Interrupted => Self::Interrupted,
+        }
+    }
+}
+
+/// What is told of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Samples {
+    /// Names with units.
+    pub columns: Vec<String>,
+    /// Values, one row a sample.
+    pub rows: Vec<Vec<f64>>,
+}
+
+/// A finished run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MechanismRun {
+    /// Samples.
+    pub samples: Samples,
+    /// Error of speed (m/s) that a step was allowed.
+    pub tolerance: f64,
+    /// Steps.
+    pub effort: Effort,
+    /// Time that the integration alone took.
+    pub integration: Duration,
+}
+
+/// Runs the unit of `mechanism` with the given `gaps` (m) and tells of it every `every` (s).
+///
+/// # Errors
+/// See [`RunError`].
+pub fn run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
+    if mechanism.planar {
+        let mounts = Mounts::of(mechanism)?;
+        match mounts.coordinates().len() {
+            1 => in_plane::<1>(mechanism, &mounts, gaps, every),
+            2 => in_plane::<2>(mechanism, &mounts, gaps, every),
+            3 => in_plane::<3>(mechanism, &mounts, gaps, every),
+            4 => in_plane::<4>(mechanism, &mounts, gaps, every),
+            5 => in_plane::<5>(mechanism, &mounts, gaps, every),
+            _ => in_plane::<6>(mechanism, &mounts, gaps, every),
+        }
+    } else {
+        match mechanism.bodies.len() {
+            1 => in_space::<1, 6>(mechanism, gaps, every),
+            2 => in_space::<2, 12>(mechanism, gaps, every),
+            3 => in_space::<3, 18>(mechanism, gaps, every),
+            other => Err(RunError::Bodies(other)),
+        }
+    }
+}
+
+fn in_plane<const D: usize>(
+    mechanism: &Mechanism,
+    mounts: &Mounts,
+    gaps: &[f64],
+    every: f64,
+) -> Result<MechanismRun, RunError> {
+    let tree = planar::bodies::<D>(mechanism, mounts)?;
+    let limits = Limits::of(mechanism, |body| mounts.turn(Some(body)).map_or(0.0, |turn| tree.lever(turn)));
+    let elements = planar::elements::<D>(mechanism, mounts, gaps, limits.stick_band())?;
+    let Rest { places, rates } = Rest::of(mechanism, mounts);
+    let pose = tree.pose(places, |angle| [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]);
+    let mut angles = places;
+    let is_turn = |k: usize| matches!(tree.coordinates()[k], Coordinate::Turn);
+    let state = |pose: &[[f64; 2]; D], rates: [f64; D]| {
+        for (k, (angle, [w, v])) in angles.iter_mut().zip(pose).enumerate() {
+            // The angle next to the last one: a turn goes on where its direction begins anew.
+            *angle = if is_turn(k) { near(2.0 * libm::atan2(*v, *w), *angle) } else { *w };
+        }
+        State { rates, places: angles }
+    };
+    let told = |state: &State<D>| columns::planar(mechanism, mounts, &tree, state);
+    solve(mechanism, &System::new(tree, &elements[..]), (pose, rates), &limits, every, state, told)
+}
+
+fn in_space<const N: usize, const D: usize>(
+    mechanism: &Mechanism,
+    gaps: &[f64],
+    every: f64,
+) -> Result<MechanismRun, RunError> {
+    let bodies = spatial::bodies::<N, D>(mechanism)?;
+    let limits = Limits::of(mechanism, |body| bodies.lever(body));
+    let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
+    let state = |poses: &[Pose<f64>; N], rates: [f64; D]| {
+        let mut places = [0.0; D];
+        for (place, pose) in places.as_chunks_mut::<6>().0.iter_mut().zip(poses) {
+            let length = pose.orientation.v.norm();
+            let angle = 2.0 * libm::atan2(length, pose.orientation.w);
+            let turn = pose.orientation.v * if length > 0.0 { angle / length } else { 0.0 };
+            let r = pose.displacement_w;
+            *place = [r.x, r.y, r.z, turn.x, turn.y, turn.z];
+        }
+        State { rates, places }
+    };
+    let start = (bodies.nominal(), [0.0; D]);
+    let system = System::new(bodies, &elements[..]);
+    solve(mechanism, &system, start, &limits, every, state, columns::spatial)
+}
+
+/// `angle` (rad) by so many turns that it is next to `last`.
+fn near(angle: f64, last: f64) -> f64 {
+    let turn = 2.0 * std::f64::consts::PI;
+    angle + turn * ((last - angle) / turn).round()
+}
+
+/// Where and how fast a mechanism in a plane starts.
+pub struct Rest<const D: usize> {
+    /// Coordinates (m, rad) from the drawn pose.
+    pub places: [f64; D],
+    /// Their rates (m/s, rad/s).
+    pub rates: [f64; D],
+}
+
+impl<const D: usize> Rest<D> {
+    /// That of `mechanism`.
+    pub fn of(mechanism: &Mechanism, mounts: &Mounts) -> Self {
+        let (mut places, mut rates) = ([0.0; D], [0.0; D]);
+        for (k, owned) in mounts.coordinates().iter().enumerate() {
+            let start = mechanism.bodies[owned.body].start;
+            (places[k], rates[k]) = match owned.coordinate {
+                Coordinate::Turn => (start.angle, start.spin),
+                Coordinate::Slide { .. } => (0.0, start.speed),
+            };
+        }
+        Self { places, rates }
+    }
+}
+
+/// What a step may err by.
+struct Limits {
+    /// Speed (m/s).
+    speed: f64,
+}
+
+impl Limits {
+    /// A share of how fast the mechanism goes by itself; `lever` (m) of a body makes a speed of its angular one.
+    fn of(mechanism: &Mechanism, lever: impl Fn(usize) -> f64) -> Self {
+        let driven = mechanism.drives.iter().filter(|named| named.drive.gain > 0.0).map(|named| match named.action {
+            Action::Pushes { .. } => named.drive.speed.abs(),
+            Action::Turns { .. } => named.drive.speed.abs() * lever(named.body),
+        });
+        let thrown = mechanism.bodies.iter().enumerate().map(|(i, body)| body.start.speed.abs().max(body.start.spin.abs() * lever(i)));
+        let longest = (0..mechanism.bodies.len()).map(&lever).fold(0.0, f64::max);
+        let gravity: f64 = mechanism.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let greatest = driven.chain(thrown).fold(0.0, f64::max);
+        let own = if greatest > 0.0 { greatest } else { (gravity * longest).sqrt().max(SLOWEST) };
+        Self { speed: mechanism.error * own }
+    }
+
+    /// The stick band (m/s) that stands for true stick.
+    fn stick_band(&self) -> f64 {
+        (STICK_BANDS * self.speed).clamp(1e-9, 1e-4)
+    }
+
+    /// The error of a `step` of `length` (s) that moves at least the mass `least_mass` (kg); 1 is allowed.
+    fn error<P, R, const D: usize>(&self, step: &Step<f64, P, R, D>, length: f64, least_mass: f64) -> f64 {
+        let speed = step.error.max(step.residual) / (least_mass * self.speed);
+        let place = step.drift.max(step.residual * length) / (least_mass * self.speed * LASTING);
+        speed.max(place)
+    }
+}
+
+fn solve<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
+    mechanism: &Mechanism,
+    system: &System<B, E>,
+    (pose, rates): (B::Pose, [f64; D]),
+    limits: &Limits,
+    every: f64,
+    mut state: impl FnMut(&B::Pose, [f64; D]) -> State<D>,
+    told: impl Fn(&State<D>) -> Vec<BodyMotion>,
+) -> Result<MechanismRun, RunError> {
+    let velocity = SVector::from(rates);
+    let start = Motion { pose, velocity, acceleration: SVector::zeros(), memory: system.fresh() };
+    let least_mass = system.bodies().least_mass();
+    let mut knots: Vec<Knot<State<D>>> = Vec::new();
+    let clock = Instant::now();
+    let error = |step: &_, length| limits.error(step, length, least_mass);
+    let effort = integrate::<Rodas4, _, D>(system, start, mechanism.duration, error, |t, motion| {
+        knots.push(Knot { t, values: state(&motion.pose, motion.velocity.into()) });
+        ControlFlow::Continue(())
+    })?;
+    let integration = clock.elapsed();
+    let count = (mechanism.duration / every * (1.0 + 1e-12)).floor() as usize;
+    let time = |i: usize| (i as f64 * every).min(mechanism.duration);
+    let rows = (0..=count).map(time).zip(sampled(&knots, (0..=count).map(time)));
+    let rows = rows.map(|(t, state)| mechanism.row(t, &told(&state))).collect();
+    let samples = Samples { columns: mechanism.columns(), rows };
+    Ok(MechanismRun { samples, tolerance: limits.speed, effort, integration })
+}
+
+/// The scheme by which the desk integrates.
+pub const SCHEME: &str = Rodas4::NAME;

@@ -1,0 +1,122 @@
+//! A mechanism in space as core computes with it: free bodies on joints with play.
+
+use nalgebra::Matrix3;
+use slipfit_core::{
+    ParameterError, Vector3,
+    system::{
+        Element,
+        law::{Motor, Pin, Pusher, Ring, Wall},
+        spatial::{About, Along, FreeBodies, Port as PointOf, Rigid, Seat, Turned},
+    },
+};
+
+use super::{
+    Action, Joint, JointKind, Mechanism, Port,
+    element::{AnyContact, SpatialElement, contact},
+};
+
+/// A gap (m) that never closes.
+const NONE: f64 = slipfit_core::slide::ABSENT;
+
+/// Most bodies of a mechanism in space.
+pub const MOST: usize = 3;
+
+/// The bodies of `mechanism`.
+///
+/// # Errors
+/// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+pub fn bodies<const N: usize, const D: usize>(
+    mechanism: &Mechanism,
+) -> Result<FreeBodies<f64, N, D>, ParameterError<f64>> {
+    let none = Rigid { mass: 1.0, inertia_b: Vector3::repeat(1.0), centre_w: Vector3::zeros() };
+    let mut bodies = [none; N];
+    for (rigid, body) in bodies.iter_mut().zip(&mechanism.bodies) {
+        *rigid = Rigid { mass: body.mass, inertia_b: body.inertia.into(), centre_w: body.centre.into() };
+    }
+    FreeBodies::new(bodies, mechanism.gravity.into())
+}
+
+/// What acts on the bodies of `mechanism` with the given `gaps` (m); a stick band (m/s) stands for true stick.
+///
+/// # Errors
+/// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+pub fn elements(
+    mechanism: &Mechanism,
+    gaps: &[f64],
+    stick_band: f64,
+) -> Result<Vec<SpatialElement>, ParameterError<f64>> {
+    let mut elements = Vec::new();
+    for joint in &mechanism.joints {
+        add(mechanism, joint, gaps, contact(&joint.laws, stick_band)?, &mut elements)?;
+    }
+    for named in &mechanism.drives {
+        let drive = named.drive.checked()?;
+        elements.push(match named.action {
+            Action::Turns { axis } => SpatialElement::Motor(Element {
+                link: About { body: named.body, axis_w: axis.into() },
+                law: Motor(drive),
+            }),
+            Action::Pushes { axis } => SpatialElement::Pusher(Element {
+                link: Along { body: named.body, lever: drive.point_b, axis_w: axis.into() },
+                law: Pusher(drive),
+            }),
+        });
+    }
+    Ok(elements)
+}
+
+/// A point of a body that is `at` (m) in the drawn pose.
+fn point_of(mechanism: &Mechanism, body: Port, at: Vector3<f64>) -> PointOf<f64> {
+    let centre = body.map_or(Vector3::zeros(), |body| mechanism.bodies[body].centre.into());
+    PointOf { body, lever: at - centre }
+}
+
+/// Adds the elements of a `joint`.
+fn add(
+    mechanism: &Mechanism,
+    joint: &Joint,
+    gaps: &[f64],
+    contact: AnyContact,
+    elements: &mut Vec<SpatialElement>,
+) -> Result<(), ParameterError<f64>> {
+    let [first, from] = joint.between;
+    let at: Vector3<f64> = joint.at.into();
+    let seat = |at| Seat { point: point_of(mechanism, first, at), from };
+    match joint.kind {
+        JointKind::Track { gaps: indices } => {
+            let gaps = indices.map(|gap| gap.map_or(NONE, |gap| gaps[gap]));
+            elements.push(SpatialElement::Pin(Element { link: seat(at), law: Pin { gaps, contact } }));
+        }
+        JointKind::Stop { gap, normal } => {
+            let slanted = ParameterError { parameter: "normal", value: normal[0], least: -1.0, greatest: 1.0 };
+            let (axis, sign) = axis_of(normal).ok_or(slanted)?;
+            let law = Wall { axis, sign, gap: gaps[gap], contact };
+            elements.push(SpatialElement::Wall(Element { link: seat(at), law }));
+        }
+        JointKind::Bearing { gap, axis, length, radius } => {
+            let axis = Vector3::from(axis);
+            for end in [-0.5, 0.5] {
+                let centre = at + axis * (length * end);
+                let link = Turned { seat: seat(centre), axes: axes_with_third(&axis), offset: Vector3::zeros() };
+                let law = Ring { clearance: gaps[gap], radius, contact };
+                elements.push(SpatialElement::Ring(Element { link, law }));
+            }
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+/// Which axis of the frame the unit vector `normal` is, and its sign; `None` where it is none of them.
+pub fn axis_of(normal: [f64; 3]) -> Option<(usize, f64)> {
+    let axis = normal.iter().position(|x| x.abs() == 1.0)?;
+    let others = normal.iter().enumerate().all(|(k, x)| k == axis || *x == 0.0);
+    others.then(|| (axis, normal[axis]))
+}
+
+/// Axes of which the third is `axis`, of unit length; those of the frame where it is their third.
+fn axes_with_third(axis: &Vector3<f64>) -> Matrix3<f64> {
+    let aside = if axis.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+    let first = (aside - axis * axis.dot(&aside)).normalize();
+    Matrix3::from_columns(&[first, axis.cross(&first), *axis])
+}

@@ -1,0 +1,60 @@
+//! Drives and torsion springs.
+
+use slipfit_core::drive::Drive;
+
+use super::{Field, Names, Problem, Quantity, SceneError, direction, place, tables, unit};
+use crate::{
+    mechanism::{Action, NamedDrive, Spring},
+    scene::parse::{GAIN, LEAST_RAMP, POINT, RAMP, SPEED},
+};
+
+const TORQUE_GAIN: Quantity = Quantity { units: unit::TORQUE_GAIN, range: [0.0, 1e9] };
+const ROTATION: Quantity = Quantity { units: unit::ROTATION, range: [-1e6, 1e6] };
+const TORSION: Quantity = Quantity { units: unit::TORSION, range: [0.0, 1e12] };
+
+/// Reads the drives.
+pub(super) fn drives(root: &Field, planar: bool, names: &Names) -> Result<Vec<NamedDrive>, SceneError> {
+    tables(root, "drive")?.into_iter().map(|(name, table)| drive(name, &table, planar, names)).collect()
+}
+
+fn drive(name: String, table: &Field, planar: bool, names: &Names) -> Result<NamedDrive, SceneError> {
+    let ramp_start = table.number("ramp_start", &RAMP)?;
+    let end = table.require("ramp_end", &RAMP.units())?;
+    let ramp_end = end.to_number(&RAMP)?;
+    if ramp_end - ramp_start < LEAST_RAMP {
+        return Err(end.out_of_range("s", format!("more than ramp_start, {ramp_start} s, by 1 µs or more")));
+    }
+    let (body, action, gain, speed) = match (table.get("pushes"), table.get("turns")) {
+        (Some(field), None) => {
+            let action = Action::Pushes { axis: direction(table, "axis", planar)? };
+            (names.body(&field)?, action, table.number("gain", &GAIN)?, table.number("speed", &SPEED)?)
+        }
+        (None, Some(field)) => {
+            let axis = if planar { [0.0, 0.0, 1.0] } else { direction(table, "axis", false)? };
+            let action = Action::Turns { axis };
+            (names.body(&field)?, action, table.number("gain", &TORQUE_GAIN)?, table.number("speed", &ROTATION)?)
+        }
+        (None, None) => {
+            return Err(table.error(Problem::Missing("drive.pushes".into()), "pushes = BODY, a force, or turns = BODY, a torque"));
+        }
+        (Some(_), Some(field)) => {
+            let problem = Problem::Duplicate { key: "drive.pushes".into(), name: "turns".into() };
+            return Err(field.error(problem, "one of pushes and turns"));
+        }
+    };
+    let point = table.get("point").map(|point| place(&point, planar, &POINT)).transpose()?.unwrap_or_default();
+    Ok(NamedDrive { name, body, drive: Drive { gain, ramp_start, ramp_end, speed, point_b: point.into() }, action })
+}
+
+/// Reads the springs.
+pub(super) fn springs(root: &Field, names: &Names) -> Result<Vec<Spring>, SceneError> {
+    let spring = |(name, table): (String, Field)| {
+        Ok(Spring {
+            name,
+            between: names.between(&table)?,
+            stiffness: table.number("stiffness", &TORSION)?,
+            damping: table.get("damping").map(|field| field.to_number(&TORQUE_GAIN)).transpose()?.unwrap_or_default(),
+        })
+    };
+    tables(root, "spring")?.into_iter().map(spring).collect()
+}

@@ -1,0 +1,141 @@
+//! Joints, ideal or with play.
+
+use super::{Field, Gaps, Laws, Names, Problem, Quantity, SceneError, direction, laws, note, place, tables, unit};
+use crate::{
+    mechanism::{Joint, JointKind, Mechanism},
+    scene::{SURFACES, parse::POINT},
+};
+
+const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 1e5] };
+const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
+
+/// How many radii of gyration a joint may be from both of its bodies.
+const FAR: f64 = 100.0;
+
+/// Reads the joints, with the tables that they stand in.
+pub(super) fn joints<'t, 's>(
+    root: &Field<'t, 's>,
+    planar: bool,
+    names: &Names,
+    otherwise: Option<Laws>,
+    gaps: &mut Gaps,
+) -> Result<(Vec<Joint>, Vec<Field<'t, 's>>), SceneError> {
+    let (mut joints, mut fields) = (Vec::new(), Vec::new());
+    for (name, table) in tables(root, "joint")? {
+        joints.push(joint(name, &table, planar, names, otherwise, gaps)?);
+        fields.push(table);
+    }
+    Ok((joints, fields))
+}
+
+fn joint(
+    name: String,
+    table: &Field,
+    planar: bool,
+    names: &Names,
+    otherwise: Option<Laws>,
+    gaps: &mut Gaps,
+) -> Result<Joint, SceneError> {
+    let between = names.between(table)?;
+    let at = table.require("at", if planar { "a place [x, y] in mm" } else { "a place [x, y, z] in mm" })?;
+    let at = place(&at, planar, &POINT)?;
+    let kind = kind(&name, table, planar, gaps)?;
+    let laws = laws(table, otherwise)?;
+    let laws = match laws {
+        Some(laws) => laws,
+        None if kind.is_ideal() => NO_LAWS,
+        None => return Err(table.error(Problem::Missing("contact".into()), "a table [contact], or one of the joint's own")),
+    };
+    Ok(Joint { name, between, at, kind, laws })
+}
+
+/// The laws of a joint without contacts.
+const NO_LAWS: Laws = Laws {
+    contact: slipfit_core::menu::ContactData { stiffness: 0.0, exponent: 1.0, damping: 0.0, depth: 1.0 },
+    friction: slipfit_core::menu::FrictionData::None,
+};
+
+/// Reads what the joint called `name` is.
+fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<JointKind, SceneError> {
+    let allowed = if planar {
+        "fixed, revolute, prismatic, pin-slot, stop"
+    } else {
+        "cylindrical, track, stop"
+    };
+    let field = table.require("kind", allowed)?;
+    let clearance = table.get("clearance");
+    let axis = || direction(table, "axis", planar);
+    let length = |key: &str, quantity| table.number(key, quantity);
+    let needed = || table.require("clearance", "[mean, standard deviation] in mm, or a measure");
+    let text = field.to_text()?;
+    Ok(match (text, planar, clearance) {
+        ("fixed", true, None) => JointKind::Fixed,
+        ("revolute", true, None) => JointKind::Revolute,
+        ("prismatic", true, None) => JointKind::Prismatic { axis: axis()? },
+        ("pin-slot", true, None) => JointKind::PinSlot { axis: axis()? },
+        ("revolute", true, Some(clearance)) => {
+            JointKind::Journal { gap: gaps.add(name.into(), &clearance)?, radius: length("radius", &LENGTH)? }
+        }
+        ("prismatic", true, Some(clearance)) => JointKind::Guide {
+            gap: gaps.add(name.into(), &clearance)?,
+            axis: axis()?,
+            edges: [length("length", &EDGE)?, length("width", &EDGE)?],
+        },
+        ("cylindrical", false, _) => JointKind::Bearing {
+            gap: gaps.add(name.into(), &needed()?)?,
+            axis: axis()?,
+            length: length("length", &EDGE)?,
+            radius: length("radius", &LENGTH)?,
+        },
+        ("track", false, None) => {
+            let mut indices = [None; 4];
+            for (index, surface) in indices.iter_mut().zip(SURFACES) {
+                let gap = table.get(surface).map(|field| gaps.add(format!("{name} {surface}"), &field)).transpose()?;
+                *index = gap;
+            }
+            JointKind::Track { gaps: indices }
+        }
+        ("stop", _, _) => {
+            let normal = direction(table, "normal", planar)?;
+            if !planar && normal.iter().filter(|x| **x != 0.0).count() != 1 {
+                let field = table.require("normal", "")?;
+                return Err(field.out_of_range("", "in space along one of the axes, such as [0, 0, -1]"));
+            }
+            JointKind::Stop { gap: gaps.add(name.into(), &needed()?)?, normal }
+        }
+        ("fixed" | "pin-slot" | "track", _, Some(clearance)) => {
+            let what = format!("a clearance of a joint of kind \"{text}\"");
+            return Err(clearance.error(Problem::Unsupported { what }, "a joint without it"));
+        }
+        ("fixed" | "revolute" | "prismatic" | "pin-slot", false, _) => {
+            let what = format!("a joint of kind \"{text}\" in space");
+            return Err(field.error(Problem::Unsupported { what }, allowed));
+        }
+        ("cylindrical" | "track", true, _) => {
+            let what = format!("a joint of kind \"{text}\" in a plane");
+            return Err(field.error(Problem::Unsupported { what }, allowed));
+        }
+        _ => {
+            let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
+            return Err(field.error(problem, allowed));
+        }
+    })
+}
+
+/// Whether each joint is somewhere near its bodies.
+pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), SceneError> {
+    for (joint, field) in mechanism.joints.iter().zip(fields) {
+        let distances = joint.between.iter().flatten().map(|body| {
+            let body = &mechanism.bodies[*body];
+            let apart: f64 = joint.at.iter().zip(body.centre).map(|(a, b)| (a - b) * (a - b)).sum();
+            let gyration = body.inertia.iter().fold(0.0, |most: f64, i| most.max(*i)) / body.mass;
+            libm::sqrt(apart) / libm::sqrt(gyration).max(1e-9)
+        });
+        if distances.fold(f64::INFINITY, f64::min) > FAR {
+            let at = field.get("at").unwrap_or_else(|| field.clone());
+            let problem = Problem::Far { joint: joint.name.clone() };
+            note(field.found(), Err(at.error(problem, "a place near one of them, in mm in the drawn pose")));
+        }
+    }
+    Ok(())
+}

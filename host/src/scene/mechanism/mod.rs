@@ -1,0 +1,221 @@
+//! Reading a mechanism: bodies, joints, springs and drives.
+
+mod body;
+mod drive;
+mod joint;
+
+use slipfit_core::{clearance::GapStatistics, menu::FrictionData};
+
+use super::{
+    Problem, SceneError,
+    diagnostic::Found,
+    parse,
+    tree::Value,
+    unit::{self, Quantity},
+    value::Field,
+};
+use crate::{
+    mechanism::{Gap, Laws, Mechanism, MountError, Mounts, Port},
+    product::Product,
+};
+
+const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
+
+/// What the frame is called where bodies are named.
+const FRAME: &str = "frame";
+
+/// How long an axis or a normal at least is, in its own numbers.
+const LEAST_AXIS: f64 = 1e-9;
+
+/// Whether the scene `root` has bodies of its own.
+pub(super) fn is_mechanism(root: &Field) -> bool {
+    ["mechanism", "body", "joint"].iter().any(|key| root.get(key).is_some())
+}
+
+/// Reads the mechanism of the scene `root`, whose gaps may be measures of `product`.
+pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) -> Result<Mechanism, SceneError> {
+    let found = root.found();
+    let table = root.table("mechanism")?;
+    let planar = match table.get("space") {
+        None => false,
+        Some(field) => match field.to_text()? {
+            "plane" => true,
+            "space" => false,
+            _ => {
+                let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
+                return Err(field.error(problem, "plane, space"));
+            }
+        },
+    };
+    let gravity = table.get("gravity").map(|field| place(&field, planar, &GRAVITY)).transpose()?.unwrap_or_default();
+    let (bodies, fields) = body::bodies(root, planar)?;
+    let names = Names { names: bodies.iter().map(|body| body.name.clone()).collect() };
+    let laws = found.recover(laws(root, None), None);
+    let mut gaps = Gaps { gaps: Vec::new(), product };
+    let (joints, joint_fields) = joint::joints(root, planar, &names, laws, &mut gaps)?;
+    let run = parse::run(&root.table("run")?)?;
+    let mechanism = Mechanism {
+        title,
+        planar,
+        gravity,
+        springs: drive::springs(root, &names)?,
+        drives: drive::drives(root, planar, &names)?,
+        bodies,
+        joints,
+        gaps: gaps.gaps,
+        duration: run.duration,
+        error: run.error,
+    };
+    // With values that stand for wrong ones there is nothing to look at.
+    if !found.any() {
+        joint::check(&mechanism, &joint_fields)?;
+        body::check(&mechanism, &fields)?;
+        if mechanism.planar {
+            check_tree(&mechanism, &joint_fields, root)?;
+        }
+    }
+    Ok(mechanism)
+}
+
+/// Whether ideal joints make a tree.
+fn check_tree(mechanism: &Mechanism, joints: &[Field], root: &Field) -> Result<(), SceneError> {
+    match Mounts::of(mechanism) {
+        Ok(_) => Ok(()),
+        Err(MountError::Loop { joint }) => {
+            let at = mechanism.joints.iter().position(|one| one.name == joint).unwrap_or_default();
+            let allowed = "a clearance for one joint of the loop, which opens it";
+            Err(joints[at].error(Problem::IdealLoop { joint }, allowed))
+        }
+        Err(error @ MountError::Coordinates { .. }) => {
+            Err(root.error(Problem::Mechanism(error.to_string()), "fewer bodies, or joints that hold them"))
+        }
+    }
+}
+
+/// Names of bodies.
+struct Names {
+    names: Vec<String>,
+}
+
+impl Names {
+    /// The body that `field` names, or the frame.
+    fn port(&self, field: &Field) -> Result<Port, SceneError> {
+        let name = field.to_text()?;
+        if name == FRAME { Ok(None) } else { self.body(field).map(Some) }
+    }
+
+    /// The body that `field` names.
+    fn body(&self, field: &Field) -> Result<usize, SceneError> {
+        let name = field.to_text()?;
+        self.names.iter().position(|one| one == name).ok_or_else(|| {
+            let problem = Problem::UnknownName { of: "body".into(), name: name.into() };
+            field.error(problem, format!("{FRAME}, {}", self.names.join(", ")))
+        })
+    }
+
+    /// The two bodies of a joint or spring.
+    fn between(&self, table: &Field) -> Result<[Port; 2], SceneError> {
+        const ALLOWED: &str = "a list of two bodies, such as [\"frame\", \"crank\"]";
+        let field = table.require("between", ALLOWED)?;
+        let Value::List(nodes) = &field.node.value else { return Err(field.wrong_type(ALLOWED)) };
+        let [first, second] = &nodes[..] else {
+            return Err(field.error(Problem::Length { key: field.key.clone(), found: nodes.len() }, ALLOWED));
+        };
+        let port = |node| self.port(&Field { key: field.key.clone(), node });
+        let between = [port(first)?, port(second)?];
+        if between[0] == between[1] {
+            let name = between[0].map_or(FRAME, |body| &self.names[body]).to_owned();
+            return Err(field.error(Problem::JoinedToItself { key: field.key.clone(), name }, "two different bodies"));
+        }
+        Ok(between)
+    }
+}
+
+/// The gaps met so far.
+struct Gaps<'p> {
+    gaps: Vec<Gap>,
+    product: Option<&'p Product>,
+}
+
+impl Gaps<'_> {
+    /// The index of a new gap with the statistics that `field` gives, by itself or as a measure of the product.
+    fn add(&mut self, name: String, field: &Field) -> Result<usize, SceneError> {
+        let statistics = match field.node.value {
+            Value::Text(_) => self.measured(field)?,
+            _ => super::pins::statistics(field)?,
+        };
+        self.gaps.push(Gap { name, statistics });
+        Ok(self.gaps.len() - 1)
+    }
+
+    fn measured(&self, field: &Field) -> Result<GapStatistics<f64>, SceneError> {
+        let model = self.product.map(|product| &product.model);
+        let index = super::pins::length(field, model)?;
+        let moments = model.map(crate::tolerance::moments::of_measures).unwrap_or_default();
+        let of = moments.get(index).map(|of| GapStatistics { mean: of.mean, deviation: of.deviation });
+        of.ok_or_else(|| field.wrong_type("a measure of the product"))
+    }
+}
+
+/// Reads the laws of `table`, where it states none of its own `otherwise`; the friction law alone may be missing.
+fn laws(table: &Field, otherwise: Option<Laws>) -> Result<Option<Laws>, SceneError> {
+    let contact = table.get("contact").map(|_| parse::contact(&table.table("contact")?)).transpose()?;
+    let friction = table.get("friction").map(|_| parse::friction(&table.table("friction")?)).transpose()?;
+    let contact = contact.or(otherwise.map(|laws| laws.contact));
+    let friction = friction.or(otherwise.map(|laws| laws.friction)).unwrap_or(FrictionData::None);
+    Ok(contact.map(|contact| Laws { contact, friction }))
+}
+
+/// Reads a list of tables, each with a name of its own.
+fn tables<'t, 's>(root: &Field<'t, 's>, key: &str) -> Result<Vec<(String, Field<'t, 's>)>, SceneError> {
+    let Some(list) = root.get(key) else { return Ok(Vec::new()) };
+    let allowed = format!("tables [[{key}]]");
+    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(allowed)) };
+    let mut named: Vec<(String, Field)> = Vec::new();
+    for node in nodes {
+        let table = Field { key: key.into(), node };
+        table.expect_table()?;
+        let field = table.require("name", "a text in quotes")?;
+        let name = field.to_text()?;
+        if name == FRAME || named.iter().any(|(other, _)| other == name) {
+            let problem = Problem::Duplicate { key: field.key.clone(), name: name.into() };
+            return Err(field.error(problem, format!("a name of its own for each; \"{FRAME}\" is taken")));
+        }
+        named.push((name.into(), table));
+    }
+    Ok(named)
+}
+
+/// Reads a place or a direction: two numbers in a plane, else three.
+fn place(field: &Field, planar: bool, quantity: &Quantity) -> Result<[f64; 3], SceneError> {
+    if planar { field.to_numbers::<2>(quantity).map(|[x, y]| [x, y, 0.0]) } else { field.to_numbers(quantity) }
+}
+
+/// Reads a direction, to unit length.
+fn direction(table: &Field, key: &str, planar: bool) -> Result<[f64; 3], SceneError> {
+    const NUMBER: Quantity = Quantity { units: unit::ONE, range: [-1e6, 1e6] };
+    let field = table.require(key, if planar { "a direction [x, y]" } else { "a direction [x, y, z]" })?;
+    let axis = place(&field, planar, &NUMBER)?;
+    let length = libm::sqrt(axis.iter().map(|x| x * x).sum());
+    if length < LEAST_AXIS {
+        return Err(field.out_of_range("", "a direction other than zero"));
+    }
+    // What is given along an axis stays exactly so.
+    Ok(if axis.iter().filter(|x| **x != 0.0).count() == 1 { axis.map(f64::signum_or_zero) } else { axis.map(|x| x / length) })
+}
+
+/// The sign of a number, 0 for 0.
+trait SignumOrZero {
+    fn signum_or_zero(self) -> f64;
+}
+
+impl SignumOrZero for f64 {
+    fn signum_or_zero(self) -> f64 {
+        if self == 0.0 { 0.0 } else { self.signum() }
+    }
+}
+
+/// Notes an `error` and goes on.
+fn note(found: &Found, result: Result<(), SceneError>) {
+    found.recover(result, ());
+}
