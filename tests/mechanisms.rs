@@ -215,17 +215,22 @@ fn reference(file: &str) -> Vec<Vec<f64>> {
 fn errors(case: &Case, run: &MechanismRun) -> Vec<f64> {
     let expected = reference(case.file);
     assert_eq!(expected.len(), run.samples.rows.len(), "{}", case.file);
-    let column = |name: &str| run.samples.columns.iter().position(|one| one == name).unwrap_or_else(|| panic!("{name}"));
+    let column =
+        |name: &str| run.samples.columns.iter().position(|one| one == name).unwrap_or_else(|| panic!("{name}"));
     let spatial = case.columns.len() == CARRIAGE.len() || case.columns.len() == DRAWER.len();
     let peak = |k: usize| expected.iter().fold(0.0, |peak: f64, row| peak.max(row[k].abs()));
-    case.columns.iter().enumerate().map(|(k, (name, zero))| {
-        let j = column(name);
-        let error = expected.iter().zip(&run.samples.rows).map(|(row, found)| (row[k] - zero - found[j]).abs());
-        let error = error.fold(0.0, f64::max);
-        let first = 2 + (k.max(2) - 2) / 3 * 3;
-        let peak = if spatial && k >= 2 { (first..first + 3).map(peak).fold(0.0, f64::max) } else { peak(k) };
-        if peak > 0.0 { error / peak } else { error }
-    }).collect()
+    case.columns
+        .iter()
+        .enumerate()
+        .map(|(k, (name, zero))| {
+            let j = column(name);
+            let error = expected.iter().zip(&run.samples.rows).map(|(row, found)| (row[k] - zero - found[j]).abs());
+            let error = error.fold(0.0, f64::max);
+            let first = 2 + (k.max(2) - 2) / 3 * 3;
+            let peak = if spatial && k >= 2 { (first..first + 3).map(peak).fold(0.0, f64::max) } else { peak(k) };
+            if peak > 0.0 { error / peak } else { error }
+        })
+        .collect()
 }
 
 #[test]
@@ -239,6 +244,8 @@ fn every_reference_run_is_met_within_a_thousandth_of_each_peak() {
         let line = format!("{:10} {worst:9.1e} {:?} {:?}", case.file, run.effort, run.integration);
         println!("{line}");
         text += &line;
-        if worst > 1e-3 { println!("{errors:?}"); }
+        if worst > 1e-3 {
+            println!("{errors:?}");
+        }
     }
 }

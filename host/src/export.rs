@@ -1,6 +1,7 @@
 //! Results as CSV.
 
 use crate::{
+    mechanism::Samples,
     number::ten_digits,
     outcome::{Moment, Trajectory},
     precision,
@@ -20,6 +21,19 @@ pub fn trajectory_csv(trajectory: &Trajectory) -> anyhow::Result<Vec<u8>> {
         let Trajectory { vz, force, x, y, z, .. } = trajectory;
         let columns = [*t, vz[i], force[i], x[i], y[i], z[i]];
         writer.write_record(columns.map(ten_digits))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// Rows under named columns, ten digits; empty where a value is not a number.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn rows_csv(samples: &Samples) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&samples.columns)?;
+    for row in &samples.rows {
+        writer.write_record(row.iter().map(|x| if x.is_nan() { String::new() } else { ten_digits(*x) }))?;
     }
     Ok(writer.into_inner()?)
 }

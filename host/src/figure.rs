@@ -2,6 +2,7 @@
 //! of one unit.
 
 use crate::{
+    mechanism::Samples,
     number::{level, typeset},
     outcome::{Outcome, Trajectory, Verdict},
     plot::{Chart, Look, Markers, Panel, PlotError, Scale, Series, Shape, line_chart},
@@ -54,6 +55,47 @@ pub fn unit_over_time(run: &Trajectory, title: &str, n: &[f64]) -> Result<String
     })
 }
 
+/// The named columns of a mechanism's run over time as SVG, a panel each; `n` is told.
+///
+/// # Errors
+/// [`PlotError`], if the run has no sample or is not finite.
+pub fn columns_over_time(samples: &Samples, columns: &[String], title: &str, n: &str) -> Result<String, PlotError> {
+    let panel = |name: &String| {
+        let column = samples.columns.iter().position(|one| one == name).unwrap_or_default();
+        let points = samples.rows.iter().map(|row| (row[0] * 1e3, row[column])).collect();
+        let series = vec![Series { label: String::new(), look: Look::Kind(0), points }];
+        Panel { y_label: name.clone(), series, ..Panel::default() }
+    };
+    line_chart(&Chart {
+        title: title.to_owned(),
+        subtitle: format!("one unit, n = {}", typeset(n)),
+        x_label: "time (ms)".to_owned(),
+        scale: Scale::Linear,
+        panels: columns.iter().map(panel).collect(),
+    })
+}
+
+/// The peak of each drive over the levels as SVG, the marks telling the verdicts: name and unit, then level by level n, verdict
+/// and peak.
+///
+/// # Errors
+/// [`PlotError`], if there is no drive or no level, or a peak is not finite.
+pub fn drives_over_n(drives: &[(String, Vec<Judged>)], title: &str) -> Result<String, PlotError> {
+    let panels = drives.iter().enumerate().map(|(i, (name, levels))| {
+        let mut panel = marked(levels, &format!("peak of {name}"));
+        // One legend serves all panels.
+        panel.markers.iter_mut().filter(|_| i > 0).for_each(|markers| markers.label.clear());
+        panel
+    });
+    line_chart(&Chart {
+        title: title.to_owned(),
+        subtitle: "verdict and greatest effort over the tolerance level".to_owned(),
+        x_label: "tolerance level n".to_owned(),
+        scale: Scale::Linear,
+        panels: panels.collect(),
+    })
+}
+
 fn over_time(
     sweep: &Sweep,
     title: &str,
@@ -102,10 +144,17 @@ pub fn verdicts(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
     })
 }
 
-/// A guide line broken where a level has no value, and the values marked by verdict.
 fn over_n(sweep: &Sweep, y_label: &str, value: impl Fn(&Outcome) -> Option<f64>) -> Panel {
-    let values: Vec<Option<(f64, f64)>> =
-        sweep.levels.iter().map(|level| value(&level.outcome).map(|value| (level.n, value))).collect();
+    let judged = |level: &Level| (level.n, level.outcome.verdict, value(&level.outcome));
+    marked(&sweep.levels.iter().map(judged).collect::<Vec<_>>(), y_label)
+}
+
+/// A level, its verdict and what is shown of it.
+pub type Judged = (f64, Verdict, Option<f64>);
+
+/// A guide line broken where a level has no value, and the values marked by verdict.
+fn marked(levels: &[Judged], y_label: &str) -> Panel {
+    let values: Vec<Option<(f64, f64)>> = levels.iter().map(|(n, _, value)| value.map(|value| (*n, value))).collect();
     let series = values
         .split(Option::is_none)
         .map(|part| Series {
@@ -117,11 +166,10 @@ fn over_n(sweep: &Sweep, y_label: &str, value: impl Fn(&Outcome) -> Option<f64>)
     let marks = |(verdict, shape)| Markers {
         label: word(verdict).to_owned(),
         shape,
-        points: sweep
-            .levels
+        points: levels
             .iter()
             .zip(&values)
-            .filter(|(level, _)| level.outcome.verdict == verdict)
+            .filter(|(level, _)| level.1 == verdict)
             .filter_map(|(_, value)| *value)
             .collect(),
     };

@@ -159,15 +159,7 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Elements<S, B, D> for () {
     fn fresh(&self) {}
 
     #[inline(always)]
-    fn act(
-        &self,
-        _: (S, Way<S>),
-        _: (&B, &B::Placed),
-        (): &(),
-        _: Option<&mut ()>,
-        _: &mut impl Assembly<S, D>,
-    ) {
-    }
+    fn act(&self, _: (S, Way<S>), _: (&B, &B::Placed), (): &(), _: Option<&mut ()>, _: &mut impl Assembly<S, D>) {}
 
     #[inline(always)]
     fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
@@ -268,14 +260,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Memory = ()>, const D: usi
     fn fresh(&self) {}
 
     #[inline(always)]
-    fn act(
-        &self,
-        way: (S, Way<S>),
-        at: (&B, &B::Placed),
-        (): &(),
-        _: Option<&mut ()>,
-        sum: &mut impl Assembly<S, D>,
-    ) {
+    fn act(&self, way: (S, Way<S>), at: (&B, &B::Placed), (): &(), _: Option<&mut ()>, sum: &mut impl Assembly<S, D>) {
         for element in *self {
             element.act(way, at, &(), None, sum);
         }

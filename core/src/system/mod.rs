@@ -162,11 +162,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         let placed = self.bodies.placed(pose, velocity);
         let rate = S::one() / a;
         let way = Way { a, mass_rate: self.bodies.least_mass() * rate, tangent_share };
-        let mut sum = Balance {
-            force: self.bodies.own_force(&placed),
-            matrix: self.bodies.mass(&placed) * rate,
-            a,
-        };
+        let mut sum = Balance { force: self.bodies.own_force(&placed), matrix: self.bodies.mass(&placed) * rate, a };
         self.elements.act((t, way), (&self.bodies, &placed), memory, None, &mut sum);
         Linearised { force: sum.force, linearisation: Lu::of(sum.matrix) }
     }

@@ -78,7 +78,8 @@ fn check<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
 #[test]
 fn planar_derivatives_are_those_of_the_forces() {
     let slide = |on, x: f64, y: f64| Coordinate::Slide { on, axis: Vector2::new(x, y) };
-    let coordinates = [Coordinate::Turn, Coordinate::Turn, slide(Some(1), 0.6, 0.8), slide(None, 0.0, 1.0), Coordinate::Turn];
+    let coordinates =
+        [Coordinate::Turn, Coordinate::Turn, slide(Some(1), 0.6, 0.8), slide(None, 0.0, 1.0), Coordinate::Turn];
     let on = |point: Point<f64, 5>, k: usize| point.on(k, &coordinates[k]);
     let crank = on(Point::fixed(Vector2::new(0.1, 0.0)), 0);
     let rod = on(crank.plus(Vector2::new(0.3, 0.1)), 1);
@@ -129,7 +130,8 @@ fn spatial_derivatives_are_those_of_the_forces() {
         inertia_b: Vector3::new(0.02, 0.03, 0.04),
         centre_w: Vector3::new(x, 0.1, 0.0),
     };
-    let bodies = FreeBodies::<f64, 2, 12>::new([body(0.5, 0.0), body(0.8, 0.3)], Vector3::new(0.0, -9.81, 0.0)).unwrap();
+    let bodies =
+        FreeBodies::<f64, 2, 12>::new([body(0.5, 0.0), body(0.8, 0.3)], Vector3::new(0.0, -9.81, 0.0)).unwrap();
     let port = |body, x, y, z| Port { body, lever: Vector3::new(x, y, z) };
     let axes = crate::pose::Pose::nominal().advanced(Vector3::zeros(), Vector3::new(0.4, 0.9, -0.7), 1.0);
     let elements = (

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
-use super::{Failure, JSON_VERSION, SceneArguments, print, print_json, text_table, warn};
+use super::{Failure, JSON_VERSION, SceneArguments, mechanism, print, print_json, text_table, warn};
 use crate::{
     mobility::{contacts, degrees_of_freedom, rank_of_normals},
     number::{fixed, level},
@@ -95,6 +95,9 @@ impl Arguments {
             return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
         }
         let file = self.scene.load_file(&[])?;
+        if let Some(found) = &file.mechanism {
+            return mechanism::check(found, self.n, &self.scene);
+        }
         let of_product = file.product.as_ref().map(|product| product.warnings.clone()).unwrap_or_default();
         if let Some(slide) = &file.slide {
             slide.check_gaps(&[self.n; CONTACTS]).map_err(|error| Failure::Input(format!("--n: {error}")))?;

@@ -2,6 +2,7 @@
 
 mod check;
 mod kernel;
+mod mechanism;
 mod merge;
 mod precision;
 mod run;
@@ -26,6 +27,7 @@ use crate::{
     files::{self, Coincidence, WriteError},
     force_table::TableError,
     interrupt,
+    mechanism::Mechanism,
     product::Product,
     scene::{Override, SHIPPED, Scene, SceneError, SceneFile, shipped},
     simulate::SimulateError,
@@ -151,6 +153,14 @@ struct SceneArguments {
     json: bool,
 }
 
+/// What moves in a scene.
+enum Moving {
+    /// A slide on pins.
+    Slide(Scene),
+    /// Bodies and joints.
+    Mechanism(Mechanism),
+}
+
 /// The longest scene file (bytes).
 const SCENE_MOST: u64 = 1 << 20;
 
@@ -171,6 +181,16 @@ impl SceneArguments {
     fn load(&self, options: &[Override]) -> Result<Scene, Failure> {
         let (name, text) = self.text()?;
         Ok(Scene::parse(&name, &text, &self.overrides(options))?)
+    }
+
+    /// Reads what moves in the scene, with `options` as further settings.
+    fn load_moving(&self, options: &[Override]) -> Result<Moving, Failure> {
+        let (name, text) = self.text()?;
+        let overrides = self.overrides(options);
+        match SceneFile::parse(&name, &text, &overrides)?.mechanism {
+            Some(mechanism) => Ok(Moving::Mechanism(mechanism)),
+            None => Ok(Moving::Slide(Scene::parse(&name, &text, &overrides)?)),
+        }
     }
 
     /// Reads the slide of the scene and the product it belongs to, if there is one, with `options` as further settings.

@@ -7,9 +7,11 @@ use serde::Serialize;
 use slipfit_core::{clearance::GapClass, slide::CONTACTS};
 
 use super::{
-    Failure, JSON_VERSION, SceneArguments,
+    Failure, JSON_VERSION, Moving, SceneArguments,
     check::{self, GapReport, gap_reports},
-    given, print, print_json, text_table, warn,
+    given,
+    mechanism::{self, Wanted},
+    print, print_json, text_table, warn,
 };
 use crate::{
     answer::on_the_way,
@@ -62,7 +64,7 @@ pub(super) struct Arguments {
 pub(super) struct LengthArguments {
     /// Runs the whole stroke (run.stroke) instead of run.duration.
     #[arg(long)]
-    stroke: bool,
+    pub stroke: bool,
     /// Error of the drive force that a step of the desk may make, as a share of the drive's greatest force, such as 1e-6.
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
     error: Option<String>,
@@ -148,7 +150,17 @@ struct ControllerReport {
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let overrides: Vec<_> = self.controller.overrides().into_iter().chain(self.length.overrides()).collect();
-        let scene = self.length.applied(self.scene.load(&overrides)?)?;
+        let scene = match self.scene.load_moving(&overrides)? {
+            Moving::Slide(scene) => self.length.applied(scene)?,
+            Moving::Mechanism(mechanism) => {
+                if self.audit || self.controller.given() || self.length.stroke {
+                    let why = "--audit, --step, --integrator, --scalar and --stroke are for slides on pins";
+                    return Err(Failure::Input(why.into()));
+                }
+                let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot };
+                return mechanism::simulate(&mechanism, &self.n, parse_every(&self.every)?, &wanted);
+            }
+        };
         let n = levels(&self.n)?;
         scene.check_gaps(&n).map_err(|error| Failure::Input(format!("--n: {error}")))?;
         let every = parse_every(&self.every)?;

@@ -6,7 +6,9 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, given, print, print_json, progress,
+    Failure, JSON_VERSION, Moving, SceneArguments, ThreadArguments, check, given,
+    mechanism::{self, Wanted},
+    print, print_json, progress,
     simulate::{ControllerArguments, LengthArguments, why_undecided},
     text_table, warn,
 };
@@ -90,7 +92,17 @@ impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let of_run = self.controller.overrides().into_iter().chain(self.length.overrides());
         let overrides: Vec<_> = of_run.chain(self.levels.overrides()).collect();
-        let scene = self.length.applied(self.scene.load(&overrides)?)?;
+        let scene = match self.scene.load_moving(&overrides)? {
+            Moving::Slide(scene) => self.length.applied(scene)?,
+            Moving::Mechanism(mechanism) => {
+                if self.controller.given() || self.length.stroke {
+                    let why = "--step, --integrator, --scalar and --stroke are for slides on pins";
+                    return Err(Failure::Input(why.into()));
+                }
+                let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot };
+                return mechanism::sweep(&mechanism, &wanted, &self.threads);
+            }
+        };
         self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
         let settings = if self.controller.given() {
             let step = scene.controller.step;

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use slipfit_core::{SVector, system::Bodies, system::planar::PlanarTree};
 
 use super::{Action, Mechanism, Mounts, mounts::flat};
+use crate::outcome::Instant;
 
 /// Coordinates and their rates at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +78,18 @@ pub fn spatial<const D: usize>(state: &State<D>) -> Vec<BodyMotion> {
     bodies.map(body).collect()
 }
 
+/// Two vectors along an axis.
+trait AlongAxis {
+    fn along(self, axis: [f64; 3]) -> (f64, f64);
+}
+
+impl AlongAxis for (&Vector3<f64>, &Vector3<f64>) {
+    fn along(self, axis: [f64; 3]) -> (f64, f64) {
+        let axis = Vector3::from(axis);
+        (self.0.dot(&axis), self.1.dot(&axis))
+    }
+}
+
 impl Mechanism {
     /// Names of the columns of [`row`](Self::row), with their units.
     pub fn columns(&self) -> Vec<String> {
@@ -93,22 +106,23 @@ impl Mechanism {
         std::iter::once("t (s)".to_owned()).chain(drives).chain(bodies).collect()
     }
 
-    /// Force or torque of each drive at time `t` (s).
-    pub fn drive_values<'a>(&'a self, t: f64, motions: &'a [BodyMotion]) -> impl Iterator<Item = f64> + 'a {
+    /// What each drive sees and does at time `t` (s): speed, force and travel along its axis, or angular velocity, torque
+    /// and angle about it.
+    pub fn drives_at<'a>(&'a self, t: f64, motions: &'a [BodyMotion]) -> impl Iterator<Item = Instant> + 'a {
         self.drives.iter().map(move |named| {
             let motion = &motions[named.body];
-            let speed = match named.action {
-                Action::Pushes { axis } => motion.velocity.dot(&Vector3::from(axis)),
-                Action::Turns { axis } => motion.spin.dot(&Vector3::from(axis)),
+            let (vz, z) = match named.action {
+                Action::Pushes { axis } => (&motion.velocity, &motion.displacement).along(axis),
+                Action::Turns { axis } => (&motion.spin, &motion.turn).along(axis),
             };
-            named.drive.force(t, speed)
+            Instant { t, vz, force: named.drive.force(t, vz), z }
         })
     }
 
     /// What is told of the motion at time `t` (s), in the order of [`columns`](Self::columns).
     pub fn row(&self, t: f64, motions: &[BodyMotion]) -> Vec<f64> {
         let mut row = vec![t];
-        row.extend(self.drive_values(t, motions));
+        row.extend(self.drives_at(t, motions).map(|at| at.force));
         for motion in motions {
             if self.planar {
                 let BodyMotion { displacement: d, turn, velocity: v, spin } = motion;

@@ -5,21 +5,25 @@
 
 mod columns;
 mod element;
+mod freedom;
 mod gaps;
 mod mounts;
 mod planar;
 mod run;
 mod spatial;
 
+pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps};
 pub use mounts::{MountError, Mounts};
-pub use run::{MechanismRun, Rest, RunError, Samples, run};
+pub use run::{MechanismRun, Rest, RunError, SCHEME, Samples, run};
 
 use slipfit_core::{
     clearance::GapStatistics,
     drive::Drive,
     menu::{ContactData, FrictionData},
 };
+
+use crate::scene::LevelRange;
 
 /// Which bodies there are, what joins them, and what is to be simulated. SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +48,8 @@ pub struct Mechanism {
     pub duration: f64,
     /// Error of a speed that a step may make, as a share of the mechanism's own speed.
     pub error: f64,
+    /// Tolerance levels of a sweep.
+    pub sweep: LevelRange,
 }
 
 /// A rigid body.

@@ -71,7 +71,8 @@ impl Mounts {
                 used[i] = true;
                 let joint = &mechanism.joints[i];
                 let [first, second] = joint.between.map(|port| known(port, &bodies));
-                let ([parent, _], Some(child)) = (if first { (joint.between, joint.between[1]) } else { (flipped(joint), joint.between[0]) })
+                let ([parent, _], Some(child)) =
+                    (if first { (joint.between, joint.between[1]) } else { (flipped(joint), joint.between[0]) })
                 else {
                     return Err(MountError::Loop { joint: joint.name.clone() });
                 };
@@ -159,5 +160,9 @@ fn afloat(centre: [f64; 3], body: usize, coordinates: &mut Vec<Owned>) -> Result
 /// The index of a new `coordinate`.
 fn add(coordinates: &mut Vec<Owned>, coordinate: Coordinate<f64>, body: usize) -> Result<usize, MountError> {
     coordinates.push(Owned { coordinate, body });
-    if coordinates.len() > MOST { Err(MountError::Coordinates { found: coordinates.len() }) } else { Ok(coordinates.len() - 1) }
+    if coordinates.len() > MOST {
+        Err(MountError::Coordinates { found: coordinates.len() })
+    } else {
+        Ok(coordinates.len() - 1)
+    }
 }

@@ -19,7 +19,10 @@ use super::{
 ///
 /// # Errors
 /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
-pub fn bodies<const D: usize>(mechanism: &Mechanism, mounts: &Mounts) -> Result<PlanarTree<f64, D>, ParameterError<f64>> {
+pub fn bodies<const D: usize>(
+    mechanism: &Mechanism,
+    mounts: &Mounts,
+) -> Result<PlanarTree<f64, D>, ParameterError<f64>> {
     let mut rigid: Vec<(Vector2<f64>, usize, Rigid<f64, D>)> = Vec::new();
     for (i, body) in mechanism.bodies.iter().enumerate() {
         let drawn = flat(body.centre);
@@ -77,7 +80,8 @@ pub fn elements<const D: usize>(
                 }
             }
             JointKind::Stop { gap, normal } => {
-                let link = Across { point: mounts.point(first, at), seat: mounts.point(second, at), normal: flat(normal) };
+                let link =
+                    Across { point: mounts.point(first, at), seat: mounts.point(second, at), normal: flat(normal) };
                 let law = Pad { gap: gaps[gap], contact: contact(&joint.laws, stick_band)? };
                 elements.push(PlanarElement::Pad(Element { link, law }));
             }

@@ -19,7 +19,11 @@ use super::{
     columns::{self, BodyMotion, State},
     planar, spatial,
 };
-use crate::error_control::{Effort, Knot, Stopped, integrate, sampled};
+use crate::{
+    error_control::{Effort, Knot, Stopped, integrate, sampled},
+    outcome::{Observer, Outcome},
+    scene::RunSpec,
+};
 
 /// How long (s) an error of speed may last: what makes an error of place of it.
 const LASTING: f64 = 1.2e-3;
@@ -43,7 +47,9 @@ pub enum RunError {
     #[error(transparent)]
     Parameter(#[from] ParameterError<f64>),
     /// No step from this time (s) on meets the tolerance.
-    #[error("from t = {0} s on no step meets the tolerance, however short: the contacts may be too stiff for their masses")]
+    #[error(
+        "from t = {0} s on no step meets the tolerance, however short: the contacts may be too stiff for their masses"
+    )]
     Unsolved(f64),
     /// Stopped from outside.
     #[error("interrupted")]
@@ -73,6 +79,8 @@ pub struct Samples {
 pub struct MechanismRun {
     /// Samples.
     pub samples: Samples,
+    /// Figures of each drive: forces and travel along its axis, or torques and angles about it.
+    pub outcomes: Vec<Outcome>,
     /// Error of speed (m/s) that a step was allowed.
     pub tolerance: f64,
     /// Steps.
@@ -196,7 +204,11 @@ impl Limits {
             Action::Pushes { .. } => named.drive.speed.abs(),
             Action::Turns { .. } => named.drive.speed.abs() * lever(named.body),
         });
-        let thrown = mechanism.bodies.iter().enumerate().map(|(i, body)| body.start.speed.abs().max(body.start.spin.abs() * lever(i)));
+        let thrown = mechanism
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(i, body)| body.start.speed.abs().max(body.start.spin.abs() * lever(i)));
         let longest = (0..mechanism.bodies.len()).map(&lever).fold(0.0, f64::max);
         let gravity: f64 = mechanism.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         let greatest = driven.chain(thrown).fold(0.0, f64::max);
@@ -241,8 +253,17 @@ fn solve<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
     let time = |i: usize| (i as f64 * every).min(mechanism.duration);
     let rows = (0..=count).map(time).zip(sampled(&knots, (0..=count).map(time)));
     let rows = rows.map(|(t, state)| mechanism.row(t, &told(&state))).collect();
+    let run = RunSpec { duration: mechanism.duration, stroke: None, error: mechanism.error };
+    let mut observers: Vec<_> = mechanism.drives.iter().map(|named| Observer::new(named.drive, run)).collect();
+    for knot in &knots {
+        let motions = told(&knot.values);
+        for (observer, at) in observers.iter_mut().zip(mechanism.drives_at(knot.t, &motions)) {
+            observer.observe(at);
+        }
+    }
+    let outcomes = observers.iter().map(Observer::outcome).collect();
     let samples = Samples { columns: mechanism.columns(), rows };
-    Ok(MechanismRun { samples, tolerance: limits.speed, effort, integration })
+    Ok(MechanismRun { samples, outcomes, tolerance: limits.speed, effort, integration })
 }
 
 /// The scheme by which the desk integrates.

@@ -16,7 +16,7 @@ use super::{
 };
 
 /// A gap (m) that never closes.
-const NONE: f64 = slipfit_core::slide::ABSENT;
+pub const NONE: f64 = slipfit_core::slide::ABSENT;
 
 /// Most bodies of a mechanism in space.
 pub const MOST: usize = 3;

@@ -187,6 +187,9 @@ pub enum Problem {
     /// A scene of tolerances alone where motion is asked for.
     #[error("the scene has no `slide`: there is nothing to move")]
     NoSlide,
+    /// A mechanism of bodies and joints where a slide on pins is asked for.
+    #[error("the scene is a mechanism of bodies and joints, and this command works on slides on pins")]
+    NotASlide,
     /// A joint, spring or pair of bodies that is one body.
     #[error("`{key}` joins \"{name}\" to itself")]
     JoinedToItself {

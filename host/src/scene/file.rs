@@ -86,7 +86,14 @@ impl SceneFile {
         overrides: &[Override],
     ) -> Result<(Scene, Option<Product>), SceneError> {
         let file = Self::parse(file_name, text, overrides)?;
-        Ok((file.slide.ok_or_else(|| no_slide(file_name, text))?, file.product))
+        if file.mechanism.is_some() {
+            return Err(no_slide(file_name, text, Problem::NotASlide, "check, simulate and sweep work on this one"));
+        }
+        Ok((
+            file.slide
+                .ok_or_else(|| no_slide(file_name, text, Problem::NoSlide, "slipfit tolerance works on this one"))?,
+            file.product,
+        ))
     }
 }
 
@@ -101,10 +108,9 @@ impl Scene {
     }
 }
 
-/// There is nothing to move in the scene.
-fn no_slide(file_name: &str, text: &str) -> SceneError {
+/// There is no slide in the scene; `instead` says what works on it.
+fn no_slide(file_name: &str, text: &str, problem: Problem, instead: &str) -> SceneError {
     let first_line = 0..text.find('\n').unwrap_or(text.len());
-    let allowed = "a scene with [slide], [contact], [friction], [drive], [run], [sweep] and [[pin]]; \
-                   slipfit tolerance works on this one";
-    SceneError::new(Problem::NoSlide, allowed.into(), file_name, text, first_line)
+    let keys = "[slide], [contact], [friction], [drive], [run], [sweep] and [[pin]]";
+    SceneError::new(problem, format!("a scene with {keys}; {instead}"), file_name, text, first_line)
 }

@@ -245,7 +245,7 @@ fn integrator(field: &Field, friction: &FrictionData<f64>) -> Result<IntegratorK
     Ok(kind)
 }
 
-fn sweep(table: &Field) -> Result<LevelRange, SceneError> {
+pub(super) fn sweep(table: &Field) -> Result<LevelRange, SceneError> {
     const ALLOWED: &str = "a text \"FIRST:LAST:STEP\", such as \"-3:5:0.1\", of at most 100000 levels, or one level";
     let field = table.require("n", ALLOWED)?;
     let levels = match &field.node.value {

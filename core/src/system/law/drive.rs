@@ -20,14 +20,7 @@ impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
     fn fresh() {}
 
     #[inline(always)]
-    fn response(
-        &self,
-        t: S,
-        _: &SVector<S, 2>,
-        rate: &SVector<S, 2>,
-        (): &(),
-        _: Way<S>,
-    ) -> (Response<S, 2>, ()) {
+    fn response(&self, t: S, _: &SVector<S, 2>, rate: &SVector<S, 2>, (): &(), _: Way<S>) -> (Response<S, 2>, ()) {
         let zero = S::zero();
         let response = Response {
             force: SVector::<S, 2>::new(self.0.force(t, rate[1]), zero),
@@ -54,14 +47,7 @@ impl<S: Scalar, P: Push<S>> Law<S, 1> for Motor<P> {
     fn fresh() {}
 
     #[inline(always)]
-    fn response(
-        &self,
-        t: S,
-        _: &SVector<S, 1>,
-        rate: &SVector<S, 1>,
-        (): &(),
-        _: Way<S>,
-    ) -> (Response<S, 1>, ()) {
+    fn response(&self, t: S, _: &SVector<S, 1>, rate: &SVector<S, 1>, (): &(), _: Way<S>) -> (Response<S, 1>, ()) {
         let response = Response {
             force: SVector::<S, 1>::new(self.0.force(t, rate.x)),
             impedance: SMatrix::<S, 1, 1>::new(self.0.gain()),

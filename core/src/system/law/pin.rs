@@ -61,7 +61,8 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Law<S, 3> for Pin<S, E, F> {
                 stiffness[(row, n)] += by_place;
             }
             let [a, b, c] = traction.impedance;
-            for (row, column, value) in [(first, first, a), (first, second, b), (second, first, b), (second, second, c)] {
+            for (row, column, value) in [(first, first, a), (first, second, b), (second, first, b), (second, second, c)]
+            {
                 impedance[(row, column)] += value;
             }
         }
@@ -69,12 +70,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Law<S, 3> for Pin<S, E, F> {
     }
 
     #[inline(always)]
-    fn shifted(
-        base: &[F::Memory; 2],
-        from: &[F::Memory; 2],
-        to: &[F::Memory; 2],
-        weight: S,
-    ) -> [F::Memory; 2] {
+    fn shifted(base: &[F::Memory; 2], from: &[F::Memory; 2], to: &[F::Memory; 2], weight: S) -> [F::Memory; 2] {
         let at = |i: usize| F::shifted(&base[i], &from[i], &to[i], weight);
         [at(0), at(1)]
     }

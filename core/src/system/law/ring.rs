@@ -58,10 +58,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
         let by_turn = along::<S, 8>(1, per_distance);
         let depth = (distance - self.clearance, along::<S, 8>(0, one));
         let approach = (outward, along::<S, 8>(2, one) + by_turn * aside);
-        let around = (
-            aside - rim * rate[5],
-            along::<S, 8>(3, one) - by_turn * outward - along(0, rate[5]) - along(7, rim),
-        );
+        let around =
+            (aside - rim * rate[5], along::<S, 8>(3, one) - by_turn * outward - along(0, rate[5]) - along(7, rim));
         let along_rod = (
             rate[2] + rim * about_tangent,
             along::<S, 8>(4, one) + along(0, about_tangent) + along(6, rim) - by_turn * (rim * about_normal),

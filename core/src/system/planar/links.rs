@@ -2,11 +2,7 @@
 
 use nalgebra::Matrix2;
 
-use super::{
-    PlanarTree, Placed, Point, left,
-    point::At,
-    tree::turned,
-};
+use super::{Placed, PlanarTree, Point, left, point::At, tree::turned};
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
     system::{Link, Seen},
@@ -118,8 +114,7 @@ impl<S: Scalar, const D: usize> Link<S, PlanarTree<S, D>, D, 2> for Across<S, D>
     fn swept(&self, tree: &PlanarTree<S, D>, placed: &Placed<S, D>) -> SMatrix<S, 2, D> {
         let (at, seat) = (At::of(tree, &self.point, placed), At::of(tree, &self.seat, placed));
         let rates = &placed.rates;
-        let mut swept =
-            at.swept(tree, &self.point, placed, rates) - seat.swept(tree, &self.seat, placed, rates);
+        let mut swept = at.swept(tree, &self.point, placed, rates) - seat.swept(tree, &self.seat, placed, rates);
         if let Some(turn) = self.seat.turn {
             let (_, gradient) = self.relative(&at, &seat);
             let plain = at.gradient - seat.gradient;

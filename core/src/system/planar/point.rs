@@ -1,9 +1,6 @@
 //! Material points of a tree: where they are, how they move, how that changes.
 
-use super::{
-    Coordinate, Placed, PlanarTree, left,
-    tree::turned,
-};
+use super::{Coordinate, Placed, PlanarTree, left, tree::turned};
 use crate::{SMatrix, SVector, Scalar, Vector2};
 
 /// A point of a body, or of the frame: `base` + Σ R(θ)·`arms` + Σ displacements, over the coordinates that move it.

@@ -1,11 +1,7 @@
 //! The tree: coordinates, bodies, and how they resist.
 
 use super::{Point, left, point::At};
-use crate::{
-    ParameterError, SMatrix, SVector, Scalar, Vector2,
-    error::bounded,
-    system::Bodies,
-};
+use crate::{ParameterError, SMatrix, SVector, Scalar, Vector2, error::bounded, system::Bodies};
 
 /// A generalised coordinate of ideal joints in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

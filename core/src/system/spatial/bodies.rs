@@ -3,11 +3,7 @@
 use nalgebra::Matrix3;
 
 use crate::{
-    ParameterError, SMatrix, SVector, Scalar, Vector3,
-    error::bounded,
-    linear::cross_matrix,
-    pose::Pose,
-    system::Bodies,
+    ParameterError, SMatrix, SVector, Scalar, Vector3, error::bounded, linear::cross_matrix, pose::Pose, system::Bodies,
 };
 
 /// A rigid body in space.

@@ -29,11 +29,8 @@ pub(super) fn bodies<'t, 's>(
 
 fn body(name: String, table: &Field, planar: bool) -> Result<Body, SceneError> {
     let mass = table.number("mass", &MASS)?;
-    let inertia = if planar {
-        [0.0, 0.0, table.number("inertia", &INERTIA)?]
-    } else {
-        table.numbers("inertia", &INERTIA)?
-    };
+    let inertia =
+        if planar { [0.0, 0.0, table.number("inertia", &INERTIA)?] } else { table.numbers("inertia", &INERTIA)? };
     let centre = table.require("centre", if planar { "a place [x, y] in mm" } else { "a place [x, y, z] in mm" })?;
     let centre = place(&centre, planar, &POINT)?;
     let start = |key: &str, quantity| -> Result<f64, SceneError> {

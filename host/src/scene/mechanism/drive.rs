@@ -35,7 +35,8 @@ fn drive(name: String, table: &Field, planar: bool, names: &Names) -> Result<Nam
             (names.body(&field)?, action, table.number("gain", &TORQUE_GAIN)?, table.number("speed", &ROTATION)?)
         }
         (None, None) => {
-            return Err(table.error(Problem::Missing("drive.pushes".into()), "pushes = BODY, a force, or turns = BODY, a torque"));
+            return Err(table
+                .error(Problem::Missing("drive.pushes".into()), "pushes = BODY, a force, or turns = BODY, a torque"));
         }
         (Some(_), Some(field)) => {
             let problem = Problem::Duplicate { key: "drive.pushes".into(), name: "turns".into() };

@@ -44,7 +44,9 @@ fn joint(
     let laws = match laws {
         Some(laws) => laws,
         None if kind.is_ideal() => NO_LAWS,
-        None => return Err(table.error(Problem::Missing("contact".into()), "a table [contact], or one of the joint's own")),
+        None => {
+            return Err(table.error(Problem::Missing("contact".into()), "a table [contact], or one of the joint's own"));
+        }
     };
     Ok(Joint { name, between, at, kind, laws })
 }
@@ -57,11 +59,7 @@ const NO_LAWS: Laws = Laws {
 
 /// Reads what the joint called `name` is.
 fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<JointKind, SceneError> {
-    let allowed = if planar {
-        "fixed, revolute, prismatic, pin-slot, stop"
-    } else {
-        "cylindrical, track, stop"
-    };
+    let allowed = if planar { "fixed, revolute, prismatic, pin-slot, stop" } else { "cylindrical, track, stop" };
     let field = table.require("kind", allowed)?;
     let clearance = table.get("clearance");
     let axis = || direction(table, "axis", planar);

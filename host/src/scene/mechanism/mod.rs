@@ -7,7 +7,7 @@ mod joint;
 use slipfit_core::{clearance::GapStatistics, menu::FrictionData};
 
 use super::{
-    Problem, SceneError,
+    LevelRange, Problem, SceneError,
     diagnostic::Found,
     parse,
     tree::Value,
@@ -23,6 +23,9 @@ const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e
 
 /// What the frame is called where bodies are named.
 const FRAME: &str = "frame";
+
+/// The levels of a sweep where a scene states none.
+const LEVELS: LevelRange = LevelRange { first: -3.0, step: 0.5, count: 13 };
 
 /// How long an axis or a normal at least is, in its own numbers.
 const LEAST_AXIS: f64 = 1e-9;
@@ -53,6 +56,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
     let laws = found.recover(laws(root, None), None);
     let mut gaps = Gaps { gaps: Vec::new(), product };
     let (joints, joint_fields) = joint::joints(root, planar, &names, laws, &mut gaps)?;
+    let sweep = root.get("sweep").map(|_| parse::sweep(&root.table("sweep")?)).transpose()?.unwrap_or(LEVELS);
     let run = parse::run(&root.table("run")?)?;
     let mechanism = Mechanism {
         title,
@@ -65,6 +69,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         gaps: gaps.gaps,
         duration: run.duration,
         error: run.error,
+        sweep,
     };
     // With values that stand for wrong ones there is nothing to look at.
     if !found.any() {
@@ -201,7 +206,11 @@ fn direction(table: &Field, key: &str, planar: bool) -> Result<[f64; 3], SceneEr
         return Err(field.out_of_range("", "a direction other than zero"));
     }
     // What is given along an axis stays exactly so.
-    Ok(if axis.iter().filter(|x| **x != 0.0).count() == 1 { axis.map(f64::signum_or_zero) } else { axis.map(|x| x / length) })
+    Ok(if axis.iter().filter(|x| **x != 0.0).count() == 1 {
+        axis.map(f64::signum_or_zero)
+    } else {
+        axis.map(|x| x / length)
+    })
 }
 
 /// The sign of a number, 0 for 0.

@@ -1,0 +1,147 @@
+//! Degrees of freedom (eqs. 5–8): what ideal joints leave, and what joints with play take of it.
+
+use nalgebra::{DMatrix, SMatrix, SVector};
+use slipfit_core::{
+    ParameterError,
+    system::{Bodies, Link, planar::PlanarTree, spatial::FreeBodies},
+};
+
+use super::{JointKind, Mechanism, Mounts, RunError, element::PlanarElement, element::SpatialElement, planar, spatial};
+
+/// The mobility of a mechanism, n = 6(N − 1) − Σ i·c_i − n_cl (eq. 8), in a plane with 3 for 6.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Freedom {
+    /// N: bodies and the frame.
+    pub parts: usize,
+    /// 6 in space, 3 in a plane.
+    pub of_each: usize,
+    /// c_i by i: how many ideal joints remove i freedoms.
+    pub ideal: Vec<usize>,
+    /// n_cl: what joints with play remove; stops, which hold only where they touch, not counted.
+    pub by_clearance: usize,
+    /// n.
+    pub degrees_of_freedom: i64,
+}
+
+impl Freedom {
+    /// The mobility of `mechanism` in its drawn pose.
+    ///
+    /// # Errors
+    /// If it has no run, see [`RunError`].
+    pub fn of(mechanism: &Mechanism) -> Result<Self, RunError> {
+        let of_each = if mechanism.planar { 3 } else { 6 };
+        let mut ideal = vec![0; of_each + 1];
+        for joint in &mechanism.joints {
+            let removed = match joint.kind {
+                JointKind::Fixed => of_each,
+                JointKind::Revolute | JointKind::Prismatic { .. } => of_each - 1,
+                JointKind::PinSlot { .. } => of_each - 2,
+                _ => continue,
+            };
+            ideal[removed] += 1;
+        }
+        let by_clearance = rank(mechanism)?;
+        let parts = mechanism.bodies.len() + 1;
+        let removed: usize = ideal.iter().enumerate().map(|(i, count)| i * count).sum();
+        let degrees_of_freedom = (of_each * (parts - 1)) as i64 - removed as i64 - by_clearance as i64;
+        Ok(Self { parts, of_each, ideal, by_clearance, degrees_of_freedom })
+    }
+
+    /// The count as a formula.
+    pub fn describe(&self) -> String {
+        let ideal = self.ideal.iter().enumerate().filter(|(_, count)| **count > 0);
+        let ideal: Vec<String> = ideal.map(|(i, count)| format!("{i}·{count}")).collect();
+        let ideal = if ideal.is_empty() { "0".to_owned() } else { ideal.join(" − ") };
+        let Self { parts, of_each, by_clearance, degrees_of_freedom, .. } = self;
+        format!("{of_each}·({parts} − 1) − {ideal} − {by_clearance} = {degrees_of_freedom}")
+    }
+}
+
+/// The rank of all that joints with play hold.
+fn rank(mechanism: &Mechanism) -> Result<usize, RunError> {
+    let open = vec![0.0; mechanism.gaps.len()];
+    if mechanism.planar {
+        let mounts = Mounts::of(mechanism)?;
+        return Ok(match mounts.coordinates().len() {
+            1 => in_plane::<1>(mechanism, &mounts, &open),
+            2 => in_plane::<2>(mechanism, &mounts, &open),
+            3 => in_plane::<3>(mechanism, &mounts, &open),
+            4 => in_plane::<4>(mechanism, &mounts, &open),
+            5 => in_plane::<5>(mechanism, &mounts, &open),
+            _ => in_plane::<6>(mechanism, &mounts, &open),
+        }?);
+    }
+    match mechanism.bodies.len() {
+        1 => Ok(in_space::<1, 6>(mechanism, &open)?),
+        2 => Ok(in_space::<2, 12>(mechanism, &open)?),
+        3 => Ok(in_space::<3, 18>(mechanism, &open)?),
+        other => Err(RunError::Bodies(other)),
+    }
+}
+
+/// The rows of `gradient`, angles by their levers.
+fn scaled<const R: usize, const D: usize>(gradient: &SMatrix<f64, R, D>, per_lever: &SVector<f64, D>) -> Vec<[f64; D]> {
+    gradient.row_iter().map(|row| std::array::from_fn(|k| row[k] * per_lever[k])).collect()
+}
+
+fn rank_of<const D: usize>(rows: &[[f64; D]]) -> usize {
+    if rows.is_empty() { 0 } else { DMatrix::from_fn(rows.len(), D, |i, j| rows[i][j]).rank(1e-9) }
+}
+
+fn in_plane<const D: usize>(
+    mechanism: &Mechanism,
+    mounts: &Mounts,
+    gaps: &[f64],
+) -> Result<usize, ParameterError<f64>> {
+    let tree: PlanarTree<f64, D> = planar::bodies(mechanism, mounts)?;
+    let pose = tree.pose([0.0; D], |_| [1.0, 0.0]);
+    let placed = tree.placed(&pose, &SVector::zeros());
+    // Stops are the pads of joints of that kind.
+    let held = Mechanism {
+        joints: mechanism
+            .joints
+            .iter()
+            .filter(|joint| !matches!(joint.kind, JointKind::Stop { .. }))
+            .cloned()
+            .collect(),
+        ..mechanism.clone()
+    };
+    let mut rows = Vec::new();
+    for element in planar::elements::<D>(&held, mounts, gaps, 1.0)? {
+        match element {
+            PlanarElement::Journal(element) => {
+                let gradient = element.link.seen(&tree, &placed).gradient;
+                rows.extend(scaled(&gradient, tree.per_lever()).into_iter().take(2));
+            }
+            PlanarElement::Pad(element) => {
+                let gradient = element.link.seen(&tree, &placed).gradient;
+                rows.extend(scaled(&gradient, tree.per_lever()).into_iter().take(1));
+            }
+            _ => {}
+        }
+    }
+    Ok(rank_of(&rows))
+}
+
+fn in_space<const N: usize, const D: usize>(mechanism: &Mechanism, gaps: &[f64]) -> Result<usize, ParameterError<f64>> {
+    let bodies: FreeBodies<f64, N, D> = spatial::bodies(mechanism)?;
+    let placed = bodies.placed(&bodies.nominal(), &SVector::zeros());
+    let mut rows = Vec::new();
+    for element in spatial::elements(mechanism, gaps, 1.0)? {
+        match element {
+            SpatialElement::Pin(element) => {
+                let gradient = element.link.seen(&bodies, &placed).gradient;
+                let [left, right, rail, keeper] = element.law.gaps.map(|gap| gap < spatial::NONE);
+                let held = [left || right, rail || keeper, false];
+                let all = scaled(&gradient, bodies.per_lever());
+                rows.extend(all.into_iter().zip(held).filter(|(_, held)| *held).map(|(row, _)| row));
+            }
+            SpatialElement::Ring(element) => {
+                let gradient = element.link.seen(&bodies, &placed).gradient;
+                rows.extend(scaled(&gradient, bodies.per_lever()).into_iter().take(2));
+            }
+            _ => {}
+        }
+    }
+    Ok(rank_of(&rows))
+}
