@@ -17,6 +17,7 @@ use std::{
 use cvode_peer::Cvode;
 use slipfit::{
     error_control::{Knot, Sensitivity, Tolerance, integrate, sampled},
+    out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},
 };
 use slipfit_core::{
@@ -158,15 +159,14 @@ fn controlled<I: Integrator>(solver: &'static str, slide: &CdRomSlide<f64>, mill
             let start = Instant::now();
             let tolerance = Tolerance::of_force(force);
             let error = |step: &_, length| sensitivity.error(tolerance, step, length);
-            integrate::<I, _, 6>(&slide, rest, duration, error, |t, motion| {
-                let r = motion.pose.displacement_w;
-                knots.push(Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] });
+            integrate::<I, _, 6>(&OutOfLine::new(slide), rest, duration, error, |t, motion| {
+                knots.push(Knot { t, values: [motion.velocity.z] });
                 ControlFlow::Continue(())
             })
             .ok()?;
             let times = (0..=milliseconds).map(|k| f64::from(k) * 1e-3);
             let values = sampled(&knots, times.clone());
-            let force = times.zip(values).map(|(t, [vz, ..])| slide.drive().force(t, vz)).collect();
+            let force = times.zip(values).map(|(t, [vz])| slide.drive().force(t, vz)).collect();
             Some(Achieved { force, time: start.elapsed() })
         };
         Entry { solver, setting: format!("{force:.1e} N"), work: Box::new(work) }

@@ -68,7 +68,7 @@ pub(crate) fn settled<S: Scalar>(x: S, unit: S) -> S {
 /// the implicit part of the step.
 pub trait Mechanism<S: Scalar, const D: usize> {
     /// Where the bodies are.
-    type Pose: Copy;
+    type Pose: Copy + PartialEq;
 
     /// What force laws remember from one step to the next, such as friction forces; `()` where nothing.
     type Memory: Copy;
@@ -77,7 +77,7 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     type Linearisation: Copy + Default;
 
     /// Derivatives of the force by velocity and displacement.
-    type Slopes;
+    type Slopes: Copy;
 
     /// The pose Q = `pose` + `dt`·Q̇(Q, `velocity`), implicit in Q.
     fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;

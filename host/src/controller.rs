@@ -17,6 +17,7 @@ use crate::{
     error_control::Effort,
     interrupt,
     laws::AnySlide,
+    out_of_line::OutOfLine,
     outcome::{Instant, Observer, Trajectory},
     scene::{ControllerSpec, Scene},
     scheme::{IntegratorVisitor, ScalarKind},
@@ -125,7 +126,7 @@ where
         let Self { stepper: Stepper { settings, spec, mut observer, mut auditor, mut watch, per_sample }, slide } =
             self;
         let step = spec.step;
-        let kernel = Kernel::<S, _, I>::new(slide, S::from_f64(step))?;
+        let kernel = Kernel::<S, _, I>::new(OutOfLine::new(slide), S::from_f64(step))?;
         // The last step is the one that still ends within the run.
         let steps = (settings.run.duration / step * (1.0 + 1e-9)).floor() as u32;
         let mut state = kernel.at_rest(Pose::nominal());
@@ -135,11 +136,11 @@ where
         loop {
             let t = f64::from(state.steps) * step;
             let vz = state.motion.velocity.z;
-            let force = kernel.mechanism().drive().force(kernel.time(state.steps), vz).to_f64();
+            let force = kernel.mechanism().mechanism().drive().force(kernel.time(state.steps), vz).to_f64();
             let r = state.motion.pose.displacement_w.map(S::to_f64);
             observer.observe(Instant { t, vz: vz.to_f64(), force, z: r.z });
             if let Some(auditor) = &mut auditor {
-                let slide = kernel.mechanism();
+                let slide = kernel.mechanism().mechanism();
                 auditor.observe(slide.energy(&state.motion), slide.power(kernel.time(state.steps), &state.motion));
             }
             if state.steps.is_multiple_of(per_sample) {
@@ -176,8 +177,7 @@ where
                 return Err(SimulateError::NotFinite { time: t, step });
             }
             worst_residual = worst_residual.max(residual);
-            let slide = kernel.mechanism();
-            let momentum = slide.impulse(&slide.momentum(&state.motion.pose, &state.motion.velocity));
+            let momentum = kernel.mechanism().weighed(&state.motion.pose, &state.motion.velocity);
             watch.observe(t, [residual, report.error.to_f64()], momentum.to_f64(), force);
         }
     }

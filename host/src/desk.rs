@@ -13,13 +13,15 @@ use slipfit_core::{
     integrator::{Integrator, Motion, Rodas4},
     law::{Elastic, Friction},
     mechanism::Mechanism,
-    menu::{FrictionData, SlideVisitor},
+    menu::FrictionData,
     pose::Pose,
     slide::{CONTACTS, Slide},
 };
 
 use crate::{
     error_control::{Knot, Sensitivity, Stopped, Tolerance, between, integrate, sampled},
+    laws::AnySlide,
+    out_of_line::OutOfLine,
     outcome::{Instant, Observer, Trajectory},
     scene::Scene,
     scheme::ScalarKind,
@@ -85,8 +87,13 @@ pub fn run(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, tolerance
         effort: Default::default(),
         worst_residual: 0.0,
     };
-    let run = data.visit(Desk { scene, settings, tolerance: Tolerance::of_force(tolerance), solved })?;
-    Ok(run?)
+    let desk = Desk { scene, settings, tolerance: Tolerance::of_force(tolerance), solved };
+    Ok(match AnySlide::new(&data)? {
+        AnySlide::ThreeHalvesRegularised(slide) => desk.run(slide),
+        AnySlide::ThreeHalvesExact(slide) => desk.run(slide),
+        AnySlide::Sliding(slide) => desk.run(slide),
+        AnySlide::Sticking(slide) => desk.run(slide),
+    }?)
 }
 
 /// A run whose slide's type is to be known.
@@ -97,10 +104,8 @@ struct Desk<'a> {
     solved: Solved,
 }
 
-impl SlideVisitor<f64> for Desk<'_> {
-    type Output = Result<Run, Stopped>;
-
-    fn visit<E: Elastic<f64>, F: Friction<f64>>(self, slide: Slide<f64, E, F>) -> Self::Output {
+impl Desk<'_> {
+    fn run<E: Elastic<f64>, F: Friction<f64>>(self, slide: Slide<f64, E, F>) -> Result<Run, Stopped> {
         let Self { scene, settings, tolerance, mut solved } = self;
         let sensitivity = Sensitivity { mass: scene.slide.mass, gain: scene.drive.gain };
         let rest = Motion {
@@ -115,7 +120,7 @@ impl SlideVisitor<f64> for Desk<'_> {
         let start = Clock::now();
         let duration = settings.run.duration;
         let error = |step: &_, length| sensitivity.error(tolerance, step, length);
-        let effort = integrate::<Rodas4, _, 6>(&slide, rest, duration, error, |t, motion| {
+        let effort = integrate::<Rodas4, _, 6>(&OutOfLine::new(slide), rest, duration, error, |t, motion| {
             let r = motion.pose.displacement_w;
             knots.push(Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] });
             if t >= scene.drive.ramp_start && keepers.meet(&slide.gaps(&motion.pose)) {

@@ -45,6 +45,11 @@ pub trait Values: Copy {
     /// Number `k`.
     fn get(&self, k: usize) -> f64;
 
+    /// How fast number `k` changes, where that is known.
+    fn rate(&self, _k: usize) -> Option<f64> {
+        None
+    }
+
     /// The same numbers, each given by its index.
     fn with(&self, value: impl Fn(usize) -> f64) -> Self;
 }
@@ -106,7 +111,7 @@ const STEPS_MOST: u32 = 2_000_000;
 const SAFETY: f64 = 0.8;
 
 /// How much the next step may be shorter and longer. Contacts close and open too suddenly for steps that grow faster.
-const CHANGES: [f64; 2] = [0.2, 2.0];
+const CHANGES: [f64; 2] = [0.2, 3.0];
 
 /// First step (s).
 const FIRST_STEP: f64 = 2e-5;
@@ -138,7 +143,7 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, D>, const D: usize>(
         let step = I::step(mechanism, t, length, &motion);
         // A step whose estimate is not a number is the worst of all.
         let error = Some(error(&step, length)).filter(|error| error.is_finite()).unwrap_or(1e12);
-        let factor = (SAFETY * libm::pow(error.max(1e-12), -1.0 / f64::from(I::ORDER))).clamp(CHANGES[0], CHANGES[1]);
+        let factor = (SAFETY / root(error.max(1e-12), I::ORDER)).clamp(CHANGES[0], CHANGES[1]);
         h = (length * factor).clamp(STEPS[0], STEPS[1]);
         if tried >= STEPS_MOST || (error > 1.0 && length <= STEPS[0]) {
             return Err(Stopped::Unsolved(t));
@@ -155,27 +160,73 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, D>, const D: usize>(
     Ok(effort)
 }
 
+/// The root of `x` of this order.
+fn root(x: f64, order: u32) -> f64 {
+    match order {
+        1 => x,
+        2 => libm::sqrt(x),
+        3 => libm::cbrt(x),
+        4 => libm::sqrt(libm::sqrt(x)),
+        other => libm::pow(x, 1.0 / f64::from(other)),
+    }
+}
+
 /// The values of [`Knot`] at ascending `times` (s) within the `knots`, of which there are at least two.
 pub fn sampled<V: Values>(knots: &[Knot<V>], times: impl Iterator<Item = f64>) -> Vec<V> {
     let mut i = 0;
+    let mut cubics = Cubics::of(knots, i);
     times
         .map(|t| {
+            let before = i;
             while i + 2 < knots.len() && knots[i + 1].t < t {
                 i += 1;
             }
-            between(knots, i, t)
+            if i != before {
+                cubics = Cubics::of(knots, i);
+            }
+            cubics.at(t)
         })
         .collect()
 }
 
+/// The values between two knots: a cubic each, by the values and slopes at both.
+struct Cubics<V> {
+    from: f64,
+    length: f64,
+    start: V,
+    end: V,
+    /// Slopes over the whole length.
+    start_slope: V,
+    end_slope: V,
+}
+
+impl<V: Values> Cubics<V> {
+    /// Between the knots `i` and `i + 1`.
+    fn of(knots: &[Knot<V>], i: usize) -> Self {
+        let (from, to) = (knots[i], knots[i + 1]);
+        let length = to.t - from.t;
+        Self {
+            from: from.t,
+            length,
+            start: from.values,
+            end: to.values,
+            start_slope: from.values.with(|k| from.values.rate(k).unwrap_or_else(|| slope(knots, i, i, k)) * length),
+            end_slope: from.values.with(|k| to.values.rate(k).unwrap_or_else(|| slope(knots, i + 1, i, k)) * length),
+        }
+    }
+
+    /// At time `t` (s).
+    fn at(&self, t: f64) -> V {
+        let s = (t - self.from) / self.length;
+        self.start.with(|k| {
+            hermite(s, [self.start.get(k), self.end.get(k)], [self.start_slope.get(k), self.end_slope.get(k)])
+        })
+    }
+}
+
 /// The values at time `t` (s) between the knots `i` and `i + 1`.
 pub fn between<V: Values>(knots: &[Knot<V>], i: usize, t: f64) -> V {
-    let (from, to) = (knots[i], knots[i + 1]);
-    let h = to.t - from.t;
-    from.values.with(|k| {
-        let slopes = [slope(knots, i, i, k), slope(knots, i + 1, i, k)];
-        hermite((t - from.t) / h, [from.values.get(k), to.values.get(k)], slopes.map(|slope| slope * h))
-    })
+    Cubics::of(knots, i).at(t)
 }
 
 /// Neighbouring steps whose lengths differ by more than this factor meet at an event, such as a contact that closes: there

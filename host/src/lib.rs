@@ -27,6 +27,7 @@ mod markup;
 pub mod mechanism;
 pub mod mobility;
 pub mod number;
+pub mod out_of_line;
 pub mod outcome;
 pub mod plot;
 pub mod precision;

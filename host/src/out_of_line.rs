@@ -2,6 +2,10 @@
 //!
 //! Firmware wants the forces inlined into its one step. At the desk every scheme steps every kind of mechanism; calls cost
 //! nothing beside what they do, and building takes a fraction of the time. The bits are the same.
+//!
+//! The derivatives at the last motion asked for are kept: a step that is refused begins again where it began.
+
+use std::cell::RefCell;
 
 use slipfit_core::{
     SVector, Scalar,
@@ -9,61 +13,83 @@ use slipfit_core::{
 };
 
 /// The mechanism `M`, its forces out of line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OutOfLine<M>(pub M);
+pub struct OutOfLine<S: Scalar, M: Mechanism<S, D>, const D: usize> {
+    mechanism: M,
+    last: RefCell<Option<Last<S, M, D>>>,
+}
 
-impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLine<M> {
+/// Derivatives, and the motion that they hold for.
+struct Last<S: Scalar, M: Mechanism<S, D>, const D: usize> {
+    t: S,
+    pose: M::Pose,
+    velocity: SVector<S, D>,
+    found: Differentiated<S, M::Slopes, D>,
+}
+
+impl<S: Scalar, M: Mechanism<S, D>, const D: usize> OutOfLine<S, M, D> {
+    /// `mechanism`, its laws without internal variables where it is differentiated.
+    pub fn new(mechanism: M) -> Self {
+        Self { mechanism, last: RefCell::new(None) }
+    }
+
+    /// The mechanism.
+    pub fn mechanism(&self) -> &M {
+        &self.mechanism
+    }
+}
+
+impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLine<S, M, D> {
     type Pose = M::Pose;
     type Memory = M::Memory;
     type Linearisation = M::Linearisation;
     type Slopes = M::Slopes;
 
     fn advanced(&self, pose: &M::Pose, velocity: &SVector<S, D>, dt: S) -> M::Pose {
-        self.0.advanced(pose, velocity, dt)
+        self.mechanism.advanced(pose, velocity, dt)
     }
 
     fn moved(&self, pose: &M::Pose, velocity: &SVector<S, D>, dt: S) -> M::Pose {
-        self.0.moved(pose, velocity, dt)
+        self.mechanism.moved(pose, velocity, dt)
     }
 
     fn shifted(&self, base: &M::Pose, from: &M::Pose, to: &M::Pose, weight: S) -> M::Pose {
-        self.0.shifted(base, from, to, weight)
+        self.mechanism.shifted(base, from, to, weight)
     }
 
     fn memory_shifted(&self, base: &M::Memory, from: &M::Memory, to: &M::Memory, weight: S) -> M::Memory {
-        self.0.memory_shifted(base, from, to, weight)
+        self.mechanism.memory_shifted(base, from, to, weight)
     }
 
     fn normalised(&self, pose: &M::Pose) -> M::Pose {
-        self.0.normalised(pose)
+        self.mechanism.normalised(pose)
     }
 
     fn fresh(&self) -> M::Memory {
-        self.0.fresh()
+        self.mechanism.fresh()
     }
 
     fn adopt(&self, condition: S, next: (&M::Pose, &M::Memory), kept: (&mut M::Pose, &mut M::Memory)) {
-        self.0.adopt(condition, next, kept);
+        self.mechanism.adopt(condition, next, kept);
     }
 
     fn nought(&self, pose: &M::Pose) -> S {
-        self.0.nought(pose)
+        self.mechanism.nought(pose)
     }
 
     fn settled(&self, velocity: &SVector<S, D>, a: S) -> SVector<S, D> {
-        self.0.settled(velocity, a)
+        self.mechanism.settled(velocity, a)
     }
 
     fn momentum(&self, pose: &M::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
-        self.0.momentum(pose, velocity)
+        self.mechanism.momentum(pose, velocity)
     }
 
     fn velocity(&self, pose: &M::Pose, momentum: &SVector<S, D>) -> SVector<S, D> {
-        self.0.velocity(pose, momentum)
+        self.mechanism.velocity(pose, momentum)
     }
 
     fn referred(&self, start: &M::Pose, pose: &M::Pose, force: SVector<S, D>) -> SVector<S, D> {
-        self.0.referred(start, pose, force)
+        self.mechanism.referred(start, pose, force)
     }
 
     #[inline(never)]
@@ -76,7 +102,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLin
         a: S,
         remembered: Option<&mut M::Memory>,
     ) -> SVector<S, D> {
-        self.0.forces(t, pose, memory, velocity, a, remembered)
+        self.mechanism.forces(t, pose, memory, velocity, a, remembered)
     }
 
     #[inline(never)]
@@ -89,20 +115,20 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLin
         a: S,
         tangent_share: S,
     ) -> Linearised<S, M::Linearisation, D> {
-        self.0.linearised(t, pose, memory, velocity, a, tangent_share)
+        self.mechanism.linearised(t, pose, memory, velocity, a, tangent_share)
     }
 
     #[inline(never)]
     fn solve(&self, linearisation: &M::Linearisation, residual: &SVector<S, D>) -> SVector<S, D> {
-        self.0.solve(linearisation, residual)
+        self.mechanism.solve(linearisation, residual)
     }
 
     fn impulse(&self, imbalance: &SVector<S, D>) -> S {
-        self.0.impulse(imbalance)
+        self.mechanism.impulse(imbalance)
     }
 
     fn weighed(&self, pose: &M::Pose, change: &SVector<S, D>) -> S {
-        self.0.weighed(pose, change)
+        self.mechanism.weighed(pose, change)
     }
 
     #[inline(never)]
@@ -113,19 +139,27 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLin
         memory: &M::Memory,
         velocity: &SVector<S, D>,
     ) -> Differentiated<S, M::Slopes, D> {
-        self.0.differentiated(t, pose, memory, velocity)
+        let mut last = self.last.borrow_mut();
+        if let Some(last) = last.as_ref()
+            && (last.t, last.pose, last.velocity) == (t, *pose, *velocity)
+        {
+            return last.found;
+        }
+        let found = self.mechanism.differentiated(t, pose, memory, velocity);
+        *last = Some(Last { t, pose: *pose, velocity: *velocity, found });
+        found
     }
 
     #[inline(never)]
     fn linearisation(&self, slopes: &M::Slopes, a: S) -> M::Linearisation {
-        self.0.linearisation(slopes, a)
+        self.mechanism.linearisation(slopes, a)
     }
 
     fn pushed(&self, slopes: &M::Slopes, displacement: &SVector<S, D>) -> SVector<S, D> {
-        self.0.pushed(slopes, displacement)
+        self.mechanism.pushed(slopes, displacement)
     }
 
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
-        self.0.rate(displacement, velocity)
+        self.mechanism.rate(displacement, velocity)
     }
 }

@@ -5,7 +5,7 @@ use crate::{SMatrix, SVector, Scalar};
 /// Bodies with `D` generalised velocities. Ideal joints are in the coordinates: what they forbid has none.
 pub trait Bodies<S: Scalar, const D: usize> {
     /// Where the bodies are.
-    type Pose: Copy;
+    type Pose: Copy + PartialEq;
 
     /// Where they are and how they move, worked out for links.
     type Placed;

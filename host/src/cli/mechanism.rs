@@ -16,6 +16,7 @@ use crate::{
     mechanism::{Action, Freedom, GapError, Mechanism, MechanismRun, RunError, SCHEME, run},
     number::{fixed, level, or_dash},
     outcome::{Outcome, Verdict},
+    scene::RunSpec,
 };
 
 impl From<RunError> for Failure {
@@ -131,7 +132,8 @@ fn difference(mechanism: &Mechanism, one: &MechanismRun, finer: &MechanismRun) -
 
 /// The run at a tenth of the tolerance.
 fn finer(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
-    run(&Mechanism { error: mechanism.error / 10.0, ..mechanism.clone() }, gaps, every)
+    let run_spec = RunSpec { error: mechanism.run.error / 10.0, ..mechanism.run };
+    run(&Mechanism { run: run_spec, ..mechanism.clone() }, gaps, every)
 }
 
 /// `simulate`.

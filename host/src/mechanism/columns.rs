@@ -13,6 +13,8 @@ pub struct State<const D: usize> {
     pub rates: [f64; D],
     /// Displacements (m) and angles (rad) from the drawn pose; in space rotation vectors.
     pub places: [f64; D],
+    /// How fast these change (m/s, rad/s).
+    pub place_rates: [f64; D],
 }
 
 impl<const D: usize> crate::error_control::Values for State<D> {
@@ -20,8 +22,12 @@ impl<const D: usize> crate::error_control::Values for State<D> {
         *self.rates.iter().chain(&self.places).nth(k).unwrap_or(&0.0)
     }
 
+    fn rate(&self, k: usize) -> Option<f64> {
+        k.checked_sub(D).and_then(|k| self.place_rates[..].get(k)).copied()
+    }
+
     fn with(&self, value: impl Fn(usize) -> f64) -> Self {
-        Self { rates: std::array::from_fn(&value), places: std::array::from_fn(|k| value(D + k)) }
+        Self { rates: std::array::from_fn(&value), places: std::array::from_fn(|k| value(D + k)), ..*self }
     }
 }
 

@@ -23,7 +23,7 @@ use slipfit_core::{
     menu::{ContactData, FrictionData},
 };
 
-use crate::scene::LevelRange;
+use crate::scene::{LevelRange, RunSpec};
 
 /// Which bodies there are, what joins them, and what is to be simulated. SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,10 +44,8 @@ pub struct Mechanism {
     pub drives: Vec<NamedDrive>,
     /// Gaps of the joints with play, over the production.
     pub gaps: Vec<Gap>,
-    /// Simulated time (s).
-    pub duration: f64,
-    /// Error of a speed that a step may make, as a share of the mechanism's own speed.
-    pub error: f64,
+    /// What is simulated: the stroke (m) is the first drive's, and the error a share of the mechanism's own speed.
+    pub run: RunSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
 }

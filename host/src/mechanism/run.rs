@@ -6,7 +6,7 @@ use std::{
 };
 
 use slipfit_core::{
-    ParameterError, SVector,
+    ParameterError, SVector, Vector3,
     integrator::{Integrator, Motion, Rodas4, Step},
     mechanism::Mechanism as _,
     pose::Pose,
@@ -21,8 +21,8 @@ use super::{
 };
 use crate::{
     error_control::{Effort, Knot, Stopped, integrate, sampled},
+    out_of_line::OutOfLine,
     outcome::{Observer, Outcome},
-    scene::RunSpec,
 };
 
 /// How long (s) an error of speed may last: what makes an error of place of it.
@@ -132,7 +132,7 @@ fn in_plane<const D: usize>(
             // The angle next to the last one: a turn goes on where its direction begins anew.
             *angle = if is_turn(k) { near(2.0 * libm::atan2(*v, *w), *angle) } else { *w };
         }
-        State { rates, places: angles }
+        State { rates, places: angles, place_rates: rates }
     };
     let told = |state: &State<D>| columns::planar(mechanism, mounts, &tree, state);
     solve(mechanism, &System::new(tree, &elements[..]), (pose, rates), &limits, every, state, told)
@@ -147,15 +147,24 @@ fn in_space<const N: usize, const D: usize>(
     let limits = Limits::of(mechanism, |body| bodies.lever(body));
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let state = |poses: &[Pose<f64>; N], rates: [f64; D]| {
-        let mut places = [0.0; D];
-        for (place, pose) in places.as_chunks_mut::<6>().0.iter_mut().zip(poses) {
+        let (mut places, mut place_rates) = ([0.0; D], rates);
+        let all = places.as_chunks_mut::<6>().0.iter_mut().zip(place_rates.as_chunks_mut::<6>().0);
+        for ((place, rate), pose) in all.zip(poses) {
             let length = pose.orientation.v.norm();
             let angle = 2.0 * libm::atan2(length, pose.orientation.w);
             let turn = pose.orientation.v * if length > 0.0 { angle / length } else { 0.0 };
             let r = pose.displacement_w;
             *place = [r.x, r.y, r.z, turn.x, turn.y, turn.z];
+            let [.., x, y, z] = *rate;
+            let rotation = Vector3::new(x, y, z);
+            // How a rotation vector goes by the angular velocity in the body.
+            let half = 0.5 * angle;
+            let share = if angle > 1e-4 { (1.0 - half / libm::tan(half)) / (angle * angle) } else { 1.0 / 12.0 };
+            let across = turn.cross(&rotation);
+            let turning = rotation + across * 0.5 + turn.cross(&across) * share;
+            (rate[3], rate[4], rate[5]) = (turning.x, turning.y, turning.z);
         }
-        State { rates, places }
+        State { rates, places, place_rates }
     };
     let start = (bodies.nominal(), [0.0; D]);
     let system = System::new(bodies, &elements[..]);
@@ -213,7 +222,7 @@ impl Limits {
         let gravity: f64 = mechanism.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         let greatest = driven.chain(thrown).fold(0.0, f64::max);
         let own = if greatest > 0.0 { greatest } else { (gravity * longest).sqrt().max(SLOWEST) };
-        Self { speed: mechanism.error * own }
+        Self { speed: mechanism.run.error * own }
     }
 
     /// The stick band (m/s) that stands for true stick.
@@ -229,7 +238,7 @@ impl Limits {
     }
 }
 
-fn solve<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
+fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize>(
     mechanism: &Mechanism,
     system: &System<B, E>,
     (pose, rates): (B::Pose, [f64; D]),
@@ -240,27 +249,30 @@ fn solve<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
 ) -> Result<MechanismRun, RunError> {
     let velocity = SVector::from(rates);
     let start = Motion { pose, velocity, acceleration: SVector::zeros(), memory: system.fresh() };
+    let desk = OutOfLine::new(*system);
     let least_mass = system.bodies().least_mass();
+    let mut observers: Vec<_> =
+        mechanism.drives.iter().map(|named| Observer::new(named.drive, mechanism.run)).collect();
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
     let error = |step: &_, length| limits.error(step, length, least_mass);
-    let effort = integrate::<Rodas4, _, D>(system, start, mechanism.duration, error, |t, motion| {
-        knots.push(Knot { t, values: state(&motion.pose, motion.velocity.into()) });
-        ControlFlow::Continue(())
+    let effort = integrate::<Rodas4, _, D>(&desk, start, mechanism.run.duration, error, |t, motion| {
+        let values = state(&motion.pose, motion.velocity.into());
+        knots.push(Knot { t, values });
+        let motions = told(&values);
+        let mut is_at_end = false;
+        for (observer, at) in observers.iter_mut().zip(mechanism.drives_at(t, &motions)) {
+            observer.observe(at);
+            is_at_end |= observer.is_at_end(at.z);
+        }
+        if is_at_end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     let integration = clock.elapsed();
-    let count = (mechanism.duration / every * (1.0 + 1e-12)).floor() as usize;
-    let time = |i: usize| (i as f64 * every).min(mechanism.duration);
+    let end = knots.last().map_or(0.0, |knot| knot.t);
+    let count = (end / every * (1.0 + 1e-12)).floor() as usize;
+    let time = |i: usize| (i as f64 * every).min(end);
     let rows = (0..=count).map(time).zip(sampled(&knots, (0..=count).map(time)));
     let rows = rows.map(|(t, state)| mechanism.row(t, &told(&state))).collect();
-    let run = RunSpec { duration: mechanism.duration, stroke: None, error: mechanism.error };
-    let mut observers: Vec<_> = mechanism.drives.iter().map(|named| Observer::new(named.drive, run)).collect();
-    for knot in &knots {
-        let motions = told(&knot.values);
-        for (observer, at) in observers.iter_mut().zip(mechanism.drives_at(knot.t, &motions)) {
-            observer.observe(at);
-        }
-    }
     let outcomes = observers.iter().map(Observer::outcome).collect();
     let samples = Samples { columns: mechanism.columns(), rows };
     Ok(MechanismRun { samples, outcomes, tolerance: limits.speed, effort, integration })

@@ -67,8 +67,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         bodies,
         joints,
         gaps: gaps.gaps,
-        duration: run.duration,
-        error: run.error,
+        run,
         sweep,
     };
     // With values that stand for wrong ones there is nothing to look at.
