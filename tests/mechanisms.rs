@@ -116,7 +116,7 @@ const CASES: [Case; 12] = [
             "body.slider.angle=0",
             "body.slider.inertia=2.7e-6 kg·m²",
             "run.duration=20",
-            // The slider tilts by 26 µrad at most, a thousandth of which is the micrometre's ten-thousandth at its corners.
+            // The slider tilts by 26 µrad at most: a thousandth of that needs a finer run.
             "run.error=1e-8",
         ],
         every: 1e-4,

@@ -61,11 +61,11 @@ impl Mechanism<f64, 1> for OnBelt {
         pose * 0.0
     }
 
-    fn momentum(&self, velocity: &SVector<f64, 1>) -> SVector<f64, 1> {
+    fn momentum(&self, _: &Self::Pose, velocity: &SVector<f64, 1>) -> SVector<f64, 1> {
         velocity * self.mass
     }
 
-    fn velocity(&self, momentum: &SVector<f64, 1>) -> SVector<f64, 1> {
+    fn velocity(&self, _: &Self::Pose, momentum: &SVector<f64, 1>) -> SVector<f64, 1> {
         momentum / self.mass
     }
 
