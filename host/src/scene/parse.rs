@@ -39,7 +39,7 @@ const STEP: Quantity = Quantity { units: unit::MICROSECONDS, range: [0.002, 1e4]
 
 /// The desk's error where a scene states none. With it every reference run of the CD-ROM slide errs by at most 0.02 % of its
 /// peak force.
-const DEFAULT_ERROR: f64 = 5e-7;
+const DEFAULT_ERROR: f64 = 3e-7;
 /// What a controller computes where a scene states nothing else.
 const DEFAULT_CONTROLLER: ControllerSpec =
     ControllerSpec { step: 1e-3, integrator: IntegratorKind::ImplicitEuler, scalar: ScalarKind::F32 };

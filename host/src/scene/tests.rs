@@ -46,7 +46,7 @@ fn the_shipped_scene_is_the_paper_s_to_the_last_bit() {
     assert_eq!(scene.title, "CD-ROM slide");
     assert_eq!(scene.pins[2].name, "left front");
     assert_eq!(scene.nominal_clearance, Some([0.4 / 1000.0; 2]));
-    assert_eq!(scene.run, RunSpec { duration: 0.2, stroke: Some(0.08), error: 5e-7 });
+    assert_eq!(scene.run, RunSpec { duration: 0.2, stroke: Some(0.08), error: 3e-7 });
     let controller = ControllerSpec { step: 1e-3, integrator: IntegratorKind::ImplicitEuler, scalar: ScalarKind::F32 };
     assert_eq!(scene.controller, controller);
     assert_eq!(scene.sweep, LevelRange { first: -3.0, step: 0.1, count: 81 });
@@ -185,7 +185,7 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
         ("step = 1000 ", "step = 0 ", ["step = |0 ", "`controller.step` is 0 µs", "0.002 to 10000 µs"]),
         ("step = 1000 ", "step = \"20 ms\" ", ["step = |\"20 ms", "`controller.step` is 20 ms", "0.002 to 10000 µs"]),
         ("stroke = 80 ", "stroke = 0 ", ["stroke = |0 ", "`run.stroke` is 0 mm", "0.001 to 100000 mm"]),
-        ("error = 5e-7 ", "error = 1 ", ["error = |1 ", "`run.error` is 1", "0.0000000001 to 0.1"]),
+        ("error = 3e-7 ", "error = 1 ", ["error = |1 ", "`run.error` is 1", "0.0000000001 to 0.1"]),
         ("\"f32\"", "\"f16\"", ["scalar = |\"f16", "`controller.scalar` is \"f16\"", "f32, f64"]),
         (
             "\"implicit-euler\"",

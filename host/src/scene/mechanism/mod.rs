@@ -3,6 +3,8 @@
 mod body;
 mod drive;
 mod joint;
+#[cfg(test)]
+mod tests;
 
 use slipfit_core::{clearance::GapStatistics, menu::FrictionData};
 

@@ -1,0 +1,127 @@
+//! Mechanisms that are none: each mistake is told where it is.
+
+use crate::scene::{Override, SHIPPED, SceneFile};
+
+const SCENE: &str = r#"
+[mechanism]
+space = "plane"
+
+[contact]
+stiffness = 100
+exponent = 1.5
+damping = 1
+depth = 0.1
+
+[[body]]
+name = "crank"
+mass = 100
+inertia = 1e5
+centre = [25, 0]
+
+[[body]]
+name = "slider"
+mass = 100
+inertia = 1e5
+centre = [50, 0]
+
+[[joint]]
+name = "bearing"
+kind = "revolute"
+between = ["frame", "crank"]
+at = [0, 0]
+
+[[joint]]
+name = "guide"
+kind = "prismatic"
+between = ["frame", "slider"]
+at = [50, 0]
+axis = [1, 0]
+
+[[joint]]
+name = "pin"
+kind = "revolute"
+between = ["crank", "slider"]
+at = [50, 0]
+clearance = [0.1, 0.01]
+radius = 5
+
+[run]
+duration = 10
+"#;
+
+fn parse(text: &str, set: &[&str]) -> Result<SceneFile, String> {
+    let overrides: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
+    SceneFile::parse("scene.toml", text, &overrides).map_err(|error| error.to_string())
+}
+
+/// The scene with `from` replaced is refused: with `message`, at the line and column of `at`.
+fn refused(from: &str, to: &str, message: &str, at: &str) {
+    assert!(SCENE.contains(from), "{from}");
+    let text = SCENE.replacen(from, to, 1);
+    let error = parse(&text, &[]).err().unwrap_or_else(|| panic!("{to} is accepted"));
+    assert!(error.contains(message), "{error}");
+    let start = text.find(at).unwrap_or_else(|| panic!("{at}"));
+    let line = text[..start].matches('\n').count() + 1;
+    let column = start - text[..start].rfind('\n').unwrap();
+    assert!(error.contains(&format!("scene.toml:{line}:{column}")), "{line}:{column} {error}");
+}
+
+#[test]
+fn is_one() {
+    let mechanism = parse(SCENE, &["joint.pin.clearance=[0.2, 0.01]"]).ok().unwrap().mechanism.unwrap();
+    assert_eq!(mechanism.gaps_at(&[1.0]).unwrap(), [0.00019]);
+    assert!(mechanism.gaps_at(&[21.0]).unwrap_err().to_string().contains("allowed is 0 to"));
+}
+
+#[test]
+fn mistakes_are_told_where_they_are() {
+    refused("kind = \"prismatic\"", "kind = \"hinge\"", "`joint.kind` is \"hinge\"", "\"hinge\"");
+    refused("[\"crank\", \"slider\"]", "[\"crank\", \"crank\"]", "joins \"crank\" to itself", "[\"crank\", \"crank\"]");
+    refused("[\"crank\", \"slider\"]", "[\"crank\", \"rod\"]", "there is no body `rod`", "\"rod\"");
+    refused("inertia = 1e5\n", "", "`body.inertia` is missing", "[[body]]");
+    refused("axis = [1, 0]", "axis = [0, 0]", "`joint.axis` is [0, 0]", "[0, 0]\n\n[[joint]]\nname = \"pin\"");
+    refused("at = [0, 0]", "at = [90000, 0]", "far from the bodies", "[90000, 0]");
+    refused(
+        "clearance = [0.1, 0.01]\nradius = 5\n",
+        "",
+        "closes a loop of joints without play",
+        "[[joint]]\nname = \"pin\"",
+    );
+    refused("radius = 5\n", "", "`joint.radius` is missing", "[[joint]]\nname = \"pin\"");
+    refused(
+        "name = \"guide\"",
+        "name = \"bearing\"",
+        "`joint.name` is \"bearing\" again",
+        "\"bearing\"\nkind = \"prismatic\"",
+    );
+    refused("space = \"plane\"", "space = \"line\"", "`mechanism.space` is \"line\"", "\"line\"");
+    refused("radius = 5", "radius = 5\nspring = 3", "unknown key `joint.spring`", "spring = 3");
+    refused(
+        "[contact]\nstiffness = 100\nexponent = 1.5\ndamping = 1\ndepth = 0.1\n",
+        "",
+        "`contact` is missing",
+        "[[joint]]\nname = \"pin\"",
+    );
+}
+
+#[test]
+fn a_body_that_nothing_holds_floats() {
+    let more = "\n[[body]]\nname = \"lost\"\nmass = 1\ninertia = 1\ncentre = [0, 0]\n";
+    let error = parse(&format!("{SCENE}{more}"), &[]).err().unwrap();
+    assert!(error.contains("nothing joins the body \"lost\"") && error.contains("name = \"lost\""), "{error}");
+}
+
+#[test]
+fn three_mistakes_are_told_at_once() {
+    let set = ["body.crank.mass=-1", "joint.pin.radius=nan", "run.duration=5 kg"];
+    let error = parse(SCENE, &set).err().unwrap();
+    assert_eq!(error.matches("error:").count(), 3, "{error}");
+}
+
+#[test]
+fn every_shipped_mechanism_is_read() {
+    let mechanisms = SHIPPED
+        .iter()
+        .filter(|(name, text)| parse(text, &[]).ok().unwrap_or_else(|| panic!("{name}")).mechanism.is_some());
+    assert_eq!(mechanisms.count(), 7);
+}
