@@ -182,7 +182,7 @@ fn in_rust() -> String {
     let (mut looked_up, mut watched) = (Vec::new(), Vec::new());
     for [time, force, speed, _] in run(2.25, 1500) {
         let found = table.lookup([2.25, time]);
-        looked_up.extend([found.force, found.velocity, f32::from(u8::from(found.clamped))]);
+        looked_up.extend([found.force, found.velocity, f32::from(u8::from(found.clamped) + 2 * u8::from(found.mixed))]);
         let command = speed + force / kernel_source::scene_data(&SCENE).drive_gain;
         let report = monitor.step(&mut watch, &Sample { time, force, speed, command });
         verdicts[match report.verdict {

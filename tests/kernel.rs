@@ -5,6 +5,7 @@ use std::{fs, path::Path};
 use slipfit::{
     kernel_source::{rust_source, scene_data},
     scene::{CD_ROM_SLIDE, Override, Scene},
+    simulate::{Settings, simulate},
 };
 use slipfit_core::{
     integrator::ImplicitEuler,
@@ -12,7 +13,7 @@ use slipfit_core::{
     law::{Elastic, Friction},
     menu::SlideVisitor,
     pose::Pose,
-    slide::Slide,
+    slide::{CONTACTS, Slide},
 };
 
 #[rustfmt::skip]
@@ -66,4 +67,25 @@ fn its_kernel_is_the_menus() {
     }
     assert!(scene::predictor(f32::NAN).is_err() && scene::predictor(1e9).is_err());
     assert_ne!(scene::SCENE_HASH, 0);
+}
+
+/// What `slipfit simulate --scalar f32` shows is what firmware computes, whose gaps are computed in f32 too.
+#[test]
+fn the_host_simulates_its_bits_at_every_level() {
+    let host = described();
+    let settings = Settings::controller(&host, scene::STEP.into());
+    for n in [2.5f32, -1.5, 0.0] {
+        let kernel = scene::predictor(n).expect("the scene is in bounds");
+        let gaps = settings.gaps(&host, &[n.into(); CONTACTS]);
+        assert_eq!(gaps, scene::SCENE.at(n).expect("the scene is in bounds").body.gaps.map(f64::from), "{n}");
+        let run = simulate(&host, &gaps, &settings).expect("the slide moves").trajectory;
+        assert_eq!(run.t.len(), 201);
+        let mut state = kernel.at_rest(Pose::nominal());
+        for (velocity, force) in run.vz.iter().zip(&run.force) {
+            let vz = state.motion.velocity.z;
+            let predicted = [vz, kernel.mechanism().drive().force(kernel.time(state.steps), vz)];
+            assert_eq!(predicted.map(f64::from), [*velocity, *force], "n = {n}, step {}", state.steps);
+            kernel.step(&mut state);
+        }
+    }
 }

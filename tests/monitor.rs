@@ -15,7 +15,7 @@ use slipfit::{
 };
 use slipfit_core::{
     monitor::{BankError, Estimate, LevelBank, Limits, Monitor, MonitorError, Report, Sample, Verdict, Watch},
-    table::{AxisKind, Encoding, Table, TableError},
+    table::{AxisKind, Encoding, MotionVerdict, Table, TableError},
 };
 
 const SEEDS: u64 = 1000;
@@ -250,6 +250,7 @@ fn refuses_what_it_cannot_watch() {
         encoding: Encoding::F32,
         force: channel.clone(),
         velocity: channel,
+        verdicts: vec![MotionVerdict::Runs; 3],
     };
     let over_position = encode(&over_position).unwrap();
     let over_position = Table::open(&over_position).unwrap();

@@ -20,6 +20,7 @@ pub mod files;
 pub mod flash;
 pub mod force_table;
 pub mod interrupt;
+pub mod kernel_crate;
 pub mod kernel_source;
 mod laws;
 mod layout;

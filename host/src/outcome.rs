@@ -1,7 +1,7 @@
 //! What one simulated unit did.
 
 use serde::Serialize;
-use slipfit_core::drive::Drive;
+use slipfit_core::{drive::Drive, table::MotionVerdict};
 
 use crate::scene::RunSpec;
 
@@ -76,6 +76,17 @@ impl std::fmt::Display for Verdict {
             Self::Jammed => "jammed",
             Self::Undecided => "undecided",
         })
+    }
+}
+
+impl From<Verdict> for MotionVerdict {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Runs => Self::Runs,
+            Verdict::Crawls => Self::Crawls,
+            Verdict::Jammed => Self::Jammed,
+            Verdict::Undecided => Self::Undecided,
+        }
     }
 }
 

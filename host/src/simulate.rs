@@ -52,6 +52,17 @@ impl Settings {
         Self { run: scene.run, every, solver: Solver::Controller(scene.controller) }
     }
 
+    /// All sixteen gaps (m) of `scene` at the tolerance levels `n`, as whoever computes has them: firmware computes eq. 9 in
+    /// single precision, and so does its stand-in here.
+    pub fn gaps(&self, scene: &Scene, n: &[f64; CONTACTS]) -> [f64; CONTACTS] {
+        match self.solver {
+            Solver::Controller(ControllerSpec { scalar: ScalarKind::F32, .. }) => {
+                scene.gaps_in::<f32>(n).map(f64::from)
+            }
+            Solver::Controller(_) | Solver::Desk { .. } => scene.gaps_at(n),
+        }
+    }
+
     /// The same by `controller`.
     pub fn by(self, controller: ControllerSpec) -> Self {
         Self { solver: Solver::Controller(controller), ..self }

@@ -56,10 +56,11 @@ pub fn classes(gaps: &[f64; CONTACTS]) -> [Option<GapClass>; CONTACTS] {
 /// # Errors
 /// See [`SimulateError`].
 pub fn level(scene: &Scene, n: f64, settings: &Settings) -> Result<Level, SimulateError> {
-    let gaps = scene.gaps_at(&[n; CONTACTS]);
+    let n_each = [n; CONTACTS];
+    let gaps = settings.gaps(scene, &n_each);
     let run = confirmed(scene, &gaps, settings, simulate(scene, &gaps, settings)?)?;
     let Run { trajectory, outcome, solved, trust, .. } = run;
-    Ok(Level { n, trajectory, outcome, solved, trust, classes: classes(&gaps) })
+    Ok(Level { n, trajectory, outcome, solved, trust, classes: classes(&scene.gaps_at(&n_each)) })
 }
 
 /// What a sweep keeps of each run.

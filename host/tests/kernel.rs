@@ -50,3 +50,24 @@ fn what_c_cannot_do_is_refused_at_the_desk() {
         assert!(!folder.path().join("x.h").exists(), "{line}");
     }
 }
+
+#[test]
+fn a_crate_is_written_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let written = json(folder.path(), "kernel --crate firmware/slide --core ../slipfit/core");
+    assert_eq!(written["file"], "firmware/slide");
+    let text = |name: &str| std::fs::read_to_string(folder.path().join("firmware/slide").join(name)).unwrap();
+    assert!(text("Cargo.toml").contains("slipfit-core = { path = \"../slipfit/core\" }\n"));
+    let stamp = written["scene_hash"].as_str().unwrap();
+    assert!(text("src/lib.rs").contains(&format!("pub const SCENE_HASH: u64 = 0x{stamp};")));
+    for line in [
+        "kernel --crate Slide",
+        "kernel --crate slide -o scene.rs",
+        "kernel --core ../core",
+        "kernel --core ../core -o scene.rs",
+    ] {
+        let output = slipfit(folder.path(), line);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+    }
+    assert!(!folder.path().join("Slide").exists() && !folder.path().join("slide").exists());
+}

@@ -76,7 +76,7 @@ static void watch(void) {
         failed |= (uint32_t)slipfit_predictor_step(&predictor);
         failed |= (uint32_t)slipfit_predictor_read(&predictor, &at);
         failed |= (uint32_t)slipfit_table_look_up(&table, 2.25f, at.time, &found);
-        looked_up = add(add(add(looked_up, found.force), found.velocity), (float)found.clamped);
+        looked_up = add(add(add(looked_up, found.force), found.velocity), (float)(found.clamped + 2 * found.mixed));
         const slipfit_sample sample = {at.time, at.force, at.velocity, at.velocity + at.force / slipfit_this_scene.drive_gain};
         failed |= (uint32_t)slipfit_monitor_step(&monitor, &sample, &report);
         verdicts[report.verdict & 3u]++;

@@ -122,6 +122,9 @@ typedef struct slipfit_lookup {
   float velocity;
   // 1 if the point lay outside the grid or was not a number, 0 if not.
   uint32_t clamped;
+  // 1 if the point lies between motions whose verdicts differ, such as a unit that runs and one that jams, so that these are
+  // values of no unit; 0 if not.
+  uint32_t mixed;
 } slipfit_lookup;
 
 // Two slots of flash, of which each can be erased on its own.

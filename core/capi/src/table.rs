@@ -1,6 +1,6 @@
 //! The flash table over tolerance level and time or position, and the one over position and commanded speed.
 
-use slipfit_core::table::{AxisKind, Table};
+use slipfit_core::table::{AxisKind, Lookup, Table};
 
 use crate::{
     border::{Storage, bytes, make, object, output},
@@ -36,6 +36,9 @@ pub struct slipfit_lookup {
     pub velocity: f32,
     /// 1 if the point lay outside the grid or was not a number, 0 if not.
     pub clamped: u32,
+    /// 1 if the point lies between motions whose verdicts differ, such as a unit that runs and one that jams, so that these are
+    /// values of no unit; 0 if not.
+    pub mixed: u32,
 }
 
 pub(crate) struct Opened<const N: usize> {
@@ -58,8 +61,8 @@ unsafe impl Storage for slipfit_table3 {
 
 impl<const N: usize> Opened<N> {
     fn look_up(&self, at: [f32; N]) -> slipfit_lookup {
-        let found = self.table.lookup(at);
-        slipfit_lookup { force: found.force, velocity: found.velocity, clamped: found.clamped.into() }
+        let Lookup { force, velocity, clamped, mixed } = self.table.lookup(at);
+        slipfit_lookup { force, velocity, clamped: clamped.into(), mixed: mixed.into() }
     }
 }
 

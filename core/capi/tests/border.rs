@@ -8,7 +8,7 @@ use std::ptr;
 use common::zeroed;
 use proptest::prelude::*;
 use slipfit_capi::*;
-use slipfit_core::table::{AxisKind, Table, layout};
+use slipfit_core::table::{AxisKind, MotionVerdict, Table, layout, motions, verdict_bytes};
 
 /// What floating point has that a careless program trips over.
 const SPECIAL: [f32; 14] = [
@@ -110,9 +110,10 @@ fn what_cannot_be_stepped_is_refused() {
 fn table_over(axes: &[(AxisKind, u32, f32)]) -> Vec<u8> {
     let nodes: u32 = axes.iter().map(|(_, count, _)| count).product();
     let mut bytes = Vec::from(*b"SLFT");
-    bytes.extend([2, 0, axes.len() as u8, 1]);
+    bytes.extend([3, 0, axes.len() as u8, 1]);
     bytes.extend(7u64.to_le_bytes());
-    let length = layout::HEADER_SIZE + nodes as usize * 8 + layout::CHECKSUM_SIZE;
+    let motions = motions(axes.iter().map(|(_, count, _)| *count as usize)).unwrap();
+    let length = layout::HEADER_SIZE + (nodes as usize + 1) * 8 + motions.next_multiple_of(4) + layout::CHECKSUM_SIZE;
     bytes.extend((length as u32).to_le_bytes());
     for (kind, count, step) in axes {
         bytes.extend([*kind as u8, 0, 0, 0]);
@@ -122,6 +123,12 @@ fn table_over(axes: &[(AxisKind, u32, f32)]) -> Vec<u8> {
     bytes.resize(layout::CHANNELS_AT, 0);
     bytes.extend([1.0f32, 0.0, 0.0, 1.0, 0.0, 0.0].map(f32::to_le_bytes).concat());
     bytes.extend((0..2 * nodes).flat_map(|i| (i as f32).to_le_bytes()));
+    bytes.extend([0; 8]);
+    // The last motion jams, the others run.
+    let mut verdicts = vec![MotionVerdict::Runs; motions];
+    verdicts[motions - 1] = MotionVerdict::Jammed;
+    bytes.extend(verdict_bytes(&verdicts, axes.get(2).map_or(1, |(_, count, _)| *count as usize)));
+    bytes.resize(length - layout::CHECKSUM_SIZE, 0);
     sealed(bytes)
 }
 
@@ -155,7 +162,10 @@ fn uses_of_a_table(bytes: &'static [u8], numbers: &[f32]) -> Result<slipfit_stat
         let expected = if opened == SLIPFIT_OK { SLIPFIT_OK } else { SLIPFIT_NOT_MADE };
         for (i, n) in numbers.iter().enumerate() {
             prop_assert_eq!(slipfit_table_look_up(&table, *n, at(i + 1), &mut found), expected);
-            prop_assert!(found.force.is_finite() && found.velocity.is_finite() && found.clamped <= 1, "{found:?}");
+            prop_assert!(
+                found.force.is_finite() && found.velocity.is_finite() && found.clamped.max(found.mixed) <= 1,
+                "{found:?}"
+            );
             let _ = slipfit_scrubber_init(&mut scrubber, &table);
             let _ = slipfit_scrubber_check(&mut scrubber, n.to_bits(), &mut rounds);
             let limits = slipfit_limits {
@@ -227,7 +237,9 @@ fn a_table_over_position_is_no_table_over_time() {
         }
         assert_eq!(open(SLIPFIT_AXIS_POSITION), SLIPFIT_OK);
         assert_eq!(slipfit_table_look_up(&table, 1.0, 0.1, &mut found), SLIPFIT_OK);
-        assert_eq!(found, slipfit_lookup { force: 10.0, velocity: 11.0, clamped: 0 });
+        assert_eq!(found, slipfit_lookup { force: 10.0, velocity: 11.0, clamped: 0, mixed: 0 });
+        assert_eq!(slipfit_table_look_up(&table, 1.5, 0.1, &mut found), SLIPFIT_OK);
+        assert_eq!(found, slipfit_lookup { force: 14.0, velocity: 15.0, clamped: 0, mixed: 1 });
         // What works on time does not take it.
         assert_eq!(slipfit_monitor_init(&mut monitor, &table, 1.0, &limits), SLIPFIT_TABLE_KIND);
         assert_eq!(slipfit_bank_init(&mut bank, &table), SLIPFIT_TABLE_KIND);
@@ -252,7 +264,9 @@ fn a_table_over_three_axes() {
         assert_eq!(slipfit_table3_open(&mut table, bytes.as_ptr(), length - 1, 7), SLIPFIT_TABLE_TRUNCATED);
         assert_eq!(slipfit_table3_open(&mut table, bytes.as_ptr(), length, 7), SLIPFIT_OK);
         assert_eq!(slipfit_table3_look_up(&table, 1.0, 0.1, 0.05, &mut found), SLIPFIT_OK);
-        assert_eq!(found, slipfit_lookup { force: 22.0, velocity: 23.0, clamped: 0 });
+        assert_eq!(found, slipfit_lookup { force: 22.0, velocity: 23.0, clamped: 0, mixed: 0 });
+        assert_eq!(slipfit_table3_look_up(&table, 2.0, 0.1, 0.025, &mut found), SLIPFIT_OK);
+        assert_eq!(found.mixed, 1);
         for special in SPECIAL {
             assert_eq!(slipfit_table3_look_up(&table, special, special, special, &mut found), SLIPFIT_OK);
             assert!(found.force.is_finite() && found.velocity.is_finite());

@@ -59,15 +59,34 @@ pub struct Axis {
     /// The first node, −0 for 0: what is subtracted from −0 must not leave −0, which would count as outside.
     origin: f32,
     per_step: f32,
-    last_cell: usize,
+    /// Steps to the last node, as the bits of an f32.
+    top: i32,
 }
 
-/// Where a coordinate lies: `fraction` of the way from node `cell` to the next one, 0 to 1.
+/// Where a coordinate lies: `fraction` of the way from `node` to the next one, 0 to below 1, and 0 at the last node.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place {
-    pub(super) cell: usize,
+    pub(super) node: usize,
     pub(super) fraction: f32,
+    /// Whether another node follows.
+    pub(super) has_next: bool,
     /// Not 0 if the coordinate lies outside the axis.
     pub(super) outside: u32,
+}
+
+impl Place {
+    /// The nodes that count: the one below and the one above, the same one twice at a node.
+    #[inline(always)]
+    pub(super) fn ends(&self) -> [usize; 2] {
+        [self.node, self.node + usize::from(self.fraction.to_bits() != 0)]
+    }
+
+    /// Has its highest bit set if the coordinate lies between two nodes.
+    #[inline(always)]
+    pub(super) fn between(&self) -> u32 {
+        // Bits of a positive number are a positive integer.
+        0u32.wrapping_sub(self.fraction.to_bits())
+    }
 }
 
 impl Axis {
@@ -93,7 +112,7 @@ impl Axis {
             return Err(TableError::Header("step between nodes"));
         }
         let origin = if first == 0.0 { -0.0 } else { first };
-        Ok(Self { kind, count, first, last, step, origin, per_step, last_cell: count - 2 })
+        Ok(Self { kind, count, first, last, step, origin, per_step, top: top.to_bits().cast_signed() })
     }
 
     /// What varies.
@@ -126,20 +145,19 @@ impl Axis {
         self.first + self.step * i as f32
     }
 
-    /// The place of `x`. Beyond an end by less than f32 resolves in steps counts as inside; NaN is outside, in the first
-    /// cell.
+    /// The place of `x`. Beyond an end by less than f32 resolves in steps counts as inside; NaN is outside, at either end.
     ///
     /// As integers the bits of numbers from 0 on are in the numbers' order, and those of negative ones are negative.
     #[inline(always)]
     pub(super) fn locate(&self, x: f32) -> Place {
-        const ONE: i32 = 1.0f32.to_bits().cast_signed();
-        let steps = (x - self.origin) * self.per_step;
-        let whole = steps as u32 as usize;
-        let cell = if whole < self.last_cell { whole } else { self.last_cell };
-        let fraction = (steps - cell as u32 as f32).to_bits().cast_signed();
-        let raised = if fraction > 0 { fraction } else { 0 };
-        let inside = if raised < ONE { raised } else { ONE };
-        Place { cell, fraction: f32::from_bits(inside.cast_unsigned()), outside: (inside ^ fraction).cast_unsigned() }
+        let bits = ((x - self.origin) * self.per_step).to_bits().cast_signed();
+        let raised = if bits > 0 { bits } else { 0 };
+        let has_next = raised < self.top;
+        let inside = if has_next { raised } else { self.top };
+        let steps = f32::from_bits(inside.cast_unsigned());
+        let node = steps as u32;
+        let outside = (inside ^ bits).cast_unsigned();
+        Place { node: node as usize, fraction: steps - node as f32, has_next, outside }
     }
 }
 
@@ -151,26 +169,27 @@ mod tests {
     fn places_coordinates() {
         let axis = Axis::new(AxisKind::Level, -1.0, 0.5, 4).unwrap();
         let inf = f32::INFINITY;
-        for (x, cell, fraction, clamped) in [
+        for (x, node, fraction, clamped) in [
             (-1.0, 0, 0.0, false),
             (-0.875, 0, 0.25, false),
             (-0.5, 1, 0.0, false),
             (0.25, 2, 0.5, false),
-            (0.5, 2, 1.0, false),
-            (0.500_001, 2, 1.0, true),
+            (0.5, 3, 0.0, false),
+            (0.500_001, 3, 0.0, true),
             (-1.000_001, 0, 0.0, true),
-            (f32::MAX, 2, 1.0, true),
+            (f32::MAX, 3, 0.0, true),
             (f32::MIN, 0, 0.0, true),
-            (inf, 2, 1.0, true),
+            (inf, 3, 0.0, true),
             (-inf, 0, 0.0, true),
             (-0.0, 2, 0.0, false),
         ] {
             let place = axis.locate(x);
-            assert_eq!((place.cell, place.fraction, place.outside != 0), (cell, fraction, clamped), "{x}");
+            assert_eq!((place.node, place.fraction, place.outside != 0), (node, fraction, clamped), "{x}");
+            assert_eq!(place.has_next, node < 3, "{x}");
         }
-        // Which end of the cell follows from NaN's sign, which arithmetic may change.
+        // Which end follows from NaN's sign, which arithmetic may change.
         let place = axis.locate(f32::NAN);
-        assert!(place.cell == 0 && [0.0, 1.0].contains(&place.fraction) && place.outside != 0);
+        assert!([0, 3].contains(&place.node) && place.fraction == 0.0 && place.outside != 0);
     }
 
     #[test]

@@ -19,7 +19,8 @@ pub enum TableError {
     Checksum,
     /// The named field of the header is out of bounds or contradicts another one.
     Header(&'static str),
-    /// The named channel's data holds a value that is not finite or exceeds the format's limit.
+    /// The data of the named channel holds a value that is not finite or exceeds the format's limit, or the verdicts one that
+    /// there is not.
     Value(&'static str),
     /// A table over another number of axes.
     Axes {

@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use super::{AxisKind, Encoding, layout};
+use super::{AxisKind, Encoding, layout, motions};
 
 /// The scene that they are made for.
 pub(crate) const SCENE: u64 = 7;
@@ -24,7 +24,9 @@ pub(crate) fn table_of_integers(axes: &[(AxisKind, u32, f32)], force: impl Fn(u3
 
 fn sealed(axes: &[(AxisKind, u32, f32)], encoding: Encoding, scale: f32, values: impl Iterator<Item = u8>) -> Vec<u8> {
     let values: Vec<u8> = values.collect();
-    let length = layout::HEADER_SIZE + values.len() + layout::CHECKSUM_SIZE;
+    let verdicts = motions(axes.iter().map(|(_, count, _)| *count as usize)).unwrap().next_multiple_of(4);
+    let padding = layout::CHANNELS * encoding.size() + verdicts;
+    let length = layout::HEADER_SIZE + values.len() + padding + layout::CHECKSUM_SIZE;
     let mut bytes = Vec::from(layout::MAGIC);
     bytes.extend(layout::VERSION.to_le_bytes());
     bytes.extend([axes.len() as u8, encoding as u8]);
@@ -38,6 +40,7 @@ fn sealed(axes: &[(AxisKind, u32, f32)], encoding: Encoding, scale: f32, values:
     bytes.resize(layout::CHANNELS_AT, 0);
     bytes.extend([scale, 0.0, 0.0, scale, 0.0, 0.0].map(f32::to_le_bytes).concat());
     bytes.extend(values);
+    bytes.resize(bytes.len() + padding, 0);
     bytes.extend(layout::checksum(&bytes).to_le_bytes());
     bytes
 }

@@ -3,7 +3,7 @@
 /// What a table starts with.
 pub const MAGIC: [u8; 4] = *b"SLFT";
 /// The format version this crate reads.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 
 /// Offset of the magic.
 pub const MAGIC_AT: usize = 0;

@@ -3,20 +3,21 @@
 //! [`Table::open`] checks a table once, completely; what it returns cannot fail any more. Nothing is copied: values are
 //! decoded from the flash at each [`Table::lookup`], byte by byte, so that the region needs no alignment.
 //!
-//! # Layout, version 2
+//! # Layout, version 3
 //! Little-endian. Every field lies at a multiple of its own size, or of 4. Offsets in bytes, here and in [`layout`]:
 //!
 //! | offset | type | field |
 //! |---|---|---|
 //! | 0 | `[u8; 4]` | magic, "SLFT" |
-//! | 4 | u16 | format version, 2 |
+//! | 4 | u16 | format version, 3 |
 //! | 6 | u8 | number of axes, 2 or 3 |
 //! | 7 | u8 | how values are stored: 1 f32, 2 i16 |
 //! | 8 | u64 | hash of the scene and its laws |
 //! | 16 | u32 | length in bytes, from the magic to the end of the checksum |
 //! | 20, 36, 52 | axis | three records of 16 bytes; those of absent axes are all zero |
 //! | 68, 80 | channel | two records of 12 bytes: force (N), then velocity (m/s) |
-//! | 92 | data | a node after the other, the last axis fastest: force and velocity of each |
+//! | 92 | data | a node after the other, the last axis fastest: force and velocity of each; then one more of any values |
+//! | behind it | u8 each | the verdict on every motion; then zero bytes up to a multiple of 4 |
 //! | length − 4 | u32 | checksum, CRC-32/ISO-HDLC, of all bytes before it |
 //!
 //! | in an axis | type | field |
@@ -32,6 +33,13 @@
 //! | 0 | f32 | what a stored value is multiplied with: positive; 1 for f32 |
 //! | 4 | f32 | worst interpolation error (N or m/s), measured when the table was made |
 //! | 8 | f32 | root mean square of that error (N or m/s) in use: after the drive has started, where no slide stops short |
+//!
+//! A motion proceeds along the second axis, so that there is one for every node of the first and, where there are three, of
+//! the third, which is the fastest. Its byte is twice a [`MotionVerdict`], plus 1 if the motion at the next node of the first
+//! axis has another one. Where the verdicts of neighbours differ, values between them are those of no unit: one runs and the
+//! other jams, and no unit does half of each. [`Lookup::mixed`] says so.
+//!
+//! The node behind the last one is read with the last one, and weighs nothing.
 //!
 //! No value exceeds 10³⁰ in magnitude. The table may lie in a larger region; what follows it is not looked at, but
 //! for the record at the end of a slot, see [`Slots`].
@@ -52,9 +60,11 @@ mod slots;
 mod tests;
 #[cfg(feature = "embedded-storage")]
 mod update;
+mod verdict;
 
 use layout::{CHANNELS, CHECKSUM_SIZE, HEADER_SIZE};
 
+use axis::Place;
 pub use axis::{Axis, AxisKind};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
@@ -63,6 +73,7 @@ pub use scrubber::Scrubber;
 pub use slots::{RECORD_SIZE, Record, Slots, WORD_MOST, Word};
 #[cfg(feature = "embedded-storage")]
 pub use update::{Update, UpdateError, is_readable};
+pub use verdict::{MotionVerdict, motions, verdict_bytes};
 
 /// A checked table over `N` axes, 2 or 3, in the region it was opened from.
 ///
@@ -76,6 +87,8 @@ pub struct Table<'a, const N: usize = 2, V = AnyNodes<'a>> {
     axes: [Axis; N],
     records: [ChannelRecord; CHANNELS],
     nodes: V,
+    /// A [`MotionVerdict`] each.
+    verdicts: &'a [u8],
 }
 
 /// What a table says about one point.
@@ -88,6 +101,9 @@ pub struct Lookup {
     pub velocity: f32,
     /// The point lay outside the grid, or was NaN: these are the values at the grid's nearest point.
     pub clamped: bool,
+    /// The point lies between motions whose verdicts differ, such as a unit that runs and one that jams: these are values
+    /// of no unit.
+    pub mixed: bool,
 }
 
 impl<'a, const N: usize> Table<'a, N> {
@@ -110,8 +126,12 @@ impl<'a, const N: usize> Table<'a, N> {
 
         let bytes = region.get(..header.length).ok_or(TableError::Truncated)?;
         let data = bytes.get(HEADER_SIZE..header.length.saturating_sub(CHECKSUM_SIZE)).ok_or(TableError::Truncated)?;
-        let nodes = AnyNodes::new(header.encoding, &header.channels, count, data)?;
-        Ok(Self { bytes, scene_hash: header.scene_hash, axes, records: header.channels, nodes })
+        let size = count.checked_add(1).and_then(|count| count.checked_mul(CHANNELS * header.encoding.size()));
+        let (nodes, rest) = size.and_then(|size| data.split_at_checked(size)).ok_or(TableError::Header("length"))?;
+        let nodes = AnyNodes::new(header.encoding, &header.channels, nodes)?;
+        let speeds = axes.get(2).map_or(1, Axis::count);
+        let verdicts = verdict::checked(rest, axes[0].count().saturating_mul(speeds), speeds)?;
+        Ok(Self { bytes, scene_hash: header.scene_hash, axes, records: header.channels, nodes, verdicts })
     }
 
     /// This table, if its values are f32.
@@ -131,8 +151,8 @@ impl<'a, const N: usize> Table<'a, N> {
     }
 
     fn with<V>(self, nodes: V) -> Table<'a, N, V> {
-        let Self { bytes, scene_hash, axes, records, .. } = self;
-        Table { bytes, scene_hash, axes, records, nodes }
+        let Self { bytes, scene_hash, axes, records, verdicts, .. } = self;
+        Table { bytes, scene_hash, axes, records, nodes, verdicts }
     }
 
     /// How values are stored.
@@ -169,23 +189,29 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
 
     /// Force and velocity at the point `at`, one coordinate an axis, in the axes' order and units.
     ///
-    /// Multilinear between the nodes. Outside the grid the nearest point of the grid counts, for NaN one of the lowest
-    /// cell. Never fails and is never NaN. Exact at a node, but for the last of an axis, whose distance from the first
-    /// one, in steps, comes out whole in f32; elsewhere rounding stays within (6·r + 16)·2⁻²⁴ of the channel's greatest
+    /// Multilinear between the nodes. Outside the grid the nearest point of the grid counts, for NaN either end of the
+    /// axis. Never fails and is never NaN. Exact at a node whose distance from the first one, in steps, comes out whole
+    /// in f32; elsewhere rounding stays within (6·r + 16)·2⁻²⁴ of the channel's greatest
     /// magnitude, where r adds up, over all axes, the number of nodes and how many steps the end farther from 0 is away
     /// from it.
     #[inline]
     pub fn lookup(&self, at: [f32; N]) -> Lookup {
-        let (mut first, mut fractions, mut outside) = (0, [0.0; N], 0);
-        for ((axis, x), fraction) in self.axes.iter().zip(at).zip(&mut fractions) {
-            let place = axis.locate(x);
-            first = first * axis.count() + place.cell;
-            *fraction = place.fraction;
+        let (mut first, mut places, mut outside) = (0, [Place::default(); N], 0);
+        for ((axis, x), place) in self.axes.iter().zip(at).zip(&mut places) {
+            *place = axis.locate(x);
+            first = first * axis.count() + place.node;
             outside |= place.outside;
         }
-        let counts = self.axes.each_ref().map(|axis| axis.count());
-        let Some([force, velocity]) = self.nodes.within(first, &counts, &fractions) else { return Lookup::default() };
-        Lookup { force, velocity, clamped: outside != 0 }
+        let (mut strides, mut stride) = ([0; N], 1);
+        for ((axis, place), next) in self.axes.iter().zip(&places).zip(&mut strides).rev() {
+            *next = if place.has_next { stride } else { 0 };
+            stride *= axis.count();
+        }
+        let fractions = places.map(|place| place.fraction);
+        let mixed = verdict::differ(self.verdicts, &self.axes, &places);
+        let flags = Lookup { clamped: outside != 0, mixed, ..Lookup::default() };
+        let Some([force, velocity]) = self.nodes.within(first, &strides, &fractions) else { return flags };
+        Lookup { force, velocity, ..flags }
     }
 
     /// The axes, slowest first.
@@ -196,6 +222,16 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
     /// The records of force and velocity.
     pub fn channels(&self) -> &[ChannelRecord; CHANNELS] {
         &self.records
+    }
+
+    /// The verdict on the motion of the nodes `at`, one an axis: which node the second one names is all the same. `None`
+    /// beyond the grid.
+    pub fn verdict(&self, at: [usize; N]) -> Option<MotionVerdict> {
+        let axes = self.axes.iter().zip(at).enumerate().filter(|(axis, _)| *axis != 1);
+        let place = axes.map(|(_, pair)| pair).try_fold(0usize, |place, (axis, i)| {
+            (i < axis.count()).then(|| place.wrapping_mul(axis.count()).wrapping_add(i))
+        });
+        MotionVerdict::of(verdict::code(*self.verdicts.get(place?)?))
     }
 
     /// Hash of the scene and laws the table was made for.
@@ -215,7 +251,7 @@ impl<V: Nodes> Table<'_, 2, V> {
     pub fn forces(&self, x: f32) -> Option<impl Iterator<Item = f32>> {
         let [nodes, axis] = &self.axes;
         let place = axis.locate(x);
-        let firsts = (0..nodes.count()).map(move |i| place.cell + i * axis.count());
+        let firsts = (0..nodes.count()).map(move |i| place.node + i * axis.count());
         let force = move |first| {
             let [force, _] = self.nodes.between(first, place.fraction);
             force

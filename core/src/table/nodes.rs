@@ -70,9 +70,11 @@ pub type Values = [f32; CHANNELS];
 
 /// Every node of a table where it lies, however it is stored.
 pub trait Nodes: Copy {
-    /// Force and velocity (N, m/s) at the `fractions` of the cell whose lowest node is `first`; `counts` says how many
-    /// nodes each axis has, the slowest first. `None` outside the grid, where an open table never looks.
-    fn within<const N: usize>(&self, first: usize, counts: &[usize; N], fractions: &[f32; N]) -> Option<Values>;
+    /// Force and velocity (N, m/s) at the `fractions` of the cell whose lowest node is `first`; `strides` says how far the
+    /// next node is along each axis, the slowest first, or 0 where there is none. Along the last axis it is the node that
+    /// follows, whatever it is: where there is none on the axis its fraction is 0. `None` outside the grid, where an open
+    /// table never looks.
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> Option<Values>;
 
     /// Force and velocity (N, m/s) `fraction` of the way from the node `first` to the one that follows it.
     fn between(&self, first: usize, fraction: f32) -> Values;
@@ -100,19 +102,15 @@ pub enum AnyNodes<'a> {
 }
 
 impl<'a> AnyNodes<'a> {
-    /// The `count` nodes that `data` consists of.
+    /// The nodes that `data` consists of, and one that is read but does not count.
     ///
     /// # Errors
-    /// If `data` has another length, or a value is out of bounds.
+    /// If a value is out of bounds.
     pub(super) fn new(
         encoding: Encoding,
         records: &[ChannelRecord; CHANNELS],
-        count: usize,
         data: &'a [u8],
     ) -> Result<Self, TableError> {
-        if count.checked_mul(CHANNELS * encoding.size()) != Some(data.len()) {
-            return Err(TableError::Header("length"));
-        }
         // The scale bounds integers.
         Ok(match encoding {
             Encoding::F32 => {
@@ -135,10 +133,10 @@ impl<'a> AnyNodes<'a> {
 
 impl Nodes for AnyNodes<'_> {
     #[inline(always)]
-    fn within<const N: usize>(&self, first: usize, counts: &[usize; N], fractions: &[f32; N]) -> Option<Values> {
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> Option<Values> {
         match self {
-            Self::F32(nodes) => nodes.within(first, counts, fractions),
-            Self::I16(nodes) => nodes.within(first, counts, fractions),
+            Self::F32(nodes) => nodes.within(first, strides, fractions),
+            Self::I16(nodes) => nodes.within(first, strides, fractions),
         }
     }
 
@@ -154,8 +152,8 @@ impl Nodes for AnyNodes<'_> {
 
 impl Nodes for F32Nodes<'_> {
     #[inline(always)]
-    fn within<const N: usize>(&self, first: usize, counts: &[usize; N], fractions: &[f32; N]) -> Option<Values> {
-        cell(self.0, first, counts, fractions, Self::blend)
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> Option<Values> {
+        cell(self.0, first, strides, fractions, Self::blend)
     }
 
     #[inline(always)]
@@ -173,8 +171,8 @@ impl F32Nodes<'_> {
 
 impl Nodes for I16Nodes<'_> {
     #[inline(always)]
-    fn within<const N: usize>(&self, first: usize, counts: &[usize; N], fractions: &[f32; N]) -> Option<Values> {
-        cell(self.nodes, first, counts, fractions, Self::blend).map(|found| self.scaled(found))
+    fn within<const N: usize>(&self, first: usize, strides: &[usize; N], fractions: &[f32; N]) -> Option<Values> {
+        cell(self.nodes, first, strides, fractions, Self::blend).map(|found| self.scaled(found))
     }
 
     #[inline(always)]
@@ -207,7 +205,7 @@ fn pair<T>(nodes: &[T], first: usize) -> Option<&[T; 2]> {
 fn cell<T: Copy>(
     nodes: &[T],
     first: usize,
-    counts: &[usize],
+    strides: &[usize],
     fractions: &[f32],
     blend: impl Fn(&[T; 2], f32) -> Values,
 ) -> Option<Values> {
@@ -216,11 +214,11 @@ fn cell<T: Copy>(
         let upper = rest.get(row..)?.first_chunk()?;
         Some(blended(blend(rest.first_chunk()?, along), blend(upper, along), across))
     };
-    match (counts, fractions) {
-        ([_, row], [across, along]) => face(first, *row, *across, *along),
-        ([_, rows, row], [up, across, along]) => {
+    match (strides, fractions) {
+        ([row, _], [across, along]) => face(first, *row, *across, *along),
+        ([layer, row, _], [up, across, along]) => {
             let lower = face(first, *row, *across, *along);
-            let upper = face(first.wrapping_add(rows.wrapping_mul(*row)), *row, *across, *along);
+            let upper = face(first.wrapping_add(*layer), *row, *across, *along);
             lower.zip(upper).map(|(lower, upper)| blended(lower, upper, *up))
         }
         _ => None,

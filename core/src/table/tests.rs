@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use super::{AxisKind, Encoding, Table, TableError, example, layout};
+use super::{AxisKind, Encoding, Lookup, MotionVerdict, Table, TableError, example, layout, verdict_bytes};
 
 const PLANE: [(AxisKind, u32, f32); 2] = [(AxisKind::Level, 3, 1.0), (AxisKind::Time, 4, 0.5)];
 const SPACE: [(AxisKind, u32, f32); 3] =
@@ -50,5 +50,63 @@ fn refuses_every_flipped_bit_and_every_short_length() {
         bytes[bit / 8] ^= 1 << (bit % 8);
         assert!(Table::<2>::open(&bytes).is_err(), "{bit}");
         bytes[bit / 8] ^= 1 << (bit % 8);
+    }
+}
+
+/// The table with the bytes `stored` for its motions, and the checksum put right.
+fn judged(mut bytes: Vec<u8>, stored: &[u8]) -> Vec<u8> {
+    let body = bytes.len() - layout::CHECKSUM_SIZE;
+    bytes.truncate(body);
+    bytes[body - stored.len().next_multiple_of(4)..][..stored.len()].copy_from_slice(stored);
+    bytes.extend(layout::checksum(&bytes).to_le_bytes());
+    bytes
+}
+
+#[test]
+fn says_where_neighbours_did_different_things() {
+    let [undecided, runs, _, jammed] = MotionVerdict::ALL;
+    let plain = example::table(&PLANE, |node| node as f32);
+    assert!(Table::<2>::open(&plain).unwrap().verdict([2, 3]) == Some(undecided));
+    // Two that run, one that jams.
+    let bytes = judged(plain, &verdict_bytes(&[runs, runs, jammed], 1).collect::<Vec<_>>());
+    let table = Table::<2>::open(&bytes).unwrap();
+    assert_eq!([0, 1, 2, 3].map(|i| table.verdict([i, 0])), [Some(runs), Some(runs), Some(jammed), None]);
+    for (n, mixed) in [(0.0, false), (0.5, false), (1.0, false), (1.000_001, true), (1.5, true), (1.999_999, true)] {
+        assert_eq!(table.lookup([n, 0.3]).mixed, mixed, "{n}");
+        assert_eq!(table.lookup([n, 99.0]), Lookup { clamped: true, ..table.lookup([n, 1.5]) });
+    }
+    // At an end and beyond it there is one unit.
+    for n in [2.0, 2.1, -0.1, f32::MAX, f32::INFINITY, -f32::INFINITY, f32::NAN, -f32::NAN] {
+        assert!(!table.lookup([n, 0.3]).mixed, "{n}");
+    }
+    // One level, one speed, jams: between it and its neighbours along either axis, wherever along the motion.
+    let verdicts: Vec<_> = verdict_bytes(&[runs, runs, runs, jammed, runs, runs], 2).collect();
+    let bytes = judged(example::table(&SPACE, |node| node as f32), &verdicts);
+    let table = Table::<3>::open(&bytes).unwrap();
+    assert_eq!(table.verdict([1, 3, 1]), Some(jammed));
+    for (n, speed, mixed) in [
+        (1.0, 0.25, false),
+        (1.0, 0.24, true),
+        (1.0, 0.0, false),
+        (0.5, 0.0, false),
+        (0.5, 0.25, true),
+        (1.5, 0.25, true),
+        (1.5, 0.1, true),
+        (0.0, 0.1, false),
+        (2.0, 0.1, false),
+    ] {
+        assert_eq!(table.lookup([n, 0.7, speed]).mixed, mixed, "{n} {speed}");
+    }
+}
+
+#[test]
+fn refuses_verdicts_that_there_are_not() {
+    let table = || example::table(&PLANE, |node| node as f32);
+    assert!(verdict_bytes(&[MotionVerdict::Runs, MotionVerdict::Jammed], 1).eq([3, 6]));
+    assert!(Table::<2>::open(&judged(table(), &[3, 6, 6])).is_ok());
+    // None such, one that does not differ, one that does, one that has no next one, and what follows them.
+    for stored in [[8, 8, 8, 0], [3, 2, 2, 0], [2, 6, 6, 0], [2, 2, 3, 0], [2, 2, 2, 2]] {
+        let bytes = judged(table(), &stored);
+        assert_eq!(Table::<2>::open(&bytes).unwrap_err(), TableError::Value("verdicts"), "{stored:?}");
     }
 }

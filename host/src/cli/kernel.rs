@@ -1,6 +1,6 @@
 //! `slipfit kernel`: the scene as source text for firmware.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
@@ -9,8 +9,9 @@ use super::{Failure, JSON_VERSION, SceneArguments, print, print_json, simulate::
 use crate::{
     files,
     force_table::scene_hash,
+    kernel_crate::{crate_files, crate_name},
     kernel_source::{EXTENSIONS, c_header, rust_source},
-    scene::ControllerSpec,
+    scene::{ControllerSpec, Scene},
     scheme::{IntegratorKind, ScalarKind},
 };
 
@@ -22,6 +23,13 @@ pub(super) struct Arguments {
     /// File to write; the extension says for whom: .rs for slipfit-core, .h for the C library
     #[arg(short, long, value_name = "FILE", default_value = "scene.rs")]
     output: PathBuf,
+    /// Writes a crate named like this folder instead: its step is compiled there alone, so that one line of the profile,
+    /// which it names, keeps the step fast in an image that is built for size
+    #[arg(long = "crate", value_name = "DIR", conflicts_with = "output")]
+    folder: Option<PathBuf>,
+    /// Where slipfit-core lies, for the crate's manifest; if not given, it says the version
+    #[arg(long, value_name = "DIR", requires = "folder", conflicts_with = "output")]
+    core: Option<PathBuf>,
     #[command(flatten)]
     controller: ControllerArguments,
 }
@@ -39,6 +47,9 @@ impl Arguments {
         let ControllerSpec { integrator, scalar, .. } = scene.controller;
         if scalar != ScalarKind::F32 {
             return Err(Failure::Input("controller.scalar is f64, kernels for firmware compute in f32".into()));
+        }
+        if let Some(folder) = &self.folder {
+            return self.write_crate(&scene, folder);
         }
         let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let text = match extension.as_str() {
@@ -59,7 +70,24 @@ impl Arguments {
         };
         self.scene.check_outputs(&[("--output", &self.output)])?;
         files::write(&self.output, text.as_bytes())?;
-        let (file, scene_hash) = (self.output.display().to_string(), format!("{:016x}", scene_hash(&scene)));
+        self.report(&scene, &self.output)
+    }
+
+    fn write_crate(&self, scene: &Scene, folder: &Path) -> Result<(), Failure> {
+        let name = crate_name(folder).map_err(|error| Failure::Input(format!("--crate: {error}")))?;
+        let files = crate_files(scene, &name, self.core.as_deref());
+        let files = files.map(|(path, text)| (folder.join(path), text));
+        let sources = folder.join("src");
+        files::prepare_folder(&sources)?;
+        self.scene.check_outputs(&files.each_ref().map(|(path, _)| ("--crate", path.as_path())))?;
+        for (path, text) in &files {
+            files::write(path, text.as_bytes())?;
+        }
+        self.report(scene, folder)
+    }
+
+    fn report(&self, scene: &Scene, written: &Path) -> Result<(), Failure> {
+        let (file, scene_hash) = (written.display().to_string(), format!("{:016x}", scene_hash(scene)));
         if self.scene.json {
             print_json(&Report { json_version: JSON_VERSION, file, scene_hash })
         } else {

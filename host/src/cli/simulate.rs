@@ -165,12 +165,12 @@ impl Arguments {
         scene.check_gaps(&n).map_err(|error| Failure::Input(format!("--n: {error}")))?;
         let every = parse_every(&self.every)?;
         self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
-        let gaps = scene.gaps_at(&n);
         let by_controller = self.audit || self.controller.given();
         let settings = if by_controller { Settings::controller(&scene, every) } else { Settings::desk(&scene, every) };
+        let gaps = settings.gaps(&scene, &n);
         let run = if self.audit { audited } else { simulate };
         let run = confirmed(&scene, &gaps, &settings, run(&scene, &gaps, &settings)?)?;
-        let controller = if by_controller { None } else { Some(controllers(&scene, &gaps)) };
+        let controller = if by_controller { None } else { Some(controllers(&scene, &n)) };
         let controller = controller.transpose()?;
         if let Some(path) = &self.csv {
             files::write(path, &export::trajectory_csv(&run.trajectory)?)?;
@@ -195,7 +195,7 @@ impl Arguments {
                 solver: run.solved,
                 integration_ms: run.integration.as_secs_f64() * 1e3,
                 outcome: run.outcome,
-                gaps: gap_reports(&scene, &gaps),
+                gaps: gap_reports(&scene, &scene.gaps_at(&n)),
                 trust: run.trust,
                 controller,
                 audit_j: run.audit,
@@ -204,7 +204,7 @@ impl Arguments {
             })
         } else {
             let controller = controller.as_ref().map(Option::as_ref);
-            print(&self.describe(&scene, &run, controller, &gap_reports(&scene, &gaps)))?;
+            print(&self.describe(&scene, &run, controller, &gap_reports(&scene, &scene.gaps_at(&n))))?;
             warn(&warnings);
             Ok(())
         }
@@ -268,13 +268,14 @@ impl Arguments {
 }
 
 /// The run of the scene's controller held against the desk's; `None` where it leaves the finite range.
-fn controllers(scene: &Scene, gaps: &[f64; CONTACTS]) -> Result<Option<Run>, SimulateError> {
+fn controllers(scene: &Scene, n: &[f64; CONTACTS]) -> Result<Option<Run>, SimulateError> {
     // Samples on its own steps, a millisecond apart or a step where that is longer.
     let step = scene.controller.step;
     let every = (1e-3 / step).round().max(1.0) * step;
     let settings = Settings::controller(scene, every);
-    match simulate(scene, gaps, &settings) {
-        Ok(run) => confirmed(scene, gaps, &settings, run).map(Some),
+    let gaps = settings.gaps(scene, n);
+    match simulate(scene, &gaps, &settings) {
+        Ok(run) => confirmed(scene, &gaps, &settings, run).map(Some),
         Err(SimulateError::NotFinite { .. }) => Ok(None),
         Err(other) => Err(other),
     }

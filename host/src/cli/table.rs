@@ -88,6 +88,8 @@ struct Report {
     worst_velocity_error_in_use_m_per_s: f64,
     rms_force_error_n: f64,
     rms_velocity_error_m_per_s: f64,
+    /// Neighbouring levels between which a verdict changes, so that a lookup between them is no unit's and says so.
+    mixed_levels: Vec<[f32; 2]>,
     /// Units that do not come to the last position, in SI units; over position only.
     #[serde(skip_serializing_if = "Option::is_none")]
     short: Option<Vec<Reach>>,
@@ -171,6 +173,7 @@ impl Arguments {
                 worst_velocity_error_in_use_m_per_s: velocity_in_use,
                 rms_force_error_n: rms_force,
                 rms_velocity_error_m_per_s: rms_velocity,
+                mixed_levels: table.mixed(),
                 short,
                 warnings,
             })
@@ -271,11 +274,18 @@ pub(super) fn describe(table: &ForceTable) -> String {
             ", the rest included:         ",
         ]
     };
+    let mixed = match table.mixed() {
+        pairs if pairs.is_empty() => String::new(),
+        pairs => {
+            let between: Vec<_> = pairs.iter().map(|pair| pair.map(|n| level(f64::from(n))).join(" and ")).collect();
+            format!("The verdict changes between n = {}: a lookup there is no unit's and says so\n", between.join(", "))
+        }
+    };
     format!(
         "{} bytes of the {TABLE_REGION} in the TABLE region: {}, {}\n\
          Worst interpolation error{in_use}{}\n\
          {rms}{}\n\
-         Worst interpolation error{whole}{}\n",
+         Worst interpolation error{whole}{}\n{mixed}",
         table.bytes.len(),
         table.axes.iter().map(nodes).collect::<Vec<_>>().join(" by "),
         table.encoding.name(),

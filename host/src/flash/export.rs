@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use ihex::Record;
-use slipfit_core::table::{AxisKind, Encoding, layout};
+use slipfit_core::table::{AxisKind, Encoding, MotionVerdict, layout};
 
 /// What can be written, by a file's extension.
 pub const EXTENSIONS: [&str; 4] = ["bin", "hex", "h", "rs"];
@@ -102,6 +102,9 @@ fn c_header(table: &[u8]) -> String {
         define(&format!("ENCODING_{encoding:?}"), encoding as usize);
     }
     define("DATA_AT", layout::HEADER_SIZE);
+    for verdict in MotionVerdict::ALL {
+        define(verdict.name().to_uppercase().as_str(), verdict as usize);
+    }
     define("CHECKSUM_SIZE", layout::CHECKSUM_SIZE);
     define("SIZE", table.len());
     // Firmware compares it with the hash in the table that it finds.
@@ -124,8 +127,11 @@ const C_INTRODUCTION: &str = "\
  *   AXES_MOST axis records: kind u8, 3 zero bytes, nodes u32, first f32, step f32; absent axes are all zero;
  *   CHANNELS channel records, force (N) and velocity (m/s): scale f32, worst interpolation error f32, root mean square
  *   of that error f32.
- * From DATA_AT on come force and velocity of each node, the last axis fastest. A value is the stored f32 or i16 times
- * the channel's scale. The last CHECKSUM_SIZE bytes are the CRC-32/ISO-HDLC of everything before them. Axes are in
+ * From DATA_AT on come force and velocity of each node, the last axis fastest, and one more node that weighs nothing. A
+ * value is the stored f32 or i16 times the channel's scale. Then comes a byte for every motion, for each node of all axes but
+ * the second: twice its verdict (UNDECIDED, RUNS, CRAWLS, JAMMED), plus 1 if the motion at the next node of the first axis
+ * has another one, so that values between them are those of no unit; zero bytes fill up to a multiple of 4. The last
+ * CHECKSUM_SIZE bytes are the CRC-32/ISO-HDLC of everything before them. Axes are in
  * units of n (LEVEL), s (TIME), m (POSITION), m/s (VELOCITY).
  */
 #ifndef SLIPFIT_TABLE_H

@@ -6,13 +6,14 @@ mod hash;
 mod tests;
 
 use slipfit_core::table::{
-    Axis, AxisKind, ChannelKind, Encoding, TableError,
+    Axis, AxisKind, ChannelKind, Encoding, MotionVerdict, TableError,
     layout::{
         AXES_AT, AXES_LEAST, AXES_MOST, AXIS_COUNT_AT, AXIS_FIRST_AT, AXIS_KIND_AT, AXIS_NODES_AT, AXIS_SIZE,
         AXIS_STEP_AT, CHANNEL_RMS_AT, CHANNEL_SCALE_AT, CHANNEL_SIZE, CHANNEL_WORST_AT, CHANNELS, CHANNELS_AT,
         CHECKSUM_SIZE, ENCODING_AT, HEADER_SIZE, I16_MOST, LENGTH_AT, MAGIC, MAGIC_AT, SCENE_HASH_AT, VALUE_MOST,
         VERSION, VERSION_AT, checksum,
     },
+    motions, verdict_bytes,
 };
 
 pub use hash::scene_hash;
@@ -36,6 +37,8 @@ pub struct TableSpec {
     pub force: ChannelSpec,
     /// Velocity (m/s).
     pub velocity: ChannelSpec,
+    /// The verdict on every motion: one for each node of all axes but the second, the last fastest.
+    pub verdicts: Vec<MotionVerdict>,
 }
 
 /// An axis of equidistant nodes, in the unit of its kind. [`Axis::node`] says where f32 puts them.
@@ -97,6 +100,14 @@ pub enum FlashError {
         /// How many nodes the grid has.
         expected: usize,
     },
+    /// Not one verdict a motion.
+    #[error("{found} verdicts for {expected} motions")]
+    Verdicts {
+        /// How many verdicts there are.
+        found: usize,
+        /// How many motions the grid has.
+        expected: usize,
+    },
     /// A value that is not finite, or too great.
     #[error("{} at node {index} is {value}, allowed is -{VALUE_MOST:e} to {VALUE_MOST:e}", channel.name())]
     Value {
@@ -125,6 +136,14 @@ pub enum FlashError {
         /// Length of the region, [`TABLE_REGION`].
         region: usize,
     },
+}
+
+/// Length of a table (bytes) over axes of so many nodes: header, nodes and the one behind them, verdicts, checksum.
+pub fn length(counts: impl IntoIterator<Item = usize> + Clone, encoding: Encoding) -> usize {
+    let nodes = counts.clone().into_iter().fold(1, usize::saturating_mul).saturating_add(1);
+    let verdicts = motions(counts).and_then(|motions| motions.checked_next_multiple_of(4)).unwrap_or(usize::MAX);
+    let data = nodes.saturating_mul(CHANNELS * encoding.size()).saturating_add(verdicts);
+    data.saturating_add(HEADER_SIZE + CHECKSUM_SIZE)
 }
 
 /// The table's bytes.
@@ -165,7 +184,11 @@ pub fn encode(spec: &TableSpec) -> Result<Vec<u8>, FlashError> {
         put(&mut bytes, at + CHANNEL_WORST_AT, &channel.worst_error.to_le_bytes());
         put(&mut bytes, at + CHANNEL_RMS_AT, &channel.rms_error.to_le_bytes());
     }
-    let length = nodes.saturating_mul(CHANNELS * spec.encoding.size()).saturating_add(HEADER_SIZE + CHECKSUM_SIZE);
+    let expected = motions(spec.axes.iter().map(|axis| axis.count)).unwrap_or(usize::MAX);
+    if spec.verdicts.len() != expected {
+        return Err(FlashError::Verdicts { found: spec.verdicts.len(), expected });
+    }
+    let length = length(spec.axes.iter().map(|axis| axis.count), spec.encoding);
     if length > TABLE_REGION {
         return Err(FlashError::TooLarge { bytes: length, region: TABLE_REGION });
     }
@@ -180,6 +203,9 @@ pub fn encode(spec: &TableSpec) -> Result<Vec<u8>, FlashError> {
             }
         }
     }
+    bytes.resize(bytes.len() + CHANNELS * spec.encoding.size(), 0);
+    bytes.extend(verdict_bytes(&spec.verdicts, spec.axes.get(2).map_or(1, |axis| axis.count)));
+    bytes.resize(length - CHECKSUM_SIZE, 0);
     let sum = checksum(&bytes);
     bytes.extend(sum.to_le_bytes());
     Ok(bytes)

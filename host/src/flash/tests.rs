@@ -1,7 +1,7 @@
 //! What the builder writes, as the reader on the target sees it.
 
 use proptest::prelude::*;
-use slipfit_core::table::{AxisKind, Encoding, Header, Lookup, Table, TableError, layout};
+use slipfit_core::table::{AxisKind, Encoding, Header, Lookup, MotionVerdict, Table, TableError, layout, motions};
 
 use super::{AxisSpec, ChannelSpec, FlashError, TABLE_REGION, TableSpec, encode};
 
@@ -20,12 +20,15 @@ fn channel(count: usize, greatest: f32) -> ChannelSpec {
 
 fn grid(axes: Vec<AxisSpec>, encoding: Encoding) -> TableSpec {
     let count = axes.iter().map(|axis| axis.count).product();
+    let motions = motions(axes.iter().map(|axis| axis.count)).unwrap();
+    let verdicts = (0..motions).map(|i| MotionVerdict::ALL[i * i % 4]).collect();
     TableSpec {
         scene_hash: 0x0123_4567_89ab_cdef,
         axes,
         encoding,
         force: channel(count, 4.0),
         velocity: channel(count, 0.1),
+        verdicts,
     }
 }
 
@@ -99,17 +102,19 @@ fn says_what_was_written() {
 #[test]
 fn layout_is_what_is_written_down() {
     let bytes = encode(&small(2, Encoding::I16)).unwrap();
-    assert_eq!(bytes[..12], *b"SLFT\x02\0\x02\x02\xef\xcd\xab\x89");
-    assert_eq!(bytes[16..24], [156, 0, 0, 0, 1, 0, 0, 0]);
+    assert_eq!(bytes[..12], *b"SLFT\x03\0\x02\x02\xef\xcd\xab\x89");
+    assert_eq!(bytes[16..24], [164, 0, 0, 0, 1, 0, 0, 0]);
     assert_eq!(bytes[52..68], [0; 16]);
     assert_eq!(bytes[72..76], (4.0f32 * 1e-3).to_le_bytes());
     assert_eq!(bytes[84..88], (0.1f32 * 1e-3).to_le_bytes());
-    assert_eq!(bytes.len(), 92 + 15 * 4 + 4);
+    assert_eq!(bytes.len(), 92 + 16 * 4 + 4 + 4);
+    // Undecided, runs, undecided; each differs from the next one.
+    assert_eq!(bytes[152..160], [0, 0, 0, 0, 1, 3, 0, 0]);
     // The first node's force and velocity are the same part of their channels' greatest.
     assert_eq!(bytes[92..94], bytes[94..96]);
     // The target computes the checksum bit by bit, this by a table.
-    let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&bytes[..152]);
-    assert_eq!(bytes[152..], checksum.to_le_bytes());
+    let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&bytes[..160]);
+    assert_eq!(bytes[160..], checksum.to_le_bytes());
 }
 
 #[test]
@@ -125,8 +130,8 @@ fn exact_at_nodes_and_linear_between() {
         let found = table.lookup(at);
         assert!(!found.clamped);
         assert_near(&spec, &found, &at);
+        assert_eq!(found, Lookup { force, velocity, clamped: false, mixed: false });
         if i < 2 && j < 4 && k < 2 {
-            assert_eq!(found, Lookup { force, velocity, clamped: false });
             let half = table.lookup([at[0], at[1], at[2] + 1.0]);
             assert_eq!(half.force, force + 0.5 * (spec.force.values[index + 1] - force));
         }
@@ -145,8 +150,8 @@ fn clamps_and_says_so() {
         assert_eq!(table.lookup([-1.0, outside]), Lookup { clamped: true, ..table.lookup(low) });
     }
     for outside in [f32::NAN, -f32::NAN] {
-        let Lookup { force, velocity, clamped } = table.lookup([outside, outside]);
-        assert!(clamped && force.abs() <= 4.0 && velocity.abs() <= 0.1);
+        let Lookup { force, velocity, clamped, mixed } = table.lookup([outside, outside]);
+        assert!(clamped && !mixed && force.abs() <= 4.0 && velocity.abs() <= 0.1);
     }
     assert_eq!(table.lookup([-0.0, 0.75]), table.lookup(high));
     assert!(!table.lookup(low).clamped && !table.lookup(high).clamped);
@@ -178,7 +183,7 @@ fn refuses_every_flipped_bit() {
 fn refuses_flipped_bits_of_a_great_table() {
     let axes = vec![axis(AxisKind::Level, -3.0, 0.1, 61), axis(AxisKind::Time, 0.0, 1e-3, 500)];
     let mut table = encode(&grid(axes, Encoding::F32)).unwrap();
-    const LENGTH: usize = 92 + 61 * 500 * 8 + 4;
+    const LENGTH: usize = 92 + (61 * 500 + 1) * 8 + 64 + 4;
     table.resize(TABLE_REGION, 0xff);
     let mut random = 1u64;
     for _ in 0..300 {
@@ -213,8 +218,10 @@ fn refuses_other_scenes_axes_versions_and_no_table() {
     assert_eq!(kind.to_string(), "axis 1 is over time, asked for is position");
     let kinds = [AxisKind::Level, AxisKind::Time, AxisKind::Position];
     assert!(Table::<3>::open(&bytes).unwrap().expect_axes(kinds).is_ok());
-    bytes[layout::VERSION_AT] = 3;
-    assert_eq!(refusal(&bytes), Some(TableError::Version { found: 3 }));
+    for found in [2, 4] {
+        bytes[layout::VERSION_AT] = found as u8;
+        assert_eq!(refusal(&bytes), Some(TableError::Version { found }));
+    }
     assert_eq!(refusal(&[0xff; 4096]), Some(TableError::Magic));
 }
 
@@ -259,12 +266,16 @@ fn refuses_contradictions_under_a_right_checksum() {
     let table = encode(&small(2, Encoding::F32)).unwrap();
     assert_eq!(refusal(&forged(&table, 92, &nan)), Some(TableError::Value("force")));
     assert_eq!(refusal(&forged(&table, 96, &1e31f32.to_le_bytes())), Some(TableError::Value("velocity")));
+    // The node behind the last one, which is read with it.
+    assert_eq!(refusal(&forged(&table, 212, &nan)), Some(TableError::Value("force")));
+    assert_eq!(refusal(&forged(&table, 220, &[8])), Some(TableError::Value("verdicts")));
 }
 
 #[test]
 fn builder_names_what_is_wrong() {
     type Change = fn(&mut TableSpec);
-    let cases: [(Change, &str); 7] = [
+    let cases: [(Change, &str); 8] = [
+        (|spec| spec.verdicts.truncate(2), "2 verdicts for 3 motions"),
         (|spec| spec.axes.truncate(1), "a table has 2 or 3 axes, not 1"),
         (|spec| spec.axes[0].count = 1, "an axis needs at least 2 levels, the Level axis has 1"),
         (|spec| spec.axes[1].step = 0.0, "the Time axis: bad step between nodes"),
@@ -282,9 +293,9 @@ fn builder_names_what_is_wrong() {
         assert_eq!(encode(&spec).unwrap_err().to_string(), message);
     }
     let axes = |times| vec![axis(AxisKind::Level, 0.0, 1.0, 4), axis(AxisKind::Time, 0.0, 1e-3, times)];
-    assert_eq!(encode(&grid(axes(8189), Encoding::F32)).unwrap().len(), TABLE_REGION);
-    let error = encode(&grid(axes(8190), Encoding::F32)).unwrap_err();
-    assert_eq!(error, FlashError::TooLarge { bytes: TABLE_REGION + 32, region: TABLE_REGION });
+    assert_eq!(encode(&grid(axes(8188), Encoding::F32)).unwrap().len(), TABLE_REGION - 20);
+    let error = encode(&grid(axes(8189), Encoding::F32)).unwrap_err();
+    assert_eq!(error, FlashError::TooLarge { bytes: TABLE_REGION + 12, region: TABLE_REGION });
 }
 
 #[test]
@@ -293,7 +304,7 @@ fn i16_takes_half_the_bytes_and_any_magnitude() {
         let mut spec = small(2, Encoding::I16);
         spec.force = channel(15, greatest);
         let bytes = encode(&spec).unwrap();
-        assert_eq!(bytes.len() + 15 * 4, encode(&small(2, Encoding::F32)).unwrap().len());
+        assert_eq!(bytes.len() + 16 * 4, encode(&small(2, Encoding::F32)).unwrap().len());
         let found = lookup::<2>(&bytes, &[-0.5, 0.5]);
         if greatest != 1e-42 {
             assert_near(&spec, &found, &[-0.5, 0.5]);
@@ -309,7 +320,9 @@ fn any_spec(axes: usize) -> impl Strategy<Value = TableSpec> {
         let count: usize = axes.iter().map(|(_, _, count)| count).product();
         let values = || prop::collection::vec(-100.0f32..100.0, count);
         let encoding = BOTH[usize::from(wide)];
+        let motions = motions(axes.iter().map(|(.., count)| *count)).unwrap();
         (values(), values()).prop_map(move |(force, velocity)| TableSpec {
+            verdicts: vec![MotionVerdict::Runs; motions],
             scene_hash: 1,
             axes: axes
                 .iter()

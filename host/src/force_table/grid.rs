@@ -1,6 +1,6 @@
 //! A grid picked out of finer samples: which of them are nodes, the table's bytes, and what interpolating costs.
 
-use slipfit_core::table::{AxisKind, Encoding, Table};
+use slipfit_core::table::{AxisKind, Encoding, MotionVerdict, Table, motions};
 
 use super::{Demand, ForceTable, TableError, levels};
 use crate::{
@@ -70,6 +70,8 @@ pub(super) struct Samples<const N: usize> {
     pub axes: [SampleAxis; N],
     /// One sample a point of the lattice, the last axis fastest.
     pub values: Vec<Sample>,
+    /// The verdict on every motion sampled: a point of the lattice without its second axis.
+    pub verdicts: Vec<MotionVerdict>,
 }
 
 /// Which samples are nodes of a table, and how it stores them.
@@ -95,9 +97,10 @@ impl<const N: usize> Grid<N> {
         self.axes(axes).iter().fold(1, |nodes, axis| nodes.saturating_mul(axis.count))
     }
 
-    /// Size of the nodes (bytes).
+    /// Size of the table (bytes).
     fn size(self, axes: &[SampleAxis; N]) -> usize {
-        self.nodes(axes).saturating_mul(2 * self.encoding.size())
+        let axes = self.axes(axes);
+        flash::length(axes.iter().map(|axis| axis.count), self.encoding)
     }
 
     /// Every grid that ends where the samples end and may fit its region of flash, the smallest first.
@@ -123,9 +126,15 @@ impl<const N: usize> Grid<N> {
     }
 }
 
-fn spec(scene_hash: u64, axes: Vec<AxisSpec>, encoding: Encoding, values: [Vec<f32>; 2]) -> TableSpec {
+fn spec(
+    scene_hash: u64,
+    axes: Vec<AxisSpec>,
+    encoding: Encoding,
+    values: [Vec<f32>; 2],
+    verdicts: Vec<MotionVerdict>,
+) -> TableSpec {
     let [force, velocity] = values.map(|values| ChannelSpec { values, worst_error: 0.0, rms_error: 0.0 });
-    TableSpec { scene_hash, axes, encoding, force, velocity }
+    TableSpec { scene_hash, axes, encoding, force, velocity, verdicts }
 }
 
 /// Whether a table with nodes on `axes` fits its region of flash, found out before any run.
@@ -141,8 +150,10 @@ pub(super) fn check<const N: usize>(axes: &[SampleAxis; N], demand: Demand) -> R
     if nodes > flash::TABLE_REGION {
         return Err(FlashError::TooLarge { bytes: grid.size(axes), region: flash::TABLE_REGION });
     }
-    let zeros = vec![0.0; nodes];
-    flash::encode(&spec(0, grid.axes(axes), grid.encoding, [zeros.clone(), zeros])).map(drop)
+    let (axes, zeros) = (grid.axes(axes), vec![0.0; nodes]);
+    let motions = motions(axes.iter().map(|axis| axis.count)).unwrap_or(0);
+    let verdicts = vec![MotionVerdict::default(); motions];
+    flash::encode(&spec(0, axes, grid.encoding, [zeros.clone(), zeros], verdicts)).map(drop)
 }
 
 impl<const N: usize> Samples<N> {
@@ -180,7 +191,8 @@ impl<const N: usize> Samples<N> {
         let nodes = || (0..self.values.len()).filter(|i| is_node(&self.place(*i))).map(|i| self.values[i].values);
         let values = [0, 1].map(|k| nodes().map(|values| values[k] as f32).collect());
         let axes = grid.axes(&self.axes);
-        let mut spec = spec(scene_hash, axes.clone(), grid.encoding, values);
+        let verdicts = self.verdicts_at(&grid);
+        let mut spec = spec(scene_hash, axes.clone(), grid.encoding, values, verdicts.clone());
         let bytes = flash::encode(&spec)?;
         let table = Table::<N>::open(&bytes).expect("the encoder's own table");
 
@@ -207,7 +219,16 @@ impl<const N: usize> Samples<N> {
             channel.rms_error = rms_error[k] as f32;
         }
         let bytes = flash::encode(&spec)?;
-        Ok(ForceTable { bytes, axes, encoding: grid.encoding, worst_error, worst_error_in_use, rms_error })
+        let encoding = grid.encoding;
+        Ok(ForceTable { bytes, axes, encoding, verdicts, worst_error, worst_error_in_use, rms_error })
+    }
+
+    /// The verdicts on the motions that are nodes of `grid`.
+    fn verdicts_at(&self, grid: &Grid<N>) -> Vec<MotionVerdict> {
+        let speeds = self.axes.get(2).map_or(1, |axis| axis.at.len());
+        let speed_stride = grid.strides.get(2).copied().unwrap_or(1);
+        let levels = self.verdicts.chunks(speeds).step_by(grid.strides[0]);
+        levels.flat_map(|level| level.iter().step_by(speed_stride)).copied().collect()
     }
 
     /// The place along each axis of the `i`-th sample.
@@ -244,7 +265,7 @@ impl<const N: usize> Samples<N> {
 
 #[cfg(test)]
 mod tests {
-    use slipfit_core::table::{AxisKind, Encoding};
+    use slipfit_core::table::{AxisKind, Encoding, MotionVerdict};
 
     use super::{Grid, Sample, SampleAxis, Samples, Stage};
     use crate::{
@@ -266,7 +287,8 @@ mod tests {
         let [n, z, v] = axes.each_ref().map(|axis| axis.at.clone());
         let points = n.iter().flat_map(|n| z.iter().flat_map(|z| v.iter().map(|v| [*n, *z, *v])));
         let values = points.map(|at| Sample { values: [force(at), 2.0 * force(at)], stage: stage(at) }).collect();
-        Samples { axes, values }
+        let verdicts = vec![MotionVerdict::Runs; 5 * 3];
+        Samples { axes, values, verdicts }
     }
 
     #[test]
@@ -310,6 +332,20 @@ mod tests {
         let beyond = |[n, z, _]: [f64; 3]| if n == -1.0 && z > 2.0 { Stage::Beyond } else { Stage::InUse };
         let samples = samples(|place| if at(place) { 3.0 } else { 1.0 }, beyond);
         assert!(matches!(samples.table(1, Demand::MaxError(1.5)), Err(TableError::MaxError { best: 2.0, .. })));
+    }
+
+    #[test]
+    fn verdicts_are_those_of_the_nodes() {
+        use MotionVerdict::{Crawls, Jammed, Runs};
+        let mut samples = samples(|_| 1.0, |_| Stage::InUse);
+        // Levels are halved, and so are speeds: every second one is a node.
+        samples.verdicts = vec![Runs; 15];
+        samples.verdicts[6] = Crawls;
+        samples.verdicts[8] = Jammed;
+        samples.verdicts[7] = Jammed;
+        let table = samples.table(1, Demand::Full).unwrap();
+        assert_eq!(table.verdicts, [Runs, Runs, Crawls, Jammed, Runs, Runs]);
+        assert_eq!(table.mixed(), [[-1.0, -0.5], [-0.5, 0.0]]);
     }
 
     #[test]

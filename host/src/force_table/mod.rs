@@ -8,7 +8,10 @@ mod picture;
 pub mod position;
 pub mod time;
 
-use slipfit_core::{slide::CONTACTS, table::Encoding};
+use slipfit_core::{
+    slide::CONTACTS,
+    table::{Encoding, MotionVerdict},
+};
 use thiserror::Error;
 
 use crate::{
@@ -32,6 +35,8 @@ pub struct ForceTable {
     pub axes: Vec<AxisSpec>,
     /// How values are stored.
     pub encoding: Encoding,
+    /// The verdict on every motion: one a level, or a level and a speed, speeds fastest.
+    pub verdicts: Vec<MotionVerdict>,
     /// Worst interpolation error: force (N), velocity (m/s); looked for at every level (and speed) and half way between,
     /// at every instant or position and at least three times between.
     pub worst_error: [f64; 2],
@@ -40,6 +45,16 @@ pub struct ForceTable {
     pub worst_error_in_use: [f64; 2],
     /// Root mean square of the error where the table is used.
     pub rms_error: [f64; 2],
+}
+
+impl ForceTable {
+    /// Neighbouring levels between which a verdict changes: what is looked up there is no unit's.
+    pub fn mixed(&self) -> Vec<[f32; 2]> {
+        let (levels, speeds) = (self.axes[0], self.axes.get(2).map_or(1, |axis| axis.count));
+        let by_level: Vec<_> = self.verdicts.chunks(speeds).collect();
+        let pairs = by_level.windows(2).zip(0..).filter(|(pair, _)| pair[0] != pair[1]);
+        pairs.map(|(_, i)| [i, i + 1].map(|i| levels.first + levels.step * i as f32)).collect()
+    }
 }
 
 /// What a table is to be.

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use slipfit_core::{
     drive::Drive,
     slide::CONTACTS,
-    table::{AxisKind, layout},
+    table::{AxisKind, Encoding},
 };
 use thiserror::Error;
 
@@ -26,7 +26,7 @@ use super::{
 };
 use crate::{
     confirm::confirmed,
-    flash::TABLE_REGION,
+    flash,
     number::ten_digits,
     outcome::Verdict,
     scene::{LevelRange, RunSpec, Scene},
@@ -219,8 +219,7 @@ pub fn make(scene: &Scene, wish: &Wish<'_>, done: impl Fn() + Sync) -> Result<Po
     let (passages, judged): (Vec<Passage>, Vec<_>) = runs.into_iter().collect::<Result<_, _>>()?;
     let (reaches, warnings): (Vec<Reach>, Vec<Option<String>>) = judged.into_iter().unzip();
     let steps = steps(&reaches, [stroke, scene.run.stroke], scene.run.duration)?;
-    let nodes = scene.sweep.count * speeds.map_or(1, |speeds| speeds.count);
-    let per_node = per_node(nodes, steps, demand);
+    let per_node = per_node([Some(scene.sweep.count), speeds.map(|speeds| speeds.count)], steps, demand);
     // Up to the first node that is not short of the end.
     let samples = (steps * SUBSAMPLES).next_multiple_of(per_node) + 1;
 
@@ -232,13 +231,14 @@ pub fn make(scene: &Scene, wish: &Wish<'_>, done: impl Fn() + Sync) -> Result<Po
         (0..samples).flat_map(|k| speeds.iter().map(move |passage| sample(passage, k))).collect()
     };
     let values = passages.chunks(speeds_of_runs.len()).flat_map(level).collect();
+    let verdicts = reaches.iter().map(|reach| reach.verdict.into()).collect();
     let position = position_axis(samples, per_node);
     let (hash, level) = (scene_hash(scene), SampleAxis::halved(AxisKind::Level, &scene.sweep));
     let table = match speeds {
-        None => Samples { axes: [level, position], values }.table(hash, demand)?,
+        None => Samples { axes: [level, position], values, verdicts }.table(hash, demand)?,
         Some(speeds) => {
             let axes = [level, position, SampleAxis::halved(AxisKind::Velocity, speeds)];
-            Samples { axes, values }.table(hash, demand)?
+            Samples { axes, values, verdicts }.table(hash, demand)?
         }
     };
 
@@ -273,11 +273,11 @@ fn steps(reaches: &[Reach], [asked, stroke]: [Option<f64>; 2], duration: f64) ->
 }
 
 /// Samples from a position of the finest table to the next: for a full one, the least whole number of steps with which
-/// `others` nodes at each of the positions over `steps` fit their region.
-fn per_node(others: usize, steps: usize, demand: Demand) -> usize {
+/// nodes of so many `levels` and speeds at each of the positions over `steps` fit their region.
+fn per_node([levels, speeds]: [Option<usize>; 2], steps: usize, demand: Demand) -> usize {
     let fits = |coarser: &usize| {
-        let bytes = (steps.div_ceil(*coarser) + 1).saturating_mul(others).saturating_mul(2 * size_of::<f32>());
-        bytes + layout::HEADER_SIZE + layout::CHECKSUM_SIZE <= TABLE_REGION
+        let positions = Some(steps.div_ceil(*coarser) + 1);
+        flash::length([levels, positions, speeds].into_iter().flatten(), Encoding::F32) <= flash::TABLE_REGION
     };
     let coarser = match demand {
         Demand::Full => (1..=steps).find(fits).unwrap_or(1),

@@ -1,6 +1,6 @@
 //! Tables over tolerance level and time.
 
-use slipfit_core::table::{AxisKind, layout};
+use slipfit_core::table::{AxisKind, Encoding};
 
 use super::{
     Demand, ForceTable, SUBSAMPLES, TableError,
@@ -23,9 +23,8 @@ pub const STEP: f64 = 1e-3;
 pub fn settings(scene: &Scene, demand: Demand) -> Settings {
     let every = |coarser: u32| STEP * f64::from(coarser) / SUBSAMPLES as f64;
     let fits = |coarser: &u32| {
-        let instants = scene.run.duration / (every(*coarser) * SUBSAMPLES as f64) + 1.0;
-        let bytes = instants * scene.sweep.count as f64 * (2 * size_of::<f32>()) as f64;
-        bytes + (layout::HEADER_SIZE + layout::CHECKSUM_SIZE) as f64 <= flash::TABLE_REGION as f64
+        let instants = scene.run.duration / (every(*coarser) * SUBSAMPLES as f64) * (1.0 + 1e-9);
+        flash::length([scene.sweep.count, instants as usize + 1], Encoding::F32) <= flash::TABLE_REGION
     };
     let coarser = match demand {
         Demand::Full => (1..=10).find(fits).unwrap_or(1),
@@ -77,7 +76,8 @@ fn build(scene: &Scene, sweep: &Sweep, settings: &Settings, demand: Demand) -> R
     };
     let runs = sweep.levels.iter().map(|level| &level.trajectory);
     let values = runs.flat_map(|run| (0..at.len()).map(|i| sample(run, i)).collect::<Vec<_>>()).collect();
-    Samples { axes: axes(scene, settings, at), values }.table(scene_hash(scene), demand)
+    let verdicts = sweep.levels.iter().map(|level| level.outcome.verdict.into()).collect();
+    Samples { axes: axes(scene, settings, at), values, verdicts }.table(scene_hash(scene), demand)
 }
 
 /// The sweep at the nodes only, sampled at the table's instants: what is shown to people.

@@ -201,11 +201,18 @@ impl Scene {
 
     /// All sixteen gaps (m) at the tolerance levels `n`, one a contact; [`ABSENT`] where there is no contact.
     pub fn gaps_at(&self, n: &[f64; CONTACTS]) -> [f64; CONTACTS] {
-        let mut gaps = [ABSENT; CONTACTS];
+        self.gaps_in(n)
+    }
+
+    /// The same computed in the scalar `S`, from levels and statistics rounded to it: in f32 the bits of
+    /// [`SceneData::at`](slipfit_core::scene::SceneData::at).
+    pub fn gaps_in<S: Scalar>(&self, n: &[f64; CONTACTS]) -> [S; CONTACTS] {
+        let s = S::from_f64;
+        let mut gaps = [s(ABSENT); CONTACTS];
         let statistics = self.pins.iter().flat_map(|pin| &pin.gaps);
         for ((gap, statistics), n) in gaps.iter_mut().zip(statistics).zip(n) {
-            if let Some(statistics) = statistics {
-                *gap = statistics.at(*n);
+            if let Some(GapStatistics { mean, deviation }) = *statistics {
+                *gap = GapStatistics { mean: s(mean), deviation: s(deviation) }.at(s(*n));
             }
         }
         gaps
