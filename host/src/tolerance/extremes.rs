@@ -99,6 +99,7 @@ fn corners(variation: &Variation) -> Vec<Vec<f64>> {
             let angles = (0..RIM).map(|k| TAU * k as f64 / RIM as f64);
             angles.map(|angle| vec![libm::cos(angle), libm::sin(angle)]).collect()
         }
+        Variation::Nested(zone) => zone.corners(),
         zone @ Variation::Zone(_) => {
             let count = zone.variables();
             let corner = |k: usize, sign: f64| (0..count).map(|j| if j == k { sign } else { 0.0 }).collect();

@@ -47,6 +47,8 @@ pub(super) struct FeatureDraft<'t, 's> {
     pub sides: [[f64; 3]; 2],
     /// Its extents (m): of a plane, and of a point if it says on which face it is; the length of an axis, twice.
     pub extents: Option<[f64; 2]>,
+    /// Its diameter, of an axis that has one.
+    pub diameter: Option<toleranced::Diameter>,
     /// From its part's frame to the assembly's.
     pub pose: Pose,
     /// Index of its part.
@@ -113,11 +115,10 @@ fn feature(part: &Part, index: usize, shape: Shape, table: Field, draft: &mut Dr
     let along = part.pose.direction(along);
     let reach = extents.map_or(0.0, |[a, b]: [f64; 2]| a.max(b) / 2.0);
     let feature = Feature { shape, nominal: [at, towards], terms: Vec::new(), reach };
-    if shape == Shape::Axis {
-        toleranced::diameter(&table, &name, draft)?;
-    }
+    let diameter = if shape == Shape::Axis { toleranced::diameter(&table, &name, draft)? } else { None };
     let sides = [along, cross(towards, along)];
-    callout::read(FeatureDraft { name, table, feature, sides, extents, pose: part.pose, part: index }, draft)
+    let made = FeatureDraft { name, table, feature, sides, extents, diameter, pose: part.pose, part: index };
+    callout::read(made, draft)
 }
 
 /// The unit vector `key` of a table.

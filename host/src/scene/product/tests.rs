@@ -38,7 +38,7 @@ pub(super) fn at(product: &Product, values: &[(usize, f64)]) -> Vec<f64> {
 fn limits(product: &Product) -> Vec<[f64; 2]> {
     let limits = product.model.contributors.iter().map(|contributor| match contributor.variation {
         Variation::Scalar { limits, .. } => limits,
-        Variation::Zone(_) | Variation::Disc(_) => panic!("a plane or an axis"),
+        Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_) => panic!("a plane or an axis"),
     });
     limits.collect()
 }
@@ -123,7 +123,7 @@ fn distributions_and_correlation() {
         .iter()
         .map(|contributor| match &contributor.variation {
             Variation::Scalar { distribution, .. } => distribution.clone(),
-            Variation::Zone(_) | Variation::Disc(_) => panic!("a plane or an axis"),
+            Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_) => panic!("a plane or an axis"),
         })
         .collect();
     assert_eq!(kinds[0], Distribution::Uniform { limits: [0.05 - 1e-4, 0.05 + 1e-4] });
