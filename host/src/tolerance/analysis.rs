@@ -24,6 +24,8 @@ use super::{
 
 /// Share of the curvature in a measure's variance above which the measure counts as not linear.
 pub const LINEAR: f64 = 1e-6;
+/// The most contributors that have Sobol' indices: each takes thousands of evaluations of all.
+const MOST_INDICES: usize = 512;
 /// What the seeds of everything but the study itself are derived with.
 const TAILS: u64 = 1 << 32;
 const INDICES: u64 = 2 << 32;
@@ -41,7 +43,7 @@ pub struct Theory {
     pub sensitivities: Vec<Vec<Sensitivity>>,
     /// Moments by quadrature of the measures that are not linear, where their variables are few.
     pub exact: Vec<Option<Exact>>,
-    /// Sobol' indices of the measures that are not linear; none with correlated contributors.
+    /// Sobol' indices of the measures that are not linear; none with correlated contributors, or more than 512.
     pub indices: Vec<Option<Indices>>,
     /// P(below the lower limit), P(above the upper limit) of every measure.
     pub tails: Vec<[Option<Tail>; 2]>,
@@ -147,7 +149,7 @@ fn of_basis(model: &Model, basis: Basis, seed: u64, counted: Option<&Joint>) -> 
     let bends = |moments: &Moments| moments.curved > LINEAR || !moments.described;
     let curved = moments.iter().any(bends);
     stop_if_asked()?;
-    let all_indices = if curved && model.correlations.is_empty() {
+    let all_indices = if curved && model.correlations.is_empty() && model.contributors.len() <= MOST_INDICES {
         indices(model, &draw, derived(seed, INDICES)).into_iter().map(Some).collect()
     } else {
         vec![None; model.measures.len()]

@@ -4,7 +4,7 @@ use crate::{
     product::{
         assembly::With,
         contact::{cross, unit},
-        dimension::Toleranced,
+        dimension::{self, Toleranced},
         feature::Shape,
         iso2768::{self, GeometryClass},
     },
@@ -62,6 +62,7 @@ pub(super) struct Callout<'t, 's> {
 
 /// Reads the tolerances of a feature and adds it to the `draft`.
 pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), SceneError> {
+    let none = |field: &Field| matches!(&field.node.value, Value::Text(text) if text == "none");
     let mut callouts = Vec::new();
     let mut formed = false;
     for name in CALLOUTS {
@@ -69,11 +70,11 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
         refuse_unsupported(name, &made, &field)?;
         // A straight line leaves the flatness of its face open.
         formed |= limits(name) != Limits::Line;
-        if !matches!(&field.node.value, Value::Text(text) if text == "none") {
+        if !none(&field) {
             callouts.push(callout(name, field, &made, draft)?);
         }
     }
-    if let Some(field) = made.table.get("offset") {
+    if let Some(field) = made.table.get("offset").filter(|field| !none(field)) {
         let size = toleranced::offset(&field, draft)?;
         let normal = made.feature.nominal[1];
         made.feature.nominal[0] = [0, 1, 2].map(|i| made.feature.nominal[0][i] - size.nominal * normal[i]);
@@ -101,6 +102,9 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
         zone::located(&mut made, location, orientation, draft);
     } else if let Some(orientation) = orientation {
         zone::oriented(&mut made, orientation, draft);
+    }
+    if location.is_none() {
+        general_place(&mut made, draft);
     }
     let flat = forms.iter().find(|form| form.limits == Limits::Form).copied();
     for form in &forms {
@@ -158,6 +162,30 @@ fn callout<'t, 's>(
         return Err(rule_field.unwrap_or(field).error(Problem::Unsupported { what }, allowed));
     }
     Ok(Callout { name, limits, width, datums, rule, field })
+}
+
+/// The general tolerance of the place of a feature whose drawing says nothing of it: that of its distance from the origin of its
+/// part, in which drawings count. What lies in the origin is where it is.
+fn general_place(made: &mut FeatureDraft, draft: &mut Draft) {
+    let Some(class) = draft.defaults.general.size else { return };
+    let vectorial = made.table.get("vectorial").is_some_and(|table| table.get("position").is_some());
+    if vectorial || made.table.get("offset").is_some() {
+        return;
+    }
+    let ([along, one, two], [first, second]) = (made.coordinates, made.sides);
+    let across: &[_] = match made.feature.shape {
+        Shape::Axis => &[("place 1", one, first), ("place 2", two, second)],
+        _ => &[("place", along, made.feature.nominal[1])],
+    };
+    for (name, distance, direction) in across {
+        // The digits that turning made up would push a length over the end of its band.
+        let distance = (distance.abs() * 1e12).round() / 1e12;
+        let shape = dimension::Shape::Normal { sigma: draft.defaults.sigma };
+        let half = iso2768::linear(class, distance).ok();
+        if let Some(Ok(place)) = half.map(|half| Toleranced::new(0.0, [-half, half], &shape)) {
+            shift(made, name, &place, *direction, draft);
+        }
+    }
 }
 
 /// The general flatness of a feature whose drawing says nothing.

@@ -73,6 +73,7 @@ fn common(field: &Field, pair: [usize; 2], draft: &mut Draft) -> Result<usize, S
     draft.feature_names.push(name);
     draft.parts_of_features.push(one);
     draft.diameters.push(None);
+    draft.common.push(index);
     draft.assembly.placements.push(Placement::common(datum));
     Ok(index)
 }

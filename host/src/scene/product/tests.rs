@@ -223,6 +223,30 @@ fn general_perpendicularity_goes_by_the_shorter_leg_and_parallelism_by_the_whole
 }
 
 #[test]
+fn general_tolerances_cover_place_and_no_form_beyond_an_orientation() {
+    let names = |product: &Product| product.model.contributors.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
+    let wall = parse(WALL, &[]).unwrap().product.unwrap();
+    assert_eq!(
+        names(&wall),
+        ["box.wall perpendicularity", "box.wall place", "box.roof offset", "box.roof parallelism"]
+    );
+    // ISO 2768-1 m: 0.3 mm for 40 mm.
+    let Variation::Scalar { limits, .. } = wall.model.contributors[0].variation else { panic!("a scalar") };
+    close(limits[1], 0.3e-3, 1e-15);
+    assert!(wall.warnings.contains(&"without a tolerance: box.floor".to_owned()), "{:?}", wall.warnings);
+    let fixed = WALL
+        .replace("flatness = \"none\", perpendicularity = {", "offset = \"none\", perpendicularity = { zone = 0.05,");
+    let fixed = parse(&fixed, &[]).unwrap().product.unwrap();
+    assert_eq!(names(&fixed)[0], "box.wall perpendicularity");
+    let told = "without a tolerance of their place: box.wall".to_owned();
+    assert!(fixed.warnings.contains(&told), "{:?}", fixed.warnings);
+    // All of the lean is that of the stated zone: the general flatness of 0.4 mm is not in force.
+    let theory = crate::tolerance::analysis::theory(&fixed.model, 1, None).unwrap();
+    let [low, high] = theory.worst_cases[0].linear;
+    close(0.5 * (high - low), libm::atan(0.05 / 10.0), 1e-6);
+}
+
+#[test]
 fn only_a_slide_moves() {
     let error = crate::scene::Scene::parse("clutch.toml", shipped("clutch").unwrap(), &[]).unwrap_err();
     assert_eq!(error.problem(), &Problem::NoSlide);
