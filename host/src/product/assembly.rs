@@ -7,6 +7,7 @@
 use crate::tolerance::lanes::Lanes;
 
 use super::{
+    common::Common,
     contacts::{Contacts, Joined, PlacementError},
     feature::{Feature, Located, Shape},
     vector::{Displacement, Vector},
@@ -34,6 +35,8 @@ enum Support {
     Plane(usize),
     /// Contacts whose conditions are solved for.
     Contacts(Contacts),
+    /// Two features that are one datum; they carry nothing.
+    Common(Common),
 }
 
 /// A feature that goes where a body goes.
@@ -41,8 +44,19 @@ enum Support {
 pub struct Carried {
     /// Its index.
     pub feature: usize,
-    /// Whether it turns only, about its own point.
-    pub turns_only: bool,
+    /// What of it.
+    pub with: With,
+}
+
+/// What of a feature goes where a body goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum With {
+    /// Place and direction.
+    All,
+    /// The place: another datum holds the direction.
+    Place,
+    /// The direction: it turns about its own point.
+    Direction,
 }
 
 impl Carried {
@@ -50,10 +64,10 @@ impl Carried {
     #[inline(always)]
     fn by(self, displacement: &Displacement, features: &[Feature], located: &mut [Located]) {
         let moved = &mut located[self.feature];
-        if !self.turns_only {
+        if self.with != With::Direction {
             moved.place = displacement.apply(moved.place);
         }
-        if features[self.feature].shape != Shape::Point {
+        if self.with != With::Place && features[self.feature].shape != Shape::Point {
             moved.direction = displacement.turn(moved.direction);
         }
     }
@@ -82,6 +96,11 @@ impl Placement {
         Ok(Self { support, carried })
     }
 
+    /// The datum that two features are together.
+    pub fn common(common: Common) -> Self {
+        Self { support: Support::Common(common), carried: Vec::new() }
+    }
+
     /// Lets the body carry another feature.
     pub fn carry(&mut self, carried: Carried) {
         self.carried.push(carried);
@@ -89,10 +108,11 @@ impl Placement {
 
     /// Moves the features that the body carries to where it comes to lie.
     #[inline(always)]
-    fn place(&self, assembly: &Assembly, located: &mut [Located]) {
+    fn place(&self, assembly: &Assembly, variables: &[Lanes], located: &mut [Located]) {
         let displacement = match &self.support {
             Support::Plane(plane) => onto_plane(&assembly.features[*plane], &located[*plane]),
-            Support::Contacts(contacts) => contacts.displacement(assembly, located),
+            Support::Contacts(contacts) => contacts.displacement(assembly, variables, located),
+            Support::Common(common) => return common.locate(located),
         };
         for carried in &self.carried {
             carried.by(&displacement, &assembly.features, located);
@@ -122,8 +142,27 @@ impl Assembly {
             feature.deviate(variables, located);
         }
         for placement in &self.placements {
-            placement.place(self, &mut located);
+            placement.place(self, variables, &mut located);
         }
         located
+    }
+
+    /// What goes wrong in the mates of units: of each fit, by its number, in which units the pin does not go into the hole; and
+    /// in which units contacts do not close. `variables` are those of units whose holes are centred on their pins.
+    pub fn misfits(&self, variables: &[Lanes], mut fit: impl FnMut(usize, usize)) -> usize {
+        let mut located: Vec<_> = self.features.iter().map(Feature::perfect).collect();
+        for (feature, located) in self.features.iter().zip(&mut located) {
+            feature.deviate(variables, located);
+        }
+        let mut open = 0;
+        for placement in &self.placements {
+            if let Support::Contacts(contacts) = &placement.support {
+                let displacement = contacts.displacement(self, variables, &located);
+                contacts.misfits(self, variables, &located, &displacement, &mut fit);
+                open += displacement.undefined();
+            }
+            placement.place(self, variables, &mut located);
+        }
+        open
     }
 }

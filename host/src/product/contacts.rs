@@ -1,16 +1,21 @@
 //! A body on its contacts: where it comes to lie in each unit.
 
-use crate::tolerance::lanes::Lanes;
+use crate::tolerance::lanes::{LANES, Lanes};
 
 use super::{
     assembly::Assembly,
     contact::{CONDITIONS, Contact, Freedoms, Rows},
     feature::Located,
+    float::Float,
     vector::Displacement,
 };
 
 /// Newton passes with the nominal Jacobian. Each gains the factor of the parts' rotations, a thousandth or less.
 const PASSES: usize = 3;
+/// Passes after which a unit that has not come to rest counts as one that cannot be assembled.
+const MOST_PASSES: usize = 40;
+/// The last correction of a unit that has come to rest, over the size of the contacts: what is left is a part of it.
+const AT_REST: f64 = 1e-8;
 /// Passes for the nominal place.
 const NOMINAL_PASSES: usize = 50;
 
@@ -19,6 +24,8 @@ const NOMINAL_PASSES: usize = 50;
 pub struct Contacts {
     joined: Vec<Joined>,
     centre: [f64; 3],
+    /// Size (m) of the contacts.
+    scale: f64,
     start: [f64; 6],
     /// Of each contact, components of the displacement per condition.
     gains: Vec<Vec<Gain>>,
@@ -33,6 +40,8 @@ pub struct Joined {
     pub own: Own,
     /// The feature that it meets.
     pub other: usize,
+    /// The play between both.
+    pub float: Option<Float>,
 }
 
 /// A feature of the body that is placed.
@@ -69,6 +78,14 @@ pub enum PlacementError {
     /// The contacts cannot all close near the nominal place.
     #[error("the contacts cannot be closed at the nominal values")]
     Open,
+    /// The contacts do not close within the tolerances.
+    #[error("the contacts cannot be closed in {units} of {of} units")]
+    OpenUnits {
+        /// Units in which they do not.
+        units: usize,
+        /// Units that were tried.
+        of: usize,
+    },
 }
 
 impl Contacts {
@@ -89,13 +106,13 @@ impl Contacts {
         let spread = places.map(|place| (0..3).map(|i| (place[i] - centre[i]).abs()).fold(0.0, f64::max));
         let reaches = contacts.iter().map(|joined| assembly.features[joined.own.feature()].reach);
         let scale = Some(spread.chain(reaches).fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
-        let mut made = Self { joined: contacts, centre, start: [0.0; 6], gains: Vec::new() };
+        let mut made = Self { joined: contacts, centre, scale, start: [0.0; 6], gains: Vec::new() };
 
         let located = assembly.locate(nominal);
         for _ in 0..NOMINAL_PASSES {
-            made.linearise(assembly, &located, fixed, scale)?;
+            made.linearise(assembly, nominal, &located, fixed)?;
             let start = made.start.map(Lanes::splat);
-            let change = made.correction(assembly, &located, &start);
+            let change = made.correction(assembly, nominal, &located, &start);
             for (component, change) in made.start.iter_mut().zip(change) {
                 *component -= change.0[0];
             }
@@ -103,7 +120,7 @@ impl Contacts {
                 break;
             }
         }
-        let residual = made.correction(assembly, &located, &made.start.map(Lanes::splat));
+        let residual = made.correction(assembly, nominal, &located, &made.start.map(Lanes::splat));
         let closed = residual.iter().all(|change| change.0[0].abs() < 1e-12);
         if closed { Ok(made) } else { Err(PlacementError::Open) }
     }
@@ -112,11 +129,12 @@ impl Contacts {
     fn linearise(
         &mut self,
         assembly: &Assembly,
+        nominal: &[Lanes],
         located: &[Located],
         fixed: &[[[f64; 3]; 2]],
-        scale: f64,
     ) -> Result<(), PlacementError> {
         const STEP: f64 = 1e-6;
+        let scale = self.scale;
         let mut derivatives = vec![Rows::zeros(); self.joined.len()];
         for component in 0..6 {
             let step = if component < 3 { STEP * scale } else { STEP };
@@ -125,7 +143,8 @@ impl Contacts {
             moved[component].0[1] -= step;
             let displacement = Displacement::new(&moved, self.centre);
             for (rows, joined) in derivatives.iter_mut().zip(&self.joined) {
-                for (row, condition) in joined.conditions(assembly, located, &displacement).iter().enumerate() {
+                for (row, condition) in joined.conditions(assembly, nominal, located, &displacement).iter().enumerate()
+                {
                     rows[(row, component)] = (condition.0[0] - condition.0[1]) / (2.0 * STEP * scale);
                 }
             }
@@ -176,11 +195,17 @@ impl Contacts {
 
     /// What a Newton pass takes off the components of the displacement.
     #[inline(always)]
-    fn correction(&self, assembly: &Assembly, located: &[Located], components: &[Lanes; 6]) -> [Lanes; 6] {
+    fn correction(
+        &self,
+        assembly: &Assembly,
+        variables: &[Lanes],
+        located: &[Located],
+        components: &[Lanes; 6],
+    ) -> [Lanes; 6] {
         let displacement = Displacement::new(components, self.centre);
         let mut change = [Lanes::ZERO; 6];
         for (joined, gains) in self.joined.iter().zip(&self.gains) {
-            let conditions = joined.conditions(assembly, located, &displacement);
+            let conditions = joined.conditions(assembly, variables, located, &displacement);
             for gain in gains {
                 change[gain.component] += conditions[gain.condition] * gain.factor;
             }
@@ -188,29 +213,104 @@ impl Contacts {
         change
     }
 
-    /// Where the body comes to lie.
+    /// Where the body comes to lie; not a number where its contacts do not close.
     #[inline(always)]
-    pub fn displacement(&self, assembly: &Assembly, located: &[Located]) -> Displacement {
+    pub fn displacement(&self, assembly: &Assembly, variables: &[Lanes], located: &[Located]) -> Displacement {
         let mut components = self.start.map(Lanes::splat);
+        let mut change = [Lanes::ZERO; 6];
         for _ in 0..PASSES {
-            let change = self.correction(assembly, located, &components);
+            change = self.correction(assembly, variables, located, &components);
             for (component, change) in components.iter_mut().zip(change) {
                 *component -= change;
             }
         }
+        let size = self.size(&change);
+        // Hardly any unit is that far off.
+        if size.0.iter().any(|size| size.is_nan() || *size > AT_REST) {
+            self.go_on(assembly, variables, located, &mut components, size);
+        }
         Displacement::new(&components, self.centre)
+    }
+
+    /// The size of a correction over that of the contacts.
+    #[inline(always)]
+    fn size(&self, change: &[Lanes; 6]) -> Lanes {
+        let size = |lane: usize| {
+            let shift = (0..3).map(|i| change[i].0[lane].abs() / self.scale);
+            shift
+                .chain((3..6).map(|i| change[i].0[lane].abs()))
+                .fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most })
+        };
+        Lanes(std::array::from_fn(size))
+    }
+
+    /// Further passes for the units that are not at rest, each by itself: a unit does not depend on its neighbours.
+    #[cold]
+    fn go_on(
+        &self,
+        assembly: &Assembly,
+        variables: &[Lanes],
+        located: &[Located],
+        components: &mut [Lanes; 6],
+        mut size: Lanes,
+    ) {
+        let moving = |size: &Lanes| size.map(|size| f64::from(u8::from(size.is_nan() || size > AT_REST)));
+        for _ in PASSES..MOST_PASSES {
+            let still = moving(&size);
+            if still == Lanes::ZERO {
+                return;
+            }
+            let change = self.correction(assembly, variables, located, components);
+            let now = self.size(&change);
+            for lane in (0..LANES).filter(|lane| still.0[*lane] > 0.0) {
+                components.iter_mut().zip(&change).for_each(|(component, change)| component.0[lane] -= change.0[lane]);
+                size.0[lane] = now.0[lane];
+            }
+        }
+        let still = moving(&size);
+        for lane in (0..LANES).filter(|lane| still.0[*lane] > 0.0) {
+            components.iter_mut().for_each(|component| component.0[lane] = f64::NAN);
+        }
+    }
+
+    /// Calls `fit` with the number of each fit and of units in which it does not go together.
+    pub fn misfits(
+        &self,
+        assembly: &Assembly,
+        variables: &[Lanes],
+        located: &[Located],
+        displacement: &Displacement,
+        fit: &mut impl FnMut(usize, usize),
+    ) {
+        let plays = self.joined.iter().filter_map(|joined| joined.float).map(|float| float.half_play(variables));
+        let room = plays.fold(Lanes::splat(1e-9), |room, play| room + play.map(|play| play.max(0.0)));
+        for joined in &self.joined {
+            let Some(float) = &joined.float else { continue };
+            let [x, y, ..] = joined.conditions(assembly, variables, located, displacement);
+            fit(float.fit, float.misfits(variables, (x * x + y * y).map(libm::sqrt), room));
+        }
     }
 }
 
 impl Joined {
     /// The conditions at a displacement of the body.
     #[inline(always)]
-    fn conditions(&self, assembly: &Assembly, located: &[Located], displacement: &Displacement) -> [Lanes; CONDITIONS] {
+    fn conditions(
+        &self,
+        assembly: &Assembly,
+        variables: &[Lanes],
+        located: &[Located],
+        displacement: &Displacement,
+    ) -> [Lanes; CONDITIONS] {
         let own = match self.own {
             Own::Made(feature) => located[feature].displaced(displacement),
             Own::Perfect(feature) => assembly.features[feature].perfect().displaced(displacement),
         };
-        self.contact.conditions(&own, &located[self.other])
+        let mut conditions = self.contact.conditions(&own, &located[self.other]);
+        if let Some(float) = &self.float {
+            float.take_off(variables, &mut conditions);
+        }
+        conditions
     }
 }
 

@@ -229,6 +229,11 @@ impl Class {
         Ok([lower, lower + width].map(|micrometres| micrometres / 1e3))
     }
 
+    /// Whether it is a hole's: capital letters.
+    pub fn is_hole(&self) -> bool {
+        self.hole
+    }
+
     /// As the drawing has it.
     pub fn name(&self) -> String {
         let letters = if self.hole { self.deviation.to_ascii_uppercase() } else { self.deviation.clone() };

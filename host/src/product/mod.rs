@@ -4,12 +4,14 @@
 //! [`Model`] of independent or correlated variables. SI units inside.
 
 pub mod assembly;
+pub mod common;
 pub mod contact;
 pub mod contacts;
 pub mod correlation;
 pub mod dimension;
 pub mod expression;
 pub mod feature;
+pub mod float;
 pub mod function;
 pub mod iso2768;
 pub mod iso286;

@@ -101,6 +101,12 @@ impl Displacement {
         Self { rows, centre, shift: Vector([x, y, z]) }
     }
 
+    /// In how many units it is not a number.
+    pub fn undefined(&self) -> usize {
+        let Vector([x, ..]) = self.shift;
+        x.0.iter().filter(|x| x.is_nan()).count()
+    }
+
     /// R·`vector`.
     #[inline(always)]
     pub fn turn(&self, vector: Vector) -> Vector {

@@ -61,6 +61,7 @@ const AXIS: &[Key] = &[
     key("along"),
     key("length"),
     table("diameter", TOLERANCED),
+    key("kind"),
     table("straightness", ZONE),
     table("parallelism", ZONE),
     table("perpendicularity", ZONE),
@@ -151,6 +152,7 @@ const ROOT: &[Key] = &[
         &[
             key("part"),
             key("contacts"),
+            key("float"),
             table("move", &[key("along"), key("by")]),
             table("turn", &[key("about"), key("at"), key("by")]),
         ],

@@ -4,16 +4,18 @@ use rayon::prelude::*;
 use slipfit_core::sampling::stream::derived;
 
 use super::{
-    derivative::expansion,
+    derivative::{Expansion, expansion},
     draw::Draw,
-    estimate::{Estimate, Joint, joint},
+    estimate::{Estimate, Joint, Spread, joint},
     extremes::{extremes, reaches},
     failure::Failure,
     indices::{Indices, indices},
     model::{Model, Sum, Variation},
     moments::{Moments, moments, spreads},
     normal,
+    pairs::Pairs,
     rss::{RootSumSquare, root_sum_square},
+    sampler::Method,
     study::{Settings, Study, StudyError, Tally},
     tail::{Source, Tail, probability},
     tensor::{self, Exact},
@@ -22,6 +24,8 @@ use super::{
 
 /// Share of the curvature in a measure's variance above which the measure counts as not linear.
 pub const LINEAR: f64 = 1e-6;
+/// The most contributors that have Sobol' indices: each takes thousands of evaluations of all.
+const MOST_INDICES: usize = 512;
 /// What the seeds of everything but the study itself are derived with.
 const TAILS: u64 = 1 << 32;
 const INDICES: u64 = 2 << 32;
@@ -39,7 +43,7 @@ pub struct Theory {
     pub sensitivities: Vec<Vec<Sensitivity>>,
     /// Moments by quadrature of the measures that are not linear, where their variables are few.
     pub exact: Vec<Option<Exact>>,
-    /// Sobol' indices of the measures that are not linear; none with correlated contributors.
+    /// Sobol' indices of the measures that are not linear; none with correlated contributors, or more than 512.
     pub indices: Vec<Option<Indices>>,
     /// P(below the lower limit), P(above the upper limit) of every measure.
     pub tails: Vec<[Option<Tail>; 2]>,
@@ -103,8 +107,29 @@ pub fn analyse(model: &Model, settings: Settings, done: impl Fn(u64) + Sync) -> 
 /// [`StudyError`], if the model cannot be drawn or somebody asked to stop.
 pub fn conclude(study: &Study, tallies: &[Tally]) -> Result<Analysis, StudyError> {
     let Settings { seed, method, .. } = study.settings;
-    let joint = joint(study.model, method, study.frames(), tallies);
-    Ok(Analysis { settings: study.settings, theory: theory(study.model, seed, Some(&joint))?, joint })
+    let basis = Basis::new(study.model);
+    let spread = Spread {
+        shapes: basis.moments.iter().map(|moments| moments.shape).collect(),
+        pairs: if method == Method::PseudoRandom { Pairs::new(study.model) } else { Pairs::default() },
+    };
+    let joint = joint(study.model, method, study.frames(), tallies, &spread);
+    Ok(Analysis { settings: study.settings, theory: of_basis(study.model, basis, seed, Some(&joint))?, joint })
+}
+
+/// What both theory and the errors of a sample start from.
+struct Basis {
+    deviations: Vec<f64>,
+    around_mean: Expansion,
+    moments: Vec<Moments>,
+}
+
+impl Basis {
+    fn new(model: &Model) -> Self {
+        let (means, deviations) = spreads(model);
+        let around_mean = expansion(model, &means, &deviations);
+        let moments = moments(model, &around_mean, &means, &deviations);
+        Self { deviations, around_mean, moments }
+    }
 }
 
 /// What needs no study. `seed` is for importance sampling and Sobol' indices; no probability contradicts what was
@@ -113,16 +138,18 @@ pub fn conclude(study: &Study, tallies: &[Tally]) -> Result<Analysis, StudyError
 /// # Errors
 /// [`StudyError`], if the model cannot be drawn or somebody asked to stop.
 pub fn theory(model: &Model, seed: u64, counted: Option<&Joint>) -> Result<Theory, StudyError> {
+    of_basis(model, Basis::new(model), seed, counted)
+}
+
+fn of_basis(model: &Model, basis: Basis, seed: u64, counted: Option<&Joint>) -> Result<Theory, StudyError> {
     let draw = Draw::new(model, seed)?;
-    let (means, deviations) = spreads(model);
+    let Basis { deviations, around_mean, moments } = basis;
     let middles: Vec<f64> = model.contributors.iter().flat_map(|contributor| middle(&contributor.variation)).collect();
-    let around_mean = expansion(model, &means, &deviations);
     let around_middle = expansion(model, &middles, &deviations);
-    let moments = moments(model, &around_mean, &means, &deviations);
     let bends = |moments: &Moments| moments.curved > LINEAR || !moments.described;
     let curved = moments.iter().any(bends);
     stop_if_asked()?;
-    let all_indices = if curved && model.correlations.is_empty() {
+    let all_indices = if curved && model.correlations.is_empty() && model.contributors.len() <= MOST_INDICES {
         indices(model, &draw, derived(seed, INDICES)).into_iter().map(Some).collect()
     } else {
         vec![None; model.measures.len()]
@@ -214,8 +241,7 @@ fn closing(
     let moves: Vec<f64> = (0..deviations.len())
         .map(|k| deviations[k] * sum.measures.iter().map(|i| slopes[*i][k]).sum::<f64>())
         .collect();
-    let row = |row: &Vec<f64>| row.iter().zip(&moves).map(|(rho, other)| rho * other).sum::<f64>();
-    let variance: f64 = model.correlation().iter().zip(&moves).map(|(rhos, own)| own * row(rhos)).sum();
+    let variance: f64 = model.correlation().times(&moves).iter().zip(&moves).map(|(with, own)| with * own).sum();
     let of_first_order = libm::sqrt(variance.max(0.0));
     // Where slopes do not describe a member, as the units have it.
     let deviation = counted.filter(|_| !described).map_or(of_first_order, |joint| {

@@ -10,6 +10,7 @@ use super::{
     distribution::Marginal,
     lanes::{LANES, Lanes},
     model::{Model, Variation, ZoneRule},
+    nested::Nested,
     normal::{Scores, tail},
     quadrature::{SIGMA_DISC, SIGMA_ZONE},
 };
@@ -43,6 +44,8 @@ enum Rule {
     Scalar(Marginal),
     Zone(ZoneRule),
     Disc(ZoneRule),
+    /// With the share of the normal rule that stays.
+    Nested(Nested, f64),
 }
 
 /// P(|u| + |p| + |r| ≤ 1) of three normals with the standard deviation of [`SIGMA_ZONE`].
@@ -66,6 +69,10 @@ impl Draw {
             Variation::Scalar { distribution, .. } => Rule::Scalar(Marginal::new(distribution)),
             Variation::Zone(rule) => Rule::Zone(*rule),
             Variation::Disc(rule) => Rule::Disc(*rule),
+            Variation::Nested(zone) => {
+                let inside = if zone.rule == ZoneRule::Truncated { zone.inside() } else { 1.0 };
+                Rule::Nested(*zone, inside)
+            }
         });
         let dimensions = model.variables();
         Ok(Self { seed, rules: rules.collect(), correlated: cholesky(model)?, dimensions })
@@ -87,8 +94,17 @@ impl Draw {
         for (number, rule) in self.rules.iter().enumerate() {
             let own = &mut variables[at..at + rule.variables()];
             match rule {
-                Rule::Zone(ZoneRule::Truncated) => self.draw_again(first, number as u64, own, SIGMA_ZONE, octahedral),
-                Rule::Disc(ZoneRule::Truncated) => self.draw_again(first, number as u64, own, SIGMA_DISC, circular),
+                Rule::Zone(ZoneRule::Truncated) => {
+                    self.draw_again(first, number as u64, own, &[SIGMA_ZONE; 3], octahedral);
+                }
+                Rule::Disc(ZoneRule::Truncated) => {
+                    self.draw_again(first, number as u64, own, &[SIGMA_DISC; 2], circular);
+                }
+                Rule::Nested(zone, _) if zone.rule == ZoneRule::Truncated => {
+                    let [place, tilts] = zone.deviations();
+                    let deviations = [place, if zone.places() > 1 { place } else { tilts }, tilts, tilts];
+                    self.draw_again(first, number as u64, own, &deviations, |point| zone.reach(point));
+                }
                 _ => (),
             }
             at += rule.variables();
@@ -110,6 +126,19 @@ impl Draw {
                 Rule::Zone(ZoneRule::Translation) => scores[at] = scores[at] * (1.0 / 3.0),
                 Rule::Zone(ZoneRule::SigmaZone | ZoneRule::Truncated) => {
                     scores[at..at + 3].iter_mut().for_each(|score| *score = *score * SIGMA_ZONE);
+                }
+                Rule::Nested(zone, _) if zone.rule == ZoneRule::UniformInZone => {
+                    let own = &mut scores[at..at + zone.variables()];
+                    for lane in 0..LANES {
+                        let point = zone.uniform(&own.iter().map(|score| score.0[lane]).collect::<Vec<_>>());
+                        own.iter_mut().zip(point).for_each(|(score, value)| score.0[lane] = value);
+                    }
+                }
+                Rule::Nested(zone, _) => {
+                    let [place, tilts] = zone.deviations();
+                    for (k, score) in scores[at..at + zone.variables()].iter_mut().enumerate() {
+                        *score = *score * if k < zone.places() { place } else { tilts };
+                    }
                 }
                 Rule::Disc(ZoneRule::UniformInZone) => {
                     for lane in 0..LANES {
@@ -134,10 +163,11 @@ impl Draw {
         let (mut inside, mut factor, mut at) = ([true; LANES], 1.0, 0);
         for rule in &self.rules {
             let own = &variables[at..at + rule.variables()];
-            let (reach, share): (fn(&[f64]) -> f64, f64) = match rule {
-                Rule::Zone(ZoneRule::Truncated) => (octahedral, INSIDE),
-                Rule::Disc(ZoneRule::Truncated) => (circular, INSIDE_DISC),
-                _ => (|_| 0.0, 1.0),
+            let (reach, share): (&dyn Fn(&[f64]) -> f64, f64) = match rule {
+                Rule::Zone(ZoneRule::Truncated) => (&octahedral, INSIDE),
+                Rule::Disc(ZoneRule::Truncated) => (&circular, INSIDE_DISC),
+                Rule::Nested(zone, inside) => (&|point| zone.reach(point), *inside),
+                _ => (&|_| 0.0, 1.0),
             };
             if share < 1.0 {
                 for (lane, inside) in inside.iter_mut().enumerate() {
@@ -157,7 +187,7 @@ impl Draw {
         first: u64,
         contributor: u64,
         zone: &mut [Lanes],
-        deviation: f64,
+        deviations: &[f64],
         reach: impl Fn(&[f64]) -> f64,
     ) {
         for lane in 0..LANES {
@@ -167,7 +197,9 @@ impl Draw {
             }
             let mut stream = unit_stream(derived(self.seed, u64::MAX - contributor), first + lane as u64);
             while reach(&value) > 1.0 {
-                value.iter_mut().for_each(|x| *x = deviation * Scores::table().score(stream.next_u64()));
+                for (x, deviation) in value.iter_mut().zip(deviations) {
+                    *x = deviation * Scores::table().score(stream.next_u64());
+                }
             }
             zone.iter_mut().zip(value).for_each(|(variable, x)| variable.0[lane] = x);
         }
@@ -179,6 +211,7 @@ impl Rule {
         match self {
             Self::Scalar(_) | Self::Zone(ZoneRule::Translation) => 1,
             Self::Disc(_) => 2,
+            Self::Nested(zone, _) => zone.variables(),
             Self::Zone(_) => 3,
         }
     }
@@ -219,34 +252,40 @@ impl Model {
         counts.scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect()
     }
 
-    /// Correlation matrix of the scores of all variables, row by row.
-    fn correlation_of_scores(&self) -> Vec<Vec<f64>> {
-        self.matrix(|_, _, coefficient| coefficient)
-    }
-
-    /// Correlation matrix of all variables themselves, row by row.
-    pub fn correlation(&self) -> Vec<Vec<f64>> {
-        self.matrix(|one, other, coefficient| {
-            match [one, other].map(|contributor| &self.contributors[contributor].variation) {
+    /// Correlations of the variables themselves.
+    pub fn correlation(&self) -> Correlation {
+        let offsets = self.offsets();
+        let of = |(one, other, coefficient): &(usize, usize, f64)| {
+            let value = match [*one, *other].map(|contributor| &self.contributors[contributor].variation) {
                 [Variation::Scalar { distribution: one, .. }, Variation::Scalar { distribution: other, .. }] => {
-                    copula::of_values(one, other, coefficient)
+                    copula::of_values(one, other, *coefficient)
                 }
                 // Zones are normal where they are correlated at all.
-                _ => coefficient,
-            }
-        })
+                _ => *coefficient,
+            };
+            (offsets[*one], offsets[*other], value)
+        };
+        Correlation(self.correlations.iter().map(of).collect())
+    }
+}
+
+/// A correlation matrix: ones on its diagonal, and few other entries that are not 0.
+pub struct Correlation(Vec<(usize, usize, f64)>);
+
+impl Correlation {
+    /// Pairs of variables and their coefficients.
+    pub fn pairs(&self) -> &[(usize, usize, f64)] {
+        &self.0
     }
 
-    /// A symmetric matrix with ones on its diagonal and something `of` each correlated pair and its coefficient.
-    fn matrix(&self, of: impl Fn(usize, usize, f64) -> f64) -> Vec<Vec<f64>> {
-        let (offsets, count) = (self.offsets(), self.variables());
-        let mut matrix: Vec<Vec<f64>> = (0..count).map(|i| (0..count).map(|j| f64::from(i == j)).collect()).collect();
-        for (one, other, coefficient) in &self.correlations {
-            let (i, j) = (offsets[*one], offsets[*other]);
-            matrix[i][j] = of(*one, *other, *coefficient);
-            matrix[j][i] = matrix[i][j];
+    /// The matrix times a vector.
+    pub fn times(&self, vector: &[f64]) -> Vec<f64> {
+        let mut product = vector.to_vec();
+        for (one, other, coefficient) in &self.0 {
+            product[*one] += coefficient * vector[*other];
+            product[*other] += coefficient * vector[*one];
         }
-        matrix
+        product
     }
 }
 
@@ -268,13 +307,18 @@ fn cholesky(model: &Model) -> Result<Vec<Row>, DrawError> {
     }
     members.sort_unstable();
     members.dedup();
-    let matrix = model.correlation_of_scores();
+    let place = |contributor: usize| members.binary_search(&offsets[contributor]).unwrap_or(0);
+    let mut matrix = vec![vec![0.0; members.len()]; members.len()];
+    for (one, other, coefficient) in &model.correlations {
+        let (i, j) = (place(*one), place(*other));
+        (matrix[i][j], matrix[j][i]) = (*coefficient, *coefficient);
+    }
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for (i, variable) in members.iter().enumerate() {
         let mut row = Vec::with_capacity(i + 1);
-        for (j, other) in members[..i].iter().enumerate() {
-            let known: f64 = row.iter().zip(&rows[j]).map(|(a, b): (&f64, &f64)| a * b).sum();
-            row.push((matrix[*variable][*other] - known) / rows[j][j]);
+        for (j, above) in rows.iter().enumerate() {
+            let known: f64 = row.iter().zip(above).map(|(a, b): (&f64, &f64)| a * b).sum();
+            row.push((matrix[i][j] - known) / above[j]);
         }
         let rest = 1.0 - row.iter().map(|a| a * a).sum::<f64>();
         if rest.is_nan() || rest <= 1e-12 {

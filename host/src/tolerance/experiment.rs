@@ -74,10 +74,15 @@ pub fn experiment(model: &Model, design: Design) -> Result<Experiment, DesignErr
                 factors.push((centre.len(), 0.5 * (high - low), contributor.name.clone()));
                 centre.push(0.5 * (low + high));
             }
-            zone @ (Variation::Zone(_) | Variation::Disc(_)) => {
+            zone @ (Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_)) => {
                 let count = zone.variables();
-                let half = if matches!(zone, Variation::Disc(_)) { FRAC_1_SQRT_2 } else { 1.0 / count as f64 };
-                for _ in 0..count {
+                for k in 0..count {
+                    let half = match zone {
+                        Variation::Disc(_) => FRAC_1_SQRT_2,
+                        Variation::Nested(zone) if k >= zone.places() => 0.5 * zone.tilts,
+                        Variation::Nested(zone) => (1.0 - zone.tilts) / libm::sqrt(zone.places() as f64),
+                        _ => 1.0 / count as f64,
+                    };
                     factors.push((centre.len(), half, contributor.name.clone()));
                     centre.push(0.0);
                 }

@@ -16,13 +16,16 @@ const RIM: usize = 24;
 const PARTS: [f64; 9] = [1.0, 0.75, 0.5, 0.25, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 /// Rounds through all contributors.
 const ROUNDS: usize = 40;
+/// Contributors beyond which one start and one round have to do.
+const WIDE: usize = 512;
 /// Random corners that a search starts from, beside the middle.
 const STARTS: u64 = 4;
 
 /// Least and greatest value of `measure` that was found.
 pub fn extremes(model: &Model, measure: usize) -> [f64; 2] {
     [-1.0, 1.0].map(|sign| {
-        let starts = (0..=STARTS).map(|number| start(model, number));
+        let wide = model.contributors.len() > WIDE;
+        let starts = (0..=if wide { 0 } else { STARTS }).map(|number| start(model, number));
         let best = starts.map(|start| climbed(model, measure, sign, start)).filter(|value| value.is_finite());
         sign * best.fold(f64::NEG_INFINITY, f64::max)
     })
@@ -61,7 +64,7 @@ fn climbed(model: &Model, measure: usize, sign: f64, mut point: Vec<f64>) -> f64
     let offsets = model.offsets();
     let value = |point: &Vec<f64>| sign * evaluate(model, std::slice::from_ref(point))[0][measure];
     let mut best = value(&point);
-    for _ in 0..ROUNDS {
+    for _ in 0..if model.contributors.len() > WIDE { 1 } else { ROUNDS } {
         let before = best;
         for (contributor, at) in model.contributors.iter().zip(&offsets) {
             let points = moves(&contributor.variation, *at, &point);
@@ -99,6 +102,7 @@ fn corners(variation: &Variation) -> Vec<Vec<f64>> {
             let angles = (0..RIM).map(|k| TAU * k as f64 / RIM as f64);
             angles.map(|angle| vec![libm::cos(angle), libm::sin(angle)]).collect()
         }
+        Variation::Nested(zone) => zone.corners(),
         zone @ Variation::Zone(_) => {
             let count = zone.variables();
             let corner = |k: usize, sign: f64| (0..count).map(|j| if j == k { sign } else { 0.0 }).collect();

@@ -71,7 +71,9 @@ impl Mixture {
     pub fn sample(mut self, state: &mut LimitState, seed: u64) -> Sampled {
         let dimensions = state.dimensions();
         let method = if dimensions > MOST_DIMENSIONS { Method::PseudoRandom } else { Method::ScrambledSobol };
-        let all = UNITS.max(UNITS_EACH * self.points.len() as u64) as f64;
+        // Without Sobol' points more units gain little, and each of so many scores takes its time.
+        let least = if method == Method::PseudoRandom { UNITS / 4 } else { UNITS };
+        let all = least.max(UNITS_EACH * self.points.len() as u64) as f64;
         // Whole groups, and the weights that these have.
         let groups: Vec<u64> =
             self.weights.iter().map(|w| libm::ceil(w * all / LANES as f64).max(1.0) as u64).collect();

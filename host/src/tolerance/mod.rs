@@ -9,6 +9,8 @@
 pub mod analysis;
 mod binomial;
 pub mod copula;
+#[cfg(test)]
+mod coverage_tests;
 pub mod derivative;
 mod distribution;
 pub mod draw;
@@ -27,7 +29,9 @@ pub mod lanes;
 pub mod linear;
 pub mod model;
 pub mod moments;
+pub mod nested;
 pub mod normal;
+pub mod pairs;
 mod permutation;
 pub mod picture;
 pub mod quadrature;
@@ -36,6 +40,7 @@ pub mod report;
 pub mod rss;
 pub mod run;
 pub mod sampler;
+pub mod shape;
 pub mod sobol;
 pub mod study;
 mod subset;

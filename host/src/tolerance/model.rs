@@ -1,6 +1,6 @@
 //! What every analysis works on: contributors that vary, and the measures that follow from them.
 
-use super::lanes::Lanes;
+use super::{lanes::Lanes, nested::Nested};
 
 /// A product whose measures are a function of independent (or correlated) random variables.
 pub struct Model {
@@ -48,6 +48,8 @@ pub enum Variation {
     /// The axis of a pin or hole in its cylindrical zone of diameter t: offsets x, y over t/2 (or tilts, measured at its
     /// end), with x² + y² ≤ 1 inside the zone. Two variables.
     Disc(ZoneRule),
+    /// A plane or an axis in its zone, with tilts that another tolerance narrows: place, then two tilts.
+    Nested(Nested),
 }
 
 /// How a plane or an axis varies in its zone.

@@ -12,7 +12,7 @@ pub struct Node {
     /// Its weight; those of a contributor add up to 1.
     pub weight: f64,
     /// Its place.
-    pub at: [f64; 3],
+    pub at: [f64; 4],
 }
 
 /// Where the tails of a normal are cut off (standard deviations): beyond lie 2e-19.
@@ -30,6 +30,8 @@ pub fn nodes(variation: &Variation) -> Vec<Node> {
         Variation::Zone(ZoneRule::UniformInZone) => octahedron(|_| 1.0),
         Variation::Disc(ZoneRule::SigmaZone | ZoneRule::Translation) => Vec::new(),
         Variation::Disc(ZoneRule::UniformInZone) => disc(|_| 1.0),
+        Variation::Nested(zone) if zone.is_normal() => Vec::new(),
+        Variation::Nested(zone) => zone.nodes(),
         Variation::Disc(ZoneRule::Truncated) => disc(|square| libm::exp(-4.5 * square)),
         Variation::Zone(ZoneRule::Truncated) => {
             octahedron(|at| libm::exp(-13.5 * at.iter().map(|x| x * x).sum::<f64>()))
@@ -43,7 +45,7 @@ pub fn nodes(variation: &Variation) -> Vec<Node> {
 fn scalar(distribution: &Distribution) -> Vec<Node> {
     let straight = |x: f64| (x, 1.0);
     match distribution {
-        Distribution::Constant(value) => vec![Node { weight: 1.0, at: [*value, 0.0, 0.0] }],
+        Distribution::Constant(value) => vec![Node { weight: 1.0, at: [*value, 0.0, 0.0, 0.0] }],
         Distribution::Normal { mean, deviation } => {
             line(&normal_pieces(-REACH, REACH), |z| (mean + deviation * z, density(z)))
         }
@@ -70,7 +72,7 @@ fn scalar(distribution: &Distribution) -> Vec<Node> {
                         let width = ends[1] - ends[0];
                         Node {
                             weight: if width > 0.0 { weight / width } else { 1.0 / POINTS as f64 },
-                            at: [x, 0.0, 0.0],
+                            at: [x, 0.0, 0.0, 0.0],
                         }
                     })
                 })
@@ -102,7 +104,7 @@ fn normal_pieces(from: f64, to: f64) -> Vec<f64> {
 fn line(borders: &[f64], map: impl Fn(f64) -> (f64, f64)) -> Vec<Node> {
     let node = |(x, weight): (f64, f64)| {
         let (place, density) = map(x);
-        Node { weight: weight * density, at: [place, 0.0, 0.0] }
+        Node { weight: weight * density, at: [place, 0.0, 0.0, 0.0] }
     };
     borders.windows(2).flat_map(|ends| piece(ends[0], ends[1])).map(node).collect()
 }
@@ -119,7 +121,7 @@ fn octahedron(density: impl Fn([f64; 3]) -> f64) -> Vec<Node> {
                 let weight = wa * wb * wc * (1.0 - u) * (1.0 - u - p) * density([u, p, r]);
                 for octant in 0..8 {
                     let sign = |bit: u32| if octant >> bit & 1 == 0 { 1.0 } else { -1.0 };
-                    nodes.push(Node { weight, at: [u * sign(0), p * sign(1), r * sign(2)] });
+                    nodes.push(Node { weight, at: [u * sign(0), p * sign(1), r * sign(2), 0.0] });
                 }
             }
         }
@@ -134,7 +136,7 @@ fn disc(density: impl Fn(f64) -> f64) -> Vec<Node> {
     for (radius, weight) in [0.0, 0.5].into_iter().flat_map(|from| piece(from, from + 0.5)) {
         for angle in 0..ANGLES {
             let angle = std::f64::consts::TAU * (angle as f64 + 0.5) / ANGLES as f64;
-            let at = [radius * libm::cos(angle), radius * libm::sin(angle), 0.0];
+            let at = [radius * libm::cos(angle), radius * libm::sin(angle), 0.0, 0.0];
             nodes.push(Node { weight: weight * radius * density(radius * radius), at });
         }
     }
@@ -142,7 +144,7 @@ fn disc(density: impl Fn(f64) -> f64) -> Vec<Node> {
 }
 
 /// Gauss–Legendre points between `from` and `to`, with weights that add up to its length.
-fn piece(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
+pub(super) fn piece(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     (0..POINTS).map(move |i| {
         let mut x = libm::cos(std::f64::consts::PI * (i as f64 + 0.75) / (POINTS as f64 + 0.5));
@@ -165,6 +167,12 @@ fn piece(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
 pub fn mean_and_deviation(variation: &Variation) -> Vec<[f64; 2]> {
     if let Variation::Zone(ZoneRule::SigmaZone) = variation {
         return vec![[0.0, SIGMA_ZONE]; 3];
+    }
+    if let Variation::Nested(zone) = variation
+        && zone.is_normal()
+    {
+        let [place, tilts] = zone.deviations();
+        return (0..zone.variables()).map(|k| [0.0, if k < zone.places() { place } else { tilts }]).collect();
     }
     if let Variation::Disc(ZoneRule::SigmaZone | ZoneRule::Translation) = variation {
         return vec![[0.0, SIGMA_DISC]; 2];
@@ -193,6 +201,7 @@ impl Variation {
         match self {
             Self::Scalar { .. } | Self::Zone(ZoneRule::Translation) => 1,
             Self::Disc(_) => 2,
+            Self::Nested(zone) => zone.variables(),
             Self::Zone(_) => 3,
         }
     }
@@ -254,7 +263,7 @@ mod tests {
         assert!((uniform - libm::sqrt(0.1)).abs() < 1e-12);
         let nodes = nodes(&Variation::Zone(ZoneRule::UniformInZone));
         let deviation = |g: [f64; 3]| {
-            let value = |at: [f64; 3]| g[0] * at[0] + g[1] * at[1] + g[2] * at[2];
+            let value = |at: [f64; 4]| g[0] * at[0] + g[1] * at[1] + g[2] * at[2];
             libm::sqrt(nodes.iter().map(|node| node.weight * value(node.at) * value(node.at)).sum::<f64>())
         };
         assert!((deviation([1.0, 1.0, 0.0]) - libm::sqrt(0.2)).abs() < 1e-12);

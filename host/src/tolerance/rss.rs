@@ -30,7 +30,7 @@ pub fn root_sum_square(model: &Model, middle: &Expansion, mean: &Expansion, devi
         .zip(&offsets)
         .flat_map(|(contributor, at)| match &contributor.variation {
             Variation::Scalar { limits: [low, high], .. } => vec![0.5 * (high - low)],
-            zone @ (Variation::Zone(_) | Variation::Disc(_)) => {
+            zone @ (Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_)) => {
                 deviations[*at..at + zone.variables()].iter().map(|d| 3.0 * d).collect()
             }
         })
@@ -39,8 +39,7 @@ pub fn root_sum_square(model: &Model, middle: &Expansion, mean: &Expansion, devi
         let square = |(slope, half): (&f64, &f64)| slope * half * (slope * half);
         let moves: Vec<f64> =
             mean.slopes[i].iter().zip(deviations).map(|(slope, deviation)| slope * deviation).collect();
-        let part = |j: usize| moves[j] * correlation[j].iter().zip(&moves).map(|(rho, other)| rho * other).sum::<f64>();
-        let parts: Vec<f64> = (0..moves.len()).map(part).collect();
+        let parts: Vec<f64> = correlation.times(&moves).iter().zip(&moves).map(|(with, own)| with * own).collect();
         let variance: f64 = parts.iter().sum();
         let share = |(contributor, at): (&super::model::Contributor, &usize)| {
             let own: f64 = parts[*at..at + contributor.variation.variables()].iter().sum();

@@ -71,7 +71,14 @@ fn of_variables(variation: &Variation, points: usize) -> Option<Vec<Vec<Point>>>
         }
         Variation::Zone(ZoneRule::SigmaZone) => Some(vec![of_normal(SIGMA_ZONE); 3]),
         Variation::Disc(ZoneRule::SigmaZone | ZoneRule::Translation) => Some(vec![of_normal(SIGMA_DISC); 2]),
-        Variation::Zone(ZoneRule::Truncated | ZoneRule::UniformInZone)
+        Variation::Nested(zone) if zone.is_normal() => {
+            let [place, tilts] = zone.deviations();
+            let mut rules = vec![of_normal(place); zone.places()];
+            rules.extend(vec![of_normal(tilts); 2]);
+            Some(rules)
+        }
+        Variation::Nested(_)
+        | Variation::Zone(ZoneRule::Truncated | ZoneRule::UniformInZone)
         | Variation::Disc(ZoneRule::Truncated | ZoneRule::UniformInZone) => None,
     }
 }

@@ -2,11 +2,13 @@
 
 use super::{
     analysis::{Analysis, Theory, analyse},
-    estimate::{Estimate, quantile},
+    estimate::{Estimate, Spread, quantile},
     examples::{MM, chain, clutch, left_front, linear, normal, normals, rectangulars, scalar},
     lanes::Lanes,
     model::{Distribution, Function, Model},
+    moments,
     normal::{density, tail},
+    pairs::Pairs,
     report::report,
     sampler::Method,
     study::{Settings, Study, StudyError, join},
@@ -208,12 +210,14 @@ fn deviation_error(coefficients: &[f64], method: Method) -> f64 {
     let model = normals(coefficients);
     let exact = libm::sqrt(coefficients.iter().map(|c| c * c).sum());
     let seeds = 200;
+    let shapes = moments::of_measures(&model).into_iter().map(|moments| moments.shape).collect();
+    let spread = Spread { shapes, pairs: Pairs::new(&model) };
     let square = |seed| {
         let settings = Settings { method, samples: 4096, replicates: 1, seed };
         let study = Study::new(&model, settings).unwrap();
         let mut tallies = study.empty();
         study.add(0..settings.blocks(), &mut tallies, |_| ());
-        let joint = super::estimate::joint(&model, method, study.frames(), &tallies);
+        let joint = super::estimate::joint(&model, method, study.frames(), &tallies, &spread);
         let error = joint.measures[0].deviation.value / exact - 1.0;
         error * error
     };

@@ -3,6 +3,7 @@
 use super::{
     derivative::{Expansion, evaluate},
     model::{Distribution, Model, Variation},
+    nested::Nest,
 };
 
 /// The most combinations of vertices that are tried.
@@ -24,7 +25,7 @@ pub struct WorstCase {
 pub fn middle(variation: &Variation) -> Vec<f64> {
     match variation {
         Variation::Scalar { limits: [low, high], .. } => vec![0.5 * (low + high)],
-        zone @ (Variation::Zone(_) | Variation::Disc(_)) => vec![0.0; zone.variables()],
+        zone @ (Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_)) => vec![0.0; zone.variables()],
     }
 }
 
@@ -36,6 +37,7 @@ pub fn reach(variation: &Variation, slopes: &[f64]) -> f64 {
         Variation::Scalar { limits: [low, high], .. } => 0.5 * (high - low) * most,
         Variation::Zone(_) => most,
         Variation::Disc(_) => libm::sqrt(slopes.iter().map(|slope| slope * slope).sum()),
+        Variation::Nested(zone) => zone.most(slopes),
     }
 }
 
@@ -56,7 +58,12 @@ pub fn worst_case(model: &Model, around: &Expansion) -> Vec<WorstCase> {
 }
 
 fn by_vertices(model: &Model) -> Option<Vec<[f64; 2]>> {
-    if model.contributors.iter().any(|contributor| matches!(contributor.variation, Variation::Disc(_))) {
+    let is_round = |variation: &Variation| match variation {
+        Variation::Disc(_) => true,
+        Variation::Nested(zone) => zone.of == Nest::Axis,
+        _ => false,
+    };
+    if model.contributors.iter().any(|contributor| is_round(&contributor.variation)) {
         return None;
     }
     let corners: Vec<Vec<Vec<f64>>> = model.contributors.iter().map(|c| corners(&c.variation)).collect();
@@ -87,6 +94,7 @@ fn corners(variation: &Variation) -> Vec<Vec<f64>> {
     match variation {
         Variation::Scalar { distribution: Distribution::Constant(value), .. } => vec![vec![*value]],
         Variation::Scalar { limits, .. } => limits.iter().map(|limit| vec![*limit]).collect(),
+        Variation::Nested(zone) => zone.corners(),
         zone @ (Variation::Zone(_) | Variation::Disc(_)) => {
             let count = zone.variables();
             let corner = |k: usize, sign: f64| (0..count).map(|j| if j == k { sign } else { 0.0 }).collect();

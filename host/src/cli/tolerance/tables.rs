@@ -37,6 +37,7 @@ fn real(x: f64) -> String {
 
 /// What the units say.
 fn drawn(report: &Report) -> String {
+    let by_points = report.measures.iter().any(|m| m.pp_by_points.or(m.ppk_by_points).is_some());
     let row = |m: &MeasureReport| {
         let unit = if m.unit.is_empty() { String::new() } else { format!(", {}", m.unit) };
         let mut row = vec![format!("{}{unit}", m.name)];
@@ -45,15 +46,24 @@ fn drawn(report: &Report) -> String {
         row.extend([m.min, m.q00135, m.median, m.q99865, m.max].map(real));
         if report.limited() {
             row.extend([m.pp, m.ppk].map(|x| or_dash(x, |x| fixed(x, 3))));
+            if by_points {
+                row.extend([m.pp_by_points, m.ppk_by_points].map(|x| or_dash(x, |x| fixed(x, 3))));
+            }
             row.extend(m.dpm.map(|side| or_dash(side.map(|side| side.dpm), per_million)));
         }
         row
     };
     let mut heading = vec!["measure", "mean", "σ", "skew", "kurt", "min", "0.135 %", "50 %", "99.865 %", "max"];
     if report.limited() {
-        heading.extend(["Pp", "Ppk", "ppm below", "ppm above"]);
+        heading.extend(["Pp", "Ppk"]);
+        if by_points {
+            heading.extend(["Pp by points", "Ppk by points"]);
+        }
+        heading.extend(["ppm below", "ppm above"]);
     }
-    text_table(&heading, &report.measures.iter().map(row).collect::<Vec<_>>())
+    let table = text_table(&heading, &report.measures.iter().map(row).collect::<Vec<_>>());
+    let told = "Pp, Ppk: by 6σ, as if normal; by points: what is not normal, by its 0.135, 50 and 99.865 % points\n";
+    if by_points { table + told } else { table }
 }
 
 /// How good that is, and what needs no units.

@@ -5,6 +5,7 @@ use crate::{
     product::Product,
     scene::{Scene, SceneFile, shipped},
     tolerance::model::{Variation, ZoneRule},
+    tolerance::nested::{Nest, Nested},
     tolerance::{analysis, derivative::expansion, moments},
 };
 
@@ -14,11 +15,7 @@ fn variable(product: &Product, name: &str) -> usize {
         if contributor.name == name {
             return first;
         }
-        first += match contributor.variation {
-            Variation::Scalar { .. } | Variation::Zone(ZoneRule::Translation) => 1,
-            Variation::Disc(_) => 2,
-            Variation::Zone(_) => 3,
-        };
+        first += contributor.variation.variables();
     }
     panic!("no {name}");
 }
@@ -152,16 +149,16 @@ fn general_geometry_and_datums() {
         [
             "table.top flatness",
             "table.back perpendicularity",
-            "table.back flatness",
             "block.bottom flatness",
-            "block.bore perpendicularity",
-            "block.bore position",
+            "block.bore position, perpendicularity",
         ]
     );
     // K: flatness 0.2 mm on 100 mm; half of it is u = 1.
     let raised = at(&block, &[(0, 1.0)])[0];
     close(raised, 20e-3, 1e-12);
-    assert_eq!(block.model.contributors[5].variation, Variation::Disc(ZoneRule::SigmaZone));
+    // Half as wide as the position, the perpendicularity narrows the tilts.
+    let nested = Nested { of: Nest::Axis, rule: ZoneRule::SigmaZone, tilts: 0.5 };
+    assert_eq!(block.model.contributors[3].variation, Variation::Nested(nested));
 }
 
 /// Two holes 50 mm apart along a slant, each anywhere in its cylindrical zone.
@@ -278,7 +275,11 @@ fn bad_parts_are_shown_with_their_place_and_what_is_allowed() {
         ),
         (datum, "profile = { zone = 0.1, datum = [] }", ["datum = |[]", "is a list of 0", "one to three"]),
         (datum, "offset = { tolerance = 0 }", ["tolerance = |0 }", "is 0 mm", "more than 0"]),
-        ("[100, 10], perp", "[4000, 10], perp", ["extents = |[4000", "no flatness for 4000 mm", "up to 3000 mm"]),
+        (
+            "extents = [100, 80] },\n  { name = \"back",
+            "extents = [4000, 80] },\n  { name = \"back",
+            ["extents = |[4000", "no flatness for 4000 mm", "up to 3000 mm"],
+        ),
         ("extents = [100, 20]", "extents = [0, 20]", ["extents = [|0", "is 0 mm", "0.000001 to"]),
         ("normal = \"+z\", along", "normal = [0, 0, 0], along", ["normal = |[0", "part.plane.normal", "not all 0"]),
         ("normal = \"+z\", along", "normal = \"z\", along", ["normal = |\"z", "is \"z\"", "\"+x\""]),

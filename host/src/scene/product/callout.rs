@@ -2,28 +2,29 @@
 
 use crate::{
     product::{
-        assembly::{Carried, Placement},
-        contact::{Contact, cross, unit},
-        contacts::{Joined, Own},
-        dimension::Toleranced,
+        assembly::With,
+        contact::{cross, unit},
+        dimension::{self, Toleranced},
         feature::Shape,
-        iso2768,
+        iso2768::{self, GeometryClass},
     },
     scene::{Problem, SceneError, tree::Value, unit as units, unit::Quantity, value::Field},
-    tolerance::{
-        lanes::Lanes,
-        model::{Contributor, Variation, ZoneRule},
-    },
+    tolerance::model::ZoneRule,
 };
 
-use super::{Draft, part::FeatureDraft, rule, toleranced};
+use super::{
+    Draft,
+    datum::{carry, datums},
+    part::FeatureDraft,
+    rule, toleranced, zone,
+};
 
 const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
 const ZONE: &str = "the width of its zone in mm, or { zone = …, datum = [\"…\"], rule = \"…\" }";
 
 /// What a geometric tolerance limits.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Limits {
+pub(super) enum Limits {
     /// Form: offset and tilts, without a datum.
     Form,
     /// Form along the first extent only.
@@ -47,55 +48,159 @@ fn limits(callout: &str) -> Limits {
     }
 }
 
+/// A geometric tolerance as it is read.
+pub(super) struct Callout<'t, 's> {
+    pub name: &'static str,
+    pub limits: Limits,
+    /// Width of its zone (m).
+    pub width: f64,
+    /// Its datums; none of a form.
+    pub datums: Vec<usize>,
+    pub rule: ZoneRule,
+    pub field: Field<'t, 's>,
+}
+
 /// Reads the tolerances of a feature and adds it to the `draft`.
 pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), SceneError> {
-    let mut frame: Option<(Vec<usize>, Limits)> = None;
+    let none = |field: &Field| matches!(&field.node.value, Value::Text(text) if text == "none");
+    let mut callouts = Vec::new();
     let mut formed = false;
-    for callout in CALLOUTS {
-        let Some(field) = made.table.get(callout) else { continue };
-        let limits = limits(callout);
-        refuse_unsupported(callout, &made, &field)?;
-        formed |= matches!(limits, Limits::Form | Limits::Location);
-        if matches!(&field.node.value, Value::Text(text) if text == "none") {
-            continue;
+    for name in CALLOUTS {
+        let Some(field) = made.table.get(name) else { continue };
+        refuse_unsupported(name, &made, &field)?;
+        // A straight line leaves the flatness of its face open.
+        formed |= limits(name) != Limits::Line;
+        if !none(&field) {
+            callouts.push(callout(name, field, &made, draft)?);
         }
-        let datums = datums(&field, limits, draft)?;
-        if !datums.is_empty() {
-            if frame.as_ref().is_some_and(|(known, _)| *known != datums) {
-                let problem = Problem::Unsupported { what: "a second system of datums for one feature".into() };
-                return Err(field.error(problem, "the same datums in all tolerances of a feature"));
-            }
-            let wider = matches!(frame, Some((_, Limits::Location)));
-            frame = Some((datums.clone(), if wider { Limits::Location } else { limits }));
-        }
-        let width = width(&field, callout, &made, &datums, draft)?;
-        zone(&mut made, &field, callout, limits, width, draft)?;
     }
-    if let Some(field) = made.table.get("offset") {
+    if let Some(field) = made.table.get("offset").filter(|field| !none(field)) {
         let size = toleranced::offset(&field, draft)?;
         let normal = made.feature.nominal[1];
         made.feature.nominal[0] = [0, 1, 2].map(|i| made.feature.nominal[0][i] - size.nominal * normal[i]);
         shift(&mut made, "offset", &size, normal, draft);
     }
     formed |= vectorial(&mut made, draft)?;
-    let general = draft.defaults.general.geometry;
-    if let Some(class) = general.filter(|_| !formed && made.feature.shape != Shape::Axis) {
-        let key = format!("{}.extents", made.table.key);
-        let missing =
-            || made.table.error(Problem::Missing(key), "extents of its face, flatness, or flatness = \"none\"");
-        let [a, b] = made.extents.ok_or_else(missing)?;
-        let at = made.table.get("extents").unwrap_or(made.table.clone());
-        let width = iso2768::flatness(class, a.max(b)).map_err(|error| toleranced::band(&at, error))?;
-        zone(&mut made, &at, "flatness", Limits::Form, width, draft)?;
+    if let Some(class) = draft.defaults.general.geometry.filter(|_| !formed && made.feature.shape != Shape::Axis) {
+        callouts.push(general_flatness(class, &made, draft)?);
+    }
+    let one = |of: fn(&Limits) -> bool| -> Result<Option<&Callout>, SceneError> {
+        let mut found = callouts.iter().filter(|callout| of(&callout.limits));
+        match (found.next(), found.next()) {
+            (Some(first), Some(second)) => {
+                let what = format!("{} beside {} of one feature", second.name, first.name);
+                Err(second.field.error(Problem::Unsupported { what }, "one of them: the narrower one"))
+            }
+            (first, _) => Ok(first),
+        }
+    };
+    let location = one(|limits| *limits == Limits::Location)?;
+    let orientation = one(|limits| *limits == Limits::Orientation)?;
+    let forms: Vec<_> =
+        callouts.iter().filter(|callout| matches!(callout.limits, Limits::Form | Limits::Line)).collect();
+    if let Some(location) = location {
+        zone::located(&mut made, location, orientation, draft);
+    } else if let Some(orientation) = orientation {
+        zone::oriented(&mut made, orientation, draft);
+    }
+    if location.is_none() {
+        general_place(&mut made, draft);
+    }
+    let flat = forms.iter().find(|form| form.limits == Limits::Form).copied();
+    for form in &forms {
+        let wider = location.or(orientation).or(flat.filter(|_| form.limits == Limits::Line));
+        match wider {
+            None => zone::formed(&mut made, form, draft),
+            // What lies within a wider zone moves only what that leaves open.
+            Some(wider) if wider.limits == Limits::Orientation && made.feature.shape == Shape::Plane => {
+                zone::offset_within(&mut made, form, wider.width, draft);
+            }
+            Some(wider) => draft.warnings.push(format!(
+                "{}: {} lies within {}, which has all that the feature moves by",
+                made.name, form.name, wider.name
+            )),
+        }
     }
 
     let index = draft.assembly.features.len();
-    let FeatureDraft { name, feature, part, table, sides, extents, .. } = made;
+    let frames =
+        [location, orientation].map(|callout| callout.map(|callout| callout.datums.clone()).unwrap_or_default());
+    let FeatureDraft { name, feature, part, table, sides, extents, diameter, .. } = made;
     draft.faces.push((sides, extents));
     draft.assembly.features.push(feature);
     draft.feature_names.push(name);
     draft.parts_of_features.push(part);
-    frame.map_or(Ok(()), |(datums, limits)| carry(index, &datums, limits, &table, draft))
+    draft.diameters.push(diameter);
+    let [places, turns] = frames;
+    if !places.is_empty() {
+        let with = if turns.is_empty() || turns == places { With::All } else { With::Place };
+        carry(index, &places, with, &table, draft)?;
+    }
+    if turns.is_empty() || turns == places { Ok(()) } else { carry(index, &turns, With::Direction, &table, draft) }
+}
+
+/// Reads the tolerance `name` of a feature.
+fn callout<'t, 's>(
+    name: &'static str,
+    field: Field<'t, 's>,
+    made: &FeatureDraft,
+    draft: &mut Draft,
+) -> Result<Callout<'t, 's>, SceneError> {
+    let limits = limits(name);
+    let list = field.get("datum");
+    if let Some(list) = list.as_ref().filter(|_| matches!(limits, Limits::Form | Limits::Line)) {
+        let problem = Problem::Unsupported { what: format!("a datum of {}", field.key) };
+        return Err(list.error(problem, "no datum: a form is its own"));
+    }
+    let datums = list.map_or(Ok(Vec::new()), |list| datums(&list, draft))?;
+    let width = width(&field, name, made, &datums, draft)?;
+    let rule_field = field.get("rule");
+    let rule = rule_field.as_ref().map_or(Ok(draft.defaults.rule), rule)?;
+    if rule == ZoneRule::Translation && limits == Limits::Orientation && made.feature.shape == Shape::Plane {
+        let what = format!("{name} by the rule translation");
+        let allowed = "a rule with tilts: sigma-zone, truncated, uniform-in-zone";
+        return Err(rule_field.unwrap_or(field).error(Problem::Unsupported { what }, allowed));
+    }
+    Ok(Callout { name, limits, width, datums, rule, field })
+}
+
+/// The general tolerance of the place of a feature whose drawing says nothing of it: that of its distance from the origin of its
+/// part, in which drawings count. What lies in the origin is where it is.
+fn general_place(made: &mut FeatureDraft, draft: &mut Draft) {
+    let Some(class) = draft.defaults.general.size else { return };
+    let vectorial = made.table.get("vectorial").is_some_and(|table| table.get("position").is_some());
+    if vectorial || made.table.get("offset").is_some() {
+        return;
+    }
+    let ([along, one, two], [first, second]) = (made.coordinates, made.sides);
+    let across: &[_] = match made.feature.shape {
+        Shape::Axis => &[("place 1", one, first), ("place 2", two, second)],
+        _ => &[("place", along, made.feature.nominal[1])],
+    };
+    for (name, distance, direction) in across {
+        // The digits that turning made up would push a length over the end of its band.
+        let distance = (distance.abs() * 1e12).round() / 1e12;
+        let shape = dimension::Shape::Normal { sigma: draft.defaults.sigma };
+        let half = iso2768::linear(class, distance).ok();
+        if let Some(Ok(place)) = half.map(|half| Toleranced::new(0.0, [-half, half], &shape)) {
+            shift(made, name, &place, *direction, draft);
+        }
+    }
+}
+
+/// The general flatness of a feature whose drawing says nothing.
+fn general_flatness<'t, 's>(
+    class: GeometryClass,
+    made: &FeatureDraft<'t, 's>,
+    draft: &Draft,
+) -> Result<Callout<'t, 's>, SceneError> {
+    let key = format!("{}.extents", made.table.key);
+    let missing = || made.table.error(Problem::Missing(key), "extents of its face, flatness, or flatness = \"none\"");
+    let [a, b] = made.extents.ok_or_else(missing)?;
+    let field = made.table.get("extents").unwrap_or(made.table.clone());
+    let width = iso2768::flatness(class, a.max(b)).map_err(|error| toleranced::band(&field, error))?;
+    let rule = draft.defaults.rule;
+    Ok(Callout { name: "flatness", limits: Limits::Form, width, datums: Vec::new(), rule, field })
 }
 
 /// Refuses a tolerance that a feature of this shape cannot have.
@@ -110,24 +215,6 @@ fn refuse_unsupported(callout: &str, made: &FeatureDraft, field: &Field) -> Resu
     }
     let what = format!("{callout} of {}", made.feature.shape.article());
     Err(field.error(Problem::Unsupported { what }, known.join(", ")))
-}
-
-/// The datums that a tolerance names: features of the same part that stand above.
-fn datums(field: &Field, limits: Limits, draft: &Draft) -> Result<Vec<usize>, SceneError> {
-    let Some(list) = field.get("datum") else { return Ok(Vec::new()) };
-    if matches!(limits, Limits::Form | Limits::Line) {
-        let problem = Problem::Unsupported { what: format!("a datum of {}", field.key) };
-        return Err(list.error(problem, "no datum: a form is its own"));
-    }
-    let nodes = match &list.node.value {
-        Value::List(nodes) => nodes.iter().map(|node| Field { key: list.key.clone(), node }).collect(),
-        _ => vec![list.clone()],
-    };
-    if nodes.is_empty() || nodes.len() > 3 {
-        let problem = Problem::Length { key: list.key.clone(), found: nodes.len() };
-        return Err(list.error(problem, "one to three datums, the primary first"));
-    }
-    nodes.iter().map(|datum| draft.feature(datum)).collect()
 }
 
 /// The width (m) of a zone, stated or general.
@@ -180,63 +267,8 @@ fn shorter_leg(made: &FeatureDraft, extents: [f64; 2], datums: &[usize], draft: 
     datums.iter().filter_map(of_datum).fold(extents[0].max(extents[1]), f64::min)
 }
 
-/// Lets the feature vary in a zone of `width` (m).
-fn zone(
-    made: &mut FeatureDraft,
-    field: &Field,
-    callout: &str,
-    limits: Limits,
-    width: f64,
-    draft: &mut Draft,
-) -> Result<(), SceneError> {
-    let ([_, direction], sides) = (made.feature.nominal, made.sides);
-    let extents = made.extents.unwrap_or([1.0; 2]);
-    let sixth = Toleranced::in_zone(width);
-    match made.feature.shape {
-        Shape::Point => shift(made, callout, &sixth, direction, draft),
-        Shape::Axis => {
-            let rule = field.get("rule").as_ref().map_or(Ok(draft.defaults.rule), rule)?;
-            let name = format!("{} {callout}", made.name);
-            let first = draft.add(Contributor { name, variation: Variation::Disc(rule) }, &[0.0; 2]);
-            for (variable, side) in (first..).zip(sides) {
-                if limits == Limits::Location {
-                    made.feature.shift(variable, side, width / 2.0);
-                } else {
-                    // As far as the end of the axis leaves its nominal line.
-                    made.feature.tilt(variable, side, width / extents[0]);
-                }
-            }
-        }
-        Shape::Plane => {
-            let rule_field = field.get("rule");
-            let rule = rule_field.as_ref().map_or(Ok(draft.defaults.rule), rule)?;
-            if rule == ZoneRule::Translation && limits == Limits::Orientation {
-                let what = format!("{callout} by the rule translation");
-                return Err(rule_field.unwrap_or(field.clone()).error(
-                    Problem::Unsupported { what },
-                    "a rule with tilts: sigma-zone, truncated, uniform-in-zone",
-                ));
-            }
-            let variables = if rule == ZoneRule::Translation { 1 } else { 3 };
-            let contributor =
-                Contributor { name: format!("{} {callout}", made.name), variation: Variation::Zone(rule) };
-            let first = draft.add(contributor, &[0.0; 3][..variables]);
-            if limits != Limits::Orientation {
-                made.feature.shift(first, direction, width / 2.0);
-            }
-            // A height that grows along a side tilts the normal against it.
-            let tilted = if limits == Limits::Line { 1 } else { 2 };
-            let tilts = first + 1..first + variables;
-            for (variable, (side, extent)) in tilts.zip(sides.into_iter().zip(extents)).take(tilted) {
-                made.feature.tilt(variable, side, -width / extent);
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Lets the feature shift by a toleranced number along a direction.
-fn shift(made: &mut FeatureDraft, what: &str, size: &Toleranced, along: [f64; 3], draft: &mut Draft) {
+pub(super) fn shift(made: &mut FeatureDraft, what: &str, size: &Toleranced, along: [f64; 3], draft: &mut Draft) {
     let variable = draft.add(size.contributor(format!("{} {what}", made.name)), &[size.nominal]);
     made.feature.shift(variable, along, 1.0);
 }
@@ -264,39 +296,4 @@ fn vectorial(made: &mut FeatureDraft, draft: &mut Draft) -> Result<bool, SceneEr
         }
     }
     Ok(true)
-}
-
-/// Lets a feature go where its datums go: all of it, or its direction only.
-fn carry(index: usize, datums: &[usize], limits: Limits, table: &Field, draft: &mut Draft) -> Result<(), SceneError> {
-    let carried = Carried { feature: index, turns_only: limits == Limits::Orientation };
-    let part = draft.parts_of_features[index];
-    if let Some(foreign) = datums.iter().find(|datum| draft.parts_of_features[**datum] != part) {
-        let what = format!("the datum `{}` of another part", draft.feature_names[*foreign]);
-        return Err(table.error(Problem::Unsupported { what }, "a datum of the same part"));
-    }
-    if let Some((_, placement)) = draft.datum_systems.iter().find(|(known, _)| known == datums) {
-        draft.assembly.placements[*placement].carry(carried);
-        return Ok(());
-    }
-    let features = &draft.assembly.features;
-    let placement = match datums {
-        [plane] if features[*plane].shape == Shape::Plane => Placement::on_plane(*plane, carried),
-        _ => {
-            let contact = |datum: &usize| {
-                let feature = &features[*datum];
-                let contact = Contact::new(feature.shape, feature.shape, feature.nominal[1], feature.reach)?;
-                Some(Joined { contact, own: Own::Perfect(*datum), other: *datum })
-            };
-            let contacts = datums.iter().filter_map(contact).collect();
-            let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
-            let placed = Placement::on_contacts(&draft.assembly, &nominal, contacts, &[], vec![carried]);
-            placed.map_err(|error| {
-                let part = draft.feature_names[index].clone();
-                table.error(Problem::Placement { part, error }, "datums that each hold something more")
-            })?
-        }
-    };
-    draft.datum_systems.push((datums.to_vec(), draft.assembly.placements.len()));
-    draft.assembly.placements.push(placement);
-    Ok(())
 }

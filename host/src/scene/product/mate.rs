@@ -2,9 +2,10 @@
 
 use crate::{
     product::{
-        assembly::{Carried, Placement},
+        assembly::{Carried, Placement, With},
         contact::Contact,
         contacts::{Joined, Own, PlacementError},
+        float::Float,
         pose::Pose,
     },
     scene::{
@@ -13,13 +14,18 @@ use crate::{
         unit::{self, Quantity},
         value::Field,
     },
-    tolerance::lanes::Lanes,
+    tolerance::{
+        lanes::Lanes,
+        model::{Contributor, Variation, ZoneRule},
+        nested::{Nest, Nested},
+    },
 };
 
 use super::{
-    Draft,
+    Draft, Fit,
     part::{self, Part, direction},
-    tables,
+    rule, tables,
+    toleranced::Diameter,
 };
 
 const POSITION: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
@@ -34,7 +40,20 @@ pub(super) struct Mate<'t, 's> {
     /// Its kinematic displacement, and the freedom that it is in.
     motion: Option<(Pose, [[f64; 3]; 2])>,
     contacts: Vec<[Field<'t, 's>; 2]>,
+    /// How holes lie in their play, if they float.
+    float: Play,
     table: Field<'t, 's>,
+}
+
+/// How holes lie in their play on pins.
+#[derive(Clone, Copy)]
+enum Play {
+    /// By the scene's rule for zones.
+    General,
+    /// By this one.
+    Rule(ZoneRule),
+    /// Centred.
+    None,
 }
 
 /// Reads the mates, in an order in which each rests on parts that are placed, and sets the nominal poses of `parts`.
@@ -120,7 +139,12 @@ fn mate<'t, 's>(table: &Field<'t, 's>, parts: &[Part]) -> Result<Mate<'t, 's>, S
         }
         (None, None) => None,
     };
-    Ok(Mate { part, motion, contacts, table: table.clone() })
+    let float = match table.get("float") {
+        None => Play::General,
+        Some(field) if matches!(&field.node.value, Value::Text(text) if text == "none") => Play::None,
+        Some(field) => Play::Rule(rule(&field)?),
+    };
+    Ok(Mate { part, motion, contacts, float, table: table.clone() })
 }
 
 /// Adds the placement of a mate to the assembly in the `draft`.
@@ -147,11 +171,12 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
                 "plane and plane, plane and point, axis and axis, point and point",
             )
         })?;
-        contacts.push(Joined { contact, own: Own::Made(own), other });
+        let float = float(mate.float, [own, other], contacts.is_empty(), draft);
+        contacts.push(Joined { contact, own: Own::Made(own), other, float });
     }
     let fixed: Vec<_> = mate.motion.iter().map(|(_, freedom)| *freedom).collect();
     let members = draft.parts_of_features.iter().enumerate().filter(|(_, part)| **part == mate.part);
-    let carried = members.map(|(feature, _)| Carried { feature, turns_only: false }).collect();
+    let carried = members.map(|(feature, _)| Carried { feature, with: With::All }).collect();
     let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
     let placement = Placement::on_contacts(&draft.assembly, &nominal, contacts, &fixed, carried).map_err(|error| {
         let field = match error {
@@ -173,4 +198,38 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
     })?;
     draft.assembly.placements.push(placement);
     Ok(())
+}
+
+/// The play of two axes that both have a diameter: a contributor of its own. The `first` contact of a mate also holds tilts, which
+/// have the same play.
+fn float(play: Play, [own, other]: [usize; 2], first: bool, draft: &mut Draft) -> Option<Float> {
+    let [one, two] = [own, other].map(|feature| draft.diameters[feature]);
+    let (one, two) = (one?, two?);
+    let middle = |diameter: Diameter| diameter.limits[0] + diameter.limits[1];
+    let own_is_hole = one.hole.or(two.hole.map(|hole| !hole)).unwrap_or(middle(one) >= middle(two));
+    let (hole, pin) = if own_is_hole { (one, two) } else { (two, one) };
+    let name = [own, other].map(|feature| draft.feature_names[feature].as_str());
+    let name = if own_is_hole { name.join(" on ") } else { name.join(" in ") };
+    let rule = match play {
+        Play::General => Some(draft.defaults.rule),
+        Play::Rule(rule) => Some(rule),
+        Play::None => None,
+    };
+    let [reach, least] = [own, other].map(|feature| draft.assembly.features[feature].reach);
+    let variation = |rule| match first {
+        true => Variation::Nested(Nested { of: Nest::Axis, rule, tilts: 1.0 }),
+        false => Variation::Disc(rule),
+    };
+    let variation = rule.map(variation);
+    let count = variation.as_ref().map_or(0, Variation::variables);
+    let at = variation.map_or(draft.nominal.len(), |variation| {
+        draft.add(Contributor { name: format!("{name} play"), variation }, &[0.0; 4][..count])
+    });
+    draft.fits.push(Fit { name, float: at..at + count, least: hole.limits[0] - pin.limits[1] });
+    Some(Float {
+        fit: draft.fits.len() - 1,
+        diameters: [hole.variable, pin.variable],
+        first: rule.map(|_| at),
+        tilt: if first && rule.is_some() { reach / reach.min(least) } else { 0.0 },
+    })
 }

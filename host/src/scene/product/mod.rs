@@ -29,6 +29,7 @@
 //! [[mate]]                     # the first contact has precedence over the next, as a first datum has
 //! part = "lid"
 //! contacts = [["lid.bottom", "box.rim"], ["lid.hole", "box.pin"]]
+//! float = "sigma-zone"         # how holes lie in their play on pins: a rule of zones, or "none"
 //! turn = { about = "+z", by = "30°" }     # or move = { along, by }: holds a freedom that is meant to move
 //!
 //! [[measure]]                  # distances from a plane are positive outside of its material
@@ -39,25 +40,34 @@
 //! Tolerances of a feature: `flatness`, `straightness`, `parallelism`, `perpendicularity`, `angularity`, `position`,
 //! `profile` (the width of the zone, or zone, datum and rule), `offset` (± along the normal), `vectorial` (each component of
 //! the position and of the orientation vector). A plane or a point with none has the general flatness, if there is a
-//! class, unless it says `flatness = "none"`.
+//! class, unless it says `flatness = "none"`. A feature whose place nothing tolerates has the general tolerance of its distance
+//! from the origin of its part, unless it says `offset = "none"`. An orientation narrows the tilts of a location, a form lies within both; each has
+//! datums of its own. Two datums that are one (A-B on a drawing) are "PART.A-PART.B", or a list in the list.
 
 #[cfg(test)]
 mod assembly_tests;
 mod callout;
+mod datum;
+mod fit;
+#[cfg(test)]
+mod geometry_tests;
 mod mate;
 mod measure;
 mod part;
 #[cfg(test)]
 mod tests;
 mod toleranced;
+mod zone;
 
 use crate::{
     number::fixed,
     product::{
         Product,
         assembly::Assembly,
+        contacts::PlacementError,
         correlation,
         expression::{Kind, Source},
+        feature::Feature,
         function::Measures,
         iso2768::{General, WITHDRAWN},
     },
@@ -102,8 +112,26 @@ struct Draft {
     parts_of_features: Vec<usize>,
     /// How they extend.
     faces: Vec<Face>,
+    /// Their diameters.
+    diameters: Vec<Option<toleranced::Diameter>>,
+    /// Those that are two others together.
+    common: Vec<usize>,
     /// Datums that go together, and what they place.
     datum_systems: Vec<(Vec<usize>, usize)>,
+    /// Holes on pins.
+    fits: Vec<Fit>,
+    /// What the user should know.
+    warnings: Vec<String>,
+}
+
+/// A hole on a pin.
+struct Fit {
+    /// As "lid.hole on box.pin".
+    name: String,
+    /// The variables in which it floats.
+    float: std::ops::Range<usize>,
+    /// The least play (m) that the diameters' limits leave.
+    least: f64,
 }
 
 impl Draft {
@@ -147,7 +175,11 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         feature_names: Vec::new(),
         parts_of_features: Vec::new(),
         faces: Vec::new(),
+        diameters: Vec::new(),
+        common: Vec::new(),
         datum_systems: Vec::new(),
+        fits: Vec::new(),
+        warnings: Vec::new(),
     };
     for table in tables(root, "dimension")? {
         toleranced::dimension(&table, &mut draft)?;
@@ -157,6 +189,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     part::features(&parts, &mut draft)?;
     mates.iter().try_for_each(|mate| mate::place(mate, &parts, &mut draft))?;
     let correlations = correlations(root, &draft.contributors)?;
+    draft.warnings.extend(untoleranced(&draft));
     let mut function = Measures { assembly: std::mem::take(&mut draft.assembly), formulas: Vec::new() };
     let measures = measure::measures(root, &mut draft, &mut function)?;
     let sums = measure::sums(root, &measures)?;
@@ -164,9 +197,34 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     if draft.defaults.general.geometry.is_some() {
         warnings.push(WITHDRAWN.to_owned());
     }
-    let Draft { contributors, nominal, .. } = draft;
+    let Draft { contributors, nominal, fits, warnings: told, .. } = draft;
+    warnings.extend(told);
+    let assembly = function.assembly.clone();
     let model = Model { contributors, correlations, measures, sums, function: Box::new(function) };
+    let tried = fit::try_out(&model, &assembly, &fits);
+    warnings.extend(tried.told);
+    if tried.open > 0 {
+        let error = PlacementError::OpenUnits { units: tried.open, of: fit::UNITS };
+        let part = mates.first().map_or("", |mate| parts[mate.part].name).to_owned();
+        let field = root.get("mate").unwrap_or(root.clone());
+        return Err(field.error(Problem::Placement { part, error }, "features that meet within their tolerances"));
+    }
     Ok(Product { model, nominal, warnings })
+}
+
+/// Sentences about the features that vary in nothing, and those whose place does not.
+fn untoleranced(draft: &Draft) -> Vec<String> {
+    let features = draft.assembly.features.iter().zip(&draft.feature_names).enumerate();
+    let own = features.filter(|(index, _)| !draft.common.contains(index)).map(|(_, feature)| feature);
+    let (bare, toleranced): (Vec<_>, Vec<_>) = own.partition(|(feature, _)| feature.terms.is_empty());
+    let placed = |feature: &Feature| feature.terms.iter().any(|term| term.component < 3);
+    let unplaced: Vec<_> = toleranced.into_iter().filter(|(feature, _)| !placed(feature)).collect();
+    let tell = |what: &str, features: Vec<(&Feature, &String)>| {
+        let names: Vec<_> = features.into_iter().map(|(_, name)| name.as_str()).collect();
+        (!names.is_empty()).then(|| format!("{what}: {}", names.join(", ")))
+    };
+    let told = [tell("without a tolerance", bare), tell("without a tolerance of their place", unplaced)];
+    told.into_iter().flatten().collect()
 }
 
 fn defaults(root: &Field) -> Result<Defaults, SceneError> {
@@ -269,7 +327,7 @@ fn correlations(root: &Field, contributors: &[Contributor]) -> Result<Vec<(usize
         let stated = field.to_number(&COEFFICIENT)?;
         let of = [row, column].map(|i| match &contributors[i].variation {
             Variation::Scalar { distribution, .. } => Some(distribution),
-            Variation::Zone(_) | Variation::Disc(_) => None,
+            Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_) => None,
         });
         let scores = match of {
             [Some(one), Some(other)] => copula::of_scores(one, other, kind, stated).map_err(|[least, greatest]| {

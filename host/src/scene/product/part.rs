@@ -47,6 +47,10 @@ pub(super) struct FeatureDraft<'t, 's> {
     pub sides: [[f64; 3]; 2],
     /// Its extents (m): of a plane, and of a point if it says on which face it is; the length of an axis, twice.
     pub extents: Option<[f64; 2]>,
+    /// Its place in the part's own frame (m): along its direction and along its sides.
+    pub coordinates: [f64; 3],
+    /// Its diameter, of an axis that has one.
+    pub diameter: Option<toleranced::Diameter>,
     /// From its part's frame to the assembly's.
     pub pose: Pose,
     /// Index of its part.
@@ -110,14 +114,17 @@ fn feature(part: &Part, index: usize, shape: Shape, table: Field, draft: &mut Dr
         let problem = Problem::OutOfRange { key: field.key.clone(), written: field.written("") };
         return Err(field.error(problem, "a direction in the plane, at a right angle to its normal"));
     }
+    let own_at: [f64; 3] = table.numbers("at", &POSITION)?;
+    let dot = |side: [f64; 3]| (0..3).map(|i| own_at[i] * side[i]).sum::<f64>();
+    let coordinates = [own_direction, along, cross(own_direction, along)].map(dot);
     let along = part.pose.direction(along);
     let reach = extents.map_or(0.0, |[a, b]: [f64; 2]| a.max(b) / 2.0);
     let feature = Feature { shape, nominal: [at, towards], terms: Vec::new(), reach };
-    if shape == Shape::Axis {
-        toleranced::diameter(&table, &name, draft)?;
-    }
+    let diameter = if shape == Shape::Axis { toleranced::diameter(&table, &name, draft)? } else { None };
     let sides = [along, cross(towards, along)];
-    callout::read(FeatureDraft { name, table, feature, sides, extents, pose: part.pose, part: index }, draft)
+    let pose = part.pose;
+    let made = FeatureDraft { name, table, feature, sides, extents, coordinates, diameter, pose, part: index };
+    callout::read(made, draft)
 }
 
 /// The unit vector `key` of a table.

@@ -38,7 +38,7 @@ pub(super) fn at(product: &Product, values: &[(usize, f64)]) -> Vec<f64> {
 fn limits(product: &Product) -> Vec<[f64; 2]> {
     let limits = product.model.contributors.iter().map(|contributor| match contributor.variation {
         Variation::Scalar { limits, .. } => limits,
-        Variation::Zone(_) | Variation::Disc(_) => panic!("a plane or an axis"),
+        Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_) => panic!("a plane or an axis"),
     });
     limits.collect()
 }
@@ -123,7 +123,7 @@ fn distributions_and_correlation() {
         .iter()
         .map(|contributor| match &contributor.variation {
             Variation::Scalar { distribution, .. } => distribution.clone(),
-            Variation::Zone(_) | Variation::Disc(_) => panic!("a plane or an axis"),
+            Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_) => panic!("a plane or an axis"),
         })
         .collect();
     assert_eq!(kinds[0], Distribution::Uniform { limits: [0.05 - 1e-4, 0.05 + 1e-4] });
@@ -220,6 +220,30 @@ fn general_perpendicularity_goes_by_the_shorter_leg_and_parallelism_by_the_whole
     // ± 0.4 mm is 0.8 mm in all, more than the flatness of 0.4 mm: half of it at either end of 80 mm.
     let tilted = at(&wall, &[(offset("box.roof parallelism") + 2, 1.0)])[1];
     close(std::f64::consts::PI - tilted, libm::atan(0.8 / 80.0), 1e-6);
+}
+
+#[test]
+fn general_tolerances_cover_place_and_no_form_beyond_an_orientation() {
+    let names = |product: &Product| product.model.contributors.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
+    let wall = parse(WALL, &[]).unwrap().product.unwrap();
+    assert_eq!(
+        names(&wall),
+        ["box.wall perpendicularity", "box.wall place", "box.roof offset", "box.roof parallelism"]
+    );
+    // ISO 2768-1 m: 0.3 mm for 40 mm.
+    let Variation::Scalar { limits, .. } = wall.model.contributors[0].variation else { panic!("a scalar") };
+    close(limits[1], 0.3e-3, 1e-15);
+    assert!(wall.warnings.contains(&"without a tolerance: box.floor".to_owned()), "{:?}", wall.warnings);
+    let fixed = WALL
+        .replace("flatness = \"none\", perpendicularity = {", "offset = \"none\", perpendicularity = { zone = 0.05,");
+    let fixed = parse(&fixed, &[]).unwrap().product.unwrap();
+    assert_eq!(names(&fixed)[0], "box.wall perpendicularity");
+    let told = "without a tolerance of their place: box.wall".to_owned();
+    assert!(fixed.warnings.contains(&told), "{:?}", fixed.warnings);
+    // All of the lean is that of the stated zone: the general flatness of 0.4 mm is not in force.
+    let theory = crate::tolerance::analysis::theory(&fixed.model, 1, None).unwrap();
+    let [low, high] = theory.worst_cases[0].linear;
+    close(0.5 * (high - low), libm::atan(0.05 / 10.0), 1e-6);
 }
 
 #[test]

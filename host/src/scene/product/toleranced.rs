@@ -38,20 +38,44 @@ pub(super) fn dimension(table: &Field, draft: &mut Draft) -> Result<(), SceneErr
     draft.name(&name_field, name, Source::Variable(variable), kind)
 }
 
-/// Reads the diameter of an axis: a bare length under the general tolerance, or a table like a dimension's.
-pub(super) fn diameter(axis: &Field, name: &str, draft: &mut Draft) -> Result<(), SceneError> {
-    let Some(field) = axis.get("diameter") else { return Ok(()) };
+/// The diameter of an axis.
+#[derive(Clone, Copy)]
+pub(super) struct Diameter {
+    /// Its variable.
+    pub variable: usize,
+    /// Least and greatest (m).
+    pub limits: [f64; 2],
+    /// Whether it is a hole's, if that is said.
+    pub hole: Option<bool>,
+}
+
+/// Reads the diameter of an axis: a bare length under the general tolerance, or a table like a dimension's. It is a hole's or a
+/// pin's as `kind` says, or the class of ISO 286.
+pub(super) fn diameter(axis: &Field, name: &str, draft: &mut Draft) -> Result<Option<Diameter>, SceneError> {
+    let kind = axis.get("kind").map(|field| match field.to_text()? {
+        "hole" => Ok(true),
+        "pin" => Ok(false),
+        _ => {
+            let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
+            Err(field
+                .error(problem, "hole or pin; without, the letter of an ISO 286 class or the larger one is the hole's"))
+        }
+    });
+    let kind = kind.transpose()?;
+    let Some(field) = axis.get("diameter") else { return Ok(None) };
     let value = match field.node.value {
         Value::Table(_) => field.require("value", "a length in mm")?,
         _ => field.clone(),
     };
-    let (diameter, kind) = toleranced(&field, &value, draft)?;
-    if diameter.limits[0] <= 0.0 || kind != Kind::LENGTH {
+    let (diameter, length) = toleranced(&field, &value, draft)?;
+    if diameter.limits[0] <= 0.0 || length != Kind::LENGTH {
         return Err(value.out_of_range("mm", "a length that stays above 0"));
     }
     let name = format!("{name}.diameter");
     let variable = draft.add(diameter.contributor(name.clone()), &[diameter.nominal]);
-    draft.name(&field, &name, Source::Variable(variable), kind)
+    draft.name(&field, &name, Source::Variable(variable), length)?;
+    let of_class = || fit(&field.get("tolerance")?).map(|class| class.is_hole());
+    Ok(Some(Diameter { variable, limits: diameter.limits, hole: kind.or_else(of_class) }))
 }
 
 /// Reads the size by which a feature lies off: deviations, or a table like a dimension's.

@@ -1,18 +1,26 @@
 //! Statistics of the measures from a study's tallies, each with its error.
 //!
-//! Independent units have known error formulas. The units of a design depend on each other, which is what makes it
-//! better: its error is the spread between independent replicates, and without replicates it has none to show.
+//! The errors of independent units follow from the shape of the measure, which the model knows better than a sample does.
+//! The units of a design depend on each other, which is what makes it better: its error is the spread between independent
+//! replicates, and without replicates it has none to show.
 
+mod capability;
+mod errors;
 mod plain;
 
 use serde::Serialize;
 
-use self::plain::{Plain, PlainMeasure};
 pub use self::plain::{histogram, quantile};
+use self::{
+    errors::Errors,
+    plain::{Plain, PlainMeasure},
+};
 use super::{
     interval,
     model::{Measure, Model},
+    pairs::Pairs,
     sampler::Method,
+    shape::{Shape, about, between},
     study::Tally,
     tally::Frame,
 };
@@ -32,9 +40,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    fn with_error(value: f64, error: f64) -> Self {
-        let half = interval::normal_factor() * error;
-        Self { value, error: Some(error), interval: [Some(value - half), Some(value + half)] }
+    fn between(value: f64, error: Option<f64>, ends: [f64; 2]) -> Self {
+        Self { value, error, interval: ends.map(Some) }
     }
 
     /// The same in another unit.
@@ -71,6 +78,8 @@ pub struct Statistics {
     pub pp: Option<Estimate>,
     /// Ppk, the nearer limit over 3σ.
     pub ppk: Option<Estimate>,
+    /// Pp and Ppk by the [`POINTS`] instead of σ (ISO 22514-2), which hold for any shape; where the measure is not normal.
+    pub by_points: Option<[Option<Estimate>; 2]>,
     /// Shares of units below the lower and above the upper limit.
     pub outside: [Option<Estimate>; 2],
     /// Share of units within the limits.
@@ -94,6 +103,8 @@ pub struct Joint {
     pub measures: Vec<Statistics>,
     /// Correlation matrix of the measures, row by row.
     pub correlation: Vec<Vec<f64>>,
+    /// The 95 % intervals of its entries; none where a measure does not vary.
+    pub correlation_intervals: Vec<Vec<[Option<f64>; 2]>>,
     /// P(sum < 0) of each of the model's sums.
     pub closed: Vec<Estimate>,
     /// Units in which each of these sums is negative, and all units.
@@ -102,120 +113,106 @@ pub struct Joint {
     pub good: Option<Estimate>,
 }
 
+/// What the errors of independent units follow from.
+#[derive(Clone, Debug)]
+pub struct Spread {
+    /// Shape of each measure.
+    pub shapes: Vec<Shape>,
+    /// Of their pairs.
+    pub pairs: Pairs,
+}
+
 /// Finds all statistics.
-pub fn joint(model: &Model, method: Method, frames: &[Frame], tallies: &[Tally]) -> Joint {
+pub fn joint(model: &Model, method: Method, frames: &[Frame], tallies: &[Tally], spread: &Spread) -> Joint {
     let parts: Vec<Plain> = tallies.iter().map(|tally| Plain::of(std::slice::from_ref(tally), frames)).collect();
     let all = Plain::of(tallies, frames);
     let errors = if method == Method::PseudoRandom { Errors::Independent } else { Errors::Replicates(&parts) };
     let share = |hits: &dyn Fn(&Plain) -> (u64, u64)| errors.share(&all, hits);
     let limited = model.measures.iter().any(|measure| measure.limits.iter().any(Option::is_some));
+    let count = model.measures.len();
+    let correlation = all.correlation();
+    let correlations: Vec<_> = parts.iter().map(Plain::correlation).collect();
+    let between = |i: usize, j: usize| {
+        let value = correlation[i][j];
+        if i == j || value == 0.0 {
+            return [Some(value).filter(|_| i == j); 2];
+        }
+        let independent = |value| {
+            let [known, error] = spread.pairs.error(i.max(j), i.min(j), all.units as f64);
+            Estimate::between(value, None, interval::correlation(value, known, error))
+        };
+        let values = correlations.iter().map(|matrix| matrix[i][j]);
+        errors.of_values(value, values, &independent).interval.map(|end| end.map(|end| end.clamp(-1.0, 1.0)))
+    };
     Joint {
-        measures: (0..model.measures.len()).map(|i| statistics(&model.measures[i], i, &all, &errors)).collect(),
-        correlation: all.correlation(),
+        measures: (0..count).map(|i| statistics(&model.measures[i], i, &spread.shapes[i], &all, &errors)).collect(),
+        correlation_intervals: (0..count).map(|i| (0..count).map(|j| between(i, j)).collect()).collect(),
+        correlation,
         closed: (0..model.sums.len()).map(|i| share(&|plain| (plain.closed[i], plain.units))).collect(),
         closed_counts: (all.closed.clone(), all.units),
         good: limited.then(|| share(&|plain| (plain.units - plain.rejected, plain.units))),
     }
 }
 
-fn statistics(measure: &Measure, i: usize, all: &Plain, errors: &Errors) -> Statistics {
+fn statistics(measure: &Measure, i: usize, shape: &Shape, all: &Plain, errors: &Errors) -> Statistics {
     let at = &all.measures[i];
     let units = at.units as f64;
+    // What does not vary has no shape and no error either.
+    let varies = at.kurtosis.is_finite();
+    let shape = if varies && shape.kurtosis().is_finite() { *shape } else { Shape::NORMAL };
     let [lower, upper] = measure.limits;
     let estimate = |of: &dyn Fn(&PlainMeasure) -> f64, independent: &dyn Fn(f64) -> Estimate| {
         errors.estimate(of(at), &|plain| of(&plain.measures[i]), independent)
     };
-    let width = lower.zip(upper).map(|(lower, upper)| upper - lower);
-    let capability = |plain: &PlainMeasure| {
-        let below = lower.map_or(f64::INFINITY, |lower| plain.mean - lower);
-        let above = upper.map_or(f64::INFINITY, |upper| upper - plain.mean);
-        below.min(above) / (3.0 * plain.deviation)
-    };
+    let with_error = |value: f64, error: f64| Estimate::between(value, Some(error), about(value, error));
+    let own = at.shape();
     let share =
         |hits: &dyn Fn(&PlainMeasure) -> u64| errors.share(all, &|plain| (hits(&plain.measures[i]), plain.units));
-    let between = |value, ends: [f64; 2]| Estimate { value, error: None, interval: ends.map(Some) };
     let limited = lower.is_some() || upper.is_some();
+    let freedom = shape.freedom(units);
+    let of_deviation = libm::sqrt(0.5 / freedom);
+    let known = |value: Estimate| varies.then_some(value);
     Statistics {
         units: at.units,
         undefined: at.undefined,
-        mean: estimate(&|plain| plain.mean, &|mean| Estimate::with_error(mean, at.deviation / libm::sqrt(units))),
-        deviation: estimate(&|plain| plain.deviation, &|deviation| Estimate {
-            error: Some(deviation * libm::sqrt(((at.kurtosis - 1.0) / (4.0 * units)).max(0.0))),
-            ..between(deviation, interval::deviation(deviation, units))
+        mean: estimate(&|plain| plain.mean, &|mean| with_error(mean, at.deviation / libm::sqrt(units))),
+        deviation: estimate(&|plain| plain.deviation, &|deviation| {
+            Estimate::between(deviation, Some(deviation * of_deviation), interval::deviation(deviation, freedom))
         }),
-        skewness: at
-            .skewness
-            .is_finite()
-            .then(|| estimate(&|plain| plain.skewness, &|value| Estimate::with_error(value, libm::sqrt(6.0 / units)))),
-        kurtosis: at
-            .kurtosis
-            .is_finite()
-            .then(|| estimate(&|plain| plain.kurtosis, &|value| Estimate::with_error(value, libm::sqrt(24.0 / units)))),
+        skewness: known(estimate(&|plain| plain.skewness, &|value| {
+            with_error(value, between(shape.of_skewness(units), own.of_skewness(units)))
+        })),
+        kurtosis: known(estimate(&|plain| plain.kurtosis, &|value| {
+            with_error(value, between(shape.of_kurtosis(units), own.of_kurtosis(units)))
+        })),
         extremes: at.extremes,
         points: POINTS.map(|p| {
-            let ends = interval::ranks(p, at.units).map(|rank| at.enclosed(rank));
-            estimate(&|plain| plain.quantile(p), &|value| Estimate {
-                value,
-                error: None,
-                interval: [ends[0].0, ends[1].1],
-            })
+            estimate(&|plain| plain.quantile(p), &|value| Estimate { value, error: None, interval: at.enclosed(p) })
         }),
-        pp: width.map(|width| {
+        pp: lower.zip(upper).map(|(lower, upper)| {
+            let width = upper - lower;
             estimate(&|plain| width / (6.0 * plain.deviation), &|value| {
-                let [low, high] = interval::deviation(at.deviation, units);
-                between(value, [width / (6.0 * high), width / (6.0 * low)])
+                let [low, high] = interval::deviation(at.deviation, freedom);
+                Estimate::between(value, Some(value * of_deviation), [high, low].map(|end| width / (6.0 * end)))
             })
         }),
         ppk: limited.then(|| {
-            estimate(&capability, &|value| Estimate::with_error(value, interval::capability_error(value, units)))
+            estimate(&|plain| capability::by_deviation(plain, measure.limits), &|value| {
+                let upper = capability::is_upper(at, measure.limits);
+                with_error(value, shape.of_capability(value, upper, units))
+            })
+        }),
+        by_points: (limited && varies && !shape.is_normal()).then(|| {
+            [capability::WIDTH, capability::NEARER].map(|of| {
+                of(POINTS.map(|p| at.quantile(p)), measure.limits)?;
+                let value =
+                    |plain: &PlainMeasure| of(POINTS.map(|p| plain.quantile(p)), measure.limits).unwrap_or(f64::NAN);
+                Some(estimate(&value, &|_| capability::with_interval(of, at, measure.limits)))
+            })
         }),
         outside: [0, 1].map(|side| measure.limits[side].map(|_| share(&|plain| plain.outside[side]))),
         good: limited.then(|| share(&|plain| plain.units - plain.outside[0] - plain.outside[1])),
         hits: at.outside,
         all: all.units,
-    }
-}
-
-/// Where errors come from.
-enum Errors<'a> {
-    Independent,
-    Replicates(&'a [Plain<'a>]),
-}
-
-impl Errors<'_> {
-    fn estimate(&self, value: f64, of: &dyn Fn(&Plain) -> f64, independent: &dyn Fn(f64) -> Estimate) -> Estimate {
-        match self {
-            Self::Independent => independent(value),
-            Self::Replicates(parts) if parts.len() < 2 => Estimate { value, error: None, interval: [None; 2] },
-            Self::Replicates(parts) => {
-                let count = parts.len() as f64;
-                let values: Vec<f64> = parts.iter().map(of).collect();
-                let mean = values.iter().sum::<f64>() / count;
-                let square: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
-                let error = libm::sqrt(square / (count * (count - 1.0)));
-                let half = interval::student_factor(parts.len()) * error;
-                Estimate { value, error: Some(error), interval: [Some(value - half), Some(value + half)] }
-            }
-        }
-    }
-
-    fn share(&self, all: &Plain, hits: &dyn Fn(&Plain) -> (u64, u64)) -> Estimate {
-        let share = |plain: &Plain| {
-            let (hits, units) = hits(plain);
-            hits as f64 / units as f64
-        };
-        let independent = |value| {
-            let (hits, units) = hits(all);
-            Estimate {
-                value,
-                error: Some(libm::sqrt(value * (1.0 - value) / units as f64)),
-                interval: interval::proportion(hits, units).map(Some),
-            }
-        };
-        let found = self.estimate(share(all), &share, &independent);
-        // Replicates that all count the same, such as nothing, have no spread to learn from. A design's counts spread less
-        // than those of independent units, so that these are on the safe side.
-        let found = if found.error == Some(0.0) { independent(found.value) } else { found };
-        Estimate { interval: found.interval.map(|end| end.map(|end| end.clamp(0.0, 1.0))), ..found }
     }
 }

@@ -1,6 +1,8 @@
 //! Statistics of tallies without their errors.
 
 use crate::tolerance::{
+    interval,
+    shape::{Shape, weighted},
     study::Tally,
     tally::{BINS, BINS_PER_DEVIATION, Frame, MeasureCounts, Sums},
 };
@@ -99,13 +101,45 @@ impl PlainMeasure<'_> {
         self.parts.iter().map(|part| part.bins[k]).sum()
     }
 
-    /// The value that `rank` values lie below, if it is one: the lower and upper end of its bin.
-    pub fn enclosed(&self, rank: f64) -> (Option<f64>, Option<f64>) {
-        if rank < 1.0 || rank > self.units as f64 {
-            return (None, None);
-        }
-        let [low, high] = self.ends(rank).1;
-        (Some(low), Some(high))
+    /// The shape of the sample, from its bins. What lies beyond these is taken for halfway to the extreme, but for that itself.
+    pub fn shape(&self) -> Shape {
+        let n = self.units as f64;
+        let Frame { origin, scale } = self.frame;
+        let extremes = self.extremes.map(|extreme| (extreme - origin) / scale);
+        let value = |k: usize| (k as f64 - (BINS / 2) as f64) / BINS_PER_DEVIATION;
+        let of_bin = |k: usize| {
+            let count = self.bin(k) as f64;
+            let beyond = match k {
+                0 => extremes[0],
+                k if k + 1 == BINS => extremes[1],
+                _ => return [(count / n, value(k)), (0.0, 0.0)],
+            };
+            let one = count.min(1.0);
+            [((count - one) / n, 0.5 * (value(k) + beyond)), (one / n, beyond)]
+        };
+        let (_, moments) = weighted((0..BINS).flat_map(of_bin).filter(|(weight, _)| *weight > 0.0));
+        Shape::of_moments(moments)
+    }
+
+    /// The 95 % interval of the point below which a value lies with `probability`.
+    pub fn enclosed(&self, probability: f64) -> [Option<f64>; 2] {
+        let n = self.units as f64;
+        let rank = probability * n;
+        // A point linear within its bin scatters as the counts below both borders of the bin do, by their weights.
+        let ([before, within], _) = self.ends(rank);
+        // The outermost borders are the extremes: they scatter by a unit, and the first distance from them by another.
+        let counts = [before.max(2), (before + within).min(self.units.saturating_sub(2))];
+        let [low, high] = counts.map(|count| count as f64 / n);
+        let share = ((rank - before as f64) / within.max(1) as f64).clamp(0.0, 1.0);
+        let square = (1.0 - share) * (1.0 - share) * low * (1.0 - low)
+            + share * share * high * (1.0 - high)
+            + 2.0 * share * (1.0 - share) * low * (1.0 - high);
+        let scatter = libm::sqrt((square / (probability * (1.0 - probability))).min(1.0));
+        interval::ranks(probability, self.units).map(|end| {
+            // The rank of a value is half a unit more than that of the point below which it lies.
+            let end = if (1.0..=n).contains(&end) { end } else { return None };
+            Some(self.at_rank(rank + (end - 0.5 - rank) * scatter))
+        })
     }
 
     /// The bin of the `rank`-th value (from 1 on): how many lie before it and in it, and its ends.
@@ -126,7 +160,11 @@ impl PlainMeasure<'_> {
 
     /// The point below which a value lies with `probability`, linear within its bin.
     pub fn quantile(&self, probability: f64) -> f64 {
-        let rank = probability * self.units as f64;
+        self.at_rank(probability * self.units as f64)
+    }
+
+    /// The point that `rank` values lie below.
+    fn at_rank(&self, rank: f64) -> f64 {
         // Units that share an extreme are not spread over its bin.
         for (side, beyond) in [rank, self.units as f64 - rank].into_iter().enumerate() {
             let parts = self.parts.iter().filter(|part| part.extremes[side] == self.extremes[side]);
@@ -136,7 +174,10 @@ impl PlainMeasure<'_> {
             }
         }
         let ([before, within], [low, high]) = self.ends(rank);
-        let share = if within > 0 { ((rank - before as f64) / within as f64).clamp(0.0, 1.0) } else { 0.5 };
+        // The least and the greatest value are ends of bins, half a unit from those of all ranks.
+        let from = if low == self.extremes[0] { 0.5 } else { before as f64 };
+        let to = (before + within) as f64 - if high == self.extremes[1] { 0.5 } else { 0.0 };
+        let share = if to > from { ((rank - from) / (to - from)).clamp(0.0, 1.0) } else { 0.5 };
         low + (high - low) * share
     }
 }

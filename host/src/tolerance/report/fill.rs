@@ -43,6 +43,7 @@ pub fn report(title: &str, model: &Model, analysis: &Analysis) -> Report {
             mean: closing.mean * quantity.factor(),
             sd: closing.deviation * quantity.factor(),
             correlation: pair.map(|[one, other]| joint.correlation[one][other]),
+            correlation_interval: pair.map(|[one, other]| joint.correlation_intervals[one][other]),
             model: defects(&joint.closed[i], closing.tail.as_ref()),
             counted: joint.closed[i].scaled(1e6),
             normal_ppm: closing.normal * 1e6,
@@ -59,6 +60,7 @@ pub fn report(title: &str, model: &Model, analysis: &Analysis) -> Report {
         yield_of_all: joint.good,
         measures: (0..model.measures.len()).map(|i| measure(model, analysis, i)).collect(),
         correlation: joint.correlation.clone(),
+        correlation_intervals: joint.correlation_intervals.clone(),
         sums: model.sums.iter().enumerate().map(sum).collect(),
         notes: notes(model, analysis),
     }
@@ -95,6 +97,8 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
     let size = |share: &Share| share.percent.unwrap_or(0.0);
     contributors.sort_by(|one, other| size(other).total_cmp(&size(one)));
     let [q00135, median, q99865] = found.points.map(|point| point.scaled(factor));
+    let [pp_by_points, ppk_by_points] = found.by_points.unwrap_or_default();
+    let finite = |estimate: Option<Estimate>| estimate.map(|found| found.value).filter(|value| value.is_finite());
     let per_million = |share: Option<Estimate>| share.map(|share| share.scaled(1e6));
     let estimates = Estimates {
         mean: found.mean.scaled(factor),
@@ -106,6 +110,8 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         q99865,
         pp: found.pp,
         ppk: found.ppk,
+        pp_by_points,
+        ppk_by_points,
         dpm_below: per_million(found.outside[0]),
         dpm_above: per_million(found.outside[1]),
         good: found.good,
@@ -124,8 +130,11 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         q99865: q99865.value,
         undefined: found.undefined,
         limits: measure.limits.map(|limit| limit.map(scaled)),
-        pp: found.pp.map(|pp| pp.value).filter(|pp| pp.is_finite()),
-        ppk: found.ppk.map(|ppk| ppk.value).filter(|ppk| ppk.is_finite()),
+        pp: finite(found.pp),
+        ppk: finite(found.ppk),
+        normal: moments.shape.is_normal(),
+        pp_by_points: finite(pp_by_points),
+        ppk_by_points: finite(ppk_by_points),
         dpm: [0, 1].map(|side| found.outside[side].map(|counted| defects(&counted, tails[side].as_ref()))),
         good: found.good.map(|good| good.value),
         estimates,

@@ -27,6 +27,8 @@ pub struct Report {
     pub measures: Vec<MeasureReport>,
     /// Correlation matrix of the measures, row by row.
     pub correlation: Vec<Vec<f64>>,
+    /// The 95 % intervals of its entries; none where a measure does not vary.
+    pub correlation_intervals: Vec<Vec<[Option<f64>; 2]>>,
     /// Sums that must stay positive.
     pub sums: Vec<SumReport>,
     /// What a reader has to know.
@@ -69,10 +71,16 @@ pub struct MeasureReport {
     pub undefined: u64,
     /// Specification limits.
     pub limits: [Option<f64>; 2],
-    /// Width between both limits over 6σ.
+    /// Width between both limits over 6σ: as if normal.
     pub pp: Option<f64>,
-    /// Nearer limit over 3σ.
+    /// Nearer limit over 3σ: as if normal.
     pub ppk: Option<f64>,
+    /// Whether the measure is near enough to normal for these two.
+    pub normal: bool,
+    /// Pp by the 0.135 % and 99.865 % points (ISO 22514-2), where the measure is not normal.
+    pub pp_by_points: Option<f64>,
+    /// Ppk by these and the median, where the measure is not normal.
+    pub ppk_by_points: Option<f64>,
     /// Defects per million below and above, the better known of both sources.
     pub dpm: [Option<Defects>; 2],
     /// Share within the limits.
@@ -108,6 +116,8 @@ pub struct Estimates {
     pub q99865: Estimate,
     pub pp: Option<Estimate>,
     pub ppk: Option<Estimate>,
+    pub pp_by_points: Option<Estimate>,
+    pub ppk_by_points: Option<Estimate>,
     pub dpm_below: Option<Estimate>,
     pub dpm_above: Option<Estimate>,
     #[serde(rename = "yield")]
@@ -192,6 +202,8 @@ pub struct SumReport {
     pub sd: f64,
     /// Correlation of its measures in the sample, if there are two.
     pub correlation: Option<f64>,
+    /// Its 95 % interval.
+    pub correlation_interval: Option<[Option<f64>; 2]>,
     /// P(sum < 0) with the model's own correlation, ppm, the better known of both sources.
     pub model: Defects,
     /// Counted alone, ppm.

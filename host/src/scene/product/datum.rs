@@ -1,0 +1,120 @@
+//! Reads datums: single ones, common ones (A-B), and systems of them.
+
+use crate::{
+    product::{
+        assembly::{Carried, Placement, With},
+        common::Common,
+        contact::Contact,
+        contacts::{Joined, Own},
+        feature::Shape,
+    },
+    scene::{Problem, SceneError, tree::Value, value::Field},
+    tolerance::lanes::Lanes,
+};
+
+use super::Draft;
+
+/// The datums of the list, or the only one: features of the part of `feature` that stand above.
+pub(super) fn datums(list: &Field, draft: &mut Draft) -> Result<Vec<usize>, SceneError> {
+    let nodes = match &list.node.value {
+        Value::List(nodes) => nodes.iter().map(|node| Field { key: list.key.clone(), node }).collect(),
+        _ => vec![list.clone()],
+    };
+    if nodes.is_empty() || nodes.len() > 3 {
+        let problem = Problem::Length { key: list.key.clone(), found: nodes.len() };
+        return Err(list.error(problem, "one to three datums, the primary first"));
+    }
+    nodes.iter().map(|datum| one(datum, draft)).collect()
+}
+
+/// One datum, of one feature or of two.
+fn one(field: &Field, draft: &mut Draft) -> Result<usize, SceneError> {
+    if let Value::List(nodes) = &field.node.value {
+        let [one, two] = &nodes[..] else {
+            let problem = Problem::Length { key: field.key.clone(), found: nodes.len() };
+            return Err(field.error(problem, "two features that are one datum"));
+        };
+        let [one, two] = [one, two].map(|node| Field { key: field.key.clone(), node });
+        let pair = [draft.feature(&one)?, draft.feature(&two)?];
+        return common(field, pair, draft);
+    }
+    let text = field.to_text()?;
+    let known = |name: &str| draft.feature_names.iter().position(|known| known == name.trim());
+    if known(text).is_some() {
+        return draft.feature(field);
+    }
+    // A name may have a hyphen itself.
+    let pair = text.match_indices('-').find_map(|(at, _)| Some([known(&text[..at])?, known(&text[at + 1..])?]));
+    match pair {
+        Some(pair) => common(field, pair, draft),
+        None => draft.feature(field),
+    }
+}
+
+/// The datum that two features are together; it is a feature of their part.
+fn common(field: &Field, pair: [usize; 2], draft: &mut Draft) -> Result<usize, SceneError> {
+    let name = pair.map(|i| draft.feature_names[i].as_str()).join("-");
+    if let Some(known) = draft.feature_names.iter().position(|known| *known == name) {
+        return Ok(known);
+    }
+    let [one, two] = pair.map(|i| draft.parts_of_features[i]);
+    if one != two {
+        let problem = Problem::Unsupported { what: "a common datum of two parts".into() };
+        return Err(field.error(problem, "two features of the same part"));
+    }
+    let index = draft.assembly.features.len();
+    let (datum, feature) = Common::new(&draft.assembly.features, pair, index).map_err(|error| {
+        let problem = Problem::Unsupported { what: error.to_string() };
+        field.error(problem, "two faces in one plane, or two coaxial axes")
+    })?;
+    let face = draft.faces[pair[0]];
+    draft.faces.push(face);
+    draft.assembly.features.push(feature);
+    draft.feature_names.push(name);
+    draft.parts_of_features.push(one);
+    draft.diameters.push(None);
+    draft.common.push(index);
+    draft.assembly.placements.push(Placement::common(datum));
+    Ok(index)
+}
+
+/// Lets the feature `index` go where its datums go.
+pub(super) fn carry(
+    index: usize,
+    datums: &[usize],
+    with: With,
+    table: &Field,
+    draft: &mut Draft,
+) -> Result<(), SceneError> {
+    let carried = Carried { feature: index, with };
+    let part = draft.parts_of_features[index];
+    if let Some(foreign) = datums.iter().find(|datum| draft.parts_of_features[**datum] != part) {
+        let what = format!("the datum `{}` of another part", draft.feature_names[*foreign]);
+        return Err(table.error(Problem::Unsupported { what }, "a datum of the same part"));
+    }
+    if let Some((_, placement)) = draft.datum_systems.iter().find(|(known, _)| known == datums) {
+        draft.assembly.placements[*placement].carry(carried);
+        return Ok(());
+    }
+    let features = &draft.assembly.features;
+    let placement = match datums {
+        [plane] if features[*plane].shape == Shape::Plane => Placement::on_plane(*plane, carried),
+        _ => {
+            let contact = |datum: &usize| {
+                let feature = &features[*datum];
+                let contact = Contact::new(feature.shape, feature.shape, feature.nominal[1], feature.reach)?;
+                Some(Joined { contact, own: Own::Perfect(*datum), other: *datum, float: None })
+            };
+            let contacts = datums.iter().filter_map(contact).collect();
+            let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
+            let placed = Placement::on_contacts(&draft.assembly, &nominal, contacts, &[], vec![carried]);
+            placed.map_err(|error| {
+                let part = draft.feature_names[index].clone();
+                table.error(Problem::Placement { part, error }, "datums that each hold something more")
+            })?
+        }
+    };
+    draft.datum_systems.push((datums.to_vec(), draft.assembly.placements.len()));
+    draft.assembly.placements.push(placement);
+    Ok(())
+}

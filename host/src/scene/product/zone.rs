@@ -1,0 +1,118 @@
+//! Lets features vary in the zones of their tolerances, a narrower one within a wider one.
+//!
+//! A location holds place and tilts, an orientation tilts, a form both without a datum. Where two of them are given the wider
+//! zone keeps what it holds, and the narrower one takes its part of it: a refinement never adds.
+
+use crate::{
+    product::{dimension::Toleranced, feature::Shape},
+    tolerance::{
+        model::{Contributor, Distribution, Variation, ZoneRule},
+        nested::{Nest, Nested},
+    },
+};
+
+use super::{
+    Draft,
+    callout::{Callout, Limits, shift},
+    part::FeatureDraft,
+};
+
+/// Lets a feature vary in the zone of its location; an `orientation` narrows its tilts.
+pub(super) fn located(made: &mut FeatureDraft, location: &Callout, orientation: Option<&Callout>, draft: &mut Draft) {
+    let direction = made.feature.nominal[1];
+    let width = location.width;
+    let name = match orientation {
+        Some(orientation) => format!("{} {}, {}", made.name, location.name, orientation.name),
+        None => format!("{} {}", made.name, location.name),
+    };
+    let nested = orientation.map(|orientation| {
+        // A location that only shifts leaves the tilts to the orientation.
+        let rule = if location.rule == ZoneRule::Translation { orientation.rule } else { location.rule };
+        (rule, (orientation.width / width).min(1.0))
+    });
+    let of = if made.feature.shape == Shape::Axis { Nest::Axis } else { Nest::Face };
+    let variation = match (made.feature.shape, nested) {
+        (Shape::Point, _) => return shift(made, location.name, &Toleranced::in_zone(width), direction, draft),
+        (_, Some((rule, tilts))) => Variation::Nested(Nested { of, rule, tilts }),
+        (Shape::Plane, None) => Variation::Zone(location.rule),
+        (Shape::Axis, None) => Variation::Disc(location.rule),
+    };
+    let count = variation.variables();
+    let first = draft.add(Contributor { name, variation }, &[0.0; 4][..count]);
+    let tilts = match of {
+        Nest::Face => {
+            made.feature.shift(first, direction, width / 2.0);
+            first + 1..first + count
+        }
+        Nest::Axis => {
+            for (variable, side) in (first..).zip(made.sides) {
+                made.feature.shift(variable, side, width / 2.0);
+            }
+            first + 2..first + count
+        }
+    };
+    tilt(made, tilts, width);
+}
+
+/// Lets a feature tilt in the zone of its orientation.
+pub(super) fn oriented(made: &mut FeatureDraft, callout: &Callout, draft: &mut Draft) {
+    let variation = match made.feature.shape {
+        Shape::Axis => Variation::Disc(callout.rule),
+        _ => Variation::Zone(callout.rule),
+    };
+    let count = variation.variables();
+    let name = format!("{} {}", made.name, callout.name);
+    let first = draft.add(Contributor { name, variation }, &[0.0; 3][..count]);
+    let tilts = if made.feature.shape == Shape::Axis { first..first + count } else { first + 1..first + count };
+    tilt(made, tilts, callout.width);
+}
+
+/// Lets a feature vary in the zone of its form, which nothing else holds.
+pub(super) fn formed(made: &mut FeatureDraft, form: &Callout, draft: &mut Draft) {
+    let direction = made.feature.nominal[1];
+    if made.feature.shape == Shape::Point {
+        return shift(made, form.name, &Toleranced::in_zone(form.width), direction, draft);
+    }
+    let variation = match made.feature.shape {
+        Shape::Axis => Variation::Disc(form.rule),
+        _ => Variation::Zone(form.rule),
+    };
+    let count = variation.variables();
+    let name = format!("{} {}", made.name, form.name);
+    let first = draft.add(Contributor { name, variation }, &[0.0; 3][..count]);
+    if made.feature.shape == Shape::Axis {
+        return tilt(made, first..first + count, form.width);
+    }
+    made.feature.shift(first, direction, form.width / 2.0);
+    let tilts = first + 1..first + count;
+    // A line is straight along the first extent alone.
+    let tilts = if form.limits == Limits::Line { tilts.start..(tilts.start + 1).min(tilts.end) } else { tilts };
+    tilt(made, tilts, form.width);
+}
+
+/// Lets a plane shift in the zone of its form, as far as that lies within the zone of its orientation, which has the tilts.
+pub(super) fn offset_within(made: &mut FeatureDraft, form: &Callout, wider: f64, draft: &mut Draft) {
+    let half = form.width.min(wider) / 2.0;
+    let limits = [-half, half];
+    // As much as the offset varies in a zone of a form alone.
+    let deviation = half * Nested { of: Nest::Face, rule: form.rule, tilts: 1.0 }.deviations()[0];
+    let distribution = match form.rule {
+        ZoneRule::SigmaZone => Distribution::Normal { mean: 0.0, deviation },
+        ZoneRule::Truncated => Distribution::TruncatedNormal { mean: 0.0, deviation, limits },
+        ZoneRule::UniformInZone => Distribution::Uniform { limits },
+        ZoneRule::Translation => Distribution::Normal { mean: 0.0, deviation: half / 3.0 },
+    };
+    let offset = Toleranced { nominal: 0.0, limits, distribution };
+    let direction = made.feature.nominal[1];
+    shift(made, form.name, &offset, direction, draft);
+}
+
+/// Lets a feature tilt by `variables`, so that its ends move half of `width` (m) for 1.
+fn tilt(made: &mut FeatureDraft, variables: std::ops::Range<usize>, width: f64) {
+    let extents = made.extents.unwrap_or([1.0; 2]);
+    // A height that grows along a side tilts the normal of a plane against it; an axis goes where its end goes.
+    let sign = if made.feature.shape == Shape::Axis { 1.0 } else { -1.0 };
+    for (variable, (side, extent)) in variables.zip(made.sides.into_iter().zip(extents)) {
+        made.feature.tilt(variable, side, sign * width / extent);
+    }
+}
