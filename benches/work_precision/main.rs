@@ -205,7 +205,7 @@ impl IntegratorVisitor for KernelEntry {
     }
 }
 
-/// The error of an entry and its least time of at least 5 runs and 30 ms, unless these take more than half a second.
+/// The error of an entry and its least time of at least 10 runs and 60 ms, unless these take more than half a second.
 fn measure(entry: &Entry, reference: &Reference) -> Option<Finding> {
     let begin = Instant::now();
     let mut time = Duration::MAX;
@@ -215,7 +215,7 @@ fn measure(entry: &Entry, reference: &Reference) -> Option<Finding> {
         time = time.min(achieved.time);
         count += 1;
         let spent = begin.elapsed();
-        if spent >= Duration::from_millis(500) || (count >= 5 && spent >= Duration::from_millis(30)) {
+        if spent >= Duration::from_millis(500) || (count >= 10 && spent >= Duration::from_millis(60)) {
             let max_percent = reference.errors(&achieved.force).max;
             return Some(Finding { solver: entry.solver, setting: entry.setting.clone(), max_percent, time });
         }

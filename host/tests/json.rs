@@ -81,7 +81,7 @@ fn check_object(tables: &BTreeMap<String, Fields>, value: &Value, name: &str, at
 fn every_field_is_in_the_guide() {
     let tables = guide();
     let folder = tempfile::tempdir().unwrap();
-    let commands: [(&str, &[&str]); 12] = [
+    let commands: [(&str, &[&str]); 13] = [
         ("check", &["check"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
         ("check of a product", &["check", "clutch"]),
@@ -93,6 +93,7 @@ fn every_field_is_in_the_guide() {
         ("sweep", &["sweep", "--n", "0:4:2", "--stroke"]),
         ("sweep of a mechanism", &["sweep", "slider-crank", "--n", "0:1:1"]),
         ("table", &["table", "--n", "0:2:1", "-o", "table.bin"]),
+        ("table", &["table", "--over", "position", "--n", "0:2:1", "-o", "z.bin"]),
         ("run", &["run", "--n", "0:2:1"]),
     ];
     for (name, arguments) in commands {

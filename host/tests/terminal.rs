@@ -71,7 +71,8 @@ fn an_interrupted_main_job_leaves_no_folder() {
 #[test]
 fn files_of_another_product_in_the_folder_are_told() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |scene: &str| slipfit(folder.path(), &["run", scene, "--out", "results", "--n", "0:1:1"]).output().unwrap();
+    let run =
+        |scene: &str| slipfit(folder.path(), &["run", scene, "--out", "results", "--n", "0:1:1"]).output().unwrap();
     assert!(!String::from_utf8(run("cd-rom-slide-drawing").stderr).unwrap().contains("histogram"));
     let second = String::from_utf8(run("cd-rom-slide").stderr).unwrap();
     assert!(second.contains("histogram-1.svg") && second.contains("tolerance.csv"), "{second}");
