@@ -1,6 +1,10 @@
 //! The measures of assembled units as a function of their variables.
 
-use crate::tolerance::{lanes::Lanes, model::Function, model::Quantity};
+use crate::tolerance::{
+    lanes::Lanes,
+    loss::Loss,
+    model::{Function, Quantity},
+};
 
 use super::{
     assembly::Assembly,
@@ -32,6 +36,10 @@ pub struct Measures {
     pub assembly: Assembly,
     /// One a measure.
     pub formulas: Vec<Formula>,
+    /// The variables (SI) as the drawing has them.
+    pub nominal: Vec<f64>,
+    /// One a measure: what it costs to be off its target, if that is said.
+    pub losses: Vec<Option<Loss>>,
 }
 
 impl Formula {
@@ -88,5 +96,13 @@ impl Function for Measures {
             let (before, after) = measures.split_at_mut(i);
             after[0] = formula.evaluate(&located, variables, before);
         }
+    }
+
+    fn nominal(&self) -> Option<&[f64]> {
+        Some(&self.nominal)
+    }
+
+    fn loss(&self, measure: usize) -> Option<Loss> {
+        self.losses[measure]
     }
 }

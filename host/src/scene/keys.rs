@@ -157,7 +157,18 @@ const ROOT: &[Key] = &[
             table("turn", &[key("about"), key("at"), key("by")]),
         ],
     ),
-    table("measure", &[key("name"), key("is"), key("distance"), key("angle"), key("lower"), key("upper")]),
+    table(
+        "measure",
+        &[
+            key("name"),
+            key("is"),
+            key("distance"),
+            key("angle"),
+            key("lower"),
+            key("upper"),
+            table("loss", &[key("cost"), key("at"), key("target"), key("repair")]),
+        ],
+    ),
     table("sum", &[key("name"), key("of")]),
     table("correlation", &[key("of"), key("coefficient")]),
 ];

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use slipfit_core::sampling::stream::derived;
 
 use super::{
-    derivative::{Expansion, expansion},
+    derivative::{Expansion, evaluate, expansion},
     draw::Draw,
     estimate::{Estimate, Joint, Spread, joint},
     extremes::{extremes, reaches},
@@ -33,6 +33,8 @@ const INDICES: u64 = 2 << 32;
 /// What is found by formula and importance sampling, without the study's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Theory {
+    /// Every measure at the drawing's nominal values (SI), where there is a drawing.
+    pub nominal: Option<Vec<f64>>,
     /// Worst case of every measure.
     pub worst_cases: Vec<WorstCase>,
     /// Root sum of squares of every measure.
@@ -173,6 +175,7 @@ fn of_basis(model: &Model, basis: Basis, seed: u64, counted: Option<&Joint>) -> 
     let closings = closings
         .map(|(sum, tail)| closing(model, sum, &moments, &around_mean.slopes, &deviations, tail.clone(), counted));
     Ok(Theory {
+        nominal: model.function.nominal().map(|nominal| evaluate(model, &[nominal.to_vec()]).concat()),
         closings: closings.collect(),
         worst_cases,
         sums_of_squares: root_sum_square(model, &around_middle, &around_mean, &deviations),

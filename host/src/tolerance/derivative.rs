@@ -108,7 +108,7 @@ pub fn interacting(model: &Model, around: &Expansion, centre: &[f64], deviations
     let interacts = |n: usize, i: usize| {
         let change = (there[2 * n + 1][i] - there[2 * n][i]) - (here[n][i] - around.values[i]);
         // What cannot be computed is no sign of independence.
-        !(change.abs() <= least[i].max(ROUNDING * around.values[i].abs()))
+        change.is_nan() || change.abs() > least[i].max(ROUNDING * around.values[i].abs())
     };
     let measures = 0..around.values.len();
     let with_others = |n: &usize| measures.clone().any(|i| interacts(*n, i));
@@ -117,20 +117,23 @@ pub fn interacting(model: &Model, around: &Expansion, centre: &[f64], deviations
     (found.into_iter().map(|n| varying[n]).collect(), concerned)
 }
 
+/// Two variables and their steps.
+type Pair = (usize, usize, [f64; 2]);
+
 /// ∂²measure/∂j∂k for all j < k `among` the variables, as (j, k, one a measure); around the same point.
 pub fn mixed(model: &Model, centre: &[f64], deviations: &[f64], among: &[usize]) -> Vec<(usize, usize, Vec<f64>)> {
     let pairs = among.iter().enumerate().flat_map(|(n, k)| among[..n].iter().map(move |j| (*j, *k)));
     let pairs: Vec<_> = pairs.map(|(j, k)| (j, k, [j, k].map(|k| MIXED_STEP * deviations[k]))).collect();
-    let corners = |(j, k, [a, b]): &(usize, usize, [f64; 2])| {
+    let corners = |(j, k, [a, b]): &Pair| {
         [1.0, 2.0].map(|times| {
             [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]]
                 .map(|[s, t]: [f64; 2]| vec![(*j, s * times * a), (*k, t * times * b)])
         })
     };
-    let derivatives = |pairs: &[(usize, usize, [f64; 2])]| {
+    let derivatives = |pairs: &[Pair]| {
         let points: Vec<_> = pairs.iter().flat_map(|pair| corners(pair).into_iter().flatten()).collect();
         let values = moved(model, centre, &points);
-        let of = |(pair, values): (&(usize, usize, [f64; 2]), &[Vec<f64>])| {
+        let of = |(pair, values): (&Pair, &[Vec<f64>])| {
             let (j, k, [a, b]) = *pair;
             let derivative = |i: usize| {
                 let difference = |from: usize, times: f64| {

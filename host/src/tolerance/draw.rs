@@ -48,6 +48,9 @@ enum Rule {
     Nested(Nested, f64),
 }
 
+/// How far a point of a zone reaches; at most 1 inside.
+type Reach<'a> = &'a dyn Fn(&[f64]) -> f64;
+
 /// P(|u| + |p| + |r| ≤ 1) of three normals with the standard deviation of [`SIGMA_ZONE`].
 pub const INSIDE: f64 = 0.989_559_252_225_155;
 /// P(x² + y² ≤ 1) of two normals with a standard deviation of a third: 1 − exp(−9/2).
@@ -163,7 +166,7 @@ impl Draw {
         let (mut inside, mut factor, mut at) = ([true; LANES], 1.0, 0);
         for rule in &self.rules {
             let own = &variables[at..at + rule.variables()];
-            let (reach, share): (&dyn Fn(&[f64]) -> f64, f64) = match rule {
+            let (reach, share): (Reach, f64) = match rule {
                 Rule::Zone(ZoneRule::Truncated) => (&octahedral, INSIDE),
                 Rule::Disc(ZoneRule::Truncated) => (&circular, INSIDE_DISC),
                 Rule::Nested(zone, inside) => (&|point| zone.reach(point), *inside),

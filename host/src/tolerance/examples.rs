@@ -48,7 +48,8 @@ pub fn chain() -> Model {
         about("second bearing", 22.94, 0.06),
     ];
     let mut model = linear(contributors, vec![vec![1.0, -1.0, -1.0, 1.0, -1.0, 1.0, -1.0]]);
-    model.measures[0] = Measure { name: "gap".into(), quantity: Quantity::Length, limits: [Some(0.0), Some(0.8 * MM)] };
+    let limits = [Some(0.0), Some(0.8 * MM)];
+    model.measures[0] = Measure { name: "gap".into(), quantity: Quantity::Length, limits };
     model
 }
 

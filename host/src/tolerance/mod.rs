@@ -27,6 +27,7 @@ pub mod indices;
 pub mod interval;
 pub mod lanes;
 pub mod linear;
+pub mod loss;
 pub mod model;
 pub mod moments;
 pub mod nested;

@@ -1,6 +1,6 @@
 //! What every analysis works on: contributors that vary, and the measures that follow from them.
 
-use super::{lanes::Lanes, nested::Nested};
+use super::{lanes::Lanes, loss::Loss, nested::Nested};
 
 /// A product whose measures are a function of independent (or correlated) random variables.
 pub struct Model {
@@ -21,6 +21,16 @@ pub trait Function: Send + Sync {
     /// Writes all `measures` (SI: m, rad) of the units whose `variables` these are. A measure that cannot be computed
     /// is not a number.
     fn evaluate(&self, variables: &[Lanes], measures: &mut [Lanes]);
+
+    /// The variables (SI) as a drawing has them, where there is one.
+    fn nominal(&self) -> Option<&[f64]> {
+        None
+    }
+
+    /// What it costs that `measure` is off its target, where that is said.
+    fn loss(&self, _measure: usize) -> Option<Loss> {
+        None
+    }
 }
 
 /// One tolerance or toleranced dimension.

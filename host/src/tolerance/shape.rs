@@ -82,6 +82,12 @@ impl Shape {
         self.error(&[0.5 * capability, third, -0.5 * capability], units)
     }
 
+    /// Standard error of the mean square about a point that the mean of `units` is `off` by.
+    pub fn of_square(&self, deviation: f64, off: f64, units: f64) -> f64 {
+        let variance = deviation * deviation;
+        self.error(&[-variance, 2.0 * deviation * off, variance], units)
+    }
+
     /// Standard error of a statistic of `units` whose influence function has these coefficients, the constant first.
     fn error(&self, influence: &[f64], units: f64) -> f64 {
         let row = |(i, a): (usize, &f64)| influence.iter().enumerate().map(|(j, b)| a * b * self.0[i + j]).sum::<f64>();

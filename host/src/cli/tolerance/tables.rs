@@ -16,7 +16,7 @@ pub(super) fn tables(report: &Report) -> String {
     let replicates =
         if report.replicates > 1 { format!(" in {} replicates", report.replicates) } else { String::new() };
     let mut text = format!("{}\n{} units{replicates}, seed {}\n\n", report.title, report.samples, report.seed);
-    for table in [drawn(report), by_formula(report), contributors(report), sums(report)] {
+    for table in [drawn(report), losses(report), by_formula(report), contributors(report), sums(report)] {
         if !table.is_empty() {
             let _ = writeln!(text, "{table}");
         }
@@ -66,6 +66,21 @@ fn drawn(report: &Report) -> String {
     if by_points { table + told } else { table }
 }
 
+/// What it costs to be off target.
+fn losses(report: &Report) -> String {
+    let row = |m: &MeasureReport| {
+        let loss = m.loss?;
+        let error = or_dash(loss.mean.error, |error| format!("±{}", three_digits(error)));
+        let unit = if m.unit.is_empty() { String::new() } else { format!(", {}", m.unit) };
+        let numbers = [loss.signal_to_noise, loss.balanced_tolerance].map(|x| or_dash(x, real));
+        let named = [format!("{}{unit}", m.name), real(loss.target), real(loss.mean.value), error];
+        Some(named.into_iter().chain(numbers).collect::<Vec<_>>())
+    };
+    let rows: Vec<_> = report.measures.iter().filter_map(row).collect();
+    let heading = ["measure", "target", "mean loss", "error", "signal to noise, dB", "balanced tolerance ±"];
+    if rows.is_empty() { String::new() } else { text_table(&heading, &rows) }
+}
+
 /// How good that is, and what needs no units.
 fn by_formula(report: &Report) -> String {
     let by_quadrature = report.measures.iter().any(|m| m.quadrature.is_some());
@@ -74,7 +89,8 @@ fn by_formula(report: &Report) -> String {
         let [low, high] = m.worst_case.map(real);
         let mut row = vec![m.name.clone(), plus_minus(&m.estimates.mean), plus_minus(&m.estimates.sd)];
         let rss = m.rss.map_or_else(|| "-".into(), |rss| format!("{} ± {}", real(rss.middle), real(rss.tolerance)));
-        row.extend([format!("{low} … {high}"), rss]);
+        row.extend([or_dash(m.nominal, real), format!("{low} … {high}"), rss]);
+        row.push(or_dash(m.rss.map(|rss| rss.bender), |tolerance| format!("± {}", real(tolerance))));
         let second = m.second_order;
         row.extend([m.rss.map(|r| r.sd), second.map(|s| s.mean), second.map(|s| s.sd)].map(|x| or_dash(x, real)));
         if by_quadrature {
@@ -82,8 +98,18 @@ fn by_formula(report: &Report) -> String {
         }
         row
     };
-    let mut heading =
-        vec!["measure", "error of mean", "of σ", "worst case", "RSS", "σ linear", "mean 2nd order", "σ 2nd order"];
+    let mut heading = vec![
+        "measure",
+        "error of mean",
+        "of σ",
+        "nominal",
+        "worst case",
+        "RSS",
+        "Bender",
+        "σ linear",
+        "mean 2nd order",
+    ];
+    heading.push("σ 2nd order");
     if by_quadrature {
         heading.extend(["mean exact", "σ exact"]);
     }

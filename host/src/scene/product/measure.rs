@@ -13,15 +13,17 @@ use crate::{
     },
     tolerance::{
         lanes::Lanes,
+        loss::Loss,
         model::{Function, Measure, Quantity as Measured, Sum},
     },
 };
 
-use super::{Draft, name, tables, texts};
+use super::{Draft, name, tables, texts, toleranced};
 
 const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
 const ANGLE: Quantity = Quantity { units: unit::ANGLE, range: [-3600.0, 3600.0] };
 const RATIO: Quantity = Quantity { units: unit::ONE, range: [-1e12, 1e12] };
+const COST: Quantity = Quantity { units: unit::ONE, range: [0.0, 1e12] };
 
 /// Reads every `[[measure]]` and adds its formula to `function`.
 pub(super) fn measures(root: &Field, draft: &mut Draft, function: &mut Measures) -> Result<Vec<Measure>, SceneError> {
@@ -32,7 +34,9 @@ pub(super) fn measures(root: &Field, draft: &mut Draft, function: &mut Measures)
         let quantity = formula.quantity();
         function.formulas.push(formula);
         draft.name(&name_field, name, Source::Measure(measures.len()), Kind::of(quantity))?;
-        measures.push(Measure { name: name.into(), quantity, limits: limits(&table, quantity)? });
+        let limits = limits(&table, quantity)?;
+        function.losses.push(loss(&table, quantity, limits)?);
+        measures.push(Measure { name: name.into(), quantity, limits });
     }
     if measures.is_empty() {
         return Err(root.error(Problem::Missing("measure".into()), "one or more tables [[measure]]"));
@@ -87,11 +91,7 @@ fn expression(field: &Field, draft: &Draft, function: &Measures) -> Result<Expre
 
 /// The keys `lower` and `upper`.
 fn limits(table: &Field, quantity: Measured) -> Result<[Option<f64>; 2], SceneError> {
-    let quantity = match quantity {
-        Measured::Length => &LENGTH,
-        Measured::Angle => &ANGLE,
-        Measured::Ratio => &RATIO,
-    };
+    let quantity = units(quantity);
     let (lower, upper) = (table.get("lower"), table.get("upper"));
     let value = |field: &Option<Field>| field.as_ref().map(|field| field.to_number(quantity)).transpose();
     let limits = [value(&lower)?, value(&upper)?];
@@ -104,6 +104,34 @@ fn limits(table: &Field, quantity: Measured) -> Result<[Option<f64>; 2], SceneEr
         return Err(upper.error(problem, "an upper limit above the lower one"));
     }
     Ok(limits)
+}
+
+fn units(quantity: Measured) -> &'static Quantity {
+    match quantity {
+        Measured::Length => &LENGTH,
+        Measured::Angle => &ANGLE,
+        Measured::Ratio => &RATIO,
+    }
+}
+
+/// The key `loss`. The target is the middle of the limits, and a unit at a limit has the full cost, unless they are stated.
+fn loss(table: &Field, quantity: Measured, limits: [Option<f64>; 2]) -> Result<Option<Loss>, SceneError> {
+    const AT: &str = "how far off the target a unit has that cost; or both limits";
+    let Some(loss) = table.get("loss") else { return Ok(None) };
+    loss.expect_table()?;
+    let number = |key: &str| loss.get(key).map(|field| field.to_number(units(quantity))).transpose();
+    let middle = limits[0].zip(limits[1]).map(|(lower, upper)| (0.5 * (lower + upper), 0.5 * (upper - lower)));
+    let missing = |key: &str, allowed: &str| loss.error(Problem::Missing(format!("{}.{key}", loss.key)), allowed);
+    let target = number("target")?.or(middle.map(|(middle, _)| middle));
+    let target = target.ok_or_else(|| missing("target", "the best value; or both limits, whose middle it is"))?;
+    let at = match loss.get("at") {
+        Some(field) => toleranced::positive(&field, units(quantity))?,
+        None => middle.map(|(_, half)| half).ok_or_else(|| missing("at", AT))?,
+    };
+    let cost =
+        toleranced::positive(&loss.require("cost", "what a unit costs that is so far off, in any currency")?, &COST)?;
+    let repair = loss.get("repair").map(|field| toleranced::positive(&field, &COST)).transpose()?;
+    Ok(Some(Loss { cost, at, target, repair }))
 }
 
 /// Reads every `[[sum]]`.

@@ -17,6 +17,7 @@
 //! name = "gap"
 //! is = "30 mm - height"        # names with spaces in single quotes
 //! lower = 9.8
+//! loss = { cost = 50, at = 0.4, target = 10, repair = 2 }   # Taguchi's: 0.4 mm off the target cost 50, to put right 2
 //!
 //! [[part]]                     # the first stays where it is, a mate places each other
 //! name = "box"                 # features in the part's frame; `at`, `turned` (z-x-z) place that in the assembly's
@@ -190,7 +191,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     mates.iter().try_for_each(|mate| mate::place(mate, &parts, &mut draft))?;
     let correlations = correlations(root, &draft.contributors)?;
     draft.warnings.extend(untoleranced(&draft));
-    let mut function = Measures { assembly: std::mem::take(&mut draft.assembly), formulas: Vec::new() };
+    let mut function = Measures { assembly: std::mem::take(&mut draft.assembly), ..Measures::default() };
     let measures = measure::measures(root, &mut draft, &mut function)?;
     let sums = measure::sums(root, &measures)?;
     let mut warnings = Vec::new();
@@ -200,6 +201,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     let Draft { contributors, nominal, fits, warnings: told, .. } = draft;
     warnings.extend(told);
     let assembly = function.assembly.clone();
+    function.nominal.clone_from(&nominal);
     let model = Model { contributors, correlations, measures, sums, function: Box::new(function) };
     let tried = fit::try_out(&model, &assembly, &fits);
     warnings.extend(tried.told);

@@ -8,6 +8,7 @@ use crate::{
         analysis::analyse,
         lanes::{LANES, Lanes},
         model::{Distribution, Quantity, Variation},
+        report::report,
         sampler::Method,
         study::Settings,
     },
@@ -231,7 +232,7 @@ fn general_tolerances_cover_place_and_no_form_beyond_an_orientation() {
         ["box.wall perpendicularity", "box.wall place", "box.roof offset", "box.roof parallelism"]
     );
     // ISO 2768-1 m: 0.3 mm for 40 mm.
-    let Variation::Scalar { limits, .. } = wall.model.contributors[0].variation else { panic!("a scalar") };
+    let Variation::Scalar { limits, .. } = wall.model.contributors[1].variation else { panic!("a scalar") };
     close(limits[1], 0.3e-3, 1e-15);
     assert!(wall.warnings.contains(&"without a tolerance: box.floor".to_owned()), "{:?}", wall.warnings);
     let fixed = WALL
@@ -244,6 +245,39 @@ fn general_tolerances_cover_place_and_no_form_beyond_an_orientation() {
     let theory = crate::tolerance::analysis::theory(&fixed.model, 1, None).unwrap();
     let [low, high] = theory.worst_cases[0].linear;
     close(0.5 * (high - low), libm::atan(0.05 / 10.0), 1e-6);
+}
+
+#[test]
+fn losses_are_counted_off_the_target() {
+    let text = |loss: &str| {
+        format!(
+            "[[dimension]]\nname = \"d\"\nvalue = 10.1\ntolerance = 0.3\n\
+             [[measure]]\nname = \"m\"\nis = \"d\"\nlower = 9.6\nupper = 10.4\nloss = {loss}\n"
+        )
+    };
+    for loss in ["{ cost = 50, repair = 2 }", "{ cost = 50, at = 0.4, target = 10, repair = 2 }"] {
+        let product = parse(&text(loss), &[]).unwrap().product.unwrap();
+        let settings = Settings { method: Method::PseudoRandom, samples: 100_000, replicates: 1, seed: 1 };
+        let analysis = analyse(&product.model, settings, |_| ()).unwrap();
+        let report = report("", &product.model, &analysis).measures[0].loss.unwrap();
+        // 50/0.4² · (0.1² + 0.1²).
+        close(report.coefficient, 312.5, 1e-9);
+        assert!((report.mean.value - 6.25).abs() < 4.0 * report.mean.error.unwrap(), "{report:?}");
+        assert!(report.mean.error.unwrap() < 0.05);
+        close(report.signal_to_noise.unwrap(), 20.0 * libm::log10(101.0), 0.05);
+        close(report.balanced_tolerance.unwrap(), 0.08, 1e-9);
+    }
+    for (loss, said) in [
+        ("{ cost = 0 }", "`measure.loss.cost` is 0"),
+        ("{ at = 0.1 }", "`measure.loss.cost` is missing"),
+        ("{ cost = 1, at = 0 }", "`measure.loss.at` is 0 mm"),
+        ("{ cost = 1, of = 0 }", "unknown key `measure.loss.of`"),
+    ] {
+        let error = parse(&text(loss), &[]).err().unwrap().to_string();
+        assert!(error.contains(said), "{error}");
+    }
+    let error = parse(&text("{ cost = 1, at = 0.1 }").replace("upper = 10.4\n", ""), &[]).err().unwrap().to_string();
+    assert!(error.contains("`measure.loss.target` is missing"), "{error}");
 }
 
 #[test]

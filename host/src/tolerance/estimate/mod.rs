@@ -17,6 +17,7 @@ use self::{
 };
 use super::{
     interval,
+    loss::Loss,
     model::{Measure, Model},
     pairs::Pairs,
     sampler::Method,
@@ -80,6 +81,8 @@ pub struct Statistics {
     pub ppk: Option<Estimate>,
     /// Pp and Ppk by the [`POINTS`] instead of σ (ISO 22514-2), which hold for any shape; where the measure is not normal.
     pub by_points: Option<[Option<Estimate>; 2]>,
+    /// Mean loss, where the measure has one.
+    pub loss: Option<Estimate>,
     /// Shares of units below the lower and above the upper limit.
     pub outside: [Option<Estimate>; 2],
     /// Share of units within the limits.
@@ -145,7 +148,9 @@ pub fn joint(model: &Model, method: Method, frames: &[Frame], tallies: &[Tally],
         errors.of_values(value, values, &independent).interval.map(|end| end.map(|end| end.clamp(-1.0, 1.0)))
     };
     Joint {
-        measures: (0..count).map(|i| statistics(&model.measures[i], i, &spread.shapes[i], &all, &errors)).collect(),
+        measures: (0..count)
+            .map(|i| statistics(&model.measures[i], model.function.loss(i), i, &spread.shapes[i], &all, &errors))
+            .collect(),
         correlation_intervals: (0..count).map(|i| (0..count).map(|j| between(i, j)).collect()).collect(),
         correlation,
         closed: (0..model.sums.len()).map(|i| share(&|plain| (plain.closed[i], plain.units))).collect(),
@@ -154,7 +159,14 @@ pub fn joint(model: &Model, method: Method, frames: &[Frame], tallies: &[Tally],
     }
 }
 
-fn statistics(measure: &Measure, i: usize, shape: &Shape, all: &Plain, errors: &Errors) -> Statistics {
+fn statistics(
+    measure: &Measure,
+    loss: Option<Loss>,
+    i: usize,
+    shape: &Shape,
+    all: &Plain,
+    errors: &Errors,
+) -> Statistics {
     let at = &all.measures[i];
     let units = at.units as f64;
     // What does not vary has no shape and no error either.
@@ -208,6 +220,12 @@ fn statistics(measure: &Measure, i: usize, shape: &Shape, all: &Plain, errors: &
                 let value =
                     |plain: &PlainMeasure| of(POINTS.map(|p| plain.quantile(p)), measure.limits).unwrap_or(f64::NAN);
                 Some(estimate(&value, &|_| capability::with_interval(of, at, measure.limits)))
+            })
+        }),
+        loss: loss.map(|loss| {
+            estimate(&|plain| loss.mean(plain.mean, plain.deviation), &|value| {
+                let square = shape.of_square(at.deviation, at.mean - loss.target, units);
+                with_error(value, loss.coefficient() * square)
             })
         }),
         outside: [0, 1].map(|side| measure.limits[side].map(|_| share(&|plain| plain.outside[side]))),

@@ -1,6 +1,6 @@
 //! A report from an analysis.
 
-use super::{Defects, Estimates, MeasureReport, Quadrature, Report, Rss, SecondOrder, Share, SumReport};
+use super::{Defects, Estimates, LossReport, MeasureReport, Quadrature, Report, Rss, SecondOrder, Share, SumReport};
 use crate::tolerance::{
     analysis::{Analysis, better},
     estimate::Estimate,
@@ -129,6 +129,7 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         median: median.value,
         q99865: q99865.value,
         undefined: found.undefined,
+        nominal: theory.nominal.as_ref().map(|nominal| scaled(nominal[i])),
         limits: measure.limits.map(|limit| limit.map(scaled)),
         pp: finite(found.pp),
         ppk: finite(found.ppk),
@@ -137,12 +138,23 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         ppk_by_points: finite(ppk_by_points),
         dpm: [0, 1].map(|side| found.outside[side].map(|counted| defects(&counted, tails[side].as_ref()))),
         good: found.good.map(|good| good.value),
+        loss: model.function.loss(i).zip(found.loss).map(|(loss, mean)| LossReport {
+            target: scaled(loss.target),
+            coefficient: loss.coefficient() / (factor * factor),
+            mean,
+            signal_to_noise: Some(loss.signal_to_noise(found.mean.value, found.deviation.value))
+                .filter(|ratio| ratio.is_finite()),
+            balanced_tolerance: loss.tolerance().map(scaled),
+        }),
         estimates,
         worst_case: theory.worst_cases[i].searched.unwrap_or(theory.worst_cases[i].linear).map(scaled),
         worst_case_vertices: theory.worst_cases[i].vertices.map(|range| range.map(scaled)),
         rss: described.then(|| Rss {
             middle: scaled(rss.middle),
             tolerance: scaled(rss.tolerance),
+            bender: scaled(rss.modified.bender),
+            gilson: scaled(rss.modified.gilson),
+            modified: scaled(rss.modified.by_count),
             sd: scaled(rss.deviation),
         }),
         second_order: described.then(|| SecondOrder {

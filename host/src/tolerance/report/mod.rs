@@ -69,6 +69,8 @@ pub struct MeasureReport {
     pub q99865: f64,
     /// Units in which it could not be computed.
     pub undefined: u64,
+    /// Value at the nominal values of the drawing.
+    pub nominal: Option<f64>,
     /// Specification limits.
     pub limits: [Option<f64>; 2],
     /// Width between both limits over 6σ: as if normal.
@@ -86,6 +88,8 @@ pub struct MeasureReport {
     /// Share within the limits.
     #[serde(rename = "yield")]
     pub good: Option<f64>,
+    /// Taguchi's loss, where the scene states one.
+    pub loss: Option<LossReport>,
     /// The same numbers with standard errors and 95 % intervals.
     pub estimates: Estimates,
     /// Worst case by slopes; by a search where these do not describe the measure.
@@ -124,6 +128,21 @@ pub struct Estimates {
     pub good: Option<Estimate>,
 }
 
+/// Taguchi's loss of a measure.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LossReport {
+    /// T, in the measure's unit.
+    pub target: f64,
+    /// k: cost over the square of the measure's unit.
+    pub coefficient: f64,
+    /// Mean loss of a unit.
+    pub mean: Estimate,
+    /// Signal-to-noise ratio, dB.
+    pub signal_to_noise: Option<f64>,
+    /// The tolerance ± at which the loss is what putting a unit right costs, in the measure's unit.
+    pub balanced_tolerance: Option<f64>,
+}
+
 /// Defects per million on one side.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Defects {
@@ -147,6 +166,12 @@ pub struct Defects {
 pub struct Rss {
     pub middle: f64,
     pub tolerance: f64,
+    /// Half the tolerance times 1.5.
+    pub bender: f64,
+    /// Half the tolerance times 1.6.
+    pub gilson: f64,
+    /// Half the tolerance with a factor by the number of tolerances.
+    pub modified: f64,
     pub sd: f64,
 }
 
