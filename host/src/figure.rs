@@ -34,7 +34,7 @@ pub fn unit_over_time(run: &Trajectory, title: &str, n: &[f64]) -> Result<String
         y_label: y_label.to_owned(),
         series: vec![Series {
             label: String::new(),
-            look: Look::Kind(0),
+            look: Look::Level(n.first().copied().unwrap_or_default()),
             points: run.t.iter().map(|t| t * 1e3).zip(values).collect(),
         }],
         ..Panel::default()
@@ -63,7 +63,7 @@ pub fn columns_over_time(samples: &Samples, columns: &[String], title: &str, n: 
     let panel = |name: &String| {
         let column = samples.columns.iter().position(|one| one == name).unwrap_or_default();
         let points = samples.rows.iter().map(|row| (row[0] * 1e3, row[column])).collect();
-        let series = vec![Series { label: String::new(), look: Look::Kind(0), points }];
+        let series = vec![Series { label: String::new(), look: Look::Level(0.0), points }];
         Panel { y_label: name.clone(), series, ..Panel::default() }
     };
     line_chart(&Chart {

@@ -26,20 +26,18 @@ fn shows(arguments: &[&str], expected: &str) {
     let terminal = openpty(None, None).unwrap();
     let child = slipfit(folder.path(), arguments).env("TERM", "xterm").stderr(File::from(terminal.slave)).spawn();
     let mut child = child.unwrap();
-    let mut seen = Vec::new();
+    let (mut seen, mut found) = (Vec::new(), false);
     let mut screen = File::from(terminal.master);
     let mut buffer = [0; 4096];
     // Reading fails where the program has ended.
-    while let Ok(count) = screen.read(&mut buffer) {
+    while !found && let Ok(count) = screen.read(&mut buffer) {
         seen.extend_from_slice(&buffer[..count]);
         let text = String::from_utf8_lossy(&seen);
-        if text.contains(expected) && text.contains(" left") {
-            child.kill().unwrap();
-            child.wait().unwrap();
-            return;
-        }
+        found = text.contains(expected) && text.contains(" left");
     }
-    panic!("{arguments:?} shows {}", String::from_utf8_lossy(&seen));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(found, "{arguments:?} shows {}", String::from_utf8_lossy(&seen));
 }
 
 #[test]

@@ -156,9 +156,9 @@ struct SceneArguments {
 /// What moves in a scene.
 enum Moving {
     /// A slide on pins.
-    Slide(Scene),
+    Slide(Box<Scene>),
     /// Bodies and joints.
-    Mechanism(Mechanism),
+    Mechanism(Box<Mechanism>),
 }
 
 /// The longest scene file (bytes).
@@ -188,8 +188,8 @@ impl SceneArguments {
         let (name, text) = self.text()?;
         let overrides = self.overrides(options);
         match SceneFile::parse(&name, &text, &overrides)?.mechanism {
-            Some(mechanism) => Ok(Moving::Mechanism(mechanism)),
-            None => Ok(Moving::Slide(Scene::parse(&name, &text, &overrides)?)),
+            Some(mechanism) => Ok(Moving::Mechanism(Box::new(mechanism))),
+            None => Ok(Moving::Slide(Box::new(Scene::parse(&name, &text, &overrides)?))),
         }
     }
 

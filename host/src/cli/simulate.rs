@@ -151,7 +151,7 @@ impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let overrides: Vec<_> = self.controller.overrides().into_iter().chain(self.length.overrides()).collect();
         let scene = match self.scene.load_moving(&overrides)? {
-            Moving::Slide(scene) => self.length.applied(scene)?,
+            Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
                 if self.audit || self.controller.given() || self.length.stroke {
                     let why = "--audit, --step, --integrator, --scalar and --stroke are for slides on pins";

@@ -93,7 +93,7 @@ impl Arguments {
         let of_run = self.controller.overrides().into_iter().chain(self.length.overrides());
         let overrides: Vec<_> = of_run.chain(self.levels.overrides()).collect();
         let scene = match self.scene.load_moving(&overrides)? {
-            Moving::Slide(scene) => self.length.applied(scene)?,
+            Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
                 if self.controller.given() || self.length.stroke {
                     let why = "--step, --integrator, --scalar and --stroke are for slides on pins";

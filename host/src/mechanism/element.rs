@@ -17,8 +17,14 @@ use slipfit_core::{
 use super::Laws;
 use crate::laws::{AnyElastic, AnySliding};
 
+/// Any law along a contact's normal.
+type Normal = Impact<f64, AnyElastic<f64>>;
+
+/// Any friction law without internal variables.
+type Sliding = AnySliding<f64>;
+
 /// Any contact without internal variables.
-pub type AnyContact = Contact<Impact<f64, AnyElastic<f64>>, AnySliding<f64>>;
+pub type AnyContact = Contact<Normal, Sliding>;
 
 /// The contact of `laws`; true stick is stood for by the `stick_band` (m/s).
 ///
@@ -39,9 +45,9 @@ pub fn contact(laws: &Laws, stick_band: f64) -> Result<AnyContact, ParameterErro
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarElement<const D: usize> {
     /// A hole around a pin.
-    Journal(Element<planar::Between<f64, D>, Journal<f64, Impact<f64, AnyElastic<f64>>, AnySliding<f64>>, 4>),
+    Journal(Element<planar::Between<f64, D>, Journal<f64, Normal, Sliding>, 4>),
     /// A point before a line.
-    Pad(Element<planar::Across<f64, D>, Pad<f64, Impact<f64, AnyElastic<f64>>, AnySliding<f64>>, 2>),
+    Pad(Element<planar::Across<f64, D>, Pad<f64, Normal, Sliding>, 2>),
     /// A torsion spring.
     Spring(Element<planar::Turning, Spring<f64>, 1>),
     /// A torque.
@@ -54,11 +60,11 @@ pub enum PlanarElement<const D: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpatialElement {
     /// A pin between walls.
-    Pin(Element<spatial::Seat<f64>, Pin<f64, AnyElastic<f64>, AnySliding<f64>>, 3>),
+    Pin(Element<spatial::Seat<f64>, Pin<f64, AnyElastic<f64>, Sliding>, 3>),
     /// A point before a wall.
-    Wall(Element<spatial::Seat<f64>, Wall<f64, Impact<f64, AnyElastic<f64>>, AnySliding<f64>>, 3>),
+    Wall(Element<spatial::Seat<f64>, Wall<f64, Normal, Sliding>, 3>),
     /// A ring around a rod.
-    Ring(Element<spatial::Turned<f64>, Ring<f64, Impact<f64, AnyElastic<f64>>, AnySliding<f64>>, 6>),
+    Ring(Element<spatial::Turned<f64>, Ring<f64, Normal, Sliding>, 6>),
     /// A torque.
     Motor(Element<spatial::About<f64>, Motor<Drive<f64>>, 1>),
     /// A force.

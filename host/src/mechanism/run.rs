@@ -219,9 +219,9 @@ impl Limits {
             .enumerate()
             .map(|(i, body)| body.start.speed.abs().max(body.start.spin.abs() * lever(i)));
         let longest = (0..mechanism.bodies.len()).map(&lever).fold(0.0, f64::max);
-        let gravity: f64 = mechanism.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let gravity = libm::sqrt(mechanism.gravity.iter().map(|g| g * g).sum());
         let greatest = driven.chain(thrown).fold(0.0, f64::max);
-        let own = if greatest > 0.0 { greatest } else { (gravity * longest).sqrt().max(SLOWEST) };
+        let own = if greatest > 0.0 { greatest } else { libm::sqrt(gravity * longest).max(SLOWEST) };
         Self { speed: mechanism.run.error * own }
     }
 

@@ -60,10 +60,7 @@ impl<S: Scalar, const D: usize> At<S, D> {
     pub fn of(tree: &PlanarTree<S, D>, point: &Point<S, D>, placed: &Placed<S, D>) -> Self {
         let mut place = point.base;
         let mut arms = [Vector2::zeros(); D];
-        for k in 0..D {
-            if !point.moves[k] {
-                continue;
-            }
+        for (k, _) in point.moves.iter().enumerate().filter(|(_, moves)| **moves) {
             match tree.coordinates()[k] {
                 Coordinate::Turn => {
                     let arm = turned(&placed.axes[k], &point.arms[k]);
@@ -80,10 +77,10 @@ impl<S: Scalar, const D: usize> At<S, D> {
             }
         }
         let mut gradient = SMatrix::<S, 2, D>::zeros();
-        for k in 0..D {
+        for (k, arm) in arms.iter().enumerate() {
             if point.moves[k] {
                 let column = match tree.coordinates()[k] {
-                    Coordinate::Turn => left(&arms[k]),
+                    Coordinate::Turn => left(arm),
                     Coordinate::Slide { .. } => placed.axes[k],
                 };
                 gradient.set_column(k, &column);
@@ -102,10 +99,7 @@ impl<S: Scalar, const D: usize> At<S, D> {
         rates: &SVector<S, D>,
     ) -> SMatrix<S, 2, D> {
         let mut swept = SMatrix::<S, 2, D>::zeros();
-        for k in 0..D {
-            if !point.moves[k] {
-                continue;
-            }
+        for (k, _) in point.moves.iter().enumerate().filter(|(_, moves)| **moves) {
             match tree.coordinates()[k] {
                 Coordinate::Turn => add(&mut swept, k, &(self.arms[k] * -rates[k])),
                 Coordinate::Slide { on: Some(on), .. } => {
@@ -131,10 +125,7 @@ impl<S: Scalar, const D: usize> At<S, D> {
         let rates = &placed.rates;
         let by_rate = self.swept(tree, point, placed, rates) * two;
         let mut by_place = SMatrix::<S, 2, D>::zeros();
-        for k in 0..D {
-            if !point.moves[k] {
-                continue;
-            }
+        for (k, _) in point.moves.iter().enumerate().filter(|(_, moves)| **moves) {
             match tree.coordinates()[k] {
                 Coordinate::Turn => add(&mut by_place, k, &(left(&self.arms[k]) * -(rates[k] * rates[k]))),
                 Coordinate::Slide { on: Some(on), .. } => {
@@ -158,10 +149,7 @@ impl<S: Scalar, const D: usize> At<S, D> {
         force: &Vector2<S>,
         matrix: &mut SMatrix<S, D, D>,
     ) {
-        for k in 0..D {
-            if !point.moves[k] {
-                continue;
-            }
+        for (k, _) in point.moves.iter().enumerate().filter(|(_, moves)| **moves) {
             match tree.coordinates()[k] {
                 Coordinate::Turn => matrix[(k, k)] -= self.arms[k].dot(force),
                 Coordinate::Slide { on: Some(on), .. } => {
