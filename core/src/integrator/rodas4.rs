@@ -100,6 +100,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "an interpreter has no time for so many steps")]
     fn errors_fall_with_the_order() {
         let order = |coarse: f64, fine: f64| libm::log2(coarse / fine);
         let four = order(error::<Rodas4>(5e-4), error::<Rodas4>(2.5e-4));

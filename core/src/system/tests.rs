@@ -46,7 +46,8 @@ fn check<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
     let mut next = numbers();
     let (t, h, memory) = (0.3, 1e-6, system.fresh());
     let mut touched = 0;
-    for _ in 0..100 {
+    // An interpreter takes long.
+    for _ in 0..if cfg!(miri) { 1 } else { 100 } {
         let at = SVector::<f64, D>::from_fn(|_, _| next() * scale);
         let v = SVector::<f64, D>::from_fn(|_, _| next());
         let pose = system.normalised(&system.moved(&start, &at, 1.0));
@@ -72,7 +73,7 @@ fn check<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
             close(-found.slopes.damping.column(k), by_rate, "velocity");
         }
     }
-    assert!((20..=100).contains(&touched), "{touched}");
+    assert!(cfg!(miri) || (20..=100).contains(&touched), "{touched}");
 }
 
 #[test]
