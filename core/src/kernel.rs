@@ -127,6 +127,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "an interpreter has no time for so many steps")]
     fn a_ramp_that_is_over_needs_no_time() {
         let kernel = kernel();
         let after = |steps: u32| {
