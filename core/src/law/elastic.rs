@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn special_exponents_agree_with_the_general_law() {
-        for k in 0..1000u16 {
+        for k in (0..1000u16).step_by(if cfg!(miri) { 50 } else { 1 }) {
             let depth = f64::from(k) * 1e-6;
             let (force, slope) = ThreeHalves::new(3e6).unwrap().force(depth);
             let (general, general_slope) = Power::new(3e6, 1.5).unwrap().force(depth);
