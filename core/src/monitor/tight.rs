@@ -83,6 +83,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "an interpreter has no time for so many samples")]
     fn more_force_is_tight_whichever_way_the_drive_runs() {
         for way in [1.0, -1.0] {
             let stroke = |force: f32, command: f32| {
@@ -100,6 +101,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "an interpreter has no time for so many samples")]
     fn no_force_leaves_anything_behind_that_is_not_finite() {
         let sample = |force| Sample { time: 0.5, force, speed: 0.1, command: 0.1 };
         let free = last(1.0, [sample(1.0); 500].into_iter());
