@@ -8,7 +8,7 @@ use crate::table::example;
 const AXES: [AxisKind; 2] = [AxisKind::Level, AxisKind::Time];
 
 /// Cuts of the power for each programming word.
-const CUTS: u64 = if cfg!(miri) { 20 } else { 10_000 };
+const CUTS: u64 = if cfg!(miri) { 5 } else { 10_000 };
 
 /// The power is gone, or the flash has answered with a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -312,7 +312,7 @@ pub(crate) fn power_cuts<const WORD: usize>(update: impl Fn(&mut Flash<WORD>, &[
         update(&mut flash, &numbered(300, 6)).unwrap();
         assert_eq!(flash.newest(), Ok(300.0), "{seed}");
     }
-    assert!(seen.iter().all(|count| *count > CUTS / 10), "{seen:?}");
+    assert!(cfg!(miri) || seen.iter().all(|count| *count > CUTS / 10), "{seen:?}");
 }
 
 #[test]
