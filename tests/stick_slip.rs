@@ -52,12 +52,12 @@ impl Mechanism<f64, 1> for OnBelt {
         StaticKinetic::<f64>::fresh()
     }
 
-    fn adopt(&self, condition: f64, next: (&f64, &[f64; 2]), kept: (&mut f64, &mut [f64; 2])) {
+    fn accept(&self, condition: f64, next: (&f64, &[f64; 2]), kept: (&mut f64, &mut [f64; 2])) {
         *kept.0 = next.0.or_old(condition, *kept.0);
         *kept.1 = StaticKinetic::or_old(next.1, condition, kept.1);
     }
 
-    fn nought(&self, pose: &f64) -> f64 {
+    fn finiteness_probe(&self, pose: &f64) -> f64 {
         pose * 0.0
     }
 

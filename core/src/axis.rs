@@ -92,12 +92,12 @@ impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> Mechanism<S, 1> for AxisB
     fn fresh(&self) {}
 
     #[inline(always)]
-    fn adopt(&self, condition: S, (next, ()): (&S, &()), (kept, ()): (&mut S, &mut ())) {
+    fn accept(&self, condition: S, (next, ()): (&S, &()), (kept, ()): (&mut S, &mut ())) {
         *kept = next.or_old(condition, *kept);
     }
 
     #[inline(always)]
-    fn nought(&self, pose: &S) -> S {
+    fn finiteness_probe(&self, pose: &S) -> S {
         *pose * S::zero()
     }
 

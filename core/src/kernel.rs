@@ -92,11 +92,12 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
         let zero = S::zero();
         let rates = next.velocity + next.acceleration;
         // Where every pass was taken back the motion is finite, but not a solution.
-        let nought = rates.iter().fold(self.mechanism.nought(&next.pose) + residual * zero, |sum, v| sum + *v) * zero;
-        let finite = S::one() + nought;
+        let finiteness_probe =
+            rates.iter().fold(self.mechanism.finiteness_probe(&next.pose) + residual * zero, |sum, v| sum + *v) * zero;
+        let finite = S::one() + finiteness_probe;
         state.steps = state.steps.saturating_add(1);
         let motion = &mut state.motion;
-        self.mechanism.adopt(finite, (&next.pose, &next.memory), (&mut motion.pose, &mut motion.memory));
+        self.mechanism.accept(finite, (&next.pose, &next.memory), (&mut motion.pose, &mut motion.memory));
         let either = |new: S, old| new.or_old(finite, old);
         motion.velocity = next.velocity.zip_map(&motion.velocity, either);
         motion.acceleration = next.acceleration.zip_map(&motion.acceleration, either);

@@ -98,10 +98,10 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     fn fresh(&self) -> Self::Memory;
 
     /// Makes `kept` `next`, number by number where it is finite and `condition` > 0. In place, since a copy would take stack.
-    fn adopt(&self, condition: S, next: (&Self::Pose, &Self::Memory), kept: (&mut Self::Pose, &mut Self::Memory));
+    fn accept(&self, condition: S, next: (&Self::Pose, &Self::Memory), kept: (&mut Self::Pose, &mut Self::Memory));
 
     /// 0 if all coordinates of `pose` are finite, else NaN.
-    fn nought(&self, pose: &Self::Pose) -> S;
+    fn finiteness_probe(&self, pose: &Self::Pose) -> S;
 
     /// `velocity` with what can only be rounding taken out of it, where the mechanism can be truly at rest; `a` (s) is the
     /// implicit part of the step.

@@ -68,12 +68,12 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLin
         self.mechanism.fresh()
     }
 
-    fn adopt(&self, condition: S, next: (&M::Pose, &M::Memory), kept: (&mut M::Pose, &mut M::Memory)) {
-        self.mechanism.adopt(condition, next, kept);
+    fn accept(&self, condition: S, next: (&M::Pose, &M::Memory), kept: (&mut M::Pose, &mut M::Memory)) {
+        self.mechanism.accept(condition, next, kept);
     }
 
-    fn nought(&self, pose: &M::Pose) -> S {
-        self.mechanism.nought(pose)
+    fn finiteness_probe(&self, pose: &M::Pose) -> S {
+        self.mechanism.finiteness_probe(pose)
     }
 
     fn settled(&self, velocity: &SVector<S, D>, a: S) -> SVector<S, D> {

@@ -146,7 +146,7 @@ impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> M
     }
 
     #[inline(always)]
-    fn adopt(
+    fn accept(
         &self,
         condition: S,
         (next, next_memory): (&PlanarPose<S>, &Self::Memory),
@@ -163,7 +163,7 @@ impl<S: Scalar, C: Joint<S>, E: Elastic<S>, F: Friction<S>, const PINS: usize> M
     }
 
     #[inline(always)]
-    fn nought(&self, pose: &PlanarPose<S>) -> S {
+    fn finiteness_probe(&self, pose: &PlanarPose<S>) -> S {
         let [w, v] = pose.half_turn;
         let zero = S::zero();
         pose.displacement_w.x * zero + pose.displacement_w.y * zero + w * zero + v * zero

@@ -87,7 +87,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     }
 
     #[inline(always)]
-    fn adopt(
+    fn accept(
         &self,
         condition: S,
         (next, next_memory): (&Pose<S>, &[F::Memory; SLOTS]),
@@ -100,7 +100,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     }
 
     #[inline(always)]
-    fn nought(&self, pose: &Pose<S>) -> S {
+    fn finiteness_probe(&self, pose: &Pose<S>) -> S {
         let zero = S::zero();
         let Pose { displacement_w: r, orientation: q } = pose;
         (r.x + r.y + r.z + q.w + q.v.x + q.v.y + q.v.z) * zero

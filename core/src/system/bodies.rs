@@ -26,10 +26,10 @@ pub trait Bodies<S: Scalar, const D: usize> {
     fn normalised(&self, pose: &Self::Pose) -> Self::Pose;
 
     /// Makes `kept` `next`, number by number where it is finite and `condition` > 0.
-    fn adopt(&self, condition: S, next: &Self::Pose, kept: &mut Self::Pose);
+    fn accept(&self, condition: S, next: &Self::Pose, kept: &mut Self::Pose);
 
     /// 0 if all numbers of `pose` are finite, else NaN.
-    fn nought(&self, pose: &Self::Pose) -> S;
+    fn finiteness_probe(&self, pose: &Self::Pose) -> S;
 
     /// See [`Mechanism::rate`](crate::mechanism::Mechanism::rate).
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D>;

@@ -107,7 +107,7 @@ pub trait Elements<S: Scalar, B: Bodies<S, D>, const D: usize> {
     fn shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
 
     /// Makes `kept` `next`, number by number where it is finite and `condition` > 0.
-    fn adopt(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory);
+    fn accept(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory);
 }
 
 impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usize, const R: usize> Elements<S, B, D>
@@ -145,7 +145,7 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
     }
 
     #[inline(always)]
-    fn adopt(&self, condition: S, next: &W::Memory, kept: &mut W::Memory) {
+    fn accept(&self, condition: S, next: &W::Memory, kept: &mut W::Memory) {
         *kept = W::or_old(next, condition, kept);
     }
 }
@@ -165,7 +165,7 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Elements<S, B, D> for () {
     fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
 
     #[inline(always)]
-    fn adopt(&self, _: S, (): &(), (): &mut ()) {}
+    fn accept(&self, _: S, (): &(), (): &mut ()) {}
 }
 
 impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, F: Elements<S, B, D>, const D: usize> Elements<S, B, D>
@@ -203,9 +203,9 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, F: Elements<S, B, D>, con
     }
 
     #[inline(always)]
-    fn adopt(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory) {
-        self.0.adopt(condition, &next.0, &mut kept.0);
-        self.1.adopt(condition, &next.1, &mut kept.1);
+    fn accept(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory) {
+        self.0.accept(condition, &next.0, &mut kept.0);
+        self.1.accept(condition, &next.1, &mut kept.1);
     }
 }
 
@@ -244,9 +244,9 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
     }
 
     #[inline(always)]
-    fn adopt(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory) {
+    fn accept(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory) {
         for ((element, next), kept) in self.iter().zip(next).zip(kept) {
-            element.adopt(condition, next, kept);
+            element.accept(condition, next, kept);
         }
     }
 }
@@ -270,5 +270,5 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Memory = ()>, const D: usi
     fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
 
     #[inline(always)]
-    fn adopt(&self, _: S, (): &(), (): &mut ()) {}
+    fn accept(&self, _: S, (): &(), (): &mut ()) {}
 }

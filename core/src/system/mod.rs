@@ -98,14 +98,14 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     }
 
     #[inline(always)]
-    fn adopt(&self, condition: S, next: (&B::Pose, &E::Memory), kept: (&mut B::Pose, &mut E::Memory)) {
-        self.bodies.adopt(condition, next.0, kept.0);
-        self.elements.adopt(condition, next.1, kept.1);
+    fn accept(&self, condition: S, next: (&B::Pose, &E::Memory), kept: (&mut B::Pose, &mut E::Memory)) {
+        self.bodies.accept(condition, next.0, kept.0);
+        self.elements.accept(condition, next.1, kept.1);
     }
 
     #[inline(always)]
-    fn nought(&self, pose: &B::Pose) -> S {
-        self.bodies.nought(pose)
+    fn finiteness_probe(&self, pose: &B::Pose) -> S {
+        self.bodies.finiteness_probe(pose)
     }
 
     #[inline(always)]

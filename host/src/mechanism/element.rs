@@ -98,7 +98,7 @@ impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
 
     fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
 
-    fn adopt(&self, _: f64, (): &(), (): &mut ()) {}
+    fn accept(&self, _: f64, (): &(), (): &mut ()) {}
 }
 
 impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
@@ -128,5 +128,5 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
 
     fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
 
-    fn adopt(&self, _: f64, (): &(), (): &mut ()) {}
+    fn accept(&self, _: f64, (): &(), (): &mut ()) {}
 }

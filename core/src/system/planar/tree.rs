@@ -187,14 +187,14 @@ impl<S: Scalar, const D: usize> Bodies<S, D> for PlanarTree<S, D> {
     }
 
     #[inline(always)]
-    fn adopt(&self, condition: S, next: &Self::Pose, kept: &mut Self::Pose) {
+    fn accept(&self, condition: S, next: &Self::Pose, kept: &mut Self::Pose) {
         for (kept, next) in kept.as_flattened_mut().iter_mut().zip(next.as_flattened()) {
             *kept = next.or_old(condition, *kept);
         }
     }
 
     #[inline(always)]
-    fn nought(&self, pose: &Self::Pose) -> S {
+    fn finiteness_probe(&self, pose: &Self::Pose) -> S {
         pose.as_flattened().iter().fold(S::zero(), |sum, x| sum + *x * S::zero())
     }
 

@@ -141,14 +141,14 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     }
 
     #[inline(always)]
-    fn adopt(&self, condition: S, next: &Self::Pose, kept: &mut Self::Pose) {
+    fn accept(&self, condition: S, next: &Self::Pose, kept: &mut Self::Pose) {
         for (kept, next) in kept.iter_mut().zip(next) {
             *kept = next.or_old(condition, kept);
         }
     }
 
     #[inline(always)]
-    fn nought(&self, pose: &Self::Pose) -> S {
+    fn finiteness_probe(&self, pose: &Self::Pose) -> S {
         pose.iter().fold(S::zero(), |sum, Pose { displacement_w: r, orientation: q }| {
             sum + (r.x + r.y + r.z + q.w + q.v.x + q.v.y + q.v.z) * S::zero()
         })
