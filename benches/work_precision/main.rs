@@ -50,6 +50,8 @@ struct Achieved {
 
 /// What an entry achieved.
 struct Finding {
+    /// Which of the entries.
+    entry: usize,
     solver: &'static str,
     setting: String,
     max_percent: f64,
@@ -106,7 +108,8 @@ fn compare(reference: &Reference, cvode: Option<&Cvode>, all: bool) {
     entries.extend(controlled::<Rodas4>("error control, rodas4", &slide, milliseconds));
     entries.extend(diffsol_peer::entries(&slide, milliseconds));
     entries.extend(cvode.map(|cvode| cvode.entries(milliseconds)).into_iter().flatten());
-    let findings: Vec<Finding> = entries.iter().filter_map(|entry| measure(entry, reference)).collect();
+    let findings = entries.iter().enumerate().filter_map(|(i, entry)| measure(i, entry, reference));
+    let findings: Vec<Finding> = findings.collect();
     println!("\n{}, {} ms", reference.name, reference.duration * 1e3);
     if all {
         for finding in &findings {
@@ -121,16 +124,38 @@ fn compare(reference: &Reference, cvode: Option<&Cvode>, all: bool) {
             let able = findings.iter().filter(|found| found.solver == solver && found.max_percent <= within);
             able.min_by_key(|found| found.time)
         };
-        let bdf = quickest(diffsol_peer::BDF).map(|found| found.time.as_secs_f64());
+        let bdf = quickest(diffsol_peer::BDF);
         let mut best: Vec<&Finding> = solvers.iter().filter_map(|solver| quickest(solver)).collect();
         best.sort_by_key(|found| found.time);
         for found in best {
-            print(found, &bdf.map_or_else(String::new, |bdf| format!("{:10.2}", found.time.as_secs_f64() / bdf)));
+            let ratio = bdf.and_then(|bdf| ratio(found, bdf, &entries));
+            print(found, &ratio.map_or_else(String::new, |ratio| format!("{ratio:10.2}")));
         }
     }
 }
 
-fn print(Finding { solver, setting, max_percent, time }: &Finding, ratio: &str) {
+/// The time of `found` over that of `peer`: the median of turns, because a shared machine changes its pace; where it is
+/// far above, one run each says enough.
+fn ratio(found: &Finding, peer: &Finding, entries: &[Entry]) -> Option<f64> {
+    /// Runs of each in a turn, of which the quickest counts, and turns.
+    const RUNS: u32 = 3;
+    const TURNS: u32 = 31;
+    const FAR: u32 = 10;
+    let quickest = |entry: &Entry| -> Option<f64> {
+        let times = (0..RUNS).map(|_| (entry.work)().map(|achieved| achieved.time.as_secs_f64()));
+        times.reduce(|a, b| Some(a?.min(b?)))?
+    };
+    if found.time > FAR * peer.time {
+        return Some(found.time.as_secs_f64() / peer.time.as_secs_f64());
+    }
+    let (entry, peer) = (&entries[found.entry], &entries[peer.entry]);
+    let ratios = (0..TURNS).map(|_| Some(quickest(entry)? / quickest(peer)?));
+    let mut ratios: Vec<f64> = ratios.collect::<Option<_>>()?;
+    ratios.sort_by(f64::total_cmp);
+    Some(ratios[ratios.len() / 2])
+}
+
+fn print(Finding { solver, setting, max_percent, time, .. }: &Finding, ratio: &str) {
     let milliseconds = time.as_secs_f64() * 1e3;
     println!("  {solver:24}{setting:26}{max_percent:10.4}{milliseconds:11.3}{ratio}");
 }
@@ -206,7 +231,7 @@ impl IntegratorVisitor for KernelEntry {
 }
 
 /// The error of an entry and its least time of at least 10 runs and 60 ms, unless these take more than half a second.
-fn measure(entry: &Entry, reference: &Reference) -> Option<Finding> {
+fn measure(index: usize, entry: &Entry, reference: &Reference) -> Option<Finding> {
     let begin = Instant::now();
     let mut time = Duration::MAX;
     let mut count = 0;
@@ -217,7 +242,8 @@ fn measure(entry: &Entry, reference: &Reference) -> Option<Finding> {
         let spent = begin.elapsed();
         if spent >= Duration::from_millis(500) || (count >= 10 && spent >= Duration::from_millis(60)) {
             let max_percent = reference.errors(&achieved.force).max;
-            return Some(Finding { solver: entry.solver, setting: entry.setting.clone(), max_percent, time });
+            let (solver, setting) = (entry.solver, entry.setting.clone());
+            return Some(Finding { entry: index, solver, setting, max_percent, time });
         }
     }
 }

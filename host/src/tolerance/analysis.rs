@@ -210,7 +210,8 @@ fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Resul
         let Some((failure, hits)) = failure else { return Ok(None) };
         Ok(probability(model, draw, &failure, derived(seed, TAILS + number as u64), hits))
     };
-    failures.into_par_iter().map(of).collect()
+    // One by one: the few that are asked for stand together.
+    failures.into_par_iter().with_max_len(1).map(of).collect()
 }
 
 fn stop_if_asked() -> Result<(), StudyError> {
