@@ -1,7 +1,7 @@
 //! The menu of scene types: from plain data to the cheapest kernel that covers it.
 
 use crate::{
-    ParameterError, Scalar,
+    ParameterError, Scalar, Vector3,
     drive::Drive,
     law::{Elastic, Exact, Friction, Frictionless, Impact, Linear, Power, Regularised, ThreeHalves},
     slide::{Body, Slide},
@@ -112,6 +112,43 @@ impl<S: Scalar + PartialOrd> FrictionData<S> {
             Self::None => FrictionType::Frictionless,
             Self::Regularised { .. } => FrictionType::Regularised,
             Self::Exact { .. } => FrictionType::Exact,
+        }
+    }
+}
+
+impl<S: Scalar> SlideData<S> {
+    /// The same slide in numbers of another type.
+    pub fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> SlideData<T> {
+        let vector = |v: &Vector3<S>| Vector3::new(number(v.x), number(v.y), number(v.z));
+        let SlideData { body, contact, friction, drive } = self;
+        SlideData {
+            body: Body {
+                mass: number(body.mass),
+                inertia_b: vector(&body.inertia_b),
+                gravity_w: vector(&body.gravity_w),
+                pins_w: body.pins_w.each_ref().map(vector),
+                gaps: body.gaps.map(&number),
+            },
+            contact: ContactData {
+                stiffness: number(contact.stiffness),
+                exponent: number(contact.exponent),
+                damping: number(contact.damping),
+                depth: number(contact.depth),
+            },
+            friction: match *friction {
+                FrictionData::None => FrictionData::None,
+                FrictionData::Regularised { coefficient, stick_band } => {
+                    FrictionData::Regularised { coefficient: number(coefficient), stick_band: number(stick_band) }
+                }
+                FrictionData::Exact { coefficient } => FrictionData::Exact { coefficient: number(coefficient) },
+            },
+            drive: Drive {
+                gain: number(drive.gain),
+                ramp_start: number(drive.ramp_start),
+                ramp_end: number(drive.ramp_end),
+                speed: number(drive.speed),
+                point_b: vector(&drive.point_b),
+            },
         }
     }
 }

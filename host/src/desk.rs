@@ -47,6 +47,11 @@ const LEAST_TOLERANCE: f64 = 1e-9;
 /// The error of force (N) that a step of `scene` may make: the scene's share of the drive's greatest force, or of the slide's
 /// weight where nothing is commanded; less where a narrow stick band asks for it.
 pub fn tolerance(scene: &Scene) -> f64 {
+    tolerance_of(scene, scene.run.error)
+}
+
+/// The same for another share of the drive's greatest force.
+pub fn tolerance_of(scene: &Scene, error: f64) -> f64 {
     let [x, y, z] = scene.slide.gravity;
     let weight = scene.slide.mass * libm::sqrt(x * x + y * y + z * z);
     let greatest = if scene.greatest_force() > 0.0 { scene.greatest_force() } else { weight };
@@ -57,12 +62,12 @@ pub fn tolerance(scene: &Scene) -> f64 {
         }
         _ => f64::INFINITY,
     };
-    let share = scene.run.error * greatest;
+    let share = error * greatest;
     share.min(resolving.max(share * NARROWEST)).max(LEAST_TOLERANCE)
 }
 
 /// The stick band (m/s) that stands for true stick at this `tolerance` (N); `None` unless friction is exact.
-fn stick_band(scene: &Scene, tolerance: f64) -> Option<f64> {
+pub fn stick_band(scene: &Scene, tolerance: f64) -> Option<f64> {
     let band = STICK_BANDS * tolerance / scene.drive.gain.max(f64::MIN_POSITIVE);
     matches!(scene.friction, FrictionData::Exact { .. }).then(|| band.clamp(STICK_BAND[0], STICK_BAND[1]))
 }

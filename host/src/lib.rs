@@ -31,6 +31,7 @@ pub mod number;
 pub mod out_of_line;
 pub mod outcome;
 pub mod plot;
+pub mod population;
 pub mod precision;
 pub mod product;
 pub mod report;

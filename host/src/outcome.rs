@@ -79,6 +79,21 @@ impl std::fmt::Display for Verdict {
     }
 }
 
+impl Verdict {
+    /// Of a unit that moves with `share` of its command at the end; none if it had no command, or it was not `over`.
+    pub fn of(share: f64, over: bool) -> Self {
+        if !over || share.is_nan() {
+            Self::Undecided
+        } else if share >= RUNS {
+            Self::Runs
+        } else if share >= JAMMED {
+            Self::Crawls
+        } else {
+            Self::Jammed
+        }
+    }
+}
+
 impl From<Verdict> for MotionVerdict {
     fn from(verdict: Verdict) -> Self {
         match verdict {
@@ -241,15 +256,7 @@ impl Observer {
         let share = vz / command;
         // At the stroke's end what the command is by then counts.
         let over = t >= self.drive.ramp_end || is_at_end == Some(true);
-        let verdict = if !over || command <= 0.0 {
-            Verdict::Undecided
-        } else if share >= RUNS {
-            Verdict::Runs
-        } else if share >= JAMMED {
-            Verdict::Crawls
-        } else {
-            Verdict::Jammed
-        };
+        let verdict = Verdict::of(share, over && command > 0.0);
         let [slows, stops] = self.below.map(|below| below.since.filter(|_| over));
         Outcome {
             breakaway: self.breakaway,

@@ -4,6 +4,7 @@ mod check;
 mod kernel;
 mod mechanism;
 mod merge;
+mod population;
 mod precision;
 mod run;
 mod simulate;
@@ -53,6 +54,7 @@ Examples:
   slipfit simulate --n 2.5 --csv unit.csv  one unit, tighter by 2.5 sigma
   slipfit sweep --stroke --n 0:5:0.5 --plot force.svg
                                            at which n does the whole stroke jam
+  slipfit population --plot units.svg      which share of the production malfunctions, and what from
   slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)
   slipfit kernel -o scene.rs               the scene as a Rust constant and type for firmware";
 
@@ -63,6 +65,7 @@ enum Command {
     Tolerance(tolerance::Arguments),
     Simulate(simulate::Arguments),
     Sweep(sweep::Arguments),
+    Population(population::Arguments),
     Table(table::Arguments),
     Kernel(kernel::Arguments),
     Precision(precision::Arguments),
@@ -325,6 +328,7 @@ pub fn main() -> ExitCode {
         Some(Command::Tolerance(arguments)) => arguments.run(),
         Some(Command::Simulate(arguments)) => arguments.run(),
         Some(Command::Sweep(arguments)) => arguments.run(),
+        Some(Command::Population(arguments)) => arguments.run(),
         Some(Command::Table(arguments)) => arguments.run(),
         Some(Command::Kernel(arguments)) => arguments.run(),
         Some(Command::Precision(arguments)) => arguments.run(),

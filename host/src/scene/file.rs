@@ -52,7 +52,7 @@ impl SceneFile {
             .any(|key| root.get(key).is_some())
             .then(|| product(&root))
             .transpose()?;
-        let of_slide = ["slide", "contact", "friction", "drive", "run", "controller", "sweep", "pin"];
+        let of_slide = ["slide", "contact", "friction", "drive", "run", "controller", "sweep", "pin", "vary"];
         if product.is_some() && !mechanism::is_mechanism(&root) && of_slide.iter().all(|key| root.get(key).is_none()) {
             return Ok(Self { title, product, slide: None, mechanism: None });
         }
@@ -72,7 +72,7 @@ impl SceneFile {
             fill(&mut pins, &gap_measures, &statistics);
             product.model.sums.extend(sums(&pins, &gap_measures));
         }
-        let slide = Some(scene(&root, title.clone(), pins)?);
+        let slide = Some(scene(&root, title.clone(), pins, gap_measures)?);
         Ok(Self { title, product, slide, mechanism: None })
     }
 

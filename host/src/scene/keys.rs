@@ -109,6 +109,15 @@ const ROOT: &[Key] = &[
             key("axis"),
         ],
     ),
+    table(
+        "vary",
+        &[
+            table("friction", &[table("coefficient", DEVIATION)]),
+            table("contact", &[table("stiffness", DEVIATION), table("damping", DEVIATION)]),
+            table("slide", &[table("mass", DEVIATION), table("tilt_x", DEVIATION), table("tilt_z", DEVIATION)]),
+            table("drive", &[table("gain", DEVIATION), table("ramp_end", DEVIATION)]),
+        ],
+    ),
     table("mechanism", &[key("space"), key("gravity")]),
     table("body", &[key("name"), key("mass"), key("inertia"), key("centre"), key("angle"), key("spin"), key("speed")]),
     table(

@@ -17,9 +17,10 @@ mod tests;
 mod tree;
 pub(crate) mod unit;
 mod value;
+pub mod vary;
 
 use slipfit_core::{
-    Scalar, Vector3,
+    Scalar,
     clearance::GapStatistics,
     drive::Drive,
     menu::{ContactData, FrictionData, SlideData},
@@ -32,6 +33,7 @@ pub use diagnostic::{Problem, SceneError};
 pub use file::SceneFile;
 pub use levels::{LevelError, MOST_LEVELS, parse_levels};
 pub use parse::parse_every;
+pub use vary::Varied;
 pub use shipped::{CD_ROM_SLIDE, SHIPPED, shipped};
 
 /// Which surfaces meet a pin, in the order of Table 2.
@@ -60,7 +62,14 @@ pub struct Scene {
     pub controller: ControllerSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
+    /// What varies over the production beside the gaps.
+    pub vary: Vec<Varied>,
+    /// Which measure of the product each gap is, pin by pin; `None` where the scene gives its statistics.
+    pub gap_measures: GapMeasures,
 }
+
+/// Which measure of the product each gap of each pin is, in the order of [`SURFACES`].
+pub type GapMeasures = [[Option<usize>; 4]; PINS];
 
 /// A change of one key, from the command line.
 #[derive(Clone, Debug, PartialEq)]
@@ -220,38 +229,15 @@ impl Scene {
 
     /// The slide with the given `gaps` (m) as the kernel's data, every number rounded once to the scalar `S`.
     pub fn slide_data<S: Scalar>(&self, gaps: &[f64; CONTACTS]) -> SlideData<S> {
-        let s = S::from_f64;
-        let vector = |[x, y, z]: [f64; 3]| Vector3::new(s(x), s(y), s(z));
-        let inertia = box_inertia(self.slide.mass, self.slide.inertia_box);
-        let point = self.drive.point_b;
-        SlideData {
-            body: Body {
-                mass: s(self.slide.mass),
-                inertia_b: vector(inertia.into()),
-                gravity_w: vector(self.slide.gravity),
-                pins_w: [0, 1, 2, 3].map(|i| vector(self.pins[i].position)),
-                gaps: gaps.map(s),
-            },
-            contact: ContactData {
-                stiffness: s(self.contact.stiffness),
-                exponent: s(self.contact.exponent),
-                damping: s(self.contact.damping),
-                depth: s(self.contact.depth),
-            },
-            friction: match self.friction {
-                FrictionData::None => FrictionData::None,
-                FrictionData::Regularised { coefficient, stick_band } => {
-                    FrictionData::Regularised { coefficient: s(coefficient), stick_band: s(stick_band) }
-                }
-                FrictionData::Exact { coefficient } => FrictionData::Exact { coefficient: s(coefficient) },
-            },
-            drive: Drive {
-                gain: s(self.drive.gain),
-                ramp_start: s(self.drive.ramp_start),
-                ramp_end: s(self.drive.ramp_end),
-                speed: s(self.drive.speed),
-                point_b: vector(point.into()),
-            },
-        }
+        let body = Body {
+            mass: self.slide.mass,
+            inertia_b: box_inertia(self.slide.mass, self.slide.inertia_box),
+            gravity_w: self.slide.gravity.into(),
+            pins_w: [0, 1, 2, 3].map(|i| self.pins[i].position.into()),
+            gaps: *gaps,
+        };
+        let data: SlideData<f64> =
+            SlideData { body, contact: self.contact, friction: self.friction, drive: self.drive };
+        data.cast(S::from_f64)
     }
 }

@@ -11,12 +11,13 @@ use slipfit_core::{
 use crate::scheme::{IntegratorKind, ScalarKind};
 
 use super::{
-    ControllerSpec, LevelRange, Override, PinSpec, Problem, RunSpec, Scene, SceneError, SlideSpec,
+    ControllerSpec, GapMeasures, LevelRange, Override, PinSpec, Problem, RunSpec, Scene, SceneError, SlideSpec,
     diagnostic::{COMMAND_LINE, Found},
     parse_levels,
     tree::{Source, Value},
     unit::{self, Quantity},
     value::Field,
+    vary::vary,
 };
 
 const MASS: Quantity = Quantity { units: unit::MASS, range: [0.001, 1e7] };
@@ -52,7 +53,12 @@ const LEAST_MOMENT: f64 = 1e-12;
 pub(super) const LEAST_RAMP: f64 = 1e-6;
 
 /// Reads the slide and its run around the `pins`.
-pub(super) fn scene(root: &Field, title: String, pins: [PinSpec; PINS]) -> Result<Scene, SceneError> {
+pub(super) fn scene(
+    root: &Field,
+    title: String,
+    pins: [PinSpec; PINS],
+    gap_measures: GapMeasures,
+) -> Result<Scene, SceneError> {
     let found = root.found();
     let nothing = SlideSpec { mass: 1.0, inertia_box: [1.0; 3], gravity: [0.0; 3] };
     let slide = found.recover(root.table("slide").and_then(|table| slide(&table)), nothing);
@@ -74,6 +80,8 @@ pub(super) fn scene(root: &Field, title: String, pins: [PinSpec; PINS]) -> Resul
         run,
         controller,
         sweep: sweep(&sweep_table)?,
+        vary: found.recover(vary(root), Vec::new()),
+        gap_measures,
     };
     for i in [0, scene.sweep.count - 1] {
         scene.check_gaps(&[scene.sweep.level(i); CONTACTS]).map_err(|error| {

@@ -5,7 +5,7 @@ use slipfit_core::{clearance::GapStatistics, slide::PINS};
 use crate::tolerance::model::{Model, Quantity as Kind, Sum};
 
 use super::{
-    PinSpec, Problem, SURFACES, SceneError,
+    GapMeasures, PinSpec, Problem, SURFACES, SceneError,
     parse::POINT,
     tree::Value,
     unit::{self, Quantity},
@@ -14,9 +14,6 @@ use super::{
 
 const MEAN: Quantity = Quantity { units: unit::LENGTH, range: [-100.0, 100.0] };
 const DEVIATION: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
-
-/// Which measure of the product each gap is, pin by pin; `None` where the scene gives its statistics.
-pub(super) type GapMeasures = [[Option<usize>; 4]; PINS];
 
 /// Gives the gaps that are measures the measures' `statistics`.
 pub(super) fn fill(pins: &mut [PinSpec; PINS], measures: &GapMeasures, statistics: &[GapStatistics<f64>]) {

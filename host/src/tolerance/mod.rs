@@ -7,7 +7,7 @@
 //! sums) → [`forest`] (joined in a fixed shape).
 
 pub mod analysis;
-mod binomial;
+pub mod binomial;
 pub mod copula;
 #[cfg(test)]
 mod coverage_tests;

@@ -283,7 +283,7 @@ fn vectorial(made: &mut FeatureDraft, draft: &mut Draft) -> Result<bool, SceneEr
         vector.expect_table()?;
         for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
             let Some(field) = vector.get(axis) else { continue };
-            let size = toleranced::deviation(&field, quantity, draft)?;
+            let size = toleranced::deviation(&field, quantity, draft.defaults.sigma)?;
             let variable = draft.add(size.contributor(format!("{} {key} {axis}", made.name)), &[0.0]);
             let mut component = [0.0; 3];
             component[i] = 1.0;

@@ -60,6 +60,8 @@ mod tests;
 mod toleranced;
 mod zone;
 
+pub(super) use toleranced::deviation;
+
 use crate::{
     number::fixed,
     product::{
@@ -85,6 +87,8 @@ use super::{
     value::Field,
 };
 
+/// Standard deviations in half of a tolerance, where nothing else is said.
+pub(super) const SIGMA_DEFAULT: f64 = 3.0;
 const SIGMA: Quantity = Quantity { units: unit::ONE, range: [0.1, 100.0] };
 const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
 
@@ -230,7 +234,7 @@ fn untoleranced(draft: &Draft) -> Vec<String> {
 }
 
 fn defaults(root: &Field) -> Result<Defaults, SceneError> {
-    let mut defaults = Defaults { general: General::default(), rule: ZoneRule::SigmaZone, sigma: 3.0 };
+    let mut defaults = Defaults { general: General::default(), rule: ZoneRule::SigmaZone, sigma: SIGMA_DEFAULT };
     let Some(table) = root.get("tolerance") else { return Ok(defaults) };
     table.expect_table()?;
     if let Some(field) = table.get("general") {

@@ -82,17 +82,18 @@ pub(super) fn diameter(axis: &Field, name: &str, draft: &mut Draft) -> Result<Op
 pub(super) fn offset(field: &Field, draft: &Draft) -> Result<Toleranced, SceneError> {
     match field.get("value") {
         Some(value) => Ok(toleranced(field, &value, draft)?.0),
-        None => deviation(field, &LENGTH, draft),
+        None => deviation(field, &LENGTH, draft.defaults.sigma),
     }
 }
 
-/// Reads a deviation from 0: a tolerance, or a table of `tolerance`, `sigma` and `distribution`.
-pub(super) fn deviation(field: &Field, quantity: &Quantity, draft: &Draft) -> Result<Toleranced, SceneError> {
+/// Reads a deviation from 0: a tolerance, or a table of `tolerance`, `sigma`, which is the given one if not written, and
+/// `distribution`.
+pub(in crate::scene) fn deviation(field: &Field, quantity: &Quantity, sigma: f64) -> Result<Toleranced, SceneError> {
     let tolerance = match field.node.value {
         Value::Table(_) => field.require("tolerance", DEVIATION)?,
         _ => field.clone(),
     };
-    let shape = shape(field, quantity, draft.defaults.sigma)?;
+    let shape = shape(field, quantity, sigma)?;
     Toleranced::new(0.0, deviations(&tolerance, quantity, DEVIATION)?, &shape)
         .map_err(|error| field.error(Problem::Shape { key: field.key.clone(), error }, DEVIATION))
 }

@@ -1,0 +1,351 @@
+//! `slipfit population`: what every unit of a production does.
+
+use std::{fmt::Write, path::PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{
+    Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, given, print, print_json, progress, text_table, warn,
+};
+use crate::{
+    files,
+    number::{fixed, level, or_dash},
+    outcome::Verdict,
+    population::{
+        Unit,
+        drivers::{Driver, Drivers},
+        hypothesis::Hypothesis,
+        picture::{self, tightness},
+        production::Production,
+        simulate_units,
+        statistics::{Share, Spread, Statistics, malfunctions},
+        unit::{UnitOutcome, at_levels},
+    },
+    scene::Scene,
+};
+
+/// Simulates every unit of a production, each with gaps of its own: which share malfunctions, how, and what from.
+///
+/// Gaps come from the product's tolerances where the scene has parts, else from means and deviations; `[vary]` in the
+/// scene lets friction, stiffness, damping, mass, gain, ramp and gravity's direction vary too.
+#[derive(Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Units to draw.
+    #[arg(long, default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    units: u64,
+    /// Seed of the production.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Simulates run.duration instead of the whole stroke.
+    #[arg(long)]
+    opening: bool,
+    /// The greatest force (N) that the motor has: units that need more malfunction.
+    #[arg(long, value_name = "N")]
+    force_limit: Option<f64>,
+    /// Correlation of any two gaps that have a mean and a deviation in the scene.
+    #[arg(long, value_name = "RHO", default_value_t = 0.0, allow_hyphen_values = true)]
+    correlation: f64,
+    /// Writes every unit with its gaps and figures as CSV.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Draws force and malfunction over tightness as SVG.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// Draws malfunction by distance from nominal, tightest and loosest against random combinations, as SVG.
+    #[arg(long, value_name = "FILE")]
+    plot_distance: Option<PathBuf>,
+    #[command(flatten)]
+    threads: ThreadArguments,
+}
+
+/// Units that find classes for what drives the figures.
+const PILOT: u64 = 1024;
+/// Levels of eq. 9 that are looked for in the population.
+const LEVELS: [f64; 13] = [-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+/// Random combinations at each distance.
+const DIRECTIONS: u64 = 512;
+/// Worst units that are listed.
+const WORST: usize = 5;
+/// Drivers that are listed.
+const DRIVERS: usize = 5;
+
+/// Where the unit of a level lies in the population.
+#[derive(Serialize)]
+struct LevelReport {
+    n: f64,
+    verdict: Verdict,
+    peak_force_n: f64,
+    /// Share of the population that needs less force.
+    share_below: f64,
+}
+
+/// A unit for machines.
+#[derive(Serialize)]
+struct UnitReport {
+    number: u64,
+    tightness: f64,
+    #[serde(flatten)]
+    outcome: UnitOutcome,
+}
+
+#[derive(Serialize)]
+struct Report {
+    json_version: u32,
+    title: String,
+    seed: u64,
+    statistics: Statistics,
+    force_drivers: Vec<Driver>,
+    malfunction_drivers: Vec<Driver>,
+    levels: Vec<LevelReport>,
+    hypothesis: Hypothesis,
+    worst: Vec<UnitReport>,
+    warnings: Vec<String>,
+}
+
+/// All that was found.
+struct Found {
+    units: Vec<Unit>,
+    statistics: Statistics,
+    drivers: [Vec<Driver>; 2],
+    levels: Vec<LevelReport>,
+    hypothesis: Hypothesis,
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        let (mut scene, product) = self.scene.load_with_product(&[])?;
+        if !(-1.0..=1.0).contains(&self.correlation) {
+            return Err(Failure::Input(format!("--correlation {}: allowed is -1 to 1", self.correlation)));
+        }
+        if let Some(limit) = self.force_limit.filter(|limit| !(limit.is_finite() && *limit > 0.0)) {
+            return Err(Failure::Input(format!("--force-limit {limit}: allowed is more than 0 N")));
+        }
+        if !self.opening {
+            scene.run.duration = scene.stroke_duration().unwrap_or(scene.run.duration);
+        }
+        let outputs =
+            [("--csv", &self.csv), ("--plot", &self.plot), ("--plot-distance", &self.plot_distance)];
+        self.scene.check_outputs(&given(outputs))?;
+        let production = Production::new(&scene, product.as_ref(), self.correlation, self.seed)
+            .map_err(|error| Failure::Input(error.to_string()))?;
+        let bar = progress("simulating", self.units as usize);
+        let found = self.threads.install(|| self.find(&scene, &production, |units| bar.inc(units)))?;
+        bar.finish_and_clear();
+        let found = found?;
+        if let Some(path) = &self.csv {
+            files::write(path, &units_csv(&scene, &found.units)?)?;
+        }
+        if let Some(path) = &self.plot {
+            let svg = picture::forces(&scene, &found.units, self.force_limit).map_err(anyhow::Error::from)?;
+            files::write(path, svg.as_bytes())?;
+        }
+        if let Some(path) = &self.plot_distance {
+            let svg = picture::hypothesis(&scene, &found.hypothesis).map_err(anyhow::Error::from)?;
+            files::write(path, svg.as_bytes())?;
+        }
+        let mut warnings = check::warnings_of(&scene);
+        warnings.extend(product.into_iter().flat_map(|product| product.warnings));
+        if self.scene.json {
+            let worst = worst(&found.units).into_iter().map(|unit| UnitReport {
+                number: unit.number,
+                tightness: tightness(&scene, &unit.gaps),
+                outcome: unit.outcome,
+            });
+            let worst = worst.collect();
+            let [force_drivers, malfunction_drivers] = found.drivers;
+            return print_json(&Report {
+                json_version: JSON_VERSION,
+                title: scene.title.clone(),
+                seed: self.seed,
+                statistics: found.statistics,
+                force_drivers,
+                malfunction_drivers,
+                levels: found.levels,
+                hypothesis: found.hypothesis,
+                worst,
+                warnings,
+            });
+        }
+        print(&self.describe(&scene, &found))?;
+        warn(&warnings);
+        Ok(())
+    }
+
+    fn find(&self, scene: &Scene, production: &Production, done: impl Fn(u64) + Sync) -> Result<Found, Failure> {
+        let pilot = production.draw(0..PILOT).variables;
+        let mut drivers = [Drivers::new(&pilot), Drivers::new(&pilot)];
+        let mut units = Vec::with_capacity(self.units as usize);
+        simulate_units(scene, production, 0..self.units, done, |drawn, piece| {
+            let of = |figure: &dyn Fn(&Unit) -> f64| piece.iter().map(|unit| Some(figure(unit))).collect::<Vec<_>>();
+            let figures = [
+                of(&|unit| unit.outcome.peak_force),
+                of(&|unit| f64::from(u8::from(malfunctions(unit, self.force_limit)))),
+            ];
+            for (drivers, figures) in drivers.iter_mut().zip(&figures) {
+                drivers.add(drawn.numbers.start, &drawn.variables, figures);
+            }
+            units.extend_from_slice(piece);
+        })?;
+        let statistics = Statistics::new(&units, self.force_limit);
+        let contributors = production.contributors();
+        let below = |force: f64| {
+            let count = units.iter().filter(|unit| unit.outcome.peak_force < force).count();
+            count as f64 / units.len().max(1) as f64
+        };
+        let levels = at_levels(scene, &LEVELS)?.into_iter().zip(LEVELS).map(|(unit, n)| LevelReport {
+            n,
+            verdict: unit.outcome.verdict,
+            peak_force_n: unit.outcome.peak_force,
+            share_below: below(unit.outcome.peak_force),
+        });
+        let levels = levels.collect();
+        Ok(Found {
+            statistics,
+            drivers: drivers.map(|drivers| drivers.ranked(&contributors)),
+            levels,
+            hypothesis: Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?,
+            units,
+        })
+    }
+
+    /// The answer, for people.
+    fn describe(&self, scene: &Scene, found: &Found) -> String {
+        let Statistics { units, runs, crawls, jammed, undecided, malfunctions, over_limit, sigma_level, .. } =
+            found.statistics;
+        let mut text = format!("{}: {units} units", scene.title);
+        let length = match scene.run.stroke.filter(|_| !self.opening) {
+            Some(stroke) => format!("the stroke of {} mm", fixed(stroke * 1e3, 1)),
+            None => format!("{} ms", fixed(scene.run.duration * 1e3, 0)),
+        };
+        let _ = writeln!(text, ", {length}\n");
+        let _ = writeln!(text, "Malfunction     {}", percent(&malfunctions));
+        for (name, share) in [("runs", runs), ("crawls", crawls), ("jams", jammed), ("undecided", undecided)] {
+            if share.units > 0 {
+                let _ = writeln!(text, "  {name:14}{}", percent(&share));
+            }
+        }
+        if let (Some(share), Some(limit)) = (over_limit, self.force_limit) {
+            let _ = writeln!(text, "  over {limit} N {}", percent(&share));
+        }
+        if let Some(level) = sigma_level {
+            let _ = writeln!(text, "Sigma level     {} σ of the function, one-sided", fixed(level, 2));
+        }
+        for (name, spread) in
+            [("Peak force", &found.statistics.peak_force), ("  that run", &found.statistics.running_force)]
+        {
+            if let Some(Spread { quantiles: [least, low, median, high, most], .. }) = spread {
+                let _ = writeln!(
+                    text,
+                    "{name:16}{} N at the median; 90 % of the units {} to {} N, all {} to {} N",
+                    fixed(*median, 3),
+                    fixed(*low, 3),
+                    fixed(*high, 3),
+                    fixed(*least, 3),
+                    fixed(*most, 3)
+                );
+            }
+        }
+        for (name, drivers) in ["Drives force", "Drives failure"].into_iter().zip(&found.drivers) {
+            let shown = drivers.iter().filter(|driver| driver.share > 2.0 * driver.error).take(DRIVERS);
+            let shown: Vec<String> = shown
+                .map(|driver| {
+                    let [share, error] = [driver.share, driver.error].map(|x| fixed(x * 100.0, 1));
+                    format!("{} {share} ± {error} %", driver.name)
+                })
+                .collect();
+            let shown = if shown.is_empty() { "nothing alone".to_owned() } else { shown.join(", ") };
+            let _ = writeln!(text, "{name:16}{shown}");
+        }
+        let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
+        let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
+        let rows: Vec<Vec<String>> = worst(&found.units)
+            .into_iter()
+            .map(|unit| {
+                let outcome = unit.outcome;
+                vec![
+                    unit.number.to_string(),
+                    level((tightness(scene, &unit.gaps) * 100.0).round() / 100.0),
+                    outcome.verdict.to_string(),
+                    fixed(outcome.peak_force, 3),
+                    fixed(outcome.final_velocity * 1e3, 3),
+                    fixed(outcome.end.z * 1e3, 2),
+                    or_dash(outcome.breakaway, |t| fixed(t * 1e3, 1)),
+                    outcome.most_loaded.map_or("-".into(), |(i, force)| {
+                        format!("{} ({} N)", scene.contact_names()[i], fixed(force, 2))
+                    }),
+                ]
+            })
+            .collect();
+        let heading =
+            ["unit", "n", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
+        let _ = write!(text, "\nThe worst\n{}", text_table(&heading, &rows));
+        text
+    }
+}
+
+/// A share with its interval.
+fn percent(share: &Share) -> String {
+    let [low, high] = share.interval.map(|end| fixed(end * 100.0, 2));
+    format!("{} %  ({low} to {high} %)", fixed(share.share * 100.0, 2))
+}
+
+/// Which levels do what, as ranges.
+fn levels(levels: &[LevelReport]) -> String {
+    let mut parts: Vec<(Verdict, f64, f64)> = Vec::new();
+    for at in levels {
+        match parts.last_mut() {
+            Some((verdict, _, last)) if *verdict == at.verdict => *last = at.n,
+            _ => parts.push((at.verdict, at.n, at.n)),
+        }
+    }
+    let part = |(verdict, first, last): &(Verdict, f64, f64)| format!("{} to {} {verdict}", level(*first), level(*last));
+    parts.iter().map(part).collect::<Vec<_>>().join(", ")
+}
+
+/// The worst units: those that come least far, then those that need most force.
+fn worst(units: &[Unit]) -> Vec<&Unit> {
+    let mut sorted: Vec<&Unit> = units.iter().collect();
+    sorted.sort_by(|one, other| {
+        let key = |unit: &Unit| (unit.outcome.verdict == Verdict::Runs, unit.outcome.end.z);
+        let ((runs, z), (other_runs, other_z)) = (key(one), key(other));
+        runs.cmp(&other_runs)
+            .then(z.total_cmp(&other_z))
+            .then(other.outcome.peak_force.total_cmp(&one.outcome.peak_force))
+    });
+    sorted.truncate(WORST);
+    sorted
+}
+
+/// Every unit: number, tightness, figures, and gaps in mm.
+fn units_csv(scene: &Scene, units: &[Unit]) -> Result<Vec<u8>, Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let figures = [
+        "unit", "n", "verdict", "breakaway_ms", "peak_N", "settled_N", "final_mm_s", "end_ms", "travel_mm", "desk",
+    ];
+    let gaps = scene.contact_names().map(|name| format!("{name}_mm"));
+    let failed = |error: csv::Error| Failure::Work(anyhow::Error::from(error));
+    writer.write_record(figures.into_iter().map(str::to_owned).chain(gaps)).map_err(failed)?;
+    for unit in units {
+        let UnitOutcome { verdict, breakaway, peak_force, settled_force, final_velocity, end, at_desk, .. } =
+            unit.outcome;
+        let optional = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+        let own = [
+            unit.number.to_string(),
+            tightness(scene, &unit.gaps).to_string(),
+            verdict.to_string(),
+            optional(breakaway.map(|t| t * 1e3)),
+            peak_force.to_string(),
+            optional(settled_force),
+            (final_velocity * 1e3).to_string(),
+            (end.t * 1e3).to_string(),
+            (end.z * 1e3).to_string(),
+            u8::from(at_desk).to_string(),
+        ];
+        let gaps = unit.gaps.iter().map(|gap| (gap * 1e3).to_string());
+        writer.write_record(own.into_iter().chain(gaps)).map_err(failed)?;
+    }
+    writer.into_inner().map_err(|error| Failure::Work(anyhow::Error::msg(error.to_string())))
+}

@@ -1,0 +1,210 @@
+//! What is kept of units while they move: figures, not runs.
+
+use slipfit_core::{Scalar, slide::CONTACTS};
+
+use super::pack::Pack;
+use crate::outcome::{BREAKAWAY_SPEED, SETTLED_WINDOW};
+
+/// Figures of one unit, in SI units. Speeds, forces and travel count along the commanded direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// When the slide breaks away (s): the last upward crossing of 0.2 mm/s after the ramp's start; NaN if there is none.
+    pub breakaway: f32,
+    /// Greatest force from the ramp's start on (N).
+    pub peak_force: f32,
+    /// Mean force over the last 20 ms (N), if it varies by less than 1 %; else NaN.
+    pub settled_force: f32,
+    /// Velocity at the end (m/s).
+    pub final_velocity: f32,
+    /// End of the run (s).
+    pub end: f32,
+    /// Travel at the end (m).
+    pub travel: f32,
+    /// The contact that was pressed in deepest.
+    pub contact: u8,
+    /// How deep (m).
+    pub depth: f32,
+    /// Steps, refused ones among them.
+    pub steps: u32,
+    /// Whether no step, however short, met the tolerance: the figures are those up to there.
+    pub stalled: bool,
+}
+
+impl Figures {
+    /// Of a unit that was not simulated.
+    pub const NONE: Self = Self {
+        breakaway: f32::NAN,
+        peak_force: f32::NAN,
+        settled_force: f32::NAN,
+        final_velocity: f32::NAN,
+        end: 0.0,
+        travel: 0.0,
+        contact: 0,
+        depth: 0.0,
+        steps: 0,
+        stalled: true,
+    };
+}
+
+/// Ends of steps whose force counts for whether it has settled: one in this share of the window.
+const SAMPLES: usize = 32;
+
+/// Watches as many units as a pack has lanes.
+pub struct Watch<const W: usize> {
+    breakaway: Pack<W>,
+    peak: Pack<W>,
+    depths: [Pack<W>; CONTACTS],
+    /// Force and speed at the end of the last accepted step, the force before that, and the length of the step between.
+    force: Pack<W>,
+    speed: Pack<W>,
+    force_before: Pack<W>,
+    length_before: Pack<W>,
+    windows: [Window; W],
+}
+
+/// The ends of steps that are accepted in some lanes.
+pub struct Ends<'a, const W: usize> {
+    /// Above 0 where the step is accepted.
+    pub accepted: Pack<W>,
+    /// Time at the start of the step (s).
+    pub start: Pack<W>,
+    /// Its length (s).
+    pub length: Pack<W>,
+    /// Drive force (N) at its end.
+    pub force: Pack<W>,
+    /// Speed (m/s) at its end.
+    pub speed: Pack<W>,
+    /// Gaps (m) at its end.
+    pub gaps: &'a [Pack<W>; CONTACTS],
+    /// Start of the ramp (s).
+    pub ramp_start: Pack<W>,
+}
+
+impl<const W: usize> Watch<W> {
+    /// Of units that have not begun.
+    pub fn new() -> Self {
+        let zero = Pack::splat(0.0);
+        Self {
+            breakaway: Pack::splat(f32::NAN),
+            peak: Pack::splat(f32::NEG_INFINITY),
+            depths: [zero; CONTACTS],
+            force: zero,
+            speed: zero,
+            force_before: zero,
+            length_before: Pack::splat(1.0),
+            windows: [Window::default(); W],
+        }
+    }
+
+    /// Forgets what was in a `lane`.
+    pub fn clear(&mut self, lane: usize) {
+        let fresh = Self::new();
+        for (pack, fresh) in [
+            (&mut self.breakaway, fresh.breakaway),
+            (&mut self.peak, fresh.peak),
+            (&mut self.force, fresh.force),
+            (&mut self.speed, fresh.speed),
+            (&mut self.force_before, fresh.force_before),
+            (&mut self.length_before, fresh.length_before),
+        ] {
+            pack.0[lane] = fresh.0[lane];
+        }
+        self.depths.iter_mut().for_each(|depth| depth.0[lane] = 0.0);
+        self.windows[lane] = Window::default();
+    }
+
+    /// Takes note of the ends of steps.
+    #[inline(always)]
+    pub fn observe(&mut self, ends: &Ends<W>) {
+        let Ends { accepted, start, length, force, speed, gaps, ramp_start } = *ends;
+        let zero = Pack::splat(0.0);
+        let keep = |new: Pack<W>, old: Pack<W>| accepted.select_gt(zero, new, old);
+        // Only what begins after the ramp's start counts; NaN keeps the old.
+        let end = start + length;
+        let on = |yes: Pack<W>, no: Pack<W>| ramp_start.select_gt(end, no, yes);
+        let whole = |yes: Pack<W>, no: Pack<W>| ramp_start.select_gt(start, no, yes);
+
+        let threshold = Pack::splat(BREAKAWAY_SPEED as f32);
+        let crossing = start + length * (threshold - self.speed) / (speed - self.speed);
+        let crosses = threshold.select_gt(self.speed, threshold.select_gt(speed, self.breakaway, crossing), self.breakaway);
+        self.breakaway = keep(whole(crosses, self.breakaway), self.breakaway);
+
+        // The top of the parabola through three ends, where the middle one is the highest.
+        let rise = (self.force - self.force_before) / self.length_before;
+        let fall = (force - self.force) / length;
+        let bend = (rise - fall) / (self.length_before + length);
+        let slope = (rise * length + fall * self.length_before) / (self.length_before + length);
+        let top = self.force + slope * slope / (bend * Pack::splat(4.0));
+        let is_top = rise.select_gt(zero, zero.select_gt(fall, top, self.peak), self.peak);
+        let peak = whole(self.peak.max_of(is_top), self.peak).max_of(on(force, self.peak));
+        self.peak = keep(peak, self.peak);
+
+        for (depth, gap) in self.depths.iter_mut().zip(gaps) {
+            *depth = keep(depth.max_of(-*gap), *depth);
+        }
+        self.force_before = keep(self.force, self.force_before);
+        self.length_before = keep(length, self.length_before);
+        self.force = keep(force, self.force);
+        self.speed = keep(speed, self.speed);
+    }
+
+    /// Takes note of the force at the end of an accepted step of a `lane`, at time `t` (s).
+    #[inline(always)]
+    pub fn mark(&mut self, lane: usize, t: f64) {
+        self.windows[lane].mark(t, self.force.0[lane]);
+    }
+
+    /// Writes what is known of the unit in a `lane` at its end, time `t` (s), to `figures`.
+    pub fn conclude(&self, lane: usize, t: f64, figures: &mut Figures) {
+        figures.breakaway = self.breakaway.0[lane];
+        figures.peak_force = self.peak.0[lane];
+        figures.settled_force = self.windows[lane].settled(t, self.force.0[lane]);
+        let deepest = (0..CONTACTS).max_by(|i, j| self.depths[*i].0[lane].total_cmp(&self.depths[*j].0[lane]));
+        let deepest = deepest.unwrap_or(0);
+        figures.contact = deepest as u8;
+        figures.depth = self.depths[deepest].0[lane];
+        figures.end = t as f32;
+    }
+}
+
+/// Forces of the last 20 ms.
+#[derive(Clone, Copy)]
+struct Window {
+    times: [f64; 2 * SAMPLES],
+    forces: [f32; 2 * SAMPLES],
+    count: usize,
+}
+
+impl Default for Window {
+    fn default() -> Self {
+        Self { times: [f64::NEG_INFINITY; 2 * SAMPLES], forces: [0.0; 2 * SAMPLES], count: 0 }
+    }
+}
+
+impl Window {
+    #[inline(always)]
+    fn mark(&mut self, t: f64, force: f32) {
+        let last = self.count.wrapping_sub(1) % (2 * SAMPLES);
+        if t - self.times[last] >= SETTLED_WINDOW / SAMPLES as f64 {
+            let at = self.count % (2 * SAMPLES);
+            (self.times[at], self.forces[at]) = (t, force);
+            self.count += 1;
+        }
+    }
+
+    /// The mean force, if it varies by less than 1 %, over the last 20 ms before `end` (s), where it is `force` (N).
+    fn settled(&self, end: f64, force: f32) -> f32 {
+        let mut marks: Vec<(f64, f64)> = (0..2 * SAMPLES)
+            .map(|i| (self.times[i], f64::from(self.forces[i])))
+            .filter(|(t, _)| *t >= end - SETTLED_WINDOW * (1.0 + 1e-9) && *t < end)
+            .collect();
+        marks.push((end, f64::from(force)));
+        marks.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let forces = || marks.iter().map(|(_, force)| *force);
+        let (least, greatest) = (forces().fold(f64::INFINITY, f64::min), forces().fold(f64::NEG_INFINITY, f64::max));
+        let duration = end - marks[0].0;
+        let sum: f64 = marks.windows(2).map(|pair| (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1) / 2.0).sum();
+        let mean = if duration > 0.0 { sum / duration } else { least };
+        if greatest - least < 0.01 * mean.abs() { mean as f32 } else { f32::NAN }
+    }
+}

@@ -1,0 +1,104 @@
+//! Are the tightest and the loosest combinations the most probable to malfunction?
+//!
+//! All gaps moved by the same n, as eq. 9 moves them, against as many random combinations as far from nominal: random
+//! directions in the space of all gaps, each gap measured by its standard deviation, of the same root mean square.
+
+use serde::Serialize;
+use slipfit_core::{
+    sampling::stream::{Rng, derived, unit_stream},
+    slide::{ABSENT, CONTACTS},
+};
+
+use super::{
+    statistics::{Share, malfunctions},
+    unit::{as_drawn, at_levels, units},
+};
+use crate::{outcome::Verdict, scene::Scene, simulate::SimulateError, tolerance::normal};
+
+/// Distances from nominal, root mean square in standard deviations of the gaps.
+pub const DISTANCES: [f64; 7] = [0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
+
+/// What seeds of directions are derived with.
+const STREAM: u64 = 5 << 32;
+
+/// What units do at one distance from nominal.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AtDistance {
+    /// Root mean square over the gaps (σ).
+    pub distance: f64,
+    /// All gaps tighter by that: the unit of level n.
+    pub tight: Verdict,
+    /// All gaps looser by that: the unit of level −n.
+    pub loose: Verdict,
+    /// Random combinations that malfunction.
+    pub random: Share,
+}
+
+/// The same over all distances.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hypothesis {
+    /// By distance, ascending.
+    pub distances: Vec<AtDistance>,
+}
+
+impl Hypothesis {
+    /// Tries `directions` random combinations at each distance, against a motor's force `limit` (N).
+    ///
+    /// # Errors
+    /// See [`SimulateError`].
+    pub fn test(scene: &Scene, directions: u64, seed: u64, limit: Option<f64>) -> Result<Self, SimulateError> {
+        let at = |distance: f64| {
+            let [loose, tight] = [-distance, distance].map(|n| at_levels(scene, &[n]));
+            let (loose, tight) = (loose?, tight?);
+            let gaps = (0..directions).map(|i| combination(scene, distance, seed, i)).collect();
+            let random = units(scene, &as_drawn(scene, gaps, 0..directions))?;
+            let failed = random.iter().filter(|unit| malfunctions(unit, limit)).count() as u64;
+            Ok::<_, SimulateError>(AtDistance {
+                distance,
+                tight: tight[0].outcome.verdict,
+                loose: loose[0].outcome.verdict,
+                random: Share::new(failed, directions.max(1)),
+            })
+        };
+        Ok(Self { distances: DISTANCES.into_iter().map(at).collect::<Result<_, _>>()? })
+    }
+
+    /// The answer in words.
+    pub fn verdict(&self) -> String {
+        let side = |of: fn(&AtDistance) -> Verdict| -> f64 {
+            let failed = self.distances.iter().filter(|at| of(at) != Verdict::Runs).count();
+            failed as f64 / self.distances.len() as f64
+        };
+        let (tight, loose) = (side(|at| at.tight), side(|at| at.loose));
+        let random = self.distances.iter().map(|at| at.random.share).sum::<f64>() / self.distances.len() as f64;
+        let percent = |share: f64| format!("{:.0} %", share * 100.0);
+        let word = |share: f64| match share {
+            share if share > random + 0.05 => "more often than",
+            share if share < random - 0.05 => "less often than",
+            _ => "as often as",
+        };
+        format!(
+            "over the same distances the loosest units malfunction in {} of cases, {} random combinations ({}), the \
+             tightest in {}, {} these",
+            percent(loose),
+            word(loose),
+            percent(random),
+            percent(tight),
+            word(tight)
+        )
+    }
+}
+
+/// Gaps (m) in a random direction from the means, at a root mean square of `distance` standard deviations.
+fn combination(scene: &Scene, distance: f64, seed: u64, number: u64) -> [f64; CONTACTS] {
+    let mut stream = unit_stream(derived(seed, STREAM), number);
+    let mut n = [0.0; CONTACTS];
+    let present = scene.gaps_at(&[0.0; CONTACTS]).map(|gap| gap != ABSENT);
+    for (n, present) in n.iter_mut().zip(present) {
+        let uniform = (stream.next_u64() >> 11) as f64 / (1u64 << 53) as f64 + 0.5 / (1u64 << 53) as f64;
+        *n = if present { normal::quantile(uniform) } else { 0.0 };
+    }
+    let count = present.iter().filter(|present| **present).count().max(1) as f64;
+    let square = n.iter().map(|n| n * n).sum::<f64>() / count;
+    scene.gaps_at(&n.map(|n| n * distance / libm::sqrt(square.max(f64::MIN_POSITIVE))))
+}

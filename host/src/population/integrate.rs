@@ -1,0 +1,185 @@
+//! Many units by error-controlled steps, as many at a time as a pack has lanes.
+//!
+//! Every lane has a time and a step of its own, and takes the next unit as soon as its own has come to its end: units in
+//! lockstep, or with one step for all, would wait for each other. The steps are those of the kernel's RODAS3.
+
+use slipfit_core::{
+    Scalar,
+    integrator::{Integrator, Rodas3},
+    menu::SlideData,
+    slide::Slide,
+};
+
+use super::{
+    figures::{Ends, Figures, Watch},
+    lane::{Motions, at_rest, each_number, put},
+    laws::Laws,
+    pack::Pack,
+};
+
+/// What all units are simulated for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Course {
+    /// The longest simulated time (s).
+    pub duration: f64,
+    /// Travel (m) along the command at which a unit is at its end.
+    pub stroke: Option<f64>,
+    /// Error of the drive force (N) that a step may make.
+    pub tolerance: f64,
+}
+
+/// Least, first and greatest step (s). Single precision resolves no shorter ones.
+const STEPS: [f32; 3] = [1e-9, 2e-5, 0.02];
+/// How much shorter than the estimate allows a step is, and bounds of its change.
+const SAFETY: f32 = 0.8;
+const CHANGES: [f32; 2] = [0.2, 3.0];
+/// Position error (m) allowed with 1 N of force error; see [`crate::error_control::Tolerance::of_force`].
+const PLACE: f64 = 3e-5;
+/// Steps after which a unit has stalled.
+const MOST_STEPS: u32 = 200_000;
+
+/// Simulates all `units` and writes what each did to `figures`, of the same length.
+///
+/// A unit whose parameters are out of bounds has no figures.
+#[inline(always)]
+pub fn integrate<L: Laws, const W: usize>(course: &Course, units: &[SlideData<f64>], figures: &mut [Figures]) {
+    let Some(first) = units.first() else { return };
+    let mut lanes = Lanes::<W>::new(first);
+    let mut next = 0;
+    for lane in 0..W {
+        lanes.load(lane, &mut next, units);
+    }
+    let Ok(mut slide) = L::slide(&lanes.data) else { return };
+    while lanes.busy() {
+        if lanes.step(course, &slide, figures) {
+            for lane in 0..W {
+                if lanes.ended[lane] {
+                    lanes.load(lane, &mut next, units);
+                }
+            }
+            // Only what was validated is loaded.
+            if let Ok(loaded) = L::slide(&lanes.data) {
+                slide = loaded;
+            }
+        }
+    }
+}
+
+/// Units at work.
+struct Lanes<const W: usize> {
+    data: SlideData<Pack<W>>,
+    motions: Motions<W>,
+    watch: Watch<W>,
+    /// Which unit is in each lane.
+    units: [Option<usize>; W],
+    ended: [bool; W],
+    times: [f64; W],
+    lengths: Pack<W>,
+    tried: [u32; W],
+}
+
+impl<const W: usize> Lanes<W> {
+    fn new(any: &SlideData<f64>) -> Self {
+        Self {
+            data: any.cast(Pack::from_f64),
+            motions: at_rest(),
+            watch: Watch::new(),
+            units: [None; W],
+            ended: [false; W],
+            times: [0.0; W],
+            lengths: Pack::splat(STEPS[1]),
+            tried: [0; W],
+        }
+    }
+
+    fn busy(&self) -> bool {
+        self.units.iter().any(Option::is_some)
+    }
+
+    /// Puts the next of `units` into a `lane`, from rest.
+    fn load(&mut self, lane: usize, next: &mut usize, units: &[SlideData<f64>]) {
+        self.units[lane] = units.get(*next).map(|unit| {
+            put(&mut self.data, lane, unit);
+            *next += 1;
+            *next - 1
+        });
+        each_number(&mut self.motions, &at_rest(), |number, rest| number.0[lane] = rest.0[lane]);
+        self.watch.clear(lane);
+        (self.ended[lane], self.times[lane], self.tried[lane]) = (false, 0.0, 0);
+        self.lengths.0[lane] = STEPS[1];
+    }
+
+    /// A step in every lane; whether units have come to their ends by it.
+    #[inline(always)]
+    fn step<E, F>(&mut self, course: &Course, slide: &Slide<Pack<W>, E, F>, figures: &mut [Figures]) -> bool
+    where
+        E: slipfit_core::law::Elastic<Pack<W>>,
+        F: slipfit_core::law::Friction<Pack<W>, Memory = ()>,
+    {
+        let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
+        let (mut start, mut length) = (zero, zero);
+        for lane in 0..W {
+            let left = (course.duration - self.times[lane]) as f32;
+            start.0[lane] = self.times[lane] as f32;
+            let step = self.lengths.0[lane];
+            length.0[lane] = if 1.01 * step >= left { left.max(STEPS[0]) } else { step };
+        }
+        let step = Rodas3::step::<Pack<W>, _, 6>(slide, start, length, &self.motions);
+        let (mass, drive) = (self.data.body.mass, &self.data.drive);
+        let velocity_error = step.error * (drive.gain * Pack::from_f64(1.0 / course.tolerance));
+        let place_error = step.drift * Pack::from_f64(1.0 / (PLACE * course.tolerance));
+        // What is not a number is the worst of all.
+        let sum = velocity_error + place_error;
+        let error = (velocity_error.max_of(place_error) + sum * zero) / mass;
+        let worst = Pack::splat(1e9);
+        let error = worst.select_gt(error, error, worst).max_of(Pack::splat(1e-9));
+        let factor = Pack::splat(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
+        self.lengths = (length * factor.within(Pack::splat(CHANGES[0]), Pack::splat(CHANGES[1])))
+            .within(Pack::splat(STEPS[0]), Pack::splat(STEPS[2]));
+        let accepted = error.select_gt(one, zero, one);
+        let along = zero.select_gt(drive.speed, -one, one);
+        let before = self.motions.pose.displacement_w.z * along;
+        each_number(&mut self.motions, &step.motion, |number, new| *number = accepted.select_gt(zero, new, *number));
+
+        let speed = self.motions.velocity.z;
+        let ends = Ends {
+            accepted,
+            start,
+            length,
+            force: drive.force(start + length, speed) * along,
+            speed: speed * along,
+            gaps: &slide.gaps(&self.motions.pose),
+            ramp_start: drive.ramp_start,
+        };
+        self.watch.observe(&ends);
+        let travel = self.motions.pose.displacement_w.z * along;
+        let mut any = false;
+        for lane in 0..W {
+            let Some(unit) = self.units[lane] else { continue };
+            self.tried[lane] += 1;
+            let is_accepted = accepted.0[lane] > 0.0;
+            let stalled = (!is_accepted && length.0[lane] <= STEPS[0]) || self.tried[lane] >= MOST_STEPS;
+            if is_accepted {
+                self.times[lane] += f64::from(length.0[lane]);
+                self.watch.mark(lane, self.times[lane]);
+            }
+            let at_end = course.stroke.is_some_and(|stroke| travel.0[lane] >= stroke as f32);
+            if !(stalled || at_end || self.times[lane] >= course.duration - f64::from(STEPS[0])) {
+                continue;
+            }
+            let mut t = self.times[lane];
+            if let Some(stroke) = course.stroke.filter(|_| at_end) {
+                // The slide comes to the end of its stroke within the step.
+                let beyond = travel.0[lane] - stroke as f32;
+                t -= f64::from(length.0[lane] * beyond / (travel.0[lane] - before.0[lane]).max(f32::MIN_POSITIVE));
+            }
+            let of_unit = &mut figures[unit];
+            self.watch.conclude(lane, t, of_unit);
+            of_unit.final_velocity = ends.speed.0[lane];
+            of_unit.travel = course.stroke.map_or(travel.0[lane], |stroke| travel.0[lane].min(stroke as f32));
+            (of_unit.steps, of_unit.stalled) = (self.tried[lane], stalled);
+            (self.ended[lane], any) = (true, true);
+        }
+        any
+    }
+}

@@ -1,0 +1,69 @@
+//! One lane of a pack: a unit's parameters in it, and its state.
+
+use slipfit_core::{
+    SVector, Vector3,
+    integrator::Motion,
+    menu::{FrictionData, SlideData},
+    pose::Pose,
+    slide::SLOTS,
+};
+
+use super::pack::Pack;
+
+/// The motions of as many slides as a pack has lanes.
+pub type Motions<const W: usize> = Motion<Pack<W>, Pose<Pack<W>>, [(); SLOTS], 6>;
+
+/// All slides at rest in their nominal poses.
+pub fn at_rest<const W: usize>() -> Motions<W> {
+    let still = SVector::zeros();
+    Motion { pose: Pose::nominal(), velocity: still, acceleration: still, memory: [(); SLOTS] }
+}
+
+/// Calls `number` for every number of a motion beside the same one of another.
+#[inline(always)]
+pub fn each_number<const W: usize>(
+    one: &mut Motions<W>,
+    other: &Motions<W>,
+    mut number: impl FnMut(&mut Pack<W>, Pack<W>),
+) {
+    for (one, other) in one.velocity.iter_mut().zip(other.velocity.iter()) {
+        number(one, *other);
+    }
+    let (one, other) = (&mut one.pose, &other.pose);
+    for (one, other) in one.displacement_w.iter_mut().zip(other.displacement_w.iter()) {
+        number(one, *other);
+    }
+    number(&mut one.orientation.w, other.orientation.w);
+    for (one, other) in one.orientation.v.iter_mut().zip(other.orientation.v.iter()) {
+        number(one, *other);
+    }
+}
+
+/// Puts the slide `one` into a `lane` of `all`, its numbers rounded to single precision.
+pub fn put<const W: usize>(all: &mut SlideData<Pack<W>>, lane: usize, one: &SlideData<f64>) {
+    let set = |pack: &mut Pack<W>, value: f64| pack.0[lane] = value as f32;
+    let set_vector = |packs: &mut Vector3<Pack<W>>, values: &Vector3<f64>| {
+        packs.iter_mut().zip(values.iter()).for_each(|(pack, value)| set(pack, *value));
+    };
+    set(&mut all.body.mass, one.body.mass);
+    set_vector(&mut all.body.inertia_b, &one.body.inertia_b);
+    set_vector(&mut all.body.gravity_w, &one.body.gravity_w);
+    all.body.pins_w.iter_mut().zip(&one.body.pins_w).for_each(|(packs, values)| set_vector(packs, values));
+    all.body.gaps.iter_mut().zip(one.body.gaps).for_each(|(pack, gap)| set(pack, gap));
+    set(&mut all.contact.stiffness, one.contact.stiffness);
+    set(&mut all.contact.damping, one.contact.damping);
+    set(&mut all.contact.depth, one.contact.depth);
+    if let (
+        FrictionData::Regularised { coefficient, stick_band },
+        FrictionData::Regularised { coefficient: own, stick_band: band },
+    ) = (&mut all.friction, one.friction)
+    {
+        set(coefficient, own);
+        set(stick_band, band);
+    }
+    set(&mut all.drive.gain, one.drive.gain);
+    set(&mut all.drive.ramp_start, one.drive.ramp_start);
+    set(&mut all.drive.ramp_end, one.drive.ramp_end);
+    set(&mut all.drive.speed, one.drive.speed);
+    set_vector(&mut all.drive.point_b, &one.drive.point_b);
+}

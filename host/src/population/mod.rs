@@ -1,0 +1,116 @@
+//! What every unit of a production does: the dynamics of whole populations.
+//!
+//! A level n moves all gaps together, and no unit of a production is like that. Here each unit gets gaps of its own, drawn
+//! from the product's joint model or from means and deviations, and parameters that vary, and runs by itself.
+
+pub mod drivers;
+mod figures;
+pub mod hypothesis;
+mod integrate;
+mod lane;
+mod laws;
+mod pack;
+pub mod picture;
+pub mod production;
+pub mod statistics;
+pub mod unit;
+
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+use slipfit_core::{menu::SlideData, slide::CONTACTS};
+
+use crate::{interrupt, scene::Scene, simulate::SimulateError};
+
+pub use figures::Figures;
+pub use integrate::Course;
+use laws::{Chosen, ThreeHalvesRegularised};
+use production::{Drawn, Production};
+pub use unit::UnitOutcome;
+
+/// Units that are simulated together; they share nothing but the work.
+const PIECE: usize = 256;
+
+/// The lanes of a pack: as many as an instruction works on where there is AVX2. The bits do not depend on it.
+const LANES: usize = 8;
+
+/// The slides of some units.
+struct Work<'a> {
+    course: Course,
+    slides: &'a [SlideData<f64>],
+    figures: &'a mut [Figures],
+    /// Whether they have the paper's laws.
+    usual: bool,
+}
+
+impl WithSimd for Work<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { course, slides, figures, usual } = self;
+        if usual {
+            integrate::integrate::<ThreeHalvesRegularised, LANES>(&course, slides, figures);
+        } else {
+            integrate::integrate::<Chosen, LANES>(&course, slides, figures);
+        }
+    }
+}
+
+/// Simulates `slides`, all of the same laws, in the widest instructions that the machine has; the bits do not depend on
+/// them.
+pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
+    let mut figures = vec![Figures::NONE; slides.len()];
+    let usual = slides.first().is_some_and(laws::is_usual);
+    Arch::new().dispatch(Work { course, slides, figures: &mut figures, usual });
+    figures
+}
+
+/// One unit of a population.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    /// Its number in the production, from 0 on.
+    pub number: u64,
+    /// Its gaps (m) in the order of Table 2.
+    pub gaps: [f64; CONTACTS],
+    /// What it did.
+    pub outcome: UnitOutcome,
+}
+
+/// Simulates the units `numbers` of a `production` of `scene` on all threads of the current pool; `done` is called with how
+/// many are. `see` gets the units of each piece in order, with what they were drawn as. The result does not depend on the
+/// number of threads.
+///
+/// # Errors
+/// [`SimulateError`] of the first unit whose parameters are out of bounds, or that cannot be solved.
+pub fn simulate_units(
+    scene: &Scene,
+    production: &Production,
+    numbers: std::ops::Range<u64>,
+    done: impl Fn(u64) + Sync,
+    mut see: impl FnMut(&Drawn, &[Unit]),
+) -> Result<(), SimulateError> {
+    let starts: Vec<u64> = numbers.clone().step_by(PIECE).collect();
+    // As many pieces at a time as keep all threads at work, so that memory does not grow with the population.
+    for starts in starts.chunks(8 * rayon::current_num_threads()) {
+        let pieces: Vec<_> = starts
+            .par_iter()
+            .with_max_len(1)
+            .map(|start| {
+                if interrupt::requested() {
+                    return Err(SimulateError::Interrupted);
+                }
+                let piece = *start..(start + PIECE as u64).min(numbers.end);
+                let count = piece.end - piece.start;
+                let drawn = production.draw(piece);
+                let units = unit::units(scene, &drawn)?;
+                done(count);
+                Ok((drawn, units))
+            })
+            .collect();
+        for piece in pieces {
+            let (drawn, units) = piece?;
+            see(&drawn, &units);
+        }
+    }
+    Ok(())
+}

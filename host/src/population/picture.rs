@@ -1,0 +1,137 @@
+//! Pictures of a population.
+
+use slipfit_core::slide::{ABSENT, CONTACTS};
+
+use super::{
+    Unit,
+    hypothesis::{AtDistance, Hypothesis},
+    statistics::{Share, malfunctions},
+};
+use crate::{
+    number::fixed,
+    outcome::Verdict,
+    plot::{Chart, Look, Markers, Panel, PlotError, Series, Shape, line_chart},
+    scene::Scene,
+};
+
+/// The most units that a picture marks.
+const MARKED: usize = 1500;
+/// Classes of tightness.
+const CLASSES: usize = 16;
+/// Units that a class needs to be shown.
+const LEAST: usize = 20;
+
+/// How much tighter than the mean unit this one is: the mean over its gaps, each in its standard deviations, signed like
+/// the level n of eq. 9.
+pub fn tightness(scene: &Scene, gaps: &[f64; CONTACTS]) -> f64 {
+    let statistics = scene.pins.iter().flat_map(|pin| pin.gaps);
+    let levels = statistics.zip(gaps).filter(|(_, gap)| **gap != ABSENT).filter_map(|(of, gap)| {
+        let of = of.filter(|of| of.deviation > 0.0)?;
+        Some((of.mean - gap) / of.deviation)
+    });
+    let levels: Vec<f64> = levels.collect();
+    levels.iter().sum::<f64>() / levels.len().max(1) as f64
+}
+
+/// Greatest force over joint tightness with the units that malfunction marked, and the share of these.
+///
+/// # Errors
+/// [`PlotError`], if there is nothing to show.
+pub fn forces(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<String, PlotError> {
+    let placed: Vec<(f64, &Unit)> = units.iter().map(|unit| (tightness(scene, &unit.gaps), unit)).collect();
+    let every = units.len().div_ceil(MARKED).max(1);
+    let kind = |verdict: Verdict, label: &str, shape| Markers {
+        label: label.into(),
+        shape,
+        points: placed
+            .iter()
+            .step_by(every)
+            .filter(|(_, unit)| unit.outcome.verdict == verdict)
+            .map(|(n, unit)| (*n, unit.outcome.peak_force))
+            .collect(),
+    };
+    let [low, high] =
+        placed.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (n, _)| [low.min(*n), high.max(*n)]);
+    let limits = limit.map(|limit| Series { label: String::new(), look: Look::Guide, points: vec![(low, limit), (high, limit)] });
+    let class = |k: usize| [k, k + 1].map(|k| low + (high - low) * k as f64 / CLASSES as f64);
+    let shares: Vec<(f64, Share)> = (0..CLASSES)
+        .filter_map(|k| {
+            let [from, to] = class(k);
+            let own: Vec<_> = placed.iter().filter(|(n, _)| from <= *n && *n < to).collect();
+            let failed = own.iter().filter(|(_, unit)| malfunctions(unit, limit)).count();
+            (own.len() >= LEAST).then(|| ((from + to) / 2.0, Share::new(failed as u64, own.len() as u64)))
+        })
+        .collect();
+    let failed = Share::new(units.iter().filter(|unit| malfunctions(unit, limit)).count() as u64, units.len().max(1) as u64);
+    let remark = if every > 1 { format!("one unit in {every} is marked") } else { String::new() };
+    line_chart(&Chart {
+        title: scene.title.clone(),
+        subtitle: format!("{} units, {} % malfunction; {remark}", units.len(), fixed(failed.share * 100.0, 1)),
+        x_label: "joint tightness n (mean over the gaps, σ; positive is tighter)".into(),
+        panels: vec![
+            Panel {
+                y_label: "greatest drive force (N)".into(),
+                series: limits.into_iter().collect(),
+                markers: vec![
+                    kind(Verdict::Runs, "runs", Shape::Ring),
+                    kind(Verdict::Crawls, "crawls", Shape::Triangle),
+                    kind(Verdict::Jammed, "jams", Shape::Cross),
+                ],
+                ..Panel::default()
+            },
+            Panel {
+                y_label: "share that malfunctions (%)".into(),
+                note: "grey: 95 % interval".into(),
+                series: with_interval(&shares, "units"),
+                ..Panel::default()
+            },
+        ],
+        ..Chart::default()
+    })
+}
+
+/// Shares (%) over a place, with the ends of their intervals as guides.
+fn with_interval(shares: &[(f64, Share)], label: &str) -> Vec<Series> {
+    let line = |label: &str, look, of: &dyn Fn(&Share) -> f64| Series {
+        label: label.into(),
+        look,
+        points: shares.iter().map(|(x, share)| (*x, 100.0 * of(share))).collect(),
+    };
+    vec![
+        line("", Look::Guide, &|share| share.interval[0]),
+        line("", Look::Guide, &|share| share.interval[1]),
+        line(label, Look::Kind(0), &|share| share.share),
+    ]
+}
+
+/// Malfunction by distance from nominal: of random combinations, of the tightest and of the loosest.
+///
+/// # Errors
+/// [`PlotError`], if there is nothing to show.
+pub fn hypothesis(scene: &Scene, tested: &Hypothesis) -> Result<String, PlotError> {
+    let shares: Vec<(f64, Share)> = tested.distances.iter().map(|at| (at.distance, at.random)).collect();
+    let side = |label: &str, shape, of: fn(&AtDistance) -> Verdict| Markers {
+        label: label.into(),
+        shape,
+        points: tested
+            .distances
+            .iter()
+            .map(|at| (at.distance, if of(at) == Verdict::Runs { 0.0 } else { 100.0 }))
+            .collect(),
+    };
+    line_chart(&Chart {
+        title: scene.title.clone(),
+        subtitle: "random combinations of gaps against the tightest and the loosest, as far from nominal".into(),
+        x_label: "distance from nominal (root mean square over the gaps, σ)".into(),
+        panels: vec![Panel {
+            y_label: "share that malfunctions (%)".into(),
+            series: with_interval(&shares, "random"),
+            markers: vec![
+                side("tightest", Shape::Triangle, |at| at.tight),
+                side("loosest", Shape::Square, |at| at.loose),
+            ],
+            ..Panel::default()
+        }],
+        ..Chart::default()
+    })
+}

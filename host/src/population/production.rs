@@ -1,0 +1,285 @@
+//! Which units a production has: gaps and parameters, drawn unit by unit.
+//!
+//! A unit is a pure function of scene, seed and its number.
+
+use std::ops::{Deref, Range};
+
+use slipfit_core::{
+    clearance::GapStatistics,
+    sampling::stream::derived,
+    slide::{ABSENT, CONTACTS},
+};
+
+use crate::{
+    product::Product,
+    scene::Scene,
+    tolerance::{
+        draw::{Draw, DrawError},
+        lanes::{LANES, Lanes},
+        linear::Linear,
+        model::{Contributor, Distribution, Measure, Model, Quantity, Variation},
+        sampler::{Method, Sampler},
+    },
+};
+
+/// The most units of a production.
+pub const MOST_UNITS: u64 = 1 << 40;
+
+/// What seeds of gaps and of parameters are derived with.
+const STREAMS: [u64; 2] = [3 << 32, 4 << 32];
+
+/// A production of a scene.
+pub struct Production<'a> {
+    gaps: [Gap; CONTACTS],
+    /// Of the measures that gaps are, of the gaps that have statistics of their own, and of parameters.
+    sources: Vec<Source<'a>>,
+    parameters: usize,
+    names: Vec<String>,
+}
+
+/// Where a gap comes from.
+#[derive(Clone, Copy)]
+enum Gap {
+    Absent,
+    /// Source and measure.
+    Drawn(usize, usize),
+}
+
+/// A model whose units are drawn.
+struct Source<'a> {
+    model: Held<'a>,
+    draw: Draw,
+    sampler: Sampler,
+}
+
+enum Held<'a> {
+    Shared(&'a Model),
+    Own(Box<Model>),
+}
+
+impl Deref for Held<'_> {
+    type Target = Model;
+
+    fn deref(&self) -> &Model {
+        match self {
+            Self::Shared(model) => model,
+            Self::Own(model) => model,
+        }
+    }
+}
+
+/// Some units, as they were drawn.
+pub struct Drawn {
+    /// Their numbers.
+    pub numbers: Range<u64>,
+    /// Gaps (m) of each; [`ABSENT`] for none.
+    pub gaps: Vec<[f64; CONTACTS]>,
+    /// Deviations (SI) of the parameters of each, in the order of the scene's `vary`.
+    pub deviations: Vec<Vec<f64>>,
+    /// Values of all variables, a column each, in the order of [`Production::contributors`].
+    pub variables: Vec<Vec<f64>>,
+}
+
+impl<'a> Production<'a> {
+    /// Of `scene`, whose gaps are measures of `product` or have means and deviations; any two of the latter have the
+    /// `correlation`.
+    ///
+    /// # Errors
+    /// [`DrawError`], if no joint distribution has the correlations.
+    pub fn new(
+        scene: &Scene,
+        product: Option<&'a Product>,
+        correlation: f64,
+        seed: u64,
+    ) -> Result<Self, DrawError> {
+        let mut sources = Vec::new();
+        let mut gaps = [Gap::Absent; CONTACTS];
+        let measured = scene.gap_measures.as_flattened();
+        let own: Vec<(usize, GapStatistics<f64>)> = scene
+            .pins
+            .iter()
+            .flat_map(|pin| pin.gaps)
+            .enumerate()
+            .filter_map(|(i, gap)| Some((i, gap?)))
+            .filter(|(i, _)| product.is_none() || measured[*i].is_none())
+            .collect();
+        if let Some(product) = product.filter(|_| measured.iter().any(Option::is_some)) {
+            for (gap, measure) in gaps.iter_mut().zip(measured) {
+                if let Some(measure) = measure {
+                    *gap = Gap::Drawn(sources.len(), *measure);
+                }
+            }
+            sources.push(Source::new(Held::Shared(&product.model), derived(seed, STREAMS[0]))?);
+        }
+        if !own.is_empty() {
+            for (measure, (i, _)) in own.iter().enumerate() {
+                gaps[*i] = Gap::Drawn(sources.len(), measure);
+            }
+            let names = scene.contact_names();
+            let model = of_statistics(&own, &names, correlation);
+            sources.push(Source::new(Held::Own(Box::new(model)), derived(seed, STREAMS[0] + 1))?);
+        }
+        if !scene.vary.is_empty() {
+            let deviations = scene.vary.iter().map(|varied| varied.deviation.clone()).collect();
+            sources.push(Source::new(Held::Own(Box::new(each_itself(deviations))), derived(seed, STREAMS[1]))?);
+        }
+        let contributors = sources.iter().flat_map(|source| &source.model.contributors);
+        let names = contributors.map(|contributor| contributor.name.clone()).collect();
+        Ok(Self { gaps, sources, parameters: scene.vary.len(), names })
+    }
+
+    /// What varies: name, and which of the variables are its own.
+    pub fn contributors(&self) -> Vec<(&str, Range<usize>)> {
+        let counts = self.sources.iter().flat_map(|source| &source.model.contributors);
+        let ranges = counts.scan(0, |at, contributor| {
+            let start = *at;
+            *at += contributor.variation.variables();
+            Some(start..*at)
+        });
+        self.names.iter().map(String::as_str).zip(ranges).collect()
+    }
+
+    /// The units `numbers`.
+    pub fn draw(&self, numbers: Range<u64>) -> Drawn {
+        let count = (numbers.end - numbers.start) as usize;
+        let mut gaps = vec![[ABSENT; CONTACTS]; count];
+        let mut deviations = vec![Vec::with_capacity(self.parameters); count];
+        let mut variables = Vec::new();
+        for (s, source) in self.sources.iter().enumerate() {
+            let (columns, measures) = source.draw(&numbers);
+            for (i, gap) in self.gaps.iter().enumerate() {
+                if let Gap::Drawn(of, measure) = gap
+                    && *of == s
+                {
+                    gaps.iter_mut().zip(&measures[*measure]).for_each(|(gaps, value)| gaps[i] = *value);
+                }
+            }
+            if self.parameters > 0 && s + 1 == self.sources.len() {
+                for measure in &measures {
+                    deviations.iter_mut().zip(measure).for_each(|(unit, value)| unit.push(*value));
+                }
+            }
+            variables.extend(columns);
+        }
+        Drawn { numbers, gaps, deviations, variables }
+    }
+}
+
+impl<'a> Source<'a> {
+    fn new(model: Held<'a>, seed: u64) -> Result<Self, DrawError> {
+        let draw = Draw::new(&model, seed)?;
+        let sampler = Sampler::new(Method::PseudoRandom, seed, draw.dimensions(), 1, MOST_UNITS);
+        Ok(Self { model, draw, sampler })
+    }
+
+    /// Columns of the variables and of the measures of the units `numbers`.
+    fn draw(&self, numbers: &Range<u64>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let mut bits = vec![[0; LANES]; self.draw.dimensions()];
+        let mut variables = vec![Lanes::ZERO; self.draw.dimensions()];
+        let mut measures = vec![Lanes::ZERO; self.model.measures.len()];
+        let mut columns = [vec![Vec::new(); variables.len()], vec![Vec::new(); measures.len()]];
+        for first in numbers.clone().step_by(LANES) {
+            self.sampler.fill(first, &mut bits);
+            self.draw.variables(first, &bits, &mut variables);
+            self.model.function.evaluate(&variables, &mut measures);
+            let here = ((numbers.end - first) as usize).min(LANES);
+            for (columns, values) in columns.iter_mut().zip([&variables, &measures]) {
+                columns.iter_mut().zip(values.iter()).for_each(|(column, lanes)| column.extend(&lanes.0[..here]));
+            }
+        }
+        let [variables, measures] = columns;
+        (variables, measures)
+    }
+}
+
+/// Normal gaps of the given statistics, any two with the same correlation.
+fn of_statistics(gaps: &[(usize, GapStatistics<f64>)], names: &[String], correlation: f64) -> Model {
+    let normal = |(i, gap): &(usize, GapStatistics<f64>)| {
+        let GapStatistics { mean, deviation } = *gap;
+        let distribution = if deviation > 0.0 {
+            Distribution::Normal { mean, deviation }
+        } else {
+            Distribution::Constant(mean)
+        };
+        let limits = [mean - 3.0 * deviation, mean + 3.0 * deviation];
+        Contributor { name: format!("{} gap", names[*i]), variation: Variation::Scalar { distribution, limits } }
+    };
+    let varying: Vec<usize> = (0..gaps.len()).filter(|i| gaps[*i].1.deviation > 0.0).collect();
+    let pairs = varying.iter().flat_map(|i| varying.iter().filter(move |j| *j > i).map(move |j| (*i, *j, correlation)));
+    let correlations = if correlation == 0.0 { Vec::new() } else { pairs.collect() };
+    Model { correlations, ..each_itself(gaps.iter().map(normal).collect()) }
+}
+
+/// Every contributor, a scalar, as a measure.
+fn each_itself(contributors: Vec<Contributor>) -> Model {
+    let count = contributors.len();
+    let row = |i: usize| (0..count).map(|k| if k == i { 1.0 } else { 0.0 }).collect();
+    let measures = contributors
+        .iter()
+        .map(|contributor| Measure { name: contributor.name.clone(), quantity: Quantity::Length, limits: [None; 2] })
+        .collect();
+    Model {
+        contributors,
+        correlations: Vec::new(),
+        measures,
+        sums: Vec::new(),
+        function: Box::new(Linear { constants: vec![0.0; count], coefficients: (0..count).map(row).collect() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Production;
+    use crate::{example, scene::Scene, scene::SceneFile, scene::shipped};
+
+    fn moments(values: impl Iterator<Item = f64>) -> [f64; 2] {
+        let values: Vec<f64> = values.collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let square = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / values.len() as f64;
+        [mean, libm::sqrt(square)]
+    }
+
+    #[test]
+    fn gaps_have_the_moments_and_the_correlation_that_the_scene_states() {
+        let scene = example::cd_rom();
+        let drawn = Production::new(&scene, None, 0.5, 7).unwrap().draw(0..20_000);
+        for (i, gap) in scene.pins.iter().flat_map(|pin| pin.gaps).enumerate() {
+            let gap = gap.unwrap();
+            let [mean, deviation] = moments(drawn.gaps.iter().map(|gaps| gaps[i]));
+            assert!((mean - gap.mean).abs() < 4.0 * gap.deviation / libm::sqrt(20_000.0));
+            assert!((deviation / gap.deviation - 1.0).abs() < 0.02);
+        }
+        let product = drawn.gaps.iter().map(|gaps| (gaps[0] - 0.0064e-3) / 0.0404e-3 * (gaps[9] - 0.4037e-3) / 0.0488e-3);
+        assert!((product.sum::<f64>() / 20_000.0 - 0.5).abs() < 0.04);
+    }
+
+    #[test]
+    fn a_unit_is_the_same_whatever_is_drawn_with_it() {
+        let file = SceneFile::parse("drawing", shipped("cd-rom-slide-drawing").unwrap(), &[]).unwrap();
+        let (scene, product) = (file.slide.unwrap(), file.product.unwrap());
+        let production = Production::new(&scene, Some(&product), 0.0, 1).unwrap();
+        let all = production.draw(0..512);
+        let part = production.draw(256..300);
+        assert_eq!(all.gaps[256..300], part.gaps);
+        assert_eq!(all.variables[3][256..300], part.variables[3]);
+        // The units' moments are those that the scene's levels are made of.
+        let gap = scene.pins[1].gaps[0].unwrap();
+        let [mean, deviation] = moments(production.draw(0..20_224).gaps.iter().map(|gaps| gaps[4]));
+        assert!((mean - gap.mean).abs() < 4.0 * gap.deviation / libm::sqrt(2e4), "{mean} {gap:?}");
+        assert!((deviation / gap.deviation - 1.0).abs() < 0.03, "{deviation} {gap:?}");
+    }
+
+    #[test]
+    fn parameters_vary_as_the_scene_says() {
+        let text = format!(
+            "{}\n[vary]\nfriction.coefficient = 0.03\nslide.tilt_x = {{ tolerance = \"2°\", distribution = \"uniform\" }}\n",
+            shipped("cd-rom-slide").unwrap()
+        );
+        let scene = Scene::parse("varied", &text, &[]).unwrap();
+        let drawn = Production::new(&scene, None, 0.0, 3).unwrap().draw(0..4096);
+        let [_, friction] = moments(drawn.deviations.iter().map(|unit| unit[0]));
+        let [_, tilt] = moments(drawn.deviations.iter().map(|unit| unit[1]));
+        assert!((friction / 0.01 - 1.0).abs() < 0.05, "{friction}");
+        assert!((tilt / (2f64.to_radians() / libm::sqrt(3.0)) - 1.0).abs() < 0.05, "{tilt}");
+    }
+}

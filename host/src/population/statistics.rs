@@ -1,0 +1,154 @@
+//! What a population's units did, together.
+
+use serde::Serialize;
+
+use super::Unit;
+use crate::{
+    outcome::Verdict,
+    tolerance::{binomial, normal},
+};
+
+/// Chance beyond either end of an interval of 95 %.
+const SIDE: f64 = 0.025;
+
+/// A share of the population.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// Units.
+    pub units: u64,
+    /// Share of all.
+    pub share: f64,
+    /// Its 95 % confidence interval (Clopper and Pearson).
+    pub interval: [f64; 2],
+}
+
+impl Share {
+    /// Of `units` in `all` ≥ 1.
+    pub fn new(units: u64, all: u64) -> Self {
+        Self { units, share: units as f64 / all as f64, interval: binomial::limits(units, all, SIDE) }
+    }
+
+    /// How many standard deviations a normal function with this share of malfunctions is within its limit; none if there
+    /// are none, or nothing else.
+    pub fn sigma_level(&self) -> Option<f64> {
+        (0.0 < self.share && self.share < 1.0).then(|| -normal::quantile(self.share))
+    }
+}
+
+/// A figure over the population.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// Units that have the figure.
+    pub units: u64,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub deviation: f64,
+    /// The values that 0, 5, 50, 95 and 100 % of the units do not exceed.
+    pub quantiles: [f64; 5],
+}
+
+/// Shares of [`Spread::quantiles`].
+pub const QUANTILES: [f64; 5] = [0.0, 0.05, 0.5, 0.95, 1.0];
+
+impl Spread {
+    /// Of `values`; none if there are none.
+    pub fn new(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut values: Vec<f64> = values.collect();
+        values.sort_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)?;
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let square: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
+        let quantile = |share: f64| values[(share * last as f64).round() as usize];
+        Some(Self {
+            units: values.len() as u64,
+            mean,
+            deviation: libm::sqrt(square / (count - 1.0).max(1.0)),
+            quantiles: QUANTILES.map(quantile),
+        })
+    }
+}
+
+/// What a population's units did.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Units.
+    pub units: u64,
+    /// Those that run.
+    pub runs: Share,
+    /// Those that crawl.
+    pub crawls: Share,
+    /// Those that jam.
+    pub jammed: Share,
+    /// Those without a verdict.
+    pub undecided: Share,
+    /// Those that crawl, jam or need more than the force limit.
+    pub malfunctions: Share,
+    /// Those that need more than the force limit, if there is one.
+    pub over_limit: Option<Share>,
+    /// Standard deviations from a limit at which a normal figure would fail as often.
+    pub sigma_level: Option<f64>,
+    /// Greatest force (N).
+    pub peak_force: Option<Spread>,
+    /// Greatest force of the units that run (N).
+    pub running_force: Option<Spread>,
+    /// Breakaway time (s).
+    pub breakaway: Option<Spread>,
+    /// Velocity at the end (m/s).
+    pub final_velocity: Option<Spread>,
+    /// Units that the desk computed.
+    pub at_desk: u64,
+}
+
+/// Whether a unit malfunctions: it does not run, or needs more than the `limit` (N).
+pub fn malfunctions(unit: &Unit, limit: Option<f64>) -> bool {
+    unit.outcome.verdict != Verdict::Runs || limit.is_some_and(|limit| unit.outcome.peak_force > limit)
+}
+
+impl Statistics {
+    /// Of `units`, of which there is at least one, with a motor's force `limit` (N).
+    pub fn new(units: &[Unit], limit: Option<f64>) -> Self {
+        let all = units.len().max(1) as u64;
+        let count = |of: &dyn Fn(&Unit) -> bool| units.iter().filter(|unit| of(unit)).count() as u64;
+        let verdict = |verdict: Verdict| Share::new(count(&|unit| unit.outcome.verdict == verdict), all);
+        let failed = Share::new(count(&|unit| malfunctions(unit, limit)), all);
+        let running = units.iter().filter(|unit| unit.outcome.verdict == Verdict::Runs);
+        Self {
+            units: all,
+            runs: verdict(Verdict::Runs),
+            crawls: verdict(Verdict::Crawls),
+            jammed: verdict(Verdict::Jammed),
+            undecided: verdict(Verdict::Undecided),
+            malfunctions: failed,
+            over_limit: limit.map(|limit| Share::new(count(&|unit| unit.outcome.peak_force > limit), all)),
+            sigma_level: failed.sigma_level(),
+            peak_force: Spread::new(units.iter().map(|unit| unit.outcome.peak_force)),
+            running_force: Spread::new(running.map(|unit| unit.outcome.peak_force)),
+            breakaway: Spread::new(units.iter().filter_map(|unit| unit.outcome.breakaway)),
+            final_velocity: Spread::new(units.iter().map(|unit| unit.outcome.final_velocity)),
+            at_desk: count(&|unit| unit.outcome.at_desk),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Share, Spread};
+
+    #[test]
+    fn shares_have_their_interval_and_sigma_level() {
+        let share = Share::new(135, 100_000);
+        assert!((share.sigma_level().unwrap() - 3.0).abs() < 1e-3);
+        assert!(share.interval[0] < 0.00135 && 0.00135 < share.interval[1]);
+        assert_eq!(Share::new(0, 10).sigma_level(), None);
+    }
+
+    #[test]
+    fn spreads_are_of_the_values() {
+        let spread = Spread::new((0..=100).map(f64::from)).unwrap();
+        assert_eq!((spread.mean, spread.quantiles), (50.0, [0.0, 5.0, 50.0, 95.0, 100.0]));
+        assert!((spread.deviation - libm::sqrt(101.0 * 102.0 / 12.0)).abs() < 1e-9);
+        assert_eq!(Spread::new(std::iter::empty()), None);
+    }
+}

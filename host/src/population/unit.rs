@@ -1,0 +1,164 @@
+//! What one unit of a population did, and how surely.
+
+use std::ops::Range;
+
+use serde::Serialize;
+use slipfit_core::{
+    law::Elastic,
+    menu::{FrictionData, SlideData},
+    slide::CONTACTS,
+};
+
+use crate::{
+    desk,
+    laws::{AnyElastic, AnySlide},
+    outcome::{JAMMED, Moment, RUNS, Verdict},
+    scene::Scene,
+    simulate::{Settings, SimulateError, simulate},
+};
+
+use super::{Course, Figures, Unit, production::Drawn};
+
+/// Error of the drive force that a step may make, as a share of the drive's greatest force. Single precision knows the
+/// rest of a run no better.
+pub const ERROR: f64 = 2.5e-5;
+
+/// Units whose final speed, as a share of the command, is this near to a limit between two verdicts are simulated once more
+/// at the desk: relative to the limit.
+const DOUBT: f64 = 0.1;
+
+/// Figures of one unit. Speeds, forces and travel count along the commanded direction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct UnitOutcome {
+    /// Verdict at the end.
+    pub verdict: Verdict,
+    /// Breakaway time (s), if the unit breaks away.
+    pub breakaway: Option<f64>,
+    /// Greatest force from the ramp's start on (N).
+    pub peak_force: f64,
+    /// Mean force over the last 20 ms (N), if it varies by less than 1 %.
+    pub settled_force: Option<f64>,
+    /// Velocity at the end (m/s).
+    pub final_velocity: f64,
+    /// The end of the run.
+    pub end: Moment,
+    /// The contact that was pressed in deepest, in the order of Table 2, and its elastic force (N) then; none if none
+    /// was.
+    pub most_loaded: Option<(usize, f64)>,
+    /// Whether the desk computed it.
+    pub at_desk: bool,
+}
+
+/// What a scene's units are simulated for.
+pub fn course(scene: &Scene) -> Course {
+    let run = scene.run;
+    Course { duration: run.duration, stroke: run.stroke, tolerance: desk::tolerance_of(scene, ERROR) }
+}
+
+/// The scene of unit `i` of those `drawn`.
+pub fn scene_of(scene: &Scene, drawn: &Drawn, i: usize) -> Scene {
+    let mut own = scene.clone();
+    for (varied, deviation) in scene.vary.iter().zip(&drawn.deviations[i]) {
+        varied.parameter.apply(&mut own, *deviation);
+    }
+    own
+}
+
+/// Simulates the units that were `drawn` of a production of `scene`.
+///
+/// # Errors
+/// [`SimulateError`] of the first whose parameters are out of bounds, or that the desk cannot solve.
+pub fn units(scene: &Scene, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError> {
+    let course = course(scene);
+    let slides: Vec<SlideData<f64>> =
+        (0..drawn.gaps.len()).map(|i| slide(scene, drawn, i, &course)).collect::<Result<_, _>>()?;
+    let figures = super::simulate(course, &slides);
+    let unit = |(i, (slide, figures)): (usize, (&SlideData<f64>, &Figures))| {
+        let found = outcome(scene, slide, figures);
+        let gaps = drawn.gaps[i];
+        let outcome = if is_doubtful(slide, figures) { at_desk(scene, drawn, i, found)? } else { found };
+        Ok(Unit { number: drawn.numbers.start + i as u64, gaps, outcome })
+    };
+    slides.iter().zip(&figures).enumerate().map(unit).collect()
+}
+
+/// The slide of unit `i`, true stick by the law that stands for it.
+fn slide(scene: &Scene, drawn: &Drawn, i: usize, course: &Course) -> Result<SlideData<f64>, SimulateError> {
+    let gaps = &drawn.gaps[i];
+    let mut data = match scene.vary.is_empty() {
+        true => scene.slide_data::<f64>(gaps),
+        false => scene_of(scene, drawn, i).slide_data::<f64>(gaps),
+    };
+    if let (FrictionData::Exact { coefficient }, Some(stick_band)) =
+        (data.friction, desk::stick_band(scene, course.tolerance))
+    {
+        data.friction = FrictionData::Regularised { coefficient, stick_band };
+    }
+    let number = drawn.numbers.start + i as u64;
+    AnySlide::new(&data).map_err(|error| SimulateError::Parameter(format!("unit {number}: {error}")))?;
+    Ok(data)
+}
+
+/// The speed at the end as a share of the command (m/s), and whether the run was over by then.
+fn share(slide: &SlideData<f64>, figures: &Figures) -> (f64, bool) {
+    let end = f64::from(figures.end);
+    let command = slide.drive.command(end).abs();
+    (f64::from(figures.final_velocity) / command, end >= slide.drive.ramp_end * (1.0 - 1e-6) && command > 0.0)
+}
+
+fn outcome(scene: &Scene, slide: &SlideData<f64>, figures: &Figures) -> UnitOutcome {
+    let (share, over) = share(slide, figures);
+    let at_end = scene.run.stroke.is_some_and(|stroke| f64::from(figures.travel) >= stroke * (1.0 - 1e-6));
+    let number = |x: f32| Some(f64::from(x)).filter(|x| x.is_finite());
+    let depth = f64::from(figures.depth);
+    let force = AnyElastic::new(&slide.contact).map_or(0.0, |elastic| elastic.force(depth).0);
+    UnitOutcome {
+        verdict: Verdict::of(share, over || at_end),
+        breakaway: number(figures.breakaway),
+        peak_force: f64::from(figures.peak_force),
+        settled_force: number(figures.settled_force),
+        final_velocity: f64::from(figures.final_velocity),
+        end: Moment { t: f64::from(figures.end), z: f64::from(figures.travel) },
+        most_loaded: (depth > 0.0).then_some((usize::from(figures.contact), force)),
+        at_desk: false,
+    }
+}
+
+/// Whether the verdict of a unit may be another to a better tolerance.
+fn is_doubtful(slide: &SlideData<f64>, figures: &Figures) -> bool {
+    let (share, _) = share(slide, figures);
+    let near = |limit: f64| (share / limit - 1.0).abs() < DOUBT;
+    figures.stalled || !share.is_finite() || near(RUNS) || near(JAMMED)
+}
+
+/// Unit `i` once more, at the desk; what only lanes know is kept of `found`.
+fn at_desk(scene: &Scene, drawn: &Drawn, i: usize, found: UnitOutcome) -> Result<UnitOutcome, SimulateError> {
+    let own = scene_of(scene, drawn, i);
+    let run = simulate(&own, &drawn.gaps[i], &Settings::desk(&own, 1.0))?;
+    let outcome = run.outcome;
+    Ok(UnitOutcome {
+        verdict: outcome.verdict,
+        breakaway: outcome.breakaway,
+        peak_force: outcome.peak_force.unwrap_or(found.peak_force),
+        settled_force: outcome.settled_force,
+        final_velocity: outcome.final_velocity,
+        end: outcome.end,
+        most_loaded: found.most_loaded,
+        at_desk: true,
+    })
+}
+
+/// Units at the tolerance levels `n` of eq. 9, all parameters as the scene states them.
+///
+/// # Errors
+/// As [`units`].
+pub fn at_levels(scene: &Scene, n: &[f64]) -> Result<Vec<Unit>, SimulateError> {
+    let gaps = n.iter().map(|n| scene.gaps_at(&[*n; CONTACTS])).collect();
+    units(scene, &as_drawn(scene, gaps, 0..n.len() as u64))
+}
+
+/// Units with the given `gaps` (m) and the scene's own parameters.
+pub fn as_drawn(scene: &Scene, gaps: Vec<[f64; CONTACTS]>, numbers: Range<u64>) -> Drawn {
+    let deviations = vec![vec![0.0; scene.vary.len()]; gaps.len()];
+    Drawn { numbers, gaps, deviations, variables: Vec::new() }
+}
