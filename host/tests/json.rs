@@ -81,7 +81,7 @@ fn check_object(tables: &BTreeMap<String, Fields>, value: &Value, name: &str, at
 fn every_field_is_in_the_guide() {
     let tables = guide();
     let folder = tempfile::tempdir().unwrap();
-    let commands: [(&str, &[&str]); 13] = [
+    let commands: [(&str, &[&str]); 15] = [
         ("check", &["check"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
         ("check of a product", &["check", "clutch"]),
@@ -92,6 +92,8 @@ fn every_field_is_in_the_guide() {
         ("simulate of a mechanism", &["simulate", "woodpecker-toy", "--every", "10ms"]),
         ("sweep", &["sweep", "--n", "0:4:2", "--stroke"]),
         ("sweep of a mechanism", &["sweep", "slider-crank", "--n", "0:1:1"]),
+        ("simulate", &["simulate", "cd-rom-slide-drawing", "--unit", "17", "--stroke"]),
+        ("population", &["population", "--units", "300", "--force-limit", "2"]),
         ("table", &["table", "--n", "0:2:1", "-o", "table.bin"]),
         ("table", &["table", "--over", "position", "--n", "0:2:1", "-o", "z.bin"]),
         ("run", &["run", "--n", "0:2:1"]),

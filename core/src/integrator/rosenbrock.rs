@@ -50,12 +50,17 @@ impl<S: Scalar, const D: usize> Part<S, D> {
     /// The sum of `parts` weighted by `weights`, of which zeros cost nothing.
     #[inline(always)]
     fn weighted(parts: &[Self; MOST_STAGES], weights: &[f64]) -> Self {
-        let none = Self { place: SVector::zeros(), velocity: SVector::zeros() };
-        let weighted = parts.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
-        weighted.fold(none, |sum, (part, weight)| {
-            let weight = S::from_f64(*weight);
-            Self { place: sum.place + part.place * weight, velocity: sum.velocity + part.velocity * weight }
-        })
+        let mut sum = Self { place: SVector::zeros(), velocity: SVector::zeros() };
+        for (part, weight) in parts.iter().zip(weights) {
+            if *weight != 0.0 {
+                let weight = S::from_f64(*weight);
+                for k in 0..D {
+                    sum.place[k] += part.place[k] * weight;
+                    sum.velocity[k] += part.velocity[k] * weight;
+                }
+            }
+        }
+        sum
     }
 }
 

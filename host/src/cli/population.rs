@@ -14,12 +14,12 @@ use crate::{
     outcome::Verdict,
     population::{
         Unit,
-        drivers::{Driver, Drivers},
+        drivers::Driver,
         hypothesis::Hypothesis,
         picture::{self, tightness},
         production::Production,
-        simulate_units,
-        statistics::{Share, Spread, Statistics, malfunctions},
+        statistics::{Share, Spread, Statistics},
+        study::Population,
         unit::{UnitOutcome, at_levels},
     },
     scene::Scene,
@@ -61,8 +61,6 @@ pub(super) struct Arguments {
     threads: ThreadArguments,
 }
 
-/// Units that find classes for what drives the figures.
-const PILOT: u64 = 1024;
 /// Levels of eq. 9 that are looked for in the population.
 const LEVELS: [f64; 13] = [-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
 /// Random combinations at each distance.
@@ -107,9 +105,7 @@ struct Report {
 
 /// All that was found.
 struct Found {
-    units: Vec<Unit>,
-    statistics: Statistics,
-    drivers: [Vec<Driver>; 2],
+    population: Population,
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
 }
@@ -126,8 +122,7 @@ impl Arguments {
         if !self.opening {
             scene.run.duration = scene.stroke_duration().unwrap_or(scene.run.duration);
         }
-        let outputs =
-            [("--csv", &self.csv), ("--plot", &self.plot), ("--plot-distance", &self.plot_distance)];
+        let outputs = [("--csv", &self.csv), ("--plot", &self.plot), ("--plot-distance", &self.plot_distance)];
         self.scene.check_outputs(&given(outputs))?;
         let production = Production::new(&scene, product.as_ref(), self.correlation, self.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
@@ -136,10 +131,11 @@ impl Arguments {
         bar.finish_and_clear();
         let found = found?;
         if let Some(path) = &self.csv {
-            files::write(path, &units_csv(&scene, &found.units)?)?;
+            files::write(path, &units_csv(&scene, &found.population.units)?)?;
         }
         if let Some(path) = &self.plot {
-            let svg = picture::forces(&scene, &found.units, self.force_limit).map_err(anyhow::Error::from)?;
+            let svg =
+                picture::forces(&scene, &found.population.units, self.force_limit).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         if let Some(path) = &self.plot_distance {
@@ -149,20 +145,20 @@ impl Arguments {
         let mut warnings = check::warnings_of(&scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings));
         if self.scene.json {
-            let worst = worst(&found.units).into_iter().map(|unit| UnitReport {
+            let worst = worst(&found.population.units).into_iter().map(|unit| UnitReport {
                 number: unit.number,
                 tightness: tightness(&scene, &unit.gaps),
                 outcome: unit.outcome,
             });
             let worst = worst.collect();
-            let [force_drivers, malfunction_drivers] = found.drivers;
+            let Population { statistics, of_force, of_malfunction, .. } = found.population;
             return print_json(&Report {
                 json_version: JSON_VERSION,
                 title: scene.title.clone(),
                 seed: self.seed,
-                statistics: found.statistics,
-                force_drivers,
-                malfunction_drivers,
+                statistics,
+                force_drivers: of_force,
+                malfunction_drivers: of_malfunction,
                 levels: found.levels,
                 hypothesis: found.hypothesis,
                 worst,
@@ -175,25 +171,10 @@ impl Arguments {
     }
 
     fn find(&self, scene: &Scene, production: &Production, done: impl Fn(u64) + Sync) -> Result<Found, Failure> {
-        let pilot = production.draw(0..PILOT).variables;
-        let mut drivers = [Drivers::new(&pilot), Drivers::new(&pilot)];
-        let mut units = Vec::with_capacity(self.units as usize);
-        simulate_units(scene, production, 0..self.units, done, |drawn, piece| {
-            let of = |figure: &dyn Fn(&Unit) -> f64| piece.iter().map(|unit| Some(figure(unit))).collect::<Vec<_>>();
-            let figures = [
-                of(&|unit| unit.outcome.peak_force),
-                of(&|unit| f64::from(u8::from(malfunctions(unit, self.force_limit)))),
-            ];
-            for (drivers, figures) in drivers.iter_mut().zip(&figures) {
-                drivers.add(drawn.numbers.start, &drawn.variables, figures);
-            }
-            units.extend_from_slice(piece);
-        })?;
-        let statistics = Statistics::new(&units, self.force_limit);
-        let contributors = production.contributors();
+        let population = Population::study(scene, production, self.units, self.force_limit, done)?;
         let below = |force: f64| {
-            let count = units.iter().filter(|unit| unit.outcome.peak_force < force).count();
-            count as f64 / units.len().max(1) as f64
+            let count = population.units.iter().filter(|unit| unit.outcome.peak_force < force).count();
+            count as f64 / population.units.len().max(1) as f64
         };
         let levels = at_levels(scene, &LEVELS)?.into_iter().zip(LEVELS).map(|(unit, n)| LevelReport {
             n,
@@ -202,19 +183,15 @@ impl Arguments {
             share_below: below(unit.outcome.peak_force),
         });
         let levels = levels.collect();
-        Ok(Found {
-            statistics,
-            drivers: drivers.map(|drivers| drivers.ranked(&contributors)),
-            levels,
-            hypothesis: Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?,
-            units,
-        })
+        let hypothesis = Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?;
+        Ok(Found { population, levels, hypothesis })
     }
 
     /// The answer, for people.
     fn describe(&self, scene: &Scene, found: &Found) -> String {
+        let Population { units: all, statistics, of_force, of_malfunction } = &found.population;
         let Statistics { units, runs, crawls, jammed, undecided, malfunctions, over_limit, sigma_level, .. } =
-            found.statistics;
+            *statistics;
         let mut text = format!("{}: {units} units", scene.title);
         let length = match scene.run.stroke.filter(|_| !self.opening) {
             Some(stroke) => format!("the stroke of {} mm", fixed(stroke * 1e3, 1)),
@@ -233,9 +210,7 @@ impl Arguments {
         if let Some(level) = sigma_level {
             let _ = writeln!(text, "Sigma level     {} σ of the function, one-sided", fixed(level, 2));
         }
-        for (name, spread) in
-            [("Peak force", &found.statistics.peak_force), ("  that run", &found.statistics.running_force)]
-        {
+        for (name, spread) in [("Peak force", &statistics.peak_force), ("  that run", &statistics.running_force)] {
             if let Some(Spread { quantiles: [least, low, median, high, most], .. }) = spread {
                 let _ = writeln!(
                     text,
@@ -248,20 +223,12 @@ impl Arguments {
                 );
             }
         }
-        for (name, drivers) in ["Drives force", "Drives failure"].into_iter().zip(&found.drivers) {
-            let shown = drivers.iter().filter(|driver| driver.share > 2.0 * driver.error).take(DRIVERS);
-            let shown: Vec<String> = shown
-                .map(|driver| {
-                    let [share, error] = [driver.share, driver.error].map(|x| fixed(x * 100.0, 1));
-                    format!("{} {share} ± {error} %", driver.name)
-                })
-                .collect();
-            let shown = if shown.is_empty() { "nothing alone".to_owned() } else { shown.join(", ") };
-            let _ = writeln!(text, "{name:16}{shown}");
+        for (name, drivers) in [("Drives force", of_force), ("Drives failure", of_malfunction)] {
+            let _ = writeln!(text, "{name:16}{}", strongest(drivers, DRIVERS));
         }
         let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
         let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
-        let rows: Vec<Vec<String>> = worst(&found.units)
+        let rows: Vec<Vec<String>> = worst(all)
             .into_iter()
             .map(|unit| {
                 let outcome = unit.outcome;
@@ -279,15 +246,26 @@ impl Arguments {
                 ]
             })
             .collect();
-        let heading =
-            ["unit", "n", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
+        let heading = ["unit", "n", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
         let _ = write!(text, "\nThe worst\n{}", text_table(&heading, &rows));
         text
     }
 }
 
+/// The strongest of `drivers`, at most `most`, as far as they are told from nothing.
+pub(super) fn strongest(drivers: &[Driver], most: usize) -> String {
+    let shown = drivers.iter().filter(|driver| driver.share > 2.0 * driver.error).take(most);
+    let shown: Vec<String> = shown
+        .map(|driver| {
+            let [share, error] = [driver.share, driver.error].map(|x| fixed(x * 100.0, 1));
+            format!("{} {share} ± {error} %", driver.name)
+        })
+        .collect();
+    if shown.is_empty() { "nothing alone".to_owned() } else { shown.join(", ") }
+}
+
 /// A share with its interval.
-fn percent(share: &Share) -> String {
+pub(super) fn percent(share: &Share) -> String {
     let [low, high] = share.interval.map(|end| fixed(end * 100.0, 2));
     format!("{} %  ({low} to {high} %)", fixed(share.share * 100.0, 2))
 }
@@ -301,7 +279,8 @@ fn levels(levels: &[LevelReport]) -> String {
             _ => parts.push((at.verdict, at.n, at.n)),
         }
     }
-    let part = |(verdict, first, last): &(Verdict, f64, f64)| format!("{} to {} {verdict}", level(*first), level(*last));
+    let part =
+        |(verdict, first, last): &(Verdict, f64, f64)| format!("{} to {} {verdict}", level(*first), level(*last));
     parts.iter().map(part).collect::<Vec<_>>().join(", ")
 }
 
@@ -322,9 +301,8 @@ fn worst(units: &[Unit]) -> Vec<&Unit> {
 /// Every unit: number, tightness, figures, and gaps in mm.
 fn units_csv(scene: &Scene, units: &[Unit]) -> Result<Vec<u8>, Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let figures = [
-        "unit", "n", "verdict", "breakaway_ms", "peak_N", "settled_N", "final_mm_s", "end_ms", "travel_mm", "desk",
-    ];
+    let figures =
+        ["unit", "n", "verdict", "breakaway_ms", "peak_N", "settled_N", "final_mm_s", "end_ms", "travel_mm", "desk"];
     let gaps = scene.contact_names().map(|name| format!("{name}_mm"));
     let failed = |error: csv::Error| Failure::Work(anyhow::Error::from(error));
     writer.write_record(figures.into_iter().map(str::to_owned).chain(gaps)).map_err(failed)?;

@@ -6,7 +6,9 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    DRAWING, Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, print, print_json, progress, refused,
+    DRAWING, Failure, JSON_VERSION, SceneArguments, ThreadArguments, check,
+    population::{percent, strongest},
+    print, print_json, progress, refused,
     simulate::why_undecided,
     sweep::{LevelArguments, LevelReport, answer, doubts, for_machines},
     table,
@@ -22,6 +24,7 @@ use crate::{
     number::{fixed, per_million},
     outcome::Verdict,
     plot::PlotError,
+    population::{production::Production as Drawing, statistics::Statistics, study::Population},
     product::Product,
     report::{Figure, Flash, Production, ReportInput, report},
     scene::Scene,
@@ -66,6 +69,9 @@ pub(super) struct Arguments {
     out: PathBuf,
     #[command(flatten)]
     levels: LevelArguments,
+    /// Units of the production to simulate one by one; `slipfit population` tells more of them.
+    #[arg(long, default_value_t = 500, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    units: u64,
     #[command(flatten)]
     threads: ThreadArguments,
 }
@@ -81,6 +87,8 @@ struct Report {
     ranges: Vec<Range>,
     /// The stroke, or the run where no stroke is stated.
     levels: Vec<LevelReport>,
+    /// What units drawn one by one do, as `slipfit population --json` shows it.
+    population: Statistics,
     /// How the product's measures vary, as `slipfit tolerance --json` shows it.
     tolerance: Option<Measures>,
     warnings: Vec<String>,
@@ -92,6 +100,8 @@ struct Simulated {
     opening: Sweep,
     /// Where the scene states a stroke that the opening does not come to the end of.
     stroke: Option<Sweep>,
+    /// Units of the production over the same run.
+    population: Population,
 }
 
 impl Simulated {
@@ -123,7 +133,7 @@ impl Arguments {
     }
 
     fn fill(&self, scene: &Scene, product: Option<Product>, production: Option<Production>) -> Result<(), Failure> {
-        let simulated = self.simulate(scene)?;
+        let simulated = self.simulate(scene, product.as_ref())?;
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings));
         warnings.extend(doubts(simulated.judged()));
@@ -177,6 +187,7 @@ impl Arguments {
                 worst_force_error_n: simulated.table.worst_error[0],
                 ranges: ranges(simulated.judged()),
                 levels: for_machines(scene, simulated.judged()),
+                population: simulated.population.statistics.clone(),
                 tolerance: production.map(|production| production.report),
                 warnings,
             });
@@ -188,19 +199,22 @@ impl Arguments {
     }
 
     /// The opening with its table, and the stroke.
-    fn simulate(&self, scene: &Scene) -> Result<Simulated, Failure> {
+    fn simulate(&self, scene: &Scene, product: Option<&Product>) -> Result<Simulated, Failure> {
         let duration = scene.stroke_duration().filter(|duration| *duration > scene.run.duration);
         let levels = scene.sweep.levels();
         let opening = force_table::levels(&scene.sweep).count;
-        let bar = progress("simulating", opening + duration.map_or(0, |_| levels.len()));
+        let production =
+            Drawing::new(scene, product, 0.0, DEFAULT.seed).map_err(|error| Failure::Input(error.to_string()))?;
+        let runs = opening + duration.map_or(0, |_| levels.len());
+        let bar = progress("simulating", runs + self.units as usize);
         let made = self.threads.install(|| {
             let (table, opening) = force_table::make(scene, Demand::Full, || bar.inc(1))?;
-            let stroke = duration.map(|duration| {
-                let mut scene = scene.clone();
-                scene.run.duration = duration;
-                sweep(&scene, &levels, &Settings::desk(&scene, 1e-3), Keep::Samples, || bar.inc(1))
-            });
-            Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()? })
+            let mut whole = scene.clone();
+            whole.run.duration = duration.unwrap_or(scene.run.duration);
+            let stroke =
+                duration.map(|_| sweep(&whole, &levels, &Settings::desk(&whole, 1e-3), Keep::Samples, || bar.inc(1)));
+            let population = Population::study(&whole, &production, self.units, None, |units| bar.inc(units))?;
+            Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()?, population })
         })??;
         bar.finish_and_clear();
         Ok(made)
@@ -211,6 +225,16 @@ impl Arguments {
     fn answer(&self, scene: &Scene, simulated: &Simulated, production: Option<&Production>) -> String {
         let mut text = answer(simulated.judged());
         text.push('\n');
+        let Population { statistics, of_malfunction, .. } = &simulated.population;
+        let _ = writeln!(
+            text,
+            "Production      {} of {} units malfunction",
+            percent(&statistics.malfunctions),
+            statistics.units
+        );
+        if statistics.malfunctions.units > 0 {
+            let _ = writeln!(text, "Drives failure  {}", strongest(of_malfunction, 2));
+        }
         let derived = derived(scene, 0.0);
         let closes = derived.tightest();
         if let Some(tightest) = closes {

@@ -23,9 +23,14 @@ use crate::{
     files,
     number::{fixed, level, or_dash, ten_digits},
     outcome::{Outcome, Trajectory, Verdict},
+    population::{
+        production::{MOST_UNITS, Production},
+        unit::scene_of,
+    },
     scene::{Override, Scene, parse_every},
     scheme::{IntegratorKind, ScalarKind},
     simulate::{Run, Settings, SimulateError, Solved, simulate},
+    tolerance::lanes::LANES,
     trust::Trust,
 };
 
@@ -41,6 +46,12 @@ pub(super) struct Arguments {
     /// right, rail, wall of each pin.
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true, default_value = "0")]
     n: Vec<f64>,
+    /// The unit of this number of the production, as `slipfit population` draws it, instead of a level.
+    #[arg(long, value_name = "NUMBER", conflicts_with = "n")]
+    unit: Option<u64>,
+    /// Seed of that production.
+    #[arg(long, default_value_t = 1, requires = "unit")]
+    seed: u64,
     /// Writes t,vz,force,x,y,z in s, m/s, N, m, m, m.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -161,7 +172,11 @@ impl Arguments {
                 return mechanism::simulate(&mechanism, &self.n, parse_every(&self.every)?, &wanted);
             }
         };
-        let n = levels(&self.n)?;
+        let (scene, n) = match self.unit {
+            Some(number) => self.of_production(scene, number, &overrides)?,
+            None => (scene, levels(&self.n)?),
+        };
+        let shown = if self.unit.is_some() { &n[..] } else { &self.n[..] };
         scene.check_gaps(&n).map_err(|error| Failure::Input(format!("--n: {error}")))?;
         let every = parse_every(&self.every)?;
         self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
@@ -176,7 +191,7 @@ impl Arguments {
             files::write(path, &export::trajectory_csv(&run.trajectory)?)?;
         }
         if let Some(path) = &self.plot {
-            let svg = unit_over_time(&run.trajectory, &scene.title, &self.n).map_err(anyhow::Error::from)?;
+            let svg = unit_over_time(&run.trajectory, &scene.title, shown).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         let mut warnings = check::warnings_of(&scene);
@@ -190,7 +205,7 @@ impl Arguments {
             print_json(&Report {
                 json_version: JSON_VERSION,
                 title: &scene.title,
-                n: &self.n,
+                n: shown,
                 duration_s: scene.run.duration,
                 solver: run.solved,
                 integration_ms: run.integration.as_secs_f64() * 1e3,
@@ -204,21 +219,54 @@ impl Arguments {
             })
         } else {
             let controller = controller.as_ref().map(Option::as_ref);
-            print(&self.describe(&scene, &run, controller, &gap_reports(&scene, &scene.gaps_at(&n))))?;
+            print(&self.describe(&scene, &run, controller, &gap_reports(&scene, &scene.gaps_at(&n)), shown))?;
             warn(&warnings);
             Ok(())
         }
     }
 
+    /// The scene of unit `number` of the production, and the levels at which its gaps are those of the unit.
+    fn of_production(
+        &self,
+        scene: Scene,
+        number: u64,
+        overrides: &[Override],
+    ) -> Result<(Scene, [f64; CONTACTS]), Failure> {
+        let (_, product) = self.scene.load_with_product(overrides)?;
+        let production = Production::new(&scene, product.as_ref(), 0.0, self.seed)
+            .map_err(|error| Failure::Input(error.to_string()))?;
+        if number >= MOST_UNITS {
+            return Err(Failure::Input(format!("--unit {number}: allowed is 0 to {}", MOST_UNITS - 1)));
+        }
+        let first = number - number % LANES as u64;
+        let drawn = production.draw(first..number + 1);
+        let i = (number - first) as usize;
+        let mut n = [0.0; CONTACTS];
+        for ((n, gap), of) in n.iter_mut().zip(&drawn.gaps[i]).zip(scene.pins.iter().flat_map(|pin| pin.gaps)) {
+            *n = of.filter(|of| of.deviation > 0.0).map_or(0.0, |of| (of.mean - gap) / of.deviation);
+        }
+        Ok((scene_of(&scene, &drawn, i), n))
+    }
+
     /// The run in words. `controller` is how the controller's run does beside it: not there where the run is its own, `None`
     /// where it left the finite range.
-    fn describe(&self, scene: &Scene, run: &Run, controller: Option<Option<&Run>>, gaps: &[GapReport]) -> String {
+    fn describe(
+        &self,
+        scene: &Scene,
+        run: &Run,
+        controller: Option<Option<&Run>>,
+        gaps: &[GapReport],
+        n: &[f64],
+    ) -> String {
         let mut text = String::new();
         let Outcome { breakaway, peak_force, settled_force, final_velocity, end, stroke_reached, verdict, .. } =
             run.outcome;
-        let n: Vec<String> = self.n.iter().map(|&n| level(n)).collect();
+        let of = match self.unit {
+            Some(number) => format!("unit {number}"),
+            None => format!("n = {}", n.iter().map(|&n| level(n)).collect::<Vec<_>>().join(", ")),
+        };
         let way = on_the_way(&run.outcome);
-        let _ = writeln!(text, "{}, n = {}\n", scene.title, n.join(", "));
+        let _ = writeln!(text, "{}, {of}\n", scene.title);
         let _ = writeln!(text, "Verdict         {verdict}{}", why_undecided(scene, verdict));
         let _ = writeln!(text, "Breakaway       {} ms", or_dash(breakaway, |t| fixed(t * 1e3, 2)));
         let _ = writeln!(text, "Peak force      {} N", or_dash(peak_force, |f| fixed(f, 4)));

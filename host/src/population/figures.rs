@@ -126,7 +126,8 @@ impl<const W: usize> Watch<W> {
 
         let threshold = Pack::splat(BREAKAWAY_SPEED as f32);
         let crossing = start + length * (threshold - self.speed) / (speed - self.speed);
-        let crosses = threshold.select_gt(self.speed, threshold.select_gt(speed, self.breakaway, crossing), self.breakaway);
+        let crosses =
+            threshold.select_gt(self.speed, threshold.select_gt(speed, self.breakaway, crossing), self.breakaway);
         self.breakaway = keep(whole(crosses, self.breakaway), self.breakaway);
 
         // The top of the parabola through three ends, where the middle one is the highest.

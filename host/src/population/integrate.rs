@@ -35,6 +35,8 @@ const SAFETY: f32 = 0.8;
 const CHANGES: [f32; 2] = [0.2, 3.0];
 /// Position error (m) allowed with 1 N of force error; see [`crate::error_control::Tolerance::of_force`].
 const PLACE: f64 = 3e-5;
+/// How far (m) from the end of its stroke a unit may stop.
+const BEYOND: f64 = 1e-7;
 /// Steps after which a unit has stalled.
 const MOST_STEPS: u32 = 200_000;
 
@@ -136,9 +138,16 @@ impl<const W: usize> Lanes<W> {
         let factor = Pack::splat(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
         self.lengths = (length * factor.within(Pack::splat(CHANGES[0]), Pack::splat(CHANGES[1])))
             .within(Pack::splat(STEPS[0]), Pack::splat(STEPS[2]));
-        let accepted = error.select_gt(one, zero, one);
         let along = zero.select_gt(drive.speed, -one, one);
         let before = self.motions.pose.displacement_w.z * along;
+        let after = step.motion.pose.displacement_w.z * along;
+        // A step that ends beyond the stroke is taken again, as long as it may be.
+        let stroke = Pack::from_f64(course.stroke.unwrap_or(f64::from(f32::MAX)));
+        let beyond = (after - stroke).select_gt(Pack::from_f64(BEYOND), one, zero);
+        let shorter = length * ((stroke - before) / (after - before)).within(Pack::splat(0.0), one);
+        let good = error.select_gt(one, zero, one);
+        let accepted = good - good * beyond;
+        self.lengths = (good * beyond).select_gt(zero, shorter.max_of(Pack::splat(STEPS[0])), self.lengths);
         each_number(&mut self.motions, &step.motion, |number, new| *number = accepted.select_gt(zero, new, *number));
 
         let speed = self.motions.velocity.z;
@@ -158,25 +167,19 @@ impl<const W: usize> Lanes<W> {
             let Some(unit) = self.units[lane] else { continue };
             self.tried[lane] += 1;
             let is_accepted = accepted.0[lane] > 0.0;
-            let stalled = (!is_accepted && length.0[lane] <= STEPS[0]) || self.tried[lane] >= MOST_STEPS;
+            let stalled = (good.0[lane] == 0.0 && length.0[lane] <= STEPS[0]) || self.tried[lane] >= MOST_STEPS;
             if is_accepted {
                 self.times[lane] += f64::from(length.0[lane]);
                 self.watch.mark(lane, self.times[lane]);
             }
-            let at_end = course.stroke.is_some_and(|stroke| travel.0[lane] >= stroke as f32);
+            let at_end = travel.0[lane] >= stroke.0[lane] - BEYOND as f32;
             if !(stalled || at_end || self.times[lane] >= course.duration - f64::from(STEPS[0])) {
                 continue;
             }
-            let mut t = self.times[lane];
-            if let Some(stroke) = course.stroke.filter(|_| at_end) {
-                // The slide comes to the end of its stroke within the step.
-                let beyond = travel.0[lane] - stroke as f32;
-                t -= f64::from(length.0[lane] * beyond / (travel.0[lane] - before.0[lane]).max(f32::MIN_POSITIVE));
-            }
             let of_unit = &mut figures[unit];
-            self.watch.conclude(lane, t, of_unit);
+            self.watch.conclude(lane, self.times[lane], of_unit);
             of_unit.final_velocity = ends.speed.0[lane];
-            of_unit.travel = course.stroke.map_or(travel.0[lane], |stroke| travel.0[lane].min(stroke as f32));
+            of_unit.travel = travel.0[lane].min(stroke.0[lane]);
             (of_unit.steps, of_unit.stalled) = (self.tried[lane], stalled);
             (self.ended[lane], any) = (true, true);
         }

@@ -47,8 +47,7 @@ impl Laws for ThreeHalvesRegularised {
     fn slide<S: Scalar + PartialOrd>(
         data: &SlideData<S>,
     ) -> Result<Slide<S, ThreeHalves<S>, Regularised<S>>, ParameterError<S>> {
-        let contact =
-            Impact::new(ThreeHalves::new(data.contact.stiffness)?, data.contact.damping, data.contact.depth)?;
+        let contact = Impact::new(ThreeHalves::new(data.contact.stiffness)?, data.contact.damping, data.contact.depth)?;
         Slide::new(data.body, contact, regularised(&data.friction)?, data.drive)
     }
 }

@@ -13,13 +13,17 @@ mod pack;
 pub mod picture;
 pub mod production;
 pub mod statistics;
+pub mod study;
 pub mod unit;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 use slipfit_core::{menu::SlideData, slide::CONTACTS};
 
 use crate::{interrupt, scene::Scene, simulate::SimulateError};
+
+#[cfg(test)]
+mod tests;
 
 pub use figures::Figures;
 pub use integrate::Course;
@@ -30,38 +34,58 @@ pub use unit::UnitOutcome;
 /// Units that are simulated together; they share nothing but the work.
 const PIECE: usize = 256;
 
-/// The lanes of a pack: as many as an instruction works on where there is AVX2. The bits do not depend on it.
-const LANES: usize = 8;
+/// Lanes of a pack with the instructions that every machine of the kind has, and with AVX2. The bits do not depend on it.
+const LANES: usize = 4;
+#[cfg(target_arch = "x86_64")]
+const AVX2_LANES: usize = 8;
 
-/// The slides of some units.
-struct Work<'a> {
+/// The slides of some units, `W` of which are moved at a time.
+struct Work<'a, const W: usize> {
     course: Course,
     slides: &'a [SlideData<f64>],
     figures: &'a mut [Figures],
-    /// Whether they have the paper's laws.
-    usual: bool,
 }
 
-impl WithSimd for Work<'_> {
+impl<const W: usize> Work<'_, W> {
+    #[inline(always)]
+    fn by<L: laws::Laws>(self) {
+        integrate::integrate::<L, W>(&self.course, self.slides, self.figures);
+    }
+}
+
+/// In the instructions of whatever the machine was found to have.
+impl<const W: usize> WithSimd for Work<'_, W> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { course, slides, figures, usual } = self;
-        if usual {
-            integrate::integrate::<ThreeHalvesRegularised, LANES>(&course, slides, figures);
-        } else {
-            integrate::integrate::<Chosen, LANES>(&course, slides, figures);
-        }
+        self.by::<ThreeHalvesRegularised>();
     }
 }
 
-/// Simulates `slides`, all of the same laws, in the widest instructions that the machine has; the bits do not depend on
-/// them.
+/// Simulates `slides`, all of the same laws: those of the paper in the widest instructions that the machine has. The bits do
+/// not depend on them.
 pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx2) = pulp::x86::V3::try_new()
+        && slides.first().is_some_and(laws::is_usual)
+    {
+        let mut figures = vec![Figures::NONE; slides.len()];
+        Simd::vectorize(avx2, Work::<AVX2_LANES> { course, slides, figures: &mut figures });
+        return figures;
+    }
+    simulate_in::<LANES>(course, slides)
+}
+
+/// The same with `W` lanes, in the instructions that every machine of the kind has.
+pub fn simulate_in<const W: usize>(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     let mut figures = vec![Figures::NONE; slides.len()];
-    let usual = slides.first().is_some_and(laws::is_usual);
-    Arch::new().dispatch(Work { course, slides, figures: &mut figures, usual });
+    let work = Work::<W> { course, slides, figures: &mut figures };
+    if slides.first().is_some_and(laws::is_usual) {
+        work.by::<ThreeHalvesRegularised>();
+    } else {
+        work.by::<Chosen>();
+    }
     figures
 }
 

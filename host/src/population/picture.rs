@@ -52,7 +52,11 @@ pub fn forces(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<Strin
     };
     let [low, high] =
         placed.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (n, _)| [low.min(*n), high.max(*n)]);
-    let limits = limit.map(|limit| Series { label: String::new(), look: Look::Guide, points: vec![(low, limit), (high, limit)] });
+    let limits = limit.map(|limit| Series {
+        label: String::new(),
+        look: Look::Guide,
+        points: vec![(low, limit), (high, limit)],
+    });
     let class = |k: usize| [k, k + 1].map(|k| low + (high - low) * k as f64 / CLASSES as f64);
     let shares: Vec<(f64, Share)> = (0..CLASSES)
         .filter_map(|k| {
@@ -62,7 +66,8 @@ pub fn forces(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<Strin
             (own.len() >= LEAST).then(|| ((from + to) / 2.0, Share::new(failed as u64, own.len() as u64)))
         })
         .collect();
-    let failed = Share::new(units.iter().filter(|unit| malfunctions(unit, limit)).count() as u64, units.len().max(1) as u64);
+    let failed =
+        Share::new(units.iter().filter(|unit| malfunctions(unit, limit)).count() as u64, units.len().max(1) as u64);
     let remark = if every > 1 { format!("one unit in {every} is marked") } else { String::new() };
     line_chart(&Chart {
         title: scene.title.clone(),

@@ -86,12 +86,7 @@ impl<'a> Production<'a> {
     ///
     /// # Errors
     /// [`DrawError`], if no joint distribution has the correlations.
-    pub fn new(
-        scene: &Scene,
-        product: Option<&'a Product>,
-        correlation: f64,
-        seed: u64,
-    ) -> Result<Self, DrawError> {
+    pub fn new(scene: &Scene, product: Option<&'a Product>, correlation: f64, seed: u64) -> Result<Self, DrawError> {
         let mut sources = Vec::new();
         let mut gaps = [Gap::Absent; CONTACTS];
         let measured = scene.gap_measures.as_flattened();
@@ -196,11 +191,8 @@ impl<'a> Source<'a> {
 fn of_statistics(gaps: &[(usize, GapStatistics<f64>)], names: &[String], correlation: f64) -> Model {
     let normal = |(i, gap): &(usize, GapStatistics<f64>)| {
         let GapStatistics { mean, deviation } = *gap;
-        let distribution = if deviation > 0.0 {
-            Distribution::Normal { mean, deviation }
-        } else {
-            Distribution::Constant(mean)
-        };
+        let distribution =
+            if deviation > 0.0 { Distribution::Normal { mean, deviation } } else { Distribution::Constant(mean) };
         let limits = [mean - 3.0 * deviation, mean + 3.0 * deviation];
         Contributor { name: format!("{} gap", names[*i]), variation: Variation::Scalar { distribution, limits } }
     };
@@ -249,7 +241,8 @@ mod tests {
             assert!((mean - gap.mean).abs() < 4.0 * gap.deviation / libm::sqrt(20_000.0));
             assert!((deviation / gap.deviation - 1.0).abs() < 0.02);
         }
-        let product = drawn.gaps.iter().map(|gaps| (gaps[0] - 0.0064e-3) / 0.0404e-3 * (gaps[9] - 0.4037e-3) / 0.0488e-3);
+        let product =
+            drawn.gaps.iter().map(|gaps| (gaps[0] - 0.0064e-3) / 0.0404e-3 * (gaps[9] - 0.4037e-3) / 0.0488e-3);
         assert!((product.sum::<f64>() / 20_000.0 - 0.5).abs() < 0.04);
     }
 

@@ -23,6 +23,9 @@ use super::{Course, Figures, Unit, production::Drawn};
 /// rest of a run no better.
 pub const ERROR: f64 = 2.5e-5;
 
+/// The same where true stick is stood for by a stick band that follows the tolerance.
+pub const ERROR_OF_STICK: f64 = 2.5e-6;
+
 /// Units whose final speed, as a share of the command, is this near to a limit between two verdicts are simulated once more
 /// at the desk: relative to the limit.
 const DOUBT: f64 = 0.1;
@@ -52,7 +55,8 @@ pub struct UnitOutcome {
 /// What a scene's units are simulated for.
 pub fn course(scene: &Scene) -> Course {
     let run = scene.run;
-    Course { duration: run.duration, stroke: run.stroke, tolerance: desk::tolerance_of(scene, ERROR) }
+    let error = if matches!(scene.friction, FrictionData::Exact { .. }) { ERROR_OF_STICK } else { ERROR };
+    Course { duration: run.duration, stroke: run.stroke, tolerance: desk::tolerance_of(scene, error) }
 }
 
 /// The scene of unit `i` of those `drawn`.
@@ -108,7 +112,7 @@ fn share(slide: &SlideData<f64>, figures: &Figures) -> (f64, bool) {
 
 fn outcome(scene: &Scene, slide: &SlideData<f64>, figures: &Figures) -> UnitOutcome {
     let (share, over) = share(slide, figures);
-    let at_end = scene.run.stroke.is_some_and(|stroke| f64::from(figures.travel) >= stroke * (1.0 - 1e-6));
+    let at_end = scene.run.stroke.is_some_and(|stroke| f64::from(figures.travel) >= stroke - 2e-7);
     let number = |x: f32| Some(f64::from(x)).filter(|x| x.is_finite());
     let depth = f64::from(figures.depth);
     let force = AnyElastic::new(&slide.contact).map_or(0.0, |elastic| elastic.force(depth).0);

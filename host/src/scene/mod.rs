@@ -33,8 +33,8 @@ pub use diagnostic::{Problem, SceneError};
 pub use file::SceneFile;
 pub use levels::{LevelError, MOST_LEVELS, parse_levels};
 pub use parse::parse_every;
-pub use vary::Varied;
 pub use shipped::{CD_ROM_SLIDE, SHIPPED, shipped};
+pub use vary::Varied;
 
 /// Which surfaces meet a pin, in the order of Table 2.
 pub const SURFACES: [&str; 4] = ["left", "right", "rail", "wall"];

@@ -1,0 +1,57 @@
+//! A population as a whole: its units, what they did together, and what from.
+
+use super::{
+    Unit,
+    drivers::{Driver, Drivers},
+    production::Production,
+    simulate_units,
+    statistics::{Statistics, malfunctions},
+};
+use crate::{scene::Scene, simulate::SimulateError};
+
+/// Units that find classes for what drives the figures.
+const PILOT: u64 = 1024;
+
+/// A population.
+#[derive(Clone, Debug)]
+pub struct Population {
+    /// Every unit, in order.
+    pub units: Vec<Unit>,
+    /// What they did together.
+    pub statistics: Statistics,
+    /// What drives the greatest force, the strongest first.
+    pub of_force: Vec<Driver>,
+    /// What drives malfunction, likewise.
+    pub of_malfunction: Vec<Driver>,
+}
+
+impl Population {
+    /// The first `count` units of a `production` of `scene`, on all threads of the current pool; `limit` (N) is a motor's
+    /// greatest force. `done` is called with how many have been simulated.
+    ///
+    /// # Errors
+    /// See [`simulate_units`].
+    pub fn study(
+        scene: &Scene,
+        production: &Production,
+        count: u64,
+        limit: Option<f64>,
+        done: impl Fn(u64) + Sync,
+    ) -> Result<Self, SimulateError> {
+        let pilot = production.draw(0..PILOT).variables;
+        let mut drivers = [Drivers::new(&pilot), Drivers::new(&pilot)];
+        let mut units = Vec::new();
+        simulate_units(scene, production, 0..count, done, |drawn, piece| {
+            let of = |figure: &dyn Fn(&Unit) -> f64| piece.iter().map(|unit| Some(figure(unit))).collect::<Vec<_>>();
+            let figures =
+                [of(&|unit| unit.outcome.peak_force), of(&|unit| f64::from(u8::from(malfunctions(unit, limit))))];
+            for (drivers, figures) in drivers.iter_mut().zip(&figures) {
+                drivers.add(drawn.numbers.start, &drawn.variables, figures);
+            }
+            units.extend_from_slice(piece);
+        })?;
+        let contributors = production.contributors();
+        let [of_force, of_malfunction] = drivers.map(|drivers| drivers.ranked(&contributors));
+        Ok(Self { statistics: Statistics::new(&units, limit), units, of_force, of_malfunction })
+    }
+}

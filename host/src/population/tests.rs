@@ -1,0 +1,149 @@
+//! Populations against the desk, and their laws.
+
+use slipfit_core::{
+    menu::{FrictionData, SlideData},
+    slide::CONTACTS,
+};
+
+use super::{Course, production::Production, simulate, simulate_in, simulate_units, unit};
+use crate::{
+    desk, example,
+    outcome::{Outcome, Verdict},
+    scene::Scene,
+    simulate::{self as one, Settings},
+};
+
+fn slides(scene: &Scene, units: u64) -> Vec<SlideData<f64>> {
+    let drawn = Production::new(scene, None, 0.0, 1).unwrap().draw(0..units);
+    drawn.gaps.iter().map(|gaps| scene.slide_data(gaps)).collect()
+}
+
+fn at_desk(scene: &Scene, gaps: &[f64; CONTACTS]) -> Outcome {
+    one::simulate(scene, gaps, &Settings::desk(scene, 1.0)).unwrap().outcome
+}
+
+/// A stroke of the scene.
+fn stroke() -> Scene {
+    let mut scene = example::cd_rom();
+    scene.run.duration = scene.stroke_duration().unwrap();
+    scene
+}
+
+#[test]
+fn figures_have_the_same_bits_for_any_number_of_lanes() {
+    let mut scene = example::cd_rom();
+    let slides = slides(&scene, 40);
+    let course = unit::course(&scene);
+    let expected = format!("{:?}", simulate(course, &slides));
+    assert_eq!(format!("{:?}", simulate_in::<1>(course, &slides)), expected);
+    assert_eq!(format!("{:?}", simulate_in::<4>(course, &slides)), expected);
+    assert_eq!(format!("{:?}", simulate_in::<16>(course, &slides)), expected);
+    // In another order, and alone.
+    let reversed: Vec<_> = slides.iter().rev().copied().collect();
+    let figures: Vec<_> = simulate(course, &reversed).into_iter().rev().collect();
+    assert_eq!(format!("{figures:?}"), expected);
+    // Laws that are chosen at run time.
+    scene.contact.exponent = 2.0;
+    scene.contact.stiffness = 1e8;
+    let slides = self::slides(&scene, 12);
+    let expected = format!("{:?}", simulate(course, &slides));
+    assert_eq!(format!("{:?}", simulate_in::<1>(course, &slides)), expected);
+}
+
+#[test]
+fn a_population_is_the_same_for_any_number_of_threads_and_any_split() {
+    let scene = example::cd_rom();
+    let production = Production::new(&scene, None, 0.3, 5).unwrap();
+    let units = |threads: usize, parts: &[std::ops::Range<u64>]| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut all = Vec::new();
+        for part in parts {
+            pool.install(|| {
+                simulate_units(&scene, &production, part.clone(), |_| (), |_, units| all.extend_from_slice(units))
+            })
+            .unwrap();
+        }
+        all
+    };
+    let expected = units(1, &[0..700]);
+    assert_eq!(expected.len(), 700);
+    assert_eq!(units(2, &[0..700]), expected);
+    assert_eq!(units(8, &[0..256, 256..700]), expected);
+}
+
+/// The 95th percentile and the greatest of some errors.
+fn p95_and_worst(mut errors: Vec<f64>) -> [f64; 2] {
+    errors.sort_by(f64::total_cmp);
+    [errors[errors.len() * 95 / 100], errors[errors.len() - 1]]
+}
+
+/// Openings and strokes of drawn units against the desk, which knows them to 0.02 % of the peak: the greatest force and the
+/// force at the end.
+#[test]
+fn figures_are_those_of_the_desk() {
+    for (scene, count) in [(example::cd_rom(), 150), (stroke(), 150)] {
+        let drawn = Production::new(&scene, None, 0.0, 2).unwrap().draw(0..count);
+        let (mut peaks, mut ends, mut breakaways) = (Vec::new(), Vec::new(), Vec::new());
+        for unit in &unit::units(&scene, &drawn).unwrap() {
+            let desk = at_desk(&scene, &unit.gaps);
+            let found = unit.outcome;
+            assert_eq!(found.verdict, desk.verdict, "unit {}", unit.number);
+            let peak = desk.peak_force.unwrap();
+            peaks.push((found.peak_force - peak).abs() / peak);
+            ends.push(scene.drive.gain * (found.final_velocity - desk.final_velocity).abs() / peak);
+            assert_eq!(found.breakaway.is_some(), desk.breakaway.is_some(), "unit {}", unit.number);
+            breakaways.extend(found.breakaway.zip(desk.breakaway).map(|(found, desk)| (found - desk).abs() / desk));
+        }
+        let found = [peaks, ends, breakaways].map(p95_and_worst);
+        println!("greatest force, force at the end, breakaway: p95 and worst {found:?}");
+        assert!(found.iter().all(|[p95, _]| *p95 < 1e-3), "{found:?}");
+    }
+}
+
+/// Where sticking and sliding alternate fast before the slide breaks away, the desk itself errs by percents: only units on which
+/// two of its tolerances agree tell anything.
+#[test]
+fn true_stick_is_simulated_as_the_desk_does() {
+    let mut scene = example::cd_rom();
+    scene.friction = FrictionData::Exact { coefficient: 0.3 };
+    let drawn = Production::new(&scene, None, 0.0, 4).unwrap().draw(0..60);
+    let mut errors = Vec::new();
+    for unit in unit::units(&scene, &drawn).unwrap() {
+        let peak = |error: f64| {
+            let settings = Settings::desk(&scene, 1.0).to(desk::tolerance_of(&scene, error));
+            one::simulate(&scene, &unit.gaps, &settings).unwrap().outcome.peak_force.unwrap()
+        };
+        let (coarse, fine) = (peak(3e-7), peak(1e-7));
+        if (coarse / fine - 1.0).abs() < 1e-3 {
+            errors.push((unit.outcome.peak_force / fine - 1.0).abs());
+        }
+    }
+    println!("{} of 60 units", errors.len());
+    assert!(errors.len() >= 40);
+    let [p95, worst] = p95_and_worst(errors);
+    println!("p95 {p95:.2e}, worst {worst:.2e}");
+    assert!(p95 < 5e-3, "{p95}");
+}
+
+/// A stroke is decided by a better tolerance too: what would not be is simulated at the desk.
+#[test]
+fn no_verdict_changes_with_a_tenth_of_the_tolerance() {
+    let scene = stroke();
+    let drawn = Production::new(&scene, None, 0.0, 3).unwrap().draw(0..1500);
+    let course = unit::course(&scene);
+    let found = unit::units(&scene, &drawn).unwrap();
+    let slides: Vec<SlideData<f64>> = drawn.gaps.iter().map(|gaps| scene.slide_data(gaps)).collect();
+    let finer = simulate(Course { tolerance: course.tolerance / 10.0, ..course }, &slides);
+    let changed: Vec<u64> = found
+        .iter()
+        .zip(&finer)
+        .filter(|(unit, finer)| {
+            let command = scene.drive.command(f64::from(finer.end));
+            let verdict = Verdict::of(f64::from(finer.final_velocity) / command, true);
+            !unit.outcome.at_desk && verdict != unit.outcome.verdict
+        })
+        .map(|(unit, _)| unit.number)
+        .collect();
+    assert!(changed.is_empty(), "{changed:?}");
+    assert!(desk::tolerance(&scene) < course.tolerance);
+}

@@ -1,0 +1,126 @@
+//! `slipfit population` as a user meets it.
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn slipfit(folder: &std::path::Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn json(folder: &std::path::Path, arguments: &[&str]) -> Value {
+    let output = slipfit(folder, &[arguments, &["--json"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Of 300 units of the drawing that were simulated one by one by another program 142 ran, 37 crawled and 121 jammed.
+#[test]
+fn about_half_of_the_cd_rom_slides_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = json(folder.path(), &["population", "cd-rom-slide-drawing", "--units", "1500"]);
+    for (verdict, other) in [("runs", 142.0), ("crawls", 37.0), ("jammed", 121.0)] {
+        let share = found["statistics"][verdict]["share"].as_f64().unwrap();
+        let expected: f64 = other / 300.0;
+        let error = (expected * (1.0 - expected) * (1.0 / 300.0 + 1.0 / 1500.0)).sqrt();
+        assert!((share - expected).abs() < 4.0 * error, "{verdict} {share} {expected}");
+    }
+    // The walls of the frame that the pins stand on drive both.
+    let first = found["malfunction_drivers"][0]["name"].as_str().unwrap();
+    assert!(first.contains("back wall"), "{first}");
+}
+
+#[test]
+fn the_files_do_not_depend_on_threads_and_a_unit_can_be_drawn_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |threads: &str, name: &str| {
+        let (csv, plot) = (format!("{name}.csv"), format!("{name}.svg"));
+        let arguments = ["population", "--units", "600", "--threads", threads, "--csv", &csv, "--plot", &plot];
+        let output = slipfit(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let read = |file: &str| std::fs::read_to_string(folder.path().join(file)).unwrap();
+        (String::from_utf8(output.stdout).unwrap(), read(&csv), read(&plot))
+    };
+    let one = run("1", "one");
+    assert_eq!(run("3", "three"), one);
+    let row: Vec<&str> = one.1.lines().nth(1 + 123).unwrap().split(',').collect();
+    assert_eq!(row[0], "123");
+    let alone = json(folder.path(), &["simulate", "--unit", "123", "--stroke"]);
+    assert_eq!(alone["verdict"], row[2]);
+    let peak: f64 = row[4].parse().unwrap();
+    assert!((alone["peak_force"].as_f64().unwrap() / peak - 1.0).abs() < 5e-3, "{peak} {}", alone["peak_force"]);
+    let gap: f64 = row[10].parse().unwrap();
+    assert!((alone["gaps"][0]["mm"].as_f64().unwrap() - gap).abs() < 1e-9);
+}
+
+#[test]
+fn what_varies_is_read_and_what_cannot_be_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cd-rom-slide.toml")).unwrap();
+    let write = |vary: &str| std::fs::write(&scene, format!("{text}\n[vary]\n{vary}\n")).unwrap();
+    write("friction.coefficient = 0.06\ndrive.gain = \"2 N·s/mm\"\ncontact.stiffness = { tolerance = 0.1 }");
+    let arguments = ["population", "scene.toml", "--units", "512", "--opening"];
+    let found = json(folder.path(), &arguments);
+    let names: Vec<&str> =
+        found["force_drivers"].as_array().unwrap().iter().map(|driver| driver["name"].as_str().unwrap()).collect();
+    assert!(names.contains(&"friction.coefficient") && names.contains(&"drive.gain"), "{names:?}");
+    for (vary, told) in [
+        ("friction.coeficient = 0.1", "coefficient"),
+        ("slide.mass = \"3 mm\"", "slide.mass"),
+        ("slide.mass = 0", "more than 0"),
+    ] {
+        write(vary);
+        let output = slipfit(folder.path(), &arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{vary}: {error}");
+        assert!(error.contains("scene.toml:") && error.contains(told), "{vary}: {error}");
+    }
+    // So wide that a unit has less than no friction.
+    write("friction.coefficient = 1.5");
+    let output = slipfit(folder.path(), &arguments);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("unit ") && error.contains("friction"), "{error}");
+    for bad in [["--correlation", "1.5"], ["--force-limit", "-1"], ["--units", "0"]] {
+        assert_eq!(slipfit(folder.path(), &[&["population"][..], &bad].concat()).status.code(), Some(2), "{bad:?}");
+    }
+}
+
+/// With every gap certain, all units are one, and a force limit splits nothing.
+#[test]
+fn a_production_without_variation_is_one_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cd-rom-slide.toml")).unwrap();
+    let certain: String = text
+        .lines()
+        .map(|line| match line.split_once(" = [") {
+            Some((name, rest)) if ["left", "right", "rail", "wall"].contains(&name.trim()) => {
+                let mean = rest.split(',').next().unwrap();
+                format!("{name} = [{mean}, 0]\n")
+            }
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    std::fs::write(folder.path().join("certain.toml"), certain).unwrap();
+    let share_over = |limit: &str| {
+        let arguments = [
+            "population",
+            "certain.toml",
+            "--units",
+            "40",
+            "--opening",
+            "--set",
+            "drive.ramp_end=0.1",
+            "--force-limit",
+            limit,
+        ];
+        let statistics = json(folder.path(), &arguments)["statistics"].clone();
+        let forces = statistics["peak_force"]["quantiles"].as_array().unwrap().clone();
+        assert!(forces.iter().all(|force| force == &forces[0]), "{statistics}");
+        (forces[0].as_f64().unwrap(), statistics["over_limit"]["share"].as_f64().unwrap())
+    };
+    let (force, _) = share_over("100");
+    assert_eq!(share_over(&(force * 1.001).to_string()).1, 0.0);
+    assert_eq!(share_over(&(force * 0.999).to_string()).1, 1.0);
+}
