@@ -8,7 +8,7 @@ use std::{
 
 use slipfit_tests::cross::cargo;
 
-use crate::{Achieved, Entry, Tolerances};
+use crate::entry::{Achieved, Entry, Tolerances};
 
 const LIBRARIES: [&str; 8] = [
     "-lsundials_cvode",

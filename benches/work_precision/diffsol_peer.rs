@@ -8,7 +8,7 @@ use slipfit_problems::{
     first_order::{AT_REST, EQUATIONS, V_Z, VELOCITY, rates},
 };
 
-use crate::{Achieved, Entry, Tolerances};
+use crate::entry::{Achieved, Entry, Tolerances};
 
 /// The name of diffsol's backward differentiation formulas.
 pub const BDF: &str = "diffsol BDF";
@@ -30,8 +30,8 @@ pub fn entries(slide: &CdRomSlide<f64>, milliseconds: u32) -> Vec<Entry> {
     entries
 }
 
-/// `None` if the solver gives up.
-fn solve(
+/// The drive force every millisecond; `None` if the solver gives up.
+pub fn solve(
     slide: &CdRomSlide<f64>,
     milliseconds: u32,
     solver: &str,

@@ -8,6 +8,7 @@
 
 mod cvode_peer;
 mod diffsol_peer;
+mod entry;
 
 use std::{
     ops::ControlFlow,
@@ -15,6 +16,7 @@ use std::{
 };
 
 use cvode_peer::Cvode;
+use entry::{Achieved, Entry};
 use slipfit::{
     error_control::{Knot, Sensitivity, Tolerance, integrate, sampled},
     out_of_line::OutOfLine,
@@ -35,19 +37,6 @@ const WITHIN: [f64; 3] = [1.0, 0.1, 0.01];
 /// Steps of the kernel (s).
 const STEPS: [f64; 11] = [1e-3, 500e-6, 250e-6, 200e-6, 100e-6, 50e-6, 25e-6, 10e-6, 5e-6, 2e-6, 1e-6];
 
-/// One solver at one setting: work that is done, or not if the solver gives up.
-struct Entry {
-    solver: &'static str,
-    setting: String,
-    work: Box<dyn Fn() -> Option<Achieved>>,
-}
-
-/// The drive force (N) at every millisecond from 0 on, and the time that the integration alone took.
-struct Achieved {
-    force: Vec<f64>,
-    time: Duration,
-}
-
 /// What an entry achieved.
 struct Finding {
     /// Which of the entries.
@@ -56,35 +45,6 @@ struct Finding {
     setting: String,
     max_percent: f64,
     time: Duration,
-}
-
-/// Tolerances of the peers.
-#[derive(Clone, Copy)]
-struct Tolerances {
-    /// Relative.
-    relative: f64,
-    /// Absolute, of velocities (m/s, rad/s).
-    absolute: f64,
-    /// Absolute tolerances of poses over those of velocities (s).
-    proportion: f64,
-}
-
-impl Tolerances {
-    /// Those tried.
-    fn all() -> impl Iterator<Item = Self> {
-        let relative = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6];
-        let absolute = [1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8];
-        let pairs = relative.into_iter().flat_map(move |r| absolute.map(|a| (r, a)));
-        pairs.flat_map(|(relative, absolute)| {
-            [1e-2, 1e-3, 1e-4].map(|proportion| Self { relative, absolute, proportion })
-        })
-    }
-}
-
-impl std::fmt::Display for Tolerances {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:.0e} {:.0e} {:.0e}", self.relative, self.absolute, self.proportion)
-    }
 }
 
 fn main() {

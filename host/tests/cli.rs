@@ -48,6 +48,7 @@ fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
         "opening-velocity.svg",
         "report.html",
         "stroke-force.svg",
+        "population.svg",
         "stroke-velocity.svg",
         "sweep.csv",
         "table.bin",

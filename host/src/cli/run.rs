@@ -24,7 +24,9 @@ use crate::{
     number::{fixed, per_million},
     outcome::Verdict,
     plot::PlotError,
-    population::{production::Production as Drawing, statistics::Statistics, study::Population},
+    population::{
+        picture::forces as population, production::Production as Drawing, statistics::Statistics, study::Population,
+    },
     product::Product,
     report::{Figure, Flash, Production, ReportInput, report},
     scene::Scene,
@@ -42,7 +44,7 @@ use crate::{
 };
 
 /// What is written of the mechanism, the page first.
-const OUTPUTS: [&str; 8] = [
+const OUTPUTS: [&str; 9] = [
     "report.html",
     "table.bin",
     "sweep.csv",
@@ -51,6 +53,7 @@ const OUTPUTS: [&str; 8] = [
     "opening-force.svg",
     "stroke-velocity.svg",
     "stroke-force.svg",
+    "population.svg",
 ];
 /// The statistics of the product's measures.
 const MEASURES: &str = "tolerance.csv";
@@ -339,6 +342,10 @@ fn figures(scene: &Scene, simulated: &Simulated) -> Result<Vec<(&'static str, Fi
                        Behind: how many units of the production are drawn at that level, if its gaps move together.";
         figures.push((OUTPUTS[3], captioned(caption, verdicts(simulated.judged(), title))?));
     }
+    let caption = "Every mark is a unit of the production, drawn with gaps of its own, over the same run. No level stands for it: \
+                   units of the same mean tightness run, crawl and jam.";
+    let units = population(scene, &simulated.population.units, None);
+    figures.push((OUTPUTS[8], captioned(caption, units)?));
     let caption = "The opening: how fast the slide moves while the drive starts. Compressed gaps are released in the first \
                    milliseconds; from the ramp's start on the slide breaks away, the earlier the less it takes.";
     figures.push((OUTPUTS[4], captioned(caption, velocities(&simulated.opening, title))?));

@@ -127,17 +127,11 @@ impl<const W: usize> Lanes<W> {
             length.0[lane] = if 1.01 * step >= left { left.max(STEPS[0]) } else { step };
         }
         let step = Rodas3::step::<Pack<W>, _, 6>(slide, start, length, &self.motions);
-        let (mass, drive) = (self.data.body.mass, &self.data.drive);
-        let velocity_error = step.error * (drive.gain * Pack::from_f64(1.0 / course.tolerance));
-        let place_error = step.drift * Pack::from_f64(1.0 / (PLACE * course.tolerance));
-        // What is not a number is the worst of all.
-        let sum = velocity_error + place_error;
-        let error = (velocity_error.max_of(place_error) + sum * zero) / mass;
-        let worst = Pack::splat(1e9);
-        let error = worst.select_gt(error, error, worst).max_of(Pack::splat(1e-9));
+        let error = self.error(course, [step.error, step.drift]);
         let factor = Pack::splat(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
         self.lengths = (length * factor.within(Pack::splat(CHANGES[0]), Pack::splat(CHANGES[1])))
             .within(Pack::splat(STEPS[0]), Pack::splat(STEPS[2]));
+        let drive = &self.data.drive;
         let along = zero.select_gt(drive.speed, -one, one);
         let before = self.motions.pose.displacement_w.z * along;
         let after = step.motion.pose.displacement_w.z * along;
@@ -162,27 +156,37 @@ impl<const W: usize> Lanes<W> {
         };
         self.watch.observe(&ends);
         let travel = self.motions.pose.displacement_w.z * along;
-        let mut any = false;
         for lane in 0..W {
             let Some(unit) = self.units[lane] else { continue };
             self.tried[lane] += 1;
-            let is_accepted = accepted.0[lane] > 0.0;
-            let stalled = (good.0[lane] == 0.0 && length.0[lane] <= STEPS[0]) || self.tried[lane] >= MOST_STEPS;
-            if is_accepted {
+            if accepted.0[lane] > 0.0 {
                 self.times[lane] += f64::from(length.0[lane]);
                 self.watch.mark(lane, self.times[lane]);
             }
+            let stalled = (good.0[lane] == 0.0 && length.0[lane] <= STEPS[0]) || self.tried[lane] >= MOST_STEPS;
             let at_end = travel.0[lane] >= stroke.0[lane] - BEYOND as f32;
-            if !(stalled || at_end || self.times[lane] >= course.duration - f64::from(STEPS[0])) {
-                continue;
+            self.ended[lane] = stalled || at_end || self.times[lane] >= course.duration - f64::from(STEPS[0]);
+            if self.ended[lane] {
+                let of_unit = &mut figures[unit];
+                self.watch.conclude(lane, self.times[lane], of_unit);
+                of_unit.final_velocity = ends.speed.0[lane];
+                of_unit.travel = travel.0[lane].min(stroke.0[lane]);
+                (of_unit.steps, of_unit.stalled) = (self.tried[lane], stalled);
             }
-            let of_unit = &mut figures[unit];
-            self.watch.conclude(lane, self.times[lane], of_unit);
-            of_unit.final_velocity = ends.speed.0[lane];
-            of_unit.travel = travel.0[lane].min(stroke.0[lane]);
-            (of_unit.steps, of_unit.stalled) = (self.tried[lane], stalled);
-            (self.ended[lane], any) = (true, true);
         }
-        any
+        self.ended.contains(&true)
+    }
+
+    /// The error of a step whose estimates of momentum (N·s) and of place (N·s²) these are; 1 is allowed. What is not a
+    /// number is the worst of all.
+    #[inline(always)]
+    fn error(&self, course: &Course, [momentum, place]: [Pack<W>; 2]) -> Pack<W> {
+        let (mass, gain) = (self.data.body.mass, self.data.drive.gain);
+        let velocity_error = momentum * (gain * Pack::from_f64(1.0 / course.tolerance));
+        let place_error = place * Pack::from_f64(1.0 / (PLACE * course.tolerance));
+        let not_a_number = (velocity_error + place_error) * Pack::splat(0.0);
+        let error = (velocity_error.max_of(place_error) + not_a_number) / mass;
+        let worst = Pack::splat(1e9);
+        worst.select_gt(error, error, worst).max_of(Pack::splat(1e-9))
     }
 }

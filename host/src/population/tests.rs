@@ -118,11 +118,12 @@ fn true_stick_is_simulated_as_the_desk_does() {
             errors.push((unit.outcome.peak_force / fine - 1.0).abs());
         }
     }
-    println!("{} of 60 units", errors.len());
-    assert!(errors.len() >= 40);
+    assert!(errors.len() >= 40, "{}", errors.len());
+    errors.sort_by(f64::total_cmp);
+    let median = errors[errors.len() / 2];
     let [p95, worst] = p95_and_worst(errors);
-    println!("p95 {p95:.2e}, worst {worst:.2e}");
-    assert!(p95 < 5e-3, "{p95}");
+    println!("median {median:.2e}, p95 {p95:.2e}, worst {worst:.2e}");
+    assert!(median < 1e-3 && p95 < 1e-2, "{median} {p95}");
 }
 
 /// A stroke is decided by a better tolerance too: what would not be is simulated at the desk.

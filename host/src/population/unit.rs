@@ -21,7 +21,7 @@ use super::{Course, Figures, Unit, production::Drawn};
 
 /// Error of the drive force that a step may make, as a share of the drive's greatest force. Single precision knows the
 /// rest of a run no better.
-pub const ERROR: f64 = 2.5e-5;
+pub const ERROR: f64 = 4e-5;
 
 /// The same where true stick is stood for by a stick band that follows the tolerance.
 pub const ERROR_OF_STICK: f64 = 2.5e-6;

@@ -1,0 +1,92 @@
+//! Units of a population per second, on one thread, beside diffsol's BDF on the same units.
+//!
+//! `cargo bench --features peers --bench population`. Both are held to an error of force of 0.1 % of the peak in 95 % of the
+//! units, against the desk. Rates are compared in turns, because a shared machine changes its pace.
+
+#[path = "../work_precision/diffsol_peer.rs"]
+mod diffsol_peer;
+#[path = "../work_precision/entry.rs"]
+mod entry;
+
+use std::time::Instant;
+
+use entry::Tolerances;
+use slipfit::{
+    population::{production::Production, simulate, unit},
+    scene::{CD_ROM_SLIDE, Scene},
+    simulate::{Settings, simulate as at_desk},
+};
+use slipfit_core::menu::SlideData;
+use slipfit_problems::cd_rom;
+
+/// What 95 % of the units may err by.
+const ERROR: f64 = 1e-3;
+/// Turns of the comparison.
+const TURNS: usize = 9;
+
+fn main() {
+    let opening = Scene::parse("cd-rom-slide", CD_ROM_SLIDE, &[]).expect("it is shipped");
+    let mut stroke = opening.clone();
+    // A unit's whole run: the peer knows no end of the stroke.
+    (stroke.run.duration, stroke.run.stroke) = (1.5, None);
+    for (name, scene, units, peers) in [("openings", opening, 2000, 24), ("strokes of 1.5 s", stroke, 400, 8)] {
+        compare(name, &scene, units, peers);
+    }
+}
+
+/// The error of force (share of the peak) that 95 % of the units do not exceed.
+fn p95(mut errors: Vec<f64>) -> f64 {
+    errors.sort_by(f64::total_cmp);
+    errors[errors.len() * 95 / 100]
+}
+
+fn compare(name: &str, scene: &Scene, units: usize, peers: usize) {
+    let drawn = Production::new(scene, None, 0.0, 1).expect("it can be drawn").draw(0..units as u64);
+    let slides: Vec<SlideData<f64>> = drawn.gaps.iter().map(|gaps| scene.slide_data(gaps)).collect();
+    let course = unit::course(scene);
+    let truth: Vec<[f64; 2]> = drawn.gaps[..100]
+        .iter()
+        .map(|gaps| {
+            let run = at_desk(scene, gaps, &Settings::desk(scene, 1e-3)).expect("the desk solves it");
+            let force = run.trajectory.force;
+            [run.outcome.peak_force.unwrap_or_default(), force.last().copied().unwrap_or_default()]
+        })
+        .collect();
+    let error = |[peak, end]: [f64; 2], [found_peak, found_end]: [f64; 2]| {
+        (found_peak - peak).abs().max((found_end - end).abs()) / peak
+    };
+    let figures = simulate(course, &slides);
+    let of_lanes = truth.iter().zip(&slides).zip(&figures).map(|((truth, slide), figures)| {
+        let end = slide.drive.force(scene.run.duration, f64::from(figures.final_velocity));
+        error(*truth, [f64::from(figures.peak_force), end])
+    });
+    let of_lanes = p95(of_lanes.collect());
+    let lanes = || {
+        let start = Instant::now();
+        std::hint::black_box(simulate(course, &slides));
+        units as f64 / start.elapsed().as_secs_f64()
+    };
+    let milliseconds = (scene.run.duration * 1e3).round() as u32;
+    let solved = |tolerances: Tolerances, count: usize| -> Option<(f64, f64)> {
+        let (mut errors, mut time) = (Vec::new(), 0.0);
+        for (slide, truth) in slides.iter().zip(&truth).take(count) {
+            let slide = cd_rom::from_data(slide);
+            let run = diffsol_peer::solve(&slide, milliseconds, diffsol_peer::BDF, tolerances)?;
+            let from = (scene.drive.ramp_start * 1e3).round() as usize;
+            let peak = run.force[from..].iter().fold(f64::NEG_INFINITY, |most, force| most.max(*force));
+            errors.push(error(*truth, [peak, run.force.last().copied()?]));
+            time += run.time.as_secs_f64();
+        }
+        Some((p95(errors), count as f64 / time))
+    };
+    let able = Tolerances::all().filter_map(|tolerances| Some((tolerances, solved(tolerances, peers)?)));
+    let quickest = able.filter(|(_, (error, _))| *error <= ERROR).max_by(|one, other| one.1.1.total_cmp(&other.1.1));
+    let (tolerances, (of_peer, _)) = quickest.expect("diffsol meets the error with some of the tolerances");
+    let mut turns: Vec<(f64, f64)> = (0..TURNS).filter_map(|_| Some((lanes(), solved(tolerances, peers)?.1))).collect();
+    turns.sort_by(|one, other| (one.0 / one.1).total_cmp(&(other.0 / other.1)));
+    let (ours, peer) = turns[turns.len() / 2];
+    println!("{name}");
+    println!("  slipfit      {ours:10.0} units/s, p95 of the error {:.4} %", of_lanes * 100.0);
+    println!("  diffsol BDF  {peer:10.0} units/s, p95 of the error {:.4} % ({tolerances})", of_peer * 100.0);
+    println!("  ratio        {:10.1}", ours / peer);
+}
