@@ -59,7 +59,7 @@ fn what_varies_is_read_and_what_cannot_be_is_an_error() {
     let scene = folder.path().join("scene.toml");
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cd-rom-slide.toml")).unwrap();
     let write = |vary: &str| std::fs::write(&scene, format!("{text}\n[vary]\n{vary}\n")).unwrap();
-    write("friction.coefficient = 0.06\ndrive.gain = \"2 N·s/mm\"\ncontact.stiffness = { tolerance = 0.1 }");
+    write("friction.coefficient = 0.06\ndrive.gain = \"2 N·s/m\"\ncontact.stiffness = { tolerance = 0.1 }");
     let arguments = ["population", "scene.toml", "--units", "512", "--opening"];
     let found = json(folder.path(), &arguments);
     let names: Vec<&str> =
