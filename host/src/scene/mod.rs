@@ -17,6 +17,7 @@ mod tests;
 mod tree;
 pub(crate) mod unit;
 mod value;
+mod written;
 
 use slipfit_core::{
     Scalar, Vector3,
@@ -33,6 +34,7 @@ pub use file::SceneFile;
 pub use levels::{LevelError, MOST_LEVELS, parse_levels};
 pub use parse::parse_every;
 pub use shipped::{CD_ROM_SLIDE, SHIPPED, shipped};
+pub use written::{tolerance, with_tolerances};
 
 /// Which surfaces meet a pin, in the order of Table 2.
 pub const SURFACES: [&str; 4] = ["left", "right", "rail", "wall"];
