@@ -133,7 +133,7 @@ fn bad_input_is_refused_and_nothing_is_written() {
         assert!(errors.contains(said), "{arguments:?}: {errors}");
     }
     for (from, to, said) in [
-        ("range = [0.015, 0.08]", "range = [0.08, 0.015]", "clutch.toml:14:"),
+        ("range = [0.015, 0.08]", "range = [0.08, 0.015]", "clutch.toml:12:64"),
         ("reciprocal = 0.015, ", "", "cost.reciprocal` is missing"),
         ("reciprocal = 0.015, ", "reciprocal = 0.015, exponential = 1, ", "two laws is not supported"),
         ("fixed = 10", "fixd = 10", "did you mean `dimension.cost.fixed`"),

@@ -1,5 +1,6 @@
 //! `slipfit allocate`: the cheapest tolerances that meet requirements of the measures.
 
+mod curve;
 mod report;
 mod tables;
 
@@ -7,7 +8,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use self::report::{Report, curve_csv};
+use self::report::Report;
 use super::{Failure, SceneArguments, ThreadArguments, given, print, print_json, progress, warn};
 use crate::{
     files,
@@ -18,7 +19,7 @@ use crate::{
             AllocateError,
             check::check,
             cost::Process,
-            curve::{LEVELS, curve},
+            curve::{LEVELS, curve as cost_against_defects},
             requirement::{Kind, OfMeasures, Requirement},
             search::search,
         },
@@ -135,7 +136,7 @@ impl Arguments {
             let checked = check(&model(&tolerances)?, self.samples, self.seed)?;
             let points = if self.csv.is_some() || self.plot.is_some() {
                 let bar = progress("cost against defects", LEVELS.len());
-                let points = curve(&processes, &tolerances, &model, self.seed, || bar.inc(1))?;
+                let points = cost_against_defects(&processes, &tolerances, &model, self.seed, || bar.inc(1))?;
                 bar.finish_and_clear();
                 points
             } else {
@@ -144,12 +145,10 @@ impl Arguments {
             Ok((Report::new(&file.title, &product, figures.rows(), &found, &checked, points), tolerances))
         };
         let (report, tolerances) = self.threads.install(work)??;
-        if let Some(path) = &self.csv {
-            files::write(path, &curve_csv(&report)?)?;
-        }
-        if let Some(path) = &self.plot {
-            let svg = report::curve_svg(&report).map_err(anyhow::Error::from)?;
-            files::write(path, svg.as_bytes())?;
+        let csv = self.csv.as_ref().map(|path| Ok::<_, anyhow::Error>((path, curve::csv(&report)?))).transpose()?;
+        let svg = self.plot.as_ref().map(|path| curve::svg(&report).map(|svg| (path, svg.into_bytes()))).transpose();
+        for (path, bytes) in csv.into_iter().chain(svg.map_err(anyhow::Error::from)?) {
+            files::write(path, &bytes)?;
         }
         if let Some(path) = &self.write {
             files::write(path, with_tolerances(&text, &product.costed, &tolerances, DIGITS).as_bytes())?;

@@ -3,16 +3,15 @@
 use serde::Serialize;
 
 use crate::{
-    chart::{Chart, Look, Panel, Scale, Series},
     cli::JSON_VERSION,
-    number::{fixed, ten_digits, three_digits},
-    plot::{PlotError, line_chart},
+    number::{fixed, three_digits},
     product::{Product, costed::Costed},
     scene::tolerance,
     tolerance::{
         allocate::{
+            branch::Solution,
             check::{Check, Checked},
-            curve::Point,
+            curve::{LEVELS, Point},
             requirement::{Kind, Requirement, Row},
             search::Found,
         },
@@ -148,6 +147,8 @@ impl Report {
         points: Vec<Point>,
     ) -> Self {
         let solution = &found.solution;
+        let tightest = points.last().filter(|_| points.len() < LEVELS.len());
+        let out_of_reach = tightest.map(|point| format!("fewer defects than {} ppm are out of reach", point.ppm));
         let chosen = product.costed.iter().zip(&solution.tolerances).zip(&solution.processes);
         let chosen = chosen.map(|((costed, t), process)| {
             let (factor, unit) = unit(costed);
@@ -191,15 +192,19 @@ impl Report {
                 .iter()
                 .cloned()
                 .chain(off_centre(&product.model, rows))
-                .chain((solution.bound < solution.cost * (1.0 - PROVEN)).then(|| {
-                    let least = three_digits(solution.bound);
-                    format!(
-                        "too many processes and steps to try them all: tolerances for {least} or more may be cheaper"
-                    )
-                }))
+                .chain(unproven(solution))
+                .chain(out_of_reach)
                 .collect(),
         }
     }
+}
+
+/// Where branch and bound was not done.
+fn unproven(solution: &Solution) -> Option<String> {
+    (solution.bound < solution.cost * (1.0 - PROVEN)).then(|| {
+        let least = three_digits(solution.bound);
+        format!("too many processes and steps to try them all: tolerances for {least} or more may be cheaper")
+    })
 }
 
 /// Cost of what the scene has now, by the cheapest process that holds it.
@@ -278,36 +283,4 @@ impl Measured {
             ppk: checked.ppk.map(|ppk| ppk.value),
         }
     }
-}
-
-/// The curve as CSV: ppm, cost, and every tolerance with its unit.
-pub fn curve_csv(report: &Report) -> anyhow::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let names = report.tolerances.iter().map(|chosen| format!("{}, {}", chosen.name, chosen.unit));
-    writer.write_record(["ppm".to_owned(), "cost".to_owned()].into_iter().chain(names))?;
-    for point in &report.curve {
-        let numbers = [point.ppm, point.cost].into_iter().chain(point.tolerances.iter().copied());
-        writer.write_record(numbers.map(ten_digits))?;
-    }
-    Ok(writer.into_inner()?)
-}
-
-/// The curve as SVG.
-///
-/// # Errors
-/// [`PlotError`], if it has no point.
-pub fn curve_svg(report: &Report) -> Result<String, PlotError> {
-    let mut points: Vec<_> = report.curve.iter().map(|point| (point.ppm, point.cost)).collect();
-    points.reverse();
-    line_chart(&Chart {
-        title: report.title.clone(),
-        subtitle: format!("cost of the cheapest tolerances against defects; chosen: {}", three_digits(report.cost)),
-        x_label: "units with a measure outside of its limits (ppm)".into(),
-        scale: Scale::Log,
-        panels: vec![Panel {
-            y_label: "cost".into(),
-            series: vec![Series { label: String::new(), look: Look::Kind(0), points }],
-            ..Panel::default()
-        }],
-    })
 }

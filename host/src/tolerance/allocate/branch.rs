@@ -145,7 +145,7 @@ impl Program<'_> {
             }
             let Span::Points([first, end]) = chosen.span else { continue };
             // Apart on the side of the better neighbour.
-            let sides = [(pick.point > first).then(|| pick.point), (pick.point + 1 < end).then(|| pick.point + 1)];
+            let sides = [(pick.point > first).then_some(pick.point), (pick.point + 1 < end).then_some(pick.point + 1)];
             for border in sides.into_iter().flatten() {
                 let neighbour = if border == pick.point { pick.point - 1 } else { pick.point + 1 };
                 let t = self.point(item, chosen.process, neighbour);

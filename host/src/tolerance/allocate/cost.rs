@@ -74,6 +74,9 @@ impl Law {
     /// The tolerance in `range` at which cost + a·t + b·t² is least; a and b are not negative.
     pub fn best(&self, [a, b]: [f64; 2], range: [f64; 2]) -> f64 {
         let [low, high] = range;
+        if a == 0.0 && b == 0.0 {
+            return high;
+        }
         if let Self::Reciprocal { factor, unit, power, .. } = *self {
             let numerator = factor * power * libm::pow(unit, power);
             if b == 0.0 {
@@ -150,7 +153,7 @@ mod tests {
     fn nothing_in_the_range_is_cheaper_than_the_best() {
         let range = [0.01, 1.0];
         for law in LAWS {
-            for prices in [[3.0, 0.0], [0.0, 3.0], [2.0, 5.0], [1e6, 1.0], [0.0, 1e-9]] {
+            for prices in [[0.0, 0.0], [3.0, 0.0], [0.0, 3.0], [2.0, 5.0], [1e6, 1.0], [0.0, 1e-9]] {
                 let total = |t: f64| law.cost(t) + prices[0] * t + prices[1] * t * t;
                 let best = law.best(prices, range);
                 assert!((range[0]..=range[1]).contains(&best));

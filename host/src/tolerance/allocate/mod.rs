@@ -9,6 +9,7 @@ pub mod check;
 pub mod cost;
 pub mod curve;
 mod dual;
+mod figure;
 mod nearest;
 pub mod program;
 pub mod requirement;
