@@ -82,7 +82,7 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
         let weights = weights(&at, &powers, figures)?;
         let mut rows: Vec<Row> =
             weights.into_iter().zip(&powers).map(|(weights, power)| Row { power: *power, weights }).collect();
-        // A figure that does not depend on any tolerance has no say.
+        // A tolerance that lowers a figure, by rounding or by a shift of the mean, counts as without effect.
         rows.iter_mut().for_each(|row| row.weights.iter_mut().for_each(|weight| *weight = weight.max(0.0)));
         let mut constants: Vec<f64> = rows.iter().zip(&values).map(|(row, value)| value - row.usage(&at)).collect();
         let mut next = None;
