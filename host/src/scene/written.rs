@@ -45,7 +45,7 @@ fn rounded_down(t: f64, digits: usize) -> f64 {
     if rounded <= t {
         return rounded;
     }
-    let unit = libm::pow(10.0, libm::floor(libm::log10(rounded)) + 1.0 - digits as f64);
+    let unit = libm::pow(10.0, libm::floor(libm::log10(t)) + 1.0 - digits as f64);
     nearest(digits, rounded - unit)
 }
 
