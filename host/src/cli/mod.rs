@@ -1,5 +1,6 @@
 //! The command line: one file a command, each with its arguments and its `run`.
 
+mod allocate;
 mod check;
 mod kernel;
 mod mechanism;
@@ -51,6 +52,7 @@ Examples:
   slipfit run                              the whole job on the CD-ROM slide, into slipfit-out/
   slipfit check my-slide.toml              is the scene sound, when does a gap close
   slipfit tolerance three-part-stack       how a product's measures vary, and what from
+  slipfit allocate clutch-processes        the cheapest tolerances that meet requirements
   slipfit simulate --n 2.5 --csv unit.csv  one unit, tighter by 2.5 sigma
   slipfit sweep --stroke --n 0:5:0.5 --plot force.svg
                                            at which n does the whole stroke jam
@@ -63,6 +65,7 @@ enum Command {
     Run(run::Arguments),
     Check(check::Arguments),
     Tolerance(tolerance::Arguments),
+    Allocate(allocate::Arguments),
     Simulate(simulate::Arguments),
     Sweep(sweep::Arguments),
     Population(population::Arguments),
@@ -326,6 +329,7 @@ pub fn main() -> ExitCode {
         Some(Command::Run(arguments)) => arguments.run(),
         Some(Command::Check(arguments)) => arguments.run(),
         Some(Command::Tolerance(arguments)) => arguments.run(),
+        Some(Command::Allocate(arguments)) => arguments.run(),
         Some(Command::Simulate(arguments)) => arguments.run(),
         Some(Command::Sweep(arguments)) => arguments.run(),
         Some(Command::Population(arguments)) => arguments.run(),

@@ -112,7 +112,7 @@ mod tests {
         let mut columns = vec![Vec::new(); 4];
         for i in 0..count {
             let mut stream = unit_stream(5, i);
-            let mut uniform = || stream.next_u64() as f64 / 2f64.powi(64) - 0.5;
+            let mut uniform = || stream.next_u64() as f64 / 18_446_744_073_709_551_616.0 - 0.5;
             columns.iter_mut().for_each(|column| column.push(uniform() * libm::sqrt(12.0)));
         }
         let figures: Vec<_> = (0..count as usize)

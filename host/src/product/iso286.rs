@@ -161,6 +161,12 @@ const J_HOLES: [[f64; 13]; 3] = [
     [6.0, 10.0, 12.0, 15.0, 20.0, 24.0, 28.0, 34.0, 41.0, 47.0, 55.0, 60.0, 66.0],
 ];
 
+/// The standard tolerance (µm) of a grade, 1 to 18, for a size (mm) above 0 up to 500.
+pub fn standard_tolerance(size: f64, grade: usize) -> Option<f64> {
+    let range = MAIN.iter().position(|greatest| size <= *greatest).filter(|_| size > 0.0)?;
+    Some(GRADES.get(grade.checked_sub(1)?)?[range])
+}
+
 /// A tolerance class: a fundamental deviation with a standard tolerance grade.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Class {

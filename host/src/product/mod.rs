@@ -8,6 +8,7 @@ pub mod common;
 pub mod contact;
 pub mod contacts;
 pub mod correlation;
+pub mod costed;
 pub mod dimension;
 pub mod expression;
 pub mod feature;
@@ -18,7 +19,9 @@ pub mod iso286;
 pub mod pose;
 pub mod vector;
 
-use crate::tolerance::{lanes::Lanes, model::Model};
+use crate::tolerance::{allocate::requirement::Requirement, lanes::Lanes, model::Model};
+
+use costed::Costed;
 
 /// What a scene file says of a product.
 pub struct Product {
@@ -26,6 +29,10 @@ pub struct Product {
     pub model: Model,
     /// The variables at the drawing's nominal values (SI), which need not be the middles of the tolerances.
     pub nominal: Vec<f64>,
+    /// Tolerances that have a cost, and so may be chosen.
+    pub costed: Vec<Costed>,
+    /// What is required of the measures.
+    pub requirements: Vec<Requirement>,
     /// What the user should know before trusting a result.
     pub warnings: Vec<String>,
 }

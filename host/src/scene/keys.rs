@@ -22,11 +22,26 @@ const fn table(name: &'static str, below: &'static [Key]) -> Key {
 const DISTRIBUTION: Key =
     table("distribution", &[key("kind"), key("mode"), key("shoulders"), key("skewness"), key("deviations")]);
 
-const TOLERANCED: &[Key] = &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge")];
+const COST: Key = table(
+    "cost",
+    &[
+        key("name"),
+        key("fixed"),
+        key("reciprocal"),
+        key("exponential"),
+        key("at"),
+        key("power"),
+        key("range"),
+        key("step"),
+        key("grades"),
+    ],
+);
+const TOLERANCED: &[Key] =
+    &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge"), COST];
 const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
-const ZONE: &[Key] = &[key("zone"), key("datum"), key("rule")];
+const ZONE: &[Key] = &[key("zone"), key("datum"), key("rule"), COST];
 
 const PLANE: &[Key] = &[
     key("name"),
@@ -150,7 +165,7 @@ const ROOT: &[Key] = &[
     table("tolerance", &[key("general"), key("rule"), key("sigma"), key("correlation")]),
     table(
         "dimension",
-        &[key("name"), key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge")],
+        &[key("name"), key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge"), COST],
     ),
     table(
         "part",
@@ -175,9 +190,11 @@ const ROOT: &[Key] = &[
             key("angle"),
             key("lower"),
             key("upper"),
+            table("require", &[key("ppm"), key("ppk")]),
             table("loss", &[key("cost"), key("at"), key("target"), key("repair")]),
         ],
     ),
+    table("allocate", &[key("yield")]),
     table("sum", &[key("name"), key("of")]),
     table("correlation", &[key("of"), key("coefficient")]),
 ];

@@ -18,6 +18,7 @@ mod tree;
 pub(crate) mod unit;
 mod value;
 pub mod vary;
+mod written;
 
 use slipfit_core::{
     Scalar,
@@ -35,6 +36,7 @@ pub use levels::{LevelError, MOST_LEVELS, parse_levels};
 pub use parse::parse_every;
 pub use shipped::{CD_ROM_SLIDE, SHIPPED, shipped};
 pub use vary::Varied;
+pub use written::{tolerance, with_tolerances};
 
 /// Which surfaces meet a pin, in the order of Table 2.
 pub const SURFACES: [&str; 4] = ["left", "right", "rail", "wall"];

@@ -10,6 +10,8 @@ pub const SHIPPED: &[(&str, &str)] = &[
     ("cd-rom-slide-drawing", include_str!("../../scenes/cd-rom-slide-drawing.toml")),
     ("three-part-stack", include_str!("../../scenes/three-part-stack.toml")),
     ("clutch", include_str!("../../scenes/clutch.toml")),
+    ("clutch-processes", include_str!("../../scenes/clutch-processes.toml")),
+    ("shaft-housing", include_str!("../../scenes/shaft-housing.toml")),
     ("linear-chain", include_str!("../../scenes/linear-chain.toml")),
     ("three-locators", include_str!("../../scenes/three-locators.toml")),
     ("lid-on-pins", include_str!("../../scenes/lid-on-pins.toml")),

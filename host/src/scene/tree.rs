@@ -126,6 +126,11 @@ impl<'s> Place<'s> {
         self.source.found
     }
 
+    /// Its bytes in the file, unless it was set on the command line.
+    pub fn in_file(&self) -> Option<Range<usize>> {
+        (self.source.name != COMMAND_LINE).then(|| self.span.clone())
+    }
+
     /// Where it begins in its text.
     pub fn start(&self) -> usize {
         self.span.start

@@ -6,6 +6,7 @@
 //! Drawing goes [`sampler`] (random numbers of a unit) → [`draw`] (its variables) → the model → [`tally`] (counts and
 //! sums) → [`forest`] (joined in a fixed shape).
 
+pub mod allocate;
 pub mod analysis;
 pub mod binomial;
 pub mod copula;

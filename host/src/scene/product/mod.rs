@@ -43,11 +43,12 @@
 //! the position and of the orientation vector). A plane or a point with none has the general flatness, if there is a
 //! class, unless it says `flatness = "none"`. A feature whose place nothing tolerates has the general tolerance of its distance
 //! from the origin of its part, unless it says `offset = "none"`. An orientation narrows the tilts of a location, a form lies within both; each has
-//! datums of its own. Two datums that are one (A-B on a drawing) are "PART.A-PART.B", or a list in the list.
+//! datums of its own. Costs of tolerances and requirements of measures: see `cost`. Two datums that are one (A-B on a drawing) are "PART.A-PART.B", or a list in the list.
 
 #[cfg(test)]
 mod assembly_tests;
 mod callout;
+mod cost;
 mod datum;
 mod fit;
 #[cfg(test)]
@@ -198,6 +199,8 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     let mut function = Measures { assembly: std::mem::take(&mut draft.assembly), ..Measures::default() };
     let measures = measure::measures(root, &mut draft, &mut function)?;
     let sums = measure::sums(root, &measures)?;
+    let costed = cost::costs(root, &draft.contributors)?;
+    let requirements = cost::requirements(root, &measures)?;
     let mut warnings = Vec::new();
     if draft.defaults.general.geometry.is_some() {
         warnings.push(WITHDRAWN.to_owned());
@@ -215,7 +218,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         let field = root.get("mate").unwrap_or(root.clone());
         return Err(field.error(Problem::Placement { part, error }, "features that meet within their tolerances"));
     }
-    Ok(Product { model, nominal, warnings })
+    Ok(Product { model, nominal, costed, requirements, warnings })
 }
 
 /// Sentences about the features that vary in nothing, and those whose place does not.

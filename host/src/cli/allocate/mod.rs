@@ -1,0 +1,208 @@
+//! `slipfit allocate`: the cheapest tolerances that meet requirements of the measures.
+
+mod curve;
+mod report;
+mod tables;
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use self::report::Report;
+use super::{Failure, SceneArguments, ThreadArguments, given, print, print_json, progress, warn};
+use crate::{
+    files,
+    product::{Product, costed::Costed},
+    scene::{Override, SceneFile, with_tolerances},
+    tolerance::{
+        allocate::{
+            AllocateError,
+            check::check,
+            cost::Process,
+            curve::{LEVELS, curve as cost_against_defects},
+            requirement::{Kind, OfMeasures, Requirement},
+            search::search,
+        },
+        model::Model,
+        study::{MOST_UNITS, StudyError},
+    },
+};
+
+/// Digits of a tolerance that is written, and of one that is looked at.
+const DIGITS: usize = 6;
+const ALL_DIGITS: usize = 17;
+
+/// The cheapest tolerances that meet the requirements of the measures.
+///
+/// A tolerance with a `cost` is chosen, the others stay. What is required stands in the scene (`require` of a measure, `yield` in
+/// `[allocate]`) or follows --require. Exits 1 where even the tightest tolerances do not meet it.
+#[derive(Args)]
+#[command(mut_arg("scene", |arg| arg.default_value(None::<&str>).required(true)))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Requires this instead of what the scene requires, of every measure with limits: rss, rss-off-centre, worst-case,
+    /// ppm=100, ppk=1.33, or of all together: yield=0.999.
+    #[arg(long, value_name = "WHAT", value_parser = kind)]
+    require: Option<Required>,
+    /// Units that are drawn to check the tolerances.
+    #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(2..=MOST_UNITS))]
+    samples: u64,
+    /// Seed of the production.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    threads: ThreadArguments,
+    /// Writes the scene with the tolerances that were found.
+    #[arg(long, value_name = "FILE", conflicts_with = "set")]
+    write: Option<PathBuf>,
+    /// Writes the cost against defects, with the tolerances of every point, as CSV.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Draws the cost against defects as SVG.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+}
+
+/// What is required, and whether of all measures together.
+#[derive(Clone, Copy)]
+struct Required {
+    kind: Kind,
+    together: bool,
+}
+
+fn kind(text: &str) -> Result<Required, String> {
+    const ALLOWED: &str = "allowed are rss, rss-off-centre, worst-case, ppm=100, ppk=1.33, yield=0.999";
+    let (name, number) = text.split_once('=').map_or((text, None), |(name, number)| (name, Some(number)));
+    let number = number.map(|number| number.trim().parse::<f64>().map_err(|_| ALLOWED.to_owned())).transpose()?;
+    let within = |low: f64, high: f64| number.filter(|number| *number > low && *number < high);
+    let each = |kind| Ok(Required { kind, together: false });
+    match (name.trim(), number) {
+        ("rss", None) => each(Kind::Rss),
+        ("rss-off-centre", None) => each(Kind::RssOffCentre),
+        ("worst-case", None) => each(Kind::WorstCase),
+        ("ppm", Some(_)) => {
+            each(Kind::Defects(1e-6 * within(0.0, 1e6).ok_or("allowed are more than 0, less than 1e6")?))
+        }
+        ("ppk", Some(_)) => each(Kind::Ppk(within(0.0, 10.0).ok_or("allowed are more than 0, less than 10")?)),
+        ("yield", Some(_)) => {
+            let share = within(0.0, 1.0).ok_or("allowed are more than 0, less than 1")?;
+            Ok(Required { kind: Kind::Defects(1.0 - share), together: true })
+        }
+        _ => Err(ALLOWED.into()),
+    }
+}
+
+impl From<AllocateError> for Failure {
+    fn from(error: AllocateError) -> Self {
+        match error {
+            AllocateError::NotLinear(_) | AllocateError::Model(_) => Self::Input(error.to_string()),
+            AllocateError::Study(StudyError::Interrupted) => Self::Work(error.into()),
+            AllocateError::Study(error) => Self::Input(error.to_string()),
+            _ => Self::Work(error.into()),
+        }
+    }
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        let outputs = [("--write", &self.write), ("--csv", &self.csv), ("--plot", &self.plot)];
+        let (name, text) = self.scene.text()?;
+        let overrides = self.scene.overrides(&[]);
+        let file = SceneFile::parse(&name, &text, &overrides)?;
+        let product = file
+            .product
+            .ok_or_else(|| Failure::Input("the scene has no product, whose tolerances could be chosen".into()))?;
+        let requirements = self.requirements(&product)?;
+        check_costs(&product.costed)?;
+        self.scene.check_outputs(&given(outputs))?;
+        let scene = Tolerances { name: &name, text: &text, overrides: &overrides, costed: &product.costed };
+        let model = |tolerances: &[f64]| scene.model(tolerances);
+        let processes: Vec<&[Process]> = product.costed.iter().map(|costed| costed.processes.as_slice()).collect();
+        let start: Vec<f64> = product.costed.iter().map(|costed| costed.stated).collect();
+        let work = || -> Result<(Report, Vec<f64>), Failure> {
+            let figures = OfMeasures::new(&requirements, &model, &start, self.seed)?;
+            let found = match search(&processes, &start, &figures) {
+                Err(AllocateError::Infeasible { figures: least, .. }) => {
+                    return Err(Failure::Work(anyhow::anyhow!(tables::missing(
+                        &product.model,
+                        figures.rows(),
+                        &least
+                    ))));
+                }
+                other => other?,
+            };
+            let tolerances = found.solution.tolerances.clone();
+            let checked = check(&model(&tolerances)?, self.samples, self.seed)?;
+            let points = if self.csv.is_some() || self.plot.is_some() {
+                let bar = progress("cost against defects", LEVELS.len());
+                let points = cost_against_defects(&processes, &tolerances, &model, self.seed, || bar.inc(1))?;
+                bar.finish_and_clear();
+                points
+            } else {
+                Vec::new()
+            };
+            Ok((Report::new(&file.title, &product, figures.rows(), &found, &checked, points), tolerances))
+        };
+        let (report, tolerances) = self.threads.install(work)??;
+        let csv = self.csv.as_ref().map(|path| Ok::<_, anyhow::Error>((path, curve::csv(&report)?))).transpose()?;
+        let svg = self.plot.as_ref().map(|path| curve::svg(&report).map(|svg| (path, svg.into_bytes()))).transpose();
+        for (path, bytes) in csv.into_iter().chain(svg.map_err(anyhow::Error::from)?) {
+            files::write(path, &bytes)?;
+        }
+        if let Some(path) = &self.write {
+            files::write(path, with_tolerances(&text, &product.costed, &tolerances, DIGITS).as_bytes())?;
+        }
+        warn(&report.warnings);
+        if self.scene.json { print_json(&report) } else { print(&tables::tables(&report)) }
+    }
+
+    fn requirements(&self, product: &Product) -> Result<Vec<Requirement>, Failure> {
+        let limited = |i: &usize| product.model.measures[*i].limits.iter().any(Option::is_some);
+        let limited: Vec<usize> = (0..product.model.measures.len()).filter(limited).collect();
+        let requirements = match self.require {
+            None => product.requirements.clone(),
+            Some(_) if limited.is_empty() => Vec::new(),
+            Some(Required { kind, together: true }) => vec![Requirement { measure: None, kind }],
+            Some(Required { kind, .. }) => {
+                limited.into_iter().map(|i| Requirement { measure: Some(i), kind }).collect()
+            }
+        };
+        if requirements.is_empty() {
+            let message = "nothing is required: a measure with limits needs require = \"rss\", or give --require";
+            return Err(Failure::Input(message.into()));
+        }
+        Ok(requirements)
+    }
+}
+
+/// Refuses what cannot be chosen.
+fn check_costs(costed: &[Costed]) -> Result<(), Failure> {
+    if costed.is_empty() {
+        let message = "no tolerance of the scene has a cost: cost = { reciprocal = 0.5, range = [0.05, 0.2] } beside it gives it one";
+        return Err(Failure::Input(message.into()));
+    }
+    match costed.iter().find(|costed| costed.place.is_none()) {
+        Some(set) => Err(Failure::Input(format!("--set: the tolerance of {} is to be chosen", set.name))),
+        None => Ok(()),
+    }
+}
+
+/// A scene file with tolerances to choose.
+struct Tolerances<'a> {
+    name: &'a str,
+    text: &'a str,
+    overrides: &'a [Override],
+    costed: &'a [Costed],
+}
+
+impl Tolerances<'_> {
+    /// The model of the scene with these tolerances (SI).
+    fn model(&self, tolerances: &[f64]) -> Result<Model, AllocateError> {
+        let text = with_tolerances(self.text, self.costed, tolerances, ALL_DIGITS);
+        let file =
+            SceneFile::parse(self.name, &text, self.overrides).map_err(|error| AllocateError::Model(error.into()))?;
+        let product = file.product.ok_or_else(|| AllocateError::Model("it has no product".into()))?;
+        Ok(product.model)
+    }
+}

@@ -1,0 +1,78 @@
+//! What the full model says of the tolerances, beside what the root of the sum of squares says.
+
+use super::AllocateError;
+use crate::tolerance::{analysis::analyse, estimate::Estimate, model::Model, normal, sampler::Method, study::Settings};
+
+/// A measure with limits (SI; probabilities as shares).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked {
+    /// Which measure.
+    pub measure: usize,
+    /// Lowest and highest.
+    pub worst_case: [f64; 2],
+    /// Root of the sum of squares, where slopes describe the measure.
+    pub rss: Option<f64>,
+    /// Share outside if that were three standard deviations of a normal in the middle of the limits.
+    pub by_rss: Option<f64>,
+    /// Share outside by importance sampling or subset simulation, where each limit has a figure to be trusted; and its
+    /// standard error.
+    pub by_tails: Option<[f64; 2]>,
+    /// Counted units below and above.
+    pub counted: u64,
+    /// The 95 % interval of their share.
+    pub interval: [f64; 2],
+    /// Of drawn units.
+    pub ppk: Option<Estimate>,
+}
+
+/// All measures with limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// One a measure.
+    pub measures: Vec<Checked>,
+    /// Units that were drawn.
+    pub units: u64,
+    /// Share of units with all measures within their limits.
+    pub good: Option<Estimate>,
+}
+
+/// Draws `units` units of `model`.
+///
+/// # Errors
+/// [`AllocateError`], if it cannot be drawn.
+pub fn check(model: &Model, units: u64, seed: u64) -> Result<Check, AllocateError> {
+    let settings = Settings { method: Method::PseudoRandom, samples: units, replicates: 1, seed };
+    let found = analyse(model, settings, |_| ())?;
+    let limited = (0..model.measures.len()).filter(|i| model.measures[*i].limits.iter().any(Option::is_some));
+    let of = |i: usize| {
+        let (statistics, worst) = (&found.joint.measures[i], &found.theory.worst_cases[i]);
+        let limits = model.measures[i].limits;
+        let described = found.theory.moments[i].described;
+        let rss = described.then(|| &found.theory.sums_of_squares[i]);
+        let by_rss = rss.map(|rss| {
+            let sides = |distance: f64| normal::tail(3.0 * distance / rss.tolerance);
+            match limits {
+                [Some(lower), Some(upper)] => 2.0 * sides(0.5 * (upper - lower)),
+                [Some(lower), None] => sides(rss.middle - lower),
+                [None, Some(upper)] => sides(upper - rss.middle),
+                [None, None] => 0.0,
+            }
+        });
+        let tails = limits.iter().zip(&found.theory.tails[i]).filter(|(limit, _)| limit.is_some());
+        let by_tails = tails.map(|(_, tail)| tail.as_ref()).try_fold([0.0, 0.0], |[sum, error], tail| {
+            tail.map(|tail| [sum + tail.probability, libm::hypot(error, tail.error)])
+        });
+        let counted = statistics.outside_counts(0).0 + statistics.outside_counts(1).0;
+        Checked {
+            measure: i,
+            worst_case: worst.searched.or(worst.vertices).unwrap_or(worst.linear),
+            rss: rss.map(|rss| rss.tolerance),
+            by_rss,
+            by_tails,
+            counted,
+            interval: crate::tolerance::interval::proportion(counted, units),
+            ppk: statistics.ppk,
+        }
+    };
+    Ok(Check { measures: limited.map(of).collect(), units, good: found.joint.good })
+}

@@ -1,0 +1,180 @@
+//! Requirements by the full model, of scenes.
+
+use super::{
+    AllocateError,
+    cost::Process,
+    requirement::{Kind, OfMeasures, Requirement},
+    search::{Found, search},
+};
+use crate::{
+    product::costed::Costed,
+    scene::{SceneFile, shipped, with_tolerances},
+};
+
+/// The cheapest tolerances of a scene, whose processes `choose` may narrow.
+fn cheapest(
+    text: &str,
+    requirements: &[Requirement],
+    choose: impl Fn(usize, &[Process]) -> Vec<Process>,
+) -> Result<Found, AllocateError> {
+    let costed = costed(text);
+    let model = |tolerances: &[f64]| {
+        let text = with_tolerances(text, &costed, tolerances, 17);
+        Ok(SceneFile::parse("x.toml", &text, &[]).unwrap().product.unwrap().model)
+    };
+    let processes: Vec<Vec<Process>> =
+        costed.iter().enumerate().map(|(item, costed)| choose(item, &costed.processes)).collect();
+    let processes: Vec<&[Process]> = processes.iter().map(Vec::as_slice).collect();
+    let start: Vec<f64> = costed.iter().map(|costed| costed.stated).collect();
+    search(&processes, &start, &OfMeasures::new(requirements, &model, &start, 1)?)
+}
+
+fn costed(text: &str) -> Vec<Costed> {
+    SceneFile::parse("x.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).product.unwrap().costed
+}
+
+fn all(_: usize, processes: &[Process]) -> Vec<Process> {
+    processes.to_vec()
+}
+
+fn of_first(kind: Kind) -> [Requirement; 1] {
+    [Requirement { measure: Some(0), kind }]
+}
+
+/// Processes are chosen by linearised figures: no other choice of them is cheaper by the full model.
+#[test]
+fn no_other_processes_are_cheaper_by_the_full_model() {
+    let text = shipped("clutch-processes").unwrap();
+    let costed = costed(text);
+    let counts: Vec<usize> = costed.iter().map(|costed| costed.processes.len()).collect();
+    for kind in [Kind::WorstCase, Kind::Ppk(1.2), Kind::Defects(3e-4)] {
+        let found = cheapest(text, &of_first(kind), all).unwrap();
+        for choice in 0..counts.iter().product() {
+            let mut rest: usize = choice;
+            let digits: Vec<usize> = counts.iter().map(|count| (rest % count, rest /= count).0).collect();
+            // What costs more with the widest tolerances need not be tried.
+            let chosen = costed.iter().zip(&digits).map(|(costed, digit)| &costed.processes[*digit]);
+            let least: f64 = chosen.map(|process| process.law.cost(process.values.ends()[1])).sum();
+            if least >= found.solution.cost {
+                continue;
+            }
+            match cheapest(text, &of_first(kind), |item, processes| vec![processes[digits[item]].clone()]) {
+                Ok(other) => {
+                    let [other, found] = [other, found.clone()].map(|found| found.solution.cost);
+                    assert!(other > found * (1.0 - 1e-5), "{kind:?} {digits:?} {other} {found}");
+                }
+                Err(AllocateError::Infeasible { .. }) => {}
+                Err(error) => panic!("{kind:?} {digits:?}: {error}"),
+            }
+        }
+    }
+}
+
+/// Three points on which a plate lies: its far corner is B + C − A. Zones cost b/t: t ∝ ∛b, and √Σ(t/2)² is the limit.
+#[test]
+fn zones_have_costs_too() {
+    let mut text = shipped("three-locators").unwrap().to_owned();
+    for (name, cost) in [("A", "1"), ("B", "8"), ("C", "27")] {
+        let from = format!("name = \"{name}\"");
+        let at = text.find(&from).unwrap();
+        let zone = format!("profile = {{ zone = 0.06, cost = {{ reciprocal = {cost}, range = [0.001, 1] }} }}");
+        let tail = text[at..].replacen("profile = 0.06", &zone, 1);
+        text.replace_range(at.., &tail);
+    }
+    text += "lower = -0.05\nupper = 0.05\nrequire = \"rss\"\n";
+    let requirement = Requirement { measure: Some(1), kind: Kind::Rss };
+    let found = cheapest(&text, &[requirement], all).unwrap();
+    let scale = 2.0 * 0.05e-3 / libm::sqrt(1.0 + 4.0 + 9.0);
+    for (t, root) in found.solution.tolerances.iter().zip([1.0, 2.0, 3.0]) {
+        assert!((t / (scale * root) - 1.0).abs() < 1e-6, "{found:?}");
+    }
+    assert_eq!(costed(&text)[0].name, "fixture.A profile");
+}
+
+/// Two gaps of one stack, and both together: the yield needs tighter tolerances than either alone, and less than if the
+/// failures of both added up without overlap.
+#[test]
+fn a_yield_of_several_measures() {
+    let text = "
+        [[dimension]]
+        name = 'a'
+        value = 10
+        tolerance = 0.1
+        cost = { reciprocal = 1, range = [0.01, 1] }
+        [[dimension]]
+        name = 'b'
+        value = 10
+        tolerance = 0.1
+        cost = { reciprocal = 1, range = [0.01, 1] }
+        [[measure]]
+        name = 'one'
+        is = 'a'
+        lower = 9.9
+        upper = 10.1
+        [[measure]]
+        name = 'two'
+        is = 'b'
+        lower = 9.9
+        upper = 10.1
+    "
+    .replace('\'', "\"");
+    let share = 1e-3;
+    let found = cheapest(&text, &[Requirement { measure: None, kind: Kind::Defects(share) }], all).unwrap();
+    // Independent: 1 − (1 − p)² of both, p = 2Φ(−z) with z = 3 · 0.1/t.
+    let p = 1.0 - libm::sqrt(1.0 - share);
+    let z = -crate::tolerance::normal::quantile(0.5 * p);
+    for t in &found.solution.tolerances {
+        assert!((t / (0.3e-3 / z) - 1.0).abs() < 0.01, "{found:?} {z}");
+    }
+}
+
+/// A requirement of each of two measures: each tolerance is bound by its own. Steps and grades are kept to.
+#[test]
+fn several_requirements_steps_and_grades() {
+    let text = "
+        [[dimension]]
+        name = 'a'
+        value = 40
+        tolerance = 'm'
+        cost = { fixed = 1, exponential = 5, at = 0.1, range = [0.02, 0.2], step = 0.015 }
+        [[dimension]]
+        name = 'b'
+        value = 20
+        tolerance = [-0.02, 0.04]
+        cost = { reciprocal = 1, grades = [6, 11] }
+        [[measure]]
+        name = 'sum'
+        is = 'a + b'
+        lower = 59.9
+        upper = 60.12
+        [[measure]]
+        name = 'b alone'
+        is = 'b'
+        lower = 19.98
+    "
+    .replace('\'', "\"");
+    let worst = |measure| Requirement { measure: Some(measure), kind: Kind::WorstCase };
+    let found = cheapest(&text, &[worst(0), worst(1)], all).unwrap();
+    // IT7 of 20 mm is 21 µm, IT8 33, IT9 52; b has 0.03 below its middle, so 26 µm at most. The rest is for a: 0.11 − 0.026.
+    let [a, b] = [found.solution.tolerances[0], found.solution.tolerances[1]].map(|t| t * 1e3);
+    assert!((b - 0.026).abs() < 1e-12 && (a - 0.08).abs() < 1e-12, "{found:?}");
+    let written = with_tolerances(&text, &costed(&text), &found.solution.tolerances, 6);
+    assert!(written.contains("tolerance = 0.08\n") && written.contains("tolerance = [-0.016, 0.036]"), "{written}");
+    assert!(SceneFile::parse("x.toml", &written, &[]).is_ok());
+}
+
+#[test]
+fn what_cannot_be_met_or_is_not_linear_is_told() {
+    let text = shipped("clutch-processes").unwrap().replace("0.087 rad", "0.1219 rad");
+    match cheapest(&text, &of_first(Kind::WorstCase), all) {
+        Err(AllocateError::Infeasible { tightest, figures }) => {
+            assert!(figures[0] > 1.0 && figures[1] < 1.0 && (tightest[0] - 0.015e-3).abs() < 1e-12, "{figures:?}");
+        }
+        other => panic!("{other:?}"),
+    }
+    let folded = shipped("clutch-processes")
+        .unwrap()
+        .replace("acos(", "abs(0.122 rad - acos(")
+        .replace(") / 2))\"", ") / 2)))\"");
+    assert!(matches!(cheapest(&folded, &of_first(Kind::Rss), all), Err(AllocateError::NotLinear(_))));
+}

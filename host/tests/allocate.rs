@@ -1,0 +1,155 @@
+//! `slipfit allocate` as a user meets it.
+
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
+
+use serde_json::Value;
+
+fn slipfit(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn json(folder: &Path, arguments: &[&str]) -> Value {
+    serde_json::from_str(&stdout(&slipfit(folder, arguments))).unwrap()
+}
+
+fn refused(folder: &Path, arguments: &[&str], code: i32) -> String {
+    let output = slipfit(folder, arguments);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?} {errors}");
+    assert!(output.stdout.is_empty());
+    errors
+}
+
+fn numbers(list: &Value, key: &str) -> Vec<f64> {
+    list.as_array().unwrap().iter().map(|entry| entry[key].as_f64().unwrap()).collect()
+}
+
+#[test]
+fn the_shipped_scenes_have_the_known_optima() {
+    let folder = tempfile::tempdir().unwrap();
+    let clutch = json(folder.path(), &["allocate", "clutch-processes", "--json"]);
+    assert!((clutch["cost"].as_f64().unwrap() - 24.46243).abs() < 1e-4, "{clutch}");
+    let found = numbers(&clutch["tolerances"], "tolerance");
+    for (t, expected) in found.iter().zip([0.173842, 0.166160, 0.128409, 0.2]) {
+        assert!((t - expected).abs() < 1e-6, "{found:?}");
+    }
+    let processes: Vec<_> = clutch["tolerances"].as_array().unwrap().iter().map(|t| &t["process"]).collect();
+    assert_eq!(processes, ["turning", "turning", "drawing", "turning"]);
+    // RSS promises 2,700 ppm; 5,100 fail.
+    let check = &clutch["check"][0];
+    let ppm = |key: &str| check[key].as_f64().unwrap();
+    assert!((ppm("rss_ppm") - 2699.8).abs() < 0.1, "{check}");
+    assert!((ppm("ppm") - 5053.0).abs() < 5.0 && (ppm("counted_ppm") - ppm("ppm")).abs() < 300.0, "{check}");
+
+    let shaft = json(folder.path(), &["allocate", "shaft-housing", "--json"]);
+    assert!((shaft["cost"].as_f64().unwrap() - 8.05361).abs() < 1e-4, "{shaft}");
+    let found = numbers(&shaft["tolerances"], "tolerance");
+    for (t, expected) in found.iter().zip([0.00811423, 0.00638180, 0.00793439, 0.00638180]) {
+        assert!((t / 25.4 - expected).abs() < 1e-8, "{found:?}");
+    }
+}
+
+#[test]
+fn a_promise_of_ppm_is_kept_and_written_into_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["allocate", "clutch-processes", "--require", "ppm=2700", "--write", "new.toml", "--json"];
+    let found = json(folder.path(), &arguments);
+    assert!((found["check"][0]["ppm"].as_f64().unwrap() - 2700.0).abs() < 2.0, "{found}");
+    let written = std::fs::read_to_string(folder.path().join("new.toml")).unwrap();
+    assert!(written.contains("# ±; what it is before anything is chosen") && !written.contains("tolerance = 0.1 "));
+    // What is written is what was found: the same cost, and the same units fail.
+    let again = json(folder.path(), &["allocate", "new.toml", "--require", "ppm=2700", "--json"]);
+    let [before, cost] = [&again["cost_before"], &found["cost"]].map(|cost| cost.as_f64().unwrap());
+    assert!((before / cost - 1.0).abs() < 1e-5, "{before} {cost}");
+    let tolerance = json(folder.path(), &["tolerance", "new.toml", "--samples", "100000", "--json"]);
+    let measure = &tolerance["measures"][0];
+    let dpm = [0, 1].map(|side| measure["dpm"][side]["dpm"].as_f64().unwrap());
+    assert!((dpm[0] + dpm[1] - 2700.0).abs() < 5.0, "{measure}");
+}
+
+#[test]
+fn the_curve_falls_and_no_byte_depends_on_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    for threads in ["1", "3"] {
+        let [csv, svg] = ["csv", "svg"].map(|kind| format!("{threads}.{kind}"));
+        let arguments =
+            ["allocate", "clutch-processes", "--samples", "20000", "--threads", threads, "--csv", &csv, "--plot", &svg];
+        std::fs::write(folder.path().join(format!("{threads}.txt")), stdout(&slipfit(folder.path(), &arguments)))
+            .unwrap();
+    }
+    for kind in ["csv", "svg", "txt"] {
+        let [one, three] = ["1", "3"].map(|threads| std::fs::read(folder.path().join(format!("{threads}.{kind}"))));
+        assert_eq!(one.unwrap(), three.unwrap(), "{kind}");
+    }
+    let csv = std::fs::read_to_string(folder.path().join("1.csv")).unwrap();
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some("ppm,cost,\"hub, mm\",\"roller 1, mm\",\"roller 2, mm\",\"cage, mm\""));
+    let costs: Vec<f64> = lines.map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect();
+    assert!(costs.len() == 9 && costs.is_sorted_by(|a, b| a < b), "{costs:?}");
+}
+
+#[test]
+fn what_cannot_be_met_is_told_with_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let narrow = "measure.pressure angle.upper=0.1272 rad";
+    let arguments =
+        ["allocate", "clutch-processes", "--set", narrow, "--set", "measure.pressure angle.lower=0.1172 rad"];
+    // Half the distance of the limits is 0.2865°; the tightest tolerances have an RSS of 0.655°.
+    let said = refused(folder.path(), &arguments, 1);
+    assert!(
+        said.contains("pressure angle: rss: ") && said.contains("allowed is 0.286479 °") && said.contains("missing"),
+        "{said}"
+    );
+    let worst = refused(folder.path(), &[&arguments[..], &["--require", "ppm=10"]].concat(), 1);
+    assert!(worst.contains("allowed is 10 ppm"), "{worst}");
+}
+
+#[test]
+fn bad_input_is_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = include_str!("../scenes/clutch-processes.toml");
+    std::fs::write(folder.path().join("clutch.toml"), text).unwrap();
+    for (arguments, said) in [
+        (&["allocate"][..], "SCENE"),
+        (&["allocate", "clutch.toml", "--write", "clutch.toml"], "the scene"),
+        (&["allocate", "clutch.toml", "--write", "a", "--csv", "./a"], "one file"),
+        (&["allocate", "clutch.toml", "--write", "a", "--set", "title=x"], "cannot be used with"),
+        (&["allocate", "clutch.toml", "--require", "ppm=0"], "more than 0"),
+        (&["allocate", "clutch.toml", "--require", "cheap"], "allowed are rss"),
+        (&["allocate", "clutch.toml", "--set", "dimension.hub.tolerance=0.2"], "tolerance of hub"),
+        (&["allocate", "clutch"], "nothing is required"),
+        (&["allocate", "clutch", "--require", "rss"], "has a cost"),
+        (&["allocate", "slider-crank", "--require", "rss"], "no product"),
+    ] {
+        let errors = refused(folder.path(), arguments, 2);
+        assert!(errors.contains(said), "{arguments:?}: {errors}");
+    }
+    for (from, to, said) in [
+        ("range = [0.015, 0.08]", "range = [0.08, 0.015]", "clutch.toml:12:64"),
+        ("reciprocal = 0.015, ", "", "cost.reciprocal` is missing"),
+        ("reciprocal = 0.015, ", "reciprocal = 0.015, exponential = 1, ", "two laws is not supported"),
+        ("fixed = 10", "fixd = 10", "did you mean `dimension.cost.fixed`"),
+        ("require = \"rss\"", "require = \"RSS\"", "`measure.require` is \"RSS\""),
+        ("lower = \"0.087 rad\"           # 0.122 ± 0.035\nupper = \"0.157 rad\"\n", "", "`measure.lower` is missing"),
+        (
+            "tolerance = 0.1               #",
+            "distribution = { kind = \"trapezoidal\", shoulders = [-0.01, 0.01] }\ntolerance = 0.1 #",
+            "lengths of its own",
+        ),
+        ("fixed = 5, reciprocal = 0.5,", "fixed = 5, reciprocal = 0.5, grades = [6, 30],", "dimension.cost.grades"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        std::fs::write(folder.path().join("clutch.toml"), text.replacen(from, to, 1)).unwrap();
+        let errors = refused(folder.path(), &["allocate", "clutch.toml", "--write", "a"], 2);
+        assert!(errors.contains(said), "{to}: {errors}");
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
