@@ -1,23 +1,14 @@
-//! The shipped mechanisms as composed types against the desk: what is written of them is current, has the bits of the elements
-//! that are chosen at run time, and in fixed steps in f32 follows the error-controlled run.
+//! The shipped mechanisms as composed types against the desk: what is written of them is current, and has the bits of the
+//! elements that are chosen at run time.
 
 use std::path::PathBuf;
 
 use slipfit::{
-    mechanism::{
-        Mechanism, Mounts, columns,
-        columns::{BodyMotion, State},
-        planar, run, rust_source, spatial,
-    },
+    mechanism::{Mechanism, Mounts, planar, rust_source, spatial},
     scene::{SceneFile, shipped},
 };
 use slipfit_core::{
-    SVector, Scalar, Vector3,
-    integrator::{Integrator, Motion},
-    kernel::Kernel,
-    mechanism::Mechanism as Mechanics,
-    pose::{Orientation, Pose},
-    system::System,
+    SVector, integrator::Integrator, kernel::Kernel, mechanism::Mechanism as Mechanics, system::System,
 };
 use slipfit_problems::mechanisms;
 
@@ -47,109 +38,17 @@ where
     assert!(a.motion.velocity != velocity, "it moves");
 }
 
-/// Rows of a run of `kernel` in f32, every `per_row` steps.
-fn rows<M: Mechanics<f32, D>, I: Integrator, const D: usize>(
-    mechanism: &Mechanism,
-    kernel: &Kernel<f32, M, I>,
-    (pose, velocity): (M::Pose, SVector<f32, D>),
-    [steps, per_row]: [u32; 2],
-    mut told: impl FnMut(&M::Pose, [f64; D]) -> Vec<BodyMotion>,
-) -> Vec<Vec<f64>> {
-    let mut state = kernel.at_rest(pose);
-    state.motion.velocity = velocity;
-    let mut rows = Vec::new();
-    loop {
-        let Motion { pose, velocity, .. } = &state.motion;
-        let rates = std::array::from_fn(|k| f64::from(velocity[k]));
-        rows.push(mechanism.row(f64::from(kernel.time(state.steps)), &told(pose, rates)));
-        if state.steps + per_row > steps {
-            return rows;
-        }
-        for _ in 0..per_row {
-            kernel.step(&mut state);
-        }
-    }
-}
-
-/// What a body in a plane does.
-fn told_in_plane<const D: usize>(
-    mechanism: &Mechanism,
-) -> impl FnMut(&[[f32; 2]; D], [f64; D]) -> Vec<BodyMotion> + '_ {
-    let mounts = Mounts::of(mechanism).unwrap();
-    let tree = planar::bodies::<D>(mechanism, &mounts).unwrap();
-    let mut last = [0.0; D];
-    move |pose, rates| {
-        let state = State::planar(tree.topology(), &pose.map(|pair| pair.map(f64::from)), rates, &last);
-        last = state.places;
-        columns::planar(mechanism, &mounts, &tree, &state)
-    }
-}
-
-fn told_in_space<const N: usize, const D: usize>(
-    _: &Mechanism,
-) -> impl FnMut(&[Pose<f32>; N], [f64; D]) -> Vec<BodyMotion> + '_ {
-    let wide = |v: Vector3<f32>| v.map(f64::from);
-    move |poses, rates| {
-        let poses = poses.map(|Pose { displacement_w, orientation: Orientation { w, v } }| Pose {
-            displacement_w: wide(displacement_w),
-            orientation: Orientation { w: f64::from(w), v: wide(v) },
-        });
-        columns::spatial(&State::spatial(&poses, rates))
-    }
-}
-
-/// A mechanism in fixed steps and at the desk, in rows of the same times, and the worst of each column.
-fn errors(mechanism: &Mechanism, found: &[Vec<f64>], every: f64, from: f64) -> Vec<(String, f64)> {
-    let desk = run(mechanism, &mechanism.gaps_at(&[0.0]).unwrap(), every).unwrap();
-    let (columns, desk) = (desk.samples.columns, desk.samples.rows);
-    let count = desk.len().min(found.len());
-    let worst = |k: usize| {
-        let peak = desk.iter().fold(0.0, |peak: f64, row| peak.max(row[k].abs()));
-        let pairs = desk.iter().zip(found).take(count).filter(|(row, _)| row[0] >= from);
-        let error = pairs.fold(0.0, |worst: f64, (row, found)| worst.max((row[k] - found[k]).abs()));
-        (columns[k].clone(), error / peak.max(1e-12))
-    };
-    (1..columns.len()).map(worst).collect()
-}
-
-#[test]
-#[ignore]
-fn explore() {
-    use slipfit_core::integrator::{Extrapolated, ImplicitEuler, Sdirk2};
-    macro_rules! scene {
-        ($name:ident, $told:expr) => {{
-            let mechanism = scene(&stringify!($name).replace('_', "-"));
-            fn go<I: Integrator>(mechanism: &Mechanism, what: &str) {
-                for step in [1e-3f32, 5e-4, 2e-4, 1e-4, 5e-5] {
-                    let kernel = Kernel::<f32, _, I>::new(mechanisms::$name::unit(0.0f32).unwrap(), step).unwrap();
-                    let per_row = (2e-3 / step).round() as u32;
-                    let steps = (mechanism.run.duration as f32 / step).round() as u32;
-                    let start = mechanisms::$name::start::<f32>();
-                    let found = rows(mechanism, &kernel, start, [steps, per_row], $told(mechanism));
-                    let errors = errors(mechanism, &found, 2e-3, 0.0);
-                    let list: Vec<_> = errors.iter().map(|(name, e)| format!("{} {:.2}%", name.split(' ').next().unwrap(), e * 100.0)).collect();
-                    println!("{} {what} {step:e}: {}", stringify!($name), list.join("  "));
-                }
-            }
-            go::<ImplicitEuler<4>>(&mechanism, "euler");
-            go::<Extrapolated<2, 4>>(&mechanism, "extra");
-            go::<Sdirk2<4>>(&mechanism, "sdirk");
-        }};
-    }
-    scene!(slider_crank, told_in_plane::<3>);
-    scene!(slider_crank_guide, told_in_plane::<3>);
-    scene!(four_bar, told_in_plane::<3>);
-    scene!(woodpecker_toy, told_in_plane::<3>);
-    scene!(linear_guide, told_in_space::<1, 6>);
-    scene!(hatch, told_in_space::<1, 6>);
-    scene!(telescopic_drawer, told_in_space::<2, 12>);
-}
-
 #[test]
 fn what_is_written_is_current() {
-    for name in
-        ["four-bar", "hatch", "linear-guide", "slider-crank", "slider-crank-guide", "telescopic-drawer", "woodpecker-toy"]
-    {
+    for name in [
+        "four-bar",
+        "hatch",
+        "linear-guide",
+        "slider-crank",
+        "slider-crank-guide",
+        "telescopic-drawer",
+        "woodpecker-toy",
+    ] {
         let file = format!("tests/problems/src/mechanisms/{}.rs", name.replace('-', "_"));
         let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(&file);
         let written = std::fs::read_to_string(path).unwrap();
