@@ -1,12 +1,17 @@
 //! The contact law at single points and over single bounces, against values computed elsewhere.
 
 use slipfit_core::{
-    SVector, Scalar,
+    SVector, Scalar, Vector2,
     axis::AxisBody,
-    integrator::{Extrapolated, ImplicitEuler, Integrator, Sdirk2},
+    integrator::{Extrapolated, ImplicitEuler, Integrator, Rodas4, Sdirk2},
     kernel::Kernel,
-    law::{Frictionless, Impact, ThreeHalves},
+    law::{Frictionless, HuntCrossley, Impact, LankaraniNikravesh, Linear, Normal, ThreeHalves},
     pose::Pose,
+    system::{
+        Element, System,
+        law::{Contact, Pad},
+        planar::{Across, Coordinate, PlanarTree, Point, Rigid},
+    },
 };
 use slipfit_problems::{
     cd_rom::{self, STIFFNESS},
@@ -137,6 +142,68 @@ fn bounces_converge_to_the_known_figures() {
         let euler = [5e-6, 5e-7].map(|h| deviation(&bounce::<ImplicitEuler<4>>(known.speed, h, 0.05), &known));
         assert!(euler[1] <= 0.3 * euler[0] + rounding, "{} m/s: {euler:?}", known.speed);
     }
+}
+
+/// The share of its `speed` (m/s) that a body on `law` keeps in a bounce, by steps of `h` (s): a slider that meets a pad.
+fn rebound<N: Normal<f64>>(law: N, speed: f64, h: f64) -> f64 {
+    let coordinate = Coordinate::Slide { on: None, axis: Vector2::x() };
+    let point = Point::<f64, 1>::fixed(Vector2::zeros()).on(0, &coordinate);
+    let body = Rigid { mass: BOUNCE_MASS, inertia: 0.0, centre: point };
+    let tree = PlanarTree::new([coordinate], &[body], Vector2::zeros()).unwrap();
+    let pose = tree.pose([0.0], |_| [1.0, 0.0]);
+    let link = Across { point, seat: Point::fixed(Vector2::zeros()), normal: Vector2::x() };
+    let law = Pad { gap: 0.0, contact: Contact { normal: law, friction: Frictionless } };
+    let kernel = Kernel::<f64, _, Rodas4>::new(System::new(tree, Element::<_, _, 2> { link, law }), h).unwrap();
+    let mut state = kernel.at_rest(pose);
+    state.motion.velocity.x = -speed;
+    while state.motion.velocity.x < 0.0 || state.motion.pose[0][0] < 0.0 {
+        kernel.step(&mut state);
+    }
+    state.motion.velocity.x / speed
+}
+
+/// Speed after over before of F = k·δ^e·(1 + a·δ̇), for a times the speed before: x − ln(1 + x) is kept, whatever the mass and the
+/// spring are.
+fn kept(before: f64) -> f64 {
+    let lost = before - libm::log1p(before);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *(if -middle - libm::log1p(-middle) < lost { &mut low } else { &mut high }) = middle;
+    }
+    low / before
+}
+
+/// What laws with a restitution keep of what they promise. Both promise to first order in what is lost: they are livelier by
+/// about its square.
+#[test]
+fn bounces_have_the_restitution_they_promise() {
+    let mut table = String::from("promised   Hunt-Crossley   Lankarani-Nikravesh\n");
+    for promised in [1.0, 0.95, 0.9, 0.8, 0.5] {
+        let speed = 0.25;
+        let hunt_crossley = |speed_before| {
+            let law = HuntCrossley::new(ThreeHalves::new(STIFFNESS).unwrap(), promised, speed).unwrap();
+            let found = rebound(law, speed_before, 1e-7);
+            let expected = if promised == 1.0 { 1.0 } else { kept(1.5 * (1.0 - promised) * speed_before / speed) };
+            assert!((found - expected).abs() < 1e-6, "{promised} {speed_before} {found} {expected}");
+            found
+        };
+        let lankarani = || {
+            let law = LankaraniNikravesh::new(Linear::new(2e5).unwrap(), promised, speed).unwrap();
+            let found = rebound(law, speed, 1e-7);
+            let expected = if promised == 1.0 { 1.0 } else { kept(0.75 * (1.0 - promised * promised)) };
+            assert!((found - expected).abs() < 1e-6, "{promised} {found} {expected}");
+            found
+        };
+        let (hunt_crossley_at, lankarani_at) = (hunt_crossley(speed), lankarani());
+        table += &format!("{promised:8.2}{hunt_crossley_at:16.4}{lankarani_at:22.4}\n");
+        let lost = 1.0 - promised;
+        assert!((-1e-6..=lost * lost + 1e-6).contains(&(hunt_crossley_at - promised)), "{table}");
+        assert!((-1e-6..=1.5 * lost * lost + 1e-6).contains(&(lankarani_at - promised)), "{table}");
+        // The restitution goes by the speed: half the speed, half the loss.
+        assert!((1.0 - hunt_crossley(0.5 * speed) - 0.5 * lost).abs() <= 0.5 * lost * lost + 1e-6);
+    }
+    insta::assert_snapshot!(table);
 }
 
 /// Forces of a penetration beyond reason overflow when squared; what a step reports of itself must not be NaN then.

@@ -72,6 +72,19 @@ pub enum NormalType {
     Power,
 }
 
+impl NormalType {
+    /// The cheapest type that covers `exponent`.
+    pub fn of<S: Scalar + PartialOrd>(exponent: S) -> Self {
+        if exponent == S::one() {
+            Self::Linear
+        } else if exponent == S::from_f64(1.5) {
+            Self::ThreeHalves
+        } else {
+            Self::Power
+        }
+    }
+}
+
 /// The friction law's type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrictionType {
@@ -86,13 +99,7 @@ pub enum FrictionType {
 impl<S: Scalar + PartialOrd> ContactData<S> {
     /// The cheapest normal law that covers the exponent.
     pub fn normal_type(&self) -> NormalType {
-        if self.exponent == S::one() {
-            NormalType::Linear
-        } else if self.exponent == S::from_f64(1.5) {
-            NormalType::ThreeHalves
-        } else {
-            NormalType::Power
-        }
+        NormalType::of(self.exponent)
     }
 }
 

@@ -4,12 +4,14 @@
 use slipfit_core::{
     ParameterError, Scalar,
     law::{
-        Elastic, Exact, Friction, Frictionless, Impact, Linear, Power, Regularised, ThreeHalves, friction::Rubbing,
-        friction::Traction,
+        Elastic, Exact, Friction, Frictionless, HuntCrossley, Impact, LankaraniNikravesh, Linear, Normal,
+        NormalResponse, Power, Regularised, ThreeHalves, friction::Rubbing, friction::Traction,
     },
     menu::{ContactData, FrictionData, FrictionType, NormalType, SlideData},
     slide::Slide,
 };
+
+use crate::mechanism::{NormalData, Rebound};
 
 /// Any elastic law of the menu.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +30,15 @@ impl<S: Scalar + PartialOrd> AnyElastic<S> {
     /// # Errors
     /// [`ParameterError`] names the parameter that is not finite or out of bounds.
     pub fn new(contact: &ContactData<S>) -> Result<Self, ParameterError<S>> {
-        let ContactData { stiffness, exponent, .. } = *contact;
-        Ok(match contact.normal_type() {
+        Self::of(contact.stiffness, contact.exponent)
+    }
+
+    /// The cheapest law of `stiffness` k (N/m^e) and `exponent` e.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the parameter that is not finite or out of bounds.
+    pub fn of(stiffness: S, exponent: S) -> Result<Self, ParameterError<S>> {
+        Ok(match NormalType::of(exponent) {
             NormalType::Linear => Self::Linear(Linear::new(stiffness)?),
             NormalType::ThreeHalves => Self::ThreeHalves(ThreeHalves::new(stiffness)?),
             NormalType::Power => Self::Power(Power::new(stiffness, exponent)?),
@@ -52,6 +61,56 @@ impl<S: Scalar> Elastic<S> for AnyElastic<S> {
             Self::Linear(law) => law.energy(depth),
             Self::ThreeHalves(law) => law.energy(depth),
             Self::Power(law) => law.energy(depth),
+        }
+    }
+}
+
+/// Any law along a contact's normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnyNormal<S> {
+    /// A spring and a damper that fades in with depth.
+    Impact(Impact<S, AnyElastic<S>>),
+    /// Hunt and Crossley's.
+    HuntCrossley(HuntCrossley<S, AnyElastic<S>>),
+    /// Lankarani and Nikravesh's.
+    LankaraniNikravesh(LankaraniNikravesh<S, AnyElastic<S>>),
+}
+
+impl AnyNormal<f64> {
+    /// The law of `data`.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the parameter that is not finite or out of bounds.
+    pub fn new(data: &NormalData) -> Result<Self, ParameterError<f64>> {
+        let [stiffness, exponent] = data.spring();
+        let spring = AnyElastic::of(stiffness, exponent)?;
+        Ok(match *data {
+            NormalData::Impact(data) => Self::Impact(Impact::new(spring, data.damping, data.depth)?),
+            NormalData::HuntCrossley(Rebound { restitution, speed, .. }) => {
+                Self::HuntCrossley(HuntCrossley::new(spring, restitution, speed)?)
+            }
+            NormalData::LankaraniNikravesh(Rebound { restitution, speed, .. }) => {
+                Self::LankaraniNikravesh(LankaraniNikravesh::new(spring, restitution, speed)?)
+            }
+        })
+    }
+}
+
+impl<S: Scalar> Normal<S> for AnyNormal<S> {
+    #[inline(always)]
+    fn response(&self, penetration: S, rate: S) -> NormalResponse<S> {
+        match self {
+            Self::Impact(law) => law.response(penetration, rate),
+            Self::HuntCrossley(law) => law.response(penetration, rate),
+            Self::LankaraniNikravesh(law) => law.response(penetration, rate),
+        }
+    }
+
+    fn energy(&self, penetration: S) -> S {
+        match self {
+            Self::Impact(law) => law.energy(penetration),
+            Self::HuntCrossley(law) => law.energy(penetration),
+            Self::LankaraniNikravesh(law) => law.energy(penetration),
         }
     }
 }

@@ -1,8 +1,8 @@
-//! BISTOP: a two-sided slot, the IMPACT law at both ends.
+//! BISTOP: a two-sided slot, one law at both ends.
 //!
 //! Two opposing pads of one pin are a slot: they share the offset and the sliding velocity.
 
-use super::{Elastic, Impact, impact::NormalResponse};
+use super::NormalResponse;
 use crate::Scalar;
 
 /// What a slot does to its pin's partner, along the slot's axis.
@@ -15,6 +15,12 @@ pub struct SlotResponse<S> {
 }
 
 impl<S: Scalar> SlotResponse<S> {
+    /// What the pads at the `low` and the `high` end do together.
+    #[inline(always)]
+    pub fn new(low: NormalResponse<S>, high: NormalResponse<S>) -> Self {
+        Self { low, high }
+    }
+
     /// Force on the body that carries the slot, along the axis (N).
     #[inline(always)]
     pub fn force(&self) -> S {
@@ -42,21 +48,9 @@ impl<S: Scalar> SlotResponse<S> {
     }
 }
 
-impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
-    /// A slot of this law with the gaps `lower` and `upper` (m) at offset 0.
-    ///
-    /// `offset` (m) is the pin's displacement along the slot's axis as seen from the body that carries the slot:
-    /// the lower gap is `lower + offset`, the upper `upper − offset`. `speed` u (m/s) is that of the body's material at
-    /// the pin, so the offset's rate is −u.
-    #[inline(always)]
-    pub fn slot(&self, lower: S, upper: S, offset: S, speed: S) -> SlotResponse<S> {
-        SlotResponse { low: self.response(-(lower + offset), speed), high: self.response(offset - upper, -speed) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use crate::law::{Impact, ThreeHalves};
+    use crate::law::{Impact, Normal, ThreeHalves};
 
     #[test]
     fn both_ends_are_the_one_sided_law_and_slopes_are_derivatives() {

@@ -4,7 +4,7 @@
 //! the depth `d`, lets the sum pull, and signs the damper so that it feeds energy. The law here is the one of the
 //! solver the authors ran, F = max(0, k·δ^e + c·S(δ/d)·δ̇) for δ > 0 with S clamped: full damping beyond `d`, no pull.
 
-use super::{Elastic, step::risen};
+use super::{Elastic, Normal, NormalResponse, step::risen};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// A one-sided contact.
@@ -16,36 +16,6 @@ pub struct Impact<S, E> {
     per_depth: S,
     /// Six times the damping over that depth (N·s/m²): with S' = 6s(1 − s) how fast the damper fades in.
     fade_in: S,
-}
-
-/// A normal force and how it changes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NormalResponse<S> {
-    /// Force (N), ≥ 0: surfaces push, they never pull.
-    pub force: S,
-    /// ∂F/∂δ (N/m) where they push.
-    pushing_stiffness: S,
-    /// ∂F/∂δ̇ (N·s/m) where they push.
-    pushing_damping: S,
-}
-
-impl<S: Scalar> NormalResponse<S> {
-    /// ∂F/∂δ (N/m).
-    #[inline(always)]
-    pub fn stiffness(&self) -> S {
-        self.if_pushing(self.pushing_stiffness)
-    }
-
-    /// ∂F/∂δ̇ (N·s/m) at a rate that also changes the penetration over the time `a` (s).
-    #[inline(always)]
-    pub fn impedance(&self, a: S) -> S {
-        self.if_pushing(self.pushing_damping + a * self.pushing_stiffness)
-    }
-
-    #[inline(always)]
-    fn if_pushing(&self, slope: S) -> S {
-        self.force.select_gt(S::zero(), slope, S::zero())
-    }
 }
 
 impl<S: Scalar + PartialOrd, E: Elastic<S>> Impact<S, E> {
@@ -73,12 +43,7 @@ impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
         let damper = self.damping * fade;
         let force = spring + damper * rate;
         let stiffness = spring_slope + self.fade_in * rest * rate;
-        NormalResponse { force: force.max_of(zero), pushing_stiffness: stiffness, pushing_damping: damper }
-    }
-
-    /// Elastic energy (J) stored at `penetration` (m, positive inside).
-    pub fn energy(&self, penetration: S) -> S {
-        self.elastic.energy(penetration.max_of(S::zero()))
+        NormalResponse::new(force, stiffness, damper)
     }
 
     /// Power (W, ≥ 0) lost at `penetration` δ (m) and `rate` δ̇ (m/s): (F − k·δ^e)·δ̇. Where surfaces part faster than the
@@ -86,5 +51,16 @@ impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
     pub fn loss(&self, penetration: S, rate: S) -> S {
         let (spring, _) = self.elastic.force(penetration.max_of(S::zero()));
         (self.response(penetration, rate).force - spring) * rate
+    }
+}
+
+impl<S: Scalar, E: Elastic<S>> Normal<S> for Impact<S, E> {
+    #[inline(always)]
+    fn response(&self, penetration: S, rate: S) -> NormalResponse<S> {
+        self.response(penetration, rate)
+    }
+
+    fn energy(&self, penetration: S) -> S {
+        self.elastic.energy(penetration.max_of(S::zero()))
     }
 }

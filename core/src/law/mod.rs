@@ -3,13 +3,17 @@
 pub mod bistop;
 pub mod elastic;
 pub mod friction;
+pub mod hunt_crossley;
 pub mod impact;
+pub mod lankarani_nikravesh;
 mod normal;
 pub mod step;
 pub mod stop;
 
 pub use elastic::{Elastic, Linear, Power, ThreeHalves};
 pub use friction::{Exact, Friction, Frictionless, Regularised, StaticKinetic};
-pub use impact::{Impact, NormalResponse};
-pub use normal::Normal;
+pub use hunt_crossley::HuntCrossley;
+pub use impact::Impact;
+pub use lankarani_nikravesh::LankaraniNikravesh;
+pub use normal::{Normal, NormalResponse};
 pub use stop::{Pad, Slot, Stop};

@@ -1,17 +1,60 @@
 //! What a law along a contact's normal is.
 
-use super::{Elastic, Impact, NormalResponse};
+use super::bistop::SlotResponse;
 use crate::Scalar;
 
 /// A one-sided law along a contact's normal: it pushes or does nothing.
-pub trait Normal<S>: Copy {
+pub trait Normal<S: Scalar>: Copy {
     /// The response at `penetration` δ (m, positive inside) and `rate` δ̇ (m/s, positive while approaching).
     fn response(&self, penetration: S, rate: S) -> NormalResponse<S>;
+
+    /// Elastic energy (J) stored at `penetration` (m, positive inside).
+    fn energy(&self, penetration: S) -> S;
+
+    /// A slot of this law with the gaps `lower` and `upper` (m) at offset 0.
+    ///
+    /// `offset` (m) is the pin's displacement along the slot's axis as seen from the body that carries the slot:
+    /// the lower gap is `lower + offset`, the upper `upper − offset`. `speed` u (m/s) is that of the body's material at
+    /// the pin, so the offset's rate is −u.
+    #[inline(always)]
+    fn slot(&self, lower: S, upper: S, offset: S, speed: S) -> SlotResponse<S> {
+        SlotResponse::new(self.response(-(lower + offset), speed), self.response(offset - upper, -speed))
+    }
 }
 
-impl<S: Scalar, E: Elastic<S>> Normal<S> for Impact<S, E> {
+/// A normal force and how it changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalResponse<S> {
+    /// Force (N), ≥ 0: surfaces push, they never pull.
+    pub force: S,
+    /// ∂F/∂δ (N/m) where they push.
+    pushing_stiffness: S,
+    /// ∂F/∂δ̇ (N·s/m) where they push.
+    pushing_damping: S,
+}
+
+impl<S: Scalar> NormalResponse<S> {
+    /// The response whose force is `force` (N) where that is positive, with its derivatives by penetration (N/m) and rate (N·s/m)
+    /// there; zero elsewhere.
     #[inline(always)]
-    fn response(&self, penetration: S, rate: S) -> NormalResponse<S> {
-        self.response(penetration, rate)
+    pub fn new(force: S, stiffness: S, damping: S) -> Self {
+        Self { force: force.max_of(S::zero()), pushing_stiffness: stiffness, pushing_damping: damping }
+    }
+
+    /// ∂F/∂δ (N/m).
+    #[inline(always)]
+    pub fn stiffness(&self) -> S {
+        self.if_pushing(self.pushing_stiffness)
+    }
+
+    /// ∂F/∂δ̇ (N·s/m) at a rate that also changes the penetration over the time `a` (s).
+    #[inline(always)]
+    pub fn impedance(&self, a: S) -> S {
+        self.if_pushing(self.pushing_damping + a * self.pushing_stiffness)
+    }
+
+    #[inline(always)]
+    fn if_pushing(&self, slope: S) -> S {
+        self.force.select_gt(S::zero(), slope, S::zero())
     }
 }

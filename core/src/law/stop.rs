@@ -1,7 +1,7 @@
 //! What stands in the way along one axis, as a menu of types: a pad on one side or a slot, so that a pad pays for no
 //! other end.
 
-use super::{Elastic, Impact, NormalResponse, bistop::SlotResponse};
+use super::{Elastic, Impact, Normal, NormalResponse, bistop::SlotResponse};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// Bounds of a gap (m).

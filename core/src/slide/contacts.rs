@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use super::{SLOTS, Slide};
 use crate::{
     Scalar, Vector3,
-    law::{Elastic, Friction},
+    law::{Elastic, Friction, Normal},
     linear::cross_rows,
     mechanism::Way,
     pose::ToBody,

@@ -4,7 +4,7 @@ use super::{Slide, split};
 use crate::{
     Scalar,
     integrator::MotionOf,
-    law::{Elastic, Friction, friction::Rubbing},
+    law::{Elastic, Friction, Normal, friction::Rubbing},
     mechanism::Mechanism,
 };
 

@@ -29,20 +29,33 @@ pub struct Response<S, const R: usize> {
 
 /// Measures `R` lengths and angles of bodies `B`.
 pub trait Link<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usize> {
+    /// What places, rates and their derivatives are made of.
+    type View;
+
+    /// The bodies as the link looks at them.
+    fn view(&self, bodies: &B, placed: &B::Placed) -> Self::View;
+
+    /// Whether the number `i` goes by the coordinate `k`. Where it says no, in any pose, derivatives are zero and not looked at.
+    #[inline(always)]
+    fn depends(&self, _i: usize, _k: usize) -> bool {
+        true
+    }
+
     /// What there is to see.
-    fn seen(&self, bodies: &B, placed: &B::Placed) -> Seen<S, R, D>;
+    fn seen(&self, at: (&B, &B::Placed), view: &Self::View) -> Seen<S, R, D>;
 
     /// Adds −∂(Λᵀφ)/∂Q for a `force` φ that is held to `stiffness`.
     fn add_carried(
         &self,
         at: (&B, &B::Placed),
+        view: &Self::View,
         seen: &Seen<S, R, D>,
         force: &SVector<S, R>,
         stiffness: &mut SMatrix<S, D, D>,
     );
 
     /// ∂(Λ·V)/∂Q, the velocities V being held.
-    fn swept(&self, bodies: &B, placed: &B::Placed) -> SMatrix<S, R, D>;
+    fn swept(&self, at: (&B, &B::Placed), view: &Self::View) -> SMatrix<S, R, D>;
 }
 
 /// A force law of `R` lengths and angles.
@@ -126,17 +139,18 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
     fn act(
         &self,
         (t, way): (S, Way<S>),
-        (bodies, placed): (&B, &B::Placed),
+        at: (&B, &B::Placed),
         memory: &W::Memory,
         remembered: Option<&mut W::Memory>,
         sum: &mut impl Assembly<S, D>,
     ) {
-        let seen = self.link.seen(bodies, placed);
+        let view = self.link.view(at.0, at.1);
+        let seen = self.link.seen(at, &view);
         let (response, next) = self.law.response(t, &seen.place, &seen.rate, memory, way);
         if let Some(slot) = remembered {
             *slot = next;
         }
-        sum.add(&self.link, (bodies, placed), &seen, &response);
+        sum.add(&self.link, at, &view, &seen, &response);
     }
 
     #[inline(always)]

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, JSON_VERSION, SceneArguments, print, print_json, simulate::ControllerArguments};
+use super::{Failure, JSON_VERSION, Moving, SceneArguments, print, print_json, simulate::ControllerArguments};
 use crate::{
     files,
     force_table::scene_hash,
     kernel_crate::{crate_files, crate_name},
     kernel_source::{EXTENSIONS, c_header, rust_source},
+    mechanism::{self, Mechanism},
     scene::{ControllerSpec, Scene},
     scheme::{IntegratorKind, ScalarKind},
 };
@@ -38,16 +39,25 @@ pub(super) struct Arguments {
 struct Report {
     json_version: u32,
     file: String,
-    scene_hash: String,
+    /// Of a slide, what its flash tables are stamped with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scene_hash: Option<String>,
 }
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let scene = self.scene.load(&self.controller.overrides())?;
-        let ControllerSpec { integrator, scalar, .. } = scene.controller;
+        let moving = self.scene.load_moving(&self.controller.overrides())?;
+        let ControllerSpec { integrator, scalar, .. } = match &moving {
+            Moving::Slide(scene) => scene.controller,
+            Moving::Mechanism(mechanism) => mechanism.controller,
+        };
         if scalar != ScalarKind::F32 {
             return Err(Failure::Input("controller.scalar is f64, kernels for firmware compute in f32".into()));
         }
+        let scene = match moving {
+            Moving::Slide(scene) => scene,
+            Moving::Mechanism(mechanism) => return self.write_mechanism(&mechanism),
+        };
         if let Some(folder) = &self.folder {
             return self.write_crate(&scene, folder);
         }
@@ -68,9 +78,22 @@ impl Arguments {
                 )));
             }
         };
+        self.write_text(&text)?;
+        self.report(Some(&scene), &self.output)
+    }
+
+    fn write_text(&self, text: &str) -> Result<(), Failure> {
         self.scene.check_outputs(&[("--output", &self.output)])?;
-        files::write(&self.output, text.as_bytes())?;
-        self.report(&scene, &self.output)
+        Ok(files::write(&self.output, text.as_bytes())?)
+    }
+
+    fn write_mechanism(&self, mechanism: &Mechanism) -> Result<(), Failure> {
+        if self.folder.is_some() || self.output.extension().is_none_or(|extension| extension != "rs") {
+            return Err(Failure::Input("a mechanism is written as a Rust module: --output FILE.rs".into()));
+        }
+        let text = mechanism::rust_source(mechanism).map_err(|error| Failure::Input(error.to_string()))?;
+        self.write_text(&text)?;
+        self.report(None, &self.output)
     }
 
     fn write_crate(&self, scene: &Scene, folder: &Path) -> Result<(), Failure> {
@@ -83,15 +106,18 @@ impl Arguments {
         for (path, text) in &files {
             files::write(path, text.as_bytes())?;
         }
-        self.report(scene, folder)
+        self.report(Some(scene), folder)
     }
 
-    fn report(&self, scene: &Scene, written: &Path) -> Result<(), Failure> {
-        let (file, scene_hash) = (written.display().to_string(), format!("{:016x}", scene_hash(scene)));
+    fn report(&self, scene: Option<&Scene>, written: &Path) -> Result<(), Failure> {
+        let file = written.display().to_string();
+        let scene_hash = scene.map(|scene| format!("{:016x}", scene_hash(scene)));
         if self.scene.json {
-            print_json(&Report { json_version: JSON_VERSION, file, scene_hash })
-        } else {
-            print(&format!("{file}, scene hash {scene_hash}"))
+            return print_json(&Report { json_version: JSON_VERSION, file, scene_hash });
+        }
+        match scene_hash {
+            Some(scene_hash) => print(&format!("{file}, scene hash {scene_hash}")),
+            None => print(&file),
         }
     }
 }

@@ -1,7 +1,14 @@
 //! What is told of a motion: drives and bodies, column by column.
 
 use nalgebra::Vector3;
-use slipfit_core::{SVector, system::Bodies, system::planar::PlanarTree};
+use slipfit_core::{
+    SVector,
+    pose::Pose,
+    system::{
+        Bodies,
+        planar::{Kind, PlanarTree},
+    },
+};
 
 use super::{Action, Mechanism, Mounts, mounts::flat};
 use crate::outcome::Instant;
@@ -15,6 +22,46 @@ pub struct State<const D: usize> {
     pub places: [f64; D],
     /// How fast these change (m/s, rad/s).
     pub place_rates: [f64; D],
+}
+
+impl<const D: usize> State<D> {
+    /// The state at a `pose` and `rates` in a plane, whose angles are next to those of the `last` places: a turn goes on where its
+    /// direction begins anew.
+    pub fn planar(topology: &[Kind; D], pose: &[[f64; 2]; D], rates: [f64; D], last: &[f64; D]) -> Self {
+        let places = std::array::from_fn(|k| {
+            let [w, v] = pose[k];
+            if topology[k] == Kind::Turn { near(2.0 * libm::atan2(v, w), last[k]) } else { w }
+        });
+        Self { rates, places, place_rates: rates }
+    }
+
+    /// The state of free bodies at their `poses` and `rates`.
+    pub fn spatial<const N: usize>(poses: &[Pose<f64>; N], rates: [f64; D]) -> Self {
+        let (mut places, mut place_rates) = ([0.0; D], rates);
+        let all = places.as_chunks_mut::<6>().0.iter_mut().zip(place_rates.as_chunks_mut::<6>().0);
+        for ((place, rate), pose) in all.zip(poses) {
+            let length = pose.orientation.v.norm();
+            let angle = 2.0 * libm::atan2(length, pose.orientation.w);
+            let turn = pose.orientation.v * if length > 0.0 { angle / length } else { 0.0 };
+            let r = pose.displacement_w;
+            *place = [r.x, r.y, r.z, turn.x, turn.y, turn.z];
+            let [.., x, y, z] = *rate;
+            let rotation = Vector3::new(x, y, z);
+            // How a rotation vector goes by the angular velocity in the body.
+            let half = 0.5 * angle;
+            let share = if angle > 1e-4 { (1.0 - half / libm::tan(half)) / (angle * angle) } else { 1.0 / 12.0 };
+            let across = turn.cross(&rotation);
+            let turning = rotation + across * 0.5 + turn.cross(&across) * share;
+            (rate[3], rate[4], rate[5]) = (turning.x, turning.y, turning.z);
+        }
+        Self { rates, places, place_rates }
+    }
+}
+
+/// `angle` (rad) by so many turns that it is next to `last`.
+fn near(angle: f64, last: f64) -> f64 {
+    let turn = 2.0 * std::f64::consts::PI;
+    angle + turn * ((last - angle) / turn).round()
 }
 
 impl<const D: usize> crate::error_control::Values for State<D> {

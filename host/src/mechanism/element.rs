@@ -3,7 +3,7 @@
 use slipfit_core::{
     ParameterError,
     drive::Drive,
-    law::{Impact, Regularised},
+    law::Regularised,
     mechanism::Way,
     menu::FrictionData,
     system::{
@@ -15,10 +15,10 @@ use slipfit_core::{
 };
 
 use super::Laws;
-use crate::laws::{AnyElastic, AnySliding};
+use crate::laws::{AnyNormal, AnySliding};
 
 /// Any law along a contact's normal.
-type Normal = Impact<f64, AnyElastic<f64>>;
+type Normal = AnyNormal<f64>;
 
 /// Any friction law without internal variables.
 type Sliding = AnySliding<f64>;
@@ -31,7 +31,7 @@ pub type AnyContact = Contact<Normal, Sliding>;
 /// # Errors
 /// [`ParameterError`] names the parameter that is not finite or out of bounds.
 pub fn contact(laws: &Laws, stick_band: f64) -> Result<AnyContact, ParameterError<f64>> {
-    let normal = Impact::new(AnyElastic::new(&laws.contact)?, laws.contact.damping, laws.contact.depth)?;
+    let normal = AnyNormal::new(&laws.contact)?;
     let regularised = |coefficient, band| Ok(AnySliding::Regularised(Regularised::new(coefficient, band)?));
     let friction = match laws.friction {
         FrictionData::None => AnySliding::Frictionless,
@@ -60,7 +60,7 @@ pub enum PlanarElement<const D: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpatialElement {
     /// A pin between walls.
-    Pin(Element<spatial::Seat<f64>, Pin<f64, AnyElastic<f64>, Sliding>, 3>),
+    Pin(Element<spatial::Seat<f64>, Pin<f64, Normal, Sliding>, 3>),
     /// A point before a wall.
     Wall(Element<spatial::Seat<f64>, Wall<f64, Normal, Sliding>, 3>),
     /// A ring around a rod.

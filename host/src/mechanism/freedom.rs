@@ -84,6 +84,15 @@ fn scaled<const R: usize, const D: usize>(gradient: &SMatrix<f64, R, D>, per_lev
     gradient.row_iter().map(|row| std::array::from_fn(|k| row[k] * per_lever[k])).collect()
 }
 
+/// How the numbers of `link` go by the velocities.
+fn gradient<B: Bodies<f64, D>, L: Link<f64, B, D, R>, const R: usize, const D: usize>(
+    link: &L,
+    bodies: &B,
+    placed: &B::Placed,
+) -> SMatrix<f64, R, D> {
+    link.seen((bodies, placed), &link.view(bodies, placed)).gradient
+}
+
 fn rank_of<const D: usize>(rows: &[[f64; D]]) -> usize {
     if rows.is_empty() { 0 } else { DMatrix::from_fn(rows.len(), D, |i, j| rows[i][j]).rank(1e-9) }
 }
@@ -110,11 +119,11 @@ fn in_plane<const D: usize>(
     for element in planar::elements::<D>(&held, mounts, gaps, 1.0)? {
         match element {
             PlanarElement::Journal(element) => {
-                let gradient = element.link.seen(&tree, &placed).gradient;
+                let gradient = gradient(&element.link, &tree, &placed);
                 rows.extend(scaled(&gradient, tree.per_lever()).into_iter().take(2));
             }
             PlanarElement::Pad(element) => {
-                let gradient = element.link.seen(&tree, &placed).gradient;
+                let gradient = gradient(&element.link, &tree, &placed);
                 rows.extend(scaled(&gradient, tree.per_lever()).into_iter().take(1));
             }
             _ => {}
@@ -130,14 +139,14 @@ fn in_space<const N: usize, const D: usize>(mechanism: &Mechanism, gaps: &[f64])
     for element in spatial::elements(mechanism, gaps, 1.0)? {
         match element {
             SpatialElement::Pin(element) => {
-                let gradient = element.link.seen(&bodies, &placed).gradient;
+                let gradient = gradient(&element.link, &bodies, &placed);
                 let [left, right, rail, keeper] = element.law.gaps.map(|gap| gap < spatial::NONE);
                 let held = [left || right, rail || keeper, false];
                 let all = scaled(&gradient, bodies.per_lever());
                 rows.extend(all.into_iter().zip(held).filter(|(_, held)| *held).map(|(row, _)| row));
             }
             SpatialElement::Ring(element) => {
-                let gradient = element.link.seen(&bodies, &placed).gradient;
+                let gradient = gradient(&element.link, &bodies, &placed);
                 rows.extend(scaled(&gradient, bodies.per_lever()).into_iter().take(2));
             }
             _ => {}

@@ -3,27 +3,27 @@
 //! Everything is described in one drawn pose, in which all axes are those of the frame. In a mechanism that lies in a plane
 //! x and y span the plane and angles turn from x to y; the others are in space.
 
-mod columns;
-mod element;
+pub mod columns;
+pub mod element;
 mod freedom;
 mod gaps;
+mod laws;
 mod mounts;
-mod planar;
+pub mod planar;
 mod run;
-mod spatial;
+mod source;
+pub mod spatial;
 
 pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps};
+pub use laws::{Laws, NormalData, Rebound};
 pub use mounts::{MountError, Mounts};
 pub use run::{MechanismRun, Rest, RunError, SCHEME, Samples, run};
+pub use source::rust_source;
 
-use slipfit_core::{
-    clearance::GapStatistics,
-    drive::Drive,
-    menu::{ContactData, FrictionData},
-};
+use slipfit_core::{clearance::GapStatistics, drive::Drive};
 
-use crate::scene::{LevelRange, RunSpec};
+use crate::scene::{ControllerSpec, LevelRange, RunSpec};
 
 /// Which bodies there are, what joins them, and what is to be simulated. SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +46,8 @@ pub struct Mechanism {
     pub gaps: Vec<Gap>,
     /// What is simulated: the stroke (m) is the first drive's, and the error a share of the mechanism's own speed.
     pub run: RunSpec,
+    /// How a controller computes it.
+    pub controller: ControllerSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
 }
@@ -92,15 +94,6 @@ pub struct Joint {
     pub kind: JointKind,
     /// Laws of its contacts.
     pub laws: Laws,
-}
-
-/// Laws of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Laws {
-    /// Along the normal.
-    pub contact: ContactData<f64>,
-    /// Along the tangents.
-    pub friction: FrictionData<f64>,
 }
 
 /// What a joint is. Axes and normals are of unit length, in the drawn pose.

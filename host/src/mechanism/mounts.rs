@@ -104,15 +104,16 @@ impl Mounts {
             }
             None => Point::fixed(at),
         };
-        let mut narrow = Point { turn: point.turn, base: point.base, ..Point::fixed(at) };
-        narrow.moves.copy_from_slice(&point.moves[..D]);
+        let mut narrow = Point::fixed(point.base);
+        narrow.carrier.turn = point.carrier.turn;
+        narrow.carrier.moves.copy_from_slice(&point.carrier.moves[..D]);
         narrow.arms.copy_from_slice(&point.arms[..D]);
         narrow
     }
 
     /// The coordinate that turns a body; `None` for the frame and what does not turn.
     pub fn turn(&self, port: Port) -> Option<usize> {
-        port.and_then(|body| self.bodies[body].point.turn)
+        port.and_then(|body| self.bodies[body].point.carrier.turn)
     }
 }
 
@@ -133,7 +134,7 @@ pub fn flat([x, y, _]: [f64; 3]) -> Vector2<f64> {
 fn hung(parent: &Mount, joint: &Joint, child: usize, coordinates: &mut Vec<Owned>) -> Result<Mount, MountError> {
     let at = flat(joint.at);
     let mut point = parent.point.plus(at - parent.drawn);
-    let slide = |axis: [f64; 3]| Coordinate::Slide { on: point.turn, axis: flat(axis) };
+    let slide = |axis: [f64; 3]| Coordinate::Slide { on: point.carrier.turn, axis: flat(axis) };
     let wanted: &[Coordinate<f64>] = match joint.kind {
         JointKind::Revolute => &[Coordinate::Turn],
         JointKind::Prismatic { axis } => &[slide(axis)],

@@ -28,7 +28,7 @@ pub fn bodies<const D: usize>(
         let drawn = flat(body.centre);
         let centre = mounts.point::<D>(Some(i), drawn);
         let inertia = body.inertia[2];
-        match rigid.iter_mut().find(|(_, _, one)| one.centre.turn == centre.turn && one.centre.moves == centre.moves) {
+        match rigid.iter_mut().find(|(_, _, one)| one.centre.carrier == centre.carrier) {
             Some((place, first, one)) => {
                 let mass = one.mass + body.mass;
                 let apart = drawn - *place;

@@ -6,10 +6,9 @@ use std::{
 };
 
 use slipfit_core::{
-    ParameterError, SVector, Vector3,
+    ParameterError, SVector,
     integrator::{Integrator, Motion, Rodas4, Step},
     mechanism::Mechanism as _,
-    pose::Pose,
     system::{Bodies, Elements, System, planar::Coordinate},
 };
 use thiserror::Error;
@@ -125,14 +124,12 @@ fn in_plane<const D: usize>(
     let elements = planar::elements::<D>(mechanism, mounts, gaps, limits.stick_band())?;
     let Rest { places, rates } = Rest::of(mechanism, mounts);
     let pose = tree.pose(places, |angle| [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]);
-    let mut angles = places;
-    let is_turn = |k: usize| matches!(tree.coordinates()[k], Coordinate::Turn);
-    let state = |pose: &[[f64; 2]; D], rates: [f64; D]| {
-        for (k, (angle, [w, v])) in angles.iter_mut().zip(pose).enumerate() {
-            // The angle next to the last one: a turn goes on where its direction begins anew.
-            *angle = if is_turn(k) { near(2.0 * libm::atan2(*v, *w), *angle) } else { *w };
-        }
-        State { rates, places: angles, place_rates: rates }
+    let topology = *tree.topology();
+    let mut last = places;
+    let state = move |pose: &[[f64; 2]; D], rates: [f64; D]| {
+        let state = State::planar(&topology, pose, rates, &last);
+        last = state.places;
+        state
     };
     let told = |state: &State<D>| columns::planar(mechanism, mounts, &tree, state);
     solve(mechanism, &System::new(tree, &elements[..]), (pose, rates), &limits, every, state, told)
@@ -146,35 +143,9 @@ fn in_space<const N: usize, const D: usize>(
     let bodies = spatial::bodies::<N, D>(mechanism)?;
     let limits = Limits::of(mechanism, |body| bodies.lever(body));
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
-    let state = |poses: &[Pose<f64>; N], rates: [f64; D]| {
-        let (mut places, mut place_rates) = ([0.0; D], rates);
-        let all = places.as_chunks_mut::<6>().0.iter_mut().zip(place_rates.as_chunks_mut::<6>().0);
-        for ((place, rate), pose) in all.zip(poses) {
-            let length = pose.orientation.v.norm();
-            let angle = 2.0 * libm::atan2(length, pose.orientation.w);
-            let turn = pose.orientation.v * if length > 0.0 { angle / length } else { 0.0 };
-            let r = pose.displacement_w;
-            *place = [r.x, r.y, r.z, turn.x, turn.y, turn.z];
-            let [.., x, y, z] = *rate;
-            let rotation = Vector3::new(x, y, z);
-            // How a rotation vector goes by the angular velocity in the body.
-            let half = 0.5 * angle;
-            let share = if angle > 1e-4 { (1.0 - half / libm::tan(half)) / (angle * angle) } else { 1.0 / 12.0 };
-            let across = turn.cross(&rotation);
-            let turning = rotation + across * 0.5 + turn.cross(&across) * share;
-            (rate[3], rate[4], rate[5]) = (turning.x, turning.y, turning.z);
-        }
-        State { rates, places, place_rates }
-    };
     let start = (bodies.nominal(), [0.0; D]);
     let system = System::new(bodies, &elements[..]);
-    solve(mechanism, &system, start, &limits, every, state, columns::spatial)
-}
-
-/// `angle` (rad) by so many turns that it is next to `last`.
-fn near(angle: f64, last: f64) -> f64 {
-    let turn = 2.0 * std::f64::consts::PI;
-    angle + turn * ((last - angle) / turn).round()
+    solve(mechanism, &system, start, &limits, every, State::spatial::<N>, columns::spatial)
 }
 
 /// Where and how fast a mechanism in a plane starts.

@@ -85,7 +85,8 @@ const AXIS: &[Key] = &[
     VECTORIAL,
 ];
 
-const CONTACT: &[Key] = &[key("stiffness"), key("exponent"), key("damping"), key("depth")];
+const CONTACT: &[Key] =
+    &[key("law"), key("stiffness"), key("exponent"), key("damping"), key("depth"), key("restitution"), key("speed")];
 const FRICTION: &[Key] = &[key("law"), key("coefficient"), key("stick_band")];
 
 /// What drawings have and scenes do not.

@@ -3,6 +3,7 @@
 //! A file uses the units of the paper's Table 1 (mm, g, N/mm, N·s/mm) or says its own; this module is the one place
 //! where they become SI.
 
+mod contact;
 mod diagnostic;
 mod file;
 mod keys;

@@ -12,6 +12,7 @@ use crate::scheme::{IntegratorKind, ScalarKind};
 
 use super::{
     ControllerSpec, GapMeasures, LevelRange, Override, PinSpec, Problem, RunSpec, Scene, SceneError, SlideSpec,
+    contact::impact,
     diagnostic::{COMMAND_LINE, Found},
     parse_levels,
     tree::{Source, Value},
@@ -23,9 +24,6 @@ use super::{
 const MASS: Quantity = Quantity { units: unit::MASS, range: [0.001, 1e7] };
 const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
-const EXPONENT: Quantity = Quantity { units: unit::ONE, range: [1.0, 4.0] };
-const DAMPING: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
-const DEPTH: Quantity = Quantity { units: unit::LENGTH, range: [1e-6, 1000.0] };
 const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [0.0, 100.0] };
 const STICK_BAND: Quantity = Quantity { units: unit::SPEED, range: [1e-7, 1000.0] };
 pub(super) const GAIN: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
@@ -45,8 +43,6 @@ const DEFAULT_ERROR: f64 = 3e-7;
 const DEFAULT_CONTROLLER: ControllerSpec =
     ControllerSpec { step: 1e-3, integrator: IntegratorKind::ImplicitEuler, scalar: ScalarKind::F32 };
 
-/// N/m^e.
-const STIFFNESS: [f64; 2] = [1e-9, 1e20];
 /// kg·m²: what the slide's kernel takes.
 const LEAST_MOMENT: f64 = 1e-12;
 /// s: what the slide's kernel takes.
@@ -63,7 +59,7 @@ pub(super) fn scene(
     let nothing = SlideSpec { mass: 1.0, inertia_box: [1.0; 3], gravity: [0.0; 3] };
     let slide = found.recover(root.table("slide").and_then(|table| slide(&table)), nothing);
     let nothing = ContactData { stiffness: 1.0, exponent: 1.0, damping: 0.0, depth: 1.0 };
-    let contact = found.recover(root.table("contact").and_then(|table| contact(&table)), nothing);
+    let contact = found.recover(root.table("contact").and_then(|table| impact(&table)), nothing);
     let friction = found.recover(root.table("friction").and_then(|table| friction(&table)), FrictionData::None);
     let controller = found.recover(controller(root, &friction), DEFAULT_CONTROLLER);
     let nothing = RunSpec { duration: 1.0, stroke: None, error: DEFAULT_ERROR };
@@ -121,51 +117,6 @@ fn slide(table: &Field) -> Result<SlideSpec, SceneError> {
     Ok(SlideSpec { mass, inertia_box, gravity: table.numbers("gravity", &GRAVITY)? })
 }
 
-pub(super) fn contact(table: &Field) -> Result<ContactData<f64>, SceneError> {
-    let exponent = table.number("exponent", &EXPONENT)?;
-    Ok(ContactData {
-        stiffness: stiffness(table, exponent)?,
-        exponent,
-        damping: table.number("damping", &DAMPING)?,
-        depth: table.number("depth", &DEPTH)?,
-    })
-}
-
-/// The stiffness (N/m^e); its unit has the contact's exponent.
-fn stiffness(table: &Field, exponent: f64) -> Result<f64, SceneError> {
-    let units = format!("a number in N/mm^{exponent}, or a text with its unit: N/mm^{exponent}, N/m^{exponent}");
-    let field = table.require("stiffness", &units)?;
-    let measure = field.measure(&units)?;
-    let (key, written) = (field.key.clone(), field.written(""));
-
-    let (length, power) = match measure.unit.map(stiffness_unit) {
-        None => ("mm", exponent),
-        Some(Some(unit)) => unit,
-        Some(None) => return Err(field.error(Problem::Unit { key, written }, units)),
-    };
-    if power != exponent {
-        return Err(field.error(Problem::Exponent { key, written, exponent }, units));
-    }
-    let number = measure.number;
-    let value = match length {
-        // k·1000^e under the root, where 1000^1.5 is not yet rounded: the nearest double for the paper's contact.
-        "mm" => libm::copysign(libm::sqrt(number * number * libm::pow(1e6, exponent)), number),
-        _ => number,
-    };
-    let [least, greatest] = STIFFNESS;
-    if (least..=greatest).contains(&value) {
-        return Ok(value);
-    }
-    Err(field.out_of_range(&format!("N/mm^{exponent}"), format!("{least:e} to {greatest:e} N/m^{exponent}")))
-}
-
-/// Length and exponent of a unit such as N/mm^1.5.
-fn stiffness_unit(unit: &str) -> Option<(&str, f64)> {
-    let (length, power) = unit.strip_prefix("N/")?.split_once('^').unwrap_or((unit.strip_prefix("N/")?, "1"));
-    let power = power.parse().ok()?;
-    matches!(length, "mm" | "m").then_some((length, power))
-}
-
 pub(super) fn friction(table: &Field) -> Result<FrictionData<f64>, SceneError> {
     const LAWS: &str = "regularised, exact, none";
     let law = table.require("law", LAWS)?;
@@ -221,7 +172,7 @@ pub(super) fn run(table: &Field) -> Result<RunSpec, SceneError> {
 }
 
 /// Reads the optional table `controller`, of which every key is optional.
-fn controller(root: &Field, friction: &FrictionData<f64>) -> Result<ControllerSpec, SceneError> {
+pub(super) fn controller(root: &Field, friction: &FrictionData<f64>) -> Result<ControllerSpec, SceneError> {
     let Some(table) = root.get("controller") else { return Ok(DEFAULT_CONTROLLER) };
     table.expect_table()?;
     let step = table.get("step").map(|field| field.to_number(&STEP)).transpose()?;

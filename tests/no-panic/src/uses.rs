@@ -15,12 +15,13 @@ use slipfit_core::{
     slide::Slide,
     table::{AxisKind, Scrubber, Slots, Table, TableError, Word},
 };
-use slipfit_problems::cd_rom;
+use slipfit_problems::{cd_rom, mechanisms};
 
 /// All uses; every input may be anything, so that every error is reached too.
 pub fn all() {
     let _ = black_box(every_slide());
     let _ = black_box(smaller_scenes());
+    let _ = black_box(planar_mechanisms());
     let _ = black_box(look_up());
     if cfg!(feature = "reachable-panic") {
         assert!(black_box(true));
@@ -77,6 +78,18 @@ fn smaller_scenes() -> Result<(), ParameterError<f32>> {
     let driven = AxisBody::driven(black_box(1.0), black_box(0.0), slot, contact, data.drive)?;
     let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(driven, black_box(1e-3))?;
     black_box(kernel.step(&mut black_box(kernel.at_rest::<1>(0.0))));
+    Ok(())
+}
+
+/// Makes and steps every shipped mechanism in a plane.
+fn planar_mechanisms() -> Result<(), ParameterError<f32>> {
+    macro_rules! step {
+        ($($name:ident)*) => {$({
+            let (kernel, mut state) = black_box(mechanisms::$name::predictor(black_box(0.0))?);
+            black_box(kernel.step(&mut state));
+        })*};
+    }
+    step!(four_bar slider_crank slider_crank_guide woodpecker_toy);
     Ok(())
 }
 

@@ -5,3 +5,4 @@
 pub mod cd_rom;
 pub mod first_order;
 pub mod laws;
+pub mod mechanisms;

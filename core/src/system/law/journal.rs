@@ -4,7 +4,7 @@
 //! along n at the rim of the pin, and there they rub, so that friction also has moments about both centres. Where the pin is
 //! inside there is no force, and so none where ρ = 0 has no direction.
 
-use super::{Contact, Law, Response, along, steady};
+use super::{Contact, Law, Response, Rub, steady};
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
     law::{Friction, Normal},
@@ -45,7 +45,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
         memory: &F::Memory,
         way: Way<S>,
     ) -> (Response<S, 4>, F::Memory) {
-        let (zero, one) = (S::zero(), S::one());
+        let zero = S::zero();
         let apart = Vector2::new(place[0], place[1]);
         let moving = Vector2::new(rate[0], rate[1]);
         let squared = apart.dot(&apart);
@@ -55,42 +55,47 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
         let tangent = left(&normal);
         let (outward, aside) = (moving.dot(&normal), moving.dot(&tangent));
         let [hole, pin] = [rate[2], rate[3]];
-        let rim = distance + self.radius;
+        let (rim, radius) = (distance + self.radius, self.radius);
+        let sliding = rim * hole - aside - radius * pin;
+        let touch = self.contact.rub(memory, way, [distance - self.clearance, outward], sliding);
+        let Rub { force: push, stiffness, damping, traction, per_force, per_sliding, memory } = touch;
+        let force = -(normal * push + tangent * traction);
+        let force = SVector::<S, 4>::new(force.x, force.y, rim * traction, -radius * traction);
 
-        // By ρ along normal and tangent, its rate along them, and both rotations. Along the tangent the axes turn by 1/|ρ|.
-        let depth = (distance - self.clearance, along::<S, 6>(0, one));
-        let approach = (outward, along::<S, 6>(2, one) + along(1, aside * per_distance));
-        let mut slope = along::<S, 6>(0, hole);
-        slope[1] = outward * per_distance;
-        slope[3] = -one;
-        slope[4] = rim;
-        slope[5] = -self.radius;
-        let sliding = (rim * hole - aside - self.radius * pin, slope);
-        let none = (zero, SVector::zeros());
-        let touch = self.contact.touch(memory, way, [depth, approach], [sliding, none]);
-        let ([rub, _], [rub_slope, _]) = (touch.traction, touch.traction_slopes);
-        let by_turn = along::<S, 6>(1, per_distance);
-        let rows = [
-            by_turn * rub - touch.force_slope,
-            -(by_turn * touch.force) - rub_slope,
-            rub_slope * rim + along(0, rub),
-            rub_slope * -self.radius,
+        // By ρ along normal and tangent and by its rate along them. Along the tangent the axes turn by 1/|ρ|, and the rates with
+        // them.
+        let turned = [aside * per_distance, outward * per_distance];
+        let push_by_place = [stiffness, damping * turned[0]];
+        let rub_by_place =
+            [per_force * push_by_place[0] + per_sliding * hole, per_force * push_by_place[1] + per_sliding * turned[1]];
+        let rub_by_rate = [per_force * damping, -per_sliding];
+        let in_frame = |along: S, across: S| normal * along + tangent * across;
+        let by_place = [
+            in_frame(push_by_place[0], -rub_by_place[0]),
+            in_frame(push_by_place[1] - per_distance * traction, per_distance * push - rub_by_place[1]),
         ];
-        let force = -(normal * touch.force + tangent * rub);
-        let force = SVector::<S, 4>::new(force.x, force.y, rim * rub, -self.radius * rub);
-        let (by_place, by_rate) = (
-            SMatrix::<S, 4, 4>::from_fn(|i, j| if j < 2 { rows[i][j] } else { zero }),
-            SMatrix::<S, 4, 4>::from_fn(|i, j| rows[i][j + 2]),
+        let by_rate = [in_frame(damping, -rub_by_rate[0]), in_frame(zero, -rub_by_rate[1])];
+        let rub_by_place = in_frame(rub_by_place[0], rub_by_place[1]);
+        let rub_by_rate = in_frame(rub_by_rate[0], rub_by_rate[1]);
+        let rim_by_place = rub_by_place * rim - normal * traction;
+        let block = |[n, t]: [Vector2<S>; 2]| n * normal.transpose() + t * tangent.transpose();
+        let (place_block, rate_block) = (block(by_place), block(by_rate));
+        let dragged = tangent * -per_sliding;
+        #[rustfmt::skip]
+        let impedance = SMatrix::<S, 4, 4>::new(
+            rate_block.m11, rate_block.m12, dragged.x * rim, -dragged.x * radius,
+            rate_block.m21, rate_block.m22, dragged.y * rim, -dragged.y * radius,
+            rim * rub_by_rate.x, rim * rub_by_rate.y, rim * rim * per_sliding, -(rim * radius * per_sliding),
+            -(radius * rub_by_rate.x), -(radius * rub_by_rate.y), -(rim * radius * per_sliding), radius * radius * per_sliding,
         );
         #[rustfmt::skip]
-        let axes = SMatrix::<S, 4, 4>::new(
-            normal.x, tangent.x, zero, zero,
-            normal.y, tangent.y, zero, zero,
-            zero, zero, one, zero,
-            zero, zero, zero, one,
+        let stiffness = SMatrix::<S, 4, 4>::new(
+            place_block.m11, place_block.m12, zero, zero,
+            place_block.m21, place_block.m22, zero, zero,
+            rim_by_place.x, rim_by_place.y, zero, zero,
+            -(radius * rub_by_place.x), -(radius * rub_by_place.y), zero, zero,
         );
-        let in_frame = |local: SMatrix<S, 4, 4>| -(axes * local * axes.transpose());
-        (steady(force, in_frame(by_rate), in_frame(by_place)), touch.memory)
+        (steady(force, impedance, stiffness), memory)
     }
 
     #[inline(always)]

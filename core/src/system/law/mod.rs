@@ -17,7 +17,7 @@ pub use wall::{Pad, Wall};
 use super::{Law, Response};
 use crate::{
     SMatrix, SVector, Scalar,
-    law::{Friction, Normal, NormalResponse},
+    law::{Friction, Normal, NormalResponse, friction::Traction},
     mechanism::Way,
 };
 
@@ -40,7 +40,67 @@ struct Touch<S, M, const K: usize> {
     memory: M,
 }
 
+/// A contact in the plane at one motion, with one tangent.
+struct Rub<S, M> {
+    /// Normal force (N), and its derivatives by penetration (N/m) and rate (N·s/m).
+    force: S,
+    stiffness: S,
+    damping: S,
+    /// Friction (N) on the body that slides.
+    traction: S,
+    /// −∂traction/∂force and −∂traction/∂sliding (N·s/m).
+    per_force: S,
+    per_sliding: S,
+    memory: M,
+}
+
 impl<N, F> Contact<N, F> {
+    /// The normal force at `penetration` and its `rate`, and friction at the `sliding` velocities along two tangents.
+    #[inline(always)]
+    fn meet<S: Scalar>(
+        &self,
+        memory: &F::Memory,
+        way: Way<S>,
+        [penetration, rate]: [S; 2],
+        sliding: [S; 2],
+    ) -> (NormalResponse<S>, Traction<S>, F::Memory)
+    where
+        N: Normal<S>,
+        F: Friction<S>,
+    {
+        let pressed = self.normal.response(penetration, rate);
+        let (mut traction, memory) = self.friction.traction(memory, &way.rubbing(sliding, pressed.force));
+        // A law that sticks also does so without load, which counts for nothing.
+        let zero = S::zero();
+        traction.impedance = traction.impedance.map(|x| pressed.force.select_gt(zero, x, zero));
+        (pressed, traction, memory)
+    }
+
+    /// The forces at `penetration` and its `rate` and at the `sliding` velocity along the one tangent that there is in a plane.
+    #[inline(always)]
+    fn rub<S: Scalar>(
+        &self,
+        memory: &F::Memory,
+        way: Way<S>,
+        [penetration, rate]: [S; 2],
+        sliding: S,
+    ) -> Rub<S, F::Memory>
+    where
+        N: Normal<S>,
+        F: Friction<S>,
+    {
+        let (pressed, traction, memory) = self.meet(memory, way, [penetration, rate], [sliding, S::zero()]);
+        Rub {
+            force: pressed.force,
+            stiffness: pressed.stiffness(),
+            damping: pressed.impedance(S::zero()),
+            traction: traction.force[0],
+            per_force: traction.per_normal[0],
+            per_sliding: traction.impedance[0],
+            memory,
+        }
+    }
+
     /// The forces at `penetration` and its `rate` and at the `sliding` velocities, whose derivatives by `K` numbers are given.
     #[inline(always)]
     fn touch<S: Scalar, const K: usize>(
@@ -54,12 +114,9 @@ impl<N, F> Contact<N, F> {
         N: Normal<S>,
         F: Friction<S>,
     {
-        let zero = S::zero();
-        let pressed: NormalResponse<S> = self.normal.response(penetration.0, rate.0);
-        let force_slope = penetration.1 * pressed.stiffness() + rate.1 * pressed.impedance(zero);
-        let (traction, memory) = self.friction.traction(memory, &way.rubbing([first.0, second.0], pressed.force));
-        // A law that sticks also does so without load, which counts for nothing.
-        let [own, mixed, other] = traction.impedance.map(|x| pressed.force.select_gt(zero, x, zero));
+        let (pressed, traction, memory) = self.meet(memory, way, [penetration.0, rate.0], [first.0, second.0]);
+        let force_slope = penetration.1 * pressed.stiffness() + rate.1 * pressed.impedance(S::zero());
+        let [own, mixed, other] = traction.impedance;
         let [by_first, by_second] = traction.per_normal;
         let traction_slopes = [
             -(force_slope * by_first + first.1 * own + second.1 * mixed),

@@ -3,20 +3,20 @@
 use super::{Contact, Law, Response};
 use crate::{
     SMatrix, SVector, Scalar,
-    law::{Elastic, Friction, Impact},
+    law::{Friction, Normal},
     mechanism::Way,
 };
 
 /// A pin between two walls across (the x axis of the walls' body) and two walls up and down (its y axis); it slides along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pin<S, E, F> {
+pub struct Pin<S, N, F> {
     /// Gaps (m) at the nominal poses: left, right, rail, keeper.
     pub gaps: [S; 4],
     /// Their laws.
-    pub contact: Contact<Impact<S, E>, F>,
+    pub contact: Contact<N, F>,
 }
 
-impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Law<S, 3> for Pin<S, E, F> {
+impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
     type Memory = [F::Memory; 2];
 
     const STICKS: bool = F::STICKS;

@@ -1,6 +1,6 @@
 //! A one-sided wall: in the plane a pad, in space a plane along one of the axes.
 
-use super::{Contact, Law, Response, along, steady};
+use super::{Contact, Law, Response, Rub, along, steady};
 use crate::{
     SMatrix, SVector, Scalar,
     law::{Friction, Normal},
@@ -48,19 +48,15 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
         memory: &F::Memory,
         way: Way<S>,
     ) -> (Response<S, 2>, F::Memory) {
-        let (zero, one) = (S::zero(), S::one());
-        // By place and rate along the normal and rate along the tangent.
-        let depth = (-(self.gap + place[0]), along::<S, 3>(0, -one));
-        let approach = (-rate[0], along(1, -one));
-        let sliding = [(rate[1], along(2, one)), (zero, SVector::zeros())];
-        let touch = self.contact.touch(memory, way, [depth, approach], sliding);
-        let (n, t) = (touch.force_slope, touch.traction_slopes[0]);
+        let zero = S::zero();
+        let Rub { force, stiffness, damping, traction, per_force, per_sliding, memory } =
+            self.contact.rub(memory, way, [-(self.gap + place[0]), -rate[0]], rate[1]);
         let response = steady(
-            SVector::<S, 2>::new(touch.force, touch.traction[0]),
-            -SMatrix::<S, 2, 2>::new(n[1], n[2], t[1], t[2]),
-            -SMatrix::<S, 2, 2>::new(n[0], zero, t[0], zero),
+            SVector::<S, 2>::new(force, traction),
+            SMatrix::<S, 2, 2>::new(damping, zero, -(per_force * damping), per_sliding),
+            SMatrix::<S, 2, 2>::new(stiffness, zero, -(per_force * stiffness), zero),
         );
-        (response, touch.memory)
+        (response, memory)
     }
 
     #[inline(always)]

@@ -2,7 +2,13 @@
 
 use nalgebra::Matrix2;
 
-use super::{Placed, PlanarTree, Point, left, point::At, tree::turned};
+use super::{
+    Placed, PlanarTree, Point, left,
+    point::At,
+    rigid::Rigids,
+    topology::{Carrier, Chain, Topology, Turns},
+    tree::turned,
+};
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
     system::{Link, Seen},
@@ -10,11 +16,11 @@ use crate::{
 
 /// A point of one body seen from another, in the axes of the latter: displacement from `seat` to `point` along `normal` and to the left of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Across<S, const D: usize> {
+pub struct Across<S, const D: usize, P = Chain<D>, Q = Chain<D>> {
     /// The point.
-    pub point: Point<S, D>,
+    pub point: Point<S, D, P>,
     /// Where it is seen from.
-    pub seat: Point<S, D>,
+    pub seat: Point<S, D, Q>,
     /// First axis, of unit length, fixed in the body of `seat`.
     pub normal: Vector2<S>,
 }
@@ -22,177 +28,273 @@ pub struct Across<S, const D: usize> {
 /// The same link from a hole's centre, the `seat`, to a pin's, in the axes of the frame, with the turning of both bodies: displacement along x and
 /// y, then how fast the hole's and the pin's body turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Between<S, const D: usize> {
+pub struct Between<S, const D: usize, H = Chain<D>, P = Chain<D>> {
     /// Centre of the hole.
-    pub hole: Point<S, D>,
+    pub hole: Point<S, D, H>,
     /// Centre of the pin.
-    pub pin: Point<S, D>,
+    pub pin: Point<S, D, P>,
 }
 
 /// How much a body has turned against another, 0 where it has not been told; and how fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turning {
-    /// The turning coordinate of the body.
-    pub body: Option<usize>,
-    /// That of the other.
-    pub against: Option<usize>,
+pub struct Turning<A = Option<usize>, B = Option<usize>> {
+    /// What turns the body.
+    pub body: A,
+    /// What turns the other.
+    pub against: B,
 }
 
-/// A point along an axis of the frame, and another whose speed along it counts: a drive's point and its sensor.
+/// A point along an axis of the frame, and another of the same body whose speed along it counts: a drive's point and its sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Along<S, const D: usize> {
+pub struct Along<S, const D: usize, C = Chain<D>> {
     /// Where the force acts.
-    pub point: Point<S, D>,
+    pub point: Point<S, D, C>,
     /// Where the speed is measured.
-    pub sensor: Point<S, D>,
+    pub sensor: Point<S, D, C>,
     /// Direction, of unit length.
     pub axis: Vector2<S>,
 }
 
-impl<S: Scalar, const D: usize> Across<S, D> {
+/// Two points at a pose and motion: the one that is seen, and where from.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<S, const D: usize, P, Q> {
+    point: At<S, D, P>,
+    seat: At<S, D, Q>,
+}
+
+impl<S: Scalar, const D: usize, P: Carrier<D>, Q: Carrier<D>> Pair<S, D, P, Q> {
+    /// The columns of the point less those of the seat, where the coordinate moves them.
+    #[inline(always)]
+    fn less(&self, point: &[Vector2<S>; D], seat: &[Vector2<S>; D]) -> [Vector2<S>; D] {
+        let mut apart = [Vector2::zeros(); D];
+        for k in 0..D {
+            apart[k] = match (self.point.moves(k), self.seat.moves(k)) {
+                (true, true) => point[k] - seat[k],
+                (true, false) => point[k],
+                (false, true) => -seat[k],
+                (false, false) => Vector2::zeros(),
+            };
+        }
+        apart
+    }
+
+    /// How the way from the seat to the point goes by the coordinates.
+    #[inline(always)]
+    fn gradient(&self) -> [Vector2<S>; D] {
+        self.less(&self.point.gradient, &self.seat.gradient)
+    }
+
+    /// How its rate does, the velocities being held.
+    #[inline(always)]
+    fn swept<J: Topology<D>>(&self, topology: &J, placed: &Placed<S, D>) -> [Vector2<S>; D] {
+        let rates = &placed.rates;
+        self.less(&self.point.swept(topology, placed, rates), &self.seat.swept(topology, placed, rates))
+    }
+
+    /// Its rate (m/s).
+    #[inline(always)]
+    fn rate(&self, rates: &SVector<S, D>) -> Vector2<S> {
+        self.point.velocity(rates) - self.seat.velocity(rates)
+    }
+
+    #[inline(always)]
+    fn add_carried<J: Topology<D>>(
+        &self,
+        topology: &J,
+        placed: &Placed<S, D>,
+        force: &Vector2<S>,
+        stiffness: &mut SMatrix<S, D, D>,
+    ) {
+        self.point.add_curvature(topology, placed, &-force, stiffness);
+        self.seat.add_curvature(topology, placed, force, stiffness);
+    }
+}
+
+impl<S: Scalar, const D: usize, P, Q: Carrier<D>> Across<S, D, P, Q> {
     /// The axes in the frame.
     #[inline(always)]
     fn axes(&self, placed: &Placed<S, D>) -> Matrix2<S> {
-        let normal = match self.seat.turn {
+        let normal = match self.seat.carrier.turn() {
             Some(turn) => turned(&placed.axes[turn], &self.normal),
             None => self.normal,
         };
         Matrix2::from_columns(&[normal, left(&normal)])
     }
-
-    /// From the seat to the point (m), in the frame, and the gradient of the point's velocity against the material of the
-    /// seat's body.
-    #[inline(always)]
-    fn relative(&self, at: &At<S, D>, seat: &At<S, D>) -> (Vector2<S>, SMatrix<S, 2, D>) {
-        let apart = at.place - seat.place;
-        let mut gradient = at.gradient - seat.gradient;
-        if let Some(turn) = self.seat.turn {
-            let carried = left(&apart);
-            gradient[(0, turn)] -= carried.x;
-            gradient[(1, turn)] -= carried.y;
-        }
-        (apart, gradient)
-    }
 }
 
-impl<S: Scalar, const D: usize> Link<S, PlanarTree<S, D>, D, 2> for Across<S, D> {
+impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>, const D: usize>
+    Link<S, PlanarTree<S, D, J, R>, D, 2> for Across<S, D, P, Q>
+{
+    type View = Pair<S, D, P, Q>;
+
     #[inline(always)]
-    fn seen(&self, tree: &PlanarTree<S, D>, placed: &Placed<S, D>) -> Seen<S, 2, D> {
-        let (at, seat) = (At::of(tree, &self.point, placed), At::of(tree, &self.seat, placed));
+    fn view(&self, tree: &PlanarTree<S, D, J, R>, placed: &Placed<S, D>) -> Self::View {
+        Pair { point: tree.at(&self.point, placed), seat: tree.at(&self.seat, placed) }
+    }
+
+    #[inline(always)]
+    fn depends(&self, _: usize, k: usize) -> bool {
+        self.point.carrier.moves(k) || self.seat.carrier.moves(k)
+    }
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 2, D> {
         let axes = self.axes(placed);
-        let (apart, gradient) = self.relative(&at, &seat);
-        let gradient = axes.tr_mul(&gradient);
-        Seen { place: axes.tr_mul(&apart), rate: gradient * placed.rates, gradient }
+        let apart = pair.point.place - pair.seat.place;
+        let mut columns = pair.gradient();
+        let mut rate = pair.rate(&placed.rates);
+        if let Some(turn) = self.seat.carrier.turn() {
+            let carried = left(&apart);
+            columns[turn] -= carried;
+            rate -= carried * placed.rates[turn];
+        }
+        let gradient = SMatrix::<S, 2, D>::from_columns(&columns.map(|column| axes.tr_mul(&column)));
+        Seen { place: axes.tr_mul(&apart), rate: axes.tr_mul(&rate), gradient }
     }
 
     #[inline(always)]
     fn add_carried(
         &self,
-        (tree, placed): (&PlanarTree<S, D>, &Placed<S, D>),
+        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        pair: &Self::View,
         _: &Seen<S, 2, D>,
         force: &SVector<S, 2>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let (at, seat) = (At::of(tree, &self.point, placed), At::of(tree, &self.seat, placed));
         let force = self.axes(placed) * force;
-        at.add_curvature(tree, &self.point, placed, &-force, stiffness);
-        seat.add_curvature(tree, &self.seat, placed, &force, stiffness);
-        if let Some(turn) = self.seat.turn {
+        pair.add_carried(tree.topology(), placed, &force, stiffness);
+        if let Some(turn) = self.seat.carrier.turn() {
             // With y from seat to point the coordinate is Rᵀy: its second derivatives have −left(∂y) twice and −y once.
-            let apart = at.place - seat.place;
-            let across = (at.gradient - seat.gradient).tr_mul(&left(&force));
-            for k in 0..D {
-                // left(y)·f = −y·left(f)
-                stiffness[(turn, k)] -= across[k];
-                stiffness[(k, turn)] -= across[k];
+            let across = left(&force);
+            for (k, column) in pair.gradient().iter().enumerate() {
+                if pair.point.moves(k) || pair.seat.moves(k) {
+                    // left(y)·f = −y·left(f)
+                    let entry = column.dot(&across);
+                    stiffness[(turn, k)] -= entry;
+                    stiffness[(k, turn)] -= entry;
+                }
             }
-            stiffness[(turn, turn)] += apart.dot(&force);
+            stiffness[(turn, turn)] += (pair.point.place - pair.seat.place).dot(&force);
         }
     }
 
     #[inline(always)]
-    fn swept(&self, tree: &PlanarTree<S, D>, placed: &Placed<S, D>) -> SMatrix<S, 2, D> {
-        let (at, seat) = (At::of(tree, &self.point, placed), At::of(tree, &self.seat, placed));
+    fn swept(&self, (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 2, D> {
         let rates = &placed.rates;
-        let mut swept = at.swept(tree, &self.point, placed, rates) - seat.swept(tree, &self.seat, placed, rates);
-        if let Some(turn) = self.seat.turn {
-            let (_, gradient) = self.relative(&at, &seat);
-            let plain = at.gradient - seat.gradient;
+        let mut swept = pair.swept(tree.topology(), placed);
+        if let Some(turn) = self.seat.carrier.turn() {
             // The velocity in the frame is u = ẏ − ω·left(y); in the turning axes it also goes by −left(u).
-            for k in 0..D {
-                let column = left(&Vector2::new(plain[(0, k)], plain[(1, k)])) * -rates[turn];
-                swept[(0, k)] += column.x;
-                swept[(1, k)] += column.y;
+            let apart = pair.point.place - pair.seat.place;
+            let velocity = pair.rate(rates) - left(&apart) * rates[turn];
+            for (k, (column, plain)) in swept.iter_mut().zip(pair.gradient()).enumerate() {
+                if pair.point.moves(k) || pair.seat.moves(k) {
+                    *column -= left(&plain) * rates[turn];
+                }
             }
-            let carried = left(&(gradient * rates));
-            swept[(0, turn)] -= carried.x;
-            swept[(1, turn)] -= carried.y;
+            swept[turn] -= left(&velocity);
         }
-        self.axes(placed).tr_mul(&swept)
+        let axes = self.axes(placed);
+        SMatrix::<S, 2, D>::from_columns(&swept.map(|column| axes.tr_mul(&column)))
     }
 }
 
-impl<S: Scalar, const D: usize> Link<S, PlanarTree<S, D>, D, 4> for Between<S, D> {
+/// `columns` above rows of zeros.
+#[inline(always)]
+fn above_zeros<S: Scalar, const D: usize>(columns: &[Vector2<S>; D]) -> SMatrix<S, 4, D> {
+    let zero = S::zero();
+    SMatrix::<S, 4, D>::from_columns(&columns.map(|column| SVector::<S, 4>::new(column.x, column.y, zero, zero)))
+}
+
+impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>, const D: usize>
+    Link<S, PlanarTree<S, D, J, R>, D, 4> for Between<S, D, H, P>
+{
+    type View = Pair<S, D, P, H>;
+
     #[inline(always)]
-    fn seen(&self, tree: &PlanarTree<S, D>, placed: &Placed<S, D>) -> Seen<S, 4, D> {
-        let (hole, pin) = (At::of(tree, &self.hole, placed), At::of(tree, &self.pin, placed));
-        let apart = pin.place - hole.place;
-        let moving = pin.gradient - hole.gradient;
-        let mut gradient = SMatrix::<S, 4, D>::zeros();
-        gradient.fixed_view_mut::<2, D>(0, 0).copy_from(&moving);
-        if let Some(turn) = self.hole.turn {
-            gradient[(2, turn)] = S::one();
+    fn view(&self, tree: &PlanarTree<S, D, J, R>, placed: &Placed<S, D>) -> Self::View {
+        Pair { point: tree.at(&self.pin, placed), seat: tree.at(&self.hole, placed) }
+    }
+
+    #[inline(always)]
+    fn depends(&self, i: usize, k: usize) -> bool {
+        match i {
+            2 => self.hole.carrier.turn() == Some(k),
+            3 => self.pin.carrier.turn() == Some(k),
+            _ => self.hole.carrier.moves(k) || self.pin.carrier.moves(k),
         }
-        if let Some(turn) = self.pin.turn {
-            gradient[(3, turn)] = S::one();
+    }
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 4, D> {
+        let (zero, one) = (S::zero(), S::one());
+        let apart = pair.point.place - pair.seat.place;
+        let mut gradient = above_zeros(&pair.gradient());
+        let velocity = pair.rate(&placed.rates);
+        let mut rate = SVector::<S, 4>::new(velocity.x, velocity.y, zero, zero);
+        for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
+            if let Some(turn) = turn {
+                gradient[(i, turn)] = one;
+                rate[i] = placed.rates[turn];
+            }
         }
-        let zero = S::zero();
-        Seen { place: SVector::<S, 4>::new(apart.x, apart.y, zero, zero), rate: gradient * placed.rates, gradient }
+        Seen { place: SVector::<S, 4>::new(apart.x, apart.y, zero, zero), rate, gradient }
     }
 
     #[inline(always)]
     fn add_carried(
         &self,
-        (tree, placed): (&PlanarTree<S, D>, &Placed<S, D>),
+        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        pair: &Self::View,
         _: &Seen<S, 4, D>,
         force: &SVector<S, 4>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let force = Vector2::new(force[0], force[1]);
-        At::of(tree, &self.pin, placed).add_curvature(tree, &self.pin, placed, &-force, stiffness);
-        At::of(tree, &self.hole, placed).add_curvature(tree, &self.hole, placed, &force, stiffness);
+        pair.add_carried(tree.topology(), placed, &Vector2::new(force[0], force[1]), stiffness);
     }
 
     #[inline(always)]
-    fn swept(&self, tree: &PlanarTree<S, D>, placed: &Placed<S, D>) -> SMatrix<S, 4, D> {
-        let at = |point| At::of(tree, point, placed).swept(tree, point, placed, &placed.rates);
-        let mut swept = SMatrix::<S, 4, D>::zeros();
-        swept.fixed_view_mut::<2, D>(0, 0).copy_from(&(at(&self.pin) - at(&self.hole)));
-        swept
+    fn swept(&self, (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 4, D> {
+        above_zeros(&pair.swept(tree.topology(), placed))
     }
 }
 
-impl<S: Scalar, const D: usize> Link<S, PlanarTree<S, D>, D, 1> for Turning {
+impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D: usize>
+    Link<S, PlanarTree<S, D, J, R>, D, 1> for Turning<A, B>
+{
+    type View = ();
+
     #[inline(always)]
-    fn seen(&self, _: &PlanarTree<S, D>, placed: &Placed<S, D>) -> Seen<S, 1, D> {
+    fn view(&self, _: &PlanarTree<S, D, J, R>, _: &Placed<S, D>) {}
+
+    #[inline(always)]
+    fn depends(&self, _: usize, k: usize) -> bool {
+        self.body.turn() == Some(k) || self.against.turn() == Some(k)
+    }
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &()) -> Seen<S, 1, D> {
         let mut gradient = SMatrix::<S, 1, D>::zeros();
         let mut axis = Vector2::new(S::one(), S::zero());
-        if let Some(body) = self.body {
-            gradient[(0, body)] += S::one();
-            axis = turned(&placed.axes[body], &axis);
+        let mut rate = S::zero();
+        if let Some(body) = self.body.turn() {
+            gradient[(0, body)] = S::one();
+            axis = placed.axes[body];
+            rate = placed.rates[body];
         }
-        if let Some(against) = self.against {
-            gradient[(0, against)] -= S::one();
+        if let Some(against) = self.against.turn() {
+            gradient[(0, against)] = -S::one();
             let back = placed.axes[against];
             axis = turned(&Vector2::new(back.x, -back.y), &axis);
+            rate -= placed.rates[against];
         }
-        Seen { place: SVector::<S, 1>::new(angle(&axis)), rate: gradient * placed.rates, gradient }
+        Seen { place: SVector::<S, 1>::new(angle(&axis)), rate: SVector::<S, 1>::new(rate), gradient }
     }
 
     #[inline(always)]
     fn add_carried(
         &self,
-        _: (&PlanarTree<S, D>, &Placed<S, D>),
+        _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        (): &(),
         _: &Seen<S, 1, D>,
         _: &SVector<S, 1>,
         _: &mut SMatrix<S, D, D>,
@@ -200,42 +302,59 @@ impl<S: Scalar, const D: usize> Link<S, PlanarTree<S, D>, D, 1> for Turning {
     }
 
     #[inline(always)]
-    fn swept(&self, _: &PlanarTree<S, D>, _: &Placed<S, D>) -> SMatrix<S, 1, D> {
+    fn swept(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &()) -> SMatrix<S, 1, D> {
         SMatrix::zeros()
     }
 }
 
-impl<S: Scalar, const D: usize> Link<S, PlanarTree<S, D>, D, 2> for Along<S, D> {
+impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usize> Link<S, PlanarTree<S, D, J, R>, D, 2>
+    for Along<S, D, C>
+{
+    type View = [At<S, D, C>; 2];
+
     #[inline(always)]
-    fn seen(&self, tree: &PlanarTree<S, D>, placed: &Placed<S, D>) -> Seen<S, 2, D> {
-        let (point, sensor) = (At::of(tree, &self.point, placed), At::of(tree, &self.sensor, placed));
-        let mut gradient = SMatrix::<S, 2, D>::zeros();
-        gradient.set_row(0, &self.axis.tr_mul(&point.gradient));
-        gradient.set_row(1, &self.axis.tr_mul(&sensor.gradient));
-        let place = SVector::<S, 2>::new(self.axis.dot(&point.place), self.axis.dot(&sensor.place));
-        Seen { place, rate: gradient * placed.rates, gradient }
+    fn view(&self, tree: &PlanarTree<S, D, J, R>, placed: &Placed<S, D>) -> Self::View {
+        [tree.at(&self.point, placed), tree.at(&self.sensor, placed)]
+    }
+
+    #[inline(always)]
+    fn depends(&self, _: usize, k: usize) -> bool {
+        self.point.carrier.moves(k)
+    }
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), view: &Self::View) -> Seen<S, 2, D> {
+        let [point, sensor] = view;
+        let along = |of: [&Vector2<S>; 2]| SVector::<S, 2>::new(self.axis.dot(of[0]), self.axis.dot(of[1]));
+        let columns: [_; D] = core::array::from_fn(|k| along([&point.gradient[k], &sensor.gradient[k]]));
+        let velocities = [point, sensor].map(|at| at.velocity(&placed.rates));
+        Seen {
+            place: along([&point.place, &sensor.place]),
+            rate: along(velocities.each_ref()),
+            gradient: SMatrix::<S, 2, D>::from_columns(&columns),
+        }
     }
 
     #[inline(always)]
     fn add_carried(
         &self,
-        (tree, placed): (&PlanarTree<S, D>, &Placed<S, D>),
+        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        view: &Self::View,
         _: &Seen<S, 2, D>,
         force: &SVector<S, 2>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        for (point, force) in [(&self.point, force[0]), (&self.sensor, force[1])] {
-            At::of(tree, point, placed).add_curvature(tree, point, placed, &(self.axis * -force), stiffness);
+        for (at, force) in view.iter().zip(force) {
+            at.add_curvature(tree.topology(), placed, &(self.axis * -*force), stiffness);
         }
     }
 
     #[inline(always)]
-    fn swept(&self, tree: &PlanarTree<S, D>, placed: &Placed<S, D>) -> SMatrix<S, 2, D> {
-        let row = |point| self.axis.tr_mul(&At::of(tree, point, placed).swept(tree, point, placed, &placed.rates));
-        let mut swept = SMatrix::<S, 2, D>::zeros();
-        swept.set_row(0, &row(&self.point));
-        swept.set_row(1, &row(&self.sensor));
-        swept
+    fn swept(&self, (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), view: &Self::View) -> SMatrix<S, 2, D> {
+        let [point, sensor] = view.each_ref().map(|at| at.swept(tree.topology(), placed, &placed.rates));
+        let columns: [_; D] =
+            core::array::from_fn(|k| SVector::<S, 2>::new(self.axis.dot(&point[k]), self.axis.dot(&sensor[k])));
+        SMatrix::<S, 2, D>::from_columns(&columns)
     }
 }
 

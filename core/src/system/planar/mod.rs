@@ -5,11 +5,15 @@
 
 mod links;
 mod point;
+mod rigid;
+mod topology;
 mod tree;
 
 pub use links::{Across, Along, Between, Turning};
-pub use point::Point;
-pub use tree::{Coordinate, Placed, PlanarTree, Rigid};
+pub use point::{At, Point};
+pub use rigid::{Many, Rigid, Rigids};
+pub use topology::{Carrier, Chain, Frame, Kind, Path, STRAIGHT, Topology, Turns};
+pub use tree::{Coordinate, Placed, PlanarTree};
 
 use crate::{Scalar, Vector2};
 

@@ -1,17 +1,19 @@
 //! Material points of a tree: where they are, how they move, how that changes.
 
-use super::{Coordinate, Placed, PlanarTree, left, tree::turned};
+use super::{
+    Coordinate, Placed, left,
+    topology::{Carrier, Chain, Kind, Topology},
+    tree::turned,
+};
 use crate::{SMatrix, SVector, Scalar, Vector2};
 
 /// A point of a body, or of the frame: `base` + Σ R(θ)·`arms` + Σ displacements, over the coordinates that move it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point<S, const D: usize> {
-    /// The coordinate that turns the point's body; `None` where the body does not turn.
-    pub turn: Option<usize>,
+pub struct Point<S, const D: usize, C = Chain<D>> {
+    /// Which coordinates move the point's body.
+    pub carrier: C,
     /// Part in the axes of the frame (m).
     pub base: Vector2<S>,
-    /// Which coordinates move the point's body.
-    pub moves: [bool; D],
     /// Parts in the axes of turning coordinates (m); 0 for sliding ones.
     pub arms: [Vector2<S>; D],
 }
@@ -19,13 +21,13 @@ pub struct Point<S, const D: usize> {
 impl<S: Scalar, const D: usize> Point<S, D> {
     /// A point of the frame at `base` (m).
     pub fn fixed(base: Vector2<S>) -> Self {
-        Self { turn: None, base, moves: [false; D], arms: [Vector2::zeros(); D] }
+        Self { carrier: Chain::FRAME, base, arms: [Vector2::zeros(); D] }
     }
 
     /// The point of the same body that is `offset` (m) away, in the body's axes.
     #[must_use]
     pub fn plus(mut self, offset: Vector2<S>) -> Self {
-        match self.turn.and_then(|turn| self.arms.get_mut(turn)) {
+        match self.carrier.turn.and_then(|turn| self.arms.get_mut(turn)) {
             Some(arm) => *arm += offset,
             None => self.base += offset,
         }
@@ -35,137 +37,186 @@ impl<S: Scalar, const D: usize> Point<S, D> {
     /// The same point as one of a body that the coordinate `k` moves besides, by turning it about this point or by sliding it.
     #[must_use]
     pub fn on(mut self, k: usize, coordinate: &Coordinate<S>) -> Self {
-        if let Some(moves) = self.moves.get_mut(k) {
+        if let Some(moves) = self.carrier.moves.get_mut(k) {
             *moves = true;
         }
         if let Coordinate::Turn = coordinate {
-            self.turn = Some(k);
+            self.carrier.turn = Some(k);
         }
         self
     }
 }
 
 /// A point at a pose and motion.
-pub(super) struct At<S, const D: usize> {
+///
+/// What the coordinates that do not move it would do to it is left out, not added as zero: in the columns of `gradient` that
+/// [`Carrier::moves`] denies there is nothing to look at.
+#[derive(Clone, Copy, Debug)]
+pub struct At<S, const D: usize, C> {
+    carrier: C,
     /// Where it is (m).
     pub place: Vector2<S>,
-    /// How its velocity goes by the generalised ones.
-    pub gradient: SMatrix<S, 2, D>,
+    /// How its velocity goes by the generalised ones, column by column.
+    pub gradient: [Vector2<S>; D],
     /// The arms in the frame (m), with what slides on them.
     arms: [Vector2<S>; D],
 }
 
-impl<S: Scalar, const D: usize> At<S, D> {
+impl<S: Scalar, const D: usize, C: Carrier<D>> At<S, D, C> {
+    /// `point` where and as fast as `placed` says.
     #[inline(always)]
-    pub fn of(tree: &PlanarTree<S, D>, point: &Point<S, D>, placed: &Placed<S, D>) -> Self {
+    pub fn of<J: Topology<D>>(topology: &J, point: &Point<S, D, C>, placed: &Placed<S, D>) -> Self {
+        let carrier = point.carrier;
         let mut place = point.base;
         let mut arms = [Vector2::zeros(); D];
-        for (k, _) in point.moves.iter().enumerate().filter(|(_, moves)| **moves) {
-            match tree.coordinates()[k] {
-                Coordinate::Turn => {
-                    let arm = turned(&placed.axes[k], &point.arms[k]);
-                    arms[k] += arm;
-                    place += arm;
-                }
-                Coordinate::Slide { on, .. } => {
-                    let along = placed.axes[k] * placed.places[k];
-                    place += along;
-                    if let Some(on) = on {
-                        arms[on] += along;
+        for k in 0..D {
+            if carrier.moves(k) {
+                match topology.kind(k) {
+                    Kind::Turn => {
+                        arms[k] = turned(&placed.axes[k], &point.arms[k]);
+                        place += arms[k];
+                    }
+                    Kind::Slide { on } => {
+                        let along = placed.axes[k] * placed.places[k];
+                        place += along;
+                        if let Some(on) = on {
+                            arms[on] += along;
+                        }
                     }
                 }
             }
         }
-        let mut gradient = SMatrix::<S, 2, D>::zeros();
-        for (k, arm) in arms.iter().enumerate() {
-            if point.moves[k] {
-                let column = match tree.coordinates()[k] {
-                    Coordinate::Turn => left(arm),
-                    Coordinate::Slide { .. } => placed.axes[k],
+        let mut gradient = [Vector2::zeros(); D];
+        for k in 0..D {
+            if carrier.moves(k) {
+                gradient[k] = match topology.kind(k) {
+                    Kind::Turn => left(&arms[k]),
+                    Kind::Slide { .. } => placed.axes[k],
                 };
-                gradient.set_column(k, &column);
             }
         }
-        Self { place, gradient, arms }
+        Self { carrier, place, gradient, arms }
     }
 
-    /// ∂(J·`rates`)/∂Q, the rates being held.
+    /// Whether the coordinate `k` moves it.
     #[inline(always)]
-    pub fn swept(
-        &self,
-        tree: &PlanarTree<S, D>,
-        point: &Point<S, D>,
-        placed: &Placed<S, D>,
-        rates: &SVector<S, D>,
-    ) -> SMatrix<S, 2, D> {
-        let mut swept = SMatrix::<S, 2, D>::zeros();
-        for (k, _) in point.moves.iter().enumerate().filter(|(_, moves)| **moves) {
-            match tree.coordinates()[k] {
-                Coordinate::Turn => add(&mut swept, k, &(self.arms[k] * -rates[k])),
-                Coordinate::Slide { on: Some(on), .. } => {
-                    let across = left(&placed.axes[k]);
-                    add(&mut swept, on, &(across * rates[k]));
-                    add(&mut swept, k, &(across * rates[on]));
+    pub fn moves(&self, k: usize) -> bool {
+        self.carrier.moves(k)
+    }
+
+    /// Its velocity (m/s), where the generalised ones are `rates`.
+    #[inline(always)]
+    pub fn velocity(&self, rates: &SVector<S, D>) -> Vector2<S> {
+        let mut velocity = Vector2::zeros();
+        for k in 0..D {
+            if self.carrier.moves(k) {
+                velocity += self.gradient[k] * rates[k];
+            }
+        }
+        velocity
+    }
+
+    /// Adds the generalised force (N, N·m) of a `force` (N) at the point.
+    #[inline(always)]
+    pub fn add_force(&self, force: &Vector2<S>, sum: &mut SVector<S, D>) {
+        for k in 0..D {
+            if self.carrier.moves(k) {
+                sum[k] += self.gradient[k].dot(force);
+            }
+        }
+    }
+
+    /// ∂(J·`rates`)/∂Q, the rates being held, column by column.
+    #[inline(always)]
+    pub fn swept<J: Topology<D>>(&self, topology: &J, placed: &Placed<S, D>, rates: &SVector<S, D>) -> [Vector2<S>; D] {
+        let mut swept = [Vector2::zeros(); D];
+        for k in 0..D {
+            if self.carrier.moves(k) {
+                match topology.kind(k) {
+                    Kind::Turn => swept[k] -= self.arms[k] * rates[k],
+                    Kind::Slide { on: Some(on) } => {
+                        let across = left(&placed.axes[k]);
+                        swept[on] += across * rates[k];
+                        swept[k] += across * rates[on];
+                    }
+                    Kind::Slide { on: None } => {}
                 }
-                Coordinate::Slide { on: None, .. } => {}
             }
         }
         swept
     }
 
+    /// J̇·V (m/s²).
+    #[inline(always)]
+    pub fn resisted<J: Topology<D>>(&self, topology: &J, placed: &Placed<S, D>) -> Vector2<S> {
+        let swept = self.swept(topology, placed, &placed.rates);
+        let mut resisted = Vector2::zeros();
+        for (k, (swept, rate)) in swept.iter().zip(placed.rates.iter()).enumerate() {
+            if self.carrier.moves(k) {
+                resisted += swept * *rate;
+            }
+        }
+        resisted
+    }
+
     /// How J̇·V goes by the velocities V and by the place.
     #[inline(always)]
-    pub fn swept_slopes(
-        &self,
-        tree: &PlanarTree<S, D>,
-        point: &Point<S, D>,
-        placed: &Placed<S, D>,
-    ) -> [SMatrix<S, 2, D>; 2] {
+    pub fn swept_slopes<J: Topology<D>>(&self, topology: &J, placed: &Placed<S, D>) -> [[Vector2<S>; D]; 2] {
         let two = S::one() + S::one();
         let rates = &placed.rates;
-        let by_rate = self.swept(tree, point, placed, rates) * two;
-        let mut by_place = SMatrix::<S, 2, D>::zeros();
-        for (k, _) in point.moves.iter().enumerate().filter(|(_, moves)| **moves) {
-            match tree.coordinates()[k] {
-                Coordinate::Turn => add(&mut by_place, k, &(left(&self.arms[k]) * -(rates[k] * rates[k]))),
-                Coordinate::Slide { on: Some(on), .. } => {
-                    let axis = placed.axes[k];
-                    add(&mut by_place, on, &(axis * -(two * rates[on] * rates[k])));
-                    add(&mut by_place, k, &(axis * -(rates[on] * rates[on])));
+        let by_rate = self.swept(topology, placed, rates).map(|column| column * two);
+        let mut by_place = [Vector2::zeros(); D];
+        for k in 0..D {
+            if self.carrier.moves(k) {
+                match topology.kind(k) {
+                    Kind::Turn => by_place[k] -= left(&self.arms[k]) * (rates[k] * rates[k]),
+                    Kind::Slide { on: Some(on) } => {
+                        let axis = placed.axes[k];
+                        by_place[on] -= axis * (two * rates[on] * rates[k]);
+                        by_place[k] -= axis * (rates[on] * rates[on]);
+                    }
+                    Kind::Slide { on: None } => {}
                 }
-                Coordinate::Slide { on: None, .. } => {}
             }
         }
         [by_rate, by_place]
     }
 
+    /// Adds Jᵀ·`columns` to `matrix`.
+    #[inline(always)]
+    pub fn add_product(&self, columns: &[Vector2<S>; D], matrix: &mut SMatrix<S, D, D>) {
+        for j in 0..D {
+            if self.carrier.moves(j) {
+                for i in 0..D {
+                    if self.carrier.moves(i) {
+                        matrix[(i, j)] += self.gradient[i].dot(&columns[j]);
+                    }
+                }
+            }
+        }
+    }
+
     /// Adds ∂(Jᵀ·`force`)/∂Q, the force (N) being held, to `matrix`.
     #[inline(always)]
-    pub fn add_curvature(
+    pub fn add_curvature<J: Topology<D>>(
         &self,
-        tree: &PlanarTree<S, D>,
-        point: &Point<S, D>,
+        topology: &J,
         placed: &Placed<S, D>,
         force: &Vector2<S>,
         matrix: &mut SMatrix<S, D, D>,
     ) {
-        for (k, _) in point.moves.iter().enumerate().filter(|(_, moves)| **moves) {
-            match tree.coordinates()[k] {
-                Coordinate::Turn => matrix[(k, k)] -= self.arms[k].dot(force),
-                Coordinate::Slide { on: Some(on), .. } => {
-                    let across = left(&placed.axes[k]).dot(force);
-                    matrix[(on, k)] += across;
-                    matrix[(k, on)] += across;
+        for k in 0..D {
+            if self.carrier.moves(k) {
+                match topology.kind(k) {
+                    Kind::Turn => matrix[(k, k)] -= self.arms[k].dot(force),
+                    Kind::Slide { on: Some(on) } => {
+                        let across = left(&placed.axes[k]).dot(force);
+                        matrix[(on, k)] += across;
+                        matrix[(k, on)] += across;
+                    }
+                    Kind::Slide { on: None } => {}
                 }
-                Coordinate::Slide { on: None, .. } => {}
             }
         }
     }
-}
-
-/// Adds `column` to column `k` of `matrix`.
-#[inline(always)]
-fn add<S: Scalar, const D: usize>(matrix: &mut SMatrix<S, 2, D>, k: usize, column: &Vector2<S>) {
-    matrix[(0, k)] += column.x;
-    matrix[(1, k)] += column.y;
 }

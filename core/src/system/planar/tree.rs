@@ -1,6 +1,11 @@
 //! The tree: coordinates, bodies, and how they resist.
 
-use super::{Point, left, point::At};
+use super::{
+    Point, left,
+    point::At,
+    rigid::{Many, Rigid, Rigids},
+    topology::{Carrier, Kind, Topology},
+};
 use crate::{ParameterError, SMatrix, SVector, Scalar, Vector2, error::bounded, system::Bodies};
 
 /// A generalised coordinate of ideal joints in the plane.
@@ -17,25 +22,16 @@ pub enum Coordinate<S> {
     },
 }
 
-/// A rigid body of the tree.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rigid<S, const D: usize> {
-    /// Mass (kg).
-    pub mass: S,
-    /// Moment of inertia about the centre of mass (kg·m²); of no effect where the body does not turn.
-    pub inertia: S,
-    /// The centre of mass.
-    pub centre: Point<S, D>,
-}
-
-/// Bodies in a plane with `D` coordinates, of which there are at most as many bodies.
+/// Bodies in a plane with `D` coordinates. The topology `J` and the bodies `R` may be types, so that what a coordinate does not move
+/// leaves no code.
 ///
 /// Body by body the accelerations are J·V̇ + J̇·V; the mass matrix is Σ m·JᵀJ + inertia, exact at every pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanarTree<S, const D: usize> {
-    coordinates: [Coordinate<S>; D],
-    bodies: [Rigid<S, D>; D],
-    count: usize,
+pub struct PlanarTree<S, const D: usize, J = [Kind; D], R = Many<S, D>> {
+    topology: J,
+    /// Directions of sliding coordinates, see [`Coordinate`].
+    axes: [Vector2<S>; D],
+    bodies: R,
     gravity: Vector2<S>,
     least_mass: S,
     per_lever: SVector<S, D>,
@@ -52,51 +48,63 @@ impl<S: Scalar + PartialOrd, const D: usize> PlanarTree<S, D> {
         bodies: &[Rigid<S, D>],
         gravity: Vector2<S>,
     ) -> Result<Self, ParameterError<S>> {
-        bounded("bodies", S::from_count(bodies.len() as u32), [1.0, D as f64])?;
-        for component in gravity.iter() {
-            bounded("gravity", *component, [-1e4, 1e4])?;
-        }
-        let none = Rigid { mass: S::zero(), inertia: S::zero(), centre: Point::fixed(Vector2::zeros()) };
-        let mut all = [none; D];
-        let mut least_mass = S::from_f64(1e6);
-        let mut levers = [S::from_f64(1e-6); D];
-        for (slot, body) in all.iter_mut().zip(bodies) {
-            let mass = bounded("mass", body.mass, [1e-9, 1e6])?;
-            bounded("inertia", body.inertia, [0.0, 1e9])?;
-            least_mass = least_mass.select_gt(mass, mass, least_mass);
-            for (k, (lever, arm)) in levers.iter_mut().zip(&body.centre.arms).enumerate() {
-                let turns = body.centre.turn == Some(k);
-                let gyration = if turns { (body.inertia / mass).sqrt() } else { S::zero() };
-                *lever = lever.max_of(arm.dot(arm).sqrt()).max_of(gyration);
-            }
-            *slot = *body;
-        }
-        let mut per_lever = SVector::<S, D>::zeros();
-        for ((weight, coordinate), lever) in per_lever.iter_mut().zip(&coordinates).zip(levers) {
-            *weight = match coordinate {
-                Coordinate::Turn => S::one() / lever,
-                Coordinate::Slide { .. } => S::one(),
-            };
-        }
-        Ok(Self { coordinates, bodies: all, count: bodies.len(), gravity, least_mass, per_lever })
+        let axes = coordinates.map(|coordinate| match coordinate {
+            Coordinate::Turn => Vector2::zeros(),
+            Coordinate::Slide { axis, .. } => axis,
+        });
+        let kinds = coordinates.map(|coordinate| match coordinate {
+            Coordinate::Turn => Kind::Turn,
+            Coordinate::Slide { on, .. } => Kind::Slide { on },
+        });
+        Self::of(kinds, axes, Many::new(bodies)?, gravity)
     }
 }
 
-impl<S: Scalar, const D: usize> PlanarTree<S, D> {
-    /// The coordinates.
-    pub fn coordinates(&self) -> &[Coordinate<S>; D] {
-        &self.coordinates
+impl<S: Scalar + PartialOrd, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> PlanarTree<S, D, J, R> {
+    /// A tree of `topology` and `bodies` under `gravity` (m/s²); sliding coordinates go along `axes`, of unit length.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    pub fn of(topology: J, axes: [Vector2<S>; D], bodies: R, gravity: Vector2<S>) -> Result<Self, ParameterError<S>> {
+        for component in gravity.iter() {
+            bounded("gravity", *component, [-1e4, 1e4])?;
+        }
+        let (mut least_mass, mut levers) = (S::from_f64(1e6), [S::from_f64(1e-6); D]);
+        bodies.measure(&mut least_mass, &mut levers)?;
+        let mut per_lever = SVector::<S, D>::zeros();
+        for (k, (weight, lever)) in per_lever.iter_mut().zip(levers).enumerate() {
+            *weight = if topology.kind(k) == Kind::Turn { S::one() / lever } else { S::one() };
+        }
+        Ok(Self { topology, axes, bodies, gravity, least_mass, per_lever })
+    }
+}
+
+impl<S: Scalar, J: Topology<D>, R, const D: usize> PlanarTree<S, D, J, R> {
+    /// Which coordinates there are.
+    pub fn topology(&self) -> &J {
+        &self.topology
+    }
+
+    /// Directions of sliding coordinates; of no effect for turning ones.
+    pub fn axes(&self) -> &[Vector2<S>; D] {
+        &self.axes
     }
 
     /// The bodies.
-    pub fn bodies(&self) -> &[Rigid<S, D>] {
-        self.bodies.split_at_checked(self.count).map_or(&[], |(bodies, _)| bodies)
+    pub fn rigid(&self) -> &R {
+        &self.bodies
     }
 
     /// Where a point is (m) and how fast it moves (m/s).
-    pub fn motion_of(&self, point: &Point<S, D>, placed: &Placed<S, D>) -> [Vector2<S>; 2] {
-        let at = At::of(self, point, placed);
-        [at.place, at.gradient * placed.rates]
+    pub fn motion_of<C: Carrier<D>>(&self, point: &Point<S, D, C>, placed: &Placed<S, D>) -> [Vector2<S>; 2] {
+        let at = self.at(point, placed);
+        [at.place, at.velocity(&placed.rates)]
+    }
+
+    /// `point` where and as fast as `placed` says.
+    #[inline(always)]
+    pub(super) fn at<C: Carrier<D>>(&self, point: &Point<S, D, C>, placed: &Placed<S, D>) -> At<S, D, C> {
+        At::of(&self.topology, point, placed)
     }
 
     /// By which length (m) the angle `k` is compared with displacements; 1 for a displacement.
@@ -107,10 +115,10 @@ impl<S: Scalar, const D: usize> PlanarTree<S, D> {
     /// The pose with the given angles (rad) and displacements (m).
     pub fn pose(&self, values: [S; D], half_angle: impl Fn(S) -> [S; 2]) -> [[S; 2]; D] {
         let mut pose = [[S::zero(); 2]; D];
-        for ((pose, value), coordinate) in pose.iter_mut().zip(values).zip(&self.coordinates) {
-            *pose = match coordinate {
-                Coordinate::Turn => half_angle(value),
-                Coordinate::Slide { .. } => [value, S::zero()],
+        for (k, (pose, value)) in pose.iter_mut().zip(values).enumerate() {
+            *pose = match self.topology.kind(k) {
+                Kind::Turn => half_angle(value),
+                Kind::Slide { .. } => [value, S::zero()],
             };
         }
         pose
@@ -128,7 +136,7 @@ pub struct Placed<S, const D: usize> {
     pub rates: SVector<S, D>,
 }
 
-impl<S: Scalar, const D: usize> Bodies<S, D> for PlanarTree<S, D> {
+impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D> for PlanarTree<S, D, J, R> {
     /// Of a turn cosine and sine of half the angle, near unit length; of a slide the displacement (m) and 0.
     type Pose = [[S; 2]; D];
     type Placed = Placed<S, D>;
@@ -138,8 +146,8 @@ impl<S: Scalar, const D: usize> Bodies<S, D> for PlanarTree<S, D> {
     #[inline(always)]
     fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
         let mut next = self.moved(pose, velocity, dt);
-        for ((pose, rate), coordinate) in next.iter_mut().zip(velocity).zip(&self.coordinates) {
-            if let Coordinate::Turn = coordinate {
+        for (k, (pose, rate)) in next.iter_mut().zip(velocity).enumerate() {
+            if self.topology.kind(k) == Kind::Turn {
                 let half = *rate * dt * S::from_f64(0.5);
                 let scale = S::one() / (S::one() + half * half);
                 *pose = pose.map(|x| x * scale);
@@ -151,14 +159,14 @@ impl<S: Scalar, const D: usize> Bodies<S, D> for PlanarTree<S, D> {
     #[inline(always)]
     fn moved(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
         let mut next = *pose;
-        for ((pose, rate), coordinate) in next.iter_mut().zip(velocity).zip(&self.coordinates) {
+        for (k, (pose, rate)) in next.iter_mut().zip(velocity).enumerate() {
             let [w, v] = *pose;
-            *pose = match coordinate {
-                Coordinate::Turn => {
+            *pose = match self.topology.kind(k) {
+                Kind::Turn => {
                     let half = *rate * dt * S::from_f64(0.5);
                     [w - v * half, v + w * half]
                 }
-                Coordinate::Slide { .. } => [w + *rate * dt, v],
+                Kind::Slide { .. } => [w + *rate * dt, v],
             };
         }
         next
@@ -176,8 +184,8 @@ impl<S: Scalar, const D: usize> Bodies<S, D> for PlanarTree<S, D> {
     #[inline(always)]
     fn normalised(&self, pose: &Self::Pose) -> Self::Pose {
         let mut normalised = *pose;
-        for (pose, coordinate) in normalised.iter_mut().zip(&self.coordinates) {
-            if let Coordinate::Turn = coordinate {
+        for (k, pose) in normalised.iter_mut().enumerate() {
+            if self.topology.kind(k) == Kind::Turn {
                 let [w, v] = *pose;
                 let scale = S::from_f64(0.5) * (S::from_f64(3.0) - (w * w + v * v));
                 *pose = [w * scale, v * scale];
@@ -202,8 +210,8 @@ impl<S: Scalar, const D: usize> Bodies<S, D> for PlanarTree<S, D> {
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         let mut rate = *velocity;
-        for ((rate, place), coordinate) in rate.iter_mut().zip(displacement).zip(&self.coordinates) {
-            if let Coordinate::Turn = coordinate {
+        for (k, (rate, place)) in rate.iter_mut().zip(displacement).enumerate() {
+            if self.topology.kind(k) == Kind::Turn {
                 *rate *= S::one() + *place * *place * S::from_f64(0.25);
             }
         }
@@ -212,23 +220,18 @@ impl<S: Scalar, const D: usize> Bodies<S, D> for PlanarTree<S, D> {
 
     #[inline(always)]
     fn placed(&self, pose: &Self::Pose, velocity: &SVector<S, D>) -> Placed<S, D> {
-        let mut axes = [Vector2::new(S::one(), S::zero()); D];
-        let mut places = [S::zero(); D];
-        for (((axis, place), pose), coordinate) in axes.iter_mut().zip(&mut places).zip(pose).zip(&self.coordinates) {
-            let [w, v] = *pose;
-            match coordinate {
-                Coordinate::Turn => {
-                    let twice = v * (S::from_f64(2.0) / (w * w + v * v));
-                    *axis = Vector2::new(S::one() - twice * v, twice * w);
+        let (mut axes, mut places) = (self.axes, [S::zero(); D]);
+        for (k, ((axis, place), [w, v])) in axes.iter_mut().zip(&mut places).zip(pose).enumerate() {
+            match self.topology.kind(k) {
+                Kind::Turn => {
+                    let twice = *v * (S::from_f64(2.0) / (*w * *w + *v * *v));
+                    *axis = Vector2::new(S::one() - twice * *v, twice * *w);
                 }
-                Coordinate::Slide { axis: along, .. } => {
-                    *axis = *along;
-                    *place = w;
-                }
+                Kind::Slide { .. } => *place = *w,
             }
         }
         for k in 0..D {
-            if let Coordinate::Slide { on: Some(on), .. } = self.coordinates[k] {
+            if let Kind::Slide { on: Some(on) } = self.topology.kind(k) {
                 axes[k] = turned(&axes[on], &axes[k]);
             }
         }
@@ -238,24 +241,14 @@ impl<S: Scalar, const D: usize> Bodies<S, D> for PlanarTree<S, D> {
     #[inline(always)]
     fn mass(&self, placed: &Placed<S, D>) -> SMatrix<S, D, D> {
         let mut mass = SMatrix::<S, D, D>::zeros();
-        for body in self.bodies() {
-            let gradient = At::of(self, &body.centre, placed).gradient;
-            mass += gradient.tr_mul(&gradient) * body.mass;
-            if let Some(turn) = body.centre.turn {
-                mass[(turn, turn)] += body.inertia;
-            }
-        }
+        self.bodies.add_mass((&self.topology, placed), &mut mass);
         mass
     }
 
     #[inline(always)]
     fn own_force(&self, placed: &Placed<S, D>) -> SVector<S, D> {
         let mut force = SVector::<S, D>::zeros();
-        for body in self.bodies() {
-            let at = At::of(self, &body.centre, placed);
-            let resists = at.swept(self, &body.centre, placed, &placed.rates) * placed.rates;
-            force += at.gradient.tr_mul(&((self.gravity - resists) * body.mass));
-        }
+        self.bodies.add_force((&self.topology, placed), &self.gravity, &mut force);
         force
     }
 
@@ -267,16 +260,7 @@ impl<S: Scalar, const D: usize> Bodies<S, D> for PlanarTree<S, D> {
         damping: &mut SMatrix<S, D, D>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        for body in self.bodies() {
-            let at = At::of(self, &body.centre, placed);
-            let swept = at.swept(self, &body.centre, placed, &placed.rates);
-            let resists = at.gradient * acceleration + swept * placed.rates - self.gravity;
-            let [by_rate, by_place] = at.swept_slopes(self, &body.centre, placed);
-            *damping += at.gradient.tr_mul(&by_rate) * body.mass;
-            let by_place = by_place + at.swept(self, &body.centre, placed, acceleration);
-            *stiffness += at.gradient.tr_mul(&by_place) * body.mass;
-            at.add_curvature(self, &body.centre, placed, &(resists * body.mass), stiffness);
-        }
+        self.bodies.add_slopes((&self.topology, placed), (&self.gravity, acceleration), damping, stiffness);
     }
 
     #[inline(always)]

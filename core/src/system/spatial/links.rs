@@ -60,7 +60,8 @@ pub struct About<S> {
 }
 
 /// A point seen from a body, with what its derivatives are made of.
-struct View<S> {
+#[derive(Clone, Copy, Debug)]
+pub struct View<S> {
     /// Displacement since the nominal poses, in the axes of the body that it is seen from (m).
     displacement: Vector3<S>,
     /// From that body's centre of mass, in its axes (m).
@@ -77,7 +78,7 @@ struct View<S> {
 
 impl<S: Scalar> Seat<S> {
     #[inline(always)]
-    fn view<const N: usize, const D: usize>(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> View<S> {
+    fn look<const N: usize, const D: usize>(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> View<S> {
         let still = PlacedBody {
             to_frame: Matrix3::identity(),
             displacement_w: Vector3::zeros(),
@@ -164,39 +165,51 @@ impl<S: Scalar> Seat<S> {
 }
 
 impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 3> for Seat<S> {
+    type View = View<S>;
+
     #[inline(always)]
-    fn seen(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Seen<S, 3, D> {
-        let view = self.view(bodies, placed);
-        let gradient = self.gradient(&view);
+    fn view(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> View<S> {
+        self.look(bodies, placed)
+    }
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> Seen<S, 3, D> {
+        let gradient = self.gradient(view);
         Seen { place: view.displacement, rate: gradient * placed.rates, gradient }
     }
 
     #[inline(always)]
     fn add_carried(
         &self,
-        (bodies, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        view: &View<S>,
         seen: &Seen<S, 3, D>,
         force: &SVector<S, 3>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        self.carry(&self.view(bodies, placed), &seen.gradient, force, stiffness);
+        self.carry(view, &seen.gradient, force, stiffness);
     }
 
     #[inline(always)]
-    fn swept(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> SMatrix<S, 3, D> {
-        let view = self.view(bodies, placed);
+    fn swept(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> SMatrix<S, 3, D> {
         let mut swept = SMatrix::zeros();
-        self.sweep(&view, &self.gradient(&view), &mut swept);
+        self.sweep(view, &self.gradient(view), &mut swept);
         swept
     }
 }
 
 impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 6> for Turned<S> {
+    type View = View<S>;
+
     #[inline(always)]
-    fn seen(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Seen<S, 6, D> {
-        let view = self.seat.view(bodies, placed);
+    fn view(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> View<S> {
+        self.seat.look(bodies, placed)
+    }
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> Seen<S, 6, D> {
         let mut gradient = SMatrix::<S, 6, D>::zeros();
-        let lengths: SMatrix<S, 3, D> = self.seat.gradient(&view);
+        let lengths: SMatrix<S, 3, D> = self.seat.gradient(view);
         gradient.fixed_rows_mut::<3>(0).copy_from(&self.axes.tr_mul(&lengths));
         if let Some(i) = self.seat.point.body {
             put(&mut gradient, (3, 6 * i + 3), &self.axes.tr_mul(&view.across));
@@ -213,15 +226,15 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     #[inline(always)]
     fn add_carried(
         &self,
-        (bodies, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        view: &View<S>,
         _: &Seen<S, 6, D>,
         force: &SVector<S, 6>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let view = self.seat.view(bodies, placed);
         let push = self.axes * Vector3::new(force[0], force[1], force[2]);
         let moment = self.axes * Vector3::new(force[3], force[4], force[5]);
-        self.seat.carry(&view, &self.seat.gradient(&view), &push, stiffness);
+        self.seat.carry(view, &self.seat.gradient(view), &push, stiffness);
         if let Some(i) = self.seat.point.body {
             sub(stiffness, (6 * i + 3, 6 * i + 3), &cross_matrix(&view.across.tr_mul(&moment)));
             if let Some(j) = self.seat.from {
@@ -231,10 +244,9 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 
     #[inline(always)]
-    fn swept(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> SMatrix<S, 6, D> {
-        let view = self.seat.view(bodies, placed);
+    fn swept(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> SMatrix<S, 6, D> {
         let mut lengths = SMatrix::<S, 3, D>::zeros();
-        self.seat.sweep(&view, &self.seat.gradient(&view), &mut lengths);
+        self.seat.sweep(view, &self.seat.gradient(view), &mut lengths);
         let mut swept = SMatrix::<S, 6, D>::zeros();
         swept.fixed_rows_mut::<3>(0).copy_from(&self.axes.tr_mul(&lengths));
         let rotation = view.across * view.rotations[0];
@@ -249,8 +261,13 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
 }
 
 impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 2> for Along<S> {
+    type View = ();
+
     #[inline(always)]
-    fn seen(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Seen<S, 2, D> {
+    fn view(&self, _: &FreeBodies<S, N, D>, _: &Placed<S, N, D>) {}
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 2, D> {
         let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w);
         let arm = self.lever.cross(&axis_b);
         let mut gradient = SMatrix::<S, 2, D>::zeros();
@@ -266,6 +283,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     fn add_carried(
         &self,
         (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        (): &(),
         _: &Seen<S, 2, D>,
         force: &SVector<S, 2>,
         stiffness: &mut SMatrix<S, D, D>,
@@ -276,7 +294,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 
     #[inline(always)]
-    fn swept(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> SMatrix<S, 2, D> {
+    fn swept(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 2, D> {
         let at = &placed.bodies[self.body];
         let axis_b = at.to_frame.tr_mul(&self.axis_w);
         // ω·(lever × axis), the axis turning against the body: ∂axis = axis × θ.
@@ -290,8 +308,13 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
 }
 
 impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 1> for About<S> {
+    type View = ();
+
     #[inline(always)]
-    fn seen(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Seen<S, 1, D> {
+    fn view(&self, _: &FreeBodies<S, N, D>, _: &Placed<S, N, D>) {}
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 1, D> {
         let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w);
         let mut gradient = SMatrix::<S, 1, D>::zeros();
         for k in 0..3 {
@@ -304,6 +327,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     fn add_carried(
         &self,
         (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        (): &(),
         _: &Seen<S, 1, D>,
         force: &SVector<S, 1>,
         stiffness: &mut SMatrix<S, D, D>,
@@ -314,7 +338,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 
     #[inline(always)]
-    fn swept(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> SMatrix<S, 1, D> {
+    fn swept(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 1, D> {
         let at = &placed.bodies[self.body];
         // ω·axis with ∂axis = axis × θ.
         let by_turn = at.rotation_b.cross(&at.to_frame.tr_mul(&self.axis_w));

@@ -1,8 +1,10 @@
 //! Joints, ideal or with play.
 
+use slipfit_core::menu::{ContactData, FrictionData};
+
 use super::{Field, Gaps, Laws, Names, Problem, Quantity, SceneError, direction, laws, note, place, tables, unit};
 use crate::{
-    mechanism::{Joint, JointKind, Mechanism},
+    mechanism::{Joint, JointKind, Mechanism, NormalData},
     scene::{SURFACES, parse::POINT},
 };
 
@@ -53,8 +55,8 @@ fn joint(
 
 /// The laws of a joint without contacts.
 const NO_LAWS: Laws = Laws {
-    contact: slipfit_core::menu::ContactData { stiffness: 0.0, exponent: 1.0, damping: 0.0, depth: 1.0 },
-    friction: slipfit_core::menu::FrictionData::None,
+    contact: NormalData::Impact(ContactData { stiffness: 0.0, exponent: 1.0, damping: 0.0, depth: 1.0 }),
+    friction: FrictionData::None,
 };
 
 /// Reads what the joint called `name` is.

@@ -9,7 +9,7 @@ mod tests;
 use slipfit_core::{clearance::GapStatistics, menu::FrictionData};
 
 use super::{
-    LevelRange, Problem, SceneError,
+    LevelRange, Problem, SceneError, contact,
     diagnostic::Found,
     parse,
     tree::Value,
@@ -70,6 +70,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         joints,
         gaps: gaps.gaps,
         run,
+        controller: parse::controller(root, &laws.map_or(FrictionData::None, |laws| laws.friction))?,
         sweep,
     };
     // With values that stand for wrong ones there is nothing to look at.
@@ -165,7 +166,7 @@ impl Gaps<'_> {
 
 /// Reads the laws of `table`, where it states none of its own `otherwise`; the friction law alone may be missing.
 fn laws(table: &Field, otherwise: Option<Laws>) -> Result<Option<Laws>, SceneError> {
-    let contact = table.get("contact").map(|_| parse::contact(&table.table("contact")?)).transpose()?;
+    let contact = table.get("contact").map(|_| contact::normal(&table.table("contact")?)).transpose()?;
     let friction = table.get("friction").map(|_| parse::friction(&table.table("friction")?)).transpose()?;
     let contact = contact.or(otherwise.map(|laws| laws.contact));
     let friction = friction.or(otherwise.map(|laws| laws.friction)).unwrap_or(FrictionData::None);

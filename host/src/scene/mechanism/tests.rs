@@ -1,6 +1,9 @@
 //! Mechanisms that are none: each mistake is told where it is.
 
-use crate::scene::{Override, SHIPPED, SceneFile};
+use crate::{
+    mechanism::{NormalData, Rebound},
+    scene::{Override, SHIPPED, SceneFile},
+};
 
 const SCENE: &str = r#"
 [mechanism]
@@ -102,6 +105,39 @@ fn mistakes_are_told_where_they_are() {
         "`contact` is missing",
         "[[joint]]\nname = \"pin\"",
     );
+}
+
+const REBOUND: &str = "law = \"hunt-crossley\"\nrestitution = 0.9\nspeed = 250\n";
+
+#[test]
+fn contacts_with_a_restitution_are_read() {
+    let spring = Rebound { stiffness: 100.0 * libm::pow(1e3, 1.5), exponent: 1.5, restitution: 0.9, speed: 0.25 };
+    let of = |text: &str| {
+        let text = SCENE.replacen("damping = 1\ndepth = 0.1\n", text, 1);
+        parse(&text, &[]).unwrap_or_else(|error| panic!("{error}")).mechanism.unwrap().joints[2].laws.contact
+    };
+    let near = |found: Rebound| assert!((found.stiffness / spring.stiffness - 1.0).abs() < 1e-15, "{found:?}");
+    let NormalData::HuntCrossley(found) = of(REBOUND) else { panic!("another law") };
+    near(found);
+    let NormalData::LankaraniNikravesh(found) = of(&REBOUND.replace("hunt-crossley", "lankarani-nikravesh")) else {
+        panic!("another law")
+    };
+    near(found);
+    assert_eq!(Rebound { stiffness: spring.stiffness, ..found }, spring);
+    assert_eq!(of("damping = 1\ndepth = 0.1\n"), of("law = \"impact\"\ndamping = 1\ndepth = 0.1\n"));
+}
+
+#[test]
+fn contact_laws_have_their_own_keys() {
+    refused("damping = 1", "law = \"hertz\"\ndamping = 1", "`contact.law` is \"hertz\"", "\"hertz\"");
+    let with = format!("damping = 1\n{REBOUND}");
+    refused("damping = 1\n", &with, "`contact.damping` of the law \"hunt-crossley\"", "1\nlaw");
+    let restitution = "`contact.restitution` of the law \"impact\"";
+    refused("damping = 1\n", "damping = 1\nrestitution = 0.9\n", restitution, "0.9");
+    let lively = REBOUND.replace("0.9", "1.5");
+    refused("damping = 1\ndepth = 0.1\n", &lively, "`contact.restitution` is 1.5", "1.5\nspeed");
+    let silent = REBOUND.replace("speed = 250\n", "");
+    refused("damping = 1\ndepth = 0.1\n", &silent, "`contact.speed` is missing", "[contact]");
 }
 
 #[test]

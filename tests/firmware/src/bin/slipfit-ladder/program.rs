@@ -6,7 +6,7 @@ use slipfit_core::{
     Vector2,
     axis::AxisBody,
     drive::Drive,
-    integrator::ImplicitEuler,
+    integrator::{ImplicitEuler, Integrator},
     kernel::{Kernel, Report, StateOf},
     law::{Elastic, Exact, Friction, Frictionless, Impact, Linear, Pad, Power, Regularised, Slot, ThreeHalves},
     mechanism::Mechanism,
@@ -15,7 +15,10 @@ use slipfit_core::{
     pose::Pose,
     slide::{PINS, Slide},
 };
-use slipfit_problems::cd_rom::{self, STICK_BAND};
+use slipfit_problems::{
+    cd_rom::{self, STICK_BAND},
+    mechanisms,
+};
 
 use slipfit_firmware::{
     count::Count,
@@ -29,6 +32,7 @@ type Scheme = ImplicitEuler<4>;
 /// Step (s), and steps that are counted.
 const STEP: f32 = 1e-3;
 const STEPS: u32 = 200;
+const MECHANISM_STEPS: u32 = 100;
 
 /// Coefficient of friction, where there is any.
 const COEFFICIENT: f32 = 0.3;
@@ -112,7 +116,38 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     let linear = Linear::new(2e4).expect("the law is in bounds");
     let ball = AxisBody::new(data.body.mass, -9.81, 0.0, impact(linear)).expect("the body is in bounds");
     rung(machine, "axis_pad_linear", ball, 1e-3, axis_pad_linear);
+    every_mechanism(machine);
     true
+}
+
+/// The step of a shipped mechanism, as a function of its own, and the run of its unit.
+macro_rules! mechanisms {
+    ($($name:ident;)*) => {
+        $(#[inline(never)]
+        fn $name(
+            kernel: &Kernel<f32, mechanisms::$name::Unit<f32>, mechanisms::$name::Scheme>,
+            state: &mut StateOf<f32, mechanisms::$name::Unit<f32>, { mechanisms::$name::DIMENSION }>,
+        ) -> Report<f32> {
+            kernel.step(state)
+        })*
+
+        fn every_mechanism(machine: &mut impl Machine) {
+            $({
+                let (kernel, state) = mechanisms::$name::predictor(0.0).expect("the shipped scene is in bounds");
+                steps(machine, stringify!($name), &black_box(kernel), state, MECHANISM_STEPS, $name);
+            })*
+        }
+    };
+}
+
+mechanisms! {
+    slider_crank;
+    slider_crank_guide;
+    four_bar;
+    woodpecker_toy;
+    hatch;
+    linear_guide;
+    telescopic_drawer;
 }
 
 /// Says what a Newton pass of the full slide takes, its linearisation and solution included: a step of two passes less one of
@@ -160,18 +195,29 @@ fn rung<M: Mechanism<f32, D>, const D: usize>(
     step: StepFn<M, D>,
 ) {
     let kernel = black_box(Kernel::new(mechanism, STEP).expect("the step is in bounds"));
-    let mut state = kernel.at_rest(pose);
+    steps(machine, name, &kernel, kernel.at_rest(pose), STEPS, step);
+}
+
+/// Takes so many `steps` of `kernel` from `state` and says what one takes.
+fn steps<M: Mechanism<f32, D>, I: Integrator, const D: usize>(
+    machine: &mut impl Machine,
+    name: impl Display,
+    kernel: &Kernel<f32, M, I>,
+    mut state: StateOf<f32, M, D>,
+    steps: u32,
+    step: fn(&Kernel<f32, M, I>, &mut StateOf<f32, M, D>) -> Report<f32>,
+) {
     let (mut count, mut velocities) = (Count::default(), Fingerprint::default());
-    while state.steps < STEPS {
-        count.add(counted(machine, &kernel, &mut state, step));
+    while state.steps < steps {
+        count.add(counted(machine, kernel, &mut state, step));
         state.motion.velocity.iter().for_each(|velocity| velocities.add(*velocity));
     }
-    let (parameters, bytes) = (size_of_val(&kernel), size_of_val(&state));
+    let (parameters, bytes) = (size_of_val(kernel), size_of_val(&state));
     print(machine, format_args!("{name}: parameters {parameters} bytes, state {bytes} bytes, {velocities}"));
     if let Some(range) = count.range() {
         print(machine, format_args!("instructions of {name}: {range}"));
     }
-    if let Some(bytes) = machine.stack(|| _ = black_box(step(&kernel, &mut state))) {
+    if let Some(bytes) = machine.stack(|| _ = black_box(step(kernel, &mut state))) {
         print(machine, format_args!("stack of {name}: {bytes} bytes"));
     }
 }

@@ -1,0 +1,228 @@
+//! A mechanism as Rust source for firmware: its composed type and a function that makes it.
+//!
+//! What is written is what [`run`](super::run) computes with, element by element in the same order, so that the type gives the
+//! same bits in f64.
+
+mod laws;
+mod planar;
+mod spatial;
+
+use std::fmt::Write;
+
+use super::{Joint, Mechanism, RunError};
+use crate::scheme::IntegratorKind;
+use laws::Contacts;
+
+/// Type and value of an expression.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Typed {
+    of: String,
+    value: String,
+}
+
+fn typed(of: impl Into<String>, value: impl Into<String>) -> Typed {
+    Typed { of: of.into(), value: value.into() }
+}
+
+/// An element of a link that measures `count` numbers, and a law.
+fn element(link: Typed, law: Typed, count: usize) -> Typed {
+    typed(
+        format!("Element<{}, {}, {count}>", link.of, law.of),
+        format!("Element {{ link: {}, law: {} }}", link.value, law.value),
+    )
+}
+
+/// What one kind of mechanism is made of.
+struct Parts {
+    /// What the file says before the types.
+    head: String,
+    /// Number of coordinates.
+    dimension: usize,
+    /// Bodies.
+    bodies: Typed,
+    /// Elements, in the order in which they act.
+    elements: Vec<Typed>,
+    /// Names used from `slipfit_core::system::law`, and from the module `module` of `slipfit_core::system`.
+    laws: Vec<&'static str>,
+    module: &'static str,
+    names: Vec<&'static str>,
+    /// Type and value of the pose that it starts in, and the rates (m/s, rad/s).
+    pose: Typed,
+    rates: Vec<f64>,
+}
+
+/// A Rust module with the type `Unit` of `mechanism`, its gaps over the production as `GAPS`, `unit(n)` and the kernel `predictor(n)`.
+///
+/// # Errors
+/// If the mechanism has no run, see [`RunError`].
+pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
+    let mut contacts = Contacts::default();
+    let parts = if mechanism.planar {
+        planar::parts(mechanism, &mut contacts)?
+    } else {
+        spatial::parts(mechanism, &mut contacts)?
+    };
+    let Parts { head, dimension, bodies, elements, module, pose, rates, .. } = &parts;
+    let elements = nested(grouped(elements));
+    let title = mechanism.title.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (scheme, scheme_type) = scheme(mechanism.controller.integrator);
+    let list = |names: &[&'static str]| {
+        let mut names = names.to_vec();
+        names.sort_unstable();
+        names.dedup();
+        names.join(", ")
+    };
+    let mut laws = parts.laws.clone();
+    let clearance = if mechanism.gaps.is_empty() { "" } else { "    clearance::GapStatistics,\n" };
+    let drive = if mechanism.drives.is_empty() { "" } else { "    drive::Drive,\n" };
+    let poses = if *module == "planar" { "" } else { "    pose::Pose,\n" };
+    let vectors = if *module == "planar" && mechanism.drives.is_empty() { "Vector2" } else { "Vector2, Vector3" };
+    let vectors = if *module == "planar" { vectors } else { "Vector3" };
+    let mut core_laws = String::new();
+    if !contacts.is_empty() {
+        laws.push("Contact");
+        core_laws = format!("    law::{{{}}},\n", list(&contacts.names()));
+    }
+    let mut text = format!(
+        "// {title}: a mechanism for firmware, to be compiled against slipfit-core. SI units.\n\n\
+         use slipfit_core::{{\n    ParameterError, SVector, Scalar, {vectors},\n{clearance}{drive}    \
+         integrator::{scheme},\n    kernel::{{Kernel, StateOf}},\n{core_laws}{poses}    system::{{\n        Element, System,\n        \
+         law::{{{}}},\n        {module}::{{{}}},\n    }},\n}};\n\n\
+         /// Number of coordinates.\npub const DIMENSION: usize = {dimension};\n\n\
+         /// Step (s).\npub const STEP: f32 = {:?};\n\n/// Steps of the scene's run.\npub const STEPS: u32 = {};\n\n/// The scheme.\npub type Scheme = {scheme_type};\n\n{head}",
+        list(&laws),
+        list(&parts.names),
+        mechanism.controller.step as f32,
+        (mechanism.run.duration / mechanism.controller.step).round(),
+    );
+    let _ = write!(
+        text,
+        "/// The bodies.\npub type Bodies<S> = {};\n\n/// What acts on them.\npub type Elements<S> = {};\n\n\
+         /// A unit's type: what the mechanism does not have leaves no code.\npub type Unit<S> = System<Bodies<S>, Elements<S>>;\n\n",
+        bodies.of, elements.of
+    );
+    write_gaps(&mut text, mechanism);
+    let _ = write!(
+        text,
+        "/// The unit of tolerance level `n`.\n///\n/// # Errors\n/// If a gap at that level, or another parameter, is out of bounds.\n\
+         pub fn unit<S: Scalar + PartialOrd>({}: S) -> Result<Unit<S>, ParameterError<S>> {{\n    let s = S::from_f64;\n{}",
+        if mechanism.gaps.is_empty() { "_" } else { "n" },
+        if mechanism.gaps.is_empty() {
+            ""
+        } else {
+            "    let gaps = GAPS.map(|[mean, deviation]| GapStatistics { mean: s(mean), deviation: s(deviation) }.at(n));\n"
+        },
+    );
+    let _ = write!(
+        text,
+        "{}    let bodies = {};\n    let elements = {};\n    Ok(System::new(bodies, elements))\n}}\n\n",
+        contacts.made(),
+        bodies.value,
+        elements.value
+    );
+    let rates: Vec<_> = rates.iter().map(|rate| format!("s({rate:?})")).collect();
+    let _ = write!(
+        text,
+        "/// Where and how fast the unit starts: pose and generalised velocities.\n\
+         pub fn start<S: Scalar>() -> ({}, SVector<S, {dimension}>) {{\n    let s = S::from_f64;\n    \
+         let pose = {};\n    (pose, SVector::from([{}]))\n}}\n\n\
+         /// A kernel and the state that it steps.\n\
+         pub type Predictor = (Kernel<f32, Unit<f32>, Scheme>, StateOf<f32, Unit<f32>, {dimension}>);\n\n\
+         /// The kernel of the unit of tolerance level `n` and its state at the start.\n///\n/// # Errors\n\
+         /// If a gap at that level, or another parameter, is out of bounds.\n\
+         pub fn predictor(n: f32) -> Result<Predictor, \
+         ParameterError<f32>> {{\n    let kernel = Kernel::new(unit(n)?, STEP)?;\n    \
+         let (pose, velocity) = start();\n    let mut state = kernel.at_rest(pose);\n    \
+         state.motion.velocity = velocity;\n    Ok((kernel, state))\n}}\n",
+        pose.of,
+        pose.value,
+        rates.join(", ")
+    );
+    Ok(text)
+}
+
+/// Adds the gaps over the production.
+fn write_gaps(text: &mut String, mechanism: &Mechanism) {
+    if mechanism.gaps.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "/// Gaps over the production, mean and standard deviation (m).\npub const GAPS: [[f64; 2]; {}] = [",
+        mechanism.gaps.len()
+    );
+    for gap in &mechanism.gaps {
+        let _ = writeln!(text, "    [{:?}, {:?}], // {}", gap.statistics.mean, gap.statistics.deviation, gap.name);
+    }
+    text.push_str("];\n\n");
+}
+
+/// Name and type of a scheme.
+fn scheme(kind: IntegratorKind) -> (&'static str, &'static str) {
+    match kind {
+        IntegratorKind::SemiImplicitEuler => ("SemiImplicitEuler", "SemiImplicitEuler"),
+        IntegratorKind::RungeKutta4 => ("RungeKutta4", "RungeKutta4"),
+        IntegratorKind::Rodas3 => ("Rodas3", "Rodas3"),
+        IntegratorKind::Rodas4 => ("Rodas4", "Rodas4"),
+        IntegratorKind::LinearlyImplicitEuler => ("ImplicitEuler", "ImplicitEuler<1>"),
+        IntegratorKind::ImplicitEuler => ("ImplicitEuler", "ImplicitEuler<4>"),
+        IntegratorKind::Sdirk2 => ("Sdirk2", "Sdirk2<4>"),
+        IntegratorKind::Extrapolated => ("Extrapolated", "Extrapolated<2, 4>"),
+    }
+}
+
+/// Neighbours of one type as arrays.
+fn grouped(elements: &[Typed]) -> Vec<Typed> {
+    let groups = elements.chunk_by(|one, next| one.of == next.of);
+    let group = |group: &[Typed]| match group {
+        [one] => one.clone(),
+        all => {
+            let values: Vec<_> = all.iter().map(|one| one.value.as_str()).collect();
+            let value = format!("[\n        {},\n    ]", values.join(",\n        "));
+            typed(format!("[{}; {}]", all[0].of, all.len()), value)
+        }
+    };
+    groups.map(group).collect()
+}
+
+/// `(a, (b, c))` of several, `()` of none.
+fn nested(all: Vec<Typed>) -> Typed {
+    let pair = |rest: Typed, first: Typed| {
+        typed(format!("({}, {})", first.of, rest.of), format!("({}, {})", first.value, rest.value))
+    };
+    all.into_iter().rev().reduce(pair).unwrap_or_else(|| typed("()", "()"))
+}
+
+/// Numbers as arguments, converted to the unit's scalar.
+fn numbers(values: &[f64]) -> String {
+    let texts: Vec<_> = values.iter().map(|value| format!("s({value:?})")).collect();
+    texts.join(", ")
+}
+
+/// A vector of two or three numbers.
+fn vector(values: &[f64]) -> String {
+    format!("Vector{}::new({})", values.len(), numbers(values))
+}
+
+/// A drive that can be stepped.
+fn drive(drive: &slipfit_core::drive::Drive<f64>) -> String {
+    format!(
+        "Drive {{ gain: s({:?}), ramp_start: s({:?}), ramp_end: s({:?}), speed: s({:?}), point_b: {} }}.checked()?",
+        drive.gain,
+        drive.ramp_start,
+        drive.ramp_end,
+        drive.speed,
+        vector(drive.point_b.as_slice())
+    )
+}
+
+/// How many elements there are of a joint.
+fn elements_of(joint: &Joint) -> usize {
+    use super::JointKind::{Bearing, Guide, Journal, Stop, Track};
+    match joint.kind {
+        Journal { .. } | Stop { .. } | Track { .. } => 1,
+        Bearing { .. } => 2,
+        Guide { .. } => 4,
+        _ => 0,
+    }
+}

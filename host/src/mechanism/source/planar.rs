@@ -1,0 +1,212 @@
+//! A mechanism in a plane as source text.
+
+use std::fmt::Write;
+
+use slipfit_core::{
+    Vector2,
+    system::planar::{Chain, Kind, Point, Rigid},
+};
+
+use super::{Contacts, Parts, Typed, drive, element, elements_of, grouped, nested, numbers, typed, vector};
+use crate::mechanism::{JointKind, Mechanism, Mounts, Rest, RunError, element::PlanarElement, planar};
+
+/// The parts of `mechanism`.
+pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {
+    let mounts = Mounts::of(mechanism)?;
+    match mounts.coordinates().len() {
+        1 => of::<1>(mechanism, &mounts, contacts),
+        2 => of::<2>(mechanism, &mounts, contacts),
+        3 => of::<3>(mechanism, &mounts, contacts),
+        4 => of::<4>(mechanism, &mounts, contacts),
+        5 => of::<5>(mechanism, &mounts, contacts),
+        _ => of::<6>(mechanism, &mounts, contacts),
+    }
+}
+
+/// The type of what moves a body.
+fn carrier<const D: usize>(chain: &Chain<D>) -> String {
+    let bits: String = chain.moves.iter().rev().map(|moves| if *moves { '1' } else { '0' }).collect();
+    match chain.turn {
+        _ if !bits.contains('1') => "Frame".into(),
+        Some(turn) => format!("Path<0b{bits}, {turn}>"),
+        None => format!("Path<0b{bits}>"),
+    }
+}
+
+fn point<const D: usize>(point: &Point<f64, D>) -> String {
+    let arms: Vec<_> = point.arms.iter().map(|arm| vector(arm.as_slice())).collect();
+    format!("Point {{ carrier: Path, base: {}, arms: [{}] }}", vector(point.base.as_slice()), arms.join(", "))
+}
+
+fn rigid<const D: usize>(body: &Rigid<f64, D>) -> Typed {
+    let Rigid { mass, inertia, centre } = body;
+    Typed {
+        of: format!("Rigid<S, {D}, {}>", carrier(&centre.carrier)),
+        value: format!("Rigid {{ mass: s({mass:?}), inertia: s({inertia:?}), centre: {} }}", point(centre)),
+    }
+}
+
+fn of<const D: usize>(mechanism: &Mechanism, mounts: &Mounts, contacts: &mut Contacts) -> Result<Parts, RunError> {
+    let tree = planar::bodies::<D>(mechanism, mounts)?;
+    let mut head = format!(
+        "/// What the coordinates are.\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct Joints;\n\n\
+         impl Topology<{D}> for Joints {{\n    #[inline(always)]\n"
+    );
+    let slides: Vec<_> = tree.topology().iter().enumerate().filter(|(_, kind)| **kind != Kind::Turn).collect();
+    if slides.is_empty() {
+        head.push_str("    fn kind(&self, _: usize) -> Kind {\n        Kind::Turn\n    }\n}\n\n");
+    } else {
+        head.push_str("    fn kind(&self, k: usize) -> Kind {\n        match k {\n");
+        for (k, kind) in slides {
+            let _ = writeln!(head, "            {k} => Kind::{kind:?},");
+        }
+        head.push_str("            _ => Kind::Turn,\n        }\n    }\n}\n\n");
+    }
+    let rigid = nested(tree.rigid().iter().map(rigid).collect());
+    let axes: Vec<_> = tree.axes().iter().map(|axis| vector(axis.as_slice())).collect();
+    let gravity = mechanism.gravity;
+    let bodies = Typed {
+        of: format!("PlanarTree<S, {D}, Joints, {}>", rigid.of),
+        value: format!(
+            "PlanarTree::of(Joints, [{}], {}, {})?",
+            axes.join(", "),
+            rigid.value,
+            vector(&[gravity[0], gravity[1]])
+        ),
+    };
+    let mut names = vec!["Kind", "Path", "PlanarTree", "Point", "Rigid", "Topology"];
+    let mut laws = Vec::new();
+    let elements = elements::<D>(mechanism, mounts, contacts, &mut laws, &mut names)?;
+    let all = nested(grouped(&elements));
+    if all.of.contains("Frame") || bodies.of.contains("Frame") {
+        names.push("Frame");
+    }
+    let Rest { places, rates } = Rest::<D>::of(mechanism, mounts);
+    let pose = tree.pose(places, |angle| [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]);
+    let pose: Vec<_> = pose.iter().map(|pair| format!("[{}]", numbers(pair))).collect();
+    let pose = Typed { of: format!("[[S; 2]; {D}]"), value: format!("[{}]", pose.join(", ")) };
+    Ok(Parts { head, dimension: D, bodies, elements, laws, module: "planar", names, pose, rates: rates.into() })
+}
+
+fn elements<const D: usize>(
+    mechanism: &Mechanism,
+    mounts: &Mounts,
+    contacts: &mut Contacts,
+    laws: &mut Vec<&'static str>,
+    names: &mut Vec<&'static str>,
+) -> Result<Vec<Typed>, RunError> {
+    let open = vec![0.0; mechanism.gaps.len()];
+    let joints = mechanism.joints.iter().flat_map(|joint| std::iter::repeat_n(joint, elements_of(joint)));
+    let mut joints = joints.map(Some).chain(std::iter::repeat(None));
+    let turning =
+        |turn: Option<usize>| turn.map_or("Frame".into(), |turn| carrier(&chain_of::<D>(mechanism, mounts, turn)));
+    let mut written = Vec::new();
+    for found in planar::elements::<D>(mechanism, mounts, &open, 1.0)? {
+        let joint = joints.next().flatten();
+        let (contact, gap) = joint.map_or((Typed::default(), 0), |joint| {
+            let gap = match joint.kind {
+                JointKind::Journal { gap, .. } | JointKind::Guide { gap, .. } | JointKind::Stop { gap, .. } => gap,
+                _ => 0,
+            };
+            (contacts.of(&joint.laws), gap)
+        });
+        written.push(match found {
+            PlanarElement::Journal(one) => {
+                names.push("Between");
+                laws.push("Journal");
+                let (hole, pin) = (&one.link.hole, &one.link.pin);
+                element(
+                    typed(
+                        format!("Between<S, {D}, {}, {}>", carrier(&hole.carrier), carrier(&pin.carrier)),
+                        format!("Between {{ hole: {}, pin: {} }}", point(hole), point(pin)),
+                    ),
+                    typed(
+                        format!("Journal<S, {}>", contact.of),
+                        format!(
+                            "Journal {{ clearance: gaps[{gap}], radius: s({:?}), contact: {} }}",
+                            one.law.radius, contact.value
+                        ),
+                    ),
+                    4,
+                )
+            }
+            PlanarElement::Pad(one) => {
+                names.push("Across");
+                laws.push("Pad");
+                let (at, seat) = (&one.link.point, &one.link.seat);
+                element(
+                    typed(
+                        format!("Across<S, {D}, {}, {}>", carrier(&at.carrier), carrier(&seat.carrier)),
+                        format!(
+                            "Across {{ point: {}, seat: {}, normal: {} }}",
+                            point(at),
+                            point(seat),
+                            vector(one.link.normal.as_slice())
+                        ),
+                    ),
+                    typed(
+                        format!("Pad<S, {}>", contact.of),
+                        format!("Pad {{ gap: gaps[{gap}], contact: {} }}", contact.value),
+                    ),
+                    2,
+                )
+            }
+            PlanarElement::Spring(one) => {
+                names.push("Turning");
+                laws.push("Spring");
+                let law = one.law;
+                element(
+                    typed(
+                        format!("Turning<{}, {}>", turning(one.link.body), turning(one.link.against)),
+                        "Turning { body: Path, against: Path }",
+                    ),
+                    typed(
+                        "Spring<S>",
+                        format!(
+                            "Spring {{ stiffness: s({:?}), damping: s({:?}), rest: s({:?}) }}",
+                            law.stiffness, law.damping, law.rest
+                        ),
+                    ),
+                    1,
+                )
+            }
+            PlanarElement::Motor(one) => {
+                names.push("Turning");
+                laws.push("Motor");
+                element(
+                    typed(
+                        format!("Turning<{}, {}>", turning(one.link.body), turning(one.link.against)),
+                        "Turning { body: Path, against: Path }",
+                    ),
+                    typed("Motor<Drive<S>>", format!("Motor({})", drive(&one.law.0))),
+                    1,
+                )
+            }
+            PlanarElement::Pusher(one) => {
+                names.push("Along");
+                laws.push("Pusher");
+                let (at, sensor, axis) = (&one.link.point, &one.link.sensor, one.link.axis);
+                element(
+                    typed(
+                        format!("Along<S, {D}, {}>", carrier(&at.carrier)),
+                        format!(
+                            "Along {{ point: {}, sensor: {}, axis: {} }}",
+                            point(at),
+                            point(sensor),
+                            vector(axis.as_slice())
+                        ),
+                    ),
+                    typed("Pusher<Drive<S>>", format!("Pusher({})", drive(&one.law.0))),
+                    2,
+                )
+            }
+        });
+    }
+    Ok(written)
+}
+
+/// What moves the body that the coordinate `turn` turns.
+fn chain_of<const D: usize>(mechanism: &Mechanism, mounts: &Mounts, turn: usize) -> Chain<D> {
+    let body = (0..mechanism.bodies.len()).find(|body| mounts.turn(Some(*body)) == Some(turn));
+    mounts.point::<D>(body, Vector2::zeros()).carrier
+}

@@ -1,0 +1,165 @@
+//! A mechanism in space as source text.
+
+use slipfit_core::system::spatial::{FreeBodies, Port, Rigid, Seat};
+
+use super::{Contacts, Parts, Typed, drive, element, elements_of, numbers, typed, vector};
+use crate::mechanism::{JointKind, Mechanism, RunError, element::SpatialElement, spatial};
+
+/// The parts of `mechanism`.
+pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {
+    match mechanism.bodies.len() {
+        1 => of::<1, 6>(mechanism, contacts),
+        2 => of::<2, 12>(mechanism, contacts),
+        3 => of::<3, 18>(mechanism, contacts),
+        other => Err(RunError::Bodies(other)),
+    }
+}
+
+fn rigid(body: &Rigid<f64>) -> String {
+    format!(
+        "Rigid {{ mass: s({:?}), inertia_b: {}, centre_w: {} }}",
+        body.mass,
+        vector(body.inertia_b.as_slice()),
+        vector(body.centre_w.as_slice())
+    )
+}
+
+fn seat(seat: &Seat<f64>) -> String {
+    let Seat { point: Port { body, lever }, from } = seat;
+    format!("Seat {{ point: Port {{ body: {body:?}, lever: {} }}, from: {from:?} }}", vector(lever.as_slice()))
+}
+
+fn of<const N: usize, const D: usize>(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {
+    let free: FreeBodies<f64, N, D> = spatial::bodies(mechanism)?;
+    let rigid: Vec<_> = free.bodies().iter().map(rigid).collect();
+    let bodies = Typed {
+        of: format!("FreeBodies<S, {N}, {D}>"),
+        value: format!("FreeBodies::new([{}], {})?", rigid.join(", "), vector(&mechanism.gravity)),
+    };
+    let mut names = vec!["FreeBodies", "Rigid"];
+    let mut laws = Vec::new();
+    let elements = elements(mechanism, contacts, &mut laws, &mut names)?;
+    let pose = Typed { of: format!("[Pose<S>; {N}]"), value: format!("[Pose::nominal(); {N}]") };
+    Ok(Parts {
+        head: String::new(),
+        dimension: D,
+        bodies,
+        elements,
+        laws,
+        module: "spatial",
+        names,
+        pose,
+        rates: vec![0.0; D],
+    })
+}
+
+fn elements(
+    mechanism: &Mechanism,
+    contacts: &mut Contacts,
+    laws: &mut Vec<&'static str>,
+    names: &mut Vec<&'static str>,
+) -> Result<Vec<Typed>, RunError> {
+    let open = vec![0.0; mechanism.gaps.len()];
+    let joints = mechanism.joints.iter().flat_map(|joint| std::iter::repeat_n(joint, elements_of(joint)));
+    let mut joints = joints.map(Some).chain(std::iter::repeat(None));
+    let mut written = Vec::new();
+    for found in spatial::elements(mechanism, &open, 1.0)? {
+        let joint = joints.next().flatten();
+        let contact = joint.map_or(Typed::default(), |joint| contacts.of(&joint.laws));
+        let gap = joint.map_or(0, |joint| match joint.kind {
+            JointKind::Bearing { gap, .. } | JointKind::Stop { gap, .. } => gap,
+            _ => 0,
+        });
+        written.push(match found {
+            SpatialElement::Pin(one) => {
+                names.extend(["Port", "Seat"]);
+                laws.push("Pin");
+                let indices = match joint.map(|joint| &joint.kind) {
+                    Some(JointKind::Track { gaps }) => *gaps,
+                    _ => [None; 4],
+                };
+                let gaps = indices
+                    .map(|index| index.map_or(format!("s({:?})", spatial::NONE), |index| format!("gaps[{index}]")));
+                element(
+                    typed("Seat<S>", seat(&one.link)),
+                    typed(
+                        format!("Pin<S, {}>", contact.of),
+                        format!("Pin {{ gaps: [{}], contact: {} }}", gaps.join(", "), contact.value),
+                    ),
+                    3,
+                )
+            }
+            SpatialElement::Wall(one) => {
+                names.extend(["Port", "Seat"]);
+                laws.push("Wall");
+                let (axis, sign) = (one.law.axis, one.law.sign);
+                element(
+                    typed("Seat<S>", seat(&one.link)),
+                    typed(
+                        format!("Wall<S, {}>", contact.of),
+                        format!(
+                            "Wall {{ axis: {axis}, sign: s({sign:?}), gap: gaps[{gap}], contact: {} }}",
+                            contact.value
+                        ),
+                    ),
+                    3,
+                )
+            }
+            SpatialElement::Ring(one) => {
+                names.extend(["Port", "Seat", "Turned"]);
+                laws.push("Ring");
+                let axes = numbers(one.link.axes.transpose().as_slice());
+                element(
+                    typed(
+                        "Turned<S>",
+                        format!(
+                            "Turned {{ seat: {}, axes: slipfit_core::SMatrix::<S, 3, 3>::new({axes}), offset: {} }}",
+                            seat(&one.link.seat),
+                            vector(one.link.offset.as_slice())
+                        ),
+                    ),
+                    typed(
+                        format!("Ring<S, {}>", contact.of),
+                        format!(
+                            "Ring {{ clearance: gaps[{gap}], radius: s({:?}), contact: {} }}",
+                            one.law.radius, contact.value
+                        ),
+                    ),
+                    6,
+                )
+            }
+            SpatialElement::Motor(one) => {
+                names.push("About");
+                laws.push("Motor");
+                let link = one.link;
+                element(
+                    typed(
+                        "About<S>",
+                        format!("About {{ body: {}, axis_w: {} }}", link.body, vector(link.axis_w.as_slice())),
+                    ),
+                    typed("Motor<Drive<S>>", format!("Motor({})", drive(&one.law.0))),
+                    1,
+                )
+            }
+            SpatialElement::Pusher(one) => {
+                names.push("Along");
+                laws.push("Pusher");
+                let link = one.link;
+                element(
+                    typed(
+                        "Along<S>",
+                        format!(
+                            "Along {{ body: {}, lever: {}, axis_w: {} }}",
+                            link.body,
+                            vector(link.lever.as_slice()),
+                            vector(link.axis_w.as_slice())
+                        ),
+                    ),
+                    typed("Pusher<Drive<S>>", format!("Pusher({})", drive(&one.law.0))),
+                    2,
+                )
+            }
+        });
+    }
+    Ok(written)
+}

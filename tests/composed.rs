@@ -1,0 +1,111 @@
+//! The shipped mechanisms as composed types against the desk: what is written of them is current, and has the bits of the
+//! elements that are chosen at run time.
+
+use std::path::PathBuf;
+
+use slipfit::{
+    mechanism::{Mechanism, Mounts, planar, rust_source, spatial},
+    scene::{SceneFile, shipped},
+};
+use slipfit_core::{
+    SVector, integrator::Integrator, kernel::Kernel, mechanism::Mechanism as Mechanics, system::System,
+};
+use slipfit_problems::mechanisms;
+
+fn scene(name: &str) -> Mechanism {
+    SceneFile::parse(name, shipped(name).unwrap(), &[]).unwrap_or_else(|error| panic!("{error}")).mechanism.unwrap()
+}
+
+/// What a system of two scalars starts from.
+type Start<P, const D: usize> = (P, SVector<f64, D>);
+
+/// Takes `steps` steps by `I` of `one` and `other`, which must have the same bits all the time.
+fn same_bits<A, B, P, I, const D: usize>(one: A, other: B, (pose, velocity): Start<P, D>, step: f64, steps: u32)
+where
+    P: Copy + PartialEq + std::fmt::Debug,
+    A: Mechanics<f64, D, Pose = P, Memory: PartialEq + std::fmt::Debug>,
+    B: Mechanics<f64, D, Pose = P, Memory: PartialEq + std::fmt::Debug>,
+    I: Integrator,
+{
+    let (one, other) = (Kernel::<f64, _, I>::new(one, step).unwrap(), Kernel::<f64, _, I>::new(other, step).unwrap());
+    let (mut a, mut b) = (one.at_rest(pose), other.at_rest(pose));
+    (a.motion.velocity, b.motion.velocity) = (velocity, velocity);
+    for k in 0..steps {
+        let reports = (one.step(&mut a), other.step(&mut b));
+        assert_eq!(reports.0, reports.1, "step {k}");
+        assert_eq!((a.motion.pose, a.motion.velocity), (b.motion.pose, b.motion.velocity), "step {k}");
+    }
+    assert!(a.motion.velocity != velocity, "it moves");
+}
+
+#[test]
+fn what_is_written_is_current() {
+    for name in [
+        "four-bar",
+        "hatch",
+        "linear-guide",
+        "slider-crank",
+        "slider-crank-guide",
+        "telescopic-drawer",
+        "woodpecker-toy",
+    ] {
+        let file = format!("tests/problems/src/mechanisms/{}.rs", name.replace('-', "_"));
+        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(&file);
+        let written = std::fs::read_to_string(path).unwrap();
+        let command = format!("slipfit kernel host/scenes/{name}.toml -o {file}");
+        assert!(written == rust_source(&scene(name)).unwrap(), "not current, to be written by {command}");
+    }
+}
+
+/// The stick band (m/s) that stands for true stick, which no shipped mechanism has.
+const NO_STICK: f64 = 1.0;
+
+macro_rules! in_plane {
+    ($($test:ident: $name:ident;)*) => {$(
+        #[test]
+        fn $test() {
+            const D: usize = mechanisms::$name::DIMENSION;
+            let mechanism = scene(&stringify!($name).replace('_', "-"));
+            let mounts = Mounts::of(&mechanism).unwrap();
+            let gaps = mechanism.gaps_at(&[0.0]).unwrap();
+            let tree = planar::bodies::<D>(&mechanism, &mounts).unwrap();
+            let elements = planar::elements::<D>(&mechanism, &mounts, &gaps, NO_STICK).unwrap();
+            let chosen = System::new(tree, &elements[..]);
+            let composed = mechanisms::$name::unit(0.0f64).unwrap();
+            let start = mechanisms::$name::start::<f64>();
+            let (step, steps) = (f64::from(mechanisms::$name::STEP), mechanisms::$name::STEPS);
+            same_bits::<_, _, _, mechanisms::$name::Scheme, D>(composed, chosen, start, step, steps);
+        }
+    )*};
+}
+
+macro_rules! in_space {
+    ($($test:ident: $name:ident, $bodies:literal;)*) => {$(
+        #[test]
+        fn $test() {
+            const D: usize = mechanisms::$name::DIMENSION;
+            let mechanism = scene(&stringify!($name).replace('_', "-"));
+            let gaps = mechanism.gaps_at(&[0.0]).unwrap();
+            let bodies = spatial::bodies::<$bodies, D>(&mechanism).unwrap();
+            let elements = spatial::elements(&mechanism, &gaps, NO_STICK).unwrap();
+            let chosen = System::new(bodies, &elements[..]);
+            let composed = mechanisms::$name::unit(0.0f64).unwrap();
+            let start = mechanisms::$name::start::<f64>();
+            let (step, steps) = (f64::from(mechanisms::$name::STEP), mechanisms::$name::STEPS);
+            same_bits::<_, _, _, mechanisms::$name::Scheme, D>(composed, chosen, start, step, steps);
+        }
+    )*};
+}
+
+in_plane! {
+    a_slider_crank_has_the_desks_bits: slider_crank;
+    a_guided_slider_crank_has_the_desks_bits: slider_crank_guide;
+    a_four_bar_has_the_desks_bits: four_bar;
+    a_woodpecker_has_the_desks_bits: woodpecker_toy;
+}
+
+in_space! {
+    a_linear_guide_has_the_desks_bits: linear_guide, 1;
+    a_hatch_has_the_desks_bits: hatch, 1;
+    a_drawer_has_the_desks_bits: telescopic_drawer, 2;
+}

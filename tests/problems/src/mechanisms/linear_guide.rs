@@ -1,0 +1,89 @@
+// Linear guide on two rods: a mechanism for firmware, to be compiled against slipfit-core. SI units.
+
+use slipfit_core::{
+    ParameterError, SVector, Scalar, Vector3,
+    clearance::GapStatistics,
+    drive::Drive,
+    integrator::ImplicitEuler,
+    kernel::{Kernel, StateOf},
+    law::{Impact, Regularised, ThreeHalves},
+    pose::Pose,
+    system::{
+        Element, System,
+        law::{Contact, Pusher, Ring},
+        spatial::{Along, FreeBodies, Port, Rigid, Seat, Turned},
+    },
+};
+
+/// Number of coordinates.
+pub const DIMENSION: usize = 6;
+
+/// Step (s).
+pub const STEP: f32 = 0.001;
+
+/// Steps of the scene's run.
+pub const STEPS: u32 = 500;
+
+/// The scheme.
+pub type Scheme = ImplicitEuler<4>;
+
+/// The bodies.
+pub type Bodies<S> = FreeBodies<S, 1, 6>;
+
+/// What acts on them.
+pub type Elements<S> = ([Element<Turned<S>, Ring<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 6>; 8], Element<Along<S>, Pusher<Drive<S>>, 2>);
+
+/// A unit's type: what the mechanism does not have leaves no code.
+pub type Unit<S> = System<Bodies<S>, Elements<S>>;
+
+/// Gaps over the production, mean and standard deviation (m).
+pub const GAPS: [[f64; 2]; 4] = [
+    [5e-5, 5e-6], // left back
+    [5e-5, 5e-6], // right back
+    [5e-5, 5e-6], // left front
+    [5e-5, 5e-6], // right front
+];
+
+/// The unit of tolerance level `n`.
+///
+/// # Errors
+/// If a gap at that level, or another parameter, is out of bounds.
+pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
+    let s = S::from_f64;
+    let gaps = GAPS.map(|[mean, deviation]| GapStatistics { mean: s(mean), deviation: s(deviation) }.at(n));
+    let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(100000000.0))?, s(300.0), s(1e-5))?, friction: Regularised::new(s(0.3), s(0.001))? };
+    let bodies = FreeBodies::new([Rigid { mass: s(0.6), inertia_b: Vector3::new(s(0.0008), s(0.002), s(0.0014)), centre_w: Vector3::new(s(0.0), s(0.0), s(0.0)) }], Vector3::new(s(0.0), s(-9.81), s(0.0)))?;
+    let elements = ([
+        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(-0.04)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[0], radius: s(0.006), contact: contact_0 } },
+        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(-0.019999999999999997)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[0], radius: s(0.006), contact: contact_0 } },
+        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(-0.04)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[1], radius: s(0.006), contact: contact_0 } },
+        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(-0.019999999999999997)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[1], radius: s(0.006), contact: contact_0 } },
+        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(0.019999999999999997)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[2], radius: s(0.006), contact: contact_0 } },
+        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(0.04)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[2], radius: s(0.006), contact: contact_0 } },
+        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(0.019999999999999997)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[3], radius: s(0.006), contact: contact_0 } },
+        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(0.04)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[3], radius: s(0.006), contact: contact_0 } },
+    ], Element { link: Along { body: 0, lever: Vector3::new(s(0.01), s(0.0), s(0.0)), axis_w: Vector3::new(s(0.0), s(0.0), s(1.0)) }, law: Pusher(Drive { gain: s(200.0), ramp_start: s(0.05), ramp_end: s(0.25), speed: s(0.1), point_b: Vector3::new(s(0.01), s(0.0), s(0.0)) }.checked()?) });
+    Ok(System::new(bodies, elements))
+}
+
+/// Where and how fast the unit starts: pose and generalised velocities.
+pub fn start<S: Scalar>() -> ([Pose<S>; 1], SVector<S, 6>) {
+    let s = S::from_f64;
+    let pose = [Pose::nominal(); 1];
+    (pose, SVector::from([s(0.0), s(0.0), s(0.0), s(0.0), s(0.0), s(0.0)]))
+}
+
+/// A kernel and the state that it steps.
+pub type Predictor = (Kernel<f32, Unit<f32>, Scheme>, StateOf<f32, Unit<f32>, 6>);
+
+/// The kernel of the unit of tolerance level `n` and its state at the start.
+///
+/// # Errors
+/// If a gap at that level, or another parameter, is out of bounds.
+pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
+    let kernel = Kernel::new(unit(n)?, STEP)?;
+    let (pose, velocity) = start();
+    let mut state = kernel.at_rest(pose);
+    state.motion.velocity = velocity;
+    Ok((kernel, state))
+}

@@ -1,0 +1,23 @@
+//! The shipped mechanisms as composed types: what `slipfit kernel SCENE -o FILE.rs` writes of them, kept current by a test.
+
+/// Four-bar with play between coupler and rocker.
+#[rustfmt::skip]
+pub mod four_bar;
+/// Hatch on two hinges with play.
+#[rustfmt::skip]
+pub mod hatch;
+/// Linear guide on two rods.
+#[rustfmt::skip]
+pub mod linear_guide;
+/// Slider-crank with play in its big end.
+#[rustfmt::skip]
+pub mod slider_crank;
+/// Slider-crank with play in its guide.
+#[rustfmt::skip]
+pub mod slider_crank_guide;
+/// Telescopic drawer of two members.
+#[rustfmt::skip]
+pub mod telescopic_drawer;
+/// Woodpecker toy.
+#[rustfmt::skip]
+pub mod woodpecker_toy;

@@ -1,0 +1,90 @@
+// Slider-crank with a loose big end: a mechanism for firmware, to be compiled against slipfit-core. SI units.
+
+use slipfit_core::{
+    ParameterError, SVector, Scalar, Vector2, Vector3,
+    clearance::GapStatistics,
+    drive::Drive,
+    integrator::ImplicitEuler,
+    kernel::{Kernel, StateOf},
+    law::{Impact, Regularised, ThreeHalves},
+    system::{
+        Element, System,
+        law::{Contact, Journal, Motor},
+        planar::{Between, Frame, Kind, Path, PlanarTree, Point, Rigid, Topology, Turning},
+    },
+};
+
+/// Number of coordinates.
+pub const DIMENSION: usize = 3;
+
+/// Step (s).
+pub const STEP: f32 = 0.001;
+
+/// Steps of the scene's run.
+pub const STEPS: u32 = 500;
+
+/// The scheme.
+pub type Scheme = ImplicitEuler<4>;
+
+/// What the coordinates are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joints;
+
+impl Topology<3> for Joints {
+    #[inline(always)]
+    fn kind(&self, k: usize) -> Kind {
+        match k {
+            2 => Kind::Slide { on: None },
+            _ => Kind::Turn,
+        }
+    }
+}
+
+/// The bodies.
+pub type Bodies<S> = PlanarTree<S, 3, Joints, (Rigid<S, 3, Path<0b001, 0>>, (Rigid<S, 3, Path<0b011, 1>>, Rigid<S, 3, Path<0b100>>))>;
+
+/// What acts on them.
+pub type Elements<S> = (Element<Between<S, 3, Path<0b011, 1>, Path<0b100>>, Journal<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 4>, Element<Turning<Path<0b001, 0>, Frame>, Motor<Drive<S>>, 1>);
+
+/// A unit's type: what the mechanism does not have leaves no code.
+pub type Unit<S> = System<Bodies<S>, Elements<S>>;
+
+/// Gaps over the production, mean and standard deviation (m).
+pub const GAPS: [[f64; 2]; 1] = [
+    [0.0002, 2e-5], // big end
+];
+
+/// The unit of tolerance level `n`.
+///
+/// # Errors
+/// If a gap at that level, or another parameter, is out of bounds.
+pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
+    let s = S::from_f64;
+    let gaps = GAPS.map(|[mean, deviation]| GapStatistics { mean: s(mean), deviation: s(deviation) }.at(n));
+    let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(100000000.0))?, s(200.0), s(1e-5))?, friction: Regularised::new(s(0.1), s(0.001))? };
+    let bodies = PlanarTree::of(Joints, [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(1.0), s(0.0))], (Rigid { mass: s(0.3), inertia: s(0.0001), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.025), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, (Rigid { mass: s(0.21), inertia: s(0.00025), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.05), s(0.0)), Vector2::new(s(0.06), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.14), inertia: s(0.0001), centre: Point { carrier: Path, base: Vector2::new(s(0.17), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } })), Vector2::new(s(0.0), s(-9.81)))?;
+    let elements = (Element { link: Between { hole: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.05), s(0.0)), Vector2::new(s(0.12000000000000001), s(0.0)), Vector2::new(s(0.0), s(0.0))] }, pin: Point { carrier: Path, base: Vector2::new(s(0.17), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, law: Journal { clearance: gaps[0], radius: s(0.0095), contact: contact_0 } }, Element { link: Turning { body: Path, against: Path }, law: Motor(Drive { gain: s(0.2), ramp_start: s(0.0), ramp_end: s(0.1), speed: s(30.0), point_b: Vector3::new(s(0.0), s(0.0), s(0.0)) }.checked()?) });
+    Ok(System::new(bodies, elements))
+}
+
+/// Where and how fast the unit starts: pose and generalised velocities.
+pub fn start<S: Scalar>() -> ([[S; 2]; 3], SVector<S, 3>) {
+    let s = S::from_f64;
+    let pose = [[s(1.0), s(0.0)], [s(1.0), s(0.0)], [s(0.0), s(0.0)]];
+    (pose, SVector::from([s(0.0), s(0.0), s(0.0)]))
+}
+
+/// A kernel and the state that it steps.
+pub type Predictor = (Kernel<f32, Unit<f32>, Scheme>, StateOf<f32, Unit<f32>, 3>);
+
+/// The kernel of the unit of tolerance level `n` and its state at the start.
+///
+/// # Errors
+/// If a gap at that level, or another parameter, is out of bounds.
+pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
+    let kernel = Kernel::new(unit(n)?, STEP)?;
+    let (pose, velocity) = start();
+    let mut state = kernel.at_rest(pose);
+    state.motion.velocity = velocity;
+    Ok((kernel, state))
+}
