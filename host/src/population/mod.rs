@@ -34,8 +34,8 @@ pub use unit::UnitOutcome;
 /// Units that are simulated together; they share nothing but the work.
 const PIECE: usize = 256;
 
-/// Lanes of a pack with the instructions that every machine of the kind has, and with AVX2. The bits do not depend on it.
-const LANES: usize = 4;
+/// Lanes of a pack with AVX2. Elsewhere units are moved one by one: a pack of several would take longer to compile than it
+/// saves. The bits do not depend on it.
 #[cfg(target_arch = "x86_64")]
 const AVX2_LANES: usize = 8;
 
@@ -74,13 +74,13 @@ pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
         Simd::vectorize(avx2, Work::<AVX2_LANES> { course, slides, figures: &mut figures });
         return figures;
     }
-    simulate_in::<LANES>(course, slides)
+    one_by_one(course, slides)
 }
 
-/// The same with `W` lanes, in the instructions that every machine of the kind has.
-pub fn simulate_in<const W: usize>(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
+/// The same, one after the other.
+pub fn one_by_one(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     let mut figures = vec![Figures::NONE; slides.len()];
-    let work = Work::<W> { course, slides, figures: &mut figures };
+    let work = Work::<1> { course, slides, figures: &mut figures };
     if slides.first().is_some_and(laws::is_usual) {
         work.by::<ThreeHalvesRegularised>();
     } else {
