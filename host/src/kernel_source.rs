@@ -79,16 +79,7 @@ pub fn rust_source(scene: &Scene) -> String {
         ),
         _ => ("Frictionless", "Frictionless", "Frictionless".into(), "FrictionData::None".into()),
     };
-    let (scheme, scheme_type) = match scene.controller.integrator {
-        IntegratorKind::SemiImplicitEuler => ("SemiImplicitEuler", "SemiImplicitEuler"),
-        IntegratorKind::RungeKutta4 => ("RungeKutta4", "RungeKutta4"),
-        IntegratorKind::Rodas3 => ("Rodas3", "Rodas3"),
-        IntegratorKind::Rodas4 => ("Rodas4", "Rodas4"),
-        IntegratorKind::LinearlyImplicitEuler => ("ImplicitEuler", "ImplicitEuler<1>"),
-        IntegratorKind::ImplicitEuler => ("ImplicitEuler", "ImplicitEuler<4>"),
-        IntegratorKind::Sdirk2 => ("Sdirk2", "Sdirk2<4>"),
-        IntegratorKind::Extrapolated => ("Extrapolated", "Extrapolated<2, 4>"),
-    };
+    let (scheme, scheme_type) = scheme(scene.controller.integrator);
     let mut laws = [elastic, friction, "Impact"];
     laws.sort_unstable();
     let laws = laws.join(", ");
@@ -185,6 +176,20 @@ pub fn c_header(scene: &Scene) -> Result<String, CError> {
     field("drive_speed", &number(data.drive_speed));
     field("drive_point", &list(&data.drive_point_b));
     Ok(text + "};\n\n#endif\n")
+}
+
+/// Name and type of a scheme in core.
+pub(crate) fn scheme(kind: IntegratorKind) -> (&'static str, &'static str) {
+    match kind {
+        IntegratorKind::SemiImplicitEuler => ("SemiImplicitEuler", "SemiImplicitEuler"),
+        IntegratorKind::RungeKutta4 => ("RungeKutta4", "RungeKutta4"),
+        IntegratorKind::Rodas3 => ("Rodas3", "Rodas3"),
+        IntegratorKind::Rodas4 => ("Rodas4", "Rodas4"),
+        IntegratorKind::LinearlyImplicitEuler => ("ImplicitEuler", "ImplicitEuler<1>"),
+        IntegratorKind::ImplicitEuler => ("ImplicitEuler", "ImplicitEuler<4>"),
+        IntegratorKind::Sdirk2 => ("Sdirk2", "Sdirk2<4>"),
+        IntegratorKind::Extrapolated => ("Extrapolated", "Extrapolated<2, 4>"),
+    }
 }
 
 #[cfg(test)]

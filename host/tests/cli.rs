@@ -46,9 +46,9 @@ fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
     let of_slide = [
         "opening-force.svg",
         "opening-velocity.svg",
+        "population.svg",
         "report.html",
         "stroke-force.svg",
-        "population.svg",
         "stroke-velocity.svg",
         "sweep.csv",
         "table.bin",

@@ -125,15 +125,6 @@ const ROOT: &[Key] = &[
             key("axis"),
         ],
     ),
-    table(
-        "vary",
-        &[
-            table("friction", &[table("coefficient", DEVIATION)]),
-            table("contact", &[table("stiffness", DEVIATION), table("damping", DEVIATION)]),
-            table("slide", &[table("mass", DEVIATION), table("tilt_x", DEVIATION), table("tilt_z", DEVIATION)]),
-            table("drive", &[table("gain", DEVIATION), table("ramp_end", DEVIATION)]),
-        ],
-    ),
     table("mechanism", &[key("space"), key("gravity")]),
     table("body", &[key("name"), key("mass"), key("inertia"), key("centre"), key("angle"), key("spin"), key("speed")]),
     table(
@@ -198,6 +189,15 @@ const ROOT: &[Key] = &[
     table("allocate", &[key("yield")]),
     table("sum", &[key("name"), key("of")]),
     table("correlation", &[key("of"), key("coefficient")]),
+    table(
+        "vary",
+        &[
+            table("friction", &[table("coefficient", DEVIATION)]),
+            table("contact", &[table("stiffness", DEVIATION), table("damping", DEVIATION)]),
+            table("slide", &[table("mass", DEVIATION), table("tilt_x", DEVIATION), table("tilt_z", DEVIATION)]),
+            table("drive", &[table("gain", DEVIATION), table("ramp_end", DEVIATION)]),
+        ],
+    ),
 ];
 
 /// Notes every key below the root `node` that no scene has.

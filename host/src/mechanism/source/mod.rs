@@ -65,7 +65,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     let Parts { head, dimension, bodies, elements, module, pose, rates, .. } = &parts;
     let elements = nested(grouped(elements));
     let title = mechanism.title.split_whitespace().collect::<Vec<_>>().join(" ");
-    let (scheme, scheme_type) = scheme(mechanism.controller.integrator);
+    let (scheme, scheme_type) = crate::kernel_source::scheme(mechanism.controller.integrator);
     let list = |names: &[&'static str]| {
         let mut names = names.to_vec();
         names.sort_unstable();
@@ -155,20 +155,6 @@ fn write_gaps(text: &mut String, mechanism: &Mechanism) {
         let _ = writeln!(text, "    [{:?}, {:?}], // {}", gap.statistics.mean, gap.statistics.deviation, gap.name);
     }
     text.push_str("];\n\n");
-}
-
-/// Name and type of a scheme.
-fn scheme(kind: IntegratorKind) -> (&'static str, &'static str) {
-    match kind {
-        IntegratorKind::SemiImplicitEuler => ("SemiImplicitEuler", "SemiImplicitEuler"),
-        IntegratorKind::RungeKutta4 => ("RungeKutta4", "RungeKutta4"),
-        IntegratorKind::Rodas3 => ("Rodas3", "Rodas3"),
-        IntegratorKind::Rodas4 => ("Rodas4", "Rodas4"),
-        IntegratorKind::LinearlyImplicitEuler => ("ImplicitEuler", "ImplicitEuler<1>"),
-        IntegratorKind::ImplicitEuler => ("ImplicitEuler", "ImplicitEuler<4>"),
-        IntegratorKind::Sdirk2 => ("Sdirk2", "Sdirk2<4>"),
-        IntegratorKind::Extrapolated => ("Extrapolated", "Extrapolated<2, 4>"),
-    }
 }
 
 /// Neighbours of one type as arrays.
