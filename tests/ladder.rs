@@ -195,5 +195,10 @@ fn a_branch_on_numbers_is_found() {
 fn host_and_target_compute_the_same() {
     let on_host = printed(&mut ladder());
     let on_target = ON_TARGET.lines().filter(|line| !line.starts_with("instructions ") && !line.starts_with("stack "));
-    assert_eq!(on_host.lines().collect::<Vec<_>>(), on_target.collect::<Vec<_>>());
+    // Parameters with indices, which are as wide as the machine's pointers, have another size.
+    let computed =
+        |line: &str| line.split(", ").filter(|part| !part.contains("parameters")).collect::<Vec<_>>().join(", ");
+    let name = |line: &str| line.split(':').next().unwrap_or_default().to_owned();
+    let both = |line: &str| (name(line), computed(line));
+    assert_eq!(on_host.lines().map(both).collect::<Vec<_>>(), on_target.map(both).collect::<Vec<_>>());
 }

@@ -10,7 +10,6 @@ mod spatial;
 use std::fmt::Write;
 
 use super::{Joint, Mechanism, RunError};
-use crate::scheme::IntegratorKind;
 use laws::Contacts;
 
 /// Type and value of an expression.
