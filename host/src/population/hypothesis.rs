@@ -3,6 +3,7 @@
 //! All gaps moved by the same n, as eq. 9 moves them, against as many random combinations as far from nominal: random
 //! directions in the space of all gaps, each gap measured by its standard deviation, of the same root mean square.
 
+use rayon::prelude::*;
 use serde::Serialize;
 use slipfit_core::{
     sampling::stream::{Rng, derived, unit_stream},
@@ -42,7 +43,8 @@ pub struct Hypothesis {
 }
 
 impl Hypothesis {
-    /// Tries `directions` random combinations at each distance, against a motor's force `limit` (N).
+    /// Tries `directions` random combinations at each distance, against a motor's force `limit` (N), on all threads of the
+    /// current pool.
     ///
     /// # Errors
     /// See [`SimulateError`].
@@ -60,7 +62,8 @@ impl Hypothesis {
                 random: Share::new(failed, directions.max(1)),
             })
         };
-        Ok(Self { distances: DISTANCES.into_iter().map(at).collect::<Result<_, _>>()? })
+        let distances = DISTANCES.into_par_iter().with_max_len(1).map(at).collect::<Result<_, _>>()?;
+        Ok(Self { distances })
     }
 
     /// The answer in words.

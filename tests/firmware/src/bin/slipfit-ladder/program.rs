@@ -47,8 +47,8 @@ type Lever = Planar<f32, Journal<f32>, ThreeHalves<f32>, Frictionless, 1>;
 type Driven = AxisBody<f32, ThreeHalves<f32>, Slot<f32>, Drive<f32>>;
 type Ball = AxisBody<f32, Linear<f32>, Pad<f32>>;
 
-/// A step of mechanism `M`.
-type StepFn<M, const D: usize> = fn(&Kernel<f32, M, Scheme>, &mut StateOf<f32, M, D>) -> Report<f32>;
+/// A step of mechanism `M` by scheme `I`.
+type StepFn<M, I, const D: usize> = fn(&Kernel<f32, M, I>, &mut StateOf<f32, M, D>) -> Report<f32>;
 
 /// The step of one rung as a controller calls it: a function of its own, whose size can be told.
 macro_rules! rungs {
@@ -192,7 +192,7 @@ fn rung<M: Mechanism<f32, D>, const D: usize>(
     name: impl Display,
     mechanism: M,
     pose: M::Pose,
-    step: StepFn<M, D>,
+    step: StepFn<M, Scheme, D>,
 ) {
     let kernel = black_box(Kernel::new(mechanism, STEP).expect("the step is in bounds"));
     steps(machine, name, &kernel, kernel.at_rest(pose), STEPS, step);
@@ -205,7 +205,7 @@ fn steps<M: Mechanism<f32, D>, I: Integrator, const D: usize>(
     kernel: &Kernel<f32, M, I>,
     mut state: StateOf<f32, M, D>,
     steps: u32,
-    step: fn(&Kernel<f32, M, I>, &mut StateOf<f32, M, D>) -> Report<f32>,
+    step: StepFn<M, I, D>,
 ) {
     let (mut count, mut velocities) = (Count::default(), Fingerprint::default());
     while state.steps < steps {
