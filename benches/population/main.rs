@@ -4,6 +4,7 @@
 //! units, against the desk. Rates are compared in turns, because a shared machine changes its pace.
 
 #[path = "../work_precision/diffsol_peer.rs"]
+#[allow(dead_code, reason = "one of its solvers is enough here")]
 mod diffsol_peer;
 #[path = "../work_precision/entry.rs"]
 mod entry;
@@ -71,7 +72,11 @@ fn compare(name: &str, scene: &Scene, units: usize, peers: usize) {
         let (mut errors, mut time) = (Vec::new(), 0.0);
         for (slide, truth) in slides.iter().zip(&truth).take(count) {
             let slide = cd_rom::from_data(slide);
-            let run = diffsol_peer::solve(&slide, milliseconds, diffsol_peer::BDF, tolerances)?;
+            let Some(run) = diffsol_peer::solve(&slide, milliseconds, diffsol_peer::BDF, tolerances) else {
+                // It gave up.
+                errors.push(f64::INFINITY);
+                continue;
+            };
             let from = (scene.drive.ramp_start * 1e3).round() as usize;
             let peak = run.force[from..].iter().fold(f64::NEG_INFINITY, |most, force| most.max(*force));
             errors.push(error(*truth, [peak, run.force.last().copied()?]));
@@ -81,7 +86,10 @@ fn compare(name: &str, scene: &Scene, units: usize, peers: usize) {
     };
     let able = Tolerances::all().filter_map(|tolerances| Some((tolerances, solved(tolerances, peers)?)));
     let quickest = able.filter(|(_, (error, _))| *error <= ERROR).max_by(|one, other| one.1.1.total_cmp(&other.1.1));
-    let (tolerances, (of_peer, _)) = quickest.expect("diffsol meets the error with some of the tolerances");
+    let Some((tolerances, (of_peer, _))) = quickest else {
+        println!("{name}: diffsol meets the error with none of the tolerances; slipfit {:.0} units/s", lanes());
+        return;
+    };
     let mut turns: Vec<(f64, f64)> = (0..TURNS).filter_map(|_| Some((lanes(), solved(tolerances, peers)?.1))).collect();
     turns.sort_by(|one, other| (one.0 / one.1).total_cmp(&(other.0 / other.1)));
     let (ours, peer) = turns[turns.len() / 2];
