@@ -73,7 +73,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     levels: LevelArguments,
     /// Units of the production to simulate one by one; `slipfit population` tells more of them.
-    #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     units: u64,
     #[command(flatten)]
     threads: ThreadArguments,

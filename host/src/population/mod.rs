@@ -32,7 +32,7 @@ use production::{Drawn, Production};
 pub use unit::UnitOutcome;
 
 /// Units that are simulated together; they share nothing but the work.
-const PIECE: usize = 256;
+const PIECE: usize = 128;
 
 /// Lanes of a pack with AVX2. Elsewhere units are moved one by one: a pack of several would take longer to compile than it
 /// saves. The bits do not depend on it.
