@@ -80,6 +80,11 @@ impl std::fmt::Display for Verdict {
 }
 
 impl Verdict {
+    /// Whether the unit does not do its job. Without a verdict nobody knows.
+    pub fn is_malfunction(self) -> bool {
+        matches!(self, Self::Crawls | Self::Jammed)
+    }
+
     /// Of a unit that moves with `share` of its command at the end; none if it had no command, or it was not `over`.
     pub fn of(share: f64, over: bool) -> Self {
         if !over || share.is_nan() {

@@ -124,3 +124,21 @@ fn a_production_without_variation_is_one_unit() {
     assert_eq!(share_over(&(force * 1.001).to_string()).1, 0.0);
     assert_eq!(share_over(&(force * 0.999).to_string()).1, 1.0);
 }
+
+/// Where the ramp is not over nobody knows whether a unit does its job, and before it there is no force.
+#[test]
+fn what_is_not_known_is_no_malfunction() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |options: &[&str]| {
+        json(folder.path(), &[&["population", "--units", "30", "--opening"][..], options].concat())["statistics"]
+            .clone()
+    };
+    let opening = of(&[]);
+    assert_eq!(
+        (opening["malfunctions"]["units"].as_u64(), opening["undecided"]["units"].as_u64()),
+        (Some(0), Some(30))
+    );
+    assert_eq!(of(&["--force-limit", "0.01"])["malfunctions"]["units"], 30);
+    let before = of(&["--set", "run.duration=20"]);
+    assert!(before["peak_force"].is_null(), "{before}");
+}

@@ -6,7 +6,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, given, print, print_json, progress, text_table, warn,
+    Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, given, print, print_json, progress,
+    simulate::why_undecided, text_table, warn,
 };
 use crate::{
     files,
@@ -75,7 +76,7 @@ const DRIVERS: usize = 5;
 struct LevelReport {
     n: f64,
     verdict: Verdict,
-    peak_force_n: f64,
+    peak_force_n: Option<f64>,
     /// Share of the population that needs less force.
     share_below: f64,
 }
@@ -172,7 +173,7 @@ impl Arguments {
 
     fn find(&self, scene: &Scene, production: &Production, done: impl Fn(u64) + Sync) -> Result<Found, Failure> {
         let population = Population::study(scene, production, self.units, self.force_limit, done)?;
-        let below = |force: f64| {
+        let below = |force: Option<f64>| {
             let count = population.units.iter().filter(|unit| unit.outcome.peak_force < force).count();
             count as f64 / population.units.len().max(1) as f64
         };
@@ -203,6 +204,9 @@ impl Arguments {
             if share.units > 0 {
                 let _ = writeln!(text, "  {name:14}{}", percent(&share));
             }
+        }
+        if undecided.units > 0 {
+            let _ = writeln!(text, "                undecided{}", why_undecided(scene, Verdict::Undecided));
         }
         if let (Some(share), Some(limit)) = (over_limit, self.force_limit) {
             let _ = writeln!(text, "  over {limit} N {}", percent(&share));
@@ -236,7 +240,7 @@ impl Arguments {
                     unit.number.to_string(),
                     level((tightness(scene, &unit.gaps) * 100.0).round() / 100.0),
                     outcome.verdict.to_string(),
-                    fixed(outcome.peak_force, 3),
+                    or_dash(outcome.peak_force, |force| fixed(force, 3)),
                     fixed(outcome.final_velocity * 1e3, 3),
                     fixed(outcome.end.z * 1e3, 2),
                     or_dash(outcome.breakaway, |t| fixed(t * 1e3, 1)),
@@ -288,11 +292,12 @@ fn levels(levels: &[LevelReport]) -> String {
 fn worst(units: &[Unit]) -> Vec<&Unit> {
     let mut sorted: Vec<&Unit> = units.iter().collect();
     sorted.sort_by(|one, other| {
-        let key = |unit: &Unit| (unit.outcome.verdict == Verdict::Runs, unit.outcome.end.z);
+        let key = |unit: &Unit| (!unit.outcome.verdict.is_malfunction(), unit.outcome.end.z);
         let ((runs, z), (other_runs, other_z)) = (key(one), key(other));
-        runs.cmp(&other_runs)
-            .then(z.total_cmp(&other_z))
-            .then(other.outcome.peak_force.total_cmp(&one.outcome.peak_force))
+        runs.cmp(&other_runs).then(z.total_cmp(&other_z)).then_with(|| {
+            let force = |unit: &Unit| unit.outcome.peak_force.unwrap_or(f64::NEG_INFINITY);
+            force(other).total_cmp(&force(one))
+        })
     });
     sorted.truncate(WORST);
     sorted
@@ -315,7 +320,7 @@ fn units_csv(scene: &Scene, units: &[Unit]) -> Result<Vec<u8>, Failure> {
             tightness(scene, &unit.gaps).to_string(),
             verdict.to_string(),
             optional(breakaway.map(|t| t * 1e3)),
-            peak_force.to_string(),
+            optional(peak_force),
             optional(settled_force),
             (final_velocity * 1e3).to_string(),
             (end.t * 1e3).to_string(),

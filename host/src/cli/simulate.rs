@@ -52,6 +52,9 @@ pub(super) struct Arguments {
     /// Seed of that production.
     #[arg(long, default_value_t = 1, requires = "unit")]
     seed: u64,
+    /// Correlation of any two gaps of that production that have a mean and a deviation in the scene.
+    #[arg(long, value_name = "RHO", default_value_t = 0.0, requires = "unit", allow_hyphen_values = true)]
+    correlation: f64,
     /// Writes t,vz,force,x,y,z in s, m/s, N, m, m, m.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -233,7 +236,7 @@ impl Arguments {
         overrides: &[Override],
     ) -> Result<(Scene, [f64; CONTACTS]), Failure> {
         let (_, product) = self.scene.load_with_product(overrides)?;
-        let production = Production::new(&scene, product.as_ref(), 0.0, self.seed)
+        let production = Production::new(&scene, product.as_ref(), self.correlation, self.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
         if number >= MOST_UNITS {
             return Err(Failure::Input(format!("--unit {number}: allowed is 0 to {}", MOST_UNITS - 1)));

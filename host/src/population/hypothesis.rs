@@ -29,8 +29,12 @@ pub struct AtDistance {
     pub distance: f64,
     /// All gaps tighter by that: the unit of level n.
     pub tight: Verdict,
+    /// Whether that one malfunctions.
+    pub tight_malfunctions: bool,
     /// All gaps looser by that: the unit of level −n.
     pub loose: Verdict,
+    /// Whether that one malfunctions.
+    pub loose_malfunctions: bool,
     /// Random combinations that malfunction.
     pub random: Share,
 }
@@ -50,15 +54,17 @@ impl Hypothesis {
     /// See [`SimulateError`].
     pub fn test(scene: &Scene, directions: u64, seed: u64, limit: Option<f64>) -> Result<Self, SimulateError> {
         let at = |distance: f64| {
-            let [loose, tight] = [-distance, distance].map(|n| at_levels(scene, &[n]));
-            let (loose, tight) = (loose?, tight?);
+            let sides = at_levels(scene, &[-distance, distance])?;
+            let [loose, tight] = [0, 1].map(|i| (sides[i].outcome.verdict, malfunctions(&sides[i], limit)));
             let gaps = (0..directions).map(|i| combination(scene, distance, seed, i)).collect();
             let random = units(scene, &as_drawn(scene, gaps, 0..directions))?;
             let failed = random.iter().filter(|unit| malfunctions(unit, limit)).count() as u64;
             Ok::<_, SimulateError>(AtDistance {
                 distance,
-                tight: tight[0].outcome.verdict,
-                loose: loose[0].outcome.verdict,
+                tight: tight.0,
+                tight_malfunctions: tight.1,
+                loose: loose.0,
+                loose_malfunctions: loose.1,
                 random: Share::new(failed, directions.max(1)),
             })
         };
@@ -68,11 +74,10 @@ impl Hypothesis {
 
     /// The answer in words.
     pub fn verdict(&self) -> String {
-        let side = |of: fn(&AtDistance) -> Verdict| -> f64 {
-            let failed = self.distances.iter().filter(|at| of(at) != Verdict::Runs).count();
-            failed as f64 / self.distances.len() as f64
+        let side = |failed: fn(&&AtDistance) -> bool| -> f64 {
+            self.distances.iter().filter(failed).count() as f64 / self.distances.len() as f64
         };
-        let (tight, loose) = (side(|at| at.tight), side(|at| at.loose));
+        let (tight, loose) = (side(|at| at.tight_malfunctions), side(|at| at.loose_malfunctions));
         let random = self.distances.iter().map(|at| at.random.share).sum::<f64>() / self.distances.len() as f64;
         let percent = |share: f64| format!("{:.0} %", share * 100.0);
         let word = |share: f64| match share {

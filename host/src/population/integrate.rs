@@ -59,10 +59,9 @@ pub fn integrate<L: Laws, const W: usize>(course: &Course, units: &[SlideData<f6
                     lanes.load(lane, &mut next, units);
                 }
             }
-            // Only what was validated is loaded.
-            if let Ok(loaded) = L::slide(&lanes.data) {
-                slide = loaded;
-            }
+            // Only what was validated is loaded; without it units have no figures, and go to the desk.
+            let Ok(loaded) = L::slide(&lanes.data) else { return };
+            slide = loaded;
         }
     }
 }

@@ -47,7 +47,7 @@ pub fn forces(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<Strin
             .iter()
             .step_by(every)
             .filter(|(_, unit)| unit.outcome.verdict == verdict)
-            .map(|(n, unit)| (*n, unit.outcome.peak_force))
+            .filter_map(|(n, unit)| Some((*n, unit.outcome.peak_force?)))
             .collect(),
     };
     let [low, high] =
@@ -115,14 +115,10 @@ fn with_interval(shares: &[(f64, Share)], label: &str) -> Vec<Series> {
 /// [`PlotError`], if there is nothing to show.
 pub fn hypothesis(scene: &Scene, tested: &Hypothesis) -> Result<String, PlotError> {
     let shares: Vec<(f64, Share)> = tested.distances.iter().map(|at| (at.distance, at.random)).collect();
-    let side = |label: &str, shape, of: fn(&AtDistance) -> Verdict| Markers {
+    let side = |label: &str, shape, failed: fn(&AtDistance) -> bool| Markers {
         label: label.into(),
         shape,
-        points: tested
-            .distances
-            .iter()
-            .map(|at| (at.distance, if of(at) == Verdict::Runs { 0.0 } else { 100.0 }))
-            .collect(),
+        points: tested.distances.iter().map(|at| (at.distance, if failed(at) { 100.0 } else { 0.0 })).collect(),
     };
     line_chart(&Chart {
         title: scene.title.clone(),
@@ -132,8 +128,8 @@ pub fn hypothesis(scene: &Scene, tested: &Hypothesis) -> Result<String, PlotErro
             y_label: "share that malfunctions (%)".into(),
             series: with_interval(&shares, "random"),
             markers: vec![
-                side("tightest", Shape::Triangle, |at| at.tight),
-                side("loosest", Shape::Square, |at| at.loose),
+                side("tightest", Shape::Triangle, |at| at.tight_malfunctions),
+                side("loosest", Shape::Square, |at| at.loose_malfunctions),
             ],
             ..Panel::default()
         }],

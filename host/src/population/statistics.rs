@@ -101,9 +101,14 @@ pub struct Statistics {
     pub at_desk: u64,
 }
 
-/// Whether a unit malfunctions: it does not run, or needs more than the `limit` (N).
+/// Whether a unit malfunctions: it crawls, jams, or needs more than the `limit` (N).
 pub fn malfunctions(unit: &Unit, limit: Option<f64>) -> bool {
-    unit.outcome.verdict != Verdict::Runs || limit.is_some_and(|limit| unit.outcome.peak_force > limit)
+    unit.outcome.verdict.is_malfunction() || is_over(unit, limit)
+}
+
+/// Whether a unit needs more than the `limit` (N).
+fn is_over(unit: &Unit, limit: Option<f64>) -> bool {
+    unit.outcome.peak_force.zip(limit).is_some_and(|(force, limit)| force > limit)
 }
 
 impl Statistics {
@@ -121,10 +126,10 @@ impl Statistics {
             jammed: verdict(Verdict::Jammed),
             undecided: verdict(Verdict::Undecided),
             malfunctions: failed,
-            over_limit: limit.map(|limit| Share::new(count(&|unit| unit.outcome.peak_force > limit), all)),
+            over_limit: limit.map(|limit| Share::new(count(&|unit| is_over(unit, Some(limit))), all)),
             sigma_level: failed.sigma_level(),
-            peak_force: Spread::new(units.iter().map(|unit| unit.outcome.peak_force)),
-            running_force: Spread::new(running.map(|unit| unit.outcome.peak_force)),
+            peak_force: Spread::new(units.iter().filter_map(|unit| unit.outcome.peak_force)),
+            running_force: Spread::new(running.filter_map(|unit| unit.outcome.peak_force)),
             breakaway: Spread::new(units.iter().filter_map(|unit| unit.outcome.breakaway)),
             final_velocity: Spread::new(units.iter().map(|unit| unit.outcome.final_velocity)),
             at_desk: count(&|unit| unit.outcome.at_desk),

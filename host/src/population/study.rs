@@ -42,9 +42,9 @@ impl Population {
         let mut drivers = [Drivers::new(&pilot), Drivers::new(&pilot)];
         let mut units = Vec::new();
         simulate_units(scene, production, 0..count, done, |drawn, piece| {
-            let of = |figure: &dyn Fn(&Unit) -> f64| piece.iter().map(|unit| Some(figure(unit))).collect::<Vec<_>>();
+            let of = |figure: &dyn Fn(&Unit) -> Option<f64>| piece.iter().map(figure).collect::<Vec<_>>();
             let figures =
-                [of(&|unit| unit.outcome.peak_force), of(&|unit| f64::from(u8::from(malfunctions(unit, limit))))];
+                [of(&|unit| unit.outcome.peak_force), of(&|unit| Some(f64::from(u8::from(malfunctions(unit, limit)))))];
             for (drivers, figures) in drivers.iter_mut().zip(&figures) {
                 drivers.add(drawn.numbers.start, &drawn.variables, figures);
             }

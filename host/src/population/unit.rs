@@ -37,8 +37,8 @@ pub struct UnitOutcome {
     pub verdict: Verdict,
     /// Breakaway time (s), if the unit breaks away.
     pub breakaway: Option<f64>,
-    /// Greatest force from the ramp's start on (N).
-    pub peak_force: f64,
+    /// Greatest force from the ramp's start on (N); none if the run ends before.
+    pub peak_force: Option<f64>,
     /// Mean force over the last 20 ms (N), if it varies by less than 1 %.
     pub settled_force: Option<f64>,
     /// Velocity at the end (m/s).
@@ -99,7 +99,9 @@ fn slide(scene: &Scene, drawn: &Drawn, i: usize, course: &Course) -> Result<Slid
         data.friction = FrictionData::Regularised { coefficient, stick_band };
     }
     let number = drawn.numbers.start + i as u64;
-    AnySlide::new(&data).map_err(|error| SimulateError::Parameter(format!("unit {number}: {error}")))?;
+    // In single precision, in which it is simulated.
+    AnySlide::new(&data.cast(|x| x as f32))
+        .map_err(|error| SimulateError::Parameter(format!("unit {number}: {error}")))?;
     Ok(data)
 }
 
@@ -119,7 +121,7 @@ fn outcome(scene: &Scene, slide: &SlideData<f64>, figures: &Figures) -> UnitOutc
     UnitOutcome {
         verdict: Verdict::of(share, over || at_end),
         breakaway: number(figures.breakaway),
-        peak_force: f64::from(figures.peak_force),
+        peak_force: number(figures.peak_force),
         settled_force: number(figures.settled_force),
         final_velocity: f64::from(figures.final_velocity),
         end: Moment { t: f64::from(figures.end), z: f64::from(figures.travel) },
@@ -143,7 +145,7 @@ fn at_desk(scene: &Scene, drawn: &Drawn, i: usize, found: UnitOutcome) -> Result
     Ok(UnitOutcome {
         verdict: outcome.verdict,
         breakaway: outcome.breakaway,
-        peak_force: outcome.peak_force.unwrap_or(found.peak_force),
+        peak_force: outcome.peak_force,
         settled_force: outcome.settled_force,
         final_velocity: outcome.final_velocity,
         end: outcome.end,
