@@ -17,6 +17,13 @@ impl<S: Scalar> GapStatistics<S> {
     pub fn at(&self, n: S) -> S {
         self.mean - n * self.deviation
     }
+
+    /// The tolerance level at which the gap is `gap` (m): (x − q)/σ, eq. 9 the other way round. Not finite where the gap
+    /// does not vary.
+    #[inline(always)]
+    pub fn level(&self, gap: S) -> S {
+        (self.mean - gap) / self.deviation
+    }
 }
 
 /// The paper's three classes of a gap.

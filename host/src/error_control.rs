@@ -24,10 +24,9 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// `force` (N), and 3 nm of position for each 0.1 mN: errors of place last, and between tight contacts they cost more
-    /// force later than those of velocity do now.
+    /// `force` (N), and what [`PLACE`] allows with it.
     pub fn of_force(force: f64) -> Self {
-        Self { force, position: force * 3e-5 }
+        Self { force, position: force * PLACE }
     }
 }
 
@@ -101,20 +100,27 @@ pub enum Stopped {
     Interrupted,
 }
 
-/// Least and greatest step (s).
-const STEPS: [f64; 2] = [1e-12, 0.02];
+/// Error of place (m) allowed with 1 N of error of force: 3 nm for each 0.1 mN. Errors of place last, and between tight contacts
+/// they cost more force later than those of velocity do now.
+pub const PLACE: f64 = 3e-5;
+
+/// Least step (s).
+const LEAST_STEP: f64 = 1e-12;
+
+/// Greatest step (s).
+pub const GREATEST_STEP: f64 = 0.02;
 
 /// More steps than any scene takes that can be solved; beyond, the step has stalled.
 const STEPS_MOST: u32 = 2_000_000;
 
 /// How much shorter than the estimate allows a step is.
-const SAFETY: f64 = 0.8;
+pub const SAFETY: f64 = 0.8;
 
 /// How much the next step may be shorter and longer. Contacts close and open too suddenly for steps that grow faster.
-const CHANGES: [f64; 2] = [0.2, 3.0];
+pub const CHANGES: [f64; 2] = [0.2, 3.0];
 
 /// First step (s).
-const FIRST_STEP: f64 = 2e-5;
+pub const FIRST_STEP: f64 = 2e-5;
 
 /// Steps between two looks at whether somebody asked to stop.
 const STEPS_PER_LOOK: u32 = 256;
@@ -144,8 +150,8 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, D>, const D: usize>(
         // A step whose estimate is not a number is the worst of all.
         let error = Some(error(&step, length)).filter(|error| error.is_finite()).unwrap_or(1e12);
         let factor = (SAFETY / root(error.max(1e-12), I::ORDER)).clamp(CHANGES[0], CHANGES[1]);
-        h = (length * factor).clamp(STEPS[0], STEPS[1]);
-        if tried >= STEPS_MOST || (error > 1.0 && length <= STEPS[0]) {
+        h = (length * factor).clamp(LEAST_STEP, GREATEST_STEP);
+        if tried >= STEPS_MOST || (error > 1.0 && length <= LEAST_STEP) {
             return Err(Stopped::Unsolved(t));
         }
         if error > 1.0 {

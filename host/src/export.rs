@@ -1,9 +1,12 @@
 //! Results as CSV.
 
+use slipfit_core::slide::ABSENT;
+
 use crate::{
     mechanism::Samples,
     number::ten_digits,
     outcome::{Moment, Trajectory},
+    population::{Unit, picture::tightness},
     precision,
     scene::Scene,
     stability,
@@ -34,6 +37,46 @@ pub fn rows_csv(samples: &Samples) -> anyhow::Result<Vec<u8>> {
     writer.write_record(&samples.columns)?;
     for row in &samples.rows {
         writer.write_record(row.iter().map(|x| if x.is_nan() { String::new() } else { ten_digits(*x) }))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// Every unit of a population, one line each: number, joint tightness n, figures and gaps, ten digits; empty where there is none.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn population_csv(scene: &Scene, units: &[Unit]) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let figures = [
+        "unit",
+        "n",
+        "breakaway_s",
+        "peak_force_N",
+        "settled_force_N",
+        "final_velocity_m_per_s",
+        "end_s",
+        "travel_m",
+        "verdict",
+        "at_desk",
+    ];
+    let gaps = scene.contact_names().map(|name| format!("{name} (m)"));
+    writer.write_record(figures.into_iter().map(str::to_owned).chain(gaps))?;
+    for Unit { number, gaps, outcome } in units {
+        let optional = |value: Option<f64>| value.map_or(String::new(), ten_digits);
+        let own = [
+            number.to_string(),
+            ten_digits(tightness(scene, gaps)),
+            optional(outcome.breakaway),
+            optional(outcome.peak_force),
+            optional(outcome.settled_force),
+            ten_digits(outcome.final_velocity),
+            ten_digits(outcome.end.t),
+            ten_digits(outcome.end.z),
+            outcome.verdict.to_string(),
+            outcome.at_desk.to_string(),
+        ];
+        let gaps = gaps.iter().map(|gap| optional((*gap != ABSENT).then_some(*gap)));
+        writer.write_record(own.into_iter().chain(gaps))?;
     }
     Ok(writer.into_inner()?)
 }

@@ -242,17 +242,6 @@ impl Observer {
         self.tips.get_or_insert(Moment { t, z });
     }
 
-    /// The mean force (N) over the window, if it varies by less than 1 %.
-    fn settled(&self) -> Option<f64> {
-        let forces = || self.window.iter().map(|(_, force)| *force);
-        let (least, greatest) = (forces().reduce(f64::min)?, forces().reduce(f64::max)?);
-        let pairs = || self.window.iter().zip(self.window.iter().skip(1));
-        let duration: f64 = pairs().map(|(one, next)| next.0 - one.0).sum();
-        let sum: f64 = pairs().map(|(one, next)| (next.0 - one.0) * (one.1 + next.1) / 2.0).sum();
-        let mean = if duration > 0.0 { sum / duration } else { least };
-        (greatest - least < 0.01 * mean.abs()).then_some(mean)
-    }
-
     /// The figures of the run, which ended with the last instant observed.
     pub fn outcome(&self) -> Outcome {
         let Instant { t, vz, z, .. } = self.last.unwrap_or(Instant { t: 0.0, vz: 0.0, force: 0.0, z: 0.0 });
@@ -266,7 +255,7 @@ impl Observer {
         Outcome {
             breakaway: self.breakaway,
             peak_force: self.peak,
-            settled_force: self.settled(),
+            settled_force: settled(self.window.iter().copied()),
             final_velocity: vz,
             end: Moment { t, z },
             stroke_reached: is_at_end,
@@ -276,6 +265,17 @@ impl Observer {
             verdict,
         }
     }
+}
+
+/// The mean force (N) over ascending times (s), each with its force, if it varies by less than 1 %.
+pub fn settled(window: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
+    let forces = || window.clone().map(|(_, force)| force);
+    let (least, greatest) = (forces().reduce(f64::min)?, forces().reduce(f64::max)?);
+    let pairs = || window.clone().zip(window.clone().skip(1));
+    let duration: f64 = pairs().map(|(one, next)| next.0 - one.0).sum();
+    let sum: f64 = pairs().map(|(one, next)| (next.0 - one.0) * (one.1 + next.1) / 2.0).sum();
+    let mean = if duration > 0.0 { sum / duration } else { least };
+    (greatest - least < 0.01 * mean.abs()).then_some(mean)
 }
 
 #[cfg(test)]

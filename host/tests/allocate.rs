@@ -1,24 +1,12 @@
 //! `slipfit allocate` as a user meets it.
 
-use std::{
-    path::Path,
-    process::{Command, Output},
-};
+mod common;
+
+use std::path::Path;
+
+use common::{json, slipfit, stdout};
 
 use serde_json::Value;
-
-fn slipfit(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn json(folder: &Path, arguments: &[&str]) -> Value {
-    serde_json::from_str(&stdout(&slipfit(folder, arguments))).unwrap()
-}
 
 fn refused(folder: &Path, arguments: &[&str], code: i32) -> String {
     let output = slipfit(folder, arguments);

@@ -1,22 +1,10 @@
 //! The program as a user meets it.
 
-use std::{
-    path::Path,
-    process::{Command, Output},
-};
+mod common;
 
-fn slipfit(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder).args(arguments).output().unwrap()
-}
+use std::{path::Path, process::Command};
 
-fn stdout(output: &Output) -> String {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn json(folder: &Path, arguments: &[&str]) -> serde_json::Value {
-    serde_json::from_str(&stdout(&slipfit(folder, arguments))).unwrap()
-}
+use common::{json, slipfit, stdout};
 
 fn files(folder: &Path) -> Vec<String> {
     let mut names: Vec<_> =

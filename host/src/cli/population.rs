@@ -10,6 +10,7 @@ use super::{
     simulate::why_undecided, text_table, warn,
 };
 use crate::{
+    export::population_csv,
     files,
     number::{fixed, level, or_dash},
     outcome::Verdict,
@@ -132,7 +133,7 @@ impl Arguments {
         bar.finish_and_clear();
         let found = found?;
         if let Some(path) = &self.csv {
-            files::write(path, &units_csv(&scene, &found.population.units)?)?;
+            files::write(path, &population_csv(&scene, &found.population.units)?)?;
         }
         if let Some(path) = &self.plot {
             let svg =
@@ -301,34 +302,4 @@ fn worst(units: &[Unit]) -> Vec<&Unit> {
     });
     sorted.truncate(WORST);
     sorted
-}
-
-/// Every unit: number, tightness, figures, and gaps in mm.
-fn units_csv(scene: &Scene, units: &[Unit]) -> Result<Vec<u8>, Failure> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let figures =
-        ["unit", "n", "verdict", "breakaway_ms", "peak_N", "settled_N", "final_mm_s", "end_ms", "travel_mm", "desk"];
-    let gaps = scene.contact_names().map(|name| format!("{name}_mm"));
-    let failed = |error: csv::Error| Failure::Work(anyhow::Error::from(error));
-    writer.write_record(figures.into_iter().map(str::to_owned).chain(gaps)).map_err(failed)?;
-    for unit in units {
-        let UnitOutcome { verdict, breakaway, peak_force, settled_force, final_velocity, end, at_desk, .. } =
-            unit.outcome;
-        let optional = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-        let own = [
-            unit.number.to_string(),
-            tightness(scene, &unit.gaps).to_string(),
-            verdict.to_string(),
-            optional(breakaway.map(|t| t * 1e3)),
-            optional(peak_force),
-            optional(settled_force),
-            (final_velocity * 1e3).to_string(),
-            (end.t * 1e3).to_string(),
-            (end.z * 1e3).to_string(),
-            u8::from(at_desk).to_string(),
-        ];
-        let gaps = unit.gaps.iter().map(|gap| (gap * 1e3).to_string());
-        writer.write_record(own.into_iter().chain(gaps)).map_err(failed)?;
-    }
-    writer.into_inner().map_err(|error| Failure::Work(anyhow::Error::msg(error.to_string())))
 }

@@ -244,10 +244,8 @@ impl Arguments {
         let first = number - number % LANES as u64;
         let drawn = production.draw(first..number + 1);
         let i = (number - first) as usize;
-        let mut n = [0.0; CONTACTS];
-        for ((n, gap), of) in n.iter_mut().zip(&drawn.gaps[i]).zip(scene.pins.iter().flat_map(|pin| pin.gaps)) {
-            *n = of.filter(|of| of.deviation > 0.0).map_or(0.0, |of| (of.mean - gap) / of.deviation);
-        }
+        // What does not vary has any level.
+        let n = scene.levels_of(&drawn.gaps[i]).map(Option::unwrap_or_default);
         Ok((scene_of(&scene, &drawn, i), n))
     }
 

@@ -3,7 +3,7 @@
 use slipfit_core::{Scalar, slide::CONTACTS};
 
 use super::pack::Pack;
-use crate::outcome::{BREAKAWAY_SPEED, SETTLED_WINDOW};
+use crate::outcome::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled};
 
 /// Figures of one unit, in SI units. Speeds, forces and travel count along the commanded direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -201,11 +201,6 @@ impl Window {
             .collect();
         marks.push((end, f64::from(force)));
         marks.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let forces = || marks.iter().map(|(_, force)| *force);
-        let (least, greatest) = (forces().fold(f64::INFINITY, f64::min), forces().fold(f64::NEG_INFINITY, f64::max));
-        let duration = end - marks[0].0;
-        let sum: f64 = marks.windows(2).map(|pair| (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1) / 2.0).sum();
-        let mean = if duration > 0.0 { sum / duration } else { least };
-        if greatest - least < 0.01 * mean.abs() { mean as f32 } else { f32::NAN }
+        settled(marks.iter().copied()).map_or(f32::NAN, |mean| mean as f32)
     }
 }

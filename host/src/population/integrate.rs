@@ -6,14 +6,16 @@
 use slipfit_core::{
     Scalar,
     integrator::{Integrator, Rodas3},
+    law::{Elastic, Friction},
     menu::SlideData,
     slide::Slide,
 };
 
+use crate::error_control::{CHANGES, FIRST_STEP, GREATEST_STEP, PLACE, SAFETY};
+
 use super::{
     figures::{Ends, Figures, Watch},
     lane::{Motions, at_rest, each_number, put},
-    laws::Laws,
     pack::Pack,
 };
 
@@ -28,30 +30,29 @@ pub struct Course {
     pub tolerance: f64,
 }
 
-/// Least, first and greatest step (s). Single precision resolves no shorter ones.
-const STEPS: [f32; 3] = [1e-9, 2e-5, 0.02];
-/// How much shorter than the estimate allows a step is, and bounds of its change.
-const SAFETY: f32 = 0.8;
-const CHANGES: [f32; 2] = [0.2, 3.0];
-/// Position error (m) allowed with 1 N of force error; see [`crate::error_control::Tolerance::of_force`].
-const PLACE: f64 = 3e-5;
+/// Least step (s): single precision resolves no shorter ones.
+const LEAST_STEP: f32 = 1e-9;
 /// How far (m) from the end of its stroke a unit may stop.
 const BEYOND: f64 = 1e-7;
 /// Steps after which a unit has stalled.
 const MOST_STEPS: u32 = 200_000;
 
-/// Simulates all `units` and writes what each did to `figures`, of the same length.
-///
-/// A unit whose parameters are out of bounds has no figures.
+/// Simulates all `units`, slides that `load` makes of their parameters, and writes what each did to `figures`, of the same
+/// length. Where `load` makes none there are no figures.
 #[inline(always)]
-pub fn integrate<L: Laws, const W: usize>(course: &Course, units: &[SlideData<f64>], figures: &mut [Figures]) {
+pub fn integrate<const W: usize, E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>>(
+    course: &Course,
+    units: &[SlideData<f64>],
+    figures: &mut [Figures],
+    load: impl Fn(&SlideData<Pack<W>>) -> Option<Slide<Pack<W>, E, F>>,
+) {
     let Some(first) = units.first() else { return };
     let mut lanes = Lanes::<W>::new(first);
     let mut next = 0;
     for lane in 0..W {
         lanes.load(lane, &mut next, units);
     }
-    let Ok(mut slide) = L::slide(&lanes.data) else { return };
+    let Some(mut slide) = load(&lanes.data) else { return };
     while lanes.busy() {
         if lanes.step(course, &slide, figures) {
             for lane in 0..W {
@@ -59,8 +60,7 @@ pub fn integrate<L: Laws, const W: usize>(course: &Course, units: &[SlideData<f6
                     lanes.load(lane, &mut next, units);
                 }
             }
-            // Only what was validated is loaded; without it units have no figures, and go to the desk.
-            let Ok(loaded) = L::slide(&lanes.data) else { return };
+            let Some(loaded) = load(&lanes.data) else { return };
             slide = loaded;
         }
     }
@@ -88,7 +88,7 @@ impl<const W: usize> Lanes<W> {
             units: [None; W],
             ended: [false; W],
             times: [0.0; W],
-            lengths: Pack::splat(STEPS[1]),
+            lengths: Pack::from_f64(FIRST_STEP),
             tried: [0; W],
         }
     }
@@ -107,29 +107,30 @@ impl<const W: usize> Lanes<W> {
         each_number(&mut self.motions, &at_rest(), |number, rest| number.0[lane] = rest.0[lane]);
         self.watch.clear(lane);
         (self.ended[lane], self.times[lane], self.tried[lane]) = (false, 0.0, 0);
-        self.lengths.0[lane] = STEPS[1];
+        self.lengths.0[lane] = FIRST_STEP as f32;
     }
 
     /// A step in every lane; whether units have come to their ends by it.
     #[inline(always)]
-    fn step<E, F>(&mut self, course: &Course, slide: &Slide<Pack<W>, E, F>, figures: &mut [Figures]) -> bool
-    where
-        E: slipfit_core::law::Elastic<Pack<W>>,
-        F: slipfit_core::law::Friction<Pack<W>, Memory = ()>,
-    {
+    fn step<E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>>(
+        &mut self,
+        course: &Course,
+        slide: &Slide<Pack<W>, E, F>,
+        figures: &mut [Figures],
+    ) -> bool {
         let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
         let (mut start, mut length) = (zero, zero);
         for lane in 0..W {
             let left = (course.duration - self.times[lane]) as f32;
             start.0[lane] = self.times[lane] as f32;
             let step = self.lengths.0[lane];
-            length.0[lane] = if 1.01 * step >= left { left.max(STEPS[0]) } else { step };
+            length.0[lane] = if 1.01 * step >= left { left.max(LEAST_STEP) } else { step };
         }
         let step = Rodas3::step::<Pack<W>, _, 6>(slide, start, length, &self.motions);
         let error = self.error(course, [step.error, step.drift]);
-        let factor = Pack::splat(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
-        self.lengths = (length * factor.within(Pack::splat(CHANGES[0]), Pack::splat(CHANGES[1])))
-            .within(Pack::splat(STEPS[0]), Pack::splat(STEPS[2]));
+        let factor = Pack::from_f64(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
+        self.lengths = (length * factor.within(Pack::from_f64(CHANGES[0]), Pack::from_f64(CHANGES[1])))
+            .within(Pack::splat(LEAST_STEP), Pack::from_f64(GREATEST_STEP));
         let drive = &self.data.drive;
         let along = zero.select_gt(drive.speed, -one, one);
         let before = self.motions.pose.displacement_w.z * along;
@@ -140,7 +141,7 @@ impl<const W: usize> Lanes<W> {
         let shorter = length * ((stroke - before) / (after - before)).within(Pack::splat(0.0), one);
         let good = error.select_gt(one, zero, one);
         let accepted = good - good * beyond;
-        self.lengths = (good * beyond).select_gt(zero, shorter.max_of(Pack::splat(STEPS[0])), self.lengths);
+        self.lengths = (good * beyond).select_gt(zero, shorter.max_of(Pack::splat(LEAST_STEP)), self.lengths);
         each_number(&mut self.motions, &step.motion, |number, new| *number = accepted.select_gt(zero, new, *number));
 
         let speed = self.motions.velocity.z;
@@ -162,9 +163,9 @@ impl<const W: usize> Lanes<W> {
                 self.times[lane] += f64::from(length.0[lane]);
                 self.watch.mark(lane, self.times[lane]);
             }
-            let stalled = (good.0[lane] == 0.0 && length.0[lane] <= STEPS[0]) || self.tried[lane] >= MOST_STEPS;
+            let stalled = (good.0[lane] == 0.0 && length.0[lane] <= LEAST_STEP) || self.tried[lane] >= MOST_STEPS;
             let at_end = travel.0[lane] >= stroke.0[lane] - BEYOND as f32;
-            self.ended[lane] = stalled || at_end || self.times[lane] >= course.duration - f64::from(STEPS[0]);
+            self.ended[lane] = stalled || at_end || self.times[lane] >= course.duration - f64::from(LEAST_STEP);
             if self.ended[lane] {
                 let of_unit = &mut figures[unit];
                 self.watch.conclude(lane, self.times[lane], of_unit);

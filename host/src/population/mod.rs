@@ -27,7 +27,8 @@ mod tests;
 
 pub use figures::Figures;
 pub use integrate::Course;
-use laws::{Chosen, ThreeHalvesRegularised};
+use integrate::integrate;
+use pack::Pack;
 use production::{Drawn, Production};
 pub use unit::UnitOutcome;
 
@@ -46,29 +47,22 @@ struct Work<'a, const W: usize> {
     figures: &'a mut [Figures],
 }
 
-impl<const W: usize> Work<'_, W> {
-    #[inline(always)]
-    fn by<L: laws::Laws>(self) {
-        integrate::integrate::<L, W>(&self.course, self.slides, self.figures);
-    }
-}
-
 /// In the instructions of whatever the machine was found to have.
 impl<const W: usize> WithSimd for Work<'_, W> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        self.by::<ThreeHalvesRegularised>();
+        integrate(&self.course, self.slides, self.figures, laws::usual::<Pack<W>>);
     }
 }
 
 /// Simulates `slides`, all of the same laws: those of the paper in the widest instructions that the machine has. The bits do
-/// not depend on them.
+/// not depend on them. A slide that cannot be simulated has no figures.
 pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     #[cfg(target_arch = "x86_64")]
     if let Some(avx2) = pulp::x86::V3::try_new()
-        && slides.first().is_some_and(laws::is_usual)
+        && slides.first().and_then(laws::usual).is_some()
     {
         let mut figures = vec![Figures::NONE; slides.len()];
         Simd::vectorize(avx2, Work::<AVX2_LANES> { course, slides, figures: &mut figures });
@@ -78,13 +72,12 @@ pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
 }
 
 /// The same, one after the other.
-pub fn one_by_one(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
+fn one_by_one(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     let mut figures = vec![Figures::NONE; slides.len()];
-    let work = Work::<1> { course, slides, figures: &mut figures };
-    if slides.first().is_some_and(laws::is_usual) {
-        work.by::<ThreeHalvesRegularised>();
+    if slides.first().and_then(laws::usual).is_some() {
+        integrate(&course, slides, &mut figures, laws::usual::<Pack<1>>);
     } else {
-        work.by::<Chosen>();
+        integrate(&course, slides, &mut figures, laws::chosen::<Pack<1>>);
     }
     figures
 }

@@ -1,6 +1,6 @@
 //! Pictures of a population.
 
-use slipfit_core::slide::{ABSENT, CONTACTS};
+use slipfit_core::slide::CONTACTS;
 
 use super::{
     Unit,
@@ -24,12 +24,7 @@ const LEAST: usize = 20;
 /// How much tighter than the mean unit this one is: the mean over its gaps, each in its standard deviations, signed like
 /// the level n of eq. 9.
 pub fn tightness(scene: &Scene, gaps: &[f64; CONTACTS]) -> f64 {
-    let statistics = scene.pins.iter().flat_map(|pin| pin.gaps);
-    let levels = statistics.zip(gaps).filter(|(_, gap)| **gap != ABSENT).filter_map(|(of, gap)| {
-        let of = of.filter(|of| of.deviation > 0.0)?;
-        Some((of.mean - gap) / of.deviation)
-    });
-    let levels: Vec<f64> = levels.collect();
+    let levels: Vec<f64> = scene.levels_of(gaps).into_iter().flatten().collect();
     levels.iter().sum::<f64>() / levels.len().max(1) as f64
 }
 

@@ -216,7 +216,16 @@ impl Scene {
         self.gaps_in(n)
     }
 
-    /// The same computed in the scalar `S`, from levels and statistics rounded to it: in f32 the bits of
+    /// The tolerance levels at which the contacts have these `gaps` (m); `None` for one that does not vary, or is none.
+    pub fn levels_of(&self, gaps: &[f64; CONTACTS]) -> [Option<f64>; CONTACTS] {
+        let mut levels = [None; CONTACTS];
+        for ((level, of), gap) in levels.iter_mut().zip(self.pins.iter().flat_map(|pin| pin.gaps)).zip(gaps) {
+            *level = of.filter(|of| of.deviation > 0.0).map(|of| of.level(*gap));
+        }
+        levels
+    }
+
+    /// [`gaps_at`](Self::gaps_at) computed in the scalar `S`, from levels and statistics rounded to it: in f32 the bits of
     /// [`SceneData::at`](slipfit_core::scene::SceneData::at).
     pub fn gaps_in<S: Scalar>(&self, n: &[f64; CONTACTS]) -> [S; CONTACTS] {
         let s = S::from_f64;
