@@ -4,7 +4,7 @@ use slipfit_core::{
     SVector, Scalar,
     integrator::{Extrapolated, Integrator, Sdirk2},
     kernel::Kernel,
-    law::{Friction, StaticKinetic, friction::Rubbing},
+    law::{Friction, StaticKinetic, friction::SlidingContact},
     mechanism::{Differentiated, Linearised, Mechanism},
 };
 
@@ -17,8 +17,8 @@ struct OnBelt {
 }
 
 impl OnBelt {
-    fn rubbing(&self, velocity: &SVector<f64, 1>, mass_rate: f64, tangent_share: f64) -> Rubbing<f64> {
-        Rubbing { sliding: [velocity.x - self.belt, 0.0], normal: 1.0, mass_rate, tangent_share }
+    fn sliding(&self, velocity: &SVector<f64, 1>, mass_rate: f64, tangent_share: f64) -> SlidingContact<f64> {
+        SlidingContact { sliding: [velocity.x - self.belt, 0.0], normal: 1.0, mass_rate, tangent_share }
     }
 }
 
@@ -78,7 +78,7 @@ impl Mechanism<f64, 1> for OnBelt {
         a: f64,
         remembered: Option<&mut [f64; 2]>,
     ) -> SVector<f64, 1> {
-        let (traction, memory) = self.friction.traction(memory, &self.rubbing(velocity, self.mass / a, 1.0));
+        let (traction, memory) = self.friction.traction(memory, &self.sliding(velocity, self.mass / a, 1.0));
         if let Some(remembered) = remembered {
             *remembered = memory;
         }
@@ -94,10 +94,10 @@ impl Mechanism<f64, 1> for OnBelt {
         a: f64,
         tangent_share: f64,
     ) -> Linearised<f64, f64, 1> {
-        let rubbing = self.rubbing(velocity, self.mass / a, tangent_share);
+        let contact = self.sliding(velocity, self.mass / a, tangent_share);
         Linearised {
             force: self.forces(t, pose, memory, velocity, a, None),
-            linearisation: self.linearisation(&self.friction.traction(memory, &rubbing).0.impedance[0], a),
+            linearisation: self.linearisation(&self.friction.traction(memory, &contact).0.impedance[0], a),
         }
     }
 
@@ -116,11 +116,11 @@ impl Mechanism<f64, 1> for OnBelt {
         memory: &[f64; 2],
         velocity: &SVector<f64, 1>,
     ) -> Differentiated<f64, f64, 1> {
-        let rubbing = self.rubbing(velocity, 0.0, 1.0);
+        let contact = self.sliding(velocity, 0.0, 1.0);
         Differentiated {
             force: self.forces(t, pose, memory, velocity, 1.0, None),
             per_time: SVector::zeros(),
-            slopes: self.friction.traction(memory, &rubbing).0.impedance[0],
+            slopes: self.friction.traction(memory, &contact).0.impedance[0],
         }
     }
 

@@ -1,6 +1,6 @@
 //! What an integrator sees of a scene: generalised velocities, momenta, forces and their linearisation.
 
-use crate::{SVector, Scalar, law::friction::Rubbing};
+use crate::{SVector, Scalar, law::friction::SlidingContact};
 
 /// How forces are to be linearised.
 #[derive(Clone, Copy, Debug)]
@@ -9,15 +9,15 @@ pub struct Way<S> {
     pub a: S,
     /// Mass over the implicit part that friction's memory yields over (kg/s).
     pub mass_rate: S,
-    /// See [`Rubbing`].
+    /// See [`SlidingContact`].
     pub tangent_share: S,
 }
 
 impl<S: Scalar> Way<S> {
     /// What friction acts upon at a contact with the velocity `sliding` (m/s) of the body and the force `normal` (N).
     #[inline(always)]
-    pub fn rubbing(&self, sliding: [S; 2], normal: S) -> Rubbing<S> {
-        Rubbing { sliding, normal, mass_rate: self.mass_rate, tangent_share: self.tangent_share }
+    pub fn sliding(&self, sliding: [S; 2], normal: S) -> SlidingContact<S> {
+        SlidingContact { sliding, normal, mass_rate: self.mass_rate, tangent_share: self.tangent_share }
     }
 }
 

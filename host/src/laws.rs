@@ -5,7 +5,7 @@ use slipfit_core::{
     ParameterError, Scalar,
     law::{
         Elastic, Exact, Friction, Frictionless, HuntCrossley, Impact, LankaraniNikravesh, Linear, Normal,
-        NormalResponse, Power, Regularised, ThreeHalves, friction::Rubbing, friction::Traction,
+        NormalResponse, Power, Regularised, ThreeHalves, friction::SlidingContact, friction::Traction,
     },
     menu::{ContactData, FrictionData, FrictionType, NormalType, SlideData},
     slide::Slide,
@@ -132,10 +132,10 @@ impl<S: Scalar> Friction<S> for AnySliding<S> {
     fn fresh() {}
 
     #[inline(always)]
-    fn traction(&self, (): &(), rubbing: &Rubbing<S>) -> (Traction<S>, ()) {
+    fn traction(&self, (): &(), contact: &SlidingContact<S>) -> (Traction<S>, ()) {
         match self {
-            Self::Frictionless => Frictionless.traction(&(), rubbing),
-            Self::Regularised(law) => law.traction(&(), rubbing),
+            Self::Frictionless => Frictionless.traction(&(), contact),
+            Self::Regularised(law) => law.traction(&(), contact),
         }
     }
 

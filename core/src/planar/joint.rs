@@ -30,7 +30,7 @@ pub struct JointForce<S, M> {
     pub impedance: Matrix2<S>,
     /// −∂force/∂x (N/m) by the displacement of the body's material at the pin, while u stays.
     pub stiffness: Matrix2<S>,
-    /// What rubbing on a pin of some width adds, if it can.
+    /// What friction on a pin of some width adds, if it can.
     pub moment: Option<Moment<S>>,
     /// What friction remembers if the motion is accepted.
     pub memory: M,
@@ -131,7 +131,7 @@ impl<S: Scalar, C: Stop<S>> Joint<S> for Across<C> {
     ) -> JointForce<S, F::Memory> {
         let stop = self.0.resistance(contact, offset.x, u.x);
         let zero = S::zero();
-        let (traction, memory) = friction.traction(memory, &way.rubbing([u.y, zero], stop.normal()));
+        let (traction, memory) = friction.traction(memory, &way.sliding([u.y, zero], stop.normal()));
         let [along, _] = traction.per_normal;
         let ([own, normal], [own_stiffness, normal_stiffness]) = (stop.impedances(way.a), stop.stiffnesses());
         JointForce {

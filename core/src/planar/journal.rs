@@ -57,15 +57,15 @@ impl<S: Scalar> Joint<S> for Journal<S> {
         let (outward, aside) = (u.dot(&normal), u.dot(&tangent));
         let wall = contact.response(squared * per_distance - self.clearance, -outward);
         let sliding = aside + self.radius * *rotation;
-        let (traction, memory) = friction.traction(memory, &way.rubbing([sliding, zero], wall.force));
+        let (traction, memory) = friction.traction(memory, &way.sliding([sliding, zero], wall.force));
         let ([rub, ..], [per_normal, _]) = (traction.force, traction.per_normal);
         // A law that sticks also does so without load, which counts for nothing here.
-        let rubbing = wall.force.select_gt(zero, traction.impedance[0], zero);
+        let drag = wall.force.select_gt(zero, traction.impedance[0], zero);
 
-        // In the axes (n, t), which a displacement along t turns by 1/|ρ|; `by_turn` is what rubbing has of that.
+        // In the axes (n, t), which a displacement along t turns by 1/|ρ|; `by_turn` is what friction has of that.
         let (damping, stiffness) = (wall.impedance(zero), wall.stiffness());
-        let by_velocity = Matrix2::new(damping, zero, -per_normal * damping, rubbing);
-        let by_turn = rubbing * outward + per_normal * damping * aside;
+        let by_velocity = Matrix2::new(damping, zero, -per_normal * damping, drag);
+        let by_turn = drag * outward + per_normal * damping * aside;
         let by_place = |by_turn: S| {
             let turning = -(damping * aside + rub) * per_distance;
             Matrix2::new(stiffness, turning, -per_normal * stiffness, (wall.force + by_turn) * per_distance)
@@ -74,14 +74,14 @@ impl<S: Scalar> Joint<S> for Journal<S> {
         let steering = by_turn.max_of(zero);
         let axes = Matrix2::from_columns(&[normal, tangent]);
         let in_body = |local: Matrix2<S>| axes * local * axes.transpose();
-        let rubbed_by_place = |by_turn: S| Vector2::new(-per_normal * stiffness, by_turn * per_distance);
-        let rubbed_by_velocity = Vector2::new(-per_normal * damping, rubbing);
+        let dragged_by_place = |by_turn: S| Vector2::new(-per_normal * stiffness, by_turn * per_distance);
+        let dragged_by_velocity = Vector2::new(-per_normal * damping, drag);
         let moment = Moment {
             torque: self.radius * rub,
-            impedance: axes * (rubbed_by_velocity + rubbed_by_place(steering) * way.a) * self.radius,
-            stiffness: axes * rubbed_by_place(by_turn) * self.radius,
-            force_by_rotation: tangent * (rubbing * self.radius),
-            torque_by_rotation: rubbing * self.radius * self.radius,
+            impedance: axes * (dragged_by_velocity + dragged_by_place(steering) * way.a) * self.radius,
+            stiffness: axes * dragged_by_place(by_turn) * self.radius,
+            force_by_rotation: tangent * (drag * self.radius),
+            torque_by_rotation: drag * self.radius * self.radius,
         };
         JointForce {
             force: normal * wall.force + tangent * rub,

@@ -127,7 +127,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         way: Way<S>,
     ) -> SlotForce<S, F::Memory> {
         let slot = self.contact.slot(gaps[0], gaps[1], offset, u);
-        let (traction, memory) = self.friction.traction(memory, &way.rubbing([v, w], slot.normal()));
+        let (traction, memory) = self.friction.traction(memory, &way.sliding([v, w], slot.normal()));
         let [first, second] = traction.per_normal;
         let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
         SlotForce {

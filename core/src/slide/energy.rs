@@ -4,7 +4,7 @@ use super::{Slide, split};
 use crate::{
     Scalar,
     integrator::MotionOf,
-    law::{Elastic, Friction, Normal, friction::Rubbing},
+    law::{Elastic, Friction, Normal, friction::SlidingContact},
     mechanism::Mechanism,
 };
 
@@ -59,14 +59,14 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
             for ((gaps, [along, sliding_0, sliding_1]), memory) in slots.into_iter().zip(memory) {
                 // The gaps of this pose, so that the slot stands at offset 0.
                 let slot = self.contact.slot(*gaps[0], *gaps[1], zero, along);
-                let rubbing = Rubbing {
+                let contact = SlidingContact {
                     sliding: [sliding_0, sliding_1],
                     normal: slot.normal(),
                     // Without grip the remembered force stands.
                     mass_rate: zero,
                     tangent_share: zero,
                 };
-                let (traction, _) = self.friction.traction(memory, &rubbing);
+                let (traction, _) = self.friction.traction(memory, &contact);
                 friction -= traction.force[0] * sliding_0 + traction.force[1] * sliding_1;
                 damping += self.contact.loss(-*gaps[0], along) + self.contact.loss(-*gaps[1], -along);
             }

@@ -6,7 +6,7 @@
 //! ρ = κ·m/a, a the implicit part of the step, that is a displacement of a²·Δf/(κ·m), which vanishes with the square of the
 //! step. The cost depends on nothing.
 
-use super::{Friction, Rubbing, Traction};
+use super::{Friction, SlidingContact, Traction};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// κ: how many times stiffer than the body's inertia a stick is. At 1 the yield of a 1 ms step costs 0.6 % of the peak
@@ -42,8 +42,8 @@ impl<S: Scalar> Friction<S> for Exact<S> {
     }
 
     #[inline(always)]
-    fn traction(&self, memory: &[S; 2], rubbing: &Rubbing<S>) -> (Traction<S>, [S; 2]) {
-        return_mapping(memory, rubbing, [self.coefficient; 2])
+    fn traction(&self, memory: &[S; 2], contact: &SlidingContact<S>) -> (Traction<S>, [S; 2]) {
+        return_mapping(memory, contact, [self.coefficient; 2])
     }
 
     #[inline(always)]
@@ -62,10 +62,10 @@ impl<S: Scalar> Friction<S> for Exact<S> {
 #[inline(always)]
 pub(super) fn return_mapping<S: Scalar>(
     memory: &[S; 2],
-    rubbing: &Rubbing<S>,
+    contact: &SlidingContact<S>,
     [at_rest, sliding]: [S; 2],
 ) -> (Traction<S>, [S; 2]) {
-    let Rubbing { sliding: [x, y], normal, mass_rate, tangent_share } = *rubbing;
+    let SlidingContact { sliding: [x, y], normal, mass_rate, tangent_share } = *contact;
     let grip = S::from_f64(GRIP) * mass_rate;
     let trial = [memory[0] - grip * x, memory[1] - grip * y];
     let trial_squared = trial[0] * trial[0] + trial[1] * trial[1];
@@ -97,8 +97,8 @@ mod tests {
     use super::*;
 
     fn traction(memory: [f64; 2], normal: f64, sliding: [f64; 2]) -> (Traction<f64>, [f64; 2]) {
-        let rubbing = Rubbing { sliding, normal, mass_rate: 80.0, tangent_share: 1.0 };
-        Exact::new(0.3).unwrap().traction(&memory, &rubbing)
+        let contact = SlidingContact { sliding, normal, mass_rate: 80.0, tangent_share: 1.0 };
+        Exact::new(0.3).unwrap().traction(&memory, &contact)
     }
 
     #[test]
@@ -115,7 +115,7 @@ mod tests {
         let [x, y] = traction([0.0; 2], 2.0, [3.0, -4.0]).0.force;
         assert!(libm::fabs(x + 0.36) < 1e-15 && libm::fabs(y - 0.48) < 1e-15);
         // Without load there is no friction, and nothing that is not finite.
-        let idle = Rubbing { sliding: [0.0; 2], normal: 0.0, mass_rate: 80.0f32, tangent_share: 1.0 };
+        let idle = SlidingContact { sliding: [0.0; 2], normal: 0.0, mass_rate: 80.0f32, tangent_share: 1.0 };
         let (traction, memory) = Exact::new(0.3f32).unwrap().traction(&[0.0; 2], &idle);
         assert_eq!(memory, [0.0; 2]);
         assert!(traction.impedance.iter().chain(&traction.per_normal).all(|x| x.is_finite()));

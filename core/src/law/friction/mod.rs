@@ -23,7 +23,7 @@ pub struct Traction<S> {
 
 /// What friction acts upon.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rubbing<S> {
+pub struct SlidingContact<S> {
     /// Velocity of the body along the two tangents (m/s).
     pub sliding: [S; 2],
     /// Normal force (N).
@@ -46,7 +46,7 @@ pub trait Friction<S>: Copy {
     fn fresh() -> Self::Memory;
 
     /// The traction, and the memory if the motion is accepted.
-    fn traction(&self, memory: &Self::Memory, rubbing: &Rubbing<S>) -> (Traction<S>, Self::Memory);
+    fn traction(&self, memory: &Self::Memory, contact: &SlidingContact<S>) -> (Traction<S>, Self::Memory);
 
     /// `base + weight·(to − from)`.
     fn shifted(base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
@@ -68,7 +68,7 @@ impl<S: Scalar> Friction<S> for Frictionless {
     fn fresh() {}
 
     #[inline(always)]
-    fn traction(&self, (): &(), _: &Rubbing<S>) -> (Traction<S>, ()) {
+    fn traction(&self, (): &(), _: &SlidingContact<S>) -> (Traction<S>, ()) {
         let zero = S::zero();
         (Traction { force: [zero; 2], impedance: [zero; 3], per_normal: [zero; 2] }, ())
     }

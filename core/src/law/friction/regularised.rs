@@ -1,6 +1,6 @@
 //! Regularised Coulomb friction: what multibody solvers use.
 
-use super::{Friction, Rubbing, Traction};
+use super::{Friction, SlidingContact, Traction};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// Coulomb friction smoothed by STEP over the stick band: μ(s) = μ·w(3 − w²)/2 with w = s/v_s up to v_s, then μ.
@@ -47,8 +47,8 @@ impl<S: Scalar> Friction<S> for Regularised<S> {
     fn fresh() {}
 
     #[inline(always)]
-    fn traction(&self, (): &(), rubbing: &Rubbing<S>) -> (Traction<S>, ()) {
-        let Rubbing { sliding: [x, y], normal, tangent_share, .. } = *rubbing;
+    fn traction(&self, (): &(), contact: &SlidingContact<S>) -> (Traction<S>, ()) {
+        let SlidingContact { sliding: [x, y], normal, tangent_share, .. } = *contact;
         let (ratio, ratio_slope) = self.per_speed(x * x + y * y);
         let along = ratio * normal;
         let turn = (tangent_share + tangent_share) * ratio_slope * normal;
@@ -75,8 +75,8 @@ mod tests {
     const SHARE: f64 = 0.9;
 
     fn traction(normal: f64, sliding: [f64; 2]) -> Traction<f64> {
-        let rubbing = Rubbing { sliding, normal, mass_rate: 80.0, tangent_share: SHARE };
-        Regularised::new(0.3, 1e-4).unwrap().traction(&(), &rubbing).0
+        let contact = SlidingContact { sliding, normal, mass_rate: 80.0, tangent_share: SHARE };
+        Regularised::new(0.3, 1e-4).unwrap().traction(&(), &contact).0
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Coulomb friction that holds more than it slides with: static above kinetic friction, a law of its own.
 
-use super::{Exact, Friction, Rubbing, Traction, exact::return_mapping};
+use super::{Exact, Friction, SlidingContact, Traction, exact::return_mapping};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// True stick up to the static coefficient, sliding with the kinetic one.
@@ -33,8 +33,8 @@ impl<S: Scalar> Friction<S> for StaticKinetic<S> {
     }
 
     #[inline(always)]
-    fn traction(&self, memory: &[S; 2], rubbing: &Rubbing<S>) -> (Traction<S>, [S; 2]) {
-        return_mapping(memory, rubbing, [self.at_rest, self.sliding])
+    fn traction(&self, memory: &[S; 2], contact: &SlidingContact<S>) -> (Traction<S>, [S; 2]) {
+        return_mapping(memory, contact, [self.at_rest, self.sliding])
     }
 
     #[inline(always)]

@@ -69,7 +69,7 @@ impl<N, F> Contact<N, F> {
         F: Friction<S>,
     {
         let pressed = self.normal.response(penetration, rate);
-        let (mut traction, memory) = self.friction.traction(memory, &way.rubbing(sliding, pressed.force));
+        let (mut traction, memory) = self.friction.traction(memory, &way.sliding(sliding, pressed.force));
         // A law that sticks also does so without load, which counts for nothing.
         let zero = S::zero();
         traction.impedance = traction.impedance.map(|x| pressed.force.select_gt(zero, x, zero));

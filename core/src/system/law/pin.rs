@@ -45,7 +45,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
             // The slot is told the velocity of its own material, and answers with the force on it.
             let slot = self.contact.normal.slot(low, high, place[n], -rate[n]);
             let sliding = [-rate[first], -rate[second]];
-            let (traction, kept) = self.contact.friction.traction(memory, &way.rubbing(sliding, slot.normal()));
+            let (traction, kept) = self.contact.friction.traction(memory, &way.sliding(sliding, slot.normal()));
             *next = kept;
             force[n] -= slot.force();
             force[first] -= traction.force[0];
