@@ -1,4 +1,4 @@
-//! The guide's commands, as they stand there.
+//! The guide's commands, as they stand there. Those that need the repository, a target or minutes are in `console` blocks.
 
 use std::{path::Path, process::Command};
 
