@@ -1,0 +1,63 @@
+//! What `check` says of a mechanism.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::{GapReport, gap_reports};
+use crate::{
+    cli::{Failure, JSON_VERSION, SceneArguments, print, print_json, text_table, warn},
+    mechanism::{Freedom, Mechanism},
+    number::{fixed, level, or_dash},
+};
+
+#[derive(Serialize)]
+struct CheckReport<'a> {
+    json_version: u32,
+    title: &'a str,
+    freedom: Freedom,
+    n: f64,
+    gaps: Vec<GapReport<'a>>,
+    warnings: &'a [String],
+}
+
+/// `check`.
+pub fn check(mechanism: &Mechanism, n: f64, scene: &SceneArguments) -> Result<(), Failure> {
+    let gaps = mechanism.gaps_at(&[n])?;
+    let freedom = Freedom::of(mechanism)?;
+    let warnings = warnings(mechanism, &freedom);
+    if scene.json {
+        let gaps = gap_reports(mechanism, &gaps);
+        let title = &mechanism.title;
+        return print_json(&CheckReport { json_version: JSON_VERSION, title, freedom, n, gaps, warnings: &warnings });
+    }
+    let mut text = format!("{}\n\nDegrees of freedom  {}\n\n", mechanism.title, freedom.describe());
+    let joints: Vec<_> = mechanism
+        .joints
+        .iter()
+        .map(|joint| {
+            let [first, second] = joint.between.map(|port| mechanism.name_of(port).to_owned());
+            let play = if joint.kind.is_ideal() { "none" } else { "yes" };
+            vec![joint.name.clone(), joint.kind.name().into(), first, second, play.into()]
+        })
+        .collect();
+    text += &text_table(&["joint", "kind", "of", "and", "play"], &joints);
+    let rows: Vec<_> = gap_reports(mechanism, &gaps)
+        .into_iter()
+        .map(|gap| vec![gap.name.to_owned(), fixed(gap.mm, 4), or_dash(gap.closes_at_n, |n| fixed(n, 2))])
+        .collect();
+    let _ = write!(text, "\n{}", text_table(&[&format!("gap at n = {}", level(n)), "mm", "closes at n"], &rows));
+    print(&text)?;
+    warn(&warnings);
+    Ok(())
+}
+
+/// What a designer should know before trusting a run.
+fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
+    let driven = mechanism.drives.len() as i64;
+    let free = freedom.degrees_of_freedom;
+    if free < driven {
+        return vec![format!("{free} degrees of freedom are left for {driven} drives: the joints hold the mechanism")];
+    }
+    Vec::new()
+}

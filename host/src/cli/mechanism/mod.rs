@@ -1,0 +1,106 @@
+//! What `check`, `simulate` and `sweep` say of a mechanism of bodies and joints, one file a command.
+
+mod check;
+mod simulate;
+mod sweep;
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::{Failure, SceneArguments, given};
+use crate::{
+    mechanism::{Action, GapError, Mechanism, MechanismRun, RunError, run},
+    outcome::Outcome,
+    scene::RunSpec,
+};
+
+pub(super) use check::check;
+pub(super) use simulate::simulate;
+pub(super) use sweep::sweep;
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Unsolved(_) | RunError::Interrupted => Self::Work(error.into()),
+            RunError::Mounts(_) | RunError::Bodies(_) | RunError::Parameter(_) => Self::Input(error.to_string()),
+        }
+    }
+}
+
+impl From<GapError> for Failure {
+    fn from(error: GapError) -> Self {
+        Self::Input(format!("--n: {error}"))
+    }
+}
+
+/// What to write and at which level.
+pub(super) struct Wanted<'a> {
+    pub scene: &'a SceneArguments,
+    pub csv: &'a Option<PathBuf>,
+    pub plot: &'a Option<PathBuf>,
+}
+
+impl Wanted<'_> {
+    fn check_outputs(&self) -> Result<(), Failure> {
+        self.scene.check_outputs(&given([("--csv", self.csv), ("--plot", self.plot)]))
+    }
+}
+
+/// A drive's outcome with its name.
+#[derive(Serialize)]
+struct DriveReport<'a> {
+    name: &'a str,
+    /// N and m/s, or N·m and rad/s.
+    unit: &'static str,
+    #[serde(flatten)]
+    outcome: Outcome,
+}
+
+#[derive(Serialize)]
+struct GapReport<'a> {
+    name: &'a str,
+    mm: f64,
+    /// The level that closes it; none where it does not vary.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    closes_at_n: Option<f64>,
+}
+
+/// The unit of a drive's force and of its speed.
+fn units(action: Action) -> [&'static str; 2] {
+    match action {
+        Action::Pushes { .. } => ["N", "mm/s"],
+        Action::Turns { .. } => ["N·m", "rad/s"],
+    }
+}
+
+/// What makes a drive's speed one in the unit that is shown.
+fn shown(action: Action) -> f64 {
+    if matches!(action, Action::Pushes { .. }) { 1e3 } else { 1.0 }
+}
+
+fn gap_reports<'a>(mechanism: &'a Mechanism, gaps: &[f64]) -> Vec<GapReport<'a>> {
+    let report = |(gap, value): (&'a crate::mechanism::Gap, &f64)| {
+        let closes_at_n = Some(gap.statistics.mean / gap.statistics.deviation).filter(|n| n.is_finite());
+        GapReport { name: &gap.name, mm: value * 1e3, closes_at_n }
+    };
+    mechanism.gaps.iter().zip(gaps).map(report).collect()
+}
+
+/// One level for all gaps, or one each.
+fn levels<'a>(mechanism: &Mechanism, n: &'a [f64]) -> Result<&'a [f64], Failure> {
+    let count = mechanism.gaps.len();
+    if n.len() != 1 && n.len() != count {
+        return Err(Failure::Input(format!("--n holds {} values, allowed are 1 or {count}, one a gap", n.len())));
+    }
+    match n.iter().find(|n| !n.is_finite()) {
+        Some(bad) => Err(Failure::Input(format!("--n holds {bad}, allowed are finite numbers"))),
+        None => Ok(n),
+    }
+}
+
+/// The run at a tenth of the tolerance.
+fn finer(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
+    let run_spec = RunSpec { error: mechanism.run.error / 10.0, ..mechanism.run };
+    run(&Mechanism { run: run_spec, ..mechanism.clone() }, gaps, every)
+}

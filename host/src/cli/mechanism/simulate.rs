@@ -1,0 +1,167 @@
+//! What `simulate` says of a mechanism.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::{DriveReport, GapReport, Wanted, finer, gap_reports, levels, shown, units};
+use crate::{
+    cli::{Failure, JSON_VERSION, print, print_json, text_table},
+    export::rows_csv,
+    figure::columns_over_time,
+    files,
+    mechanism::{Action, Mechanism, MechanismRun, SCHEME, run},
+    number::{fixed, level, or_dash},
+};
+
+#[derive(Serialize)]
+struct SimulateReport<'a> {
+    json_version: u32,
+    title: &'a str,
+    n: &'a [f64],
+    integrator: &'static str,
+    tolerance_m_per_s: f64,
+    accepted: u32,
+    refused: u32,
+    integration_ms: f64,
+    /// The greatest difference of a drive's force or torque to a run at a tenth of the tolerance, as a share of its peak.
+    difference: f64,
+    drives: Vec<DriveReport<'a>>,
+    gaps: Vec<GapReport<'a>>,
+    columns: &'a [String],
+    samples: &'a [Vec<f64>],
+}
+
+/// `simulate`.
+pub fn simulate(mechanism: &Mechanism, n: &[f64], every: f64, wanted: &Wanted) -> Result<(), Failure> {
+    let gaps = mechanism.gaps_at(levels(mechanism, n)?)?;
+    wanted.check_outputs()?;
+    let one = run(mechanism, &gaps, every)?;
+    let difference = difference(mechanism, &one, &finer(mechanism, &gaps, every)?);
+    if let Some(path) = wanted.csv {
+        files::write(path, &rows_csv(&one.samples)?)?;
+    }
+    if let Some(path) = wanted.plot {
+        let n = if n.len() == 1 { level(n[0]) } else { "one for each gap".to_owned() };
+        let columns = plotted(mechanism);
+        let svg = columns_over_time(&one.samples, &columns, &mechanism.title, &n).map_err(anyhow::Error::from)?;
+        files::write(path, svg.as_bytes())?;
+    }
+    if wanted.scene.json {
+        let named = mechanism.drives.iter().zip(&one.outcomes);
+        let drives = named.map(|(drive, outcome)| DriveReport {
+            name: &drive.name,
+            unit: units(drive.action)[0],
+            outcome: *outcome,
+        });
+        return print_json(&SimulateReport {
+            json_version: JSON_VERSION,
+            title: &mechanism.title,
+            n,
+            integrator: SCHEME,
+            tolerance_m_per_s: one.tolerance,
+            accepted: one.effort.accepted,
+            refused: one.effort.refused,
+            integration_ms: one.integration.as_secs_f64() * 1e3,
+            difference,
+            drives: drives.collect(),
+            gaps: gap_reports(mechanism, &gaps),
+            columns: &one.samples.columns,
+            samples: &one.samples.rows,
+        });
+    }
+    print(&described(mechanism, n, &one, difference))
+}
+
+/// The greatest difference of the drives' forces between two runs, as a share of the greatest force; of the first body's columns where
+/// there is no drive.
+fn difference(mechanism: &Mechanism, one: &MechanismRun, finer: &MechanismRun) -> f64 {
+    let columns =
+        if mechanism.drives.is_empty() { 1..one.samples.columns.len() } else { 1..1 + mechanism.drives.len() };
+    let of_column = |k: usize| {
+        let peak = finer.samples.rows.iter().fold(f64::MIN_POSITIVE, |most, row| most.max(row[k].abs()));
+        let pairs = one.samples.rows.iter().zip(&finer.samples.rows);
+        pairs.fold(0.0, |most: f64, (one, finer)| most.max((one[k] - finer[k]).abs())) / peak
+    };
+    columns.map(of_column).fold(0.0, f64::max)
+}
+
+/// Which columns a plot shows: what drives do and how fast their bodies go; without drives how all bodies go.
+fn plotted(mechanism: &Mechanism) -> Vec<String> {
+    let speed = |body: usize, action: Option<Action>| {
+        let name = &mechanism.bodies[body].name;
+        match action {
+            Some(Action::Turns { .. }) | None if mechanism.planar => format!("{name}.spin (rad/s)"),
+            Some(Action::Pushes { axis }) => {
+                let most = (0..3).max_by(|a, b| axis[*a].abs().total_cmp(&axis[*b].abs())).unwrap_or(2);
+                format!("{name}.v{} (m/s)", ["x", "y", "z"][most])
+            }
+            _ => format!("{name}.vz (m/s)"),
+        }
+    };
+    let all = mechanism.columns();
+    if mechanism.drives.is_empty() {
+        return (0..mechanism.bodies.len()).map(|body| speed(body, None)).collect();
+    }
+    let forces = all.iter().skip(1).take(mechanism.drives.len()).cloned();
+    let speeds = mechanism.drives.iter().map(|drive| speed(drive.body, Some(drive.action)));
+    let mut columns: Vec<String> = Vec::new();
+    for column in speeds.chain(forces) {
+        if !columns.contains(&column) && all.contains(&column) {
+            columns.push(column);
+        }
+    }
+    columns
+}
+
+fn described(mechanism: &Mechanism, n: &[f64], run: &MechanismRun, difference: f64) -> String {
+    let mut text = String::new();
+    let n: Vec<String> = n.iter().map(|&n| level(n)).collect();
+    let _ = writeln!(text, "{}, n = {}\n", mechanism.title, n.join(", "));
+    let rows: Vec<_> = mechanism
+        .drives
+        .iter()
+        .zip(&run.outcomes)
+        .map(|(drive, outcome)| {
+            let [force, speed] = units(drive.action);
+            vec![
+                drive.name.clone(),
+                outcome.verdict.to_string(),
+                or_dash(outcome.peak_force, |f| format!("{} {force}", fixed(f, 4))),
+                or_dash(outcome.settled_force, |f| format!("{} {force}", fixed(f, 4))),
+                format!("{} {speed}", fixed(outcome.final_velocity * shown(drive.action), 3)),
+            ]
+        })
+        .collect();
+    if !rows.is_empty() {
+        let _ = writeln!(text, "{}", text_table(&["drive", "verdict", "peak", "settled", "final speed"], &rows));
+    }
+    let last = run.samples.rows.last().map(Vec::as_slice).unwrap_or_default();
+    let heading: &[&str] = if mechanism.planar {
+        &["at the end", "x, mm", "y, mm", "angle, °"]
+    } else {
+        &["at the end", "x, mm", "y, mm", "z, mm"]
+    };
+    let each = if mechanism.planar { 6 } else { 9 };
+    let rows: Vec<_> = mechanism
+        .bodies
+        .iter()
+        .enumerate()
+        .map(|(i, body)| {
+            let at = 1 + mechanism.drives.len() + i * each;
+            let third = if mechanism.planar { last[at + 2].to_degrees() } else { last[at + 2] * 1e3 };
+            vec![body.name.clone(), fixed(last[at] * 1e3, 3), fixed(last[at + 1] * 1e3, 3), fixed(third, 3)]
+        })
+        .collect();
+    let _ = writeln!(text, "{}", text_table(heading, &rows));
+    let _ = writeln!(
+        text,
+        "Computed by the desk, error-controlled to {:.1e} m/s a step ({SCHEME}, {} steps, {} refused) in {} ms",
+        run.tolerance,
+        run.effort.accepted,
+        run.effort.refused,
+        fixed(run.integration.as_secs_f64() * 1e3, 2)
+    );
+    let _ = writeln!(text, "A run at a tenth of that differs by {:.4} % of the peak", difference * 100.0);
+    text
+}
