@@ -25,7 +25,8 @@ use crate::{
     outcome::Verdict,
     plot::PlotError,
     population::{
-        picture::forces as population, production::Production as Drawing, statistics::Statistics, study::Population,
+        picture::forces as population, production::Production as DrawnProduction, statistics::Statistics,
+        study::Population,
     },
     product::Product,
     report::{Figure, Flash, Production, ReportInput, report},
@@ -206,8 +207,8 @@ impl Arguments {
         let duration = scene.stroke_duration().filter(|duration| *duration > scene.run.duration);
         let levels = scene.sweep.levels();
         let opening = force_table::levels(&scene.sweep).count;
-        let production =
-            Drawing::new(scene, product, 0.0, DEFAULT.seed).map_err(|error| Failure::Input(error.to_string()))?;
+        let production = DrawnProduction::new(scene, product, 0.0, DEFAULT.seed)
+            .map_err(|error| Failure::Input(error.to_string()))?;
         let runs = opening + duration.map_or(0, |_| levels.len());
         let bar = progress("simulating", runs + self.units as usize);
         let made = self.threads.install(|| {

@@ -201,6 +201,17 @@ fn drive(drive: &slipfit_core::drive::Drive<f64>) -> String {
     )
 }
 
+/// A law by the name of `law` that a drive acts by.
+fn driven(law: &str, by: &slipfit_core::drive::Drive<f64>) -> Typed {
+    typed(format!("{law}<Drive<S>>"), format!("{law}({})", drive(by)))
+}
+
+/// The joint that each element stands for, in the order of elements; none for those that are no joint's, which come last.
+fn joints_of_elements(mechanism: &Mechanism) -> impl Iterator<Item = Option<&Joint>> {
+    let joints = mechanism.joints.iter().flat_map(|joint| std::iter::repeat_n(joint, elements_of(joint)));
+    joints.map(Some).chain(std::iter::repeat(None))
+}
+
 /// How many elements there are of a joint.
 fn elements_of(joint: &Joint) -> usize {
     use super::JointKind::{Bearing, Guide, Journal, Stop, Track};

@@ -7,7 +7,7 @@ use slipfit_core::{
     system::planar::{Chain, Kind, Point, Rigid},
 };
 
-use super::{Contacts, Parts, Typed, drive, element, elements_of, grouped, nested, numbers, typed, vector};
+use super::{Contacts, Parts, Typed, driven, element, grouped, joints_of_elements, nested, numbers, typed, vector};
 use crate::mechanism::{JointKind, Mechanism, Mounts, Rest, RunError, element::PlanarElement, planar};
 
 /// The parts of `mechanism`.
@@ -96,8 +96,7 @@ fn elements<const D: usize>(
     names: &mut Vec<&'static str>,
 ) -> Result<Vec<Typed>, RunError> {
     let open = vec![0.0; mechanism.gaps.len()];
-    let joints = mechanism.joints.iter().flat_map(|joint| std::iter::repeat_n(joint, elements_of(joint)));
-    let mut joints = joints.map(Some).chain(std::iter::repeat(None));
+    let mut joints = joints_of_elements(mechanism);
     let turning =
         |turn: Option<usize>| turn.map_or("Frame".into(), |turn| carrier(&chain_of::<D>(mechanism, mounts, turn)));
     let mut written = Vec::new();
@@ -178,7 +177,7 @@ fn elements<const D: usize>(
                         format!("Turning<{}, {}>", turning(one.link.body), turning(one.link.against)),
                         "Turning { body: Path, against: Path }",
                     ),
-                    typed("Motor<Drive<S>>", format!("Motor({})", drive(&one.law.0))),
+                    driven("Motor", &one.law.0),
                     1,
                 )
             }
@@ -196,7 +195,7 @@ fn elements<const D: usize>(
                             vector(axis.as_slice())
                         ),
                     ),
-                    typed("Pusher<Drive<S>>", format!("Pusher({})", drive(&one.law.0))),
+                    driven("Pusher", &one.law.0),
                     2,
                 )
             }

@@ -2,7 +2,7 @@
 
 use slipfit_core::system::spatial::{FreeBodies, Port, Rigid, Seat};
 
-use super::{Contacts, Parts, Typed, drive, element, elements_of, numbers, typed, vector};
+use super::{Contacts, Parts, Typed, driven, element, joints_of_elements, numbers, typed, vector};
 use crate::mechanism::{JointKind, Mechanism, RunError, element::SpatialElement, spatial};
 
 /// The parts of `mechanism`.
@@ -60,8 +60,7 @@ fn elements(
     names: &mut Vec<&'static str>,
 ) -> Result<Vec<Typed>, RunError> {
     let open = vec![0.0; mechanism.gaps.len()];
-    let joints = mechanism.joints.iter().flat_map(|joint| std::iter::repeat_n(joint, elements_of(joint)));
-    let mut joints = joints.map(Some).chain(std::iter::repeat(None));
+    let mut joints = joints_of_elements(mechanism);
     let mut written = Vec::new();
     for found in spatial::elements(mechanism, &open, 1.0)? {
         let joint = joints.next().flatten();
@@ -137,7 +136,7 @@ fn elements(
                         "About<S>",
                         format!("About {{ body: {}, axis_w: {} }}", link.body, vector(link.axis_w.as_slice())),
                     ),
-                    typed("Motor<Drive<S>>", format!("Motor({})", drive(&one.law.0))),
+                    driven("Motor", &one.law.0),
                     1,
                 )
             }
@@ -155,7 +154,7 @@ fn elements(
                             vector(link.axis_w.as_slice())
                         ),
                     ),
-                    typed("Pusher<Drive<S>>", format!("Pusher({})", drive(&one.law.0))),
+                    driven("Pusher", &one.law.0),
                     2,
                 )
             }
