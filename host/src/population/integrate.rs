@@ -3,15 +3,20 @@
 //! Every lane has a time and a step of its own, and takes the next unit as soon as its own has come to its end: units in
 //! lockstep, or with one step for all, would wait for each other. The steps are those of the kernel's RODAS3.
 
+use pulp::{Simd, WithSimd};
 use slipfit_core::{
     Scalar,
-    integrator::{Integrator, Rodas3},
+    integrator::{Integrator, MotionOf, Rodas3, StepOf},
     law::{Elastic, Friction},
+    mechanism::Mechanism,
     menu::SlideData,
     slide::Slide,
 };
 
-use crate::error_control::{CHANGES, FIRST_STEP, GREATEST_STEP, PLACE, SAFETY};
+use crate::{
+    error_control::{CHANGES, FIRST_STEP, GREATEST_STEP, PLACE, SAFETY},
+    out_of_line::OutOfLine,
+};
 
 use super::{
     figures::{Ends, Figures, Watch},
@@ -39,8 +44,8 @@ const MOST_STEPS: u32 = 200_000;
 
 /// Simulates all `units`, slides that `load` makes of their parameters, and writes what each did to `figures`, of the same
 /// length. Where `load` makes none there are no figures.
-#[inline(always)]
-pub fn integrate<const W: usize, E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>>(
+pub fn integrate<I: Simd, const W: usize, E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>>(
+    instructions: I,
     course: &Course,
     units: &[SlideData<f64>],
     figures: &mut [Figures],
@@ -52,17 +57,35 @@ pub fn integrate<const W: usize, E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memor
     for lane in 0..W {
         lanes.load(lane, &mut next, units);
     }
-    let Some(mut slide) = load(&lanes.data) else { return };
+    let Some(slide) = load(&lanes.data) else { return };
+    let mut slide = OutOfLine::within(instructions, slide);
     while lanes.busy() {
-        if lanes.step(course, &slide, figures) {
+        if lanes.step(instructions, course, &slide, figures) {
             for lane in 0..W {
                 if lanes.ended[lane] {
                     lanes.load(lane, &mut next, units);
                 }
             }
             let Some(loaded) = load(&lanes.data) else { return };
-            slide = loaded;
+            slide = OutOfLine::within(instructions, loaded);
         }
+    }
+}
+
+/// One step of all lanes, in a function of its own: what is around it would take long to compile with it.
+struct OneStep<'a, M: Mechanism<Pack<W>, 6>, const W: usize> {
+    slide: &'a M,
+    start: Pack<W>,
+    length: Pack<W>,
+    motions: &'a MotionOf<Pack<W>, M, 6>,
+}
+
+impl<M: Mechanism<Pack<W>, 6>, const W: usize> WithSimd for OneStep<'_, M, W> {
+    type Output = StepOf<Pack<W>, M, 6>;
+
+    #[inline(always)]
+    fn with_simd<I: Simd>(self, _: I) -> Self::Output {
+        Rodas3::step(self.slide, self.start, self.length, self.motions)
     }
 }
 
@@ -111,11 +134,11 @@ impl<const W: usize> Lanes<W> {
     }
 
     /// A step in every lane; whether units have come to their ends by it.
-    #[inline(always)]
-    fn step<E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>>(
+    fn step<I: Simd, E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>>(
         &mut self,
+        instructions: I,
         course: &Course,
-        slide: &Slide<Pack<W>, E, F>,
+        slide: &OutOfLine<Pack<W>, Slide<Pack<W>, E, F>, 6, I>,
         figures: &mut [Figures],
     ) -> bool {
         let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
@@ -126,7 +149,7 @@ impl<const W: usize> Lanes<W> {
             let step = self.lengths.0[lane];
             length.0[lane] = if 1.01 * step >= left { left.max(LEAST_STEP) } else { step };
         }
-        let step = Rodas3::step::<Pack<W>, _, 6>(slide, start, length, &self.motions);
+        let step = instructions.vectorize(OneStep { slide, start, length, motions: &self.motions });
         let error = self.error(course, [step.error, step.drift]);
         let factor = Pack::from_f64(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
         self.lengths = (length * factor.within(Pack::from_f64(CHANGES[0]), Pack::from_f64(CHANGES[1])))
@@ -151,7 +174,7 @@ impl<const W: usize> Lanes<W> {
             length,
             force: drive.force(start + length, speed) * along,
             speed: speed * along,
-            gaps: &slide.gaps(&self.motions.pose),
+            gaps: &slide.mechanism().gaps(&self.motions.pose),
             ramp_start: drive.ramp_start,
         };
         self.watch.observe(&ends);

@@ -16,7 +16,7 @@ pub mod statistics;
 pub mod study;
 pub mod unit;
 
-use pulp::{Simd, WithSimd};
+use pulp::Scalar;
 use rayon::prelude::*;
 use slipfit_core::{menu::SlideData, slide::CONTACTS};
 
@@ -40,23 +40,6 @@ const PIECE: usize = 128;
 #[cfg(target_arch = "x86_64")]
 const AVX2_LANES: usize = 8;
 
-/// The slides of some units, `W` of which are moved at a time.
-struct Work<'a, const W: usize> {
-    course: Course,
-    slides: &'a [SlideData<f64>],
-    figures: &'a mut [Figures],
-}
-
-/// In the instructions of whatever the machine was found to have.
-impl<const W: usize> WithSimd for Work<'_, W> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        integrate(&self.course, self.slides, self.figures, laws::usual::<Pack<W>>);
-    }
-}
-
 /// Simulates `slides`, all of the same laws: those of the paper in the widest instructions that the machine has. The bits do
 /// not depend on them. A slide that cannot be simulated has no figures.
 pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
@@ -65,7 +48,7 @@ pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
         && slides.first().and_then(laws::usual).is_some()
     {
         let mut figures = vec![Figures::NONE; slides.len()];
-        Simd::vectorize(avx2, Work::<AVX2_LANES> { course, slides, figures: &mut figures });
+        integrate(avx2, &course, slides, &mut figures, laws::usual::<Pack<AVX2_LANES>>);
         return figures;
     }
     one_by_one(course, slides)
@@ -75,9 +58,9 @@ pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
 fn one_by_one(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     let mut figures = vec![Figures::NONE; slides.len()];
     if slides.first().and_then(laws::usual).is_some() {
-        integrate(&course, slides, &mut figures, laws::usual::<Pack<1>>);
+        integrate(Scalar, &course, slides, &mut figures, laws::usual::<Pack<1>>);
     } else {
-        integrate(&course, slides, &mut figures, laws::chosen::<Pack<1>>);
+        integrate(Scalar, &course, slides, &mut figures, laws::chosen::<Pack<1>>);
     }
     figures
 }
