@@ -7,16 +7,14 @@
 
 use std::cell::RefCell;
 
-use pulp::{Simd, WithSimd};
 use slipfit_core::{
     SVector, Scalar,
     mechanism::{Differentiated, Linearised, Mechanism},
 };
 
-/// The mechanism `M`, its forces out of line, in the instructions `I`.
-pub struct OutOfLine<S: Scalar, M: Mechanism<S, D>, const D: usize, I = pulp::Scalar> {
+/// The mechanism `M`, its forces out of line.
+pub struct OutOfLine<S: Scalar, M: Mechanism<S, D>, const D: usize> {
     mechanism: M,
-    instructions: I,
     last: RefCell<Option<Last<S, M, D>>>,
 }
 
@@ -31,14 +29,7 @@ struct Last<S: Scalar, M: Mechanism<S, D>, const D: usize> {
 impl<S: Scalar, M: Mechanism<S, D>, const D: usize> OutOfLine<S, M, D> {
     /// `mechanism`, its laws without internal variables where it is differentiated.
     pub fn new(mechanism: M) -> Self {
-        Self::within(pulp::Scalar, mechanism)
-    }
-}
-
-impl<S: Scalar, M: Mechanism<S, D>, const D: usize, I: Simd> OutOfLine<S, M, D, I> {
-    /// `mechanism`, its forces computed in these `instructions`.
-    pub fn within(instructions: I, mechanism: M) -> Self {
-        Self { mechanism, instructions, last: RefCell::new(None) }
+        Self { mechanism, last: RefCell::new(None) }
     }
 
     /// The mechanism.
@@ -47,19 +38,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, I: Simd> OutOfLine<S, M, D, 
     }
 }
 
-/// What is done in certain instructions.
-struct Call<F>(F);
-
-impl<F: FnOnce() -> T, T> WithSimd for Call<F> {
-    type Output = T;
-
-    #[inline(always)]
-    fn with_simd<I: Simd>(self, _: I) -> T {
-        (self.0)()
-    }
-}
-
-impl<S: Scalar, M: Mechanism<S, D>, const D: usize, I: Simd> Mechanism<S, D> for OutOfLine<S, M, D, I> {
+impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLine<S, M, D> {
     type Pose = M::Pose;
     type Memory = M::Memory;
     type Linearisation = M::Linearisation;
@@ -123,10 +102,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, I: Simd> Mechanism<S, D> for
         a: S,
         remembered: Option<&mut M::Memory>,
     ) -> SVector<S, D> {
-        self.instructions.vectorize(Call(
-            #[inline(always)]
-            || self.mechanism.forces(t, pose, memory, velocity, a, remembered),
-        ))
+        self.mechanism.forces(t, pose, memory, velocity, a, remembered)
     }
 
     #[inline(never)]
@@ -169,10 +145,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, I: Simd> Mechanism<S, D> for
         {
             return last.found;
         }
-        let found = self.instructions.vectorize(Call(
-            #[inline(always)]
-            || self.mechanism.differentiated(t, pose, memory, velocity),
-        ));
+        let found = self.mechanism.differentiated(t, pose, memory, velocity);
         *last = Some(Last { t, pose: *pose, velocity: *velocity, found });
         found
     }

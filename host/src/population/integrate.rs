@@ -3,14 +3,14 @@
 //! Every lane has a time and a step of its own, and takes the next unit as soon as its own has come to its end: units in
 //! lockstep, or with one step for all, would wait for each other. The steps are those of the kernel's RODAS3.
 
-use pulp::{Simd, WithSimd};
 use slipfit_core::{
     Scalar,
-    integrator::{Integrator, MotionOf, Rodas3, StepOf},
+    integrator::{Integrator, Rodas3},
     law::{Elastic, Friction},
     mechanism::Mechanism,
     menu::SlideData,
-    slide::Slide,
+    pose::Pose,
+    slide::{CONTACTS, SLOTS, Slide},
 };
 
 use crate::{
@@ -35,6 +35,25 @@ pub struct Course {
     pub tolerance: f64,
 }
 
+/// As many slides as a pack has lanes.
+pub trait Slides<const W: usize>: Mechanism<Pack<W>, 6, Pose = Pose<Pack<W>>, Memory = [(); SLOTS]> {
+    /// The gaps (m) of each.
+    fn gaps(&self, pose: &Pose<Pack<W>>) -> [Pack<W>; CONTACTS];
+}
+
+impl<const W: usize, E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>> Slides<W> for Slide<Pack<W>, E, F> {
+    #[inline(always)]
+    fn gaps(&self, pose: &Pose<Pack<W>>) -> [Pack<W>; CONTACTS] {
+        self.gaps(pose)
+    }
+}
+
+impl<const W: usize, M: Slides<W>> Slides<W> for OutOfLine<Pack<W>, M, 6> {
+    fn gaps(&self, pose: &Pose<Pack<W>>) -> [Pack<W>; CONTACTS] {
+        self.mechanism().gaps(pose)
+    }
+}
+
 /// Least step (s): single precision resolves no shorter ones.
 const LEAST_STEP: f32 = 1e-9;
 /// How far (m) from the end of its stroke a unit may stop.
@@ -44,12 +63,12 @@ const MOST_STEPS: u32 = 200_000;
 
 /// Simulates all `units`, slides that `load` makes of their parameters, and writes what each did to `figures`, of the same
 /// length. Where `load` makes none there are no figures.
-pub fn integrate<I: Simd, const W: usize, E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>>(
-    instructions: I,
+#[inline(always)]
+pub fn integrate<const W: usize, M: Slides<W>>(
     course: &Course,
     units: &[SlideData<f64>],
     figures: &mut [Figures],
-    load: impl Fn(&SlideData<Pack<W>>) -> Option<Slide<Pack<W>, E, F>>,
+    load: impl Fn(&SlideData<Pack<W>>) -> Option<M>,
 ) {
     let Some(first) = units.first() else { return };
     let mut lanes = Lanes::<W>::new(first);
@@ -57,35 +76,17 @@ pub fn integrate<I: Simd, const W: usize, E: Elastic<Pack<W>>, F: Friction<Pack<
     for lane in 0..W {
         lanes.load(lane, &mut next, units);
     }
-    let Some(slide) = load(&lanes.data) else { return };
-    let mut slide = OutOfLine::within(instructions, slide);
+    let Some(mut slide) = load(&lanes.data) else { return };
     while lanes.busy() {
-        if lanes.step(instructions, course, &slide, figures) {
+        if lanes.step(course, &slide, figures) {
             for lane in 0..W {
                 if lanes.ended[lane] {
                     lanes.load(lane, &mut next, units);
                 }
             }
             let Some(loaded) = load(&lanes.data) else { return };
-            slide = OutOfLine::within(instructions, loaded);
+            slide = loaded;
         }
-    }
-}
-
-/// One step of all lanes, in a function of its own: what is around it would take long to compile with it.
-struct OneStep<'a, M: Mechanism<Pack<W>, 6>, const W: usize> {
-    slide: &'a M,
-    start: Pack<W>,
-    length: Pack<W>,
-    motions: &'a MotionOf<Pack<W>, M, 6>,
-}
-
-impl<M: Mechanism<Pack<W>, 6>, const W: usize> WithSimd for OneStep<'_, M, W> {
-    type Output = StepOf<Pack<W>, M, 6>;
-
-    #[inline(always)]
-    fn with_simd<I: Simd>(self, _: I) -> Self::Output {
-        Rodas3::step(self.slide, self.start, self.length, self.motions)
     }
 }
 
@@ -134,13 +135,8 @@ impl<const W: usize> Lanes<W> {
     }
 
     /// A step in every lane; whether units have come to their ends by it.
-    fn step<I: Simd, E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>>(
-        &mut self,
-        instructions: I,
-        course: &Course,
-        slide: &OutOfLine<Pack<W>, Slide<Pack<W>, E, F>, 6, I>,
-        figures: &mut [Figures],
-    ) -> bool {
+    #[inline(always)]
+    fn step<M: Slides<W>>(&mut self, course: &Course, slide: &M, figures: &mut [Figures]) -> bool {
         let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
         let (mut start, mut length) = (zero, zero);
         for lane in 0..W {
@@ -149,7 +145,7 @@ impl<const W: usize> Lanes<W> {
             let step = self.lengths.0[lane];
             length.0[lane] = if 1.01 * step >= left { left.max(LEAST_STEP) } else { step };
         }
-        let step = instructions.vectorize(OneStep { slide, start, length, motions: &self.motions });
+        let step = Rodas3::step::<Pack<W>, _, 6>(slide, start, length, &self.motions);
         let error = self.error(course, [step.error, step.drift]);
         let factor = Pack::from_f64(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
         self.lengths = (length * factor.within(Pack::from_f64(CHANGES[0]), Pack::from_f64(CHANGES[1])))
@@ -174,7 +170,7 @@ impl<const W: usize> Lanes<W> {
             length,
             force: drive.force(start + length, speed) * along,
             speed: speed * along,
-            gaps: &slide.mechanism().gaps(&self.motions.pose),
+            gaps: &slide.gaps(&self.motions.pose),
             ramp_start: drive.ramp_start,
         };
         self.watch.observe(&ends);

@@ -16,11 +16,11 @@ pub mod statistics;
 pub mod study;
 pub mod unit;
 
-use pulp::Scalar;
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 use slipfit_core::{menu::SlideData, slide::CONTACTS};
 
-use crate::{interrupt, scene::Scene, simulate::SimulateError};
+use crate::{interrupt, out_of_line::OutOfLine, scene::Scene, simulate::SimulateError};
 
 #[cfg(test)]
 mod tests;
@@ -40,6 +40,23 @@ const PIECE: usize = 128;
 #[cfg(target_arch = "x86_64")]
 const AVX2_LANES: usize = 8;
 
+/// The slides of some units, `W` of which are moved at a time.
+struct Work<'a, const W: usize> {
+    course: Course,
+    slides: &'a [SlideData<f64>],
+    figures: &'a mut [Figures],
+}
+
+/// In the instructions of whatever the machine was found to have.
+impl<const W: usize> WithSimd for Work<'_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        integrate(&self.course, self.slides, self.figures, laws::usual::<Pack<W>>);
+    }
+}
+
 /// Simulates `slides`, all of the same laws: those of the paper in the widest instructions that the machine has. The bits do
 /// not depend on them. A slide that cannot be simulated has no figures.
 pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
@@ -48,7 +65,7 @@ pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
         && slides.first().and_then(laws::usual).is_some()
     {
         let mut figures = vec![Figures::NONE; slides.len()];
-        integrate(avx2, &course, slides, &mut figures, laws::usual::<Pack<AVX2_LANES>>);
+        Simd::vectorize(avx2, Work::<AVX2_LANES> { course, slides, figures: &mut figures });
         return figures;
     }
     one_by_one(course, slides)
@@ -57,10 +74,11 @@ pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
 /// The same, one after the other.
 fn one_by_one(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     let mut figures = vec![Figures::NONE; slides.len()];
+    // In one function with their loop the forces would take long to compile.
     if slides.first().and_then(laws::usual).is_some() {
-        integrate(Scalar, &course, slides, &mut figures, laws::usual::<Pack<1>>);
+        integrate(&course, slides, &mut figures, |data| laws::usual::<Pack<1>>(data).map(OutOfLine::new));
     } else {
-        integrate(Scalar, &course, slides, &mut figures, laws::chosen::<Pack<1>>);
+        integrate(&course, slides, &mut figures, |data| laws::chosen::<Pack<1>>(data).map(OutOfLine::new));
     }
     figures
 }

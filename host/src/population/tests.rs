@@ -11,6 +11,7 @@ use super::{
 };
 use crate::{
     desk, example,
+    out_of_line::OutOfLine,
     outcome::{Outcome, Verdict},
     scene::Scene,
     simulate::{self as one, Settings},
@@ -40,7 +41,7 @@ fn figures_have_the_same_bits_for_any_number_of_lanes() {
     let expected = format!("{:?}", simulate(course, &slides));
     assert_eq!(format!("{:?}", one_by_one(course, &slides)), expected);
     let mut figures = vec![Figures::NONE; slides.len()];
-    integrate(pulp::Scalar, &course, &slides, &mut figures, laws::usual::<Pack<4>>);
+    integrate(&course, &slides, &mut figures, |data| laws::usual::<Pack<4>>(data).map(OutOfLine::new));
     assert_eq!(format!("{figures:?}"), expected);
     // In another order, and alone.
     let reversed: Vec<_> = slides.iter().rev().copied().collect();
