@@ -8,6 +8,7 @@ use crate::{
     tolerance::{
         estimate::Estimate,
         report::{MeasureReport, Report, SumReport},
+        rss::{BENDER, GILSON},
     },
 };
 
@@ -116,6 +117,9 @@ fn by_formula(report: &Report) -> String {
         heading.extend(["mean exact", "σ exact"]);
     }
     text_table(&heading, &report.measures.iter().map(row).collect::<Vec<_>>())
+        + &format!(
+            "RSS: about the middle of the limits; Bender: {BENDER} times it, Gilson: {GILSON} times, for means that shift\n"
+        )
 }
 
 fn contributors(report: &Report) -> String {
