@@ -496,7 +496,7 @@ fn bad_input_is_shown_with_its_place_and_what_is_allowed() {
         ("general", "generl", ["|generl", "did you mean `tolerance.general`", "general, rule, sigma"]),
         ("value = 10", "value = true", ["value = |true", "is a boolean", "a number in mm"]),
         ("value = 10", "value = inf", ["value = |inf", "not finite", "mm"]),
-        ("value = 10", "value = \"10 kg\"", ["value = |\"10 kg", "unit does not fit", "mm, m"]),
+        ("value = 10", "value = \"10 lb\"", ["value = |\"10 lb", "unit does not fit", "mm, m"]),
         (
             "value = 20",
             "value = 0.2",
