@@ -15,7 +15,6 @@ use crate::{
     self_locking::{DriveSide, Guide, guide},
     sweep::classes,
     table2::derived,
-    tolerance::model::Quantity,
 };
 
 /// Validates a scene: degrees of freedom, gaps at n, the n that closes each pair, warnings.
@@ -125,10 +124,10 @@ impl Arguments {
 fn nominal(product: Product) -> Vec<Nominal> {
     let values = product.nominal_measures();
     let measures = product.model.measures.into_iter().zip(values);
-    let nominal = measures.map(|(measure, value)| match measure.quantity {
-        Quantity::Length => Nominal { name: measure.name, nominal: value * 1e3, unit: "mm" },
-        Quantity::Angle => Nominal { name: measure.name, nominal: value.to_degrees(), unit: "°" },
-        Quantity::Ratio => Nominal { name: measure.name, nominal: value, unit: "" },
+    let nominal = measures.map(|(measure, value)| Nominal {
+        name: measure.name,
+        nominal: value * measure.quantity.factor(),
+        unit: measure.quantity.unit(),
     });
     nominal.collect()
 }

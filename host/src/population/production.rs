@@ -265,14 +265,18 @@ mod tests {
     #[test]
     fn parameters_vary_as_the_scene_says() {
         let text = format!(
-            "{}\n[vary]\nfriction.coefficient = 0.03\nslide.tilt_x = {{ tolerance = \"2°\", distribution = \"uniform\" }}\n",
+            "{}\n[vary]\nfriction.coefficient = 0.03\nslide.tilt_x = {{ tolerance = \"2°\", distribution = \"uniform\" }}\n\
+             slide.mass = {{ distribution = {{ kind = \"weibull\", shape = 1, scale = \"2 g\" }} }}\n",
             shipped("cd-rom-slide").unwrap()
         );
         let scene = Scene::parse("varied", &text, &[]).unwrap();
         let drawn = Production::new(&scene, None, 0.0, 3).unwrap().draw(0..4096);
         let [_, friction] = moments(drawn.deviations.iter().map(|unit| unit[0]));
-        let [_, tilt] = moments(drawn.deviations.iter().map(|unit| unit[1]));
+        let [mean, mass] = moments(drawn.deviations.iter().map(|unit| unit[1]));
+        let [_, tilt] = moments(drawn.deviations.iter().map(|unit| unit[2]));
         assert!((friction / 0.01 - 1.0).abs() < 0.05, "{friction}");
+        // Exponential: the mean is the standard deviation.
+        assert!((mean / 2e-3 - 1.0).abs() < 4.0 / 64.0 && (mass / 2e-3 - 1.0).abs() < 0.1, "{mean} {mass}");
         assert!((tilt / (2f64.to_radians() / libm::sqrt(3.0)) - 1.0).abs() < 0.05, "{tilt}");
     }
 }

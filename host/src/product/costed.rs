@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::tolerance::allocate::cost::Process;
+use crate::tolerance::{allocate::cost::Process, model::Quantity};
 
 /// A tolerance that may be chosen.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,8 +13,8 @@ pub struct Costed {
     pub stated: f64,
     /// How it can be made.
     pub processes: Vec<Process>,
-    /// Whether it is an angle.
-    pub is_angle: bool,
+    /// What kind of number it is.
+    pub quantity: Quantity,
     /// How it is written.
     pub written: Written,
     /// Where it stands in the file (bytes), unless it was set on the command line.

@@ -50,8 +50,63 @@ pub enum Shape {
         /// Skewness.
         skewness: f64,
     },
+    /// Beta between the limits.
+    Beta {
+        /// a and b, positive.
+        shapes: [f64; 2],
+    },
+    /// Weibull's, with a width of its own.
+    Weibull {
+        /// Shape, positive.
+        shape: f64,
+        /// Scale (SI), positive.
+        scale: f64,
+        /// Deviation (SI) of its least value from the nominal one.
+        location: f64,
+    },
+    /// Gumbel's, with a width of its own.
+    Gumbel {
+        /// Deviation (SI) of the most frequent value from the nominal one.
+        mode: f64,
+        /// Scale (SI), not 0: positive is that of a largest value, negative that of a smallest one.
+        scale: f64,
+    },
+    /// Log-normal, with a width of its own.
+    Lognormal {
+        /// Deviation (SI) of the mean from the nominal value.
+        mean: f64,
+        /// Standard deviation (SI), positive.
+        deviation: f64,
+        /// Deviation (SI) of its least value from the nominal one, below that of the mean.
+        location: f64,
+    },
+    /// A unit is of one of several shapes.
+    Mixture(Vec<Component>),
     /// Measured deviations (SI) from the nominal value, ascending.
     Table(Vec<f64>),
+}
+
+/// One of the shapes of a mixture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component {
+    /// Its share of the units over the weights of all.
+    pub weight: f64,
+    /// Lower and upper deviation (SI) from the nominal value.
+    pub deviations: [f64; 2],
+    /// Its shape between them.
+    pub shape: Shape,
+}
+
+impl Shape {
+    /// Whether it has a width of its own: its tolerance, if it has one, is what the worst case goes by, and nothing else.
+    pub fn has_width(&self) -> bool {
+        matches!(self, Self::Weibull { .. } | Self::Gumbel { .. } | Self::Lognormal { .. } | Self::Mixture(_))
+    }
+
+    /// Whether it stands without a tolerance beside it.
+    pub fn is_whole(&self) -> bool {
+        matches!(self, Self::Constant | Self::Table(_))
+    }
 }
 
 /// Why a shape does not fit its limits.
@@ -70,6 +125,12 @@ pub enum ShapeError {
     /// Shoulders that are out of order or outside of the limits.
     #[error("the shoulders are not in order within the tolerance")]
     Shoulders,
+    /// A log-normal whose mean is not above its least value.
+    #[error("the mean is not above the location")]
+    Location,
+    /// Nothing to mix.
+    #[error("a mixture has two or more parts")]
+    Parts,
     /// A skewness of zero.
     #[error("the skewness is 0: that is the normal distribution")]
     Skewness,
@@ -82,7 +143,8 @@ pub enum ShapeError {
 }
 
 impl Toleranced {
-    /// `nominal` with the lower and upper `deviations` from it and a `shape`.
+    /// `nominal` with the lower and upper `deviations` from it and a `shape`. A shape with a width of its own and deviations of 0 has
+    /// its 0.135 % and 99.865 % points as limits, a mixture the outermost limits of its parts.
     ///
     /// # Errors
     /// [`ShapeError`] if the tolerance has no width or is reversed, or the shape does not fit in.
@@ -94,7 +156,9 @@ impl Toleranced {
         if deviations[0] > deviations[1] {
             return Err(ShapeError::Reversed);
         }
-        if !matches!(shape, Shape::Constant | Shape::Table(_)) && (deviations[0] >= deviations[1] || lower >= upper) {
+        let is_stated = deviations != [0.0; 2];
+        let needs_width = if shape.has_width() { is_stated } else { !shape.is_whole() };
+        if needs_width && (deviations[0] >= deviations[1] || lower >= upper) {
             return Err(ShapeError::Width);
         }
         let deviation = |sigma: f64| (deviations[1] - deviations[0]) / 2.0 / sigma;
@@ -124,6 +188,33 @@ impl Toleranced {
             }
             Shape::Skewed { skewness: 0.0, .. } => return Err(ShapeError::Skewness),
             Shape::Skewed { sigma, skewness } => Distribution::Skewed { mean, deviation: deviation(sigma), skewness },
+            Shape::Beta { shapes } => Distribution::Beta { limits, shapes },
+            Shape::Weibull { shape, scale, location } => {
+                Distribution::Weibull { shape, scale, location: nominal + location }
+            }
+            Shape::Gumbel { mode, scale } => Distribution::Gumbel { mode: nominal + mode, scale },
+            Shape::Lognormal { mean, location, .. } if mean <= location => return Err(ShapeError::Location),
+            Shape::Lognormal { mean, deviation, location } => {
+                // A log-normal of the coefficient of variation v has the skewness v³ + 3v.
+                let variation = deviation / (mean - location);
+                let skewness = variation * (variation * variation + 3.0);
+                Distribution::Skewed { mean: nominal + mean, deviation, skewness }
+            }
+            Shape::Mixture(ref components) if components.len() < 2 => return Err(ShapeError::Parts),
+            Shape::Mixture(ref components) => {
+                let total: f64 = components.iter().map(|component| component.weight).sum();
+                let mut parts = Vec::new();
+                let mut outermost = [f64::INFINITY, f64::NEG_INFINITY];
+                for Component { weight, deviations, shape } in components {
+                    let part = Self::new(nominal, *deviations, shape)?;
+                    outermost = [outermost[0].min(part.limits[0]), outermost[1].max(part.limits[1])];
+                    parts.push((weight / total, part.distribution));
+                }
+                if !is_stated {
+                    limits = outermost;
+                }
+                Distribution::Mixture(parts)
+            }
             Shape::Table(ref values) => {
                 let values: Vec<f64> = values.iter().map(|value| nominal + value).collect();
                 let (Some(least), Some(greatest)) = (values.first().copied(), values.last().copied()) else {
@@ -136,6 +227,9 @@ impl Toleranced {
                 Distribution::Table(values)
             }
         };
+        if shape.has_width() && limits[0] >= limits[1] {
+            limits = distribution.points();
+        }
         Ok(Self { nominal, limits, distribution })
     }
 
@@ -181,6 +275,23 @@ mod tests {
     }
 
     #[test]
+    fn shapes_with_a_width_of_their_own() {
+        let lognormal = Shape::Lognormal { mean: 0.0, deviation: 0.5, location: -1.0 };
+        let made = Toleranced::new(1.0, [0.0; 2], &lognormal).unwrap();
+        // A log-normal from 0 on with mean 1: its median is 1/√(1 + 0.25), its logarithm has the variance ln 1.25.
+        let spread = libm::sqrt(libm::log(1.25));
+        for (found, sign) in made.limits.into_iter().zip([-3.0, 3.0]) {
+            assert!((found - libm::exp(sign * spread) / libm::sqrt(1.25)).abs() < 1e-13);
+        }
+        assert_eq!(Toleranced::new(1.0, [-0.9, 2.0], &lognormal).unwrap().limits, [1.0 - 0.9, 3.0]);
+        let part = |weight, deviations, shape| Component { weight, deviations, shape };
+        let lots = vec![part(3.0, [-0.2, 0.1], Shape::Uniform), part(1.0, [0.0, 0.3], Shape::Normal { sigma: 3.0 })];
+        let mixed = Toleranced::new(1.0, [0.0; 2], &Shape::Mixture(lots)).unwrap();
+        assert_eq!(mixed.limits, [0.8, 1.3]);
+        assert!((mixed.mean() - (0.75 * 0.95 + 0.25 * 1.15)).abs() < 1e-14);
+    }
+
+    #[test]
     fn shapes_that_do_not_fit_are_refused() {
         let error = |deviations, shape| Toleranced::new(1.0, deviations, &shape).unwrap_err();
         assert_eq!(error([0.0, 0.0], Shape::Uniform), ShapeError::Width);
@@ -189,6 +300,10 @@ mod tests {
         assert_eq!(error([-0.1, 0.1], Shape::Triangular { mode: Some(0.2) }), ShapeError::Mode);
         assert_eq!(error([-0.1, 0.1], Shape::Trapezoidal { shoulders: [0.05, -0.05] }), ShapeError::Shoulders);
         assert_eq!(error([-0.1, 0.1], Shape::Skewed { sigma: 3.0, skewness: 0.0 }), ShapeError::Skewness);
+        let lognormal = Shape::Lognormal { mean: 0.1, deviation: 0.5, location: 0.1 };
+        assert_eq!(error([0.0, 0.0], lognormal), ShapeError::Location);
+        assert_eq!(error([0.1, 0.1], Shape::Gumbel { mode: 0.0, scale: 1.0 }), ShapeError::Width);
+        assert_eq!(error([0.0, 0.0], Shape::Mixture(vec![])), ShapeError::Parts);
         for values in [vec![], vec![1.0], vec![1.0, 1.0], vec![1.0, 0.0]] {
             assert_eq!(error([0.0; 2], Shape::Table(values)), ShapeError::Table);
         }

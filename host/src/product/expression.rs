@@ -1,7 +1,7 @@
 //! Arithmetic expressions of dimensions and measures, such as `acos((a + c) / (e - c))`.
 //!
-//! Lengths, angles and plain numbers are told apart: a length cannot be added to an angle, `sqrt(a * b)` of two lengths
-//! is a length. A constant carries its unit (`3 mm`, `30°`) or is a plain number. A name with spaces stands in single
+//! Lengths, angles, plain numbers, forces, masses, times and what they make are told apart: a length cannot be added to an
+//! angle, `sqrt(a * b)` of two lengths is a length, a force over a length a stiffness. A constant carries its unit (`3 mm`, `30°`) or is a plain number. A name with spaces stands in single
 //! quotes.
 
 mod grammar;
@@ -72,7 +72,7 @@ pub enum Fault {
     #[error("there is no function `{0}`")]
     UnknownFunction(String),
     /// No such unit.
-    #[error("`{0}` is no unit of a length or an angle")]
+    #[error("`{0}` is no unit of a constant")]
     UnknownUnit(String),
     /// Kinds that do not go together.
     #[error("{operation} {}", one_or_both(kinds))]
@@ -82,7 +82,7 @@ pub enum Fault {
         /// With what.
         kinds: Vec<Kind>,
     },
-    /// Not a length, an angle or a plain number.
+    /// Not of a kind that measures have.
     #[error("the result is {0}, which is no measure")]
     Result(Kind),
     /// Nested too deeply.
@@ -222,6 +222,13 @@ mod tests {
             ("pi * 2 * a / a", std::f64::consts::TAU, Quantity::Ratio),
             ("φ * a", 2e-3 * std::f64::consts::FRAC_PI_3, Quantity::Length),
             ("φ / 1°", 60.0, Quantity::Ratio),
+            ("2 kg * 3 m / 1 s^2 - 5 N", 1.0, Quantity::Force),
+            ("0.5 kN / 2 mm", 250e3, Quantity::Stiffness),
+            ("5 N * a", 0.01, Quantity::Moment),
+            ("8 N / a^2 - 1.5 MPa", 0.5e6, Quantity::Pressure),
+            ("2 * 3 g", 6e-3, Quantity::Mass),
+            ("sqrt(1 kg * a / 5 N)", 0.02, Quantity::Time),
+            ("8 N / a^2 / 1 MPa", 2.0, Quantity::Ratio),
         ] {
             let (found, kind) = value(text).unwrap_or_else(|error| panic!("{text}: {}", error.fault));
             assert!((found - expected).abs() < 1e-14 * expected.abs().max(1.0), "{text}: {found}, not {expected}");
@@ -253,6 +260,8 @@ mod tests {
             ("a ^ b.c", "^", "cannot raise"),
             ("max(a, 1)", "max", "cannot compare a length and a plain number"),
             ("a * a", "a * a", "the result is a length to the power 2"),
+            ("a + 5 N", "+", "cannot add a length and a force"),
+            ("5 N * 1 s", "5 N * 1 s", "the result is a number in m·kg·s^-1"),
             ("a / (b.c - 3 mm)", "/", "divides by zero at the nominal"),
             ("acos(b.c / a)", "acos", "is not a finite number at the nominal"),
             ("sqrt(a - b.c) / sqrt(a)", "sqrt", "is not a finite number"),

@@ -38,6 +38,8 @@ pub struct Measures {
     pub formulas: Vec<Formula>,
     /// The variables (SI) as the drawing has them.
     pub nominal: Vec<f64>,
+    /// What kinds of numbers they are.
+    pub quantities: Vec<Quantity>,
     /// One a measure: what it costs to be off its target, if that is said.
     pub losses: Vec<Option<Loss>>,
 }
@@ -100,6 +102,10 @@ impl Function for Measures {
 
     fn nominal(&self) -> Option<&[f64]> {
         Some(&self.nominal)
+    }
+
+    fn quantity(&self, variable: usize) -> Quantity {
+        self.quantities[variable]
     }
 
     fn loss(&self, measure: usize) -> Option<Loss> {

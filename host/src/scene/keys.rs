@@ -6,6 +6,7 @@ use super::{
 };
 
 /// A key, and the keys of the table (or the tables of the list) that it may hold.
+#[derive(Clone, Copy)]
 struct Key {
     name: &'static str,
     below: &'static [Key],
@@ -19,8 +20,32 @@ const fn table(name: &'static str, below: &'static [Key]) -> Key {
     Key { name, below }
 }
 
-const DISTRIBUTION: Key =
-    table("distribution", &[key("kind"), key("mode"), key("shoulders"), key("skewness"), key("deviations")]);
+/// Keys of a distribution alone.
+const SHAPE: [Key; 11] = [
+    key("kind"),
+    key("mode"),
+    key("shoulders"),
+    key("skewness"),
+    key("deviations"),
+    key("shape"),
+    key("shapes"),
+    key("scale"),
+    key("location"),
+    key("mean"),
+    key("deviation"),
+];
+/// The same, and the parts of a mixture.
+const MIXTURE: [Key; SHAPE.len() + 1] = {
+    const PART: &[Key] = &[key("weight"), key("tolerance"), key("sigma"), table("distribution", &SHAPE)];
+    let mut keys = [table("of", PART); SHAPE.len() + 1];
+    let mut i = 0;
+    while i < SHAPE.len() {
+        keys[i] = SHAPE[i];
+        i += 1;
+    }
+    keys
+};
+const DISTRIBUTION: Key = table("distribution", &MIXTURE);
 
 const COST: Key = table(
     "cost",
@@ -157,7 +182,17 @@ const ROOT: &[Key] = &[
     table("tolerance", &[key("general"), key("rule"), key("sigma"), key("correlation")]),
     table(
         "dimension",
-        &[key("name"), key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge"), COST],
+        &[
+            key("name"),
+            key("value"),
+            key("quantity"),
+            key("tolerance"),
+            key("sigma"),
+            DISTRIBUTION,
+            key("side"),
+            key("edge"),
+            COST,
+        ],
     ),
     table(
         "part",

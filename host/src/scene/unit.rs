@@ -33,6 +33,14 @@ pub const LENGTH: &[Unit] =
 pub const ANGLE: &[Unit] = &[times("°", std::f64::consts::PI / 180.0), si("rad"), per("mrad", 1e3)];
 /// Masses.
 pub const MASS: &[Unit] = &[per("g", 1e3), si("kg"), per("mg", 1e6)];
+/// Forces.
+pub const FORCE: &[Unit] = &[si("N"), per("mN", 1e3), times("kN", 1e3)];
+/// Stiffnesses.
+pub const STIFFNESS: &[Unit] = &[times("N/mm", 1e3), si("N/m"), times("N/µm", 1e6)];
+/// Moments of a force.
+pub const MOMENT: &[Unit] = &[per("N·mm", 1e3), si("N·m")];
+/// Pressures and stresses.
+pub const PRESSURE: &[Unit] = &[times("MPa", 1e6), si("Pa"), times("kPa", 1e3), times("GPa", 1e9), times("N/mm²", 1e6)];
 /// Times, in seconds unless they say otherwise.
 pub const SECONDS: &[Unit] = &[si("s"), MILLISECOND, MICROSECOND];
 /// Times, in milliseconds unless they say otherwise.

@@ -1,7 +1,10 @@
 //! Values of a scalar contributor from standard normal scores.
 
 use super::{
+    beta::Beta,
+    extreme::{Gumbel, Weibull},
     lanes::Lanes,
+    mixture::Mixture,
     model::Distribution,
     normal::{quantile, tail},
 };
@@ -17,6 +20,14 @@ pub enum Marginal {
     Trapezoid { limits: [f64; 2], shoulders: [f64; 2], shares: [f64; 2] },
     /// Shifted log-normal.
     Skewed(Skewing),
+    /// Weibull's.
+    Weibull(Weibull),
+    /// Gumbel's.
+    Gumbel(Gumbel),
+    /// Beta.
+    Beta(Beta),
+    /// Of several ones.
+    Mixture(Mixture),
     /// Linear between values.
     Table(Vec<f64>),
 }
@@ -24,11 +35,11 @@ pub enum Marginal {
 /// The shifted log-normal x = mean ± e^μ·(e^(s·z) − e^(s²/2)) of a given skewness.
 #[derive(Clone, Copy, Debug)]
 pub struct Skewing {
-    mean: f64,
-    scale: f64,
-    spread: f64,
+    pub(super) mean: f64,
+    pub(super) scale: f64,
+    pub(super) spread: f64,
     /// e^(s²/2) − 1.
-    shift: f64,
+    pub(super) shift: f64,
 }
 
 impl Skewing {
@@ -44,6 +55,14 @@ impl Skewing {
     /// The value at a score; it grows with the score.
     pub fn value(&self, score: f64) -> f64 {
         self.mean + self.scale * (libm::expm1(self.spread * score) - self.shift)
+    }
+}
+
+impl Distribution {
+    /// The 0.135 % and the 99.865 % point: those of a normal lie three standard deviations from its mean.
+    pub fn points(&self) -> [f64; 2] {
+        let marginal = Marginal::new(self);
+        [-3.0, 3.0].map(|score| marginal.value(score))
     }
 }
 
@@ -67,6 +86,14 @@ impl Marginal {
             Distribution::Trapezoidal { limits, shoulders } => Self::trapezoid(*limits, *shoulders),
             Distribution::Skewed { mean, deviation, skewness } => {
                 Self::Skewed(Skewing::new(*mean, *deviation, *skewness))
+            }
+            Distribution::Weibull { shape, scale, location } => {
+                Self::Weibull(Weibull { shape: *shape, scale: *scale, location: *location })
+            }
+            Distribution::Gumbel { mode, scale } => Self::Gumbel(Gumbel { mode: *mode, scale: *scale }),
+            Distribution::Beta { limits, shapes } => Self::Beta(Beta { limits: *limits, shapes: *shapes }),
+            Distribution::Mixture(parts) => {
+                Self::Mixture(Mixture::new(parts.iter().map(|(share, part)| (*share, Self::new(part))).collect()))
             }
             Distribution::Table(values) => Self::Table(values.clone()),
         }
@@ -107,6 +134,10 @@ impl Marginal {
                 }
             }
             Self::Skewed(skewing) => skewing.value(score),
+            Self::Weibull(weibull) => weibull.value(score),
+            Self::Gumbel(gumbel) => gumbel.value(score),
+            Self::Beta(beta) => beta.value(score),
+            Self::Mixture(mixture) => mixture.value(score),
             Self::Table(values) => {
                 let place = tail(-score) * (values.len() - 1) as f64;
                 let piece = (place as usize).min(values.len() - 2);
@@ -139,6 +170,12 @@ mod tests {
             Distribution::Triangular { limits, mode: 0.5 },
             Distribution::Trapezoidal { limits, shoulders: [0.0, 2.5] },
             Distribution::Skewed { mean: 4.0, deviation: 0.3, skewness: -0.7 },
+            Distribution::Weibull { shape: 1.5, scale: 0.3, location: 1.0 },
+            Distribution::Beta { limits, shapes: [2.0, 3.5] },
+            Distribution::Mixture(vec![
+                (0.3, Distribution::Uniform { limits }),
+                (0.7, Distribution::Normal { mean: 0.5, deviation: 0.2 }),
+            ]),
             Distribution::Table(vec![0.0, 1.0, 1.0, 3.0]),
         ] {
             let marginal = Marginal::new(&distribution);

@@ -8,17 +8,22 @@
 
 pub mod allocate;
 pub mod analysis;
+mod beta;
 pub mod binomial;
 pub mod copula;
 #[cfg(test)]
 mod coverage_tests;
+mod cumulative;
 pub mod derivative;
 mod distribution;
+#[cfg(test)]
+mod distribution_tests;
 pub mod draw;
 pub mod estimate;
 #[cfg(test)]
 mod examples;
 pub mod experiment;
+mod extreme;
 mod extremes;
 pub mod failure;
 pub mod file;
@@ -29,6 +34,7 @@ pub mod interval;
 pub mod lanes;
 pub mod linear;
 pub mod loss;
+mod mixture;
 pub mod model;
 pub mod moments;
 pub mod nested;
@@ -39,6 +45,7 @@ pub mod picture;
 pub mod quadrature;
 mod regions;
 pub mod report;
+mod root;
 pub mod rss;
 pub mod run;
 pub mod sampler;

@@ -27,6 +27,11 @@ pub trait Function: Send + Sync {
         None
     }
 
+    /// What kind of number a scalar `variable` is.
+    fn quantity(&self, _variable: usize) -> Quantity {
+        Quantity::Length
+    }
+
     /// What it costs that `measure` is off its target, where that is said.
     fn loss(&self, _measure: usize) -> Option<Loss> {
         None
@@ -125,6 +130,31 @@ pub enum Distribution {
         /// Skewness, not 0: positive has its long tail upwards.
         skewness: f64,
     },
+    /// Weibull's: F(x) = 1 − exp(−((x − location)/scale)^shape).
+    Weibull {
+        /// Shape, positive: 1 is exponential, 2 Rayleigh's.
+        shape: f64,
+        /// Scale, positive.
+        scale: f64,
+        /// Least value.
+        location: f64,
+    },
+    /// Gumbel's of a largest value: F(x) = exp(−exp(−(x − mode)/scale)); its mirror image for a negative scale.
+    Gumbel {
+        /// Most frequent value.
+        mode: f64,
+        /// Scale, not 0: positive has its long tail upwards.
+        scale: f64,
+    },
+    /// Beta: density ∝ u^(a−1)·(1−u)^(b−1) of the place u, from 0 to 1, within the limits.
+    Beta {
+        /// Lower and upper limit.
+        limits: [f64; 2],
+        /// a and b, positive.
+        shapes: [f64; 2],
+    },
+    /// One of several distributions: shares, which add up to 1, and distributions.
+    Mixture(Vec<(f64, Distribution)>),
     /// Measured data: values in ascending order, at least two; linear between them.
     Table(Vec<f64>),
 }
@@ -149,6 +179,18 @@ pub enum Quantity {
     Angle,
     /// Reported as it is.
     Ratio,
+    /// N.
+    Force,
+    /// N/m; reported in N/mm.
+    Stiffness,
+    /// kg; reported in g.
+    Mass,
+    /// N·m; reported in N·mm.
+    Moment,
+    /// Pa; reported in MPa.
+    Pressure,
+    /// s.
+    Time,
 }
 
 /// A sum of measures that must stay positive, such as the two gaps of a pin.

@@ -1,7 +1,7 @@
 //! Weighted points that stand for how a contributor varies: averages over them are its moments.
 
 use super::{
-    distribution::Skewing,
+    distribution::Marginal,
     model::{Distribution, Variation, ZoneRule},
     normal::density,
 };
@@ -23,7 +23,7 @@ const POINTS: usize = 10;
 /// Nodes of a contributor: exact for polynomials up to degree 8 but for the accuracy of normal and skewed
 /// distributions, 1e-12, and of truncated zones, 1e-8.
 pub fn nodes(variation: &Variation) -> Vec<Node> {
-    let mut nodes = match variation {
+    normalised(match variation {
         Variation::Scalar { distribution, .. } => scalar(distribution),
         Variation::Zone(ZoneRule::Translation) => line(&normal_pieces(-REACH, REACH), |z| (z / 3.0, density(z))),
         Variation::Zone(ZoneRule::SigmaZone) => Vec::new(),
@@ -36,7 +36,18 @@ pub fn nodes(variation: &Variation) -> Vec<Node> {
         Variation::Zone(ZoneRule::Truncated) => {
             octahedron(|at| libm::exp(-13.5 * at.iter().map(|x| x * x).sum::<f64>()))
         }
-    };
+    })
+}
+
+/// Nodes of a standard normal score, with this many pieces a standard deviation: for values of it that jump or have kinks.
+pub fn scores(pieces: u32) -> Vec<Node> {
+    let count = REACH * f64::from(pieces);
+    let borders: Vec<f64> = normal_pieces(-count, count).iter().map(|border| border / f64::from(pieces)).collect();
+    normalised(line(&borders, |z| (z, density(z))))
+}
+
+/// With weights that add up to 1.
+fn normalised(mut nodes: Vec<Node>) -> Vec<Node> {
     let total: f64 = nodes.iter().map(|node| node.weight).sum();
     nodes.iter_mut().for_each(|node| node.weight /= total);
     nodes
@@ -59,9 +70,20 @@ fn scalar(distribution: &Distribution) -> Vec<Node> {
         Distribution::Uniform { limits } => line(limits, straight),
         Distribution::Triangular { limits: [low, high], mode } => trapezoid([*low, *high], [*mode, *mode]),
         Distribution::Trapezoidal { limits, shoulders } => trapezoid(*limits, *shoulders),
-        Distribution::Skewed { mean, deviation, skewness } => {
-            let skewing = Skewing::new(*mean, *deviation, *skewness);
-            line(&normal_pieces(-REACH, REACH), |z| (skewing.value(z), density(z)))
+        Distribution::Skewed { .. }
+        | Distribution::Weibull { .. }
+        | Distribution::Gumbel { .. }
+        | Distribution::Beta { .. } => {
+            let marginal = Marginal::new(distribution);
+            line(&normal_pieces(-REACH, REACH), |z| (marginal.value(z), density(z)))
+        }
+        Distribution::Mixture(parts) => {
+            let part = |(share, part): &(f64, Distribution)| {
+                let mut nodes = normalised(scalar(part));
+                nodes.iter_mut().for_each(|node| node.weight *= share);
+                nodes
+            };
+            parts.iter().flat_map(part).collect()
         }
         Distribution::Table(values) => {
             // Every piece has the same probability, however wide it is.

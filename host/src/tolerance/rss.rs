@@ -22,12 +22,17 @@ pub struct RootSumSquare {
     pub shares: Vec<f64>,
 }
 
+/// The factor of A. Bender ("Statistical tolerancing as it relates to quality control and the designer", SAE 680490, 1968).
+pub const BENDER: f64 = 1.5;
+/// The factor of J. Gilson (*A new approach to engineering tolerances*, 1951), for means that shift.
+pub const GILSON: f64 = 1.6;
+
 /// A root sum of squares multiplied by factors of practice (SI).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Modified {
-    /// 1.5 times it (A. Bender, SAE 680490, 1968).
+    /// [`BENDER`] times it.
     pub bender: f64,
-    /// 1.6 times it (J. Gilson, *A new approach to engineering tolerances*, 1951).
+    /// [`GILSON`] times it.
     pub gilson: f64,
     /// With the factor 1 + ½(worst case − RSS)/(RSS·(√n − 1)) of n tolerances: 1.5 for any number of equal
     /// ones, never more than the worst case.
@@ -39,7 +44,7 @@ impl Modified {
     fn new(tolerance: f64, worst: f64, count: usize) -> Self {
         let more = libm::sqrt(count as f64) - 1.0;
         let by_count = if count > 1 { tolerance + 0.5 * (worst - tolerance) / more } else { worst };
-        Self { bender: 1.5 * tolerance, gilson: 1.6 * tolerance, by_count: by_count.min(worst) }
+        Self { bender: BENDER * tolerance, gilson: GILSON * tolerance, by_count: by_count.min(worst) }
     }
 }
 

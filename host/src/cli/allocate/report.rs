@@ -15,7 +15,7 @@ use crate::{
             requirement::{Kind, Requirement, Row},
             search::Found,
         },
-        model::{Model, Quantity},
+        model::Model,
     },
 };
 
@@ -130,10 +130,9 @@ pub struct CurvePoint {
     pub tolerances: Vec<f64>,
 }
 
-/// mm or degrees.
+/// As it is reported.
 fn unit(costed: &Costed) -> (f64, &'static str) {
-    let quantity = if costed.is_angle { Quantity::Angle } else { Quantity::Length };
-    (quantity.factor(), quantity.unit())
+    (costed.quantity.factor(), costed.quantity.unit())
 }
 
 impl Report {

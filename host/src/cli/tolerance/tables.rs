@@ -8,6 +8,7 @@ use crate::{
     tolerance::{
         estimate::Estimate,
         report::{MeasureReport, Report, SumReport},
+        rss::{BENDER, GILSON},
     },
 };
 
@@ -90,7 +91,8 @@ fn by_formula(report: &Report) -> String {
         let mut row = vec![m.name.clone(), plus_minus(&m.estimates.mean), plus_minus(&m.estimates.sd)];
         let rss = m.rss.map_or_else(|| "-".into(), |rss| format!("{} ± {}", real(rss.middle), real(rss.tolerance)));
         row.extend([or_dash(m.nominal, real), format!("{low} … {high}"), rss]);
-        row.push(or_dash(m.rss.map(|rss| rss.bender), |tolerance| format!("± {}", real(tolerance))));
+        let modified = [m.rss.map(|rss| rss.bender), m.rss.map(|rss| rss.gilson)];
+        row.extend(modified.map(|tolerance| or_dash(tolerance, |tolerance| format!("± {}", real(tolerance)))));
         let second = m.second_order;
         row.extend([m.rss.map(|r| r.sd), second.map(|s| s.mean), second.map(|s| s.sd)].map(|x| or_dash(x, real)));
         if by_quadrature {
@@ -106,6 +108,7 @@ fn by_formula(report: &Report) -> String {
         "worst case",
         "RSS",
         "Bender",
+        "Gilson",
         "σ linear",
         "mean 2nd order",
     ];
@@ -114,6 +117,9 @@ fn by_formula(report: &Report) -> String {
         heading.extend(["mean exact", "σ exact"]);
     }
     text_table(&heading, &report.measures.iter().map(row).collect::<Vec<_>>())
+        + &format!(
+            "RSS: about the middle of the limits; Bender: {BENDER} times it, Gilson: {GILSON} times, for means that shift\n"
+        )
 }
 
 fn contributors(report: &Report) -> String {

@@ -9,7 +9,17 @@ use super::{DEPTH, Expression, ExpressionError, Fault, Kind, Operation, Source, 
 /// The deepest nesting of parentheses, signs and powers.
 const NESTING: usize = 64;
 const FUNCTIONS: &str = "sqrt, sin, cos, tan, asin, acos, atan, abs, min, max";
-const UNITS: &str = "mm, m, cm, µm, nm, in, °, rad, mrad, or none";
+/// Units that a constant may have.
+const KINDS: [(&[Unit], Kind); 6] = [
+    (unit::LENGTH, Kind::LENGTH),
+    (unit::ANGLE, Kind::ANGLE),
+    (unit::FORCE, Kind::FORCE),
+    (unit::MASS, Kind::MASS),
+    (unit::SECONDS, Kind::TIME),
+    (unit::PRESSURE, Kind::PRESSURE),
+];
+const UNITS: &str = "mm, m, cm, µm, nm, in, °, rad, mrad, N, mN, kN, g, kg, mg, s, ms, µs, MPa, Pa, kPa, GPa, or none; of a \
+                     stiffness 5 N / 1 mm";
 const OPERAND: &str = "a number, a name, a function or a parenthesis";
 
 /// Reads the expression `text`; `resolve` says what a name stands for.
@@ -25,7 +35,8 @@ pub fn parse(text: &str, resolve: impl Fn(&str) -> Option<(Source, Kind)>) -> Re
     }
     if kind.quantity().is_none() {
         let place = text.len() - text.trim_start().len()..text.trim_end().len();
-        let allowed = "a length, an angle or a plain number";
+        let allowed =
+            "a length, an angle, a plain number, a force, a stiffness, a mass, a moment, a pressure or a time";
         return Err(ExpressionError { fault: Fault::Result(kind), place, allowed });
     }
     Ok(Expression { steps: parser.steps, kind })
@@ -226,14 +237,9 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
         self.skip_space();
         let unit_start = self.at;
         let unit = self.take_while(|c| is_name(c) || c == '°');
-        let find = |units: &[Unit]| units.iter().find(|known| known.is(unit)).map(|unit| unit.to_si(value));
-        let (kind, value) = if unit.is_empty() {
-            (Kind::PLAIN, value)
-        } else if let Some(value) = find(unit::LENGTH) {
-            (Kind::LENGTH, value)
-        } else if let Some(value) = find(unit::ANGLE) {
-            (Kind::ANGLE, value)
-        } else {
+        let of = |(units, kind): (&[Unit], Kind)| Some((kind, units.iter().find(|known| known.is(unit))?.to_si(value)));
+        let found = if unit.is_empty() { Some((Kind::PLAIN, value)) } else { KINDS.into_iter().find_map(of) };
+        let Some((kind, value)) = found else {
             let fault = Fault::UnknownUnit(unit.into());
             return Err(ExpressionError { fault, place: unit_start..self.at, allowed: UNITS });
         };

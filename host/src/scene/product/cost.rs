@@ -38,14 +38,16 @@ use crate::{
             cost::{Law, Process, Values},
             requirement::{Kind, Requirement},
         },
-        model::{Contributor, Measure, Variation},
+        model::{Contributor, Measure, Quantity as Measured, Variation},
     },
 };
 
-use super::{tables, toleranced::positive};
+use super::{
+    quantity::{self, LENGTH},
+    tables,
+    toleranced::positive,
+};
 
-const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
-const ANGLE: Quantity = Quantity { units: unit::ANGLE, range: [-3600.0, 3600.0] };
 const MONEY: Quantity = Quantity { units: unit::ONE, range: [0.0, 1e12] };
 const POWER: Quantity = Quantity { units: unit::ONE, range: [0.01, 10.0] };
 const GRADE: Quantity = Quantity { units: unit::ONE, range: [1.0, 18.0] };
@@ -92,17 +94,11 @@ fn collect(table: &Field, name: &str, contributors: &[Contributor], found: &mut 
     };
     refuse_shapes(table)?;
     let value = table.get("value");
-    let is_angle = match value.as_ref().map(|value| &value.node.value) {
-        Some(Value::Text(_)) => value
-            .as_ref()
-            .and_then(|value| value.measure("").ok()?.unit)
-            .is_some_and(|text| unit::ANGLE.iter().any(|unit| unit.is(text))),
-        _ => false,
-    };
-    let quantity = if is_angle { &ANGLE } else { &LENGTH };
+    let measured = value.as_ref().map_or(Ok(Measured::Length), |value| quantity::of(table, value))?;
+    let quantity = quantity::units(measured);
     let (stated, form) = stated(&width, quantity, name, value.as_ref(), contributors)?;
     let written = Written { key, ..form };
-    let size = value.filter(|_| !is_angle).map(|value| value.to_number(&LENGTH)).transpose()?;
+    let size = value.filter(|_| measured == Measured::Length).map(|value| value.to_number(&LENGTH)).transpose()?;
     let list = match &cost.node.value {
         Value::List(nodes) if nodes.is_empty() => {
             return Err(cost.error(Problem::Length { key: cost.key.clone(), found: 0 }, "one or more processes"));
@@ -111,20 +107,30 @@ fn collect(table: &Field, name: &str, contributors: &[Contributor], found: &mut 
         _ => vec![cost.clone()],
     };
     let processes = list.iter().map(|field| process(field, quantity, size)).collect::<Result<_, _>>()?;
-    found.push(Costed { name: name.into(), stated, processes, is_angle, written, place: width.node.place.in_file() });
+    found.push(Costed {
+        name: name.into(),
+        stated,
+        processes,
+        quantity: measured,
+        written,
+        place: width.node.place.in_file(),
+    });
     Ok(())
 }
+
+/// Distributions whose place and width the tolerance gives.
+const SCALED: [&str; 6] = ["normal", "truncated-normal", "uniform", "triangular", "beta", "skewed"];
 
 /// Refuses distributions with lengths of their own, which do not follow the tolerance.
 fn refuse_shapes(table: &Field) -> Result<(), SceneError> {
     let Some(field) = table.get("distribution") else { return Ok(()) };
     let kind = field.get("kind").unwrap_or(field.clone());
-    let fixed = matches!(kind.to_text()?, "trapezoidal" | "table" | "constant") || field.get("mode").is_some();
+    let fixed = !SCALED.contains(&kind.to_text()?) || field.get("mode").is_some();
     if !fixed {
         return Ok(());
     }
     let problem = Problem::Unsupported { what: "a cost beside a distribution with lengths of its own".into() };
-    Err(field.error(problem, "normal, truncated-normal, uniform, triangular without a mode, skewed"))
+    Err(field.error(problem, "normal, truncated-normal, uniform, triangular without a mode, beta, skewed"))
 }
 
 /// The tolerance that the scene has, and how it is written.

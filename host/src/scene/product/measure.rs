@@ -18,11 +18,8 @@ use crate::{
     },
 };
 
-use super::{Draft, name, tables, texts, toleranced};
+use super::{Draft, name, quantity::units, tables, texts, toleranced};
 
-const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
-const ANGLE: Quantity = Quantity { units: unit::ANGLE, range: [-3600.0, 3600.0] };
-const RATIO: Quantity = Quantity { units: unit::ONE, range: [-1e12, 1e12] };
 const COST: Quantity = Quantity { units: unit::ONE, range: [0.0, 1e12] };
 
 /// Reads every `[[measure]]` and adds its formula to `function`.
@@ -106,14 +103,6 @@ fn limits(table: &Field, quantity: Measured) -> Result<[Option<f64>; 2], SceneEr
     Ok(limits)
 }
 
-fn units(quantity: Measured) -> &'static Quantity {
-    match quantity {
-        Measured::Length => &LENGTH,
-        Measured::Angle => &ANGLE,
-        Measured::Ratio => &RATIO,
-    }
-}
-
 /// The key `loss`. The target is the middle of the limits, and a unit at a limit has the full cost, unless they are stated.
 fn loss(table: &Field, quantity: Measured, limits: [Option<f64>; 2]) -> Result<Option<Loss>, SceneError> {
     const AT: &str = "how far off the target a unit has that cost; or both limits";
@@ -153,7 +142,7 @@ pub(super) fn sums(root: &Field, measures: &[Measure]) -> Result<Vec<Sum>, Scene
             })?;
             if indices.first().is_some_and(|first: &usize| measures[*first].quantity != measures[at].quantity) {
                 let problem = Problem::Choice { key: field.key.clone(), written: name.into() };
-                return Err(field.error(problem, "measures of one kind: lengths, angles or plain numbers"));
+                return Err(field.error(problem, "measures of one kind, such as lengths"));
             }
             indices.push(at);
         }

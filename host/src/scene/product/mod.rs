@@ -11,7 +11,12 @@
 //! name = "height"
 //! value = 20                   # mm, or a text with its unit: "30°"
 //! tolerance = 0.1              # ±; or [-0.1, 0.3]; or an ISO 2768-1 class, such as "m"; or the general one
-//! distribution = "uniform"     # normal if left out
+//! distribution = "uniform"     # normal if left out; or { kind = "weibull", shape = 2, scale = 0.02 }
+//!
+//! [[dimension]]
+//! name = "load"
+//! value = "5 N"                # its unit says what it is; or quantity = "number" and a bare one
+//! tolerance = 0.5
 //!
 //! [[measure]]
 //! name = "gap"
@@ -56,6 +61,7 @@ mod geometry_tests;
 mod mate;
 mod measure;
 mod part;
+mod quantity;
 #[cfg(test)]
 mod tests;
 mod toleranced;
@@ -77,7 +83,7 @@ use crate::{
     },
     tolerance::{
         copula::{self, Coefficient},
-        model::{Contributor, Model, Variation, ZoneRule},
+        model::{Contributor, Model, Quantity as Measured, Variation, ZoneRule},
     },
 };
 
@@ -110,6 +116,8 @@ struct Draft {
     contributors: Vec<Contributor>,
     /// Variables at their nominal values.
     nominal: Vec<f64>,
+    /// What kinds of numbers they are, those of zones left at lengths.
+    quantities: Vec<Measured>,
     /// What expressions can use.
     names: Vec<(String, Source, Kind)>,
     assembly: Assembly,
@@ -145,6 +153,7 @@ impl Draft {
     fn add(&mut self, contributor: Contributor, nominal: &[f64]) -> usize {
         self.contributors.push(contributor);
         self.nominal.extend(nominal);
+        self.quantities.resize(self.nominal.len(), Measured::Length);
         self.nominal.len() - nominal.len()
     }
 
@@ -176,6 +185,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         defaults: defaults(root)?,
         contributors: Vec::new(),
         nominal: Vec::new(),
+        quantities: Vec::new(),
         names: Vec::new(),
         assembly: Assembly::default(),
         feature_names: Vec::new(),
@@ -205,10 +215,11 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     if draft.defaults.general.geometry.is_some() {
         warnings.push(WITHDRAWN.to_owned());
     }
-    let Draft { contributors, nominal, fits, warnings: told, .. } = draft;
+    let Draft { contributors, nominal, quantities, fits, warnings: told, .. } = draft;
     warnings.extend(told);
     let assembly = function.assembly.clone();
     function.nominal.clone_from(&nominal);
+    function.quantities = quantities;
     let model = Model { contributors, correlations, measures, sums, function: Box::new(function) };
     let tried = fit::try_out(&model, &assembly, &fits);
     warnings.extend(tried.told);

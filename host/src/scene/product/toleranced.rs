@@ -2,7 +2,7 @@
 
 use crate::{
     product::{
-        dimension::{Shape, ShapeError, Toleranced},
+        dimension::{Component, Shape, ShapeError, Toleranced},
         expression::{Kind, Source},
         iso286,
         iso2768::{self, BandError, General, SizeClass},
@@ -13,12 +13,12 @@ use crate::{
         unit::{self, Quantity},
         value::Field,
     },
+    tolerance::model::Quantity as Measured,
 };
 
-use super::{Draft, SIGMA, name};
+pub(super) use super::quantity::LENGTH;
+use super::{Draft, SIGMA, name, quantity};
 
-pub(super) const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
-const ANGLE: Quantity = Quantity { units: unit::ANGLE, range: [-3600.0, 3600.0] };
 /// A component of a unit vector.
 pub(super) const RATIO: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
 const SKEWNESS: Quantity = Quantity { units: unit::ONE, range: [-10.0, 10.0] };
@@ -27,15 +27,21 @@ const TOLERANCE: &str = "± as one number in mm or a text with its unit, \"0.004
                          of ISO 2768-1: f, m, c, v; an ISO 286 class with its size: H7, g6";
 /// The same of what has no size.
 const DEVIATION: &str = "± as one number, or [lower, upper] deviations, in mm or as texts with their units";
-const SHAPES: &str = "normal, truncated-normal, uniform, triangular, trapezoidal, skewed, table, constant";
+const SHAPES: &str = "normal, truncated-normal, uniform, triangular, trapezoidal, beta, skewed, lognormal, weibull, gumbel, \
+                      gumbel-smallest, mixture, table, constant";
+/// Beyond, moments are not finite enough to be computed.
+const WEIBULL: Quantity = Quantity { units: unit::ONE, range: [0.5, 100.0] };
+const BETA: Quantity = Quantity { units: unit::ONE, range: [0.1, 1000.0] };
+const WEIGHT: Quantity = Quantity { units: unit::ONE, range: [0.0, 1e6] };
 
 /// Reads a `[[dimension]]`.
 pub(super) fn dimension(table: &Field, draft: &mut Draft) -> Result<(), SceneError> {
     let (name, name_field) = name(table)?;
-    let value = table.require("value", "a length in mm, or a text with its unit: \"30°\"")?;
-    let (toleranced, kind) = toleranced(table, &value, draft)?;
+    let value = table.require("value", "a length in mm, or a text with its unit: \"30°\", \"5 N\"")?;
+    let (toleranced, measured) = toleranced(table, &value, draft)?;
     let variable = draft.add(toleranced.contributor(name.into()), &[toleranced.nominal]);
-    draft.name(&name_field, name, Source::Variable(variable), kind)
+    draft.quantities[variable] = measured;
+    draft.name(&name_field, name, Source::Variable(variable), Kind::of(measured))
 }
 
 /// The diameter of an axis.
@@ -67,13 +73,13 @@ pub(super) fn diameter(axis: &Field, name: &str, draft: &mut Draft) -> Result<Op
         Value::Table(_) => field.require("value", "a length in mm")?,
         _ => field.clone(),
     };
-    let (diameter, length) = toleranced(&field, &value, draft)?;
-    if diameter.limits[0] <= 0.0 || length != Kind::LENGTH {
+    let (diameter, measured) = toleranced(&field, &value, draft)?;
+    if diameter.limits[0] <= 0.0 || measured != Measured::Length {
         return Err(value.out_of_range("mm", "a length that stays above 0"));
     }
     let name = format!("{name}.diameter");
     let variable = draft.add(diameter.contributor(name.clone()), &[diameter.nominal]);
-    draft.name(&field, &name, Source::Variable(variable), length)?;
+    draft.name(&field, &name, Source::Variable(variable), Kind::LENGTH)?;
     let of_class = || fit(&field.get("tolerance")?).map(|class| class.is_hole());
     Ok(Some(Diameter { variable, limits: diameter.limits, hole: kind.or_else(of_class) }))
 }
@@ -81,7 +87,10 @@ pub(super) fn diameter(axis: &Field, name: &str, draft: &mut Draft) -> Result<Op
 /// Reads the size by which a feature lies off: deviations, or a table like a dimension's.
 pub(super) fn offset(field: &Field, draft: &Draft) -> Result<Toleranced, SceneError> {
     match field.get("value") {
-        Some(value) => Ok(toleranced(field, &value, draft)?.0),
+        Some(value) => match toleranced(field, &value, draft)? {
+            (offset, Measured::Length) => Ok(offset),
+            _ => Err(value.out_of_range("mm", "a length")),
+        },
         None => deviation(field, &LENGTH, draft.defaults.sigma),
     }
 }
@@ -89,43 +98,59 @@ pub(super) fn offset(field: &Field, draft: &Draft) -> Result<Toleranced, SceneEr
 /// Reads a deviation from 0: a tolerance, or a table of `tolerance`, `sigma`, which is the given one if not written, and
 /// `distribution`.
 pub(in crate::scene) fn deviation(field: &Field, quantity: &Quantity, sigma: f64) -> Result<Toleranced, SceneError> {
-    let tolerance = match field.node.value {
-        Value::Table(_) => field.require("tolerance", DEVIATION)?,
-        _ => field.clone(),
-    };
+    Ok(component(field, quantity, sigma)?.1)
+}
+
+/// The same as a part of a mixture, and alone.
+fn component(field: &Field, quantity: &Quantity, sigma: f64) -> Result<(Component, Toleranced), SceneError> {
     let shape = shape(field, quantity, sigma)?;
-    Toleranced::new(0.0, deviations(&tolerance, quantity, DEVIATION)?, &shape)
-        .map_err(|error| field.error(Problem::Shape { key: field.key.clone(), error }, DEVIATION))
+    let tolerance = match field.node.value {
+        Value::Table(_) => field.get("tolerance"),
+        _ => Some(field.clone()),
+    };
+    let deviations = match tolerance {
+        Some(tolerance) if shape.is_whole() => return Err(excess(&tolerance)),
+        Some(tolerance) => deviations(&tolerance, quantity, DEVIATION)?,
+        None if shape.is_whole() || shape.has_width() => [0.0; 2],
+        None => return Err(field.error(Problem::Missing(format!("{}.tolerance", field.key)), DEVIATION)),
+    };
+    let made = Toleranced::new(0.0, deviations, &shape)
+        .map_err(|error| field.error(Problem::Shape { key: field.key.clone(), error }, DEVIATION))?;
+    let weight = field.get("weight").map_or(Ok(1.0), |field| positive(&field, &WEIGHT))?;
+    Ok((Component { weight, deviations, shape }, made))
+}
+
+/// A tolerance beside a shape that stands without one.
+fn excess(tolerance: &Field) -> SceneError {
+    let problem = Problem::Shape { key: tolerance.key.clone(), error: ShapeError::Excess };
+    tolerance.error(problem, "no tolerance with this distribution")
 }
 
 /// Reads the keys `tolerance`, `sigma`, `distribution`, `side` and `edge` of a table, and its `value`.
-pub(super) fn toleranced(table: &Field, value: &Field, draft: &Draft) -> Result<(Toleranced, Kind), SceneError> {
-    let is_angle = matches!(value.node.value, Value::Text(_))
-        && value.measure("a length or an angle")?.unit.is_some_and(|text| unit::ANGLE.iter().any(|unit| unit.is(text)));
-    let (quantity, kind) = if is_angle { (&ANGLE, Kind::ANGLE) } else { (&LENGTH, Kind::LENGTH) };
+pub(super) fn toleranced(table: &Field, value: &Field, draft: &Draft) -> Result<(Toleranced, Measured), SceneError> {
+    let measured = quantity::of(table, value)?;
+    let quantity = quantity::units(measured);
     let nominal = value.to_number(quantity)?;
     let shape = shape(table, quantity, draft.defaults.sigma)?;
     let tolerance = table.get("tolerance");
     let deviations = match (&tolerance, &shape) {
-        (None, Shape::Constant | Shape::Table(_)) => [0.0; 2],
-        (Some(field), Shape::Constant | Shape::Table(_)) => {
-            let problem = Problem::Shape { key: field.key.clone(), error: ShapeError::Excess };
-            return Err(field.error(problem, "no tolerance with this distribution"));
-        }
+        (None, shape) if shape.is_whole() || shape.has_width() => [0.0; 2],
+        (Some(field), shape) if shape.is_whole() => return Err(excess(field)),
         (Some(field), _) => match (class(field), fit(field)) {
-            (Some(class), _) => general(table, value, kind, nominal, class)?,
-            (None, Some(class)) => of_fit(field, value, kind, nominal, &class)?,
+            (Some(class), _) if is_geometric(measured) => general(table, value, measured, nominal, class)?,
+            (Some(_), _) => return Err(no_class(field, measured)),
+            (None, Some(class)) => of_fit(field, value, measured, nominal, &class)?,
             (None, None) => deviations(field, quantity, TOLERANCE)?,
         },
         (None, _) => match draft.defaults.general.size {
-            Some(class) => general(table, value, kind, nominal, class)?,
-            None => return Err(table.error(Problem::Missing(format!("{}.tolerance", table.key)), TOLERANCE)),
+            Some(class) if is_geometric(measured) => general(table, value, measured, nominal, class)?,
+            _ => return Err(table.error(Problem::Missing(format!("{}.tolerance", table.key)), TOLERANCE)),
         },
     };
     let at = table.get("distribution").or(tolerance).unwrap_or(value.clone());
     let made = Toleranced::new(nominal, deviations, &shape);
     let toleranced = made.map_err(|error| at.error(Problem::Shape { key: at.key.clone(), error }, TOLERANCE))?;
-    Ok((toleranced, kind))
+    Ok((toleranced, measured))
 }
 
 /// The class that a tolerance names instead of stating a width.
@@ -143,17 +168,27 @@ fn fit(field: &Field) -> Option<iso286::Class> {
     text.trim().parse().ok()
 }
 
+/// Whether ISO 2768-1 has tolerances for it.
+fn is_geometric(measured: Measured) -> bool {
+    matches!(measured, Measured::Length | Measured::Angle)
+}
+
+/// A class beside something that the standard has none for.
+fn no_class(field: &Field, measured: Measured) -> SceneError {
+    let what = format!("the class {} of {}", field.written(""), Kind::of(measured));
+    field.error(Problem::Unsupported { what }, "± as one number, or [lower, upper] deviations")
+}
+
 /// The deviations of a class of ISO 286 for the size `nominal` (m).
 fn of_fit(
     field: &Field,
     value: &Field,
-    kind: Kind,
+    measured: Measured,
     nominal: f64,
     class: &iso286::Class,
 ) -> Result<[f64; 2], SceneError> {
-    if kind != Kind::LENGTH {
-        let problem = Problem::Unsupported { what: format!("the class {} of an angle", class.name()) };
-        return Err(field.error(problem, TOLERANCE));
+    if measured != Measured::Length {
+        return Err(no_class(field, measured));
     }
     // The digits that the conversion to metres made up would push a size over the end of its range.
     let size = (nominal * 1e12).round() / 1e9;
@@ -202,7 +237,13 @@ pub(super) fn positive(field: &Field, quantity: &Quantity) -> Result<f64, SceneE
 }
 
 /// The general tolerance of `value`, as deviations.
-fn general(table: &Field, value: &Field, kind: Kind, nominal: f64, class: SizeClass) -> Result<[f64; 2], SceneError> {
+fn general(
+    table: &Field,
+    value: &Field,
+    measured: Measured,
+    nominal: f64,
+    class: SizeClass,
+) -> Result<[f64; 2], SceneError> {
     let edge = table.get("edge").map(|field| match field.to_text()? {
         "broken" => Ok(()),
         _ => {
@@ -210,7 +251,7 @@ fn general(table: &Field, value: &Field, kind: Kind, nominal: f64, class: SizeCl
             Err(field.error(problem, "broken: an external radius or a chamfer"))
         }
     });
-    let (found, at) = if kind == Kind::ANGLE {
+    let (found, at) = if measured == Measured::Angle {
         let side =
             table.require("side", "the length of the shorter side in mm, by which ISO 2768-1 tolerates angles")?;
         (iso2768::angle(class, positive(&side, &LENGTH)?), side)
@@ -239,6 +280,10 @@ fn shape(table: &Field, quantity: &Quantity, sigma: f64) -> Result<Shape, SceneE
         _ => field.clone(),
     };
     let deviation = |key: &str| field.get(key).map(|field| field.to_number(quantity)).transpose();
+    let width = |key: &str| {
+        let allowed = format!("more than 0: {}", quantity.units());
+        positive(&field.require(key, &allowed)?, quantity)
+    };
     Ok(match kind.to_text()? {
         "constant" => Shape::Constant,
         "normal" => Shape::Normal { sigma },
@@ -247,6 +292,32 @@ fn shape(table: &Field, quantity: &Quantity, sigma: f64) -> Result<Shape, SceneE
         "triangular" => Shape::Triangular { mode: deviation("mode")? },
         "trapezoidal" => Shape::Trapezoidal { shoulders: field.numbers("shoulders", quantity)? },
         "skewed" => Shape::Skewed { sigma, skewness: field.number("skewness", &SKEWNESS)? },
+        "beta" => Shape::Beta { shapes: field.numbers("shapes", &BETA)? },
+        "weibull" => Shape::Weibull {
+            shape: field.number("shape", &WEIBULL)?,
+            scale: width("scale")?,
+            location: deviation("location")?.unwrap_or(0.0),
+        },
+        largest @ ("gumbel" | "gumbel-smallest") => {
+            let (mode, scale) = (deviation("mode")?.unwrap_or(0.0), width("scale")?);
+            Shape::Gumbel { mode, scale: if largest == "gumbel" { scale } else { -scale } }
+        }
+        "lognormal" => Shape::Lognormal {
+            mean: field.number("mean", quantity)?,
+            deviation: width("deviation")?,
+            location: deviation("location")?.unwrap_or(0.0),
+        },
+        "mixture" => {
+            const ALLOWED: &str = "a list of two or more: { weight = 2, tolerance = [-0.1, 0] }, …, each with a distribution if \
+                                   it is not normal";
+            let list = field.require("of", ALLOWED)?;
+            let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(ALLOWED)) };
+            if nodes.len() < 2 {
+                return Err(list.error(Problem::Length { key: list.key.clone(), found: nodes.len() }, ALLOWED));
+            }
+            let part = |node| Ok(component(&Field { key: list.key.clone(), node }, quantity, sigma)?.0);
+            Shape::Mixture(nodes.iter().map(part).collect::<Result<_, SceneError>>()?)
+        }
         "table" => {
             const ALLOWED: &str = "a list of two or more deviations from the value, ascending";
             let list = field.require("deviations", ALLOWED)?;

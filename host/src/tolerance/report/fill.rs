@@ -66,6 +66,11 @@ pub fn report(title: &str, model: &Model, analysis: &Analysis) -> Report {
     }
 }
 
+/// What a slope is per: its size in the SI unit, inverted, and its name.
+fn per(quantity: Quantity) -> (f64, &'static str) {
+    if quantity == Quantity::Angle { (1.0, "rad") } else { (quantity.factor(), quantity.unit()) }
+}
+
 fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
     let (measure, theory, found) = (&model.measures[i], &analysis.theory, &analysis.joint.measures[i]);
     let factor = measure.quantity.factor();
@@ -78,16 +83,15 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
         Some(indices) if total > 0.0 => Some(indices.total[k] / total * 100.0),
         _ => None,
     };
+    let moved: Vec<_> = model.offsets().into_iter().map(|at| per(model.function.quantity(at))).collect();
     let contributor = |(k, contributor): (usize, &Contributor)| {
         let sensitivity = theory.sensitivities[i][k];
         let indices = theory.indices[i].as_ref();
         Share {
             name: contributor.name.clone(),
             percent: percent(k),
-            // Per mm or radian: a length over a length has no factor.
-            slope: sensitivity
-                .slope
-                .map(|slope| if measure.quantity == Quantity::Length { slope } else { slope * factor * 1e-3 }),
+            slope: sensitivity.slope.map(|slope| slope * (factor / moved[k].0)),
+            per: sensitivity.slope.map(|_| moved[k].1),
             reach: scaled(sensitivity.reach),
             sobol_first: indices.map(|indices| indices.first[k]),
             sobol_total: indices.map(|indices| indices.total[k]),

@@ -47,7 +47,7 @@ impl Report {
 pub struct MeasureReport {
     /// Name.
     pub name: String,
-    /// mm, ° or empty.
+    /// mm, °, N, N/mm, g, N·mm, MPa, s or empty.
     pub unit: &'static str,
     /// Mean.
     pub mean: f64,
@@ -204,8 +204,10 @@ pub struct Share {
     /// Share in the variance of first order, in %; where slopes do not describe the measure, of the total Sobol' indices, if
     /// there are any.
     pub percent: Option<f64>,
-    /// ∂measure/∂tolerance: per mm (or radian) that a scalar moves.
+    /// ∂measure/∂tolerance: in the measure's unit, per `per` that a scalar moves.
     pub slope: Option<f64>,
+    /// The unit of what moves: mm, rad, N, N/mm, g, N·mm, MPa, s or empty; none without a slope.
+    pub per: Option<&'static str>,
     /// How far the whole tolerance moves the measure to either side.
     pub reach: f64,
     /// Sobol' index of first order, where the measure is not linear.
@@ -219,7 +221,7 @@ pub struct Share {
 pub struct SumReport {
     /// Name.
     pub name: String,
-    /// mm, ° or empty.
+    /// mm, °, N, N/mm, g, N·mm, MPa, s or empty.
     pub unit: &'static str,
     /// Mean of second order.
     pub mean: f64,
@@ -245,9 +247,11 @@ impl Quantity {
     /// What an SI value is multiplied by for a report.
     pub fn factor(self) -> f64 {
         match self {
-            Self::Length => 1e3,
+            Self::Length | Self::Mass | Self::Moment => 1e3,
             Self::Angle => 180.0 / std::f64::consts::PI,
-            Self::Ratio => 1.0,
+            Self::Ratio | Self::Force | Self::Time => 1.0,
+            Self::Stiffness => 1e-3,
+            Self::Pressure => 1e-6,
         }
     }
 
@@ -257,6 +261,12 @@ impl Quantity {
             Self::Length => "mm",
             Self::Angle => "°",
             Self::Ratio => "",
+            Self::Force => "N",
+            Self::Stiffness => "N/mm",
+            Self::Mass => "g",
+            Self::Moment => "N·mm",
+            Self::Pressure => "MPa",
+            Self::Time => "s",
         }
     }
 }
