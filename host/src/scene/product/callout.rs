@@ -5,7 +5,7 @@ use crate::{
         assembly::With,
         contact::{cross, unit},
         dimension::{self, Toleranced},
-        feature::Shape,
+        feature::{Bonus, Shape},
         iso2768::{self, GeometryClass},
     },
     scene::{Problem, SceneError, tree::Value, unit as units, unit::Quantity, value::Field},
@@ -14,7 +14,8 @@ use crate::{
 
 use super::{
     Draft,
-    datum::{carry, datums},
+    datum::{Datum, carry, datums},
+    material::{self, Material},
     part::FeatureDraft,
     rule, toleranced, zone,
 };
@@ -52,12 +53,23 @@ fn limits(callout: &str) -> Limits {
 pub(super) struct Callout<'t, 's> {
     pub name: &'static str,
     pub limits: Limits,
-    /// Width of its zone (m).
+    /// Width of its zone (m), in the middle of the limits of the size that it goes with.
     pub width: f64,
+    /// Its condition of material.
+    pub material: Option<Material>,
+    /// How it goes with the size there.
+    pub bonus: Option<Bonus>,
     /// Its datums; none of a form.
-    pub datums: Vec<usize>,
+    pub datums: Vec<Datum>,
     pub rule: ZoneRule,
     pub field: Field<'t, 's>,
+}
+
+impl Callout<'_, '_> {
+    /// Its condition of material, and its width (m) there.
+    fn at_condition(&self) -> Option<(Material, f64)> {
+        Some((self.material?, self.bonus?.width))
+    }
 }
 
 /// Reads the tolerances of a feature and adds it to the `draft`.
@@ -99,7 +111,7 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
     let forms: Vec<_> =
         callouts.iter().filter(|callout| matches!(callout.limits, Limits::Form | Limits::Line)).collect();
     if let Some(location) = location {
-        zone::located(&mut made, location, orientation, draft);
+        zone::located(&mut made, location, orientation, draft)?;
     } else if let Some(orientation) = orientation {
         zone::oriented(&mut made, orientation, draft);
     }
@@ -119,6 +131,15 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
                 "{}: {} lies within {}, which has all that the feature moves by",
                 made.name, form.name, wider.name
             )),
+        }
+    }
+
+    if let Some(diameter) = &mut made.diameter {
+        // What turns with the datums has the narrower zone.
+        for (material, width) in
+            [location, orientation].into_iter().flatten().filter_map(|callout| callout.at_condition())
+        {
+            diameter.own[material as usize] = width;
         }
     }
 
@@ -153,7 +174,18 @@ fn callout<'t, 's>(
         return Err(list.error(problem, "no datum: a form is its own"));
     }
     let datums = list.map_or(Ok(Vec::new()), |list| datums(&list, draft))?;
-    let width = width(&field, name, made, &datums, draft)?;
+    let material = material::of_zone(&field)?;
+    let width = width(&field, name, made, &datums, material, draft)?;
+    let bonus = match material {
+        Some(_) if matches!(limits, Limits::Form | Limits::Line) => {
+            let problem = Problem::Unsupported { what: format!("{name} at a condition of material") };
+            return Err(field.error(problem, "position, perpendicularity, parallelism or angularity of an axis"));
+        }
+        Some(material) => Some(material::bonus(&field, name, width, material, made)?),
+        None => None,
+    };
+    let middle = made.diameter.map_or(0.0, |diameter| diameter.middle());
+    let width = bonus.map_or(width, |bonus| bonus.at(middle));
     let rule_field = field.get("rule");
     let rule = rule_field.as_ref().map_or(Ok(draft.defaults.rule), rule)?;
     if rule == ZoneRule::Translation && limits == Limits::Orientation && made.feature.shape == Shape::Plane {
@@ -161,7 +193,7 @@ fn callout<'t, 's>(
         let allowed = "a rule with tilts: sigma-zone, truncated, uniform-in-zone";
         return Err(rule_field.unwrap_or(field).error(Problem::Unsupported { what }, allowed));
     }
-    Ok(Callout { name, limits, width, datums, rule, field })
+    Ok(Callout { name, limits, width, material, bonus, datums, rule, field })
 }
 
 /// The general tolerance of the place of a feature whose drawing says nothing of it: that of its distance from the origin of its
@@ -200,7 +232,16 @@ fn general_flatness<'t, 's>(
     let field = made.table.get("extents").unwrap_or(made.table.clone());
     let width = iso2768::flatness(class, a.max(b)).map_err(|error| toleranced::band(&field, error))?;
     let rule = draft.defaults.rule;
-    Ok(Callout { name: "flatness", limits: Limits::Form, width, datums: Vec::new(), rule, field })
+    Ok(Callout {
+        name: "flatness",
+        limits: Limits::Form,
+        width,
+        material: None,
+        bonus: None,
+        datums: Vec::new(),
+        rule,
+        field,
+    })
 }
 
 /// Refuses a tolerance that a feature of this shape cannot have.
@@ -222,7 +263,8 @@ fn width(
     field: &Field,
     callout: &str,
     made: &FeatureDraft,
-    datums: &[usize],
+    datums: &[Datum],
+    material: Option<Material>,
     draft: &Draft,
 ) -> Result<f64, SceneError> {
     let stated = match field.node.value {
@@ -230,7 +272,9 @@ fn width(
         _ => Some(field.clone()),
     };
     if let Some(zone) = stated {
-        return toleranced::positive(&zone, &WIDTH);
+        material::refuse_in_width(&zone)?;
+        // Zero at maximum material: all that the axis may vary is bonus.
+        return if material.is_some() { zone.to_number(&WIDTH) } else { toleranced::positive(&zone, &WIDTH) };
     }
     let missing = || field.error(Problem::Missing(format!("{}.zone", field.key)), ZONE);
     let class = draft.defaults.general.geometry.ok_or_else(missing)?;
@@ -251,13 +295,13 @@ fn width(
 
 /// The shorter leg (m) of the right angles that a feature with some `extents` makes with its datums: how far either face
 /// goes away from the line in which they meet.
-fn shorter_leg(made: &FeatureDraft, extents: [f64; 2], datums: &[usize], draft: &Draft) -> f64 {
+fn shorter_leg(made: &FeatureDraft, extents: [f64; 2], datums: &[Datum], draft: &Draft) -> f64 {
     let leg = |shape: Shape, line: [f64; 3], sides: [[f64; 3]; 2], extents: [f64; 2]| {
         let across = |side: [f64; 3]| cross(side, line).iter().map(|x| x * x).sum::<f64>();
         let [a, b] = [0, 1].map(|i| extents[i] * libm::sqrt(across(sides[i])));
         if shape == Shape::Axis { extents[0] } else { a + b }
     };
-    let of_datum = |datum: &usize| {
+    let of_datum = |Datum { feature: datum, .. }: &Datum| {
         let feature = &draft.assembly.features[*datum];
         let line = unit(cross(made.feature.nominal[1], feature.nominal[1]))?;
         let own = leg(made.feature.shape, line, made.sides, extents);

@@ -119,7 +119,7 @@ fn feature(part: &Part, index: usize, shape: Shape, table: Field, draft: &mut Dr
     let coordinates = [own_direction, along, cross(own_direction, along)].map(dot);
     let along = part.pose.direction(along);
     let reach = extents.map_or(0.0, |[a, b]: [f64; 2]| a.max(b) / 2.0);
-    let feature = Feature { shape, nominal: [at, towards], terms: Vec::new(), reach };
+    let feature = Feature { shape, nominal: [at, towards], terms: Vec::new(), widened: Vec::new(), reach };
     let diameter = if shape == Shape::Axis { toleranced::diameter(&table, &name, draft)? } else { None };
     let sides = [along, cross(towards, along)];
     let pose = part.pose;
