@@ -17,7 +17,7 @@ use super::{
     datum::{Datum, carry, datums},
     material::{self, Material},
     part::FeatureDraft,
-    rule, toleranced, zone,
+    rule, symmetric, toleranced, zone,
 };
 
 const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
@@ -30,6 +30,8 @@ pub(super) enum Limits {
     Form,
     /// Form along the first extent only.
     Line,
+    /// Form of the surface around an axis: what mates with it finds the axis off, and tilted.
+    Surface,
     /// Tilts towards a datum.
     Orientation,
     /// Offset and tilts towards datums.
@@ -37,14 +39,34 @@ pub(super) enum Limits {
 }
 
 /// The geometric tolerances.
-pub(super) const CALLOUTS: [&str; 7] =
-    ["flatness", "straightness", "parallelism", "perpendicularity", "angularity", "position", "profile"];
+pub(super) const CALLOUTS: [&str; 14] = [
+    "flatness",
+    "straightness",
+    "roundness",
+    "cylindricity",
+    "parallelism",
+    "perpendicularity",
+    "angularity",
+    "position",
+    "profile",
+    "coaxiality",
+    "concentricity",
+    "symmetry",
+    "run_out",
+    "total_run_out",
+];
 
-fn limits(callout: &str) -> Limits {
+/// Those that may be at a condition of material.
+const MATERIAL: [&str; 5] = ["position", "coaxiality", "perpendicularity", "parallelism", "angularity"];
+
+/// What a tolerance limits of a feature. Where a face runs out its place is free.
+fn limits(callout: &str, shape: Shape) -> Limits {
     match callout {
         "flatness" => Limits::Form,
         "straightness" => Limits::Line,
-        "position" | "profile" => Limits::Location,
+        "roundness" | "cylindricity" => Limits::Surface,
+        "position" | "profile" | "coaxiality" | "concentricity" | "symmetry" => Limits::Location,
+        "run_out" | "total_run_out" if shape != Shape::Plane => Limits::Location,
         _ => Limits::Orientation,
     }
 }
@@ -70,6 +92,16 @@ impl Callout<'_, '_> {
     fn at_condition(&self) -> Option<(Material, f64)> {
         Some((self.material?, self.bonus?.width))
     }
+
+    /// Whether it holds the surface, its form included, not the axis alone.
+    fn runs_out(&self) -> bool {
+        matches!(self.name, "run_out" | "total_run_out")
+    }
+
+    /// Whether all of an axis lies in its zone: its tilts are limited, too.
+    pub fn holds_tilts(&self) -> bool {
+        self.rule != ZoneRule::Translation && (self.runs_out() || matches!(self.name, "coaxiality" | "cylindricity"))
+    }
 }
 
 /// Reads the tolerances of a feature and adds it to the `draft`.
@@ -81,7 +113,7 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
         let Some(field) = made.table.get(name) else { continue };
         refuse_unsupported(name, &made, &field)?;
         // A straight line leaves the flatness of its face open.
-        formed |= limits(name) != Limits::Line;
+        formed |= limits(name, made.feature.shape) != Limits::Line;
         if !none(&field) {
             callouts.push(callout(name, field, &made, draft)?);
         }
@@ -108,6 +140,7 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
     };
     let location = one(|limits| *limits == Limits::Location)?;
     let orientation = one(|limits| *limits == Limits::Orientation)?;
+    let surfaces = callouts.iter().filter(|callout| callout.limits == Limits::Surface);
     let forms: Vec<_> =
         callouts.iter().filter(|callout| matches!(callout.limits, Limits::Form | Limits::Line)).collect();
     if let Some(location) = location {
@@ -118,6 +151,12 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
     if location.is_none() {
         general_place(&mut made, draft);
     }
+    for surface in surfaces {
+        match location.filter(|location| location.runs_out()) {
+            None => zone::located(&mut made, surface, None, draft)?,
+            Some(wider) => told_within(surface, wider, &made, draft),
+        }
+    }
     let flat = forms.iter().find(|form| form.limits == Limits::Form).copied();
     for form in &forms {
         let wider = location.or(orientation).or(flat.filter(|_| form.limits == Limits::Line));
@@ -127,10 +166,7 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
             Some(wider) if wider.limits == Limits::Orientation && made.feature.shape == Shape::Plane => {
                 zone::offset_within(&mut made, form, wider.width, draft);
             }
-            Some(wider) => draft.warnings.push(format!(
-                "{}: {} lies within {}, which has all that the feature moves by",
-                made.name, form.name, wider.name
-            )),
+            Some(wider) => told_within(form, wider, &made, draft),
         }
     }
 
@@ -160,6 +196,14 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
     if turns.is_empty() || turns == places { Ok(()) } else { carry(index, &turns, With::Direction, &table, draft) }
 }
 
+/// Warns of a form that moves nothing.
+fn told_within(form: &Callout, wider: &Callout, made: &FeatureDraft, draft: &mut Draft) {
+    draft.warnings.push(format!(
+        "{}: {} lies within {}, which has all that the feature moves by",
+        made.name, form.name, wider.name
+    ));
+}
+
 /// Reads the tolerance `name` of a feature.
 fn callout<'t, 's>(
     name: &'static str,
@@ -167,19 +211,21 @@ fn callout<'t, 's>(
     made: &FeatureDraft,
     draft: &mut Draft,
 ) -> Result<Callout<'t, 's>, SceneError> {
-    let limits = limits(name);
+    let limits = limits(name, made.feature.shape);
+    let is_form = matches!(limits, Limits::Form | Limits::Line | Limits::Surface);
     let list = field.get("datum");
-    if let Some(list) = list.as_ref().filter(|_| matches!(limits, Limits::Form | Limits::Line)) {
+    if let Some(list) = list.as_ref().filter(|_| is_form) {
         let problem = Problem::Unsupported { what: format!("a datum of {}", field.key) };
         return Err(list.error(problem, "no datum: a form is its own"));
     }
     let datums = list.map_or(Ok(Vec::new()), |list| datums(&list, draft))?;
+    symmetric::check(name, &field, &datums, made, draft)?;
     let material = material::of_zone(&field)?;
     let width = width(&field, name, made, &datums, material, draft)?;
     let bonus = match material {
-        Some(_) if matches!(limits, Limits::Form | Limits::Line) => {
+        Some(_) if !MATERIAL.contains(&name) => {
             let problem = Problem::Unsupported { what: format!("{name} at a condition of material") };
-            return Err(field.error(problem, "position, perpendicularity, parallelism or angularity of an axis"));
+            return Err(field.error(problem, MATERIAL.join(", ")));
         }
         Some(material) => Some(material::bonus(&field, name, width, material, made)?),
         None => None,
@@ -247,9 +293,33 @@ fn general_flatness<'t, 's>(
 /// Refuses a tolerance that a feature of this shape cannot have.
 fn refuse_unsupported(callout: &str, made: &FeatureDraft, field: &Field) -> Result<(), SceneError> {
     let known: &[&str] = match made.feature.shape {
-        Shape::Plane => &CALLOUTS,
-        Shape::Point => &["flatness", "position", "profile"],
-        Shape::Axis => &["straightness", "parallelism", "perpendicularity", "angularity", "position"],
+        Shape::Plane => &[
+            "flatness",
+            "straightness",
+            "parallelism",
+            "perpendicularity",
+            "angularity",
+            "position",
+            "profile",
+            "symmetry",
+            "run_out",
+            "total_run_out",
+        ],
+        Shape::Point => &["flatness", "position", "profile", "run_out", "total_run_out"],
+        Shape::Axis => &[
+            "straightness",
+            "roundness",
+            "cylindricity",
+            "parallelism",
+            "perpendicularity",
+            "angularity",
+            "position",
+            "coaxiality",
+            "concentricity",
+            "symmetry",
+            "run_out",
+            "total_run_out",
+        ],
     };
     if known.contains(&callout) {
         return Ok(());
@@ -278,6 +348,9 @@ fn width(
     }
     let missing = || field.error(Problem::Missing(format!("{}.zone", field.key)), ZONE);
     let class = draft.defaults.general.geometry.ok_or_else(missing)?;
+    if callout == "run_out" {
+        return Ok(iso2768::run_out(class));
+    }
     let [a, b] = made.extents.ok_or_else(missing)?;
     let longer = a.max(b);
     let found = match callout {

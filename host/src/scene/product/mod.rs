@@ -59,6 +59,9 @@ mod material;
 mod material_tests;
 mod measure;
 mod part;
+mod symmetric;
+#[cfg(test)]
+mod symmetric_tests;
 #[cfg(test)]
 mod tests;
 mod toleranced;

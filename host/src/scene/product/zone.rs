@@ -42,6 +42,8 @@ pub(super) fn located(
         let rule = if location.rule == ZoneRule::Translation { orientation.rule } else { location.rule };
         (rule, (orientation.width / width).min(1.0))
     });
+    let nested =
+        nested.or((made.feature.shape == Shape::Axis && location.holds_tilts()).then_some((location.rule, 1.0)));
     let of = if made.feature.shape == Shape::Axis { Nest::Axis } else { Nest::Face };
     if let Some(orientation) = orientation {
         bonus_of_both(made, location, orientation)?;
@@ -49,6 +51,15 @@ pub(super) fn located(
     let variation = match (made.feature.shape, nested) {
         (Shape::Point, _) => {
             shift(made, location.name, &Toleranced::in_zone(width), direction, draft);
+            return Ok(());
+        }
+        (Shape::Axis, _) if location.name == "symmetry" => {
+            // Between two planes: along their normal alone.
+            let normal = draft.assembly.features[location.datums[0].feature].nominal[1];
+            shift(made, location.name, &Toleranced::in_zone(width), normal, draft);
+            if let Some(orientation) = orientation {
+                oriented(made, orientation, draft);
+            }
             return Ok(());
         }
         (_, Some((rule, tilts))) => Variation::Nested(Nested { of, rule, tilts }),
@@ -70,7 +81,7 @@ pub(super) fn located(
         }
     };
     tilt(made, tilts.clone(), width);
-    widen(made, first..tilts.start, Some(location), orientation.map(|orientation| (tilts, orientation)), draft);
+    widen(made, first..tilts.start, location, Some((tilts, orientation.unwrap_or(location))), draft);
     Ok(())
 }
 
@@ -78,15 +89,15 @@ pub(super) fn located(
 fn widen(
     made: &mut FeatureDraft,
     places: Range<usize>,
-    location: Option<&Callout>,
+    location: &Callout,
     orientation: Option<(Range<usize>, &Callout)>,
     draft: &mut Draft,
 ) {
     let zone = places.start;
     let mut size = None;
     let mut growth = [0.0; 2];
-    let location = location.map(|location| (places, location));
-    for (growth, (variables, callout)) in growth.iter_mut().zip([location, orientation].into_iter().flatten()) {
+    let zones = [Some((places, location)), orientation];
+    for (growth, (variables, callout)) in growth.iter_mut().zip(zones.into_iter().flatten()) {
         if let Some(bonus) = callout.bonus {
             made.feature.widen(variables, bonus, callout.width);
             *growth = bonus.sign / callout.width;
@@ -128,7 +139,7 @@ pub(super) fn oriented(made: &mut FeatureDraft, callout: &Callout, draft: &mut D
     let tilts = if made.feature.shape == Shape::Axis { first..first + count } else { first + 1..first + count };
     tilt(made, tilts.clone(), callout.width);
     // Its tilts are all that the zone has.
-    widen(made, tilts, Some(callout), None, draft);
+    widen(made, tilts, callout, None, draft);
 }
 
 /// Lets a feature vary in the zone of its form, which nothing else holds.
