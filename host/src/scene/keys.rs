@@ -41,7 +41,7 @@ const TOLERANCED: &[Key] =
 const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
-const ZONE: &[Key] = &[key("zone"), key("datum"), key("material"), key("rule"), COST];
+const ZONE: &[Key] = &[key("zone"), key("datum"), key("material"), key("within"), key("pattern"), key("rule"), COST];
 
 const PLANE: &[Key] = &[
     key("name"),
@@ -142,7 +142,7 @@ const OF_DRAWINGS: &[(&[&str], &str)] = &[
     (&["Ⓔ", "(e)", "envelope"], "the envelope requirement"),
     (&["Ⓤ", "(u)", "unequal", "uz"], "an unequally disposed profile"),
     (&["cz", "commonzone", "combinedzone"], "a combined zone"),
-    (&["composite", "compositeposition", "pattern", "within"], "a composite tolerance"),
+    (&["composite", "compositeposition"], "within"),
     (&["datumtarget", "datumtargets"], "datum targets"),
 ];
 
@@ -150,7 +150,7 @@ const OF_DRAWINGS: &[(&[&str], &str)] = &[
 fn of_drawing(key: &str) -> Option<&'static str> {
     let plain: String = key.to_lowercase().chars().filter(|c| !" -_".contains(*c)).collect();
     let is = |written: &&str| **written == *key || **written == *plain;
-    OF_DRAWINGS.iter().find(|(written, _)| written.iter().any(|written| is(&written))).map(|(_, meaning)| *meaning)
+    OF_DRAWINGS.iter().find(|(written, _)| written.iter().any(is)).map(|(_, meaning)| *meaning)
 }
 
 /// Every key of a scene.

@@ -17,10 +17,11 @@ use super::{
     datum::{Datum, carry, datums},
     material::{self, Material},
     part::FeatureDraft,
+    pattern::{self, Pattern},
     rule, symmetric, toleranced, zone,
 };
 
-const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
+pub(super) const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
 const ZONE: &str = "the width of its zone in mm, or { zone = …, datum = [\"…\"], rule = \"…\" }";
 
 /// What a geometric tolerance limits.
@@ -84,6 +85,8 @@ pub(super) struct Callout<'t, 's> {
     /// Its datums; none of a form.
     pub datums: Vec<Datum>,
     pub rule: ZoneRule,
+    /// Number of the pattern that it moves with.
+    pub pattern: Option<usize>,
     pub field: Field<'t, 's>,
 }
 
@@ -105,7 +108,11 @@ impl Callout<'_, '_> {
 }
 
 /// Reads the tolerances of a feature and adds it to the `draft`.
-pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), SceneError> {
+pub(super) fn read<'t, 's>(
+    mut made: FeatureDraft<'t, 's>,
+    patterns: &mut Vec<Pattern<'t, 's>>,
+    draft: &mut Draft,
+) -> Result<(), SceneError> {
     let none = |field: &Field| matches!(&field.node.value, Value::Text(text) if text == "none");
     let mut callouts = Vec::new();
     let mut formed = false;
@@ -115,7 +122,7 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
         // A straight line leaves the flatness of its face open.
         formed |= limits(name, made.feature.shape) != Limits::Line;
         if !none(&field) {
-            callouts.push(callout(name, field, &made, draft)?);
+            callouts.push(callout(name, field, &made, patterns, draft)?);
         }
     }
     if let Some(field) = made.table.get("offset").filter(|field| !none(field)) {
@@ -180,6 +187,9 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
     }
 
     let index = draft.assembly.features.len();
+    if let Some(pattern) = location.and_then(|location| location.pattern) {
+        patterns[pattern].add(index);
+    }
     let frames =
         [location, orientation].map(|callout| callout.map(|callout| callout.datums.clone()).unwrap_or_default());
     let FeatureDraft { name, feature, part, table, sides, extents, diameter, .. } = made;
@@ -209,6 +219,7 @@ fn callout<'t, 's>(
     name: &'static str,
     field: Field<'t, 's>,
     made: &FeatureDraft,
+    patterns: &mut Vec<Pattern<'t, 's>>,
     draft: &mut Draft,
 ) -> Result<Callout<'t, 's>, SceneError> {
     let limits = limits(name, made.feature.shape);
@@ -222,24 +233,29 @@ fn callout<'t, 's>(
     symmetric::check(name, &field, &datums, made, draft)?;
     let material = material::of_zone(&field)?;
     let width = width(&field, name, made, &datums, material, draft)?;
-    let bonus = match material {
+    let rule_field = field.get("rule");
+    let rule = rule_field.as_ref().map_or(Ok(draft.defaults.rule), rule)?;
+    let mut read = Callout { name, limits, width, material, bonus: None, datums, rule, pattern: None, field };
+    if let Some((pattern, within)) = pattern::of_callout(&read, width, made, patterns, draft)? {
+        (read.pattern, read.width) = (Some(pattern), within);
+    }
+    let field = &read.field;
+    read.bonus = match material {
         Some(_) if !MATERIAL.contains(&name) => {
             let problem = Problem::Unsupported { what: format!("{name} at a condition of material") };
             return Err(field.error(problem, MATERIAL.join(", ")));
         }
-        Some(material) => Some(material::bonus(&field, name, width, material, made)?),
+        Some(material) => Some(material::bonus(field, name, read.width, material, made)?),
         None => None,
     };
     let middle = made.diameter.map_or(0.0, |diameter| diameter.middle());
-    let width = bonus.map_or(width, |bonus| bonus.at(middle));
-    let rule_field = field.get("rule");
-    let rule = rule_field.as_ref().map_or(Ok(draft.defaults.rule), rule)?;
+    read.width = read.bonus.map_or(read.width, |bonus| bonus.at(middle));
     if rule == ZoneRule::Translation && limits == Limits::Orientation && made.feature.shape == Shape::Plane {
         let what = format!("{name} by the rule translation");
         let allowed = "a rule with tilts: sigma-zone, truncated, uniform-in-zone";
-        return Err(rule_field.unwrap_or(field).error(Problem::Unsupported { what }, allowed));
+        return Err(rule_field.as_ref().unwrap_or(field).error(Problem::Unsupported { what }, allowed));
     }
-    Ok(Callout { name, limits, width, material, bonus, datums, rule, field })
+    Ok(read)
 }
 
 /// The general tolerance of the place of a feature whose drawing says nothing of it: that of its distance from the origin of its
@@ -286,6 +302,7 @@ fn general_flatness<'t, 's>(
         bonus: None,
         datums: Vec::new(),
         rule,
+        pattern: None,
         field,
     })
 }

@@ -40,7 +40,7 @@
 //!
 //! Tolerances of a feature: `flatness`, `straightness`, `roundness`, `cylindricity`, `parallelism`, `perpendicularity`, `angularity`,
 //! `position`, `profile`, `coaxiality`, `concentricity`, `symmetry`, `run_out`, `total_run_out` (the width of the zone, or zone, datum,
-//! rule and `material`, "maximum" or "least"; a datum at such a condition is "PART.B (M)" or "PART.B (L)"), `offset` (± along the normal), `vectorial` (each component of
+//! rule, `within` a `pattern`, and `material`, "maximum" or "least"; a datum at such a condition is "PART.B (M)" or "PART.B (L)"), `offset` (± along the normal), `vectorial` (each component of
 //! the position and of the orientation vector). A plane or a point with none has the general flatness, if there is a
 //! class, unless it says `flatness = "none"`. A feature whose place nothing tolerates has the general tolerance of its distance
 //! from the origin of its part, unless it says `offset = "none"`. An orientation narrows the tilts of a location, a form lies within both; each has
@@ -60,6 +60,7 @@ mod material;
 mod material_tests;
 mod measure;
 mod part;
+mod pattern;
 mod symmetric;
 #[cfg(test)]
 mod symmetric_tests;

@@ -156,7 +156,7 @@ fn callouts_that_are_none_are_named_however_they_are_written() {
         ("\"⌓\"", "⌓, profile, is not supported"),
         ("\"⌒\"", "the profile of a line"),
         ("projected_zone", "a projected tolerance zone"),
-        ("composite", "a composite tolerance"),
+        ("\"cz\"", "a combined zone"),
         ("\"Ⓔ\"", "the envelope requirement"),
     ] {
         check_all(&text, &[(seat, &unknown(written), [&format!("|{written}"), name, "coaxiality"])]);
@@ -195,6 +195,71 @@ fn callouts_that_are_none_are_named_however_they_are_written() {
                 seat,
                 "position = { zone = 0.1, mmc = true }",
                 ["|mmc", "did you mean `part.axis.position.material`", "rule"],
+            ),
+        ],
+    );
+}
+
+/// Two holes 40 mm apart, 0.8 to their datums and 0.2 within their pattern.
+const PATTERN: &str = r#"
+[[part]]
+name = "plate"
+plane = [
+  { name = "A", at = [0, 0, 0], normal = "-z", along = "+x", extents = [100, 100], flatness = "none" },
+  { name = "B", at = [-50, 0, 10], normal = "-x", along = "+y", extents = [100, 20], flatness = "none" },
+  { name = "C", at = [0, -50, 10], normal = "-y", along = "+x", extents = [100, 20], flatness = "none" },
+]
+axis = [
+  { name = "one", at = [-20, 0, 10], along = "+z", length = 20, POSITION },
+  { name = "two", at = [20, 0, 10], along = "+z", length = 20, POSITION },
+]
+[[measure]]
+name = "one from C"
+distance = ["plate.one", "plate.C"]
+[[measure]]
+name = "two from C"
+distance = ["plate.two", "plate.C"]
+[[measure]]
+name = "skew"
+is = "'one from C' - 'two from C'"
+[[measure]]
+name = "apart"
+distance = ["plate.one", "plate.two"]
+"#;
+
+#[test]
+fn a_pattern_turns_and_its_holes_vary_within() {
+    let position =
+        "position = { zone = 0.8, within = 0.2, pattern = \"bolts\", datum = [\"plate.A\", \"plate.B\", \"plate.C\"] }";
+    let text = PATTERN.replace("POSITION", position);
+    let found = spreads(&text);
+    // Each hole stays in the wider zone; half of 0.6 by the pattern, which shifts or turns, the rest by itself.
+    check(found[0], -50.0, 0.4, libm::sqrt(0.02 + 0.01 / 9.0), 1e3);
+    // Both to opposite sides, by the turn and by themselves.
+    check(found[2], 0.0, 0.8, libm::sqrt(0.04 + 0.02 / 9.0), 1e3);
+    // Along the line through both only what each has within the pattern.
+    let [low, high] = found[3].0.map(|x| x * 1e3);
+    close(low, 39.8, 1e-9);
+    close(high, 40.2, 1e-9);
+    check_all(
+        &text,
+        &[
+            (", within = 0.2", "", ["position = |{", "`part.axis.position.within` is missing", "two or more axes"]),
+            ("within = 0.2", "within = 0.9", ["within = |0.9", "is 0.9 mm", "less than the zone of the pattern"]),
+            (
+                "pattern = \"bolts\"",
+                "pattern = \"nuts\"",
+                ["|\"nuts\"", "the pattern `plate.nuts` of one axis", "two or"],
+            ),
+            (
+                "zone = 0.8",
+                "zone = 0.7",
+                ["|\"bolts\", datum = [\"plate.A\", \"plate.B\", \"plate.C\"] } },\n]", "different zones", "same"],
+            ),
+            (
+                "flatness = \"none\"",
+                "position = { zone = 1, within = 0.2, pattern = \"bolts\" }",
+                ["|\"bolts\" } },\n  { name = \"B", "a composite position of a plane", "axes"],
             ),
         ],
     );
