@@ -63,7 +63,8 @@ impl Common {
         let along = if apart > OFF { dot(between, direction) / apart } else { 0.0 };
         let middle = [0, 1, 2].map(|i| 0.5 * (at[i] + other[i]));
         let reach = 0.5 * apart + 0.5 * (one.reach + two.reach);
-        let feature = Feature { shape: one.shape, nominal: [middle, direction], terms: Vec::new(), reach };
+        let feature =
+            Feature { shape: one.shape, nominal: [middle, direction], terms: Vec::new(), widened: Vec::new(), reach };
         let apart = if apart > OFF { apart } else { 0.0 };
         Ok((Self { index, pair, shape: one.shape, way: along, same: same.signum(), apart }, feature))
     }
@@ -90,7 +91,7 @@ mod tests {
     use crate::product::vector::Vector;
 
     fn feature(shape: Shape, at: [f64; 3], direction: [f64; 3]) -> Feature {
-        Feature { shape, nominal: [at, direction], terms: Vec::new(), reach: 0.01 }
+        Feature { shape, nominal: [at, direction], terms: Vec::new(), widened: Vec::new(), reach: 0.01 }
     }
 
     fn direction(common: &Common, located: &mut [Located]) -> [f64; 3] {

@@ -286,8 +286,9 @@ impl Contacts {
         let room = plays.fold(Lanes::splat(1e-9), |room, play| room + play.map(|play| play.max(0.0)));
         for joined in &self.joined {
             let Some(float) = &joined.float else { continue };
+            let Some(number) = float.fit else { continue };
             let [x, y, ..] = joined.conditions(assembly, variables, located, displacement);
-            fit(float.fit, float.misfits(variables, (x * x + y * y).map(libm::sqrt), room));
+            fit(number, float.misfits(variables, (x * x + y * y).map(libm::sqrt), room));
         }
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! A plane is known by the point at its middle and its outward normal. Its deviation is a small displacement torsor: the
 //! height w + αx + βy over its face. In units of its zone of width t that is u = 2w/t, p = αa/t, r = βb/t for extents
-//! a × b, so that |u| + |p| + |r| ≤ 1 keeps all four corners in the zone.
+//! a × b, so that |u| + |p| + |r| ≤ 1 keeps all four corners in the zone. At maximum or least material condition t goes with
+//! the feature's size.
 
 use crate::tolerance::lanes::Lanes;
 
@@ -50,6 +51,35 @@ pub struct Term {
     pub factor: f64,
 }
 
+/// The width of a zone at maximum or least material condition: what the size has left to that limit adds to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bonus {
+    /// Width (m) without a bonus.
+    pub width: f64,
+    /// The variable of the size (m).
+    pub size: usize,
+    /// The size (m) at maximum, or least, material.
+    pub limit: f64,
+    /// 1 where larger sizes have the bonus, −1 where smaller ones have it.
+    pub sign: f64,
+}
+
+impl Bonus {
+    /// The width (m) at a `size` (m): that at which the surface reaches its virtual condition, also beyond the limits.
+    pub fn at(&self, size: f64) -> f64 {
+        (self.width + self.sign * (size - self.limit)).max(0.0)
+    }
+}
+
+/// A term whose factor is that of a zone 1 m wide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Widened {
+    /// The term.
+    pub term: Term,
+    /// How wide its zone is.
+    pub bonus: Bonus,
+}
+
 /// A feature in the assembly's frame, its part where the drawing has it.
 #[derive(Clone, Debug)]
 pub struct Feature {
@@ -59,6 +89,8 @@ pub struct Feature {
     pub nominal: [[f64; 3]; 2],
     /// Deviations.
     pub terms: Vec<Term>,
+    /// Those in zones that go with the size.
+    pub widened: Vec<Widened>,
     /// Half of its size (m), by which tilts are weighed against shifts.
     pub reach: f64,
 }
@@ -72,6 +104,18 @@ impl Feature {
     /// Adds `factor` · `variable` along a `vector` to the direction.
     pub fn tilt(&mut self, variable: usize, vector: [f64; 3], factor: f64) {
         self.add(variable, 3, vector, factor);
+    }
+
+    /// Lets the zone of some `variables`, which is `middle` (m) wide so far, go with a size.
+    pub fn widen(&mut self, variables: std::ops::Range<usize>, bonus: Bonus, middle: f64) {
+        let terms = self.terms.extract_if(.., |term| variables.contains(&term.variable));
+        let widened = terms.map(|term| Widened { term: Term { factor: term.factor / middle, ..term }, bonus });
+        self.widened.extend(widened);
+    }
+
+    /// The components that vary: 0 to 2 of the place, 3 to 5 of the direction.
+    pub fn components(&self) -> impl Iterator<Item = usize> {
+        self.terms.iter().chain(self.widened.iter().map(|widened| &widened.term)).map(|term| term.component)
     }
 
     fn add(&mut self, variable: usize, first: usize, vector: [f64; 3], factor: f64) {
@@ -91,14 +135,22 @@ impl Feature {
     #[inline(always)]
     pub fn deviate(&self, variables: &[Lanes], located: &mut Located) {
         for term in &self.terms {
-            let Located { place, direction } = &mut *located;
-            let vector = if term.component < 3 { place } else { direction };
-            vector.0[term.component % 3] += variables[term.variable] * term.factor;
+            *located.component(term.component) += variables[term.variable] * term.factor;
+        }
+        for Widened { term, bonus } in &self.widened {
+            let width = variables[bonus.size].map(|size| bonus.at(size));
+            *located.component(term.component) += variables[term.variable] * width * term.factor;
         }
     }
 }
 
 impl Located {
+    #[inline(always)]
+    fn component(&mut self, component: usize) -> &mut Lanes {
+        let vector = if component < 3 { &mut self.place } else { &mut self.direction };
+        &mut vector.0[component % 3]
+    }
+
     /// After a displacement.
     #[inline(always)]
     pub fn displaced(&self, displacement: &Displacement) -> Self {

@@ -4,13 +4,32 @@ use crate::tolerance::lanes::{LANES, Lanes};
 
 use super::contact::CONDITIONS;
 
+/// The diameter of a hole or a pin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Size {
+    /// The variable of an actual one (m).
+    Actual(usize),
+    /// That of a boundary (m), which is perfect.
+    Boundary(f64),
+}
+
+impl Size {
+    #[inline(always)]
+    fn of(self, variables: &[Lanes]) -> Lanes {
+        match self {
+            Self::Actual(variable) => variables[variable],
+            Self::Boundary(size) => Lanes::splat(size),
+        }
+    }
+}
+
 /// A hole and a pin: which variables say how large they are and where in its play the hole floats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Float {
-    /// Number of the fit in the product.
-    pub fit: usize,
-    /// Diameters (m) of hole and pin: variables.
-    pub diameters: [usize; 2],
+    /// Number of the fit in the product; none of a datum in its boundary.
+    pub fit: Option<usize>,
+    /// Hole and pin.
+    pub diameters: [Size; 2],
     /// The first of two variables across the axes, or of four with both tilts, in units of half the play.
     pub first: Option<usize>,
     /// What of the play tilts the axes by it at the end of the shorter one, over the reach of the contact; 0 if the axes do not
@@ -22,7 +41,7 @@ impl Float {
     /// Half of the play (m); negative where the pin is larger than the hole.
     #[inline(always)]
     pub fn half_play(&self, variables: &[Lanes]) -> Lanes {
-        let [hole, pin] = self.diameters.map(|variable| variables[variable]);
+        let [hole, pin] = self.diameters.map(|size| size.of(variables));
         (hole - pin) * 0.5
     }
 

@@ -4,6 +4,7 @@ use crate::tolerance::{
     lanes::Lanes,
     loss::Loss,
     model::{Function, Quantity},
+    widening::Widening,
 };
 
 use super::{
@@ -42,6 +43,8 @@ pub struct Measures {
     pub quantities: Vec<Quantity>,
     /// One a measure: what it costs to be off its target, if that is said.
     pub losses: Vec<Option<Loss>>,
+    /// Zones that go with sizes.
+    pub widenings: Vec<Widening>,
 }
 
 impl Formula {
@@ -110,5 +113,9 @@ impl Function for Measures {
 
     fn loss(&self, measure: usize) -> Option<Loss> {
         self.losses[measure]
+    }
+
+    fn widenings(&self) -> &[Widening] {
+        &self.widenings
     }
 }

@@ -66,7 +66,7 @@ const TOLERANCED: &[Key] =
 const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
-const ZONE: &[Key] = &[key("zone"), key("datum"), key("rule"), COST];
+const ZONE: &[Key] = &[key("zone"), key("datum"), key("material"), key("within"), key("pattern"), key("rule"), COST];
 
 const PLANE: &[Key] = &[
     key("name"),
@@ -82,6 +82,9 @@ const PLANE: &[Key] = &[
     table("angularity", ZONE),
     table("position", ZONE),
     table("profile", ZONE),
+    table("symmetry", ZONE),
+    table("run_out", ZONE),
+    table("total_run_out", ZONE),
     VECTORIAL,
 ];
 const POINT: &[Key] = &[
@@ -93,6 +96,8 @@ const POINT: &[Key] = &[
     table("flatness", ZONE),
     table("position", ZONE),
     table("profile", ZONE),
+    table("run_out", ZONE),
+    table("total_run_out", ZONE),
     VECTORIAL,
 ];
 const AXIS: &[Key] = &[
@@ -107,6 +112,13 @@ const AXIS: &[Key] = &[
     table("perpendicularity", ZONE),
     table("angularity", ZONE),
     table("position", ZONE),
+    table("roundness", ZONE),
+    table("cylindricity", ZONE),
+    table("coaxiality", ZONE),
+    table("concentricity", ZONE),
+    table("symmetry", ZONE),
+    table("run_out", ZONE),
+    table("total_run_out", ZONE),
     VECTORIAL,
 ];
 
@@ -114,21 +126,57 @@ const CONTACT: &[Key] =
     &[key("law"), key("stiffness"), key("exponent"), key("damping"), key("depth"), key("restitution"), key("speed")];
 const FRICTION: &[Key] = &[key("law"), key("coefficient"), key("stick_band")];
 
-/// What drawings have and scenes do not.
-const UNSUPPORTED: [&str; 12] = [
-    "circularity",
-    "roundness",
-    "cylindricity",
-    "concentricity",
-    "coaxiality",
-    "symmetry",
-    "run_out",
-    "runout",
-    "total_run_out",
-    "line_profile",
-    "maximum_material",
-    "projected_zone",
+/// What drawings have: how it is written there, without hyphens and the like, and what it is here, a key or nothing.
+const OF_DRAWINGS: &[(&[&str], &str)] = &[
+    (&["⏥", "▱"], "flatness"),
+    (&["⏤", "—"], "straightness"),
+    (&["○", "◯", "roundness", "circularity"], "roundness"),
+    (&["⌭", "cylindricity"], "cylindricity"),
+    (&["∥", "//", "parallel"], "parallelism"),
+    (&["⊥", "⟂", "squareness", "perpendicular"], "perpendicularity"),
+    (&["∠", "angular"], "angularity"),
+    (&["⌖", "⊕", "trueposition", "location"], "position"),
+    (&["⌓", "surfaceprofile", "profileofasurface"], "profile"),
+    (&["◎", "coaxiality", "coaxial"], "coaxiality"),
+    (&["concentricity", "concentric"], "concentricity"),
+    (&["⌯", "symmetry"], "symmetry"),
+    (&["↗", "runout", "circularrunout", "tir"], "run_out"),
+    (&["⌰", "⌮", "totalrunout"], "total_run_out"),
+    (
+        &[
+            "Ⓜ",
+            "(m)",
+            "mmc",
+            "mmr",
+            "maximummaterial",
+            "Ⓛ",
+            "(l)",
+            "lmc",
+            "lmr",
+            "leastmaterial",
+            "modifier",
+            "modifiers",
+        ],
+        "material",
+    ),
+    (&["⌒", "lineprofile", "profileofaline"], "the profile of a line"),
+    (&["Ⓟ", "(p)", "projected", "projectedzone"], "a projected tolerance zone"),
+    (&["Ⓣ", "(t)", "tangentplane"], "a tangent plane"),
+    (&["Ⓕ", "(f)", "freestate"], "the free state"),
+    (&["Ⓡ", "(r)", "reciprocity"], "the reciprocity requirement"),
+    (&["Ⓔ", "(e)", "envelope"], "the envelope requirement"),
+    (&["Ⓤ", "(u)", "unequal", "uz"], "an unequally disposed profile"),
+    (&["cz", "commonzone", "combinedzone"], "a combined zone"),
+    (&["composite", "compositeposition"], "within"),
+    (&["datumtarget", "datumtargets"], "datum targets"),
 ];
+
+/// What a `key` of a drawing is here.
+fn of_drawing(key: &str) -> Option<&'static str> {
+    let plain: String = key.to_lowercase().chars().filter(|c| !" -_".contains(*c)).collect();
+    let is = |written: &&str| **written == *key || **written == *plain;
+    OF_DRAWINGS.iter().find(|(written, _)| written.iter().any(is)).map(|(_, meaning)| *meaning)
+}
 
 /// Every key of a scene.
 const ROOT: &[Key] = &[
@@ -248,14 +296,19 @@ fn note(node: &Node<'_>, path: &str, keys: &[Key]) {
             let name = join(path, &entry.key);
             match keys.iter().find(|key| key.name == entry.key) {
                 Some(key) => note(&entry.node, &name, key.below),
-                None if UNSUPPORTED.contains(&&*entry.key) => {
-                    let known = "flatness, straightness, parallelism, perpendicularity, angularity, position, profile";
-                    found.note(entry.place.error(Problem::Unsupported { what: entry.key.to_string() }, known));
-                }
                 None => {
-                    let similar = similar(&name);
                     let allowed = keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ");
-                    found.note(entry.place.error(Problem::UnknownKey { key: name, similar }, allowed));
+                    let problem = match of_drawing(&entry.key) {
+                        Some(known) if keys.iter().any(|key| key.name == known) => {
+                            Problem::UnknownKey { key: name, similar: Some(join(path, known)) }
+                        }
+                        Some(meaning) => Problem::Unsupported { what: named(&entry.key, meaning) },
+                        None => {
+                            let similar = similar(&name);
+                            Problem::UnknownKey { key: name, similar }
+                        }
+                    };
+                    found.note(entry.place.error(problem, allowed));
                 }
             }
         }),
@@ -263,6 +316,11 @@ fn note(node: &Node<'_>, path: &str, keys: &[Key]) {
         // Reading the value says that it is no table.
         _ => {}
     }
+}
+
+/// What a `key` means, and how it is written if that is something else.
+fn named(key: &str, meaning: &str) -> String {
+    if key == meaning { key.into() } else { format!("{key}, {meaning},") }
 }
 
 fn join(path: &str, name: &str) -> String {

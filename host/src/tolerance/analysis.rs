@@ -19,7 +19,7 @@ use super::{
     study::{Settings, Study, StudyError, Tally},
     tail::{Source, Tail, probability},
     tensor::{self, Exact},
-    worst_case::{WorstCase, middle, reach, worst_case},
+    worst_case::{WorstCase, middle, reaches as linear_reaches, worst_case},
 };
 
 /// Share of the curvature in a measure's variance above which the measure counts as not linear.
@@ -219,12 +219,11 @@ fn stop_if_asked() -> Result<(), StudyError> {
 }
 
 fn sensitivities(model: &Model, slopes: &[f64]) -> Vec<Sensitivity> {
-    let of = |(contributor, at): (&super::model::Contributor, usize)| {
-        let own = &slopes[at..at + contributor.variation.variables()];
-        let slope = matches!(contributor.variation, Variation::Scalar { .. }).then(|| own[0]);
-        Sensitivity { slope, reach: reach(&contributor.variation, own) }
+    let of = |((contributor, at), [down, up]): ((&super::model::Contributor, usize), [f64; 2])| {
+        let slope = matches!(contributor.variation, Variation::Scalar { .. }).then(|| slopes[at]);
+        Sensitivity { slope, reach: 0.5 * (down + up) }
     };
-    model.contributors.iter().zip(model.offsets()).map(of).collect()
+    model.contributors.iter().zip(model.offsets()).zip(linear_reaches(model, slopes)).map(of).collect()
 }
 
 fn closing(

@@ -60,4 +60,5 @@ pub mod tally;
 pub mod tensor;
 #[cfg(test)]
 mod tests;
+pub mod widening;
 pub mod worst_case;

@@ -1,6 +1,6 @@
 //! What every analysis works on: contributors that vary, and the measures that follow from them.
 
-use super::{lanes::Lanes, loss::Loss, nested::Nested};
+use super::{lanes::Lanes, loss::Loss, nested::Nested, widening::Widening};
 
 /// A product whose measures are a function of independent (or correlated) random variables.
 pub struct Model {
@@ -30,6 +30,11 @@ pub trait Function: Send + Sync {
     /// What kind of number a scalar `variable` is.
     fn quantity(&self, _variable: usize) -> Quantity {
         Quantity::Length
+    }
+
+    /// Zones that grow with sizes.
+    fn widenings(&self) -> &[Widening] {
+        &[]
     }
 
     /// What it costs that `measure` is off its target, where that is said.

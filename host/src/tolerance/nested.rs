@@ -78,15 +78,17 @@ impl Nested {
         }
     }
 
-    /// The greatest value of slopes · variables in the zone. It lies on the border of either part.
-    pub fn most(&self, slopes: &[f64]) -> f64 {
+    /// The greatest value of slopes · variables in the zone whose place and tilts have grown by the factors `grown`. It lies on
+    /// the border of either part.
+    pub fn most(&self, slopes: &[f64], grown: [f64; 2]) -> f64 {
         let (place, tilts) = slopes.split_at(self.places());
         let place = radius(place);
         let tilts = match self.of {
             Nest::Face => tilts.iter().fold(0.0, |most: f64, slope| most.max(slope.abs())),
             Nest::Axis => radius(tilts),
         };
-        place.max((1.0 - self.tilts) * place + self.tilts * tilts)
+        let [width, tilted] = [grown[0], (self.tilts * grown[1]).min(grown[0])];
+        (width * place).max((width - tilted) * place + tilted * tilts)
     }
 
     /// Corners of the zone, or points on its rims.
@@ -225,7 +227,10 @@ mod tests {
                 let value = |corner: &Vec<f64>| corner.iter().zip(slopes).map(|(x, s)| x * s).sum::<f64>();
                 let greatest = corners.iter().map(value).fold(0.0, f64::max);
                 // A rim of 24 points has all directions within 7.5°.
-                assert!(greatest <= zone.most(slopes) + 1e-12 && greatest > 0.99 * zone.most(slopes), "{zone:?}");
+                assert!(
+                    greatest <= zone.most(slopes, [1.0; 2]) + 1e-12 && greatest > 0.99 * zone.most(slopes, [1.0; 2]),
+                    "{zone:?}"
+                );
             }
         }
     }

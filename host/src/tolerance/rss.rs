@@ -3,7 +3,7 @@
 use super::{
     derivative::Expansion,
     model::{Model, Variation},
-    worst_case::reach,
+    worst_case::reaches,
 };
 
 /// Root sum of squares of one measure (SI).
@@ -75,8 +75,7 @@ pub fn root_sum_square(model: &Model, middle: &Expansion, mean: &Expansion, devi
             if variance > 0.0 { own / variance } else { 0.0 }
         };
         let tolerance = libm::sqrt(middle.slopes[i].iter().zip(&halves).map(square).sum());
-        let own = model.contributors.iter().zip(&offsets);
-        let reaches = own.map(|(c, at)| reach(&c.variation, &middle.slopes[i][*at..at + c.variation.variables()]));
+        let reaches = reaches(model, &middle.slopes[i]).into_iter().map(|[down, up]| 0.5 * (down + up));
         let reaches: Vec<f64> = reaches.filter(|reach| *reach > 0.0).collect();
         RootSumSquare {
             middle: middle.values[i],

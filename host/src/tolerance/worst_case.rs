@@ -4,6 +4,7 @@ use super::{
     derivative::{Expansion, evaluate},
     model::{Distribution, Model, Variation},
     nested::Nest,
+    widening::Widening,
 };
 
 /// The most combinations of vertices that are tried.
@@ -12,7 +13,7 @@ const MOST_VERTICES: usize = 1 << 16;
 /// Lowest and highest value of a measure (SI).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstCase {
-    /// By its slopes at the middle of all limits; exact for a linear measure.
+    /// By its slopes at the middle of all limits, and by how zones grow with sizes; exact for a linear measure.
     pub linear: [f64; 2],
     /// Over all combinations of limits and of corners of zones, if there are not more than 65,536 and no disc, which has
     /// none; exact for a measure that is monotone in every contributor.
@@ -30,29 +31,64 @@ pub fn middle(variation: &Variation) -> Vec<f64> {
 }
 
 /// How far a contributor moves a measure from the middle, at most, with `slopes` in its variables. In a zone |u| + |p| +
-/// |r| ≤ 1 that is at one of its corners, in a disc on its rim.
-pub fn reach(variation: &Variation, slopes: &[f64]) -> f64 {
+/// |r| ≤ 1 that is at one of its corners, in a disc on its rim. Place and tilts of a zone have `grown` by factors.
+pub(super) fn reach(variation: &Variation, slopes: &[f64], grown: [f64; 2]) -> f64 {
     let most = slopes.iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
     match variation {
         Variation::Scalar { limits: [low, high], .. } => 0.5 * (high - low) * most,
-        Variation::Zone(_) => most,
-        Variation::Disc(_) => libm::sqrt(slopes.iter().map(|slope| slope * slope).sum()),
-        Variation::Nested(zone) => zone.most(slopes),
+        Variation::Zone(_) => grown[0] * most,
+        Variation::Disc(_) => grown[0] * libm::sqrt(slopes.iter().map(|slope| slope * slope).sum()),
+        Variation::Nested(zone) => zone.most(slopes, grown),
     }
+}
+
+/// How far every contributor moves a measure down and up from the middle, at most. A size that zones grow with has what they
+/// gain by it.
+pub fn reaches(model: &Model, slopes: &[f64]) -> Vec<[f64; 2]> {
+    let offsets = model.offsets();
+    let own = |i: usize| {
+        let variation = &model.contributors[i].variation;
+        (variation, &slopes[offsets[i]..offsets[i] + variation.variables()])
+    };
+    let mut reaches: Vec<[f64; 2]> = (0..offsets.len())
+        .map(|i| {
+            let (variation, slopes) = own(i);
+            [reach(variation, slopes, [1.0; 2]); 2]
+        })
+        .collect();
+    let widenings = model.function.widenings();
+    for (size, at) in offsets.iter().enumerate() {
+        let grows = || widenings.iter().filter(|widening| widening.size == *at);
+        let Variation::Scalar { limits: [low, high], .. } = model.contributors[size].variation else { continue };
+        if grows().next().is_none() {
+            continue;
+        }
+        let half = 0.5 * (high - low);
+        let gain = |away: f64| -> f64 {
+            let of_zone = |widening: &Widening| {
+                let (variation, slopes) = own(offsets.partition_point(|at| *at < widening.zone));
+                reach(variation, slopes, widening.grown(away)) - reach(variation, slopes, [1.0; 2])
+            };
+            grows().map(of_zone).sum()
+        };
+        let gains = [-half, half].map(|away| (slopes[*at] * away, gain(away)));
+        reaches[size] = [-1.0, 1.0]
+            .map(|sign| gains.iter().map(|(direct, gained)| sign * direct + gained).fold(f64::NEG_INFINITY, f64::max));
+    }
+    reaches
 }
 
 /// Of every measure; `around` is expanded around the [`middle`] of all contributors.
 pub fn worst_case(model: &Model, around: &Expansion) -> Vec<WorstCase> {
-    let offsets = model.offsets();
-    let reach = |slopes: &[f64]| -> f64 {
-        let each = model.contributors.iter().zip(&offsets);
-        each.map(|(c, at)| reach(&c.variation, &slopes[*at..at + c.variation.variables()])).sum()
+    let sum = |slopes: &[f64]| -> [f64; 2] {
+        let reaches = reaches(model, slopes);
+        [0, 1].map(|side| reaches.iter().map(|reach| reach[side]).sum())
     };
     let vertices = by_vertices(model);
-    let measure = |(i, (value, slopes)): (usize, (&f64, &Vec<f64>))| WorstCase {
-        linear: [value - reach(slopes), value + reach(slopes)],
-        vertices: vertices.as_ref().map(|vertices| vertices[i]),
-        searched: None,
+    let measure = |(i, (value, slopes)): (usize, (&f64, &Vec<f64>))| {
+        let [down, up] = sum(slopes);
+        let vertices = vertices.as_ref().map(|vertices| vertices[i]);
+        WorstCase { linear: [value - down, value + up], vertices, searched: None }
     };
     around.values.iter().zip(&around.slopes).enumerate().map(measure).collect()
 }

@@ -5,7 +5,7 @@ use crate::{
         assembly::With,
         contact::{cross, unit},
         dimension::{self, Toleranced},
-        feature::Shape,
+        feature::{Bonus, Shape},
         iso2768::{self, GeometryClass},
     },
     scene::{Problem, SceneError, tree::Value, unit as units, unit::Quantity, value::Field},
@@ -14,12 +14,14 @@ use crate::{
 
 use super::{
     Draft,
-    datum::{carry, datums},
+    datum::{Datum, carry, datums},
+    material::{self, Material},
     part::FeatureDraft,
-    rule, toleranced, zone,
+    pattern::{self, Pattern},
+    rule, symmetric, toleranced, zone,
 };
 
-const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
+pub(super) const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
 const ZONE: &str = "the width of its zone in mm, or { zone = …, datum = [\"…\"], rule = \"…\" }";
 
 /// What a geometric tolerance limits.
@@ -29,6 +31,8 @@ pub(super) enum Limits {
     Form,
     /// Form along the first extent only.
     Line,
+    /// Form of the surface around an axis: what mates with it finds the axis off, and tilted.
+    Surface,
     /// Tilts towards a datum.
     Orientation,
     /// Offset and tilts towards datums.
@@ -36,14 +40,34 @@ pub(super) enum Limits {
 }
 
 /// The geometric tolerances.
-pub(super) const CALLOUTS: [&str; 7] =
-    ["flatness", "straightness", "parallelism", "perpendicularity", "angularity", "position", "profile"];
+pub(super) const CALLOUTS: [&str; 14] = [
+    "flatness",
+    "straightness",
+    "roundness",
+    "cylindricity",
+    "parallelism",
+    "perpendicularity",
+    "angularity",
+    "position",
+    "profile",
+    "coaxiality",
+    "concentricity",
+    "symmetry",
+    "run_out",
+    "total_run_out",
+];
 
-fn limits(callout: &str) -> Limits {
+/// Those that may be at a condition of material.
+const MATERIAL: [&str; 5] = ["position", "coaxiality", "perpendicularity", "parallelism", "angularity"];
+
+/// What a tolerance limits of a feature. Where a face runs out its place is free.
+fn limits(callout: &str, shape: Shape) -> Limits {
     match callout {
         "flatness" => Limits::Form,
         "straightness" => Limits::Line,
-        "position" | "profile" => Limits::Location,
+        "roundness" | "cylindricity" => Limits::Surface,
+        "position" | "profile" | "coaxiality" | "concentricity" | "symmetry" => Limits::Location,
+        "run_out" | "total_run_out" if shape != Shape::Plane => Limits::Location,
         _ => Limits::Orientation,
     }
 }
@@ -52,16 +76,43 @@ fn limits(callout: &str) -> Limits {
 pub(super) struct Callout<'t, 's> {
     pub name: &'static str,
     pub limits: Limits,
-    /// Width of its zone (m).
+    /// Width of its zone (m), in the middle of the limits of the size that it goes with.
     pub width: f64,
+    /// Its condition of material.
+    pub material: Option<Material>,
+    /// How it goes with the size there.
+    pub bonus: Option<Bonus>,
     /// Its datums; none of a form.
-    pub datums: Vec<usize>,
+    pub datums: Vec<Datum>,
     pub rule: ZoneRule,
+    /// Number of the pattern that it moves with.
+    pub pattern: Option<usize>,
     pub field: Field<'t, 's>,
 }
 
+impl Callout<'_, '_> {
+    /// Its condition of material, and its width (m) there.
+    fn at_condition(&self) -> Option<(Material, f64)> {
+        Some((self.material?, self.bonus?.width))
+    }
+
+    /// Whether it holds the surface, its form included, not the axis alone.
+    fn runs_out(&self) -> bool {
+        matches!(self.name, "run_out" | "total_run_out")
+    }
+
+    /// Whether all of an axis lies in its zone: its tilts are limited, too.
+    pub fn holds_tilts(&self) -> bool {
+        self.rule != ZoneRule::Translation && (self.runs_out() || matches!(self.name, "coaxiality" | "cylindricity"))
+    }
+}
+
 /// Reads the tolerances of a feature and adds it to the `draft`.
-pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), SceneError> {
+pub(super) fn read<'t, 's>(
+    mut made: FeatureDraft<'t, 's>,
+    patterns: &mut Vec<Pattern<'t, 's>>,
+    draft: &mut Draft,
+) -> Result<(), SceneError> {
     let none = |field: &Field| matches!(&field.node.value, Value::Text(text) if text == "none");
     let mut callouts = Vec::new();
     let mut formed = false;
@@ -69,9 +120,9 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
         let Some(field) = made.table.get(name) else { continue };
         refuse_unsupported(name, &made, &field)?;
         // A straight line leaves the flatness of its face open.
-        formed |= limits(name) != Limits::Line;
+        formed |= limits(name, made.feature.shape) != Limits::Line;
         if !none(&field) {
-            callouts.push(callout(name, field, &made, draft)?);
+            callouts.push(callout(name, field, &made, patterns, draft)?);
         }
     }
     if let Some(field) = made.table.get("offset").filter(|field| !none(field)) {
@@ -96,15 +147,22 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
     };
     let location = one(|limits| *limits == Limits::Location)?;
     let orientation = one(|limits| *limits == Limits::Orientation)?;
+    let surfaces = callouts.iter().filter(|callout| callout.limits == Limits::Surface);
     let forms: Vec<_> =
         callouts.iter().filter(|callout| matches!(callout.limits, Limits::Form | Limits::Line)).collect();
     if let Some(location) = location {
-        zone::located(&mut made, location, orientation, draft);
+        zone::located(&mut made, location, orientation, draft)?;
     } else if let Some(orientation) = orientation {
         zone::oriented(&mut made, orientation, draft);
     }
     if location.is_none() {
         general_place(&mut made, draft);
+    }
+    for surface in surfaces {
+        match location.filter(|location| location.runs_out()) {
+            None => zone::located(&mut made, surface, None, draft)?,
+            Some(wider) => told_within(surface, wider, &made, draft),
+        }
     }
     let flat = forms.iter().find(|form| form.limits == Limits::Form).copied();
     for form in &forms {
@@ -115,14 +173,23 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
             Some(wider) if wider.limits == Limits::Orientation && made.feature.shape == Shape::Plane => {
                 zone::offset_within(&mut made, form, wider.width, draft);
             }
-            Some(wider) => draft.warnings.push(format!(
-                "{}: {} lies within {}, which has all that the feature moves by",
-                made.name, form.name, wider.name
-            )),
+            Some(wider) => told_within(form, wider, &made, draft),
+        }
+    }
+
+    if let Some(diameter) = &mut made.diameter {
+        // What turns with the datums has the narrower zone.
+        for (material, width) in
+            [location, orientation].into_iter().flatten().filter_map(|callout| callout.at_condition())
+        {
+            diameter.own[material as usize] = width;
         }
     }
 
     let index = draft.assembly.features.len();
+    if let Some(pattern) = location.and_then(|location| location.pattern) {
+        patterns[pattern].add(index);
+    }
     let frames =
         [location, orientation].map(|callout| callout.map(|callout| callout.datums.clone()).unwrap_or_default());
     let FeatureDraft { name, feature, part, table, sides, extents, diameter, .. } = made;
@@ -139,29 +206,56 @@ pub(super) fn read(mut made: FeatureDraft, draft: &mut Draft) -> Result<(), Scen
     if turns.is_empty() || turns == places { Ok(()) } else { carry(index, &turns, With::Direction, &table, draft) }
 }
 
+/// Warns of a form that moves nothing.
+fn told_within(form: &Callout, wider: &Callout, made: &FeatureDraft, draft: &mut Draft) {
+    draft.warnings.push(format!(
+        "{}: {} lies within {}, which has all that the feature moves by",
+        made.name, form.name, wider.name
+    ));
+}
+
 /// Reads the tolerance `name` of a feature.
 fn callout<'t, 's>(
     name: &'static str,
     field: Field<'t, 's>,
     made: &FeatureDraft,
+    patterns: &mut Vec<Pattern<'t, 's>>,
     draft: &mut Draft,
 ) -> Result<Callout<'t, 's>, SceneError> {
-    let limits = limits(name);
+    let limits = limits(name, made.feature.shape);
+    let is_form = matches!(limits, Limits::Form | Limits::Line | Limits::Surface);
     let list = field.get("datum");
-    if let Some(list) = list.as_ref().filter(|_| matches!(limits, Limits::Form | Limits::Line)) {
+    if let Some(list) = list.as_ref().filter(|_| is_form) {
         let problem = Problem::Unsupported { what: format!("a datum of {}", field.key) };
         return Err(list.error(problem, "no datum: a form is its own"));
     }
     let datums = list.map_or(Ok(Vec::new()), |list| datums(&list, draft))?;
-    let width = width(&field, name, made, &datums, draft)?;
+    symmetric::check(name, &field, &datums, made, draft)?;
+    let material = material::of_zone(&field)?;
+    let width = width(&field, name, made, &datums, material, draft)?;
     let rule_field = field.get("rule");
     let rule = rule_field.as_ref().map_or(Ok(draft.defaults.rule), rule)?;
+    let mut read = Callout { name, limits, width, material, bonus: None, datums, rule, pattern: None, field };
+    if let Some((pattern, within)) = pattern::of_callout(&read, width, made, patterns, draft)? {
+        (read.pattern, read.width) = (Some(pattern), within);
+    }
+    let field = &read.field;
+    read.bonus = match material {
+        Some(_) if !MATERIAL.contains(&name) => {
+            let problem = Problem::Unsupported { what: format!("{name} at a condition of material") };
+            return Err(field.error(problem, MATERIAL.join(", ")));
+        }
+        Some(material) => Some(material::bonus(field, name, read.width, material, made)?),
+        None => None,
+    };
+    let middle = made.diameter.map_or(0.0, |diameter| diameter.middle());
+    read.width = read.bonus.map_or(read.width, |bonus| bonus.at(middle));
     if rule == ZoneRule::Translation && limits == Limits::Orientation && made.feature.shape == Shape::Plane {
         let what = format!("{name} by the rule translation");
         let allowed = "a rule with tilts: sigma-zone, truncated, uniform-in-zone";
-        return Err(rule_field.unwrap_or(field).error(Problem::Unsupported { what }, allowed));
+        return Err(rule_field.as_ref().unwrap_or(field).error(Problem::Unsupported { what }, allowed));
     }
-    Ok(Callout { name, limits, width, datums, rule, field })
+    Ok(read)
 }
 
 /// The general tolerance of the place of a feature whose drawing says nothing of it: that of its distance from the origin of its
@@ -200,15 +294,49 @@ fn general_flatness<'t, 's>(
     let field = made.table.get("extents").unwrap_or(made.table.clone());
     let width = iso2768::flatness(class, a.max(b)).map_err(|error| toleranced::band(&field, error))?;
     let rule = draft.defaults.rule;
-    Ok(Callout { name: "flatness", limits: Limits::Form, width, datums: Vec::new(), rule, field })
+    Ok(Callout {
+        name: "flatness",
+        limits: Limits::Form,
+        width,
+        material: None,
+        bonus: None,
+        datums: Vec::new(),
+        rule,
+        pattern: None,
+        field,
+    })
 }
 
 /// Refuses a tolerance that a feature of this shape cannot have.
 fn refuse_unsupported(callout: &str, made: &FeatureDraft, field: &Field) -> Result<(), SceneError> {
     let known: &[&str] = match made.feature.shape {
-        Shape::Plane => &CALLOUTS,
-        Shape::Point => &["flatness", "position", "profile"],
-        Shape::Axis => &["straightness", "parallelism", "perpendicularity", "angularity", "position"],
+        Shape::Plane => &[
+            "flatness",
+            "straightness",
+            "parallelism",
+            "perpendicularity",
+            "angularity",
+            "position",
+            "profile",
+            "symmetry",
+            "run_out",
+            "total_run_out",
+        ],
+        Shape::Point => &["flatness", "position", "profile", "run_out", "total_run_out"],
+        Shape::Axis => &[
+            "straightness",
+            "roundness",
+            "cylindricity",
+            "parallelism",
+            "perpendicularity",
+            "angularity",
+            "position",
+            "coaxiality",
+            "concentricity",
+            "symmetry",
+            "run_out",
+            "total_run_out",
+        ],
     };
     if known.contains(&callout) {
         return Ok(());
@@ -222,7 +350,8 @@ fn width(
     field: &Field,
     callout: &str,
     made: &FeatureDraft,
-    datums: &[usize],
+    datums: &[Datum],
+    material: Option<Material>,
     draft: &Draft,
 ) -> Result<f64, SceneError> {
     let stated = match field.node.value {
@@ -230,10 +359,15 @@ fn width(
         _ => Some(field.clone()),
     };
     if let Some(zone) = stated {
-        return toleranced::positive(&zone, &WIDTH);
+        material::refuse_in_width(&zone)?;
+        // Zero at maximum material: all that the axis may vary is bonus.
+        return if material.is_some() { zone.to_number(&WIDTH) } else { toleranced::positive(&zone, &WIDTH) };
     }
     let missing = || field.error(Problem::Missing(format!("{}.zone", field.key)), ZONE);
     let class = draft.defaults.general.geometry.ok_or_else(missing)?;
+    if callout == "run_out" {
+        return Ok(iso2768::run_out(class));
+    }
     let [a, b] = made.extents.ok_or_else(missing)?;
     let longer = a.max(b);
     let found = match callout {
@@ -251,13 +385,13 @@ fn width(
 
 /// The shorter leg (m) of the right angles that a feature with some `extents` makes with its datums: how far either face
 /// goes away from the line in which they meet.
-fn shorter_leg(made: &FeatureDraft, extents: [f64; 2], datums: &[usize], draft: &Draft) -> f64 {
+fn shorter_leg(made: &FeatureDraft, extents: [f64; 2], datums: &[Datum], draft: &Draft) -> f64 {
     let leg = |shape: Shape, line: [f64; 3], sides: [[f64; 3]; 2], extents: [f64; 2]| {
         let across = |side: [f64; 3]| cross(side, line).iter().map(|x| x * x).sum::<f64>();
         let [a, b] = [0, 1].map(|i| extents[i] * libm::sqrt(across(sides[i])));
         if shape == Shape::Axis { extents[0] } else { a + b }
     };
-    let of_datum = |datum: &usize| {
+    let of_datum = |Datum { feature: datum, .. }: &Datum| {
         let feature = &draft.assembly.features[*datum];
         let line = unit(cross(made.feature.nominal[1], feature.nominal[1]))?;
         let own = leg(made.feature.shape, line, made.sides, extents);

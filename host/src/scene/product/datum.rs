@@ -7,15 +7,29 @@ use crate::{
         contact::Contact,
         contacts::{Joined, Own},
         feature::Shape,
+        float::{Float, Size},
     },
     scene::{Problem, SceneError, tree::Value, value::Field},
     tolerance::lanes::Lanes,
 };
 
-use super::Draft;
+use super::{
+    Draft,
+    mate::floating,
+    material::{self, Material},
+};
+
+/// A datum of a feature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Datum {
+    /// Its feature.
+    pub feature: usize,
+    /// The condition of material at which it is referenced.
+    pub material: Option<Material>,
+}
 
 /// The datums of the list, or the only one: features of the part of `feature` that stand above.
-pub(super) fn datums(list: &Field, draft: &mut Draft) -> Result<Vec<usize>, SceneError> {
+pub(super) fn datums(list: &Field, draft: &mut Draft) -> Result<Vec<Datum>, SceneError> {
     let nodes = match &list.node.value {
         Value::List(nodes) => nodes.iter().map(|node| Field { key: list.key.clone(), node }).collect(),
         _ => vec![list.clone()],
@@ -28,7 +42,8 @@ pub(super) fn datums(list: &Field, draft: &mut Draft) -> Result<Vec<usize>, Scen
 }
 
 /// One datum, of one feature or of two.
-fn one(field: &Field, draft: &mut Draft) -> Result<usize, SceneError> {
+fn one(field: &Field, draft: &mut Draft) -> Result<Datum, SceneError> {
+    let plain = |feature| Datum { feature, material: None };
     if let Value::List(nodes) = &field.node.value {
         let [one, two] = &nodes[..] else {
             let problem = Problem::Length { key: field.key.clone(), found: nodes.len() };
@@ -36,18 +51,32 @@ fn one(field: &Field, draft: &mut Draft) -> Result<usize, SceneError> {
         };
         let [one, two] = [one, two].map(|node| Field { key: field.key.clone(), node });
         let pair = [draft.feature(&one)?, draft.feature(&two)?];
-        return common(field, pair, draft);
+        return common(field, pair, draft).map(plain);
     }
-    let text = field.to_text()?;
+    let (text, material) = material::of_datum(field)?;
     let known = |name: &str| draft.feature_names.iter().position(|known| known == name.trim());
-    if known(text).is_some() {
-        return draft.feature(field);
+    let of = |feature: usize| {
+        if let Some(material) = material {
+            let Some(diameter) = draft.diameters[feature] else {
+                let what = format!("the datum `{text}` at {}", material.named());
+                return Err(field.error(Problem::Unsupported { what }, material::SIZED));
+            };
+            material.limit(&diameter, text, field)?;
+        }
+        Ok(Datum { feature, material })
+    };
+    if let Some(feature) = known(text) {
+        return of(feature);
     }
     // A name may have a hyphen itself.
     let pair = text.match_indices('-').find_map(|(at, _)| Some([known(&text[..at])?, known(&text[at + 1..])?]));
     match pair {
-        Some(pair) => common(field, pair, draft),
-        None => draft.feature(field),
+        Some(_) if material.is_some() => {
+            let problem = Problem::Unsupported { what: "a common datum at a condition of material".into() };
+            Err(field.error(problem, "one feature, or no condition"))
+        }
+        Some(pair) => common(field, pair, draft).map(plain),
+        None => of(draft.feature_called(text, field)?),
     }
 }
 
@@ -81,31 +110,38 @@ fn common(field: &Field, pair: [usize; 2], draft: &mut Draft) -> Result<usize, S
 /// Lets the feature `index` go where its datums go.
 pub(super) fn carry(
     index: usize,
-    datums: &[usize],
+    datums: &[Datum],
     with: With,
     table: &Field,
     draft: &mut Draft,
 ) -> Result<(), SceneError> {
     let carried = Carried { feature: index, with };
     let part = draft.parts_of_features[index];
-    if let Some(foreign) = datums.iter().find(|datum| draft.parts_of_features[**datum] != part) {
-        let what = format!("the datum `{}` of another part", draft.feature_names[*foreign]);
+    if let Some(foreign) = datums.iter().find(|datum| draft.parts_of_features[datum.feature] != part) {
+        let what = format!("the datum `{}` of another part", draft.feature_names[foreign.feature]);
         return Err(table.error(Problem::Unsupported { what }, "a datum of the same part"));
     }
     if let Some((_, placement)) = draft.datum_systems.iter().find(|(known, _)| known == datums) {
         draft.assembly.placements[*placement].carry(carried);
         return Ok(());
     }
-    let features = &draft.assembly.features;
     let placement = match datums {
-        [plane] if features[*plane].shape == Shape::Plane => Placement::on_plane(*plane, carried),
+        [plane] if draft.assembly.features[plane.feature].shape == Shape::Plane => {
+            Placement::on_plane(plane.feature, carried)
+        }
         _ => {
-            let contact = |datum: &usize| {
-                let feature = &features[*datum];
-                let contact = Contact::new(feature.shape, feature.shape, feature.nominal[1], feature.reach)?;
-                Some(Joined { contact, own: Own::Perfect(*datum), other: *datum, float: None })
-            };
-            let contacts = datums.iter().filter_map(contact).collect();
+            let mut contacts = Vec::new();
+            for Datum { feature: datum, .. } in datums {
+                let float = shift(*datum, datums, table, draft)?;
+                let feature = &draft.assembly.features[*datum];
+                let contact = Contact::new(feature.shape, feature.shape, feature.nominal[1], feature.reach);
+                contacts.extend(contact.map(|contact| Joined {
+                    contact,
+                    own: Own::Perfect(*datum),
+                    other: *datum,
+                    float,
+                }));
+            }
             let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
             let placed = Placement::on_contacts(&draft.assembly, &nominal, contacts, &[], vec![carried]);
             placed.map_err(|error| {
@@ -117,4 +153,24 @@ pub(super) fn carry(
     draft.datum_systems.push((datums.to_vec(), draft.assembly.placements.len()));
     draft.assembly.placements.push(placement);
     Ok(())
+}
+
+/// How a datum shifts in its boundary, in a system of `datums`, if it is referenced at a condition of material.
+fn shift(datum: usize, datums: &[Datum], table: &Field, draft: &mut Draft) -> Result<Option<Float>, SceneError> {
+    let at = |datum: &&Datum| datum.material.is_some();
+    let Some(material) = datums.iter().find(|known| known.feature == datum).filter(at).and_then(|d| d.material) else {
+        return Ok(None);
+    };
+    let Some(diameter) = draft.diameters[datum] else { return Ok(None) };
+    let name = &draft.feature_names[datum];
+    let diameters = material::boundary(table, name, material, &diameter)?;
+    let names: Vec<_> = datums.iter().map(|datum| draft.feature_names[datum.feature].as_str()).collect();
+    let name = format!("{name} shift in {}", names.join("|"));
+    let tilt = if datums[0].feature == datum { 1.0 } else { 0.0 };
+    let middles = diameters.map(|size| match size {
+        Size::Actual(_) => diameter.middle(),
+        Size::Boundary(size) => size,
+    });
+    let rule = Some(draft.defaults.rule);
+    Ok(Some(floating(name, None, [0, 1].map(|i| (diameters[i], middles[i])), rule, tilt, draft)))
 }

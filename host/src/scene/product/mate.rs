@@ -5,7 +5,7 @@ use crate::{
         assembly::{Carried, Placement, With},
         contact::Contact,
         contacts::{Joined, Own, PlacementError},
-        float::Float,
+        float::{Float, Size},
         pose::Pose,
     },
     scene::{
@@ -18,6 +18,7 @@ use crate::{
         lanes::Lanes,
         model::{Contributor, Variation, ZoneRule},
         nested::{Nest, Nested},
+        widening::Widening,
     },
 };
 
@@ -25,7 +26,6 @@ use super::{
     Draft, Fit,
     part::{self, Part, direction},
     rule, tables,
-    toleranced::Diameter,
 };
 
 const POSITION: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
@@ -205,8 +205,7 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
 fn float(play: Play, [own, other]: [usize; 2], first: bool, draft: &mut Draft) -> Option<Float> {
     let [one, two] = [own, other].map(|feature| draft.diameters[feature]);
     let (one, two) = (one?, two?);
-    let middle = |diameter: Diameter| diameter.limits[0] + diameter.limits[1];
-    let own_is_hole = one.hole.or(two.hole.map(|hole| !hole)).unwrap_or(middle(one) >= middle(two));
+    let own_is_hole = one.hole.or(two.hole.map(|hole| !hole)).unwrap_or(one.middle() >= two.middle());
     let (hole, pin) = if own_is_hole { (one, two) } else { (two, one) };
     let name = [own, other].map(|feature| draft.feature_names[feature].as_str());
     let name = if own_is_hole { name.join(" on ") } else { name.join(" in ") };
@@ -216,20 +215,37 @@ fn float(play: Play, [own, other]: [usize; 2], first: bool, draft: &mut Draft) -
         Play::None => None,
     };
     let [reach, least] = [own, other].map(|feature| draft.assembly.features[feature].reach);
-    let variation = |rule| match first {
+    let tilt = if first { reach / reach.min(least) } else { 0.0 };
+    let diameters = [hole, pin].map(|diameter| (Size::Actual(diameter.variable), diameter.middle()));
+    let float = floating(format!("{name} play"), Some(draft.fits.len()), diameters, rule, tilt, draft);
+    let variables = float.first.map_or(0..0, |at| at..draft.nominal.len());
+    draft.fits.push(Fit { name, float: variables, least: hole.limits[0] - pin.limits[1] });
+    Some(float)
+}
+
+/// The play of a hole on a pin, each with its diameter (m) in the middle of its limits: a contributor called `name`, that goes by
+/// `rule`, if it floats at all. It tilts if `tilt`, see [`Float::tilt`], is not 0.
+pub(super) fn floating(
+    name: String,
+    fit: Option<usize>,
+    diameters: [(Size, f64); 2],
+    rule: Option<ZoneRule>,
+    tilt: f64,
+    draft: &mut Draft,
+) -> Float {
+    let variation = rule.map(|rule| match tilt > 0.0 {
         true => Variation::Nested(Nested { of: Nest::Axis, rule, tilts: 1.0 }),
         false => Variation::Disc(rule),
-    };
-    let variation = rule.map(variation);
-    let count = variation.as_ref().map_or(0, Variation::variables);
-    let at = variation.map_or(draft.nominal.len(), |variation| {
-        draft.add(Contributor { name: format!("{name} play"), variation }, &[0.0; 4][..count])
     });
-    draft.fits.push(Fit { name, float: at..at + count, least: hole.limits[0] - pin.limits[1] });
-    Some(Float {
-        fit: draft.fits.len() - 1,
-        diameters: [hole.variable, pin.variable],
-        first: rule.map(|_| at),
-        tilt: if first && rule.is_some() { reach / reach.min(least) } else { 0.0 },
-    })
+    let first = variation.map(|variation| {
+        let count = variation.variables();
+        draft.add(Contributor { name, variation }, &[0.0; 4][..count])
+    });
+    let [hole, pin] = diameters.map(|(_, middle)| middle);
+    for ((size, _), sign) in diameters.into_iter().zip([1.0, -1.0]) {
+        if let (Size::Actual(size), Some(zone), true) = (size, first, hole > pin) {
+            draft.widenings.push(Widening { zone, size, growth: [sign / (hole - pin); 2] });
+        }
+    }
+    Float { fit, diameters: diameters.map(|(size, _)| size), first, tilt: if rule.is_some() { tilt } else { 0.0 } }
 }

@@ -43,8 +43,9 @@
 //! distance = ["lid.tip", "box.rim"]       # or angle = [PLANE, PLANE]
 //! ```
 //!
-//! Tolerances of a feature: `flatness`, `straightness`, `parallelism`, `perpendicularity`, `angularity`, `position`,
-//! `profile` (the width of the zone, or zone, datum and rule), `offset` (± along the normal), `vectorial` (each component of
+//! Tolerances of a feature: `flatness`, `straightness`, `roundness`, `cylindricity`, `parallelism`, `perpendicularity`, `angularity`,
+//! `position`, `profile`, `coaxiality`, `concentricity`, `symmetry`, `run_out`, `total_run_out` (the width of the zone, or zone, datum,
+//! rule, `within` a `pattern`, and `material`, "maximum" or "least"; a datum at such a condition is "PART.B (M)" or "PART.B (L)"), `offset` (± along the normal), `vectorial` (each component of
 //! the position and of the orientation vector). A plane or a point with none has the general flatness, if there is a
 //! class, unless it says `flatness = "none"`. A feature whose place nothing tolerates has the general tolerance of its distance
 //! from the origin of its part, unless it says `offset = "none"`. An orientation narrows the tilts of a location, a form lies within both; each has
@@ -59,9 +60,16 @@ mod fit;
 #[cfg(test)]
 mod geometry_tests;
 mod mate;
+mod material;
+#[cfg(test)]
+mod material_tests;
 mod measure;
 mod part;
+mod pattern;
 mod quantity;
+mod symmetric;
+#[cfg(test)]
+mod symmetric_tests;
 #[cfg(test)]
 mod tests;
 mod toleranced;
@@ -84,8 +92,11 @@ use crate::{
     tolerance::{
         copula::{self, Coefficient},
         model::{Contributor, Model, Quantity as Measured, Variation, ZoneRule},
+        widening::Widening,
     },
 };
+
+use self::datum::Datum;
 
 use super::{
     Problem, SceneError,
@@ -131,9 +142,11 @@ struct Draft {
     /// Those that are two others together.
     common: Vec<usize>,
     /// Datums that go together, and what they place.
-    datum_systems: Vec<(Vec<usize>, usize)>,
+    datum_systems: Vec<(Vec<Datum>, usize)>,
     /// Holes on pins.
     fits: Vec<Fit>,
+    /// Zones that go with sizes.
+    widenings: Vec<Widening>,
     /// What the user should know.
     warnings: Vec<String>,
 }
@@ -159,7 +172,11 @@ impl Draft {
 
     /// The feature that `field` names, as PART.FEATURE.
     fn feature(&self, field: &Field) -> Result<usize, SceneError> {
-        let name = field.to_text()?;
+        self.feature_called(field.to_text()?, field)
+    }
+
+    /// The feature of this `name`, which stands in `field`.
+    fn feature_called(&self, name: &str, field: &Field) -> Result<usize, SceneError> {
         self.feature_names.iter().position(|known| known == name).ok_or_else(|| {
             let near = self.feature_names.iter().map(|known| (strsim::osa_distance(known, name), known)).min();
             let hint = near.map(|(_, known)| format!(", such as {known}")).unwrap_or_default();
@@ -195,6 +212,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         common: Vec::new(),
         datum_systems: Vec::new(),
         fits: Vec::new(),
+        widenings: Vec::new(),
         warnings: Vec::new(),
     };
     for table in tables(root, "dimension")? {
@@ -215,6 +233,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     if draft.defaults.general.geometry.is_some() {
         warnings.push(WITHDRAWN.to_owned());
     }
+    function.widenings = std::mem::take(&mut draft.widenings);
     let Draft { contributors, nominal, quantities, fits, warnings: told, .. } = draft;
     warnings.extend(told);
     let assembly = function.assembly.clone();
@@ -236,8 +255,8 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
 fn untoleranced(draft: &Draft) -> Vec<String> {
     let features = draft.assembly.features.iter().zip(&draft.feature_names).enumerate();
     let own = features.filter(|(index, _)| !draft.common.contains(index)).map(|(_, feature)| feature);
-    let (bare, toleranced): (Vec<_>, Vec<_>) = own.partition(|(feature, _)| feature.terms.is_empty());
-    let placed = |feature: &Feature| feature.terms.iter().any(|term| term.component < 3);
+    let (bare, toleranced): (Vec<_>, Vec<_>) = own.partition(|(feature, _)| feature.components().next().is_none());
+    let placed = |feature: &Feature| feature.components().any(|component| component < 3);
     let unplaced: Vec<_> = toleranced.into_iter().filter(|(feature, _)| !placed(feature)).collect();
     let tell = |what: &str, features: Vec<(&Feature, &String)>| {
         let names: Vec<_> = features.into_iter().map(|(_, name)| name.as_str()).collect();

@@ -14,7 +14,7 @@ use crate::{
     },
 };
 
-use super::{Draft, callout, name, tables, toleranced};
+use super::{Draft, callout, name, pattern::Pattern, tables, toleranced};
 
 const POSITION: Quantity = Quantity { units: units::LENGTH, range: [-1e7, 1e7] };
 const SIZE: Quantity = Quantity { units: units::LENGTH, range: [1e-6, 1e7] };
@@ -75,7 +75,8 @@ pub(super) fn parts<'t, 's>(root: &Field<'t, 's>) -> Result<Vec<Part<'t, 's>>, S
 }
 
 /// Reads the features of all parts into the `draft`.
-pub(super) fn features(parts: &[Part], draft: &mut Draft) -> Result<(), SceneError> {
+pub(super) fn features<'t, 's>(parts: &[Part<'t, 's>], draft: &mut Draft) -> Result<(), SceneError> {
+    let mut patterns = Vec::new();
     for (index, part) in parts.iter().enumerate() {
         // In the order of the text, so that a datum stands above what refers to it.
         let mut tables = Vec::new();
@@ -84,13 +85,20 @@ pub(super) fn features(parts: &[Part], draft: &mut Draft) -> Result<(), SceneErr
         }
         tables.sort_by_key(|(_, table)| table.node.place.start());
         for (shape, table) in tables {
-            feature(part, index, shape, table, draft)?;
+            feature(part, index, shape, table, &mut patterns, draft)?;
         }
     }
-    Ok(())
+    patterns.iter().try_for_each(|pattern| pattern.place(draft))
 }
 
-fn feature(part: &Part, index: usize, shape: Shape, table: Field, draft: &mut Draft) -> Result<(), SceneError> {
+fn feature<'t, 's>(
+    part: &Part,
+    index: usize,
+    shape: Shape,
+    table: Field<'t, 's>,
+    patterns: &mut Vec<Pattern<'t, 's>>,
+    draft: &mut Draft,
+) -> Result<(), SceneError> {
     let (short_name, name_field) = name(&table)?;
     let name = format!("{}.{short_name}", part.name);
     if draft.feature_names.contains(&name) {
@@ -119,12 +127,12 @@ fn feature(part: &Part, index: usize, shape: Shape, table: Field, draft: &mut Dr
     let coordinates = [own_direction, along, cross(own_direction, along)].map(dot);
     let along = part.pose.direction(along);
     let reach = extents.map_or(0.0, |[a, b]: [f64; 2]| a.max(b) / 2.0);
-    let feature = Feature { shape, nominal: [at, towards], terms: Vec::new(), reach };
+    let feature = Feature { shape, nominal: [at, towards], terms: Vec::new(), widened: Vec::new(), reach };
     let diameter = if shape == Shape::Axis { toleranced::diameter(&table, &name, draft)? } else { None };
     let sides = [along, cross(towards, along)];
     let pose = part.pose;
     let made = FeatureDraft { name, table, feature, sides, extents, coordinates, diameter, pose, part: index };
-    callout::read(made, draft)
+    callout::read(made, patterns, draft)
 }
 
 /// The unit vector `key` of a table.

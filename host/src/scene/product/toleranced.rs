@@ -53,6 +53,15 @@ pub(super) struct Diameter {
     pub limits: [f64; 2],
     /// Whether it is a hole's, if that is said.
     pub hole: Option<bool>,
+    /// Widths (m) of the axis's own tolerance at maximum and at least material condition.
+    pub own: [f64; 2],
+}
+
+impl Diameter {
+    /// The middle of its limits (m).
+    pub fn middle(&self) -> f64 {
+        0.5 * (self.limits[0] + self.limits[1])
+    }
 }
 
 /// Reads the diameter of an axis: a bare length under the general tolerance, or a table like a dimension's. It is a hole's or a
@@ -81,7 +90,7 @@ pub(super) fn diameter(axis: &Field, name: &str, draft: &mut Draft) -> Result<Op
     let variable = draft.add(diameter.contributor(name.clone()), &[diameter.nominal]);
     draft.name(&field, &name, Source::Variable(variable), Kind::LENGTH)?;
     let of_class = || fit(&field.get("tolerance")?).map(|class| class.is_hole());
-    Ok(Some(Diameter { variable, limits: diameter.limits, hole: kind.or_else(of_class) }))
+    Ok(Some(Diameter { variable, limits: diameter.limits, hole: kind.or_else(of_class), own: [0.0; 2] }))
 }
 
 /// Reads the size by which a feature lies off: deviations, or a table like a dimension's.

@@ -3,11 +3,15 @@
 //! A location holds place and tilts, an orientation tilts, a form both without a datum. Where two of them are given the wider
 //! zone keeps what it holds, and the narrower one takes its part of it: a refinement never adds.
 
+use std::ops::Range;
+
 use crate::{
     product::{dimension::Toleranced, feature::Shape},
+    scene::{Problem, SceneError},
     tolerance::{
         model::{Contributor, Distribution, Variation, ZoneRule},
         nested::{Nest, Nested},
+        widening::Widening,
     },
 };
 
@@ -18,7 +22,15 @@ use super::{
 };
 
 /// Lets a feature vary in the zone of its location; an `orientation` narrows its tilts.
-pub(super) fn located(made: &mut FeatureDraft, location: &Callout, orientation: Option<&Callout>, draft: &mut Draft) {
+///
+/// # Errors
+/// A bonus that the zones cannot have together.
+pub(super) fn located(
+    made: &mut FeatureDraft,
+    location: &Callout,
+    orientation: Option<&Callout>,
+    draft: &mut Draft,
+) -> Result<(), SceneError> {
     let direction = made.feature.nominal[1];
     let width = location.width;
     let name = match orientation {
@@ -30,9 +42,26 @@ pub(super) fn located(made: &mut FeatureDraft, location: &Callout, orientation: 
         let rule = if location.rule == ZoneRule::Translation { orientation.rule } else { location.rule };
         (rule, (orientation.width / width).min(1.0))
     });
+    let nested =
+        nested.or((made.feature.shape == Shape::Axis && location.holds_tilts()).then_some((location.rule, 1.0)));
     let of = if made.feature.shape == Shape::Axis { Nest::Axis } else { Nest::Face };
+    if let Some(orientation) = orientation {
+        bonus_of_both(made, location, orientation)?;
+    }
     let variation = match (made.feature.shape, nested) {
-        (Shape::Point, _) => return shift(made, location.name, &Toleranced::in_zone(width), direction, draft),
+        (Shape::Point, _) => {
+            shift(made, location.name, &Toleranced::in_zone(width), direction, draft);
+            return Ok(());
+        }
+        (Shape::Axis, _) if location.name == "symmetry" => {
+            // Between two planes: along their normal alone.
+            let normal = draft.assembly.features[location.datums[0].feature].nominal[1];
+            shift(made, location.name, &Toleranced::in_zone(width), normal, draft);
+            if let Some(orientation) = orientation {
+                oriented(made, orientation, draft);
+            }
+            return Ok(());
+        }
         (_, Some((rule, tilts))) => Variation::Nested(Nested { of, rule, tilts }),
         (Shape::Plane, None) => Variation::Zone(location.rule),
         (Shape::Axis, None) => Variation::Disc(location.rule),
@@ -51,7 +80,51 @@ pub(super) fn located(made: &mut FeatureDraft, location: &Callout, orientation: 
             first + 2..first + count
         }
     };
-    tilt(made, tilts, width);
+    tilt(made, tilts.clone(), width);
+    widen(made, first..tilts.start, location, Some((tilts, orientation.unwrap_or(location))), draft);
+    Ok(())
+}
+
+/// Lets the zones of places and tilts go with the size, where they are at a condition of material.
+fn widen(
+    made: &mut FeatureDraft,
+    places: Range<usize>,
+    location: &Callout,
+    orientation: Option<(Range<usize>, &Callout)>,
+    draft: &mut Draft,
+) {
+    let zone = places.start;
+    let mut size = None;
+    let mut growth = [0.0; 2];
+    let zones = [Some((places, location)), orientation];
+    for (growth, (variables, callout)) in growth.iter_mut().zip(zones.into_iter().flatten()) {
+        if let Some(bonus) = callout.bonus {
+            made.feature.widen(variables, bonus, callout.width);
+            *growth = bonus.sign / callout.width;
+            size = Some(bonus.size);
+        }
+    }
+    draft.widenings.extend(size.map(|size| Widening { zone, size, growth }));
+}
+
+/// Refuses an orientation that is wider than the location at a limit of the size, and rules by which place and tilts depend on
+/// each other where only one of both has a bonus.
+fn bonus_of_both(made: &FeatureDraft, location: &Callout, orientation: &Callout) -> Result<(), SceneError> {
+    let Some(diameter) = made.diameter.filter(|_| location.bonus.or(orientation.bonus).is_some()) else {
+        return Ok(());
+    };
+    let width = |callout: &Callout, size| callout.bonus.map_or(callout.width, |bonus| bonus.at(size));
+    let unsupported =
+        |what: String, allowed: &str| Err(orientation.field.error(Problem::Unsupported { what }, allowed));
+    if diameter.limits.iter().any(|size| width(orientation, *size) > width(location, *size)) {
+        let what = format!("{} that is wider than {} at a limit of the diameter", orientation.name, location.name);
+        return unsupported(what, "a narrower one, or the same condition of material");
+    }
+    if !matches!(location.rule, ZoneRule::SigmaZone | ZoneRule::Translation) {
+        let what = format!("{} beside {} with a bonus, by this rule,", orientation.name, location.name);
+        return unsupported(what, "the rule sigma-zone");
+    }
+    Ok(())
 }
 
 /// Lets a feature tilt in the zone of its orientation.
@@ -64,7 +137,9 @@ pub(super) fn oriented(made: &mut FeatureDraft, callout: &Callout, draft: &mut D
     let name = format!("{} {}", made.name, callout.name);
     let first = draft.add(Contributor { name, variation }, &[0.0; 3][..count]);
     let tilts = if made.feature.shape == Shape::Axis { first..first + count } else { first + 1..first + count };
-    tilt(made, tilts, callout.width);
+    tilt(made, tilts.clone(), callout.width);
+    // Its tilts are all that the zone has.
+    widen(made, tilts, callout, None, draft);
 }
 
 /// Lets a feature vary in the zone of its form, which nothing else holds.
@@ -108,7 +183,7 @@ pub(super) fn offset_within(made: &mut FeatureDraft, form: &Callout, wider: f64,
 }
 
 /// Lets a feature tilt by `variables`, so that its ends move half of `width` (m) for 1.
-fn tilt(made: &mut FeatureDraft, variables: std::ops::Range<usize>, width: f64) {
+fn tilt(made: &mut FeatureDraft, variables: Range<usize>, width: f64) {
     let extents = made.extents.unwrap_or([1.0; 2]);
     // A height that grows along a side tilts the normal of a plane against it; an axis goes where its end goes.
     let sign = if made.feature.shape == Shape::Axis { 1.0 } else { -1.0 };
