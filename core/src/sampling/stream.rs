@@ -5,7 +5,7 @@ use rand_core::SeedableRng;
 pub use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// ⌊2⁶⁴/φ⌋, odd: the increment of SplitMix64.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+pub const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// The output function of SplitMix64 (Steele, Lea, Flood 2014, with Stafford's variant 13): a bijection of 64 bits in
 /// which every bit of the input moves half of the output's.

@@ -215,7 +215,7 @@ fn each_itself(contributors: Vec<Contributor>) -> Model {
         correlations: Vec::new(),
         measures,
         sums: Vec::new(),
-        function: Box::new(Linear { constants: vec![0.0; count], coefficients: (0..count).map(row).collect() }),
+        function: Box::new(Linear::new(&vec![0.0; count], &(0..count).map(row).collect::<Vec<_>>())),
     }
 }
 

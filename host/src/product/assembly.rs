@@ -135,16 +135,17 @@ fn onto_plane(nominal: &Feature, actual: &Located) -> Displacement {
 }
 
 impl Assembly {
-    /// All features where they are in the assembled units.
-    pub fn locate(&self, variables: &[Lanes]) -> Vec<Located> {
-        let mut located: Vec<_> = self.features.iter().map(Feature::perfect).collect();
-        for (feature, located) in self.features.iter().zip(&mut located) {
+    /// Writes all features where they are in the assembled units.
+    #[inline(always)]
+    pub fn locate(&self, variables: &[Lanes], located: &mut Vec<Located>) {
+        located.clear();
+        located.extend(self.features.iter().map(Feature::perfect));
+        for (feature, located) in self.features.iter().zip(&mut *located) {
             feature.deviate(variables, located);
         }
         for placement in &self.placements {
-            placement.place(self, variables, &mut located);
+            placement.place(self, variables, located);
         }
-        located
     }
 
     /// What goes wrong in the mates of units: of each fit, by its number, in which units the pin does not go into the hole; and

@@ -76,7 +76,8 @@ impl Contact {
     #[inline(always)]
     fn tilts(&self, own: &Located, other: &Located) -> [Lanes; 2] {
         let tilt = own.direction.cross(other.direction);
-        self.across.map(|axis| tilt.along(axis) * self.reach)
+        let [a, b] = self.across;
+        [tilt.along(a) * self.reach, tilt.along(b) * self.reach]
     }
 }
 

@@ -108,7 +108,8 @@ impl Contacts {
         let scale = Some(spread.chain(reaches).fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
         let mut made = Self { joined: contacts, centre, scale, start: [0.0; 6], gains: Vec::new() };
 
-        let located = assembly.locate(nominal);
+        let mut located = Vec::new();
+        assembly.locate(nominal, &mut located);
         for _ in 0..NOMINAL_PASSES {
             made.linearise(assembly, nominal, &located, fixed)?;
             let start = made.start.map(Lanes::splat);

@@ -127,8 +127,8 @@ impl Feature {
     /// Where the drawing has it.
     #[inline(always)]
     pub fn perfect(&self) -> Located {
-        let [place, direction] = self.nominal.map(Vector::splat);
-        Located { place, direction }
+        let [place, direction] = self.nominal;
+        Located { place: Vector::splat(place), direction: Vector::splat(direction) }
     }
 
     /// Adds the deviations of the units with these `variables` to where the feature is.

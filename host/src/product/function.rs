@@ -1,7 +1,10 @@
 //! The measures of assembled units as a function of their variables.
 
+use std::cell::Cell;
+
 use crate::tolerance::{
-    lanes::Lanes,
+    lanes::{Lanes, widest},
+    linear::Linear,
     loss::Loss,
     model::{Function, Quantity},
     widening::Widening,
@@ -9,7 +12,7 @@ use crate::tolerance::{
 
 use super::{
     assembly::Assembly,
-    expression::Expression,
+    expression::{Affine, Expression, Tape},
     feature::{Located, Shape},
 };
 
@@ -18,6 +21,13 @@ use super::{
 pub enum Formula {
     /// From dimensions and the measures before it.
     Expression(Expression),
+    /// From where two features are.
+    Features(Between),
+}
+
+/// What is measured between two features.
+#[derive(Clone, Copy, Debug)]
+pub enum Between {
     /// Signed distance of the place of the first feature from the second, a plane; positive outside of its material.
     FromPlane(usize, usize),
     /// Distance of the first feature, a plane, to the second, a point; positive into its material, as a thickness is.
@@ -35,8 +45,14 @@ pub enum Formula {
 pub struct Measures {
     /// Where the features are.
     pub assembly: Assembly,
-    /// One a measure.
-    pub formulas: Vec<Formula>,
+    /// Those between features, by their numbers.
+    features: Vec<(usize, Between)>,
+    /// Those that are linear in the variables.
+    linear: Linear,
+    /// Other expressions.
+    tape: Tape,
+    /// One a measure: what it is, if it is linear.
+    affine: Vec<Option<Affine>>,
     /// The variables (SI) as the drawing has them.
     pub nominal: Vec<f64>,
     /// What kinds of numbers they are.
@@ -48,6 +64,17 @@ pub struct Measures {
 }
 
 impl Formula {
+    /// What kind of measure it is.
+    pub fn quantity(&self) -> Quantity {
+        match self {
+            Self::Expression(expression) => expression.quantity(),
+            Self::Features(Between::Angle(..)) => Quantity::Angle,
+            Self::Features(_) => Quantity::Length,
+        }
+    }
+}
+
+impl Between {
     /// The distance of feature `from` to feature `to`, by what they are.
     pub fn distance(assembly: &Assembly, from: usize, to: usize) -> Self {
         match (assembly.features[from].shape, assembly.features[to].shape) {
@@ -59,19 +86,9 @@ impl Formula {
         }
     }
 
-    /// What kind of measure it is.
-    pub fn quantity(&self) -> Quantity {
-        match self {
-            Self::Expression(expression) => expression.quantity(),
-            Self::FromPlane(..) | Self::IntoPlane(..) | Self::FromAxis(..) | Self::Points(..) => Quantity::Length,
-            Self::Angle(..) => Quantity::Angle,
-        }
-    }
-
     #[inline(always)]
-    fn evaluate(&self, located: &[Located], variables: &[Lanes], before: &[Lanes]) -> Lanes {
+    fn evaluate(&self, located: &[Located]) -> Lanes {
         match self {
-            Self::Expression(expression) => expression.evaluate(variables, before),
             Self::FromPlane(point, plane) => height(&located[*point], &located[*plane]),
             Self::IntoPlane(plane, point) => -height(&located[*point], &located[*plane]),
             Self::FromAxis(point, axis) => {
@@ -82,9 +99,41 @@ impl Formula {
             Self::Angle(one, two) => {
                 let (one, two) = (located[*one].direction, located[*two].direction);
                 let (sine, cosine) = (one.cross(two).norm(), one.dot(two));
-                Lanes(std::array::from_fn(|lane| libm::atan2(sine.0[lane], cosine.0[lane])))
+                sine.zip(cosine, libm::atan2)
             }
         }
+    }
+}
+
+impl Measures {
+    /// None yet, of parts with these features.
+    pub fn new(assembly: Assembly) -> Self {
+        Self { assembly, ..Self::default() }
+    }
+
+    /// Adds the next measure.
+    pub fn push(&mut self, formula: Formula) {
+        let measure = self.affine.len();
+        let affine = match &formula {
+            Formula::Expression(expression) => {
+                let affine = Affine::of(expression, &self.affine);
+                match &affine {
+                    Some(Affine { constant, terms }) => self.linear.push(measure, *constant, terms),
+                    None => self.tape.push(measure, expression),
+                }
+                affine
+            }
+            Formula::Features(between) => {
+                self.features.push((measure, *between));
+                None
+            }
+        };
+        self.affine.push(affine);
+    }
+
+    /// How many measures there are.
+    pub fn count(&self) -> usize {
+        self.affine.len()
     }
 }
 
@@ -94,13 +143,28 @@ fn height(point: &Located, plane: &Located) -> Lanes {
     (point.place - plane.place).dot(plane.direction) / plane.direction.norm()
 }
 
+thread_local! {
+    /// Room for features, so that units are not waiting for memory.
+    static LOCATED: Cell<Vec<Located>> = const { Cell::new(Vec::new()) };
+}
+
 impl Function for Measures {
     fn evaluate(&self, variables: &[Lanes], measures: &mut [Lanes]) {
-        let located = self.assembly.locate(variables);
-        for (i, formula) in self.formulas.iter().enumerate() {
-            let (before, after) = measures.split_at_mut(i);
-            after[0] = formula.evaluate(&located, variables, before);
-        }
+        self.linear.evaluate(variables, measures);
+        widest(
+            #[inline(always)]
+            || {
+                if !self.features.is_empty() {
+                    let mut located = LOCATED.take();
+                    self.assembly.locate(variables, &mut located);
+                    for (measure, between) in &self.features {
+                        measures[*measure] = between.evaluate(&located);
+                    }
+                    LOCATED.set(located);
+                }
+                self.tape.evaluate(variables, measures);
+            },
+        );
     }
 
     fn nominal(&self) -> Option<&[f64]> {

@@ -13,8 +13,10 @@ impl Vector {
     pub const ZERO: Self = Self([Lanes::ZERO; 3]);
 
     /// The same vector in every unit.
+    #[inline(always)]
     pub fn splat(vector: [f64; 3]) -> Self {
-        Self(vector.map(Lanes::splat))
+        let [a, b, c] = vector;
+        Self([Lanes::splat(a), Lanes::splat(b), Lanes::splat(c)])
     }
 
     /// Scalar product.
@@ -41,7 +43,7 @@ impl Vector {
     /// Length.
     #[inline(always)]
     pub fn norm(self) -> Lanes {
-        self.dot(self).map(libm::sqrt)
+        self.dot(self).sqrt()
     }
 }
 
@@ -67,7 +69,8 @@ impl Mul<Lanes> for Vector {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: Lanes) -> Self {
-        Self(self.0.map(|a| a * factor))
+        let [a, b, c] = self.0;
+        Self([a * factor, b * factor, c * factor])
     }
 }
 
@@ -87,7 +90,7 @@ impl Displacement {
     #[inline(always)]
     pub fn new(components: &[Lanes; 6], centre: [f64; 3]) -> Self {
         let [x, y, z, a, b, c] = *components;
-        let [a, b, c] = [a, b, c].map(|component| component * 0.5);
+        let [a, b, c] = [a * 0.5, b * 0.5, c * 0.5];
         let (aa, bb, cc) = (a * a, b * b, c * c);
         let one = Lanes::splat(1.0);
         let scale = one / (one + aa + bb + cc);
@@ -110,7 +113,8 @@ impl Displacement {
     /// R·`vector`.
     #[inline(always)]
     pub fn turn(&self, vector: Vector) -> Vector {
-        Vector(self.rows.map(|row| row.dot(vector)))
+        let [a, b, c] = self.rows;
+        Vector([a.dot(vector), b.dot(vector), c.dot(vector)])
     }
 
     /// Where the point goes.

@@ -106,6 +106,7 @@ impl Marginal {
     }
 
     /// Values at standard normal scores.
+    #[inline(always)]
     pub fn values(&self, scores: Lanes) -> Lanes {
         match self {
             Self::Line { mean, deviation } => scores * *deviation + Lanes::splat(*mean),

@@ -8,7 +8,7 @@ use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
 use super::{
     copula,
     distribution::Marginal,
-    lanes::{LANES, Lanes},
+    lanes::{LANES, Lanes, widest},
     model::{Model, Variation, ZoneRule},
     nested::Nested,
     normal::{Scores, tail},
@@ -47,6 +47,9 @@ enum Rule {
     /// With the share of the normal rule that stays.
     Nested(Nested, f64),
 }
+
+/// The most variables of a contributor.
+const MOST: usize = 4;
 
 /// How far a point of a zone reaches; at most 1 inside.
 type Reach<'a> = &'a dyn Fn(&[f64]) -> f64;
@@ -89,9 +92,14 @@ impl Draw {
     /// Variables of the units from `first` on, from their random `bits`.
     pub fn variables(&self, first: u64, bits: &[[u64; LANES]], variables: &mut [Lanes]) {
         let table = Scores::table();
-        for (variable, bits) in variables.iter_mut().zip(bits) {
-            *variable = table.lanes(*bits);
-        }
+        widest(
+            #[inline(always)]
+            || {
+                for (variable, bits) in variables.iter_mut().zip(bits) {
+                    *variable = table.lanes(*bits);
+                }
+            },
+        );
         self.transform(variables);
         let mut at = 0;
         for (number, rule) in self.rules.iter().enumerate() {
@@ -117,6 +125,14 @@ impl Draw {
     /// Turns independent standard normal scores into variables. Truncated zones are not truncated: see
     /// [`Draw::is_inside`].
     pub fn transform(&self, scores: &mut [Lanes]) {
+        widest(
+            #[inline(always)]
+            || self.transform_here(scores),
+        );
+    }
+
+    #[inline(always)]
+    fn transform_here(&self, scores: &mut [Lanes]) {
         // From the last on, so that the scores before are still independent.
         for (variable, weights) in self.correlated.iter().rev() {
             let sum = weights.iter().fold(Lanes::ZERO, |sum, (other, weight)| sum + scores[*other] * *weight);
@@ -128,12 +144,14 @@ impl Draw {
                 Rule::Scalar(marginal) => scores[at] = marginal.values(scores[at]),
                 Rule::Zone(ZoneRule::Translation) => scores[at] = scores[at] * (1.0 / 3.0),
                 Rule::Zone(ZoneRule::SigmaZone | ZoneRule::Truncated) => {
-                    scores[at..at + 3].iter_mut().for_each(|score| *score = *score * SIGMA_ZONE);
+                    for score in &mut scores[at..at + 3] {
+                        *score = *score * SIGMA_ZONE;
+                    }
                 }
                 Rule::Nested(zone, _) if zone.rule == ZoneRule::UniformInZone => {
                     let own = &mut scores[at..at + zone.variables()];
                     for lane in 0..LANES {
-                        let point = zone.uniform(&own.iter().map(|score| score.0[lane]).collect::<Vec<_>>());
+                        let point = zone.uniform(point(own, lane, &mut [0.0; MOST]));
                         own.iter_mut().zip(point).for_each(|(score, value)| score.0[lane] = value);
                     }
                 }
@@ -149,7 +167,11 @@ impl Draw {
                         point.into_iter().enumerate().for_each(|(k, value)| scores[at + k].0[lane] = value);
                     }
                 }
-                Rule::Disc(_) => scores[at..at + 2].iter_mut().for_each(|score| *score = *score * SIGMA_DISC),
+                Rule::Disc(_) => {
+                    for score in &mut scores[at..at + 2] {
+                        *score = *score * SIGMA_DISC;
+                    }
+                }
                 Rule::Zone(ZoneRule::UniformInZone) => {
                     for lane in 0..LANES {
                         let point = in_octahedron([0, 1, 2].map(|k| scores[at + k].0[lane]));
@@ -174,7 +196,7 @@ impl Draw {
             };
             if share < 1.0 {
                 for (lane, inside) in inside.iter_mut().enumerate() {
-                    *inside &= reach(&own.iter().map(|variable| variable.0[lane]).collect::<Vec<_>>()) <= 1.0;
+                    *inside &= reach(point(own, lane, &mut [0.0; MOST])) <= 1.0;
                 }
                 factor /= share;
             }
@@ -194,17 +216,18 @@ impl Draw {
         reach: impl Fn(&[f64]) -> f64,
     ) {
         for lane in 0..LANES {
-            let mut value: Vec<f64> = zone.iter().map(|variable| variable.0[lane]).collect();
-            if reach(&value) <= 1.0 {
+            let mut room = [0.0; MOST];
+            let value = point(zone, lane, &mut room);
+            if reach(value) <= 1.0 {
                 continue;
             }
             let mut stream = unit_stream(derived(self.seed, u64::MAX - contributor), first + lane as u64);
-            while reach(&value) > 1.0 {
+            while reach(value) > 1.0 {
                 for (x, deviation) in value.iter_mut().zip(deviations) {
                     *x = deviation * Scores::table().score(stream.next_u64());
                 }
             }
-            zone.iter_mut().zip(value).for_each(|(variable, x)| variable.0[lane] = x);
+            zone.iter_mut().zip(value).for_each(|(variable, x)| variable.0[lane] = *x);
         }
     }
 }
@@ -218,6 +241,12 @@ impl Rule {
             Self::Zone(_) => 3,
         }
     }
+}
+
+/// One unit's variables of a contributor.
+fn point<'a>(own: &[Lanes], lane: usize, room: &'a mut [f64; MOST]) -> &'a mut [f64] {
+    room.iter_mut().zip(own).for_each(|(x, variable)| *x = variable.0[lane]);
+    &mut room[..own.len()]
 }
 
 fn octahedral(zone: &[f64]) -> f64 {

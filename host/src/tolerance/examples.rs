@@ -31,7 +31,7 @@ pub fn linear(contributors: Vec<Contributor>, coefficients: Vec<Vec<f64>>) -> Mo
         contributors,
         correlations: Vec::new(),
         sums: Vec::new(),
-        function: Box::new(Linear { constants: vec![0.0; coefficients.len()], coefficients }),
+        function: Box::new(Linear::new(&vec![0.0; coefficients.len()], &coefficients)),
     }
 }
 

@@ -51,6 +51,7 @@ pub mod run;
 pub mod sampler;
 pub mod shape;
 pub mod sobol;
+mod streams;
 pub mod study;
 mod subset;
 pub mod tail;

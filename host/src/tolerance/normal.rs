@@ -15,9 +15,14 @@ const DENSITY_AT_MEAN: f64 = 0.398_942_280_401_432_7;
 const DIGITS: u32 = 7;
 const MANTISSA: u64 = (1 << 52) - 1;
 const ONE: u64 = 1023 << 52;
+const SIGN: u64 = 1 << 63;
+const TWO_52: u64 = (1023 + 52) << 52;
+const TWO_84: u64 = (1023 + 84) << 52;
+/// Pieces, filled up to a power of two: a place cannot lie beyond.
+const COUNT: usize = 64 << DIGITS;
 
 /// Cubic pieces in the tail probability, for tails of 1/2⁶⁴ to ½: values and slopes agree where they meet.
-static PIECES: LazyLock<Box<[[f64; 4]]>> = LazyLock::new(|| {
+static PIECES: LazyLock<Box<[[f64; 4]; COUNT]>> = LazyLock::new(|| {
     let knot = |piece: u64| f64::from_bits(ONE + (piece << (52 - DIGITS)));
     let at = |tail: f64| {
         let score = upper_score(tail / 18_446_744_073_709_551_616.0);
@@ -29,13 +34,15 @@ static PIECES: LazyLock<Box<[[f64; 4]]>> = LazyLock::new(|| {
         let (slope, end_slope) = (slope * (to - from), end_slope * (to - from));
         [value, slope, 3.0 * (end - value) - 2.0 * slope - end_slope, 2.0 * (value - end) + slope + end_slope]
     };
-    (0..=63 << DIGITS).map(piece).collect()
+    let mut pieces = Box::new([[0.0; 4]; COUNT]);
+    pieces.iter_mut().zip(0..=63 << DIGITS).for_each(|(place, i)| *place = piece(i));
+    pieces
 });
 
 /// The standard normal of 64 random bits in the sense of [`slipfit_core::sampling::normal::score`], which it meets
 /// within 1e-10.
 #[derive(Clone, Copy)]
-pub struct Scores(&'static [[f64; 4]]);
+pub struct Scores(&'static [[f64; 4]; COUNT]);
 
 impl Scores {
     /// The table, made once a process.
@@ -46,21 +53,50 @@ impl Scores {
     /// The score of `bits`.
     #[inline(always)]
     pub fn score(self, bits: u64) -> f64 {
-        let above = bits | 1;
-        let below = above.wrapping_neg();
-        // Below 2⁶³, so that the signed conversion, one instruction, does.
-        let tail = (above.min(below) as i64 as f64).to_bits();
-        let [c0, c1, c2, c3] = self.0[((tail - ONE) >> (52 - DIGITS)) as usize];
-        let t = f64::from_bits((tail << DIGITS) & MANTISSA | ONE) - 1.0;
-        let magnitude = c0 + t * (c1 + t * (c2 + t * c3));
-        if above < below { -magnitude } else { magnitude }
+        let tail = tail_of(bits);
+        cubic(self.0[place(tail)], tail, bits)
     }
 
     /// The scores of several units.
     #[inline(always)]
     pub fn lanes(self, bits: [u64; LANES]) -> Lanes {
-        Lanes(bits.map(|bits| self.score(bits)))
+        // Step by step over all lanes: all but the table's look-up is in vectors.
+        let (mut tails, mut pieces, mut scores) = ([0; LANES], [[0.0; LANES]; 4], [0.0; LANES]);
+        for lane in 0..LANES {
+            tails[lane] = tail_of(bits[lane]);
+        }
+        for lane in 0..LANES {
+            let [c0, c1, c2, c3] = self.0[place(tails[lane])];
+            (pieces[0][lane], pieces[1][lane], pieces[2][lane], pieces[3][lane]) = (c0, c1, c2, c3);
+        }
+        let [c0, c1, c2, c3] = &pieces;
+        for lane in 0..LANES {
+            scores[lane] = cubic([c0[lane], c1[lane], c2[lane], c3[lane]], tails[lane], bits[lane]);
+        }
+        Lanes(scores)
     }
+}
+
+/// The tail probability of `bits` times 2⁶⁴, from 1 to 2⁶³, as the bits of a float.
+#[inline(always)]
+fn tail_of(bits: u64) -> u64 {
+    let tail = ((bits | 1) as i64).unsigned_abs();
+    // Both halves as floats, the upper one exact: rounded once, in instructions that there are for vectors.
+    let upper = f64::from_bits(tail >> 32 | TWO_84) - (f64::from_bits(TWO_84) + f64::from_bits(TWO_52));
+    (upper + f64::from_bits(tail & 0xffff_ffff | TWO_52)).to_bits()
+}
+
+/// The piece in which a tail lies.
+#[inline(always)]
+fn place(tail: u64) -> usize {
+    ((tail - ONE) >> (52 - DIGITS)) as usize % COUNT
+}
+
+#[inline(always)]
+fn cubic([c0, c1, c2, c3]: [f64; 4], tail: u64, bits: u64) -> f64 {
+    let t = f64::from_bits((tail << DIGITS) & MANTISSA | ONE) - 1.0;
+    let magnitude = c0 + t * (c1 + t * (c2 + t * c3));
+    f64::from_bits(magnitude.to_bits() ^ (!bits & SIGN))
 }
 
 /// The standard normal density.

@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
 
 use super::{
-    lanes::LANES,
+    lanes::{LANES, widest},
     permutation::Permutation,
     sobol::{Directions, key, scrambled},
+    streams::Streams,
 };
 
 /// Version of what units are drawn with: of random numbers, scores, distributions and zones. Units of one version are not
@@ -69,12 +70,15 @@ impl Sampler {
     /// Writes the numbers of the units from `first` on, one row a dimension.
     pub fn fill(&self, first: u64, bits: &mut [[u64; LANES]]) {
         match &self.design {
-            Design::PseudoRandom => {
-                for lane in 0..LANES {
-                    let mut stream = unit_stream(self.seed, first + lane as u64);
-                    bits.iter_mut().for_each(|row| row[lane] = stream.next_u64());
-                }
-            }
+            Design::PseudoRandom => widest(
+                #[inline(always)]
+                || {
+                    let mut streams = Streams::new(self.seed, first);
+                    for row in bits {
+                        *row = streams.next();
+                    }
+                },
+            ),
             Design::LatinHypercube(shuffles, width) => {
                 for lane in 0..LANES {
                     let unit = first + lane as u64;

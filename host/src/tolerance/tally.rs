@@ -2,7 +2,10 @@
 //!
 //! Sums are floating-point and so join in a fixed tree only ([`super::forest`]); counts and extremes join in any order.
 
-use super::{lanes::LANES, model::Model};
+use super::{
+    lanes::{LANES, widest},
+    model::Model,
+};
 
 /// Units worked on at a time: their measures fit the innermost cache.
 pub const TILE: usize = 256;
@@ -139,6 +142,14 @@ impl<'a> Tile<'a> {
 
     /// Adds the first `units` of the rows to `sums` and `counts`. The rows are used up.
     pub fn add_to(&mut self, units: usize, sums: &mut Sums, counts: &mut Counts) {
+        widest(
+            #[inline(always)]
+            || self.add_to_here(units, sums, counts),
+        );
+    }
+
+    #[inline(always)]
+    fn add_to_here(&mut self, units: usize, sums: &mut Sums, counts: &mut Counts) {
         counts.units += units as u64;
         for (sum, closed) in self.model.sums.iter().zip(&mut counts.closed) {
             let mut total = [0.0; TILE];
@@ -153,7 +164,9 @@ impl<'a> Tile<'a> {
             count(&row[..units], self.model.measures[measure].limits, counts, &mut self.rejected);
             let Frame { origin, scale } = self.frames[measure];
             let inverse = 1.0 / scale;
-            row.iter_mut().for_each(|value| *value = (*value - origin) * inverse);
+            for value in row.iter_mut() {
+                *value = (*value - origin) * inverse;
+            }
             // Nothing is summed of what is not there.
             row[units..].fill(0.0);
             for value in &row[..units] {
@@ -182,6 +195,7 @@ impl<'a> Tile<'a> {
 /// Where the place of a value that is not a number ends up.
 const NAN_BIN: usize = 0;
 
+#[inline(always)]
 fn count(values: &[f64], limits: [Option<f64>; 2], counts: &mut MeasureCounts, rejected: &mut [bool]) {
     let ([least, greatest], sum) = range(values);
     // Hardly any tile has new ones.
@@ -207,6 +221,7 @@ fn count(values: &[f64], limits: [Option<f64>; 2], counts: &mut MeasureCounts, r
 }
 
 /// Least and greatest of the values that are numbers, and the sum of all, eight apart, so that they are vectors.
+#[inline(always)]
 fn range(values: &[f64]) -> ([f64; 2], f64) {
     let (mut least, mut greatest, mut sums) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES], [0.0; LANES]);
     let (groups, rest) = values.as_chunks::<LANES>();
@@ -226,6 +241,7 @@ fn range(values: &[f64]) -> ([f64; 2], f64) {
 }
 
 /// Sums of the first four powers, eight apart, so that they are vectors.
+#[inline(always)]
 fn powers(row: &[f64; TILE]) -> [f64; 4] {
     let mut sums = [[0.0; LANES]; 4];
     for values in row.chunks_exact(LANES) {
@@ -237,9 +253,10 @@ fn powers(row: &[f64; TILE]) -> [f64; 4] {
             sums[3][lane] += square * square;
         }
     }
-    sums.map(|lanes| lanes.iter().sum())
+    [total(&sums[0]), total(&sums[1]), total(&sums[2]), total(&sums[3])]
 }
 
+#[inline(always)]
 fn dot(one: &[f64; TILE], other: &[f64; TILE]) -> f64 {
     let mut sums = [0.0; LANES];
     for (a, b) in one.chunks_exact(LANES).zip(other.chunks_exact(LANES)) {
@@ -247,5 +264,15 @@ fn dot(one: &[f64; TILE], other: &[f64; TILE]) -> f64 {
             sums[lane] += a[lane] * b[lane];
         }
     }
-    sums.iter().sum()
+    total(&sums)
+}
+
+/// Lane after lane.
+#[inline(always)]
+fn total(lanes: &[f64; LANES]) -> f64 {
+    let mut total = 0.0;
+    for lane in lanes {
+        total += lane;
+    }
+    total
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::scene::unit::{self, Unit};
 
-use super::{DEPTH, Expression, ExpressionError, Fault, Kind, Operation, Source, Step};
+use super::{DEPTH, Expression, ExpressionError, Fault, Kind, One, Operation, Source, Step, Two};
 
 /// The deepest nesting of parentheses, signs and powers.
 const NESTING: usize = 64;
@@ -101,14 +101,14 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
         while let Some((sign, place)) = self.take(&['+', '-', '−']) {
             let other = self.product()?;
             let (operation, name) = match sign {
-                '+' => (Operation::Add, "cannot add"),
-                _ => (Operation::Subtract, "cannot subtract"),
+                '+' => (Two::Add, "cannot add"),
+                _ => (Two::Subtract, "cannot subtract"),
             };
             if !kind.fits(other) {
                 let allowed = "numbers of one kind; a constant carries its unit: 3 mm, 30°";
                 return Err(kinds(name, &[kind, other], place, allowed));
             }
-            self.push(operation, place, 2)?;
+            self.push(Operation::Two(operation), place, 2)?;
         }
         Ok(kind)
     }
@@ -118,11 +118,11 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
         while let Some((sign, place)) = self.take(&['*', '×', '·', '/', '÷']) {
             let other = self.signed()?;
             let (operation, power) = match sign {
-                '/' | '÷' => (Operation::Divide, -1.0),
-                _ => (Operation::Multiply, 1.0),
+                '/' | '÷' => (Two::Divide, -1.0),
+                _ => (Two::Multiply, 1.0),
             };
             kind = kind.times(other, power);
-            self.push(operation, place, 2)?;
+            self.push(Operation::Two(operation), place, 2)?;
         }
         Ok(kind)
     }
@@ -137,7 +137,7 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
             Some(('+', _)) => self.signed()?,
             Some((_, place)) => {
                 let kind = self.signed()?;
-                self.push(Operation::Negate, place, 1)?;
+                self.push(Operation::One(One::Negate), place, 1)?;
                 kind
             }
             None => self.power()?,
@@ -153,9 +153,10 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
         let exponent = self.signed()?;
         let constant = match &self.steps[first..] {
             [Step { operation: Operation::Constant(value), .. }] => Some(*value),
-            [Step { operation: Operation::Constant(value), .. }, Step { operation: Operation::Negate, .. }] => {
-                Some(-value)
-            }
+            [
+                Step { operation: Operation::Constant(value), .. },
+                Step { operation: Operation::One(One::Negate), .. },
+            ] => Some(-value),
             _ => None,
         };
         let kind = match constant {
@@ -165,7 +166,7 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
         };
         let allowed = "a plain number to the power of a plain number; a length only to a constant power";
         let kind = kind.ok_or_else(|| kinds("cannot raise", &[base, exponent], place.clone(), allowed))?;
-        self.push(Operation::Two(libm::pow), place, 2)?;
+        self.push(Operation::Two(Two::Power), place, 2)?;
         Ok(kind)
     }
 
@@ -256,9 +257,9 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
             return unknown(place);
         }
         let first = self.sum()?;
-        let comparison: Option<fn(f64, f64) -> f64> = match name {
-            "min" => Some(|a, b| if a.is_nan() || a < b { a } else { b }),
-            "max" => Some(|a, b| if a.is_nan() || a > b { a } else { b }),
+        let comparison = match name {
+            "min" => Some(Two::Least),
+            "max" => Some(Two::Greatest),
             _ => None,
         };
         while let Some(compare) = comparison.filter(|_| self.take(&[',']).is_some()) {
@@ -272,16 +273,16 @@ impl<'t, R: Fn(&str) -> Option<(Source, Kind)>> Parser<'t, R> {
             return Err(self.expected("`)`", "one argument; min and max take several, with commas"));
         }
         let angle_or_plain = [Kind::ANGLE, Kind::PLAIN].contains(&first);
-        let (function, kind): (fn(f64) -> f64, _) = match name {
+        let (function, kind) = match name {
             "min" | "max" => return Ok(first),
-            "abs" => (|x: f64| x.abs(), first),
-            "sqrt" => (libm::sqrt, first.to_the(0.5)),
-            "sin" if angle_or_plain => (libm::sin, Kind::PLAIN),
-            "cos" if angle_or_plain => (libm::cos, Kind::PLAIN),
-            "tan" if angle_or_plain => (libm::tan, Kind::PLAIN),
-            "asin" if first == Kind::PLAIN => (libm::asin, Kind::ANGLE),
-            "acos" if first == Kind::PLAIN => (libm::acos, Kind::ANGLE),
-            "atan" if first == Kind::PLAIN => (libm::atan, Kind::ANGLE),
+            "abs" => (One::Absolute, first),
+            "sqrt" => (One::SquareRoot, first.to_the(0.5)),
+            "sin" if angle_or_plain => (One::Sine, Kind::PLAIN),
+            "cos" if angle_or_plain => (One::Cosine, Kind::PLAIN),
+            "tan" if angle_or_plain => (One::Tangent, Kind::PLAIN),
+            "asin" if first == Kind::PLAIN => (One::ArcSine, Kind::ANGLE),
+            "acos" if first == Kind::PLAIN => (One::ArcCosine, Kind::ANGLE),
+            "atan" if first == Kind::PLAIN => (One::ArcTangent, Kind::ANGLE),
             "sin" | "cos" | "tan" => {
                 return Err(kinds("takes an angle or a plain number, not", &[first], place, "such as sin(30°)"));
             }

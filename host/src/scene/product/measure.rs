@@ -4,7 +4,7 @@ use crate::{
     product::{
         expression::{Expression, ExpressionError, Kind, Source, parse},
         feature::Shape,
-        function::{Formula, Measures},
+        function::{Between, Formula, Measures},
     },
     scene::{
         Problem, SceneError,
@@ -29,7 +29,7 @@ pub(super) fn measures(root: &Field, draft: &mut Draft, function: &mut Measures)
         let (name, name_field) = name(&table)?;
         let formula = formula(&table, draft, function)?;
         let quantity = formula.quantity();
-        function.formulas.push(formula);
+        function.push(formula);
         draft.name(&name_field, name, Source::Measure(measures.len()), Kind::of(quantity))?;
         let limits = limits(&table, quantity)?;
         function.losses.push(loss(&table, quantity, limits)?);
@@ -66,7 +66,8 @@ fn formula(table: &Field, draft: &Draft, function: &Measures) -> Result<Formula,
     if *key == "angle" && [one, two].iter().any(|i| function.assembly.features[*i].shape == Shape::Point) {
         return Err(field.error(Problem::Unsupported { what: "an angle of a point".into() }, "planes and axes"));
     }
-    Ok(if *key == "angle" { Formula::Angle(one, two) } else { Formula::distance(&function.assembly, one, two) })
+    let distance = || Between::distance(&function.assembly, one, two);
+    Ok(Formula::Features(if *key == "angle" { Between::Angle(one, two) } else { distance() }))
 }
 
 /// Reads an expression of what `draft` and the measures of `function` so far name; finite at the nominal values.
@@ -80,7 +81,7 @@ fn expression(field: &Field, draft: &Draft, function: &Measures) -> Result<Expre
         |name: &str| draft.names.iter().find(|(known, ..)| known == name).map(|(_, source, kind)| (*source, *kind));
     let expression = parse(text, known).map_err(wrong)?;
     let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
-    let mut before = vec![Lanes::ZERO; function.formulas.len()];
+    let mut before = vec![Lanes::ZERO; function.count()];
     function.evaluate(&nominal, &mut before);
     expression.check(&nominal, &before).map_err(wrong)?;
     Ok(expression)

@@ -224,7 +224,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     mates.iter().try_for_each(|mate| mate::place(mate, &parts, &mut draft))?;
     let correlations = correlations(root, &draft.contributors)?;
     draft.warnings.extend(untoleranced(&draft));
-    let mut function = Measures { assembly: std::mem::take(&mut draft.assembly), ..Measures::default() };
+    let mut function = Measures::new(std::mem::take(&mut draft.assembly));
     let measures = measure::measures(root, &mut draft, &mut function)?;
     let sums = measure::sums(root, &measures)?;
     let costed = cost::costs(root, &draft.contributors)?;
