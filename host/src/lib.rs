@@ -35,6 +35,8 @@ pub mod plot;
 pub mod population;
 pub mod precision;
 pub mod product;
+#[cfg(test)]
+mod reference;
 pub mod report;
 pub mod scene;
 pub mod scheme;

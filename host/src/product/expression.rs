@@ -11,6 +11,8 @@ use std::ops::Range;
 
 use crate::tolerance::{lanes::Lanes, model::Quantity};
 
+#[cfg(test)]
+pub(crate) use grammar::FUNCTIONS;
 pub use grammar::parse;
 pub use kind::Kind;
 

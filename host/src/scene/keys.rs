@@ -6,9 +6,9 @@ use super::{
 };
 
 /// A key, and the keys of the table (or the tables of the list) that it may hold.
-struct Key {
-    name: &'static str,
-    below: &'static [Key],
+pub(super) struct Key {
+    pub name: &'static str,
+    pub below: &'static [Key],
 }
 
 const fn key(name: &'static str) -> Key {
@@ -106,7 +106,7 @@ const UNSUPPORTED: [&str; 12] = [
 ];
 
 /// Every key of a scene.
-const ROOT: &[Key] = &[
+pub(super) const ROOT: &[Key] = &[
     key("title"),
     table("slide", &[key("mass"), key("inertia_box"), key("gravity")]),
     table("contact", CONTACT),
@@ -230,7 +230,7 @@ fn note(node: &Node<'_>, path: &str, keys: &[Key]) {
     }
 }
 
-fn join(path: &str, name: &str) -> String {
+pub(super) fn join(path: &str, name: &str) -> String {
     if path.is_empty() { name.into() } else { format!("{path}.{name}") }
 }
 

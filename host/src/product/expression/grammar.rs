@@ -8,7 +8,7 @@ use super::{DEPTH, Expression, ExpressionError, Fault, Kind, Operation, Source, 
 
 /// The deepest nesting of parentheses, signs and powers.
 const NESTING: usize = 64;
-const FUNCTIONS: &str = "sqrt, sin, cos, tan, asin, acos, atan, abs, min, max";
+pub(crate) const FUNCTIONS: &str = "sqrt, sin, cos, tan, asin, acos, atan, abs, min, max";
 const UNITS: &str = "mm, m, cm, µm, nm, in, °, rad, mrad, or none";
 const OPERAND: &str = "a number, a name, a function or a parenthesis";
 

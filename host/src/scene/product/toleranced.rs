@@ -27,7 +27,8 @@ const TOLERANCE: &str = "± as one number in mm or a text with its unit, \"0.004
                          of ISO 2768-1: f, m, c, v; an ISO 286 class with its size: H7, g6";
 /// The same of what has no size.
 const DEVIATION: &str = "± as one number, or [lower, upper] deviations, in mm or as texts with their units";
-const SHAPES: &str = "normal, truncated-normal, uniform, triangular, trapezoidal, skewed, table, constant";
+pub(in crate::scene) const SHAPES: &str =
+    "normal, truncated-normal, uniform, triangular, trapezoidal, skewed, table, constant";
 
 /// Reads a `[[dimension]]`.
 pub(super) fn dimension(table: &Field, draft: &mut Draft) -> Result<(), SceneError> {
