@@ -174,7 +174,7 @@ impl Plot<'_> {
         }
         for (i, series) in chosen.iter().map(|i| levels[*i]).enumerate() {
             let last = chosen.len() - 1;
-            let colour = LEVELS[if last > 0 { i * (LEVELS.len() - 1) / last } else { LEVELS.len() / 2 }];
+            let colour = LEVELS[(i * (LEVELS.len() - 1)).checked_div(last).unwrap_or(LEVELS.len() / 2)];
             let stroke = Stroke { dash: DASHES[i % DASHES.len()], ..Stroke::new(colour, 1.8) };
             self.line(svg, series, stroke, 1);
             ends.push((series, stroke));

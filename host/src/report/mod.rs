@@ -268,7 +268,7 @@ mod tests {
         for node in document.descendants() {
             let classes = node.attribute("class").unwrap_or_default();
             for (attribute, short) in [("fill", "f-"), ("stroke", "s-")] {
-                if !node.attribute(attribute).is_some_and(|value| value != "none") {
+                if node.attribute(attribute).is_none_or(|value| value == "none") {
                     continue;
                 }
                 let class = classes.split(' ').find(|class| class.starts_with(short)).unwrap();
