@@ -1,23 +1,14 @@
-//! Line charts as SVG; the only module that knows plotters.
-//!
-//! Its SVG backend has whole coordinates, so a chart is drawn a hundred times too large and shown at its size through
-//! the view box: two decimals of a pixel. Lines are thinned to what can be seen, so that a page of charts stays small.
+//! Line charts as SVG. Lines are thinned to what can be seen, so that a page of charts stays small.
 
 mod axis;
-
-use std::ops::Range;
-
-use plotters::{
-    coord::{Shift, cartesian::Cartesian2d},
-    prelude::*,
-    style::text_anchor::{HPos, Pos, VPos},
-};
+mod mark;
 
 use axis::Axis;
 
 use crate::{
     layout::{apart, chosen, thinned},
-    markup::{escape, printable},
+    palette::{GRID, GUIDE, KINDS, LEVELS, MARK, SHADE, SOFT},
+    svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, wrapped},
 };
 
 pub use crate::chart::{Chart, Look, Markers, Panel, Scale, Series, Shape};
@@ -31,321 +22,241 @@ pub enum PlotError {
     /// A point that is not finite, or too large to find ticks for.
     #[error("cannot plot {0}: a value is not finite or too large")]
     NotFinite(String),
-    /// The backend failed.
-    #[error("cannot plot: {0}")]
-    Backend(String),
 }
 
 /// The most lines drawn in full.
-pub const LABELLED: usize = 9;
+pub const LABELLED: usize = LEVELS.len();
 /// The most points of a line.
 pub const POINTS: usize = 600;
 
-/// Units of the drawing in one pixel.
-const FINE: i32 = 100;
-const WIDTH: i32 = 900;
-/// Height of a linear chart, and of a logarithmic one's panel.
-const HEIGHT: i32 = 540;
-const LOG_PANEL: i32 = 400;
-/// Heading of the chart, heading of a panel, axis below, axis to the left.
-const HEADING: i32 = 62;
-const PANEL_HEADING: i32 = 30;
-const BELOW: i32 = 28;
-const LEFT: i32 = 58;
-/// Right of the axes, with labels at the ends of lines and without.
-const LABELS: i32 = 92;
-const PLAIN: i32 = 24;
+/// Width and height (px) of a chart, and of one of several side by side, whose texts a phone shows at their size.
+const LARGE: [f64; 2] = [900.0, 540.0];
+const SMALL: [f64; 2] = [456.0, 340.0];
+/// Height of a logarithmic chart's panel.
+const LOG_PANEL: f64 = 400.0;
+/// Heading of the chart with one line below the title, one more such line, heading of a panel, axis below, axis to the left.
+const HEADING: f64 = 62.0;
+const LINE: f64 = 17.0;
+const PANEL_HEADING: f64 = 30.0;
+const BELOW: f64 = 28.0;
+const LEFT: f64 = 58.0;
+/// Right of the axes without labels at the ends of lines, and with them before their first character.
+const BLANK: f64 = 24.0;
+const LEADER: f64 = 32.0;
+/// About how wide a character is, of labels, of the subtitle, of the title.
+const CHARACTER: [f64; 3] = [7.0, 6.7, 10.8];
 /// Distance of labels from each other.
 const LABEL_PITCH: f64 = 15.0;
+/// The most characters of a label.
+const LABEL: usize = 24;
 /// Deviation of a thinned line (pixels).
 const INVISIBLE: f64 = 0.1;
 
-const INK: RGBColor = RGBColor(34, 34, 34);
-const SOFT: RGBColor = RGBColor(96, 96, 96);
-const GUIDE: RGBColor = RGBColor(150, 150, 150);
-const GRID: RGBColor = RGBColor(228, 228, 228);
-const SHADE: RGBColor = RGBColor(236, 240, 245);
-const MARK: RGBColor = RGBColor(38, 84, 124);
-/// Kinds by their number (Okabe and Ito: told apart by every eye), with the shapes of their marks.
-const KINDS: [(RGBColor, Shape); 8] = [
-    (RGBColor(0, 114, 178), Shape::Dot),
-    (RGBColor(213, 94, 0), Shape::Triangle),
-    (RGBColor(0, 158, 115), Shape::Square),
-    (RGBColor(204, 121, 167), Shape::Diamond),
-    (RGBColor(230, 159, 0), Shape::Cross),
-    (RGBColor(34, 34, 34), Shape::Ring),
-    (RGBColor(86, 180, 233), Shape::Plus),
-    (RGBColor(102, 51, 153), Shape::Star),
-];
-const FONTS: &str = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif";
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Plot<'a> = DrawingArea<SVGBackend<'a>, Cartesian2d<Axis, Axis>>;
+/// Shapes of the marks of kinds by their number.
+const SHAPES: [Shape; KINDS.len()] =
+    [Shape::Dot, Shape::Triangle, Shape::Square, Shape::Diamond, Shape::Cross, Shape::Ring, Shape::Plus, Shape::Star];
+/// Lines of neighbouring levels differ in their dashes, as their colours are alike.
+const DASHES: [&str; 4] = ["", "9 4", "2 3", "11 3 2 3"];
 
 /// The chart as an SVG document, 900 pixels wide; the same bytes for the same chart.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to plot or a value is not finite.
 pub fn line_chart(chart: &Chart) -> Result<String, PlotError> {
+    drawn(chart, LARGE)
+}
+
+/// The chart at half of the width, for several side by side.
+///
+/// # Errors
+/// [`PlotError`], if there is nothing to plot or a value is not finite.
+pub fn small_chart(chart: &Chart) -> Result<String, PlotError> {
+    drawn(chart, SMALL)
+}
+
+fn drawn(chart: &Chart, [width, height]: [f64; 2]) -> Result<String, PlotError> {
     let place = |value: f64| chart.scale.place(value);
     let finite = |panel: &Panel| panel.points().all(|(x, y)| place(x).is_finite() && place(y).is_finite());
     if let Some(panel) = chart.panels.iter().find(|panel| !finite(panel)) {
         return Err(PlotError::NotFinite(panel.y_label.clone()));
     }
-    let x_axis = Axis::abscissa(chart)?;
+    let x_axis = Axis::abscissa(chart, (width / 90.0).floor())?;
     let y_axes = chart.panels.iter().map(|panel| Axis::ordinate(chart, panel)).collect::<Result<Vec<_>, _>>()?;
-    let right = WIDTH - chart.panels.iter().flat_map(|panel| &panel.series).map(label_room).fold(PLAIN, i32::max);
-    let size = (WIDTH, total_height(chart));
-    let height = (size.1 - HEADING - BELOW) / chart.panels.len() as i32;
+    let right = width - chart.panels.iter().flat_map(|panel| &panel.series).map(label_room).fold(BLANK, f64::max);
+    let characters = |width: f64, of: usize| (width / CHARACTER[of]) as usize;
+    let below = wrapped(&chart.subtitle, characters(width - 32.0, 1));
+    let heading = HEADING + LINE * below.len().saturating_sub(1) as f64;
+    let panels = chart.panels.len() as f64;
+    let height = match chart.scale {
+        Scale::Linear => height + heading - HEADING,
+        Scale::Log => heading + BELOW + LOG_PANEL * panels,
+    };
+    let pitch = (height - heading - BELOW) / panels;
 
-    let mut svg = String::new();
-    {
-        let root = SVGBackend::with_string(&mut svg, (fine(size.0), fine(size.1))).into_drawing_area();
-        root.fill(&WHITE).map_err(backend)?;
-        write(&root, &shortened(&chart.title, 80), (16, 26), &bold(18))?;
-        write(&root, &shortened(&chart.subtitle, 130), (16, 48), &text(13, &SOFT, HPos::Left))?;
-        write(&root, &chart.x_label, ((LEFT + right) / 2, size.1 - 14), &text(13, &INK, HPos::Center))?;
-        for (i, (panel, y_axis)) in chart.panels.iter().zip(&y_axes).enumerate() {
-            let top = HEADING + height * i as i32;
-            write(&root, &panel.y_label, (16, top + 14), &text(13, &INK, HPos::Left))?;
-            write(&root, &panel.note, (right, top + 14), &text(12, &SOFT, HPos::Right))?;
-            draw_legend(&root, &panel.markers, (right, top + 14))?;
-            let area = root.clone().shrink((0, fine(top)), (fine(right), fine(height)));
-            draw_panel(&root, &area, panel, &x_axis, y_axis)?;
-        }
-        root.present().map_err(backend)?;
+    let mut svg = Svg::new([width, height], &format!("{}: {}", chart.title, chart.subtitle));
+    svg.text([16.0, 26.0], &chart.title, Font { most: characters(width - 32.0, 2), ..TITLE });
+    for (i, line) in below.iter().enumerate() {
+        svg.text([16.0, 48.0 + LINE * i as f64], line, SUBTITLE);
     }
-    Ok(finished(&svg, chart, size))
-}
-
-fn total_height(chart: &Chart) -> i32 {
-    match chart.scale {
-        Scale::Linear => HEIGHT,
-        Scale::Log => HEADING + BELOW + LOG_PANEL * chart.panels.len() as i32,
+    let label = Font { size: 13.0, ..PLAIN };
+    let most = characters(right - LEFT, 1);
+    let middle = Font { anchor: Anchor::Middle, most, ..label };
+    svg.text([(LEFT + right) / 2.0, height - 14.0], &chart.x_label, middle);
+    for (i, (panel, y)) in chart.panels.iter().zip(y_axes).enumerate() {
+        let top = heading + pitch * i as f64;
+        svg.text([16.0, top + 14.0], &panel.y_label, Font { most, ..label });
+        svg.text([right, top + 14.0], &panel.note, Font { colour: SOFT, anchor: Anchor::End, ..PLAIN });
+        let from = 36.0 + CHARACTER[0] * panel.y_label.chars().count() as f64;
+        legend(&mut svg, &panel.markers, [from, top + 14.0]);
+        let rows = [top + PANEL_HEADING, top + pitch - BELOW];
+        Plot { columns: [LEFT, right], rows, x: &x_axis, y: &y }.draw(&mut svg, panel);
     }
+    Ok(svg.finish())
 }
 
 /// Pixels that the label of `series` needs to the right of the axes.
-fn label_room(series: &Series) -> i32 {
+fn label_room(series: &Series) -> f64 {
     match series.look {
-        Look::Guide | Look::Variant(_) => PLAIN,
-        Look::Level(_) => LABELS,
-        Look::Kind(_) => 32 + 7 * series.label.chars().count() as i32,
+        Look::Guide | Look::Variant(_) => BLANK,
+        Look::Level(_) | Look::Kind(_) if series.label.is_empty() => BLANK,
+        Look::Level(_) | Look::Kind(_) => LEADER + CHARACTER[0] * series.label.chars().count().min(LABEL) as f64,
     }
 }
 
-/// The backend's document at its size in pixels, with a title, and with what all texts and lines share said once.
-fn finished(svg: &str, chart: &Chart, (width, height): (i32, i32)) -> String {
-    let body = svg.split_once('\n').map_or("", |(_, body)| body);
-    let body = body.replace(" opacity=\"1\"", "").replace(" font-family=\"sans-serif\"", "").replace(" \"/>", "\"/>");
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" \
-         font-family=\"{FONTS}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n<title>{}: {}</title>\n{body}",
-        width,
-        height,
-        fine(width),
-        fine(height),
-        escape(&chart.title),
-        escape(&chart.subtitle),
-    )
+/// A panel's axes and where they are.
+struct Plot<'a> {
+    columns: [f64; 2],
+    /// Of the greatest ordinate, and of the least.
+    rows: [f64; 2],
+    x: &'a Axis,
+    y: &'a Axis,
 }
 
-fn draw_panel(root: &Area, area: &Area, panel: &Panel, x: &Axis, y: &Axis) -> Result<(), PlotError> {
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(fine(PANEL_HEADING))
-        .x_label_area_size(fine(BELOW))
-        .y_label_area_size(fine(LEFT))
-        .build_cartesian_2d(x.clone(), y.clone())
-        .map_err(backend)?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(fine(1)))
-        .axis_style(SOFT.stroke_width(fine(1)))
-        .label_style(text(12, &INK, HPos::Center))
-        .set_all_tick_mark_size(fine(5))
-        .draw()
-        .map_err(backend)?;
+impl Plot<'_> {
+    fn column(&self, x: f64) -> f64 {
+        self.columns[0] + self.x.share(x) * (self.columns[1] - self.columns[0])
+    }
 
-    let plot = chart.plotting_area();
-    let tolerance = INVISIBLE * (y.high - y.low) * f64::from(FINE) / f64::from(plot.dim_in_pixel().1);
-    let line = |series: &Series, coarse: usize, style: ShapeStyle| {
-        let points = match x.scale {
-            Scale::Linear => thinned(&series.points, tolerance * coarse as f64, POINTS / coarse),
+    fn row(&self, y: f64) -> f64 {
+        self.rows[1] - self.y.share(y) * (self.rows[1] - self.rows[0])
+    }
+
+    fn at(&self, points: &[(f64, f64)]) -> Vec<[f64; 2]> {
+        points.iter().map(|(x, y)| [self.column(*x), self.row(*y)]).collect()
+    }
+
+    fn draw(&self, svg: &mut Svg, panel: &Panel) {
+        self.shade(svg, &panel.shade);
+        self.mesh(svg);
+        let levels: Vec<&Series> = panel.series.iter().filter(|series| series.level().is_some()).collect();
+        let chosen = chosen(&levels.iter().filter_map(|series| series.level()).collect::<Vec<_>>(), LABELLED);
+        let mut ends = Vec::new();
+        for series in &panel.series {
+            match series.look {
+                Look::Level(_) => {}
+                Look::Guide => self.line(svg, series, Stroke::new(GUIDE, 1.0), 1),
+                Look::Variant(number) => {
+                    let stroke = Stroke::new(KINDS[number % KINDS.len()], 0.8);
+                    self.line(svg, series, Stroke { opacity: 0.55, ..stroke }, 1);
+                    self.marks(svg, series, number, 2.0);
+                }
+                Look::Kind(number) => {
+                    let stroke = Stroke::new(KINDS[number % KINDS.len()], 1.8);
+                    self.line(svg, series, stroke, 1);
+                    self.marks(svg, series, number, 4.0);
+                    ends.push((series, stroke));
+                }
+            }
+        }
+        for (i, series) in levels.iter().enumerate().filter(|(i, _)| !chosen.contains(i)) {
+            let colour = LEVELS[i * (LEVELS.len() - 1) / (levels.len() - 1)];
+            self.line(svg, series, Stroke { opacity: 0.45, ..Stroke::new(colour, 0.6) }, 4);
+        }
+        for (i, series) in chosen.iter().map(|i| levels[*i]).enumerate() {
+            let last = chosen.len() - 1;
+            let colour = LEVELS[(i * (LEVELS.len() - 1)).checked_div(last).unwrap_or(LEVELS.len() / 2)];
+            let stroke = Stroke { dash: DASHES[i % DASHES.len()], ..Stroke::new(colour, 1.8) };
+            self.line(svg, series, stroke, 1);
+            ends.push((series, stroke));
+        }
+        for markers in &panel.markers {
+            mark::draw(svg, markers.shape, &self.at(&markers.points), 4.0, MARK);
+        }
+        self.labels(svg, &ends);
+    }
+
+    /// Lines at the ticks, their labels, and the axes.
+    fn mesh(&self, svg: &mut Svg) {
+        let ([left, right], [top, bottom]) = (self.columns, self.rows);
+        let (grid, axis) = (Stroke::new(GRID, 1.0), Stroke::new(SOFT, 1.0));
+        for tick in self.x.ticks() {
+            let x = self.column(tick);
+            svg.line(&[[x, top], [x, bottom]], grid);
+            svg.line(&[[x, bottom], [x, bottom + 5.0]], axis);
+            svg.text([x, bottom + 13.0], &self.x.label(tick), Font { anchor: Anchor::Middle, ..PLAIN });
+        }
+        for tick in self.y.ticks() {
+            let y = self.row(tick);
+            svg.line(&[[left, y], [right, y]], grid);
+            svg.line(&[[left - 5.0, y], [left, y]], axis);
+            svg.text([left - 8.0, y], &self.y.label(tick), Font { anchor: Anchor::End, ..PLAIN });
+        }
+        svg.line(&[[left, top], [left, bottom], [right, bottom]], axis);
+    }
+
+    /// A distribution behind all else.
+    fn shade(&self, svg: &mut Svg, shade: &[(f64, f64)]) {
+        let (Some((first, _)), Some((last, _))) = (shade.first(), shade.last()) else { return };
+        let [top, bottom] = self.rows;
+        let outline = shade.iter().map(|(x, share)| [self.column(*x), bottom - share * (bottom - top)]);
+        let [start, end] = [first, last].map(|x| [self.column(*x), bottom]);
+        svg.area(&[start].into_iter().chain(outline).chain([end]).collect::<Vec<_>>(), SHADE);
+    }
+
+    /// The line of `series`, thinned as far as a line may be that is `coarse` times as rough.
+    fn line(&self, svg: &mut Svg, series: &Series, stroke: Stroke, coarse: usize) {
+        let points = match self.x.scale {
+            Scale::Linear => {
+                let pixel = (self.y.high - self.y.low) / (self.rows[1] - self.rows[0]);
+                thinned(&series.points, INVISIBLE * pixel * coarse as f64, POINTS / coarse)
+            }
             Scale::Log => series.points.clone(),
         };
-        plot.draw(&PathElement::new(points, style)).map_err(backend)
-    };
-    if let (Some((first, _)), Some((last, _))) = (panel.shade.first(), panel.shade.last()) {
-        let height = |share: f64| y.low + share * (y.high - y.low);
-        let outline = panel.shade.iter().map(|(x, share)| (*x, height(*share)));
-        let outline = std::iter::once((*first, y.low)).chain(outline).chain([(*last, y.low)]).collect::<Vec<_>>();
-        plot.draw(&Polygon::new(outline, SHADE.filled())).map_err(backend)?;
+        svg.line(&self.at(&points), stroke);
     }
-    let levels: Vec<&Series> = panel.series.iter().filter(|series| series.level().is_some()).collect();
-    let chosen = chosen(&levels.iter().filter_map(|series| series.level()).collect::<Vec<_>>(), LABELLED);
-    let colours = Colours::over(&levels);
-    let mut ends = Vec::new();
-    for series in &panel.series {
-        match series.look {
-            Look::Level(_) => {}
-            Look::Guide => line(series, 1, GUIDE.stroke_width(fine(1)))?,
-            Look::Variant(_) => {
-                line(series, 1, colours.of(series).mix(0.55).stroke_width(fine(1) * 8 / 10))?;
-                draw_marks(root, plot, series, 2)?;
-            }
-            Look::Kind(_) => {
-                line(series, 1, colours.of(series).stroke_width(fine(2) * 9 / 10))?;
-                draw_marks(root, plot, series, 4)?;
-                ends.extend(series.points.last().map(|end| (plot.map_coordinate(end), series)));
-            }
+
+    fn marks(&self, svg: &mut Svg, series: &Series, number: usize, radius: f64) {
+        let kind = number % KINDS.len();
+        mark::draw(svg, SHAPES[kind], &self.at(&series.points), radius, KINDS[kind]);
+    }
+
+    /// Labels beside the ends of lines, in their order and moved apart where they would touch.
+    fn labels(&self, svg: &mut Svg, ends: &[(&Series, Stroke)]) {
+        let mut ends: Vec<([f64; 2], &Series, Stroke)> = ends
+            .iter()
+            .filter(|(series, _)| !series.label.is_empty())
+            .filter_map(|(series, stroke)| Some((self.at(&[*series.points.last()?])[0], *series, *stroke)))
+            .collect();
+        ends.sort_by(|([_, one], ..), ([_, other], ..)| one.total_cmp(other));
+        let wanted: Vec<f64> = ends.iter().map(|([_, y], ..)| *y).collect();
+        let [top, bottom] = self.rows;
+        let right = self.columns[1];
+        for (([x, y], series, stroke), row) in ends.into_iter().zip(apart(&wanted, LABEL_PITCH, top..bottom)) {
+            // The line may end far from the edge: what leads from there is not part of it.
+            svg.line(&[[x, y], [right + 4.0, y]], Stroke { opacity: 0.3, dash: "", width: 1.0, ..stroke });
+            svg.line(&[[right + 4.0, y], [right + 10.0, row]], Stroke { dash: "", width: 1.0, ..stroke });
+            svg.line(&[[right + 10.0, row], [right + 26.0, row]], stroke);
+            svg.text([right + 29.0, row], &series.label, Font { most: LABEL, ..PLAIN });
         }
     }
-    for (_, series) in levels.iter().enumerate().filter(|(i, _)| !chosen.contains(i)) {
-        line(series, 4, colours.of(series).mix(0.45).stroke_width(fine(1) * 6 / 10))?;
-    }
-    for series in chosen.iter().map(|i| levels[*i]) {
-        line(series, 1, colours.of(series).stroke_width(fine(2) * 9 / 10))?;
-        ends.extend(series.points.last().map(|end| (plot.map_coordinate(end), series)));
-    }
-    for markers in &panel.markers {
-        for point in &markers.points {
-            draw_mark(root, markers.shape, plot.map_coordinate(point), px(4), MARK)?;
-        }
-    }
-    let (columns, rows) = plot.get_pixel_range();
-    let rows = f64::from(rows.start) / f64::from(FINE)..f64::from(rows.end) / f64::from(FINE);
-    draw_labels(root, ends, (columns.end, rows), &colours)
 }
 
-/// Labels beside the ends of lines, in their order and moved apart where they would touch.
-fn draw_labels(
-    root: &Area,
-    mut ends: Vec<((i32, i32), &Series)>,
-    (right, rows): (i32, Range<f64>),
-    colours: &Colours,
-) -> Result<(), PlotError> {
-    ends.sort_by_key(|((_, y), _)| *y);
-    let wanted: Vec<f64> = ends.iter().map(|((_, y), _)| f64::from(*y) / f64::from(FINE)).collect();
-    for (((x, y), series), row) in ends.into_iter().zip(apart(&wanted, LABEL_PITCH, rows)) {
-        let row = (row * f64::from(FINE)) as i32;
-        let colour = colours.of(series);
-        // The line may end far from the edge: what leads from there is not part of it.
-        let across = vec![(x, y), (right + px(4), y)];
-        root.draw(&PathElement::new(across, colour.mix(0.3).stroke_width(fine(1)))).map_err(backend)?;
-        let leader = vec![(right + px(4), y), (right + px(14), row), (right + px(20), row)];
-        root.draw(&PathElement::new(leader, colour.stroke_width(fine(1)))).map_err(backend)?;
-        let style = text(12, &INK, HPos::Left);
-        root.draw(&Text::new(printable(&series.label), (right + px(24), row), style)).map_err(backend)?;
-    }
-    Ok(())
-}
-
-/// The legend of `markers` on one line that ends at `right`.
-fn draw_legend(root: &Area, markers: &[Markers], (right, y): (i32, i32)) -> Result<(), PlotError> {
-    let width = |label: &str| 28 + 7 * label.chars().count() as i32;
-    let shown = || markers.iter().filter(|markers| !markers.points.is_empty() && !markers.label.is_empty());
-    let mut x = right - shown().map(|markers| width(&markers.label)).sum::<i32>();
-    for Markers { label, shape, .. } in shown() {
-        draw_mark(root, *shape, (px(x + 8), px(y)), px(4), MARK)?;
-        write(root, label, (x + 17, y), &text(12, &INK, HPos::Left))?;
-        x += width(label);
-    }
-    Ok(())
-}
-
-fn draw_marks(root: &Area, plot: &Plot<'_>, series: &Series, radius: i32) -> Result<(), PlotError> {
-    if let Look::Kind(number) | Look::Variant(number) = series.look {
-        let (colour, shape) = KINDS[number % KINDS.len()];
-        for point in &series.points {
-            draw_mark(root, shape, plot.map_coordinate(point), px(radius), colour)?;
-        }
-    }
-    Ok(())
-}
-
-/// A mark within `r` around a point.
-fn draw_mark(root: &Area, shape: Shape, (x, y): (i32, i32), r: i32, colour: RGBColor) -> Result<(), PlotError> {
-    let (filled, line) = (colour.filled(), colour.stroke_width(fine(1) * 3 / 2));
-    let stroke = |a: (i32, i32), b: (i32, i32)| root.draw(&PathElement::new([a, b], line));
-    let cross = || stroke((x - r, y - r), (x + r, y + r)).and_then(|()| stroke((x - r, y + r), (x + r, y - r)));
-    let plus = || stroke((x - r, y), (x + r, y)).and_then(|()| stroke((x, y - r), (x, y + r)));
-    match shape {
-        Shape::Dot => root.draw(&Circle::new((x, y), r, filled)),
-        Shape::Ring => root
-            .draw(&Circle::new((x, y), r, WHITE.filled()))
-            .and_then(|()| root.draw(&Circle::new((x, y), r - px(1) / 2, line))),
-        Shape::Triangle => root.draw(&Polygon::new([(x - r, y + r), (x, y - r), (x + r, y + r)], filled)),
-        Shape::Square => {
-            root.draw(&Polygon::new([(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)], filled))
-        }
-        Shape::Diamond => {
-            let r = r * 5 / 4;
-            root.draw(&Polygon::new([(x - r, y), (x, y - r), (x + r, y), (x, y + r)], filled))
-        }
-        Shape::Cross => cross(),
-        Shape::Plus => plus(),
-        Shape::Star => cross().and_then(|()| plus()),
-    }
-    .map_err(backend)
-}
-
-fn write(root: &Area, words: &str, (x, y): (i32, i32), style: &TextStyle<'_>) -> Result<(), PlotError> {
-    root.draw(&Text::new(printable(words), (px(x), px(y)), style)).map_err(backend)
-}
-
-fn font(size: i32) -> FontDesc<'static> {
-    // The backend divides by 1.24.
-    ("sans-serif", f64::from(px(size)) * 1.24).into_font()
-}
-
-fn text(size: i32, colour: &'static RGBColor, h_pos: HPos) -> TextStyle<'static> {
-    TextStyle::from(font(size)).color(colour).pos(Pos::new(h_pos, VPos::Center))
-}
-
-fn bold(size: i32) -> TextStyle<'static> {
-    TextStyle::from(font(size).style(FontStyle::Bold)).color(&INK).pos(Pos::new(HPos::Left, VPos::Center))
-}
-
-fn px(pixels: i32) -> i32 {
-    pixels * FINE
-}
-
-fn fine(pixels: i32) -> u32 {
-    px(pixels).unsigned_abs()
-}
-
-fn backend(error: impl std::fmt::Display) -> PlotError {
-    PlotError::Backend(error.to_string())
-}
-
-fn shortened(words: &str, most: usize) -> String {
-    if words.chars().count() <= most {
-        return words.to_owned();
-    }
-    words.chars().take(most - 1).chain(['…']).collect()
-}
-
-/// Viridis over the levels, without its light end; kinds by their number.
-struct Colours {
-    low: f64,
-    high: f64,
-}
-
-impl Colours {
-    fn over(levels: &[&Series]) -> Self {
-        let n = || levels.iter().filter_map(|series| series.level());
-        Self { low: n().fold(f64::INFINITY, f64::min), high: n().fold(f64::NEG_INFINITY, f64::max) }
-    }
-
-    fn of(&self, series: &Series) -> RGBColor {
-        let n = match series.look {
-            Look::Level(n) => n,
-            Look::Kind(number) | Look::Variant(number) => return KINDS[number % KINDS.len()].0,
-            Look::Guide => return GUIDE,
-        };
-        let share = if self.high > self.low { (n - self.low) / (self.high - self.low) } else { 0.5 };
-        ViridisRGB.get_color(0.8 * share)
+/// The legend of `markers` on one line from `x` on: beside the axis, where a phone that shows a part of the chart has it, too.
+fn legend(svg: &mut Svg, markers: &[Markers], [mut x, y]: [f64; 2]) {
+    for Markers { label, shape, .. } in markers.iter().filter(|one| !one.points.is_empty() && !one.label.is_empty()) {
+        mark::draw(svg, *shape, &[[x + 8.0, y]], 4.0, MARK);
+        svg.text([x + 17.0, y], label, PLAIN);
+        x += 28.0 + CHARACTER[0] * label.chars().count() as f64;
     }
 }
 

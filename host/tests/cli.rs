@@ -92,6 +92,8 @@ fn the_main_job_answers_in_its_first_lines_and_leaves_no_level_undecided() {
         assert!(String::from_utf8_lossy(&output.stderr).contains("warning: self-locking"), "{text}");
         let page = std::fs::read_to_string(folder.path().join(scene).join("report.html")).unwrap();
         assert!(page.contains("class=\"answer\"") && page.contains("<details>"));
+        // The forces with marks for runs, crawls and jams stand before all other pictures.
+        assert!(page.split("<figure>").nth(1).unwrap().contains(": verdict and force, "));
         for word in ["the paper", "Fig. 8", "Fig. 9"] {
             assert!(!page.contains(word), "{word} in the report of {scene}");
         }

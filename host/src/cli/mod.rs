@@ -7,6 +7,8 @@ mod mechanism;
 mod merge;
 mod population;
 mod precision;
+#[cfg(test)]
+pub(crate) mod reference;
 mod run;
 mod simulate;
 mod stability;

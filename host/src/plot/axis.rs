@@ -1,9 +1,5 @@
 //! The axes of a chart: their ends, their ticks and how ticks are written.
 
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-
 use super::PlotError;
 use crate::{
     chart::{Chart, Panel, Scale},
@@ -21,8 +17,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// From the first to the last abscissa, with room for markers.
-    pub fn abscissa(chart: &Chart) -> Result<Self, PlotError> {
+    /// From the first to the last abscissa, with room for markers; about `most_ticks` ticks.
+    pub fn abscissa(chart: &Chart, most_ticks: f64) -> Result<Self, PlotError> {
         let points = || chart.panels.iter().flat_map(Panel::points);
         let (low, high) = extent(points().map(|(x, _)| chart.scale.place(x))).ok_or(PlotError::Empty)?;
         if chart.scale == Scale::Log {
@@ -35,7 +31,7 @@ impl Axis {
             _ => 0.0,
         };
         let (low, high) = (low - room, high + room);
-        let ticks = Ticks::over(high - low, 10.0).ok_or_else(|| PlotError::NotFinite(chart.x_label.clone()))?;
+        let ticks = Ticks::over(high - low, most_ticks).ok_or_else(|| PlotError::NotFinite(chart.x_label.clone()))?;
         Ok(Self { scale: chart.scale, low, high, ticks })
     }
 
@@ -60,18 +56,14 @@ impl Axis {
         let high = high.max(low + 1.0);
         Self { scale: Scale::Log, low, high, ticks: Ticks { step: ((high - low) / 12.0).ceil(), decimals: 0 } }
     }
-}
 
-impl Ranged for Axis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, (start, end): (i32, i32)) -> i32 {
-        let share = (self.scale.place(*value) - self.low) / (self.high - self.low);
-        start + (share * f64::from(end - start)).round() as i32
+    /// Where `value` stands between the ends, as a share.
+    pub fn share(&self, value: f64) -> f64 {
+        (self.scale.place(value) - self.low) / (self.high - self.low)
     }
 
-    fn key_points<H: KeyPointHint>(&self, _: H) -> Vec<f64> {
+    /// Values of the ticks.
+    pub fn ticks(&self) -> Vec<f64> {
         let places = self.ticks.within(self.low, self.high);
         match self.scale {
             Scale::Linear => places,
@@ -79,28 +71,20 @@ impl Ranged for Axis {
         }
     }
 
-    fn range(&self) -> Range<f64> {
-        match self.scale {
-            Scale::Linear => self.low..self.high,
-            Scale::Log => libm::pow(10.0, self.low)..libm::pow(10.0, self.high),
-        }
-    }
-}
-
-impl ValueFormatter<f64> for Axis {
-    fn format_ext(&self, value: &f64) -> String {
+    /// A tick's value as it is written.
+    pub fn label(&self, value: f64) -> String {
         if self.scale == Scale::Log {
-            let exponent = libm::log10(*value).round();
+            let exponent = libm::log10(value).round();
             let plain = (-4.0..6.0).contains(&exponent);
-            return if plain { fixed(*value, (-exponent).max(0.0) as usize) } else { typeset(&format!("{value:.0e}")) };
+            return if plain { fixed(value, (-exponent).max(0.0) as usize) } else { typeset(&format!("{value:.0e}")) };
         }
         let wide = self.high.max(-self.low) >= 1e6 || self.ticks.decimals > 5;
-        typeset(&if wide && *value == 0.0 {
+        typeset(&if wide && value == 0.0 {
             "0".to_owned()
         } else if wide {
             format!("{value:.1e}")
         } else {
-            fixed(*value, self.ticks.decimals)
+            fixed(value, self.ticks.decimals)
         })
     }
 }

@@ -29,8 +29,8 @@ fn texts(chart: &Chart) -> Vec<String> {
         let points: Vec<&str> = line.attribute("points").unwrap().split(' ').collect();
         assert!(points.len() <= super::POINTS);
         for (x, y) in points.iter().map(|point| point.split_once(',').unwrap()) {
-            assert!((0..=90_000).contains(&x.parse::<i32>().unwrap()));
-            assert!((0..=54_000).contains(&y.parse::<i32>().unwrap()));
+            assert!((0.0..=900.0).contains(&x.parse::<f64>().unwrap()));
+            assert!((0.0..=540.0).contains(&y.parse::<f64>().unwrap()));
         }
     }
     document.descendants().filter(|node| node.is_text()).map(|node| node.text().unwrap().trim().to_owned()).collect()

@@ -63,10 +63,10 @@ pub fn forces(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<Strin
         .collect();
     let failed =
         Share::new(units.iter().filter(|unit| malfunctions(unit, limit)).count() as u64, units.len().max(1) as u64);
-    let remark = if every > 1 { format!("one unit in {every} is marked") } else { String::new() };
+    let remark = if every > 1 { format!("; one unit in {every} is marked") } else { String::new() };
     line_chart(&Chart {
         title: scene.title.clone(),
-        subtitle: format!("{} units, {} % malfunction; {remark}", units.len(), fixed(failed.share * 100.0, 1)),
+        subtitle: format!("{} units, {} % malfunction{remark}", units.len(), fixed(failed.share * 100.0, 1)),
         x_label: "joint tightness n (mean over the gaps, σ; positive is tighter)".into(),
         panels: vec![
             Panel {

@@ -16,6 +16,8 @@ use std::ops::Range;
 use crate::tolerance::{lanes::Lanes, model::Quantity};
 
 pub use affine::Affine;
+#[cfg(test)]
+pub(crate) use grammar::FUNCTIONS;
 pub use grammar::parse;
 pub use kind::Kind;
 pub use tape::Tape;

@@ -11,7 +11,7 @@ use crate::{
 
 /// An SVG document with its caption.
 pub fn figure(caption: &str, svg: &str) -> String {
-    format!("<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n", escape(caption))
+    format!("<figure>\n<div class=\"scroll\">{svg}</div>\n<figcaption>{}</figcaption>\n</figure>\n", escape(caption))
 }
 
 /// A table with a caption; `head` and `body` are rows.

@@ -14,6 +14,7 @@ use self::{
 use crate::{
     markup::escape,
     outcome::Verdict,
+    palette::style_sheet,
     scene::Scene,
     sweep::{Level, Sweep},
     table2::{Table2, derived},
@@ -80,8 +81,9 @@ pub fn report(input: &ReportInput) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n\
-         <style>\n{}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n\
+         <style>\n{}{}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n\
          {}</main>\n</body>\n</html>\n",
+        style_sheet(),
         include_str!("page.css"),
         sections.concat(),
     )
@@ -146,20 +148,20 @@ fn levels(sweep: &Sweep) -> String {
         let [compressed, zero, free] = level.class_counts().map(|count| count.to_string());
         let cells = [
             typed(*n),
+            marked(outcome.verdict),
             optional(outcome.breakaway.map(|t| t * 1e3), 1),
             optional(outcome.peak_force, 4),
             optional(outcome.settled_force, 4),
             real(outcome.final_velocity * 1e3, 2),
-            marked(outcome.verdict),
             compressed,
             zero,
             free,
         ];
         tr("", &cells)
     };
-    let head = "<tr><th scope=\"col\" rowspan=\"2\">n</th><th scope=\"col\" rowspan=\"2\">breakaway<br/>(ms)</th>\
-        <th scope=\"col\" rowspan=\"2\">peak force<br/>(N)</th><th scope=\"col\" rowspan=\"2\">settled force<br/>(N)</th>\
-        <th scope=\"col\" rowspan=\"2\">final velocity<br/>(mm/s)</th><th scope=\"col\" rowspan=\"2\">verdict</th>\
+    let head = "<tr><th scope=\"col\" rowspan=\"2\">n</th><th scope=\"col\" rowspan=\"2\">verdict</th>\
+        <th scope=\"col\" rowspan=\"2\">breakaway<br/>(ms)</th><th scope=\"col\" rowspan=\"2\">peak force<br/>(N)</th><th scope=\"col\" rowspan=\"2\">settled force<br/>(N)</th>\
+        <th scope=\"col\" rowspan=\"2\">final velocity<br/>(mm/s)</th>\
         <th scope=\"colgroup\" colspan=\"3\">gaps</th></tr>\n\
         <tr class=\"sub\"><th scope=\"col\">compressed</th><th scope=\"col\">zero</th><th scope=\"col\">free</th></tr>\n";
     let caption =
@@ -238,6 +240,57 @@ mod tests {
             assert!(cells.contains(&expected), "{expected}");
         }
         assert!(html.contains("34816 bytes") && html.contains("1.230 mN"));
+    }
+
+    #[test]
+    fn fits_phones_dark_rooms_and_paper() {
+        let html = page();
+        for query in ["(max-width: 640px)", "screen and (prefers-color-scheme: dark)", "print"] {
+            assert!(html.contains(&format!("@media {query} {{")), "{query}");
+        }
+        for rule in ["figure { margin: 1.4rem 0; break-inside: avoid; }", "min-width: calc(.76 * var(--width))"] {
+            assert!(html.contains(rule), "{rule}");
+        }
+        // No table may be kept on one sheet: longer ones would leave a blank one before them.
+        assert!(!html.split("@media print").nth(1).unwrap().contains("break-inside"));
+    }
+
+    #[test]
+    fn colours_are_variables() {
+        let html = page();
+        let style = html.split("<style>").nth(1).and_then(|rest| rest.split("</style>").next()).unwrap();
+        for declaration in style.split(['{', '}', ';']).filter(|part| part.contains('#') || part.contains("rgb")) {
+            assert!(declaration.trim().starts_with("--"), "{declaration}");
+        }
+        let document = html.replace("<!DOCTYPE html>", "");
+        let document = roxmltree::Document::parse(&document).unwrap();
+        let mut coloured = 0;
+        for node in document.descendants() {
+            let classes = node.attribute("class").unwrap_or_default();
+            for (attribute, short) in [("fill", "f-"), ("stroke", "s-")] {
+                if node.attribute(attribute).is_none_or(|value| value == "none") {
+                    continue;
+                }
+                let class = classes.split(' ').find(|class| class.starts_with(short)).unwrap();
+                assert!(style.contains(&format!(".{class} {{ {attribute}: var(--{}); }}", &class[2..])), "{class}");
+                coloured += 1;
+            }
+        }
+        assert!(coloured > 100, "{coloured}");
+    }
+
+    #[test]
+    fn every_figure_has_a_title_and_a_caption() {
+        let html = page().replace("<!DOCTYPE html>", "");
+        let document = roxmltree::Document::parse(&html).unwrap();
+        let text = |node: roxmltree::Node<'_, '_>| node.text().unwrap_or_default().trim().len();
+        for figure in document.descendants().filter(|node| node.has_tag_name("figure")) {
+            let svg = figure.descendants().find(|node| node.tag_name().name() == "svg").unwrap();
+            assert_eq!(svg.attribute("role"), Some("img"));
+            let title = svg.children().find(|node| node.tag_name().name() == "title").unwrap();
+            let caption = figure.children().find(|node| node.has_tag_name("figcaption")).unwrap();
+            assert!(text(title) > 0 && text(caption) > 0);
+        }
     }
 
     #[test]

@@ -343,6 +343,12 @@ impl SceneError {
         self.0.iter().map(|report| &report.problem)
     }
 
+    /// All that is wrong, each with what is allowed there.
+    #[cfg(test)]
+    pub(super) fn allowed(&self) -> impl Iterator<Item = (&Problem, &str)> {
+        self.0.iter().map(|report| (&report.problem, report.allowed.as_str()))
+    }
+
     /// The message for a terminal, in colour if `color`.
     pub fn render(&self, color: bool) -> String {
         self.0.iter().map(|report| report.render(color)).collect::<Vec<_>>().join("\n\n")

@@ -44,7 +44,7 @@ impl SceneFile {
     }
 
     /// Reads the scene from its `tree`. What is wrong with single values is noted there.
-    fn read(tree: &Node<'_>, file_name: &str) -> Result<Self, SceneError> {
+    pub(super) fn read(tree: &Node<'_>, file_name: &str) -> Result<Self, SceneError> {
         let root = Field { key: String::new(), node: tree };
         let title = title(&root, file_name)?;
         let mut product = ["dimension", "part", "measure"]

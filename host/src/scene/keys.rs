@@ -7,9 +7,9 @@ use super::{
 
 /// A key, and the keys of the table (or the tables of the list) that it may hold.
 #[derive(Clone, Copy)]
-struct Key {
-    name: &'static str,
-    below: &'static [Key],
+pub(super) struct Key {
+    pub name: &'static str,
+    pub below: &'static [Key],
 }
 
 const fn key(name: &'static str) -> Key {
@@ -179,7 +179,7 @@ fn of_drawing(key: &str) -> Option<&'static str> {
 }
 
 /// Every key of a scene.
-const ROOT: &[Key] = &[
+pub(super) const ROOT: &[Key] = &[
     key("title"),
     table("slide", &[key("mass"), key("inertia_box"), key("gravity")]),
     table("contact", CONTACT),
@@ -323,7 +323,7 @@ fn named(key: &str, meaning: &str) -> String {
     if key == meaning { key.into() } else { format!("{key}, {meaning},") }
 }
 
-fn join(path: &str, name: &str) -> String {
+pub(super) fn join(path: &str, name: &str) -> String {
     if path.is_empty() { name.into() } else { format!("{path}.{name}") }
 }
 

@@ -12,6 +12,8 @@ mod mechanism;
 mod parse;
 mod pins;
 mod product;
+#[cfg(test)]
+pub(crate) mod reference;
 mod shipped;
 #[cfg(test)]
 mod tests;

@@ -1,8 +1,6 @@
 //! Pictures of an analysis: histograms, contributors, correlations. Blue and vermilion (Okabe and Ito) can be told apart by
 //! every eye, and every cell has its number, so that a grey print can be read, too.
 
-use std::fmt::Write;
-
 use super::{
     estimate::histogram,
     report::{MeasureReport, Report},
@@ -10,15 +8,18 @@ use super::{
 };
 use crate::{
     chart::{Chart, Look, Panel, Series},
-    markup::escape,
     number::{fixed, typeset},
-    plot::{PlotError, line_chart},
+    palette::{INK, NEGATIVE, ON_NEGATIVE, ON_POSITIVE, POSITIVE},
+    plot::{PlotError, small_chart},
+    svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE},
 };
 
 const HEAD: f64 = 66.0;
 const ROW: f64 = 20.0;
-const BLUE: [f64; 3] = [0.0, 114.0, 178.0];
-const VERMILION: [f64; 3] = [213.0, 94.0, 0.0];
+/// The most characters of a name.
+const NAME: usize = 32;
+/// The share of a colour from which on text on it is not in the paper's ink.
+const FULL: f64 = 0.6;
 /// Bins of a tally in a class of the histogram for each step of the number of units: about as many classes as its cube
 /// root.
 const CLASSES: [(u64, usize); 4] = [(1_000, 64), (20_000, 32), (500_000, 16), (u64::MAX, 8)];
@@ -106,7 +107,7 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
     let unit = if measure.unit.is_empty() { String::new() } else { format!(" ({})", measure.unit) };
     let limits = if measure.limits == [None; 2] { "" } else { "; grey: limits" };
     let ppk = measure.ppk.map(|ppk| format!(", Ppk {}", fixed(ppk, 3))).unwrap_or_default();
-    line_chart(&Chart {
+    small_chart(&Chart {
         title: report.title.clone(),
         subtitle: format!(
             "{}: mean {}, σ {}{ppk}; {} units{limits}",
@@ -129,34 +130,40 @@ fn contributors_svg(report: &Report) -> String {
         shares.filter(|(_, percent)| percent.abs() >= 0.05).take(MOST).collect()
     };
     let blocks: Vec<_> = report.measures.iter().map(|m| (m, shown(m))).filter(|(_, s)| !s.is_empty()).collect();
-    let height = HEAD + blocks.iter().map(|(_, shares)| ROW * (shares.len() as f64 + 1.5)).sum::<f64>();
+    let rows = |shares: &[(String, f64)]| ROW * (shares.len() as f64 + 1.5);
+    let tall: f64 = blocks.iter().map(|(_, shares)| rows(shares)).sum();
+    // So that a sheet of paper holds them all in a size that can be read.
+    let columns = if tall > 1000.0 { 2.0 } else { 1.0 };
     let names = blocks.iter().flat_map(|(_, shares)| shares).map(|(name, _)| name.as_str());
-    let left = longest(names).max(200.0) + 32.0;
+    let left = longest(names).max(100.0) + 32.0;
     // Correlated contributors can have less than nothing, and others then more than all.
     let percents = || blocks.iter().flat_map(|(_, shares)| shares).map(|(_, percent)| *percent);
     let (low, high) = (percents().fold(0.0, f64::min), percents().fold(100.0, f64::max));
-    let scale = 520.0 / (high - low);
-    let zero = left - scale * low;
-    let mut svg = document(left + 600.0, height, &report.title, "contributors, % of the variance");
-    let mut y = HEAD;
+    let bars = 320.0 / columns;
+    let (scale, pitch) = (bars / (high - low), left + bars + 80.0);
+    let tallest = blocks.iter().map(|(_, shares)| rows(shares)).fold(0.0, f64::max);
+    let height = HEAD + if columns > 1.0 { tall / columns + tallest } else { tall };
+    let mut svg = document([columns * pitch, height], &report.title, "contributors, % of the variance");
+    let name = Font { most: NAME, anchor: Anchor::End, ..PLAIN };
+    let (mut x, mut y) = (0.0, HEAD);
     for (measure, shares) in blocks {
-        text(&mut svg, [16.0, y + 14.0], "start", "font-weight=\"bold\"", &measure.name);
+        if y + rows(&shares) > height {
+            (x, y) = (x + pitch, HEAD);
+        }
+        svg.text([x + 16.0, y + 10.0], &measure.name, Font { bold: true, most: NAME, ..PLAIN });
         y += ROW;
-        for (name, percent) in shares {
-            text(&mut svg, [left - 10.0, y + 14.0], "end", "", &name);
-            let colour = if percent < 0.0 { VERMILION } else { BLUE };
-            rectangle(
-                &mut svg,
-                [zero + scale * percent.min(0.0), y + 3.0, (scale * percent.abs()).max(0.5), ROW - 6.0],
-                colour,
-            );
+        let zero = x + left - scale * low;
+        for (contributor, percent) in shares {
+            svg.text([x + left - 10.0, y + 10.0], &contributor, name);
+            let bar = [zero + scale * percent.min(0.0), y + 3.0, (scale * percent.abs()).max(0.5), ROW - 6.0];
+            svg.rectangle(bar, if percent < 0.0 { POSITIVE } else { NEGATIVE }, 1.0);
             let end = zero + scale * percent.max(0.0) + 6.0;
-            text(&mut svg, [end, y + 14.0], "start", "", &format!("{} %", typeset(&fixed(percent, 1))));
+            svg.text([end, y + 10.0], &format!("{} %", typeset(&fixed(percent, 1))), PLAIN);
             y += ROW;
         }
         y += ROW / 2.0;
     }
-    svg + "</svg>\n"
+    svg.finish()
 }
 
 /// The correlation matrix of the measures as coloured cells with numbers.
@@ -167,55 +174,37 @@ fn correlation_svg(report: &Report) -> String {
     let names = longest(report.measures.iter().map(|measure| measure.name.as_str()));
     let (left, top) = (names + 22.0, HEAD + LEAN[1] * names + 16.0);
     let across = CELL * report.measures.len() as f64;
-    let (width, height) = ((left + across + LEAN[0] * names + 8.0).max(420.0), top + across + 16.0);
-    let mut svg = document(width, height, &report.title, "correlation of the measures: blue negative, orange positive");
+    let (width, height) = ((left + across + LEAN[0] * names + 8.0).max(460.0), top + across + 16.0);
+    let heading = "correlation of the measures: blue negative, orange positive";
+    let mut svg = document([width, height], &report.title, heading);
+    let name = Font { most: NAME, ..PLAIN };
     for (i, measure) in report.measures.iter().enumerate() {
         let place = (i as f64 + 0.5) * CELL;
-        text(&mut svg, [left - 6.0, top + place + 4.0], "end", "", &measure.name);
-        let (x, y) = (left + place + 4.0, top - 6.0);
-        let turn = format!("transform=\"rotate(-60 {x:.1} {y:.1})\"");
-        text(&mut svg, [x, y], "start", &turn, &measure.name);
+        svg.text([left - 6.0, top + place], &measure.name, Font { anchor: Anchor::End, ..name });
+        svg.text([left + place + 4.0, top - 6.0], &measure.name, Font { turned: -60.0, ..name });
         for (j, rho) in report.correlation[i].iter().enumerate() {
             let (x, y) = (left + j as f64 * CELL, top + i as f64 * CELL);
             let strength = rho.abs().min(1.0);
-            let full = if *rho < 0.0 { BLUE } else { VERMILION };
-            rectangle(&mut svg, [x, y, CELL - 1.0, CELL - 1.0], full.map(|c| 255.0 + (c - 255.0) * strength));
-            // White reads better than black on nothing but the full blue.
-            let ink = if *rho < -0.85 { "fill=\"#fff\"" } else { "" };
+            let (full, on_full) = if *rho < 0.0 { (NEGATIVE, ON_NEGATIVE) } else { (POSITIVE, ON_POSITIVE) };
+            svg.rectangle([x, y, CELL - 1.0, CELL - 1.0], full, strength);
+            let colour = if strength < FULL { INK } else { on_full };
             let number = typeset(&fixed(*rho, 2));
-            text(&mut svg, [x + CELL / 2.0, y + CELL / 2.0 + 4.0], "middle", ink, &number);
+            svg.text([x + CELL / 2.0, y + CELL / 2.0], &number, Font { colour, anchor: Anchor::Middle, ..PLAIN });
         }
     }
-    svg + "</svg>\n"
+    svg.finish()
 }
 
-fn document(width: f64, height: f64, title: &str, subtitle: &str) -> String {
-    let title = escape(title);
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" font-family=\"system-ui, 'Segoe UI', Arial, 'Liberation Sans', sans-serif\" \
-         font-size=\"12\" fill=\"#222\">\n<title>{title}: {subtitle}</title>\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
-         <text x=\"16\" y=\"26\" font-size=\"18\" font-weight=\"bold\">{title}</text>\n\
-         <text x=\"16\" y=\"48\" font-size=\"13\" fill=\"#606060\">{subtitle}</text>\n"
-    )
+fn document([width, height]: [f64; 2], title: &str, subtitle: &str) -> Svg {
+    let mut svg = Svg::new([width, height], &format!("{title}: {subtitle}"));
+    svg.text([16.0, 26.0], title, Font { most: ((width - 32.0) / 10.8) as usize, ..TITLE });
+    svg.text([16.0, 48.0], subtitle, SUBTITLE);
+    svg
 }
 
-/// About how wide the longest of some words is.
-fn longest<'a>(words: impl Iterator<Item = &'a str>) -> f64 {
-    words.map(|word| 6.8 * word.chars().count() as f64).fold(0.0, f64::max)
-}
-
-fn rectangle(svg: &mut String, [x, y, width, height]: [f64; 4], colour: [f64; 3]) {
-    let [r, g, b] = colour.map(|c| c.round() as u8);
-    let _ = writeln!(
-        svg,
-        "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>"
-    );
-}
-
-fn text(svg: &mut String, [x, y]: [f64; 2], anchor: &str, extra: &str, words: &str) {
-    let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" {extra}>{}</text>", escape(words));
+/// About how wide the longest of some names is.
+fn longest<'a>(names: impl Iterator<Item = &'a str>) -> f64 {
+    names.map(|name| 6.8 * name.chars().count().min(NAME) as f64).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -251,5 +240,28 @@ mod tests {
                 std::fs::write(std::path::Path::new(&folder).join(format!("{name}.svg")), &svg).unwrap();
             }
         }
+    }
+
+    #[test]
+    fn long_names_widen_no_picture() {
+        let name = "the very long name of a measure ".repeat(8);
+        let mut model = left_front(-0.4);
+        model.measures[0].name.clone_from(&name);
+        let settings = Settings { method: Method::PseudoRandom, samples: 1000, replicates: 1, seed: 2 };
+        let study = Study::new(&model, settings).unwrap();
+        let mut tallies = study.empty();
+        study.add(0..settings.blocks(), &mut tallies, |_| ());
+        let conclusion = conclude(&study, &tallies).unwrap();
+        let width = |svg: &str| {
+            let document = roxmltree::Document::parse(svg).unwrap();
+            document.root_element().attribute("width").unwrap().parse::<f64>().unwrap()
+        };
+        let report = report("a part", &model, &conclusion);
+        for svg in [contributors_svg(&report), correlation_svg(&report)] {
+            assert!(width(&svg) <= 900.0, "{}", width(&svg));
+            assert!(svg.contains(&format!("<title>{name}</title>")));
+        }
+        let histogram = histogram_svg(&report, &study, &tallies, 0).unwrap();
+        assert!(width(&histogram) < 500.0 && histogram.contains(&format!("<title>{name}")));
     }
 }

@@ -8,7 +8,7 @@ use super::{DEPTH, Expression, ExpressionError, Fault, Kind, One, Operation, Sou
 
 /// The deepest nesting of parentheses, signs and powers.
 const NESTING: usize = 64;
-const FUNCTIONS: &str = "sqrt, sin, cos, tan, asin, acos, atan, abs, min, max";
+pub(crate) const FUNCTIONS: &str = "sqrt, sin, cos, tan, asin, acos, atan, abs, min, max";
 /// Units that a constant may have.
 const KINDS: [(&[Unit], Kind); 6] = [
     (unit::LENGTH, Kind::LENGTH),

@@ -75,6 +75,8 @@ mod tests;
 mod toleranced;
 mod zone;
 
+#[cfg(test)]
+pub(super) use toleranced::SHAPES;
 pub(super) use toleranced::deviation;
 
 use crate::{

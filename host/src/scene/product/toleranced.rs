@@ -27,7 +27,7 @@ const TOLERANCE: &str = "± as one number in mm or a text with its unit, \"0.004
                          of ISO 2768-1: f, m, c, v; an ISO 286 class with its size: H7, g6";
 /// The same of what has no size.
 const DEVIATION: &str = "± as one number, or [lower, upper] deviations, in mm or as texts with their units";
-const SHAPES: &str = "normal, truncated-normal, uniform, triangular, trapezoidal, beta, skewed, lognormal, weibull, gumbel, \
+pub(in crate::scene) const SHAPES: &str = "normal, truncated-normal, uniform, triangular, trapezoidal, beta, skewed, lognormal, weibull, gumbel, \
                       gumbel-smallest, mixture, table, constant";
 /// Beyond, moments are not finite enough to be computed.
 const WEIBULL: Quantity = Quantity { units: unit::ONE, range: [0.5, 100.0] };

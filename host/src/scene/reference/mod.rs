@@ -1,0 +1,109 @@
+//! The scene file's part of the reference. What a key takes is asked of the reader itself: given a value of no type, it says what
+//! is allowed.
+
+mod meaning;
+mod probe;
+
+use std::fmt::Write;
+
+use super::{
+    keys::{Key, ROOT, join},
+    unit::{self, Unit},
+};
+use meaning::{DISTRIBUTIONS, MEANINGS};
+
+/// Kinds of quantities with their units.
+const QUANTITIES: [(&str, &[Unit]); 13] = [
+    ("length", unit::LENGTH),
+    ("angle", unit::ANGLE),
+    ("mass", unit::MASS),
+    ("time, in seconds if bare", unit::SECONDS),
+    ("time, in milliseconds if bare", unit::MILLISECONDS),
+    ("time, in microseconds if bare", unit::MICROSECONDS),
+    ("speed", unit::SPEED),
+    ("acceleration", unit::ACCELERATION),
+    ("moment of inertia", unit::INERTIA),
+    ("angular velocity", unit::ROTATION),
+    ("damping, gain of a force", unit::DAMPING),
+    ("damping, gain of a torque", unit::TORQUE_GAIN),
+    ("stiffness about an axis", unit::TORSION),
+];
+
+/// Stands for what a key takes that the reader does not say at once.
+const UNREAD: &str = "see its meaning";
+
+/// Every key by its table; a table that stands in several places is told once.
+pub(crate) fn keys() -> String {
+    let mut all = vec![(String::new(), ROOT)];
+    collect("", ROOT, &mut all);
+    let mut page = String::new();
+    let mut used = vec![false; MEANINGS.len()];
+    for (i, (path, keys)) in all.iter().enumerate() {
+        if all[..i].iter().all(|(_, other)| names(other) != names(keys)) {
+            let others = || all.iter().filter(|(_, other)| names(other) == names(keys)).map(|(path, _)| path.as_str());
+            section(path, keys, &others().collect::<Vec<_>>(), &all, &mut used, &mut page);
+        }
+    }
+    let unused: Vec<_> = MEANINGS.iter().zip(used).filter(|(_, used)| !used).map(|((path, _), _)| path).collect();
+    assert!(unused.is_empty(), "described, but no such key: {unused:?}");
+    page
+}
+
+/// Every table below `path`, with its keys.
+fn collect(path: &str, keys: &'static [Key], all: &mut Vec<(String, &'static [Key])>) {
+    let tables = || keys.iter().filter(|key| !key.below.is_empty()).map(|key| (join(path, key.name), key.below));
+    all.extend(tables());
+    tables().for_each(|(path, keys)| collect(&path, keys, all));
+}
+
+fn names(keys: &[Key]) -> Vec<&str> {
+    keys.iter().map(|key| key.name).collect()
+}
+
+/// The table at `path`, which has the same keys as those at `others`.
+fn section(path: &str, keys: &[Key], others: &[&str], all: &[(String, &[Key])], used: &mut [bool], page: &mut String) {
+    let heading = if path.is_empty() { "The file".to_owned() } else { format!("`{path}`") };
+    let _ = writeln!(page, "\n### {heading}\n\n| key | takes | meaning |\n|---|---|---|");
+    for key in keys {
+        let path = join(path, key.name);
+        let at = MEANINGS.iter().position(|(pattern, _)| covers(pattern, &path));
+        let at = at.unwrap_or_else(|| panic!("no description of `{path}`: add one to scene/reference/meaning.rs"));
+        used[at] = true;
+        let takes = others.iter().find_map(|other| probe::takes(&join(other, key.name)));
+        let mut takes = takes.unwrap_or_else(|| UNREAD.to_owned());
+        if !key.below.is_empty() {
+            let first = all.iter().find(|(_, other)| names(other) == names(key.below));
+            let _ = write!(takes, "; keys of `{}`", first.map_or(path.as_str(), |(path, _)| path));
+        }
+        let _ = writeln!(page, "| `{}` | {} | {} |", key.name, takes.replace('|', "\\|"), MEANINGS[at].1);
+    }
+}
+
+/// Whether `pattern`, in which a star stands for any part, means the key `path`.
+fn covers(pattern: &str, path: &str) -> bool {
+    pattern.split('.').count() == path.split('.').count()
+        && pattern.split('.').zip(path.split('.')).all(|(one, other)| one == "*" || one == other)
+}
+
+/// Every unit.
+pub(crate) fn units() -> String {
+    let row = |(name, units): (&str, &[Unit])| {
+        let symbols: Vec<_> = units.iter().map(|unit| format!("`{}`", unit.symbol)).collect();
+        format!("| {name} | {} |\n", symbols.join(", "))
+    };
+    format!(
+        "| quantity | units, the first of which is meant where none is given |\n|---|---|\n{}",
+        QUANTITIES.map(row).concat()
+    )
+}
+
+/// Every distribution.
+pub(crate) fn distributions() -> String {
+    let row = |name: &str| {
+        let known = DISTRIBUTIONS.iter().find(|(known, _)| *known == name);
+        let (_, meaning) = known.unwrap_or_else(|| panic!("no description of the distribution {name}"));
+        format!("| `{name}` | {meaning} |\n")
+    };
+    let rows: String = super::product::SHAPES.split(", ").map(row).collect();
+    format!("| kind | what it is |\n|---|---|\n{rows}")
+}

@@ -1,0 +1,97 @@
+//! Asks the reader what a key takes.
+
+use crate::scene::{
+    Problem, SceneError, SceneFile,
+    diagnostic::Found,
+    shipped,
+    tree::{Entry, Node, Source, Value},
+};
+
+/// A value of no type.
+const PROBE: &str = "a probe";
+/// Scenes with what none of the shipped ones has.
+const OTHERS: [&str; 1] = [include_str!("others.toml")];
+
+/// Shipped scenes that are read in no time.
+const ASKED: [&str; 6] =
+    ["cd-rom-slide", "worn-tool", "hatch", "slider-crank-guide", "woodpecker-toy", "telescopic-drawer"];
+/// Tables of one scene that are asked.
+const TABLES: usize = 2;
+
+/// What the key at `path` takes, with its range or its choices; `None` if no scene comes to read it.
+pub fn takes(path: &str) -> Option<String> {
+    let mut texts = OTHERS.into_iter().chain(ASKED.iter().filter_map(|name| shipped(name)));
+    texts.find_map(|text| (0..TABLES).find_map(|nth| takes_in(text, path, nth)))
+}
+
+/// The same of the `nth` table of one scene.
+fn takes_in(text: &str, path: &str, nth: usize) -> Option<String> {
+    let parts: Vec<_> = path.split('.').collect();
+    let asked = |value, kind: &dyn Fn(&Problem) -> bool| {
+        let error = in_scene(text, &parts, nth, value)?;
+        error.allowed().find_map(|(problem, allowed)| kind(problem).then(|| allowed.to_owned()))
+    };
+    let takes = asked(
+        Value::Other(PROBE),
+        &|problem| matches!(problem, Problem::Type { key, found } if key == path && *found == PROBE),
+    )?;
+    let more = if takes.starts_with("a number") {
+        asked(Value::Number(9.9e299), &|problem| matches!(problem, Problem::OutOfRange { key, .. } if key == path))
+            .filter(|range| *range != takes)
+            .map(|range| format!("{takes}; {range}"))
+    } else if takes.starts_with("a text in quotes") {
+        asked(Value::Text("?".into()), &|problem| matches!(problem, Problem::Choice { key, .. } if key == path))
+    } else {
+        None
+    };
+    Some(more.unwrap_or(takes))
+}
+
+/// What is wrong with the scene `text` once the `nth` table that has or may have the key has this `value` there.
+fn in_scene(text: &str, path: &[&str], nth: usize, value: Value<'static>) -> Option<SceneError> {
+    let found = Found::default();
+    let source = Source { name: "reference", text, found: &found };
+    let mut tree = source.document().ok()?;
+    let (mut left, mut value) = (nth, Some(value));
+    put(&mut tree, path, &mut left, &mut value);
+    if value.is_some() {
+        return None;
+    }
+    found.conclude(SceneFile::read(&tree, "reference").map(|_| ())).err()
+}
+
+/// Puts the `value` at the `path` below `node`, at the place that has `left` more before it.
+fn put<'s>(node: &mut Node<'s>, path: &[&str], left: &mut usize, value: &mut Option<Value<'static>>) {
+    let place = node.place.clone();
+    let Some((key, rest)) = path.split_first() else {
+        match left.checked_sub(1) {
+            Some(fewer) => *left = fewer,
+            None => node.value = value.take().unwrap_or(Value::Other(PROBE)),
+        }
+        return;
+    };
+    match &mut node.value {
+        Value::List(nodes) => {
+            for node in nodes {
+                if value.is_some() {
+                    put(node, path, left, value);
+                }
+            }
+        }
+        Value::Table(entries) => match entries.iter_mut().find(|entry| entry.key == *key) {
+            Some(entry) => put(&mut entry.node, rest, left, value),
+            None if *left > 0 => *left -= 1,
+            None => {
+                let mut node = Node { place: place.clone(), value: Value::Table(Vec::new()) };
+                put(&mut node, rest, left, value);
+                entries.push(Entry { key: (*key).to_owned().into(), place, node });
+            }
+        },
+        // A short form, such as a bare tolerance, for which the table can stand.
+        _ if *left > 0 => *left -= 1,
+        _ => {
+            node.value = Value::Table(Vec::new());
+            put(node, path, left, value);
+        }
+    }
+}
