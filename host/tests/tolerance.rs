@@ -119,9 +119,9 @@ const SPOILT: &[Spoilt] = &[
     spoilt("worn-tool", ["coefficient = 0.8", "coefficient = 1.0"], "1.0", "not positive definite"),
     spoilt(
         "lid-on-pins",
-        ["perpendicularity = 0.02", "cylindricity = 0.02"],
-        "cylindricity",
-        "cylindricity is not supported",
+        ["perpendicularity = 0.02", "line_profile = 0.02"],
+        "line_profile",
+        "line_profile, the profile of a line, is not supported",
     ),
 ];
 

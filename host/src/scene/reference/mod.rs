@@ -13,10 +13,14 @@ use super::{
 use meaning::{DISTRIBUTIONS, MEANINGS};
 
 /// Kinds of quantities with their units.
-const QUANTITIES: [(&str, &[Unit]); 13] = [
+const QUANTITIES: [(&str, &[Unit]); 17] = [
     ("length", unit::LENGTH),
     ("angle", unit::ANGLE),
     ("mass", unit::MASS),
+    ("force", unit::FORCE),
+    ("stiffness", unit::STIFFNESS),
+    ("moment", unit::MOMENT),
+    ("pressure", unit::PRESSURE),
     ("time, in seconds if bare", unit::SECONDS),
     ("time, in milliseconds if bare", unit::MILLISECONDS),
     ("time, in microseconds if bare", unit::MICROSECONDS),
