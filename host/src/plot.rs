@@ -42,7 +42,7 @@ const BELOW: f64 = 28.0;
 const LEFT: f64 = 58.0;
 /// Right of the axes without labels at the ends of lines, and with them before their first character.
 const BLANK: f64 = 24.0;
-const LEADER: f64 = 32.0;
+const LEADER: f64 = 37.0;
 /// About how wide a character is, of labels, of the subtitle, of the title.
 const CHARACTER: [f64; 3] = [7.0, 6.7, 10.8];
 /// Distance of labels from each other.
