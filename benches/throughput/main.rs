@@ -1,8 +1,8 @@
 //! Units per second and core with all statistics, beside numpy drawing the same normals and measures.
 //!
 //! `cargo bench --bench throughput`. Both run on one thread and in turns, because the pace of a machine changes from one moment
-//! to the next; a ratio is the median over the rounds. numpy's side is `numpy_peer.py`. Fails below a ratio; without numpy
-//! there is none.
+//! to the next; a ratio is the median over the rounds. numpy's side is `numpy_peer.py`. Fails below a ratio, and without
+//! numpy.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -143,7 +143,7 @@ fn main() -> ExitCode {
     }
     let Some(mut numpy) = Numpy::start() else {
         eprintln!("nothing to compare with: pip install numpy");
-        return ExitCode::SUCCESS;
+        return ExitCode::FAILURE;
     };
     let mut ratios = [const { Vec::new() }; 3];
     let mut rates = Vec::new();
