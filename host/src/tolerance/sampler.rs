@@ -15,7 +15,7 @@ use super::{
 
 /// Version of what units are drawn with: of random numbers, scores, distributions and zones. Units of one version are not
 /// those of another.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// How the units of a study are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
