@@ -10,18 +10,21 @@ use crate::scene::{
 /// A value of no type.
 const PROBE: &str = "a probe";
 /// Scenes with what none of the shipped ones has.
-const OTHERS: [&str; 1] = [include_str!("others.toml")];
+const OTHERS: [&str; 3] = [include_str!("dimensions.toml"), include_str!("parts.toml"), include_str!("rebound.toml")];
+/// How many tables of one of these are asked.
+const ALL: usize = 48;
 
 /// Shipped scenes that are read in no time.
 const ASKED: [&str; 6] =
     ["cd-rom-slide", "worn-tool", "hatch", "slider-crank-guide", "woodpecker-toy", "telescopic-drawer"];
-/// Tables of one scene that are asked.
-const TABLES: usize = 2;
+/// Tables of one of these that are asked.
+const TABLES: usize = 4;
 
 /// What the key at `path` takes, with its range or its choices; `None` if no scene comes to read it.
 pub fn takes(path: &str) -> Option<String> {
-    let mut texts = OTHERS.into_iter().chain(ASKED.iter().filter_map(|name| shipped(name)));
-    texts.find_map(|text| (0..TABLES).find_map(|nth| takes_in(text, path, nth)))
+    let shipped = ASKED.iter().filter_map(|name| shipped(name)).map(|text| (text, TABLES));
+    let mut texts = shipped.chain(OTHERS.map(|text| (text, ALL)));
+    texts.find_map(|(text, tables)| (0..tables).find_map(|nth| takes_in(text, path, nth)))
 }
 
 /// The same of the `nth` table of one scene.
@@ -93,5 +96,13 @@ fn put<'s>(node: &mut Node<'s>, path: &[&str], left: &mut usize, value: &mut Opt
             node.value = Value::Table(Vec::new());
             put(node, path, left, value);
         }
+    }
+}
+
+/// Of a scene that is wrong itself the reader would tell nothing but that.
+#[test]
+fn the_scenes_that_are_asked_are_sound() {
+    for text in OTHERS {
+        SceneFile::parse("reference", text, &[]).map(|_| ()).unwrap_or_else(|error| panic!("{error}"));
     }
 }
