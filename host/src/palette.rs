@@ -34,7 +34,7 @@ pub const GRID: Colour = colour("grid", "#e4e4e4", "#2d3238");
 pub const SHADE: Colour = colour("shade", "#ecf0f5", "#222b35");
 /// Marks of verdicts.
 pub const MARK: Colour = colour("mark", "#26547c", "#8fc1ea");
-/// Negative numbers, and the text on the full colour.
+/// Negative numbers.
 pub const NEGATIVE: Colour = colour("negative", "#0072b2", "#56b4e9");
 /// Text on the full colour of negative numbers.
 pub const ON_NEGATIVE: Colour = colour("on-negative", "#ffffff", "#10141a");

@@ -95,6 +95,11 @@ pub fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
 
+/// The length of a vector.
+pub fn norm(vector: [f64; 3]) -> f64 {
+    libm::sqrt(vector.iter().map(|x| x * x).sum())
+}
+
 /// The vector over its length; `None` if it has none.
 pub fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
     let greatest = vector.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -102,7 +107,7 @@ pub fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
         return None;
     }
     let scaled = vector.map(|x| x / greatest);
-    let length = libm::sqrt(scaled.iter().map(|x| x * x).sum());
+    let length = norm(scaled);
     Some(scaled.map(|x| x / length))
 }
 

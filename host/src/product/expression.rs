@@ -1,8 +1,8 @@
 //! Arithmetic expressions of dimensions and measures, such as `acos((a + c) / (e - c))`.
 //!
 //! Lengths, angles, plain numbers, forces, masses, times and what they make are told apart: a length cannot be added to an
-//! angle, `sqrt(a * b)` of two lengths is a length, a force over a length a stiffness. A constant carries its unit (`3 mm`, `30°`) or is a plain number. A name with spaces stands in single
-//! quotes.
+//! angle, `sqrt(a * b)` of two lengths is a length, a force over a length a stiffness. A constant carries its unit (`3 mm`,
+//! `30°`) or is a plain number. A name with spaces stands in single quotes.
 
 mod affine;
 mod grammar;

@@ -1,7 +1,9 @@
 //! The keys of a scene file.
 
+use crate::product::feature::Shape;
+
 use super::{
-    Problem,
+    Problem, drawing,
     tree::{Node, Value},
 };
 
@@ -126,56 +128,13 @@ const CONTACT: &[Key] =
     &[key("law"), key("stiffness"), key("exponent"), key("damping"), key("depth"), key("restitution"), key("speed")];
 const FRICTION: &[Key] = &[key("law"), key("coefficient"), key("stick_band")];
 
-/// What drawings have: how it is written there, without hyphens and the like, and what it is here, a key or nothing.
-const OF_DRAWINGS: &[(&[&str], &str)] = &[
-    (&["⏥", "▱"], "flatness"),
-    (&["⏤", "—"], "straightness"),
-    (&["○", "◯", "roundness", "circularity"], "roundness"),
-    (&["⌭", "cylindricity"], "cylindricity"),
-    (&["∥", "//", "parallel"], "parallelism"),
-    (&["⊥", "⟂", "squareness", "perpendicular"], "perpendicularity"),
-    (&["∠", "angular"], "angularity"),
-    (&["⌖", "⊕", "trueposition", "location"], "position"),
-    (&["⌓", "surfaceprofile", "profileofasurface"], "profile"),
-    (&["◎", "coaxiality", "coaxial"], "coaxiality"),
-    (&["concentricity", "concentric"], "concentricity"),
-    (&["⌯", "symmetry"], "symmetry"),
-    (&["↗", "runout", "circularrunout", "tir"], "run_out"),
-    (&["⌰", "⌮", "totalrunout"], "total_run_out"),
-    (
-        &[
-            "Ⓜ",
-            "(m)",
-            "mmc",
-            "mmr",
-            "maximummaterial",
-            "Ⓛ",
-            "(l)",
-            "lmc",
-            "lmr",
-            "leastmaterial",
-            "modifier",
-            "modifiers",
-        ],
-        "material",
-    ),
-    (&["⌒", "lineprofile", "profileofaline"], "the profile of a line"),
-    (&["Ⓟ", "(p)", "projected", "projectedzone"], "a projected tolerance zone"),
-    (&["Ⓣ", "(t)", "tangentplane"], "a tangent plane"),
-    (&["Ⓕ", "(f)", "freestate"], "the free state"),
-    (&["Ⓡ", "(r)", "reciprocity"], "the reciprocity requirement"),
-    (&["Ⓔ", "(e)", "envelope"], "the envelope requirement"),
-    (&["Ⓤ", "(u)", "unequal", "uz"], "an unequally disposed profile"),
-    (&["cz", "commonzone", "combinedzone"], "a combined zone"),
-    (&["composite", "compositeposition"], "within"),
-    (&["datumtarget", "datumtargets"], "datum targets"),
-];
-
-/// What a `key` of a drawing is here.
-fn of_drawing(key: &str) -> Option<&'static str> {
-    let plain: String = key.to_lowercase().chars().filter(|c| !" -_".contains(*c)).collect();
-    let is = |written: &&str| **written == *key || **written == *plain;
-    OF_DRAWINGS.iter().find(|(written, _)| written.iter().any(is)).map(|(_, meaning)| *meaning)
+/// The keys of a feature of this shape.
+pub(super) fn of_feature(shape: Shape) -> &'static [Key] {
+    match shape {
+        Shape::Plane => PLANE,
+        Shape::Point => POINT,
+        Shape::Axis => AXIS,
+    }
 }
 
 /// Every key of a scene.
@@ -298,7 +257,7 @@ fn note(node: &Node<'_>, path: &str, keys: &[Key]) {
                 Some(key) => note(&entry.node, &name, key.below),
                 None => {
                     let allowed = keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ");
-                    let problem = match of_drawing(&entry.key) {
+                    let problem = match drawing::meaning(&entry.key) {
                         Some(known) if keys.iter().any(|key| key.name == known) => {
                             Problem::UnknownKey { key: name, similar: Some(join(path, known)) }
                         }

@@ -5,6 +5,7 @@
 
 mod contact;
 mod diagnostic;
+mod drawing;
 mod file;
 mod keys;
 mod levels;

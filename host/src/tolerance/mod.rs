@@ -11,6 +11,7 @@ pub mod analysis;
 mod beta;
 pub mod binomial;
 pub mod copula;
+pub mod correlation;
 #[cfg(test)]
 mod coverage_tests;
 mod cumulative;

@@ -16,6 +16,19 @@ pub struct Model {
     pub function: Box<dyn Function>,
 }
 
+impl Model {
+    /// How many variables its function takes.
+    pub fn variables(&self) -> usize {
+        self.contributors.iter().map(|contributor| contributor.variation.variables()).sum()
+    }
+
+    /// The first variable of every contributor.
+    pub fn offsets(&self) -> Vec<usize> {
+        let counts = self.contributors.iter().map(|contributor| contributor.variation.variables());
+        counts.scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect()
+    }
+}
+
 /// The measures of assembled units as a function of their variables.
 pub trait Function: Send + Sync {
     /// Writes all `measures` (SI: m, rad) of the units whose `variables` these are. A measure that cannot be computed

@@ -8,7 +8,7 @@ use crate::{
         feature::{Bonus, Shape},
         iso2768::{self, GeometryClass},
     },
-    scene::{Problem, SceneError, tree::Value, unit as units, unit::Quantity, value::Field},
+    scene::{Problem, SceneError, keys, tree::Value, unit as units, unit::Quantity, value::Field},
     tolerance::model::ZoneRule,
 };
 
@@ -116,9 +116,10 @@ pub(super) fn read<'t, 's>(
     let none = |field: &Field| matches!(&field.node.value, Value::Text(text) if text == "none");
     let mut callouts = Vec::new();
     let mut formed = false;
-    for name in CALLOUTS {
+    // A key that the feature cannot have is told of by then.
+    let known = keys::of_feature(made.feature.shape);
+    for name in CALLOUTS.into_iter().filter(|name| known.iter().any(|key| key.name == *name)) {
         let Some(field) = made.table.get(name) else { continue };
-        refuse_unsupported(name, &made, &field)?;
         // A straight line leaves the flatness of its face open.
         formed |= limits(name, made.feature.shape) != Limits::Line;
         if !none(&field) {
@@ -230,9 +231,9 @@ fn callout<'t, 's>(
         return Err(list.error(problem, "no datum: a form is its own"));
     }
     let datums = list.map_or(Ok(Vec::new()), |list| datums(&list, draft))?;
-    symmetric::check(name, &field, &datums, made, draft)?;
     let material = material::of_zone(&field)?;
     let width = width(&field, name, made, &datums, material, draft)?;
+    symmetric::check(name, &field, &datums, made, draft)?;
     let rule_field = field.get("rule");
     let rule = rule_field.as_ref().map_or(Ok(draft.defaults.rule), rule)?;
     let mut read = Callout { name, limits, width, material, bonus: None, datums, rule, pattern: None, field };
@@ -305,44 +306,6 @@ fn general_flatness<'t, 's>(
         pattern: None,
         field,
     })
-}
-
-/// Refuses a tolerance that a feature of this shape cannot have.
-fn refuse_unsupported(callout: &str, made: &FeatureDraft, field: &Field) -> Result<(), SceneError> {
-    let known: &[&str] = match made.feature.shape {
-        Shape::Plane => &[
-            "flatness",
-            "straightness",
-            "parallelism",
-            "perpendicularity",
-            "angularity",
-            "position",
-            "profile",
-            "symmetry",
-            "run_out",
-            "total_run_out",
-        ],
-        Shape::Point => &["flatness", "position", "profile", "run_out", "total_run_out"],
-        Shape::Axis => &[
-            "straightness",
-            "roundness",
-            "cylindricity",
-            "parallelism",
-            "perpendicularity",
-            "angularity",
-            "position",
-            "coaxiality",
-            "concentricity",
-            "symmetry",
-            "run_out",
-            "total_run_out",
-        ],
-    };
-    if known.contains(&callout) {
-        return Ok(());
-    }
-    let what = format!("{callout} of {}", made.feature.shape.article());
-    Err(field.error(Problem::Unsupported { what }, known.join(", ")))
 }
 
 /// The width (m) of a zone, stated or general.

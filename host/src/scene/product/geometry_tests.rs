@@ -1,6 +1,6 @@
 //! Refinements, datums of their own, common datums, holes on pins, against closed forms.
 
-use super::tests::{at, close, parse};
+use super::tests::{at, close, parse, product_of};
 use crate::{
     product::Product,
     tolerance::{
@@ -10,10 +10,6 @@ use crate::{
     },
 };
 
-fn scene(text: &str) -> Product {
-    parse(text, &[]).unwrap_or_else(|error| panic!("{error}")).product.unwrap()
-}
-
 fn variable(model: &Model, name: &str) -> usize {
     let at = model.contributors.iter().position(|contributor| contributor.name == name);
     model.offsets()[at.unwrap_or_else(|| panic!("no {name}"))]
@@ -21,7 +17,7 @@ fn variable(model: &Model, name: &str) -> usize {
 
 /// A lid 400 × 200 in a profile of 0.3 to its bottom; measured at its corner, and how it leans along its length.
 fn lid(more: &str) -> Product {
-    scene(&format!(
+    product_of(&format!(
         r#"
 [[part]]
 name = "lid"
@@ -92,7 +88,7 @@ distance = ["bracket.hole", "bracket.B"]
 
 #[test]
 fn orientation_has_datums_of_its_own() {
-    let bracket = scene(BRACKET);
+    let bracket = product_of(BRACKET);
     let lean = |name: &str, measure: usize| {
         let tilt = variable(&bracket.model, name) + 1;
         at(&bracket, &[(tilt, 1.0)])[measure]
@@ -129,7 +125,7 @@ fn two_journals_are_one_datum() {
     ] {
         let text = SHAFT.replace("DATUM", datum)
             + "[[measure]]\nname = \"arm\"\ndistance = [\"shaft.tip\", \"shaft.left\"]\n[[measure]]\nname = \"off\"\ndistance = [\"shaft.tip\", \"shaft.right-hand\"]\n";
-        let shaft = scene(&text);
+        let shaft = product_of(&text);
         let [left, right] =
             ["left", "right-hand"].map(|name| variable(&shaft.model, &format!("shaft.{name} position z")));
         // The axis through both middles: the tip, half as far again out, goes by 3/2 of the right journal, −1/2 of the left.
@@ -246,7 +242,7 @@ distance = ["rod.tip", "frame.ceiling"]
 #[test]
 fn contacts_that_do_not_close_are_an_error() {
     // Far off, and still closed: Newton's passes go on for as long as it takes.
-    let rod = scene(&ROD.replace("OFFSET", "5"));
+    let rod = product_of(&ROD.replace("OFFSET", "5"));
     let raised = variable(&rod.model, "frame.ceiling offset");
     for by in [-5e-3, 5e-3] {
         let found = at(&rod, &[(raised, by)]);

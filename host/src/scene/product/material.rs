@@ -5,7 +5,12 @@ use crate::{
         feature::{Bonus, Shape},
         float::Size,
     },
-    scene::{Problem, SceneError, tree::Value, value::Field},
+    scene::{
+        Problem, SceneError,
+        drawing::{Modifier, named, split},
+        tree::Value,
+        value::Field,
+    },
 };
 
 use super::{part::FeatureDraft, toleranced::Diameter};
@@ -24,36 +29,8 @@ const CONDITIONS: &str = "\"maximum\" (MMC, Ⓜ), \"least\" (LMC, Ⓛ)";
 /// What a zone at a condition of material has to have.
 pub(super) const SIZED: &str = "the axis of a pin or hole that has a diameter";
 
-/// The modifiers of drawings: a letter in a circle, how else it is written, and what it means.
-const MODIFIERS: [(char, &str, &str); 13] = [
-    ('Ⓜ', "MMC", "the maximum material condition"),
-    ('Ⓛ', "LMC", "the least material condition"),
-    ('Ⓢ', "RFS", "regardless of feature size"),
-    ('Ⓟ', "projected", "a projected tolerance zone"),
-    ('Ⓣ', "tangent", "a tangent plane"),
-    ('Ⓕ', "free", "the free state"),
-    ('Ⓡ', "reciprocity", "the reciprocity requirement"),
-    ('Ⓔ', "envelope", "the envelope requirement"),
-    ('Ⓘ', "independency", "independency"),
-    ('Ⓤ', "UZ", "an unequally disposed profile"),
-    ('Ⓐ', "derived", "a derived feature"),
-    ('Ⓒ', "CZ", "a combined zone"),
-    ('Ⓖ', "gauss", "an associated feature"),
-];
-
-/// A text without the modifier at its end, and that modifier.
-fn split(text: &str) -> Option<(&str, char, &'static str)> {
-    let text = text.trim_end();
-    MODIFIERS.iter().find_map(|(symbol, _, meaning)| {
-        let letter = char::from_u32(*symbol as u32 - 'Ⓐ' as u32 + 'A' as u32)?;
-        let ends = [symbol.to_string(), format!("({letter})"), format!("({})", letter.to_ascii_lowercase())];
-        let rest = ends.iter().find_map(|end| text.strip_suffix(end.as_str()))?;
-        Some((rest.trim_end(), *symbol, *meaning))
-    })
-}
-
 /// The condition of a modifier, `None` regardless of feature size; an error for those that mean something else.
-fn condition(field: &Field, symbol: char, meaning: &str) -> Result<Option<Material>, SceneError> {
+fn condition(field: &Field, Modifier { symbol, meaning, .. }: &Modifier) -> Result<Option<Material>, SceneError> {
     match symbol {
         'Ⓜ' => Ok(Some(Material::Maximum)),
         'Ⓛ' => Ok(Some(Material::Least)),
@@ -66,7 +43,7 @@ fn condition(field: &Field, symbol: char, meaning: &str) -> Result<Option<Materi
 pub(super) fn of_datum<'t>(field: &Field<'t, '_>) -> Result<(&'t str, Option<Material>), SceneError> {
     let text = field.to_text()?;
     match split(text) {
-        Some((name, symbol, meaning)) => Ok((name, condition(field, symbol, meaning)?)),
+        Some((name, modifier)) => Ok((name, condition(field, modifier)?)),
         None => Ok((text, None)),
     }
 }
@@ -74,9 +51,9 @@ pub(super) fn of_datum<'t>(field: &Field<'t, '_>) -> Result<(&'t str, Option<Mat
 /// Refuses a modifier behind the width of a zone, which stands in a key of its own.
 pub(super) fn refuse_in_width(zone: &Field) -> Result<(), SceneError> {
     let Value::Text(text) = &zone.node.value else { return Ok(()) };
-    let Some((_, symbol, meaning)) = split(text) else { return Ok(()) };
-    let what = format!("{symbol}, {meaning}, behind the width of a zone");
-    condition(zone, symbol, meaning)?;
+    let Some((_, modifier)) = split(text) else { return Ok(()) };
+    let what = format!("{}, {}, behind the width of a zone", modifier.symbol, modifier.meaning);
+    condition(zone, modifier)?;
     Err(zone.error(Problem::Unsupported { what }, "{ zone = …, material = \"maximum\" } or \"least\""))
 }
 
@@ -84,18 +61,18 @@ pub(super) fn refuse_in_width(zone: &Field) -> Result<(), SceneError> {
 pub(super) fn of_zone(callout: &Field) -> Result<Option<Material>, SceneError> {
     let Some(field) = callout.get("material") else { return Ok(None) };
     let text = field.to_text()?.trim();
-    if let Some((_, symbol, meaning)) = split(text).filter(|(rest, ..)| rest.is_empty()) {
-        return condition(&field, symbol, meaning);
+    if let Some((_, modifier)) = split(text).filter(|(rest, _)| rest.is_empty()) {
+        return condition(&field, modifier);
     }
-    let is = |names: &[&str]| names.iter().any(|name| name.eq_ignore_ascii_case(text));
-    if is(&["maximum", "MMC", "MMR", "M"]) {
+    let is = |names: [&str; 2]| names.iter().any(|name| name.eq_ignore_ascii_case(text));
+    if is(["maximum", "M"]) {
         return Ok(Some(Material::Maximum));
     }
-    if is(&["least", "LMC", "LMR", "L"]) {
+    if is(["least", "L"]) {
         return Ok(Some(Material::Least));
     }
-    if let Some((symbol, _, meaning)) = MODIFIERS.iter().find(|(_, name, _)| name.eq_ignore_ascii_case(text)) {
-        return condition(&field, *symbol, meaning);
+    if let Some(modifier) = named(text) {
+        return condition(&field, modifier);
     }
     let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
     Err(field.error(problem, CONDITIONS))
@@ -154,19 +131,5 @@ impl Material {
             )
         })?;
         Ok(diameter.limits[usize::from(hole == (self == Self::Least))])
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::split;
-
-    #[test]
-    fn modifiers_are_known_in_each_way_to_write_them() {
-        for text in ["part.bore Ⓜ", "part.bore(M)", "part.bore (m) "] {
-            assert!(matches!(split(text), Some(("part.bore", 'Ⓜ', _))), "{text}");
-        }
-        assert!(matches!(split("0.2 (P)"), Some(("0.2", 'Ⓟ', "a projected tolerance zone"))));
-        assert!(split("part.bore").is_none() && split("part.(X)").is_none());
     }
 }

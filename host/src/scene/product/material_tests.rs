@@ -1,6 +1,6 @@
 //! Bonus tolerances and datum shift against closed forms.
 
-use super::tests::{check_all, close, parse};
+use super::tests::{check_all, close, product_of};
 use crate::{
     product::Product,
     tolerance::{
@@ -9,10 +9,6 @@ use crate::{
         study::Settings,
     },
 };
-
-fn scene(text: &str) -> Product {
-    parse(text, &[]).unwrap_or_else(|error| panic!("{error}")).product.unwrap()
-}
 
 fn theory_of(product: &Product) -> Theory {
     theory(&product.model, 1, None).unwrap()
@@ -66,7 +62,7 @@ angle = ["plate.hole", "plate.B"]
 
 #[test]
 fn a_wall_beside_a_hole_at_maximum_material() {
-    let plate = scene(WALL);
+    let plate = product_of(WALL);
     let theory = theory_of(&plate);
     // Least at the largest hole, which also has the greatest bonus; most at the virtual condition 10 − 0.1, whatever the size.
     check_worst(&theory, 1, [50.0 - 5.1 - 0.15, 50.0 - 4.95]);
@@ -82,13 +78,13 @@ fn a_wall_beside_a_hole_at_maximum_material() {
 
 #[test]
 fn a_wall_beside_a_hole_at_least_material() {
-    let plate = scene(&WALL.replace("maximum", "least"));
+    let plate = product_of(&WALL.replace("maximum", "least"));
     // Never less than by the virtual condition 10.2 + 0.1; most at the smallest hole.
     check_worst(&theory_of(&plate), 1, [50.0 - 5.15, 50.0 - 5.0 + 0.15]);
     let size = 0.1 / 3.0;
     check_deviation(&plate, 1, root(&[0.2 / 6.0, size / 6.0, size / 2.0]));
     // The same of a pin: here the smallest one has the least material.
-    let pin = scene(&WALL.replace("maximum", "(L)").replace("\"hole\", diameter", "\"pin\", diameter"));
+    let pin = product_of(&WALL.replace("maximum", "(L)").replace("\"hole\", diameter", "\"pin\", diameter"));
     check_worst(&theory_of(&pin), 1, [50.0 - 5.1 - 0.15, 50.0 - 4.95]);
 }
 
@@ -96,7 +92,9 @@ fn a_wall_beside_a_hole_at_least_material() {
 fn zero_tolerance_and_a_refinement_at_maximum_material() {
     let refined = |more: &str| {
         let position = "position = { zone = 0.1, material = \"maximum\"";
-        scene(&WALL.replace(position, &format!("perpendicularity = {{ {more}, datum = \"plate.A\" }}, {position}")))
+        product_of(
+            &WALL.replace(position, &format!("perpendicularity = {{ {more}, datum = \"plate.A\" }}, {position}")),
+        )
     };
     // The axis leans by its zone over its length of 20 mm, at most where the hole is largest.
     let both = theory_of(&refined("zone = 0, material = \"MMC\""));
@@ -113,7 +111,7 @@ fn zero_tolerance_and_a_refinement_at_maximum_material() {
     check_worst(&one, 1, [44.75, 45.05]);
     // An orientation alone has a bonus, too.
     let alone = WALL.replace("position = { zone = 0.1", "perpendicularity = { zone = 0");
-    let alone = theory_of(&scene(&alone.replace("[\"plate.A\", \"plate.B\"] }", "\"plate.A\" }")));
+    let alone = theory_of(&product_of(&alone.replace("[\"plate.A\", \"plate.B\"] }", "\"plate.A\" }")));
     close(alone.worst_cases[2].linear[1], quarter + 0.01, 1e-9);
 }
 
@@ -148,7 +146,7 @@ is = "(lid.hole.diameter - box.pin.diameter) / 2 - off"
 
 #[test]
 fn a_pin_in_a_hole_has_the_gap_of_their_virtual_conditions() {
-    let theory = theory_of(&scene(PIN));
+    let theory = theory_of(&product_of(PIN));
     // (10.1 − 0.1) − (9.9 + 0.05), over both sides; at most 10.3 − 9.8 without being off.
     check_worst(&theory, 1, [0.025, 0.25]);
     // Both at least material: 0.1 + 0.2 and 0.05 + 0.1.
@@ -175,7 +173,7 @@ distance = ["plate.one", "plate.two"]
 
 #[test]
 fn holes_shift_with_their_datum_in_its_boundary() {
-    let plate = scene(SHIFT);
+    let plate = product_of(SHIFT);
     let theory = theory_of(&plate);
     // Half of 0.1, and of 20.1 − (20 − 0.05).
     check_worst(&theory, 0, [30.0 - 0.125, 30.0 + 0.125]);
@@ -185,11 +183,11 @@ fn holes_shift_with_their_datum_in_its_boundary() {
     check_deviation(&plate, 1, libm::sqrt(2.0) * 0.1 / 6.0);
     // A perpendicularity without Ⓜ leaves the boundary at the smallest hole.
     let own = SHIFT.replace("zone = 0.05, material = \"maximum\"", "zone = 0.05");
-    check_worst(&theory_of(&scene(&own)), 0, [30.0 - 0.1, 30.0 + 0.1]);
+    check_worst(&theory_of(&product_of(&own)), 0, [30.0 - 0.1, 30.0 + 0.1]);
     // At least material the boundary is the largest hole.
-    let least = scene(&own.replace("(M)", "Ⓛ"));
+    let least = product_of(&own.replace("(M)", "Ⓛ"));
     check_worst(&theory_of(&least), 0, [30.0 - 0.1, 30.0 + 0.1]);
-    let fixed = scene(&SHIFT.replace(" (M)", " (S)"));
+    let fixed = product_of(&SHIFT.replace(" (M)", " (S)"));
     check_worst(&theory_of(&fixed), 0, [30.0 - 0.05, 30.0 + 0.05]);
 }
 
@@ -205,7 +203,7 @@ fn a_hole_that_floats_has_its_largest_play_at_the_limits() {
         .replace("distance = [\"lid.hole\", \"box.pin\"]", "distance = [\"lid.hole\", \"box.C\"]")
         .replace("- off", "");
     // The largest hole on the smallest pin: half of 10.3 − 9.8.
-    check_worst(&theory_of(&scene(&lid)), 0, [50.0 - 0.25, 50.0 + 0.25]);
+    check_worst(&theory_of(&product_of(&lid)), 0, [50.0 - 0.25, 50.0 + 0.25]);
 }
 
 #[test]

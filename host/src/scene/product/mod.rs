@@ -56,6 +56,8 @@ mod assembly_tests;
 mod callout;
 mod cost;
 mod datum;
+#[cfg(test)]
+mod dimension_tests;
 mod fit;
 #[cfg(test)]
 mod geometry_tests;
@@ -67,6 +69,8 @@ mod measure;
 mod part;
 mod pattern;
 mod quantity;
+#[cfg(test)]
+mod refused_tests;
 mod symmetric;
 #[cfg(test)]
 mod symmetric_tests;

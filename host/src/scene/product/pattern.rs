@@ -5,7 +5,7 @@
 
 use crate::{
     product::{
-        contact::{cross, unit},
+        contact::{cross, norm, unit},
         feature::Shape,
     },
     scene::{Problem, SceneError, value::Field},
@@ -102,14 +102,13 @@ impl Pattern<'_, '_> {
         let places = || self.members.iter().map(|i| nominal(i)[0]);
         let centre = places().fold([0.0; 3], |sum, at| [0, 1, 2].map(|k| sum[k] + at[k] / count));
         let axis = nominal(&self.members[0])[1];
-        let size = |vector: [f64; 3]| libm::sqrt(vector.iter().map(|x| x * x).sum());
-        if self.members.iter().any(|i| size(cross(nominal(i)[1], axis)) > 1e-9) {
+        if self.members.iter().any(|i| norm(cross(nominal(i)[1], axis)) > 1e-9) {
             return refuse(format!("the pattern `{}` of axes that are not parallel", self.name));
         }
         let arms: Vec<_> = places().map(|at| cross(axis, [0, 1, 2].map(|k| at[k] - centre[k]))).collect();
         let Some((farthest, first)) = arms
             .iter()
-            .map(|arm| (size(*arm), *arm))
+            .map(|arm| (norm(*arm), *arm))
             .max_by(|a, b| a.0.total_cmp(&b.0))
             .and_then(|(farthest, arm)| Some((farthest, unit(arm)?)))
         else {

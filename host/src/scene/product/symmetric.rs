@@ -1,7 +1,10 @@
 //! What tolerances about an axis or a middle need of their datums: run-out, coaxiality, concentricity, symmetry.
 
 use crate::{
-    product::{contact::cross, feature::Shape},
+    product::{
+        contact::{cross, norm},
+        feature::Shape,
+    },
     scene::{Problem, SceneError, value::Field},
 };
 
@@ -34,14 +37,13 @@ pub(super) fn check(
     let [at, direction] = made.feature.nominal;
     let [origin, towards] = datum.nominal;
     let apart = [0, 1, 2].map(|i| at[i] - origin[i]);
-    let size = |vector: [f64; 3]| libm::sqrt(vector.iter().map(|x| x * x).sum());
     let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>().abs();
     // Faces and points may run out anywhere on the turned surface; an axis is on that of its datum.
     let lies = match (wanted, made.feature.shape) {
-        (Shape::Axis, Shape::Axis) => size(cross(apart, towards)) <= OFF && size(cross(direction, towards)) <= OFF,
+        (Shape::Axis, Shape::Axis) => norm(cross(apart, towards)) <= OFF && norm(cross(direction, towards)) <= OFF,
         (Shape::Axis, _) => true,
         (_, Shape::Axis) => dot(apart, towards) <= OFF && dot(direction, towards) <= OFF,
-        (_, _) => dot(apart, towards) <= OFF && size(cross(direction, towards)) <= OFF,
+        (_, _) => dot(apart, towards) <= OFF && norm(cross(direction, towards)) <= OFF,
     };
     if lies {
         return Ok(());

@@ -1,6 +1,6 @@
 //! Run-out, coaxiality, concentricity, symmetry, roundness and cylindricity against closed forms.
 
-use super::tests::{check_all, close, parse};
+use super::tests::{check_all, close, product_of};
 use crate::tolerance::{
     derivative::expansion,
     moments,
@@ -9,7 +9,7 @@ use crate::tolerance::{
 
 /// Worst case and standard deviation of every measure (mm or rad), by their slopes.
 fn spreads(text: &str) -> Vec<([f64; 2], f64)> {
-    let product = parse(text, &[]).unwrap_or_else(|error| panic!("{error}")).product.unwrap();
+    let product = product_of(text);
     let model = &product.model;
     let (_, deviations) = moments::spreads(model);
     let middles: Vec<f64> = model.contributors.iter().flat_map(|c| middle(&c.variation)).collect();
@@ -64,7 +64,7 @@ fn what_runs_out_lies_in_a_cylinder_about_its_datum() {
         // The axis is off by half of what the gauge shows in a turn, and leans by all of it over its length.
         let found = shaft("\"0.000001 mm\"", &format!("{name} = {{ zone = 0.06, DATUM }}"));
         check(found[0], 50.0, 0.03 + 1e-6, 0.01, 1e3);
-        let leant = 0.06 / 40.0 + 0.0;
+        let leant = 0.06 / 40.0;
         close(found[1].0[1] - quarter, leant, 2e-8);
         close(found[1].1, leant / 3.0, 1e-5 * leant);
         // The shoulder wobbles by its own over its diameter.

@@ -1,0 +1,158 @@
+//! Distributions and kinds of dimensions.
+
+use super::tests::{close, parse};
+use crate::{
+    scene::{SceneError, SceneFile},
+    tolerance::{
+        analysis::analyse,
+        model::{Distribution, Quantity, Variation},
+        report::report,
+        sampler::Method,
+        study::Settings,
+    },
+};
+/// A scene with one dimension of 5 mm, and the distribution and the tolerance that `keys` give it.
+fn alone(keys: &str) -> Result<SceneFile, SceneError> {
+    parse(&format!("[[dimension]]\nname = \"x\"\nvalue = 5\n{keys}\n[[measure]]\nname = \"m\"\nis = \"x\"\n"), &[])
+}
+
+#[test]
+fn distributions_by_name() {
+    let of = |keys: &str| match alone(keys).unwrap().product.unwrap().model.contributors.remove(0).variation {
+        Variation::Scalar { distribution, limits } => (distribution, limits),
+        other => panic!("{other:?}"),
+    };
+    let (weibull, limits) = of("distribution = { kind = \"weibull\", shape = 2, scale = 0.1, location = -0.05 }");
+    assert_eq!(weibull, Distribution::Weibull { shape: 2.0, scale: 0.1e-3, location: 5e-3 - 0.05e-3 });
+    close(limits[1], 4.95e-3 + 0.1e-3 * libm::sqrt(-libm::log(1.349_898_031_630_094_5e-3)), 1e-15);
+    let (gumbel, limits) =
+        of("tolerance = [-0.1, 0.4]\ndistribution = { kind = \"gumbel\", mode = \"10 µm\", scale = 0.05 }");
+    assert_eq!((gumbel, limits), (Distribution::Gumbel { mode: 5e-3 + 10e-6, scale: 0.05e-3 }, [4.9e-3, 5.4e-3]));
+    let (smallest, _) = of("distribution = { kind = \"gumbel-smallest\", scale = 0.05 }");
+    assert_eq!(smallest, Distribution::Gumbel { mode: 5e-3, scale: -0.05e-3 });
+    let (beta, limits) = of("tolerance = 0.1\ndistribution = { kind = \"beta\", shapes = [2, 5] }");
+    assert_eq!(beta, Distribution::Beta { limits, shapes: [2.0, 5.0] });
+    let (lognormal, _) = of("distribution = { kind = \"lognormal\", mean = 0.04, deviation = 0.02 }");
+    let Distribution::Skewed { mean, deviation, skewness } = lognormal else { panic!("{lognormal:?}") };
+    close(mean, 5.04e-3, 1e-17);
+    assert_eq!((deviation, skewness), (0.02e-3, 0.5 * (0.25 + 3.0)));
+    let (mixture, limits) = of("distribution = { kind = \"mixture\", of = [\
+         { weight = 3, tolerance = [-0.1, 0], sigma = 2 }, { tolerance = 0.2, distribution = \"uniform\" }] }");
+    let Distribution::Mixture(parts) = mixture else { panic!("{mixture:?}") };
+    assert_eq!(limits, [5e-3 - 0.2e-3, 5e-3 + 0.2e-3]);
+    assert_eq!(parts[1], (0.25, Distribution::Uniform { limits }));
+    let (share, Distribution::Normal { mean, deviation }) = parts[0] else { panic!("{parts:?}") };
+    assert_eq!(share, 0.75);
+    close(mean, 4.95e-3, 1e-17);
+    close(deviation, 0.025e-3, 1e-17);
+}
+
+#[test]
+fn distributions_that_do_not_fit_are_pointed_at() {
+    for (keys, expected) in [
+        ("distribution = \"cauchy\"", "gumbel-smallest, mixture"),
+        ("distribution = \"weibull\"", "`dimension.distribution.shape` is missing"),
+        ("distribution = { kind = \"weibull\", shape = 0.1, scale = 1 }", "`dimension.distribution.shape` is 0.1"),
+        ("distribution = { kind = \"gumbel\", scale = -1 }", "more than 0"),
+        ("distribution = { kind = \"lognormal\", mean = -1, deviation = 1 }", "the mean is not above the location"),
+        ("distribution = { kind = \"beta\", shapes = [2, 5] }", "`dimension.tolerance` is missing"),
+        ("distribution = { kind = \"mixture\", of = [{ tolerance = 0.1 }] }", "a list of two or more"),
+        (
+            "distribution = { kind = \"mixture\", of = [{ tolerance = 0.1 }, { weight = 0, tolerance = 1 }] }",
+            "more than 0",
+        ),
+        (
+            "distribution = { kind = \"mixture\", of = [{ tolerance = 0.1 }, { weight = 2 }] }",
+            "of.tolerance` is missing",
+        ),
+        (
+            "distribution = { kind = \"mixture\", of = [{ tolerance = 0.1, distribution = \"flat\" }, { tolerance = 1 }] }",
+            "is \"flat\"",
+        ),
+    ] {
+        let error = alone(keys).err().unwrap_or_else(|| panic!("{keys}")).to_string();
+        assert!(error.contains(expected) && error.contains("scene.toml:"), "{keys}: {error}");
+    }
+}
+
+/// The drag of a slide by its coefficient of friction, its spring and a load.
+const DRAG: &str = r#"
+[tolerance]
+general = "m"
+[[dimension]]
+name = "friction"
+quantity = "number"
+value = 0.15
+tolerance = 0.03
+[[dimension]]
+name = "spring"
+value = "2 N/mm"
+tolerance = 0.2
+[[dimension]]
+name = "travel"
+value = 5
+tolerance = 0.5
+[[dimension]]
+name = "load"
+value = "500 mN"
+tolerance = "50 mN"
+distribution = "uniform"
+[[measure]]
+name = "drag"
+is = "friction * (spring * travel + load)"
+upper = 2.5
+[[measure]]
+name = "stiffness, twice"
+is = "2 * spring"
+lower = "3000 N/m"
+[[measure]]
+name = "safety"
+is = "3 N / drag"
+"#;
+
+#[test]
+fn dimensions_are_numbers_and_forces_too() {
+    let product = parse(DRAG, &[]).unwrap().product.unwrap();
+    let nominal = product.nominal_measures();
+    close(nominal[0], 0.15 * 10.5, 1e-14);
+    close(nominal[1], 4000.0, 1e-10);
+    close(nominal[2], 3.0 / 1.575, 1e-14);
+    let measured = [0, 1, 2].map(|i| (product.model.measures[i].quantity, product.model.measures[i].limits));
+    assert_eq!(measured[0], (Quantity::Force, [None, Some(2.5)]));
+    assert_eq!(measured[1], (Quantity::Stiffness, [Some(3000.0), None]));
+    assert_eq!(measured[2].0, Quantity::Ratio);
+    let settings = Settings { method: Method::PseudoRandom, samples: 1000, replicates: 1, seed: 1 };
+    let report = report("drag", &product.model, &analyse(&product.model, settings, |_| ()).unwrap());
+    let [drag, twice, _] = &report.measures[..] else { panic!("three measures") };
+    assert_eq!([drag.unit, twice.unit], ["N", "N/mm"]);
+    close(drag.nominal.unwrap(), 1.575, 1e-12);
+    close(drag.worst_case_vertices.unwrap()[1], 0.18 * (2.2 * 5.5 + 0.55), 1e-12);
+    close(twice.rss.unwrap().tolerance, 0.4, 1e-9);
+    // The middle of every tolerance is its nominal value: ∂drag/∂spring is friction · travel.
+    let slopes =
+        [("spring", 0.15 * 5.0, "N/mm"), ("travel", 0.15 * 2.0, "mm"), ("friction", 10.5, ""), ("load", 0.15, "N")];
+    for (name, slope, per) in slopes {
+        let share = drag.contributors.iter().find(|share| share.name == name).unwrap();
+        close(share.slope.unwrap(), slope, 1e-6);
+        assert_eq!(share.per, Some(per));
+    }
+}
+
+#[test]
+fn kinds_that_do_not_fit_are_pointed_at() {
+    for (old, new, expected) in [
+        ("tolerance = 0.2", "tolerance = \"m\"", "the class m of a stiffness"),
+        ("tolerance = 0.2", "tolerance = \"H7\"", "the class H7 of a stiffness"),
+        ("tolerance = 0.2", "", "`dimension.tolerance` is missing"),
+        ("tolerance = \"50 mN\"", "tolerance = \"50 mm\"", "`dimension.tolerance` is \"50 mm\""),
+        ("\"number\"", "\"weight\"", "length, angle, number, force, stiffness, mass, moment, pressure, time"),
+        ("value = 0.15", "value = \"0.15 mm\"", "a number without a unit"),
+        ("spring * travel + load", "spring * travel + friction", "cannot add a force and a plain number"),
+        ("upper = 2.5", "upper = \"2.5 mm\"", "N, mN, kN"),
+    ] {
+        let text = DRAG.replacen(old, new, 1);
+        assert_ne!(text, DRAG);
+        let error = parse(&text, &[]).err().unwrap_or_else(|| panic!("{new}")).to_string();
+        assert!(error.contains(expected), "{new}: {error}");
+    }
+}
