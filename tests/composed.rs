@@ -8,9 +8,14 @@ use slipfit::{
     scene::{SceneFile, shipped},
 };
 use slipfit_core::{
-    SVector, integrator::Integrator, kernel::Kernel, mechanism::Mechanism as Mechanics, system::System,
+    SVector,
+    integrator::{Extrapolated, Integrator},
+    kernel::Kernel,
+    mechanism::Mechanism as Mechanics,
+    system::System,
 };
 use slipfit_problems::mechanisms;
+use slipfit_tests::known_runs::mechanism_rows;
 
 fn scene(name: &str) -> Mechanism {
     SceneFile::parse(name, shipped(name).unwrap(), &[]).unwrap_or_else(|error| panic!("{error}")).mechanism.unwrap()
@@ -108,4 +113,85 @@ in_space! {
     a_linear_guide_has_the_desks_bits: linear_guide, 1;
     a_hatch_has_the_desks_bits: hatch, 1;
     a_drawer_has_the_desks_bits: telescopic_drawer, 2;
+}
+
+/// The greatest error of the first drive's effort by steps of one length, as a share of its peak in the reference run `file`, whose
+/// rows are a millisecond apart and begin with effort and speed. Coordinate `driven` is the speed that the drive sees.
+fn effort_error<M, I, const D: usize>(
+    file: &str,
+    (mechanism, (pose, velocity)): (M, Start<M::Pose, D>),
+    (step, gain): (f64, f64),
+    driven: usize,
+) -> f64
+where
+    M: Mechanics<f64, D>,
+    I: Integrator,
+{
+    let kernel = Kernel::<f64, _, I>::new(mechanism, step).unwrap();
+    let mut state = kernel.at_rest(pose);
+    state.motion.velocity = velocity;
+    let (rows, per_row) = (mechanism_rows(file), (1e-3 / step).round() as u32);
+    let (mut worst, mut peak) = (0.0f64, 0.0f64);
+    for row in &rows[1..] {
+        for _ in 0..per_row {
+            kernel.step(&mut state);
+        }
+        worst = worst.max(gain * (state.motion.velocity[driven] - row[1]).abs());
+        peak = peak.max(row[0].abs());
+    }
+    worst / peak
+}
+
+macro_rules! within_a_hundredth {
+    ($($name:ident, $file:literal, $gain:literal, $driven:literal;)*) => {[$(
+        ($file, effort_error::<_, mechanisms::$name::Scheme, { mechanisms::$name::DIMENSION }>(
+            $file,
+            (mechanisms::$name::unit(0.0f64).unwrap(), mechanisms::$name::start::<f64>()),
+            (f64::from(mechanisms::$name::STEP), $gain),
+            $driven,
+        )),
+    )*]};
+}
+
+/// The scheme and step that each scene states for its controller; gains in N·m·s/rad and N·s/m.
+#[test]
+fn controllers_err_by_less_than_a_hundredth_of_the_greatest_effort() {
+    let errors = within_a_hundredth![
+        slider_crank, "P1-slow", 0.2, 0;
+        slider_crank_guide, "P2-driven", 0.1, 0;
+        four_bar, "P3-slow", 0.2, 0;
+        linear_guide, "S1-runs", 200.0, 2;
+        telescopic_drawer, "S2-first", 60.0, 8;
+    ];
+    for (file, error) in errors {
+        println!("{file:10} {:.3} %", error * 100.0);
+        assert!(error < 0.01, "{file}: {error}");
+    }
+}
+
+/// Beak and sleeve strike so hard that places and angles need steps of 1 µs: no controller computes a toy.
+#[test]
+fn the_woodpecker_errs_by_less_than_a_hundredth_of_its_motion_in_steps_of_a_microsecond() {
+    let unit = mechanisms::woodpecker_toy::unit(0.0).unwrap();
+    let kernel = Kernel::<f64, _, Extrapolated<2, 4>>::new(unit, 1e-6).unwrap();
+    let (pose, velocity) = mechanisms::woodpecker_toy::start();
+    let mut state = kernel.at_rest(pose);
+    state.motion.velocity = velocity;
+    let (mut worst, mut peak) = ([0.0f64; 3], [0.0f64; 3]);
+    for row in &mechanism_rows("S3-ticks")[1..] {
+        for _ in 0..1000 {
+            kernel.step(&mut state);
+        }
+        let [[y, _], sleeve, bird] = state.motion.pose;
+        let angle = |[w, v]: [f64; 2]| 2.0 * libm::atan2(v, w);
+        for (k, (found, expected)) in
+            [(y, row[0]), (angle(sleeve), row[2]), (angle(bird), row[4])].into_iter().enumerate()
+        {
+            worst[k] = worst[k].max((found - expected).abs());
+            peak[k] = peak[k].max(expected.abs());
+        }
+    }
+    let errors: [f64; 3] = std::array::from_fn(|k| worst[k] / peak[k]);
+    println!("{errors:?}");
+    assert!(errors.iter().all(|error| *error < 0.01), "{errors:?}");
 }

@@ -85,6 +85,16 @@ pub fn references() -> Vec<Reference> {
     manifest.cases.into_iter().map(load).collect()
 }
 
+/// The rows of a reference run of a mechanism, without the time.
+///
+/// # Panics
+/// If the file is missing or not as expected.
+pub fn mechanism_rows(file: &str) -> Vec<Vec<f64>> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/reference/mechanisms/{file}.csv"));
+    let mut reader = csv::Reader::from_path(path).expect("a reference run");
+    reader.deserialize().map(|row: Result<Vec<f64>, _>| row.expect("numbers")[1..].to_vec()).collect()
+}
+
 impl Reference {
     /// How far `force` (N, every millisecond) is off.
     ///

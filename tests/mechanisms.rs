@@ -1,12 +1,11 @@
 //! Mechanisms from their shipped scenes against reference runs: adaptive Radau in f64 at rtol 1e-10, written independently of
 //! this project, which a second formulation with its own contact geometry agrees with to 6e-7 of the peaks.
 
-use std::path::PathBuf;
-
 use slipfit::{
     mechanism::{Mechanism, MechanismRun, run},
     scene::{Override, SceneFile, shipped},
 };
+use slipfit_tests::known_runs::mechanism_rows;
 
 /// A reference run, and the scene with the changes that lead to it.
 struct Case {
@@ -206,17 +205,10 @@ fn mean_unit(mechanism: &Mechanism, every: f64) -> MechanismRun {
     run(mechanism, &mechanism.gaps_at(&[0.0]).unwrap(), every).unwrap()
 }
 
-/// The rows of a reference run, without the time.
-fn reference(file: &str) -> Vec<Vec<f64>> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/reference/mechanisms/{file}.csv"));
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    reader.deserialize().map(|row: Result<Vec<f64>, _>| row.unwrap()[1..].to_vec()).collect()
-}
-
 /// The greatest errors of each column, as a share of its peak. In space displacements and rotations count against the
 /// greatest of the body's three.
 fn errors(case: &Case, run: &MechanismRun) -> Vec<f64> {
-    let expected = reference(case.file);
+    let expected = mechanism_rows(case.file);
     assert_eq!(expected.len(), run.samples.rows.len(), "{}", case.file);
     let column =
         |name: &str| run.samples.columns.iter().position(|one| one == name).unwrap_or_else(|| panic!("{name}"));

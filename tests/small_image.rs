@@ -4,7 +4,7 @@
 use std::{fmt::Write, fs, path::Path};
 
 use slipfit::{
-    kernel_crate::crate_files,
+    kernel_crate::slide_crate,
     scene::{CD_ROM_SLIDE, Scene},
 };
 use slipfit_tests::cross::{self, TARGET, cargo, finished, printed};
@@ -62,7 +62,7 @@ fn workspace(folder: &Path, scene: &Scene) {
         fs::create_dir_all(path.parent().expect("a folder")).expect("the test's folder takes folders");
         fs::write(path, text).expect("the test's folder takes files");
     };
-    for (path, text) in crate_files(scene, "slide", Some(&Path::new(ROOT).join("core"))) {
+    for (path, text) in slide_crate(scene, "slide", Some(&Path::new(ROOT).join("core"))) {
         write(&format!("slide/{}", path.display()), &text);
     }
     write(

@@ -3,14 +3,18 @@
 use serde::Serialize;
 
 use crate::{
+    driven::DriveKind,
     number::{fixed, level},
     outcome::{Moment, Outcome, Verdict},
     sweep::{Level, Sweep},
 };
 
-/// Neighbouring levels with one verdict.
+/// Neighbouring levels with one verdict. For a drive that turns, N and m are N·m and rad.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Range {
+    /// What the drive gives.
+    #[serde(skip)]
+    pub kind: DriveKind,
     /// Loosest level.
     pub first: f64,
     /// Tightest level.
@@ -37,6 +41,7 @@ pub fn ranges(sweep: &Sweep) -> Vec<Range> {
     let range = |group: &[Level]| {
         let outcomes = || group.iter().map(|level| &level.outcome);
         Some(Range {
+            kind: sweep.kind,
             first: group.first()?.n,
             last: group.last()?.n,
             verdict: group.first()?.outcome.verdict,
@@ -76,22 +81,25 @@ impl Range {
         } else {
             format!("{} … {}", level(self.first), level(self.last))
         };
-        let travel = between(self.travel.map(|z| z * 1e3), 1);
+        let kind = self.kind;
+        let (travel, unit) = (between(self.travel.map(|z| kind.travel(z)), 1), kind.travel_unit());
         let time = between(self.time, 2);
         let way = match (self.verdict, self.stroke_reached) {
-            (_, Some(true)) => format!("the stroke of {travel} mm in {time} s"),
-            (Verdict::Jammed, _) => format!("comes {travel} mm in {time} s"),
-            _ => format!("is at {travel} mm after {time} s"),
+            (_, Some(true)) => format!("the stroke of {travel} {unit} in {time} s"),
+            (Verdict::Jammed, _) => format!("comes {travel} {unit} in {time} s"),
+            _ => format!("is at {travel} {unit} after {time} s"),
         };
-        let force = self.peak_force.map_or_else(String::new, |force| format!(", peak force {} N", between(force, 3)));
+        let peak = |force| format!(", peak {} {} {}", kind.effort(), between(force, 3), kind.effort_unit());
+        let force = self.peak_force.map_or_else(String::new, peak);
         format!("n = {levels:14} {:9} {way}{force}", self.verdict.to_string())
     }
 }
 
 /// Where on its way a unit tips, slows or stops, in words; empty where it does not.
-pub fn on_the_way(outcome: &Outcome) -> String {
-    let at =
-        |what: &str, moment: Option<Moment>| moment.map(|moment| format!("{what} at {} mm", fixed(moment.z * 1e3, 1)));
+pub fn on_the_way(kind: DriveKind, outcome: &Outcome) -> String {
+    let at = |what: &str, moment: Option<Moment>| {
+        moment.map(|moment| format!("{what} at {} {}", fixed(kind.travel(moment.z), 1), kind.travel_unit()))
+    };
     let slows = if outcome.stops.is_some() { at("stops", outcome.stops) } else { at("slows", outcome.slows) };
     [at("tips", outcome.tips), slows].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
@@ -100,6 +108,7 @@ pub fn on_the_way(outcome: &Outcome) -> String {
 mod tests {
     use super::{on_the_way, ranges};
     use crate::{
+        driven::DriveKind,
         example,
         outcome::{Moment, Verdict},
         scene::LevelRange,
@@ -128,12 +137,13 @@ mod tests {
     #[test]
     fn tells_what_happens_on_the_way() {
         let mut outcome = example::sweep(LevelRange { first: 0.0, step: 1.0, count: 1 }, 0.1, 0.1).levels[0].outcome;
+        let kind = DriveKind::Pushes;
         let moment = |z: f64| Some(Moment { t: 1.0, z });
         (outcome.tips, outcome.slows, outcome.stops) = (None, None, None);
-        assert_eq!(on_the_way(&outcome), "");
+        assert_eq!(on_the_way(kind, &outcome), "");
         (outcome.tips, outcome.slows) = (moment(0.0312), moment(0.04));
-        assert_eq!(on_the_way(&outcome), "tips at 31.2 mm, slows at 40.0 mm");
+        assert_eq!(on_the_way(kind, &outcome), "tips at 31.2 mm, slows at 40.0 mm");
         outcome.stops = moment(0.05);
-        assert_eq!(on_the_way(&outcome), "tips at 31.2 mm, stops at 50.0 mm");
+        assert_eq!(on_the_way(kind, &outcome), "tips at 31.2 mm, stops at 50.0 mm");
     }
 }

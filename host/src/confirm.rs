@@ -46,6 +46,7 @@ mod tests {
 
     use super::confirmed;
     use crate::{
+        driven::Driven,
         example,
         outcome::Verdict,
         simulate::{Settings, simulate},

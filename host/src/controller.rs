@@ -154,6 +154,7 @@ where
                     scalar: spec.scalar,
                     step_s: Some(step),
                     tolerance_n: None,
+                    tolerance_m_per_s: None,
                     stick_band_m_per_s: None,
                     effort: Effort { accepted: state.steps, refused: 0 },
                     worst_residual,

@@ -19,8 +19,10 @@ use slipfit_core::{
 };
 
 use crate::{
-    error_control::{Knot, Sensitivity, Stopped, Tolerance, between, integrate, sampled},
+    driven::Driven,
+    error_control::{Knot, Sensitivity, Stopped, Tolerance, integrate, sampled},
     laws::AnySlide,
+    looks::{end, looks, samples},
     out_of_line::OutOfLine,
     outcome::{Instant, Observer, Trajectory},
     scene::Scene,
@@ -34,9 +36,6 @@ const STICK_BANDS: f64 = 4.0;
 
 /// Bounds of the stick band (m/s) that stands for true stick.
 const STICK_BAND: [f64; 2] = [1e-9, 1e-4];
-
-/// Instants between two knots at which a run is looked at for its figures, the second knot among them.
-const LOOKS: u32 = 4;
 
 /// How much a narrow stick band may tighten the tolerance.
 const NARROWEST: f64 = 0.01;
@@ -88,6 +87,7 @@ pub fn run(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, tolerance
         scalar: ScalarKind::F64,
         step_s: None,
         tolerance_n: Some(tolerance),
+        tolerance_m_per_s: None,
         stick_band_m_per_s: stick_band,
         effort: Default::default(),
         worst_residual: 0.0,
@@ -136,42 +136,18 @@ impl Desk<'_> {
         let integration = start.elapsed();
         solved.effort = effort;
 
-        let end = end(&knots, &observer);
-        for i in 0..knots.len() - 1 {
-            let [from, to] = [knots[i].t, knots[i + 1].t];
-            let first = if i == 0 { 0 } else { 1 };
-            for look in first..=LOOKS {
-                let t = (from + (to - from) * f64::from(look) / f64::from(LOOKS)).min(end);
-                let [vz, _, _, z] = between(&knots, i, t);
-                observer.observe(Instant { t, vz, force: scene.drive.force(t, vz), z });
-                if t == end {
-                    break;
-                }
-            }
-        }
+        let end = end(&knots, |values| observer.is_at_end(values[3]));
+        looks(&knots, end, |t, [vz, _, _, z]| {
+            observer.observe(Instant { t, vz, force: scene.drive.force(t, vz), z });
+        });
         let mut trajectory = Trajectory::default();
-        let count = (end / settings.every * (1.0 + 1e-12)).floor() as usize;
-        let time = |i: usize| (i as f64 * settings.every).min(end);
-        for (i, values) in sampled(&knots, (0..=count).map(time)).into_iter().enumerate() {
-            trajectory.push(time(i), values, scene.drive.force(time(i), values[0]));
+        let times = samples(end, settings.every);
+        for (t, values) in times.clone().zip(sampled(&knots, times)) {
+            trajectory.push(t, values, scene.drive.force(t, values[0]));
         }
         let outcome = observer.outcome();
         Ok(Run { trajectory, outcome, solved, trust: Trust::default(), audit: None, integration })
     }
-}
-
-/// When (s) the run ends: where the stroke does, between the last two knots, or with the last.
-fn end(knots: &[Knot<[f64; 4]>], observer: &Observer) -> f64 {
-    let last = knots.len() - 1;
-    if !observer.is_at_end(knots[last].values[3]) {
-        return knots[last].t;
-    }
-    let [mut before, mut after] = [knots[last - 1].t, knots[last].t];
-    for _ in 0..60 {
-        let middle = 0.5 * (before + after);
-        if observer.is_at_end(between(knots, last - 1, middle)[3]) { after = middle } else { before = middle }
-    }
-    after
 }
 
 /// The keeper walls of the pins, as far as they have been free.

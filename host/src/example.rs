@@ -1,8 +1,8 @@
 //! The paper's slide and sweeps of it, for the tests of plots and reports.
 
 use crate::{
+    driven::Driven,
     scene::{CD_ROM_SLIDE, LevelRange, Scene},
-    simulate::Settings,
     sweep::{Keep, Sweep},
 };
 
@@ -16,5 +16,6 @@ pub fn sweep(levels: LevelRange, duration: f64, ramp_end: f64) -> Sweep {
     let mut scene = cd_rom();
     scene.drive.ramp_end = ramp_end;
     scene.run.duration = duration;
-    crate::sweep::sweep(&scene, &levels.levels(), &Settings::desk(&scene, 1e-3), Keep::Samples, || ()).unwrap()
+    let unit = |n| scene.level(n, scene.motion(1e-3));
+    crate::sweep::sweep(&scene, &levels.levels(), Keep::Samples, unit, || ()).unwrap()
 }

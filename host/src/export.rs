@@ -1,6 +1,6 @@
 //! Results as CSV.
 
-use slipfit_core::slide::ABSENT;
+use slipfit_core::{clearance::GapClass, slide::ABSENT};
 
 use crate::{
     mechanism::Samples,
@@ -85,26 +85,25 @@ pub fn population_csv(scene: &Scene, units: &[Unit]) -> anyhow::Result<Vec<u8>> 
 ///
 /// # Errors
 /// Those of the writer, none in memory.
-pub fn sweep_csv(scene: &Scene, sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
+pub fn sweep_csv(sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let figures = [
         "n",
         "breakaway_s",
-        "peak_force_N",
-        "settled_force_N",
-        "final_velocity_m_per_s",
+        sweep.kind.choose("peak_force_N", "peak_torque_N_m"),
+        sweep.kind.choose("settled_force_N", "settled_torque_N_m"),
+        sweep.kind.choose("final_velocity_m_per_s", "final_velocity_rad_per_s"),
         "end_s",
-        "travel_m",
-        "tips_m",
-        "slows_m",
-        "stops_m",
+        sweep.kind.choose("travel_m", "travel_rad"),
+        sweep.kind.choose("tips_m", "tips_rad"),
+        sweep.kind.choose("slows_m", "slows_rad"),
+        sweep.kind.choose("stops_m", "stops_rad"),
         "verdict",
     ];
-    let names = scene.contact_names();
-    writer.write_record(figures.into_iter().chain(names.iter().map(String::as_str)))?;
+    writer.write_record(figures.into_iter().chain(sweep.gaps.iter().map(String::as_str)))?;
     for level in &sweep.levels {
         let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
-        let classes = level.classes.map(|class| class.map_or_else(String::new, |class| class.to_string()));
+        let class = |class: &Option<GapClass>| class.map_or_else(String::new, |class| class.to_string());
         let place = |moment: Option<Moment>| optional(moment.map(|moment| moment.z));
         let figures = [
             ten_digits(level.n),
@@ -119,7 +118,7 @@ pub fn sweep_csv(scene: &Scene, sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
             place(level.outcome.stops),
             level.outcome.verdict.to_string(),
         ];
-        writer.write_record(figures.iter().chain(&classes))?;
+        writer.write_record(figures.into_iter().chain(level.classes.iter().map(class)))?;
     }
     Ok(writer.into_inner()?)
 }

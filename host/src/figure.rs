@@ -14,15 +14,18 @@ use crate::{
 /// # Errors
 /// [`PlotError`], if the sweep is empty or not finite.
 pub fn velocities(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
-    over_time(sweep, title, "velocity of the slide", "mm/s", |run| run.vz.iter().map(|v| v * 1e3).collect())
+    let kind = sweep.kind;
+    let speeds = |run: &Trajectory| run.vz.iter().map(|v| kind.speed(*v)).collect();
+    over_time(sweep, title, kind.choose("speed", "angular velocity"), kind.speed_unit(), speeds)
 }
 
-/// Drive force over time at every level as SVG.
+/// Drive force or torque over time at every level as SVG.
 ///
 /// # Errors
 /// [`PlotError`], if the sweep is empty or not finite.
 pub fn forces(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
-    over_time(sweep, title, "drive force", "N", |run| run.force.clone())
+    let quantity = format!("drive {}", sweep.kind.effort());
+    over_time(sweep, title, &quantity, sweep.kind.effort_unit(), |run| run.force.clone())
 }
 
 /// Velocity and drive force of one unit over time as SVG.
@@ -49,7 +52,7 @@ pub fn unit_over_time(run: &Trajectory, title: &str, n: &[f64]) -> Result<String
         x_label: "time (ms)".to_owned(),
         scale: Scale::Linear,
         panels: vec![
-            panel("velocity of the slide (mm/s)", run.vz.iter().map(|v| v * 1e3).collect()),
+            panel("speed (mm/s)", run.vz.iter().map(|v| v * 1e3).collect()),
             panel("drive force (N)", run.force.clone()),
         ],
     })
@@ -124,7 +127,9 @@ fn over_time(
 /// # Errors
 /// [`PlotError`], if the sweep is empty or not finite.
 pub fn verdicts(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
-    let mut force = over_n(sweep, "peak drive force (N)", |outcome| outcome.peak_force);
+    let kind = sweep.kind;
+    let peak = format!("peak drive {} ({})", kind.effort(), kind.effort_unit());
+    let mut force = over_n(sweep, &peak, |outcome| outcome.peak_force);
     let mut breakaway = over_n(sweep, "breakaway (ms)", |outcome| outcome.breakaway.map(|t| t * 1e3));
     if let (Some(first), Some(last)) = (sweep.levels.first(), sweep.levels.last()) {
         const POINTS: usize = 120;
@@ -137,7 +142,11 @@ pub fn verdicts(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
     let panels = if breakaway.points().next().is_some() { vec![force, breakaway] } else { vec![force] };
     line_chart(&Chart {
         title: title.to_owned(),
-        subtitle: format!("verdict and force, {}; behind, how many units are drawn at each level", levels(sweep)),
+        subtitle: format!(
+            "verdict and {}, {}; behind, how many units are drawn at each level",
+            kind.effort(),
+            levels(sweep)
+        ),
         x_label: "tolerance level n".to_owned(),
         scale: Scale::Linear,
         panels,
@@ -216,7 +225,7 @@ mod tests {
         sweep.levels[0].outcome.verdict = Verdict::Jammed;
         sweep.levels[0].outcome.breakaway = None;
         for (svg, words) in [
-            (velocities(&sweep, "a slide"), ["velocity of the slide (mm/s)", "n = +2.5"]),
+            (velocities(&sweep, "a slide"), ["speed (mm/s)", "n = +2.5"]),
             (forces(&sweep, "a slide"), ["drive force (N)", "n = \u{2212}1"]),
             (verdicts(&sweep, "a slide"), ["peak drive force (N)", "jammed"]),
         ] {

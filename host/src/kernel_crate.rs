@@ -1,9 +1,13 @@
-//! A scene as a crate for firmware: nothing in it is generic, so that its step is compiled there and nowhere else, and one
+//! A scene as a crate for firmware: the step of one type, so that it is compiled there and nowhere else, and one
 //! line of a profile keeps it fast in an image that is built for size.
 
 use std::path::{Path, PathBuf};
 
-use crate::{kernel_source::rust_source, scene::Scene};
+use crate::{
+    kernel_source::rust_source,
+    mechanism::{self, Mechanism, RunError},
+    scene::Scene,
+};
 
 /// A crate's name that Cargo does not take.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -22,11 +26,74 @@ pub fn crate_name(folder: &Path) -> Result<String, NameError> {
     if is_good { Ok(name) } else { Err(NameError(name)) }
 }
 
-/// The files of the crate `name`, each with its path in the crate's folder. `core` is where slipfit-core lies; if not given,
-/// its version is.
-pub fn crate_files(scene: &Scene, name: &str, core: Option<&Path>) -> [(PathBuf, String); 2] {
-    [(PathBuf::from("Cargo.toml"), manifest(name, core)), (Path::new("src").join("lib.rs"), library(scene, name))]
+/// Files, each with its path in the crate's folder.
+pub type CrateFiles = [(PathBuf, String); 2];
+
+/// The files of the crate `name` of a slide. `core` is where slipfit-core lies; if not given, its version is.
+pub fn slide_crate(scene: &Scene, name: &str, core: Option<&Path>) -> CrateFiles {
+    crate_files(&rust_source(scene), OF_SLIDE, name, core)
 }
+
+/// The same of a mechanism.
+///
+/// # Errors
+/// If the mechanism has no run, see [`RunError`].
+pub fn mechanism_crate(mechanism: &Mechanism, name: &str, core: Option<&Path>) -> Result<CrateFiles, RunError> {
+    Ok(crate_files(&mechanism::rust_source(mechanism)?, OF_MECHANISM, name, core))
+}
+
+fn crate_files(source: &str, functions: &str, name: &str, core: Option<&Path>) -> CrateFiles {
+    let library = library(source, functions, name);
+    [(PathBuf::from("Cargo.toml"), manifest(name, core)), (Path::new("src").join("lib.rs"), library)]
+}
+
+/// What the crate of a slide has besides its module.
+const OF_SLIDE: &str = "\
+/// What changes from step to step.
+pub type State = slipfit_core::kernel::StateOf<f32, Unit, 6>;
+
+/// What a step says about itself.
+pub type Report = slipfit_core::kernel::Report<f32>;
+
+/// At rest in the nominal pose, at time 0.
+pub fn at_rest(predictor: &Predictor) -> State {
+    predictor.at_rest(slipfit_core::pose::Pose::nominal())
+}
+
+/// Moves `state` by one step of [`STEP`]: the same instructions whatever the state.
+#[inline(never)]
+pub fn step(predictor: &Predictor, state: &mut State) -> Report {
+    predictor.step(state)
+}
+
+/// The force (N) of the drive now.
+pub fn force(predictor: &Predictor, state: &State) -> f32 {
+    predictor.mechanism().drive().force(predictor.time(state.steps), state.motion.velocity.z)
+}
+
+/// Velocity of the slide (m/s) along the drive.
+pub fn velocity(state: &State) -> f32 {
+    state.motion.velocity.z
+}
+";
+
+/// The same of a mechanism, whose module has a function for each drive.
+const OF_MECHANISM: &str = "\
+/// What does not change.
+pub type Parameters = Kernel<f32, Unit<f32>, Scheme>;
+
+/// What changes from step to step.
+pub type State = StateOf<f32, Unit<f32>, DIMENSION>;
+
+/// What a step says about itself.
+pub type Report = slipfit_core::kernel::Report<f32>;
+
+/// Moves `state` by one step of [`STEP`]: the same instructions whatever the state.
+#[inline(never)]
+pub fn step(parameters: &Parameters, state: &mut State) -> Report {
+    parameters.step(state)
+}
+";
 
 fn manifest(name: &str, core: Option<&Path>) -> String {
     let version = env!("CARGO_PKG_VERSION");
@@ -41,32 +108,16 @@ fn manifest(name: &str, core: Option<&Path>) -> String {
     )
 }
 
-fn library(scene: &Scene, name: &str) -> String {
-    let source = rust_source(scene);
+fn library(source: &str, functions: &str, name: &str) -> String {
     // Its first line is a comment on the scene.
-    let (title, module) = source.split_once('\n').unwrap_or((&source, ""));
+    let (title, module) = source.split_once('\n').unwrap_or((source, ""));
     let title = title.trim_start_matches("// ");
     format!(
         "//! {title}\n//!\n\
-         //! Nothing is generic here: the step is compiled in this crate alone, by what the profile says of it. In an image that\n\
+         //! The step is compiled in this crate alone, by what the profile says of it. In an image that\n\
          //! is built for size, or in a dev build, these lines in the workspace's Cargo.toml keep it fast:\n//!\n\
          //! ```toml\n//! [profile.release.package.{name}]\n//! opt-level = 3\n//!\n\
-         //! [profile.dev.package.{name}]\n//! opt-level = 3\n//! ```\n#![no_std]\n#![forbid(unsafe_code)]\n{module}\n\
-         /// What changes from step to step.\n\
-         pub type State = slipfit_core::kernel::StateOf<f32, Unit, 6>;\n\n\
-         /// What a step says about itself.\n\
-         pub type Report = slipfit_core::kernel::Report<f32>;\n\n\
-         /// At rest in the nominal pose, at time 0.\n\
-         pub fn at_rest(predictor: &Predictor) -> State {{\n    \
-         predictor.at_rest(slipfit_core::pose::Pose::nominal())\n}}\n\n\
-         /// Moves `state` by one step of [`STEP`]: the same instructions whatever the state.\n\
-         #[inline(never)]\n\
-         pub fn step(predictor: &Predictor, state: &mut State) -> Report {{\n    predictor.step(state)\n}}\n\n\
-         /// The force (N) of the drive now.\n\
-         pub fn force(predictor: &Predictor, state: &State) -> f32 {{\n    \
-         predictor.mechanism().drive().force(predictor.time(state.steps), state.motion.velocity.z)\n}}\n\n\
-         /// Velocity of the slide (m/s) along the drive.\n\
-         pub fn velocity(state: &State) -> f32 {{\n    state.motion.velocity.z\n}}\n"
+         //! [profile.dev.package.{name}]\n//! opt-level = 3\n//! ```\n#![no_std]\n#![forbid(unsafe_code)]\n{module}\n{functions}"
     )
 }
 
@@ -74,7 +125,7 @@ fn library(scene: &Scene, name: &str) -> String {
 mod tests {
     use std::path::Path;
 
-    use super::{crate_files, crate_name};
+    use super::{crate_name, slide_crate};
     use crate::example;
 
     #[test]
@@ -88,10 +139,10 @@ mod tests {
 
     #[test]
     fn says_where_core_is_and_which_line_keeps_it_fast() {
-        let files = crate_files(&example::cd_rom(), "slide", Some(Path::new("a \"b\"/core")));
+        let files = slide_crate(&example::cd_rom(), "slide", Some(Path::new("a \"b\"/core")));
         let manifest: toml::Table = files[0].1.parse().unwrap();
         assert_eq!(manifest["dependencies"]["slipfit-core"]["path"].as_str(), Some("a \"b\"/core"));
-        let by_version: toml::Table = crate_files(&example::cd_rom(), "slide", None)[0].1.parse().unwrap();
+        let by_version: toml::Table = slide_crate(&example::cd_rom(), "slide", None)[0].1.parse().unwrap();
         let version = by_version["dependencies"]["slipfit-core"]["version"].as_str();
         assert_eq!(version, Some(env!("CARGO_PKG_VERSION")));
         assert!(files.iter().all(|(_, text)| text.contains("[profile.release.package.slide]")));

@@ -8,7 +8,7 @@ use slipfit_core::{
     slide::{ABSENT, CONTACTS},
 };
 
-use crate::{force_table::scene_hash, scene::Scene, scheme::IntegratorKind};
+use crate::{driven::Driven, scene::Scene, scheme::IntegratorKind};
 
 /// What can be written, by a file's extension.
 pub const EXTENSIONS: [&str; 2] = ["rs", "h"];
@@ -98,7 +98,7 @@ pub fn rust_source(scene: &Scene) -> String {
         ..
     } = data;
     let step = scene.controller.step as f32;
-    let hash = scene_hash(scene);
+    let hash = scene.hash();
     let title = title(scene);
     format!(
         "// {title}: a scene for firmware, to be compiled against slipfit-core. SI units.\n\n\
@@ -150,7 +150,7 @@ pub fn c_header(scene: &Scene) -> Result<String, CError> {
          #define SLIPFIT_SCENE_H\n\n/* What a flash table of this scene is stamped with. */\n\
          #define SLIPFIT_SCENE_HASH {:#018x}ull\n\nstatic const slipfit_scene slipfit_this_scene = {{\n",
         title(scene),
-        scene_hash(scene)
+        scene.hash()
     );
     let mut field = |name: &str, value: &str| {
         let _ = writeln!(text, "    .{name} = {value},");
@@ -198,7 +198,7 @@ mod tests {
 
     use super::{CError, c_header, rust_source, scene_data};
     use crate::{
-        force_table::scene_hash,
+        driven::Driven,
         scene::{CD_ROM_SLIDE, Override, Scene},
     };
 
@@ -242,7 +242,7 @@ mod tests {
         }
         let text = c_header(&scene(&[])).unwrap();
         assert!(text.contains("    .scheme = SLIPFIT_SCHEME_IMPLICIT_EULER,\n"));
-        assert!(text.contains(&format!("#define SLIPFIT_SCENE_HASH {:#018x}ull\n", scene_hash(&scene(&[])))));
+        assert!(text.contains(&format!("#define SLIPFIT_SCENE_HASH {:#018x}ull\n", scene(&[]).hash())));
         for law in ["exact", "regularised", "none"] {
             assert!(c_header(&scene(&[&format!("friction.law={law}")])).is_ok());
         }

@@ -11,6 +11,7 @@ pub mod confirm;
 pub mod controller;
 pub mod desk;
 pub mod deviation;
+pub mod driven;
 pub mod error_control;
 #[cfg(test)]
 mod example;
@@ -24,6 +25,7 @@ pub mod kernel_crate;
 pub mod kernel_source;
 mod laws;
 mod layout;
+mod looks;
 mod markup;
 pub mod mechanism;
 pub mod mobility;

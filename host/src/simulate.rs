@@ -89,6 +89,9 @@ pub struct Solved {
     /// Error of force (N) that a step of the desk may make.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance_n: Option<f64>,
+    /// Error of speed (m/s) that a step of the desk may make, for mechanisms.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance_m_per_s: Option<f64>,
     /// Stick band (m/s) that stands for true stick at the desk; exact friction only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stick_band_m_per_s: Option<f64>,
@@ -103,9 +106,14 @@ impl Solved {
     /// How the run was computed, in words.
     pub fn describe(&self) -> String {
         let Effort { accepted, refused } = self.effort;
-        match self.tolerance_n {
+        let tolerance = match (self.tolerance_n, self.tolerance_m_per_s) {
+            (Some(force), _) => Some(format!("{force:e} N")),
+            (None, Some(speed)) => Some(format!("{speed:.1e} m/s")),
+            (None, None) => None,
+        };
+        match tolerance {
             Some(tolerance) => format!(
-                "the desk, error-controlled to {tolerance:e} N a step ({}, {accepted} steps, {refused} refused)",
+                "the desk, error-controlled to {tolerance} a step ({}, {accepted} steps, {refused} refused)",
                 self.integrator
             ),
             None => format!(

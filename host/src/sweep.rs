@@ -1,16 +1,12 @@
-//! The same slide at many tolerance levels.
+//! The same product at many tolerance levels.
 
 use rayon::prelude::*;
-use slipfit_core::{
-    clearance::GapClass,
-    slide::{ABSENT, CONTACTS},
-};
+use slipfit_core::{clearance::GapClass, slide::ABSENT};
 
 use crate::{
-    confirm::confirmed,
+    driven::{DriveKind, Driven},
     outcome::{Outcome, Trajectory},
-    scene::Scene,
-    simulate::{Run, Settings, SimulateError, Solved, simulate},
+    simulate::{SimulateError, Solved},
     trust::Trust,
 };
 
@@ -27,8 +23,8 @@ pub struct Level {
     pub solved: Solved,
     /// How far the run can be trusted.
     pub trust: Trust,
-    /// Class of each gap in the order of Table 2; `None` where there is no contact.
-    pub classes: [Option<GapClass>; CONTACTS],
+    /// Class of each gap in the order of [`Sweep::gaps`]; `None` where there is no contact.
+    pub classes: Vec<Option<GapClass>>,
 }
 
 impl Level {
@@ -42,25 +38,17 @@ impl Level {
 /// A sweep over tolerance levels.
 #[derive(Clone, Debug)]
 pub struct Sweep {
+    /// What the drive gives.
+    pub kind: DriveKind,
+    /// Names of the gaps.
+    pub gaps: Vec<String>,
     /// Equidistant levels, ascending.
     pub levels: Vec<Level>,
 }
 
 /// The class of every gap (m); `None` where there is no contact.
-pub fn classes(gaps: &[f64; CONTACTS]) -> [Option<GapClass>; CONTACTS] {
-    gaps.map(|gap| (gap < ABSENT / 2.0).then(|| GapClass::of(gap)))
-}
-
-/// Runs one unit, and once more as [`confirmed`] does.
-///
-/// # Errors
-/// See [`SimulateError`].
-pub fn level(scene: &Scene, n: f64, settings: &Settings) -> Result<Level, SimulateError> {
-    let n_each = [n; CONTACTS];
-    let gaps = settings.gaps(scene, &n_each);
-    let run = confirmed(scene, &gaps, settings, simulate(scene, &gaps, settings)?)?;
-    let Run { trajectory, outcome, solved, trust, .. } = run;
-    Ok(Level { n, trajectory, outcome, solved, trust, classes: classes(&scene.gaps_at(&n_each)) })
+pub fn classes(gaps: &[f64]) -> Vec<Option<GapClass>> {
+    gaps.iter().map(|gap| (*gap < ABSENT / 2.0).then(|| GapClass::of(*gap))).collect()
 }
 
 /// What a sweep keeps of each run.
@@ -72,22 +60,22 @@ pub enum Keep {
     Figures,
 }
 
-/// Runs every level of `levels`, on all threads of the current pool; `done` is called after each. The result does
-/// not depend on the number of threads.
+/// Runs the `unit` of every level of `levels`, on all threads of the current pool; `done` is called after each. The result
+/// does not depend on the number of threads.
 ///
 /// # Errors
 /// The first level's [`SimulateError`], in the order of levels.
 pub fn sweep(
-    scene: &Scene,
+    driven: &dyn Driven,
     levels: &[f64],
-    settings: &Settings,
     keep: Keep,
+    unit: impl Fn(f64) -> Result<Level, SimulateError> + Sync,
     done: impl Fn() + Sync,
 ) -> Result<Sweep, SimulateError> {
     let levels: Vec<Result<Level, SimulateError>> = levels
         .par_iter()
         .map(|&n| {
-            let mut level = level(scene, n, settings)?;
+            let mut level = unit(n)?;
             if keep == Keep::Figures {
                 level.trajectory = Trajectory::default();
             }
@@ -95,5 +83,5 @@ pub fn sweep(
             Ok(level)
         })
         .collect();
-    Ok(Sweep { levels: levels.into_iter().collect::<Result<_, _>>()? })
+    Ok(Sweep { kind: driven.kind(), gaps: driven.gap_names(), levels: levels.into_iter().collect::<Result<_, _>>()? })
 }

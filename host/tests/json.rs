@@ -81,7 +81,7 @@ fn check_object(tables: &BTreeMap<String, Fields>, value: &Value, name: &str, at
 fn every_field_is_in_the_guide() {
     let tables = guide();
     let folder = tempfile::tempdir().unwrap();
-    let commands: [(&str, &[&str]); 17] = [
+    let commands: [(&str, &[&str]); 20] = [
         ("check", &["check"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
         ("check of a product", &["check", "clutch"]),
@@ -99,6 +99,9 @@ fn every_field_is_in_the_guide() {
         ("allocate", &["allocate", "clutch-processes", "--samples", "1000"]),
         ("allocate", &["allocate", "shaft-housing", "--samples", "1000", "--require", "yield=0.99", "--csv", "c.csv"]),
         ("run", &["run", "--n", "0:2:1"]),
+        ("run of a mechanism", &["run", "slider-crank", "--n", "0:1:1", "--set", "run.duration=100"]),
+        ("table", &["table", "slider-crank", "--n", "0:1:1", "--set", "run.duration=100", "-o", "torque.bin"]),
+        ("kernel", &["kernel", "slider-crank", "-o", "unit.rs"]),
     ];
     for (name, arguments) in commands {
         let mut command = Command::new(env!("CARGO_BIN_EXE_slipfit"));

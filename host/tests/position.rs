@@ -216,10 +216,10 @@ fn runs_that_come_nowhere_are_refused() {
     let short = refused(&scene("1:2:1", &["run.duration=100"]), &WISH);
     assert_eq!(short, PositionError::Ramp { duration: 0.1, ramp_end: 0.1 });
     let slow = refused(&scene("1:2:1", &["drive.speed=1", "run.duration=110"]), &WISH);
-    let PositionError::TooFar { asked, farthest, duration } = slow else { panic!("{slow}") };
+    let PositionError::TooFar { asked, farthest, duration, .. } = slow else { panic!("{slow}") };
     assert!(asked == position::STEP && farthest.z < 1e-4 && duration == 0.11, "{slow}");
     let far = refused(&scene("1:2:1", &["run.duration=200"]), &Wish { stroke: Some(0.1), ..WISH });
-    assert!(far.to_string().starts_with("no slide comes 100 mm far: in 200 ms the farthest, at n = "), "{far}");
+    assert!(far.to_string().starts_with("no unit comes 100 mm far: in 200 ms the farthest, at n = "), "{far}");
     let turning = LevelRange { first: -0.1, ..SPEEDS };
     let turning = Wish { speeds: Some(&LevelRange { count: 11, ..turning }), ..WISH };
     assert!(matches!(refused(&scene("1:2:1", &[]), &turning), PositionError::Direction { .. }));

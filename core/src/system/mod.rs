@@ -26,6 +26,7 @@ use crate::{
     mechanism::{Differentiated, Linearised, Mechanism, Way, settled, settling},
 };
 use assembly::{Balance, Derivatives, Sum};
+use law::DriveLaw;
 
 /// Bodies and the elements that act on them, as integrators see them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +50,35 @@ impl<B, E> System<B, E> {
     pub fn elements(&self) -> &E {
         &self.elements
     }
+
+    /// What the `drive`, one of the elements, sees and gives at time `t` (s), at this `pose` and `velocity`.
+    #[inline(always)]
+    pub fn driving<S: Scalar, L, W, const R: usize, const D: usize>(
+        &self,
+        drive: &Element<L, W, R>,
+        t: S,
+        pose: &B::Pose,
+        velocity: &SVector<S, D>,
+    ) -> Driving<S>
+    where
+        B: Bodies<S, D>,
+        L: Link<S, B, D, R>,
+        W: DriveLaw<S, R>,
+    {
+        let placed = self.bodies.placed(pose, velocity);
+        let view = drive.link.view(&self.bodies, &placed);
+        let speed = drive.law.speed(&drive.link.seen((&self.bodies, &placed), &view).rate);
+        Driving { speed, effort: drive.law.effort(t, speed) }
+    }
+}
+
+/// What a drive sees and gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Driving<S> {
+    /// The speed that it goes by (m/s, or rad/s of one that turns).
+    pub speed: S,
+    /// Its force (N), or torque (N·m).
+    pub effort: S,
 }
 
 /// How the balance of forces goes by time, velocity and place, at one motion.

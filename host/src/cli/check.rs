@@ -1,6 +1,6 @@
 //! `slipfit check`: is the scene sound, what is left free, when does a gap close.
 
-use std::fmt::Write;
+use std::{fmt::Write, path::PathBuf};
 
 use clap::Args;
 use serde::Serialize;
@@ -25,6 +25,9 @@ pub(super) struct Arguments {
     /// Tolerance level of the gaps shown; positive is tighter.
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true)]
     n: f64,
+    /// Draws a mechanism with its joints and gaps as SVG.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
 }
 
 #[derive(Serialize)]
@@ -95,7 +98,10 @@ impl Arguments {
         }
         let file = self.scene.load_file(&[])?;
         if let Some(found) = &file.mechanism {
-            return mechanism::check(found, self.n, &self.scene);
+            return mechanism::check(found, self.n, &self.scene, self.plot.as_deref());
+        }
+        if self.plot.is_some() {
+            return Err(Failure::Input("--plot draws mechanisms of bodies and joints, and this scene has none".into()));
         }
         let of_product = file.product.as_ref().map(|product| product.warnings.clone()).unwrap_or_default();
         if let Some(slide) = &file.slide {

@@ -7,12 +7,12 @@ use serde::Serialize;
 
 use super::{Failure, JSON_VERSION, Moving, SceneArguments, print, print_json, simulate::ControllerArguments};
 use crate::{
+    driven::Driven,
     files,
-    force_table::scene_hash,
-    kernel_crate::{crate_files, crate_name},
+    kernel_crate::{CrateFiles, crate_name, mechanism_crate, slide_crate},
     kernel_source::{EXTENSIONS, c_header, rust_source},
-    mechanism::{self, Mechanism},
-    scene::{ControllerSpec, Scene},
+    mechanism::{self, ByDrive, Mechanism},
+    scene::ControllerSpec,
     scheme::{IntegratorKind, ScalarKind},
 };
 
@@ -39,7 +39,7 @@ pub(super) struct Arguments {
 struct Report {
     json_version: u32,
     file: String,
-    /// Of a slide, what its flash tables are stamped with.
+    /// What flash tables are stamped with; of a mechanism with one drive.
     #[serde(skip_serializing_if = "Option::is_none")]
     scene_hash: Option<String>,
 }
@@ -59,7 +59,8 @@ impl Arguments {
             Moving::Mechanism(mechanism) => return self.write_mechanism(&mechanism),
         };
         if let Some(folder) = &self.folder {
-            return self.write_crate(&scene, folder);
+            let files = |name: &str| Ok(slide_crate(&scene, name, self.core.as_deref()));
+            return self.write_crate(folder, Some(scene.hash()), files);
         }
         let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let text = match extension.as_str() {
@@ -79,7 +80,7 @@ impl Arguments {
             }
         };
         self.write_text(&text)?;
-        self.report(Some(&scene), &self.output)
+        self.report(Some(scene.hash()), &self.output)
     }
 
     fn write_text(&self, text: &str) -> Result<(), Failure> {
@@ -88,30 +89,40 @@ impl Arguments {
     }
 
     fn write_mechanism(&self, mechanism: &Mechanism) -> Result<(), Failure> {
-        if self.folder.is_some() || self.output.extension().is_none_or(|extension| extension != "rs") {
-            return Err(Failure::Input("a mechanism is written as a Rust module: --output FILE.rs".into()));
+        let hash = ByDrive::new(mechanism, 0).filter(|_| mechanism.drives.len() == 1).map(|driven| driven.hash());
+        if let Some(folder) = &self.folder {
+            let files = |name: &str| Ok(mechanism_crate(mechanism, name, self.core.as_deref())?);
+            return self.write_crate(folder, hash, files);
         }
-        let text = mechanism::rust_source(mechanism).map_err(|error| Failure::Input(error.to_string()))?;
-        self.write_text(&text)?;
-        self.report(None, &self.output)
+        if self.output.extension().is_none_or(|extension| extension != "rs") {
+            return Err(Failure::Input(
+                "a mechanism is written as a Rust module, --output FILE.rs, or as a crate, --crate DIR".into(),
+            ));
+        }
+        self.write_text(&mechanism::rust_source(mechanism)?)?;
+        self.report(hash, &self.output)
     }
 
-    fn write_crate(&self, scene: &Scene, folder: &Path) -> Result<(), Failure> {
+    fn write_crate(
+        &self,
+        folder: &Path,
+        hash: Option<u64>,
+        files: impl Fn(&str) -> Result<CrateFiles, Failure>,
+    ) -> Result<(), Failure> {
         let name = crate_name(folder).map_err(|error| Failure::Input(format!("--crate: {error}")))?;
-        let files = crate_files(scene, &name, self.core.as_deref());
-        let files = files.map(|(path, text)| (folder.join(path), text));
+        let files = files(&name)?.map(|(path, text)| (folder.join(path), text));
         let sources = folder.join("src");
         files::prepare_folder(&sources)?;
         self.scene.check_outputs(&files.each_ref().map(|(path, _)| ("--crate", path.as_path())))?;
         for (path, text) in &files {
             files::write(path, text.as_bytes())?;
         }
-        self.report(Some(scene), folder)
+        self.report(hash, folder)
     }
 
-    fn report(&self, scene: Option<&Scene>, written: &Path) -> Result<(), Failure> {
+    fn report(&self, hash: Option<u64>, written: &Path) -> Result<(), Failure> {
         let file = written.display().to_string();
-        let scene_hash = scene.map(|scene| format!("{:016x}", scene_hash(scene)));
+        let scene_hash = hash.map(|hash| format!("{hash:016x}"));
         if self.scene.json {
             return print_json(&Report { json_version: JSON_VERSION, file, scene_hash });
         }

@@ -31,7 +31,7 @@ use crate::{
     files::{self, Coincidence, WriteError},
     force_table::TableError,
     interrupt,
-    mechanism::Mechanism,
+    mechanism::{ByDrive, Mechanism},
     product::Product,
     scene::{Override, SHIPPED, Scene, SceneError, SceneFile, shipped},
     simulate::SimulateError,
@@ -193,12 +193,18 @@ impl SceneArguments {
 
     /// Reads what moves in the scene, with `options` as further settings.
     fn load_moving(&self, options: &[Override]) -> Result<Moving, Failure> {
+        Ok(self.load_moving_with_product(options)?.0)
+    }
+
+    /// Reads what moves in the scene and the product it belongs to, if there is one, with `options` as further settings.
+    fn load_moving_with_product(&self, options: &[Override]) -> Result<(Moving, Option<Product>), Failure> {
         let (name, text) = self.text()?;
-        let overrides = self.overrides(options);
-        match SceneFile::parse(&name, &text, &overrides)?.mechanism {
-            Some(mechanism) => Ok(Moving::Mechanism(Box::new(mechanism))),
-            None => Ok(Moving::Slide(Box::new(Scene::parse(&name, &text, &overrides)?))),
+        let mut file = SceneFile::parse(&name, &text, &self.overrides(options))?;
+        if let Some(mechanism) = file.mechanism.take() {
+            return Ok((Moving::Mechanism(Box::new(mechanism)), file.product));
         }
+        let (scene, product) = file.into_slide(&name, &text)?;
+        Ok((Moving::Slide(Box::new(scene)), product))
     }
 
     /// Reads the slide of the scene and the product it belongs to, if there is one, with `options` as further settings.
@@ -235,6 +241,42 @@ impl SceneArguments {
         }
         let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
         Ok((path.display().to_string(), text.into()))
+    }
+}
+
+/// Which drive of a mechanism.
+#[derive(Args)]
+struct DriveArguments {
+    /// The drive that it is about, where a mechanism has several.
+    #[arg(long, value_name = "NAME")]
+    drive: Option<String>,
+}
+
+impl DriveArguments {
+    /// The drive of `mechanism` that is meant.
+    fn of<'m>(&self, mechanism: &'m Mechanism) -> Result<ByDrive<'m>, Failure> {
+        let names: Vec<_> = mechanism.drives.iter().map(|drive| drive.name.as_str()).collect();
+        let found = match (&self.drive, &names[..]) {
+            (_, []) => {
+                Err("the mechanism has no [[drive]], which this command is about; simulate tells how it moves".into())
+            }
+            (None, [_]) => Ok(0),
+            (None, _) => {
+                Err(format!("the mechanism has several drives: --drive says which, one of {}", names.join(", ")))
+            }
+            (Some(name), _) => names
+                .iter()
+                .position(|one| one == name)
+                .ok_or_else(|| format!("--drive: there is no drive {name:?}, there is {}", names.join(", "))),
+        };
+        let index = found.map_err(Failure::Input)?;
+        Ok(ByDrive::new(mechanism, index).expect("a drive's index"))
+    }
+
+    /// An error if a drive is named for a slide.
+    fn refuse(&self) -> Result<(), Failure> {
+        let given = self.drive.is_some();
+        if given { Err(Failure::Input("--drive is for mechanisms, a slide has one drive".into())) } else { Ok(()) }
     }
 }
 

@@ -10,6 +10,7 @@ use super::{
     simulate::why_undecided, text_table, warn,
 };
 use crate::{
+    driven::Driven,
     export::population_csv,
     files,
     number::{fixed, level, or_dash},

@@ -18,6 +18,7 @@ use crate::{
     audit::Audit,
     confirm::confirmed,
     controller::audited,
+    driven::{DriveKind, Driven},
     export,
     figure::unit_over_time,
     files,
@@ -266,7 +267,7 @@ impl Arguments {
             Some(number) => format!("unit {number}"),
             None => format!("n = {}", n.iter().map(|&n| level(n)).collect::<Vec<_>>().join(", ")),
         };
-        let way = on_the_way(&run.outcome);
+        let way = on_the_way(DriveKind::Pushes, &run.outcome);
         let _ = writeln!(text, "{}, {of}\n", scene.title);
         let _ = writeln!(text, "Verdict         {verdict}{}", why_undecided(scene, verdict));
         let _ = writeln!(text, "Breakaway       {} ms", or_dash(breakaway, |t| fixed(t * 1e3, 2)));

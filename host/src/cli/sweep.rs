@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     answer::{Range, on_the_way, ranges},
+    driven::slide_level,
     export::sweep_csv,
     figure::verdicts,
     files,
@@ -112,11 +113,13 @@ impl Arguments {
         };
         let levels = scene.sweep.levels();
         let bar = progress("simulating", levels.len());
-        let swept = self.threads.install(|| sweep(&scene, &levels, &settings, Keep::Figures, || bar.inc(1)))?;
+        let swept = self
+            .threads
+            .install(|| sweep(&scene, &levels, Keep::Figures, |n| slide_level(&scene, n, &settings), || bar.inc(1)))?;
         bar.finish_and_clear();
         let swept = swept?;
         if let Some(path) = &self.csv {
-            files::write(path, &sweep_csv(&scene, &swept)?)?;
+            files::write(path, &sweep_csv(&swept)?)?;
         }
         if let Some(path) = &self.plot {
             files::write(path, verdicts(&swept, &scene.title).map_err(anyhow::Error::from)?.as_bytes())?;
@@ -128,7 +131,7 @@ impl Arguments {
                 json_version: JSON_VERSION,
                 title: scene.title.clone(),
                 ranges: ranges(&swept),
-                levels: for_machines(&scene, &swept),
+                levels: for_machines(&swept),
                 warnings,
             });
         }
@@ -144,11 +147,11 @@ pub(super) fn answer(sweep: &Sweep) -> String {
 }
 
 /// The levels of a sweep as JSON wants them.
-pub(super) fn for_machines(scene: &Scene, sweep: &Sweep) -> Vec<LevelReport> {
+pub(super) fn for_machines(sweep: &Sweep) -> Vec<LevelReport> {
     let report = |level: &Level| {
         let [compressed, zero, free] = level.class_counts();
-        let named = scene.contact_names().into_iter().zip(level.classes);
-        let classes = named.filter_map(|(name, class)| Some((name, class?.to_string()))).collect();
+        let named = sweep.gaps.iter().zip(&level.classes);
+        let classes = named.filter_map(|(name, class)| Some((name.clone(), (*class)?.to_string()))).collect();
         let Level { n, outcome, solved: solver, trust, .. } = *level;
         LevelReport { n, outcome, solver, trust, compressed, zero, free, classes }
     };
@@ -172,7 +175,7 @@ fn for_people(scene: &Scene, sweep: &Sweep) -> String {
                 fixed(end.z * 1e3, 2),
                 verdict.to_string(),
                 format!("{compressed}/{zero}/{free}"),
-                on_the_way(&at.outcome),
+                on_the_way(sweep.kind, &at.outcome),
             ]
         })
         .collect();

@@ -1,33 +1,35 @@
 //! `slipfit table`: the flash table.
 
-use std::{
-    fmt::Write,
-    path::{Path, PathBuf},
-};
+mod words;
+
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use slipfit_core::table::AxisKind;
 
 use super::{
-    Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, print, print_json, progress,
+    DriveArguments, Failure, JSON_VERSION, Moving, SceneArguments, ThreadArguments, check, mechanism, print,
+    print_json, progress,
     sweep::{LevelArguments, doubts},
     warn,
 };
 use crate::{
+    driven::{DriveKind, Driven},
     files,
     flash::{
-        AxisSpec, TABLE_ADDRESS, TABLE_REGION,
+        AxisSpec, TABLE_ADDRESS,
         export::{EXTENSIONS, ExportError, render},
     },
     force_table::{
         self, Demand, ForceTable,
         position::{self, PositionTable, Reach, Wish},
     },
-    number::{fixed, level},
-    outcome::Verdict,
-    scene::{LevelRange, Scene, parse_levels},
+    scene::{LevelRange, parse_levels},
 };
+
+pub(super) use words::coarse;
+use words::{describe, describe_short};
 
 /// Makes the flash table and says how large it is and how well it interpolates.
 #[derive(Args)]
@@ -37,17 +39,19 @@ pub(super) struct Arguments {
     /// File to write; the extension says how: .bin .hex .h .rs
     #[arg(short, long, value_name = "FILE", default_value = "table.bin")]
     output: PathBuf,
+    #[command(flatten)]
+    drive: DriveArguments,
     /// What force is looked up by, beside the tolerance level. Over position the whole stroke is simulated.
     #[arg(long, value_enum, default_value_t)]
     over: Over,
-    /// Commanded speeds (mm/s) of a table over position,speed; each takes the place of drive.speed.
+    /// Commanded speeds (mm/s; rad/s of a drive that turns) of a table over position,speed; each takes the place of drive.speed.
     #[arg(long, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: Option<String>,
-    /// Where the positions of a table end (mm). If not given: at the end of the stroke, or where the slowest unit is that
+    /// Where the positions of a table end (mm; ° of a drive that turns). If not given: at the end of the stroke, or where the slowest unit is that
     /// runs at least at half its commanded speed when its run ends.
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     end: Option<f64>,
-    /// Greatest error of force (N) where the table is used, over time from the ramp's start on, over position where every
+    /// Greatest error of force (N; N·m of a drive that turns) where the table is used, over time from the ramp's start on, over position where every
     /// slide nearby comes to: the smallest table that meets it is made, as multiples of a scale (i16) or as numbers
     /// (f32).
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
@@ -81,6 +85,8 @@ struct Report {
     bytes: usize,
     axes: Vec<AxisReport>,
     encoding: &'static str,
+    /// N, or N·m of a drive that turns, whose forces and speeds are torques and rad/s.
+    effort_unit: &'static str,
     scene_hash: String,
     worst_force_error_n: f64,
     worst_velocity_error_m_per_s: f64,
@@ -105,55 +111,71 @@ struct AxisReport {
     count: usize,
 }
 
-impl From<&AxisSpec> for AxisReport {
-    fn from(&AxisSpec { kind, first, step, count }: &AxisSpec) -> Self {
-        Self { kind: kind.name(), unit: kind.unit(), first, step, count }
+impl AxisReport {
+    fn new(drive: DriveKind, &AxisSpec { kind, first, step, count }: &AxisSpec) -> Self {
+        let unit = match kind {
+            AxisKind::Position => drive.choose(kind.unit(), "rad"),
+            AxisKind::Velocity => drive.choose(kind.unit(), "rad/s"),
+            AxisKind::Level | AxisKind::Time => kind.unit(),
+        };
+        Self { kind: kind.name(), unit, first, step, count }
     }
 }
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let overrides: Vec<_> = self.levels.overrides().into_iter().collect();
-        let scene = self.scene.load(&overrides)?;
+        let is_stroke = self.over != Over::Time;
+        match self.scene.load_moving(&overrides)? {
+            Moving::Slide(mut scene) => {
+                self.drive.refuse()?;
+                let duration = scene.stroke_duration().filter(|_| is_stroke);
+                scene.run.duration = scene.run.duration.max(duration.unwrap_or_default());
+                self.make(&*scene, check::warnings_of(&scene))
+            }
+            Moving::Mechanism(mechanism) => {
+                let driven = self.drive.of(&mechanism)?;
+                self.make(&driven, mechanism::warnings_of(&mechanism)?)
+            }
+        }
+    }
+
+    fn make(&self, driven: &dyn Driven, mut warnings: Vec<String>) -> Result<(), Failure> {
+        let kind = driven.kind();
         let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if !EXTENSIONS.contains(&extension.as_str()) {
             return Err(Failure::Input(format!("--output: {}", ExportError::Extension { found: extension })));
         }
         if let Some(error) = self.max_error.filter(|error| !(1e-9..=1e6).contains(error)) {
-            return Err(Failure::Input(format!("--max-error is {error}, allowed is 1e-9 to 1e6 N")));
+            let unit = kind.effort_unit();
+            return Err(Failure::Input(format!("--max-error is {error}, allowed is 1e-9 to 1e6 {unit}")));
         }
         let demand = self.max_error.map_or(Demand::Full, Demand::MaxError);
-        let speeds = self.speeds()?;
-        let end = self.end.map(|end| end * 1e-3);
+        let speeds = self.speeds(kind)?;
+        let end = self.end.map(|end| end / kind.travel(1.0));
         if end.is_some() && self.over == Over::Time {
             return Err(Failure::Input("--end is for --over position".into()));
-        }
-        let mut scene = scene;
-        if self.over != Over::Time {
-            let duration = scene.stroke_duration().unwrap_or(scene.run.duration);
-            scene.run.duration = duration.max(scene.run.duration);
         }
         let outputs: Vec<_> = std::iter::once(("--output", self.output.as_path()))
             .chain(self.plot.iter().map(|path| ("--plot", path.as_path())))
             .collect();
         let (table, short, doubt) = match self.over {
             Over::Time => {
-                let (table, doubt) = self.over_time(&scene, demand, &outputs)?;
+                let (table, doubt) = self.over_time(driven, demand, &outputs)?;
                 (table, None, doubt)
             }
             Over::Position | Over::PositionAndSpeed => {
                 let wish = Wish { speeds: speeds.as_ref(), stroke: end, demand };
-                let made = self.over_position(&scene, &wish, &outputs)?;
+                let made = self.over_position(driven, &wish, &outputs)?;
                 (made.table, Some(made.short), made.warning)
             }
         };
-        let mut warnings = check::warnings_of(&scene);
         warnings.extend(doubt);
-        warnings.extend(coarse(&scene, &table));
+        warnings.extend(coarse(driven, &table));
         let file = render(&extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
         files::write(&self.output, &file)?;
         if let Some(path) = &self.plot {
-            let svg = force_table::picture(&table, &scene.title).map_err(anyhow::Error::from)?;
+            let svg = force_table::picture(kind, &table, driven.title()).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         if self.scene.json {
@@ -164,9 +186,10 @@ impl Arguments {
                 json_version: JSON_VERSION,
                 file: self.output.display().to_string(),
                 bytes: table.bytes.len(),
-                axes: table.axes.iter().map(AxisReport::from).collect(),
+                axes: table.axes.iter().map(|axis| AxisReport::new(kind, axis)).collect(),
+                effort_unit: kind.effort_unit(),
                 encoding: table.encoding.name(),
-                scene_hash: format!("{:016x}", force_table::scene_hash(&scene)),
+                scene_hash: format!("{:016x}", driven.hash()),
                 worst_force_error_n: force,
                 worst_velocity_error_m_per_s: velocity,
                 worst_force_error_in_use_n: force_in_use,
@@ -178,39 +201,40 @@ impl Arguments {
                 warnings,
             })
         } else {
-            let short = short.map_or_else(String::new, |short| describe_short(&scene, &short));
-            print(&format!("{}\n{}{short}", self.output.display(), describe(&table)))?;
+            let short = short.map_or_else(String::new, |short| describe_short(driven, &short));
+            print(&format!("{}\n{}{short}", self.output.display(), describe(kind, &table)))?;
             warn(&warnings);
             Ok(())
         }
     }
 
     /// The speeds asked for (m/s).
-    fn speeds(&self) -> Result<Option<LevelRange>, Failure> {
+    fn speeds(&self, kind: DriveKind) -> Result<Option<LevelRange>, Failure> {
         match (&self.speeds, self.over) {
             (None, Over::Time | Over::Position) => Ok(None),
             (Some(text), Over::PositionAndSpeed) => {
                 let range = parse_levels(text).map_err(|error| Failure::Input(format!("--speeds {text}: {error}")))?;
-                Ok(Some(LevelRange { first: range.first * 1e-3, step: range.step * 1e-3, count: range.count }))
+                let [first, step] = [range.first, range.step].map(|speed| speed / kind.speed(1.0));
+                Ok(Some(LevelRange { first, step, count: range.count }))
             }
             (Some(_), _) => Err(Failure::Input("--speeds is for --over position,speed".into())),
-            (None, Over::PositionAndSpeed) => {
-                Err(Failure::Input("--over position,speed needs --speeds, such as --speeds 50:150:25 (mm/s)".into()))
-            }
+            (None, Over::PositionAndSpeed) => Err(Failure::Input(
+                "--over position,speed needs --speeds, such as --speeds 50:150:25 (mm/s, or rad/s)".into(),
+            )),
         }
     }
 
     /// The table, and a warning where a run cannot be trusted.
     fn over_time(
         &self,
-        scene: &Scene,
+        driven: &dyn Driven,
         demand: Demand,
         outputs: &[(&str, &Path)],
     ) -> Result<(ForceTable, Option<String>), Failure> {
-        force_table::check(scene, demand).map_err(|error| Failure::Input(error.to_string()))?;
+        force_table::check(driven, demand).map_err(|error| Failure::Input(error.to_string()))?;
         self.scene.check_outputs(outputs)?;
-        let bar = progress("simulating", force_table::levels(&scene.sweep).count);
-        let made = self.threads.install(|| force_table::make(scene, demand, || bar.inc(1)))?;
+        let bar = progress("simulating", force_table::levels(driven.levels()).count);
+        let made = self.threads.install(|| force_table::make(driven, demand, || bar.inc(1)))?;
         bar.finish_and_clear();
         let (table, sweep) = made?;
         Ok((table, doubts(&sweep)))
@@ -218,108 +242,15 @@ impl Arguments {
 
     fn over_position(
         &self,
-        scene: &Scene,
+        driven: &dyn Driven,
         wish: &Wish<'_>,
         outputs: &[(&str, &Path)],
     ) -> Result<PositionTable, Failure> {
-        position::check(scene, wish)?;
+        position::check(driven, wish)?;
         self.scene.check_outputs(outputs)?;
-        let bar = progress("simulating", position::runs(scene, wish.speeds));
-        let made = self.threads.install(|| position::make(scene, wish, || bar.inc(1)))?;
+        let bar = progress("simulating", position::runs(driven, wish.speeds));
+        let made = self.threads.install(|| position::make(driven, wish, || bar.inc(1)))?;
         bar.finish_and_clear();
         Ok(made?)
     }
-}
-
-/// Share of the drive's greatest force from which a table's error is worth a warning.
-const COARSE: f64 = 0.05;
-
-/// A warning where the table errs by much of what the drive can push.
-pub(super) fn coarse(scene: &Scene, table: &ForceTable) -> Option<String> {
-    let ([error, _], greatest) = (table.worst_error_in_use, scene.greatest_force());
-    (error > COARSE * greatest).then(|| {
-        format!(
-            "the table errs by up to {} N where it is used, {} % of the drive's greatest force: neighbouring levels do \
-             different things there; take the levels of one verdict, such as --n 1:3:0.1, or finer ones",
-            fixed(error, 3),
-            fixed(error / greatest * 100.0, 0)
-        )
-    })
-}
-
-/// Size and interpolation error in words.
-pub(super) fn describe(table: &ForceTable) -> String {
-    let nodes = |axis: &AxisSpec| {
-        let what = match axis.kind {
-            AxisKind::Level => "levels of n",
-            AxisKind::Time => "instants",
-            AxisKind::Position => "positions",
-            AxisKind::Velocity => "speeds",
-        };
-        format!("{} {what}", axis.count)
-    };
-    let errors = |[force, velocity]: [f64; 2]| {
-        format!("force {} mN, velocity {} mm/s", fixed(force * 1e3, 3), fixed(velocity * 1e3, 4))
-    };
-    let [in_use, rms, whole] = if table.axes.iter().any(|axis| axis.kind == AxisKind::Time) {
-        [
-            " from the ramp's start on: ",
-            "Its root mean square:                             ",
-            ", release included:        ",
-        ]
-    } else {
-        [
-            " where every slide comes to: ",
-            "Its root mean square:                               ",
-            ", the rest included:         ",
-        ]
-    };
-    let mixed = match table.mixed() {
-        pairs if pairs.is_empty() => String::new(),
-        pairs => {
-            let between: Vec<_> = pairs.iter().map(|pair| pair.map(|n| level(f64::from(n))).join(" and ")).collect();
-            format!("The verdict changes between n = {}: a lookup there is no unit's and says so\n", between.join(", "))
-        }
-    };
-    format!(
-        "{} bytes of the {TABLE_REGION} in the TABLE region: {}, {}\n\
-         Worst interpolation error{in_use}{}\n\
-         {rms}{}\n\
-         Worst interpolation error{whole}{}\n{mixed}",
-        table.bytes.len(),
-        table.axes.iter().map(nodes).collect::<Vec<_>>().join(" by "),
-        table.encoding.name(),
-        errors(table.worst_error_in_use),
-        errors(table.rms_error),
-        errors(table.worst_error),
-    )
-}
-
-/// Which units come short, in words: a line for neighbouring levels with the same verdict.
-fn describe_short(scene: &Scene, short: &[Reach]) -> String {
-    let mut text = String::new();
-    let mut by_speed = short.to_vec();
-    // Stable: by level within a speed.
-    by_speed.sort_by(|one, other| one.speed.total_cmp(&other.speed));
-    let belong = |one: &Reach, other: &Reach| {
-        one.speed == other.speed && one.verdict == other.verdict && other.n - one.n < 1.5 * scene.sweep.step
-    };
-    let range = |[one, other]: [String; 2]| if one == other { one } else { format!("{one} to {other}") };
-    for group in by_speed.chunk_by(belong) {
-        let ends = [group[0], group[group.len() - 1]];
-        let (least, most) =
-            group.iter().fold((f64::MAX, f64::MIN), |(least, most), at| (at.z.min(least), at.z.max(most)));
-        let levels = range(ends.map(|end| level(end.n)));
-        let places = range([least, most].map(|z| fixed(z * 1e3, 2)));
-        let speed = fixed(ends[0].speed * 1e3, 1);
-        let what = match ends[0].verdict {
-            Verdict::Jammed => format!("jams at z = {places} mm"),
-            other => format!("{other} and is at z = {places} mm after {} ms", fixed(scene.run.duration * 1e3, 0)),
-        };
-        let _ = writeln!(text, "n = {levels} at {speed} mm/s {what}");
-    }
-    if !short.is_empty() {
-        text += "Beyond, the table holds the last force and velocity 0.\n";
-    }
-    text
 }

@@ -39,14 +39,50 @@ pub fn scene_hash(data: &SlideData<f64>, deviations: &[f64; CONTACTS]) -> u64 {
     numbers.extend([drive.gain, drive.ramp_start, drive.ramp_end, drive.speed]);
     numbers.extend(&drive.point_b);
 
-    let crc = Crc::<u64>::new(&CRC_64_XZ);
-    let mut digest = crc.digest();
-    digest.update(&[LAWS, normal_type, friction_type]);
-    for number in numbers {
-        // −0 + 0 is 0.
-        digest.update(&(number + 0.0).to_le_bytes());
+    let mut digest = Digest::new();
+    digest.bytes(&[normal_type, friction_type]);
+    digest.numbers(numbers);
+    digest.finish()
+}
+
+static CRC: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
+
+/// A hash of physics, fed part by part.
+pub struct Digest(crc::Digest<'static, u64>);
+
+impl Digest {
+    /// Of the laws alone.
+    pub fn new() -> Self {
+        let mut digest = Self(CRC.digest());
+        digest.bytes(&[LAWS]);
+        digest
     }
-    digest.finalize()
+
+    /// Takes in bytes.
+    pub fn bytes(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    /// Takes in counts and choices, as little-endian u32.
+    pub fn counts(&mut self, counts: impl IntoIterator<Item = usize>) {
+        counts.into_iter().for_each(|count| self.bytes(&(count as u32).to_le_bytes()));
+    }
+
+    /// Takes in numbers, as little-endian f64; −0 counts as 0.
+    pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) {
+        numbers.into_iter().for_each(|number| self.bytes(&(number + 0.0).to_le_bytes()));
+    }
+
+    /// The hash.
+    pub fn finish(self) -> u64 {
+        self.0.finalize()
+    }
+}
+
+impl Default for Digest {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 #[cfg(test)]

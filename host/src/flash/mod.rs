@@ -16,7 +16,7 @@ use slipfit_core::table::{
     motions, verdict_bytes,
 };
 
-pub use hash::scene_hash;
+pub use hash::{Digest, scene_hash};
 
 /// Size of the TABLE region of `memory.x` (bytes): the longest table there can be.
 pub const TABLE_REGION: usize = 256 * 1024;

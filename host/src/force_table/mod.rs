@@ -8,20 +8,17 @@ mod picture;
 pub mod position;
 pub mod time;
 
-use slipfit_core::{
-    slide::CONTACTS,
-    table::{Encoding, MotionVerdict},
-};
+use slipfit_core::table::{Encoding, MotionVerdict};
 use thiserror::Error;
 
 use crate::{
-    flash::{self, AxisSpec, FlashError},
-    scene::{LevelRange, Scene},
+    flash::{AxisSpec, FlashError},
+    scene::LevelRange,
     simulate::SimulateError,
 };
 
 pub use picture::picture;
-pub use time::{check, make, settings};
+pub use time::{check, make};
 
 /// Samples of a run from one node of the finest table to the next; those between serve the error only.
 const SUBSAMPLES: usize = 4;
@@ -96,15 +93,4 @@ pub enum TableError {
 /// error.
 pub fn levels(axis: &LevelRange) -> LevelRange {
     LevelRange { first: axis.first, step: axis.step / 2.0, count: 2 * axis.count - 1 }
-}
-
-/// What a table of `scene` and the kernel of its controller are stamped with: the physics of every unit. How the desk and
-/// the controller compute is no part of it, because a table holds for whatever predicts the same scene.
-pub fn scene_hash(scene: &Scene) -> u64 {
-    let deviations: Vec<f64> =
-        scene.pins.iter().flat_map(|pin| pin.gaps.map(|gap| gap.map_or(0.0, |gap| gap.deviation))).collect();
-    let mut all = [0.0; CONTACTS];
-    all.iter_mut().zip(deviations).for_each(|(slot, deviation)| *slot = deviation);
-    let data = scene.slide_data::<f64>(&scene.gaps_at(&[0.0; CONTACTS]));
-    flash::scene_hash(&data, &all)
 }

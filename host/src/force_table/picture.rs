@@ -4,6 +4,7 @@ use slipfit_core::table::{AxisKind, Table};
 
 use super::ForceTable;
 use crate::{
+    driven::DriveKind,
     flash::AxisSpec,
     number::{level, typeset},
     plot::{Chart, Look, Panel, PlotError, Scale, Series, line_chart},
@@ -13,7 +14,7 @@ use crate::{
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to draw.
-pub fn picture(table: &ForceTable, title: &str) -> Result<String, PlotError> {
+pub fn picture(kind: DriveKind, table: &ForceTable, title: &str) -> Result<String, PlotError> {
     let at = |axis: &AxisSpec, i: usize| axis.first + axis.step * i as f32;
     let [levels, along, ..] = &table.axes[..] else { return Err(PlotError::Empty) };
     let speed = table.axes.get(2).map(|axis| at(axis, axis.count - 1));
@@ -21,26 +22,29 @@ pub fn picture(table: &ForceTable, title: &str) -> Result<String, PlotError> {
         None => Table::<2>::open(&table.bytes).map(|table| table.lookup([n, x]).force),
         Some(speed) => Table::<3>::open(&table.bytes).map(|table| table.lookup([n, x, speed]).force),
     };
+    let shown = |x: f64| if along.kind == AxisKind::Position { kind.travel(x) } else { x * 1e3 };
     let line = |n: f32| {
         let points = (0..along.count).filter_map(|i| {
             let x = at(along, i);
-            Some((f64::from(x) * 1e3, f64::from(force(n, x).ok()?)))
+            Some((shown(f64::from(x)), f64::from(force(n, x).ok()?)))
         });
         let n = f64::from(n);
         Series { label: format!("n = {}", typeset(&level(n))), look: Look::Level(n), points: points.collect() }
     };
-    let speed = speed.map_or_else(String::new, |speed| format!(", commanded to {} mm/s", speed * 1e3));
-    let [what, x_label] = match along.kind {
-        AxisKind::Position => ["position", "position (mm)"],
-        _ => ["time", "time (ms)"],
+    let speed = speed.map_or_else(String::new, |speed| {
+        format!(", commanded to {} {}", kind.speed(f64::from(speed)), kind.speed_unit())
+    });
+    let (what, x_label) = match along.kind {
+        AxisKind::Position => ("position", format!("position ({})", kind.travel_unit())),
+        _ => ("time", "time (ms)".to_owned()),
     };
     line_chart(&Chart {
         title: title.to_owned(),
-        subtitle: format!("drive force over {what}{speed}, as the flash table gives it"),
-        x_label: x_label.to_owned(),
+        subtitle: format!("drive {} over {what}{speed}, as the flash table gives it", kind.effort()),
+        x_label,
         scale: Scale::Linear,
         panels: vec![Panel {
-            y_label: "drive force (N)".to_owned(),
+            y_label: format!("drive {} ({})", kind.effort(), kind.effort_unit()),
             series: (0..levels.count).map(|i| line(at(levels, i))).collect(),
             ..Panel::default()
         }],

@@ -1,6 +1,8 @@
 //! Gaps at a tolerance level.
 
-use super::Mechanism;
+use slipfit_core::clearance::GapStatistics;
+
+use super::{Gap, Mechanism};
 use crate::{number::level, scene::GAP_MOST};
 
 /// All gaps (m) of one unit, in the mechanism's order.
@@ -20,14 +22,28 @@ pub struct GapError {
     pub least: f64,
 }
 
+impl Gap {
+    /// The tolerance level that closes it; `None` where it does not vary.
+    pub fn closes_at(&self) -> Option<f64> {
+        let GapStatistics { mean, deviation } = self.statistics;
+        Some(mean / deviation).filter(|n| n.is_finite())
+    }
+}
+
 impl Mechanism {
+    /// The gap that closes at the lowest level, and that level; of those that are open by their mean.
+    pub fn first_to_close(&self) -> Option<(&Gap, f64)> {
+        let open = self.gaps.iter().filter_map(|gap| Some((gap, gap.closes_at()?))).filter(|(_, n)| *n > 0.0);
+        open.min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
     /// The gaps at the tolerance levels `n`: one for all, or one a gap.
     ///
     /// # Errors
     /// [`GapError`] names the first gap that is out of bounds.
     pub fn gaps_at(&self, n: &[f64]) -> Result<Gaps, GapError> {
         let level = |i: usize| n.get(i).or(n.last()).copied().unwrap_or_default();
-        let at = |(i, gap): (usize, &super::Gap)| {
+        let at = |(i, gap): (usize, &Gap)| {
             let value = gap.statistics.at(level(i));
             let least = self.least_gap(i);
             if value >= least && value <= GAP_MOST {

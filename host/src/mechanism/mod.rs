@@ -4,9 +4,12 @@
 //! x and y span the plane and angles turn from x to y; the others are in space.
 
 pub mod columns;
+mod drawing;
+mod driven;
 pub mod element;
 mod freedom;
 mod gaps;
+mod hash;
 mod laws;
 mod mounts;
 pub mod planar;
@@ -14,6 +17,7 @@ mod run;
 mod source;
 pub mod spatial;
 
+pub use driven::ByDrive;
 pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps};
 pub use laws::{Laws, NormalData, Rebound};

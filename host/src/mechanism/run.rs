@@ -20,8 +20,12 @@ use super::{
 };
 use crate::{
     error_control::{Effort, Knot, Stopped, integrate, sampled},
+    looks::{end, looks, samples},
     out_of_line::OutOfLine,
-    outcome::{Observer, Outcome},
+    outcome::{Observer, Outcome, Trajectory},
+    scene::RunSpec,
+    scheme::ScalarKind,
+    simulate::{SimulateError, Solved},
 };
 
 /// How long (s) an error of speed may last: what makes an error of place of it.
@@ -55,6 +59,16 @@ pub enum RunError {
     Interrupted,
 }
 
+impl From<RunError> for SimulateError {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Unsolved(time) => Self::Unsolved { time },
+            RunError::Interrupted => Self::Interrupted,
+            bad => Self::Parameter(bad.to_string()),
+        }
+    }
+}
+
 impl From<Stopped> for RunError {
     fn from(stopped: Stopped) -> Self {
         match stopped {
@@ -80,12 +94,31 @@ pub struct MechanismRun {
     pub samples: Samples,
     /// Figures of each drive: forces and travel along its axis, or torques and angles about it.
     pub outcomes: Vec<Outcome>,
+    /// What each drive does over time, likewise; x and y are its body's.
+    pub trajectories: Vec<Trajectory>,
     /// Error of speed (m/s) that a step was allowed.
     pub tolerance: f64,
     /// Steps.
     pub effort: Effort,
     /// Time that the integration alone took.
     pub integration: Duration,
+}
+
+impl MechanismRun {
+    /// What computed it.
+    pub fn solved(&self) -> Solved {
+        Solved {
+            by: "desk",
+            integrator: SCHEME,
+            scalar: ScalarKind::F64,
+            step_s: None,
+            tolerance_n: None,
+            tolerance_m_per_s: Some(self.tolerance),
+            stick_band_m_per_s: None,
+            effort: self.effort,
+            worst_residual: 0.0,
+        }
+    }
 }
 
 /// Runs the unit of `mechanism` with the given `gaps` (m) and tells of it every `every` (s).
@@ -222,31 +255,46 @@ fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize
     let start = Motion { pose, velocity, acceleration: SVector::zeros(), memory: system.fresh() };
     let desk = OutOfLine::new(*system);
     let least_mass = system.bodies().least_mass();
-    let mut observers: Vec<_> =
-        mechanism.drives.iter().map(|named| Observer::new(named.drive, mechanism.run)).collect();
+    // The stroke is the first drive's.
+    let of_drive = |k: usize| if k == 0 { mechanism.run } else { RunSpec { stroke: None, ..mechanism.run } };
+    let named = mechanism.drives.iter().enumerate();
+    let mut observers: Vec<_> = named.map(|(k, named)| Observer::new(named.drive, of_drive(k))).collect();
+    let ends = |observers: &[Observer], state: &State<D>| {
+        let (Some(first), Some(_)) = (observers.first(), mechanism.run.stroke) else { return false };
+        mechanism.drives_at(0.0, &told(state)).next().is_some_and(|at| first.is_at_end(at.z))
+    };
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
     let error = |step: &_, length| limits.error(step, length, least_mass);
     let effort = integrate::<Rodas4, _, D>(&desk, start, mechanism.run.duration, error, |t, motion| {
         let values = state(&motion.pose, motion.velocity.into());
         knots.push(Knot { t, values });
-        let motions = told(&values);
-        let mut is_at_end = false;
-        for (observer, at) in observers.iter_mut().zip(mechanism.drives_at(t, &motions)) {
-            observer.observe(at);
-            is_at_end |= observer.is_at_end(at.z);
-        }
-        if is_at_end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     let integration = clock.elapsed();
-    let end = knots.last().map_or(0.0, |knot| knot.t);
-    let count = (end / every * (1.0 + 1e-12)).floor() as usize;
-    let time = |i: usize| (i as f64 * every).min(end);
-    let rows = (0..=count).map(time).zip(sampled(&knots, (0..=count).map(time)));
-    let rows = rows.map(|(t, state)| mechanism.row(t, &told(&state))).collect();
+    let end = end(&knots, |state| ends(&observers, state));
+    looks(&knots, end, |t, state| {
+        let motions = told(&state);
+        for (observer, at) in observers.iter_mut().zip(mechanism.drives_at(t, &motions)) {
+            observer.observe(at);
+        }
+    });
+    let mut trajectories = vec![Trajectory::default(); mechanism.drives.len()];
+    let mut rows = Vec::new();
+    let times = samples(end, every);
+    for (t, state) in times.clone().zip(sampled(&knots, times)) {
+        let motions = told(&state);
+        rows.push(mechanism.row(t, &motions));
+        for ((trajectory, named), at) in
+            trajectories.iter_mut().zip(&mechanism.drives).zip(mechanism.drives_at(t, &motions))
+        {
+            let place = motions[named.body].displacement;
+            trajectory.push(t, [at.vz, place.x, place.y, at.z], at.force);
+        }
+    }
     let outcomes = observers.iter().map(Observer::outcome).collect();
     let samples = Samples { columns: mechanism.columns(), rows };
-    Ok(MechanismRun { samples, outcomes, tolerance: limits.speed, effort, integration })
+    Ok(MechanismRun { samples, outcomes, trajectories, tolerance: limits.speed, effort, integration })
 }
 
 /// The scheme by which the desk integrates.

@@ -10,7 +10,9 @@ use super::{
     simulate_units, unit,
 };
 use crate::{
-    desk, example,
+    desk,
+    driven::Driven,
+    example,
     out_of_line::OutOfLine,
     outcome::{Outcome, Verdict},
     scene::Scene,

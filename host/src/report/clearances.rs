@@ -1,16 +1,57 @@
-//! The gaps of a slide, and what follows from them at a tolerance level.
+//! The gaps: those of a slide with what follows from them at a tolerance level, those of a mechanism by their joints.
 
 use slipfit_core::clearance::GapStatistics;
 
-use super::html::{mm, optional, real, table, tr, typed};
+use super::{
+    Clearances,
+    html::{mm, optional, real, table, tr, typed},
+};
 use crate::{
     markup::escape,
+    mechanism::{Gap, Mechanism},
     scene::{SURFACES, Scene},
-    table2::{Pair, Pin, Table2, Toes},
+    table2::{Pair, Pin, Table2, Toes, derived},
 };
 
+/// The section of the page; `computed` if the gaps follow from a product.
+pub fn section(clearances: &Clearances, computed: bool) -> String {
+    match clearances {
+        Clearances::Pins { scene, n } => given(scene, computed) + &derived_columns(&derived(scene, *n)),
+        Clearances::Joints(mechanism) => of_joints(mechanism),
+    }
+}
+
+/// What closes first, if anything does.
+pub fn first_to_close(clearances: &Clearances) -> Option<(&'static str, String)> {
+    match clearances {
+        Clearances::Pins { scene, n } => {
+            let table = derived(scene, *n);
+            let tightest = table.tightest()?;
+            let (n, pin) = (real(tightest.n, 4), escape(tightest.pin));
+            Some(("First pair to close", format!("{pin}, {}, at n* = {n}", tightest.direction)))
+        }
+        Clearances::Joints(mechanism) => {
+            let (gap, n) = mechanism.first_to_close()?;
+            Some(("First gap to close", format!("{}, at n* = {}", escape(&gap.name), real(n, 4))))
+        }
+    }
+}
+
+/// The gaps of a mechanism's joints.
+fn of_joints(mechanism: &Mechanism) -> String {
+    let head = "<tr><th scope=\"col\">gap</th><th scope=\"col\">mean</th><th scope=\"col\">sd</th>\
+        <th scope=\"col\">n*</th></tr>\n";
+    let row = |gap: &Gap| {
+        let GapStatistics { mean, deviation } = gap.statistics;
+        tr(&escape(&gap.name), &[mm(Some(mean)), mm(Some(deviation)), optional(gap.closes_at(), 3)])
+    };
+    let caption = "The gaps of every joint with play over the production (mm); n* is the level that closes it.";
+    let rows: String = mechanism.gaps.iter().map(row).collect();
+    if rows.is_empty() { rows } else { format!("<h2>Clearances</h2>\n{}", table(caption, head, &rows)) }
+}
+
 /// The gaps as the dynamics use them; `computed` if they follow from a product.
-pub fn given(scene: &Scene, computed: bool) -> String {
+fn given(scene: &Scene, computed: bool) -> String {
     let mut head = "<tr><th scope=\"col\" rowspan=\"2\">pin</th>".to_owned();
     head.extend(SURFACES.map(|surface| format!("<th scope=\"colgroup\" colspan=\"2\">{surface}</th>")));
     head.push_str("</tr>\n<tr class=\"sub\">");
@@ -29,7 +70,7 @@ pub fn given(scene: &Scene, computed: bool) -> String {
 }
 
 /// Table 2's derived columns and toe-outs.
-pub fn derived_columns(derived: &Table2) -> String {
+fn derived_columns(derived: &Table2) -> String {
     let n = typed(derived.n);
     let pair = "<th scope=\"col\">clearance</th><th scope=\"col\">mean</th><th scope=\"col\">n*</th>";
     let head = format!(

@@ -6,33 +6,31 @@ mod clearances;
 mod html;
 mod production;
 
+use self::html::{figure, list, marked, optional, real, table, tr, typed};
 pub use self::production::Production;
-use self::{
-    clearances::{derived_columns, given},
-    html::{figure, list, marked, optional, real, table, tr, typed},
-};
 use crate::{
+    driven::DriveKind,
     markup::escape,
+    mechanism::Mechanism,
     outcome::Verdict,
     palette::style_sheet,
     scene::Scene,
     sweep::{Level, Sweep},
-    table2::{Table2, derived},
 };
 
 /// What a report is made of.
 #[derive(Clone, Copy)]
 pub struct ReportInput<'a> {
-    /// The scene.
-    pub scene: &'a Scene,
+    /// The scene's title.
+    pub title: &'a str,
     /// Its sweep.
     pub sweep: &'a Sweep,
     /// What it comes to, as plain lines; empty for none.
     pub answer: &'a str,
     /// Pictures, in order.
     pub figures: &'a [Figure],
-    /// The tolerance level at which sums and differences of gaps are shown.
-    pub n: f64,
+    /// The gaps.
+    pub clearances: Clearances<'a>,
     /// How the product's measures vary, if the scene has a product.
     pub production: Option<&'a Production>,
     /// The flash table, if one was made.
@@ -50,6 +48,20 @@ pub struct Figure {
     pub svg: String,
 }
 
+/// Whose gaps are shown.
+#[derive(Clone, Copy)]
+pub enum Clearances<'a> {
+    /// Those of a slide's pins.
+    Pins {
+        /// The slide.
+        scene: &'a Scene,
+        /// The tolerance level at which their sums and differences are shown.
+        n: f64,
+    },
+    /// Those of a mechanism's joints.
+    Joints(&'a Mechanism),
+}
+
 /// Figures of a flash table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flash {
@@ -63,8 +75,7 @@ pub struct Flash {
 
 /// The page as HTML.
 pub fn report(input: &ReportInput) -> String {
-    let title = escape(&input.scene.title);
-    let table = derived(input.scene, input.n);
+    let title = escape(input.title);
     let (first, others) = input.figures.split_at(input.figures.len().min(1));
     let sections = [
         verdict(input.answer),
@@ -72,11 +83,10 @@ pub fn report(input: &ReportInput) -> String {
         notes(input.notes),
         figures(others),
         levels(input.sweep),
-        summary(input, &table),
+        summary(input),
         input.production.map(production::section).unwrap_or_default(),
-        given(input.scene, input.production.is_some()),
-        derived_columns(&table),
-        input.flash.as_ref().map(flash).unwrap_or_default(),
+        clearances::section(&input.clearances, input.production.is_some()),
+        input.flash.as_ref().map(|of| flash(input.sweep.kind, of)).unwrap_or_default(),
     ];
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
@@ -99,7 +109,7 @@ fn verdict(answer: &str) -> String {
     format!("<pre class=\"answer\">{}</pre>\n", lines.join("\n"))
 }
 
-fn summary(input: &ReportInput, table: &Table2) -> String {
+fn summary(input: &ReportInput) -> String {
     let ReportInput { sweep, .. } = input;
     let mut facts = Vec::new();
     if let (Some(first), Some(last)) = (sweep.levels.first(), sweep.levels.last()) {
@@ -107,17 +117,15 @@ fn summary(input: &ReportInput, table: &Table2) -> String {
         facts.push(("Sweep", range));
         let peaks = || sweep.levels.iter().filter_map(|level| level.outcome.peak_force);
         if let (Some(low), Some(high)) = (peaks().reduce(f64::min), peaks().reduce(f64::max)) {
-            facts.push(("Peak drive force", format!("{} to {} N", real(low, 3), real(high, 3))));
+            let (name, unit) = (sweep.kind.choose("Peak drive force", "Peak drive torque"), sweep.kind.effort_unit());
+            facts.push((name, format!("{} to {} {unit}", real(low, 3), real(high, 3))));
         }
         facts.push(("Verdicts", verdicts(sweep)));
     }
     if let Some(level) = sweep.levels.first() {
         facts.push(("Computed by", level.solved.describe() + ", each level held against a run at a tenth of that"));
     }
-    if let Some(tightest) = table.tightest() {
-        let (n, pin) = (real(tightest.n, 4), escape(tightest.pin));
-        facts.push(("First pair to close", format!("{pin}, {}, at n* = {n}", tightest.direction)));
-    }
+    facts.extend(clearances::first_to_close(&input.clearances));
     let facts: String = facts.iter().map(|(name, fact)| format!("<dt>{name}</dt><dd>{fact}</dd>\n")).collect();
     format!("<h2>What was done</h2>\n<dl>\n{facts}</dl>\n")
 }
@@ -152,38 +160,45 @@ fn levels(sweep: &Sweep) -> String {
             optional(outcome.breakaway.map(|t| t * 1e3), 1),
             optional(outcome.peak_force, 4),
             optional(outcome.settled_force, 4),
-            real(outcome.final_velocity * 1e3, 2),
+            real(sweep.kind.speed(outcome.final_velocity), 2),
             compressed,
             zero,
             free,
         ];
         tr("", &cells)
     };
-    let head = "<tr><th scope=\"col\" rowspan=\"2\">n</th><th scope=\"col\" rowspan=\"2\">verdict</th>\
-        <th scope=\"col\" rowspan=\"2\">breakaway<br/>(ms)</th><th scope=\"col\" rowspan=\"2\">peak force<br/>(N)</th><th scope=\"col\" rowspan=\"2\">settled force<br/>(N)</th>\
-        <th scope=\"col\" rowspan=\"2\">final velocity<br/>(mm/s)</th>\
+    let (effort, unit, speed) = (sweep.kind.effort(), sweep.kind.effort_unit(), sweep.kind.speed_unit());
+    let head = format!(
+        "<tr><th scope=\"col\" rowspan=\"2\">n</th><th scope=\"col\" rowspan=\"2\">verdict</th>\
+        <th scope=\"col\" rowspan=\"2\">breakaway<br/>(ms)</th><th scope=\"col\" rowspan=\"2\">peak {effort}<br/>({unit})</th><th scope=\"col\" rowspan=\"2\">settled {effort}<br/>({unit})</th>\
+        <th scope=\"col\" rowspan=\"2\">final velocity<br/>({speed})</th>\
         <th scope=\"colgroup\" colspan=\"3\">gaps</th></tr>\n\
-        <tr class=\"sub\"><th scope=\"col\">compressed</th><th scope=\"col\">zero</th><th scope=\"col\">free</th></tr>\n";
+        <tr class=\"sub\"><th scope=\"col\">compressed</th><th scope=\"col\">zero</th><th scope=\"col\">free</th></tr>\n"
+    );
     let caption =
         "n &gt; 0 tightens every gap, n &lt; 0 loosens it. A dash: no breakaway, or a force that has not settled.";
-    let table = table(caption, head, &sweep.levels.iter().map(row).collect::<String>());
+    let table = table(caption, &head, &sweep.levels.iter().map(row).collect::<String>());
     format!("<h2>Levels</h2>\n<details>\n<summary>All {} levels</summary>\n{table}</details>\n", sweep.levels.len())
 }
 
-fn flash(flash: &Flash) -> String {
+fn flash(kind: DriveKind, flash: &Flash) -> String {
     format!(
         "<h2>Flash table</h2>\n<dl>\n<dt>Size</dt><dd>{} bytes</dd>\n<dt>Worst interpolation error</dt>\
-         <dd>{} mN in force, {} mm/s in velocity</dd>\n</dl>\n",
+         <dd>{} m{} in {}, {} {} in velocity</dd>\n</dl>\n",
         flash.bytes,
         real(flash.worst_force_error * 1e3, 3),
-        real(flash.worst_velocity_error * 1e3, 4)
+        kind.effort_unit(),
+        kind.effort(),
+        real(kind.speed(flash.worst_velocity_error), 4),
+        kind.speed_unit()
     )
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Figure, Flash, ReportInput, report};
+    use super::{Clearances, Figure, Flash, ReportInput, report};
     use crate::{
+        driven::DriveKind,
         example,
         figure::{forces, velocities, verdicts},
         scene::LevelRange,
@@ -203,11 +218,11 @@ mod tests {
         let flash = Some(Flash { bytes: 34_816, worst_force_error: 1.23e-3, worst_velocity_error: 2.1e-5 });
         let notes = ["a < b".to_owned()];
         report(&ReportInput {
-            scene: &scene,
+            title: &scene.title,
             sweep: &sweep,
             answer: "n = 1 … 2 runs & <b>\nCloses first",
             figures: &figures,
-            n: 3.43,
+            clearances: Clearances::Pins { scene: &scene, n: 3.43 },
             production: None,
             flash,
             notes: &notes,
@@ -295,14 +310,15 @@ mod tests {
 
     #[test]
     fn leaves_out_what_there_is_not() {
-        let (scene, sweep) = (example::cd_rom(), Sweep { levels: Vec::new() });
+        let (scene, sweep) =
+            (example::cd_rom(), Sweep { kind: DriveKind::Pushes, gaps: Vec::new(), levels: Vec::new() });
         let (production, flash) = (None, None);
         let input = ReportInput {
-            scene: &scene,
+            title: &scene.title,
             sweep: &sweep,
             answer: "",
             figures: &[],
-            n: 0.0,
+            clearances: Clearances::Pins { scene: &scene, n: 0.0 },
             production,
             flash,
             notes: &[],

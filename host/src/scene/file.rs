@@ -85,15 +85,22 @@ impl SceneFile {
         text: &str,
         overrides: &[Override],
     ) -> Result<(Scene, Option<Product>), SceneError> {
-        let file = Self::parse(file_name, text, overrides)?;
-        if file.mechanism.is_some() {
-            return Err(no_slide(file_name, text, Problem::NotASlide, "check, simulate and sweep work on this one"));
+        Self::parse(file_name, text, overrides)?.into_slide(file_name, text)
+    }
+
+    /// The slide and the product it belongs to, of a scene that was read from the `text` of `file_name`.
+    ///
+    /// # Errors
+    /// [`SceneError`] says that there is no slide.
+    pub fn into_slide(self, file_name: &str, text: &str) -> Result<(Scene, Option<Product>), SceneError> {
+        if self.mechanism.is_some() {
+            let instead = "check, simulate, sweep, run, table and kernel work on this one";
+            return Err(no_slide(file_name, text, Problem::NotASlide, instead));
         }
-        Ok((
-            file.slide
-                .ok_or_else(|| no_slide(file_name, text, Problem::NoSlide, "slipfit tolerance works on this one"))?,
-            file.product,
-        ))
+        match self.slide {
+            Some(slide) => Ok((slide, self.product)),
+            None => Err(no_slide(file_name, text, Problem::NoSlide, "slipfit tolerance works on this one")),
+        }
     }
 }
 

@@ -182,19 +182,6 @@ pub struct GapError {
 }
 
 impl Scene {
-    /// The greatest force (N) of the drive: what it pushes with when the slide is blocked at full speed.
-    pub fn greatest_force(&self) -> f64 {
-        (self.drive.gain * self.drive.speed).abs()
-    }
-
-    /// The time (s) after which a run of the whole stroke is over: the ramp, then the stroke at the commanded speed. A slide
-    /// that runs at half of that speed or slower does not come to its end. `None` where no stroke is stated or nothing is
-    /// commanded.
-    pub fn stroke_duration(&self) -> Option<f64> {
-        let speed = self.drive.speed.abs();
-        self.run.stroke.filter(|_| speed > 0.0).map(|stroke| self.drive.ramp_end.max(0.0) + stroke / speed)
-    }
-
     /// Names of the sixteen contacts, such as "left front rail"; those that the scene leaves out too.
     pub fn contact_names(&self) -> [String; CONTACTS] {
         std::array::from_fn(|i| format!("{} {}", self.pins[i / 4].name, SURFACES[i % 4]))

@@ -33,6 +33,7 @@ pub(super) const POINT: Quantity = Quantity { units: unit::LENGTH, range: [-1e5,
 const CLEARANCE: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
 const DURATION: Quantity = Quantity { units: unit::MILLISECONDS, range: [0.001, 1e6] };
 const STROKE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
+const TURN: Quantity = Quantity { units: unit::ANGLE, range: [0.001, 1e7] };
 const ERROR: Quantity = Quantity { units: unit::ONE, range: [1e-10, 0.1] };
 const STEP: Quantity = Quantity { units: unit::MICROSECONDS, range: [0.002, 1e4] };
 
@@ -63,7 +64,7 @@ pub(super) fn scene(
     let friction = found.recover(root.table("friction").and_then(|table| friction(&table)), FrictionData::None);
     let controller = found.recover(controller(root, &friction), DEFAULT_CONTROLLER);
     let nothing = RunSpec { duration: 1.0, stroke: None, error: DEFAULT_ERROR };
-    let run = found.recover(root.table("run").and_then(|table| run(&table)), nothing);
+    let run = found.recover(root.table("run").and_then(|table| run(&table, false)), nothing);
     let sweep_table = root.table("sweep")?;
     let scene = Scene {
         title,
@@ -163,10 +164,12 @@ fn nominal_clearance(root: &Field) -> Result<Option<[f64; 2]>, SceneError> {
     drawing.get("clearance").map(|field| field.to_numbers(&CLEARANCE)).transpose()
 }
 
-pub(super) fn run(table: &Field) -> Result<RunSpec, SceneError> {
+/// Reads the table `run`, whose stroke is a length, or an angle where the drive `turns`.
+pub(super) fn run(table: &Field, turns: bool) -> Result<RunSpec, SceneError> {
+    let stroke = if turns { &TURN } else { &STROKE };
     Ok(RunSpec {
         duration: table.number("duration", &DURATION)?,
-        stroke: table.get("stroke").map(|field| field.to_number(&STROKE)).transpose()?,
+        stroke: table.get("stroke").map(|field| field.to_number(stroke)).transpose()?,
         error: table.get("error").map(|field| field.to_number(&ERROR)).transpose()?.unwrap_or(DEFAULT_ERROR),
     })
 }

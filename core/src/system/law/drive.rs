@@ -11,6 +11,39 @@ pub struct Pusher<P>(pub P);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor<P>(pub P);
 
+/// A law that is a drive's.
+pub trait DriveLaw<S, const R: usize> {
+    /// The speed (m/s, rad/s) that the drive goes by, of the rates of its link.
+    fn speed(&self, rate: &SVector<S, R>) -> S;
+
+    /// What it gives (N, N·m) at time `t` (s) and that `speed`.
+    fn effort(&self, t: S, speed: S) -> S;
+}
+
+impl<S: Scalar, P: Push<S>> DriveLaw<S, 2> for Pusher<P> {
+    #[inline(always)]
+    fn speed(&self, rate: &SVector<S, 2>) -> S {
+        rate[1]
+    }
+
+    #[inline(always)]
+    fn effort(&self, t: S, speed: S) -> S {
+        self.0.force(t, speed)
+    }
+}
+
+impl<S: Scalar, P: Push<S>> DriveLaw<S, 1> for Motor<P> {
+    #[inline(always)]
+    fn speed(&self, rate: &SVector<S, 1>) -> S {
+        rate.x
+    }
+
+    #[inline(always)]
+    fn effort(&self, t: S, speed: S) -> S {
+        self.0.force(t, speed)
+    }
+}
+
 impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
     type Memory = ();
 
@@ -23,7 +56,7 @@ impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
     fn response(&self, t: S, _: &SVector<S, 2>, rate: &SVector<S, 2>, (): &(), _: Way<S>) -> (Response<S, 2>, ()) {
         let zero = S::zero();
         let response = Response {
-            force: SVector::<S, 2>::new(self.0.force(t, rate[1]), zero),
+            force: SVector::<S, 2>::new(self.effort(t, self.speed(rate)), zero),
             impedance: SMatrix::<S, 2, 2>::new(zero, self.0.gain(), zero, zero),
             stiffness: SMatrix::zeros(),
             per_time: SVector::<S, 2>::new(self.0.force_rate(t), zero),
@@ -49,7 +82,7 @@ impl<S: Scalar, P: Push<S>> Law<S, 1> for Motor<P> {
     #[inline(always)]
     fn response(&self, t: S, _: &SVector<S, 1>, rate: &SVector<S, 1>, (): &(), _: Way<S>) -> (Response<S, 1>, ()) {
         let response = Response {
-            force: SVector::<S, 1>::new(self.0.force(t, rate.x)),
+            force: SVector::<S, 1>::new(self.effort(t, self.speed(rate))),
             impedance: SMatrix::<S, 1, 1>::new(self.0.gain()),
             stiffness: SMatrix::zeros(),
             per_time: SVector::<S, 1>::new(self.0.force_rate(t)),

@@ -7,7 +7,7 @@ mod ring;
 mod spring;
 mod wall;
 
-pub use drive::{Motor, Pusher};
+pub use drive::{DriveLaw, Motor, Pusher};
 pub use journal::Journal;
 pub use pin::Pin;
 pub use ring::Ring;

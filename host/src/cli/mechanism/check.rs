@@ -1,12 +1,13 @@
 //! What `check` says of a mechanism.
 
-use std::fmt::Write;
+use std::{fmt::Write, path::Path};
 
 use serde::Serialize;
 
 use super::{GapReport, gap_reports};
 use crate::{
     cli::{Failure, JSON_VERSION, SceneArguments, print, print_json, text_table, warn},
+    files,
     mechanism::{Freedom, Mechanism},
     number::{fixed, level, or_dash},
 };
@@ -22,10 +23,16 @@ struct CheckReport<'a> {
 }
 
 /// `check`.
-pub fn check(mechanism: &Mechanism, n: f64, scene: &SceneArguments) -> Result<(), Failure> {
+pub fn check(mechanism: &Mechanism, n: f64, scene: &SceneArguments, plot: Option<&Path>) -> Result<(), Failure> {
+    if let Some(path) = plot {
+        scene.check_outputs(&[("--plot", path)])?;
+    }
     let gaps = mechanism.gaps_at(&[n])?;
     let freedom = Freedom::of(mechanism)?;
     let warnings = warnings(mechanism, &freedom);
+    if let Some(path) = plot {
+        files::write(path, mechanism.drawing().as_bytes())?;
+    }
     if scene.json {
         let gaps = gap_reports(mechanism, &gaps);
         let title = &mechanism.title;
@@ -53,6 +60,10 @@ pub fn check(mechanism: &Mechanism, n: f64, scene: &SceneArguments) -> Result<()
 }
 
 /// What a designer should know before trusting a run.
+pub fn warnings_of(mechanism: &Mechanism) -> Result<Vec<String>, Failure> {
+    Ok(warnings(mechanism, &Freedom::of(mechanism)?))
+}
+
 fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
     let driven = mechanism.drives.len() as i64;
     let free = freedom.degrees_of_freedom;

@@ -15,7 +15,7 @@ use crate::{
     scene::RunSpec,
 };
 
-pub(super) use check::check;
+pub(super) use check::{check, warnings_of};
 pub(super) use simulate::simulate;
 pub(super) use sweep::sweep;
 
@@ -80,9 +80,10 @@ fn shown(action: Action) -> f64 {
 }
 
 fn gap_reports<'a>(mechanism: &'a Mechanism, gaps: &[f64]) -> Vec<GapReport<'a>> {
-    let report = |(gap, value): (&'a crate::mechanism::Gap, &f64)| {
-        let closes_at_n = Some(gap.statistics.mean / gap.statistics.deviation).filter(|n| n.is_finite());
-        GapReport { name: &gap.name, mm: value * 1e3, closes_at_n }
+    let report = |(gap, value): (&'a crate::mechanism::Gap, &f64)| GapReport {
+        name: &gap.name,
+        mm: value * 1e3,
+        closes_at_n: gap.closes_at(),
     };
     mechanism.gaps.iter().zip(gaps).map(report).collect()
 }

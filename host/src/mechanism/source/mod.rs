@@ -9,7 +9,7 @@ mod spatial;
 
 use std::fmt::Write;
 
-use super::{Joint, Mechanism, RunError};
+use super::{Joint, Mechanism, RunError, hash::hash};
 use laws::Contacts;
 
 /// Type and value of an expression.
@@ -62,6 +62,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
         spatial::parts(mechanism, &mut contacts)?
     };
     let Parts { head, dimension, bodies, elements, module, pose, rates, .. } = &parts;
+    let drives = write_drives(mechanism, &parts);
     let elements = nested(grouped(elements));
     let title = mechanism.title.split_whitespace().collect::<Vec<_>>().join(" ");
     let (scheme, scheme_type) = crate::kernel_source::scheme(mechanism.controller.integrator);
@@ -77,6 +78,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     let poses = if *module == "planar" { "" } else { "    pose::Pose,\n" };
     let vectors = if *module == "planar" && mechanism.drives.is_empty() { "Vector2" } else { "Vector2, Vector3" };
     let vectors = if *module == "planar" { vectors } else { "Vector3" };
+    let driving = if mechanism.drives.is_empty() { "" } else { "Driving, " };
     let mut core_laws = String::new();
     if !contacts.is_empty() {
         laws.push("Contact");
@@ -85,7 +87,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     let mut text = format!(
         "// {title}: a mechanism for firmware, to be compiled against slipfit-core. SI units.\n\n\
          use slipfit_core::{{\n    ParameterError, SVector, Scalar, {vectors},\n{clearance}{drive}    \
-         integrator::{scheme},\n    kernel::{{Kernel, StateOf}},\n{core_laws}{poses}    system::{{\n        Element, System,\n        \
+         integrator::{scheme},\n    kernel::{{Kernel, StateOf}},\n{core_laws}{poses}    system::{{\n        {driving}Element, System,\n        \
          law::{{{}}},\n        {module}::{{{}}},\n    }},\n}};\n\n\
          /// Number of coordinates.\npub const DIMENSION: usize = {dimension};\n\n\
          /// Step (s).\npub const STEP: f32 = {:?};\n\n/// Steps of the scene's run.\npub const STEPS: u32 = {};\n\n/// The scheme.\npub type Scheme = {scheme_type};\n\n{head}",
@@ -94,6 +96,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
         mechanism.controller.step as f32,
         (mechanism.run.duration / mechanism.controller.step).round(),
     );
+    write_hashes(&mut text, mechanism);
     let _ = write!(
         text,
         "/// The bodies.\npub type Bodies<S> = {};\n\n/// What acts on them.\npub type Elements<S> = {};\n\n\
@@ -137,7 +140,72 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
         pose.value,
         rates.join(", ")
     );
+    text.push_str(&drives);
     Ok(text)
+}
+
+/// Adds what the flash tables of the drives are stamped with.
+fn write_hashes(text: &mut String, mechanism: &Mechanism) {
+    let hashes: Vec<_> = (0..mechanism.drives.len()).map(|drive| format!("{:#018x}", hash(mechanism, drive))).collect();
+    let _ = match &hashes[..] {
+        [] => Ok(()),
+        [one] => write!(
+            text,
+            "/// What a flash table of this mechanism is stamped with: it must be equal before a lookup is trusted.\n\
+             pub const SCENE_HASH: u64 = {one};\n\n"
+        ),
+        all => write!(
+            text,
+            "/// What a flash table of each drive is stamped with: it must be equal before a lookup is trusted.\n\
+             pub const SCENE_HASHES: [u64; {}] = [{}];\n\n",
+            all.len(),
+            all.join(", ")
+        ),
+    };
+}
+
+/// A function for each drive that says what it gives. Drives are the last elements.
+fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
+    let groups = grouped(&parts.elements);
+    let sizes: Vec<usize> = parts.elements.chunk_by(|one, next| one.of == next.of).map(<[Typed]>::len).collect();
+    let first = parts.elements.len() - mechanism.drives.len();
+    let mut text = String::new();
+    for ((k, drive), name) in mechanism.drives.iter().enumerate().zip(drive_names(mechanism)) {
+        let (mut group, mut within) = (0, first + k);
+        while within >= sizes[group] {
+            within -= sizes[group];
+            group += 1;
+        }
+        let last = group + 1 == groups.len();
+        let at = ".1".repeat(group) + if last { "" } else { ".0" };
+        let at = if sizes[group] > 1 { format!("{at}[{within}]") } else { at };
+        let kind = drive.action.kind();
+        let _ = write!(
+            text,
+            "\n/// Speed ({}) and {} ({}) of the drive {:?} at time `t` (s).\n\
+             pub fn {name}<S: Scalar>(unit: &Unit<S>, t: S, pose: &{}, velocity: &SVector<S, DIMENSION>) -> Driving<S> {{\n    \
+             unit.driving(&unit.elements(){at}, t, pose, velocity)\n}}\n",
+            kind.choose("m/s", "rad/s"),
+            kind.effort(),
+            kind.effort_unit(),
+            drive.name,
+            parts.pose.of,
+        );
+    }
+    text
+}
+
+/// What the functions of the drives are called; those that would be called the same have their number.
+fn drive_names(mechanism: &Mechanism) -> Vec<String> {
+    let letter = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+    let plain: Vec<String> =
+        mechanism.drives.iter().map(|drive| "drive_".chars().chain(drive.name.chars().map(letter)).collect()).collect();
+    let is_double = |name: &String| plain.iter().filter(|other| *other == name).count() > 1;
+    plain
+        .iter()
+        .enumerate()
+        .map(|(k, name)| if is_double(name) { format!("{name}_{k}") } else { name.clone() })
+        .collect()
 }
 
 /// Adds the gaps over the production.

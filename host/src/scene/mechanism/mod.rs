@@ -17,6 +17,7 @@ use super::{
     value::Field,
 };
 use crate::{
+    driven::DriveKind,
     mechanism::{Gap, Laws, Mechanism, MountError, Mounts, Port},
     product::Product,
 };
@@ -59,13 +60,15 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
     let mut gaps = Gaps { gaps: Vec::new(), product };
     let (joints, joint_fields) = joint::joints(root, planar, &names, laws, &mut gaps)?;
     let sweep = root.get("sweep").map(|_| parse::sweep(&root.table("sweep")?)).transpose()?.unwrap_or(LEVELS);
-    let run = parse::run(&root.table("run")?)?;
+    let drives = drive::drives(root, planar, &names)?;
+    let turns = drives.first().is_some_and(|first| first.action.kind() == DriveKind::Turns);
+    let run = parse::run(&root.table("run")?, turns)?;
     let mechanism = Mechanism {
         title,
         planar,
         gravity,
         springs: drive::springs(root, &names)?,
-        drives: drive::drives(root, planar, &names)?,
+        drives,
         bodies,
         joints,
         gaps: gaps.gaps,

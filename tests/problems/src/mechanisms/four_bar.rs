@@ -37,6 +37,9 @@ impl Topology<3> for Joints {
     }
 }
 
+/// What a flash table of this mechanism is stamped with: it must be equal before a lookup is trusted.
+pub const SCENE_HASH: u64 = 0x746ae030bc1376a4;
+
 /// The bodies.
 pub type Bodies<S> = PlanarTree<S, 3, Joints, (Rigid<S, 3, Path<0b001, 0>>, (Rigid<S, 3, Path<0b011, 1>>, Rigid<S, 3, Path<0b100, 2>>))>;
 

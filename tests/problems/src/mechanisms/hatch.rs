@@ -27,6 +27,9 @@ pub const STEPS: u32 = 1500;
 /// The scheme.
 pub type Scheme = ImplicitEuler<4>;
 
+/// What a flash table of this mechanism is stamped with: it must be equal before a lookup is trusted.
+pub const SCENE_HASH: u64 = 0xb3c96a5a41e38ac7;
+
 /// The bodies.
 pub type Bodies<S> = FreeBodies<S, 1, 6>;
 

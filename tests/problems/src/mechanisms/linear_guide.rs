@@ -27,6 +27,9 @@ pub const STEPS: u32 = 500;
 /// The scheme.
 pub type Scheme = ImplicitEuler<4>;
 
+/// What a flash table of this mechanism is stamped with: it must be equal before a lookup is trusted.
+pub const SCENE_HASH: u64 = 0xd7b5bad5d28cd28d;
+
 /// The bodies.
 pub type Bodies<S> = FreeBodies<S, 1, 6>;
 

@@ -27,6 +27,9 @@ pub const STEPS: u32 = 700;
 /// The scheme.
 pub type Scheme = ImplicitEuler<4>;
 
+/// What a flash table of this mechanism is stamped with: it must be equal before a lookup is trusted.
+pub const SCENE_HASH: u64 = 0x556eba4d39ee768d;
+
 /// The bodies.
 pub type Bodies<S> = FreeBodies<S, 2, 12>;
 

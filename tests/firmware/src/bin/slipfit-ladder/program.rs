@@ -125,7 +125,7 @@ macro_rules! mechanisms {
     ($($name:ident;)*) => {
         $(#[inline(never)]
         fn $name(
-            kernel: &Kernel<f32, mechanisms::$name::Unit<f32>, mechanisms::$name::Scheme>,
+            kernel: &Kernel<f32, mechanisms::$name::Unit<f32>, Scheme>,
             state: &mut StateOf<f32, mechanisms::$name::Unit<f32>, { mechanisms::$name::DIMENSION }>,
         ) -> Report<f32> {
             kernel.step(state)
@@ -133,7 +133,11 @@ macro_rules! mechanisms {
 
         fn every_mechanism(machine: &mut impl Machine) {
             $({
-                let (kernel, state) = mechanisms::$name::predictor(0.0).expect("the shipped scene is in bounds");
+                let unit = mechanisms::$name::unit(0.0).expect("the shipped scene is in bounds");
+                let kernel = Kernel::new(unit, STEP).expect("the step is in bounds");
+                let (pose, velocity) = mechanisms::$name::start();
+                let mut state = kernel.at_rest(pose);
+                state.motion.velocity = velocity;
                 steps(machine, stringify!($name), &black_box(kernel), state, MECHANISM_STEPS, $name);
             })*
         }

@@ -1,0 +1,168 @@
+//! The main job of a mechanism: its run at every level.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::{
+    Arguments, first_to_go_wrong,
+    output::{Output, PAGE, SWEEP, TABLE, captioned, of_production},
+    table_line,
+};
+use crate::{
+    answer::{Range, ranges},
+    cli::{
+        Failure, JSON_VERSION, mechanism, print, print_json, progress,
+        sweep::{LevelReport, answer, doubts, for_machines},
+        table, warn,
+    },
+    driven::Driven,
+    export::sweep_csv,
+    figure::{forces, velocities, verdicts},
+    force_table::{self, Demand, ForceTable},
+    mechanism::ByDrive,
+    number::{fixed, per_million},
+    product::Product,
+    report::{Clearances, Figure, Flash, Production, ReportInput, report},
+    sweep::Sweep,
+    tolerance::{normal, report::Report as Measures},
+};
+
+/// The pictures: of a force, and of a torque.
+const FIGURES: [&str; 5] = ["verdict.svg", "velocity.svg", "force.svg", "torque.svg", "mechanism.svg"];
+
+#[derive(Serialize)]
+struct Report {
+    json_version: u32,
+    title: String,
+    /// The drive's name.
+    drive: String,
+    /// N, or N·m of a drive that turns, whose forces, speeds and travel are torques, rad/s and rad.
+    effort_unit: &'static str,
+    files: Vec<String>,
+    table_bytes: usize,
+    worst_force_error_n: f64,
+    /// The answer: neighbouring levels with the same verdict.
+    ranges: Vec<Range>,
+    levels: Vec<LevelReport>,
+    /// How the product's measures vary, as `slipfit tolerance --json` shows it.
+    tolerance: Option<Measures>,
+    warnings: Vec<String>,
+}
+
+impl Arguments {
+    pub(super) fn run_mechanism(&self, driven: &ByDrive, product: Option<Product>) -> Result<(), Failure> {
+        let production = self.prepare(driven, product.as_ref())?;
+        let output = Output::prepare(&self.out, &self.scene, &FIGURES, production.as_ref())?;
+        let done = self.fill_with_mechanism(&output, driven, product, production);
+        output.close(done)
+    }
+
+    fn fill_with_mechanism(
+        &self,
+        output: &Output,
+        driven: &ByDrive,
+        product: Option<Product>,
+        production: Option<Production>,
+    ) -> Result<(), Failure> {
+        let bar = progress("simulating", force_table::levels(driven.levels()).count);
+        let made = self.threads.install(|| force_table::make(driven, Demand::Full, || bar.inc(1)))?;
+        bar.finish_and_clear();
+        let (table, sweep) = made?;
+        let mut warnings = mechanism::warnings_of(driven.mechanism())?;
+        warnings.extend(product.into_iter().flat_map(|product| product.warnings));
+        warnings.extend(doubts(&sweep));
+
+        let answer = said(driven, &table, &sweep);
+        let figures = figures(driven, &sweep)?;
+        let page = report(&ReportInput {
+            title: driven.title(),
+            sweep: &sweep,
+            answer: &answer,
+            figures: &figures.iter().map(|(_, figure)| figure.clone()).collect::<Vec<_>>(),
+            clearances: Clearances::Joints(driven.mechanism()),
+            flash: Some(Flash {
+                bytes: table.bytes.len(),
+                worst_force_error: table.worst_error_in_use[0],
+                worst_velocity_error: table.worst_error_in_use[1],
+            }),
+            production: production.as_ref(),
+            notes: &warnings,
+        });
+        let mut files: Vec<(String, Vec<u8>)> = vec![
+            (PAGE.into(), page.into_bytes()),
+            (TABLE.into(), table.bytes.clone()),
+            (SWEEP.into(), sweep_csv(&sweep)?),
+        ];
+        files.extend(figures.into_iter().map(|(name, figure)| (name.to_owned(), figure.svg.into_bytes())));
+        files.extend(of_production(production.as_ref())?);
+        warnings.extend(output.strangers(&files));
+        let files = output.write(&files)?;
+        if self.scene.json {
+            return print_json(&Report {
+                json_version: JSON_VERSION,
+                title: driven.title().to_owned(),
+                drive: driven.name().to_owned(),
+                effort_unit: driven.kind().effort_unit(),
+                files,
+                table_bytes: table.bytes.len(),
+                worst_force_error_n: table.worst_error[0],
+                ranges: ranges(&sweep),
+                levels: for_machines(&sweep),
+                tolerance: production.map(|production| production.report),
+                warnings,
+            });
+        }
+        print(&format!("{}\n\n{answer}Look at         {}", driven.title(), output.page().display()))?;
+        warn(&warnings);
+        Ok(())
+    }
+}
+
+/// What the mechanism does at which levels, what closes first, what to change, and the table.
+fn said(driven: &ByDrive, table: &ForceTable, sweep: &Sweep) -> String {
+    let mut text = answer(sweep);
+    text.push('\n');
+    if let Some((gap, n)) = driven.mechanism().first_to_close() {
+        let closed = per_million(normal::tail(n) * 1e6);
+        let _ = writeln!(
+            text,
+            "Closes first    {}, at n* = {}: {closed} ppm of a normal production",
+            gap.name,
+            fixed(n, 3)
+        );
+    }
+    let change = match first_to_go_wrong(sweep) {
+        None => "nothing: it runs at every level".into(),
+        Some((worst, side)) => format!("{side} units go wrong first, from n = {}", worst.n),
+    };
+    let _ = writeln!(text, "What to change  {change}");
+    let _ = writeln!(text, "Flash table     {}", table_line(driven, table));
+    if let Some(warning) = table::coarse(driven, table) {
+        let _ = writeln!(text, "                {warning}");
+    }
+    text
+}
+
+/// The pictures of the page and the files they go to.
+fn figures(driven: &ByDrive, sweep: &Sweep) -> Result<Vec<(&'static str, Figure)>, Failure> {
+    let title = driven.title();
+    let (name, kind) = (driven.name(), driven.kind());
+    let mut figures = Vec::new();
+    if sweep.levels.iter().any(|level| level.outcome.peak_force.is_some()) {
+        let caption = format!(
+            "Each mark is a tolerance level: its shape says whether \"{name}\" runs, its height what {} that takes. \
+             Behind: how many units of the production are drawn at that level, if its gaps move together.",
+            kind.effort()
+        );
+        figures.push((FIGURES[0], captioned(&caption, verdicts(sweep, title))?));
+    }
+    let caption = format!("How fast \"{name}\" moves what it drives, over time.");
+    figures.push((FIGURES[1], captioned(&caption, velocities(sweep, title))?));
+    let caption = format!("The {} of \"{name}\" over time, which the flash table holds.", kind.effort());
+    figures.push((kind.choose(FIGURES[2], FIGURES[3]), captioned(&caption, forces(sweep, title))?));
+    let caption = "Bodies, joints and drives in the drawn pose, joints by their numbers; a hole around a pin, or walls beside \
+                   one, are joints with play.";
+    figures.push((FIGURES[4], captioned(caption, Ok(driven.mechanism().drawing()))?));
+    Ok(figures)
+}

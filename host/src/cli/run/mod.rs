@@ -1,0 +1,105 @@
+//! `slipfit run`: the main job, from tolerances to a flash table and a report. Its first lines are the answer.
+
+mod mechanism;
+mod output;
+mod slide;
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{
+    DRAWING, DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, progress, sweep::LevelArguments,
+    tolerance::DEFAULT,
+};
+use crate::{
+    driven::Driven,
+    force_table::{self, Demand},
+    number::fixed,
+    outcome::Verdict,
+    product::Product,
+    report::Production,
+    sweep::{Level, Sweep},
+    tolerance::{analysis::conclude, picture::pictures, report::report, run::RunError, study::Study},
+};
+
+/// The main job: does the product work, from which tolerance level on not, and what force does it take?
+///
+/// Starts from the drawing of the paper's slide unless a scene is given. Analyses the tolerances, simulates the opening and
+/// the whole stroke of a slide, or the run of a mechanism, at every level, makes the flash table and a page with all
+/// pictures.
+#[derive(Args)]
+#[command(mut_arg("scene", |arg| arg.default_value(DRAWING)))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Folder for report.html, table.bin, sweep.csv, the figures and what the product's analysis gives.
+    #[arg(long, value_name = "DIR", default_value = "slipfit-out")]
+    out: PathBuf,
+    #[command(flatten)]
+    drive: DriveArguments,
+    #[command(flatten)]
+    levels: LevelArguments,
+    /// Units of the production to simulate one by one; `slipfit population` tells more of them.
+    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    units: u64,
+    #[command(flatten)]
+    threads: ThreadArguments,
+}
+
+impl Arguments {
+    pub fn run(&self) -> Result<(), Failure> {
+        let overrides: Vec<_> = self.levels.overrides().into_iter().collect();
+        let (moving, product) = self.scene.load_moving_with_product(&overrides)?;
+        match moving {
+            Moving::Slide(scene) => {
+                self.drive.refuse()?;
+                self.run_slide(&scene, product)
+            }
+            Moving::Mechanism(mechanism) => self.run_mechanism(&self.drive.of(&mechanism)?, product),
+        }
+    }
+
+    /// Whether there can be a table, and the analysis of the product.
+    fn prepare(&self, driven: &dyn Driven, product: Option<&Product>) -> Result<Option<Production>, Failure> {
+        force_table::check(driven, Demand::Full).map_err(|error| Failure::Input(error.to_string()))?;
+        product.map(|product| self.analyse(driven.title(), product)).transpose()
+    }
+
+    /// Draws and analyses as `slipfit tolerance` does unless it is asked for something else.
+    fn analyse(&self, title: &str, product: &Product) -> Result<Production, Failure> {
+        let study = Study::new(&product.model, DEFAULT).map_err(RunError::from)?;
+        let mut tallies = study.empty();
+        let bar = progress("drawing", DEFAULT.samples as usize);
+        let found = self.threads.install(|| {
+            study.add(0..DEFAULT.blocks(), &mut tallies, |units| bar.inc(units));
+            conclude(&study, &tallies)
+        })?;
+        bar.finish_and_clear();
+        let report = report(title, &product.model, &found.map_err(RunError::from)?);
+        let pictures = pictures(&report, &study, &tallies).map_err(anyhow::Error::from)?;
+        Ok(Production { report, pictures })
+    }
+}
+
+/// The level nearest to nominal at which something goes wrong, and "loose" or "tight" units.
+fn first_to_go_wrong(sweep: &Sweep) -> Option<(&Level, &'static str)> {
+    let bad = |level: &&Level| level.outcome.verdict.is_malfunction();
+    let worst = sweep.levels.iter().filter(bad).min_by(|one, other| one.n.abs().total_cmp(&other.n.abs()))?;
+    let first = sweep.levels.iter().find(|level| level.outcome.verdict == Verdict::Runs);
+    let looser = first.is_none_or(|first| worst.n < first.n);
+    Some((worst, if looser { "loose" } else { "tight" }))
+}
+
+/// The table's size and error, in words.
+fn table_line(driven: &dyn Driven, table: &force_table::ForceTable) -> String {
+    let kind = driven.kind();
+    format!(
+        "{} bytes, {} ms, {} within {} m{} from the ramp's start on",
+        table.bytes.len(),
+        fixed(driven.run().duration * 1e3, 0),
+        kind.effort(),
+        fixed(table.worst_error_in_use[0] * 1e3, 2),
+        kind.effort_unit()
+    )
+}

@@ -1,0 +1,116 @@
+//! Tables and the main job of mechanisms, against the runs they are made from and closed forms.
+
+mod common;
+
+use common::{json, slipfit, stdout};
+use slipfit::{
+    driven::Driven,
+    force_table::{
+        self, Demand,
+        position::{self, TURN_STEP, Wish},
+    },
+    mechanism::{ByDrive, Mechanism, run},
+    scene::{Override, SceneFile, shipped},
+};
+use slipfit_core::table::{AxisKind, MotionVerdict, Table};
+
+fn mechanism(name: &str, set: &[&str], levels: &str) -> Mechanism {
+    let mut set: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
+    set.push(Override::option("", "sweep.n", levels));
+    SceneFile::parse(name, shipped(name).unwrap(), &set).unwrap_or_else(|error| panic!("{error}")).mechanism.unwrap()
+}
+
+#[test]
+fn nodes_over_time_are_what_a_run_gives() {
+    let mechanism = mechanism("slider-crank", &["run.duration=100"], "-1:1:1");
+    let driven = ByDrive::new(&mechanism, 0).unwrap();
+    let (made, sweep) = force_table::make(&driven, Demand::Full, || ()).unwrap();
+    let table = Table::<2>::open(&made.bytes).unwrap().expect_axes([AxisKind::Level, AxisKind::Time]).unwrap();
+    table.expect_scene(driven.hash()).unwrap();
+    assert_eq!(table.axes().map(|axis| axis.count()), [3, 101]);
+    assert_eq!(made.verdicts, [MotionVerdict::Runs; 3]);
+    assert_eq!(sweep.gaps, ["big end"]);
+    for n in [-1.0f32, 0.0, 1.0] {
+        let run = run(&mechanism, &mechanism.gaps_at(&[n.into()]).unwrap(), 1e-3).unwrap();
+        for row in run.samples.rows.iter().step_by(7) {
+            let found = table.lookup([n, row[0] as f32]);
+            assert!((f64::from(found.force) - row[1]).abs() < 1e-6, "{n} {row:?} {found:?}");
+        }
+    }
+}
+
+/// Turned slowly and without friction a hatch takes the moment of its weight, m·g·l·cos φ, wherever its pins are in their holes:
+/// these move its centre by 0.1 mm of 150.
+#[test]
+fn over_its_angle_a_hatch_takes_the_moment_of_its_weight() {
+    let set = ["friction.law=none", "run.error=1e-6"];
+    let mechanism = mechanism("hatch", &set, "0:1:1");
+    let driven = ByDrive::new(&mechanism, 0).unwrap();
+    let wish = Wish { speeds: None, stroke: Some(0.9), demand: Demand::Full };
+    let made = position::make(&driven, &wish, || ()).unwrap();
+    let table =
+        Table::<2>::open(&made.table.bytes).unwrap().expect_axes([AxisKind::Level, AxisKind::Position]).unwrap();
+    assert!((f64::from(table.axes()[1].step()) / TURN_STEP - 1.0).abs() < 1e-6);
+    for degrees in [25.0f64, 35.0, 50.0] {
+        let angle = degrees.to_radians();
+        let moment = 2.0 * 9.81 * 0.15 * libm::cos(angle);
+        let found = table.lookup([0.5, angle as f32]);
+        assert!((f64::from(found.force) / moment - 1.0).abs() < 4e-3, "{degrees} {found:?} {moment}");
+        // What the drive lags behind by gives that moment.
+        assert!((20.0 * (1.0 - f64::from(found.velocity)) / moment - 1.0).abs() < 4e-3, "{degrees} {found:?}");
+    }
+    let far = position::make(&driven, &Wish { stroke: Some(3.0), ..wish }, || ()).unwrap_err().to_string();
+    assert!(far.starts_with("no unit comes 171.8873385 ° far: in 1500 ms the farthest"), "{far}");
+}
+
+#[test]
+fn the_main_job_of_a_mechanism_answers_and_writes_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = ["run", "slider-crank", "--n", "-1:1:1", "--set", "run.duration=200"];
+    let output = slipfit(folder.path(), &run);
+    let text = stdout(&output);
+    assert!(text.lines().count() <= 15, "{text}");
+    let parts =
+        ["runs", "peak torque", "N·m", "Closes first    big end, at n* = 10.000", "nothing: it runs at every level"];
+    assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+    let out = folder.path().join("slipfit-out");
+    for file in ["mechanism.svg", "sweep.csv", "table.bin", "torque.svg", "velocity.svg", "verdict.svg"] {
+        assert!(out.join(file).exists(), "{file}");
+    }
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("peak torque<br/>(N·m)") && page.contains("big end: revolute, play 0.2 mm"), "{page}");
+    let csv = std::fs::read_to_string(out.join("sweep.csv")).unwrap();
+    assert!(csv.starts_with("n,breakaway_s,peak_torque_N_m,") && csv.lines().next().unwrap().ends_with(",big end"));
+    let report = json(folder.path(), &[&run[..], &["--json"]].concat());
+    assert_eq!((report["effort_unit"].as_str(), report["drive"].as_str()), (Some("N·m"), Some("motor")));
+}
+
+/// The firmware of a mechanism refuses the table of another.
+#[test]
+fn kernel_and_table_of_a_mechanism_have_one_hash() {
+    let folder = tempfile::tempdir().unwrap();
+    let kernel = json(folder.path(), &["kernel", "slider-crank", "-o", "unit.rs", "--json"]);
+    let arguments = ["table", "slider-crank", "--n", "0:1:1", "--set", "run.duration=50", "-o", "t.bin", "--json"];
+    assert_eq!(json(folder.path(), &arguments)["scene_hash"], kernel["scene_hash"]);
+    let source = std::fs::read_to_string(folder.path().join("unit.rs")).unwrap();
+    assert!(source.contains(&format!("SCENE_HASH: u64 = 0x{}", kernel["scene_hash"].as_str().unwrap())), "{source}");
+}
+
+#[test]
+fn a_drive_is_asked_for_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, expected) in [
+        (&["table", "woodpecker-toy"][..], "the mechanism has no [[drive]]"),
+        (&["run", "woodpecker-toy"], "simulate tells how it moves"),
+        (&["table", "slider-crank", "--drive", "pump"], "there is no drive \"pump\", there is motor"),
+        (&["run", "--drive", "motor"], "--drive is for mechanisms"),
+        (&["table", "slider-crank", "--over", "position", "--end", "0.01"], "allowed is 0.25 ° to 3600 °"),
+        (&["check", "--plot", "a.svg"], "--plot draws mechanisms"),
+        (&["run", "slider-crank", "--set", "run.stroke=80 mm"], "unit does not fit"),
+    ] {
+        let output = slipfit(folder.path(), arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && error.contains(expected), "{arguments:?}: {error}");
+    }
+    assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none());
+}
