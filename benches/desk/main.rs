@@ -6,6 +6,7 @@
 use std::{process::ExitCode, time::Instant};
 
 use slipfit::{
+    driven::Driven,
     outcome::Verdict,
     scene::{CD_ROM_SLIDE, ControllerSpec, Override, Scene},
     scheme::{IntegratorKind, ScalarKind},
@@ -39,7 +40,8 @@ fn main() -> ExitCode {
     });
     let levels = scene.sweep.levels();
     let all = least(|| {
-        let swept = sweep(&scene, &levels, &Settings::desk(&scene, 1e-3), Keep::Figures, || ()).expect("it is solved");
+        let unit = |n| scene.level(n, scene.motion(1e-3));
+        let swept = sweep(&scene, &levels, Keep::Figures, unit, || ()).expect("it is solved");
         assert!(swept.levels.iter().all(|level| level.outcome.verdict != Verdict::Undecided));
     });
     let threads = rayon::current_num_threads();

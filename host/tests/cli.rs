@@ -325,7 +325,7 @@ fn bad_input_is_refused_by_name() {
         (&["table", "--over", "position,speed", "--speeds", "100"], "the Velocity axis has 1"),
         (
             &["table", "--over", "position,speed", "--speeds=-50:50:10", "--set", "run.duration=1500"],
-            "speeds from -50 to 50 mm/s",
+            "speeds from -50 mm/s to 50 mm/s",
         ),
         (&["table", "--end", "60"], "--end is for --over position"),
         (&["table", "--over", "position", "--end", "0"], "the stroke is 0 mm"),

@@ -104,6 +104,7 @@ fn a_drive_is_asked_for_by_name() {
         (&["run", "woodpecker-toy"], "simulate tells how it moves"),
         (&["table", "slider-crank", "--drive", "pump"], "there is no drive \"pump\", there is motor"),
         (&["run", "--drive", "motor"], "--drive is for mechanisms"),
+        (&["run", "slider-crank", "--units", "10"], "--units is for slides"),
         (&["table", "slider-crank", "--over", "position", "--end", "0.01"], "allowed is 0.25 ° to 3600 °"),
         (&["check", "--plot", "a.svg"], "--plot draws mechanisms"),
         (&["run", "slider-crank", "--set", "run.stroke=80 mm"], "unit does not fit"),

@@ -40,9 +40,9 @@ pub(super) struct Arguments {
     drive: DriveArguments,
     #[command(flatten)]
     levels: LevelArguments,
-    /// Units of the production to simulate one by one; `slipfit population` tells more of them.
-    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    units: u64,
+    /// Units of a slide's production to simulate one by one, 256 if not given; `slipfit population` tells more of them.
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    units: Option<u64>,
     #[command(flatten)]
     threads: ThreadArguments,
 }
@@ -56,6 +56,9 @@ impl Arguments {
                 self.drive.refuse()?;
                 self.run_slide(&scene, product)
             }
+            Moving::Mechanism(_) if self.units.is_some() => Err(Failure::Input(
+                "--units is for slides: units of a mechanism's production are not simulated yet".into(),
+            )),
             Moving::Mechanism(mechanism) => self.run_mechanism(&self.drive.of(&mechanism)?, product),
         }
     }

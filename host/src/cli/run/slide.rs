@@ -50,6 +50,9 @@ const FIGURES: [&str; 6] = [
     "population.svg",
 ];
 
+/// Units of the production that are simulated where no number is given.
+const UNITS: u64 = 256;
+
 #[derive(Serialize)]
 struct Report {
     json_version: u32,
@@ -164,20 +167,21 @@ impl Arguments {
 
     /// The opening with its table, and the stroke.
     fn simulate(&self, scene: &Scene, product: Option<&Product>) -> Result<Simulated, Failure> {
+        let units = self.units.unwrap_or(UNITS);
         let duration = scene.stroke_duration().filter(|duration| *duration > scene.run.duration);
         let levels = scene.sweep.levels();
         let opening = force_table::levels(&scene.sweep).count;
         let production = DrawnProduction::new(scene, product, 0.0, DEFAULT.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
         let runs = opening + duration.map_or(0, |_| levels.len());
-        let bar = progress("simulating", runs + self.units as usize);
+        let bar = progress("simulating", runs + units as usize);
         let made = self.threads.install(|| {
             let (table, opening) = force_table::make(scene, Demand::Full, || bar.inc(1))?;
             let mut whole = scene.clone();
             whole.run.duration = duration.unwrap_or(scene.run.duration);
             let unit = |n| whole.level(n, whole.motion(1e-3));
             let stroke = duration.map(|_| sweep(&whole, &levels, Keep::Samples, unit, || bar.inc(1)));
-            let population = Population::study(&whole, &production, self.units, None, |units| bar.inc(units))?;
+            let population = Population::study(&whole, &production, units, None, |units| bar.inc(units))?;
             Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()?, population })
         })??;
         bar.finish_and_clear();

@@ -4,12 +4,12 @@ use slipfit_core::{
     ParameterError, SVector, Scalar, Vector3,
     clearance::GapStatistics,
     drive::Drive,
-    integrator::ImplicitEuler,
+    integrator::Extrapolated,
     kernel::{Kernel, StateOf},
     law::{Impact, Regularised, ThreeHalves},
     pose::Pose,
     system::{
-        Element, System,
+        Driving, Element, System,
         law::{Contact, Motor, Ring, Wall},
         spatial::{About, FreeBodies, Port, Rigid, Seat, Turned},
     },
@@ -19,13 +19,13 @@ use slipfit_core::{
 pub const DIMENSION: usize = 6;
 
 /// Step (s).
-pub const STEP: f32 = 0.001;
+pub const STEP: f32 = 0.00025;
 
 /// Steps of the scene's run.
-pub const STEPS: u32 = 1500;
+pub const STEPS: u32 = 6000;
 
 /// The scheme.
-pub type Scheme = ImplicitEuler<4>;
+pub type Scheme = Extrapolated<2, 4>;
 
 /// What a flash table of this mechanism is stamped with: it must be equal before a lookup is trusted.
 pub const SCENE_HASH: u64 = 0xb3c96a5a41e38ac7;
@@ -86,4 +86,9 @@ pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
     let mut state = kernel.at_rest(pose);
     state.motion.velocity = velocity;
     Ok((kernel, state))
+}
+
+/// Speed (rad/s) and torque (N·m) of the drive "motor" at time `t` (s).
+pub fn drive_motor<S: Scalar>(unit: &Unit<S>, t: S, pose: &[Pose<S>; 1], velocity: &SVector<S, DIMENSION>) -> Driving<S> {
+    unit.driving(&unit.elements().1.1.1.1, t, pose, velocity)
 }

@@ -9,7 +9,7 @@ use slipfit_core::{
     law::{Impact, Regularised, ThreeHalves},
     pose::Pose,
     system::{
-        Element, System,
+        Driving, Element, System,
         law::{Contact, Pusher, Ring},
         spatial::{Along, FreeBodies, Port, Rigid, Seat, Turned},
     },
@@ -89,4 +89,9 @@ pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
     let mut state = kernel.at_rest(pose);
     state.motion.velocity = velocity;
     Ok((kernel, state))
+}
+
+/// Speed (m/s) and force (N) of the drive "motor" at time `t` (s).
+pub fn drive_motor<S: Scalar>(unit: &Unit<S>, t: S, pose: &[Pose<S>; 1], velocity: &SVector<S, DIMENSION>) -> Driving<S> {
+    unit.driving(&unit.elements().1, t, pose, velocity)
 }

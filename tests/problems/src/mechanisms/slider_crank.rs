@@ -4,11 +4,11 @@ use slipfit_core::{
     ParameterError, SVector, Scalar, Vector2, Vector3,
     clearance::GapStatistics,
     drive::Drive,
-    integrator::ImplicitEuler,
+    integrator::Extrapolated,
     kernel::{Kernel, StateOf},
     law::{Impact, Regularised, ThreeHalves},
     system::{
-        Element, System,
+        Driving, Element, System,
         law::{Contact, Journal, Motor},
         planar::{Between, Frame, Kind, Path, PlanarTree, Point, Rigid, Topology, Turning},
     },
@@ -18,13 +18,13 @@ use slipfit_core::{
 pub const DIMENSION: usize = 3;
 
 /// Step (s).
-pub const STEP: f32 = 0.001;
+pub const STEP: f32 = 0.0001;
 
 /// Steps of the scene's run.
-pub const STEPS: u32 = 500;
+pub const STEPS: u32 = 5000;
 
 /// The scheme.
-pub type Scheme = ImplicitEuler<4>;
+pub type Scheme = Extrapolated<2, 4>;
 
 /// What the coordinates are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,4 +90,9 @@ pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
     let mut state = kernel.at_rest(pose);
     state.motion.velocity = velocity;
     Ok((kernel, state))
+}
+
+/// Speed (rad/s) and torque (N·m) of the drive "motor" at time `t` (s).
+pub fn drive_motor<S: Scalar>(unit: &Unit<S>, t: S, pose: &[[S; 2]; 3], velocity: &SVector<S, DIMENSION>) -> Driving<S> {
+    unit.driving(&unit.elements().1, t, pose, velocity)
 }

@@ -4,12 +4,12 @@ use slipfit_core::{
     ParameterError, SVector, Scalar, Vector3,
     clearance::GapStatistics,
     drive::Drive,
-    integrator::ImplicitEuler,
+    integrator::Extrapolated,
     kernel::{Kernel, StateOf},
     law::{Impact, Regularised, ThreeHalves},
     pose::Pose,
     system::{
-        Element, System,
+        Driving, Element, System,
         law::{Contact, Pin, Pusher, Wall},
         spatial::{Along, FreeBodies, Port, Rigid, Seat},
     },
@@ -19,13 +19,13 @@ use slipfit_core::{
 pub const DIMENSION: usize = 12;
 
 /// Step (s).
-pub const STEP: f32 = 0.001;
+pub const STEP: f32 = 0.00025;
 
 /// Steps of the scene's run.
-pub const STEPS: u32 = 700;
+pub const STEPS: u32 = 2800;
 
 /// The scheme.
-pub type Scheme = ImplicitEuler<4>;
+pub type Scheme = Extrapolated<2, 4>;
 
 /// What a flash table of this mechanism is stamped with: it must be equal before a lookup is trusted.
 pub const SCENE_HASH: u64 = 0x556eba4d39ee768d;
@@ -126,4 +126,9 @@ pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
     let mut state = kernel.at_rest(pose);
     state.motion.velocity = velocity;
     Ok((kernel, state))
+}
+
+/// Speed (m/s) and force (N) of the drive "motor" at time `t` (s).
+pub fn drive_motor<S: Scalar>(unit: &Unit<S>, t: S, pose: &[Pose<S>; 2], velocity: &SVector<S, DIMENSION>) -> Driving<S> {
+    unit.driving(&unit.elements().1.1, t, pose, velocity)
 }

@@ -1,0 +1,182 @@
+//! Mechanisms: the desk beside diffsol's BDF, and elements chosen at run time beside those composed by type.
+//!
+//! `cargo bench --features peers --bench mechanisms`. The desk's time is that of everything `slipfit simulate` computes; diffsol
+//! gets the composed type's own forces and a range of tolerances, of which the best counts. Both must meet the reference run
+//! to [`WITHIN`] of the greatest effort. Ratios are medians of turns, because a shared machine changes its pace. Fails above
+//! [`OF_BDF`] or [`OF_COMPOSED`].
+
+#[path = "../work_precision/diffsol_peer.rs"]
+#[allow(dead_code)]
+mod diffsol_peer;
+#[path = "../work_precision/entry.rs"]
+#[allow(dead_code)]
+mod entry;
+
+use std::{hint::black_box, process::ExitCode, time::Instant};
+
+use diffsol_peer::{BDF, FirstOrder};
+use entry::Tolerances;
+use slipfit::{
+    mechanism::{Mechanism, Mounts, planar, run, spatial},
+    scene::{Override, SceneFile, shipped},
+};
+use slipfit_core::{
+    SVector, integrator::Integrator, kernel::Kernel, mechanism::Mechanism as Mechanics, system::System,
+};
+use slipfit_problems::{
+    first_order::{Numbers, rates_of},
+    mechanisms::{linear_guide, slider_crank, telescopic_drawer},
+};
+use slipfit_tests::known_runs::mechanism_rows;
+
+/// Error as a share of the greatest effort.
+const WITHIN: f64 = 1e-3;
+/// The most that the desk may take of diffsol's time.
+const OF_BDF: f64 = 0.5;
+/// The most that elements chosen at run time may take of the time of composed ones.
+const OF_COMPOSED: f64 = 1.3;
+const TURNS: usize = 15;
+
+fn main() -> ExitCode {
+    println!("mechanism            desk, ms  of diffsol's BDF   chosen elements of composed ones");
+    let scene = |name: &str| {
+        let set = [Override::set("run.stroke=1000")];
+        let set = if name == "telescopic-drawer" { &set[..] } else { &[] };
+        SceneFile::parse(name, shipped(name).expect("it is shipped"), set).expect("it is sound").mechanism.expect("one")
+    };
+    let mut fails = false;
+    {
+        let mechanism = scene("slider-crank");
+        let mounts = Mounts::of(&mechanism).expect("a tree");
+        let gaps = mechanism.gaps_at(&[0.0]).expect("in bounds");
+        let tree = planar::bodies::<3>(&mechanism, &mounts).expect("in bounds");
+        let elements = planar::elements::<3>(&mechanism, &mounts, &gaps, 1.0).expect("in bounds");
+        let case = Case { file: "P1-slow", mechanism: &mechanism, driven: 0 };
+        let composed = slider_crank::unit(0.0).expect("in bounds");
+        let start = slider_crank::start();
+        fails |= case.judge::<_, _, slider_crank::Scheme, 3>(composed, System::new(tree, &elements[..]), start);
+    }
+    {
+        let mechanism = scene("linear-guide");
+        let gaps = mechanism.gaps_at(&[0.0]).expect("in bounds");
+        let bodies = spatial::bodies::<1, 6>(&mechanism).expect("in bounds");
+        let elements = spatial::elements(&mechanism, &gaps, 1.0).expect("in bounds");
+        let case = Case { file: "S1-runs", mechanism: &mechanism, driven: 2 };
+        let composed = linear_guide::unit(0.0).expect("in bounds");
+        let start = linear_guide::start();
+        fails |= case.judge::<_, _, linear_guide::Scheme, 6>(composed, System::new(bodies, &elements[..]), start);
+    }
+    {
+        let mechanism = scene("telescopic-drawer");
+        let gaps = mechanism.gaps_at(&[0.0]).expect("in bounds");
+        let bodies = spatial::bodies::<2, 12>(&mechanism).expect("in bounds");
+        let elements = spatial::elements(&mechanism, &gaps, 1.0).expect("in bounds");
+        let case = Case { file: "S2-first", mechanism: &mechanism, driven: 8 };
+        let composed = telescopic_drawer::unit(0.0).expect("in bounds");
+        let start = telescopic_drawer::start();
+        fails |= case.judge::<_, _, telescopic_drawer::Scheme, 12>(composed, System::new(bodies, &elements[..]), start);
+    }
+    ExitCode::from(u8::from(fails))
+}
+
+/// A mechanism, its reference run, whose first column is the effort, and the coordinate whose speed the drive sees.
+struct Case<'a> {
+    file: &'static str,
+    mechanism: &'a Mechanism,
+    driven: usize,
+}
+
+impl Case<'_> {
+    /// Measures, prints and tells whether a ratio is too great.
+    fn judge<A, B, I, const D: usize>(&self, composed: A, chosen: B, start: (A::Pose, SVector<f64, D>)) -> bool
+    where
+        A: Mechanics<f64, D, Pose: Numbers + Copy> + Copy,
+        B: Mechanics<f64, D, Pose = A::Pose> + Copy,
+        I: Integrator,
+    {
+        let bdf = self.of_bdf::<A, D>(composed, start);
+        let elements = of_composed::<A, B, I, D>(composed, chosen, start);
+        let told = bdf.map_or("it does not meet the error".to_owned(), |(_, ratio)| format!("{ratio:.2}"));
+        let desk = bdf.map_or(f64::NAN, |(desk, _)| desk * 1e3);
+        println!("{:18} {desk:10.2}  {told:>16}   {elements:.2}", self.file);
+        bdf.is_some_and(|(_, ratio)| ratio > OF_BDF) || elements > OF_COMPOSED
+    }
+
+    /// The error of efforts at every millisecond.
+    fn error(&self, efforts: impl Iterator<Item = f64>) -> f64 {
+        let rows = mechanism_rows(self.file);
+        let peak = rows.iter().fold(0.0, |peak: f64, row| peak.max(row[0].abs()));
+        rows.iter().zip(efforts).fold(0.0, |worst: f64, (row, effort)| worst.max((row[0] - effort).abs())) / peak
+    }
+
+    /// The least time (s) of the desk that meets the error, and its ratio to diffsol's.
+    fn of_bdf<A, const D: usize>(&self, composed: A, (pose, velocity): (A::Pose, SVector<f64, D>)) -> Option<(f64, f64)>
+    where
+        A: Mechanics<f64, D, Pose: Numbers>,
+    {
+        let gaps = self.mechanism.gaps_at(&[0.0]).expect("in bounds");
+        let drive = self.mechanism.drives[0].drive;
+        let desk = |error: f64| {
+            let mut mechanism = self.mechanism.clone();
+            mechanism.run.error = error;
+            let start = Instant::now();
+            let done = run(&mechanism, &gaps, 1e-3).expect("it is solved");
+            (self.error(done.samples.rows.iter().map(|row| row[1])), start.elapsed().as_secs_f64())
+        };
+        let errors = (0..13).map(|i| 1e-4 * libm::pow(10.0, -0.25 * f64::from(i)));
+        let able = errors.map(|error| (error, desk(error))).filter(|(_, (error, _))| *error <= WITHIN);
+        let (best, _) = able.min_by(|one, other| one.1.1.total_cmp(&other.1.1))?;
+
+        let mut numbers = vec![0.0; A::Pose::COUNT + D];
+        pose.write(&mut numbers);
+        numbers[A::Pose::COUNT..].copy_from_slice(velocity.as_slice());
+        let rates = |t: f64, state: &[f64], rates: &mut [f64]| rates_of(&composed, t, state, rates);
+        let problem = FirstOrder { rates, start: &numbers, velocity: A::Pose::COUNT };
+        let milliseconds = (self.mechanism.run.duration * 1e3).round() as u32;
+        let peer = |tolerances: Tolerances| {
+            let speed = |state: &[f64]| state[A::Pose::COUNT + self.driven];
+            let (speeds, time) = problem.solve(milliseconds, BDF, tolerances, speed)?;
+            let efforts = speeds.iter().enumerate().map(|(k, speed)| drive.force(k as f64 * 1e-3, *speed));
+            Some((self.error(efforts), time.as_secs_f64()))
+        };
+        let able = Tolerances::all().filter_map(|tolerances| Some((tolerances, peer(tolerances)?)));
+        let able = able.filter(|(_, (error, _))| *error <= WITHIN);
+        let (tolerances, _) = able.min_by(|one, other| one.1.1.total_cmp(&other.1.1))?;
+        let times: Vec<_> =
+            (0..TURNS).map(|_| (desk(best).1, peer(tolerances).map_or(f64::NAN, |(_, time)| time))).collect();
+        let least = times.iter().fold(f64::MAX, |least, (desk, _)| least.min(*desk));
+        Some((least, median(times.iter().map(|(desk, peer)| desk / peer))))
+    }
+}
+
+/// The time of steps by elements chosen at run time over that by composed ones.
+fn of_composed<A, B, I, const D: usize>(composed: A, chosen: B, start: (A::Pose, SVector<f64, D>)) -> f64
+where
+    A: Mechanics<f64, D, Pose: Copy> + Copy,
+    B: Mechanics<f64, D, Pose = A::Pose> + Copy,
+    I: Integrator,
+{
+    let times = (0..TURNS).map(|_| [stepped::<_, I, D>(&composed, start), stepped::<_, I, D>(&chosen, start)]);
+    median(times.map(|[composed, chosen]| chosen / composed))
+}
+
+/// The time (s) of some steps.
+fn stepped<M: Mechanics<f64, D> + Copy, I: Integrator, const D: usize>(
+    mechanism: &M,
+    (pose, velocity): (M::Pose, SVector<f64, D>),
+) -> f64 {
+    let kernel = Kernel::<f64, _, I>::new(*mechanism, 1e-4).expect("in bounds");
+    let mut state = kernel.at_rest(pose);
+    state.motion.velocity = velocity;
+    let start = Instant::now();
+    for _ in 0..1000 {
+        black_box(kernel.step(&mut state));
+    }
+    start.elapsed().as_secs_f64()
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}

@@ -1,0 +1,96 @@
+//! The guide's gallery: every shipped scene with its picture, its question and the program's own answer. Written with
+//! `INSTA_UPDATE=always`; otherwise the test fails where page or pictures are not what the program gives.
+
+mod common;
+
+use std::{
+    fmt::Write,
+    path::{Path, PathBuf},
+};
+
+use common::{slipfit, stdout};
+use slipfit::scene::{SHIPPED, SceneFile};
+
+/// What is asked, and what of the output is the answer.
+struct Shown {
+    command: Vec<&'static str>,
+    /// The picture's options and the file that they write.
+    picture: Option<(Vec<&'static str>, &'static str)>,
+    /// Lines from the first that begins so to the next empty one.
+    from: &'static str,
+}
+
+/// Units of a product's analysis.
+const UNITS: [&str; 2] = ["--samples", "20000"];
+
+fn shown(name: &'static str, file: &SceneFile) -> Shown {
+    if let Some(mechanism) = &file.mechanism {
+        let drawing = Some((vec!["check", name, "--plot", "picture.svg"], "picture.svg"));
+        return match mechanism.drives.is_empty() {
+            false => Shown { command: vec!["sweep", name], picture: drawing, from: "motor:" },
+            true => Shown { command: vec!["simulate", name], picture: drawing, from: " at the end" },
+        };
+    }
+    if file.slide.is_some() {
+        let command = vec!["sweep", name, "--stroke"];
+        let picture = [&command[..], &["--plot", "picture.svg"]].concat();
+        return Shown { command, picture: Some((picture, "picture.svg")), from: "n = " };
+    }
+    let analysis = [&["tolerance", name][..], &UNITS].concat();
+    let picture = Some(([&analysis[..], &["--plots", "."]].concat(), "histogram-1.svg"));
+    if ["clutch-processes", "shaft-housing"].contains(&name) {
+        let command = [&["allocate", name][..], &UNITS].concat();
+        return Shown { command, picture, from: " tolerance of" };
+    }
+    Shown { command: analysis, picture, from: "Contributors" }
+}
+
+/// The first paragraph of the comment that a scene begins with.
+fn question(text: &str) -> String {
+    let lines = text.lines().map_while(|line| line.strip_prefix("# "));
+    lines.collect::<Vec<_>>().join(" ")
+}
+
+/// The answer among the lines of `output`; a product's yield as well.
+fn answer(output: &str, from: &str) -> String {
+    let lines = output.lines().skip_while(|line| !line.starts_with(from)).take_while(|line| !line.trim().is_empty());
+    let of_yield = output.lines().filter(|line| line.starts_with("yield "));
+    lines.chain(of_yield).map(|line| format!("{}\n", line.trim_end())).collect()
+}
+
+/// The page, and pictures by the names of their files.
+fn gallery() -> (String, Vec<(String, String)>) {
+    let mut page = "# Gallery\n\nEvery scene that slipfit ships: its picture, its question, and what the program answers. A scene goes by its name.\n".to_owned();
+    let mut pictures = Vec::new();
+    for (name, text) in SHIPPED {
+        let file = SceneFile::parse(name, text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let Shown { command, picture, from } = shown(name, &file);
+        let folder = tempfile::tempdir().unwrap();
+        let _ = write!(page, "\n## {}\n\n{}\n\n", file.title, question(text));
+        if let Some((options, written)) = picture {
+            stdout(&slipfit(folder.path(), &options));
+            pictures.push((format!("{name}.svg"), std::fs::read_to_string(folder.path().join(written)).unwrap()));
+            let _ = write!(page, "![{}](gallery/{name}.svg)\n\n", file.title);
+        }
+        let found = answer(&stdout(&slipfit(folder.path(), &command)), from);
+        assert!(!found.is_empty(), "{name}");
+        let _ = write!(page, "```console\n$ slipfit {}\n{found}```\n", command.join(" "));
+    }
+    (page, pictures)
+}
+
+#[test]
+fn every_shipped_scene_is_in_the_gallery_as_the_program_has_it() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("guide/src");
+    let (page, pictures) = gallery();
+    let named = pictures.into_iter().map(|(name, svg)| (folder.join("gallery").join(name), svg));
+    let all: Vec<(PathBuf, String)> = std::iter::once((folder.join("gallery.md"), page)).chain(named).collect();
+    if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+        std::fs::create_dir_all(folder.join("gallery")).unwrap();
+        all.iter().for_each(|(path, text)| std::fs::write(path, text).unwrap());
+    }
+    for (path, text) in all {
+        let committed = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(committed == text, "{} is not current; INSTA_UPDATE=always writes it", path.display());
+    }
+}
