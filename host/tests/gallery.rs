@@ -1,15 +1,20 @@
 //! The guide's gallery: every shipped scene with its picture, its question and the program's own answer. Written with
 //! `INSTA_UPDATE=always`; otherwise the test fails where page or pictures are not what the program gives.
 
-mod common;
-
 use std::{
     fmt::Write,
     path::{Path, PathBuf},
+    process::Command,
 };
 
-use common::{slipfit, stdout};
 use slipfit::scene::{SHIPPED, SceneFile};
+
+/// What the program prints in `folder`.
+fn printed(folder: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
 
 /// What is asked, and what of the output is the answer.
 struct Shown {
@@ -68,11 +73,11 @@ fn gallery() -> (String, Vec<(String, String)>) {
         let folder = tempfile::tempdir().unwrap();
         let _ = write!(page, "\n## {}\n\n{}\n\n", file.title, question(text));
         if let Some((options, written)) = picture {
-            stdout(&slipfit(folder.path(), &options));
+            printed(folder.path(), &options);
             pictures.push((format!("{name}.svg"), std::fs::read_to_string(folder.path().join(written)).unwrap()));
             let _ = write!(page, "![{}](gallery/{name}.svg)\n\n", file.title);
         }
-        let found = answer(&stdout(&slipfit(folder.path(), &command)), from);
+        let found = answer(&printed(folder.path(), &command), from);
         assert!(!found.is_empty(), "{name}");
         let _ = write!(page, "```console\n$ slipfit {}\n{found}```\n", command.join(" "));
     }

@@ -51,18 +51,17 @@ struct Report {
 }
 
 impl Arguments {
-    pub(super) fn run_mechanism(&self, driven: &ByDrive, product: Option<Product>) -> Result<(), Failure> {
-        let production = self.prepare(driven, product.as_ref())?;
-        let output = Output::prepare(&self.out, &self.scene, &FIGURES, production.as_ref())?;
-        let done = self.fill_with_mechanism(&output, driven, product, production);
-        output.close(done)
+    pub(super) fn run_mechanism(&self, driven: &ByDrive, product: Option<&Product>) -> Result<(), Failure> {
+        self.written(driven, product, &FIGURES, |output, production| {
+            self.fill_with_mechanism(output, driven, product, production)
+        })
     }
 
     fn fill_with_mechanism(
         &self,
         output: &Output,
         driven: &ByDrive,
-        product: Option<Product>,
+        product: Option<&Product>,
         production: Option<Production>,
     ) -> Result<(), Failure> {
         let bar = progress("simulating", force_table::levels(driven.levels()).count);
@@ -70,7 +69,7 @@ impl Arguments {
         bar.finish_and_clear();
         let (table, sweep) = made?;
         let mut warnings = mechanism::warnings_of(driven.mechanism())?;
-        warnings.extend(product.into_iter().flat_map(|product| product.warnings));
+        warnings.extend(product.into_iter().flat_map(|product| product.warnings.clone()));
         warnings.extend(doubts(&sweep));
 
         let answer = said(driven, &table, &sweep);

@@ -12,6 +12,8 @@ use super::{
     DRAWING, DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, progress, sweep::LevelArguments,
     tolerance::DEFAULT,
 };
+use output::Output;
+
 use crate::{
     driven::Driven,
     force_table::{self, Demand},
@@ -54,19 +56,29 @@ impl Arguments {
         match moving {
             Moving::Slide(scene) => {
                 self.drive.refuse()?;
-                self.run_slide(&scene, product)
+                self.run_slide(&scene, product.as_ref())
             }
             Moving::Mechanism(_) if self.units.is_some() => Err(Failure::Input(
                 "--units is for slides: units of a mechanism's production are not simulated yet".into(),
             )),
-            Moving::Mechanism(mechanism) => self.run_mechanism(&self.drive.of(&mechanism)?, product),
+            Moving::Mechanism(mechanism) => self.run_mechanism(&self.drive.of(&mechanism)?, product.as_ref()),
         }
     }
 
-    /// Whether there can be a table, and the analysis of the product.
-    fn prepare(&self, driven: &dyn Driven, product: Option<&Product>) -> Result<Option<Production>, Failure> {
+    /// Looks whether there can be a table, analyses the product and has the folder filled, with these `figures` among the
+    /// files.
+    fn written(
+        &self,
+        driven: &dyn Driven,
+        product: Option<&Product>,
+        figures: &[&str],
+        fill: impl FnOnce(&Output, Option<Production>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         force_table::check(driven, Demand::Full).map_err(|error| Failure::Input(error.to_string()))?;
-        product.map(|product| self.analyse(driven.title(), product)).transpose()
+        let production = product.map(|product| self.analyse(driven.title(), product)).transpose()?;
+        let output = Output::prepare(&self.out, &self.scene, figures, production.as_ref())?;
+        let done = fill(&output, production);
+        output.close(done)
     }
 
     /// Draws and analyses as `slipfit tolerance` does unless it is asked for something else.

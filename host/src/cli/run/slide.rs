@@ -89,23 +89,22 @@ impl Simulated {
 }
 
 impl Arguments {
-    pub(super) fn run_slide(&self, scene: &Scene, product: Option<Product>) -> Result<(), Failure> {
-        let production = self.prepare(scene, product.as_ref())?;
-        let output = Output::prepare(&self.out, &self.scene, &FIGURES, production.as_ref())?;
-        let done = self.fill_with_slide(&output, scene, product, production);
-        output.close(done)
+    pub(super) fn run_slide(&self, scene: &Scene, product: Option<&Product>) -> Result<(), Failure> {
+        self.written(scene, product, &FIGURES, |output, production| {
+            self.fill_with_slide(output, scene, product, production)
+        })
     }
 
     fn fill_with_slide(
         &self,
         output: &Output,
         scene: &Scene,
-        product: Option<Product>,
+        product: Option<&Product>,
         production: Option<Production>,
     ) -> Result<(), Failure> {
-        let simulated = self.simulate(scene, product.as_ref())?;
+        let simulated = self.simulate(scene, product)?;
         let mut warnings = check::warnings_of(scene);
-        warnings.extend(product.into_iter().flat_map(|product| product.warnings));
+        warnings.extend(product.into_iter().flat_map(|product| product.warnings.clone()));
         warnings.extend(doubts(simulated.judged()));
         let undecided = |level: &crate::sweep::Level| level.outcome.verdict == Verdict::Undecided;
         if simulated.judged().levels.iter().any(undecided) {
