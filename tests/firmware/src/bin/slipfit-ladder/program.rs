@@ -4,6 +4,7 @@ use core::{fmt::Display, hint::black_box};
 
 use slipfit_core::{
     Vector2,
+    ahead::{self, Ahead, Prediction},
     axis::AxisBody,
     drive::Drive,
     integrator::{ImplicitEuler, Integrator},
@@ -60,6 +61,36 @@ macro_rules! rungs {
     )*};
 }
 
+/// A slide ahead of the clock, and the motions it keeps.
+type SlideAhead = Ahead<f32, Unit<ThreeHalves<f32>, Regularised<f32>>>;
+type SlideAheadState = ahead::State<f32, Pose<f32>, 6, 64>;
+
+#[inline(never)]
+fn slide_ahead(ahead: &SlideAhead, state: &mut SlideAheadState) -> Prediction<f32> {
+    ahead.step(state)
+}
+
+/// Predicts ahead of the clock.
+fn ahead(machine: &mut impl Machine, slide: Unit<ThreeHalves<f32>, Regularised<f32>>) {
+    let limits = ahead::Limits { period: STEP, tolerance: 1e-4, lead: 0.2, lag: 0.2 };
+    let ahead = black_box(Ahead::new(slide, limits).expect("the limits are in bounds"));
+    let mut state: SlideAheadState = ahead.at_rest(Pose::nominal(), 70);
+    let (mut count, mut forces) = (Count::default(), Fingerprint::default());
+    for _ in 0..STEPS {
+        let mut prediction = None;
+        count.add(machine.instructions(|| prediction = Some(black_box(slide_ahead(&ahead, &mut state)))));
+        prediction.iter().for_each(|prediction| forces.add(prediction.force));
+    }
+    let (parameters, bytes) = (size_of_val(&ahead), size_of_val(&state));
+    print(machine, format_args!("slide_ahead: parameters {parameters} bytes, state {bytes} bytes, {forces}"));
+    if let Some(range) = count.range() {
+        print(machine, format_args!("instructions of slide_ahead: {range}"));
+    }
+    if let Some(bytes) = machine.stack(|| _ = black_box(slide_ahead(&ahead, &mut state))) {
+        print(machine, format_args!("stack of slide_ahead: {bytes} bytes"));
+    }
+}
+
 rungs! {
     slide_general_exponent: Unit<Power<f32>, Exact<f32>>, 6;
     slide_exact: Unit<ThreeHalves<f32>, Exact<f32>>, 6;
@@ -84,6 +115,7 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     rung(machine, "slide_exact", slide(three_halves, exact), nominal, slide_exact);
     full_pass(machine, slide(three_halves, exact));
     rung(machine, "slide_smoothed", slide(three_halves, smoothed), nominal, slide_smoothed);
+    ahead(machine, slide(three_halves, smoothed));
     rung(machine, "slide_frictionless", slide(three_halves, Frictionless), nominal, slide_frictionless);
 
     let contact = impact(three_halves);
