@@ -63,7 +63,7 @@ macro_rules! rungs {
 
 /// A slide ahead of the clock, and the motions it keeps.
 type SlideAhead = Ahead<f32, Unit<ThreeHalves<f32>, Regularised<f32>>>;
-type SlideAheadState = ahead::State<f32, Pose<f32>, 6, 64>;
+type SlideAheadState = ahead::State<f32, Pose<f32>, 6, 256>;
 
 #[inline(never)]
 fn slide_ahead(ahead: &SlideAhead, state: &mut SlideAheadState) -> Prediction<f32> {
@@ -77,10 +77,9 @@ fn ahead(machine: &mut impl Machine, slide: Unit<ThreeHalves<f32>, Regularised<f
     let mut state: SlideAheadState = ahead.at_rest(Pose::nominal(), 70);
     let (mut count, mut forces) = (Count::default(), Fingerprint::default());
     for _ in 0..STEPS {
-        let mut prediction = None;
-        count.add(machine.instructions(|| prediction = Some(black_box(slide_ahead(&ahead, &mut state)))));
-        prediction.iter().for_each(|prediction| forces.add(prediction.force));
+        count.add(counted(machine, &ahead, &mut state, slide_ahead));
     }
+    forces.add(slide_ahead(&ahead, &mut state).force);
     let (parameters, bytes) = (size_of_val(&ahead), size_of_val(&state));
     print(machine, format_args!("slide_ahead: parameters {parameters} bytes, state {bytes} bytes, {forces}"));
     if let Some(range) = count.range() {
@@ -256,11 +255,6 @@ fn steps<M: Mechanism<f32, D>, I: Integrator, const D: usize>(
 
 /// Instructions of one step. A function of its own, so that what is around the step is the same in every pass of a loop.
 #[inline(never)]
-fn counted<K, T>(
-    machine: &mut impl Machine,
-    kernel: &K,
-    state: &mut T,
-    step: fn(&K, &mut T) -> Report<f32>,
-) -> Option<u32> {
+fn counted<K, T, R>(machine: &mut impl Machine, kernel: &K, state: &mut T, step: fn(&K, &mut T) -> R) -> Option<u32> {
     machine.instructions(|| _ = black_box(step(kernel, state)))
 }
