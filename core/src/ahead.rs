@@ -5,8 +5,9 @@
 //! periods, and the lead so won is spent where only short ones will do. Accepted motions go into a ring, from which a cubic
 //! reads the value at the present instant. The state decides by selects only: every period takes the same instructions.
 //!
-//! Where it falls behind the clock nevertheless, the tolerance gives way in steps, and at last steps of a period are accepted
-//! whatever their error, so that the lag is bounded too. The error that is then made is reported.
+//! The less lead is left, the more the tolerance gives way, in steps, and the error that is then made is reported. Where it falls
+//! behind by a given lag nevertheless, steps are forced: of linearly implicit Euler, over a period, whatever their error. So the lag
+//! is bounded too.
 //!
 //! Time is counted in ticks of 2⁻²⁰ periods, so that neither a lead nor a step is ever rounded.
 
@@ -28,8 +29,8 @@ pub struct Limits<S> {
     pub tolerance: S,
     /// The lead that is not exceeded (s).
     pub lead: S,
-    /// The lag (s) at which steps are accepted whatever their error. At a quarter, a half and three quarters of it the tolerance is
-    /// 10, 100 and 1000 times as large.
+    /// The lag (s) at which steps are forced: of linearly implicit Euler, over a period, whatever their error. At a quarter, a
+    /// half and three quarters of it the tolerance grows fourfold each time.
     pub lag: S,
 }
 
@@ -59,9 +60,9 @@ pub struct State<S, P, const D: usize, const N: usize> {
     /// Length of the next attempt, in ticks.
     length: S,
     ring: Ring<S, P, D, N>,
-    /// Steps accepted whatever their error.
+    /// See [`Prediction::forced`].
     forced: u32,
-    /// Sum of the errors (N) of accepted steps, as far as they exceed the tolerance.
+    /// See [`Prediction::excess`].
     excess: S,
 }
 
@@ -77,11 +78,12 @@ pub struct Prediction<S> {
     pub force: S,
     /// How far beyond the clock the motion is known (s); negative where the prediction is behind.
     pub lead: S,
-    /// The tolerance (N) that the period's attempt was held to; infinite for a step that is accepted whatever its error.
+    /// The tolerance (N) that the period's attempt was held to; infinite for a forced step.
     pub tolerance: S,
-    /// Sum of the errors (N) of all steps accepted since the start, as far as they exceed the tolerance of [`Limits`].
+    /// Sum of the estimated errors (N) of all steps since the start, as far as they exceed the tolerance of [`Limits`]; without forced
+    /// steps.
     pub excess: S,
-    /// Steps accepted since the start whatever their error.
+    /// Forced steps since the start: their error is not known.
     pub forced: u32,
 }
 
@@ -177,7 +179,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
     }
 
     /// One period: the clock goes on by it, one step is attempted, and the values at the new instant are given.
-    #[inline]
+    #[inline(always)]
     pub fn step<const D: usize, const N: usize>(&self, state: &mut State<S, M::Pose, D, N>) -> Prediction<S>
     where
         M: Driven<S, D>,
@@ -194,20 +196,21 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let given_way = factor(lead / most, BY_LEAD) * factor(-lags, BY_LAG);
         let forced = lags.select_gt(one, one, zero);
 
-        // A step that is forced takes a period at least, so that the lag does not grow; none leads too far.
+        // A forced step leads over a period at least, so that the lag does not grow; none leads too far.
         let period = S::from_count(TICKS);
         let wanted = forced.select_gt(zero, state.length.max_of(period), state.length);
         let fits = wanted.select_gt(most - lead, zero, one);
         let has_room = state.ring.has_room(clock) * fits;
         // In whole ticks.
-        let ticks: u32 = wanted.max_of(S::from_f64(LEAST)).as_();
-        let length = S::from_count(ticks);
+        let advance = S::from_count(wanted.max_of(S::from_f64(LEAST)).as_());
+        // Of an attempt whose half is taken.
+        let length = advance + advance * forced;
 
         let end = {
             let from = state.ring.newest();
             let memory = self.mechanism.fresh();
             let at = (&from.pose, &from.velocity, &memory);
-            Rodas3::attempt(&self.mechanism, now + lead * self.tick, length * self.tick, at)
+            Rodas3::attempt(&self.mechanism, now + lead * self.tick, length * self.tick, at, Some(forced))
         };
         let [momentum, place] = self.weights;
         let error = (end.error * momentum).max_of(end.drift * place);
@@ -217,11 +220,12 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let worst = S::from_f64(NOT_FINITE);
         let error = worst.select_gt(error, error, worst).max_of(S::from_f64(1e-9));
 
-        let allowed = forced.select_gt(zero, S::from_f64(0.5 * NOT_FINITE), given_way);
-        let accepted = has_room * error.select_gt(allowed, zero, one);
-        // Where not even that is a motion, the last one is held for a period.
-        let held = forced * (one - accepted) * has_room;
-        state.ring.extend(accepted.as_(), (accepted * length + held * period).as_());
+        let finite = S::from_f64(0.5 * NOT_FINITE).select_gt(error, one, zero);
+        let good = error.select_gt(given_way, zero, one);
+        let accepted = has_room * forced.select_gt(zero, finite, good);
+        // Where not even a forced step is finite, the last motion is held for a period.
+        let held = forced * (one - accepted);
+        state.ring.extend(accepted.as_(), (accepted * advance + held * period).as_());
         let relative = error / given_way;
         let factor = S::from_f64(SAFETY) / relative.pow(S::from_f64(1.0 / 3.0));
         let next =
@@ -230,10 +234,9 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let next = next.select_gt(greatest, greatest, next);
         // Where there was no room the attempt says nothing.
         state.length = has_room.select_gt(zero, next, state.length);
-        let unmet = error.select_gt(given_way, forced, zero) * accepted + held;
-        state.forced = state.forced.saturating_add(unmet.as_());
+        state.forced = state.forced.saturating_add(forced.as_());
         let tolerance = self.limits.tolerance;
-        state.excess += accepted * (error.select_gt(one, error - one, zero)) * tolerance;
+        state.excess += accepted * (one - forced) * error.select_gt(one, error - one, zero) * tolerance;
 
         let lead = signed::<S>(state.ring.head().wrapping_sub(clock)) * self.tick;
         let speed = state.ring.read(clock, |knot| self.mechanism.speed(&knot.velocity));
@@ -289,3 +292,6 @@ impl<S: Scalar> Prediction<S> {
         if self.lead >= S::zero() { Status::Ahead(self.lead) } else { Status::Behind(-self.lead) }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -11,7 +11,7 @@ const EVENT: f64 = 4.0;
 /// Weights of the changes of a value over three steps of the given `lengths`, which sum up to its change at the share `s` of the middle one.
 /// The first and the last step may be missing: their length is 0, and so is their weight. The slope at either end is that of the
 /// parabola through it and its neighbours; at an event, and at the end of all steps, of that through three knots on its own
-/// side; of the chord where there are no such.
+/// side; of the chord where there are no such, or an event among them.
 #[inline(always)]
 pub(super) fn weights<S: Scalar>([before, own, after]: [S; 3], s: S) -> [S; 3] {
     let (one, zero) = (S::one(), S::zero());
@@ -29,16 +29,11 @@ pub(super) fn weights<S: Scalar>([before, own, after]: [S; 3], s: S) -> [S; 3] {
 #[inline(always)]
 fn slope<S: Scalar>([other, own, further]: [S; 3]) -> [S; 3] {
     let (one, zero, event) = (S::one(), S::zero(), S::from_f64(EVENT));
-    let smooth = (event * own).select_gt(other, (event * other).select_gt(own, one, zero), zero);
+    let either = |near: S, yes, no| (event * own).select_gt(near, (event * near).select_gt(own, yes, no), no);
     let both = own / (other + own);
-    let parabola = [both * own / other, one - both];
-    let share = further.select_gt(zero, own / (own + further), zero);
-    let own_side = [one + share, -(share * own / further)];
-    [
-        smooth.select_gt(zero, parabola[0], zero),
-        smooth.select_gt(zero, parabola[1], own_side[0]),
-        smooth.select_gt(zero, zero, further.select_gt(zero, own_side[1], zero)),
-    ]
+    let share = own / (own + further);
+    let own_side = [either(further, one + share, one), either(further, -(share * own / further), zero)];
+    [either(other, both * own / other, zero), either(other, one - both, own_side[0]), either(other, zero, own_side[1])]
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::{
     Integrator, MotionOf, StepOf,
-    rosenbrock::{End, From, Start},
+    rosenbrock::{End, From, Part, Start},
 };
 use crate::{Scalar, mechanism::Mechanism};
 
@@ -11,7 +11,8 @@ use crate::{Scalar, mechanism::Mechanism};
 pub struct Rodas3;
 
 impl Rodas3 {
-    /// A step `h` (s) of `mechanism` at time `t` (s).
+    /// A step `h` (s) of `mechanism` at time `t` (s); where `euler` > 0 half of it by linearly implicit Euler, which the first
+    /// stage alone is, so that it stays bounded where the whole step would not.
     ///
     /// Written out: a loop over coefficients would keep every stage alive, and in images some of the coefficients as doubles.
     #[inline(always)]
@@ -20,17 +21,21 @@ impl Rodas3 {
         t: S,
         h: S,
         from: From<'_, S, M, D>,
+        euler: Option<S>,
     ) -> End<S, M::Pose, D> {
         let (start, here) = Start::new(mechanism, t, h, from, 0.5);
         let first = start.stage(&here, None, 0.5);
         let second = start.stage(&here, Some(&first.times(S::from_f64(4.0))), 1.5);
         let before = first.plus(&second, -S::one());
-        let at = first.times(S::from_f64(2.0));
+        let (one, zero) = (S::one(), S::zero());
+        let share = euler.map_or(S::from_f64(2.0), |euler| euler.select_gt(zero, one, S::from_f64(2.0)));
+        let kept = |part: Part<S, D>| euler.map_or(part, |euler| part.or_none(one - euler));
+        let at = first.times(share);
         let third = start.stage(&start.evaluated(&at, 1.0), Some(&before), 0.0);
         let before = before.plus(&third, S::from_f64(-8.0 / 3.0));
-        let at = at.plus(&third, S::one());
+        let at = at.plus(&kept(third), one);
         let fourth = start.stage(&start.evaluated(&at, 1.0), Some(&before), 0.0);
-        start.end(&at.plus(&fourth, S::one()), &fourth)
+        start.end(&at.plus(&kept(fourth), one), &fourth)
     }
 }
 
@@ -46,6 +51,6 @@ impl Integrator for Rodas3 {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        Self::attempt(mechanism, t, h, (&motion.pose, &motion.velocity, &motion.memory)).step(motion, h)
+        Self::attempt(mechanism, t, h, (&motion.pose, &motion.velocity, &motion.memory), None).step(motion, h)
     }
 }

@@ -41,6 +41,9 @@ const COEFFICIENT: f32 = 0.3;
 /// Tolerance level of every rung.
 const LEVEL: f32 = 2.5;
 
+/// Periods from the clock's start to the release of the slide that is predicted ahead.
+const EARLY: u32 = 70;
+
 type Unit<E, F> = Slide<f32, E, F>;
 type FullSlide = Unit<ThreeHalves<f32>, Exact<f32>>;
 type Flat = Planar<f32, Across<Slot<f32>>, ThreeHalves<f32>, Regularised<f32>, PINS>;
@@ -72,14 +75,15 @@ fn slide_ahead(ahead: &SlideAhead, state: &mut SlideAheadState) -> Prediction<f3
 
 /// Predicts ahead of the clock.
 fn ahead(machine: &mut impl Machine, slide: Unit<ThreeHalves<f32>, Regularised<f32>>) {
-    let limits = ahead::Limits { period: STEP, tolerance: 1e-4, lead: 0.2, lag: 0.2 };
+    let limits = ahead::Limits { period: STEP, tolerance: 7e-5, lead: 0.2, lag: 0.2 };
     let ahead = black_box(Ahead::new(slide, limits).expect("the limits are in bounds"));
-    let mut state: SlideAheadState = ahead.at_rest(Pose::nominal(), 70);
+    let mut state: SlideAheadState = ahead.at_rest(Pose::nominal(), EARLY);
     let (mut count, mut forces) = (Count::default(), Fingerprint::default());
     for _ in 0..STEPS {
         count.add(counted(machine, &ahead, &mut state, slide_ahead));
     }
-    forces.add(slide_ahead(&ahead, &mut state).force);
+    let mut again: SlideAheadState = ahead.at_rest(Pose::nominal(), EARLY);
+    (0..STEPS).for_each(|_| forces.add(slide_ahead(&ahead, &mut again).force));
     let (parameters, bytes) = (size_of_val(&ahead), size_of_val(&state));
     print(machine, format_args!("slide_ahead: parameters {parameters} bytes, state {bytes} bytes, {forces}"));
     if let Some(range) = count.range() {
