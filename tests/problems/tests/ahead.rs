@@ -6,6 +6,7 @@
 use std::{fs, path::Path};
 
 use slipfit_core::{
+    Scalar,
     ahead::{Ahead, Limits, Prediction, State, Status},
     integrator::{Integrator, Rodas4},
     kernel::Kernel,
@@ -55,7 +56,7 @@ fn converged(data: &SlideData<f64>, periods: usize) -> Vec<f64> {
             let step = Rodas4::step(&slide, t, length, &motion);
             let velocity_error = step.error / slide.mass();
             let error = (slide.drive().gain * velocity_error).max(step.drift / slide.mass() / 3e-5) / tolerance;
-            h = length * (0.8 / error.max(1e-12).powf(0.25)).clamp(0.2, 3.0);
+            h = length * (0.8 / Scalar::sqrt(Scalar::sqrt(error.max(1e-12)))).clamp(0.2, 3.0);
             if error <= 1.0 {
                 t = if length == end - t { end } else { t + length };
                 motion = step.motion;
