@@ -2,7 +2,7 @@
 
 use super::{
     Integrator, MotionOf, StepOf,
-    rosenbrock::{End, From, Part, Start},
+    rosenbrock::{End, From, Start},
 };
 use crate::{Scalar, mechanism::Mechanism};
 
@@ -27,15 +27,15 @@ impl Rodas3 {
         let first = start.stage(&here, None, 0.5);
         let second = start.stage(&here, Some(&first.times(S::from_f64(4.0))), 1.5);
         let before = first.plus(&second, -S::one());
-        let (one, zero) = (S::one(), S::zero());
-        let share = euler.map_or(S::from_f64(2.0), |euler| euler.select_gt(zero, one, S::from_f64(2.0)));
-        let kept = |part: Part<S, D>| euler.map_or(part, |euler| part.or_none(one - euler));
-        let at = first.times(share);
+        let one = S::one();
+        // Weights, because a choice of vectors becomes a branch.
+        let rest = euler.map_or(one, |euler| euler.select_gt(S::zero(), S::zero(), one));
+        let at = first.times(one + rest);
         let third = start.stage(&start.evaluated(&at, 1.0), Some(&before), 0.0);
         let before = before.plus(&third, S::from_f64(-8.0 / 3.0));
-        let at = at.plus(&kept(third), one);
+        let at = at.plus(&third, rest);
         let fourth = start.stage(&start.evaluated(&at, 1.0), Some(&before), 0.0);
-        start.end(&at.plus(&kept(fourth), one), &fourth)
+        start.end(&at.plus(&fourth, rest), &fourth)
     }
 }
 

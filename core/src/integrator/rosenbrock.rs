@@ -61,13 +61,6 @@ impl<S: Scalar, const D: usize> Part<S, D> {
         Self { place: self.place * weight, velocity: self.velocity * weight }
     }
 
-    /// `self` where `condition` > 0, else nothing.
-    #[inline(always)]
-    pub fn or_none(&self, condition: S) -> Self {
-        let kept = |x: S| condition.select_gt(S::zero(), x, S::zero());
-        Self { place: self.place.map(kept), velocity: self.velocity.map(kept) }
-    }
-
     /// `self` + `weight`·`other`.
     #[inline(always)]
     pub fn plus(&self, other: &Self, weight: S) -> Self {
