@@ -40,7 +40,12 @@ static CODE: LazyLock<BTreeMap<&str, String>> = LazyLock::new(|| {
     // It has been built.
     assert!(!ON_TARGET.is_empty());
     let image = cross::image(FOLDER, "slipfit-ladder");
-    RUNGS.iter().chain(&MECHANISMS).map(|rung| (*rung, cross::code(&image, rung).remove(0))).collect()
+    RUNGS
+        .iter()
+        .chain(&MECHANISMS)
+        .chain(&["slide_ahead"])
+        .map(|rung| (*rung, cross::code(&image, rung).remove(0)))
+        .collect()
 });
 
 /// A rung's costs.
@@ -112,6 +117,16 @@ fn the_full_slide_keeps_its_budget() {
     let pass = pass.expect("the image says so");
     assert!(pass <= 3_900, "{pass}");
     insta::assert_snapshot!("pass", pass);
+}
+
+/// One attempt a period, what decides over it and what is read from the ring included.
+#[test]
+fn a_period_ahead_of_the_clock_keeps_its_budget() {
+    let Costs { instructions, stack, .. } = costs("slide_ahead");
+    assert!(instructions <= 11_000 && stack <= 896, "{instructions} {stack}");
+    let (_, of_numbers) = branches(&CODE["slide_ahead"]);
+    assert_eq!(of_numbers, None);
+    insta::assert_snapshot!("ahead", table(&["slide_ahead"]));
 }
 
 /// A step is one function that calls none but to copy memory, so that its constants tell what is in it.

@@ -2,10 +2,10 @@
 
 use crate::{
     ParameterError, SVector, Scalar,
-    drive::Push,
+    drive::{Drive, Push},
     error::bounded,
     law::{Elastic, Impact, Pad, Stop, stop::Resistance},
-    mechanism::{Differentiated, Linearised, Mechanism},
+    mechanism::{Differentiated, Driven, Linearised, Mechanism},
 };
 
 /// A body that moves along one axis, with a stop, by default a pad below it, and a drive, by default none.
@@ -152,6 +152,20 @@ impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> Mechanism<S, 1> for AxisB
     #[inline(always)]
     fn pushed(&self, [_, stiffness]: &[S; 2], displacement: &SVector<S, 1>) -> SVector<S, 1> {
         displacement * -*stiffness
+    }
+}
+
+impl<S: Scalar, E: Elastic<S>, C: Stop<S>> Driven<S, 1> for AxisBody<S, E, C, Drive<S>> {
+    fn drive(&self) -> &Drive<S> {
+        &self.push
+    }
+
+    fn mass(&self) -> S {
+        self.mass
+    }
+
+    fn speed(&self, velocity: &SVector<S, 1>) -> S {
+        velocity.x
     }
 }
 

@@ -15,6 +15,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod ahead;
 pub mod axis;
 pub mod clearance;
 pub mod drive;

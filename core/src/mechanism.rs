@@ -1,6 +1,6 @@
 //! What an integrator sees of a scene: generalised velocities, momenta, forces and their linearisation.
 
-use crate::{SVector, Scalar, law::friction::SlidingContact};
+use crate::{SVector, Scalar, drive::Drive, law::friction::SlidingContact};
 
 /// How forces are to be linearised.
 #[derive(Clone, Copy, Debug)]
@@ -180,6 +180,18 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     fn rate(&self, _displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         *velocity
     }
+}
+
+/// A mechanism that a drive pushes and whose laws have no memory.
+pub trait Driven<S: Scalar, const D: usize>: Mechanism<S, D> {
+    /// The drive.
+    fn drive(&self) -> &Drive<S>;
+
+    /// The mass (kg) that the drive pushes.
+    fn mass(&self) -> S;
+
+    /// The speed (m/s) along the drive of a `velocity`.
+    fn speed(&self, velocity: &SVector<S, D>) -> S;
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::{
     Integrator, MotionOf, StepOf,
-    rosenbrock::{StageOf, Tableau, step},
+    rosenbrock::{End, From, Start},
 };
 use crate::{Scalar, mechanism::Mechanism};
 
@@ -10,17 +10,33 @@ use crate::{Scalar, mechanism::Mechanism};
 #[derive(Clone, Copy, Debug)]
 pub struct Rodas3;
 
-impl Tableau for Rodas3 {
-    const GAMMA: f64 = 0.5;
-
-    const STAGES: &'static [StageOf] = &[
-        StageOf { force_at: None, time: 0.0, time_rate: 0.5, coupling: &[] },
-        StageOf { force_at: None, time: 0.0, time_rate: 1.5, coupling: &[4.0] },
-        StageOf { force_at: Some(&[2.0, 0.0]), time: 1.0, time_rate: 0.0, coupling: &[1.0, -1.0] },
-        StageOf { force_at: Some(&[2.0, 0.0, 1.0]), time: 1.0, time_rate: 0.0, coupling: &[1.0, -1.0, -8.0 / 3.0] },
-    ];
-
-    const RESULT: &'static [f64] = &[2.0, 0.0, 1.0, 1.0];
+impl Rodas3 {
+    /// A step `h` (s) of `mechanism` at time `t` (s); where `euler` > 0 half of it by linearly implicit Euler, which the first
+    /// stage alone is, so that it stays bounded where the whole step would not.
+    ///
+    /// Written out: a loop over coefficients would keep every stage alive, and in images some of the coefficients as doubles.
+    #[inline(always)]
+    pub(crate) fn attempt<S: Scalar, M: Mechanism<S, D>, const D: usize>(
+        mechanism: &M,
+        t: S,
+        h: S,
+        from: From<'_, S, M, D>,
+        euler: Option<S>,
+    ) -> End<S, M::Pose, D> {
+        let (start, here) = Start::new(mechanism, t, h, from, 0.5);
+        let first = start.stage(&here, None, 0.5);
+        let second = start.stage(&here, Some(&first.times(S::from_f64(4.0))), 1.5);
+        let before = first.plus(&second, -S::one());
+        let one = S::one();
+        // Weights, because a choice of vectors becomes a branch.
+        let rest = euler.map_or(one, |euler| euler.select_gt(S::zero(), S::zero(), one));
+        let at = first.times(one + rest);
+        let third = start.stage(&start.evaluated(&at, 1.0), Some(&before), 0.0);
+        let before = before.plus(&third, S::from_f64(-8.0 / 3.0));
+        let at = at.plus(&third, rest);
+        let fourth = start.stage(&start.evaluated(&at, 1.0), Some(&before), 0.0);
+        start.end(&at.plus(&fourth, rest), &fourth)
+    }
 }
 
 impl Integrator for Rodas3 {
@@ -35,6 +51,6 @@ impl Integrator for Rodas3 {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        step::<Self, S, M, D>(mechanism, t, h, motion)
+        Self::attempt(mechanism, t, h, (&motion.pose, &motion.velocity, &motion.memory), None).step(motion, h)
     }
 }

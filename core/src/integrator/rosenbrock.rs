@@ -7,7 +7,10 @@
 //! variables, such as exact friction, have no derivative that these methods could use.
 
 use super::{Motion, MotionOf, Step, StepOf};
-use crate::{SVector, Scalar, mechanism::Mechanism};
+use crate::{
+    SVector, Scalar,
+    mechanism::{Differentiated, Mechanism},
+};
 
 /// The most stages of a method.
 const MOST_STAGES: usize = 6;
@@ -41,26 +44,148 @@ pub(super) struct StageOf {
 
 /// A part of a step: displacement (m, rad) and change of velocity (m/s, rad/s).
 #[derive(Clone, Copy)]
-struct Part<S, const D: usize> {
+pub(super) struct Part<S, const D: usize> {
     place: SVector<S, D>,
     velocity: SVector<S, D>,
 }
 
 impl<S: Scalar, const D: usize> Part<S, D> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self { place: SVector::zeros(), velocity: SVector::zeros() }
+    }
+
+    /// `self` times `weight`.
+    #[inline(always)]
+    pub fn times(&self, weight: S) -> Self {
+        Self { place: self.place * weight, velocity: self.velocity * weight }
+    }
+
+    /// `self` + `weight`·`other`.
+    #[inline(always)]
+    pub fn plus(&self, other: &Self, weight: S) -> Self {
+        let sum = |a, b| a + b * weight;
+        Self { place: self.place.zip_map(&other.place, sum), velocity: self.velocity.zip_map(&other.velocity, sum) }
+    }
+
     /// The sum of `parts` weighted by `weights`, of which zeros cost nothing.
     #[inline(always)]
     fn weighted(parts: &[Self; MOST_STAGES], weights: &[f64]) -> Self {
-        let mut sum = Self { place: SVector::zeros(), velocity: SVector::zeros() };
+        let mut sum = Self::zero();
         for (part, weight) in parts.iter().zip(weights) {
             if *weight != 0.0 {
-                let weight = S::from_f64(*weight);
-                for k in 0..D {
-                    sum.place[k] += part.place[k] * weight;
-                    sum.velocity[k] += part.velocity[k] * weight;
-                }
+                sum = sum.plus(part, S::from_f64(*weight));
             }
         }
         sum
+    }
+}
+
+/// The force at a stage, and how its place changes there.
+#[derive(Clone, Copy)]
+pub(super) struct Evaluation<S, const D: usize> {
+    force: SVector<S, D>,
+    rate: SVector<S, D>,
+}
+
+/// Where a step starts: pose, velocity, memory.
+pub(super) type From<'a, S, M, const D: usize> =
+    (&'a <M as Mechanism<S, D>>::Pose, &'a SVector<S, D>, &'a <M as Mechanism<S, D>>::Memory);
+
+/// A step at its start: what all of its stages share.
+pub(super) struct Start<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> {
+    mechanism: &'a M,
+    from: From<'a, S, M, D>,
+    t: S,
+    h: S,
+    /// Implicit part of the step (s).
+    a: S,
+    per_step: S,
+    per_time: SVector<S, D>,
+    slopes: M::Slopes,
+    linearisation: M::Linearisation,
+}
+
+/// Where a step ends, and how far the embedded method's end is from there.
+pub(crate) struct End<S, P, const D: usize> {
+    pub pose: P,
+    /// Change of the velocities.
+    pub change: SVector<S, D>,
+    /// See [`Step::error`].
+    pub error: S,
+    /// See [`Step::drift`].
+    pub drift: S,
+}
+
+impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
+    /// The start of a step `h` (s) with the implicit part `gamma`·`h`, and the force there.
+    #[inline(always)]
+    pub fn new(mechanism: &'a M, t: S, h: S, from: From<'a, S, M, D>, gamma: f64) -> (Self, Evaluation<S, D>) {
+        let (pose, velocity, memory) = from;
+        let Differentiated { force, per_time, slopes } = mechanism.differentiated(t, pose, memory, velocity);
+        let a = h * S::from_f64(gamma);
+        let linearisation = mechanism.linearisation(&slopes, a);
+        let start = Self { mechanism, from, t, h, a, per_step: S::one() / h, per_time, slopes, linearisation };
+        (start, Evaluation { force, rate: *velocity })
+    }
+
+    /// The force `at` a part of the step, at `time`, a share of it.
+    #[inline(always)]
+    pub fn evaluated(&self, at: &Part<S, D>, time: f64) -> Evaluation<S, D> {
+        let Self { mechanism, from: (start, velocity, memory), .. } = *self;
+        let pose = mechanism.moved(start, &at.place, S::one());
+        let velocity = velocity + at.velocity;
+        let t = self.t + S::from_f64(time) * self.h;
+        let there = mechanism.forces(t, &pose, memory, &velocity, self.h, None);
+        Evaluation { force: mechanism.referred(start, &pose, there), rate: mechanism.rate(&at.place, &velocity) }
+    }
+
+    /// The stage with the evaluation `here`, with what earlier stages add `before` and the weight `time_rate` of the force's
+    /// change with time.
+    #[inline(always)]
+    pub fn stage(&self, here: &Evaluation<S, D>, before: Option<&Part<S, D>>, time_rate: f64) -> Part<S, D> {
+        let Self { mechanism, a, per_step, .. } = *self;
+        let Evaluation { mut force, mut rate } = *here;
+        if time_rate != 0.0 {
+            force += self.per_time * (S::from_f64(time_rate) * self.h);
+        }
+        if let Some(before) = before {
+            rate += before.place * per_step;
+            force += mechanism.momentum(self.from.0, &before.velocity) * per_step;
+        }
+        // The equation of the place is solved for first.
+        let velocity = mechanism.solve(&self.linearisation, &(force + mechanism.pushed(&self.slopes, &(rate * a))));
+        Part { place: (velocity + rate) * a, velocity }
+    }
+
+    /// The end of the step, which is the `whole` of its parts; `last` is the difference from the embedded method.
+    #[inline(always)]
+    pub fn end(&self, whole: &Part<S, D>, last: &Part<S, D>) -> End<S, M::Pose, D> {
+        let Self { mechanism, from: (start, ..), .. } = *self;
+        End {
+            pose: mechanism.normalised(&mechanism.moved(start, &whole.place, S::one())),
+            change: whole.velocity,
+            error: mechanism.weighed(start, &last.velocity),
+            drift: mechanism.weighed(start, &last.place),
+        }
+    }
+}
+
+impl<S: Scalar, P, const D: usize> End<S, P, D> {
+    /// The step `h` (s) that led here from `motion`.
+    #[inline(always)]
+    pub fn step<R: Copy>(self, motion: &Motion<S, P, R, D>, h: S) -> Step<S, P, R, D> {
+        Step {
+            motion: Motion {
+                pose: self.pose,
+                velocity: motion.velocity + self.change,
+                acceleration: self.change * (S::one() / h),
+                memory: motion.memory,
+            },
+            residual: S::zero(),
+            error: self.error,
+            drift: self.drift,
+        }
     }
 }
 
@@ -72,44 +197,19 @@ pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
     h: S,
     motion: &MotionOf<S, M, D>,
 ) -> StepOf<S, M, D> {
-    let start = mechanism.differentiated(t, &motion.pose, &motion.memory, &motion.velocity);
-    let a = h * S::from_f64(T::GAMMA);
-    let linearisation = mechanism.linearisation(&start.slopes, a);
-    let per_step = S::one() / h;
-    let mut parts = [Part { place: SVector::zeros(), velocity: SVector::zeros() }; MOST_STAGES];
-    let (mut rate, mut force) = (motion.velocity, start.force);
-    let mut last = parts[0];
+    let from = (&motion.pose, &motion.velocity, &motion.memory);
+    let (start, mut here) = Start::new(mechanism, t, h, from, T::GAMMA);
+    let mut parts = [Part::zero(); MOST_STAGES];
+    let mut last = Part::zero();
     for (i, stage) in T::STAGES.iter().enumerate() {
         if let Some(weights) = stage.force_at {
-            let at = Part::weighted(&parts, weights);
-            let pose = mechanism.moved(&motion.pose, &at.place, S::one());
-            let velocity = motion.velocity + at.velocity;
-            let there = mechanism.forces(t + S::from_f64(stage.time) * h, &pose, &motion.memory, &velocity, h, None);
-            force = mechanism.referred(&motion.pose, &pose, there);
-            rate = mechanism.rate(&at.place, &velocity);
+            here = start.evaluated(&Part::weighted(&parts, weights), stage.time);
         }
         let before = Part::weighted(&parts, stage.coupling);
-        let rate = rate + before.place * per_step;
-        let changing = start.per_time * (S::from_f64(stage.time_rate) * h);
-        let force = force + changing + mechanism.momentum(&motion.pose, &before.velocity) * per_step;
-        // The equation of the place is solved for first.
-        let velocity = mechanism.solve(&linearisation, &(force + mechanism.pushed(&start.slopes, &(rate * a))));
-        last = Part { place: (velocity + rate) * a, velocity };
+        last = start.stage(&here, Some(&before), stage.time_rate);
         if let Some(part) = parts.get_mut(i) {
             *part = last;
         }
     }
-    let whole = Part::weighted(&parts, T::RESULT);
-    let pose = mechanism.normalised(&mechanism.moved(&motion.pose, &whole.place, S::one()));
-    Step {
-        motion: Motion {
-            pose,
-            velocity: motion.velocity + whole.velocity,
-            acceleration: whole.velocity * per_step,
-            memory: motion.memory,
-        },
-        residual: S::zero(),
-        error: mechanism.weighed(&motion.pose, &last.velocity),
-        drift: mechanism.weighed(&motion.pose, &last.place),
-    }
+    start.end(&Part::weighted(&parts, T::RESULT), &last).step(motion, h)
 }

@@ -5,9 +5,10 @@ use nalgebra::Matrix3;
 use super::{SLOTS, Slide, contacts::Placed, join, split};
 use crate::{
     SVector, Scalar, Vector3,
+    drive::Drive,
     law::{Elastic, Friction},
     linear::{Blocks, Factors, cross_columns, cross_matrix, cross_rows},
-    mechanism::{Differentiated, Linearised, Mechanism, Way, settled, settling},
+    mechanism::{Differentiated, Driven, Linearised, Mechanism, Way, settled, settling},
     pose::{Pose, ToBody},
 };
 
@@ -244,6 +245,23 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         let ((_, turn_b), (v_w, w_b)) = (split(displacement), split(velocity));
         let half = turn_b * S::from_f64(0.5);
         join(v_w, w_b + half.cross(&w_b) + half * half.dot(&w_b))
+    }
+}
+
+impl<S: Scalar, E: Elastic<S>, F: Friction<S, Memory = ()>> Driven<S, 6> for Slide<S, E, F> {
+    #[inline(always)]
+    fn drive(&self) -> &Drive<S> {
+        &self.drive
+    }
+
+    #[inline(always)]
+    fn mass(&self) -> S {
+        self.body.mass
+    }
+
+    #[inline(always)]
+    fn speed(&self, velocity: &SVector<S, 6>) -> S {
+        velocity.z
     }
 }
 

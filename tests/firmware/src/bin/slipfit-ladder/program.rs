@@ -4,6 +4,7 @@ use core::{fmt::Display, hint::black_box};
 
 use slipfit_core::{
     Vector2,
+    ahead::{self, Ahead, Prediction},
     axis::AxisBody,
     drive::Drive,
     integrator::{ImplicitEuler, Integrator},
@@ -40,6 +41,9 @@ const COEFFICIENT: f32 = 0.3;
 /// Tolerance level of every rung.
 const LEVEL: f32 = 2.5;
 
+/// Periods from the clock's start to the release of the slide that is predicted ahead.
+const EARLY: u32 = 70;
+
 type Unit<E, F> = Slide<f32, E, F>;
 type FullSlide = Unit<ThreeHalves<f32>, Exact<f32>>;
 type Flat = Planar<f32, Across<Slot<f32>>, ThreeHalves<f32>, Regularised<f32>, PINS>;
@@ -58,6 +62,36 @@ macro_rules! rungs {
             kernel.step(state)
         }
     )*};
+}
+
+/// A slide ahead of the clock, and the motions it keeps.
+type SlideAhead = Ahead<f32, Unit<ThreeHalves<f32>, Regularised<f32>>>;
+type SlideAheadState = ahead::State<f32, Pose<f32>, 6, 256>;
+
+#[inline(never)]
+fn slide_ahead(ahead: &SlideAhead, state: &mut SlideAheadState) -> Prediction<f32> {
+    ahead.step(state)
+}
+
+/// Predicts ahead of the clock.
+fn ahead(machine: &mut impl Machine, slide: Unit<ThreeHalves<f32>, Regularised<f32>>) {
+    let limits = ahead::Limits { period: STEP, tolerance: 7e-5, lead: 0.2, lag: 0.2 };
+    let ahead = black_box(Ahead::new(slide, limits).expect("the limits are in bounds"));
+    let mut state: SlideAheadState = ahead.at_rest(Pose::nominal(), EARLY);
+    let (mut count, mut forces) = (Count::default(), Fingerprint::default());
+    for _ in 0..STEPS {
+        count.add(counted(machine, &ahead, &mut state, slide_ahead));
+    }
+    let mut again: SlideAheadState = ahead.at_rest(Pose::nominal(), EARLY);
+    (0..STEPS).for_each(|_| forces.add(slide_ahead(&ahead, &mut again).force));
+    let (parameters, bytes) = (size_of_val(&ahead), size_of_val(&state));
+    print(machine, format_args!("slide_ahead: parameters {parameters} bytes, state {bytes} bytes, {forces}"));
+    if let Some(range) = count.range() {
+        print(machine, format_args!("instructions of slide_ahead: {range}"));
+    }
+    if let Some(bytes) = machine.stack(|| _ = black_box(slide_ahead(&ahead, &mut state))) {
+        print(machine, format_args!("stack of slide_ahead: {bytes} bytes"));
+    }
 }
 
 rungs! {
@@ -84,6 +118,7 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     rung(machine, "slide_exact", slide(three_halves, exact), nominal, slide_exact);
     full_pass(machine, slide(three_halves, exact));
     rung(machine, "slide_smoothed", slide(three_halves, smoothed), nominal, slide_smoothed);
+    ahead(machine, slide(three_halves, smoothed));
     rung(machine, "slide_frictionless", slide(three_halves, Frictionless), nominal, slide_frictionless);
 
     let contact = impact(three_halves);
@@ -228,11 +263,6 @@ fn steps<M: Mechanism<f32, D>, I: Integrator, const D: usize>(
 
 /// Instructions of one step. A function of its own, so that what is around the step is the same in every pass of a loop.
 #[inline(never)]
-fn counted<K, T>(
-    machine: &mut impl Machine,
-    kernel: &K,
-    state: &mut T,
-    step: fn(&K, &mut T) -> Report<f32>,
-) -> Option<u32> {
+fn counted<K, T, R>(machine: &mut impl Machine, kernel: &K, state: &mut T, step: fn(&K, &mut T) -> R) -> Option<u32> {
     machine.instructions(|| _ = black_box(step(kernel, state)))
 }

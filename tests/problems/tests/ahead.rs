@@ -1,0 +1,245 @@
+//! Prediction ahead of the clock on the CD-ROM slide: against the reference runs, against converged runs of drawn units, and where it
+//! cannot keep up.
+//!
+//! `cargo test --release -p slipfit-problems --test ahead -- --nocapture` prints what the guide says of it.
+
+use std::{fs, path::Path};
+
+use slipfit_core::{
+    Scalar,
+    ahead::{Ahead, Limits, Prediction, State, Status},
+    integrator::{Integrator, Rodas4},
+    kernel::Kernel,
+    mechanism::Driven,
+    menu::{FrictionData, SlideData},
+    pose::Pose,
+    sampling::{
+        normal::score,
+        stream::{Rng, unit_stream},
+    },
+};
+use slipfit_problems::cd_rom::{self, CdRomSlide};
+
+/// Motions that are kept.
+const KEPT: usize = 256;
+
+/// Periods from the clock's start to the unit's release: 120 ms before the ramp.
+const EARLY: u32 = 70;
+
+/// The ramp's start (ms).
+const RAMP: usize = 50;
+
+const LIMITS: Limits<f32> = Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2 };
+
+/// The slide of `data`, every millisecond from its release.
+fn predicted(data: &SlideData<f64>, limits: Limits<f32>, periods: usize) -> Vec<Prediction<f32>> {
+    let slide: CdRomSlide<f32> = cd_rom::from_data(&data.cast(|x| x as f32));
+    let ahead = Ahead::new(slide, limits).expect("the limits are in bounds");
+    let mut state: State<f32, _, 6, KEPT> = ahead.at_rest(Pose::nominal(), EARLY);
+    let run: Vec<_> = (0..EARLY as usize + periods).map(|_| ahead.step(&mut state)).collect();
+    run[EARLY as usize - 1..].to_vec()
+}
+
+/// Its drive force (N) every millisecond by steps of fourth order in f64 with a thousandth of the tolerance.
+fn converged(data: &SlideData<f64>, periods: usize) -> Vec<f64> {
+    let tolerance = 1e-3 * f64::from(LIMITS.tolerance);
+    let slide: CdRomSlide<f64> = cd_rom::from_data(data);
+    let kernel = Kernel::<f64, _, Rodas4>::new(slide, 1e-3).expect("the step is in bounds");
+    let mut motion = kernel.at_rest(Pose::nominal()).motion;
+    let mut h = 1e-5;
+    let mut forces = vec![0.0];
+    for period in 0..periods {
+        let [start, end] = [period, period + 1].map(|period| period as f64 * 1e-3);
+        let mut t = start;
+        while t < end {
+            let length = if t + 1.01 * h >= end { end - t } else { h };
+            let step = Rodas4::step(&slide, t, length, &motion);
+            let velocity_error = step.error / slide.mass();
+            let error = (slide.drive().gain * velocity_error).max(step.drift / slide.mass() / 3e-5) / tolerance;
+            h = length * (0.8 / Scalar::sqrt(Scalar::sqrt(error.max(1e-12)))).clamp(0.2, 3.0);
+            if error <= 1.0 {
+                t = if length == end - t { end } else { t + length };
+                motion = step.motion;
+            }
+        }
+        forces.push(slide.drive().force(end, motion.velocity.z));
+    }
+    forces
+}
+
+/// Unit `index` drawn from Table 2, its gaps independent.
+fn drawn(index: u64) -> SlideData<f64> {
+    let mut random = unit_stream(1, index);
+    let mut data = cd_rom::data(0.0);
+    for (gap, [mean, deviation]) in data.body.gaps.iter_mut().zip(cd_rom::TABLE_2) {
+        *gap = (mean + deviation * score::<f64>(random.next_u64())) * 1e-3;
+    }
+    data
+}
+
+/// The greatest error (% of the peak) of the values that are said to be current, and when (ms).
+fn error(run: &[Prediction<f32>], forces: &[f64]) -> (f64, usize) {
+    assert_eq!(run.len(), forces.len());
+    let peak = forces.iter().fold(0.0f64, |peak, force| peak.max(force.abs()));
+    let current = run.iter().zip(forces).enumerate().filter(|(_, (value, _))| value.lead >= 0.0);
+    let errors = current.map(|(ms, (value, force))| (100.0 * (f64::from(value.force) - force).abs() / peak, ms));
+    errors.max_by(|a, b| a.0.total_cmp(&b.0)).expect("it is ahead at the start")
+}
+
+/// The least lead (ms) from the ramp's start on.
+fn least_lead(run: &[Prediction<f32>]) -> f64 {
+    1e3 * run[RAMP..].iter().map(|value| f64::from(value.lead)).fold(f64::INFINITY, f64::min)
+}
+
+/// The drive force (N) of a reference run every millisecond.
+fn reference(name: &str) -> Vec<f64> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../reference/slide-{name}.csv"));
+    let text = fs::read_to_string(file).expect("a file of the repository");
+    let force = |line: &str| line.split(',').nth(2).expect("a force").parse().expect("a number");
+    text.lines().skip(1).map(force).collect()
+}
+
+#[test]
+fn every_reference_run_is_met_throughout() {
+    let runs = [
+        ("opening-n0", 0.0, 1.0),
+        ("opening-n1", 1.0, 1.0),
+        ("opening-n2.5", 2.5, 1.0),
+        ("opening-n5", 5.0, 1.0),
+        ("fast-n0", 0.0, 0.1),
+        ("fast-n2.5", 2.5, 0.1),
+        ("stroke-n0", 0.0, 1.0),
+        ("stroke-n2.5", 2.5, 1.0),
+    ];
+    for (name, n, ramp_end) in runs {
+        let forces = reference(name);
+        let mut data = cd_rom::data(n);
+        data.drive.ramp_end = ramp_end;
+        let run = predicted(&data, LIMITS, forces.len() - 1);
+        let ((worst, ms), lead) = (error(&run, &forces), least_lead(&run));
+        println!("{name:14} error {worst:.3} % at {ms} ms, least lead {lead:.1} ms");
+        assert!(worst <= 0.1 && lead > 0.0, "{name}: {worst} % at {ms} ms, {lead} ms");
+        assert!(run.iter().all(|value| value.forced == 0));
+    }
+}
+
+/// Exact friction by a narrow stick band: the narrower, the nearer to true stick, and the more attempts it takes.
+#[test]
+fn narrow_stick_bands_come_near_to_exact_friction() {
+    for (name, n) in [("limit-n1", 1.0), ("limit-n2.5", 2.5)] {
+        let forces = reference(name);
+        for (stick_band, most) in [(1e-4, 4.0), (3e-5, 1.0), (1e-5, 0.4), (3e-6, 0.2), (1e-6, 0.2)] {
+            let mut data = cd_rom::data(n);
+            data.friction = FrictionData::Regularised { coefficient: 0.3, stick_band };
+            let run = predicted(&data, LIMITS, forces.len() - 1);
+            let ((worst, ms), lead) = (error(&run, &forces), least_lead(&run));
+            let excess = run.last().map_or(0.0, |value| value.excess);
+            println!(
+                "{name}, stick band {stick_band:e} m/s: error {worst:.3} % at {ms} ms, least lead {lead:.1} ms, excess {excess:.1e} N"
+            );
+            assert!(worst <= most, "{name} {stick_band:e}: {worst} %");
+        }
+    }
+}
+
+/// Prints and returns the worst error and the least leads of drawn units, in ascending order.
+fn survey(name: &str, units: u64, periods: usize) -> (f64, Vec<f64>) {
+    let (mut worst, mut leads) = ((0.0, 0, 0), Vec::new());
+    for index in 0..units {
+        let data = drawn(index);
+        let run = predicted(&data, LIMITS, periods);
+        let (found, ms) = error(&run, &converged(&data, periods));
+        if found > worst.0 {
+            worst = (found, ms, index);
+        }
+        leads.push(least_lead(&run));
+        assert!(run.iter().all(|value| value.forced == 0 && value.excess < 0.02));
+    }
+    leads.sort_by(f64::total_cmp);
+    let share = |percent: usize| leads[leads.len() * percent / 100];
+    println!("{units} {name}: error at most {:.3} % at {} ms of unit {}", worst.0, worst.1, worst.2);
+    println!(
+        "least lead after the ramp's start: {:.1} ms, 1 % {:.1} ms, median {:.1} ms; {} behind",
+        leads[0],
+        share(1),
+        share(50),
+        leads.iter().filter(|lead| **lead < 0.0).count()
+    );
+    (worst.0, leads)
+}
+
+#[test]
+fn a_thousand_drawn_openings_are_met_throughout() {
+    let (worst, leads) = survey("openings", 1000, 200);
+    assert!(worst <= 0.1);
+    // Three units of the thousand lose their lead for some milliseconds, and say so.
+    assert!(leads[0] > -10.0 && leads[3] > 0.0, "{:?}", &leads[..4]);
+}
+
+#[test]
+fn drawn_strokes_are_met_throughout() {
+    let (worst, leads) = survey("strokes", 200, 1500);
+    assert!(worst <= 0.1);
+    assert!(leads[0] > -2.0 && leads[4] >= 0.0, "{:?}", &leads[..5]);
+}
+
+/// Ten times the stiffness and a tenth of the stick band: too much for one attempt a period.
+fn hard(index: u64) -> SlideData<f64> {
+    let mut data = drawn(index);
+    data.contact.stiffness *= 10.0;
+    data.friction = FrictionData::Regularised { coefficient: 0.3, stick_band: 1e-5 };
+    data
+}
+
+#[test]
+fn no_value_is_older_than_the_clock_but_says_so() {
+    let mut behind = 0;
+    for index in 0..40 {
+        for (data, limits) in [
+            (drawn(index), LIMITS),
+            (hard(index), LIMITS),
+            (hard(index), Limits { lag: 0.01, ..LIMITS }),
+            (hard(index), Limits { tolerance: 1e-3, lead: 0.02, ..LIMITS }),
+        ] {
+            for (ms, value) in predicted(&data, limits, 400).iter().enumerate() {
+                let clock = ms as f32 * 1e-3;
+                let lag = clock - value.time;
+                match value.status() {
+                    Status::Ahead(lead) => assert!(lag == 0.0 && lead <= limits.lead, "{index}: {value:?}"),
+                    Status::Behind(by) => {
+                        behind += 1;
+                        assert!(lag > 0.0 && (by - lag).abs() < 1e-6, "{index}: {clock} {value:?}");
+                        // A period for the one that the clock has just taken, and one for the step that is under way.
+                        assert!(by <= limits.lag + 2.0 * limits.period, "{index}: {value:?}");
+                        assert!(value.tolerance > limits.tolerance || by < 1e-3, "{index}: {value:?}");
+                    }
+                }
+                assert!(value.force.is_finite() && value.excess.is_finite(), "{index}: {value:?}");
+            }
+        }
+    }
+    assert!(behind > 1000, "{behind}");
+}
+
+/// Where most steps are forced the motion is still a bounded one.
+#[test]
+fn forced_steps_are_counted_and_stay_bounded() {
+    let (mut forced, mut periods, mut worst) = (0, 0, 0.0f64);
+    for index in 0..40 {
+        let data = hard(index);
+        let run = predicted(&data, Limits { lag: 0.004, ..LIMITS }, 200);
+        let forces = converged(&data, 200);
+        let peak = forces.iter().fold(0.0f64, |peak, force| peak.max(force.abs()));
+        for value in &run[RAMP..] {
+            // At the time that the value is of.
+            let ms = 1e3 * f64::from(value.time);
+            let (whole, rest) = (ms as usize, ms.fract());
+            let force = forces[whole] + rest * (forces[(whole + 1).min(200)] - forces[whole]);
+            worst = worst.max(100.0 * (f64::from(value.force) - force).abs() / peak);
+        }
+        forced += run.last().map_or(0, |value| value.forced);
+        periods += 200 + EARLY;
+    }
+    println!("{forced} of {periods} steps are forced; after the ramp's start the error is at most {worst:.1} %");
+    assert!(forced > periods / 4 && worst < 75.0, "{forced} of {periods}, {worst} %");
+}
