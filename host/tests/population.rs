@@ -84,13 +84,10 @@ fn what_varies_is_read_and_what_cannot_be_is_an_error() {
     }
 }
 
-/// With every gap certain, all units are one, and a force limit splits nothing.
-#[test]
-fn a_production_without_variation_is_one_unit() {
-    let folder = tempfile::tempdir().unwrap();
+/// The slide with every gap certain.
+fn certain() -> String {
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cd-rom-slide.toml")).unwrap();
-    let certain: String = text
-        .lines()
+    text.lines()
         .map(|line| match line.split_once(" = [") {
             Some((name, rest)) if ["left", "right", "rail", "wall"].contains(&name.trim()) => {
                 let mean = rest.split(',').next().unwrap();
@@ -98,8 +95,14 @@ fn a_production_without_variation_is_one_unit() {
             }
             _ => format!("{line}\n"),
         })
-        .collect();
-    std::fs::write(folder.path().join("certain.toml"), certain).unwrap();
+        .collect()
+}
+
+/// With every gap certain, all units are one, and a force limit splits nothing.
+#[test]
+fn a_production_without_variation_is_one_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("certain.toml"), certain()).unwrap();
     let share_over = |limit: &str| {
         let arguments = [
             "population",
@@ -120,6 +123,34 @@ fn a_production_without_variation_is_one_unit() {
     let (force, _) = share_over("100");
     assert_eq!(share_over(&(force * 1.001).to_string()).1, 0.0);
     assert_eq!(share_over(&(force * 0.999).to_string()).1, 1.0);
+}
+
+/// Only the mass varies, and the force grows with it: the limit is the force of a unit as heavy as one in ten thousand.
+#[test]
+fn a_rare_malfunction_is_as_probable_as_it_is() {
+    const Z: f64 = 3.719_016_485_455_709;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("certain.toml");
+    let common = ["population", "certain.toml", "--units", "2", "--opening", "--set", "drive.ramp_end=0.1"];
+    let of = |options: &[&str]| json(folder.path(), &[&common[..], options].concat());
+    std::fs::write(&path, certain()).unwrap();
+    let mass = format!("slide.mass={}", 81.8 + 2.0 * Z);
+    let limit = of(&["--set", &mass])["statistics"]["peak_force"]["mean"].as_f64().unwrap().to_string();
+    // Three standard deviations.
+    std::fs::write(&path, certain() + "\n[vary]\nslide.mass = \"6 g\"\n").unwrap();
+    let rare = |threads: &str| of(&["--force-limit", &limit, "--rare", "--threads", threads])["rare"].clone();
+    let found = rare("1");
+    assert_eq!(found, rare("3"));
+    let parts = found["parts"].as_array().unwrap();
+    let kinds: Vec<&str> = parts.iter().map(|part| part["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["crawls", "jams", "over-limit"]);
+    assert!(parts.iter().all(|part| part["side"] == "any"));
+    let [probability, error] = ["probability", "standard_error"].map(|name| parts[2][name].as_f64().unwrap());
+    assert!((probability - 1e-4).abs() < 4.0 * error && error < 3e-5, "{probability} ± {error}");
+    // What is not known has a reason instead of a figure.
+    let undecided = of(&["--rare", "--set", "drive.ramp_end=1"])["rare"].clone();
+    assert!(undecided["malfunction"]["probability"].is_null(), "{undecided}");
+    assert!(undecided["parts"][0]["reason"].as_str().unwrap().contains("no verdict"), "{undecided}");
 }
 
 /// Where the ramp is not over nobody knows whether a unit does its job, and before it there is no force.

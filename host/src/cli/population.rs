@@ -1,5 +1,7 @@
 //! `slipfit population`: what every unit of a production does.
 
+mod rare;
+
 use std::{fmt::Write, path::PathBuf};
 
 use clap::Args;
@@ -18,8 +20,10 @@ use crate::{
         Unit,
         drivers::Driver,
         hypothesis::Hypothesis,
+        limit_state::{Kind, Side},
         picture::{self, tightness},
         production::Production,
+        rare::{Question, Rare},
         statistics::{Share, Spread, Statistics},
         study::Population,
         unit::{UnitOutcome, at_levels},
@@ -50,6 +54,9 @@ pub(super) struct Arguments {
     /// Correlation of any two gaps that have a mean and a deviation in the scene.
     #[arg(long, value_name = "RHO", default_value_t = 0.0, allow_hyphen_values = true)]
     correlation: f64,
+    /// Estimates the probability of malfunction where it is too rare to be counted, too: by kind and side.
+    #[arg(long)]
+    rare: bool,
     /// Writes every unit with its gaps and figures as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -101,6 +108,8 @@ struct Report {
     malfunction_drivers: Vec<Driver>,
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
+    /// None if it was not asked for.
+    rare: Option<Rare>,
     worst: Vec<UnitReport>,
     warnings: Vec<String>,
 }
@@ -110,6 +119,7 @@ struct Found {
     population: Population,
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
+    rare: Option<Rare>,
 }
 
 impl Arguments {
@@ -163,6 +173,7 @@ impl Arguments {
                 malfunction_drivers: of_malfunction,
                 levels: found.levels,
                 hypothesis: found.hypothesis,
+                rare: found.rare,
                 worst,
                 warnings,
             });
@@ -186,7 +197,22 @@ impl Arguments {
         });
         let levels = levels.collect();
         let hypothesis = Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?;
-        Ok(Found { population, levels, hypothesis })
+        let rare = self.rare.then(|| self.estimate(scene, production, &population)).transpose()?;
+        Ok(Found { population, levels, hypothesis, rare })
+    }
+
+    /// Rare malfunction, which the units of the `population` must not contradict.
+    fn estimate(&self, scene: &Scene, production: &Production, population: &Population) -> Result<Rare, Failure> {
+        let limit = self.force_limit;
+        let question = Question { scene, production, seed: self.seed, limit };
+        let bar = progress("estimating", question.repeats());
+        let counted = |kind, side: Side| {
+            let here = |unit: &&Unit| Kind::of(unit, limit) == Some(kind) && side.has(scene, &unit.gaps);
+            (population.units.iter().filter(here).count() as u64, population.units.len() as u64)
+        };
+        let rare = question.answer(counted, |repeats| bar.inc(repeats as u64))?;
+        bar.finish_and_clear();
+        Ok(rare)
     }
 
     /// The answer, for people.
@@ -233,6 +259,7 @@ impl Arguments {
         }
         let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
         let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
+        text += &found.rare.as_ref().map(rare::describe).unwrap_or_default();
         let rows: Vec<Vec<String>> = worst(all)
             .into_iter()
             .map(|unit| {

@@ -1,7 +1,6 @@
 //! Runs of a study that can be split, stopped and gone on with.
 
 use std::{
-    ops::Range,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -10,9 +9,11 @@ use super::{
     file::{FormatError, Header, Part, Source},
     model::Model,
     sampler,
-    study::{Settings, Study, StudyError, Tally, join},
+    study::{Study, StudyError, Tally, join},
 };
 use crate::files::{self, WriteError};
+
+pub use super::shard::Shard;
 
 /// How often a run saves how far it has come.
 const SAVE_EVERY: Duration = Duration::from_secs(2);
@@ -100,42 +101,6 @@ fn list(numbers: &[u64]) -> String {
     let shown: Vec<String> = numbers.iter().take(20).map(u64::to_string).collect();
     let more = if numbers.len() > shown.len() { ", …" } else { "" };
     shown.join(", ") + more
-}
-
-/// A shard of a study.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    /// Which, from 1 on.
-    pub number: u64,
-    /// Of how many.
-    pub count: u64,
-}
-
-impl Shard {
-    /// The whole study.
-    pub const ALL: Self = Self { number: 1, count: 1 };
-
-    /// Its blocks.
-    pub fn blocks(self, settings: &Settings) -> Range<u64> {
-        let border = |k: u64| (u128::from(settings.blocks()) * u128::from(k) / u128::from(self.count)) as u64;
-        border(self.number - 1)..border(self.number)
-    }
-}
-
-impl std::str::FromStr for Shard {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let fields = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
-        let (number, count): (u64, u64) = fields.ok_or("not of the form i/n, as in 1/4")?;
-        if count == 0 || count > 1 << 20 {
-            return Err(format!("{count} shards, allowed are 1 to {}", 1 << 20));
-        }
-        if number == 0 || number > count {
-            return Err(format!("shard {number} of {count}, allowed are 1 to {count}"));
-        }
-        Ok(Self { number, count })
-    }
 }
 
 /// Where a run keeps its state.

@@ -56,7 +56,7 @@ pub(super) struct Arguments {
     seed: u64,
     #[command(flatten)]
     threads: ThreadArguments,
-    /// Works on one of n parts, i from 1 to n; `slipfit merge` joins them.
+    /// Works on one of n parts, i from 1 to n, or on that of the task of a SLURM job array, if `auto`; `slipfit merge` joins them.
     #[arg(long, value_name = "I/N", requires = "out")]
     shard: Option<Shard>,
     /// Writes what `slipfit merge` reads.
