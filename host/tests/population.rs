@@ -153,6 +153,53 @@ fn a_rare_malfunction_is_as_probable_as_it_is() {
     assert!(undecided["parts"][0]["reason"].as_str().unwrap().contains("no verdict"), "{undecided}");
 }
 
+/// Shards in any order, and a run that was killed, end in the bytes of one run.
+#[test]
+fn shards_and_killed_runs_end_in_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let common = ["population", "--units", "1300", "--opening", "--seed", "4", "--json"];
+    let of = |options: &[&str]| slipfit(folder.path(), &[&common[..], options].concat());
+    let whole = stdout(&of(&["--out", "whole", "--threads", "1"]));
+    for (shard, out) in [("1/3", "a"), ("2/3", "b"), ("3/3", "c")] {
+        let written: Value = serde_json::from_str(&stdout(&of(&["--shard", shard, "--out", out]))).unwrap();
+        assert_eq!((&written["of"], &written["file"]), (&3.into(), &out.into()));
+    }
+    let merged = stdout(&slipfit(folder.path(), &["merge", "c", "a", "b", "--out", "merged", "--json"]));
+    assert!(merged == whole && std::fs::read(at("merged")).unwrap() == std::fs::read(at("whole")).unwrap());
+
+    let command = ["population", "--seed", "4", "--units", "20000", "--opening", "--json", "--out", "killed"];
+    let mut victim = std::process::Command::new(env!("CARGO_BIN_EXE_slipfit"))
+        .current_dir(folder.path())
+        .args(command)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let start = std::time::Instant::now();
+    while !at("killed.partial").exists() {
+        assert!(start.elapsed().as_secs() < 60 && victim.try_wait().unwrap().is_none());
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    // On Unix this is signal 9.
+    victim.kill().unwrap();
+    victim.wait().unwrap();
+    let left = slipfit(folder.path(), &command);
+    assert!(String::from_utf8(left.stderr).unwrap().contains("--resume goes on"));
+    let resumed = stdout(&slipfit(folder.path(), &[&command[..], &["--resume"]].concat()));
+    std::fs::remove_file(at("killed")).unwrap();
+    assert_eq!(stdout(&slipfit(folder.path(), &[&command[..], &["--threads", "3"]].concat())), resumed);
+
+    let refused = |arguments: &[&str]| {
+        let output = slipfit(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(refused(&["merge", "a", "c"]).contains("missing: 2"));
+    assert!(refused(&["merge", "a", "b", "c", "--csv", "x"]).contains("--csv"));
+    of(&["--shard", "3/3", "--out", "d", "--force-limit", "1"]);
+    assert!(refused(&["merge", "a", "b", "d"]).contains("another force limit"));
+}
+
 /// Where the ramp is not over nobody knows whether a unit does its job, and before it there is no force.
 #[test]
 fn what_is_not_known_is_no_malfunction() {

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::{
     Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, given, print, print_json, progress,
-    simulate::why_undecided, text_table, warn,
+    simulate::why_undecided, text_table, tolerance::Written, warn,
 };
 use crate::{
     export::population_csv,
@@ -21,6 +21,7 @@ use crate::{
         drivers::Driver,
         hypothesis::Hypothesis,
         limit_state::{Kind, Side},
+        part::{Settings, Simulation},
         picture::{self, tightness},
         production::Production,
         rare::{Question, Rare},
@@ -28,7 +29,12 @@ use crate::{
         study::Population,
         unit::{UnitOutcome, at_levels},
     },
+    product::Product,
     scene::Scene,
+    tolerance::{
+        file::{Found as _, Source},
+        run::{Keep, Shard, checkpoint, run},
+    },
 };
 
 /// Simulates every unit of a production, each with gaps of its own: which share malfunctions, how, and what from.
@@ -66,6 +72,16 @@ pub(super) struct Arguments {
     /// Draws malfunction by distance from nominal, tightest and loosest against random combinations, as SVG.
     #[arg(long, value_name = "FILE")]
     plot_distance: Option<PathBuf>,
+    /// Works on one of n parts, i from 1 to n, or on that of the task of a SLURM job array, if `auto`; `slipfit merge` joins
+    /// them.
+    #[arg(long, value_name = "I/N", requires = "out", conflicts_with_all = ["csv", "plot", "plot_distance", "rare"])]
+    shard: Option<Shard>,
+    /// Writes what `slipfit merge` reads.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Goes on where a run with the same --out stopped.
+    #[arg(long, requires = "out")]
+    resume: bool,
     #[command(flatten)]
     threads: ThreadArguments,
 }
@@ -131,35 +147,91 @@ impl Arguments {
         if let Some(limit) = self.force_limit.filter(|limit| !(limit.is_finite() && *limit > 0.0)) {
             return Err(Failure::Input(format!("--force-limit {limit}: allowed is more than 0 N")));
         }
+        let partial = self.out.as_deref().map(checkpoint);
+        let outputs = [
+            ("--csv", &self.csv),
+            ("--plot", &self.plot),
+            ("--plot-distance", &self.plot_distance),
+            ("--out", &self.out),
+            ("the checkpoint of --out", &partial),
+        ];
+        self.scene.check_outputs(&given(outputs))?;
+        let settings = Settings::new(self.units, self.seed, self.opening, self.correlation, self.force_limit);
+        let production = self.prepare(&mut scene, product.as_ref())?;
+        let (name, text) = self.scene.text()?;
+        let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
+        let shard = self.shard.unwrap_or(Shard::ALL);
+        let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
+        let numbers = settings.units_in(&shard.blocks(<Vec<Unit>>::blocks(&settings)));
+        let bar = progress("simulating", (numbers.end - numbers.start.min(numbers.end)) as usize);
+        let simulation = Simulation { scene: &scene, production: &production, settings };
+        let units =
+            self.threads.install(|| run(&simulation, &source, shard, keep.as_ref(), |units| bar.inc(units)))??;
+        bar.finish_and_clear();
+        match (&self.out, shard) {
+            (Some(out), Shard { number, count: 2.. }) => {
+                let units = units.len() as u64;
+                let written = Written { shard: number, of: shard.count, units, file: out.display().to_string() };
+                if self.scene.json { print_json(&written) } else { print(&written.to_string()) }
+            }
+            _ => self.conclude(&scene, &production, units, product.as_ref()),
+        }
+    }
+
+    /// As it was asked for when a population was split, `settings` among it.
+    pub fn of_parts(settings: &Settings, json: bool) -> Self {
+        Self {
+            scene: SceneArguments { scene: PathBuf::new(), set: Vec::new(), json },
+            units: settings.units,
+            seed: settings.seed,
+            opening: settings.opening,
+            force_limit: settings.limit(),
+            correlation: settings.correlation(),
+            rare: false,
+            csv: None,
+            plot: None,
+            plot_distance: None,
+            shard: None,
+            out: None,
+            resume: false,
+            threads: ThreadArguments { threads: None },
+        }
+    }
+
+    /// Lets the `scene` run as long as it is asked to; its production.
+    pub fn prepare<'a>(&self, scene: &mut Scene, product: Option<&'a Product>) -> Result<Production<'a>, Failure> {
         if !self.opening {
             scene.run.duration = scene.stroke_duration().unwrap_or(scene.run.duration);
         }
-        let outputs = [("--csv", &self.csv), ("--plot", &self.plot), ("--plot-distance", &self.plot_distance)];
-        self.scene.check_outputs(&given(outputs))?;
-        let production = Production::new(&scene, product.as_ref(), self.correlation, self.seed)
-            .map_err(|error| Failure::Input(error.to_string()))?;
-        let bar = progress("simulating", self.units as usize);
-        let found = self.threads.install(|| self.find(&scene, &production, |units| bar.inc(units)))?;
-        bar.finish_and_clear();
-        let found = found?;
+        Production::new(scene, product, self.correlation, self.seed).map_err(|error| Failure::Input(error.to_string()))
+    }
+
+    /// Shows and writes what all `units` did.
+    pub fn conclude(
+        &self,
+        scene: &Scene,
+        production: &Production,
+        units: Vec<Unit>,
+        product: Option<&Product>,
+    ) -> Result<(), Failure> {
+        let found = self.threads.install(|| self.find(scene, production, units))??;
         if let Some(path) = &self.csv {
-            files::write(path, &population_csv(&scene, &found.population.units)?)?;
+            files::write(path, &population_csv(scene, &found.population.units)?)?;
         }
         if let Some(path) = &self.plot {
-            let svg =
-                picture::forces(&scene, &found.population.units, self.force_limit).map_err(anyhow::Error::from)?;
+            let svg = picture::forces(scene, &found.population.units, self.force_limit).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         if let Some(path) = &self.plot_distance {
-            let svg = picture::hypothesis(&scene, &found.hypothesis).map_err(anyhow::Error::from)?;
+            let svg = picture::hypothesis(scene, &found.hypothesis).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
-        let mut warnings = check::warnings_of(&scene);
-        warnings.extend(product.into_iter().flat_map(|product| product.warnings));
+        let mut warnings = check::warnings_of(scene);
+        warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
         if self.scene.json {
             let worst = worst(&found.population.units).into_iter().map(|unit| UnitReport {
                 number: unit.number,
-                tightness: tightness(&scene, &unit.gaps),
+                tightness: tightness(scene, &unit.gaps),
                 outcome: unit.outcome,
             });
             let worst = worst.collect();
@@ -178,13 +250,13 @@ impl Arguments {
                 warnings,
             });
         }
-        print(&self.describe(&scene, &found))?;
+        print(&self.describe(scene, &found))?;
         warn(&warnings);
         Ok(())
     }
 
-    fn find(&self, scene: &Scene, production: &Production, done: impl Fn(u64) + Sync) -> Result<Found, Failure> {
-        let population = Population::study(scene, production, self.units, self.force_limit, done)?;
+    fn find(&self, scene: &Scene, production: &Production, units: Vec<Unit>) -> Result<Found, Failure> {
+        let population = Population::of(production, units, self.force_limit);
         let below = |force: Option<f64>| {
             let count = population.units.iter().filter(|unit| unit.outcome.peak_force < force).count();
             count as f64 / population.units.len().max(1) as f64

@@ -11,6 +11,7 @@ mod lane;
 mod laws;
 pub mod limit_state;
 mod pack;
+pub mod part;
 pub mod picture;
 pub mod production;
 pub mod rare;

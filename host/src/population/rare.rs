@@ -25,7 +25,7 @@ use crate::{
 };
 
 /// Independent repeats, whose spread is the error.
-pub const REPEATS: usize = 10;
+pub const REPEATS: usize = 16;
 /// Repeats that find out whether there is anything to be found.
 const PILOTS: usize = 4;
 /// Units of a level.
@@ -293,12 +293,12 @@ impl Finding {
 
 impl Estimate {
     /// Of repeats, each the product of many shares and so about lognormal: by logarithms. Levels that adapt themselves and chains
-    /// that depend on each other raise the mean of repeats, but hardly their geometric mean; the difference of both is of the
-    /// order of what bias is left, and counts as an error, too.
+    /// that depend on each other raise the mean of repeats, but hardly their geometric mean; two thirds of the difference of
+    /// both are an error, too, for what bias is left.
     fn of(repeats: &[f64]) -> Self {
         let logarithms: Vec<f64> = repeats.iter().map(|probability| libm::log(*probability)).collect();
         let (mean, error) = mean_and_error(&logarithms);
-        let bias = 0.5 * error * error * repeats.len() as f64;
+        let bias = error * error * repeats.len() as f64 / 3.0;
         let probability = libm::exp(mean);
         Self::new(probability, libm::hypot(error, bias) * probability)
     }

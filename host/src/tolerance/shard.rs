@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use super::study::Settings;
-
 /// The most shards.
 const MOST: u64 = 1 << 20;
 
@@ -20,9 +18,9 @@ impl Shard {
     /// The whole study.
     pub const ALL: Self = Self { number: 1, count: 1 };
 
-    /// Its blocks.
-    pub fn blocks(self, settings: &Settings) -> Range<u64> {
-        let border = |k: u64| (u128::from(settings.blocks()) * u128::from(k) / u128::from(self.count)) as u64;
+    /// Its blocks of `all`.
+    pub fn blocks(self, all: u64) -> Range<u64> {
+        let border = |k: u64| (u128::from(all) * u128::from(k) / u128::from(self.count)) as u64;
         border(self.number - 1)..border(self.number)
     }
 }
