@@ -125,32 +125,47 @@ fn a_production_without_variation_is_one_unit() {
     assert_eq!(share_over(&(force * 0.999).to_string()).1, 1.0);
 }
 
-/// Only the mass varies, and the force grows with it: the limit is the force of a unit as heavy as one in ten thousand.
+/// Only the mass varies, and the force grows with it: the limit is the force of a unit as heavy as one in a thousand.
 #[test]
 fn a_rare_malfunction_is_as_probable_as_it_is() {
-    const Z: f64 = 3.719_016_485_455_709;
+    const Z: f64 = 3.090_232_306_167_813;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("certain.toml");
-    let common = ["population", "certain.toml", "--units", "2", "--opening", "--set", "drive.ramp_end=0.1"];
-    let of = |options: &[&str]| json(folder.path(), &[&common[..], options].concat());
+    let short = ["--set", "drive.ramp_end=0.06", "--set", "run.duration=80"];
+    let of = |options: &[&str]| {
+        json(
+            folder.path(),
+            &[&["population", "certain.toml", "--units", "2", "--opening"], &short[..], options].concat(),
+        )
+    };
     std::fs::write(&path, certain()).unwrap();
     let mass = format!("slide.mass={}", 81.8 + 2.0 * Z);
     let limit = of(&["--set", &mass])["statistics"]["peak_force"]["mean"].as_f64().unwrap().to_string();
     // Three standard deviations.
     std::fs::write(&path, certain() + "\n[vary]\nslide.mass = \"6 g\"\n").unwrap();
-    let rare = |threads: &str| of(&["--force-limit", &limit, "--rare", "--threads", threads])["rare"].clone();
-    let found = rare("1");
-    assert_eq!(found, rare("3"));
+    let found = of(&["--force-limit", &limit, "--rare"])["rare"].clone();
     let parts = found["parts"].as_array().unwrap();
     let kinds: Vec<&str> = parts.iter().map(|part| part["kind"].as_str().unwrap()).collect();
     assert_eq!(kinds, ["crawls", "jams", "over-limit"]);
     assert!(parts.iter().all(|part| part["side"] == "any"));
-    let [probability, error] = ["probability", "standard_error"].map(|name| parts[2][name].as_f64().unwrap());
-    assert!((probability - 1e-4).abs() < 4.0 * error && error < 3e-5, "{probability} ± {error}");
-    // What is not known has a reason instead of a figure.
-    let undecided = of(&["--rare", "--set", "drive.ramp_end=1"])["rare"].clone();
-    assert!(undecided["malfunction"]["probability"].is_null(), "{undecided}");
-    assert!(undecided["parts"][0]["reason"].as_str().unwrap().contains("no verdict"), "{undecided}");
+    let [probability, error] =
+        ["probability", "standard_error"].map(|name| parts[2][name].as_f64().unwrap_or(f64::NAN));
+    assert!((probability - 1e-3).abs() < 4.0 * error && error < 3e-4, "{found}");
+}
+
+/// What is not known has a reason instead of a figure, whatever the number of threads.
+#[test]
+fn no_figure_is_given_without_a_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |threads: &str| {
+        let arguments = ["population", "--units", "2", "--opening", "--rare", "--force-limit", "0.25"];
+        json(folder.path(), &[&arguments[..], &["--set", "run.duration=60", "--threads", threads]].concat())["rare"]
+            .clone()
+    };
+    let found = of("1");
+    assert!(found["malfunction"]["probability"].is_null(), "{found}");
+    assert!(found["parts"][0]["reason"].as_str().unwrap().contains("no verdict"), "{found}");
+    assert_eq!(of("3"), found);
 }
 
 /// Shards in any order, and a run that was killed, end in the bytes of one run.
@@ -168,21 +183,36 @@ fn shards_and_killed_runs_end_in_the_same_bytes() {
     let merged = stdout(&slipfit(folder.path(), &["merge", "c", "a", "b", "--out", "merged", "--json"]));
     assert!(merged == whole && std::fs::read(at("merged")).unwrap() == std::fs::read(at("whole")).unwrap());
 
-    let command = ["population", "--seed", "4", "--units", "20000", "--opening", "--json", "--out", "killed"];
-    let mut victim = std::process::Command::new(env!("CARGO_BIN_EXE_slipfit"))
-        .current_dir(folder.path())
-        .args(command)
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
-    let start = std::time::Instant::now();
+    // As many units as take longer than it takes to a checkpoint.
+    let mut units = 5_000;
     while !at("killed.partial").exists() {
-        assert!(start.elapsed().as_secs() < 60 && victim.try_wait().unwrap().is_none());
-        std::thread::sleep(std::time::Duration::from_millis(5));
+        let _ = std::fs::remove_file(at("killed"));
+        units *= 2;
+        let mut victim = std::process::Command::new(env!("CARGO_BIN_EXE_slipfit"))
+            .current_dir(folder.path())
+            .args([
+                "population",
+                "--seed",
+                "4",
+                "--opening",
+                "--json",
+                "--out",
+                "killed",
+                "--units",
+                &units.to_string(),
+            ])
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        while !at("killed.partial").exists() && victim.try_wait().unwrap().is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        // On Unix this is signal 9.
+        victim.kill().unwrap();
+        victim.wait().unwrap();
     }
-    // On Unix this is signal 9.
-    victim.kill().unwrap();
-    victim.wait().unwrap();
+    let units = units.to_string();
+    let command = ["population", "--seed", "4", "--opening", "--json", "--out", "killed", "--units", &units];
     let left = slipfit(folder.path(), &command);
     assert!(String::from_utf8(left.stderr).unwrap().contains("--resume goes on"));
     let resumed = stdout(&slipfit(folder.path(), &[&command[..], &["--resume"]].concat()));

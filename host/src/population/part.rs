@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Units of a block.
-const BLOCK: u64 = 256;
+const BLOCK: u64 = 512;
 const VERDICTS: [Verdict; 4] = [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Undecided];
 
 /// What a population of a scene is made with.
