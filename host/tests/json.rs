@@ -81,7 +81,7 @@ fn check_object(tables: &BTreeMap<String, Fields>, value: &Value, name: &str, at
 fn every_field_is_in_the_guide() {
     let tables = guide();
     let folder = tempfile::tempdir().unwrap();
-    let commands: [(&str, &[&str]); 20] = [
+    let commands: [(&str, &[&str]); 21] = [
         ("check", &["check"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
         ("check of a product", &["check", "clutch"]),
@@ -94,6 +94,8 @@ fn every_field_is_in_the_guide() {
         ("sweep of a mechanism", &["sweep", "slider-crank", "--n", "0:1:1"]),
         ("simulate", &["simulate", "cd-rom-slide-drawing", "--unit", "17", "--stroke"]),
         ("population", &["population", "--units", "300", "--force-limit", "2"]),
+        // Forces have a figure, verdicts have none in an opening.
+        ("population", &["population", "--units", "300", "--opening", "--force-limit", "0.25", "--rare"]),
         ("table", &["table", "--n", "0:2:1", "-o", "table.bin"]),
         ("table", &["table", "--over", "position", "--n", "0:2:1", "-o", "z.bin"]),
         ("allocate", &["allocate", "clutch-processes", "--samples", "1000"]),

@@ -1,16 +1,16 @@
 //! A run that is killed goes on where it stopped and ends with the same bytes. The program runs itself as the victim.
 
 use std::{
-    path::Path,
+    path::{Path, PathBuf},
     process::Command,
     time::{Duration, Instant},
 };
 
 use slipfit::tolerance::{
-    file::Source,
+    file::{Part, Source},
     lanes::Lanes,
     model::{Contributor, Distribution, Function, Measure, Model, Quantity, Variation},
-    run::{Keep, RunError, Shard, checkpoint, merge, run},
+    run::{self, Keep, RunError, Shard, checkpoint, run},
     sampler::Method,
     study::{Settings, Study},
 };
@@ -46,6 +46,11 @@ fn model(pause: Duration) -> Model {
         sums: Vec::new(),
         function: Box::new(Bent(pause)),
     }
+}
+
+/// The shards of a tolerance analysis.
+fn merge(paths: &[PathBuf]) -> Result<Part, RunError> {
+    run::merge(paths)
 }
 
 fn work(out: &Path, pause: Duration, shard: Shard, resume: bool, seed: u64) -> Result<(), RunError> {

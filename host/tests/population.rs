@@ -84,13 +84,10 @@ fn what_varies_is_read_and_what_cannot_be_is_an_error() {
     }
 }
 
-/// With every gap certain, all units are one, and a force limit splits nothing.
-#[test]
-fn a_production_without_variation_is_one_unit() {
-    let folder = tempfile::tempdir().unwrap();
+/// The slide with every gap certain.
+fn certain() -> String {
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cd-rom-slide.toml")).unwrap();
-    let certain: String = text
-        .lines()
+    text.lines()
         .map(|line| match line.split_once(" = [") {
             Some((name, rest)) if ["left", "right", "rail", "wall"].contains(&name.trim()) => {
                 let mean = rest.split(',').next().unwrap();
@@ -98,8 +95,14 @@ fn a_production_without_variation_is_one_unit() {
             }
             _ => format!("{line}\n"),
         })
-        .collect();
-    std::fs::write(folder.path().join("certain.toml"), certain).unwrap();
+        .collect()
+}
+
+/// With every gap certain, all units are one, and a force limit splits nothing.
+#[test]
+fn a_production_without_variation_is_one_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("certain.toml"), certain()).unwrap();
     let share_over = |limit: &str| {
         let arguments = [
             "population",
@@ -120,6 +123,111 @@ fn a_production_without_variation_is_one_unit() {
     let (force, _) = share_over("100");
     assert_eq!(share_over(&(force * 1.001).to_string()).1, 0.0);
     assert_eq!(share_over(&(force * 0.999).to_string()).1, 1.0);
+}
+
+/// Only the mass varies, and the force grows with it: the limit is the force of a unit as heavy as one in a thousand.
+#[test]
+fn a_rare_malfunction_is_as_probable_as_it_is() {
+    const Z: f64 = 3.090_232_306_167_813;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("certain.toml");
+    let short = ["--set", "drive.ramp_end=0.06", "--set", "run.duration=80"];
+    let of = |options: &[&str]| {
+        json(
+            folder.path(),
+            &[&["population", "certain.toml", "--units", "2", "--opening"], &short[..], options].concat(),
+        )
+    };
+    std::fs::write(&path, certain()).unwrap();
+    let mass = format!("slide.mass={}", 81.8 + 2.0 * Z);
+    let limit = of(&["--set", &mass])["statistics"]["peak_force"]["mean"].as_f64().unwrap().to_string();
+    // Three standard deviations.
+    std::fs::write(&path, certain() + "\n[vary]\nslide.mass = \"6 g\"\n").unwrap();
+    let found = of(&["--force-limit", &limit, "--rare"])["rare"].clone();
+    let parts = found["parts"].as_array().unwrap();
+    let kinds: Vec<&str> = parts.iter().map(|part| part["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["crawls", "jams", "over-limit"]);
+    assert!(parts.iter().all(|part| part["side"] == "any"));
+    let [probability, error] =
+        ["probability", "standard_error"].map(|name| parts[2][name].as_f64().unwrap_or(f64::NAN));
+    assert!((probability - 1e-3).abs() < 4.0 * error && error < 3e-4, "{found}");
+}
+
+/// What is not known has a reason instead of a figure, whatever the number of threads.
+#[test]
+fn no_figure_is_given_without_a_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |threads: &str| {
+        let arguments = ["population", "--units", "2", "--opening", "--rare", "--force-limit", "0.25"];
+        json(folder.path(), &[&arguments[..], &["--set", "run.duration=60", "--threads", threads]].concat())["rare"]
+            .clone()
+    };
+    let found = of("1");
+    assert!(found["malfunction"]["probability"].is_null(), "{found}");
+    assert!(found["parts"][0]["reason"].as_str().unwrap().contains("no verdict"), "{found}");
+    assert_eq!(of("3"), found);
+}
+
+/// Shards in any order, and a run that was killed, end in the bytes of one run.
+#[test]
+fn shards_and_killed_runs_end_in_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let common = ["population", "--units", "1300", "--opening", "--seed", "4", "--json"];
+    let of = |options: &[&str]| slipfit(folder.path(), &[&common[..], options].concat());
+    let whole = stdout(&of(&["--out", "whole", "--threads", "1"]));
+    for (shard, out) in [("1/3", "a"), ("2/3", "b"), ("3/3", "c")] {
+        let written: Value = serde_json::from_str(&stdout(&of(&["--shard", shard, "--out", out]))).unwrap();
+        assert_eq!((&written["of"], &written["file"]), (&3.into(), &out.into()));
+    }
+    let merged = stdout(&slipfit(folder.path(), &["merge", "c", "a", "b", "--out", "merged", "--json"]));
+    assert!(merged == whole && std::fs::read(at("merged")).unwrap() == std::fs::read(at("whole")).unwrap());
+
+    // As many units as take longer than it takes to a checkpoint.
+    let mut units = 5_000;
+    while !at("killed.partial").exists() {
+        let _ = std::fs::remove_file(at("killed"));
+        units *= 2;
+        let mut victim = std::process::Command::new(env!("CARGO_BIN_EXE_slipfit"))
+            .current_dir(folder.path())
+            .args([
+                "population",
+                "--seed",
+                "4",
+                "--opening",
+                "--json",
+                "--out",
+                "killed",
+                "--units",
+                &units.to_string(),
+            ])
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        while !at("killed.partial").exists() && victim.try_wait().unwrap().is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        // On Unix this is signal 9.
+        victim.kill().unwrap();
+        victim.wait().unwrap();
+    }
+    let units = units.to_string();
+    let command = ["population", "--seed", "4", "--opening", "--json", "--out", "killed", "--units", &units];
+    let left = slipfit(folder.path(), &command);
+    assert!(String::from_utf8(left.stderr).unwrap().contains("--resume goes on"));
+    let resumed = stdout(&slipfit(folder.path(), &[&command[..], &["--resume"]].concat()));
+    std::fs::remove_file(at("killed")).unwrap();
+    assert_eq!(stdout(&slipfit(folder.path(), &[&command[..], &["--threads", "3"]].concat())), resumed);
+
+    let refused = |arguments: &[&str]| {
+        let output = slipfit(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(refused(&["merge", "a", "c"]).contains("missing: 2"));
+    assert!(refused(&["merge", "a", "b", "c", "--csv", "x"]).contains("--csv"));
+    of(&["--shard", "3/3", "--out", "d", "--force-limit", "1"]);
+    assert!(refused(&["merge", "a", "b", "d"]).contains("another force limit"));
 }
 
 /// Where the ramp is not over nobody knows whether a unit does its job, and before it there is no force.

@@ -147,7 +147,7 @@ fn options_that_do_not_fit_are_refused() {
         (&["--shard", "5/4", "--out", "o"], "shard 5 of 4, allowed are 1 to 4"),
         (&["--shard", "0/4", "--out", "o"], "shard 0 of 4, allowed are 1 to 4"),
         (&["--shard", "1/0", "--out", "o"], "0 shards"),
-        (&["--shard", "half", "--out", "o"], "not of the form i/n"),
+        (&["--shard", "half", "--out", "o"], "nor of the form i/n"),
         (&["--shard", "1/4"], "--out"),
         (&["--resume"], "--out"),
         (&["--samples", "1"], "1"),

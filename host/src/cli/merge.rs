@@ -1,23 +1,28 @@
 //! `slipfit merge`: the shards of a study as if it had been one run.
 
-use std::path::{Path, PathBuf};
+use std::{
+    io::Read,
+    path::{Path, PathBuf},
+};
 
 use clap::Args;
 
-use super::{Failure, tolerance::OutputArguments};
+use super::{Failure, population, tolerance::OutputArguments};
 use crate::{
     files,
+    population::Unit,
     scene::{Override, SceneFile},
     tolerance::{
+        file::{Found, Part},
         run::{RunError, check, merge},
         study::Study,
     },
 };
 
-/// Joins the shards of a tolerance analysis, in any order: the same bytes as one run.
+/// Joins the shards of a tolerance analysis or of a population, in any order: the same bytes as one run.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Files that `slipfit tolerance --shard` wrote.
+    /// Files that `slipfit tolerance --shard` or `slipfit population --shard` wrote.
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Writes the whole study as one file.
@@ -32,7 +37,10 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let part = merge(&self.files)?;
+        if self.files.first().is_some_and(|path| is_of::<Vec<Unit>>(path)) {
+            return self.population();
+        }
+        let part: Part = merge(&self.files)?;
         let source = &part.header.source;
         let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
         let file = SceneFile::parse(&source.name, &source.text, &set)?;
@@ -48,4 +56,30 @@ impl Arguments {
         }
         self.outputs.show(&file.title, file.slide.as_ref(), &study, &part.tallies, self.json)
     }
+
+    /// The shards of a population.
+    fn population(&self) -> Result<(), Failure> {
+        if let Some(option) = self.outputs.asked() {
+            return Err(Failure::Input(format!("{option}: these are shards of a population, which has no measures")));
+        }
+        let part: Part<Vec<Unit>> = merge(&self.files)?;
+        let source = &part.header.source;
+        let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
+        let (mut scene, product) = SceneFile::parse_with_slide(&source.name, &source.text, &set)?;
+        let shards: Vec<_> = self.files.iter().map(|path| ("one of the shards", path.as_path())).collect();
+        let own: Vec<_> = self.out.iter().map(|path| ("--out", path.as_path())).collect();
+        files::check_distinct(&shards, &own)?;
+        if let Some(path) = &self.out {
+            files::write(path, &part.encode().map_err(RunError::from)?)?;
+        }
+        let asked = population::Arguments::of_parts(&part.header.settings, self.json);
+        let production = asked.prepare(&mut scene, product.as_ref())?;
+        asked.conclude(&scene, &production, part.tallies, product.as_ref())
+    }
+}
+
+/// Whether a file begins as those of `F` do.
+fn is_of<F: Found>(path: &Path) -> bool {
+    let mut magic = [0; 8];
+    std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut magic)).is_ok_and(|()| magic == *F::MAGIC)
 }

@@ -121,6 +121,7 @@ impl From<RunError> for Failure {
             | RunError::Study(StudyError::Interrupted)
             | RunError::Write(_)
             | RunError::Header(_) => Self::Work(error.into()),
+            RunError::Simulate(error) => error.into(),
             bad => Self::Input(bad.to_string()),
         }
     }

@@ -1,5 +1,7 @@
 //! `slipfit population`: what every unit of a production does.
 
+mod rare;
+
 use std::{fmt::Write, path::PathBuf};
 
 use clap::Args;
@@ -7,7 +9,7 @@ use serde::Serialize;
 
 use super::{
     Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, given, print, print_json, progress,
-    simulate::why_undecided, text_table, warn,
+    simulate::why_undecided, text_table, tolerance::Written, warn,
 };
 use crate::{
     driven::Driven,
@@ -19,13 +21,21 @@ use crate::{
         Unit,
         drivers::Driver,
         hypothesis::Hypothesis,
+        limit_state::{Kind, Side},
+        part::{Settings, Simulation},
         picture::{self, tightness},
         production::Production,
+        rare::{Question, Rare},
         statistics::{Share, Spread, Statistics},
         study::Population,
         unit::{UnitOutcome, at_levels},
     },
+    product::Product,
     scene::Scene,
+    tolerance::{
+        file::{Found as _, Source},
+        run::{Keep, Shard, checkpoint, run},
+    },
 };
 
 /// Simulates every unit of a production, each with gaps of its own: which share malfunctions, how, and what from.
@@ -51,6 +61,9 @@ pub(super) struct Arguments {
     /// Correlation of any two gaps that have a mean and a deviation in the scene.
     #[arg(long, value_name = "RHO", default_value_t = 0.0, allow_hyphen_values = true)]
     correlation: f64,
+    /// Estimates the probability of malfunction where it is too rare to be counted, too: by kind and side.
+    #[arg(long)]
+    rare: bool,
     /// Writes every unit with its gaps and figures as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -60,6 +73,16 @@ pub(super) struct Arguments {
     /// Draws malfunction by distance from nominal, tightest and loosest against random combinations, as SVG.
     #[arg(long, value_name = "FILE")]
     plot_distance: Option<PathBuf>,
+    /// Works on one of n parts, i from 1 to n, or on that of the task of a SLURM job array, if `auto`; `slipfit merge` joins
+    /// them.
+    #[arg(long, value_name = "I/N", requires = "out", conflicts_with_all = ["csv", "plot", "plot_distance", "rare"])]
+    shard: Option<Shard>,
+    /// Writes what `slipfit merge` reads.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Goes on where a run with the same --out stopped.
+    #[arg(long, requires = "out")]
+    resume: bool,
     #[command(flatten)]
     threads: ThreadArguments,
 }
@@ -102,6 +125,8 @@ struct Report {
     malfunction_drivers: Vec<Driver>,
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
+    /// None if it was not asked for.
+    rare: Option<Rare>,
     worst: Vec<UnitReport>,
     warnings: Vec<String>,
 }
@@ -111,6 +136,7 @@ struct Found {
     population: Population,
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
+    rare: Option<Rare>,
 }
 
 impl Arguments {
@@ -122,35 +148,91 @@ impl Arguments {
         if let Some(limit) = self.force_limit.filter(|limit| !(limit.is_finite() && *limit > 0.0)) {
             return Err(Failure::Input(format!("--force-limit {limit}: allowed is more than 0 N")));
         }
+        let partial = self.out.as_deref().map(checkpoint);
+        let outputs = [
+            ("--csv", &self.csv),
+            ("--plot", &self.plot),
+            ("--plot-distance", &self.plot_distance),
+            ("--out", &self.out),
+            ("the checkpoint of --out", &partial),
+        ];
+        self.scene.check_outputs(&given(outputs))?;
+        let settings = Settings::new(self.units, self.seed, self.opening, self.correlation, self.force_limit);
+        let production = self.prepare(&mut scene, product.as_ref())?;
+        let (name, text) = self.scene.text()?;
+        let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
+        let shard = self.shard.unwrap_or(Shard::ALL);
+        let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
+        let numbers = settings.units_in(&shard.blocks(<Vec<Unit>>::blocks(&settings)));
+        let bar = progress("simulating", (numbers.end - numbers.start.min(numbers.end)) as usize);
+        let simulation = Simulation { scene: &scene, production: &production, settings };
+        let units =
+            self.threads.install(|| run(&simulation, &source, shard, keep.as_ref(), |units| bar.inc(units)))??;
+        bar.finish_and_clear();
+        match (&self.out, shard) {
+            (Some(out), Shard { number, count: 2.. }) => {
+                let units = units.len() as u64;
+                let written = Written { shard: number, of: shard.count, units, file: out.display().to_string() };
+                if self.scene.json { print_json(&written) } else { print(&written.to_string()) }
+            }
+            _ => self.conclude(&scene, &production, units, product.as_ref()),
+        }
+    }
+
+    /// As it was asked for when a population was split, `settings` among it.
+    pub fn of_parts(settings: &Settings, json: bool) -> Self {
+        Self {
+            scene: SceneArguments { scene: PathBuf::new(), set: Vec::new(), json },
+            units: settings.units,
+            seed: settings.seed,
+            opening: settings.opening,
+            force_limit: settings.limit(),
+            correlation: settings.correlation(),
+            rare: false,
+            csv: None,
+            plot: None,
+            plot_distance: None,
+            shard: None,
+            out: None,
+            resume: false,
+            threads: ThreadArguments { threads: None },
+        }
+    }
+
+    /// Lets the `scene` run as long as it is asked to; its production.
+    pub fn prepare<'a>(&self, scene: &mut Scene, product: Option<&'a Product>) -> Result<Production<'a>, Failure> {
         if !self.opening {
             scene.run.duration = scene.stroke_duration().unwrap_or(scene.run.duration);
         }
-        let outputs = [("--csv", &self.csv), ("--plot", &self.plot), ("--plot-distance", &self.plot_distance)];
-        self.scene.check_outputs(&given(outputs))?;
-        let production = Production::new(&scene, product.as_ref(), self.correlation, self.seed)
-            .map_err(|error| Failure::Input(error.to_string()))?;
-        let bar = progress("simulating", self.units as usize);
-        let found = self.threads.install(|| self.find(&scene, &production, |units| bar.inc(units)))?;
-        bar.finish_and_clear();
-        let found = found?;
+        Production::new(scene, product, self.correlation, self.seed).map_err(|error| Failure::Input(error.to_string()))
+    }
+
+    /// Shows and writes what all `units` did.
+    pub fn conclude(
+        &self,
+        scene: &Scene,
+        production: &Production,
+        units: Vec<Unit>,
+        product: Option<&Product>,
+    ) -> Result<(), Failure> {
+        let found = self.threads.install(|| self.find(scene, production, units))??;
         if let Some(path) = &self.csv {
-            files::write(path, &population_csv(&scene, &found.population.units)?)?;
+            files::write(path, &population_csv(scene, &found.population.units)?)?;
         }
         if let Some(path) = &self.plot {
-            let svg =
-                picture::forces(&scene, &found.population.units, self.force_limit).map_err(anyhow::Error::from)?;
+            let svg = picture::forces(scene, &found.population.units, self.force_limit).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         if let Some(path) = &self.plot_distance {
-            let svg = picture::hypothesis(&scene, &found.hypothesis).map_err(anyhow::Error::from)?;
+            let svg = picture::hypothesis(scene, &found.hypothesis).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
-        let mut warnings = check::warnings_of(&scene);
-        warnings.extend(product.into_iter().flat_map(|product| product.warnings));
+        let mut warnings = check::warnings_of(scene);
+        warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
         if self.scene.json {
             let worst = worst(&found.population.units).into_iter().map(|unit| UnitReport {
                 number: unit.number,
-                tightness: tightness(&scene, &unit.gaps),
+                tightness: tightness(scene, &unit.gaps),
                 outcome: unit.outcome,
             });
             let worst = worst.collect();
@@ -164,17 +246,18 @@ impl Arguments {
                 malfunction_drivers: of_malfunction,
                 levels: found.levels,
                 hypothesis: found.hypothesis,
+                rare: found.rare,
                 worst,
                 warnings,
             });
         }
-        print(&self.describe(&scene, &found))?;
+        print(&self.describe(scene, &found))?;
         warn(&warnings);
         Ok(())
     }
 
-    fn find(&self, scene: &Scene, production: &Production, done: impl Fn(u64) + Sync) -> Result<Found, Failure> {
-        let population = Population::study(scene, production, self.units, self.force_limit, done)?;
+    fn find(&self, scene: &Scene, production: &Production, units: Vec<Unit>) -> Result<Found, Failure> {
+        let population = Population::of(production, units, self.force_limit);
         let below = |force: Option<f64>| {
             let count = population.units.iter().filter(|unit| unit.outcome.peak_force < force).count();
             count as f64 / population.units.len().max(1) as f64
@@ -187,7 +270,22 @@ impl Arguments {
         });
         let levels = levels.collect();
         let hypothesis = Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?;
-        Ok(Found { population, levels, hypothesis })
+        let rare = self.rare.then(|| self.estimate(scene, production, &population)).transpose()?;
+        Ok(Found { population, levels, hypothesis, rare })
+    }
+
+    /// Rare malfunction, which the units of the `population` must not contradict.
+    fn estimate(&self, scene: &Scene, production: &Production, population: &Population) -> Result<Rare, Failure> {
+        let limit = self.force_limit;
+        let question = Question { scene, production, seed: self.seed, limit };
+        let bar = progress("estimating", question.repeats());
+        let counted = |kind, side: Side| {
+            let here = |unit: &&Unit| Kind::of(unit, limit) == Some(kind) && side.has(scene, &unit.gaps);
+            (population.units.iter().filter(here).count() as u64, population.units.len() as u64)
+        };
+        let rare = question.answer(counted, |repeats| bar.inc(repeats as u64))?;
+        bar.finish_and_clear();
+        Ok(rare)
     }
 
     /// The answer, for people.
@@ -234,6 +332,7 @@ impl Arguments {
         }
         let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
         let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
+        text += &found.rare.as_ref().map(rare::describe).unwrap_or_default();
         let rows: Vec<Vec<String>> = worst(all)
             .into_iter()
             .map(|unit| {

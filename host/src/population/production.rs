@@ -15,6 +15,7 @@ use crate::{
     scene::Scene,
     tolerance::{
         draw::{Draw, DrawError},
+        failure::gathered,
         lanes::{LANES, Lanes},
         linear::Linear,
         model::{Contributor, Distribution, Measure, Model, Quantity, Variation},
@@ -136,12 +137,41 @@ impl<'a> Production<'a> {
 
     /// The units `numbers`.
     pub fn draw(&self, numbers: Range<u64>) -> Drawn {
+        let columns = self.sources.iter().map(|source| source.draw(&numbers)).collect();
+        self.assembled(numbers, columns)
+    }
+
+    /// How many independent standard normal scores a unit has.
+    pub fn scores(&self) -> usize {
+        self.sources.iter().map(|source| source.draw.dimensions()).sum()
+    }
+
+    /// The units at `points` of the space of scores, and which of them are made: those with all truncated zones inside.
+    pub fn at(&self, points: &[Vec<f64>]) -> (Drawn, Vec<bool>) {
+        let mut made = vec![true; points.len()];
+        let mut first = 0;
+        let columns = self.sources.iter().map(|source| {
+            let own = first..first + source.draw.dimensions();
+            first = own.end;
+            source.at(points, own, &mut made)
+        });
+        let columns = columns.collect();
+        (self.assembled(0..points.len() as u64, columns), made)
+    }
+
+    /// By how much a unit is more probable because truncated zones are inside.
+    pub fn factor(&self) -> f64 {
+        let of = |source: &Source| source.draw.is_inside(&vec![Lanes::ZERO; source.draw.dimensions()]).1;
+        self.sources.iter().map(of).product()
+    }
+
+    /// Units from what each source has drawn.
+    fn assembled(&self, numbers: Range<u64>, sources: Vec<Columns>) -> Drawn {
         let count = (numbers.end - numbers.start) as usize;
         let mut gaps = vec![[ABSENT; CONTACTS]; count];
         let mut deviations = vec![Vec::with_capacity(self.parameters); count];
         let mut variables = Vec::new();
-        for (s, source) in self.sources.iter().enumerate() {
-            let (columns, measures) = source.draw(&numbers);
+        for (s, Columns { variables: columns, measures }) in sources.into_iter().enumerate() {
             for (i, gap) in self.gaps.iter().enumerate() {
                 if let Gap::Drawn(of, measure) = gap
                     && *of == s
@@ -160,6 +190,12 @@ impl<'a> Production<'a> {
     }
 }
 
+/// Values of some units, a column for each variable and for each measure.
+struct Columns {
+    variables: Vec<Vec<f64>>,
+    measures: Vec<Vec<f64>>,
+}
+
 impl<'a> Source<'a> {
     fn new(model: Held<'a>, seed: u64) -> Result<Self, DrawError> {
         let draw = Draw::new(&model, seed)?;
@@ -167,23 +203,43 @@ impl<'a> Source<'a> {
         Ok(Self { model, draw, sampler })
     }
 
-    /// Columns of the variables and of the measures of the units `numbers`.
-    fn draw(&self, numbers: &Range<u64>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    /// Of the units `numbers`.
+    fn draw(&self, numbers: &Range<u64>) -> Columns {
         let mut bits = vec![[0; LANES]; self.draw.dimensions()];
+        self.columns((numbers.end - numbers.start) as usize, |start, variables| {
+            let first = numbers.start + start as u64;
+            self.sampler.fill(first, &mut bits);
+            self.draw.variables(first, &bits, variables);
+        })
+    }
+
+    /// Of the units at `points`, whose scores `own` are this source's; those that it does not make are not `made`.
+    fn at(&self, points: &[Vec<f64>], own: Range<usize>, made: &mut [bool]) -> Columns {
+        self.columns(points.len(), |start, variables| {
+            let group = &points[start..points.len().min(start + LANES)];
+            let scores: Vec<Vec<f64>> = group.iter().map(|point| point[own.clone()].to_vec()).collect();
+            variables.copy_from_slice(&gathered(&scores));
+            self.draw.transform(variables);
+            let (inside, _) = self.draw.is_inside(variables);
+            made[start..].iter_mut().zip(inside).for_each(|(made, inside)| *made &= inside);
+        })
+    }
+
+    /// Of `count` units, some at a time, for which `fill` is given the first and writes variables.
+    fn columns(&self, count: usize, mut fill: impl FnMut(usize, &mut [Lanes])) -> Columns {
         let mut variables = vec![Lanes::ZERO; self.draw.dimensions()];
         let mut measures = vec![Lanes::ZERO; self.model.measures.len()];
         let mut columns = [vec![Vec::new(); variables.len()], vec![Vec::new(); measures.len()]];
-        for first in numbers.clone().step_by(LANES) {
-            self.sampler.fill(first, &mut bits);
-            self.draw.variables(first, &bits, &mut variables);
+        for start in (0..count).step_by(LANES) {
+            fill(start, &mut variables);
             self.model.function.evaluate(&variables, &mut measures);
-            let here = ((numbers.end - first) as usize).min(LANES);
+            let here = (count - start).min(LANES);
             for (columns, values) in columns.iter_mut().zip([&variables, &measures]) {
                 columns.iter_mut().zip(values.iter()).for_each(|(column, lanes)| column.extend(&lanes.0[..here]));
             }
         }
         let [variables, measures] = columns;
-        (variables, measures)
+        Columns { variables, measures }
     }
 }
 
@@ -222,7 +278,11 @@ fn each_itself(contributors: Vec<Contributor>) -> Model {
 #[cfg(test)]
 mod tests {
     use super::Production;
-    use crate::{example, scene::Scene, scene::SceneFile, scene::shipped};
+    use crate::{
+        example,
+        scene::{Scene, SceneFile, shipped},
+        tolerance::{lanes::LANES, normal::Scores},
+    };
 
     fn moments(values: impl Iterator<Item = f64>) -> [f64; 2] {
         let values: Vec<f64> = values.collect();
@@ -260,6 +320,25 @@ mod tests {
         let [mean, deviation] = moments(production.draw(0..20_224).gaps.iter().map(|gaps| gaps[4]));
         assert!((mean - gap.mean).abs() < 4.0 * gap.deviation / libm::sqrt(2e4), "{mean} {gap:?}");
         assert!((deviation / gap.deviation - 1.0).abs() < 0.03, "{deviation} {gap:?}");
+    }
+
+    /// The same units from the scores that random bits stand for.
+    #[test]
+    fn units_at_points_are_those_that_are_drawn_there() {
+        let scene = example::cd_rom();
+        let production = Production::new(&scene, None, 0.5, 7).unwrap();
+        let source = &production.sources[0];
+        let points: Vec<Vec<f64>> = (0..21)
+            .map(|unit| {
+                let mut bits = vec![[0; LANES]; production.scores()];
+                source.sampler.fill(unit, &mut bits);
+                bits.iter().map(|bits| Scores::table().score(bits[0])).collect()
+            })
+            .collect();
+        let (found, made) = production.at(&points);
+        let drawn = production.draw(0..21);
+        assert_eq!((found.gaps, found.variables), (drawn.gaps, drawn.variables));
+        assert!(made.iter().all(|made| *made) && production.factor() == 1.0);
     }
 
     #[test]

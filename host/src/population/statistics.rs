@@ -107,7 +107,7 @@ pub fn malfunctions(unit: &Unit, limit: Option<f64>) -> bool {
 }
 
 /// Whether a unit needs more than the `limit` (N).
-fn is_over(unit: &Unit, limit: Option<f64>) -> bool {
+pub fn is_over(unit: &Unit, limit: Option<f64>) -> bool {
     unit.outcome.peak_force.zip(limit).is_some_and(|(force, limit)| force > limit)
 }
 

@@ -1,7 +1,7 @@
 //! A population as a whole: its units, what they did together, and what from.
 
 use super::{
-    Unit,
+    PIECE, Unit,
     drivers::{Driver, Drivers},
     production::Production,
     simulate_units,
@@ -38,20 +38,26 @@ impl Population {
         limit: Option<f64>,
         done: impl Fn(u64) + Sync,
     ) -> Result<Self, SimulateError> {
+        let mut units = Vec::new();
+        simulate_units(scene, production, 0..count, done, |_, piece| units.extend_from_slice(piece))?;
+        Ok(Self::of(production, units, limit))
+    }
+
+    /// Of all `units` of a `production`, in order.
+    pub fn of(production: &Production, units: Vec<Unit>, limit: Option<f64>) -> Self {
         let pilot = production.draw(0..PILOT).variables;
         let mut drivers = [Drivers::new(&pilot), Drivers::new(&pilot)];
-        let mut units = Vec::new();
-        simulate_units(scene, production, 0..count, done, |drawn, piece| {
+        for (start, piece) in (0..).step_by(PIECE).zip(units.chunks(PIECE)) {
+            let variables = production.draw(start..start + piece.len() as u64).variables;
             let of = |figure: &dyn Fn(&Unit) -> Option<f64>| piece.iter().map(figure).collect::<Vec<_>>();
             let figures =
                 [of(&|unit| unit.outcome.peak_force), of(&|unit| Some(f64::from(u8::from(malfunctions(unit, limit)))))];
             for (drivers, figures) in drivers.iter_mut().zip(&figures) {
-                drivers.add(drawn.numbers.start, &drawn.variables, figures);
+                drivers.add(start, &variables, figures);
             }
-            units.extend_from_slice(piece);
-        })?;
+        }
         let contributors = production.contributors();
         let [of_force, of_malfunction] = drivers.map(|drivers| drivers.ranked(&contributors));
-        Ok(Self { statistics: Statistics::new(&units, limit), units, of_force, of_malfunction })
+        Self { statistics: Statistics::new(&units, limit), units, of_force, of_malfunction }
     }
 }

@@ -130,6 +130,43 @@ fn outcome(scene: &Scene, slide: &SlideData<f64>, figures: &Figures) -> UnitOutc
     }
 }
 
+/// The figures that decide whether a unit does its job.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decisive {
+    /// Speed at the end as a share of the command; none where no verdict follows from it.
+    pub speed: Option<f64>,
+    /// Greatest force (N) from the ramp's start on.
+    pub force: Option<f64>,
+}
+
+/// The decisive figures of units that were `drawn`, those that are `asked` for: by the lanes alone, unless these stall. None of
+/// a unit whose parameters are out of bounds.
+///
+/// # Errors
+/// [`SimulateError`] of the first that the desk cannot solve.
+pub fn decisive(scene: &Scene, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Option<Decisive>>, SimulateError> {
+    let course = course(scene);
+    let slides: Vec<Option<SlideData<f64>>> = asked.iter().map(|i| slide(scene, drawn, *i, &course).ok()).collect();
+    let sound: Vec<SlideData<f64>> = slides.iter().flatten().copied().collect();
+    let mut figures = super::simulate(course, &sound).into_iter();
+    let of = |(slide, i): (&Option<SlideData<f64>>, &usize)| {
+        let Some((slide, figures)) = slide.as_ref().zip(slide.as_ref().and_then(|_| figures.next())) else {
+            return Ok(None);
+        };
+        let found = outcome(scene, slide, &figures);
+        let (share, _) = share(slide, &figures);
+        if !figures.stalled && share.is_finite() {
+            let speed = (found.verdict != Verdict::Undecided).then_some(share);
+            return Ok(Some(Decisive { speed, force: found.peak_force }));
+        }
+        let found = at_desk(scene, drawn, *i, found)?;
+        let command = slide.drive.command(found.end.t).abs();
+        let speed = (found.verdict != Verdict::Undecided).then_some(found.final_velocity / command);
+        Ok(Some(Decisive { speed, force: found.peak_force }))
+    };
+    slides.iter().zip(asked).map(of).collect()
+}
+
 /// Whether the verdict of a unit may be another to a better tolerance.
 fn is_doubtful(slide: &SlideData<f64>, figures: &Figures) -> bool {
     let (share, _) = share(slide, figures);

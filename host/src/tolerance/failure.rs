@@ -19,6 +19,18 @@ const REACHED: [f64; 2] = [0.01, 0.001];
 /// The most tangents that a corner is cut out of, and the most that are added.
 const TANGENTS: usize = 8;
 
+/// Margins of a failure over independent standard normal scores: negative where it happens, infinite where no unit is.
+pub trait Margins {
+    /// Points that are best handed over at a time, a multiple of [`LANES`].
+    const TOGETHER: usize = LANES;
+
+    /// How many scores a unit has.
+    fn dimensions(&self) -> usize;
+
+    /// Margins at `points`.
+    fn at(&mut self, points: &[Vec<f64>]) -> Vec<f64>;
+}
+
 /// A failure: the sum of some measures is below (or above) a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
@@ -57,11 +69,6 @@ impl<'a> LimitState<'a> {
         Self { model, draw, failure, opposite, measures, evaluations: 0 }
     }
 
-    /// How many scores a unit has.
-    pub fn dimensions(&self) -> usize {
-        self.draw.dimensions()
-    }
-
     /// Margins at several scores, which are turned into variables.
     fn evaluate(&mut self, scores: &mut [Lanes]) -> Lanes {
         self.draw.transform(scores);
@@ -89,16 +96,6 @@ impl<'a> LimitState<'a> {
     /// By how much a unit is more probable because truncated zones are inside.
     pub fn factor(&self) -> f64 {
         self.draw.is_inside(&vec![Lanes::ZERO; self.dimensions()]).1
-    }
-
-    /// Margins at points.
-    pub fn at(&mut self, points: &[Vec<f64>]) -> Vec<f64> {
-        let mut found = Vec::with_capacity(points.len());
-        for group in points.chunks(LANES) {
-            let mut scores = gathered(group);
-            found.extend_from_slice(&self.margins(&mut scores)[..group.len()]);
-        }
-        found
     }
 
     /// Margin and slopes at a point.
@@ -186,6 +183,21 @@ impl<'a> LimitState<'a> {
             tangents.push(Tangent { normal: slopes, most });
         }
         None
+    }
+}
+
+impl Margins for LimitState<'_> {
+    fn dimensions(&self) -> usize {
+        self.draw.dimensions()
+    }
+
+    fn at(&mut self, points: &[Vec<f64>]) -> Vec<f64> {
+        let mut found = Vec::with_capacity(points.len());
+        for group in points.chunks(LANES) {
+            let mut scores = gathered(group);
+            found.extend_from_slice(&self.margins(&mut scores)[..group.len()]);
+        }
+        found
     }
 }
 

@@ -6,17 +6,16 @@
 //! LEB128. Everything that a reader allocates it has seen the bytes of.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use super::{
     forest::Forest,
     model::Model,
     sampler,
-    study::{Settings, Tally},
+    study::{Settings, Tally, join},
     tally::{BINS, Counts, MeasureCounts, Sums},
 };
 
-const MAGIC: &[u8; 8] = b"SLIPSTDY";
 const VERSION: u32 = 2;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
@@ -38,15 +37,41 @@ impl Source {
     }
 }
 
+/// What parts of a study find, and how it is written.
+pub trait Found: Sized {
+    /// What the study is made with.
+    type Settings: Copy + PartialEq + Serialize + DeserializeOwned;
+    /// The first bytes of its files.
+    const MAGIC: &'static [u8; 8];
+
+    /// Blocks of the whole study.
+    fn blocks(settings: &Self::Settings) -> u64;
+    /// What differs between two studies of the same scene, if anything does.
+    fn difference(one: &Self::Settings, other: &Self::Settings) -> Option<&'static str>;
+    /// Units that were worked on.
+    fn units(&self) -> u64;
+    /// Whether another part can be joined.
+    fn fits(&self, other: &Self) -> bool;
+    /// Adds another part.
+    fn join(&mut self, other: Self);
+    /// Adds its bytes.
+    fn encode(&self, out: &mut Vec<u8>);
+    /// Reads them.
+    ///
+    /// # Errors
+    /// [`FormatError::Damaged`].
+    fn decode(reader: &mut Reader) -> Result<Self, FormatError>;
+}
+
 /// Which part of a study.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Header {
+pub struct Header<S = Settings> {
     /// Version of the sampler.
     pub sampler: u32,
     /// The scene.
     pub source: Source,
     /// What is drawn.
-    pub settings: Settings,
+    pub settings: S,
     /// Which shard, from 1 on, of how many.
     pub shard: [u64; 2],
     /// Blocks of the shard that are done.
@@ -55,11 +80,11 @@ pub struct Header {
 
 /// A header with what was found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct Part<F: Found = Vec<Tally>> {
     /// Which part.
-    pub header: Header,
-    /// One tally a replicate.
-    pub tallies: Vec<Tally>,
+    pub header: Header<F::Settings>,
+    /// What was found: of a tolerance analysis one tally a replicate.
+    pub tallies: F,
 }
 
 /// Why bytes are no part of a study.
@@ -79,36 +104,18 @@ pub enum FormatError {
     Damaged,
 }
 
-impl Part {
+impl<F: Found> Part<F> {
     /// The bytes of the file.
     ///
     /// # Errors
     /// If the header cannot be written as JSON, which never happens.
     pub fn encode(&self) -> Result<Vec<u8>, serde_json::Error> {
         let header = serde_json::to_vec(&self.header)?;
-        let mut out = MAGIC.to_vec();
+        let mut out = F::MAGIC.to_vec();
         out.extend(VERSION.to_le_bytes());
         out.extend((header.len() as u32).to_le_bytes());
         out.extend(header);
-        integer(&mut out, self.tallies.len() as u64);
-        for Tally { counts, sums } in &self.tallies {
-            for count in [counts.units, counts.rejected, counts.measures.len() as u64, counts.closed.len() as u64] {
-                integer(&mut out, count);
-            }
-            for measure in &counts.measures {
-                [measure.undefined].iter().chain(&measure.outside).for_each(|count| integer(&mut out, *count));
-                measure.extremes.iter().for_each(|extreme| out.extend(extreme.to_le_bytes()));
-                measure.at_extremes.iter().for_each(|count| integer(&mut out, *count));
-                measure.bins.iter().for_each(|count| integer(&mut out, *count));
-            }
-            counts.closed.iter().for_each(|count| integer(&mut out, *count));
-            integer(&mut out, sums.nodes().len() as u64);
-            for (first, height, sums) in sums.nodes() {
-                integer(&mut out, first);
-                integer(&mut out, height.into());
-                sums.powers.iter().flatten().chain(&sums.products).for_each(|sum| out.extend(sum.to_le_bytes()));
-            }
-        }
+        self.tallies.encode(&mut out);
         out.extend(CRC.checksum(&out).to_le_bytes());
         Ok(out)
     }
@@ -118,28 +125,30 @@ impl Part {
     /// # Errors
     /// [`FormatError`], if it is not whole.
     pub fn decode(bytes: &[u8]) -> Result<Self, FormatError> {
-        if !bytes.starts_with(MAGIC) {
-            return Err(if MAGIC.starts_with(bytes) { FormatError::Damaged } else { FormatError::Foreign });
+        if !bytes.starts_with(F::MAGIC) {
+            return Err(if F::MAGIC.starts_with(bytes) { FormatError::Damaged } else { FormatError::Foreign });
         }
         let (body, checksum) = bytes.split_last_chunk::<4>().ok_or(FormatError::Damaged)?;
         if CRC.checksum(body) != u32::from_le_bytes(*checksum) {
             return Err(FormatError::Damaged);
         }
-        let mut reader = Reader(&body[MAGIC.len()..]);
+        let mut reader = Reader(body.get(F::MAGIC.len()..).ok_or(FormatError::Damaged)?);
         let version = u32::from_le_bytes(reader.array()?);
         if version != VERSION {
             return Err(FormatError::Version(version));
         }
         let length = u32::from_le_bytes(reader.array()?) as usize;
-        let header: Header = serde_json::from_slice(reader.bytes(length)?).map_err(|_| FormatError::Damaged)?;
+        let header: Header<F::Settings> =
+            serde_json::from_slice(reader.bytes(length)?).map_err(|_| FormatError::Damaged)?;
         if header.sampler != sampler::VERSION {
             return Err(FormatError::Sampler(header.sampler));
         }
-        let count = reader.count()?;
-        let tallies = (0..count).map(|_| reader.tally()).collect::<Result<_, _>>()?;
+        let tallies = F::decode(&mut reader)?;
         if reader.0.is_empty() { Ok(Self { header, tallies }) } else { Err(FormatError::Damaged) }
     }
+}
 
+impl Part {
     /// Whether its tallies have the shape that `model` and its settings give them.
     pub fn fits(&self, model: &Model) -> bool {
         let shape = |counts: &Counts| [counts.measures.len(), counts.closed.len()];
@@ -148,7 +157,66 @@ impl Part {
     }
 }
 
-fn integer(out: &mut Vec<u8>, mut value: u64) {
+impl Found for Vec<Tally> {
+    type Settings = Settings;
+    const MAGIC: &'static [u8; 8] = b"SLIPSTDY";
+
+    fn blocks(settings: &Settings) -> u64 {
+        settings.blocks()
+    }
+
+    fn difference(one: &Settings, other: &Settings) -> Option<&'static str> {
+        if one.seed != other.seed {
+            Some("seed")
+        } else if one.method != other.method {
+            Some("method")
+        } else {
+            (one != other).then_some("number of samples")
+        }
+    }
+
+    fn units(&self) -> u64 {
+        self.iter().map(|tally| tally.counts.units).sum()
+    }
+
+    fn fits(&self, other: &Self) -> bool {
+        self.len() == other.len()
+    }
+
+    fn join(&mut self, other: Self) {
+        join(self, &other);
+    }
+
+    fn encode(&self, out: &mut Vec<u8>) {
+        integer(out, self.len() as u64);
+        for Tally { counts, sums } in self {
+            for count in [counts.units, counts.rejected, counts.measures.len() as u64, counts.closed.len() as u64] {
+                integer(out, count);
+            }
+            for measure in &counts.measures {
+                [measure.undefined].iter().chain(&measure.outside).for_each(|count| integer(out, *count));
+                measure.extremes.iter().for_each(|extreme| out.extend(extreme.to_le_bytes()));
+                measure.at_extremes.iter().for_each(|count| integer(out, *count));
+                measure.bins.iter().for_each(|count| integer(out, *count));
+            }
+            counts.closed.iter().for_each(|count| integer(out, *count));
+            integer(out, sums.nodes().len() as u64);
+            for (first, height, sums) in sums.nodes() {
+                integer(out, first);
+                integer(out, height.into());
+                sums.powers.iter().flatten().chain(&sums.products).for_each(|sum| out.extend(sum.to_le_bytes()));
+            }
+        }
+    }
+
+    fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
+        let count = reader.count()?;
+        (0..count).map(|_| reader.tally()).collect()
+    }
+}
+
+/// Adds an integer.
+pub fn integer(out: &mut Vec<u8>, mut value: u64) {
     while value >= 0x80 {
         out.push(value as u8 | 0x80);
         value >>= 7;
@@ -156,7 +224,8 @@ fn integer(out: &mut Vec<u8>, mut value: u64) {
     out.push(value as u8);
 }
 
-struct Reader<'a>(&'a [u8]);
+/// What is left of a file.
+pub struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
     fn bytes(&mut self, count: usize) -> Result<&'a [u8], FormatError> {
@@ -165,17 +234,29 @@ impl<'a> Reader<'a> {
         Ok(bytes)
     }
 
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], FormatError> {
+    /// So many bytes.
+    ///
+    /// # Errors
+    /// [`FormatError::Damaged`], if there are fewer.
+    pub fn array<const N: usize>(&mut self) -> Result<[u8; N], FormatError> {
         let (array, rest) = self.0.split_first_chunk::<N>().ok_or(FormatError::Damaged)?;
         self.0 = rest;
         Ok(*array)
     }
 
-    fn number(&mut self) -> Result<f64, FormatError> {
+    /// A number.
+    ///
+    /// # Errors
+    /// [`FormatError::Damaged`], if there is none.
+    pub fn number(&mut self) -> Result<f64, FormatError> {
         self.array().map(f64::from_le_bytes)
     }
 
-    fn integer(&mut self) -> Result<u64, FormatError> {
+    /// An integer.
+    ///
+    /// # Errors
+    /// [`FormatError::Damaged`], if there is none.
+    pub fn integer(&mut self) -> Result<u64, FormatError> {
         let mut value = 0;
         for shift in (0..64).step_by(7) {
             let [byte] = self.array()?;
@@ -188,7 +269,10 @@ impl<'a> Reader<'a> {
     }
 
     /// A number of things that take a byte each at least.
-    fn count(&mut self) -> Result<usize, FormatError> {
+    ///
+    /// # Errors
+    /// [`FormatError::Damaged`], if there is none, or fewer bytes.
+    pub fn count(&mut self) -> Result<usize, FormatError> {
         let count = self.integer()? as usize;
         if count <= self.0.len() { Ok(count) } else { Err(FormatError::Damaged) }
     }

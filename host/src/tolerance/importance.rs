@@ -6,7 +6,7 @@
 //! between good and bad in one dimension. (Melchers, Struct. Saf. 6, 1989.)
 
 use super::{
-    failure::{DesignPoint, LimitState, dot},
+    failure::{DesignPoint, LimitState, Margins, dot},
     lanes::{LANES, Lanes},
     normal::Scores,
     sampler::{Method, Sampler},

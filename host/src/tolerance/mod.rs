@@ -51,10 +51,11 @@ pub mod rss;
 pub mod run;
 pub mod sampler;
 pub mod shape;
+pub mod shard;
 pub mod sobol;
 mod streams;
 pub mod study;
-mod subset;
+pub mod subset;
 pub mod tail;
 #[cfg(test)]
 mod tail_tests;

@@ -3,7 +3,7 @@
 use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
 
 use super::{
-    failure::{DesignPoint, LimitState, dot, norm},
+    failure::{DesignPoint, LimitState, Margins, dot, norm},
     importance::Mixture,
     normal::{Scores, density, tail},
 };

@@ -7,12 +7,17 @@ use std::{
 };
 
 use super::{
-    file::{FormatError, Header, Part, Source},
+    file::{FormatError, Found, Header, Part, Source},
     model::Model,
     sampler,
-    study::{Settings, Study, StudyError, Tally, join},
+    study::{Settings, Study, StudyError, Tally},
 };
-use crate::files::{self, WriteError};
+use crate::{
+    files::{self, WriteError},
+    simulate::SimulateError,
+};
+
+pub use super::shard::Shard;
 
 /// How often a run saves how far it has come.
 const SAVE_EVERY: Duration = Duration::from_secs(2);
@@ -41,6 +46,9 @@ pub enum RunError {
         /// Why.
         error: FormatError,
     },
+    /// A unit that cannot be simulated.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
     /// A part of something else.
     #[error("{} is of another {what} than {}", path.display(), other.display())]
     Different {
@@ -102,42 +110,6 @@ fn list(numbers: &[u64]) -> String {
     shown.join(", ") + more
 }
 
-/// A shard of a study.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    /// Which, from 1 on.
-    pub number: u64,
-    /// Of how many.
-    pub count: u64,
-}
-
-impl Shard {
-    /// The whole study.
-    pub const ALL: Self = Self { number: 1, count: 1 };
-
-    /// Its blocks.
-    pub fn blocks(self, settings: &Settings) -> Range<u64> {
-        let border = |k: u64| (u128::from(settings.blocks()) * u128::from(k) / u128::from(self.count)) as u64;
-        border(self.number - 1)..border(self.number)
-    }
-}
-
-impl std::str::FromStr for Shard {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let fields = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
-        let (number, count): (u64, u64) = fields.ok_or("not of the form i/n, as in 1/4")?;
-        if count == 0 || count > 1 << 20 {
-            return Err(format!("{count} shards, allowed are 1 to {}", 1 << 20));
-        }
-        if number == 0 || number > count {
-            return Err(format!("shard {number} of {count}, allowed are 1 to {count}"));
-        }
-        Ok(Self { number, count })
-    }
-}
-
 /// Where a run keeps its state.
 pub struct Keep<'a> {
     /// The file of the result.
@@ -153,26 +125,66 @@ pub fn checkpoint(out: &Path) -> PathBuf {
     name.into()
 }
 
-/// Works through a `shard` of `study`, on the current pool, and writes the result to `keep`'s file if there is one; `done`
+/// Work on units that comes in blocks.
+pub trait Work {
+    /// What it finds.
+    type Found: Found;
+
+    /// What decides over it, besides the scene.
+    fn settings(&self) -> <Self::Found as Found>::Settings;
+    /// Nothing found yet.
+    fn empty(&self) -> Self::Found;
+    /// Whether a file can be of this work.
+    fn fits(&self, part: &Part<Self::Found>) -> bool;
+    /// Works through `blocks` on all threads of the current pool; `done` is called with units as they come.
+    ///
+    /// # Errors
+    /// [`RunError`]; then nothing is added.
+    fn add(&self, blocks: Range<u64>, found: &mut Self::Found, done: &(impl Fn(u64) + Sync)) -> Result<(), RunError>;
+}
+
+impl Work for Study<'_> {
+    type Found = Vec<Tally>;
+
+    fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    fn empty(&self) -> Vec<Tally> {
+        self.empty()
+    }
+
+    fn fits(&self, part: &Part) -> bool {
+        part.fits(self.model)
+    }
+
+    fn add(&self, blocks: Range<u64>, found: &mut Vec<Tally>, done: &(impl Fn(u64) + Sync)) -> Result<(), RunError> {
+        self.add(blocks, found, done);
+        Ok(())
+    }
+}
+
+/// Works through a `shard` of `work`, on the current pool, and writes the result to `keep`'s file if there is one; `done`
 /// is called with units as they come. The bytes of the result depend neither on threads nor on interruptions.
 ///
 /// # Errors
 /// [`RunError`].
-pub fn run(
-    study: &Study,
+pub fn run<W: Work>(
+    work: &W,
     source: &Source,
     shard: Shard,
     keep: Option<&Keep>,
     done: impl Fn(u64) + Sync,
-) -> Result<Vec<Tally>, RunError> {
-    let blocks = shard.blocks(&study.settings);
+) -> Result<W::Found, RunError> {
+    let settings = work.settings();
+    let blocks = shard.blocks(W::Found::blocks(&settings));
     let shard = [shard.number, shard.count];
-    let header = Header { sampler: sampler::VERSION, source: source.clone(), settings: study.settings, shard, done: 0 };
-    let mut part = Part { header, tallies: study.empty() };
+    let header = Header { sampler: sampler::VERSION, source: source.clone(), settings, shard, done: 0 };
+    let mut part = Part { header, tallies: work.empty() };
     if let Some(Keep { out, resume: true }) = keep {
         for path in [out.to_path_buf(), checkpoint(out)] {
             if path.exists() {
-                part = read_again(&path, &part, study)?;
+                part = read_again(&path, &part, work)?;
                 break;
             }
         }
@@ -180,20 +192,25 @@ pub fn run(
     if let Some(left) = keep.filter(|keep| !keep.resume).map(|keep| checkpoint(keep.out)).filter(|path| path.exists()) {
         return Err(RunError::Left(left));
     }
-    done(part.tallies.iter().map(|tally| tally.counts.units).sum());
-    let save = |part: &Part, path: &Path| -> Result<(), RunError> { Ok(files::write(path, &part.encode()?)?) };
+    done(part.tallies.units());
+    let save =
+        |part: &Part<W::Found>, path: &Path| -> Result<(), RunError> { Ok(files::write(path, &part.encode()?)?) };
     let mut saved = Instant::now();
     let mut round = rayon::current_num_threads() as u64;
     while part.header.done < blocks.end - blocks.start {
         let begin = Instant::now();
         let start = blocks.start + part.header.done;
         let end = (start + round).min(blocks.end);
-        study.add(start..end, &mut part.tallies, &done);
-        part.header.done = end - blocks.start;
+        let added = work.add(start..end, &mut part.tallies, &done);
+        if added.is_ok() {
+            part.header.done = end - blocks.start;
+        } else if !crate::interrupt::requested() {
+            added?;
+        }
         if begin.elapsed() < LOOK_UP_EVERY {
             round *= 2;
         }
-        let stop = crate::interrupt::requested() && end < blocks.end;
+        let stop = crate::interrupt::requested() && part.header.done < blocks.end - blocks.start;
         if let Some(Keep { out, .. }) = keep.filter(|_| stop || (saved.elapsed() >= SAVE_EVERY && end < blocks.end)) {
             save(&part, &checkpoint(out))?;
             saved = Instant::now();
@@ -214,38 +231,30 @@ pub fn run(
 ///
 /// # Errors
 /// [`RunError`], if it cannot be read or is not whole.
-pub fn read(path: &Path) -> Result<Part, RunError> {
+pub fn read<F: Found>(path: &Path) -> Result<Part<F>, RunError> {
     let bytes = std::fs::read(path).map_err(|error| RunError::Read { path: path.into(), error })?;
     Part::decode(&bytes).map_err(|error| RunError::Format { path: path.into(), error })
 }
 
-fn read_again(path: &Path, expected: &Part, study: &Study) -> Result<Part, RunError> {
+fn read_again<W: Work>(path: &Path, expected: &Part<W::Found>, work: &W) -> Result<Part<W::Found>, RunError> {
     let part = read(path)?;
     agrees(&part, path, &expected.header, Path::new("this run"))?;
     if part.header.shard != expected.header.shard {
         let what = "shard";
         return Err(RunError::Different { path: path.into(), what, other: "this run".into() });
     }
-    if part.fits(study.model) { Ok(part) } else { Err(damaged(path)) }
+    if work.fits(&part) { Ok(part) } else { Err(damaged(path)) }
 }
 
 fn damaged(path: &Path) -> RunError {
     RunError::Format { path: path.into(), error: FormatError::Damaged }
 }
 
-fn agrees(part: &Part, path: &Path, header: &Header, other: &Path) -> Result<(), RunError> {
-    let different = |what| Err(RunError::Different { path: path.into(), what, other: other.into() });
-    let (one, two) = (&part.header.settings, &header.settings);
-    if !part.header.source.is_same(&header.source) {
-        different("scene")
-    } else if one.seed != two.seed {
-        different("seed")
-    } else if one.method != two.method {
-        different("method")
-    } else if one != two {
-        different("number of samples")
-    } else {
-        Ok(())
+fn agrees<F: Found>(part: &Part<F>, path: &Path, header: &Header<F::Settings>, other: &Path) -> Result<(), RunError> {
+    let scene = (!part.header.source.is_same(&header.source)).then_some("scene");
+    match scene.or_else(|| F::difference(&part.header.settings, &header.settings)) {
+        Some(what) => Err(RunError::Different { path: path.into(), what, other: other.into() }),
+        None => Ok(()),
     }
 }
 
@@ -253,15 +262,15 @@ fn agrees(part: &Part, path: &Path, header: &Header, other: &Path) -> Result<(),
 ///
 /// # Errors
 /// [`RunError`], if they are not all of one study, each once and finished.
-pub fn merge(paths: &[PathBuf]) -> Result<Part, RunError> {
-    let mut whole: Option<(Part, Vec<Option<&PathBuf>>)> = None;
+pub fn merge<F: Found>(paths: &[PathBuf]) -> Result<Part<F>, RunError> {
+    let mut whole: Option<(Part<F>, Vec<Option<&PathBuf>>)> = None;
     for path in paths {
-        let part = read(path)?;
+        let part: Part<F> = read(path)?;
         let [number, count] = part.header.shard;
         if number == 0 || number > count || count > 1 << 20 {
             return Err(damaged(path));
         }
-        let blocks = Shard { number, count }.blocks(&part.header.settings);
+        let blocks = Shard { number, count }.blocks(F::blocks(&part.header.settings));
         if part.header.done != blocks.end - blocks.start {
             let of = blocks.end - blocks.start;
             return Err(RunError::Unfinished { path: path.clone(), done: part.header.done, of });
@@ -275,14 +284,14 @@ pub fn merge(paths: &[PathBuf]) -> Result<Part, RunError> {
             Some((joined, seen)) => {
                 let first = seen.iter().flatten().next().map_or(path, |first| *first);
                 agrees(&part, path, &joined.header, first)?;
-                if seen.len() as u64 != count || part.tallies.len() != joined.tallies.len() {
+                if seen.len() as u64 != count || !joined.tallies.fits(&part.tallies) {
                     let what = "number of shards";
                     return Err(RunError::Different { path: path.clone(), what, other: first.clone() });
                 }
                 if let Some(first) = seen[number as usize - 1].replace(path) {
                     return Err(RunError::Twice { shard: number, first: first.clone(), second: path.clone() });
                 }
-                join(&mut joined.tallies, &part.tallies);
+                joined.tallies.join(part.tallies);
             }
         }
     }
@@ -292,7 +301,7 @@ pub fn merge(paths: &[PathBuf]) -> Result<Part, RunError> {
         return Err(RunError::Missing { count: seen.len() as u64, missing });
     }
     part.header.shard = [1, 1];
-    part.header.done = part.header.settings.blocks();
+    part.header.done = F::blocks(&part.header.settings);
     Ok(part)
 }
 

@@ -10,7 +10,7 @@ use slipfit_core::sampling::stream::derived;
 use super::{
     binomial,
     draw::Draw,
-    failure::{DesignPoint, Failure, LimitState},
+    failure::{DesignPoint, Failure, LimitState, Margins},
     importance::{Mixture, REPLICATES, Sampled, mean_and_error},
     model::Model,
     normal::tail,
@@ -20,6 +20,8 @@ use super::{
 
 /// Runs of subset simulation that look for failures, and their units a level.
 const SEARCHES: (u64, usize) = (8, 512);
+/// Levels after which a failure is too rare: 2⁻⁴⁸, 4e-15.
+const LEVELS: u64 = 16;
 /// Runs whose mean is the figure.
 const RUNS: (u64, usize) = (REPLICATES, 4096);
 /// How many standard errors a figure may lie off the units that were counted, and off the search, whose few runs know
@@ -28,7 +30,7 @@ const AGREEMENT: [f64; 2] = [4.0, 6.0];
 /// The chance of a count beyond what still agrees with a figure.
 const UNLIKELY: f64 = 3e-5;
 /// The greatest relative standard error of a figure that is given.
-const MOST_ERROR: f64 = 0.3;
+pub const MOST_ERROR: f64 = 0.3;
 
 /// Where a probability comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -91,7 +93,7 @@ pub fn probability(
 }
 
 /// Whether the count does not speak against a figure.
-fn agrees(counted: Option<(u64, u64)>, probability: f64, error: f64) -> bool {
+pub fn agrees(counted: Option<(u64, u64)>, probability: f64, error: f64) -> bool {
     let Some((hits, units)) = counted.filter(|(_, units)| *units > 0) else { return true };
     let [lower, upper] = binomial::limits(hits, units, UNLIKELY);
     lower <= probability + AGREEMENT[0] * error && probability - AGREEMENT[0] * error <= upper
@@ -133,7 +135,8 @@ fn by_importance(sampled: Sampled, mut points: Vec<DesignPoint>) -> Option<Tail>
 fn of_regions(state: &mut LimitState, seed: u64, likely: impl Fn(&Tail) -> bool) -> Option<Tail> {
     let origin = vec![0.0; state.dimensions()];
     let (runs, units) = SEARCHES;
-    let searches: Vec<_> = seeds(derived(seed, 1), runs).map(|seed| subset::run(state, units, seed)).collect();
+    let searches: Vec<_> =
+        seeds(derived(seed, 1), runs).map(|seed| subset::run(state, units, LEVELS, seed).ok()).collect();
     let from_origin = state.design_point(&origin);
     let Some(searches) = searches.into_iter().collect::<Option<Vec<_>>>() else {
         // Too rare for levels to get there.
@@ -165,7 +168,7 @@ fn of_levels(state: &mut LimitState, seed: u64) -> Option<Tail> {
     let factor = state.factor();
     let mut probabilities = Vec::with_capacity(runs as usize);
     for seed in seeds(seed, runs) {
-        probabilities.push(factor * subset::run(state, units, seed)?.probability);
+        probabilities.push(factor * subset::run(state, units, LEVELS, seed).ok()?.probability);
     }
     let (probability, error) = mean_and_error(&probabilities);
     (error <= MOST_ERROR * probability).then_some(Tail {

@@ -56,7 +56,7 @@ pub(super) struct Arguments {
     seed: u64,
     #[command(flatten)]
     threads: ThreadArguments,
-    /// Works on one of n parts, i from 1 to n; `slipfit merge` joins them.
+    /// Works on one of n parts, i from 1 to n, or on that of the task of a SLURM job array, if `auto`; `slipfit merge` joins them.
     #[arg(long, value_name = "I/N", requires = "out")]
     shard: Option<Shard>,
     /// Writes what `slipfit merge` reads.
@@ -158,7 +158,7 @@ impl Arguments {
         let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
         let shard = self.shard.unwrap_or(Shard::ALL);
         let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
-        let blocks = shard.blocks(&settings);
+        let blocks = shard.blocks(settings.blocks());
         let bar = progress("drawing", settings.units_in(&blocks) as usize);
         let tallies = self.threads.install(|| run(&study, &source, shard, keep.as_ref(), |units| bar.inc(units)))??;
         bar.finish_and_clear();
@@ -178,11 +178,11 @@ impl Arguments {
 
 /// A shard that is done.
 #[derive(Serialize)]
-struct Written {
-    shard: u64,
-    of: u64,
-    units: u64,
-    file: String,
+pub(super) struct Written {
+    pub shard: u64,
+    pub of: u64,
+    pub units: u64,
+    pub file: String,
 }
 
 impl std::fmt::Display for Written {

@@ -1,0 +1,38 @@
+//! Rare malfunction, for people.
+
+use std::fmt::Write;
+
+use crate::population::{
+    limit_state::{Kind, Side},
+    rare::{Estimate, Finding, Part, Rare},
+};
+
+/// By kind and side, beginning with all.
+pub fn describe(rare: &Rare) -> String {
+    let mut text = format!("Rare malfunction  {}\n", finding(&rare.malfunction));
+    for Part { kind, side, finding: found } in &rare.parts {
+        let kind = match kind {
+            Kind::Crawls => "crawls",
+            Kind::Jams => "jams",
+            Kind::OverLimit => "over limit",
+        };
+        let side = match side {
+            Side::Tight => ", tight",
+            Side::Loose => ", loose",
+            Side::Any => "",
+        };
+        let _ = writeln!(text, "  {:18}{}", format!("{kind}{side}"), finding(found));
+    }
+    let _ = writeln!(text, "  by subset simulation, {} units", rare.simulated);
+    text
+}
+
+fn finding(finding: &Finding) -> String {
+    match finding {
+        Finding::Probability(Estimate { probability, interval: [low, high], .. }) => {
+            format!("{probability:.2e}  ({low:.2e} to {high:.2e})")
+        }
+        Finding::Rarer { rarer_than } => format!("rarer than {rarer_than:.0e}"),
+        Finding::Unknown { reason } => format!("no figure: {reason}"),
+    }
+}

@@ -1,0 +1,205 @@
+//! Kinds of malfunction as limit states over independent standard normal scores: margins that change steadily with the unit.
+
+use serde::Serialize;
+use slipfit_core::slide::CONTACTS;
+
+use super::{
+    Unit,
+    picture::tightness,
+    production::Production,
+    statistics::is_over,
+    unit::{Decisive, decisive},
+};
+use crate::{
+    interrupt,
+    outcome::{JAMMED, RUNS, Verdict},
+    scene::Scene,
+    simulate::SimulateError,
+    tolerance::failure::Margins,
+};
+
+/// How a unit malfunctions. No unit does so in two ways.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// It crawls.
+    Crawls,
+    /// It jams.
+    Jams,
+    /// It does its job, but with more than the motor's force.
+    OverLimit,
+}
+
+impl Kind {
+    /// Of a `unit`, with a motor's force `limit` (N); none if it does not malfunction.
+    pub fn of(unit: &Unit, limit: Option<f64>) -> Option<Self> {
+        match unit.outcome.verdict {
+            Verdict::Crawls => Some(Self::Crawls),
+            Verdict::Jammed => Some(Self::Jams),
+            Verdict::Runs | Verdict::Undecided => is_over(unit, limit).then_some(Self::OverLimit),
+        }
+    }
+
+    /// Below 0 where a unit malfunctions in this way; none if that is not known.
+    fn margin(self, figures: &Decisive, limit: Option<f64>) -> Option<f64> {
+        match self {
+            Self::Crawls => figures.speed.map(|speed| (speed - RUNS).max(JAMMED - speed)),
+            Self::Jams => figures.speed.map(|speed| speed - JAMMED),
+            Self::OverLimit => {
+                let left = 1.0 - figures.force? / limit?;
+                Some(figures.speed.map_or(left, |speed| left.max(RUNS - speed)))
+            }
+        }
+    }
+}
+
+/// Half of a production.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// Units that are tighter than the mean one.
+    Tight,
+    /// The others.
+    Loose,
+    /// All, where no gap varies.
+    Any,
+}
+
+impl Side {
+    /// Those that a production of `scene` has.
+    pub fn all(scene: &Scene) -> &'static [Self] {
+        let varies = scene.pins.iter().flat_map(|pin| pin.gaps).flatten().any(|gap| gap.deviation > 0.0);
+        if varies { &[Self::Tight, Self::Loose] } else { &[Self::Any] }
+    }
+
+    /// Whether a unit with these `gaps` (m) is on it.
+    pub fn has(self, scene: &Scene, gaps: &[f64; CONTACTS]) -> bool {
+        match self {
+            Self::Tight => tightness(scene, gaps) > 0.0,
+            Self::Loose => tightness(scene, gaps) <= 0.0,
+            Self::Any => true,
+        }
+    }
+}
+
+/// The limit state of one kind on one side.
+pub struct LimitState<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// What varies.
+    pub production: &'a Production<'a>,
+    /// How units malfunction.
+    pub kind: Kind,
+    /// Which units do.
+    pub side: Side,
+    /// A motor's force (N).
+    pub limit: Option<f64>,
+    /// What was found out so far.
+    pub log: Log,
+}
+
+/// What happened while margins were computed.
+#[derive(Debug, Default)]
+pub struct Log {
+    /// Units that were simulated.
+    pub simulated: u64,
+    /// Those whose margin is not known.
+    pub undecided: u64,
+    /// Those whose parameters are out of bounds.
+    pub out_of_bounds: u64,
+    /// Why no more units were.
+    pub error: Option<SimulateError>,
+}
+
+impl LimitState<'_> {
+    fn found(&mut self, points: &[Vec<f64>]) -> Result<Vec<f64>, SimulateError> {
+        if interrupt::requested() {
+            return Err(SimulateError::Interrupted);
+        }
+        let mut margins = vec![f64::INFINITY; points.len()];
+        let (drawn, made) = self.production.at(points);
+        let asked: Vec<usize> =
+            (0..points.len()).filter(|i| made[*i] && self.side.has(self.scene, &drawn.gaps[*i])).collect();
+        for (i, figures) in asked.iter().zip(decisive(self.scene, &drawn, &asked)?) {
+            self.log.simulated += 1;
+            let Some(figures) = figures else {
+                self.log.out_of_bounds += 1;
+                continue;
+            };
+            match self.kind.margin(&figures, self.limit) {
+                Some(margin) => margins[*i] = margin,
+                None => self.log.undecided += 1,
+            }
+        }
+        Ok(margins)
+    }
+}
+
+impl Margins for LimitState<'_> {
+    /// As many as keep the lanes of a pack busy while units end one by one.
+    const TOGETHER: usize = 64;
+
+    fn dimensions(&self) -> usize {
+        self.production.scores()
+    }
+
+    /// After an error no unit malfunctions any more: the log tells.
+    fn at(&mut self, points: &[Vec<f64>]) -> Vec<f64> {
+        let found = if self.log.error.is_some() { Ok(Vec::new()) } else { self.found(points) };
+        let mut margins = found.unwrap_or_else(|error| {
+            self.log.error = Some(error);
+            Vec::new()
+        });
+        margins.resize(points.len(), f64::INFINITY);
+        margins
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Kind, LimitState, Log, Side};
+    use crate::{
+        example,
+        outcome::{JAMMED, RUNS},
+        population::{production::Production, unit::Decisive},
+        tolerance::failure::Margins,
+    };
+
+    #[test]
+    fn a_unit_malfunctions_in_one_way_only() {
+        for speed in [-0.1, 0.0, 0.5 * JAMMED, 0.1, 0.49, 0.6, 1.0] {
+            for force in [0.5, 1.5] {
+                let figures = Decisive { speed: Some(speed), force: Some(force) };
+                let below = |kind: Kind| kind.margin(&figures, Some(1.0)).unwrap() < 0.0;
+                let kinds = [Kind::Crawls, Kind::Jams, Kind::OverLimit].map(below);
+                let crawls = (JAMMED..RUNS).contains(&speed);
+                assert_eq!(kinds, [crawls, speed < JAMMED, speed >= RUNS && force > 1.0], "{speed} {force}");
+            }
+        }
+        let unknown = Decisive { speed: None, force: Some(2.0) };
+        assert_eq!(Kind::Jams.margin(&unknown, Some(1.0)), None);
+        assert_eq!(Kind::OverLimit.margin(&unknown, Some(1.0)), Some(-1.0));
+    }
+
+    #[test]
+    fn every_unit_is_on_one_side_and_undecided_ones_are_counted() {
+        let scene = example::cd_rom();
+        let production = Production::new(&scene, None, 0.0, 1).unwrap();
+        let drawn = production.draw(0..200);
+        let tight = drawn.gaps.iter().filter(|gaps| Side::Tight.has(&scene, gaps)).count();
+        let loose = drawn.gaps.iter().filter(|gaps| Side::Loose.has(&scene, gaps)).count();
+        assert!(tight + loose == 200 && tight > 70 && loose > 70);
+        // The opening ends before the ramp does.
+        let mut state = LimitState {
+            scene: &scene,
+            production: &production,
+            kind: Kind::Jams,
+            side: Side::Any,
+            limit: None,
+            log: Log::default(),
+        };
+        let margins = state.at(&vec![vec![0.0; production.scores()]; 3]);
+        assert!(margins.iter().all(|margin| *margin == f64::INFINITY));
+        assert_eq!((state.log.simulated, state.log.undecided), (3, 3));
+    }
+}

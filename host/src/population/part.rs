@@ -1,0 +1,223 @@
+//! Parts of a population, by the files and runs of tolerance studies.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+use slipfit_core::slide::CONTACTS;
+
+use super::{Unit, production::Production, simulate_units, unit::UnitOutcome};
+use crate::{
+    outcome::{Moment, Verdict},
+    scene::Scene,
+    tolerance::{
+        file::{FormatError, Found, Part, Reader, integer},
+        run::{RunError, Work},
+    },
+};
+
+/// Units of a block.
+const BLOCK: u64 = 512;
+const VERDICTS: [Verdict; 4] = [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Undecided];
+
+/// What a population of a scene is made with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Units in all.
+    pub units: u64,
+    /// Seed of the production.
+    pub seed: u64,
+    /// Whether the opening is simulated, not the stroke.
+    pub opening: bool,
+    /// Bits of the correlation of gaps: text would round them.
+    correlation: u64,
+    /// Bits of a motor's force (N).
+    limit: Option<u64>,
+}
+
+impl Settings {
+    /// Of `units` of the production `seed`, with the `correlation` of gaps and a motor's force `limit` (N).
+    pub fn new(units: u64, seed: u64, opening: bool, correlation: f64, limit: Option<f64>) -> Self {
+        Self { units, seed, opening, correlation: correlation.to_bits(), limit: limit.map(f64::to_bits) }
+    }
+
+    /// Correlation of any two gaps.
+    pub fn correlation(&self) -> f64 {
+        f64::from_bits(self.correlation)
+    }
+
+    /// A motor's force (N).
+    pub fn limit(&self) -> Option<f64> {
+        self.limit.map(f64::from_bits)
+    }
+
+    /// Units of `blocks`.
+    pub fn units_in(&self, blocks: &Range<u64>) -> Range<u64> {
+        blocks.start * BLOCK..(blocks.end * BLOCK).min(self.units)
+    }
+}
+
+/// Units to be simulated.
+pub struct Simulation<'a> {
+    /// Their scene.
+    pub scene: &'a Scene,
+    /// What varies in it.
+    pub production: &'a Production<'a>,
+    /// Which units.
+    pub settings: Settings,
+}
+
+impl Work for Simulation<'_> {
+    type Found = Vec<Unit>;
+
+    fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    fn empty(&self) -> Vec<Unit> {
+        Vec::new()
+    }
+
+    fn fits(&self, part: &Part<Vec<Unit>>) -> bool {
+        part.tallies.iter().all(|unit| unit.number < self.settings.units)
+    }
+
+    fn add(&self, blocks: Range<u64>, found: &mut Vec<Unit>, done: &(impl Fn(u64) + Sync)) -> Result<(), RunError> {
+        let before = found.len();
+        let numbers = self.settings.units_in(&blocks);
+        let added =
+            simulate_units(self.scene, self.production, numbers, done, |_, units| found.extend_from_slice(units));
+        if added.is_err() {
+            found.truncate(before);
+        }
+        Ok(added?)
+    }
+}
+
+impl Found for Vec<Unit> {
+    type Settings = Settings;
+    const MAGIC: &'static [u8; 8] = b"SLIPPOPN";
+
+    fn blocks(settings: &Settings) -> u64 {
+        settings.units.div_ceil(BLOCK)
+    }
+
+    fn difference(one: &Settings, other: &Settings) -> Option<&'static str> {
+        if one.seed != other.seed {
+            Some("seed")
+        } else if one.units != other.units {
+            Some("number of units")
+        } else if one.opening != other.opening {
+            Some("length")
+        } else if one.correlation != other.correlation {
+            Some("correlation")
+        } else {
+            (one.limit != other.limit).then_some("force limit")
+        }
+    }
+
+    fn units(&self) -> u64 {
+        self.len() as u64
+    }
+
+    fn fits(&self, _: &Self) -> bool {
+        true
+    }
+
+    fn join(&mut self, other: Self) {
+        self.extend(other);
+        self.sort_by_key(|unit| unit.number);
+    }
+
+    /// Of each: number, gaps, verdict, breakaway, peak and settled force, final speed, end, contact (16 if none), its force,
+    /// whether the desk computed it. NaN is none.
+    fn encode(&self, out: &mut Vec<u8>) {
+        integer(out, self.len() as u64);
+        for Unit { number, gaps, outcome } in self {
+            integer(out, *number);
+            let verdict = VERDICTS.iter().position(|verdict| *verdict == outcome.verdict).unwrap_or(VERDICTS.len() - 1);
+            let (contact, force) = outcome.most_loaded.unwrap_or((CONTACTS, 0.0));
+            out.extend([verdict as u8, contact as u8, u8::from(outcome.at_desk)]);
+            let optional = [outcome.breakaway, outcome.peak_force, outcome.settled_force];
+            let figures = optional.map(|figure| figure.unwrap_or(f64::NAN)).into_iter();
+            let numbers = figures.chain([outcome.final_velocity, outcome.end.t, outcome.end.z, force]).chain(*gaps);
+            numbers.for_each(|number| out.extend(number.to_le_bytes()));
+        }
+    }
+
+    fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
+        let count = reader.count()?;
+        (0..count).map(|_| unit(reader)).collect()
+    }
+}
+
+fn unit(reader: &mut Reader) -> Result<Unit, FormatError> {
+    let number = reader.integer()?;
+    let [verdict, contact, at_desk] = reader.array()?;
+    let verdict = *VERDICTS.get(usize::from(verdict)).ok_or(FormatError::Damaged)?;
+    let mut optional = || Ok(Some(reader.number()?).filter(|figure| !figure.is_nan()));
+    let (breakaway, peak_force, settled_force) = (optional()?, optional()?, optional()?);
+    let final_velocity = reader.number()?;
+    let end = Moment { t: reader.number()?, z: reader.number()? };
+    let force = reader.number()?;
+    let mut gaps = [0.0; CONTACTS];
+    for gap in &mut gaps {
+        *gap = reader.number()?;
+    }
+    let most_loaded = match usize::from(contact) {
+        CONTACTS => None,
+        contact if contact < CONTACTS => Some((contact, force)),
+        _ => return Err(FormatError::Damaged),
+    };
+    let at_desk = at_desk != 0;
+    let outcome =
+        UnitOutcome { verdict, breakaway, peak_force, settled_force, final_velocity, end, most_loaded, at_desk };
+    Ok(Unit { number, gaps, outcome })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Settings, Simulation};
+    use crate::{
+        example,
+        population::{Unit, production::Production},
+        tolerance::{
+            file::{Found, Source},
+            run::{Keep, RunError, Shard, merge, run},
+        },
+    };
+
+    #[test]
+    fn shards_in_any_order_are_the_whole() {
+        let scene = example::cd_rom();
+        let production = Production::new(&scene, None, 0.25, 5).unwrap();
+        let settings = Settings::new(1100, 5, true, 0.25, Some(0.3));
+        let simulation = Simulation { scene: &scene, production: &production, settings };
+        let source = Source { name: "cd-rom".into(), text: "its text".into(), set: Vec::new() };
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: String| folder.path().join(name);
+        let shard = |out: &std::path::Path, shard: Shard, resume: bool| {
+            run(&simulation, &source, shard, Some(&Keep { out, resume }), |_| ())
+        };
+        let whole = path("whole".into());
+        let units = shard(&whole, Shard::ALL, false).unwrap();
+        assert_eq!(units.len(), 1100);
+        let parts: Vec<_> = (1..=3).map(|number| path(format!("part{number}"))).collect();
+        for (number, out) in (1..).zip(&parts) {
+            shard(out, Shard { number, count: 3 }, false).unwrap();
+        }
+        for order in [[0, 1, 2], [2, 0, 1]] {
+            let merged = merge::<Vec<Unit>>(&order.map(|i: usize| parts[i].clone())).unwrap();
+            assert_eq!(merged.encode().unwrap(), std::fs::read(&whole).unwrap());
+            assert_eq!(merged.tallies, units);
+        }
+        // What is done is not done again; what is damaged or of other settings is refused.
+        assert_eq!(shard(&whole, Shard::ALL, true).unwrap(), units);
+        let mut bytes = std::fs::read(&parts[1]).unwrap();
+        bytes.truncate(bytes.len() / 2);
+        std::fs::write(&parts[1], bytes).unwrap();
+        assert!(matches!(merge::<Vec<Unit>>(&parts), Err(RunError::Format { .. })));
+        let other = Settings::new(1100, 5, true, 0.25, None);
+        assert_eq!(<Vec<Unit>>::difference(&settings, &other), Some("force limit"));
+        assert_eq!((settings.correlation(), settings.limit()), (0.25, Some(0.3)));
+    }
+}
