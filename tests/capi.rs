@@ -40,7 +40,7 @@ static SCENE: LazyLock<Scene> = LazyLock::new(|| {
 });
 
 static TABLE: LazyLock<Vec<u8>> =
-    LazyLock::new(|| force_table::make(&SCENE, Demand::Full, || ()).expect("its table").0.bytes);
+    LazyLock::new(|| force_table::make(&*SCENE, Demand::Full, || ()).expect("its table").0.bytes);
 
 /// A folder with what the program includes.
 static HEADERS: LazyLock<PathBuf> = LazyLock::new(|| {

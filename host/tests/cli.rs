@@ -331,7 +331,7 @@ fn bad_input_is_refused_by_name() {
         (&["table", "--over", "position", "--end", "0"], "the stroke is 0 mm"),
         (
             &["table", "cd-rom-slide-fast", "--over", "position", "--end", "90", "--n", "1:2:1"],
-            "no slide comes 90 mm far",
+            "no unit comes 90 mm far",
         ),
         (&["simulate", "--step", "0"], "--step 0"),
         (&["simulate", "--step", "1s"], "--step 1s"),

@@ -8,6 +8,9 @@ fn commands() -> Vec<(String, String)> {
     let mut commands = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "md") {
+            continue;
+        }
         let text = std::fs::read_to_string(&path).unwrap();
         let blocks = text.split("```sh\n").skip(1).filter_map(|block| block.split("```").next());
         for line in blocks.flat_map(str::lines) {

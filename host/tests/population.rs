@@ -131,7 +131,9 @@ fn a_rare_malfunction_is_as_probable_as_it_is() {
     const Z: f64 = 3.090_232_306_167_813;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("certain.toml");
-    let short = ["--set", "drive.ramp_end=0.06", "--set", "run.duration=80"];
+    // As short as it may be: tens of thousands of units are simulated.
+    let set = ["drive.ramp_start=0.001", "drive.ramp_end=0.011", "run.duration=16"];
+    let short = set.map(|set| ["--set", set]).concat();
     let of = |options: &[&str]| {
         json(
             folder.path(),
@@ -158,9 +160,8 @@ fn a_rare_malfunction_is_as_probable_as_it_is() {
 fn no_figure_is_given_without_a_verdict() {
     let folder = tempfile::tempdir().unwrap();
     let of = |threads: &str| {
-        let arguments = ["population", "--units", "2", "--opening", "--rare", "--force-limit", "0.25"];
-        json(folder.path(), &[&arguments[..], &["--set", "run.duration=60", "--threads", threads]].concat())["rare"]
-            .clone()
+        let arguments = ["population", "--units", "2", "--opening", "--rare", "--set", "run.duration=60"];
+        json(folder.path(), &[&arguments[..], &["--threads", threads]].concat())["rare"].clone()
     };
     let found = of("1");
     assert!(found["malfunction"]["probability"].is_null(), "{found}");
