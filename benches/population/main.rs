@@ -8,6 +8,7 @@
 #[allow(dead_code, reason = "one of its solvers is enough here")]
 mod diffsol_peer;
 #[path = "../work_precision/entry.rs"]
+#[allow(dead_code)]
 mod entry;
 
 use std::time::Instant;
