@@ -2,7 +2,7 @@
 
 use slipfit_core::drive::Drive;
 
-use super::{Action, Mechanism, hash::hash, run};
+use super::{Action, Mechanism, MechanismRun, RunError, hash::hash, run};
 use crate::{
     driven::{DriveKind, Driven, Motion},
     outcome::Verdict,
@@ -13,7 +13,30 @@ use crate::{
 };
 
 /// How much finer the run is that each is held against.
-const FINER: f64 = 0.1;
+const FINER: f64 = 10.0;
+
+/// The run of the unit of `mechanism` with these `gaps` (m) at a tenth of the tolerance, told of every `every` (s).
+///
+/// # Errors
+/// See [`RunError`].
+pub fn finer(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
+    let spec = RunSpec { error: mechanism.run.error / FINER, ..mechanism.run };
+    run(&Mechanism { run: spec, ..mechanism.clone() }, gaps, every)
+}
+
+/// The run of that unit, its verdicts undecided where the [`finer`] one says otherwise, and that one.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn confirmed(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<[MechanismRun; 2], RunError> {
+    let (mut one, finer) = (run(mechanism, gaps, every)?, finer(mechanism, gaps, every)?);
+    for (outcome, better) in one.outcomes.iter_mut().zip(&finer.outcomes) {
+        if outcome.verdict != better.verdict {
+            outcome.verdict = Verdict::Undecided;
+        }
+    }
+    Ok([one, finer])
+}
 
 /// A mechanism and one of its drives.
 #[derive(Clone, Copy, Debug)]
@@ -82,13 +105,8 @@ impl Driven for ByDrive<'_> {
         let gaps = self.mechanism.gaps_at(&[n]).map_err(|error| SimulateError::Parameter(error.to_string()))?;
         let mut commanded = Mechanism { run: motion.run, ..self.mechanism.clone() };
         commanded.drives[self.drive].drive.speed = motion.speed;
-        let mut one = run(&commanded, &gaps, motion.every)?;
-        commanded.run.error *= FINER;
-        let finer = run(&commanded, &gaps, motion.every)?;
-        let (mut outcome, trajectory) = (one.outcomes[self.drive], one.trajectories.swap_remove(self.drive));
-        if finer.outcomes[self.drive].verdict != outcome.verdict {
-            outcome.verdict = Verdict::Undecided;
-        }
+        let [mut one, finer] = confirmed(&commanded, &gaps, motion.every)?;
+        let (outcome, trajectory) = (one.outcomes[self.drive], one.trajectories.swap_remove(self.drive));
         let difference = trajectory.greatest_difference(&finer.trajectories[self.drive], self.drive().ramp_start);
         let trust = Trust::default().compared(difference, None);
         Ok(Level { n, trajectory, outcome, solved: one.solved(), trust, classes: classes(&gaps) })

@@ -17,7 +17,7 @@ mod run;
 mod source;
 pub mod spatial;
 
-pub use driven::ByDrive;
+pub use driven::{ByDrive, confirmed, finer};
 pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps};
 pub use laws::{Laws, NormalData, Rebound};

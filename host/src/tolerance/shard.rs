@@ -23,9 +23,7 @@ impl Shard {
         let border = |k: u64| (u128::from(all) * u128::from(k) / u128::from(self.count)) as u64;
         border(self.number - 1)..border(self.number)
     }
-}
 
-impl Shard {
     /// The part of a task of a SLURM job array, whose `variables` tell which task of how many it is.
     ///
     /// # Errors

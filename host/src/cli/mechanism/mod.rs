@@ -10,9 +10,8 @@ use serde::Serialize;
 
 use super::{Failure, SceneArguments, given};
 use crate::{
-    mechanism::{Action, GapError, Mechanism, MechanismRun, RunError, run},
+    mechanism::{Action, GapError, Mechanism, RunError},
     outcome::Outcome,
-    scene::RunSpec,
 };
 
 pub(super) use check::{check, warnings_of};
@@ -68,15 +67,12 @@ struct GapReport<'a> {
 
 /// The unit of a drive's force and of its speed.
 fn units(action: Action) -> [&'static str; 2] {
-    match action {
-        Action::Pushes { .. } => ["N", "mm/s"],
-        Action::Turns { .. } => ["N·m", "rad/s"],
-    }
+    [action.kind().effort_unit(), action.kind().speed_unit()]
 }
 
 /// What makes a drive's speed one in the unit that is shown.
 fn shown(action: Action) -> f64 {
-    if matches!(action, Action::Pushes { .. }) { 1e3 } else { 1.0 }
+    action.kind().speed(1.0)
 }
 
 fn gap_reports<'a>(mechanism: &'a Mechanism, gaps: &[f64]) -> Vec<GapReport<'a>> {
@@ -98,10 +94,4 @@ fn levels<'a>(mechanism: &Mechanism, n: &'a [f64]) -> Result<&'a [f64], Failure>
         Some(bad) => Err(Failure::Input(format!("--n holds {bad}, allowed are finite numbers"))),
         None => Ok(n),
     }
-}
-
-/// The run at a tenth of the tolerance.
-fn finer(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
-    let run_spec = RunSpec { error: mechanism.run.error / 10.0, ..mechanism.run };
-    run(&Mechanism { run: run_spec, ..mechanism.clone() }, gaps, every)
 }

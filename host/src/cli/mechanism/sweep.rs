@@ -5,16 +5,16 @@ use std::fmt::Write;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
 
-use super::{DriveReport, Wanted, finer, shown, units};
+use super::{DriveReport, Wanted, shown, units};
 use crate::{
     answer::ranges_of,
     cli::{Failure, JSON_VERSION, ThreadArguments, print, print_json, progress, text_table},
     export::rows_csv,
     figure::drives_over_n,
     files,
-    mechanism::{Action, Mechanism, RunError, run},
+    mechanism::{Action, Mechanism, RunError, confirmed},
     number::{fixed, level, or_dash},
-    outcome::{Outcome, Verdict},
+    outcome::Outcome,
 };
 
 #[derive(Serialize)]
@@ -41,14 +41,9 @@ pub fn sweep(mechanism: &Mechanism, wanted: &Wanted, threads: &ThreadArguments) 
         n.iter().map(|n| mechanism.gaps_at(&[*n]).map(|gaps| (*n, gaps))).collect::<Result<_, _>>()?;
     let bar = progress("simulating", n.len());
     let one = |(n, gaps): &(f64, Vec<f64>)| -> Result<(f64, Vec<Outcome>), RunError> {
-        let [coarse, fine] = [run(mechanism, gaps, 1e-3)?, finer(mechanism, gaps, 1e-3)?];
+        let [one, _] = confirmed(mechanism, gaps, 1e-3)?;
         bar.inc(1);
-        // A verdict counts if the finer run agrees.
-        let agreed = coarse.outcomes.iter().zip(&fine.outcomes).map(|(coarse, fine)| {
-            let agree = coarse.verdict == fine.verdict;
-            Outcome { verdict: if agree { coarse.verdict } else { Verdict::Undecided }, ..*coarse }
-        });
-        Ok((*n, agreed.collect()))
+        Ok((*n, one.outcomes))
     };
     let levels = threads.install(|| units_of.par_iter().map(one).collect::<Result<Vec<_>, _>>())?;
     bar.finish_and_clear();
