@@ -5,6 +5,7 @@
 
 pub mod drivers;
 mod figures;
+pub mod finding;
 pub mod hypothesis;
 mod integrate;
 mod lane;

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use crate::population::{
+    finding::{Estimate, Finding},
     limit_state::{Kind, Side},
-    rare::{Estimate, Finding, Part, Rare},
+    rare::{Part, Rare},
 };
 
 /// By kind and side, beginning with all.

@@ -1,0 +1,122 @@
+//! A population, for people.
+
+use std::fmt::Write;
+
+use super::{Arguments, Found, LevelReport, rare, worst};
+use crate::{
+    cli::{simulate::why_undecided, text_table},
+    number::{fixed, level, or_dash},
+    outcome::Verdict,
+    population::{
+        drivers::Driver,
+        picture::tightness,
+        statistics::{Share, Spread, Statistics},
+        study::Population,
+    },
+    scene::Scene,
+};
+
+/// Drivers that are listed.
+const DRIVERS: usize = 5;
+
+impl Arguments {
+    /// The answer, for people.
+    pub(super) fn describe(&self, scene: &Scene, found: &Found) -> String {
+        let Population { units: all, statistics, of_force, of_malfunction } = &found.population;
+        let Statistics { units, runs, crawls, jammed, undecided, malfunctions, over_limit, sigma_level, .. } =
+            *statistics;
+        let mut text = format!("{}: {units} units", scene.title);
+        let length = match scene.run.stroke.filter(|_| !self.opening) {
+            Some(stroke) => format!("the stroke of {} mm", fixed(stroke * 1e3, 1)),
+            None => format!("{} ms", fixed(scene.run.duration * 1e3, 0)),
+        };
+        let _ = writeln!(text, ", {length}\n");
+        let _ = writeln!(text, "Malfunction     {}", percent(&malfunctions));
+        for (name, share) in [("runs", runs), ("crawls", crawls), ("jams", jammed), ("undecided", undecided)] {
+            if share.units > 0 {
+                let _ = writeln!(text, "  {name:14}{}", percent(&share));
+            }
+        }
+        if undecided.units > 0 {
+            let _ = writeln!(text, "                undecided{}", why_undecided(scene, Verdict::Undecided));
+        }
+        if let (Some(share), Some(limit)) = (over_limit, self.force_limit) {
+            let _ = writeln!(text, "  over {limit} N {}", percent(&share));
+        }
+        if let Some(level) = sigma_level {
+            let _ = writeln!(text, "Sigma level     {} σ of the function, one-sided", fixed(level, 2));
+        }
+        for (name, spread) in [("Peak force", &statistics.peak_force), ("  that run", &statistics.running_force)] {
+            if let Some(Spread { quantiles: [least, low, median, high, most], .. }) = spread {
+                let _ = writeln!(
+                    text,
+                    "{name:16}{} N at the median; 90 % of the units {} to {} N, all {} to {} N",
+                    fixed(*median, 3),
+                    fixed(*low, 3),
+                    fixed(*high, 3),
+                    fixed(*least, 3),
+                    fixed(*most, 3)
+                );
+            }
+        }
+        for (name, drivers) in [("Drives force", of_force), ("Drives failure", of_malfunction)] {
+            let _ = writeln!(text, "{name:16}{}", strongest(drivers, DRIVERS));
+        }
+        let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
+        let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
+        text += &found.rare.as_ref().map(rare::describe).unwrap_or_default();
+        let rows: Vec<Vec<String>> = worst(all)
+            .into_iter()
+            .map(|unit| {
+                let outcome = unit.outcome;
+                vec![
+                    unit.number.to_string(),
+                    level((tightness(scene, &unit.gaps) * 100.0).round() / 100.0),
+                    outcome.verdict.to_string(),
+                    or_dash(outcome.peak_force, |force| fixed(force, 3)),
+                    fixed(outcome.final_velocity * 1e3, 3),
+                    fixed(outcome.end.z * 1e3, 2),
+                    or_dash(outcome.breakaway, |t| fixed(t * 1e3, 1)),
+                    outcome.most_loaded.map_or("-".into(), |(i, force)| {
+                        format!("{} ({} N)", scene.contact_names()[i], fixed(force, 2))
+                    }),
+                ]
+            })
+            .collect();
+        let heading = ["unit", "n", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
+        let _ = write!(text, "\nThe worst\n{}", text_table(&heading, &rows));
+        text
+    }
+}
+
+/// The strongest of `drivers`, at most `most`, as far as they are told from nothing.
+pub fn strongest(drivers: &[Driver], most: usize) -> String {
+    let shown = drivers.iter().filter(|driver| driver.share > 2.0 * driver.error).take(most);
+    let shown: Vec<String> = shown
+        .map(|driver| {
+            let [share, error] = [driver.share, driver.error].map(|x| fixed(x * 100.0, 1));
+            format!("{} {share} ± {error} %", driver.name)
+        })
+        .collect();
+    if shown.is_empty() { "nothing alone".to_owned() } else { shown.join(", ") }
+}
+
+/// A share with its interval.
+pub fn percent(share: &Share) -> String {
+    let [low, high] = share.interval.map(|end| fixed(end * 100.0, 2));
+    format!("{} %  ({low} to {high} %)", fixed(share.share * 100.0, 2))
+}
+
+/// Which levels do what, as ranges.
+fn levels(levels: &[LevelReport]) -> String {
+    let mut parts: Vec<(Verdict, f64, f64)> = Vec::new();
+    for at in levels {
+        match parts.last_mut() {
+            Some((verdict, _, last)) if *verdict == at.verdict => *last = at.n,
+            _ => parts.push((at.verdict, at.n, at.n)),
+        }
+    }
+    let part =
+        |(verdict, first, last): &(Verdict, f64, f64)| format!("{} to {} {verdict}", level(*first), level(*last));
+    parts.iter().map(part).collect::<Vec<_>>().join(", ")
+}
