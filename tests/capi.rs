@@ -10,9 +10,7 @@ use std::{
 };
 
 use slipfit::{
-    flash::export,
-    force_table::{self, Demand},
-    kernel_source,
+    firmware::{flash::export, force_table, force_table::Demand, kernel_source},
     scene::{CD_ROM_SLIDE, Override, Scene},
 };
 use slipfit_core::{

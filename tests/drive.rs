@@ -9,7 +9,7 @@ use std::{
 
 use defmt_decoder::{DecodeError, Table};
 use slipfit::{
-    force_table::{self, Demand},
+    firmware::{force_table, force_table::Demand},
     scene::{CD_ROM_SLIDE, Override, Scene},
 };
 use slipfit_tests::cross::{self, TARGET, cargo, printed};

@@ -8,8 +8,7 @@ use std::{
 };
 
 use slipfit::{
-    flash,
-    force_table::{self, Demand},
+    firmware::{flash, force_table, force_table::Demand},
     scene::{CD_ROM_SLIDE, Scene},
 };
 use slipfit_tests::cross::{self, TARGET, cargo, printed};

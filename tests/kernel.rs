@@ -3,9 +3,9 @@
 use std::{fs, path::Path};
 
 use slipfit::{
-    kernel_source::{rust_source, scene_data},
+    dynamics::simulate::{Settings, simulate},
+    firmware::kernel_source::{rust_source, scene_data},
     scene::{CD_ROM_SLIDE, Override, Scene},
-    simulate::{Settings, simulate},
 };
 use slipfit_core::{
     integrator::ImplicitEuler,

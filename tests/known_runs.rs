@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use serde::Deserialize;
-use slipfit::deviation::Deviation;
+use slipfit::dynamics::deviation::Deviation;
 
 /// A reference run and what it was run with.
 #[derive(Clone, Debug)]

@@ -7,11 +7,16 @@ use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use slipfit::{
-    flash::{AxisSpec, ChannelSpec, TableSpec, encode},
-    force_table::{self, Demand},
-    outcome::Trajectory,
+    dynamics::{
+        outcome::Trajectory,
+        simulate::{Settings, simulate},
+    },
+    firmware::{
+        flash::{AxisSpec, ChannelSpec, TableSpec, encode},
+        force_table,
+        force_table::Demand,
+    },
     scene::{CD_ROM_SLIDE, Override, Scene},
-    simulate::{Settings, simulate},
 };
 use slipfit_core::{
     monitor::{BankError, Estimate, LevelBank, Limits, Monitor, MonitorError, Report, Sample, Verdict, Watch},

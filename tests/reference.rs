@@ -3,11 +3,13 @@
 use std::fmt::Write;
 
 use slipfit::{
-    deviation::Deviation,
-    outcome::Verdict,
+    dynamics::{
+        deviation::Deviation,
+        outcome::Verdict,
+        scheme::{IntegratorKind, ScalarKind},
+        simulate::{Run, Settings, simulate},
+    },
     scene::{CD_ROM_SLIDE, ControllerSpec, Scene},
-    scheme::{IntegratorKind, ScalarKind},
-    simulate::{Run, Settings, simulate},
 };
 use slipfit_core::{menu::FrictionData, slide::CONTACTS};
 use slipfit_tests::known_runs::{Reference, references};

@@ -4,7 +4,7 @@
 use std::{fmt::Write, fs, path::Path};
 
 use slipfit::{
-    kernel_crate::slide_crate,
+    firmware::kernel_crate::slide_crate,
     scene::{CD_ROM_SLIDE, Scene},
 };
 use slipfit_tests::cross::{self, TARGET, cargo, finished, printed};

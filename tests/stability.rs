@@ -2,13 +2,15 @@
 
 use rayon::prelude::*;
 use slipfit::{
-    audit::Audit,
-    confirm::confirmed,
-    controller::audited,
+    dynamics::{
+        audit::Audit,
+        confirm::confirmed,
+        controller::audited,
+        scheme::{IntegratorKind, ScalarKind},
+        simulate::{Settings, simulate},
+    },
+    quality::{stability, stability::Grade},
     scene::{CD_ROM_SLIDE, ControllerSpec, Override, Scene},
-    scheme::{IntegratorKind, ScalarKind},
-    simulate::{Settings, simulate},
-    stability::{self, Grade},
 };
 use slipfit_core::slide::CONTACTS;
 

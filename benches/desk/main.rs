@@ -6,12 +6,14 @@
 use std::{process::ExitCode, time::Instant};
 
 use slipfit::{
-    driven::Driven,
-    outcome::Verdict,
+    dynamics::{
+        driven::Driven,
+        outcome::Verdict,
+        scheme::{IntegratorKind, ScalarKind},
+        simulate::{Settings, simulate},
+        sweep::{Keep, sweep},
+    },
     scene::{CD_ROM_SLIDE, ControllerSpec, Override, Scene},
-    scheme::{IntegratorKind, ScalarKind},
-    simulate::{Settings, simulate},
-    sweep::{Keep, sweep},
 };
 
 /// The most that the sweep may take of the time of one stroke by fixed steps, on two cores.

@@ -15,9 +15,9 @@ use std::time::Instant;
 
 use entry::Tolerances;
 use slipfit::{
+    dynamics::simulate::{Settings, simulate as at_desk},
     population::{production::Production, simulate, unit},
     scene::{CD_ROM_SLIDE, Scene},
-    simulate::{Settings, simulate as at_desk},
 };
 use slipfit_core::menu::SlideData;
 use slipfit_problems::cd_rom;

@@ -13,10 +13,9 @@ use std::{
 use slipfit::{
     scene::{SceneFile, shipped},
     tolerance::{
-        linear::Linear,
-        model::{Contributor, Distribution, Measure, Model, Quantity, Variation},
-        sampler::Method,
-        study::{Settings, Study},
+        counting::study::{Settings, Study},
+        model::{Contributor, Distribution, Measure, Model, Quantity, Variation, linear::Linear},
+        sampling::sampler::Method,
     },
 };
 

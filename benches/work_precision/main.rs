@@ -17,7 +17,7 @@ use std::{
 
 use cvode_peer::Cvode;
 use entry::{Achieved, Entry};
-use slipfit::{
+use slipfit::dynamics::{
     error_control::{Knot, Sensitivity, Tolerance, integrate, sampled},
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},

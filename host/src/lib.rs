@@ -1,53 +1,21 @@
-//! Tolerance analysis, dynamics and flash tables of sliding mechanisms.
+//! Tolerance analysis, dynamics and flash tables of mechanisms with clearance joints.
 //!
-//! The command line is in [`cli`], one file a command; everything it prints is computed by the modules beside it.
+//! What a designer writes is read by [`scene`]; it becomes a [`product`] (parts, tolerances, measures), a
+//! [`mechanism`] (bodies, joints, drives) or both. [`tolerance`] says how the measures vary, [`dynamics`] what one unit
+//! does, [`population`] what every unit of a production does, [`quality`] how far the solvers can be believed. [`firmware`]
+//! is what the controller gets, [`show`] what people look at. The command line is in [`cli`], one file a command.
 #![forbid(unsafe_code)]
 
-pub mod answer;
-pub mod audit;
-mod chart;
 pub mod cli;
-pub mod confirm;
-pub mod controller;
-pub mod desk;
-pub mod deviation;
-pub mod driven;
-pub mod error_control;
-#[cfg(test)]
-mod example;
-pub mod export;
-pub mod figure;
-pub mod files;
-pub mod flash;
-pub mod force_table;
-pub mod interrupt;
-pub mod kernel_crate;
-pub mod kernel_source;
-mod laws;
-mod layout;
-mod looks;
-mod markup;
+pub mod dynamics;
+pub mod firmware;
 pub mod mechanism;
-pub mod mobility;
-pub mod number;
-pub mod out_of_line;
-pub mod outcome;
-mod palette;
-pub mod plot;
 pub mod population;
-pub mod precision;
 pub mod product;
+pub mod quality;
 #[cfg(test)]
 mod reference;
-pub mod report;
 pub mod scene;
-pub mod scheme;
-pub mod self_locking;
-pub mod simulate;
-pub mod stability;
-pub mod strips;
-mod svg;
-pub mod sweep;
-pub mod table2;
+pub mod show;
+pub mod system;
 pub mod tolerance;
-pub mod trust;

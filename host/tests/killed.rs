@@ -7,12 +7,14 @@ use std::{
 };
 
 use slipfit::tolerance::{
-    file::{Part, Source},
-    lanes::Lanes,
-    model::{Contributor, Distribution, Function, Measure, Model, Quantity, Variation},
-    run::{self, Keep, RunError, Shard, checkpoint, run},
-    sampler::Method,
-    study::{Settings, Study},
+    counting::{
+        file::{Part, Source},
+        run,
+        run::{Keep, RunError, Shard, checkpoint, run},
+        study::{Settings, Study},
+    },
+    model::{Contributor, Distribution, Function, Measure, Model, Quantity, Variation, lanes::Lanes},
+    sampling::sampler::Method,
 };
 
 const SETTINGS: Settings = Settings { method: Method::ScrambledSobol, samples: 4 * 300_000, replicates: 4, seed: 3 };

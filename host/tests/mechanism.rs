@@ -4,10 +4,13 @@ mod common;
 
 use common::{json, slipfit, stdout};
 use slipfit::{
-    driven::Driven,
-    force_table::{
-        self, Demand,
-        position::{self, TURN_STEP, Wish},
+    dynamics::driven::Driven,
+    firmware::{
+        force_table,
+        force_table::{
+            Demand, position,
+            position::{TURN_STEP, Wish},
+        },
     },
     mechanism::{ByDrive, Mechanism, run},
     scene::{Override, SceneFile, shipped},

@@ -3,13 +3,15 @@
 use std::sync::LazyLock;
 
 use slipfit::{
-    force_table::{
-        Demand, TableError,
-        position::{self, PositionError, PositionTable, SAMPLE, Wish},
+    dynamics::{
+        outcome::Verdict,
+        simulate::{Settings, simulate},
     },
-    outcome::Verdict,
+    firmware::force_table::{
+        Demand, TableError, position,
+        position::{PositionError, PositionTable, SAMPLE, Wish},
+    },
     scene::{LevelRange, Override, RunSpec, Scene, shipped},
-    simulate::{Settings, simulate},
 };
 use slipfit_core::{
     drive::Drive,

@@ -8,13 +8,15 @@ use slipfit_core::slide::CONTACTS;
 
 use super::{Failure, JSON_VERSION, SceneArguments, mechanism, print, print_json, text_table, warn};
 use crate::{
-    mobility::{contacts, degrees_of_freedom, rank_of_normals},
-    number::{fixed, level},
+    dynamics::sweep::classes,
+    mechanism::{
+        closing::derived,
+        mobility::{contacts, degrees_of_freedom, rank_of_normals},
+        self_locking::{DriveSide, Guide, guide},
+    },
     product::Product,
     scene::Scene,
-    self_locking::{DriveSide, Guide, guide},
-    sweep::classes,
-    table2::derived,
+    show::number::{fixed, level},
 };
 
 /// Validates a scene: degrees of freedom, gaps at n, the n that closes each pair, warnings.

@@ -7,13 +7,18 @@ use serde::Serialize;
 
 use super::{Failure, JSON_VERSION, Moving, SceneArguments, print, print_json, simulate::ControllerArguments};
 use crate::{
-    driven::Driven,
-    files,
-    kernel_crate::{CrateFiles, crate_name, mechanism_crate, slide_crate},
-    kernel_source::{EXTENSIONS, c_header, rust_source},
-    mechanism::{self, ByDrive, Mechanism},
+    dynamics::{
+        driven::Driven,
+        scheme::{IntegratorKind, ScalarKind},
+    },
+    firmware::{
+        kernel_crate::{CrateFiles, crate_name, mechanism_crate, slide_crate},
+        kernel_source::{EXTENSIONS, c_header, rust_source},
+    },
+    mechanism,
+    mechanism::{ByDrive, Mechanism},
     scene::ControllerSpec,
-    scheme::{IntegratorKind, ScalarKind},
+    system::files,
 };
 
 /// Writes the scene as a constant and a type, for firmware to compile.

@@ -9,10 +9,10 @@ use clap::Args;
 
 use super::{Failure, population, tolerance::OutputArguments};
 use crate::{
-    files,
     population::Unit,
     scene::{Override, SceneFile},
-    tolerance::{
+    system::files,
+    tolerance::counting::{
         file::{Found, Part},
         run::{RunError, check, merge},
         study::Study,

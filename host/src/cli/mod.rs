@@ -28,14 +28,17 @@ use indicatif::{ProgressBar, ProgressStyle};
 use thiserror::Error;
 
 use crate::{
-    files::{self, Coincidence, WriteError},
-    force_table::TableError,
-    interrupt,
+    dynamics::simulate::SimulateError,
+    firmware::force_table::TableError,
     mechanism::{ByDrive, Mechanism},
     product::Product,
     scene::{Override, SHIPPED, Scene, SceneError, SceneFile, shipped},
-    simulate::SimulateError,
-    tolerance::{run::RunError, study::StudyError},
+    system::{
+        files,
+        files::{Coincidence, WriteError},
+        interrupt,
+    },
+    tolerance::counting::{run::RunError, study::StudyError},
 };
 
 /// From a drawing's tolerances to a flashed force table.

@@ -13,17 +13,15 @@ use super::{
     tolerance::Written, warn,
 };
 use crate::{
-    driven::Driven,
-    export::population_csv,
-    files,
-    outcome::Verdict,
+    dynamics::{driven::Driven, outcome::Verdict},
     population::{
         Unit,
         drivers::Driver,
         hypothesis::Hypothesis,
         limit_state::{Kind, Side},
         part::{Settings, Simulation},
-        picture::{self, tightness},
+        picture,
+        picture::tightness,
         production::Production,
         rare::{Question, Rare},
         statistics::Statistics,
@@ -32,7 +30,9 @@ use crate::{
     },
     product::Product,
     scene::Scene,
-    tolerance::{
+    show::export::population_csv,
+    system::files,
+    tolerance::counting::{
         file::{Found as _, Source},
         run::{Keep, Shard, checkpoint, run},
     },

@@ -10,13 +10,16 @@ use super::{
     Failure, JSON_VERSION, SceneArguments, given, print, print_json, progress, stability::MapArguments, text_table,
 };
 use crate::{
-    deviation::Deviation,
-    export::precision_csv,
-    files,
-    number::{level, or_dash, three_digits},
-    precision::{OPENING, Point, Problem, STROKE, Truth, measure, quickest_within, solvers, truth, work_precision},
+    dynamics::{deviation::Deviation, simulate::ScalarKind},
+    quality::precision::{
+        OPENING, Point, Problem, STROKE, Truth, measure, quickest_within, solvers, truth, work_precision,
+    },
     scene::Scene,
-    simulate::ScalarKind,
+    show::{
+        export::precision_csv,
+        number::{level, or_dash, three_digits},
+    },
+    system::files,
 };
 
 /// Measures error against run time: every integrator, step and number type, on the opening and the stroke.

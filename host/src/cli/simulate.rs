@@ -14,25 +14,29 @@ use super::{
     print, print_json, text_table, warn,
 };
 use crate::{
-    answer::on_the_way,
-    audit::Audit,
-    confirm::confirmed,
-    controller::audited,
-    driven::{DriveKind, Driven},
-    export,
-    figure::unit_over_time,
-    files,
-    number::{fixed, level, or_dash, ten_digits},
-    outcome::{Outcome, Trajectory, Verdict},
+    dynamics::{
+        answer::on_the_way,
+        audit::Audit,
+        confirm::confirmed,
+        controller::audited,
+        driven::{DriveKind, Driven},
+        outcome::{Outcome, Trajectory, Verdict},
+        scheme::{IntegratorKind, ScalarKind},
+        simulate::{Run, Settings, SimulateError, Solved, simulate},
+        trust::Trust,
+    },
     population::{
         production::{MOST_UNITS, Production},
         unit::scene_of,
     },
     scene::{Override, Scene, parse_every},
-    scheme::{IntegratorKind, ScalarKind},
-    simulate::{Run, Settings, SimulateError, Solved, simulate},
-    tolerance::lanes::LANES,
-    trust::Trust,
+    show::{
+        export,
+        figure::unit_over_time,
+        number::{fixed, level, or_dash, ten_digits},
+    },
+    system::files,
+    tolerance::model::lanes::LANES,
 };
 
 /// Simulates one unit: velocity and drive force over time.

@@ -7,11 +7,13 @@ use serde::Serialize;
 
 use super::{Failure, JSON_VERSION, ThreadArguments, print, print_json, progress, text_table};
 use crate::{
-    export::stability_csv,
-    files,
+    quality::{
+        stability,
+        stability::{FACTORS, Grade, Point, strips::stability_map, tally},
+    },
     scene::Scene,
-    stability::{self, FACTORS, Grade, Point, tally},
-    strips::stability_map,
+    show::export::stability_csv,
+    system::files,
 };
 
 /// What the stability map takes besides the scene and its outputs.

@@ -13,17 +13,21 @@ use super::{
     text_table, warn,
 };
 use crate::{
-    answer::{Range, on_the_way, ranges},
-    driven::slide_level,
-    export::sweep_csv,
-    figure::verdicts,
-    files,
-    number::{fixed, level, or_dash},
-    outcome::{Outcome, Verdict},
+    dynamics::{
+        answer::{Range, on_the_way, ranges},
+        driven::slide_level,
+        outcome::{Outcome, Verdict},
+        simulate::{Settings, Solved},
+        sweep::{Keep, Level, Sweep, sweep},
+        trust::Trust,
+    },
     scene::{Override, Scene},
-    simulate::{Settings, Solved},
-    sweep::{Keep, Level, Sweep, sweep},
-    trust::Trust,
+    show::{
+        export::sweep_csv,
+        figure::verdicts,
+        number::{fixed, level, or_dash},
+    },
+    system::files,
 };
 
 /// Simulates the slide at many tolerance levels: breakaway, required force, does it jam, and where.

@@ -15,17 +15,20 @@ use super::{
     warn,
 };
 use crate::{
-    driven::{DriveKind, Driven},
-    files,
-    flash::{
-        AxisSpec, TABLE_ADDRESS,
-        export::{EXTENSIONS, ExportError, render},
-    },
-    force_table::{
-        self, Demand, ForceTable,
-        position::{self, PositionTable, Reach, Wish},
+    dynamics::driven::{DriveKind, Driven},
+    firmware::{
+        flash::{
+            AxisSpec, TABLE_ADDRESS,
+            export::{EXTENSIONS, ExportError, render},
+        },
+        force_table,
+        force_table::{
+            Demand, ForceTable, position,
+            position::{PositionTable, Reach, Wish},
+        },
     },
     scene::{LevelRange, parse_levels},
+    system::files,
 };
 
 pub(super) use words::coarse;

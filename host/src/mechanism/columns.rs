@@ -11,7 +11,7 @@ use slipfit_core::{
 };
 
 use super::{Action, Mechanism, Mounts, mounts::flat};
-use crate::outcome::Instant;
+use crate::dynamics::outcome::Instant;
 
 /// Coordinates and their rates at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +64,7 @@ fn near(angle: f64, last: f64) -> f64 {
     angle + turn * ((last - angle) / turn).round()
 }
 
-impl<const D: usize> crate::error_control::Values for State<D> {
+impl<const D: usize> crate::dynamics::error_control::Values for State<D> {
     fn get(&self, k: usize) -> f64 {
         *self.rates.iter().chain(&self.places).nth(k).unwrap_or(&0.0)
     }

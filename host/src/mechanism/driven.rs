@@ -4,12 +4,14 @@ use slipfit_core::drive::Drive;
 
 use super::{Action, Mechanism, MechanismRun, RunError, hash::hash, run};
 use crate::{
-    driven::{DriveKind, Driven, Motion},
-    outcome::Verdict,
+    dynamics::{
+        driven::{DriveKind, Driven, Motion},
+        outcome::Verdict,
+        simulate::SimulateError,
+        sweep::{Level, classes},
+        trust::Trust,
+    },
     scene::{LevelRange, RunSpec},
-    simulate::SimulateError,
-    sweep::{Level, classes},
-    trust::Trust,
 };
 
 /// How much finer the run is that each is held against.

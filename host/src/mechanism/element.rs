@@ -15,7 +15,7 @@ use slipfit_core::{
 };
 
 use super::Laws;
-use crate::laws::{AnyNormal, AnySliding};
+use crate::dynamics::laws::{AnyNormal, AnySliding};
 
 /// Any law along a contact's normal.
 type Normal = AnyNormal<f64>;

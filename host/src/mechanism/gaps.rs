@@ -3,7 +3,7 @@
 use slipfit_core::clearance::GapStatistics;
 
 use super::{Gap, Mechanism};
-use crate::{number::level, scene::GAP_MOST};
+use crate::{scene::GAP_MOST, show::number::level};
 
 /// All gaps (m) of one unit, in the mechanism's order.
 pub type Gaps = Vec<f64>;

@@ -3,6 +3,7 @@
 //! Everything is described in one drawn pose, in which all axes are those of the frame. In a mechanism that lies in a plane
 //! x and y span the plane and angles turn from x to y; the others are in space.
 
+pub mod closing;
 pub mod columns;
 mod drawing;
 mod driven;
@@ -11,9 +12,11 @@ mod freedom;
 mod gaps;
 mod hash;
 mod laws;
+pub mod mobility;
 mod mounts;
 pub mod planar;
 mod run;
+pub mod self_locking;
 mod source;
 pub mod spatial;
 

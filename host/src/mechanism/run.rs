@@ -19,13 +19,15 @@ use super::{
     planar, spatial,
 };
 use crate::{
-    error_control::{Effort, Knot, Stopped, integrate, sampled},
-    looks::{end, looks, samples},
-    out_of_line::OutOfLine,
-    outcome::{Observer, Outcome, Trajectory},
+    dynamics::{
+        error_control::{Effort, Knot, Stopped, integrate, sampled},
+        looks::{end, looks, samples},
+        out_of_line::OutOfLine,
+        outcome::{Observer, Outcome, Trajectory},
+        scheme::ScalarKind,
+        simulate::{SimulateError, Solved},
+    },
     scene::RunSpec,
-    scheme::ScalarKind,
-    simulate::{SimulateError, Solved},
 };
 
 /// How long (s) an error of speed may last: what makes an error of place of it.

@@ -3,10 +3,12 @@
 use serde::{Serialize, Serializer};
 
 use crate::tolerance::{
-    importance::mean_and_error,
-    interval::student_factor,
-    subset::Stopped,
-    tail::{MOST_ERROR, agrees},
+    failure::{
+        importance::mean_and_error,
+        subset::Stopped,
+        tail::{MOST_ERROR, agrees},
+    },
+    statistics::interval::student_factor,
 };
 
 /// Independent repeats, whose spread is the error.
@@ -177,7 +179,7 @@ impl Estimate {
 #[cfg(test)]
 mod tests {
     use super::{Estimate, Finding, REPEATS, Reason};
-    use crate::tolerance::subset::Stopped;
+    use crate::tolerance::failure::subset::Stopped;
 
     #[test]
     fn no_figure_is_given_that_is_not_known() {

@@ -14,7 +14,11 @@ use super::{
     statistics::{Share, malfunctions},
     unit::{as_drawn, at_levels, units},
 };
-use crate::{outcome::Verdict, scene::Scene, simulate::SimulateError, tolerance::normal};
+use crate::{
+    dynamics::{outcome::Verdict, simulate::SimulateError},
+    scene::Scene,
+    tolerance::distribution::normal,
+};
 
 /// Distances from nominal, root mean square in standard deviations of the gaps.
 pub const DISTANCES: [f64; 7] = [0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0];

@@ -13,7 +13,7 @@ use slipfit_core::{
     slide::{CONTACTS, SLOTS, Slide},
 };
 
-use crate::{
+use crate::dynamics::{
     error_control::{CHANGES, FIRST_STEP, GREATEST_STEP, PLACE, SAFETY},
     out_of_line::OutOfLine,
 };

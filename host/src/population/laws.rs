@@ -8,7 +8,7 @@ use slipfit_core::{
     slide::Slide,
 };
 
-use crate::laws::{AnyElastic, AnySlide, AnySliding};
+use crate::dynamics::laws::{AnyElastic, AnySlide, AnySliding};
 
 /// A slide with the paper's laws: exponent 3/2 and regularised Coulomb friction. `None` if `data` asks for others, or is out of
 /// bounds.

@@ -11,10 +11,12 @@ use super::{
     unit::{Decisive, decisive},
 };
 use crate::{
-    interrupt,
-    outcome::{JAMMED, RUNS, Verdict},
+    dynamics::{
+        outcome::{JAMMED, RUNS, Verdict},
+        simulate::SimulateError,
+    },
     scene::Scene,
-    simulate::SimulateError,
+    system::interrupt,
     tolerance::failure::Margins,
 };
 
@@ -159,8 +161,10 @@ impl Margins for LimitState<'_> {
 mod tests {
     use super::{Kind, LimitState, Log, Side};
     use crate::{
-        example,
-        outcome::{JAMMED, RUNS},
+        dynamics::{
+            example,
+            outcome::{JAMMED, RUNS},
+        },
         population::{production::Production, unit::Decisive},
         tolerance::failure::Margins,
     };

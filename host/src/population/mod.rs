@@ -24,7 +24,11 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 use slipfit_core::{menu::SlideData, slide::CONTACTS};
 
-use crate::{interrupt, out_of_line::OutOfLine, scene::Scene, simulate::SimulateError};
+use crate::{
+    dynamics::{out_of_line::OutOfLine, simulate::SimulateError},
+    scene::Scene,
+    system::interrupt,
+};
 
 #[cfg(test)]
 mod tests;

@@ -7,9 +7,9 @@ use slipfit_core::slide::CONTACTS;
 
 use super::{Unit, production::Production, simulate_units, unit::UnitOutcome};
 use crate::{
-    outcome::{Moment, Verdict},
+    dynamics::outcome::{Moment, Verdict},
     scene::Scene,
-    tolerance::{
+    tolerance::counting::{
         file::{FormatError, Found, Part, Reader, integer},
         run::{RunError, Work},
     },
@@ -178,9 +178,9 @@ fn unit(reader: &mut Reader) -> Result<Unit, FormatError> {
 mod tests {
     use super::{Settings, Simulation};
     use crate::{
-        example,
+        dynamics::example,
         population::{Unit, production::Production},
-        tolerance::{
+        tolerance::counting::{
             file::{Found, Source},
             run::{Keep, RunError, Shard, merge, run},
         },

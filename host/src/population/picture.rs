@@ -8,10 +8,12 @@ use super::{
     statistics::{Share, malfunctions},
 };
 use crate::{
-    number::fixed,
-    outcome::Verdict,
-    plot::{Chart, Look, Markers, Panel, PlotError, Series, Shape, line_chart},
+    dynamics::outcome::Verdict,
     scene::Scene,
+    show::{
+        number::fixed,
+        plot::{Chart, Look, Markers, Panel, PlotError, Series, Shape, line_chart},
+    },
 };
 
 /// The most units that a picture marks.

@@ -14,12 +14,16 @@ use crate::{
     product::Product,
     scene::Scene,
     tolerance::{
-        draw::{Draw, DrawError},
         failure::gathered,
-        lanes::{LANES, Lanes},
-        linear::Linear,
-        model::{Contributor, Distribution, Measure, Model, Quantity, Variation},
-        sampler::{Method, Sampler},
+        model::{
+            Contributor, Distribution, Measure, Model, Quantity, Variation,
+            lanes::{LANES, Lanes},
+            linear::Linear,
+        },
+        sampling::{
+            draw::{Draw, DrawError},
+            sampler::{Method, Sampler},
+        },
     },
 };
 
@@ -279,9 +283,9 @@ fn each_itself(contributors: Vec<Contributor>) -> Model {
 mod tests {
     use super::Production;
     use crate::{
-        example,
+        dynamics::example,
         scene::{Scene, SceneFile, shipped},
-        tolerance::{lanes::LANES, normal::Scores},
+        tolerance::{distribution::normal::Scores, model::lanes::LANES},
     };
 
     fn moments(values: impl Iterator<Item = f64>) -> [f64; 2] {

@@ -14,9 +14,9 @@ use super::{
     production::Production,
 };
 use crate::{
+    dynamics::simulate::SimulateError,
     scene::Scene,
-    simulate::SimulateError,
-    tolerance::{failure::Margins, subset},
+    tolerance::failure::{Margins, subset},
 };
 
 /// Repeats that find out whether there is anything to be found.
@@ -169,7 +169,7 @@ mod tests {
 
     /// z with P(Z > z) = `probability`.
     fn limit(probability: f64) -> f64 {
-        -crate::tolerance::normal::quantile(probability)
+        -crate::tolerance::distribution::normal::quantile(probability)
     }
 
     /// How often the stated interval holds what is known, over 200 seeds. With 181 or fewer the chance of a true 95 % is below

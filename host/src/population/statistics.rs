@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::Unit;
 use crate::{
-    outcome::Verdict,
-    tolerance::{binomial, normal},
+    dynamics::outcome::Verdict,
+    tolerance::{distribution::normal, statistics::binomial},
 };
 
 /// Chance beyond either end of an interval of 95 %.

@@ -7,7 +7,7 @@ use super::{
     simulate_units,
     statistics::{Statistics, malfunctions},
 };
-use crate::{scene::Scene, simulate::SimulateError};
+use crate::{dynamics::simulate::SimulateError, scene::Scene};
 
 /// Units that find classes for what drives the figures.
 const PILOT: u64 = 1024;

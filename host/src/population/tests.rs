@@ -10,13 +10,16 @@ use super::{
     simulate_units, unit,
 };
 use crate::{
-    desk,
-    driven::Driven,
-    example,
-    out_of_line::OutOfLine,
-    outcome::{Outcome, Verdict},
+    dynamics::{
+        desk,
+        driven::Driven,
+        example,
+        out_of_line::OutOfLine,
+        outcome::{Outcome, Verdict},
+        simulate as one,
+        simulate::Settings,
+    },
     scene::Scene,
-    simulate::{self as one, Settings},
 };
 
 fn slides(scene: &Scene, units: u64) -> Vec<SlideData<f64>> {

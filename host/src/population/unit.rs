@@ -10,11 +10,13 @@ use slipfit_core::{
 };
 
 use crate::{
-    desk,
-    laws::{AnyElastic, AnySlide},
-    outcome::{JAMMED, Moment, RUNS, Verdict},
+    dynamics::{
+        desk,
+        laws::{AnyElastic, AnySlide},
+        outcome::{JAMMED, Moment, RUNS, Verdict},
+        simulate::{Settings, SimulateError, simulate},
+    },
     scene::Scene,
-    simulate::{Settings, SimulateError, simulate},
 };
 
 use super::{Course, Figures, Unit, production::Drawn};

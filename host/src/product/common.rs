@@ -1,6 +1,6 @@
 //! Common datums: two coaxial axes, or two faces in one plane, that are one datum together (A-B on a drawing).
 
-use crate::tolerance::lanes::Lanes;
+use crate::tolerance::model::lanes::Lanes;
 
 use super::{
     contact::cross,

@@ -1,6 +1,6 @@
 //! A body on its contacts: where it comes to lie in each unit.
 
-use crate::tolerance::lanes::{LANES, Lanes};
+use crate::tolerance::model::lanes::{LANES, Lanes};
 
 use super::{
     assembly::Assembly,
@@ -329,6 +329,6 @@ fn describe(motion: &[f64]) -> String {
     let size = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>();
     let (verb, part) = if size(turn) > size(shift) { ("turn about", turn) } else { ("move along", shift) };
     let length = libm::sqrt(size(part));
-    let [x, y, z] = [0, 1, 2].map(|i| crate::number::fixed(part[i] / length, 2));
+    let [x, y, z] = [0, 1, 2].map(|i| crate::show::number::fixed(part[i] / length, 2));
     format!("{verb} ({x}, {y}, {z})")
 }

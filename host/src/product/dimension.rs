@@ -2,7 +2,7 @@
 
 use crate::tolerance::{
     model::{Contributor, Distribution, Variation},
-    quadrature::mean_and_deviation,
+    theory::quadrature::mean_and_deviation,
 };
 
 /// A number of the drawing and its variation. SI units.

@@ -13,7 +13,7 @@ mod tape;
 
 use std::ops::Range;
 
-use crate::tolerance::{lanes::Lanes, model::Quantity};
+use crate::tolerance::model::{Quantity, lanes::Lanes};
 
 pub use affine::Affine;
 #[cfg(test)]

@@ -3,11 +3,13 @@
 use std::cell::Cell;
 
 use crate::tolerance::{
-    lanes::{Lanes, widest},
-    linear::Linear,
-    loss::Loss,
-    model::{Function, Quantity},
-    widening::Widening,
+    model::{
+        Function, Quantity,
+        lanes::{Lanes, widest},
+        linear::Linear,
+        widening::Widening,
+    },
+    statistics::loss::Loss,
 };
 
 use super::{

@@ -4,7 +4,7 @@
 
 use std::{f64::consts::PI, str::FromStr};
 
-use crate::number::ten_digits;
+use crate::show::number::ten_digits;
 
 /// What a user of ISO 2768-2 should know.
 pub const WITHDRAWN: &str = "ISO 2768-2 was withdrawn in 2021 in favour of ISO 22081, which has no tables of values: \

@@ -19,7 +19,10 @@ pub mod iso286;
 pub mod pose;
 pub mod vector;
 
-use crate::tolerance::{allocate::requirement::Requirement, lanes::Lanes, model::Model};
+use crate::tolerance::{
+    allocate::requirement::Requirement,
+    model::{Model, lanes::Lanes},
+};
 
 use costed::Costed;
 

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use crate::tolerance::lanes::Lanes;
+use crate::tolerance::model::lanes::Lanes;
 
 /// A vector of each of several units.
 #[derive(Clone, Copy, Debug, PartialEq)]

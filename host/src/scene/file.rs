@@ -2,7 +2,7 @@
 
 use slipfit_core::clearance::GapStatistics;
 
-use crate::{mechanism::Mechanism, product::Product, tolerance::moments};
+use crate::{mechanism::Mechanism, product::Product, tolerance::theory::moments};
 
 use super::{
     Override, Problem, Scene, SceneError,

@@ -32,7 +32,7 @@ use slipfit_core::{
     slide::{ABSENT, Body, CONTACTS, PINS, box_inertia},
 };
 
-use crate::scheme::{IntegratorKind, ScalarKind};
+use crate::dynamics::scheme::{IntegratorKind, ScalarKind};
 
 pub use diagnostic::{Problem, SceneError};
 pub use file::SceneFile;

@@ -8,7 +8,7 @@ use slipfit_core::{
     slide::{CONTACTS, PINS, box_inertia},
 };
 
-use crate::scheme::{IntegratorKind, ScalarKind};
+use crate::dynamics::scheme::{IntegratorKind, ScalarKind};
 
 use super::{
     ControllerSpec, GapMeasures, LevelRange, Override, PinSpec, Problem, RunSpec, Scene, SceneError, SlideSpec,

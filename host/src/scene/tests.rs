@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use slipfit_core::slide::ABSENT;
 use slipfit_problems::cd_rom;
 
-use crate::scheme::{IntegratorKind, ScalarKind};
+use crate::dynamics::scheme::{IntegratorKind, ScalarKind};
 
 use super::{CD_ROM_SLIDE, ControllerSpec, LevelRange, Override, RunSpec, Scene, SceneError};
 

@@ -4,22 +4,28 @@ use rayon::prelude::*;
 use slipfit_core::sampling::stream::derived;
 
 use super::{
-    derivative::{Expansion, evaluate, expansion},
-    draw::Draw,
-    estimate::{Estimate, Joint, Spread, joint},
-    extremes::{extremes, reaches},
-    failure::Failure,
-    indices::{Indices, indices},
+    counting::{
+        pairs::Pairs,
+        study::{Settings, Study, StudyError, Tally},
+    },
+    distribution::normal,
+    failure::{
+        Failure,
+        tail::{Source, Tail, probability},
+    },
     model::{Model, Sum, Variation},
-    moments::{Moments, moments, spreads},
-    normal,
-    pairs::Pairs,
-    rss::{RootSumSquare, root_sum_square},
-    sampler::Method,
-    study::{Settings, Study, StudyError, Tally},
-    tail::{Source, Tail, probability},
-    tensor::{self, Exact},
-    worst_case::{WorstCase, middle, reaches as linear_reaches, worst_case},
+    sampling::{draw::Draw, sampler::Method},
+    statistics::estimate::{Estimate, Joint, Spread, joint},
+    theory::{
+        derivative::{Expansion, evaluate, expansion},
+        extremes::{extremes, reaches},
+        indices::{Indices, indices},
+        moments::{Moments, moments, spreads},
+        rss::{RootSumSquare, root_sum_square},
+        tensor,
+        tensor::Exact,
+        worst_case::{WorstCase, middle, reaches as linear_reaches, worst_case},
+    },
 };
 
 /// Share of the curvature in a measure's variance above which the measure counts as not linear.
@@ -215,7 +221,7 @@ fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Resul
 }
 
 fn stop_if_asked() -> Result<(), StudyError> {
-    if crate::interrupt::requested() { Err(StudyError::Interrupted) } else { Ok(()) }
+    if crate::system::interrupt::requested() { Err(StudyError::Interrupted) } else { Ok(()) }
 }
 
 fn sensitivities(model: &Model, slopes: &[f64]) -> Vec<Sensitivity> {

@@ -1,15 +1,16 @@
 //! How often the stated intervals hold what they should.
 
 use super::{
-    distribution::Marginal,
-    estimate::{Estimate, POINTS, Spread, joint},
+    counting::{
+        pairs::Pairs,
+        study::{Settings, Study},
+    },
+    distribution::{Marginal, normal::quantile},
     examples::{linear, scalar},
     model::Distribution,
-    moments,
-    normal::quantile,
-    pairs::Pairs,
-    sampler::Method,
-    study::{Settings, Study},
+    sampling::sampler::Method,
+    statistics::estimate::{Estimate, POINTS, Spread, joint},
+    theory::moments,
 };
 
 /// Four times 300, whose own scatter is already 1.3 %.

@@ -1,9 +1,7 @@
 //! Models with known answers.
 
-use super::{
-    lanes::Lanes,
-    linear::Linear,
-    model::{Contributor, Distribution, Function, Measure, Model, Quantity, Sum, Variation},
+use super::model::{
+    Contributor, Distribution, Function, Measure, Model, Quantity, Sum, Variation, lanes::Lanes, linear::Linear,
 };
 
 pub const MM: f64 = 1e-3;

@@ -2,16 +2,17 @@
 
 use super::{
     analysis::{Analysis, Theory, analyse},
-    estimate::{Estimate, Spread, quantile},
+    counting::{
+        pairs::Pairs,
+        study::{Settings, Study, StudyError, join},
+    },
+    distribution::normal::{density, tail},
     examples::{MM, chain, clutch, left_front, linear, normal, normals, rectangulars, scalar},
-    lanes::Lanes,
-    model::{Distribution, Function, Model},
-    moments,
-    normal::{density, tail},
-    pairs::Pairs,
+    model::{Distribution, Function, Model, lanes::Lanes},
     report::report,
-    sampler::Method,
-    study::{Settings, Study, StudyError, join},
+    sampling::sampler::Method,
+    statistics::estimate::{Estimate, Spread, quantile},
+    theory::moments,
 };
 
 const MC: Settings = Settings { method: Method::PseudoRandom, samples: 100_000, replicates: 1, seed: 1 };
@@ -217,7 +218,7 @@ fn deviation_error(coefficients: &[f64], method: Method) -> f64 {
         let study = Study::new(&model, settings).unwrap();
         let mut tallies = study.empty();
         study.add(0..settings.blocks(), &mut tallies, |_| ());
-        let joint = super::estimate::joint(&model, method, study.frames(), &tallies, &spread);
+        let joint = super::statistics::estimate::joint(&model, method, study.frames(), &tallies, &spread);
         let error = joint.measures[0].deviation.value / exact - 1.0;
         error * error
     };

@@ -1,7 +1,7 @@
 //! Cost against defects, as CSV and as a picture.
 
 use super::report::Report;
-use crate::{
+use crate::show::{
     chart::{Chart, Look, Panel, Scale, Series},
     number::{ten_digits, three_digits},
     plot::{PlotError, line_chart},

@@ -11,9 +11,9 @@ use clap::Args;
 use self::report::Report;
 use super::{Failure, SceneArguments, ThreadArguments, given, print, print_json, progress, warn};
 use crate::{
-    files,
     product::{Product, costed::Costed},
     scene::{Override, SceneFile, with_tolerances},
+    system::files,
     tolerance::{
         allocate::{
             AllocateError,
@@ -23,8 +23,8 @@ use crate::{
             requirement::{Kind, OfMeasures, Requirement},
             search::search,
         },
+        counting::study::{MOST_UNITS, StudyError},
         model::Model,
-        study::{MOST_UNITS, StudyError},
     },
 };
 

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::{
     cli::JSON_VERSION,
-    number::{fixed, three_digits},
     product::{Product, costed::Costed},
     scene::tolerance,
+    show::number::{fixed, three_digits},
     tolerance::{
         allocate::{
             branch::Solution,

@@ -3,7 +3,7 @@
 use super::report::{Measured, Report, Required};
 use crate::{
     cli::text_table,
-    number::{fixed, or_dash, per_million, three_digits},
+    show::number::{fixed, or_dash, per_million, three_digits},
     tolerance::{
         allocate::{requirement::Row, search::MET},
         model::Model,

@@ -7,9 +7,9 @@ use serde::Serialize;
 use super::{GapReport, gap_reports};
 use crate::{
     cli::{Failure, JSON_VERSION, SceneArguments, print, print_json, text_table, warn},
-    files,
     mechanism::{Freedom, Mechanism},
-    number::{fixed, level, or_dash},
+    show::number::{fixed, level, or_dash},
+    system::files,
 };
 
 #[derive(Serialize)]

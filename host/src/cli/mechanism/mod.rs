@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use super::{Failure, SceneArguments, given};
 use crate::{
+    dynamics::outcome::Outcome,
     mechanism::{Action, GapError, Mechanism, RunError},
-    outcome::Outcome,
 };
 
 pub(super) use check::{check, warnings_of};

@@ -7,11 +7,13 @@ use serde::Serialize;
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{Failure, JSON_VERSION, print, print_json, text_table},
-    export::rows_csv,
-    figure::columns_over_time,
-    files,
     mechanism::{Action, Mechanism, MechanismRun, SCHEME, finer, run},
-    number::{fixed, level, or_dash},
+    show::{
+        export::rows_csv,
+        figure::columns_over_time,
+        number::{fixed, level, or_dash},
+    },
+    system::files,
 };
 
 #[derive(Serialize)]

@@ -7,14 +7,15 @@ use serde::Serialize;
 
 use super::{DriveReport, Wanted, shown, units};
 use crate::{
-    answer::ranges_of,
     cli::{Failure, JSON_VERSION, ThreadArguments, print, print_json, progress, text_table},
-    export::rows_csv,
-    figure::drives_over_n,
-    files,
+    dynamics::{answer::ranges_of, outcome::Outcome},
     mechanism::{Action, Mechanism, RunError, confirmed},
-    number::{fixed, level, or_dash},
-    outcome::Outcome,
+    show::{
+        export::rows_csv,
+        figure::drives_over_n,
+        number::{fixed, level, or_dash},
+    },
+    system::files,
 };
 
 #[derive(Serialize)]

@@ -5,8 +5,7 @@ use std::fmt::Write;
 use super::{Arguments, Found, LevelReport, rare, worst};
 use crate::{
     cli::{simulate::why_undecided, text_table},
-    number::{fixed, level, or_dash},
-    outcome::Verdict,
+    dynamics::outcome::Verdict,
     population::{
         drivers::Driver,
         picture::tightness,
@@ -14,6 +13,7 @@ use crate::{
         study::Population,
     },
     scene::Scene,
+    show::number::{fixed, level, or_dash},
 };
 
 /// Drivers that are listed.

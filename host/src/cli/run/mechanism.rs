@@ -10,22 +10,29 @@ use super::{
     table_line,
 };
 use crate::{
-    answer::{Range, ranges},
     cli::{
         Failure, JSON_VERSION, mechanism, print, print_json, progress,
         sweep::{LevelReport, answer, doubts, for_machines},
         table, warn,
     },
-    driven::Driven,
-    export::sweep_csv,
-    figure::{forces, velocities, verdicts},
-    force_table::{self, Demand, ForceTable},
+    dynamics::{
+        answer::{Range, ranges},
+        driven::Driven,
+        sweep::Sweep,
+    },
+    firmware::{
+        force_table,
+        force_table::{Demand, ForceTable},
+    },
     mechanism::ByDrive,
-    number::{fixed, per_million},
     product::Product,
-    report::{Clearances, Figure, Flash, Production, ReportInput, report},
-    sweep::Sweep,
-    tolerance::{normal, report::Report as Measures},
+    show::{
+        export::sweep_csv,
+        figure::{forces, velocities, verdicts},
+        number::{fixed, per_million},
+        report::{Clearances, Figure, Flash, Production, ReportInput, report},
+    },
+    tolerance::{distribution::normal, report::Report as Measures},
 };
 
 /// The pictures: of a force, and of a torque.

@@ -15,14 +15,19 @@ use super::{
 use output::Output;
 
 use crate::{
-    driven::Driven,
-    force_table::{self, Demand},
-    number::fixed,
-    outcome::Verdict,
+    dynamics::{
+        driven::Driven,
+        outcome::Verdict,
+        sweep::{Level, Sweep},
+    },
+    firmware::{force_table, force_table::Demand},
     product::Product,
-    report::Production,
-    sweep::{Level, Sweep},
-    tolerance::{analysis::conclude, picture::pictures, report::report, run::RunError, study::Study},
+    show::{number::fixed, report::Production},
+    tolerance::{
+        analysis::conclude,
+        counting::{run::RunError, study::Study},
+        report::{picture::pictures, report},
+    },
 };
 
 /// The main job: does the product work, from which tolerance level on not, and what force does it take?

@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use crate::{
     cli::{Failure, SceneArguments, refused},
-    files,
-    plot::PlotError,
-    report::{Figure, Production},
+    show::{
+        plot::PlotError,
+        report::{Figure, Production},
+    },
+    system::files,
     tolerance::report::measures_csv,
 };
 

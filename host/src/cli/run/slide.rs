@@ -10,7 +10,6 @@ use super::{
     table_line,
 };
 use crate::{
-    answer::{Range, ranges},
     cli::{
         Failure, JSON_VERSION, check,
         population::{percent, strongest},
@@ -21,22 +20,29 @@ use crate::{
         tolerance::DEFAULT,
         warn,
     },
-    driven::Driven,
-    export::sweep_csv,
-    figure::{forces, velocities, verdicts},
-    force_table::{self, Demand, ForceTable},
-    number::{fixed, per_million},
-    outcome::Verdict,
+    dynamics::{
+        answer::{Range, ranges},
+        driven::Driven,
+        outcome::Verdict,
+        sweep::{Keep, Sweep, sweep},
+    },
+    firmware::{
+        force_table,
+        force_table::{Demand, ForceTable},
+    },
+    mechanism::{closing::derived, self_locking::guide},
     population::{
         picture::forces as population, production::Production as DrawnProduction, statistics::Statistics,
         study::Population,
     },
     product::Product,
-    report::{Clearances, Figure, Flash, Production, ReportInput, report},
     scene::Scene,
-    self_locking::guide,
-    sweep::{Keep, Sweep, sweep},
-    table2::derived,
+    show::{
+        export::sweep_csv,
+        figure::{forces, velocities, verdicts},
+        number::{fixed, per_million},
+        report::{Clearances, Figure, Flash, Production, ReportInput, report},
+    },
     tolerance::report::Report as Measures,
 };
 
@@ -106,7 +112,7 @@ impl Arguments {
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.clone()));
         warnings.extend(doubts(simulated.judged()));
-        let undecided = |level: &crate::sweep::Level| level.outcome.verdict == Verdict::Undecided;
+        let undecided = |level: &crate::dynamics::sweep::Level| level.outcome.verdict == Verdict::Undecided;
         if simulated.judged().levels.iter().any(undecided) {
             warnings.push(format!("not every level comes to a verdict{}", why_undecided(scene, Verdict::Undecided)));
         }

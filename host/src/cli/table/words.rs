@@ -5,11 +5,15 @@ use std::fmt::Write;
 use slipfit_core::table::AxisKind;
 
 use crate::{
-    driven::{DriveKind, Driven},
-    flash::{AxisSpec, TABLE_REGION},
-    force_table::{ForceTable, position::Reach},
-    number::{fixed, level},
-    outcome::Verdict,
+    dynamics::{
+        driven::{DriveKind, Driven},
+        outcome::Verdict,
+    },
+    firmware::{
+        flash::{AxisSpec, TABLE_REGION},
+        force_table::{ForceTable, position::Reach},
+    },
+    show::number::{fixed, level},
 };
 
 /// Share of the drive's greatest force from which a table's error is worth a warning.

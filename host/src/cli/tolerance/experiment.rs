@@ -4,10 +4,10 @@ use serde::Serialize;
 
 use crate::{
     cli::{Failure, print, print_json, text_table},
-    number::fixed,
+    show::number::fixed,
     tolerance::{
-        experiment::{Design, Finding, experiment},
         model::{Measure, Model},
+        theory::experiment::{Design, Finding, experiment},
     },
 };
 

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use crate::{
     cli::text_table,
-    number::fixed,
+    mechanism::closing::{Table2, derived},
     scene::{SURFACES, Scene},
-    table2::{Table2, derived},
+    show::number::fixed,
 };
 
 /// What follows from a slide's gaps at a tolerance level.

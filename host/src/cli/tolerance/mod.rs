@@ -14,17 +14,18 @@ use serde::Serialize;
 use self::gaps::Given;
 use super::{DRAWING, Failure, SceneArguments, ThreadArguments, print, print_json, progress};
 use crate::{
-    files,
-    number::ten_digits,
     scene::Scene,
+    show::number::ten_digits,
+    system::files,
     tolerance::{
-        experiment::Design,
-        file::Source,
-        lanes::LANES,
-        model::Model,
-        run::{Keep, RunError, Shard, checkpoint, run},
-        sampler::Method,
-        study::{Settings, Study},
+        counting::{
+            file::Source,
+            run::{Keep, RunError, Shard, checkpoint, run},
+            study::{Settings, Study},
+        },
+        model::{Model, lanes::LANES},
+        sampling::sampler::Method,
+        theory::experiment::Design,
     },
 };
 
@@ -206,7 +207,7 @@ fn draws_csv(study: &Study, bar: &ProgressBar) -> anyhow::Result<Vec<u8>> {
             writer.write_record(std::iter::once((first + lane as u64).to_string()).chain(fields))?;
         }
         bar.inc(units);
-        if crate::interrupt::requested() {
+        if crate::system::interrupt::requested() {
             return Err(RunError::Interrupted { saved: None }.into());
         }
     }

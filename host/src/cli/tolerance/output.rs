@@ -8,14 +8,19 @@ use serde::Serialize;
 use super::{gaps::Columns, tables::tables};
 use crate::{
     cli::{Failure, print, print_json, refused},
-    files,
     scene::Scene,
+    system::files,
     tolerance::{
         analysis::conclude,
-        picture::{file_names, pictures},
-        report::{self, measures_csv},
-        run::RunError,
-        study::{Study, Tally},
+        counting::{
+            run::RunError,
+            study::{Study, Tally},
+        },
+        report,
+        report::{
+            measures_csv,
+            picture::{file_names, pictures},
+        },
     },
 };
 

@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use crate::{
     cli::text_table,
-    number::{fixed, or_dash, per_million, three_digits},
+    show::number::{fixed, or_dash, per_million, three_digits},
     tolerance::{
-        estimate::Estimate,
         report::{MeasureReport, Report, SumReport},
-        rss::{BENDER, GILSON},
+        statistics::estimate::Estimate,
+        theory::rss::{BENDER, GILSON},
     },
 };
 

@@ -7,7 +7,7 @@ mod symbol;
 mod view;
 
 use super::{Action, Joint, JointKind, Mechanism};
-use crate::{
+use crate::show::{
     number::ten_digits,
     palette::{Colour, KINDS, SOFT},
     svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE},

@@ -3,8 +3,10 @@
 use super::{colour, view::View};
 use crate::{
     mechanism::{Joint, JointKind},
-    palette::{Colour, INK, KINDS, PAPER},
-    svg::{Stroke, Svg, number},
+    show::{
+        palette::{Colour, INK, KINDS, PAPER},
+        svg::{Stroke, Svg, number},
+    },
 };
 
 /// The colour of drives.

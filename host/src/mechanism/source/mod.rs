@@ -65,7 +65,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     let drives = write_drives(mechanism, &parts);
     let elements = nested(grouped(elements));
     let title = mechanism.title.split_whitespace().collect::<Vec<_>>().join(" ");
-    let (scheme, scheme_type) = crate::kernel_source::scheme(mechanism.controller.integrator);
+    let (scheme, scheme_type) = crate::firmware::kernel_source::scheme(mechanism.controller.integrator);
     let list = |names: &[&'static str]| {
         let mut names = names.to_vec();
         names.sort_unstable();

@@ -1,7 +1,7 @@
 //! Which expressions are linear in the variables.
 
 use super::{Expression, Operation, Source, Two};
-use crate::tolerance::lanes::Lanes;
+use crate::tolerance::model::lanes::Lanes;
 
 /// c + Σ coefficient · variable.
 #[derive(Clone, Debug, Default, PartialEq)]

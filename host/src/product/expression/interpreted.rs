@@ -1,7 +1,7 @@
 //! Expressions operation by operation, which the faster ways are compared with.
 
 use super::{Expression, One, Operation, Source, Two};
-use crate::tolerance::lanes::Lanes;
+use crate::tolerance::model::lanes::Lanes;
 
 /// An intermediate result: its value, the sum of the absolute values of all that it adds up, and whether it is constant.
 #[derive(Clone, Copy)]
@@ -57,10 +57,13 @@ pub(crate) fn bound(expression: &Expression, variables: &[Lanes], sizes: &[[f64;
 mod tests {
     use proptest::prelude::*;
 
-    use super::{super::Affine, super::Kind, super::Source, super::parse, Lanes, bound};
+    use super::{
+        super::{Affine, Kind, Source, parse},
+        Lanes, bound,
+    };
     use crate::{
         product::function::{Formula, Measures},
-        tolerance::{lanes::LANES, model::Function},
+        tolerance::model::{Function, lanes::LANES},
     };
 
     const VARIABLES: usize = 5;

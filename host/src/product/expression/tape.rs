@@ -6,7 +6,7 @@
 use std::{cell::Cell, collections::HashMap};
 
 use super::{Expression, One, Operation, Source, Two};
-use crate::tolerance::lanes::Lanes;
+use crate::tolerance::model::lanes::Lanes;
 
 /// Instructions for the measures that are expressions.
 #[derive(Clone, Debug, Default)]

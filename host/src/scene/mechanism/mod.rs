@@ -17,7 +17,7 @@ use super::{
     value::Field,
 };
 use crate::{
-    driven::DriveKind,
+    dynamics::driven::DriveKind,
     mechanism::{Gap, Laws, Mechanism, MountError, Mounts, Port},
     product::Product,
 };
@@ -161,7 +161,7 @@ impl Gaps<'_> {
     fn measured(&self, field: &Field) -> Result<GapStatistics<f64>, SceneError> {
         let model = self.product.map(|product| &product.model);
         let index = super::pins::length(field, model)?;
-        let moments = model.map(crate::tolerance::moments::of_measures).unwrap_or_default();
+        let moments = model.map(crate::tolerance::theory::moments::of_measures).unwrap_or_default();
         let of = moments.get(index).map(|of| GapStatistics { mean: of.mean, deviation: of.deviation });
         of.ok_or_else(|| field.wrong_type("a measure of the product"))
     }

@@ -4,9 +4,14 @@ use super::tests::{at, check_all, close, parse, product};
 use crate::{
     product::Product,
     scene::{Scene, SceneFile, shipped},
-    tolerance::model::{Variation, ZoneRule},
-    tolerance::nested::{Nest, Nested},
-    tolerance::{analysis, derivative::expansion, moments},
+    tolerance::{
+        analysis,
+        model::{
+            Variation, ZoneRule,
+            nested::{Nest, Nested},
+        },
+        theory::{derivative::expansion, moments},
+    },
 };
 
 fn variable(product: &Product, name: &str) -> usize {

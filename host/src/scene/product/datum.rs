@@ -10,7 +10,7 @@ use crate::{
         float::{Float, Size},
     },
     scene::{Problem, SceneError, tree::Value, value::Field},
-    tolerance::lanes::Lanes,
+    tolerance::model::lanes::Lanes,
 };
 
 use super::{

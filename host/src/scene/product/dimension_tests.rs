@@ -5,10 +5,10 @@ use crate::{
     scene::{SceneError, SceneFile},
     tolerance::{
         analysis::analyse,
+        counting::study::Settings,
         model::{Distribution, Quantity, Variation},
         report::report,
-        sampler::Method,
-        study::Settings,
+        sampling::sampler::Method,
     },
 };
 /// A scene with one dimension of 5 mm, and the distribution and the tolerance that `keys` give it.

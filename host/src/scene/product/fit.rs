@@ -1,9 +1,12 @@
 //! Holes on pins, tried out before anything is analysed: does every pin go into its hole, does every mate close?
 
 use crate::{
-    number::{fixed, ten_digits},
     product::assembly::Assembly,
-    tolerance::{lanes::Lanes, model::Model, moments::drawn},
+    show::number::{fixed, ten_digits},
+    tolerance::{
+        model::{Model, lanes::Lanes},
+        theory::moments::drawn,
+    },
 };
 
 use super::Fit;

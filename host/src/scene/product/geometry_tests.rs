@@ -6,7 +6,7 @@ use crate::{
     tolerance::{
         analysis,
         model::{Model, Variation},
-        moments,
+        theory::moments,
     },
 };
 

@@ -8,15 +8,10 @@ use crate::{
         float::{Float, Size},
         pose::Pose,
     },
-    scene::{
-        Problem, SceneError,
-        tree::Value,
-        unit::{self, Quantity},
-        value::Field,
-    },
-    tolerance::{
+    scene::{Problem, SceneError, tree::Value, unit, unit::Quantity, value::Field},
+    tolerance::model::{
+        Contributor, Variation, ZoneRule,
         lanes::Lanes,
-        model::{Contributor, Variation, ZoneRule},
         nested::{Nest, Nested},
         widening::Widening,
     },

@@ -5,8 +5,8 @@ use crate::{
     product::Product,
     tolerance::{
         analysis::{Theory, analyse, theory},
-        sampler::Method,
-        study::Settings,
+        counting::study::Settings,
+        sampling::sampler::Method,
     },
 };
 

@@ -6,15 +6,10 @@ use crate::{
         feature::Shape,
         function::{Between, Formula, Measures},
     },
-    scene::{
-        Problem, SceneError,
-        unit::{self, Quantity},
-        value::Field,
-    },
+    scene::{Problem, SceneError, unit, unit::Quantity, value::Field},
     tolerance::{
-        lanes::Lanes,
-        loss::Loss,
-        model::{Function, Measure, Quantity as Measured, Sum},
+        model::{Function, Measure, Quantity as Measured, Sum, lanes::Lanes},
+        statistics::loss::Loss,
     },
 };
 

@@ -84,7 +84,6 @@ pub(super) use toleranced::SHAPES;
 pub(super) use toleranced::deviation;
 
 use crate::{
-    number::fixed,
     product::{
         Product,
         assembly::Assembly,
@@ -95,10 +94,10 @@ use crate::{
         function::Measures,
         iso2768::{General, WITHDRAWN},
     },
+    show::number::fixed,
     tolerance::{
-        copula::{self, Coefficient},
-        model::{Contributor, Model, Quantity as Measured, Variation, ZoneRule},
-        widening::Widening,
+        model::{Contributor, Model, Quantity as Measured, Variation, ZoneRule, widening::Widening},
+        sampling::{copula, copula::Coefficient},
     },
 };
 

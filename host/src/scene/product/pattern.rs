@@ -9,8 +9,8 @@ use crate::{
         feature::Shape,
     },
     scene::{Problem, SceneError, value::Field},
-    tolerance::{
-        model::{Contributor, Variation},
+    tolerance::model::{
+        Contributor, Variation,
         nested::{Nest, Nested},
     },
 };

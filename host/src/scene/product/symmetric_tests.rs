@@ -1,7 +1,7 @@
 //! Run-out, coaxiality, concentricity, symmetry, roundness and cylindricity against closed forms.
 
 use super::tests::{check_all, close, product_of};
-use crate::tolerance::{
+use crate::tolerance::theory::{
     derivative::expansion,
     moments,
     worst_case::{middle, worst_case},

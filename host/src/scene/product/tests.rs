@@ -3,14 +3,16 @@
 use crate::{
     product::Product,
     scene::{Override, Problem, SceneError, SceneFile, shipped},
-    tolerance::moments,
     tolerance::{
         analysis::analyse,
-        lanes::{LANES, Lanes},
-        model::{Distribution, Quantity, Variation},
+        counting::study::Settings,
+        model::{
+            Distribution, Quantity, Variation,
+            lanes::{LANES, Lanes},
+        },
         report::report,
-        sampler::Method,
-        study::Settings,
+        sampling::sampler::Method,
+        theory::moments,
     },
 };
 

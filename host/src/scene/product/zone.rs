@@ -8,8 +8,8 @@ use std::ops::Range;
 use crate::{
     product::{dimension::Toleranced, feature::Shape},
     scene::{Problem, SceneError},
-    tolerance::{
-        model::{Contributor, Distribution, Variation, ZoneRule},
+    tolerance::model::{
+        Contributor, Distribution, Variation, ZoneRule,
         nested::{Nest, Nested},
         widening::Widening,
     },

@@ -1,7 +1,10 @@
 //! What the full model says of the tolerances, beside what the root of the sum of squares says.
 
 use super::AllocateError;
-use crate::tolerance::{analysis::analyse, estimate::Estimate, model::Model, normal, sampler::Method, study::Settings};
+use crate::tolerance::{
+    analysis::analyse, counting::study::Settings, distribution::normal, model::Model, sampling::sampler::Method,
+    statistics::estimate::Estimate,
+};
 
 /// A measure with limits (SI; probabilities as shares).
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +73,7 @@ pub fn check(model: &Model, units: u64, seed: u64) -> Result<Check, AllocateErro
             by_rss,
             by_tails,
             counted,
-            interval: crate::tolerance::interval::proportion(counted, units),
+            interval: crate::tolerance::statistics::interval::proportion(counted, units),
             ppk: statistics.ppk,
         }
     };

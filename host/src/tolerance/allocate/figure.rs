@@ -4,19 +4,17 @@ use slipfit_core::sampling::stream::derived;
 
 use super::{AllocateError, nearest::with_nearest};
 use crate::tolerance::{
-    derivative::expansion,
-    draw::Draw,
-    extremes::extremes,
-    failure::Failure,
-    lanes::LANES,
-    model::{Measure, Model},
-    moments::spreads,
-    rss::root_sum_square,
-    sampler::Method,
-    sobol::MOST_DIMENSIONS,
-    study::{Settings, Study, StudyError},
-    tail::probability,
-    worst_case::{middle, worst_case},
+    counting::study::{Settings, Study, StudyError},
+    failure::{Failure, tail::probability},
+    model::{Measure, Model, lanes::LANES},
+    sampling::{draw::Draw, sampler::Method, sobol::MOST_DIMENSIONS},
+    theory::{
+        derivative::expansion,
+        extremes::extremes,
+        moments::spreads,
+        rss::root_sum_square,
+        worst_case::{middle, worst_case},
+    },
 };
 
 /// Units that mean and standard deviation are found from.

@@ -19,7 +19,7 @@ mod search_tests;
 #[cfg(test)]
 mod tests;
 
-use super::study::StudyError;
+use super::counting::study::StudyError;
 
 /// Why there are no cheapest tolerances.
 #[derive(Debug, thiserror::Error)]

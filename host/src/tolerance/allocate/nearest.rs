@@ -1,9 +1,6 @@
 //! All limits of a product as one measure: how far the nearest of them is.
 
-use crate::tolerance::{
-    lanes::Lanes,
-    model::{Function, Measure, Model, Quantity},
-};
+use crate::tolerance::model::{Function, Measure, Model, Quantity, lanes::Lanes};
 
 /// Measures, and behind them the least distance of any to its limit, in parts of the distance of its limits; negative outside.
 struct Nearest {

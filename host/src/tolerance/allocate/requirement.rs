@@ -10,11 +10,9 @@ use super::{
     search::Figures,
 };
 use crate::tolerance::{
-    derivative::expansion,
+    distribution::normal,
     model::{Measure, Model},
-    moments::{self, spreads},
-    normal,
-    worst_case::middle,
+    theory::{derivative::expansion, moments, moments::spreads, worst_case::middle},
 };
 
 /// What is required.

@@ -71,7 +71,7 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
     let mut best: Option<Found> = None;
     let mut last = f64::INFINITY;
     for _ in 0..PROGRAMS {
-        if crate::interrupt::requested() {
+        if crate::system::interrupt::requested() {
             return Err(AllocateError::Interrupted);
         }
         if values.iter().any(|figure| !figure.is_finite() || *figure > FAR) {

@@ -122,7 +122,7 @@ fn a_yield_of_several_measures() {
     let found = cheapest(&text, &[Requirement { measure: None, kind: Kind::Defects(share) }], all).unwrap();
     // Independent: 1 − (1 − p)² of both, p = 2Φ(−z) with z = 3 · 0.1/t.
     let p = 1.0 - libm::sqrt(1.0 - share);
-    let z = -crate::tolerance::normal::quantile(0.5 * p);
+    let z = -crate::tolerance::distribution::normal::quantile(0.5 * p);
     for t in &found.solution.tolerances {
         assert!((t / (0.3e-3 / z) - 1.0).abs() < 0.01, "{found:?} {z}");
     }

@@ -1,7 +1,7 @@
 //! The measures of a report as CSV.
 
 use super::Report;
-use crate::number::ten_digits;
+use crate::show::number::ten_digits;
 
 /// Measures, one line each, as CSV.
 ///

@@ -3,12 +3,13 @@
 use super::{Defects, Estimates, LossReport, MeasureReport, Quadrature, Report, Rss, SecondOrder, Share, SumReport};
 use crate::tolerance::{
     analysis::{Analysis, better},
-    estimate::Estimate,
-    importance::REPLICATES,
-    interval::student_factor,
+    failure::{
+        importance::REPLICATES,
+        tail::{Source, Tail},
+    },
     model::{Contributor, Model, Quantity, Sum},
-    sampler::Method,
-    tail::{Source, Tail},
+    sampling::sampler::Method,
+    statistics::{estimate::Estimate, interval::student_factor},
 };
 
 fn defects(counted: &Estimate, tail: Option<&Tail>) -> Defects {

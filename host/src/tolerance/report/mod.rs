@@ -2,11 +2,12 @@
 
 mod csv;
 mod fill;
+pub mod picture;
 
 use serde::Serialize;
 
 pub use self::{csv::measures_csv, fill::report};
-use super::{estimate::Estimate, model::Quantity, sampler::Method, tail::Source};
+use super::{failure::tail::Source, model::Quantity, sampling::sampler::Method, statistics::estimate::Estimate};
 
 /// All of an analysis.
 #[derive(Clone, Debug, Serialize)]

@@ -1,0 +1,151 @@
+//! The answer to what a sweep was asked for: from which level to which a slide runs, crawls or jams, and with what force.
+
+use serde::Serialize;
+
+use super::{
+    driven::DriveKind,
+    outcome::{Moment, Outcome, Verdict},
+    sweep::{Level, Sweep},
+};
+use crate::show::number::{fixed, level};
+
+/// Neighbouring levels with one verdict. For a drive that turns, N and m are N·m and rad.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Range {
+    /// What the drive gives.
+    #[serde(skip)]
+    pub kind: DriveKind,
+    /// Loosest level.
+    pub first: f64,
+    /// Tightest level.
+    pub last: f64,
+    /// Verdict of all of them.
+    pub verdict: Verdict,
+    /// Least and greatest peak force (N).
+    pub peak_force: Option<[f64; 2]>,
+    /// Least and greatest travel (m) at the end.
+    pub travel: [f64; 2],
+    /// Least and greatest time (s) at the end.
+    pub time: [f64; 2],
+    /// Whether all come to the stroke's end; `None` where no stroke is stated.
+    pub stroke_reached: Option<bool>,
+}
+
+fn span(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    values.fold(None, |span, value| Some(span.map_or([value; 2], |[least, most]| [value.min(least), value.max(most)])))
+}
+
+/// The levels of a sweep, neighbours with the same verdict taken together.
+pub fn ranges(sweep: &Sweep) -> Vec<Range> {
+    let groups = sweep.levels.chunk_by(|one, next| one.outcome.verdict == next.outcome.verdict);
+    let range = |group: &[Level]| {
+        let outcomes = || group.iter().map(|level| &level.outcome);
+        Some(Range {
+            kind: sweep.kind,
+            first: group.first()?.n,
+            last: group.last()?.n,
+            verdict: group.first()?.outcome.verdict,
+            peak_force: span(outcomes().filter_map(|outcome| outcome.peak_force)),
+            travel: span(outcomes().map(|outcome| outcome.end.z))?,
+            time: span(outcomes().map(|outcome| outcome.end.t))?,
+            stroke_reached: outcomes()
+                .map(|outcome| outcome.stroke_reached)
+                .reduce(|one, other| Some(one? && other?))?,
+        })
+    };
+    groups.filter_map(range).collect()
+}
+
+/// From which level to which something runs, crawls or jams, in words, from the verdicts over n.
+pub fn ranges_of(verdicts: &[(f64, Verdict)]) -> Vec<String> {
+    let groups = verdicts.chunk_by(|one, next| one.1 == next.1);
+    let range = |group: &[(f64, Verdict)]| match group {
+        [] => None,
+        [(n, verdict)] => Some(format!("{verdict} at n = {}", level(*n))),
+        [(first, verdict), .., (last, _)] => Some(format!("{verdict} from n = {} to {}", level(*first), level(*last))),
+    };
+    groups.filter_map(range).collect()
+}
+
+/// `least` to `most`, or one of them where they look the same.
+fn between([least, most]: [f64; 2], decimals: usize) -> String {
+    let [least, most] = [least, most].map(|value| fixed(value, decimals));
+    if least == most { least } else { format!("{least} to {most}") }
+}
+
+impl Range {
+    /// The range in a line: levels, verdict, travel and force.
+    pub fn describe(&self) -> String {
+        let levels = if self.first == self.last {
+            level(self.first)
+        } else {
+            format!("{} … {}", level(self.first), level(self.last))
+        };
+        let kind = self.kind;
+        let (travel, unit) = (between(self.travel.map(|z| kind.travel(z)), 1), kind.travel_unit());
+        let time = between(self.time, 2);
+        let way = match (self.verdict, self.stroke_reached) {
+            (_, Some(true)) => format!("the stroke of {travel} {unit} in {time} s"),
+            (Verdict::Jammed, _) => format!("comes {travel} {unit} in {time} s"),
+            _ => format!("is at {travel} {unit} after {time} s"),
+        };
+        let peak = |force| format!(", peak {} {} {}", kind.effort(), between(force, 3), kind.effort_unit());
+        let force = self.peak_force.map_or_else(String::new, peak);
+        format!("n = {levels:14} {:9} {way}{force}", self.verdict.to_string())
+    }
+}
+
+/// Where on its way a unit tips, slows or stops, in words; empty where it does not.
+pub fn on_the_way(kind: DriveKind, outcome: &Outcome) -> String {
+    let at = |what: &str, moment: Option<Moment>| {
+        moment.map(|moment| format!("{what} at {} {}", fixed(kind.travel(moment.z), 1), kind.travel_unit()))
+    };
+    let slows = if outcome.stops.is_some() { at("stops", outcome.stops) } else { at("slows", outcome.slows) };
+    [at("tips", outcome.tips), slows].into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{on_the_way, ranges};
+    use crate::{
+        dynamics::{
+            driven::DriveKind,
+            example,
+            outcome::{Moment, Verdict},
+        },
+        scene::LevelRange,
+    };
+
+    #[test]
+    fn neighbours_with_one_verdict_are_one_range() {
+        let mut sweep = example::sweep(LevelRange { first: -1.0, step: 1.0, count: 4 }, 0.1, 0.1);
+        let verdicts = [Verdict::Jammed, Verdict::Jammed, Verdict::Runs, Verdict::Jammed];
+        for (level, verdict) in sweep.levels.iter_mut().zip(verdicts) {
+            level.outcome.verdict = verdict;
+        }
+        sweep.levels[0].outcome.peak_force = Some(4.0);
+        sweep.levels[1].outcome.peak_force = Some(3.0);
+        let found = ranges(&sweep);
+        let bounds: Vec<_> = found.iter().map(|range| (range.first, range.last, range.verdict)).collect();
+        let expected = [(-1.0, 0.0, Verdict::Jammed), (1.0, 1.0, Verdict::Runs), (2.0, 2.0, Verdict::Jammed)];
+        assert_eq!(bounds, expected);
+        assert_eq!(found[0].peak_force, Some([3.0, 4.0]));
+        let line = found[0].describe();
+        assert!(line.contains("n = -1 … 0") && line.contains("jammed") && line.contains("3.000 to 4.000 N"), "{line}");
+        sweep.levels.clear();
+        assert!(ranges(&sweep).is_empty());
+    }
+
+    #[test]
+    fn tells_what_happens_on_the_way() {
+        let mut outcome = example::sweep(LevelRange { first: 0.0, step: 1.0, count: 1 }, 0.1, 0.1).levels[0].outcome;
+        let kind = DriveKind::Pushes;
+        let moment = |z: f64| Some(Moment { t: 1.0, z });
+        (outcome.tips, outcome.slows, outcome.stops) = (None, None, None);
+        assert_eq!(on_the_way(kind, &outcome), "");
+        (outcome.tips, outcome.slows) = (moment(0.0312), moment(0.04));
+        assert_eq!(on_the_way(kind, &outcome), "tips at 31.2 mm, slows at 40.0 mm");
+        outcome.stops = moment(0.05);
+        assert_eq!(on_the_way(kind, &outcome), "tips at 31.2 mm, stops at 50.0 mm");
+    }
+}

@@ -1,0 +1,82 @@
+//! A second look: what a better run says of a run.
+
+use slipfit_core::slide::CONTACTS;
+
+use super::{
+    desk,
+    outcome::Verdict,
+    simulate::{Run, Settings, SimulateError, Solver, simulate},
+};
+use crate::scene::Scene;
+
+/// How much finer than the desk's run the one is that it is held against.
+const FINER: f64 = 0.1;
+
+/// `run`, made by `settings`, held against a better one: a run of the desk against one at a tenth of its tolerance, a run of
+/// the controller against the desk's. Its verdict is undecided where the two disagree, and its trust takes in how far their
+/// forces part.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn confirmed(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, run: Run) -> Result<Run, SimulateError> {
+    let tolerance = match settings.solver {
+        Solver::Desk { tolerance } => FINER * tolerance,
+        Solver::Controller(_) => desk::tolerance(scene),
+    };
+    Ok(against(&simulate(scene, gaps, &settings.to(tolerance))?, scene, settings, run))
+}
+
+/// `run`, made by `settings`, held against the `better` one, which is sampled at the same times.
+pub fn against(better: &Run, scene: &Scene, settings: &Settings, mut run: Run) -> Run {
+    if better.outcome.verdict != run.outcome.verdict {
+        run.outcome.verdict = Verdict::Undecided;
+    }
+    let difference = run.trajectory.greatest_difference(&better.trajectory, scene.drive.ramp_start);
+    let step = match settings.solver {
+        Solver::Desk { .. } => None,
+        Solver::Controller(spec) => Some(spec.step),
+    };
+    run.trust = run.trust.compared(difference, step);
+    run
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfit_core::slide::CONTACTS;
+
+    use super::confirmed;
+    use crate::dynamics::{
+        driven::Driven,
+        example,
+        outcome::Verdict,
+        simulate::{Settings, simulate},
+    };
+
+    #[test]
+    fn a_controller_is_held_against_the_desk_and_the_desk_against_a_finer_run() {
+        let scene = example::cd_rom();
+        let gaps = scene.gaps_at(&[2.5; CONTACTS]);
+        let difference = |settings: Settings| {
+            let run = simulate(&scene, &gaps, &settings).unwrap();
+            confirmed(&scene, &gaps, &settings, run).unwrap().trust.difference.unwrap()
+        };
+        let desk = difference(Settings::desk(&scene, 1e-3));
+        let controller = difference(Settings::controller(&scene, 1e-3));
+        assert!(desk < 1e-4 && (1e-3..1e-2).contains(&controller), "{desk} {controller}");
+    }
+
+    #[test]
+    fn a_verdict_that_a_finer_run_does_not_share_is_none() {
+        let mut scene = example::cd_rom();
+        scene.run.duration = scene.stroke_duration().unwrap();
+        let gaps = scene.gaps_at(&[2.5; CONTACTS]);
+        // So coarse that it does not see the slide run.
+        let settings = Settings::desk(&scene, 1e-3);
+        let fine = confirmed(&scene, &gaps, &settings, simulate(&scene, &gaps, &settings).unwrap()).unwrap();
+        assert_eq!(fine.outcome.verdict, Verdict::Runs);
+        let mut wrong = fine.clone();
+        wrong.outcome.verdict = Verdict::Jammed;
+        let judged = super::against(&fine, &scene, &settings, wrong);
+        assert_eq!(judged.outcome.verdict, Verdict::Undecided);
+    }
+}

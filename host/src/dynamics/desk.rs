@@ -1,0 +1,237 @@
+//! The desk: one unit by error-controlled steps, the truth that a controller is held against.
+//!
+//! Exact friction has no derivative at rest, which error control needs. The desk takes the regularised law instead, with
+//! a stick band that follows the tolerance: a band of four times the error of speed that a step may make. The result
+//! tends to exact friction as the tolerance does to zero, at the cost of the regularised law; a narrower band would make
+//! steps chatter between sticking and sliding. What creep within the band changes is part of the difference to a run at a
+//! tenth of the tolerance.
+
+use std::{ops::ControlFlow, time::Instant as Clock};
+
+use slipfit_core::{
+    SVector,
+    integrator::{Integrator, Motion, Rodas4},
+    law::{Elastic, Friction},
+    mechanism::Mechanism,
+    menu::FrictionData,
+    pose::Pose,
+    slide::{CONTACTS, Slide},
+};
+
+use super::{
+    driven::Driven,
+    error_control::{Knot, Sensitivity, Stopped, Tolerance, integrate, sampled},
+    laws::AnySlide,
+    looks::{end, looks, samples},
+    out_of_line::OutOfLine,
+    outcome::{Instant, Observer, Trajectory},
+    scheme::ScalarKind,
+    simulate::{Run, Settings, SimulateError, Solved},
+    trust::Trust,
+};
+use crate::scene::Scene;
+
+/// Stick bands in the error of speed that a step may make; see the top of the file.
+const STICK_BANDS: f64 = 4.0;
+
+/// Bounds of the stick band (m/s) that stands for true stick.
+const STICK_BAND: [f64; 2] = [1e-9, 1e-4];
+
+/// How much a narrow stick band may tighten the tolerance.
+const NARROWEST: f64 = 0.01;
+
+/// The least error of force (N) that a step is held to, where the drive has no force.
+const LEAST_TOLERANCE: f64 = 1e-9;
+
+/// The error of force (N) that a step of `scene` may make: the scene's share of the drive's greatest force, or of the slide's
+/// weight where nothing is commanded; less where a narrow stick band asks for it.
+pub fn tolerance(scene: &Scene) -> f64 {
+    tolerance_of(scene, scene.run.error)
+}
+
+/// The same for another share of the drive's greatest force.
+pub fn tolerance_of(scene: &Scene, error: f64) -> f64 {
+    let [x, y, z] = scene.slide.gravity;
+    let weight = scene.slide.mass * libm::sqrt(x * x + y * y + z * z);
+    let greatest = if scene.greatest_force() > 0.0 { scene.greatest_force() } else { weight };
+    // A stated stick band has to be resolved, or steps chatter within it.
+    let resolving = match scene.friction {
+        FrictionData::Regularised { stick_band, .. } if scene.drive.gain > 0.0 => {
+            scene.drive.gain * stick_band / STICK_BANDS
+        }
+        _ => f64::INFINITY,
+    };
+    let share = error * greatest;
+    share.min(resolving.max(share * NARROWEST)).max(LEAST_TOLERANCE)
+}
+
+/// The stick band (m/s) that stands for true stick at this `tolerance` (N); `None` unless friction is exact.
+pub fn stick_band(scene: &Scene, tolerance: f64) -> Option<f64> {
+    let band = STICK_BANDS * tolerance / scene.drive.gain.max(f64::MIN_POSITIVE);
+    matches!(scene.friction, FrictionData::Exact { .. }).then(|| band.clamp(STICK_BAND[0], STICK_BAND[1]))
+}
+
+/// Runs the slide of `scene` with the given `gaps` (m), each step held to an error of force of `tolerance` (N).
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn run(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, tolerance: f64) -> Result<Run, SimulateError> {
+    let mut data = scene.slide_data::<f64>(gaps);
+    let stick_band = stick_band(scene, tolerance);
+    if let (FrictionData::Exact { coefficient }, Some(stick_band)) = (data.friction, stick_band) {
+        data.friction = FrictionData::Regularised { coefficient, stick_band };
+    }
+    let solved = Solved {
+        by: "desk",
+        integrator: Rodas4::NAME,
+        scalar: ScalarKind::F64,
+        step_s: None,
+        tolerance_n: Some(tolerance),
+        tolerance_m_per_s: None,
+        stick_band_m_per_s: stick_band,
+        effort: Default::default(),
+        worst_residual: 0.0,
+    };
+    let desk = Desk { scene, settings, tolerance: Tolerance::of_force(tolerance), solved };
+    Ok(match AnySlide::new(&data)? {
+        AnySlide::ThreeHalvesRegularised(slide) => desk.run(slide),
+        AnySlide::ThreeHalvesExact(slide) => desk.run(slide),
+        AnySlide::Sliding(slide) => desk.run(slide),
+        AnySlide::Sticking(slide) => desk.run(slide),
+    }?)
+}
+
+/// A run whose slide's type is to be known.
+struct Desk<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    tolerance: Tolerance,
+    solved: Solved,
+}
+
+impl Desk<'_> {
+    fn run<E: Elastic<f64>, F: Friction<f64>>(self, slide: Slide<f64, E, F>) -> Result<Run, Stopped> {
+        let Self { scene, settings, tolerance, mut solved } = self;
+        let sensitivity = Sensitivity { mass: scene.slide.mass, gain: scene.drive.gain };
+        let rest = Motion {
+            pose: Pose::nominal(),
+            velocity: SVector::zeros(),
+            acceleration: SVector::zeros(),
+            memory: slide.fresh(),
+        };
+        let mut observer = Observer::new(scene.drive, settings.run);
+        let mut keepers = Keepers::default();
+        let mut knots: Vec<Knot<[f64; 4]>> = Vec::new();
+        let start = Clock::now();
+        let duration = settings.run.duration;
+        let error = |step: &_, length| sensitivity.error(tolerance, step, length);
+        let effort = integrate::<Rodas4, _, 6>(&OutOfLine::new(slide), rest, duration, error, |t, motion| {
+            let r = motion.pose.displacement_w;
+            knots.push(Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] });
+            if t >= scene.drive.ramp_start && keepers.meet(&slide.gaps(&motion.pose)) {
+                observer.tips(t, r.z);
+            }
+            if observer.is_at_end(r.z) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        let integration = start.elapsed();
+        solved.effort = effort;
+
+        let end = end(&knots, |values| observer.is_at_end(values[3]));
+        looks(&knots, end, |t, [vz, _, _, z]| {
+            observer.observe(Instant { t, vz, force: scene.drive.force(t, vz), z });
+        });
+        let mut trajectory = Trajectory::default();
+        let times = samples(end, settings.every);
+        for (t, values) in times.clone().zip(sampled(&knots, times)) {
+            trajectory.push(t, values, scene.drive.force(t, values[0]));
+        }
+        let outcome = observer.outcome();
+        Ok(Run { trajectory, outcome, solved, trust: Trust::default(), audit: None, integration })
+    }
+}
+
+/// The keeper walls of the pins, as far as they have been free.
+#[derive(Default)]
+struct Keepers {
+    were_free: [bool; CONTACTS / 4],
+}
+
+impl Keepers {
+    /// Whether one of them, free until now, meets its pin at these `gaps` (m).
+    fn meet(&mut self, gaps: &[f64; CONTACTS]) -> bool {
+        let keepers = gaps.iter().skip(3).step_by(4);
+        let mut meets = false;
+        for (was_free, gap) in self.were_free.iter_mut().zip(keepers) {
+            meets |= *was_free && *gap <= 0.0;
+            *was_free |= *gap > 0.0;
+        }
+        meets
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfit_core::{menu::FrictionData, slide::CONTACTS};
+
+    use super::tolerance;
+    use crate::dynamics::{
+        example,
+        outcome::Verdict,
+        simulate::{Settings, simulate},
+    };
+
+    #[test]
+    fn the_stroke_ends_a_run_and_its_verdict_does_not_change_with_a_longer_one() {
+        let mut scene = example::cd_rom();
+        let gaps = scene.gaps_at(&[2.5; CONTACTS]);
+        let mut outcome = |duration: f64| {
+            scene.run.duration = duration;
+            simulate(&scene, &gaps, &Settings::desk(&scene, 1e-3)).unwrap()
+        };
+        let [run, longer] = [1.8, 3.0].map(&mut outcome);
+        assert_eq!(run, crate::dynamics::simulate::Run { integration: run.integration, ..longer });
+        let stroke = scene.run.stroke.unwrap();
+        assert_eq!((run.outcome.stroke_reached, run.outcome.verdict), (Some(true), Verdict::Runs));
+        assert!((run.outcome.end.z - stroke).abs() < 1e-9, "{:?}", run.outcome);
+        assert!(run.trajectory.z.iter().all(|z| *z <= stroke));
+        assert!(run.outcome.end.t - run.trajectory.t.last().unwrap() < 1e-3);
+    }
+
+    #[test]
+    fn figures_do_not_depend_on_how_often_a_run_is_sampled() {
+        let mut scene = example::cd_rom();
+        scene.run.duration = 1.5;
+        let gaps = scene.gaps_at(&[4.0; CONTACTS]);
+        let outcome = |every: f64| simulate(&scene, &gaps, &Settings::desk(&scene, every)).unwrap().outcome;
+        assert_eq!(outcome(1e-3), outcome(0.1));
+    }
+
+    #[test]
+    fn nothing_commanded_is_held_to_a_share_of_the_weight() {
+        let mut scene = example::cd_rom();
+        assert!((tolerance(&scene) - 1.2e-6).abs() < 1e-18);
+        scene.drive.speed = 0.0;
+        assert!((tolerance(&scene) - 0.0818 * 9.81 * 3e-7).abs() < 1e-18);
+    }
+
+    #[test]
+    fn a_narrow_stick_band_is_resolved() {
+        let mut scene = example::cd_rom();
+        scene.friction = FrictionData::Regularised { coefficient: 0.3, stick_band: 1e-7 };
+        assert!((tolerance(&scene) - 40.0 * 1e-7 / 4.0).abs() < 1e-18);
+    }
+
+    /// A slide held by friction alone: at rest for exact friction. The desk's creeps, by less than its stick band.
+    #[test]
+    fn what_exact_friction_holds_creeps_by_less_than_the_stick_band() {
+        let mut scene = example::cd_rom();
+        scene.friction = FrictionData::Exact { coefficient: 0.3 };
+        scene.drive.speed = 0.002;
+        scene.run.duration = 1.5;
+        let gaps = scene.gaps_at(&[0.0; CONTACTS]).map(|gap| gap.max(1e-5));
+        let run = simulate(&scene, &gaps, &Settings::desk(&scene, 1e-3)).unwrap();
+        let band = run.solved.stick_band_m_per_s.unwrap();
+        let creep = run.trajectory.vz.last().unwrap();
+        assert!(creep.abs() < band && band < 1e-8, "{creep} {band}");
+    }
+}

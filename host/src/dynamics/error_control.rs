@@ -1,0 +1,289 @@
+//! Error control: steps as long as their own error estimates allow, the truth that fixed steps are measured against.
+//!
+//! The steps are those of the kernel's schemes, so that no law is written twice; only their length changes. Between the
+//! ends of steps velocities and positions are cubics whose slopes come from the neighbouring ends: the accelerations
+//! themselves are no use, because a stiff contact turns a velocity's last digits into large ones. Deterministic: the same
+//! scene and tolerance give the same bits.
+
+use std::ops::ControlFlow;
+
+use slipfit_core::{
+    integrator::{Integrator, MotionOf, Step, StepOf},
+    mechanism::Mechanism,
+};
+
+use crate::system::interrupt;
+
+/// How well each step has to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Error of the drive force that a step may make (N).
+    pub force: f64,
+    /// Error of a position that a step may make (m).
+    pub position: f64,
+}
+
+impl Tolerance {
+    /// `force` (N), and what [`PLACE`] allows with it.
+    pub fn of_force(force: f64) -> Self {
+        Self { force, position: force * PLACE }
+    }
+}
+
+/// What turns an error of momentum into one of force and position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// Mass (kg).
+    pub mass: f64,
+    /// Gain of the drive (N·s/m).
+    pub gain: f64,
+}
+
+/// What is kept of a motion: some numbers that change smoothly.
+pub trait Values: Copy {
+    /// Number `k`.
+    fn get(&self, k: usize) -> f64;
+
+    /// How fast number `k` changes, where that is known.
+    fn rate(&self, _k: usize) -> Option<f64> {
+        None
+    }
+
+    /// The same numbers, each given by its index.
+    fn with(&self, value: impl Fn(usize) -> f64) -> Self;
+}
+
+impl<const K: usize> Values for [f64; K] {
+    fn get(&self, k: usize) -> f64 {
+        self[k]
+    }
+
+    fn with(&self, value: impl Fn(usize) -> f64) -> Self {
+        std::array::from_fn(value)
+    }
+}
+
+/// The end of an accepted step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knot<V> {
+    /// Time (s).
+    pub t: f64,
+    /// What is kept of the motion.
+    pub values: V,
+}
+
+impl Sensitivity {
+    /// The error of a `step` of `length` (s), of which `tolerance` allows 1.
+    pub fn error<P, R, const D: usize>(&self, tolerance: Tolerance, step: &Step<f64, P, R, D>, length: f64) -> f64 {
+        // What Newton left counts like an error of the scheme: without it, a stage that has not converged would pass.
+        let velocity_error = step.error.max(step.residual) / self.mass;
+        let place_error = step.drift.max(step.residual * length) / self.mass;
+        (self.gain * velocity_error / tolerance.force).max(place_error / tolerance.position)
+    }
+}
+
+/// What an integration took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Effort {
+    /// Accepted steps.
+    pub accepted: u32,
+    /// Refused steps.
+    pub refused: u32,
+}
+
+/// Why an integration did not come to its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stopped {
+    /// No step from this time (s) on meets the tolerance, however short.
+    Unsolved(f64),
+    /// Stopped from outside.
+    Interrupted,
+}
+
+/// Error of place (m) allowed with 1 N of error of force: 3 nm for each 0.1 mN. Errors of place last, and between tight contacts
+/// they cost more force later than those of velocity do now.
+pub const PLACE: f64 = 3e-5;
+
+/// Least step (s).
+const LEAST_STEP: f64 = 1e-12;
+
+/// Greatest step (s).
+pub const GREATEST_STEP: f64 = 0.02;
+
+/// More steps than any scene takes that can be solved; beyond, the step has stalled.
+const STEPS_MOST: u32 = 2_000_000;
+
+/// How much shorter than the estimate allows a step is.
+pub const SAFETY: f64 = 0.8;
+
+/// How much the next step may be shorter and longer. Contacts close and open too suddenly for steps that grow faster.
+pub const CHANGES: [f64; 2] = [0.2, 3.0];
+
+/// First step (s).
+pub const FIRST_STEP: f64 = 2e-5;
+
+/// Steps between two looks at whether somebody asked to stop.
+const STEPS_PER_LOOK: u32 = 256;
+
+/// Integrates `mechanism` from `start` at time 0 over `duration` (s) or until `accept` breaks, which sees the start and the
+/// motion at the end of each accepted step. A step is accepted if `error`, which also sees its length (s), is at most 1.
+///
+/// # Errors
+/// See [`Stopped`].
+pub fn integrate<I: Integrator, M: Mechanism<f64, D>, const D: usize>(
+    mechanism: &M,
+    start: MotionOf<f64, M, D>,
+    duration: f64,
+    error: impl Fn(&StepOf<f64, M, D>, f64) -> f64,
+    mut accept: impl FnMut(f64, &MotionOf<f64, M, D>) -> ControlFlow<()>,
+) -> Result<Effort, Stopped> {
+    let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
+    let mut flow = accept(t, &motion);
+    while t < duration && flow.is_continue() {
+        let tried = effort.accepted + effort.refused;
+        if tried.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
+            return Err(Stopped::Interrupted);
+        }
+        // A last step that would leave a splinter takes it along.
+        let length = if t + 1.01 * h >= duration { duration - t } else { h };
+        let step = I::step(mechanism, t, length, &motion);
+        // A step whose estimate is not a number is the worst of all.
+        let error = Some(error(&step, length)).filter(|error| error.is_finite()).unwrap_or(1e12);
+        let factor = (SAFETY / root(error.max(1e-12), I::ORDER)).clamp(CHANGES[0], CHANGES[1]);
+        h = (length * factor).clamp(LEAST_STEP, GREATEST_STEP);
+        if tried >= STEPS_MOST || (error > 1.0 && length <= LEAST_STEP) {
+            return Err(Stopped::Unsolved(t));
+        }
+        if error > 1.0 {
+            effort.refused += 1;
+            continue;
+        }
+        effort.accepted += 1;
+        t = if length == duration - t { duration } else { t + length };
+        motion = step.motion;
+        flow = accept(t, &motion);
+    }
+    Ok(effort)
+}
+
+/// The root of `x` of this order.
+fn root(x: f64, order: u32) -> f64 {
+    match order {
+        1 => x,
+        2 => libm::sqrt(x),
+        3 => libm::cbrt(x),
+        4 => libm::sqrt(libm::sqrt(x)),
+        other => libm::pow(x, 1.0 / f64::from(other)),
+    }
+}
+
+/// The values of [`Knot`] at ascending `times` (s) within the `knots`, of which there are at least two.
+pub fn sampled<V: Values>(knots: &[Knot<V>], times: impl Iterator<Item = f64>) -> Vec<V> {
+    let mut i = 0;
+    let mut cubics = Cubics::of(knots, i);
+    times
+        .map(|t| {
+            let before = i;
+            while i + 2 < knots.len() && knots[i + 1].t < t {
+                i += 1;
+            }
+            if i != before {
+                cubics = Cubics::of(knots, i);
+            }
+            cubics.at(t)
+        })
+        .collect()
+}
+
+/// The values between two knots: a cubic each, by the values and slopes at both.
+struct Cubics<V> {
+    from: f64,
+    length: f64,
+    start: V,
+    end: V,
+    /// Slopes over the whole length.
+    start_slope: V,
+    end_slope: V,
+}
+
+impl<V: Values> Cubics<V> {
+    /// Between the knots `i` and `i + 1`.
+    fn of(knots: &[Knot<V>], i: usize) -> Self {
+        let (from, to) = (knots[i], knots[i + 1]);
+        let length = to.t - from.t;
+        Self {
+            from: from.t,
+            length,
+            start: from.values,
+            end: to.values,
+            start_slope: from.values.with(|k| from.values.rate(k).unwrap_or_else(|| slope(knots, i, i, k)) * length),
+            end_slope: from.values.with(|k| to.values.rate(k).unwrap_or_else(|| slope(knots, i + 1, i, k)) * length),
+        }
+    }
+
+    /// At time `t` (s).
+    fn at(&self, t: f64) -> V {
+        let s = (t - self.from) / self.length;
+        self.start.with(|k| {
+            hermite(s, [self.start.get(k), self.end.get(k)], [self.start_slope.get(k), self.end_slope.get(k)])
+        })
+    }
+}
+
+/// The values at time `t` (s) between the knots `i` and `i + 1`.
+pub fn between<V: Values>(knots: &[Knot<V>], i: usize, t: f64) -> V {
+    Cubics::of(knots, i).at(t)
+}
+
+/// Neighbouring steps whose lengths differ by more than this factor meet at an event, such as a contact that closes: there
+/// values bend, and the slope on one side is no guide to the other.
+const EVENT: f64 = 4.0;
+
+/// Slope of value `k` at knot `i`, an end of the step from knot `of`: that of the parabola through the knot and its neighbours, or,
+/// at an event and at either end, through three knots on the step's own side; of the chord where there are only two.
+fn slope<V: Values>(knots: &[Knot<V>], i: usize, of: usize, k: usize) -> f64 {
+    let length = |j: usize| knots[j + 1].t - knots[j].t;
+    let chord = |j: usize| (knots[j + 1].values.get(k) - knots[j].values.get(k)) / length(j);
+    let last = knots.len() - 2;
+    // The step on the other side of the knot, and the next one on this side.
+    let (other, further) = if i == of { (of.checked_sub(1), Some(of + 1)) } else { (Some(of + 1), of.checked_sub(1)) };
+    let other = other.filter(|j| *j <= last);
+    let further = further.filter(|j| *j <= last);
+    let is_event = other.is_none_or(|j| !(1.0 / EVENT..=EVENT).contains(&(length(j) / length(of))));
+    match (other, further) {
+        (_, Some(j)) if is_event => chord(of) + (chord(of) - chord(j)) * length(of) / (length(j) + length(of)),
+        (Some(j), _) => (chord(j) * length(of) + chord(of) * length(j)) / (length(j) + length(of)),
+        _ => chord(of),
+    }
+}
+
+/// The cubic with the given values and slopes at 0 and 1.
+fn hermite(s: f64, [y0, y1]: [f64; 2], [d0, d1]: [f64; 2]) -> f64 {
+    let rest = 1.0 - s;
+    y0 * rest * rest * (1.0 + 2.0 * s) + y1 * s * s * (3.0 - 2.0 * s) + d0 * s * rest * rest - d1 * s * s * rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bend_between_a_long_and_a_short_step_does_not_reach_into_the_long_one() {
+        let y = |t: f64| if t < 0.4 { t * t } else { 0.16 + 7.0 * (t - 0.4) };
+        let knots: Vec<_> = [0.0, 0.2, 0.4, 0.41, 0.42, 0.44].map(|t| Knot { t, values: [y(t); 4] }).into();
+        for t in [0.25, 0.3, 0.39, 0.405, 0.43] {
+            let [found, ..] = sampled(&knots, std::iter::once(t))[0];
+            assert!((found - y(t)).abs() < 1e-14, "{t}: {found}");
+        }
+    }
+
+    #[test]
+    fn parabolas_are_met_exactly_between_uneven_knots() {
+        let y = |t: f64| 1.0 + t * (2.0 - 3.0 * t);
+        let knots: Vec<_> = [0.0, 0.1, 0.4, 0.5, 1.0].map(|t| Knot { t, values: [y(t), 0.0, t, 0.0] }).into();
+        let times = [0.05, 0.1, 0.25, 0.4, 0.45, 0.5, 0.7];
+        for (t, found) in times.into_iter().zip(sampled(&knots, times.into_iter())) {
+            assert!((found[0] - y(t)).abs() < 1e-14 && (found[2] - t).abs() < 1e-14, "{t}: {found:?}");
+        }
+    }
+}

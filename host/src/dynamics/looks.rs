@@ -1,0 +1,42 @@
+//! When a run ends, and at which instants it is looked at for its figures.
+
+use super::error_control::{Knot, Values, between};
+
+/// Instants between two knots at which a run is looked at, the second knot among them: figures are to depend neither on the
+/// lengths of steps nor on how often a run is sampled.
+const LOOKS: u32 = 4;
+
+/// When (s) the run ends: where it comes to its stroke's end, between the last two knots, or with the last.
+pub fn end<V: Values>(knots: &[Knot<V>], mut is_at_end: impl FnMut(&V) -> bool) -> f64 {
+    let last = knots.len() - 1;
+    if last == 0 || !is_at_end(&knots[last].values) {
+        return knots[last].t;
+    }
+    let [mut before, mut after] = [knots[last - 1].t, knots[last].t];
+    for _ in 0..60 {
+        let middle = 0.5 * (before + after);
+        if is_at_end(&between(knots, last - 1, middle)) { after = middle } else { before = middle }
+    }
+    after
+}
+
+/// Shows `look` the run at the times (s) at which it is looked at, up to its `end` (s).
+pub fn looks<V: Values>(knots: &[Knot<V>], end: f64, mut look: impl FnMut(f64, V)) {
+    for i in 0..knots.len() - 1 {
+        let [from, to] = [knots[i].t, knots[i + 1].t];
+        let first = if i == 0 { 0 } else { 1 };
+        for k in first..=LOOKS {
+            let t = (from + (to - from) * f64::from(k) / f64::from(LOOKS)).min(end);
+            look(t, between(knots, i, t));
+            if t == end {
+                return;
+            }
+        }
+    }
+}
+
+/// The times (s) of the samples of a run that ends at `end` (s), `every` (s) of them.
+pub fn samples(end: f64, every: f64) -> impl Iterator<Item = f64> + Clone {
+    let count = (end / every * (1.0 + 1e-12)).floor() as usize;
+    (0..=count).map(move |i| (i as f64 * every).min(end))
+}

@@ -1,0 +1,20 @@
+//! What one unit does when it is driven: its run by the desk and by the controller, and sweeps over tolerance levels.
+
+pub mod answer;
+pub mod audit;
+pub mod confirm;
+pub mod controller;
+pub mod desk;
+pub mod deviation;
+pub mod driven;
+pub mod error_control;
+#[cfg(test)]
+pub(crate) mod example;
+pub(crate) mod laws;
+pub(crate) mod looks;
+pub mod out_of_line;
+pub mod outcome;
+pub mod scheme;
+pub mod simulate;
+pub mod sweep;
+pub mod trust;

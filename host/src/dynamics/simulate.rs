@@ -1,0 +1,208 @@
+//! One unit, moved from rest: by the desk, which knows its error, or as the controller computes it.
+
+use std::time::Duration;
+
+use serde::Serialize;
+use slipfit_core::{ParameterError, slide::CONTACTS};
+use thiserror::Error;
+
+use super::{
+    audit::Audit,
+    controller, desk,
+    error_control::{Effort, Stopped},
+    outcome::{Outcome, Trajectory},
+    trust::Trust,
+};
+use crate::{
+    scene::{ControllerSpec, RunSpec, Scene},
+    show::number::ten_digits,
+};
+
+pub use super::scheme::ScalarKind;
+
+/// Who computes a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Solver {
+    /// The desk, by error-controlled steps in double precision: the error of force (N) that a step may make.
+    Desk {
+        /// Error of the drive force (N).
+        tolerance: f64,
+    },
+    /// The controller, by steps of one length.
+    Controller(ControllerSpec),
+}
+
+/// How to run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Duration and stroke.
+    pub run: RunSpec,
+    /// Interval of the samples (s).
+    pub every: f64,
+    /// Who computes.
+    pub solver: Solver,
+}
+
+impl Settings {
+    /// The desk's, for `scene`, sampled every `every` (s).
+    pub fn desk(scene: &Scene, every: f64) -> Self {
+        Self { run: scene.run, every, solver: Solver::Desk { tolerance: desk::tolerance(scene) } }
+    }
+
+    /// The controller's, for `scene`, sampled every `every` (s), a multiple of its step.
+    pub fn controller(scene: &Scene, every: f64) -> Self {
+        Self { run: scene.run, every, solver: Solver::Controller(scene.controller) }
+    }
+
+    /// All sixteen gaps (m) of `scene` at the tolerance levels `n`, as whoever computes has them: firmware computes eq. 9 in
+    /// single precision, and so does its stand-in here.
+    pub fn gaps(&self, scene: &Scene, n: &[f64; CONTACTS]) -> [f64; CONTACTS] {
+        match self.solver {
+            Solver::Controller(ControllerSpec { scalar: ScalarKind::F32, .. }) => {
+                scene.gaps_in::<f32>(n).map(f64::from)
+            }
+            Solver::Controller(_) | Solver::Desk { .. } => scene.gaps_at(n),
+        }
+    }
+
+    /// The same by `controller`.
+    pub fn by(self, controller: ControllerSpec) -> Self {
+        Self { solver: Solver::Controller(controller), ..self }
+    }
+
+    /// The same by the desk to an error of force of `tolerance` (N).
+    pub fn to(self, tolerance: f64) -> Self {
+        Self { solver: Solver::Desk { tolerance }, ..self }
+    }
+}
+
+/// What computed a run, and what it took.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Solved {
+    /// "desk" or "controller".
+    pub by: &'static str,
+    /// Scheme.
+    pub integrator: &'static str,
+    /// Number type.
+    pub scalar: ScalarKind,
+    /// Step (s) of a controller.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_s: Option<f64>,
+    /// Error of force (N) that a step of the desk may make.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance_n: Option<f64>,
+    /// Error of speed (m/s) that a step of the desk may make, for mechanisms.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance_m_per_s: Option<f64>,
+    /// Stick band (m/s) that stands for true stick at the desk; exact friction only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stick_band_m_per_s: Option<f64>,
+    /// Steps.
+    #[serde(flatten)]
+    pub effort: Effort,
+    /// Worst imbalance (N·s) that a step was left with.
+    pub worst_residual: f64,
+}
+
+impl Solved {
+    /// How the run was computed, in words.
+    pub fn describe(&self) -> String {
+        let Effort { accepted, refused } = self.effort;
+        let tolerance = match (self.tolerance_n, self.tolerance_m_per_s) {
+            (Some(force), _) => Some(format!("{force:e} N")),
+            (None, Some(speed)) => Some(format!("{speed:.1e} m/s")),
+            (None, None) => None,
+        };
+        match tolerance {
+            Some(tolerance) => format!(
+                "the desk, error-controlled to {tolerance} a step ({}, {accepted} steps, {refused} refused)",
+                self.integrator
+            ),
+            None => format!(
+                "the controller, in {accepted} steps of {} µs ({}, {})",
+                ten_digits(self.step_s.unwrap_or_default() * 1e6),
+                self.integrator,
+                self.scalar.name()
+            ),
+        }
+    }
+}
+
+/// A finished run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Samples.
+    pub trajectory: Trajectory,
+    /// Figures.
+    pub outcome: Outcome,
+    /// What computed it.
+    pub solved: Solved,
+    /// The energy account, if asked for.
+    pub audit: Option<Audit>,
+    /// How far the run can be trusted.
+    pub trust: Trust,
+    /// Wall time of the integration alone.
+    pub integration: Duration,
+}
+
+/// Why a run did not finish.
+#[derive(Debug, Error)]
+pub enum SimulateError {
+    /// A parameter is out of bounds.
+    #[error("{0}")]
+    Parameter(String),
+    /// Samples do not fall on steps.
+    #[error("samples every {every} s do not fall on steps of {step} s: --every has to be a multiple of the step")]
+    Every {
+        /// Interval of the samples (s).
+        every: f64,
+        /// Step (s).
+        step: f64,
+    },
+    /// The motion left the range of the number type.
+    #[error("the motion left the finite range at t = {time} s: take a smaller step than {step} s")]
+    NotFinite {
+        /// When (s).
+        time: f64,
+        /// Step (s).
+        step: f64,
+    },
+    /// No step is short enough.
+    #[error(
+        "no step from t = {time} s on meets the tolerance, however short: look at gaps, stiffness and friction, \
+         or allow a greater run.error"
+    )]
+    Unsolved {
+        /// When (s).
+        time: f64,
+    },
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl<S: std::fmt::Display> From<ParameterError<S>> for SimulateError {
+    fn from(error: ParameterError<S>) -> Self {
+        Self::Parameter(error.to_string())
+    }
+}
+
+impl From<Stopped> for SimulateError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Unsolved(time) => Self::Unsolved { time },
+            Stopped::Interrupted => Self::Interrupted,
+        }
+    }
+}
+
+/// Runs the slide of `scene` with the given `gaps` (m) from rest in its nominal pose.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Result<Run, SimulateError> {
+    match settings.solver {
+        Solver::Desk { tolerance } => desk::run(scene, gaps, settings, tolerance),
+        Solver::Controller(spec) => controller::run(scene, gaps, settings, spec),
+    }
+}

@@ -1,0 +1,151 @@
+//! A scene as a crate for firmware: the step of one type, so that it is compiled there and nowhere else, and one
+//! line of a profile keeps it fast in an image that is built for size.
+
+use std::path::{Path, PathBuf};
+
+use super::kernel_source::rust_source;
+use crate::{
+    mechanism,
+    mechanism::{Mechanism, RunError},
+    scene::Scene,
+};
+
+/// A crate's name that Cargo does not take.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a crate is not named {0:?}; allowed are a lower-case letter, then such letters, digits, - and _")]
+pub struct NameError(pub String);
+
+/// The name of the crate in `folder`: the folder's own.
+///
+/// # Errors
+/// [`NameError`] if Cargo would not take it.
+pub fn crate_name(folder: &Path) -> Result<String, NameError> {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let is_letter = |letter: char| letter.is_ascii_lowercase();
+    let is_good = name.starts_with(is_letter)
+        && name.chars().all(|letter| is_letter(letter) || letter.is_ascii_digit() || ['-', '_'].contains(&letter));
+    if is_good { Ok(name) } else { Err(NameError(name)) }
+}
+
+/// Files, each with its path in the crate's folder.
+pub type CrateFiles = [(PathBuf, String); 2];
+
+/// The files of the crate `name` of a slide. `core` is where slipfit-core lies; if not given, its version is.
+pub fn slide_crate(scene: &Scene, name: &str, core: Option<&Path>) -> CrateFiles {
+    crate_files(&rust_source(scene), OF_SLIDE, name, core)
+}
+
+/// The same of a mechanism.
+///
+/// # Errors
+/// If the mechanism has no run, see [`RunError`].
+pub fn mechanism_crate(mechanism: &Mechanism, name: &str, core: Option<&Path>) -> Result<CrateFiles, RunError> {
+    Ok(crate_files(&mechanism::rust_source(mechanism)?, OF_MECHANISM, name, core))
+}
+
+fn crate_files(source: &str, functions: &str, name: &str, core: Option<&Path>) -> CrateFiles {
+    let library = library(source, functions, name);
+    [(PathBuf::from("Cargo.toml"), manifest(name, core)), (Path::new("src").join("lib.rs"), library)]
+}
+
+/// What the crate of a slide has besides its module.
+const OF_SLIDE: &str = "\
+/// What changes from step to step.
+pub type State = slipfit_core::kernel::StateOf<f32, Unit, 6>;
+
+/// What a step says about itself.
+pub type Report = slipfit_core::kernel::Report<f32>;
+
+/// At rest in the nominal pose, at time 0.
+pub fn at_rest(predictor: &Predictor) -> State {
+    predictor.at_rest(slipfit_core::pose::Pose::nominal())
+}
+
+/// Moves `state` by one step of [`STEP`]: the same instructions whatever the state.
+#[inline(never)]
+pub fn step(predictor: &Predictor, state: &mut State) -> Report {
+    predictor.step(state)
+}
+
+/// The force (N) of the drive now.
+pub fn force(predictor: &Predictor, state: &State) -> f32 {
+    predictor.mechanism().drive().force(predictor.time(state.steps), state.motion.velocity.z)
+}
+
+/// Velocity of the slide (m/s) along the drive.
+pub fn velocity(state: &State) -> f32 {
+    state.motion.velocity.z
+}
+";
+
+/// The same of a mechanism, whose module has a function for each drive.
+const OF_MECHANISM: &str = "\
+/// What does not change.
+pub type Parameters = Kernel<f32, Unit<f32>, Scheme>;
+
+/// What changes from step to step.
+pub type State = StateOf<f32, Unit<f32>, DIMENSION>;
+
+/// What a step says about itself.
+pub type Report = slipfit_core::kernel::Report<f32>;
+
+/// Moves `state` by one step of [`STEP`]: the same instructions whatever the state.
+#[inline(never)]
+pub fn step(parameters: &Parameters, state: &mut State) -> Report {
+    parameters.step(state)
+}
+";
+
+fn manifest(name: &str, core: Option<&Path>) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    // As TOML has a string.
+    let core = core.map(|path| format!("path = {}", toml::Value::from(path.to_string_lossy().as_ref())));
+    let core = core.unwrap_or_else(|| format!("version = \"{version}\""));
+    format!(
+        "# Written by slipfit. In the workspace's Cargo.toml, for an image that is built for size:\n#\n\
+         # [profile.release.package.{name}]\n# opt-level = 3\n\n\
+         [package]\nname = \"{name}\"\nversion = \"{version}\"\nedition = \"2024\"\npublish = false\n\n\
+         [dependencies]\nslipfit-core = {{ {core} }}\n"
+    )
+}
+
+fn library(source: &str, functions: &str, name: &str) -> String {
+    // Its first line is a comment on the scene.
+    let (title, module) = source.split_once('\n').unwrap_or((source, ""));
+    let title = title.trim_start_matches("// ");
+    format!(
+        "//! {title}\n//!\n\
+         //! The step is compiled in this crate alone, by what the profile says of it. In an image that\n\
+         //! is built for size, or in a dev build, these lines in the workspace's Cargo.toml keep it fast:\n//!\n\
+         //! ```toml\n//! [profile.release.package.{name}]\n//! opt-level = 3\n//!\n\
+         //! [profile.dev.package.{name}]\n//! opt-level = 3\n//! ```\n#![no_std]\n#![forbid(unsafe_code)]\n{module}\n{functions}"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::{crate_name, slide_crate};
+    use crate::dynamics::example;
+
+    #[test]
+    fn a_crate_is_named_like_its_folder() {
+        assert_eq!(crate_name(Path::new("firmware/cd-rom_2")).as_deref(), Ok("cd-rom_2"));
+        for bad in ["..", "/", "Slide", "2nd", "-a", "a b", "ä"] {
+            let error = crate_name(Path::new(bad)).unwrap_err().to_string();
+            assert!(error.starts_with("a crate is not named"), "{bad}: {error}");
+        }
+    }
+
+    #[test]
+    fn says_where_core_is_and_which_line_keeps_it_fast() {
+        let files = slide_crate(&example::cd_rom(), "slide", Some(Path::new("a \"b\"/core")));
+        let manifest: toml::Table = files[0].1.parse().unwrap();
+        assert_eq!(manifest["dependencies"]["slipfit-core"]["path"].as_str(), Some("a \"b\"/core"));
+        let by_version: toml::Table = slide_crate(&example::cd_rom(), "slide", None)[0].1.parse().unwrap();
+        let version = by_version["dependencies"]["slipfit-core"]["version"].as_str();
+        assert_eq!(version, Some(env!("CARGO_PKG_VERSION")));
+        assert!(files.iter().all(|(_, text)| text.contains("[profile.release.package.slide]")));
+    }
+}

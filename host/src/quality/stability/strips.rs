@@ -1,0 +1,108 @@
+//! The stability map as a picture: a strip a factor and scheme, a cell a value. Colours that the colour-blind can tell
+//! apart (Okabe and Ito), and a letter in every cell that is not sound.
+
+use super::{FACTORS, Grade, Point, SCHEMES, tally};
+use crate::show::{
+    number::{fixed, typeset},
+    palette::{Colour, INK, PAPER},
+    svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE},
+};
+
+const LEFT: f64 = 190.0;
+const WIDTH: f64 = 900.0;
+const TOP: f64 = 92.0;
+const ROW: f64 = 13.0;
+const LABELS: f64 = 15.0;
+const GAP: f64 = 9.0;
+const NAME: f64 = 96.0;
+const LABEL: Font = Font { size: 11.0, ..PLAIN };
+
+/// Colour, letter and meaning.
+fn look(grade: Grade) -> (Colour, &'static str, &'static str) {
+    let colour = |name, shade| Colour { name, light: shade, dark: shade };
+    match grade {
+        Grade::Sound => (colour("sound", "#9fd3f0"), "", "right, no warning"),
+        Grade::Cautious => (colour("cautious", "#f0e442"), "c", "right from 50 ms on, warns"),
+        Grade::Warned => (colour("warned", "#e69f00"), "w", "off by more than 5 %, warns"),
+        Grade::Stopped => (colour("stopped", "#999999"), "x", "stopped: not finite"),
+        Grade::Silent => (colour("silent", "#b02a00"), "S", "off by more than 5 %, silent"),
+    }
+}
+
+/// The map of `single`, with the tally of `random` below, as an SVG document.
+pub fn stability_map(single: &[Point], random: &[Point], title: &str) -> String {
+    let block = ROW * SCHEMES.len() as f64 + LABELS + GAP;
+    let height = TOP + block * FACTORS.len() as f64 + if random.is_empty() { 10.0 } else { 64.0 };
+    let mut svg = Svg::new([WIDTH, height], &format!("{title}: stability map"));
+    svg.text([16.0, 26.0], title, Font { most: 80, ..TITLE });
+    let what = "stability: one factor at a time, opening of 200 ms, against a quarter of the step";
+    svg.text([16.0, 48.0], what, SUBTITLE);
+    let (start, middle, end) = (LABEL, Font { anchor: Anchor::Middle, ..LABEL }, Font { anchor: Anchor::End, ..LABEL });
+    let mut x = 16.0;
+    for grade in [Grade::Sound, Grade::Cautious, Grade::Warned, Grade::Stopped, Grade::Silent] {
+        cell(&mut svg, [x, 62.0, 14.0], grade);
+        svg.text([x + 19.0, 69.0], look(grade).2, start);
+        x += 34.0 + 5.7 * look(grade).2.len() as f64;
+    }
+    for (i, factor) in FACTORS.iter().enumerate() {
+        let top = TOP + block * i as f64;
+        svg.text([16.0, top + ROW * 0.5], &typeset(factor.name), start);
+        let values = factor.range.values();
+        let pitch = (WIDTH - 16.0 - LEFT - NAME) / values.len() as f64;
+        for (row, scheme) in SCHEMES.iter().enumerate() {
+            let y = top + ROW * row as f64;
+            svg.text([LEFT + NAME - 6.0, y + ROW * 0.5], scheme.name(), end);
+            let found = single.iter().filter(|point| point.factor == factor.name && point.integrator == scheme.name());
+            for (column, point) in found.enumerate() {
+                cell(&mut svg, [LEFT + NAME + pitch * column as f64, y, pitch - 1.0], point.grade());
+            }
+        }
+        for (column, value) in values.iter().enumerate() {
+            let x = LEFT + NAME + pitch * (column as f64 + 0.5) - 0.5;
+            svg.text([x, top + ROW * SCHEMES.len() as f64 + 7.0], &short(*value), middle);
+        }
+    }
+    if !random.is_empty() {
+        let y = height - 44.0;
+        svg.text([16.0, y - 10.0], &format!("{} random combinations of all factors", random.len()), start);
+        let mut x = 16.0;
+        let mut few = Vec::new();
+        for (grade, count) in tally(random) {
+            let width = (WIDTH - 32.0) * count as f64 / random.len() as f64;
+            if count > 0 {
+                cell(&mut svg, [x, y, width], grade);
+            }
+            if width > 40.0 {
+                svg.text([x + width / 2.0, y + 22.0], &count.to_string(), middle);
+            } else if count > 0 {
+                few.push(format!("{count} {}", look(grade).1));
+            }
+            x += width;
+        }
+        // Beside the heading, because there is no room below.
+        svg.text([WIDTH - 16.0, y - 10.0], &few.join(", "), end);
+    }
+    svg.finish()
+}
+
+fn cell(svg: &mut Svg, [x, y, width]: [f64; 3], grade: Grade) {
+    let (colour, letter, _) = look(grade);
+    svg.rectangle([x, y, width, ROW - 1.0], colour, 1.0);
+    if !letter.is_empty() && width > 8.0 {
+        let colour = if grade == Grade::Silent { PAPER } else { INK };
+        let font = Font { size: 10.0, colour, anchor: Anchor::Middle, ..PLAIN };
+        svg.text([x + width / 2.0, y + 6.0], letter, font);
+    }
+}
+
+/// Few digits: powers of ten as such, others with at most two decimals.
+fn short(value: f64) -> String {
+    let text = if value != 0.0 && !(0.01..1e5).contains(&value.abs()) {
+        format!("{value:.0e}")
+    } else {
+        let decimals = if value.abs() >= 10.0 { 0 } else { 2 };
+        let text = fixed(value, decimals);
+        if decimals > 0 { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    };
+    typeset(&text)
+}

@@ -1,0 +1,170 @@
+//! Results as CSV.
+
+use slipfit_core::{clearance::GapClass, slide::ABSENT};
+
+use super::number::ten_digits;
+use crate::{
+    dynamics::{
+        outcome::{Moment, Trajectory},
+        sweep::Sweep,
+    },
+    mechanism::Samples,
+    population::{Unit, picture::tightness},
+    quality::{precision, stability},
+    scene::Scene,
+};
+
+/// `t,vz,force,x,y,z` in s, m/s, N, m, m, m, ten digits.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn trajectory_csv(trajectory: &Trajectory) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["t", "vz", "force", "x", "y", "z"])?;
+    for (i, t) in trajectory.t.iter().enumerate() {
+        let Trajectory { vz, force, x, y, z, .. } = trajectory;
+        let columns = [*t, vz[i], force[i], x[i], y[i], z[i]];
+        writer.write_record(columns.map(ten_digits))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// Rows under named columns, ten digits; empty where a value is not a number.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn rows_csv(samples: &Samples) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&samples.columns)?;
+    for row in &samples.rows {
+        writer.write_record(row.iter().map(|x| if x.is_nan() { String::new() } else { ten_digits(*x) }))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// Every unit of a population, one line each: number, joint tightness n, figures and gaps, ten digits; empty where there is none.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn population_csv(scene: &Scene, units: &[Unit]) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let figures = [
+        "unit",
+        "n",
+        "breakaway_s",
+        "peak_force_N",
+        "settled_force_N",
+        "final_velocity_m_per_s",
+        "end_s",
+        "travel_m",
+        "verdict",
+        "at_desk",
+    ];
+    let gaps = scene.contact_names().map(|name| format!("{name} (m)"));
+    writer.write_record(figures.into_iter().map(str::to_owned).chain(gaps))?;
+    for Unit { number, gaps, outcome } in units {
+        let optional = |value: Option<f64>| value.map_or(String::new(), ten_digits);
+        let own = [
+            number.to_string(),
+            ten_digits(tightness(scene, gaps)),
+            optional(outcome.breakaway),
+            optional(outcome.peak_force),
+            optional(outcome.settled_force),
+            ten_digits(outcome.final_velocity),
+            ten_digits(outcome.end.t),
+            ten_digits(outcome.end.z),
+            outcome.verdict.to_string(),
+            outcome.at_desk.to_string(),
+        ];
+        let gaps = gaps.iter().map(|gap| optional((*gap != ABSENT).then_some(*gap)));
+        writer.write_record(own.into_iter().chain(gaps))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// Figures and the class of each gap over n, one line a level; empty where there is none.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn sweep_csv(sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let figures = [
+        "n",
+        "breakaway_s",
+        sweep.kind.choose("peak_force_N", "peak_torque_N_m"),
+        sweep.kind.choose("settled_force_N", "settled_torque_N_m"),
+        sweep.kind.choose("final_velocity_m_per_s", "final_velocity_rad_per_s"),
+        "end_s",
+        sweep.kind.choose("travel_m", "travel_rad"),
+        sweep.kind.choose("tips_m", "tips_rad"),
+        sweep.kind.choose("slows_m", "slows_rad"),
+        sweep.kind.choose("stops_m", "stops_rad"),
+        "verdict",
+    ];
+    writer.write_record(figures.into_iter().chain(sweep.gaps.iter().map(String::as_str)))?;
+    for level in &sweep.levels {
+        let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
+        let class = |class: &Option<GapClass>| class.map_or_else(String::new, |class| class.to_string());
+        let place = |moment: Option<Moment>| optional(moment.map(|moment| moment.z));
+        let figures = [
+            ten_digits(level.n),
+            optional(level.outcome.breakaway),
+            optional(level.outcome.peak_force),
+            optional(level.outcome.settled_force),
+            ten_digits(level.outcome.final_velocity),
+            ten_digits(level.outcome.end.t),
+            ten_digits(level.outcome.end.z),
+            place(level.outcome.tips),
+            place(level.outcome.slows),
+            place(level.outcome.stops),
+            level.outcome.verdict.to_string(),
+        ];
+        writer.write_record(figures.into_iter().chain(level.classes.iter().map(class)))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// Errors and run times, one line a point; empty where a run blew up.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn precision_csv(points: &[precision::Point]) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for point in points {
+        writer.serialize(point)?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// The stability map, one line a point; the indicators are empty where the motion left the finite range.
+///
+/// # Errors
+/// Those of the writer, none in memory.
+pub fn stability_csv<'a>(points: impl Iterator<Item = &'a stability::Point>) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "integrator",
+        "factor",
+        "values",
+        "grade",
+        "error",
+        "defect",
+        "filling",
+        "rise",
+        "imbalance",
+        "doubtful_force",
+        "difference",
+    ])?;
+    for point in points {
+        let values: Vec<String> = point.values.iter().map(|value| ten_digits(*value)).collect();
+        let names = [point.integrator.into(), point.factor.into(), values.join(" "), format!("{:?}", point.grade())];
+        let numbers = point.indicators.map(|at| {
+            let [error, defect, filling, rise, imbalance, doubt] =
+                [at.error, at.defect, at.filling, at.rise, at.imbalance, at.doubtful_force].map(ten_digits);
+            let difference = at.difference.map(ten_digits).unwrap_or_default();
+            [error, defect, filling, rise, imbalance, doubt, difference]
+        });
+        writer.write_record(names.iter().chain(&numbers.unwrap_or_default()))?;
+    }
+    Ok(writer.into_inner()?)
+}

@@ -1,0 +1,12 @@
+//! What people look at: charts, pictures, pages, and results as CSV.
+
+pub(crate) mod chart;
+pub mod export;
+pub mod figure;
+pub(crate) mod layout;
+pub(crate) mod markup;
+pub mod number;
+pub(crate) mod palette;
+pub mod plot;
+pub mod report;
+pub(crate) mod svg;

@@ -1,0 +1,267 @@
+//! A zone whose tilts are narrowed by another tolerance: a refinement.
+//!
+//! The place is one number u (a face) or two, x and y (an axis), over half of the zone's width; two tilts follow, in units of
+//! the same zone. With the size |·| of either, |u| and |p| + |r| of a face, the radii of an axis, the zone is
+//! |place| + |tilts| ≤ 1 and |tilts| ≤ ρ, ρ ≤ 1 the narrower width over the wider one: no corner leaves the wider zone, no
+//! tilt the narrower.
+
+use std::f64::consts::TAU;
+
+use super::ZoneRule;
+use crate::tolerance::{
+    distribution::normal::tail,
+    theory::quadrature::{Node, SIGMA_DISC, SIGMA_ZONE, piece},
+};
+
+/// What lies in a zone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nest {
+    /// A rectangular face: u and two tilts.
+    Face,
+    /// The axis of a pin or hole: x, y and two tilts.
+    Axis,
+}
+
+/// A zone with narrowed tilts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nested {
+    /// What lies in it.
+    pub of: Nest,
+    /// How it varies.
+    pub rule: ZoneRule,
+    /// ρ, more than 0 and up to 1.
+    pub tilts: f64,
+}
+
+/// Points on the rim of a disc that stand for all.
+const RIM: usize = 24;
+
+impl Nested {
+    /// How many variables it has.
+    pub fn variables(&self) -> usize {
+        self.places() + 2
+    }
+
+    /// How many of them are of the place.
+    pub fn places(&self) -> usize {
+        match self.of {
+            Nest::Face => 1,
+            Nest::Axis => 2,
+        }
+    }
+
+    /// Standard deviations of place and tilts where these are normal: those that each tolerance has alone.
+    pub fn deviations(&self) -> [f64; 2] {
+        let own = match self.of {
+            Nest::Face => SIGMA_ZONE,
+            Nest::Axis => SIGMA_DISC,
+        };
+        [own, own * self.tilts]
+    }
+
+    /// Whether its variables are independent normals: by the rules of sigma-zone and translation.
+    pub fn is_normal(&self) -> bool {
+        matches!(self.rule, ZoneRule::SigmaZone | ZoneRule::Translation)
+    }
+
+    /// How far a point reaches: at most 1 inside of the zone.
+    pub fn reach(&self, point: &[f64]) -> f64 {
+        let (place, tilts) = point.split_at(self.places());
+        let tilt = self.tilt(tilts);
+        (radius(place) + tilt).max(tilt / self.tilts)
+    }
+
+    fn tilt(&self, tilts: &[f64]) -> f64 {
+        match self.of {
+            Nest::Face => tilts.iter().map(|tilt| tilt.abs()).sum(),
+            Nest::Axis => radius(tilts),
+        }
+    }
+
+    /// The greatest value of slopes · variables in the zone whose place and tilts have grown by the factors `grown`. It lies on
+    /// the border of either part.
+    pub fn most(&self, slopes: &[f64], grown: [f64; 2]) -> f64 {
+        let (place, tilts) = slopes.split_at(self.places());
+        let place = radius(place);
+        let tilts = match self.of {
+            Nest::Face => tilts.iter().fold(0.0, |most: f64, slope| most.max(slope.abs())),
+            Nest::Axis => radius(tilts),
+        };
+        let [width, tilted] = [grown[0], (self.tilts * grown[1]).min(grown[0])];
+        (width * place).max((width - tilted) * place + tilted * tilts)
+    }
+
+    /// Corners of the zone, or points on its rims.
+    pub fn corners(&self) -> Vec<Vec<f64>> {
+        let angles = || (0..RIM).map(|k| TAU * k as f64 / RIM as f64);
+        let rim = || angles().map(|angle| [libm::cos(angle), libm::sin(angle)]);
+        let places: Vec<Vec<f64>> = match self.of {
+            Nest::Face => vec![vec![1.0], vec![-1.0]],
+            Nest::Axis => rim().map(Vec::from).collect(),
+        };
+        let tilts: Vec<[f64; 2]> = match self.of {
+            Nest::Face => vec![[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]],
+            Nest::Axis => rim().collect(),
+        };
+        let joined = |place: &[f64], part: f64, tilts: [f64; 2]| -> Vec<f64> {
+            place.iter().map(|x| x * (1.0 - part)).chain(tilts.map(|x| x * part)).collect()
+        };
+        let mut corners: Vec<Vec<f64>> = places.iter().map(|place| joined(place, 0.0, [0.0; 2])).collect();
+        let with = |place: &Vec<f64>| tilts.iter().map(|tilts| joined(place, self.tilts, *tilts)).collect::<Vec<_>>();
+        corners.extend(places.iter().flat_map(with));
+        corners
+    }
+
+    /// A point uniform in the zone from independent scores: Rosenblatt's transformation.
+    pub fn uniform(&self, scores: &[f64]) -> Vec<f64> {
+        let (place, tilts) = scores.split_at(self.places());
+        let outside = |score: f64| 2.0 * tail(score.abs());
+        let rho = self.tilts;
+        match self.of {
+            Nest::Face => {
+                // What is left of ρ beyond |p| has a share (1 − ρ)·y² + y³/3 of the volume beyond it.
+                let beyond = |y: f64| y * y * ((1.0 - rho) + y / 3.0);
+                let p = rho - inverse(beyond, rho, outside(tilts[0]) * beyond(rho));
+                let (width, most) = (1.0 - p, rho - p);
+                let r = width - libm::sqrt(width * width - (1.0 - outside(tilts[1])) * most * (2.0 * width - most));
+                let u = (1.0 - p - r).max(0.0) * (1.0 - outside(place[0]));
+                vec![u.copysign(place[0]), p.copysign(tilts[0]), r.copysign(tilts[1])]
+            }
+            Nest::Axis => {
+                // The volume up to a tilt t: t²·(1/2 − 2t/3 + t²/4).
+                let up_to = |t: f64| t * t * (0.5 - t * (2.0 / 3.0 - 0.25 * t));
+                let share = |scores: &[f64]| -libm::expm1(-0.5 * (scores[0] * scores[0] + scores[1] * scores[1]));
+                let tilt = inverse(up_to, rho, share(tilts) * up_to(rho));
+                let off = (1.0 - tilt) * libm::sqrt(share(place));
+                let along = |scores: &[f64], length: f64| {
+                    let radius = radius(scores);
+                    let scale = if radius > 0.0 { length / radius } else { 0.0 };
+                    [scores[0] * scale, scores[1] * scale]
+                };
+                along(place, off).into_iter().chain(along(tilts, tilt)).collect()
+            }
+        }
+    }
+
+    /// Weighted points of the zone with a density of the uniform or the truncated rule; the weights add up to what the density
+    /// has in the zone.
+    pub fn nodes(&self) -> Vec<Node> {
+        let [place, tilts] = self.deviations().map(|deviation| 0.5 / (deviation * deviation));
+        let uniform = self.rule == ZoneRule::UniformInZone;
+        let density = |at: &[f64; 4]| {
+            let (own, tilted) = at[..self.variables()].split_at(self.places());
+            let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+            if uniform { 1.0 } else { libm::exp(-place * square(own) - tilts * square(tilted)) }
+        };
+        let mut nodes = Vec::new();
+        match self.of {
+            Nest::Face => {
+                for (p, wp) in piece(0.0, self.tilts) {
+                    for (r, wr) in piece(0.0, self.tilts - p) {
+                        for (u, wu) in piece(0.0, 1.0 - p - r) {
+                            for octant in 0..8 {
+                                let sign = |bit: u32| if octant >> bit & 1 == 0 { 1.0 } else { -1.0 };
+                                let at = [u * sign(0), p * sign(1), r * sign(2), 0.0];
+                                nodes.push(Node { weight: wp * wr * wu * density(&at), at });
+                            }
+                        }
+                    }
+                }
+            }
+            Nest::Axis => {
+                const ANGLES: usize = 8;
+                let angles = || (0..ANGLES).map(|k| TAU * (k as f64 + 0.5) / ANGLES as f64);
+                let around = TAU / ANGLES as f64;
+                for (t, wt) in piece(0.0, self.tilts) {
+                    for (d, wd) in piece(0.0, 1.0 - t) {
+                        for (one, other) in angles().flat_map(|one| angles().map(move |other| (one, other))) {
+                            let at =
+                                [d * libm::cos(one), d * libm::sin(one), t * libm::cos(other), t * libm::sin(other)];
+                            nodes.push(Node { weight: wt * wd * t * d * around * around * density(&at), at });
+                        }
+                    }
+                }
+            }
+        }
+        nodes
+    }
+
+    /// The share of the normal rule that the truncated one keeps.
+    pub fn inside(&self) -> f64 {
+        let truncated = Self { rule: ZoneRule::Truncated, ..*self };
+        let [place, tilts] = self.deviations();
+        let peak = libm::pow(libm::sqrt(TAU) * place, self.places() as f64) * TAU * tilts * tilts;
+        truncated.nodes().iter().map(|node| node.weight).sum::<f64>() / peak
+    }
+}
+
+fn radius(vector: &[f64]) -> f64 {
+    libm::sqrt(vector.iter().map(|x| x * x).sum())
+}
+
+/// Where a function that rises from 0 to `most` has a `value`: halvings, then Newton's steps would not matter any more.
+fn inverse(function: impl Fn(f64) -> f64, most: f64, value: f64) -> f64 {
+    let (mut low, mut high) = (0.0, most);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if function(middle) < value { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Nest, Nested};
+    use crate::tolerance::model::ZoneRule;
+
+    const ALL: [(Nest, f64); 4] = [(Nest::Face, 0.3), (Nest::Face, 1.0), (Nest::Axis, 0.3), (Nest::Axis, 1.0)];
+
+    #[test]
+    fn corners_are_the_farthest_points() {
+        for (of, tilts) in ALL {
+            let zone = Nested { of, rule: ZoneRule::SigmaZone, tilts };
+            let corners = zone.corners();
+            assert!(corners.iter().all(|corner| (zone.reach(corner) - 1.0).abs() < 1e-12), "{zone:?}");
+            for slopes in [[1.0, 0.5, 2.0, 0.0], [0.1, 3.0, 0.0, 0.4], [2.0, 0.0, 0.1, 0.1]] {
+                let slopes = &slopes[..zone.variables()];
+                let value = |corner: &Vec<f64>| corner.iter().zip(slopes).map(|(x, s)| x * s).sum::<f64>();
+                let greatest = corners.iter().map(value).fold(0.0, f64::max);
+                // A rim of 24 points has all directions within 7.5°.
+                assert!(
+                    greatest <= zone.most(slopes, [1.0; 2]) + 1e-12 && greatest > 0.99 * zone.most(slopes, [1.0; 2]),
+                    "{zone:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_uniform_rule_fills_the_zone_evenly() {
+        for (of, tilts) in ALL {
+            let zone = Nested { of, rule: ZoneRule::UniformInZone, tilts };
+            let nodes = zone.nodes();
+            let total: f64 = nodes.iter().map(|node| node.weight).sum();
+            let count = zone.variables();
+            // A lattice of probabilities, by Weyl's sequences.
+            let units = 20_000;
+            let root = |k: usize| libm::sqrt([2.0, 3.0, 5.0, 7.0][k]);
+            let points = (1..=units).map(|n| {
+                let score = |k| crate::tolerance::distribution::normal::quantile((f64::from(n) * root(k)).fract());
+                zone.uniform(&(0..count).map(score).collect::<Vec<_>>())
+            });
+            let points: Vec<Vec<f64>> = points.collect();
+            assert!(points.iter().all(|point| zone.reach(point) <= 1.0 + 1e-12), "{zone:?}");
+            for k in 0..count {
+                let found = points.iter().map(|point| point[k] * point[k]).sum::<f64>() / f64::from(units);
+                let expected = nodes.iter().map(|node| node.weight * node.at[k] * node.at[k]).sum::<f64>() / total;
+                assert!((found / expected - 1.0).abs() < 0.01, "{zone:?} {k}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_unrefined_face_is_the_octahedron() {
+        let zone = Nested { of: Nest::Face, rule: ZoneRule::Truncated, tilts: 1.0 };
+        assert!((zone.inside() - crate::tolerance::sampling::draw::INSIDE).abs() < 1e-6, "{}", zone.inside());
+    }
+}

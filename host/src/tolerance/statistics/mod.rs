@@ -1,0 +1,8 @@
+//! What a sample says of the production it comes from, and how surely.
+
+pub mod binomial;
+pub mod estimate;
+pub mod interval;
+pub mod loss;
+pub(crate) mod root;
+pub mod shape;
