@@ -81,7 +81,7 @@ fn check_object(tables: &BTreeMap<String, Fields>, value: &Value, name: &str, at
 fn every_field_is_in_the_guide() {
     let tables = guide();
     let folder = tempfile::tempdir().unwrap();
-    let commands: [(&str, &[&str]); 21] = [
+    let commands: [(&str, &[&str]); 22] = [
         ("check", &["check"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
         ("check of a product", &["check", "clutch"]),
@@ -99,6 +99,10 @@ fn every_field_is_in_the_guide() {
         ("table", &["table", "--n", "0:2:1", "-o", "table.bin"]),
         ("table", &["table", "--over", "position", "--n", "0:2:1", "-o", "z.bin"]),
         ("allocate", &["allocate", "clutch-processes", "--samples", "1000"]),
+        (
+            "allocate",
+            &["allocate", "slide-processes", "--samples", "1000", "--units", "100", "--require", "malfunction=0.2"],
+        ),
         ("allocate", &["allocate", "shaft-housing", "--samples", "1000", "--require", "yield=0.99", "--csv", "c.csv"]),
         ("run", &["run", "--n", "0:2:1"]),
         ("run of a mechanism", &["run", "slider-crank", "--n", "0:1:1", "--set", "run.duration=100"]),

@@ -313,6 +313,16 @@ fn progress(what: &'static str, length: usize) -> ProgressBar {
     bar
 }
 
+/// Counts what has been done of work whose end is not known.
+fn counter(what: &'static str) -> ProgressBar {
+    let bar = ProgressBar::no_length();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {human_pos} {msg}, {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.set_message(what);
+    bar
+}
+
 /// Prints a finished text.
 fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();

@@ -16,6 +16,7 @@ pub mod part;
 pub mod picture;
 pub mod production;
 pub mod rare;
+pub mod shares;
 pub mod statistics;
 pub mod study;
 pub mod unit;

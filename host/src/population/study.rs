@@ -5,7 +5,7 @@ use super::{
     drivers::{Driver, Drivers},
     production::Production,
     simulate_units,
-    statistics::{Statistics, malfunctions},
+    statistics::{Share, Statistics, malfunctions},
 };
 use crate::{dynamics::simulate::SimulateError, scene::Scene};
 
@@ -23,6 +23,24 @@ pub struct Population {
     pub of_force: Vec<Driver>,
     /// What drives malfunction, likewise.
     pub of_malfunction: Vec<Driver>,
+}
+
+/// The share of the first `count` units of a `production` of `scene` that malfunction; see [`Population::study`].
+///
+/// # Errors
+/// See [`simulate_units`].
+pub fn share_of_malfunctions(
+    scene: &Scene,
+    production: &Production,
+    count: u64,
+    limit: Option<f64>,
+    done: impl Fn(u64) + Sync,
+) -> Result<Share, SimulateError> {
+    let mut failed = 0;
+    simulate_units(scene, production, 0..count, done, |_, units| {
+        failed += units.iter().filter(|unit| malfunctions(unit, limit)).count() as u64;
+    })?;
+    Ok(Share::new(failed, count))
 }
 
 impl Population {

@@ -228,7 +228,7 @@ pub(super) const ROOT: &[Key] = &[
             table("loss", &[key("cost"), key("at"), key("target"), key("repair")]),
         ],
     ),
-    table("allocate", &[key("yield")]),
+    table("allocate", &[key("yield"), key("malfunction"), key("force_limit")]),
     table("sum", &[key("name"), key("of")]),
     table("correlation", &[key("of"), key("coefficient")]),
     table(

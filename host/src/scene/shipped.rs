@@ -12,6 +12,7 @@ pub const SHIPPED: &[(&str, &str)] = &[
     ("clutch", include_str!("../../scenes/clutch.toml")),
     ("clutch-processes", include_str!("../../scenes/clutch-processes.toml")),
     ("shaft-housing", include_str!("../../scenes/shaft-housing.toml")),
+    ("slide-processes", include_str!("../../scenes/slide-processes.toml")),
     ("linear-chain", include_str!("../../scenes/linear-chain.toml")),
     ("three-locators", include_str!("../../scenes/three-locators.toml")),
     ("lid-on-pins", include_str!("../../scenes/lid-on-pins.toml")),

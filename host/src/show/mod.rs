@@ -1,5 +1,6 @@
 //! What people look at: charts, pictures, pages, and results as CSV.
 
+pub(crate) mod bars;
 pub(crate) mod chart;
 pub mod export;
 pub mod figure;

@@ -1,14 +1,16 @@
-//! `slipfit allocate`: the cheapest tolerances that meet requirements of the measures.
+//! `slipfit allocate`: the cheapest tolerances that meet requirements of the measures, or of what units do.
 
 mod curve;
+mod function;
 mod report;
 mod tables;
 
 use std::path::PathBuf;
 
 use clap::Args;
+use slipfit_core::sampling::stream::derived;
 
-use self::report::Report;
+use self::{function::Function, report::Report};
 use super::{Failure, SceneArguments, ThreadArguments, given, print, print_json, progress, warn};
 use crate::{
     product::{Product, costed::Costed},
@@ -31,20 +33,29 @@ use crate::{
 /// Digits of a tolerance that is written, and of one that is looked at.
 const DIGITS: usize = 6;
 const ALL_DIGITS: usize = 17;
+/// What the seed of the units is derived with that check malfunctions.
+const OTHER_UNITS: u64 = 5 << 32;
 
-/// The cheapest tolerances that meet the requirements of the measures.
+/// The cheapest tolerances that meet the requirements of the measures, or with which few enough units malfunction.
 ///
-/// A tolerance with a `cost` is chosen, the others stay. What is required stands in the scene (`require` of a measure, `yield` in
-/// `[allocate]`) or follows --require. Exits 1 where even the tightest tolerances do not meet it.
+/// A tolerance with a `cost` is chosen, the others stay. What is required stands in the scene (`require` of a measure, `yield` or
+/// `malfunction` in `[allocate]`) or follows --require. Exits 1 where even the tightest tolerances do not meet it.
 #[derive(Args)]
 #[command(mut_arg("scene", |arg| arg.default_value(None::<&str>).required(true)))]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// Requires this instead of what the scene requires, of every measure with limits: rss, rss-off-centre, worst-case,
-    /// ppm=100, ppk=1.33, or of all together: yield=0.999.
+    /// ppm=100, ppk=1.33, or of all together: yield=0.999. Or of what units do: malfunction=0.01 is the share that may crawl or
+    /// jam.
     #[arg(long, value_name = "WHAT", value_parser = kind)]
     require: Option<Required>,
+    /// The greatest force (N) that the motor has, beside --require malfunction: units that need more malfunction.
+    #[arg(long, value_name = "N", requires = "require")]
+    force_limit: Option<f64>,
+    /// Units that are simulated for every set of tolerances that is looked at.
+    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    units: u64,
     /// Units that are drawn to check the tolerances.
     #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(2..=MOST_UNITS))]
     samples: u64,
@@ -72,7 +83,8 @@ struct Required {
 }
 
 fn kind(text: &str) -> Result<Required, String> {
-    const ALLOWED: &str = "allowed are rss, rss-off-centre, worst-case, ppm=100, ppk=1.33, yield=0.999";
+    const ALLOWED: &str =
+        "allowed are rss, rss-off-centre, worst-case, ppm=100, ppk=1.33, yield=0.999, malfunction=0.01";
     let (name, number) = text.split_once('=').map_or((text, None), |(name, number)| (name, Some(number)));
     let number = number.map(|number| number.trim().parse::<f64>().map_err(|_| ALLOWED.to_owned())).transpose()?;
     let within = |low: f64, high: f64| number.filter(|number| *number > low && *number < high);
@@ -88,6 +100,10 @@ fn kind(text: &str) -> Result<Required, String> {
         ("yield", Some(_)) => {
             let share = within(0.0, 1.0).ok_or("allowed are more than 0, less than 1")?;
             Ok(Required { kind: Kind::Defects(1.0 - share), together: true })
+        }
+        ("malfunction", Some(_)) => {
+            let allowed = within(0.0, 0.5).ok_or("allowed are more than 0, less than 0.5")?;
+            Ok(Required { kind: Kind::Malfunction { allowed, force_limit: None }, together: true })
         }
         _ => Err(ALLOWED.into()),
     }
@@ -114,14 +130,20 @@ impl Arguments {
             .product
             .ok_or_else(|| Failure::Input("the scene has no product, whose tolerances could be chosen".into()))?;
         let requirements = self.requirements(&product)?;
+        if function::limit(&requirements).is_some() && file.slide.is_none() {
+            return Err(Failure::Input("the scene has no [slide], whose units could malfunction".into()));
+        }
         check_costs(&product.costed)?;
         self.scene.check_outputs(&given(outputs))?;
         let scene = Tolerances { name: &name, text: &text, overrides: &overrides, costed: &product.costed };
         let model = |tolerances: &[f64]| scene.model(tolerances);
+        let function = Function::new(&scene, self.units);
+        let malfunctions =
+            |tolerances: &[f64], limit: Option<f64>| Ok(function.share(tolerances, limit, self.seed)?.share);
         let processes: Vec<&[Process]> = product.costed.iter().map(|costed| costed.processes.as_slice()).collect();
         let start: Vec<f64> = product.costed.iter().map(|costed| costed.stated).collect();
         let work = || -> Result<(Report, Vec<f64>), Failure> {
-            let figures = OfMeasures::new(&requirements, &model, &start, self.seed)?;
+            let figures = OfMeasures::new(&requirements, &model, &start, self.seed)?.with_malfunctions(&malfunctions);
             let found = match search(&processes, &start, &figures) {
                 Err(AllocateError::Infeasible { figures: least, .. }) => {
                     return Err(Failure::Work(anyhow::anyhow!(tables::missing(
@@ -134,6 +156,11 @@ impl Arguments {
             };
             let tolerances = found.solution.tolerances.clone();
             let checked = check(&model(&tolerances)?, self.samples, self.seed)?;
+            // Units that the search has not seen: those that it has are better than others by chance.
+            let other = derived(self.seed, OTHER_UNITS);
+            let malfunctions = function::limit(&requirements).map(|limit| function.share(&tolerances, limit, other));
+            let malfunctions = malfunctions.transpose()?;
+            function.finish();
             let points = if self.csv.is_some() || self.plot.is_some() {
                 let bar = progress("cost against defects", LEVELS.len());
                 let points = cost_against_defects(&processes, &tolerances, &model, self.seed, || bar.inc(1))?;
@@ -142,6 +169,7 @@ impl Arguments {
             } else {
                 Vec::new()
             };
+            let checked = report::Checks { measures: checked, malfunctions };
             Ok((Report::new(&file.title, &product, figures.rows(), &found, &checked, points), tolerances))
         };
         let (report, tolerances) = self.threads.install(work)??;
@@ -162,6 +190,10 @@ impl Arguments {
         let limited: Vec<usize> = (0..product.model.measures.len()).filter(limited).collect();
         let requirements = match self.require {
             None => product.requirements.clone(),
+            Some(Required { kind: Kind::Malfunction { allowed, .. }, .. }) => {
+                let kind = Kind::Malfunction { allowed, force_limit: self.force_limit };
+                vec![Requirement { measure: None, kind }]
+            }
             Some(_) if limited.is_empty() => Vec::new(),
             Some(Required { kind, together: true }) => vec![Requirement { measure: None, kind }],
             Some(Required { kind, .. }) => {
@@ -169,7 +201,8 @@ impl Arguments {
             }
         };
         if requirements.is_empty() {
-            let message = "nothing is required: a measure with limits needs require = \"rss\", or give --require";
+            let message = "nothing is required: a measure with limits needs require = \"rss\", [allocate] yield or malfunction, \
+                           or give --require";
             return Err(Failure::Input(message.into()));
         }
         Ok(requirements)
@@ -197,12 +230,15 @@ struct Tolerances<'a> {
 }
 
 impl Tolerances<'_> {
+    /// The scene with these tolerances (SI).
+    fn file(&self, tolerances: &[f64]) -> Result<SceneFile, AllocateError> {
+        let text = with_tolerances(self.text, self.costed, tolerances, ALL_DIGITS);
+        SceneFile::parse(self.name, &text, self.overrides).map_err(|error| AllocateError::Model(error.into()))
+    }
+
     /// The model of the scene with these tolerances (SI).
     fn model(&self, tolerances: &[f64]) -> Result<Model, AllocateError> {
-        let text = with_tolerances(self.text, self.costed, tolerances, ALL_DIGITS);
-        let file =
-            SceneFile::parse(self.name, &text, self.overrides).map_err(|error| AllocateError::Model(error.into()))?;
-        let product = file.product.ok_or_else(|| AllocateError::Model("it has no product".into()))?;
-        Ok(product.model)
+        let product = self.file(tolerances)?.product;
+        Ok(product.ok_or_else(|| AllocateError::Model("it has no product".into()))?.model)
     }
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::{
     cli::JSON_VERSION,
+    population::statistics::Share,
     product::{Product, costed::Costed},
     scene::tolerance,
     show::number::{fixed, three_digits},
@@ -48,10 +49,20 @@ pub struct Report {
     pub samples: u64,
     /// Share of these with all measures within their limits.
     pub good: Option<f64>,
+    /// Share of other units that malfunction, where that is required.
+    pub malfunctions: Option<Share>,
     /// Cost against defects; empty unless it was asked for.
     pub curve: Vec<CurvePoint>,
     /// What to know before trusting it.
     pub warnings: Vec<String>,
+}
+
+/// What was found of the tolerances besides.
+pub struct Checks {
+    /// Of the measures.
+    pub measures: Check,
+    /// Share of other units that malfunction, where that is required.
+    pub malfunctions: Option<Share>,
 }
 
 /// A tolerance that was chosen.
@@ -82,7 +93,7 @@ pub struct Required {
     pub requirement: &'static str,
     /// lower or upper, where each limit has a figure.
     pub side: Option<&'static str>,
-    /// What was found: a tolerance or an extreme, ppm, Ppk.
+    /// What was found: a tolerance or an extreme, ppm, Ppk, percent.
     pub found: f64,
     /// What is allowed.
     pub allowed: f64,
@@ -142,9 +153,10 @@ impl Report {
         product: &Product,
         rows: &[Row],
         found: &Found,
-        checked: &Check,
+        checks: &Checks,
         points: Vec<Point>,
     ) -> Self {
+        let Checks { measures: checked, malfunctions } = checks;
         let solution = &found.solution;
         let tightest = points.last().filter(|_| points.len() < LEVELS.len());
         let out_of_reach = tightest.map(|point| format!("fewer defects than {} ppm are out of reach", point.ppm));
@@ -182,6 +194,7 @@ impl Report {
             check: checked.measures.iter().map(|of| Measured::new(&product.model, of, checked.units)).collect(),
             samples: checked.units,
             good: checked.good.map(|good| good.value),
+            malfunctions: *malfunctions,
             curve: points
                 .into_iter()
                 .map(|point| CurvePoint { ppm: point.ppm, cost: point.cost, tolerances: in_units(&point.tolerances) })
@@ -193,9 +206,22 @@ impl Report {
                 .chain(off_centre(&product.model, rows))
                 .chain(unproven(solution))
                 .chain(out_of_reach)
+                .chain(malfunctions.and_then(|share| too_many(rows, share)))
                 .collect(),
         }
     }
+}
+
+/// Where units that the search has not seen malfunction more often than is allowed.
+fn too_many(rows: &[Row], share: Share) -> Option<String> {
+    let allowed = rows.iter().find_map(|row| match row.requirement.kind {
+        Kind::Malfunction { allowed, .. } => Some(allowed),
+        _ => None,
+    })?;
+    (share.interval[0] > allowed).then(|| {
+        let [found, allowed] = [share.share, allowed].map(|share| three_digits(100.0 * share));
+        format!("{found} % of other units malfunction, {allowed} % may: simulate more with --units")
+    })
 }
 
 /// Where branch and bound was not done.
@@ -239,6 +265,7 @@ impl Required {
         let shown = row.shown(figure);
         let (factor, unit) = match (row.requirement.kind, of) {
             (Kind::Defects(_), _) => (1.0, "ppm"),
+            (Kind::Malfunction { .. }, _) => (1.0, "%"),
             (Kind::Ppk(_), _) | (_, None) => (1.0, ""),
             (_, Some(measure)) => (measure.quantity.factor(), measure.quantity.unit()),
         };
@@ -250,16 +277,17 @@ impl Required {
                 Kind::RssOffCentre => "rss-off-centre",
                 Kind::Defects(_) => "ppm",
                 Kind::Ppk(_) => "ppk",
+                Kind::Malfunction { .. } => "malfunction",
             },
             side: row.side.map(|side| ["lower", "upper"][side]),
             found: shown.found * factor,
             allowed: shown.allowed * factor,
             unit,
             price,
-            price_of: if matches!(row.requirement.kind, Kind::Defects(_)) {
-                "10 % more ppm"
-            } else {
-                "1 % wider limits"
+            price_of: match row.requirement.kind {
+                Kind::Defects(_) => "10 % more ppm",
+                Kind::Malfunction { .. } => "10 % more malfunctions",
+                _ => "1 % wider limits",
             },
         }
     }

@@ -39,11 +39,18 @@ pub fn tables(report: &Report) -> String {
     text += &text_table(&["requirement", "found", "allowed", "price", "of"], &rows);
     text += "price: what the cost falls by\n\n";
     let rows: Vec<_> = report.check.iter().map(measure).collect();
-    text += &format!("Check by the full model, {} units drawn\n", report.samples);
-    text += &text_table(
-        &["measure", "worst case", "RSS ±", "ppm by RSS", "ppm", "error", "ppm counted", "95 %", "Ppk"],
-        &rows,
-    );
+    if let Some(share) = &report.malfunctions {
+        let [found, least, most] =
+            [share.share, share.interval[0], share.interval[1]].map(|share| fixed(100.0 * share, 2));
+        text += &format!("Check by other simulated units: {found} % malfunction ({least} to {most} %)\n");
+    }
+    if !rows.is_empty() {
+        text += &format!("Check by the full model, {} units drawn\n", report.samples);
+        text += &text_table(
+            &["measure", "worst case", "RSS ±", "ppm by RSS", "ppm", "error", "ppm counted", "95 %", "Ppk"],
+            &rows,
+        );
+    }
     if let Some(good) = report.good.filter(|_| report.check.len() > 1) {
         text += &format!("any measure outside of its limits: {} ppm counted\n", per_million((1.0 - good) * 1e6));
     }
@@ -66,7 +73,11 @@ fn requirement(of: &Required) -> Vec<String> {
     let side = of.side.map(|side| format!(", {side}")).unwrap_or_default();
     let number = |value: f64| format!("{} {}", digits(value), of.unit).trim_end().to_owned();
     vec![
-        format!("{}: {}{side}", of.measure.as_deref().unwrap_or("all measures"), of.requirement),
+        format!(
+            "{}: {}{side}",
+            of.measure.as_deref().unwrap_or(if of.unit == "%" { "all units" } else { "all measures" }),
+            of.requirement
+        ),
         number(of.found),
         number(of.allowed),
         if of.price > 0.0 { three_digits(of.price) } else { "0".into() },

@@ -16,6 +16,7 @@
 //!
 //! [allocate]
 //! yield = 0.999                # share of units with all measures within their limits
+//! malfunction = 0.01           # share of units that crawl, jam, or need more than force_limit (N)
 //! ```
 //!
 //! A tolerance t costs fixed + reciprocal · (at/t)^power, or fixed + exponential · exp(−t/at). `at` is 1 mm (or 1°) and `power`
@@ -53,6 +54,8 @@ const POWER: Quantity = Quantity { units: unit::ONE, range: [0.01, 10.0] };
 const GRADE: Quantity = Quantity { units: unit::ONE, range: [1.0, 18.0] };
 const PPM: Quantity = Quantity { units: unit::ONE, range: [1e-9, 999_999.0] };
 const PPK: Quantity = Quantity { units: unit::ONE, range: [0.01, 10.0] };
+const SHARE: Quantity = Quantity { units: unit::ONE, range: [1e-6, 0.5] };
+const FORCE: Quantity = Quantity { units: unit::FORCE, range: [0.0, 1e9] };
 const YIELD: Quantity = Quantity { units: unit::ONE, range: [1e-6, 1.0 - 1e-15] };
 /// The most values of a process with steps.
 const MOST_VALUES: f64 = 10_000.0;
@@ -244,6 +247,17 @@ pub(super) fn requirements(root: &Field, measures: &[Measure]) -> Result<Vec<Req
         if let Some(field) = table.get("yield") {
             let share = field.to_number(&YIELD)?;
             found.push(Requirement { measure: None, kind: Kind::Defects(1.0 - share) });
+        }
+        let force_limit = table.get("force_limit");
+        if let Some(field) = table.get("malfunction") {
+            let allowed = field.to_number(&SHARE)?;
+            let force_limit = force_limit.map(|limit| positive(&limit, &FORCE)).transpose()?;
+            found.push(Requirement { measure: None, kind: Kind::Malfunction { allowed, force_limit } });
+        } else if let Some(limit) = force_limit {
+            let problem = Problem::Missing(format!("{}.malfunction", table.key));
+            return Err(
+                limit.error(problem, "the share of units that may malfunction, such as 0.01, beside a force limit")
+            );
         }
     }
     Ok(found)

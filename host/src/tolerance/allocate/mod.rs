@@ -16,6 +16,7 @@ pub mod requirement;
 pub mod search;
 #[cfg(test)]
 mod search_tests;
+pub mod slopes;
 #[cfg(test)]
 mod tests;
 
@@ -44,6 +45,9 @@ pub enum AllocateError {
     /// The model cannot be drawn.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// What units do is not known.
+    #[error("the units cannot be simulated: {0}")]
+    Function(Box<dyn std::error::Error + Send + Sync>),
     /// The steps came to no end.
     #[error("no tolerances were found that meet all requirements, though the tightest ones do")]
     NotFound,

@@ -63,6 +63,8 @@ pub struct Program<'a> {
     pub processes: Vec<&'a [Process]>,
     /// Rows.
     pub rows: Vec<Row>,
+    /// Tolerances to stay near to, and by which factor at most they are left; `None` for anything that processes can hold.
+    pub near: Option<(&'a [f64], f64)>,
 }
 
 /// Part of a process.
@@ -100,17 +102,15 @@ pub struct Pick {
 }
 
 impl Program<'_> {
-    /// All processes with all of their values.
+    /// All processes with all of their values that are near; where a tolerance has none of these, with all.
     pub fn whole(&self) -> Choices {
-        let pieces = |processes: &&[Process]| {
-            let span = |values: &Values| match values {
-                Values::Range(range) => Span::Range(*range),
-                Values::List(values) => Span::Points([0, values.len()]),
-            };
-            let piece = |(process, of): (usize, &Process)| Piece { process, span: span(&of.values) };
-            processes.iter().enumerate().map(piece).collect()
+        let all = [0.0, f64::INFINITY];
+        let choices = |(item, processes): (usize, &&[Process])| {
+            let near = self.near.map_or(all, |(near, factor)| [near[item] / factor, near[item] * factor]);
+            let near = pieces(processes, near);
+            if near.is_empty() { pieces(processes, all) } else { near }
         };
-        self.processes.iter().map(pieces).collect()
+        self.processes.iter().enumerate().map(choices).collect()
     }
 
     /// The tightest and the widest tolerance of a piece.
@@ -176,4 +176,22 @@ impl Program<'_> {
         };
         [of(Power::One), of(Power::Two)]
     }
+}
+
+/// The parts of processes that lie between two tolerances.
+fn pieces(processes: &[Process], [low, high]: [f64; 2]) -> Vec<Piece> {
+    let piece = |(process, of): (usize, &Process)| {
+        let span = match &of.values {
+            Values::Range([first, last]) => {
+                let [first, last] = [first.max(low), last.min(high)];
+                (first <= last).then_some(Span::Range([first, last]))
+            }
+            Values::List(values) => {
+                let [first, end] = [values.partition_point(|t| *t < low), values.partition_point(|t| *t <= high)];
+                (first < end).then_some(Span::Points([first, end]))
+            }
+        };
+        Some(Piece { process, span: span? })
+    };
+    processes.iter().enumerate().filter_map(piece).collect()
 }

@@ -7,7 +7,7 @@ use super::{
     AllocateError,
     figure::{Formula, any_defects, defects, drawn},
     program::Power,
-    search::Figures,
+    search::{Figures, Precision},
 };
 use crate::tolerance::{
     distribution::normal,
@@ -28,7 +28,17 @@ pub enum Kind {
     Defects(f64),
     /// Ppk of drawn units is at least this.
     Ppk(f64),
+    /// The share of units that malfunction is at most this, by simulation of what every one does.
+    Malfunction {
+        /// The share that is allowed.
+        allowed: f64,
+        /// The greatest force (N) that the motor has; units that need more malfunction.
+        force_limit: Option<f64>,
+    },
 }
+
+/// The share of units that malfunction with given tolerances (SI) and a motor's greatest force (N).
+pub type Malfunctions<'a> = dyn Fn(&[f64], Option<f64>) -> Result<f64, AllocateError> + Sync + 'a;
 
 /// A requirement of one measure, or of all that have limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +65,7 @@ pub struct Row {
 /// A figure in the units of what is required.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
-    /// What was found: a tolerance or an extreme (SI), ppm, Ppk.
+    /// What was found: a tolerance or an extreme (SI), ppm, Ppk, percent.
     pub found: f64,
     /// What is allowed.
     pub allowed: f64,
@@ -67,6 +77,7 @@ pub struct OfMeasures<'a> {
     /// Whether slopes describe each measure.
     described: Vec<bool>,
     model: &'a (dyn Fn(&[f64]) -> Result<Model, AllocateError> + Sync),
+    malfunctions: Option<&'a Malfunctions<'a>>,
     seed: u64,
 }
 
@@ -113,7 +124,12 @@ impl<'a> OfMeasures<'a> {
                 ),
             }
         }
-        Ok(Self { rows, described, model, seed })
+        Ok(Self { rows, described, model, malfunctions: None, seed })
+    }
+
+    /// The same, with what tells how many units malfunction.
+    pub fn with_malfunctions(self, malfunctions: &'a Malfunctions<'a>) -> Self {
+        Self { malfunctions: Some(malfunctions), ..self }
     }
 
     /// All rows, in the order of their figures.
@@ -142,7 +158,7 @@ impl<'a> OfMeasures<'a> {
                 let share = share(3.0 * deviation * allowed, room);
                 share * share
             }
-            (Kind::WorstCase | Kind::Rss | Kind::RssOffCentre, None) => f64::NAN,
+            (Kind::WorstCase | Kind::Rss | Kind::RssOffCentre, None) | (Kind::Malfunction { .. }, _) => f64::NAN,
         })
     }
 }
@@ -150,6 +166,11 @@ impl<'a> OfMeasures<'a> {
 impl Figures for OfMeasures<'_> {
     fn powers(&self) -> Vec<Power> {
         self.rows.iter().map(|row| row.requirement.kind.power()).collect()
+    }
+
+    fn precision(&self) -> Precision {
+        let counts = self.rows.iter().any(|row| matches!(row.requirement.kind, Kind::Malfunction { .. }));
+        if counts { Precision::COUNTED } else { Precision::COMPUTED }
     }
 
     fn values(&self, tolerances: &[f64]) -> Result<Vec<f64>, AllocateError> {
@@ -160,11 +181,19 @@ impl Figures for OfMeasures<'_> {
         for row in &self.rows {
             values.push(self.value(row, &model, formula.as_ref())?);
         }
-        let all = self.rows.iter().position(|row| row.requirement.measure.is_none());
-        if let Some(at) = all
+        let of_all = |pick: fn(Kind) -> bool| {
+            self.rows.iter().position(|row| row.requirement.measure.is_none() && pick(row.requirement.kind))
+        };
+        if let Some(at) = of_all(|kind| matches!(kind, Kind::Defects(_)))
             && let Kind::Defects(allowed) = self.rows[at].requirement.kind
         {
             values[at] = of_defects(any_defects(model, self.seed)?, allowed);
+        }
+        if let Some(at) = of_all(|kind| matches!(kind, Kind::Malfunction { .. }))
+            && let Kind::Malfunction { allowed, force_limit } = self.rows[at].requirement.kind
+            && let Some(malfunctions) = self.malfunctions
+        {
+            values[at] = of_defects(malfunctions(tolerances, force_limit)?, allowed);
         }
         Ok(values)
     }
@@ -189,6 +218,9 @@ impl Row {
                 Shown { found: found * 1e6, allowed: allowed * 1e6 }
             }
             Kind::Ppk(allowed) => Shown { found: allowed / root, allowed },
+            Kind::Malfunction { allowed, .. } => {
+                Shown { found: 200.0 * normal::tail(score(allowed) / root), allowed: 100.0 * allowed }
+            }
         }
     }
 
@@ -200,7 +232,7 @@ impl Row {
     /// What 1 % wider limits, or 10 % more defects, add to what the figure may be.
     pub fn relief(&self) -> f64 {
         match self.requirement.kind {
-            Kind::Defects(allowed) => {
+            Kind::Defects(allowed) | Kind::Malfunction { allowed, .. } => {
                 let [now, more] = [allowed, (1.1 * allowed).min(1.0 - f64::EPSILON)].map(score);
                 now * now / (more * more) - 1.0
             }

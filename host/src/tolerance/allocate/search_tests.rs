@@ -1,14 +1,20 @@
 //! Requirements by the full model, of scenes.
 
+use slipfit_core::sampling::{
+    normal::score,
+    stream::{Rng, unit_stream},
+};
+
 use super::{
     AllocateError,
-    cost::Process,
+    cost::{Law, Process, Values},
     requirement::{Kind, OfMeasures, Requirement},
     search::{Found, search},
 };
 use crate::{
     product::costed::Costed,
     scene::{SceneFile, shipped, with_tolerances},
+    tolerance::distribution::normal,
 };
 
 /// The cheapest tolerances of a scene, whose processes `choose` may narrow.
@@ -122,7 +128,7 @@ fn a_yield_of_several_measures() {
     let found = cheapest(&text, &[Requirement { measure: None, kind: Kind::Defects(share) }], all).unwrap();
     // Independent: 1 − (1 − p)² of both, p = 2Φ(−z) with z = 3 · 0.1/t.
     let p = 1.0 - libm::sqrt(1.0 - share);
-    let z = -crate::tolerance::distribution::normal::quantile(0.5 * p);
+    let z = -normal::quantile(0.5 * p);
     for t in &found.solution.tolerances {
         assert!((t / (0.3e-3 / z) - 1.0).abs() < 0.01, "{found:?} {z}");
     }
@@ -177,4 +183,41 @@ fn what_cannot_be_met_or_is_not_linear_is_told() {
         .replace("acos(", "abs(0.122 rad - acos(")
         .replace(") / 2))\"", ") / 2)))\"");
     assert!(matches!(cheapest(&folded, &of_first(Kind::Rss), all), Err(AllocateError::NotLinear(_))));
+}
+
+/// Units malfunction where the sum of three normal deviations (a third of each tolerance) is beyond a limit: the share that
+/// is counted among 4,096 units depends on Σt² alone, so that the optimum of RSS is theirs, t ∝ ∛b.
+#[test]
+fn shares_that_are_counted_lead_near_the_closed_form() {
+    const LIMIT: f64 = 0.1;
+    const ALLOWED: f64 = 0.02;
+    let weights = [1.0, 8.0, 27.0];
+    let law = |factor| Law::Reciprocal { fixed: 0.0, factor, unit: 1.0, power: 1.0 };
+    let processes: Vec<Vec<Process>> = weights
+        .iter()
+        .map(|b| vec![Process { name: String::new(), law: law(*b), values: Values::Range([1e-3, 1.0]) }])
+        .collect();
+    let processes: Vec<&[Process]> = processes.iter().map(Vec::as_slice).collect();
+    let mut random = unit_stream(3, 0);
+    let units: Vec<[f64; 3]> = (0..4096).map(|_| std::array::from_fn(|_| score(random.next_u64()))).collect();
+    let malfunctions = |tolerances: &[f64], limit: Option<f64>| {
+        assert_eq!(limit, Some(3.0));
+        let sum = |unit: &[f64; 3]| unit.iter().zip(tolerances).map(|(z, t)| z * t / 3.0).sum::<f64>();
+        Ok(units.iter().filter(|unit| sum(unit).abs() > LIMIT).count() as f64 / units.len() as f64)
+    };
+    let model =
+        |_: &[f64]| Ok(SceneFile::parse("x.toml", shipped("clutch").unwrap(), &[]).unwrap().product.unwrap().model);
+    let kind = Kind::Malfunction { allowed: ALLOWED, force_limit: Some(3.0) };
+    let requirement = Requirement { measure: None, kind };
+    let figures = OfMeasures::new(&[requirement], &model, &[], 1).unwrap().with_malfunctions(&malfunctions);
+    let found = search(&processes, &[0.1, 0.1, 0.1], &figures).unwrap();
+    assert!(malfunctions(&found.solution.tolerances, Some(3.0)).unwrap() <= ALLOWED);
+    // σ of the sum is the limit over the score of half the share; cost at t = k·∛b with k = 3σ/√Σb^⅔.
+    let deviation = LIMIT / -normal::quantile(0.5 * ALLOWED);
+    let k = 3.0 * deviation / libm::sqrt(1.0 + 4.0 + 9.0);
+    let cost = (1.0 + 4.0 + 9.0) / k;
+    assert!((found.solution.cost / cost - 1.0).abs() < 0.03, "{} {cost}", found.solution.cost);
+    for (t, root) in found.solution.tolerances.iter().zip([1.0, 2.0, 3.0]) {
+        assert!((t / (k * root) - 1.0).abs() < 0.2, "{:?}", found.solution.tolerances);
+    }
 }

@@ -28,7 +28,7 @@ fn closed_forms() {
         let weights: Vec<f64> = slopes.iter().map(|g| power.of(g.abs()) / power.of(limit)).collect();
         let row = Row { power, weights };
         let scale = libm::pow(row.usage(&shape), -1.0 / power.exponent());
-        let program = Program { processes: processes.iter().map(Vec::as_slice).collect(), rows: vec![row] };
+        let program = Program { processes: processes.iter().map(Vec::as_slice).collect(), rows: vec![row], near: None };
         let found = program.solve().unwrap();
         for (t, shape) in found.tolerances.iter().zip(&shape) {
             assert!((t / (scale * shape) - 1.0).abs() < 1e-9, "{power:?} {found:?}");
@@ -134,7 +134,8 @@ fn ends(processes: &[Vec<Process>], end: usize) -> Vec<f64> {
 }
 
 fn solve(processes: &[Vec<Process>], rows: &[Row]) -> Option<Solution> {
-    let found = Program { processes: processes.iter().map(Vec::as_slice).collect(), rows: rows.to_vec() }.solve()?;
+    let found = Program { processes: processes.iter().map(Vec::as_slice).collect(), rows: rows.to_vec(), near: None }
+        .solve()?;
     // It is what it says, and can be made.
     let cost: f64 = (0..processes.len()).map(|i| processes[i][found.processes[i]].law.cost(found.tolerances[i])).sum();
     assert!((cost / found.cost - 1.0).abs() < 1e-12);

@@ -1,14 +1,15 @@
 //! Pictures of an analysis: histograms, contributors, correlations. Blue and vermilion (Okabe and Ito) can be told apart by
 //! every eye, and every cell has its number, so that a grey print can be read, too.
 
-use super::{MeasureReport, Report};
+use super::{MeasureReport, Report, Share};
 use crate::{
     show::{
+        bars::{Bar, Block, HEAD, NAME, bars, document, longest},
         chart::{Chart, Look, Panel, Series},
         number::{fixed, typeset},
         palette::{INK, NEGATIVE, ON_NEGATIVE, ON_POSITIVE, POSITIVE},
         plot::{PlotError, small_chart},
-        svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE},
+        svg::{Anchor, Font, PLAIN},
     },
     tolerance::{
         counting::study::{Study, Tally},
@@ -16,10 +17,6 @@ use crate::{
     },
 };
 
-const HEAD: f64 = 66.0;
-const ROW: f64 = 20.0;
-/// The most characters of a name.
-const NAME: usize = 32;
 /// The share of a colour from which on text on it is not in the paper's ink.
 const FULL: f64 = 0.6;
 /// Bins of a tally in a class of the histogram for each step of the number of units: about as many classes as its cube
@@ -127,45 +124,13 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
 /// Shares of the contributors in the variance of every measure that varies, largest first.
 fn contributors_svg(report: &Report) -> String {
     const MOST: usize = 8;
-    let shown = |m: &MeasureReport| -> Vec<(String, f64)> {
-        let shares = m.contributors.iter().filter_map(|share| Some((share.name.clone(), share.percent?)));
-        shares.filter(|(_, percent)| percent.abs() >= 0.05).take(MOST).collect()
+    let bar = |share: &Share| Some(Bar { name: share.name.clone(), percent: share.percent?, error: None });
+    let shown = |m: &MeasureReport| Block {
+        heading: m.name.clone(),
+        bars: m.contributors.iter().filter_map(bar).filter(|bar| bar.percent.abs() >= 0.05).take(MOST).collect(),
     };
-    let blocks: Vec<_> = report.measures.iter().map(|m| (m, shown(m))).filter(|(_, s)| !s.is_empty()).collect();
-    let rows = |shares: &[(String, f64)]| ROW * (shares.len() as f64 + 1.5);
-    let tall: f64 = blocks.iter().map(|(_, shares)| rows(shares)).sum();
-    // So that a sheet of paper holds them all in a size that can be read.
-    let columns = if tall > 1000.0 { 2.0 } else { 1.0 };
-    let names = blocks.iter().flat_map(|(_, shares)| shares).map(|(name, _)| name.as_str());
-    let left = longest(names).max(100.0) + 32.0;
-    // Correlated contributors can have less than nothing, and others then more than all.
-    let percents = || blocks.iter().flat_map(|(_, shares)| shares).map(|(_, percent)| *percent);
-    let (low, high) = (percents().fold(0.0, f64::min), percents().fold(100.0, f64::max));
-    let bars = 320.0 / columns;
-    let (scale, pitch) = (bars / (high - low), left + bars + 80.0);
-    let tallest = blocks.iter().map(|(_, shares)| rows(shares)).fold(0.0, f64::max);
-    let height = HEAD + if columns > 1.0 { tall / columns + tallest } else { tall };
-    let mut svg = document([columns * pitch, height], &report.title, "contributors, % of the variance");
-    let name = Font { most: NAME, anchor: Anchor::End, ..PLAIN };
-    let (mut x, mut y) = (0.0, HEAD);
-    for (measure, shares) in blocks {
-        if y + rows(&shares) > height {
-            (x, y) = (x + pitch, HEAD);
-        }
-        svg.text([x + 16.0, y + 10.0], &measure.name, Font { bold: true, most: NAME, ..PLAIN });
-        y += ROW;
-        let zero = x + left - scale * low;
-        for (contributor, percent) in shares {
-            svg.text([x + left - 10.0, y + 10.0], &contributor, name);
-            let bar = [zero + scale * percent.min(0.0), y + 3.0, (scale * percent.abs()).max(0.5), ROW - 6.0];
-            svg.rectangle(bar, if percent < 0.0 { POSITIVE } else { NEGATIVE }, 1.0);
-            let end = zero + scale * percent.max(0.0) + 6.0;
-            svg.text([end, y + 10.0], &format!("{} %", typeset(&fixed(percent, 1))), PLAIN);
-            y += ROW;
-        }
-        y += ROW / 2.0;
-    }
-    svg.finish()
+    let blocks: Vec<Block> = report.measures.iter().map(shown).filter(|block| !block.bars.is_empty()).collect();
+    bars(&report.title, "contributors, % of the variance", &blocks)
 }
 
 /// The correlation matrix of the measures as coloured cells with numbers.
@@ -195,18 +160,6 @@ fn correlation_svg(report: &Report) -> String {
         }
     }
     svg.finish()
-}
-
-fn document([width, height]: [f64; 2], title: &str, subtitle: &str) -> Svg {
-    let mut svg = Svg::new([width, height], &format!("{title}: {subtitle}"));
-    svg.text([16.0, 26.0], title, Font { most: ((width - 32.0) / 10.8) as usize, ..TITLE });
-    svg.text([16.0, 48.0], subtitle, SUBTITLE);
-    svg
-}
-
-/// About how wide the longest of some names is.
-fn longest<'a>(names: impl Iterator<Item = &'a str>) -> f64 {
-    names.map(|name| 6.8 * name.chars().count().min(NAME) as f64).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
