@@ -141,3 +141,89 @@ fn bad_input_is_refused_and_nothing_is_written() {
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
+
+/// The scene of processes with two tolerances to choose, both of the slots' heights: the same costs left and right.
+fn two_to_choose() -> String {
+    let scene = include_str!("../scenes/slide-processes.toml");
+    let mut text = String::new();
+    let mut dimension = "";
+    let mut inside = false;
+    for line in scene.lines() {
+        if let Some(name) = line.strip_prefix("name = ") {
+            dimension = name;
+        }
+        let starts = line.starts_with("cost = ");
+        inside |= starts && !dimension.contains("slot height");
+        if !inside {
+            let line = if line == "tolerance = 0.05" && !dimension.contains("slot height") {
+                "tolerance = 0.02"
+            } else {
+                line
+            };
+            text += &format!("{line}\n");
+        }
+        inside &= !(line == "]" || (starts && line.ends_with('}')));
+    }
+    text
+}
+
+#[test]
+fn few_enough_units_malfunction_with_tolerances_that_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("two.toml"), two_to_choose()).unwrap();
+    let units = ["--units", "200", "--json"];
+    let arguments = ["allocate", "two.toml", "--write", "new.toml", "--samples", "100"];
+    let found = json(folder.path(), &[&arguments[..], &units].concat());
+    let row = &found["requirements"][0];
+    let share = row["found"].as_f64().unwrap();
+    assert!(row["requirement"] == "malfunction" && row["unit"] == "%" && share <= 5.0 && share > 2.0, "{row}");
+    // Left and right cost the same and do the same.
+    let tolerances = numbers(&found["tolerances"], "tolerance");
+    assert!(tolerances.len() == 2 && (tolerances[0] / tolerances[1] - 1.0).abs() < 0.35, "{tolerances:?}");
+    // The units that the search has seen are those of the population.
+    let population = json(folder.path(), &[&["population", "new.toml"][..], &units].concat());
+    let counted = population["statistics"]["malfunctions"]["share"].as_f64().unwrap();
+    assert!((100.0 * counted - share).abs() < 0.51, "{counted} {share}");
+    // No tolerances that are the same left and right are much cheaper.
+    let cost = |t: f64| if t <= 0.04 { 0.3 + 0.004 / t } else { 0.016 / t };
+    let spent: f64 = tolerances.iter().map(|t| cost(*t)).sum();
+    assert!((spent - found["cost"].as_f64().unwrap()).abs() < 1e-6 * spent, "{spent} {}", found["cost"]);
+    for t in
+        [0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.07, 0.1, 0.15].into_iter().filter(|t| 2.0 * cost(*t) < 0.97 * spent)
+    {
+        let set = ["left", "right"].map(|side| format!("dimension.{side} slot height.tolerance={t}"));
+        let sets = ["--set", &set[0], "--set", &set[1]];
+        let other = json(folder.path(), &[&["population", "two.toml"][..], &units, &sets].concat());
+        let counted = other["statistics"]["malfunctions"]["share"].as_f64().unwrap();
+        assert!(
+            counted > 0.05,
+            "±{t} costs {} and {counted} malfunction; found {tolerances:?} for {spent}",
+            2.0 * cost(t)
+        );
+    }
+}
+
+#[test]
+fn malfunction_that_no_tolerance_mends_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("two.toml"), two_to_choose()).unwrap();
+    // Self-locking: half of the units tip to the wrong side, however tight they are.
+    let set = ["--set", "friction.coefficient=0.32", "--units", "100"];
+    let errors = refused(folder.path(), &[&["allocate", "two.toml", "--write", "new.toml"][..], &set].concat(), 2);
+    assert!(errors.contains("--set"), "{errors}");
+    let errors = refused(folder.path(), &[&["allocate", "two.toml"][..], &set].concat(), 1);
+    assert!(errors.contains("malfunction") && errors.contains('%'), "{errors}");
+    for (arguments, code, words) in [
+        (&["allocate", "clutch-processes", "--require", "malfunction=0.05"][..], 2, "no [slide]"),
+        (&["allocate", "two.toml", "--require", "malfunction=0.7"], 2, "less than 0.5"),
+        (&["allocate", "two.toml", "--force-limit", "3"], 2, "--require"),
+    ] {
+        let errors = refused(folder.path(), arguments, code);
+        assert!(errors.contains(words), "{errors}");
+    }
+    let wrong = two_to_choose().replace("malfunction = 0.05 ", "force_limit = 3\n");
+    std::fs::write(folder.path().join("wrong.toml"), wrong).unwrap();
+    let errors = refused(folder.path(), &["allocate", "wrong.toml"], 2);
+    assert!(errors.contains("wrong.toml:") && errors.contains("malfunction"), "{errors}");
+    assert!(!folder.path().join("new.toml").exists());
+}

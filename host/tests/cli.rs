@@ -34,6 +34,9 @@ fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
     let of_slide = [
         "opening-force.svg",
         "opening-velocity.svg",
+        "population-drivers.svg",
+        "population-forces.svg",
+        "population-sides.svg",
         "population.svg",
         "report.html",
         "stroke-force.svg",

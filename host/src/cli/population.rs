@@ -1,5 +1,6 @@
 //! `slipfit population`: what every unit of a production does.
 
+pub(super) mod page;
 mod rare;
 mod words;
 
@@ -26,11 +27,15 @@ use crate::{
         rare::{Question, Rare},
         statistics::Statistics,
         study::Population,
+        telling::worst,
         unit::{UnitOutcome, at_levels},
     },
     product::Product,
     scene::Scene,
-    show::export::population_csv,
+    show::{
+        export::population_csv,
+        report::{Figure, units_page},
+    },
     system::files,
     tolerance::counting::{
         file::{Found as _, Source},
@@ -75,9 +80,12 @@ pub(super) struct Arguments {
     /// Draws malfunction by distance from nominal, tightest and loosest against random combinations, as SVG.
     #[arg(long, value_name = "FILE")]
     plot_distance: Option<PathBuf>,
+    /// Writes a page with all of it: pictures, and a player of a unit of each kind, which moves on its pins.
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
     /// Works on one of n parts, i from 1 to n, or on that of the task of a SLURM job array, if `auto`; `slipfit merge` joins
     /// them.
-    #[arg(long, value_name = "I/N", requires = "out", conflicts_with_all = ["csv", "plot", "plot_distance", "rare"])]
+    #[arg(long, value_name = "I/N", requires = "out", conflicts_with_all = ["csv", "plot", "plot_distance", "page", "rare"])]
     shard: Option<Shard>,
     /// Writes what `slipfit merge` reads.
     #[arg(long, value_name = "FILE")]
@@ -153,6 +161,7 @@ impl Arguments {
             ("--csv", &self.csv),
             ("--plot", &self.plot),
             ("--plot-distance", &self.plot_distance),
+            ("--page", &self.page),
             ("--out", &self.out),
             ("the checkpoint of --out", &partial),
         ];
@@ -192,6 +201,7 @@ impl Arguments {
             csv: None,
             plot: None,
             plot_distance: None,
+            page: None,
             shard: None,
             out: None,
             resume: false,
@@ -229,8 +239,18 @@ impl Arguments {
         }
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
+        if let Some(path) = &self.page {
+            let mut units = page::units(scene, production, &found.population, self.force_limit)?;
+            let svg = picture::hypothesis(scene, &found.hypothesis).map_err(anyhow::Error::from)?;
+            let caption =
+                "Are the tightest and the loosest combinations the most probable to malfunction? Both, against random \
+                           combinations as far from nominal."
+                    .into();
+            units.figures.push(Figure { caption, svg });
+            files::write(path, units_page(&scene.title, &self.describe(scene, &found), &units, &warnings).as_bytes())?;
+        }
         if self.scene.json {
-            let worst = worst(&found.population.units).into_iter().map(|unit| UnitReport {
+            let worst = worst(&found.population.units, WORST).into_iter().map(|unit| UnitReport {
                 number: unit.number,
                 tightness: tightness(scene, &unit.gaps),
                 outcome: unit.outcome,
@@ -287,19 +307,4 @@ impl Arguments {
         bar.finish_and_clear();
         Ok(rare)
     }
-}
-
-/// The worst units: those that come least far, then those that need most force.
-fn worst(units: &[Unit]) -> Vec<&Unit> {
-    let mut sorted: Vec<&Unit> = units.iter().collect();
-    sorted.sort_by(|one, other| {
-        let key = |unit: &Unit| (!unit.outcome.verdict.is_malfunction(), unit.outcome.end.z);
-        let ((runs, z), (other_runs, other_z)) = (key(one), key(other));
-        runs.cmp(&other_runs).then(z.total_cmp(&other_z)).then_with(|| {
-            let force = |unit: &Unit| unit.outcome.peak_force.unwrap_or(f64::NEG_INFINITY);
-            force(other).total_cmp(&force(one))
-        })
-    });
-    sorted.truncate(WORST);
-    sorted
 }

@@ -20,6 +20,7 @@ use crate::{
         confirm::confirmed,
         controller::audited,
         driven::{DriveKind, Driven},
+        film::film,
         outcome::{Outcome, Trajectory, Verdict},
         scheme::{IntegratorKind, ScalarKind},
         simulate::{Run, Settings, SimulateError, Solved, simulate},
@@ -32,12 +33,16 @@ use crate::{
     scene::{Override, Scene, parse_every},
     show::{
         export,
-        figure::unit_over_time,
+        figure::{unit_over_time, word},
         number::{fixed, level, or_dash, ten_digits},
+        player,
+        report::{Figure, Units, units_page},
     },
     system::files,
-    tolerance::model::lanes::LANES,
 };
+
+/// Moments of a run that is played.
+pub(super) const MOMENTS: usize = 160;
 
 /// Simulates one unit: velocity and drive force over time.
 ///
@@ -66,6 +71,9 @@ pub(super) struct Arguments {
     /// Draws velocity and force over time as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    /// Writes a page with the run and a player, in which the slide moves on its pins.
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
     /// Interval of the samples, such as 1ms or 500us.
     #[arg(long, default_value = "1ms", allow_hyphen_values = true)]
     every: String,
@@ -172,8 +180,8 @@ impl Arguments {
         let scene = match self.scene.load_moving(&overrides)? {
             Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
-                if self.audit || self.controller.given() || self.length.stroke {
-                    let why = "--audit, --step, --integrator, --scalar and --stroke are for slides on pins";
+                if self.audit || self.controller.given() || self.length.stroke || self.page.is_some() {
+                    let why = "--audit, --step, --integrator, --scalar, --stroke and --page are for slides on pins";
                     return Err(Failure::Input(why.into()));
                 }
                 let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot };
@@ -187,7 +195,7 @@ impl Arguments {
         let shown = if self.unit.is_some() { &n[..] } else { &self.n[..] };
         scene.check_gaps(&n).map_err(|error| Failure::Input(format!("--n: {error}")))?;
         let every = parse_every(&self.every)?;
-        self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
+        self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot), ("--page", &self.page)]))?;
         let by_controller = self.audit || self.controller.given();
         let settings = if by_controller { Settings::controller(&scene, every) } else { Settings::desk(&scene, every) };
         let gaps = settings.gaps(&scene, &n);
@@ -204,6 +212,16 @@ impl Arguments {
         }
         let mut warnings = check::warnings_of(&scene);
         warnings.extend(run.trust.warning());
+        if let Some(path) = &self.page {
+            let words = self.describe(
+                &scene,
+                &run,
+                controller.as_ref().map(Option::as_ref),
+                &gap_reports(&scene, &gaps),
+                shown,
+            );
+            files::write(path, self.moving(&scene, &run, &words, shown, &warnings)?.as_bytes())?;
+        }
         if self.scene.json {
             let controller = controller.flatten().map(|run| ControllerReport {
                 solver: run.solved,
@@ -233,6 +251,27 @@ impl Arguments {
         }
     }
 
+    /// The page of the run: what it comes to, the player, velocity and force.
+    fn moving(&self, scene: &Scene, run: &Run, words: &str, n: &[f64], remarks: &[String]) -> Result<String, Failure> {
+        let levels = <[f64; CONTACTS]>::try_from(n).unwrap_or([n.first().copied().unwrap_or_default(); CONTACTS]);
+        let film = film(scene, &scene.gaps_at(&levels), MOMENTS)?;
+        let label = format!("{}: {}", self.of(n), word(run.outcome.verdict));
+        let caption = "Travel is to scale, gaps and the motion within them are enlarged; a side is coloured where it touches its \
+                       pin, by force. The desk's run.";
+        let player = player::figure(&[player::of_slide(scene, label, &film)], caption).map_err(anyhow::Error::from)?;
+        let svg = unit_over_time(&run.trajectory, &scene.title, n).map_err(anyhow::Error::from)?;
+        let figures = vec![Figure { caption: "Velocity and force of the drive over time.".into(), svg }];
+        Ok(units_page(&scene.title, words, &Units { figures, player: Some(player) }, remarks))
+    }
+
+    /// Which unit it is.
+    fn of(&self, n: &[f64]) -> String {
+        match self.unit {
+            Some(number) => format!("unit {number}"),
+            None => format!("n = {}", n.iter().map(|&n| level(n)).collect::<Vec<_>>().join(", ")),
+        }
+    }
+
     /// The scene of unit `number` of the production, and the levels at which its gaps are those of the unit.
     fn of_production(
         &self,
@@ -246,9 +285,7 @@ impl Arguments {
         if number >= MOST_UNITS {
             return Err(Failure::Input(format!("--unit {number}: allowed is 0 to {}", MOST_UNITS - 1)));
         }
-        let first = number - number % LANES as u64;
-        let drawn = production.draw(first..number + 1);
-        let i = (number - first) as usize;
+        let (drawn, i) = production.draw_one(number);
         // What does not vary has any level.
         let n = scene.levels_of(&drawn.gaps[i]).map(Option::unwrap_or_default);
         Ok((scene_of(&scene, &drawn, i), n))
@@ -267,10 +304,7 @@ impl Arguments {
         let mut text = String::new();
         let Outcome { breakaway, peak_force, settled_force, final_velocity, end, stroke_reached, verdict, .. } =
             run.outcome;
-        let of = match self.unit {
-            Some(number) => format!("unit {number}"),
-            None => format!("n = {}", n.iter().map(|&n| level(n)).collect::<Vec<_>>().join(", ")),
-        };
+        let of = self.of(n);
         let way = on_the_way(DriveKind::Pushes, &run.outcome);
         let _ = writeln!(text, "{}, {of}\n", scene.title);
         let _ = writeln!(text, "Verdict         {verdict}{}", why_undecided(scene, verdict));

@@ -71,11 +71,28 @@ pub fn stick_band(scene: &Scene, tolerance: f64) -> Option<f64> {
     matches!(scene.friction, FrictionData::Exact { .. }).then(|| band.clamp(STICK_BAND[0], STICK_BAND[1]))
 }
 
+/// Sees the time (s), the velocity along z (m/s), the pose and the gaps (m) at the end of every step.
+pub type See<'a> = &'a mut dyn FnMut(f64, f64, &Pose<f64>, &[f64; CONTACTS]);
+
 /// Runs the slide of `scene` with the given `gaps` (m), each step held to an error of force of `tolerance` (N).
 ///
 /// # Errors
 /// See [`SimulateError`].
 pub fn run(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, tolerance: f64) -> Result<Run, SimulateError> {
+    seen(scene, gaps, settings, tolerance, None)
+}
+
+/// The same, with somebody who sees where the slide is.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn seen<'a>(
+    scene: &'a Scene,
+    gaps: &[f64; CONTACTS],
+    settings: &'a Settings,
+    tolerance: f64,
+    see: Option<See<'a>>,
+) -> Result<Run, SimulateError> {
     let mut data = scene.slide_data::<f64>(gaps);
     let stick_band = stick_band(scene, tolerance);
     if let (FrictionData::Exact { coefficient }, Some(stick_band)) = (data.friction, stick_band) {
@@ -92,7 +109,7 @@ pub fn run(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, tolerance
         effort: Default::default(),
         worst_residual: 0.0,
     };
-    let desk = Desk { scene, settings, tolerance: Tolerance::of_force(tolerance), solved };
+    let desk = Desk { scene, settings, tolerance: Tolerance::of_force(tolerance), solved, see };
     Ok(match AnySlide::new(&data)? {
         AnySlide::ThreeHalvesRegularised(slide) => desk.run(slide),
         AnySlide::ThreeHalvesExact(slide) => desk.run(slide),
@@ -107,11 +124,12 @@ struct Desk<'a> {
     settings: &'a Settings,
     tolerance: Tolerance,
     solved: Solved,
+    see: Option<See<'a>>,
 }
 
 impl Desk<'_> {
     fn run<E: Elastic<f64>, F: Friction<f64>>(self, slide: Slide<f64, E, F>) -> Result<Run, Stopped> {
-        let Self { scene, settings, tolerance, mut solved } = self;
+        let Self { scene, settings, tolerance, mut solved, mut see } = self;
         let sensitivity = Sensitivity { mass: scene.slide.mass, gain: scene.drive.gain };
         let rest = Motion {
             pose: Pose::nominal(),
@@ -128,6 +146,9 @@ impl Desk<'_> {
         let effort = integrate::<Rodas4, _, 6>(&OutOfLine::new(slide), rest, duration, error, |t, motion| {
             let r = motion.pose.displacement_w;
             knots.push(Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] });
+            if let Some(see) = &mut see {
+                see(t, motion.velocity.z, &motion.pose, &slide.gaps(&motion.pose));
+            }
             if t >= scene.drive.ramp_start && keepers.meet(&slide.gaps(&motion.pose)) {
                 observer.tips(t, r.z);
             }

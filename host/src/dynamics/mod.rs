@@ -10,6 +10,7 @@ pub mod driven;
 pub mod error_control;
 #[cfg(test)]
 pub(crate) mod example;
+pub mod film;
 pub(crate) mod laws;
 pub(crate) mod looks;
 pub mod out_of_line;

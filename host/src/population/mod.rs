@@ -19,6 +19,7 @@ pub mod rare;
 pub mod shares;
 pub mod statistics;
 pub mod study;
+pub mod telling;
 pub mod unit;
 
 use pulp::{Simd, WithSimd};

@@ -145,6 +145,12 @@ impl<'a> Production<'a> {
         self.assembled(numbers, columns)
     }
 
+    /// Units among which is that of this `number`, and its place among them.
+    pub fn draw_one(&self, number: u64) -> (Drawn, usize) {
+        let first = number - number % LANES as u64;
+        (self.draw(first..number + 1), (number - first) as usize)
+    }
+
     /// How many independent standard normal scores a unit has.
     pub fn scores(&self) -> usize {
         self.sources.iter().map(|source| source.draw.dimensions()).sum()

@@ -8,6 +8,7 @@ pub(crate) mod layout;
 pub(crate) mod markup;
 pub mod number;
 pub(crate) mod palette;
+pub mod player;
 pub mod plot;
 pub mod report;
 pub(crate) mod svg;

@@ -12,8 +12,8 @@ use std::{
 const TARGETS: [&str; 1] = ["thumbv7em-none-eabihf"];
 
 /// Programs that tests run, and the Debian packages that have them.
-const PROGRAMS: [(&str, &str); 2] =
-    [("qemu-system-arm", "qemu-system-arm"), ("arm-none-eabi-gcc", "gcc-arm-none-eabi")];
+const PROGRAMS: [(&str, &str); 3] =
+    [("qemu-system-arm", "qemu-system-arm"), ("arm-none-eabi-gcc", "gcc-arm-none-eabi"), ("chromium", "chromium")];
 
 /// The root of the repository.
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");

@@ -53,8 +53,8 @@ pub(super) struct Arguments {
     /// The greatest force (N) that the motor has, beside --require malfunction: units that need more malfunction.
     #[arg(long, value_name = "N", requires = "require")]
     force_limit: Option<f64>,
-    /// Units that are simulated for every set of tolerances that is looked at.
-    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    /// Units that are simulated for every set of tolerances that is looked at, where malfunction is what counts.
+    #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
     units: u64,
     /// Units that are drawn to check the tolerances.
     #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(2..=MOST_UNITS))]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Arguments, Found, LevelReport, rare, worst};
+use super::{Arguments, Found, LevelReport, WORST, rare, worst};
 use crate::{
     cli::{simulate::why_undecided, text_table},
     dynamics::outcome::Verdict,
@@ -65,7 +65,7 @@ impl Arguments {
         let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
         let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
         text += &found.rare.as_ref().map(rare::describe).unwrap_or_default();
-        let rows: Vec<Vec<String>> = worst(all)
+        let rows: Vec<Vec<String>> = worst(all, WORST)
             .into_iter()
             .map(|unit| {
                 let outcome = unit.outcome;

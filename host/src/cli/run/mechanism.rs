@@ -92,6 +92,7 @@ impl Arguments {
                 worst_force_error: table.worst_error_in_use[0],
                 worst_velocity_error: table.worst_error_in_use[1],
             }),
+            units: None,
             production: production.as_ref(),
             notes: &warnings,
         });

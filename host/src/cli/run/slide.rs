@@ -12,7 +12,7 @@ use super::{
 use crate::{
     cli::{
         Failure, JSON_VERSION, check,
-        population::{percent, strongest},
+        population::{page, percent, strongest},
         print, print_json, progress,
         simulate::why_undecided,
         sweep::{LevelReport, answer, doubts, for_machines},
@@ -31,30 +31,21 @@ use crate::{
         force_table::{Demand, ForceTable},
     },
     mechanism::{closing::derived, self_locking::guide},
-    population::{
-        picture::forces as population, production::Production as DrawnProduction, statistics::Statistics,
-        study::Population,
-    },
+    population::{production::Production as DrawnProduction, statistics::Statistics, study::Population},
     product::Product,
     scene::Scene,
     show::{
         export::sweep_csv,
         figure::{forces, velocities, verdicts},
         number::{fixed, per_million},
-        report::{Clearances, Figure, Flash, Production, ReportInput, report},
+        report::{Clearances, Figure, Flash, Production, ReportInput, Units, report},
     },
     tolerance::report::Report as Measures,
 };
 
 /// The pictures.
-const FIGURES: [&str; 6] = [
-    "verdict.svg",
-    "opening-velocity.svg",
-    "opening-force.svg",
-    "stroke-velocity.svg",
-    "stroke-force.svg",
-    "population.svg",
-];
+const FIGURES: [&str; 5] =
+    ["verdict.svg", "opening-velocity.svg", "opening-force.svg", "stroke-velocity.svg", "stroke-force.svg"];
 
 /// Units of the production that are simulated where no number is given.
 const UNITS: u64 = 256;
@@ -85,6 +76,8 @@ struct Simulated {
     stroke: Option<Sweep>,
     /// Units of the production over the same run.
     population: Population,
+    /// The same for the page.
+    units: Units,
 }
 
 impl Simulated {
@@ -96,7 +89,7 @@ impl Simulated {
 
 impl Arguments {
     pub(super) fn run_slide(&self, scene: &Scene, product: Option<&Product>) -> Result<(), Failure> {
-        self.written(scene, product, &FIGURES, |output, production| {
+        self.written(scene, product, &[FIGURES.as_slice(), &page::FIGURES].concat(), |output, production| {
             self.fill_with_slide(output, scene, product, production)
         })
     }
@@ -138,6 +131,7 @@ impl Arguments {
                 n: derived(scene, 0.0).tightest().map_or(0.0, |tightest| (tightest.n * 100.0).round() / 100.0),
             },
             flash: Some(Flash { bytes: simulated.table.bytes.len(), worst_force_error, worst_velocity_error }),
+            units: Some(&simulated.units),
             production: production.as_ref(),
             notes: &notes,
         });
@@ -147,6 +141,8 @@ impl Arguments {
             (SWEEP.into(), sweep_csv(simulated.judged())?),
         ];
         files.extend(figures.into_iter().map(|(name, figure)| (name.to_owned(), figure.svg.into_bytes())));
+        let of_units = page::FIGURES.iter().zip(&simulated.units.figures);
+        files.extend(of_units.map(|(name, figure)| ((*name).to_owned(), figure.svg.clone().into_bytes())));
         files.extend(of_production(production.as_ref())?);
         warnings.extend(output.strangers(&files));
         let files = output.write(&files)?;
@@ -187,7 +183,8 @@ impl Arguments {
             let unit = |n| whole.level(n, whole.motion(1e-3));
             let stroke = duration.map(|_| sweep(&whole, &levels, Keep::Samples, unit, || bar.inc(1)));
             let population = Population::study(&whole, &production, units, None, |units| bar.inc(units))?;
-            Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()?, population })
+            let units = page::units(&whole, &production, &population, None)?;
+            Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()?, population, units })
         })??;
         bar.finish_and_clear();
         Ok(made)
@@ -271,10 +268,6 @@ fn figures(scene: &Scene, simulated: &Simulated) -> Result<Vec<(&'static str, Fi
                        Behind: how many units of the production are drawn at that level, if its gaps move together.";
         figures.push((FIGURES[0], captioned(caption, verdicts(simulated.judged(), title))?));
     }
-    let caption = "Every mark is a unit of the production, drawn with gaps of its own, over the same run. No level stands for it: \
-                   units of the same mean tightness run, crawl and jam.";
-    let units = population(scene, &simulated.population.units, None);
-    figures.push((FIGURES[5], captioned(caption, units)?));
     let caption = "The opening: how fast the slide moves while the drive starts. Compressed gaps are released in the first \
                    milliseconds; from the ramp's start on the slide breaks away, the earlier the less it takes.";
     figures.push((FIGURES[1], captioned(caption, velocities(&simulated.opening, title))?));

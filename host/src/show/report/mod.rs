@@ -1,4 +1,4 @@
-//! One self-contained page: figures and tables of a sweep, without scripts or anything from outside.
+//! Self-contained pages: figures and tables, and a player where units are simulated; nothing from outside.
 //!
 //! The same input gives the same bytes; there is no date on the page.
 
@@ -8,7 +8,7 @@ mod production;
 
 use self::html::{figure, list, marked, optional, real, table, tr, typed};
 pub use self::production::Production;
-use super::{markup::escape, palette::style_sheet};
+use super::{markup::escape, palette::style_sheet, player};
 use crate::{
     dynamics::{
         driven::DriveKind,
@@ -32,6 +32,8 @@ pub struct ReportInput<'a> {
     pub figures: &'a [Figure],
     /// The gaps.
     pub clearances: Clearances<'a>,
+    /// What units of the production do, if these were simulated.
+    pub units: Option<&'a Units>,
     /// How the product's measures vary, if the scene has a product.
     pub production: Option<&'a Production>,
     /// The flash table, if one was made.
@@ -47,6 +49,15 @@ pub struct Figure {
     pub caption: String,
     /// An SVG document without XML declaration, as [`super::plot`] makes it; it goes onto the page as it is.
     pub svg: String,
+}
+
+/// What units drawn one by one do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Units {
+    /// Pictures, in order.
+    pub figures: Vec<Figure>,
+    /// A player, as [`super::player::figure`] makes it.
+    pub player: Option<String>,
 }
 
 /// Whose gaps are shown.
@@ -76,12 +87,12 @@ pub struct Flash {
 
 /// The page as HTML.
 pub fn report(input: &ReportInput) -> String {
-    let title = escape(input.title);
     let (first, others) = input.figures.split_at(input.figures.len().min(1));
     let sections = [
         verdict(input.answer),
         first.iter().map(|Figure { caption, svg }| figure(caption, svg)).collect(),
         notes(input.notes),
+        input.units.map(units).unwrap_or_default(),
         figures(others),
         levels(input.sweep),
         summary(input),
@@ -89,15 +100,33 @@ pub fn report(input: &ReportInput) -> String {
         clearances::section(&input.clearances, input.production.is_some()),
         input.flash.as_ref().map(|of| flash(input.sweep.kind, of)).unwrap_or_default(),
     ];
+    page(input.title, &sections.concat(), input.units)
+}
+
+/// A page of a population: what it comes to, as plain lines, then pictures and player.
+pub fn units_page(title: &str, answer: &str, of: &Units, remarks: &[String]) -> String {
+    page(title, &[verdict(answer), notes(remarks), units(of)].concat(), Some(of))
+}
+
+/// A page with these sections, and with what moves the player of `units`.
+fn page(title: &str, sections: &str, units: Option<&Units>) -> String {
+    let title = escape(title);
+    let plays = units.is_some_and(|units| units.player.is_some());
+    let (style, script) =
+        if plays { (player::STYLE, format!("<script>\n{}</script>\n", player::SCRIPT)) } else { ("", String::new()) };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n\
-         <style>\n{}{}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n\
-         {}</main>\n</body>\n</html>\n",
+         <style>\n{}{}{style}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n\
+         {sections}</main>\n{script}</body>\n</html>\n",
         style_sheet(),
         include_str!("page.css"),
-        sections.concat(),
     )
+}
+
+fn units(Units { figures, player }: &Units) -> String {
+    let figures: String = figures.iter().map(|Figure { caption, svg }| figure(caption, svg)).collect();
+    format!("<h2>What every unit does</h2>\n{}{figures}", player.as_deref().unwrap_or_default())
 }
 
 /// The answer, line by line.
@@ -222,6 +251,7 @@ mod tests {
             answer: "n = 1 … 2 runs & <b>\nCloses first",
             figures: &figures,
             clearances: Clearances::Pins { scene: &scene, n: 3.43 },
+            units: None,
             production: None,
             flash,
             notes: &notes,
@@ -318,6 +348,7 @@ mod tests {
             answer: "",
             figures: &[],
             clearances: Clearances::Pins { scene: &scene, n: 0.0 },
+            units: None,
             production,
             flash,
             notes: &[],

@@ -1,0 +1,161 @@
+//! A player for a page: a mechanism that moves on its joints, gaps enlarged, contacts coloured by force.
+//!
+//! The head of `player.js` says what every field is and in which units; the script draws what it is given, the page needs
+//! nothing else.
+
+mod slide;
+
+use serde::{Serialize, Serializer};
+
+use super::markup::escape;
+
+pub use slide::run as of_slide;
+
+/// The script, once a page.
+pub const SCRIPT: &str = include_str!("player.js");
+/// Its style.
+pub const STYLE: &str = include_str!("player.css");
+
+/// A run to be played.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Run {
+    /// Title of the picture.
+    pub title: String,
+    /// Which of the runs it is.
+    pub label: String,
+    /// Times (ms), ascending, at least two.
+    pub t: Series,
+    /// From which sides it is seen.
+    pub views: Vec<View>,
+    /// Bodies.
+    pub bodies: Vec<Body>,
+    /// Joints with play.
+    pub joints: Vec<Joint>,
+    /// Curves.
+    pub plots: Vec<Plot>,
+    /// Moments.
+    pub events: Vec<Event>,
+}
+
+/// One number a frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series(pub Vec<f64>);
+
+/// A number that never changes stands alone.
+impl Serialize for Series {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0.first() {
+            Some(first) if self.0.iter().all(|value| value == first) => serializer.serialize_f64(*first),
+            _ => self.0.serialize(serializer),
+        }
+    }
+}
+
+/// A side.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct View {
+    /// Its name.
+    pub name: &'static str,
+    /// The axes to the right and upwards.
+    pub axes: [&'static str; 2],
+}
+
+/// A body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// Centre of mass (mm) in the drawn pose.
+    pub at: [f64; 3],
+    /// Closed polygons (mm) in the drawn pose.
+    pub outline: Vec<Vec<[f64; 3]>>,
+    /// Motion at true scale.
+    pub travel: Motion,
+    /// Motion that is enlarged.
+    pub sway: Motion,
+    /// Whether it is part of the frame.
+    pub fixed: bool,
+}
+
+/// Displacement (mm) and rotation vector (rad).
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Motion {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    x: Option<Series>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    y: Option<Series>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    z: Option<Series>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ax: Option<Series>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ay: Option<Series>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    az: Option<Series>,
+}
+
+/// A joint with play.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Joint {
+    /// Its name.
+    pub name: String,
+    /// The pin (mm) in the drawn pose.
+    pub at: [f64; 3],
+    /// The body that carries the pin, and the one that carries the gap.
+    pub between: [&'static str; 2],
+    /// The axes of the plane in which the gap lies.
+    pub axes: [&'static str; 2],
+    /// Limits (mm) of the pin's place: left, right, low, high; open where there is none.
+    #[serde(rename = "box")]
+    pub limits: [Option<f64>; 4],
+    /// The pin's place (mm) along the two axes.
+    pub pin: [Series; 2],
+    /// Its contacts.
+    pub contacts: Vec<Contact>,
+}
+
+/// A side of a joint.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Contact {
+    /// left, right, low or high.
+    pub side: &'static str,
+    /// What the side is called.
+    pub name: &'static str,
+    /// How hard (N) it is pressed.
+    pub force: Series,
+}
+
+/// A curve.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plot {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Values.
+    pub values: Series,
+}
+
+/// A moment to mark.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Event {
+    /// When (ms).
+    pub t: f64,
+    /// What happens.
+    pub name: &'static str,
+}
+
+/// The figure of some `runs` of one mechanism, at least one, with a caption.
+///
+/// # Errors
+/// If a number is not finite.
+pub fn figure(runs: &[Run], caption: &str) -> Result<String, serde_json::Error> {
+    // The end of a script's element must not stand in it.
+    let data = serde_json::to_string(runs)?.replace("</", "<\\/");
+    Ok(format!(
+        "<figure class=\"player\">\n<script type=\"application/json\">{data}</script>\n\
+         <noscript>The player needs a script, which this page holds but the reader does not run.</noscript>\n\
+         <figcaption>{}</figcaption>\n</figure>\n",
+        escape(caption)
+    ))
+}
