@@ -32,20 +32,21 @@ fn blocks(page: &str) -> impl Iterator<Item = (&str, &str)> {
     page.split("```").skip(1).step_by(2).filter_map(|block| block.split_once('\n'))
 }
 
-/// What a command prints, errors and warnings included. What a run took is another time every time.
-fn printed(folder: &Path, command: &str) -> String {
+/// What a command prints, errors and warnings included, and whether it succeeded. What a run took is another time every time.
+fn printed(folder: &Path, command: &str) -> (String, bool) {
     let program = Path::new(env!("CARGO_BIN_EXE_slipfit")).parent().unwrap();
     let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
     let output =
         Command::new("sh").current_dir(folder).env("PATH", path).args(["-c", &format!("{command} 2>&1")]).output();
-    let text = String::from_utf8(output.unwrap().stdout).unwrap();
+    let output = output.unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
     let lines = text.lines().map(|line| match line.rsplit_once(") in ") {
         Some((start, took)) if line.starts_with("Computed by") && took.ends_with("ms") => {
             format!("{start}) in [..] ms")
         }
         _ => line.trim_end().to_owned(),
     });
-    lines.map(|line| line + "\n").collect()
+    (lines.map(|line| line + "\n").collect(), output.status.success())
 }
 
 /// Whether `line` is as `expected`, in which `[..]` stands for any characters.
@@ -107,8 +108,8 @@ fn follow(page: &Path) -> String {
                     // Installing and testing take cargo.
                     if !command.is_empty() && !command.starts_with("cargo ") {
                         assert!(command.starts_with("slipfit "), "{}: {command}", page.display());
-                        let printed = printed(folder.path(), command);
-                        assert!(!printed.starts_with("error"), "{}: {command}: {printed}", page.display());
+                        let (printed, succeeded) = printed(folder.path(), command);
+                        assert!(succeeded, "{}: {command}: {printed}", page.display());
                         let _ = write!(outputs, "$ {command}\n{printed}\n");
                     }
                 }
@@ -116,9 +117,10 @@ fn follow(page: &Path) -> String {
             ("console", _) if block.contains("$ slipfit ") => {
                 for shown in block.split("$ ").skip(1) {
                     let (command, expected) = shown.split_once('\n').unwrap();
-                    let printed = printed(folder.path(), command.split("  #").next().unwrap().trim());
+                    let (printed, succeeded) = printed(folder.path(), command.split("  #").next().unwrap().trim());
                     assert!(
-                        are_lines(&lines_of(expected), &lines_of(&printed)),
+                        succeeded != expected.starts_with("error")
+                            && are_lines(&lines_of(expected), &lines_of(&printed)),
                         "{}: {command}\nprints\n{printed}\nand not\n{expected}",
                         page.display()
                     );
