@@ -51,7 +51,8 @@ impl<S: Scalar> Blocks<S> {
         Self { a: Matrix3::from_diagonal(&a), b: zero, c: zero, d: Matrix3::from_diagonal(&d) }
     }
 
-    /// Adds what the force −`matrix`·(v + ω × `lever`), acting at `lever`, means for force and torque by v and ω.
+    /// Adds the Jacobian of a damper at a point of the body: its force −`matrix`·(v + ω × `lever`) acts at `lever`, from the
+    /// centre of mass, and also exerts a torque. The blocks are minus the derivatives of force and torque by v and ω.
     #[inline(always)]
     pub fn add_at(&mut self, lever: &Vector3<S>, matrix: &Matrix3<S>) {
         let turned = cross_columns(lever, matrix);

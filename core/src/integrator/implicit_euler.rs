@@ -5,10 +5,8 @@ use crate::{Scalar, mechanism::Mechanism};
 
 /// The third pass is a chord: it takes the linearisation of the second, for half the cost.
 ///
-/// On the slide's openings at 1 ms with exact friction, n = 0.5…4, four passes with a chord err by 0.5…3.8 % of the peak
-/// force throughout and four full ones by 0.5…4.1 %, after the release by the same 0.02…0.28 %, which is the scheme's first
-/// order; at n = 5 and 6 by 8.9 and 14 % against 7.0 and 11 % throughout, at n = −2 by 0.54 % against 0.19 %. A chord
-/// before or after errs more, and so does any in an extrapolated scheme.
+/// It errs about as little as four full passes. A chord before or after errs more, and so does any in an extrapolated scheme
+/// (the guide's notes on steps of one length have the figures).
 const CHORD: usize = 2;
 
 /// Implicit Euler with `PASSES` Newton passes; with one pass it is the linearly implicit scheme.

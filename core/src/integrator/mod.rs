@@ -91,9 +91,7 @@ type StageOf<S, M, const D: usize> =
 ///
 /// The tangent is flat where the body slides, so that an iterate that comes from there overshoots the stick band into
 /// sliding the other way, and passes are lost to and fro. The secant never overshoots but creeps. A second pass by the
-/// secant ends the cycle: on the opening at n = 1, exact friction, 1 ms, extrapolated Euler, 0.9 in every pass ends 23 % of
-/// the peak force off, this schedule 0.02 %. The tenth of the secant in the other passes keeps them from starting one: with
-/// a stick band of 0.1 µm/s, tangents in the last two passes end up to 70 % off, this schedule 0.02 %.
+/// secant ends such a cycle, and the tenth of the secant in the other passes keeps them from starting one.
 #[inline(always)]
 fn tangent_share<S: Scalar>(full_pass: usize) -> S {
     S::from_f64(if full_pass == 1 { 0.0 } else { 0.9 })
@@ -102,9 +100,8 @@ fn tangent_share<S: Scalar>(full_pass: usize) -> S {
 /// An iterate that leaves more than this times the least imbalance so far, or one that is not finite, is taken back, and
 /// [`SHORTER`] of its update tried instead.
 ///
-/// Full updates may run away where a stick band is narrow and contacts are stiff: of one thousand random scenes of the
-/// stability map at 50 µs 25 left the finite range without this and none does with it, and at their own steps half as many
-/// forces are wrong. 1 and 1.2 forbid passes that friction's way leads over; 4 and 10 let some scenes run away.
+/// Full updates may run away where a stick band is narrow and contacts are stiff. 1 and 1.2 forbid passes that friction
+/// needs on its way; 4 and 10 let some scenes of the stability map run away.
 const WORSE: f64 = 2.0;
 
 /// See [`WORSE`].

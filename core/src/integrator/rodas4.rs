@@ -1,8 +1,7 @@
 //! RODAS (Hairer and Wanner, *Solving Ordinary Differential Equations II*, table IV.7): fourth order, one set of
 //! derivatives and five more forces a step.
 //!
-//! On the slide it needs 0.75, 0.7 and 0.5 of RODAS3's steps to an error of 0.1, 0.01 and 0.001 % of the drive force, and a step takes
-//! some 1.6 times as long: it is for tight tolerances.
+//! A step takes some 1.6 times as long as one of RODAS3, and fewer are needed the tighter the tolerance is.
 
 use super::{
     Integrator, MotionOf, StepOf,

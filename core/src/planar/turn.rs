@@ -46,7 +46,8 @@ pub(super) fn at<S: Scalar>(lever: Vector2<S>, f: Vector2<S>) -> Vector3<S> {
     Vector3::new(f.x, f.y, turned(lever).dot(&f))
 }
 
-/// What something that goes by v + ω·y × `lever` means by v and ω: `columns` are those of the velocity's parts.
+/// The derivatives by v and ω of a quantity that depends on the velocity v + ω·y × `lever` of a point: `x` and `z` are its
+/// derivatives by the two parts of that velocity.
 #[inline(always)]
 pub(super) fn spread<S: Scalar>(lever: Vector2<S>, [x, z]: [Vector3<S>; 2]) -> Matrix3<S> {
     let arm = turned(lever);

@@ -9,9 +9,8 @@
 use super::{Friction, SlidingContact, Traction};
 use crate::{ParameterError, Scalar, error::bounded};
 
-/// κ: how many times stiffer than the body's inertia a stick is. At 1 the yield of a 1 ms step costs 0.6 % of the peak
-/// force on the slide's opening; at 10 it is below the error of the step; at 100 Newton starts to jump between sticks, and
-/// SDIRK2 loses the opening at n = 1 by 15 %.
+/// κ: how many times stiffer than the body's inertia a stick is. At 1 the yield shows in the force; at 10 it is below the
+/// error of a 1 ms step; at 100 Newton starts to jump between sticks.
 const GRIP: f64 = 10.0;
 
 /// Coulomb friction with true stick.
