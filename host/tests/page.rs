@@ -12,7 +12,7 @@ const WATCH: &str = "<script>window.wrong = []; addEventListener('error', event 
 
 /// What tries the player and writes what it saw into the page: how many frames look different, whether the curves' marker and
 /// the choice of a run change the picture, what went wrong, whether anything is wider than the page.
-const TRY: &str = "<script>
+const TRY: &str = "<script>addEventListener('load', () => {
 const figure = document.querySelector('figure.player');
 const seen = () => [...figure.querySelectorAll('svg')].map(svg => svg.outerHTML).join();
 const pictures = new Set();
@@ -25,7 +25,7 @@ const result = {
   wide: document.documentElement.scrollWidth <= innerWidth, wrong: window.wrong.join('; '),
 };
 document.title = JSON.stringify(result);
-</script>";
+});</script>";
 
 /// The page as the browser has it after its scripts have run, in a window of this width.
 fn opened(page: &Path, width: u32) -> String {

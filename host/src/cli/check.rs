@@ -233,7 +233,7 @@ pub(super) fn clearance_notes(scene: &Scene) -> Vec<String> {
                 [f64::min, f64::max].map(|pick| sums.iter().copied().reduce(pick).unwrap_or(nominal));
             if (least - nominal).abs().max((greatest - nominal).abs()) > 0.005e-3 {
                 notes.push(format!(
-                    "the drawing states a clearance of {} mm {pair}, the gaps add up to {} to {} mm: the gaps count",
+                    "the scene states a clearance of {} mm {pair}, but its gaps add up to {} to {} mm: the simulation uses the gaps",
                     fixed(nominal * 1e3, 2),
                     fixed(least * 1e3, 4),
                     fixed(greatest * 1e3, 4)

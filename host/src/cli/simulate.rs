@@ -331,7 +331,12 @@ impl Arguments {
                 let _ = writeln!(text, "Gaps {class:10} {names}");
             }
         }
-        let percent = |trust: &Trust| or_dash(trust.difference, |share| format!("{:.2} %", share * 100.0));
+        let percent = |trust: &Trust| {
+            or_dash(trust.difference, |share| match share {
+                ..10.0 => format!("{:.2} %", share * 100.0),
+                _ => "more than 1000 %".into(),
+            })
+        };
         let integration = fixed(run.integration.as_secs_f64() * 1e3, 2);
         let _ = writeln!(text, "\nComputed by {} in {integration} ms", run.solved.describe());
         match controller {

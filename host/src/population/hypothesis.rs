@@ -87,7 +87,7 @@ impl Hypothesis {
         let word = |share: f64| match share {
             share if share > random + 0.05 => "more often than",
             share if share < random - 0.05 => "less often than",
-            _ => "as often as",
+            _ => "about as often as",
         };
         format!(
             "over the same distances the loosest units malfunction in {} of cases, {} random combinations ({}), the \

@@ -17,7 +17,8 @@ pub fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// What it prints as JSON.
+/// What it prints as JSON; not every test reads any.
+#[allow(dead_code)]
 #[track_caller]
 pub fn json(folder: &Path, arguments: &[&str]) -> serde_json::Value {
     serde_json::from_str(&stdout(&slipfit(folder, arguments))).unwrap()

@@ -38,10 +38,15 @@ impl Arguments {
             }
         }
         if undecided.units > 0 {
-            let _ = writeln!(text, "                undecided{}", why_undecided(scene, Verdict::Undecided));
+            let why = match self.opening {
+                true => ": the opening ends before the ramp; without --opening the whole stroke is simulated".into(),
+                false => why_undecided(scene, Verdict::Undecided),
+            };
+            let _ = writeln!(text, "                undecided{why}");
         }
         if let (Some(share), Some(limit)) = (over_limit, self.force_limit) {
-            let _ = writeln!(text, "  over {limit} N {}", percent(&share));
+            let name = format!("over {limit} N");
+            let _ = writeln!(text, "  {name:14}{}", percent(&share));
         }
         if let Some(level) = sigma_level {
             let _ = writeln!(text, "Sigma level     {} σ of the function, one-sided", fixed(level, 2));
@@ -116,7 +121,9 @@ fn levels(levels: &[LevelReport]) -> String {
             _ => parts.push((at.verdict, at.n, at.n)),
         }
     }
-    let part =
-        |(verdict, first, last): &(Verdict, f64, f64)| format!("{} to {} {verdict}", level(*first), level(*last));
+    let part = |(verdict, first, last): &(Verdict, f64, f64)| match first == last {
+        true => format!("{} {verdict}", level(*first)),
+        false => format!("{} to {} {verdict}", level(*first), level(*last)),
+    };
     parts.iter().map(part).collect::<Vec<_>>().join(", ")
 }

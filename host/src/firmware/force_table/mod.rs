@@ -12,7 +12,7 @@ use slipfit_core::table::{Encoding, MotionVerdict};
 use thiserror::Error;
 
 use super::flash::{AxisSpec, FlashError};
-use crate::{dynamics::simulate::SimulateError, scene::LevelRange};
+use crate::{dynamics::simulate::SimulateError, scene::LevelRange, show::number::three_digits};
 
 pub use picture::picture;
 pub use time::{check, make};
@@ -71,7 +71,8 @@ pub enum TableError {
     Flash(#[from] FlashError),
     /// No table of the scene's levels errs so little.
     #[error(
-        "no table errs by at most {asked} N; the best that fits the TABLE region errs by {best} N in {bytes} bytes"
+        "no table errs by at most {asked} N; the best that fits the TABLE region errs by {} N in {bytes} bytes",
+        three_digits(*.best)
     )]
     MaxError {
         /// The greatest error asked for (N).

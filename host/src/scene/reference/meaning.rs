@@ -148,7 +148,7 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("*.distribution.of.sigma", "How many standard deviations the tolerance is."),
     ("*.distribution.of.distribution", "How the part varies; a name, or a table with its kind."),
     ("*.distribution.of.distribution.kind", "Which distribution; any but a mixture."),
-    ("*.distribution.of.distribution.*", "As of a distribution that is no part."),
+    ("*.distribution.of.distribution.*", "As the same key of a distribution that is not mixed."),
     ("*.cost.name", "Name of the process."),
     ("*.cost.fixed", "Cost that does not depend on the tolerance t."),
     ("*.cost.reciprocal", "B of the cost B·(at/t)^power."),
@@ -227,6 +227,14 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("measure.loss.at", "Distance from the target; half of the limits' distance where it is not stated."),
     ("measure.loss.target", "Best value; the middle of the limits where it is not stated."),
     ("measure.loss.repair", "What a repair costs: the most that a unit can lose."),
+    (
+        "allocate.force_limit",
+        "The motor's greatest force: units that need more malfunction, too. Only beside `allocate.malfunction`.",
+    ),
+    (
+        "allocate.malfunction",
+        "Share of units that may crawl or jam over the whole stroke, counted among simulated ones; below 0.5.",
+    ),
     ("allocate.yield", "Share of units of which all measures are within their limits."),
     ("sum.name", "Name of the sum."),
     ("sum.of", "The measures that are added."),
