@@ -247,7 +247,10 @@ impl Arguments {
                            combinations as far from nominal."
                     .into();
             units.figures.push(Figure { caption, svg });
-            files::write(path, units_page(&scene.title, &self.describe(scene, &found), &units, &warnings).as_bytes())?;
+            // Without the table of the worst units, which is too wide for a page.
+            let words = self.describe(scene, &found);
+            let words = words.split("\nThe worst").next().unwrap_or_default();
+            files::write(path, units_page(&scene.title, words, &units, &warnings).as_bytes())?;
         }
         if self.scene.json {
             let worst = worst(&found.population.units, WORST).into_iter().map(|unit| UnitReport {

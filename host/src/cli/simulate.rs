@@ -256,8 +256,7 @@ impl Arguments {
         let levels = <[f64; CONTACTS]>::try_from(n).unwrap_or([n.first().copied().unwrap_or_default(); CONTACTS]);
         let film = film(scene, &scene.gaps_at(&levels), MOMENTS)?;
         let label = format!("{}: {}", self.of(n), word(run.outcome.verdict));
-        let caption = "Travel is to scale, gaps and the motion within them are enlarged; a side is coloured where it touches its \
-                       pin, by force. The desk's run.";
+        let caption = "The desk's run, on its pins:";
         let player = player::figure(&[player::of_slide(scene, label, &film)], caption).map_err(anyhow::Error::from)?;
         let svg = unit_over_time(&run.trajectory, &scene.title, n).map_err(anyhow::Error::from)?;
         let figures = vec![Figure { caption: "Velocity and force of the drive over time.".into(), svg }];

@@ -30,6 +30,9 @@ const LEAST: f64 = 0.1;
 pub fn histogram(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<String, PlotError> {
     let forces: Vec<(f64, bool)> =
         units.iter().filter_map(|unit| Some((unit.outcome.peak_force?, malfunctions(unit, limit)))).collect();
+    if forces.is_empty() {
+        return Err(PlotError::Empty);
+    }
     let [low, high] =
         forces.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (f, _)| [low.min(*f), high.max(*f)]);
     // Units that all need the same have a class of their own.
@@ -121,8 +124,43 @@ pub fn ranking(scene: &Scene, population: &Population) -> String {
     bars(&scene.title, "shares in the variance, % (correlation ratios), with the standard error", &blocks)
 }
 
+/// So many of all, with the standard error.
 fn bar(name: &str, some: usize, all: usize) -> Bar {
     let all = all.max(1) as f64;
     let share = some as f64 / all;
     Bar { name: name.into(), percent: 100.0 * share, error: Some(100.0 * libm::sqrt(share * (1.0 - share) / all)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{histogram, ranking, sides};
+    use crate::{
+        dynamics::{driven::Driven, example},
+        population::{production::Production, study::Population},
+        show::plot::PlotError,
+    };
+
+    #[test]
+    fn pictures_count_what_the_population_does() {
+        let mut scene = example::cd_rom();
+        scene.run.duration = scene.stroke_duration().unwrap();
+        let production = Production::new(&scene, None, 0.0, 1).unwrap();
+        let mut population = Population::study(&scene, &production, 60, None, |_| {}).unwrap();
+        let failed = population.statistics.malfunctions.units;
+        assert!(failed > 5 && failed < 55, "{failed}");
+        // A limit that half of all forces exceed.
+        let mut forces: Vec<f64> = population.units.iter().filter_map(|unit| unit.outcome.peak_force).collect();
+        forces.sort_by(f64::total_cmp);
+        let drawn = histogram(&scene, &population.units, Some(0.5 * (forces[29] + forces[30]))).unwrap();
+        assert!(drawn.contains("which 50.00 % exceed") && drawn.contains("malfunction"), "{drawn}");
+        let drawn = sides(&scene, &population.units, None);
+        assert!(drawn.contains("the tightest tenth") && drawn.contains("press hardest at"), "{drawn}");
+        assert!(ranking(&scene, &population).contains("greatest force"));
+        // Without failures and without forces there is less to show, and no error.
+        population.units.iter_mut().for_each(|unit| {
+            (unit.outcome.peak_force, unit.outcome.verdict) = (None, crate::dynamics::outcome::Verdict::Undecided);
+        });
+        assert_eq!(histogram(&scene, &population.units, None), Err(PlotError::Empty));
+        assert!(!sides(&scene, &population.units, None).contains("press hardest"));
+    }
 }

@@ -18,9 +18,9 @@ use crate::{
     },
 };
 
-/// Names of the pictures' files.
+/// Names of the pictures' files; there is none of forces where the run ends before the ramp begins.
 pub const FIGURES: [&str; 4] =
-    ["population.svg", "population-forces.svg", "population-sides.svg", "population-drivers.svg"];
+    ["population.svg", "population-sides.svg", "population-drivers.svg", "population-forces.svg"];
 
 /// Pictures and player of a `population`, with a motor's force `limit` (N).
 pub fn units(
@@ -33,15 +33,11 @@ pub fn units(
     let figure = |caption: &str, svg: Result<String, PlotError>| {
         Ok::<_, Failure>(Figure { caption: caption.into(), svg: svg.map_err(anyhow::Error::from)? })
     };
-    let figures = vec![
+    let mut figures = vec![
         figure(
             "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: units of the same \
              mean tightness run, crawl and jam.",
             picture::forces(scene, all, limit),
-        )?,
-        figure(
-            "What force units need. Those that jam need all that the drive has.",
-            shares::histogram(scene, all, limit),
         )?,
         figure(
             "Where units fail: how many of the loose and of the tight ones, and which contact presses hardest.",
@@ -52,6 +48,10 @@ pub fn units(
             Ok(shares::ranking(scene, population)),
         )?,
     ];
+    match shares::histogram(scene, all, limit) {
+        Err(PlotError::Empty) => {}
+        svg => figures.push(figure("What force units need. Those that jam need all that the drive has.", svg)?),
+    }
     let played = one_of_each(all);
     let run = |unit: &&Unit| {
         let Unit { number, outcome, .. } = unit;
@@ -59,8 +59,7 @@ pub fn units(
         Ok::<_, Failure>(player::of_slide(scene, format!("unit {number}: {}", word(outcome.verdict)), &film))
     };
     let runs = played.iter().map(run).collect::<Result<Vec<_>, _>>()?;
-    let caption = "One unit of each kind. Travel is to scale, gaps and the motion within them are enlarged; a side is \
-                   coloured where it touches its pin, by force.";
+    let caption = "Of the units that jam, crawl and run the one whose greatest force is in their middle, on its pins:";
     let player = (!runs.is_empty()).then(|| player::figure(&runs, caption)).transpose().map_err(anyhow::Error::from)?;
     Ok(Units { figures, player })
 }

@@ -145,7 +145,7 @@ pub struct Event {
     pub name: &'static str,
 }
 
-/// The figure of some `runs` of one mechanism, at least one, with a caption.
+/// The figure of some `runs` of one mechanism, at least one, below a sentence on it. The player says itself what it shows.
 ///
 /// # Errors
 /// If a number is not finite.
@@ -153,9 +153,8 @@ pub fn figure(runs: &[Run], caption: &str) -> Result<String, serde_json::Error> 
     // The end of a script's element must not stand in it.
     let data = serde_json::to_string(runs)?.replace("</", "<\\/");
     Ok(format!(
-        "<figure class=\"player\">\n<script type=\"application/json\">{data}</script>\n\
-         <noscript>The player needs a script, which this page holds but the reader does not run.</noscript>\n\
-         <figcaption>{}</figcaption>\n</figure>\n",
+        "<p>{}</p>\n<figure class=\"player\">\n<script type=\"application/json\">{data}</script>\n\
+         <noscript>The player needs a script, which this page holds but the reader does not run.</noscript>\n</figure>\n",
         escape(caption)
     ))
 }

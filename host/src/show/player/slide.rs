@@ -28,7 +28,6 @@ pub fn run(scene: &Scene, label: String, film: &Film) -> Run {
     let events = [
         event(outcome.breakaway, "breaks away"),
         event(outcome.tips.map(|tips| tips.t), "tips"),
-        event(outcome.slows.map(|slows| slows.t), "slows"),
         event(outcome.stops.map(|stops| stops.t), "stops"),
     ];
     let sign = if scene.drive.speed < 0.0 { -1.0 } else { 1.0 };
