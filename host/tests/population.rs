@@ -247,4 +247,8 @@ fn what_is_not_known_is_no_malfunction() {
     assert_eq!(of(&["--force-limit", "0.01"])["malfunctions"]["units"], 30);
     let before = of(&["--set", "run.duration=20"]);
     assert!(before["peak_force"].is_null(), "{before}");
+    // A page shows what there is.
+    of(&["--set", "run.duration=20", "--page", "early.html"]);
+    let page = std::fs::read_to_string(folder.path().join("early.html")).unwrap();
+    assert!(page.contains("where units fail") && !page.contains("greatest drive force (N)") && !page.contains("NaN"));
 }

@@ -240,7 +240,7 @@ impl Arguments {
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
         if let Some(path) = &self.page {
-            let mut units = page::units(scene, production, &found.population, self.force_limit)?;
+            let (mut units, _) = page::units(scene, production, &found.population, self.force_limit)?;
             let svg = picture::hypothesis(scene, &found.hypothesis).map_err(anyhow::Error::from)?;
             let caption =
                 "Are the tightest and the loosest combinations the most probable to malfunction? Both, against random \

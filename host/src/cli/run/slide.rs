@@ -76,8 +76,8 @@ struct Simulated {
     stroke: Option<Sweep>,
     /// Units of the production over the same run.
     population: Population,
-    /// The same for the page.
-    units: Units,
+    /// The same for the page, and the names of its pictures' files.
+    units: (Units, Vec<&'static str>),
 }
 
 impl Simulated {
@@ -131,7 +131,7 @@ impl Arguments {
                 n: derived(scene, 0.0).tightest().map_or(0.0, |tightest| (tightest.n * 100.0).round() / 100.0),
             },
             flash: Some(Flash { bytes: simulated.table.bytes.len(), worst_force_error, worst_velocity_error }),
-            units: Some(&simulated.units),
+            units: Some(&simulated.units.0),
             production: production.as_ref(),
             notes: &notes,
         });
@@ -141,7 +141,8 @@ impl Arguments {
             (SWEEP.into(), sweep_csv(simulated.judged())?),
         ];
         files.extend(figures.into_iter().map(|(name, figure)| (name.to_owned(), figure.svg.into_bytes())));
-        let of_units = page::FIGURES.iter().zip(&simulated.units.figures);
+        let (units, names) = &simulated.units;
+        let of_units = names.iter().zip(&units.figures);
         files.extend(of_units.map(|(name, figure)| ((*name).to_owned(), figure.svg.clone().into_bytes())));
         files.extend(of_production(production.as_ref())?);
         warnings.extend(output.strangers(&files));
