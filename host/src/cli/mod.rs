@@ -2,6 +2,7 @@
 
 mod allocate;
 mod check;
+mod failure;
 mod kernel;
 mod mechanism;
 mod merge;
@@ -14,6 +15,7 @@ mod simulate;
 mod stability;
 mod sweep;
 mod table;
+mod terminal;
 mod tolerance;
 
 use std::{
@@ -24,21 +26,16 @@ use std::{
 };
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
-use thiserror::Error;
 
+use self::{
+    failure::{Failure, refused},
+    terminal::{JSON_VERSION, counter, given, print, print_json, progress, text_table, warn},
+};
 use crate::{
-    dynamics::simulate::SimulateError,
-    firmware::force_table::TableError,
     mechanism::{ByDrive, Mechanism},
     product::Product,
-    scene::{Override, SHIPPED, Scene, SceneError, SceneFile, shipped},
-    system::{
-        files,
-        files::{Coincidence, WriteError},
-        interrupt,
-    },
-    tolerance::counting::{run::RunError, study::StudyError},
+    scene::{Override, SHIPPED, Scene, SceneFile, shipped},
+    system::{files, interrupt},
 };
 
 /// From a drawing's tolerances to a flashed force table.
@@ -78,72 +75,6 @@ enum Command {
     Kernel(kernel::Arguments),
     Precision(precision::Arguments),
     Merge(merge::Arguments),
-}
-
-/// Why a command did not do its work.
-#[derive(Debug, Error)]
-enum Failure {
-    /// A scene that cannot be read as one.
-    #[error("{0}")]
-    Scene(#[from] SceneError),
-    /// Other bad input.
-    #[error("{0}")]
-    Input(String),
-    /// The work itself failed.
-    #[error("{0:#}")]
-    Work(#[from] anyhow::Error),
-}
-
-impl From<WriteError> for Failure {
-    fn from(error: WriteError) -> Self {
-        Self::Work(error.into())
-    }
-}
-
-impl From<Coincidence> for Failure {
-    fn from(error: Coincidence) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
-impl From<SimulateError> for Failure {
-    fn from(error: SimulateError) -> Self {
-        match error {
-            SimulateError::Parameter(_) | SimulateError::Every { .. } => Self::Input(error.to_string()),
-            SimulateError::NotFinite { .. } | SimulateError::Unsolved { .. } | SimulateError::Interrupted => {
-                Self::Work(error.into())
-            }
-        }
-    }
-}
-
-impl From<RunError> for Failure {
-    fn from(error: RunError) -> Self {
-        match error {
-            RunError::Interrupted { .. }
-            | RunError::Study(StudyError::Interrupted)
-            | RunError::Write(_)
-            | RunError::Header(_) => Self::Work(error.into()),
-            RunError::Simulate(error) => error.into(),
-            bad => Self::Input(bad.to_string()),
-        }
-    }
-}
-
-impl From<TableError> for Failure {
-    fn from(error: TableError) -> Self {
-        match error {
-            TableError::Simulate(error) => error.into(),
-            TableError::Flash(_) | TableError::MaxError { .. } | TableError::Position(_) => {
-                Self::Input(error.to_string())
-            }
-        }
-    }
-}
-
-/// A path that was given for output and cannot be written is bad input while nothing has been done yet.
-fn refused(error: WriteError) -> Failure {
-    Failure::Input(error.to_string())
 }
 
 /// The shipped scene that commands work on: the paper's slide with Table 2 as given.
@@ -299,70 +230,6 @@ impl ThreadArguments {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
         Ok(pool.install(work))
     }
-}
-
-/// A progress bar with an estimate, on standard error, if that is a terminal.
-fn progress(what: &'static str, length: usize) -> ProgressBar {
-    let bar = ProgressBar::new(length as u64);
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} left") {
-        bar.set_style(style);
-    }
-    bar.set_message(what);
-    // Shown from the first moment on, not from the first unit that is done.
-    bar.enable_steady_tick(std::time::Duration::from_millis(250));
-    bar
-}
-
-/// Counts what has been done of work whose end is not known.
-fn counter(what: &'static str) -> ProgressBar {
-    let bar = ProgressBar::no_length();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {human_pos} {msg}, {elapsed}") {
-        bar.set_style(style);
-    }
-    bar.set_message(what);
-    bar
-}
-
-/// Prints a finished text.
-fn print(text: &str) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    let written =
-        out.write_all(text.as_bytes()).and_then(|()| if text.ends_with('\n') { Ok(()) } else { out.write_all(b"\n") });
-    written.and_then(|()| out.flush()).map_err(|error| anyhow::Error::from(error).context("standard output").into())
-}
-
-/// The version of what `--json` prints: raised when a field is renamed, removed or means something else.
-const JSON_VERSION: u32 = 1;
-
-/// Tells a person of `warnings`, on standard error whatever the command.
-fn warn(warnings: &[String]) {
-    for warning in warnings {
-        eprintln!("warning: {warning}");
-    }
-}
-
-/// Those of the `options` that were given, with their paths.
-fn given<'a, const N: usize>(options: [(&'a str, &'a Option<PathBuf>); N]) -> Vec<(&'a str, &'a Path)> {
-    options.into_iter().filter_map(|(name, path)| Some((name, path.as_deref()?))).collect()
-}
-
-/// Prints `value` as JSON.
-fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    print(&serde_json::to_string_pretty(value).map_err(anyhow::Error::from)?)
-}
-
-/// A table for people: a heading and rows, numbers to the right.
-fn text_table(heading: &[&str], rows: &[Vec<String>]) -> String {
-    let mut table = comfy_table::Table::new();
-    table.load_preset(comfy_table::presets::NOTHING).set_header(heading);
-    for rule in [comfy_table::TableComponent::HeaderLines, comfy_table::TableComponent::MiddleHeaderIntersections] {
-        table.set_style(rule, '─');
-    }
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(comfy_table::CellAlignment::Right);
-    }
-    table.add_rows(rows);
-    table.trim_fmt() + "\n"
 }
 
 /// Runs the command that the process was started with.

@@ -1,0 +1,74 @@
+//! What is shown on the terminal: texts, tables, JSON, warnings, progress.
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::Failure;
+
+/// A progress bar with an estimate, on standard error, if that is a terminal.
+pub fn progress(what: &'static str, length: usize) -> ProgressBar {
+    let bar = ProgressBar::new(length as u64);
+    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} left") {
+        bar.set_style(style);
+    }
+    bar.set_message(what);
+    // Shown from the first moment on, not from the first unit that is done.
+    bar.enable_steady_tick(std::time::Duration::from_millis(250));
+    bar
+}
+
+/// Counts what has been done of work whose end is not known.
+pub fn counter(what: &'static str) -> ProgressBar {
+    let bar = ProgressBar::no_length();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {human_pos} {msg}, {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.set_message(what);
+    bar
+}
+
+/// Prints a finished text.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    let written =
+        out.write_all(text.as_bytes()).and_then(|()| if text.ends_with('\n') { Ok(()) } else { out.write_all(b"\n") });
+    written.and_then(|()| out.flush()).map_err(|error| anyhow::Error::from(error).context("standard output").into())
+}
+
+/// The version of what `--json` prints: raised when a field is renamed, removed or means something else.
+pub const JSON_VERSION: u32 = 1;
+
+/// Tells a person of `warnings`, on standard error whatever the command.
+pub fn warn(warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Those of the `options` that were given, with their paths.
+pub fn given<'a, const N: usize>(options: [(&'a str, &'a Option<PathBuf>); N]) -> Vec<(&'a str, &'a Path)> {
+    options.into_iter().filter_map(|(name, path)| Some((name, path.as_deref()?))).collect()
+}
+
+/// Prints `value` as JSON.
+pub fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    print(&serde_json::to_string_pretty(value).map_err(anyhow::Error::from)?)
+}
+
+/// A table for people: a heading and rows, numbers to the right.
+pub fn text_table(heading: &[&str], rows: &[Vec<String>]) -> String {
+    let mut table = comfy_table::Table::new();
+    table.load_preset(comfy_table::presets::NOTHING).set_header(heading);
+    for rule in [comfy_table::TableComponent::HeaderLines, comfy_table::TableComponent::MiddleHeaderIntersections] {
+        table.set_style(rule, '─');
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(comfy_table::CellAlignment::Right);
+    }
+    table.add_rows(rows);
+    table.trim_fmt() + "\n"
+}
