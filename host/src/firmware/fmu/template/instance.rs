@@ -90,10 +90,6 @@ impl Situation {
         })
     }
 
-    pub fn mode(&self) -> Mode {
-        self.mode
-    }
-
     pub fn time(&self) -> f64 {
         self.time
     }
