@@ -38,10 +38,10 @@ fn opened(unit: &Path) -> (Vec<String>, String) {
 fn slide_rows(folder: &Path, settings: &[&str], set: &Value, first: &Value) -> Value {
     let run = json(folder, &[&["simulate", "--step", "1ms", "--json"], settings].concat());
     let columns = [("speed", "vz"), ("force", "force"), ("x", "x"), ("y", "y"), ("travel", "z")];
-    let samples = |column: &str| run["samples"][column].as_array().unwrap().clone();
-    let of_columns = columns.map(|(_, column)| samples(column));
-    let rows: Vec<Vec<Value>> =
-        (0..of_columns[0].len()).map(|i| of_columns.iter().map(|one| one[i].clone()).collect()).collect();
+    // Numbers of 32 bits, which the reader of JSON misses by the last place of 64 at most.
+    let sample = |column: &str, i: usize| f64::from(run["samples"][column][i].as_f64().unwrap() as f32);
+    let row = |i: usize| columns.map(|(_, column)| sample(column, i));
+    let rows: Vec<_> = (0..run["samples"]["t"].as_array().unwrap().len()).map(row).collect();
     assert_eq!(rows.len(), 201);
     json!({
         "step": 1e-3,
