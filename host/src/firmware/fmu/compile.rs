@@ -19,9 +19,10 @@ const WORKSPACE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../Ca
 const LOCK: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../Cargo.lock"));
 
 /// What is the same for every scene.
-const TEMPLATE: [(&str, &str); 6] = [
+const TEMPLATE: [(&str, &str); 7] = [
     ("lib.rs", include_str!("template/lib.rs")),
     ("clock.rs", include_str!("template/clock.rs")),
+    ("ffi.rs", include_str!("template/ffi.rs")),
     ("fmi2.rs", include_str!("template/fmi2.rs")),
     ("fmi3.rs", include_str!("template/fmi3.rs")),
     ("instance.rs", include_str!("template/instance.rs")),

@@ -2,14 +2,10 @@
 
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
 
-use crate::fmi3::{
-    ERROR, Instance, Log, OK, free_state, freed, get, go_back, instantiated, keep, lent, lent_mut, none_of, put,
-    read_state, set, size_of_state, with, write_state,
+use crate::ffi::{
+    ERROR, Instance, Log, Logger, OK, free_state, freed, get, go_back, instantiated, keep, lent, lent_mut, none_of,
+    put, read_state, set, size_of_state, with, write_state,
 };
-
-/// Told of environment, instance, status, category and a message as `printf` takes it.
-pub type Logger =
-    unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
 
 /// What an importer offers.
 #[repr(C)]

@@ -150,7 +150,9 @@ impl Situation {
     /// Reads the values of `references`.
     pub fn get(&mut self, references: &[u32], into: &mut [f64]) -> Result<(), Trouble> {
         if references.len() != into.len() {
-            return Err(format!("{} values are asked for and there is room for {}", references.len(), into.len()).into());
+            return Err(
+                format!("{} values are asked for and there is room for {}", references.len(), into.len()).into()
+            );
         }
         let mut outputs: Option<[f64; OUTPUTS]> = None;
         for (reference, value) in references.iter().zip(into) {
@@ -207,7 +209,9 @@ impl Situation {
             return Err(format!("the communication step is {size} s, allowed are finite numbers of at least 0").into());
         }
         if !((current - self.time).abs() <= 1e-3 * STEP + 1e-9 * self.time.abs()) {
-            return Err(format!("the communication point is {current} s, the last step ended at {} s", self.time).into());
+            return Err(
+                format!("the communication point is {current} s, the last step ended at {} s", self.time).into()
+            );
         }
         let end = current + size;
         let target = steps_until(end - self.start, STEP)
