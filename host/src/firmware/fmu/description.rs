@@ -53,9 +53,18 @@ pub fn description(unit: &Unit, fmi: Fmi, identifier: &str) -> String {
         let parts: String = parts.map(|(base, exponent)| format!(" {base}=\"{exponent}\"")).collect();
         let _ = writeln!(text, "    <Unit name=\"{name}\"><BaseUnit{parts}/></Unit>");
     }
+    text.push_str("  </UnitDefinitions>\n");
+    if fmi == Fmi::Three {
+        // A type for each unit: there are importers that read the unit of types alone.
+        text.push_str("  <TypeDefinitions>\n");
+        for (name, _) in UNITS {
+            let _ = writeln!(text, "    <Float64Type name=\"{name}\" unit=\"{name}\"/>");
+        }
+        text.push_str("  </TypeDefinitions>\n");
+    }
     let _ = write!(
         text,
-        "  </UnitDefinitions>\n  <LogCategories>\n    \
+        "  <LogCategories>\n    \
          <Category name=\"logStatusError\" description=\"Why a call was refused\"/>\n  </LogCategories>\n  \
          <DefaultExperiment startTime=\"0\" stopTime=\"{duration}\" stepSize=\"{step}\"/>\n  <ModelVariables>\n"
     );
@@ -111,7 +120,7 @@ fn variable(fmi: Fmi, reference: usize, variable: &Variable, [causality, variabi
          variability=\"{variability}\""
     );
     match fmi {
-        Fmi::Three => format!("    <Float64 {common} unit=\"{unit}\"{start}/>\n"),
+        Fmi::Three => format!("    <Float64 {common} declaredType=\"{unit}\"{start}/>\n"),
         Fmi::Two => {
             format!("    <ScalarVariable {common}>\n      <Real unit=\"{unit}\"{start}/>\n    </ScalarVariable>\n")
         }
@@ -149,7 +158,7 @@ mod tests {
             let document = roxmltree::Document::parse(&text).unwrap();
             let references: Vec<usize> = document
                 .descendants()
-                .filter_map(|node| node.attribute("name").and(node.attribute("valueReference")))
+                .filter_map(|node| node.attribute("causality").and(node.attribute("valueReference")))
                 .map(|reference| reference.parse().unwrap())
                 .collect();
             assert_eq!(references, (0..=unit.variables.len()).collect::<Vec<_>>());
