@@ -3,6 +3,7 @@
 mod allocate;
 mod check;
 mod failure;
+mod fmu;
 mod kernel;
 mod mechanism;
 mod merge;
@@ -60,7 +61,8 @@ Examples:
                                            at which n does the whole stroke jam
   slipfit population --plot units.svg      which share of the production malfunctions, and what from
   slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)
-  slipfit kernel -o scene.rs               the scene as a Rust constant and type for firmware";
+  slipfit kernel -o scene.rs               the scene as a Rust constant and type for firmware
+  slipfit fmu -o slide.fmu                 the same kernel as a unit for system simulators (FMI)";
 
 #[derive(Subcommand)]
 enum Command {
@@ -73,6 +75,7 @@ enum Command {
     Population(population::Arguments),
     Table(table::Arguments),
     Kernel(kernel::Arguments),
+    Fmu(fmu::Arguments),
     Precision(precision::Arguments),
     Merge(merge::Arguments),
 }
@@ -260,6 +263,7 @@ pub fn main() -> ExitCode {
         Some(Command::Population(arguments)) => arguments.run(),
         Some(Command::Table(arguments)) => arguments.run(),
         Some(Command::Kernel(arguments)) => arguments.run(),
+        Some(Command::Fmu(arguments)) => arguments.run(),
         Some(Command::Precision(arguments)) => arguments.run(),
         Some(Command::Merge(arguments)) => arguments.run(),
     };

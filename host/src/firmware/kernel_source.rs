@@ -61,12 +61,7 @@ pub enum CError {
 /// A Rust module with the scene as `SCENE`, its kernel's type as `Predictor` and `predictor(n)`, which makes one.
 pub fn rust_source(scene: &Scene) -> String {
     let data = scene_data(scene);
-    let (elastic, made_elastic) = match data.contact.normal_type() {
-        NormalType::Linear => ("Linear", "Linear::new(stiffness)?"),
-        NormalType::ThreeHalves => ("ThreeHalves", "ThreeHalves::new(stiffness)?"),
-        NormalType::Power => ("Power", "Power::new(stiffness, exponent)?"),
-    };
-    let exponent = if elastic == "Power" { "exponent, " } else { "" };
+    let [elastic, made_elastic, exponent] = elastic(data.contact.normal_type());
     let (friction, friction_type, made_friction, friction_data) = match (data.friction.friction_type(), data.friction) {
         (FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => (
             "Regularised",
@@ -124,6 +119,15 @@ pub fn rust_source(scene: &Scene) -> String {
          let contact = Impact::new({made_elastic}, damping, depth)?;\n    \
          Kernel::new(Slide::new(unit.body, contact, {made_friction}, unit.drive)?, STEP)\n}}\n"
     )
+}
+
+/// Name of a normal law in core, its value, and what of the contact's data that takes beside the stiffness.
+pub(crate) fn elastic(normal: NormalType) -> [&'static str; 3] {
+    match normal {
+        NormalType::Linear => ["Linear", "Linear::new(stiffness)?", ""],
+        NormalType::ThreeHalves => ["ThreeHalves", "ThreeHalves::new(stiffness)?", ""],
+        NormalType::Power => ["Power", "Power::new(stiffness, exponent)?", "exponent, "],
+    }
 }
 
 /// A C header with the scene as `slipfit_this_scene`, to be included after `slipfit.h`. Its scheme is the C library's,

@@ -1,6 +1,7 @@
-//! What the controller gets: force tables in flash, and kernels as source text.
+//! What the controller gets: force tables in flash, kernels as source text, and as units for other simulators.
 
 pub mod flash;
+pub mod fmu;
 pub mod force_table;
 pub mod kernel_crate;
 pub mod kernel_source;

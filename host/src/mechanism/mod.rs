@@ -26,7 +26,7 @@ pub use gaps::{GapError, Gaps};
 pub use laws::{Laws, NormalData, Rebound};
 pub use mounts::{MountError, Mounts};
 pub use run::{MechanismRun, Rest, RunError, SCHEME, Samples, run};
-pub use source::rust_source;
+pub use source::{drive_names, element_paths, rust_source};
 
 use slipfit_core::{clearance::GapStatistics, drive::Drive};
 

@@ -86,6 +86,12 @@ pub struct Override {
     key: Option<&'static str>,
 }
 
+impl std::fmt::Display for Override {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
 impl Override {
     /// What follows `--set`: `key=value`. The value is TOML or, where that does not parse, a bare text:
     /// `slide.mass=90 g`. A pin goes by its name: `pin.left front.left=[0.01, 0.05]`.

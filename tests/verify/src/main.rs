@@ -15,6 +15,9 @@ const TARGETS: [&str; 1] = ["thumbv7em-none-eabihf"];
 const PROGRAMS: [(&str, &str); 3] =
     [("qemu-system-arm", "qemu-system-arm"), ("arm-none-eabi-gcc", "gcc-arm-none-eabi"), ("chromium", "chromium")];
 
+/// Packages of Python that tests import.
+const PYTHON_PACKAGES: [&str; 1] = ["fmpy"];
+
 /// The root of the repository.
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
@@ -25,7 +28,7 @@ type Outcome = Result<String, String>;
 type Step = fn() -> Outcome;
 
 fn main() -> ExitCode {
-    let steps: [(&str, Step); 3] = [("targets", targets), ("programs", programs), ("tests", tests)];
+    let steps: [(&str, Step); 4] = [("targets", targets), ("programs", programs), ("python", python), ("tests", tests)];
     let mut done = Vec::new();
     for (name, step) in steps {
         eprintln!("== {name}");
@@ -72,6 +75,28 @@ fn programs() -> Outcome {
         }
     }
     Ok(PROGRAMS.map(|(program, _)| program).join(", "))
+}
+
+/// Has the packages of Python installed.
+fn python() -> Outcome {
+    let missing: Vec<_> = PYTHON_PACKAGES.into_iter().filter(|package| !has_package(package)).collect();
+    if !missing.is_empty() {
+        // A Python that the system keeps for itself has no pip, and takes packages only when told so.
+        let into = |options: &[&str]| {
+            runs(Command::new("python3").args(["-m", "pip", "install", "--quiet"]).args(options).args(&missing))
+        };
+        let installed = into(&[]) || (install(&["python3-pip"]) && (into(&[]) || into(&["--break-system-packages"])));
+        if !installed || !missing.iter().all(|package| has_package(package)) {
+            let missing = missing.join(" ");
+            return Err(format!("packages are missing; to install them: python3 -m pip install {missing}"));
+        }
+    }
+    Ok(PYTHON_PACKAGES.join(", "))
+}
+
+/// Whether Python imports the package.
+fn has_package(package: &str) -> bool {
+    quietly(Command::new("python3").args(["-c", &format!("import {package}")]))
 }
 
 /// Whether the program starts.

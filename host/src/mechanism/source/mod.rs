@@ -50,17 +50,17 @@ struct Parts {
     rates: Vec<f64>,
 }
 
+fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {
+    if mechanism.planar { planar::parts(mechanism, contacts) } else { spatial::parts(mechanism, contacts) }
+}
+
 /// A Rust module with the type `Unit` of `mechanism`, its gaps over the production as `GAPS`, `unit(n)` and the kernel `predictor(n)`.
 ///
 /// # Errors
 /// If the mechanism has no run, see [`RunError`].
 pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     let mut contacts = Contacts::default();
-    let parts = if mechanism.planar {
-        planar::parts(mechanism, &mut contacts)?
-    } else {
-        spatial::parts(mechanism, &mut contacts)?
-    };
+    let parts = parts(mechanism, &mut contacts)?;
     let Parts { head, dimension, bodies, elements, module, pose, rates, .. } = &parts;
     let drives = write_drives(mechanism, &parts);
     let elements = nested(grouped(elements));
@@ -166,19 +166,10 @@ fn write_hashes(text: &mut String, mechanism: &Mechanism) {
 
 /// A function for each drive that says what it gives. Drives are the last elements.
 fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
-    let groups = grouped(&parts.elements);
-    let sizes: Vec<usize> = parts.elements.chunk_by(|one, next| one.of == next.of).map(<[Typed]>::len).collect();
     let first = parts.elements.len() - mechanism.drives.len();
+    let paths = paths(&parts.elements);
     let mut text = String::new();
-    for ((k, drive), name) in mechanism.drives.iter().enumerate().zip(drive_names(mechanism)) {
-        let (mut group, mut within) = (0, first + k);
-        while within >= sizes[group] {
-            within -= sizes[group];
-            group += 1;
-        }
-        let last = group + 1 == groups.len();
-        let at = ".1".repeat(group) + if last { "" } else { ".0" };
-        let at = if sizes[group] > 1 { format!("{at}[{within}]") } else { at };
+    for ((at, drive), name) in paths[first..].iter().zip(&mechanism.drives).zip(drive_names(mechanism)) {
         let kind = drive.action.kind();
         let _ = write!(
             text,
@@ -195,8 +186,29 @@ fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
     text
 }
 
+/// Where each of the `elements` is in the unit's `elements()`.
+fn paths(elements: &[Typed]) -> Vec<String> {
+    let groups: Vec<_> = elements.chunk_by(|one, next| one.of == next.of).collect();
+    let of_group = |(i, group): (usize, &&[Typed])| {
+        let last = i + 1 == groups.len();
+        let at = ".1".repeat(i) + if last { "" } else { ".0" };
+        let many = group.len() > 1;
+        (0..group.len()).map(move |k| if many { format!("{at}[{k}]") } else { at.clone() }).collect::<Vec<_>>()
+    };
+    groups.iter().enumerate().flat_map(of_group).collect()
+}
+
+/// Where in a unit's `elements()` those of the joints with play, the springs and the drives are, in this order, each with its joint.
+///
+/// # Errors
+/// If the mechanism has no run, see [`RunError`].
+pub fn element_paths(mechanism: &Mechanism) -> Result<Vec<(String, Option<&Joint>)>, RunError> {
+    let parts = parts(mechanism, &mut Contacts::default())?;
+    Ok(paths(&parts.elements).into_iter().zip(joints_of_elements(mechanism)).collect())
+}
+
 /// What the functions of the drives are called; those that would be called the same have their number.
-fn drive_names(mechanism: &Mechanism) -> Vec<String> {
+pub fn drive_names(mechanism: &Mechanism) -> Vec<String> {
     let letter = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
     let plain: Vec<String> =
         mechanism.drives.iter().map(|drive| "drive_".chars().chain(drive.name.chars().map(letter)).collect()).collect();
