@@ -16,7 +16,12 @@ mod ring;
 
 use num_traits::AsPrimitive;
 
-use crate::{ParameterError, Scalar, error::bounded, integrator::Rodas3, mechanism::Driven};
+use crate::{
+    ParameterError, Scalar,
+    error::bounded,
+    integrator::{Part, Rodas3, Sums},
+    mechanism::Driven,
+};
 
 use self::ring::{Knot, Ring};
 
@@ -60,6 +65,8 @@ pub struct State<S, P, const D: usize, const N: usize> {
     /// Length of the next attempt, in ticks.
     length: S,
     ring: Ring<S, P, D, N>,
+    /// What an attempt works on, here so that the stack need not hold it.
+    sums: Sums<S, D>,
     /// See [`Prediction::forced`].
     forced: u32,
     /// See [`Prediction::excess`].
@@ -173,6 +180,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
             clock,
             length: S::from_f64(FIRST),
             ring: Ring::new(pose, clock, 0),
+            sums: [Part::zero(); 2],
             forced: 0,
             excess: S::zero(),
         }
@@ -209,8 +217,9 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let end = {
             let from = state.ring.newest();
             let memory = self.mechanism.fresh();
-            let at = (&from.pose, &from.velocity, &memory);
-            Rodas3::attempt(&self.mechanism, now + lead * self.tick, length * self.tick, at, Some(forced))
+            let from = (&from.pose, &from.velocity, &memory);
+            let (t, h) = (now + lead * self.tick, length * self.tick);
+            Rodas3::attempt(&self.mechanism, t, h, from, Some(forced), &mut state.sums)
         };
         let [momentum, place] = self.weights;
         let error = (end.error * momentum).max_of(end.drift * place);
