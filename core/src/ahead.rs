@@ -281,8 +281,10 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
 /// The product of the factors of all `steps` that `x` is below.
 #[inline(always)]
 fn factor<S: Scalar, const N: usize>(x: S, steps: [[f64; 2]; N]) -> S {
-    let factors = steps.map(|[below, factor]| S::from_f64(below).select_gt(x, S::from_f64(factor), S::one()));
-    factors.into_iter().fold(S::one(), |product, factor| product * factor)
+    let one = S::one();
+    steps
+        .iter()
+        .fold(one, |product, [below, factor]| product * S::from_f64(*below).select_gt(x, S::from_f64(*factor), one))
 }
 
 /// A difference of ticks as a number.
