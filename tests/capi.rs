@@ -16,13 +16,15 @@ use slipfit::{
     scene::{CD_ROM_SLIDE, Override, Scene},
 };
 use slipfit_core::{
+    ahead::{self, Ahead, Prediction},
     integrator::ImplicitEuler,
     kernel::{Kernel, Report},
     monitor::{LevelBank, Limits, Monitor, Sample, Verdict, Watch},
     pose::Pose,
+    scene::SceneData,
     table::{Table, Word, layout},
 };
-use slipfit_problems::cd_rom;
+use slipfit_problems::cd_rom::{self, CdRomSlide};
 use slipfit_tests::cross::{self, TARGET, cargo, finished, printed};
 
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
@@ -143,6 +145,30 @@ fn hashed_bytes(bytes: impl IntoIterator<Item = u8>) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
+/// The C program's prediction ahead of the clock: a hash of all that it says, and in how many periods it is behind.
+fn ahead_of_the_clock() -> (u64, u64) {
+    let limits = ahead::Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2 };
+    let scene = kernel_source::scene_data(&SCENE);
+    let slower = SceneData { drive_speed: 0.05, ..scene };
+    let unit = |scene: &SceneData<f32>, n| -> Ahead<f32, CdRomSlide<f32>> {
+        let slide = cd_rom::from_data(&scene.at(n).expect("the deviations are in bounds"));
+        Ahead::new(slide, limits).expect("the limits are in bounds")
+    };
+    let mut ahead = unit(&scene, 2.5);
+    let mut state: ahead::State<f32, _, 6, 256> = ahead.at_rest(Pose::nominal(), 70);
+    let (mut said, mut behind) = (Vec::new(), 0);
+    for period in 0..70 + 1500 {
+        if period == 70 + 750 {
+            ahead = unit(&slower, 2.25);
+            ahead.restart(&mut state);
+        }
+        let Prediction { time, speed, force, lead, tolerance, excess, forced } = ahead.step(&mut state);
+        behind += u64::from(lead < 0.0);
+        said.extend([time, force, speed, lead, tolerance, excess, forced as f32]);
+    }
+    (hashed(said), behind)
+}
+
 /// What the C program prints of its predictions, computed by the kernel itself.
 fn in_rust() -> String {
     let kernel = |n| {
@@ -163,6 +189,10 @@ fn in_rust() -> String {
         let _ = writeln!(text, "{name} {value:016x}");
     };
     line("predicted", hashed(run(2.5, 100_000).flatten()));
+    line("failed", 0);
+    let (ahead, behind) = ahead_of_the_clock();
+    line("ahead", ahead);
+    line("behind", behind);
     line("failed", 0);
 
     let table = Table::<2>::open(&TABLE).expect("its own table");

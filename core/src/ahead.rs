@@ -107,6 +107,9 @@ pub enum Status<S> {
 /// Ticks of a period.
 const TICKS: u32 = 1 << 20;
 
+/// The most periods by which the clock starts before time 0.
+pub const MOST_EARLY: u32 = 1000;
+
 /// The least step, in ticks: a 4096th of a period.
 const LEAST: f64 = 256.0;
 
@@ -168,22 +171,39 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         &self.mechanism
     }
 
-    /// At rest in `pose` at time 0, `early` periods before which the clock starts.
+    /// The limits.
+    pub fn limits(&self) -> &Limits<S> {
+        &self.limits
+    }
+
+    /// At rest in `pose` at time 0, `early` periods before which the clock starts: [`MOST_EARLY`] at most, more count as so many.
     pub fn at_rest<const D: usize, const N: usize>(&self, pose: M::Pose, early: u32) -> State<S, M::Pose, D, N>
     where
         M: Driven<S, D>,
     {
-        let clock = 0u32.wrapping_sub(early.wrapping_mul(TICKS));
-        State {
-            periods: 0,
-            early,
-            clock,
-            length: S::from_f64(FIRST),
-            ring: Ring::new(pose, clock, 0),
-            sums: [Part::zero(); 2],
-            forced: 0,
-            excess: S::zero(),
-        }
+        let zero = S::zero();
+        let (ring, sums) = (Ring::new(pose), [Part::zero(); 2]);
+        let mut state = State { periods: 0, early: 0, clock: 0, length: zero, ring, sums, forced: 0, excess: zero };
+        self.put_at_rest(&mut state, pose, early);
+        state
+    }
+
+    /// As [`at_rest`](Self::at_rest), in place: for a state that is too large for the stack.
+    pub fn put_at_rest<const D: usize, const N: usize>(
+        &self,
+        state: &mut State<S, M::Pose, D, N>,
+        pose: M::Pose,
+        early: u32,
+    ) where
+        M: Driven<S, D>,
+    {
+        let early = early.min(MOST_EARLY);
+        state.clock = 0u32.wrapping_sub(early.wrapping_mul(TICKS));
+        (state.periods, state.early) = (0, early);
+        state.length = S::from_f64(FIRST);
+        state.ring.put_at_rest(pose, state.clock, 0);
+        state.sums = [Part::zero(); 2];
+        (state.forced, state.excess) = (0, S::zero());
     }
 
     /// One period: the clock goes on by it, one step is attempted, and the values at the new instant are given.

@@ -37,11 +37,17 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
         N as u32 - 1
     };
 
+    /// At rest in `pose` at time 0.
+    pub fn new(pose: P) -> Self {
+        Self { newest: 0, times: [0; N], knots: [Knot { pose, velocity: SVector::zeros() }; N] }
+    }
+
     /// At rest in `pose` until the time `end` (ticks), since `start`.
-    pub fn new(pose: P, start: u32, end: u32) -> Self {
-        let mut times = [start; N];
-        times[0] = end;
-        Self { newest: 0, times, knots: [Knot { pose, velocity: SVector::zeros() }; N] }
+    pub fn put_at_rest(&mut self, pose: P, start: u32, end: u32) {
+        self.times.fill(start);
+        self.knots.fill(Knot { pose, velocity: SVector::zeros() });
+        self.newest = 0;
+        self.times[0] = end;
     }
 
     #[inline(always)]
