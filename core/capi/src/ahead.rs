@@ -81,11 +81,20 @@ unsafe impl Zeroed for slipfit_ahead {}
 /// Numbers of four bytes and no pointers: as large on the target as here, and no larger than needed.
 const _: () = assert!(size_of::<slipfit_ahead>() == size_of::<Made<Predicted>>());
 
-fn slide(scene: &slipfit_scene, n: f32) -> Result<RegularisedUnit, Refusal> {
-    scene.slide(n, |data| match data {
+/// Makes `ahead` that of a unit. One copy in the code serves init and restart; in place, for less stack.
+#[inline(never)]
+fn put(
+    ahead: &mut Ahead<f32, RegularisedUnit>,
+    scene: &slipfit_scene,
+    n: f32,
+    limits: Limits<f32>,
+) -> Result<(), Refusal> {
+    let slide = scene.slide(n, |data| match data {
         FrictionData::Regularised { coefficient, stick_band } => Ok(Regularised::new(coefficient, stick_band)?),
         _ => Err(Refusal(SLIPFIT_LAW)),
-    })
+    })?;
+    *ahead = Ahead::new(slide, limits)?;
+    Ok(())
 }
 
 impl Predicted {
@@ -117,12 +126,12 @@ pub unsafe extern "C" fn slipfit_ahead_init(
             if early > SLIPFIT_AHEAD_EARLY_MOST {
                 return Err(Refusal(SLIPFIT_PARAMETER));
             }
-            let ahead = Ahead::new(slide(input(scene)?, n)?, Limits { period, tolerance, lead, lag })?;
-            ahead.put_at_rest(&mut predicted.state, Pose::nominal(), early);
+            let Predicted { ahead, state, said } = predicted;
+            put(ahead, input(scene)?, n, Limits { period, tolerance, lead, lag })?;
+            ahead.put_at_rest(state, Pose::nominal(), early);
             let lead = early as f32 * period;
             let force = ahead.mechanism().drive().force(-lead, 0.0);
-            predicted.said = Prediction { time: -lead, speed: 0.0, force, lead, tolerance, excess: 0.0, forced: 0 };
-            predicted.ahead = ahead;
+            *said = Prediction { time: -lead, speed: 0.0, force, lead, tolerance, excess: 0.0, forced: 0 };
             Ok(())
         })
     })
@@ -178,7 +187,8 @@ pub unsafe extern "C" fn slipfit_ahead_restart(
     status(|| {
         // SAFETY: the caller's promise.
         let (predicted, scene) = unsafe { (object_mut(storage)?, input(scene)?) };
-        predicted.ahead = Ahead::new(slide(scene, n)?, *predicted.ahead.limits())?;
+        let limits = *predicted.ahead.limits();
+        put(&mut predicted.ahead, scene, n, limits)?;
         predicted.ahead.restart(&mut predicted.state);
         Ok(())
     })
