@@ -366,7 +366,7 @@ slipfit_status slipfit_predictor_read(const struct slipfit_predictor *storage, s
 // Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` of `*scene`, at rest until its release at
 // time 0. Its clock starts `early` periods before, SLIPFIT_AHEAD_EARLY_MOST at most, in which it takes a lead. The scene's scheme
 // and step do not matter. Its friction must be regularised, also in a library that is built for exact friction: instead of
-// that take a stick band of 3 µm/s, or SLIPFIT_LAW is the answer.
+// that take a stick band of 10 to 30 µm/s, or SLIPFIT_LAW is the answer.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*storage` meanwhile.
