@@ -86,6 +86,8 @@ impl<S: Scalar> Resistance<S> for NormalResponse<S> {
 pub struct Slot<S> {
     lower: S,
     upper: S,
+    /// Whether a pin can touch both ends.
+    overlap: bool,
 }
 
 impl<S: Scalar + PartialOrd> Slot<S> {
@@ -94,7 +96,8 @@ impl<S: Scalar + PartialOrd> Slot<S> {
     /// # Errors
     /// If a gap is not finite or out of bounds.
     pub fn new(lower: S, upper: S) -> Result<Self, ParameterError<S>> {
-        Ok(Self { lower: bounded("gap", lower, GAP)?, upper: bounded("gap", upper, GAP)? })
+        let (lower, upper) = (bounded("gap", lower, GAP)?, bounded("gap", upper, GAP)?);
+        Ok(Self { lower, upper, overlap: lower + upper < S::zero() })
     }
 }
 
@@ -103,7 +106,7 @@ impl<S: Scalar> Stop<S> for Slot<S> {
 
     #[inline(always)]
     fn resistance<E: Elastic<S>>(&self, law: &Impact<S, E>, offset: S, speed: S) -> SlotResponse<S> {
-        law.slot(self.lower, self.upper, offset, speed)
+        law.slot_by_nearer(self.lower, self.upper, offset, speed, self.overlap)
     }
 }
 

@@ -126,7 +126,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         [u, v, w]: [S; 3],
         way: Way<S>,
     ) -> SlotForce<S, F::Memory> {
-        let slot = self.contact.slot(gaps[0], gaps[1], offset, u);
+        let slot = self.contact.slot_by_nearer(gaps[0], gaps[1], offset, u, self.overlap);
         let (traction, memory) = self.friction.traction(memory, &way.sliding([v, w], slot.normal()));
         let [first, second] = traction.per_normal;
         let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
