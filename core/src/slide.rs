@@ -66,8 +66,8 @@ pub struct Slide<S, E, F> {
     drive: Drive<S>,
     /// 1/m: the inverse of the farthest pin's distance.
     per_lever: S,
-    /// Whether a pin can touch both ends of a slot.
-    overlap: bool,
+    /// Whether a pin can touch both ends of a slot at once, of each slot.
+    overlaps: [bool; SLOTS],
 }
 
 impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
@@ -95,8 +95,11 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
             bounded("gap", gap, [-1.0, ABSENT])?;
         }
         let drive = drive.checked()?;
-        let overlap = body.gaps.as_chunks::<2>().0.iter().any(|[one, other]| *one + *other < S::zero());
-        Ok(Self { body, contact, friction, drive, per_lever: S::one() / farthest, overlap })
+        let mut overlaps = [false; SLOTS];
+        for (overlap, [one, other]) in overlaps.iter_mut().zip(body.gaps.as_chunks::<2>().0) {
+            *overlap = *one + *other < S::zero();
+        }
+        Ok(Self { body, contact, friction, drive, per_lever: S::one() / farthest, overlaps })
     }
 }
 
