@@ -96,8 +96,8 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         }
         let drive = drive.checked()?;
         let mut overlaps = [false; SLOTS];
-        for (overlap, [one, other]) in overlaps.iter_mut().zip(body.gaps.as_chunks::<2>().0) {
-            *overlap = *one + *other < S::zero();
+        for (overlap, gaps) in overlaps.iter_mut().zip(body.gaps.as_chunks::<2>().0) {
+            *overlap = sum_is_negative(gaps);
         }
         Ok(Self { body, contact, friction, drive, per_lever: S::one() / farthest, overlaps })
     }
@@ -121,6 +121,12 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         }
         gaps
     }
+}
+
+/// A function of its own, so that its code is there once and not for every slot.
+#[inline(never)]
+fn sum_is_negative<S: Scalar + PartialOrd>([one, other]: &[S; 2]) -> bool {
+    *one + *other < S::zero()
 }
 
 #[inline(always)]
