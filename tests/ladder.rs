@@ -124,10 +124,10 @@ fn each_rung_is_cheaper_than_the_one_above() {
 #[test]
 fn the_full_slide_keeps_its_budget() {
     assert!(costs("slide_smoothed").stack <= 512 && costs("slide_exact").stack <= 640);
-    assert!(costs("slide_exact").instructions <= 15_000);
+    assert!(costs("slide_exact").instructions <= 16_000);
     let pass = ON_TARGET.lines().find_map(|line| line.strip_prefix("instructions of a pass: ")?.parse::<u32>().ok());
     let pass = pass.expect("the image says so");
-    assert!(pass <= 3_400, "{pass}");
+    assert!(pass <= 3_900, "{pass}");
     insta::assert_snapshot!("pass", pass);
 }
 
@@ -135,7 +135,7 @@ fn the_full_slide_keeps_its_budget() {
 #[test]
 fn a_period_ahead_of_the_clock_keeps_its_budget() {
     let Costs { instructions, stack, .. } = costs("slide_ahead");
-    assert!(instructions <= 10_500 && stack <= 768, "{instructions} {stack}");
+    assert!(instructions <= 11_000 && stack <= 768, "{instructions} {stack}");
     let (_, of_numbers) = branches(&CODE["slide_ahead"]);
     assert_eq!(of_numbers, None);
     insta::assert_snapshot!("ahead", table(&["slide_ahead"]));

@@ -66,8 +66,6 @@ pub struct Slide<S, E, F> {
     drive: Drive<S>,
     /// 1/m: the inverse of the farthest pin's distance.
     per_lever: S,
-    /// Whether a pin can touch both ends of a slot at once, of each slot.
-    overlaps: [bool; SLOTS],
 }
 
 impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
@@ -95,11 +93,7 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
             bounded("gap", gap, [-1.0, ABSENT])?;
         }
         let drive = drive.checked()?;
-        let mut overlaps = [false; SLOTS];
-        for (overlap, gaps) in overlaps.iter_mut().zip(body.gaps.as_chunks::<2>().0) {
-            *overlap = sum_is_negative(gaps);
-        }
-        Ok(Self { body, contact, friction, drive, per_lever: S::one() / farthest, overlaps })
+        Ok(Self { body, contact, friction, drive, per_lever: S::one() / farthest })
     }
 }
 
@@ -121,12 +115,6 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         }
         gaps
     }
-}
-
-/// A function of its own, so that its code is there once and not for every slot.
-#[inline(never)]
-fn sum_is_negative<S: Scalar + PartialOrd>([one, other]: &[S; 2]) -> bool {
-    *one + *other < S::zero()
 }
 
 #[inline(always)]

@@ -18,24 +18,7 @@ pub trait Normal<S: Scalar>: Copy {
     /// the pin, so the offset's rate is −u.
     #[inline(always)]
     fn slot(&self, lower: S, upper: S, offset: S, speed: S) -> SlotResponse<S> {
-        let (low, high) = (self.response(-(lower + offset), speed), self.response(offset - upper, -speed));
-        SlotResponse::new(high, low, S::one())
-    }
-
-    /// The same, for half the work where ends do not `overlap`: while `lower` + `upper` is not negative a pin touches one of them at
-    /// most.
-    #[inline(always)]
-    fn slot_by_nearer(&self, lower: S, upper: S, offset: S, speed: S, overlap: bool) -> SlotResponse<S> {
-        let (zero, one) = (S::zero(), S::one());
-        let (low, high) = (-(lower + offset), offset - upper);
-        let side = high.select_gt(low, one, -one);
-        let nearer = self.response(high.max_of(low), -(side * speed));
-        let farther = if overlap {
-            self.response(high.select_gt(low, low, high), side * speed)
-        } else {
-            NormalResponse::new(zero, zero, zero)
-        };
-        SlotResponse::new(nearer, farther, side)
+        SlotResponse::new(self.response(-(lower + offset), speed), self.response(offset - upper, -speed))
     }
 }
 

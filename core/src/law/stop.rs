@@ -86,8 +86,6 @@ impl<S: Scalar> Resistance<S> for NormalResponse<S> {
 pub struct Slot<S> {
     lower: S,
     upper: S,
-    /// Whether a pin can touch both ends.
-    overlap: bool,
 }
 
 impl<S: Scalar + PartialOrd> Slot<S> {
@@ -96,8 +94,7 @@ impl<S: Scalar + PartialOrd> Slot<S> {
     /// # Errors
     /// If a gap is not finite or out of bounds.
     pub fn new(lower: S, upper: S) -> Result<Self, ParameterError<S>> {
-        let (lower, upper) = (bounded("gap", lower, GAP)?, bounded("gap", upper, GAP)?);
-        Ok(Self { lower, upper, overlap: lower + upper < S::zero() })
+        Ok(Self { lower: bounded("gap", lower, GAP)?, upper: bounded("gap", upper, GAP)? })
     }
 }
 
@@ -106,7 +103,7 @@ impl<S: Scalar> Stop<S> for Slot<S> {
 
     #[inline(always)]
     fn resistance<E: Elastic<S>>(&self, law: &Impact<S, E>, offset: S, speed: S) -> SlotResponse<S> {
-        law.slot_by_nearer(self.lower, self.upper, offset, speed, self.overlap)
+        law.slot(self.lower, self.upper, offset, speed)
     }
 }
 

@@ -64,12 +64,10 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         let mut force = Vector3::zeros();
         let mut torque = Vector3::zeros();
         let pins = self.body.gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w);
-        let slots = memory.as_chunks::<2>().0.iter().zip(self.overlaps.as_chunks::<2>().0);
-        for ((gaps, pin), (memory, overlaps)) in pins.zip(slots) {
+        for ((gaps, pin), memory) in pins.zip(memory.as_chunks::<2>().0) {
             let offset = at.to_body.change(*pin) - at.displacement_b;
             let lever = *pin + offset;
-            let u = at.velocity_b + at.rotation_b.cross(&lever);
-            let mut pin = self.pin(memory, (*gaps, *overlaps), (lever, offset), u, way);
+            let mut pin = self.pin(memory, *gaps, (lever, offset), at.velocity_b + at.rotation_b.cross(&lever), way);
             force += pin.force;
             torque += lever.cross(&pin.force);
             // Where the slide turns, a displacement changes the velocity of its material at the pin by −ω × displacement.
@@ -79,19 +77,19 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         (force, torque)
     }
 
-    /// The force at one pin for its gaps (m), each slot's with whether it can be touched at both ends at once, its `lever` and
-    /// `offset` (m) as seen from the slide, and the velocity `u` (m/s) of the slide's material there.
+    /// The force at one pin for its `lever` and `offset` (m) as seen from the slide and the velocity `u` (m/s) of the
+    /// slide's material there.
     #[inline(always)]
     fn pin(
         &self,
         [across_memory, up_memory]: &[F::Memory; 2],
-        ([left, right, rail, wall], overlaps): ([S; 4], [bool; 2]),
+        [left, right, rail, wall]: [S; 4],
         (lever, offset): (Vector3<S>, Vector3<S>),
         u: Vector3<S>,
         way: Way<S>,
     ) -> PinForce<S, F::Memory> {
-        let across = self.slot(across_memory, ([left, right], overlaps[0]), offset.x, [u.x, u.y, u.z], way);
-        let up = self.slot(up_memory, ([wall, rail], overlaps[1]), offset.y, [u.y, u.x, u.z], way);
+        let across = self.slot(across_memory, [left, right], offset.x, [u.x, u.y, u.z], way);
+        let up = self.slot(up_memory, [wall, rail], offset.y, [u.y, u.x, u.z], way);
         let (f, g) = (across.force, up.force);
         let ([xx, yx, zx], [yy, xy, zy]) = (across.impedance, up.impedance);
         let ([a_yy, a_yz, a_zz], [u_xx, u_xz, u_zz]) = (across.tangential, up.tangential);
@@ -123,12 +121,12 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     fn slot(
         &self,
         memory: &F::Memory,
-        (gaps, overlap): ([S; 2], bool),
+        gaps: [S; 2],
         offset: S,
         [u, v, w]: [S; 3],
         way: Way<S>,
     ) -> SlotForce<S, F::Memory> {
-        let slot = self.contact.slot_by_nearer(gaps[0], gaps[1], offset, u, overlap);
+        let slot = self.contact.slot(gaps[0], gaps[1], offset, u);
         let (traction, memory) = self.friction.traction(memory, &way.sliding([v, w], slot.normal()));
         let [first, second] = traction.per_normal;
         let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
