@@ -51,6 +51,11 @@ fn says_what_it_said_and_what_the_desk_says() {
     assert!(ends[2].contains("first jam at Some("), "{}", ends[2]);
     cross::assert_single_precision(&cross::image(FOLDER, "slipfit-drive"));
     assert_eq!(on_target.matches("table damaged in 0 rounds").count(), 3);
+    // No prediction is ever older than the clock.
+    let leads =
+        on_target.lines().filter_map(|line| line.strip_prefix("least lead: ")?.strip_suffix(" ms")?.parse().ok());
+    let leads: Vec<f32> = leads.collect();
+    assert!(leads.len() == 3 && leads.iter().all(|lead| *lead > 0.0), "{leads:?}");
 }
 
 #[test]
@@ -96,9 +101,10 @@ fn says_the_same_in_frames() {
             value.split([',', ' ']).next().expect("its value")
         };
         let number = |name: &str| value(name).parse::<f32>().expect("a number");
-        let [measured, predicted, expected] = ["measured", "predicted", "expected"].map(number);
+        let [measured, predicted, expected, lead] = ["measured", "predicted", "expected", "lead"].map(number);
+        let lead = lead * 1e3;
         let (periods_so_far, verdict) = (value("periods"), value("verdict"));
-        let line = format!("{periods_so_far:>7}{measured:14.4}{predicted:12.4}{expected:12.4}  {verdict}");
+        let line = format!("{periods_so_far:>7}{measured:14.4}{predicted:15.4}{expected:12.4}{lead:11.1}  {verdict}");
         assert_eq!(periods.next(), Some(line.as_str()));
     }
     assert_eq!(periods.next(), None);

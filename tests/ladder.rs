@@ -44,9 +44,21 @@ static CODE: LazyLock<BTreeMap<&str, String>> = LazyLock::new(|| {
         .iter()
         .chain(&MECHANISMS)
         .chain(&["slide_ahead"])
-        .map(|rung| (*rung, cross::code(&image, rung).remove(0)))
+        .map(|rung| (*rung, without_padding(cross::code(&image, rung).remove(0))))
         .collect()
 });
+
+/// The `code` of a function up to its last return: the linker fills what is left up to the next with bytes that read as a branch.
+fn without_padding(mut code: String) -> String {
+    let padding = code.strip_suffix('\n').and_then(|code| code.rsplit_once('\n')).filter(|(before, last)| {
+        let returns = before.lines().next_back().is_some_and(|line| line.contains("\tpop") && line.contains("pc}"));
+        returns && last.contains("\tbmi.n\t")
+    });
+    if let Some((before, _)) = padding {
+        code.truncate(before.len() + 1);
+    }
+    code
+}
 
 /// A rung's costs.
 #[derive(Clone, Copy, Debug)]
@@ -123,7 +135,7 @@ fn the_full_slide_keeps_its_budget() {
 #[test]
 fn a_period_ahead_of_the_clock_keeps_its_budget() {
     let Costs { instructions, stack, .. } = costs("slide_ahead");
-    assert!(instructions <= 11_000 && stack <= 896, "{instructions} {stack}");
+    assert!(instructions <= 11_000 && stack <= 768, "{instructions} {stack}");
     let (_, of_numbers) = branches(&CODE["slide_ahead"]);
     assert_eq!(of_numbers, None);
     insta::assert_snapshot!("ahead", table(&["slide_ahead"]));

@@ -16,7 +16,12 @@ mod ring;
 
 use num_traits::AsPrimitive;
 
-use crate::{ParameterError, Scalar, error::bounded, integrator::Rodas3, mechanism::Driven};
+use crate::{
+    ParameterError, Scalar,
+    error::bounded,
+    integrator::{Part, Rodas3, Sums},
+    mechanism::Driven,
+};
 
 use self::ring::{Knot, Ring};
 
@@ -60,6 +65,8 @@ pub struct State<S, P, const D: usize, const N: usize> {
     /// Length of the next attempt, in ticks.
     length: S,
     ring: Ring<S, P, D, N>,
+    /// What an attempt works on, here so that the stack need not hold it.
+    sums: Sums<S, D>,
     /// See [`Prediction::forced`].
     forced: u32,
     /// See [`Prediction::excess`].
@@ -99,6 +106,9 @@ pub enum Status<S> {
 
 /// Ticks of a period.
 const TICKS: u32 = 1 << 20;
+
+/// The most periods by which the clock starts before time 0.
+pub const MOST_EARLY: u32 = 1000;
 
 /// The least step, in ticks: a 4096th of a period.
 const LEAST: f64 = 256.0;
@@ -161,21 +171,39 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         &self.mechanism
     }
 
-    /// At rest in `pose` at time 0, `early` periods before which the clock starts.
+    /// The limits.
+    pub fn limits(&self) -> &Limits<S> {
+        &self.limits
+    }
+
+    /// At rest in `pose` at time 0, `early` periods before which the clock starts: [`MOST_EARLY`] at most, more count as so many.
     pub fn at_rest<const D: usize, const N: usize>(&self, pose: M::Pose, early: u32) -> State<S, M::Pose, D, N>
     where
         M: Driven<S, D>,
     {
-        let clock = 0u32.wrapping_sub(early.wrapping_mul(TICKS));
-        State {
-            periods: 0,
-            early,
-            clock,
-            length: S::from_f64(FIRST),
-            ring: Ring::new(pose, clock, 0),
-            forced: 0,
-            excess: S::zero(),
-        }
+        let zero = S::zero();
+        let (ring, sums) = (Ring::new(pose), [Part::zero(); 2]);
+        let mut state = State { periods: 0, early: 0, clock: 0, length: zero, ring, sums, forced: 0, excess: zero };
+        self.put_at_rest(&mut state, pose, early);
+        state
+    }
+
+    /// As [`at_rest`](Self::at_rest), in place: for a state that is too large for the stack.
+    pub fn put_at_rest<const D: usize, const N: usize>(
+        &self,
+        state: &mut State<S, M::Pose, D, N>,
+        pose: M::Pose,
+        early: u32,
+    ) where
+        M: Driven<S, D>,
+    {
+        let early = early.min(MOST_EARLY);
+        state.clock = 0u32.wrapping_sub(early.wrapping_mul(TICKS));
+        (state.periods, state.early) = (0, early);
+        state.length = S::from_f64(FIRST);
+        state.ring.put_at_rest(pose, state.clock, 0);
+        state.sums = [Part::zero(); 2];
+        (state.forced, state.excess) = (0, S::zero());
     }
 
     /// One period: the clock goes on by it, one step is attempted, and the values at the new instant are given.
@@ -209,8 +237,9 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let end = {
             let from = state.ring.newest();
             let memory = self.mechanism.fresh();
-            let at = (&from.pose, &from.velocity, &memory);
-            Rodas3::attempt(&self.mechanism, now + lead * self.tick, length * self.tick, at, Some(forced))
+            let from = (&from.pose, &from.velocity, &memory);
+            let (t, h) = (now + lead * self.tick, length * self.tick);
+            Rodas3::attempt(&self.mechanism, t, h, from, Some(forced), &mut state.sums)
         };
         let [momentum, place] = self.weights;
         let error = (end.error * momentum).max_of(end.drift * place);
@@ -272,8 +301,10 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
 /// The product of the factors of all `steps` that `x` is below.
 #[inline(always)]
 fn factor<S: Scalar, const N: usize>(x: S, steps: [[f64; 2]; N]) -> S {
-    let factors = steps.map(|[below, factor]| S::from_f64(below).select_gt(x, S::from_f64(factor), S::one()));
-    factors.into_iter().fold(S::one(), |product, factor| product * factor)
+    let one = S::one();
+    steps
+        .iter()
+        .fold(one, |product, [below, factor]| product * S::from_f64(*below).select_gt(x, S::from_f64(*factor), one))
 }
 
 /// A difference of ticks as a number.

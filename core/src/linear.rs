@@ -16,7 +16,8 @@ pub(crate) struct Blocks<S> {
 /// The inverse of a 3 × 3 matrix by its adjugate: straight-line, one division. Not finite for a singular matrix.
 #[inline(always)]
 pub(crate) fn inverse<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
-    let [r0, r1, r2] = [0, 1, 2].map(|i| Vector3::new(m[(i, 0)], m[(i, 1)], m[(i, 2)]));
+    let [[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]]: [[S; 3]; 3] = m.data.0;
+    let (r0, r1, r2) = (Vector3::new(xx, xy, xz), Vector3::new(yx, yy, yz), Vector3::new(zx, zy, zz));
     let (c0, c1, c2) = (r1.cross(&r2), r2.cross(&r0), r0.cross(&r1));
     let scale = S::one() / r0.dot(&c0);
     Matrix3::from_columns(&[c0 * scale, c1 * scale, c2 * scale])

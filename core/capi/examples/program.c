@@ -9,8 +9,11 @@ void put(const char *text);
 
 #define STEPS 100000u
 #define STROKE 1500u
+/* Periods from the clock's start to the release of the unit that is predicted ahead. */
+#define EARLY 70u
 
 static slipfit_predictor predictor;
+static slipfit_ahead ahead;
 static slipfit_table table;
 static slipfit_scrubber scrubber;
 static slipfit_monitor monitor;
@@ -52,6 +55,30 @@ static void predict(void) {
         hash = add(add(add(add(hash, found.time), found.force), found.velocity), found.residual);
     }
     put_hex("predicted", hash);
+    put_hex("failed", failed);
+}
+
+/* Ahead of the clock, through a change of the command and of what is known of the unit. */
+static void predict_ahead(void) {
+    const slipfit_ahead_limits limits = {.period = 1e-3f, .tolerance = 7e-5f, .lead = 0.2f, .lag = 0.2f};
+    slipfit_scene slower = slipfit_this_scene;
+    slower.drive_speed = 0.05f;
+    uint64_t hash = EMPTY, behind = 0;
+    uint32_t failed = (uint32_t)slipfit_ahead_init(&ahead, &slipfit_this_scene, 2.5f, &limits, EARLY);
+    for (uint32_t i = 0; i < EARLY + STROKE; i++) {
+        slipfit_ahead_prediction found;
+        if (i == EARLY + STROKE / 2) {
+            failed |= (uint32_t)slipfit_ahead_restart(&ahead, &slower, 2.25f);
+        }
+        const slipfit_status stepped = slipfit_ahead_step(&ahead);
+        failed |= stepped == SLIPFIT_BEHIND ? 0u : (uint32_t)stepped;
+        failed |= slipfit_ahead_read(&ahead, &found) == stepped ? 0u : 1u;
+        behind += stepped == SLIPFIT_BEHIND;
+        hash = add(add(add(add(hash, found.time), found.force), found.velocity), found.lead);
+        hash = add(add(add(hash, found.tolerance), found.excess), (float)found.forced);
+    }
+    put_hex("ahead", hash);
+    put_hex("behind", behind);
     put_hex("failed", failed);
 }
 
@@ -122,6 +149,7 @@ static void refuse(void) {
 
 int main(void) {
     predict();
+    predict_ahead();
     watch();
     record();
     refuse();

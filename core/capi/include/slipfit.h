@@ -18,6 +18,9 @@
 // Coulomb friction with true stick.
 #define SLIPFIT_FRICTION_EXACT 2
 
+// The most periods by which the clock of a prediction may start before the unit's release.
+#define SLIPFIT_AHEAD_EARLY_MOST 1000
+
 // The second axis of a table is time (s).
 #define SLIPFIT_AXIS_TIME 2
 
@@ -103,6 +106,41 @@ typedef struct slipfit_prediction {
   // Imbalance of momentum (N·s) that the step left; infinite if it was not finite.
   float residual;
 } slipfit_prediction;
+
+// Memory of a prediction ahead of the clock; opaque.
+typedef struct slipfit_ahead {
+  uint32_t words[3681];
+} slipfit_ahead;
+
+// What prediction ahead of the clock is held to.
+typedef struct slipfit_ahead_limits {
+  // Time from one step to the next (s).
+  float period;
+  // Error of the drive's force (N) that is aimed at.
+  float tolerance;
+  // The lead over the clock that is not exceeded (s), 4 to 1000 periods.
+  float lead;
+  // The lag behind the clock (s) at which steps are forced, whatever their error, 4 to 1000 periods.
+  float lag;
+} slipfit_ahead_limits;
+
+// What a prediction ahead of the clock says after a step.
+typedef struct slipfit_ahead_prediction {
+  // The time (s) that force and velocity hold for: the clock's, or an earlier one where the prediction is behind.
+  float time;
+  // Force of the drive (N).
+  float force;
+  // Velocity along the drive (m/s).
+  float velocity;
+  // How far beyond the clock the motion is known (s); negative where the prediction is behind.
+  float lead;
+  // The tolerance (N) that the step was held to; infinite for a forced one.
+  float tolerance;
+  // Sum of the estimated errors (N) of all steps as far as they exceed the tolerance of the limits; without forced steps.
+  float excess;
+  // Steps forced so far: their error is not known.
+  uint32_t forced;
+} slipfit_ahead_prediction;
 
 // Memory of an open table over two axes; opaque. The table itself stays where it is.
 typedef struct slipfit_table {
@@ -260,6 +298,9 @@ typedef struct slipfit_estimate {
 // The scene's step is too large for the unit.
 #define SLIPFIT_STEP 8
 
+// The prediction is behind the clock: what it says holds for an earlier time.
+#define SLIPFIT_BEHIND 9
+
 // The region ends before the table does.
 #define SLIPFIT_TABLE_TRUNCATED 16
 
@@ -321,6 +362,44 @@ slipfit_status slipfit_predictor_step(struct slipfit_predictor *storage);
 // # Safety
 // As for slipfit_predictor_step; nobody else uses `*prediction` meanwhile.
 slipfit_status slipfit_predictor_read(const struct slipfit_predictor *storage, struct slipfit_prediction *prediction);
+
+// Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` of `*scene`, at rest until its release at
+// time 0. Its clock starts `early` periods before, SLIPFIT_AHEAD_EARLY_MOST at most, in which it takes a lead. The scene's scheme
+// and step do not matter. Its friction must be regularised, also in a library that is built for exact friction: instead of
+// that take a stick band of 10 to 30 µm/s, or SLIPFIT_LAW is the answer.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*storage` meanwhile.
+slipfit_status slipfit_ahead_init(struct slipfit_ahead *storage,
+                                  const struct slipfit_scene *scene,
+                                  float n,
+                                  const struct slipfit_ahead_limits *limits,
+                                  uint32_t early);
+
+// One period, in the same instructions whatever the motion does: the clock goes on by it, and one step is attempted.
+// SLIPFIT_BEHIND if the motion is not known at the new instant.
+//
+// # Safety
+// As for slipfit_ahead_init; the memory has been written before.
+slipfit_status slipfit_ahead_step(struct slipfit_ahead *storage);
+
+// What the prediction says now. SLIPFIT_BEHIND if that holds for an earlier time than the clock's, which `*prediction` then
+// says.
+//
+// # Safety
+// As for slipfit_ahead_step; nobody else uses `*prediction` meanwhile.
+slipfit_status slipfit_ahead_read(const struct slipfit_ahead *storage,
+                                  struct slipfit_ahead_prediction *prediction);
+
+// Goes on from the motion at the present instant as a unit of tolerance level `n` of `*scene`: for when the command or what is
+// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0. Where the prediction is
+// behind, it goes on from the last motion known. It keeps its limits, and if it is refused everything else too.
+//
+// # Safety
+// As for slipfit_ahead_step.
+slipfit_status slipfit_ahead_restart(struct slipfit_ahead *storage,
+                                     const struct slipfit_scene *scene,
+                                     float n);
 
 // Checks the table at `region` completely and opens it in `*storage`. It must be over tolerance level and `over`,
 // SLIPFIT_AXIS_TIME or SLIPFIT_AXIS_POSITION, and made for `scene_hash`, SLIPFIT_TABLE_SCENE_HASH of its header.

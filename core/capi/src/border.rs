@@ -22,6 +22,12 @@ pub(crate) unsafe trait Storage: Sized {
     const MARK: u32;
 }
 
+/// An object whose memory may be all zeros.
+///
+/// # Safety
+/// All zeros are a value of its type.
+pub(crate) unsafe trait Zeroed: Storage {}
+
 /// Whether the object fits its storage.
 pub(crate) const fn fits<S: Storage>() -> bool {
     let (size, align) = (size_of::<Made<S::Object>>(), align_of::<Made<S::Object>>());
@@ -88,6 +94,26 @@ pub(crate) unsafe fn make<S: Storage>(
     unsafe {
         (&raw mut (*made).mark).write(0);
         (&raw mut (*made).value).write(MaybeUninit::new(object()?));
+        (&raw mut (*made).mark).write(S::MARK);
+    }
+    Ok(())
+}
+
+/// As [`make`], in place, of an object that is too large for the stack: all zeros, which `fill` makes what it is to be.
+///
+/// # Safety
+/// As [`make`].
+pub(crate) unsafe fn make_in_place<S: Zeroed>(
+    storage: *mut S,
+    fill: impl FnOnce(&mut S::Object) -> Result<(), Refusal>,
+) -> Result<(), Refusal> {
+    const { assert!(fits::<S>()) };
+    checked(storage)?;
+    let made = storage.cast::<Made<S::Object>>();
+    // SAFETY: checked, large enough by the assertion, all zeros are an object, and the caller's promise.
+    unsafe {
+        made.write_bytes(0, 1);
+        fill((*made).value.assume_init_mut())?;
         (&raw mut (*made).mark).write(S::MARK);
     }
     Ok(())

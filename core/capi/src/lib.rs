@@ -17,16 +17,20 @@ pub extern "C" fn slipfit_panic(divisor: u32) -> u32 {
     1 / divisor
 }
 
+mod ahead;
 mod border;
 mod monitor;
 mod predictor;
+mod scene;
 mod scrubber;
 mod slots;
 mod status;
 mod table;
 
+pub use ahead::*;
 pub use monitor::*;
 pub use predictor::*;
+pub use scene::*;
 pub use scrubber::*;
 pub use slots::*;
 pub use status::*;

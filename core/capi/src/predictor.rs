@@ -3,15 +3,13 @@
 use slipfit_core::{
     integrator::ImplicitEuler,
     kernel::{Kernel, Report, StateOf},
-    law::{Impact, ThreeHalves},
-    menu::{ContactData, FrictionData, NormalType},
+    menu::FrictionData,
     pose::Pose,
-    scene::SceneData,
-    slide::Slide,
 };
 
 use crate::{
     border::{Storage, input, make, object, object_mut, output},
+    scene::{SLIPFIT_SCHEME_IMPLICIT_EULER, Unit, slipfit_scene},
     status::{Refusal, SLIPFIT_LAW, SLIPFIT_NOT_FINITE, SLIPFIT_STEP, slipfit_status, status},
 };
 
@@ -19,60 +17,6 @@ use crate::{
 type Friction = slipfit_core::law::Exact<f32>;
 #[cfg(not(feature = "exact"))]
 type Friction = slipfit_core::law::Regularised<f32>;
-
-type Unit = Slide<f32, ThreeHalves<f32>, Friction>;
-
-/// A scene: a slide over the production, SI units, as `slipfit kernel SCENE -o scene.h` writes it.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct slipfit_scene {
-    /// SLIPFIT_SCHEME_IMPLICIT_EULER.
-    pub scheme: u32,
-    /// Step (s).
-    pub step: f32,
-    /// Mass (kg).
-    pub mass: f32,
-    /// Principal moments of inertia about the centre of mass (kg·m²).
-    pub inertia: [f32; 3],
-    /// Gravity (m/s²).
-    pub gravity: [f32; 3],
-    /// Positions of the pins from the centre of mass (m): x, y, z of each.
-    pub pins: [[f32; 3]; 4],
-    /// Means of the gaps (m): left, right, rail, wall of each pin; 1e6 for none.
-    pub gap_means: [f32; 16],
-    /// Standard deviations of the gaps (m), not negative.
-    pub gap_deviations: [f32; 16],
-    /// Contact stiffness (N/m^e).
-    pub stiffness: f32,
-    /// Contact exponent e; the library is built for 1.5.
-    pub exponent: f32,
-    /// Contact damping (N·s/m).
-    pub damping: f32,
-    /// Depth of full damping (m).
-    pub depth: f32,
-    /// SLIPFIT_FRICTION_REGULARISED or SLIPFIT_FRICTION_EXACT; the library is built for one of the two.
-    pub friction_law: u32,
-    /// Coefficient of friction.
-    pub friction_coefficient: f32,
-    /// Stick band of smoothed friction (m/s); ignored by exact friction.
-    pub friction_stick_band: f32,
-    /// Gain of the drive (N·s/m).
-    pub drive_gain: f32,
-    /// Start and end of the drive's ramp (s).
-    pub drive_ramp: [f32; 2],
-    /// Commanded speed at the end of the ramp (m/s).
-    pub drive_speed: f32,
-    /// Where the drive pushes, from the centre of mass (m).
-    pub drive_point: [f32; 3],
-}
-
-/// Implicit Euler with four Newton passes.
-pub const SLIPFIT_SCHEME_IMPLICIT_EULER: u32 = 1;
-
-/// Smoothed Coulomb friction.
-pub const SLIPFIT_FRICTION_REGULARISED: u32 = 1;
-/// Coulomb friction with true stick.
-pub const SLIPFIT_FRICTION_EXACT: u32 = 2;
 
 /// Memory of a predictor; opaque.
 #[repr(C)]
@@ -97,8 +41,8 @@ pub struct slipfit_prediction {
 
 #[derive(Clone, Copy)]
 pub(crate) struct Predictor {
-    kernel: Kernel<f32, Unit, ImplicitEuler<4>>,
-    state: StateOf<f32, Unit, 6>,
+    kernel: Kernel<f32, Unit<Friction>, ImplicitEuler<4>>,
+    state: StateOf<f32, Unit<Friction>, 6>,
     report: Report<f32>,
 }
 
@@ -106,37 +50,6 @@ pub(crate) struct Predictor {
 unsafe impl Storage for slipfit_predictor {
     type Object = Predictor;
     const MARK: u32 = 0x534c_5031;
-}
-
-impl slipfit_scene {
-    fn data(&self) -> Result<SceneData<f32>, Refusal> {
-        let coefficient = self.friction_coefficient;
-        Ok(SceneData {
-            mass: self.mass,
-            inertia_b: self.inertia,
-            gravity_w: self.gravity,
-            pins_w: self.pins,
-            gap_means: self.gap_means,
-            gap_deviations: self.gap_deviations,
-            contact: ContactData {
-                stiffness: self.stiffness,
-                exponent: self.exponent,
-                damping: self.damping,
-                depth: self.depth,
-            },
-            friction: match self.friction_law {
-                SLIPFIT_FRICTION_REGULARISED => {
-                    FrictionData::Regularised { coefficient, stick_band: self.friction_stick_band }
-                }
-                SLIPFIT_FRICTION_EXACT => FrictionData::Exact { coefficient },
-                _ => return Err(Refusal(SLIPFIT_LAW)),
-            },
-            drive_gain: self.drive_gain,
-            drive_ramp: self.drive_ramp,
-            drive_speed: self.drive_speed,
-            drive_point_b: self.drive_point,
-        })
-    }
 }
 
 fn friction(data: FrictionData<f32>) -> Result<Friction, Refusal> {
@@ -157,7 +70,7 @@ const TRIAL: u32 = 50;
 const TRIAL_ERROR: f32 = 0.1;
 
 impl Predictor {
-    fn new(slide: Unit, step: f32) -> Result<Self, Refusal> {
+    fn new(slide: Unit<Friction>, step: f32) -> Result<Self, Refusal> {
         let kernel = Kernel::new(slide, step)?;
         let report = Report { residual: 0.0, error: 0.0 };
         Ok(Self { state: kernel.at_rest(Pose::nominal()), kernel, report })
@@ -186,13 +99,10 @@ impl Predictor {
 }
 
 fn predictor(scene: &slipfit_scene, n: f32) -> Result<Predictor, Refusal> {
-    let unit = scene.data()?.at(n)?;
-    if scene.scheme != SLIPFIT_SCHEME_IMPLICIT_EULER || unit.contact.normal_type() != NormalType::ThreeHalves {
+    if scene.scheme != SLIPFIT_SCHEME_IMPLICIT_EULER {
         return Err(Refusal(SLIPFIT_LAW));
     }
-    let ContactData { stiffness, damping, depth, .. } = unit.contact;
-    let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
-    let slide = Slide::new(unit.body, contact, friction(unit.friction)?, unit.drive)?;
+    let slide = scene.slide(n, friction)?;
     let made = Predictor::new(slide, scene.step)?;
     let fine = Predictor::new(slide, 0.5 * scene.step)?;
     // What the drive can push with, and the weight.

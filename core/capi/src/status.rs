@@ -23,6 +23,8 @@ pub const SLIPFIT_LAW: slipfit_status = 6;
 pub const SLIPFIT_NOT_FINITE: slipfit_status = 7;
 /// The scene's step is too large for the unit.
 pub const SLIPFIT_STEP: slipfit_status = 8;
+/// The prediction is behind the clock: what it says holds for an earlier time.
+pub const SLIPFIT_BEHIND: slipfit_status = 9;
 /// The region ends before the table does.
 pub const SLIPFIT_TABLE_TRUNCATED: slipfit_status = 16;
 /// No table starts there.

@@ -24,11 +24,11 @@ pub(super) struct Ring<S, P, const D: usize, const N: usize> {
 }
 
 /// Where an instant lies among the motions.
-pub(super) struct Bracket<S> {
-    /// Places of the motions before, at or before, after, and after that; the same where there are none.
-    pub places: [usize; 4],
+struct Bracket<S> {
+    /// Counts of the motions before, at or before, after, and after that; the same where there are none.
+    counts: [u32; 4],
     /// Weights of the changes between them.
-    pub weights: [S; 3],
+    weights: [S; 3],
 }
 
 impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
@@ -37,11 +37,17 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
         N as u32 - 1
     };
 
+    /// At rest in `pose` at time 0.
+    pub fn new(pose: P) -> Self {
+        Self { newest: 0, times: [0; N], knots: [Knot { pose, velocity: SVector::zeros() }; N] }
+    }
+
     /// At rest in `pose` until the time `end` (ticks), since `start`.
-    pub fn new(pose: P, start: u32, end: u32) -> Self {
-        let mut times = [start; N];
-        times[0] = end;
-        Self { newest: 0, times, knots: [Knot { pose, velocity: SVector::zeros() }; N] }
+    pub fn put_at_rest(&mut self, pose: P, start: u32, end: u32) {
+        self.times.fill(start);
+        self.knots.fill(Knot { pose, velocity: SVector::zeros() });
+        self.newest = 0;
+        self.times[0] = end;
     }
 
     #[inline(always)]
@@ -52,6 +58,11 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
     #[inline(always)]
     fn time(&self, count: u32) -> u32 {
         self.times[Self::place(count)]
+    }
+
+    #[inline(always)]
+    fn knot(&self, count: u32) -> &Knot<S, P, D> {
+        &self.knots[Self::place(count)]
     }
 
     /// When the newest motion holds (ticks).
@@ -85,7 +96,7 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
     /// The newest motion.
     #[inline(always)]
     pub fn newest(&self) -> &Knot<S, P, D> {
-        &self.knots[Self::place(self.newest)]
+        self.knot(self.newest)
     }
 
     /// Puts `pose` and the newest motion's velocity with its `change` to the place of the next motion.
@@ -108,7 +119,7 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
 
     /// Where `instant` (ticks) lies. After the newest motion all places are its own.
     #[inline(always)]
-    pub fn bracket(&self, instant: u32) -> Bracket<S> {
+    fn bracket(&self, instant: u32) -> Bracket<S> {
         let age = self.age(instant);
         let before = age + 1;
         let counts =
@@ -120,14 +131,15 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
         let (one, zero) = (S::one(), S::zero());
         let s = own.select_gt(zero, into / own, zero);
         let weights = weights([length(a, b), own.max_of(one), length(c, d)], s);
-        Bracket { places: counts.map(Self::place), weights }
+        Bracket { counts, weights }
     }
 
     /// The number that `value` is of a motion, at `instant` (ticks).
     #[inline(always)]
     pub fn read(&self, instant: u32, value: impl Fn(&Knot<S, P, D>) -> S) -> S {
-        let Bracket { places, weights: [p, q, r] } = self.bracket(instant);
-        let [a, b, c, d] = places.map(|place| value(&self.knots[place]));
+        let Bracket { counts: [a, b, c, d], weights: [p, q, r] } = self.bracket(instant);
+        let [a, b, c, d] = [self.knot(a), self.knot(b), self.knot(c), self.knot(d)];
+        let [a, b, c, d] = [value(a), value(b), value(c), value(d)];
         b + ((b - a) * p + (c - b) * q + (d - c) * r)
     }
 
@@ -137,8 +149,8 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
         instant: u32,
         shifted: impl Fn(&Knot<S, P, D>, &Knot<S, P, D>, &Knot<S, P, D>, S) -> Knot<S, P, D>,
     ) -> Knot<S, P, D> {
-        let Bracket { places: [a, b, c, d], weights: [p, q, r] } = self.bracket(instant);
-        let [a, b, c, d] = [&self.knots[a], &self.knots[b], &self.knots[c], &self.knots[d]];
+        let Bracket { counts: [a, b, c, d], weights: [p, q, r] } = self.bracket(instant);
+        let [a, b, c, d] = [self.knot(a), self.knot(b), self.knot(c), self.knot(d)];
         shifted(&shifted(&shifted(b, a, b, p), b, c, q), c, d, r)
     }
 

@@ -43,15 +43,16 @@ pub(super) struct StageOf {
 }
 
 /// A part of a step: displacement (m, rad) and change of velocity (m/s, rad/s).
-#[derive(Clone, Copy)]
-pub(super) struct Part<S, const D: usize> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Part<S, const D: usize> {
     place: SVector<S, D>,
     velocity: SVector<S, D>,
 }
 
 impl<S: Scalar, const D: usize> Part<S, D> {
+    /// No displacement and no change.
     #[inline(always)]
-    fn zero() -> Self {
+    pub fn zero() -> Self {
         Self { place: SVector::zeros(), velocity: SVector::zeros() }
     }
 

@@ -142,6 +142,20 @@ fn narrow_stick_bands_come_near_to_exact_friction() {
     }
 }
 
+/// The narrower the band and the tighter the unit, the less lead is left over a whole stroke.
+#[test]
+fn stick_bands_that_are_wide_enough_keep_their_lead() {
+    for (stick_band, kept_to) in [(3e-5, 5.0), (1e-5, 4.0), (3e-6, f64::NEG_INFINITY)] {
+        let leads = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0].map(|n| {
+            let mut data = cd_rom::data(n);
+            data.friction = FrictionData::Regularised { coefficient: 0.3, stick_band };
+            (n, least_lead(&predicted(&data, LIMITS, 1500)))
+        });
+        println!("stick band {stick_band:e} m/s, least lead (ms) by n: {leads:.1?}");
+        assert!(leads.iter().all(|(n, lead)| *lead > 0.0 || *n > kept_to), "{leads:?}");
+    }
+}
+
 /// Prints and returns the worst error and the least leads of drawn units, in ascending order.
 fn survey(name: &str, units: u64, periods: usize) -> (f64, Vec<f64>) {
     let (mut worst, mut leads) = ((0.0, 0, 0), Vec::new());

@@ -1,6 +1,6 @@
 //! The system timer's interrupt, and what it shares with the main loop.
 
-use core::cell::RefCell;
+use core::{cell::RefCell, mem::MaybeUninit};
 
 use cortex_m::peripheral::SYST;
 use cortex_m_rt::exception;
@@ -9,7 +9,7 @@ use heapless::Deque;
 use slipfit_firmware::board::{Board, TICK};
 
 use crate::{
-    control::{Control, Record},
+    control::{Control, Motions, Record},
     program::{PERIODS, Ticking},
 };
 
@@ -47,6 +47,11 @@ fn SysTick() {
 }
 
 impl Ticking for Board {
+    fn motions(&mut self, start: impl FnOnce() -> Motions) -> &'static mut Motions {
+        let memory = cortex_m::singleton!(: MaybeUninit<Motions> = MaybeUninit::uninit());
+        memory.expect("it is asked for once").write(start())
+    }
+
     fn ticks(&mut self, control: Control, mut show: impl FnMut(&mut Self, &Record)) -> Control {
         with(|shared| {
             shared.control = Some(control);

@@ -7,7 +7,7 @@
 mod control;
 mod program;
 #[rustfmt::skip]
-#[allow(dead_code, reason = "its hash is that of a table of its own step")]
+#[allow(dead_code, reason = "its predictor is not the one that this image has")]
 #[path = "../../../../reference/scene.rs"]
 mod scene;
 
@@ -35,6 +35,10 @@ fn main() -> std::io::Result<std::process::ExitCode> {
 /// On the desk periods follow each other at once.
 #[cfg(not(target_os = "none"))]
 impl program::Ticking for slipfit_firmware::desk::Desk {
+    fn motions(&mut self, start: impl FnOnce() -> control::Motions) -> &'static mut control::Motions {
+        Box::leak(Box::new(start()))
+    }
+
     fn ticks(
         &mut self,
         mut control: control::Control,

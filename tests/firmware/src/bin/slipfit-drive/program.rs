@@ -2,6 +2,7 @@
 
 use slipfit_core::{
     monitor::{Estimate, Verdict},
+    pose::Pose,
     table::{AxisKind, Table},
 };
 use slipfit_firmware::{
@@ -10,7 +11,7 @@ use slipfit_firmware::{
 };
 
 use crate::{
-    control::{Control, Record, Rig},
+    control::{Control, Motions, Record, Rig, prediction},
     say,
     scene::SCENE_HASH,
 };
@@ -38,6 +39,9 @@ const RIGS: [(&str, Rig); 3] = [
 
 /// A machine that calls a control once a millisecond.
 pub trait Ticking: Machine {
+    /// Memory for the motions of a prediction, as they are at its `start`.
+    fn motions(&mut self, start: impl FnOnce() -> Motions) -> &'static mut Motions;
+
     /// Runs `control` for [`PERIODS`] from the interrupt, shows every record from the main loop, and gives the control
     /// back.
     fn ticks(&mut self, control: Control, show: impl FnMut(&mut Self, &Record)) -> Control;
@@ -60,25 +64,28 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
             return false;
         }
     };
+    let mut motions = machine.motions(|| prediction(RIGS[0].1.taken_for).at_rest(Pose::nominal(), 0));
     let mut costs = Count::default();
     for (name, rig) in RIGS {
         say::rig(machine, name, &rig);
-        let mut firsts = Firsts::default();
-        let mut control = machine.ticks(Control::new(&rig, (table, flash)), |machine, record| {
+        let (mut firsts, mut least_lead) = (Firsts::default(), f32::INFINITY);
+        let mut control = machine.ticks(Control::new(&rig, (table, flash), motions), |machine, record| {
             costs.add(machine.cost(record));
             firsts.see(record);
+            least_lead = least_lead.min(record.lead);
             if record.periods.is_multiple_of(PERIODS_A_LINE) {
                 say::record(machine, record);
             }
         });
         let (estimate, damaged) = (control.bank.estimate(), control.damaged);
         let stack = machine.stack(|| _ = control.tick(|| 0));
-        say::stroke(machine, &Stroke { firsts, estimate, damaged, stack });
+        say::stroke(machine, &Stroke { firsts, least_lead, estimate, damaged, stack });
+        motions = control.motions;
     }
     let instructions = costs.range().map(Range::ends);
     let load = instructions.map(|(_, greatest)| greatest as f32 * CYCLES * 1e3 / CLOCK * 100.0);
-    let (stack, control) = (machine.deepest_stack(), size_of::<Control>());
-    say::everything(machine, &Everything { instructions, load, stack, control });
+    let (stack, control, motions) = (machine.deepest_stack(), size_of::<Control>(), size_of::<Motions>());
+    say::everything(machine, &Everything { instructions, load, stack, control, motions });
     true
 }
 
@@ -88,6 +95,8 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
 pub struct Stroke {
     /// When verdicts were first given.
     pub firsts: Firsts,
+    /// The least lead of the prediction over the clock (s).
+    pub least_lead: f32,
     /// The unit's tolerance level, from all of the stroke.
     pub estimate: Option<Estimate>,
     /// Rounds in which the table had changed.
@@ -108,6 +117,8 @@ pub struct Everything {
     pub stack: Option<u32>,
     /// What of it the control takes (bytes).
     pub control: usize,
+    /// What the prediction keeps, elsewhere (bytes).
+    pub motions: usize,
 }
 
 /// When a verdict was first given (ms).

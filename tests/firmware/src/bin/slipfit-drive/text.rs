@@ -17,23 +17,25 @@ pub fn refused(machine: &mut impl Machine, error: TableError) {
 pub fn rig(machine: &mut impl Machine, name: &str, rig: &Rig) {
     let Rig { level, friction, taken_for, .. } = rig;
     print(machine, format_args!("\n== {name}: n = {level}, friction {friction}, taken for n = {taken_for}"));
-    print(machine, format_args!(" t (ms)  measured (N)  kernel (N)   table (N)  verdict"));
+    print(machine, format_args!(" t (ms)  measured (N)  predicted (N)   table (N)  lead (ms)  verdict"));
 }
 
 /// A period.
 pub fn record(machine: &mut impl Machine, record: &Record) {
-    let Record { periods, measured, predicted, expected, verdict, .. } = record;
-    print(machine, format_args!("{periods:7}{measured:14.4}{predicted:12.4}{expected:12.4}  {verdict:?}"));
+    let Record { periods, measured, predicted, lead, expected, verdict, .. } = record;
+    let lead = lead * 1e3;
+    print(machine, format_args!("{periods:7}{measured:14.4}{predicted:15.4}{expected:12.4}{lead:11.1}  {verdict:?}"));
 }
 
 /// A stroke that has ended.
 pub fn stroke(machine: &mut impl Machine, stroke: &Stroke) {
-    let Stroke { firsts, estimate, damaged, stack } = stroke;
+    let Stroke { firsts, least_lead, estimate, damaged, stack } = stroke;
     print(machine, format_args!("first tight at {:?} ms, first jam at {:?} ms", firsts.tight, firsts.jam));
     if let Some(estimate) = estimate {
         let [low, high] = estimate.interval;
         print(machine, format_args!("n = {:.3}, with 95 % between {low:.3} and {high:.3}", estimate.level));
     }
+    print(machine, format_args!("least lead: {:.1} ms", least_lead * 1e3));
     print(machine, format_args!("table damaged in {damaged} rounds"));
     if let Some(bytes) = stack {
         print(machine, format_args!("stack of a period: {bytes} bytes"));
@@ -42,7 +44,7 @@ pub fn stroke(machine: &mut impl Machine, stroke: &Stroke) {
 
 /// All strokes together.
 pub fn everything(machine: &mut impl Machine, everything: &Everything) {
-    let Everything { instructions, load, stack, control } = everything;
+    let Everything { instructions, load, stack, control, motions } = everything;
     print(machine, format_args!(""));
     if let Some((least, greatest)) = instructions {
         print(machine, format_args!("instructions of a period: {least} to {greatest}"));
@@ -52,7 +54,7 @@ pub fn everything(machine: &mut impl Machine, everything: &Everything) {
         print(machine, format_args!("instructions at 1 kHz, {CYCLES} cycles each: {load:.1} % of {clock} MHz"));
     }
     if let Some(bytes) = stack {
-        print(machine, format_args!("stack of everything: {bytes} bytes, control of {control}"));
+        print(machine, format_args!("stack of everything: {bytes} bytes, control of {control}; motions of {motions}"));
     }
     print(machine, format_args!("done"));
 }

@@ -1,0 +1,42 @@
+//! As the other image, for predicting the slide ahead of the clock: both together would not fit the flash.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod image;
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    uses::all();
+}
+
+/// Every use a controller makes of it, with inputs that the optimiser knows nothing about.
+mod uses {
+    use core::hint::black_box;
+
+    use slipfit_core::{
+        ParameterError,
+        ahead::{Ahead, Limits, State},
+        law::{Impact, Regularised, ThreeHalves},
+        pose::Pose,
+        slide::Slide,
+    };
+    use slipfit_problems::cd_rom;
+
+    /// All uses.
+    pub fn all() {
+        let _ = black_box(predict());
+    }
+
+    fn predict() -> Result<(), ParameterError<f32>> {
+        let data = black_box(cd_rom::data(black_box(0.0)));
+        let contact = Impact::new(ThreeHalves::new(black_box(3e6))?, black_box(1e3), black_box(1e-4))?;
+        let friction = Regularised::new(black_box(0.3), black_box(1e-4))?;
+        let limits = black_box(Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2 });
+        let ahead = black_box(Ahead::new(Slide::new(data.body, contact, friction, data.drive)?, limits)?);
+        let mut state: State<f32, _, 6, 256> = black_box(ahead.at_rest(Pose::nominal(), black_box(70)));
+        black_box(black_box(ahead.step(&mut state)).status());
+        ahead.restart(black_box(&mut state));
+        black_box(&state);
+        Ok(())
+    }
+}
