@@ -19,7 +19,7 @@ use crate::{
     },
 };
 
-/// Joins the shards of a tolerance analysis or of a population, in any order: the same bytes as one run.
+/// Joins the shards of an analysis or of a population: the same bytes as one run.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Files that `slipfit tolerance --shard` or `slipfit population --shard` wrote.

@@ -22,7 +22,7 @@ use crate::{
     system::files,
 };
 
-/// Measures error against run time: every integrator, step and number type, on the opening and the stroke.
+/// Measures error against run time of every integrator, step and number type.
 ///
 /// Errors are those of the drive force every millisecond, in % of its peak, against a far finer run. Explicit
 /// integrators are tried at finer steps, too, because they are stable only there.

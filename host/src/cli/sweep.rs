@@ -30,7 +30,7 @@ use crate::{
     system::files,
 };
 
-/// Simulates the slide at many tolerance levels: breakaway, required force, does it jam, and where.
+/// Simulates the slide at many tolerance levels: from which on does it jam, and where.
 ///
 /// The desk computes it by error-controlled steps; with --step, --integrator or --scalar the controller does, held against
 /// the desk.

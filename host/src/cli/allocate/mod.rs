@@ -36,7 +36,7 @@ const ALL_DIGITS: usize = 17;
 /// What the seed of the units is derived with that check malfunctions.
 const OTHER_UNITS: u64 = 5 << 32;
 
-/// The cheapest tolerances that meet the requirements of the measures, or with which few enough units malfunction.
+/// Chooses the cheapest tolerances that meet what is required of measures or of units.
 ///
 /// A tolerance with a `cost` is chosen, the others stay. What is required stands in the scene (`require` of a measure, `yield` or
 /// `malfunction` in `[allocate]`) or follows --require. Exits 1 where even the tightest tolerances do not meet it.
