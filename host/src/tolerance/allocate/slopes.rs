@@ -10,7 +10,7 @@ pub enum Slopes {
     /// By central differences, a tolerance at a time, over this share of it: for figures that are smooth.
     Differences(f64),
     /// By a designed experiment that moves all tolerances at once by this factor: for figures that are counted, in which a
-    /// single tolerance's part is lost between those of chance. See [`of_design`].
+    /// single tolerance's part is lost between those of chance.
     Design(f64),
 }
 
