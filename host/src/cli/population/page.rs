@@ -1,5 +1,7 @@
 //! What units do, for a page: pictures, and a player of one unit of each kind.
 
+use rayon::prelude::*;
+
 use crate::{
     cli::{Failure, simulate::MOMENTS},
     population::{
@@ -61,7 +63,7 @@ pub fn units(
         let film = filmed(scene, production, *number, MOMENTS)?;
         Ok::<_, Failure>(player::of_slide(scene, format!("unit {number}: {}", word(outcome.verdict)), &film))
     };
-    let runs = one_of_each(all).iter().map(run).collect::<Result<Vec<_>, _>>()?;
+    let runs = one_of_each(all).par_iter().map(run).collect::<Result<Vec<_>, _>>()?;
     let words = "Of the units that jam, crawl and run the one whose greatest force is in their middle, on its pins:";
     let player = (!runs.is_empty()).then(|| player::figure(&runs, words)).transpose().map_err(anyhow::Error::from)?;
     Ok((Units { figures, player }, names))
