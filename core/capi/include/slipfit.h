@@ -12,7 +12,7 @@
 // Implicit Euler with four Newton passes.
 #define SLIPFIT_SCHEME_IMPLICIT_EULER 1
 
-// Smoothed Coulomb friction.
+// Regularised Coulomb friction.
 #define SLIPFIT_FRICTION_REGULARISED 1
 
 // Coulomb friction with true stick.
@@ -83,7 +83,7 @@ typedef struct slipfit_scene {
   uint32_t friction_law;
   // Coefficient of friction.
   float friction_coefficient;
-  // Stick band of smoothed friction (m/s); ignored by exact friction.
+  // Stick band of regularised friction (m/s); ignored by exact friction.
   float friction_stick_band;
   // Gain of the drive (N·s/m).
   float drive_gain;

@@ -44,7 +44,7 @@ pub struct slipfit_scene {
     pub friction_law: u32,
     /// Coefficient of friction.
     pub friction_coefficient: f32,
-    /// Stick band of smoothed friction (m/s); ignored by exact friction.
+    /// Stick band of regularised friction (m/s); ignored by exact friction.
     pub friction_stick_band: f32,
     /// Gain of the drive (N·s/m).
     pub drive_gain: f32,
@@ -59,7 +59,7 @@ pub struct slipfit_scene {
 /// Implicit Euler with four Newton passes.
 pub const SLIPFIT_SCHEME_IMPLICIT_EULER: u32 = 1;
 
-/// Smoothed Coulomb friction.
+/// Regularised Coulomb friction.
 pub const SLIPFIT_FRICTION_REGULARISED: u32 = 1;
 /// Coulomb friction with true stick.
 pub const SLIPFIT_FRICTION_EXACT: u32 = 2;

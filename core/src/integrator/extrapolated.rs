@@ -2,7 +2,8 @@
 //!
 //! Every part is a whole implicit Euler step, so that the scheme keeps its forgiveness of stiffness and friction; the
 //! extrapolation takes out the errors of first, second, … order. The last two columns differ by the error of the one
-//! before, which is an error estimate without further work. With one Newton pass a part this is the extrapolated linearly implicit Euler scheme.
+//! before, which is an error estimate without further work. With one Newton pass a part this is the extrapolated linearly
+//! implicit Euler scheme.
 
 use super::{Integrator, Motion, MotionOf, NO_CHORD, Step, StepOf, shifted, stage};
 use crate::{Scalar, mechanism::Mechanism};

@@ -1,0 +1,87 @@
+//! The predictor.
+
+use proptest::prelude::*;
+use slipfit_capi::*;
+
+use super::{
+    NUMBERS, SPECIAL,
+    ahead::{LIMITS, ahead_stays_finite},
+    changed,
+    common::zeroed,
+    regularised, scene,
+};
+
+/// Makes and steps a predictor: refused, or finite for ever.
+fn stays_finite(scene: &slipfit_scene, n: f32) -> Result<(), TestCaseError> {
+    let mut predictor = zeroed::<slipfit_predictor>();
+    // SAFETY: every pointer is to a local of its type.
+    unsafe {
+        let made = slipfit_predictor_init(&mut predictor, scene, n);
+        prop_assert!([SLIPFIT_OK, SLIPFIT_PARAMETER, SLIPFIT_LAW, SLIPFIT_STEP].contains(&made), "{made}");
+        for _ in 0..20 {
+            let stepped = slipfit_predictor_step(&mut predictor);
+            if made == SLIPFIT_OK {
+                prop_assert!([SLIPFIT_OK, SLIPFIT_NOT_FINITE].contains(&stepped), "{stepped}");
+            } else {
+                prop_assert_eq!(stepped, SLIPFIT_NOT_MADE);
+            }
+        }
+        let mut said = zeroed::<slipfit_prediction>();
+        if slipfit_predictor_read(&predictor, &mut said) == SLIPFIT_OK {
+            prop_assert!(said.time.is_finite() && said.velocity.is_finite() && !said.residual.is_nan(), "{said:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn special_numbers_in_every_place_of_a_scene() {
+    stays_finite(&scene(), 2.5).unwrap();
+    // An interpreter has no time to try every one.
+    let (places, specials) = if cfg!(miri) { (40, 1) } else { (1, SPECIAL.len()) };
+    for place in (0..NUMBERS).step_by(places) {
+        for special in SPECIAL.into_iter().take(specials) {
+            stays_finite(&changed(scene(), &[(place, special.to_bits())]), 2.5).unwrap();
+            ahead_stays_finite(&changed(regularised(), &[(place, special.to_bits())]), 2.5, &LIMITS).unwrap();
+        }
+    }
+    for n in SPECIAL.into_iter().take(specials) {
+        stays_finite(&scene(), n).unwrap();
+    }
+}
+
+#[test]
+#[cfg_attr(miri, ignore = "too long for an interpreter")]
+fn what_cannot_be_stepped_is_refused() {
+    let mut predictor = zeroed::<slipfit_predictor>();
+    // SAFETY: every pointer is to a local of its type.
+    let mut made = |scene: &slipfit_scene, n| unsafe { slipfit_predictor_init(&mut predictor, scene, n) };
+    for n in [-3.0, 0.0, 2.5, 5.0, 8.0] {
+        assert_eq!(made(&scene(), n), SLIPFIT_OK, "{n}");
+    }
+    // What such a unit lets go of, compressed by 10 mm and more, steps of 1 ms do not follow; steps of 0.1 ms do for a while.
+    for n in [500.0, 2e3, 1e4] {
+        assert_eq!(made(&scene(), n), SLIPFIT_STEP, "{n}");
+    }
+    assert_eq!(made(&slipfit_scene { step: 1e-4, ..scene() }, 500.0), SLIPFIT_OK);
+    assert_eq!(made(&scene(), 1e6), SLIPFIT_PARAMETER);
+    for scheme in [0, 2, u32::MAX] {
+        assert_eq!(made(&slipfit_scene { scheme, ..scene() }, 2.5), SLIPFIT_LAW);
+    }
+    let mut negative = scene();
+    negative.gap_deviations[7] = -1e-9;
+    assert_eq!(made(&negative, 2.5), SLIPFIT_PARAMETER);
+}
+
+proptest! {
+    #![proptest_config(super::cases())]
+
+    #[test]
+    fn any_scene_is_refused_or_stays_finite(
+        changes in prop::collection::vec((0..NUMBERS, any::<u32>()), 0..6),
+        n in any::<f32>(),
+    ) {
+        stays_finite(&changed(scene(), &changes), n)?;
+        ahead_stays_finite(&changed(regularised(), &changes), n, &LIMITS)?;
+    }
+}
