@@ -98,13 +98,13 @@ fn set_gaps(joints: &[(&str, &Joint)], gaps: &[String], model: &mut Model) {
 
 /// One coefficient for all contacts where the scene has one for all, else one a joint.
 fn set_friction(joints: &[(&str, &Joint)], variables: &mut Variables, model: &mut Model) {
-    let rubs = |joint: &Joint| joint.laws.friction.friction_type() != FrictionType::Frictionless;
+    let has_friction = |joint: &Joint| joint.laws.friction.friction_type() != FrictionType::Frictionless;
     let coefficient = |joint: &Joint| joint.laws.friction.coefficient();
-    let rubbing: Vec<_> = joints.iter().filter(|(_, joint)| rubs(joint)).collect();
-    let Some((_, first)) = rubbing.first() else { return };
-    let is_one = rubbing.iter().all(|(_, joint)| coefficient(joint) == coefficient(first));
+    let frictional: Vec<_> = joints.iter().filter(|(_, joint)| has_friction(joint)).collect();
+    let Some((_, first)) = frictional.first() else { return };
+    let is_one = frictional.iter().all(|(_, joint)| coefficient(joint) == coefficient(first));
     let mut known: Vec<(&str, String)> = Vec::new();
-    for (at, joint) in rubbing {
+    for (at, joint) in frictional {
         let of = if is_one { "" } else { joint.name.as_str() };
         let value = match known.iter().find(|(name, _)| *name == of) {
             Some((_, value)) => value.clone(),

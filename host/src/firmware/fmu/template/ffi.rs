@@ -118,22 +118,88 @@ pub fn set(pointer: *mut c_void, references: &[u32], values: &[f64]) -> c_int {
     with(pointer, |instance| instance.situation.set(references, values))
 }
 
+/// The functions of states, which both versions call otherwise.
+macro_rules! state_functions {
+    ($keep:ident, $go_back:ident, $free:ident, $size:ident, $write:ident, $read:ident) => {
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $keep(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
+            unsafe { $crate::ffi::keep(instance, state) }
+        }
+
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $go_back(instance: *mut c_void, state: *mut c_void) -> c_int {
+            unsafe { $crate::ffi::go_back(instance, state) }
+        }
+
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $free(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
+            unsafe { $crate::ffi::free_state(instance, state) }
+        }
+
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $size(instance: *mut c_void, state: *mut c_void, size: *mut usize) -> c_int {
+            unsafe { $crate::ffi::size_of_state(instance, state, size) }
+        }
+
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $write(
+            instance: *mut c_void,
+            state: *mut c_void,
+            bytes: *mut u8,
+            size: usize,
+        ) -> c_int {
+            unsafe { $crate::ffi::write_state(instance, state, bytes, size) }
+        }
+
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $read(
+            instance: *mut c_void,
+            bytes: *const u8,
+            size: usize,
+            state: *mut *mut c_void,
+        ) -> c_int {
+            unsafe { $crate::ffi::read_state(instance, bytes, size, state) }
+        }
+    };
+}
+pub(crate) use state_functions;
+
+/// Functions of what this unit has not: they answer with an error.
+macro_rules! not_here {
+    ($($name:ident($($argument:ident: $of:ty),*);)*) => {$(
+        #[unsafe(no_mangle)]
+        pub extern "C" fn $name(instance: *mut c_void $(, $argument: $of)*) -> c_int {
+            $(let _ = $argument;)*
+            $crate::ffi::with(instance, |_| Err(concat!(stringify!($name), ": this unit has nothing of the kind").into()))
+        }
+    )*};
+}
+pub(crate) use not_here;
+
 /// Keeps the state of the instance in `*state`, a new one where that is null.
 pub unsafe fn keep(pointer: *mut c_void, state: *mut *mut c_void) -> c_int {
     with(pointer, |instance| {
-        let kept = instance.situation.clone();
-        // SAFETY: room for a pointer, which is null or what this function gave before.
-        unsafe {
-            match state.as_mut() {
-                None => return Err("there is no room for the state".into()),
-                Some(state) => match state.cast::<Situation>().as_mut() {
-                    Some(before) => *before = kept,
-                    None => *state = Box::into_raw(Box::new(kept)).cast(),
-                },
-            }
-        }
-        Ok(())
+        // SAFETY: the importer's promise.
+        unsafe { handed_over(instance.situation.clone(), state) }
     })
+}
+
+/// Puts `kept` into `*state`, or into a new state where that is null.
+///
+/// # Safety
+/// `state` is null, or room for a pointer that is null or what this function gave before.
+unsafe fn handed_over(kept: Situation, state: *mut *mut c_void) -> Result<(), Trouble> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        match state.as_mut() {
+            None => return Err("there is no room for the state".into()),
+            Some(state) => match state.cast::<Situation>().as_mut() {
+                Some(before) => *before = kept,
+                None => *state = Box::into_raw(Box::new(kept)).cast(),
+            },
+        }
+    }
+    Ok(())
 }
 
 /// Goes back to a `state` that was kept.
@@ -182,16 +248,7 @@ pub unsafe fn read_state(pointer: *mut c_void, bytes: *const u8, size: usize, st
     with(pointer, |_| {
         // SAFETY: as above.
         let read = deserialised(unsafe { lent(bytes, size) })?;
-        unsafe {
-            match state.as_mut() {
-                None => return Err("there is no room for the state".into()),
-                Some(state) => match state.cast::<Situation>().as_mut() {
-                    Some(before) => *before = read,
-                    None => *state = Box::into_raw(Box::new(read)).cast(),
-                },
-            }
-        }
-        Ok(())
+        unsafe { handed_over(read, state) }
     })
 }
 

@@ -3,8 +3,8 @@
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
 
 use crate::ffi::{
-    ERROR, Instance, Log, Logger, OK, free_state, freed, get, go_back, instantiated, keep, lent, lent_mut, none_of,
-    put, read_state, set, size_of_state, with, write_state,
+    ERROR, Instance, Log, Logger, OK, freed, get, instantiated, lent, lent_mut, none_of, not_here, put, set,
+    state_functions, with,
 };
 
 /// What an importer offers.
@@ -198,81 +198,13 @@ pub extern "C" fn fmi2GetStringStatus(instance: *mut c_void, kind: c_int, _: *mu
     with(instance, |_| Err(format!("fmi2GetStringStatus: there is no status of the kind {kind}").into()))
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    unsafe { keep(instance, state) }
+state_functions! {
+    fmi2GetFMUstate, fmi2SetFMUstate, fmi2FreeFMUstate,
+    fmi2SerializedFMUstateSize, fmi2SerializeFMUstate, fmi2DeSerializeFMUstate
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetFMUstate(instance: *mut c_void, state: *mut c_void) -> c_int {
-    unsafe { go_back(instance, state) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    unsafe { free_state(instance, state) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
-    instance: *mut c_void,
-    state: *mut c_void,
-    size: *mut usize,
-) -> c_int {
-    unsafe { size_of_state(instance, state, size) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializeFMUstate(
-    instance: *mut c_void,
-    state: *mut c_void,
-    bytes: *mut u8,
-    size: usize,
-) -> c_int {
-    unsafe { write_state(instance, state, bytes, size) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
-    instance: *mut c_void,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut c_void,
-) -> c_int {
-    unsafe { read_state(instance, bytes, size, state) }
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetDirectionalDerivative(
-    instance: *mut c_void,
-    _: *const c_uint,
-    _: usize,
-    _: *const c_uint,
-    _: usize,
-    _: *const f64,
-    _: *mut f64,
-) -> c_int {
-    with(instance, |_| Err("fmi2GetDirectionalDerivative: this unit has nothing of the kind".into()))
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2SetRealInputDerivatives(
-    instance: *mut c_void,
-    _: *const c_uint,
-    _: usize,
-    _: *const c_int,
-    _: *const f64,
-) -> c_int {
-    with(instance, |_| Err("fmi2SetRealInputDerivatives: this unit has nothing of the kind".into()))
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetRealOutputDerivatives(
-    instance: *mut c_void,
-    _: *const c_uint,
-    _: usize,
-    _: *const c_int,
-    _: *mut f64,
-) -> c_int {
-    with(instance, |_| Err("fmi2GetRealOutputDerivatives: this unit has nothing of the kind".into()))
+not_here! {
+    fmi2GetDirectionalDerivative(a: *const c_uint, b: usize, c: *const c_uint, d: usize, e: *const f64, f: *mut f64);
+    fmi2SetRealInputDerivatives(a: *const c_uint, b: usize, c: *const c_int, d: *const f64);
+    fmi2GetRealOutputDerivatives(a: *const c_uint, b: usize, c: *const c_int, d: *mut f64);
 }

@@ -3,8 +3,8 @@
 use std::ffi::{c_char, c_int, c_void};
 
 use crate::ffi::{
-    ERROR, Instance, Log, LogMessage, free_state, freed, get, go_back, instantiated, keep, lent, lent_mut, none_of,
-    put, read_state, set, size_of_state, with, write_state,
+    ERROR, Instance, Log, LogMessage, freed, get, instantiated, lent, lent_mut, none_of, not_here, put, set,
+    state_functions, with,
 };
 
 #[unsafe(no_mangle)]
@@ -153,59 +153,9 @@ pub unsafe extern "C" fn fmi3DoStep(
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetFMUState(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    unsafe { keep(instance, state) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetFMUState(instance: *mut c_void, state: *mut c_void) -> c_int {
-    unsafe { go_back(instance, state) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3FreeFMUState(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    unsafe { free_state(instance, state) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
-    instance: *mut c_void,
-    state: *mut c_void,
-    size: *mut usize,
-) -> c_int {
-    unsafe { size_of_state(instance, state, size) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SerializeFMUState(
-    instance: *mut c_void,
-    state: *mut c_void,
-    bytes: *mut u8,
-    size: usize,
-) -> c_int {
-    unsafe { write_state(instance, state, bytes, size) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3DeserializeFMUState(
-    instance: *mut c_void,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut c_void,
-) -> c_int {
-    unsafe { read_state(instance, bytes, size, state) }
-}
-
-/// Functions of what this unit has not: they answer with an error.
-macro_rules! not_here {
-    ($($name:ident($($argument:ident: $of:ty),*);)*) => {$(
-        #[unsafe(no_mangle)]
-        pub extern "C" fn $name(instance: *mut c_void $(, $argument: $of)*) -> c_int {
-            $(let _ = $argument;)*
-            with(instance, |_| Err(concat!(stringify!($name), ": this unit has nothing of the kind").into()))
-        }
-    )*};
+state_functions! {
+    fmi3GetFMUState, fmi3SetFMUState, fmi3FreeFMUState,
+    fmi3SerializedFMUStateSize, fmi3SerializeFMUState, fmi3DeserializeFMUState
 }
 
 /// Reading and writing variables of other types: there are none.
