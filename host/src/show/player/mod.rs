@@ -73,8 +73,6 @@ pub struct Body {
     pub travel: Motion,
     /// Motion that is enlarged.
     pub sway: Motion,
-    /// Whether it is part of the frame.
-    pub fixed: bool,
 }
 
 /// Displacement (mm) and rotation vector (rad).

@@ -5,30 +5,26 @@
 //
 // DATA is one run, or a list of runs of the same mechanism from which the reader chooses. Lengths are in mm, angles in rad,
 // forces in N, times in ms. A *series* is a list with one number per frame, or one number that never changes. A *point* is
-// [x, y, z], or [x, y]; angles are about the axes x, y, z of the frame, right-handed. A run is an object of
+// [x, y, z]; angles are about the axes x, y, z of the frame, right-handed. A run is an object of
 //   title   text
 //   label   text for the choice among runs (required if there are several)
 //   t       rising list of times, at least two; need not be evenly spaced
-//   shown   frame that is shown at rest and on paper; else the one with the greatest value of the first plot
-//   play    factor that enlarges the motion within the play; else chosen from the data of all runs
 //   views   one or two of { name, axes: [right, up] }; an axis is "x", "y", "z" or one of them with a minus, such as "-z"
-//   bodies  list of { name, at, outline, travel, sway, fixed }
+//   bodies  list of { name, at, outline, travel, sway }
 //             at       point: the centre of mass in the drawn pose, about which the body turns
 //             outline  list of closed polygons, each a list of points, in the drawn pose
 //             travel   { x, y, z, ax, ay, az }, each a series, or absent where it is 0: drawn at true scale. Displacement of
 //                      the centre of mass and rotation vector
 //             sway     the same keys, added to travel and enlarged; its angles must be small
-//             fixed    true: part of the frame, without motion
-//   joints  list of { name, at, between, axes, box | ring, pin, contacts }
+//   joints  list of { name, at, between, axes, box, pin, contacts }
 //             at       point: the pin in the drawn pose
 //             between  [body that carries the pin, body that carries the gap], each a body's name or "frame"
 //             axes     the two axes of the plane in which the gap lies, such as ["x", "y"]
 //             box      [left, right, low, high]: limits of the pin's place in the gap, along the first axis and the second;
 //                      null: open. A limit beyond 0 is a preload
-//             ring     or the radial clearance
 //             pin      two series: the pin's place in the gap along the axes, 0 in the drawn pose
-//             contacts list of { side, name, force }: side "left", "right", "low" or "high" of a box, absent for a ring, which
-//                      is touched where the pin is; name is what the side is called, else side; force is a series
+//             contacts list of { side, name, force }: side "left", "right", "low" or "high", name what the side is called, force
+//                      a series
 //   plots   list of { name, unit, values }: curves over time
 //   events  list of { t, name }: moments to mark; may be absent
 // The element of the figure has the property `player` with show(frame), choose(run), play(), pause() and the attributes
@@ -80,7 +76,6 @@
 
   // Motion ---------------------------------------------------------------------------------------------------------------
 
-  const space = ([x, y, z = 0]) => [x, y, z];
   const add = (a, b, factor = 1) => a.map((value, i) => value + factor * b[i]);
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
   // v turned by a rotation vector.
@@ -98,11 +93,11 @@
   // Where the points of a body are at a frame, what play does to them times `play`. Enlarged turns stay linear, so that an
   // enlarged gap closes at the very moment at which the true one does.
   const pose = (body, frame, play) => {
-    if (!body || body.fixed) return { place: space, turn: [0, 0, 0] };
+    if (!body) return { place: (point) => point, turn: [0, 0, 0] };
     const [travel, sway] = [motion(body.travel, frame), motion(body.sway, frame)];
-    const centre = space(body.at);
+    const centre = body.at;
     const place = (point) => {
-      const arm = turned(add(space(point), centre, -1), travel.turn);
+      const arm = turned(add(point, centre, -1), travel.turn);
       return add(add(add(centre, travel.shift), arm), add(sway.shift, cross(sway.turn, arm)), play);
     };
     return { place, turn: add(travel.turn, sway.turn, play) };
@@ -129,20 +124,18 @@
     for (const { name, travel, sway } of run.bodies)
       for (const series of [travel || {}, sway || {}])
         for (const key in series) if (wrong(series[key])) return `${name}: ${key} needs ${frames} numbers`;
-    for (const { name, between, pin, contacts, box, ring } of run.joints) {
+    for (const { name, between, pin, contacts } of run.joints) {
       if (!between.every(known)) return `${name}: unknown body`;
-      if (!box === (ring === undefined)) return `${name}: either box or ring`;
       if (pin.length !== 2 || pin.some(wrong)) return `${name}: pin needs two lists of ${frames} numbers`;
       for (const { side, force } of contacts)
-        if (wrong(force) || (box && !SIDES.includes(side))) return `${name}: contact ${side || ""}`;
+        if (wrong(force) || !SIDES.includes(side)) return `${name}: contact ${side || ""}`;
     }
     for (const { name, values } of run.plots) if (wrong(values)) return `${name}: needs ${frames} numbers`;
     return undefined;
   };
 
-  const clearances = ({ box, ring }) => (box
-    ? [[0, 1], [2, 3]].filter(([i, j]) => box[i] !== null && box[j] !== null).map(([i, j]) => Math.abs(box[j] - box[i]))
-    : [2 * ring]);
+  const clearances = ({ box }) =>
+    [[0, 1], [2, 3]].filter(([i, j]) => box[i] !== null && box[j] !== null).map(([i, j]) => Math.abs(box[j] - box[i]));
 
   const survey = (runs) => {
     const bounds = (play) => runs[0].views.map(({ axes }) => {
@@ -175,7 +168,7 @@
     }
     const gaps = runs.flatMap((run) => run.joints.flatMap(clearances)).filter((gap) => gap > 0).sort((a, b) => a - b);
     const gap = gaps.length ? gaps[Math.floor(gaps.length / 2)] : 1;
-    const play = runs[0].play || Math.max(1, round125(Math.min(0.1 * size / gap, 0.15 * size / shift, 0.3 / turn), [5, 3, 2, 1]));
+    const play = Math.max(1, round125(Math.min(0.1 * size / gap, 0.15 * size / shift, 0.3 / turn), [5, 3, 2, 1]));
     const forces = runs.flatMap((run) => run.joints.flatMap(({ contacts }) => contacts.flatMap(({ force }) => every(force))));
     const greatest = extreme(forces.concat(1e-6), Math.max);
     const thresholds = [round125(greatest)];
@@ -196,10 +189,6 @@
   // The pin's place as it is drawn: a contact gives way under its force, but here its surfaces stay where they are.
   const rigid = (joint, frame) => {
     const pin = joint.pin.map((series) => at(series, frame));
-    if (!joint.box) {
-      const distance = Math.hypot(...pin);
-      return distance > joint.ring ? pin.map((value) => value * joint.ring / distance) : pin;
-    }
     return pin.map((value, axis) => {
       const [low, high] = limitsOf(joint, axis);
       return Math.min(high === null ? Infinity : high, Math.max(low === null ? -Infinity : low, value));
@@ -223,36 +212,30 @@
     const gap = svg(group, "g", {});
     const along = axes.map(({ letter, sign }) => {
       const axis = joint.axes.indexOf(letter);
-      const limits = joint.box && axis >= 0 ? limitsOf(joint, axis) : [null, null];
+      const limits = axis >= 0 ? limitsOf(joint, axis) : [null, null];
       const sides = axis < 0 ? [] : SIDES.slice(2 * axis, 2 * axis + 2);
       return sign > 0 ? { limits, sides }
         : { limits: limits.map((limit) => (limit === null ? null : -limit)).reverse(), sides: sides.reverse() };
     });
     const parts = [];
     const label = (x, y, anchor) => (words ? svg(gap, "text", { class: "force", x: px(x), y: px(y), "text-anchor": anchor }) : null);
-    if (joint.box) {
-      // Ends of a line along one axis, in px from the pin's place in the drawn pose; open ends reach out.
-      const ends = ({ limits: [low, high] }) => [
-        low === null ? -reach : low * scale - radius, high === null ? reach : high * scale + radius,
-      ];
-      const [across, up] = along.map(ends);
-      svg(gap, "rect", { class: "room", x: px(Math.min(...across)), y: px(-Math.max(...up)),
-        width: px(Math.abs(across[1] - across[0])), height: px(Math.abs(up[1] - up[0])) });
-      along.forEach(({ limits, sides }, axis) => limits.forEach((limit, i) => {
-        if (limit === null) return;
-        const contact = joint.contacts.find(({ side }) => side === sides[i]);
-        const [x1, x2, y1, y2] = axis === 0 ? [across[i], across[i], ...up] : [...across, up[i], up[i]];
-        const line = svg(gap, "line", { class: "side", x1: px(x1), x2: px(x2), y1: px(-y1), y2: px(-y2) });
-        const outwards = i ? 1 : -1;
-        const text = axis === 0 ? label(x1 + 9 * outwards, -(y1 + y2) / 2 + 4, i ? "start" : "end")
-          : i ? label((x1 + x2) / 2, -y1 - 8, "middle") : label((x1 + x2) / 2 - 12, -y1 + 18, "start");
-        parts.push({ contact, line, text });
-      }));
-    } else if (along.every(({ sides }) => sides.length)) {
-      svg(gap, "circle", { class: "room", r: px(joint.ring * scale + radius) });
-      svg(gap, "circle", { class: "side", r: px(joint.ring * scale + radius) });
-      parts.push({ contact: joint.contacts[0], line: svg(gap, "path", { class: "side", d: "" }), text: label(0, 0, "middle"), round: true });
-    }
+    // Ends of a line along one axis, in px from the pin's place in the drawn pose; open ends reach out.
+    const ends = ({ limits: [low, high] }) => [
+      low === null ? -reach : low * scale - radius, high === null ? reach : high * scale + radius,
+    ];
+    const [across, up] = along.map(ends);
+    svg(gap, "rect", { class: "room", x: px(Math.min(...across)), y: px(-Math.max(...up)),
+      width: px(Math.abs(across[1] - across[0])), height: px(Math.abs(up[1] - up[0])) });
+    along.forEach(({ limits, sides }, axis) => limits.forEach((limit, i) => {
+      if (limit === null) return;
+      const contact = joint.contacts.find(({ side }) => side === sides[i]);
+      const [x1, x2, y1, y2] = axis === 0 ? [across[i], across[i], ...up] : [...across, up[i], up[i]];
+      const line = svg(gap, "line", { class: "side", x1: px(x1), x2: px(x2), y1: px(-y1), y2: px(-y2) });
+      const outwards = i ? 1 : -1;
+      const text = axis === 0 ? label(x1 + 9 * outwards, -(y1 + y2) / 2 + 4, i ? "start" : "end")
+        : i ? label((x1 + x2) / 2, -y1 - 8, "middle") : label((x1 + x2) / 2 - 12, -y1 + 18, "start");
+      parts.push({ contact, line, text });
+    }));
     const pin = svg(group, "circle", { class: "pin", r: px(radius) });
     const update = (frame, [x, y], turn = 0, still = false) => {
       const [right, up] = placeOnPage(joint, axes, frame).map((value) => value * scale);
@@ -260,16 +243,10 @@
       // Either the gap stands still, or the pin.
       set(gap, { transform: still ? "" : `translate(${px(-right)} ${px(up)})` });
       set(pin, still ? { cx: px(right), cy: px(-up) } : {});
-      for (const { contact, line, text, round } of parts) {
+      for (const { contact, line, text } of parts) {
         const force = contact ? at(contact.force, frame) : 0;
         const colour = level(force);
         set(line, { class: colour ? `side touches force-${colour}` : "side" });
-        if (round) {
-          const [direction, r] = [Math.atan2(up, right), joint.ring * scale + radius];
-          const end = (angle) => `${px(r * Math.cos(direction + angle))} ${px(-r * Math.sin(direction + angle))}`;
-          set(line, { d: colour ? `M${end(-0.5)}A${px(r)} ${px(r)} 0 0 0 ${end(0.5)}` : "" });
-          if (text) set(text, { x: px((r + 30) * Math.cos(direction)), y: px(5 - (r + 16) * Math.sin(direction)) });
-        }
         if (text) text.textContent = colour ? `${shown(force, 2)} N` : "";
       }
     };
@@ -297,11 +274,10 @@
     html(head, "span", {}, `travel × 1, play × ${shown(common.play)}`);
     const picture = svg(box, "svg", { viewBox: `0 0 ${px(width)} ${px(height)}`, role: "img", "aria-label": `${run.title}, ${name}` });
     const outline = (polygon, move) => `M${polygon.map((point) => place(move(point)).map(px).join(" ")).join("L")}Z`;
-    const depth = (point) => seenTurn(axes, space(point));
+    const depth = (point) => seenTurn(axes, point);
     const mean = (points) => points.reduce((sum, point) => sum + depth(point), 0) / points.length;
-    let moving = 0;
-    const bodies = run.bodies.map((body) => {
-      const colour = body.fixed ? "fixed" : `body kind-${BODY_COLOURS[moving++ % BODY_COLOURS.length]}`;
+    const bodies = run.bodies.map((body, i) => {
+      const colour = `body kind-${BODY_COLOURS[i % BODY_COLOURS.length]}`;
       const ghost = body.sway ? svg(picture, "path", { class: "ghost" }) : null;
       // Faces that are farther from the reader are drawn first, and fainter.
       const depths = body.outline.map(mean);
@@ -313,7 +289,7 @@
     });
     const nearest = extreme(run.joints.map((joint) => depth(joint.at)), Math.max);
     // What travels to a stop has a gap too large to be enlarged here.
-    const small = ({ box: limits }) => !limits || limits.every((limit) => Math.abs(limit) * common.play < 0.3 * Math.max(wide, tall));
+    const small = ({ box: limits }) => limits.every((limit) => Math.abs(limit) * common.play < 0.3 * Math.max(wide, tall));
     const gaps = run.joints.filter(small).sort((a, b) => depth(a.at) - depth(b.at)).map((joint) => {
       const group = svg(picture, "g", depth(joint.at) < nearest - 1e-6 ? { class: "far" } : {});
       return { joint, update: gapPicture(group, joint, axes, { scale: scale * common.play, radius: 3.5, reach: 22, level: common.level }) };
@@ -340,8 +316,8 @@
       }
       for (const { joint, update } of gaps) {
         const [pinBody, gapBody] = joint.between.map((body) => pose(bodyOf(run, body), frame, common.play));
-        // Walls turn with their body; a hole looks the same from every side, and its contact is where the pin is.
-        update(frame, place(pinBody.place(joint.at)), joint.box ? seenTurn(axes, gapBody.turn) : 0);
+        // Walls turn with their body.
+        update(frame, place(pinBody.place(joint.at)), seenTurn(axes, gapBody.turn));
       }
       for (const { body, group } of centres) {
         set(group, { transform: `translate(${place(pose(body, frame, common.play).place(body.at)).map(px).join(" ")})` });
@@ -353,8 +329,8 @@
   const insetPictures = (parent, run, common) => {
     const [width, height, roomX, roomY, radius] = [240, 150, 128, 84, 8];
     const spans = run.joints.map((joint) => [0, 1].map((axis) => {
-      const limits = joint.box ? limitsOf(joint, axis).filter((limit) => limit !== null) : [-joint.ring, joint.ring];
-      const open = joint.box && limits.length < 2 ? every(joint.pin[axis]) : [];
+      const limits = limitsOf(joint, axis).filter((limit) => limit !== null);
+      const open = limits.length < 2 ? every(joint.pin[axis]) : [];
       return [extreme([...limits, ...open], Math.min), extreme([...limits, ...open], Math.max)];
     }));
     const views = run.joints.map((joint) => run.views.find((view) => view.axes.map(parseAxis).every(({ letter }) => joint.axes.includes(letter))));
@@ -501,7 +477,6 @@
     if (broken) return void html(figure, "p", { role: "alert" }, `The motion cannot be shown: ${broken}.`);
     const common = survey(runs);
     const restFrame = (run) => {
-      if (run.shown !== undefined) return run.shown;
       const force = run.plots.length ? run.plots[0].values : run.t.map((_, frame) =>
         extreme(run.joints.flatMap(({ contacts }) => contacts.map((contact) => at(contact.force, frame))).concat(0), Math.max));
       const sizes = run.t.map((_, frame) => Math.abs(at(force, frame)));
