@@ -10,17 +10,18 @@ use common::{slipfit, stdout};
 const WATCH: &str = "<script>window.wrong = []; addEventListener('error', event => window.wrong.push(event.message)); \
     console.error = (...words) => window.wrong.push(words.join(' ')); console.warn = console.error;</script>";
 
-/// What tries the player and writes what it saw into the page: how many frames look different, whether the curves' marker and
-/// the choice of a run change the picture, what went wrong, whether anything is wider than the page.
+/// What tries the player and writes what it saw into the page: how many frames look different, how many runs there are and
+/// whether another looks different, what went wrong, whether anything is wider than the page.
 const TRY: &str = "<script>addEventListener('load', () => {
 const figure = document.querySelector('figure.player');
+const runs = JSON.parse(figure.querySelector('script').textContent).length;
 const seen = () => [...figure.querySelectorAll('svg')].map(svg => svg.outerHTML).join();
 const pictures = new Set();
 for (let frame = 0; frame < 60; frame += 5) { figure.player.show(frame); pictures.add(seen()); }
 figure.player.choose(0); figure.player.show(30); const first = seen();
-figure.player.choose(1); figure.player.show(30);
+figure.player.choose(runs - 1); figure.player.show(30);
 const result = {
-  pictures: pictures.size, frame: figure.dataset.frame, run: figure.dataset.run, runs: first !== seen(),
+  pictures: pictures.size, frame: figure.dataset.frame, run: Number(figure.dataset.run), runs, differ: first !== seen(),
   figures: document.querySelectorAll('figure').length, drawn: document.querySelectorAll('figure svg').length,
   wide: document.documentElement.scrollWidth <= innerWidth, wrong: window.wrong.join('; '),
 };
@@ -54,22 +55,49 @@ fn result(dom: &str) -> serde_json::Value {
     serde_json::from_str(&title.replace("&amp;", "&").replace("&lt;", "<").replace("&gt;", ">")).unwrap()
 }
 
+/// Opens the `page` at two widths: it has so many `runs` to play and so many `figures`.
+#[track_caller]
+fn moves(page: &Path, runs: u64, figures: u64) {
+    let text = std::fs::read_to_string(page).unwrap();
+    let outside = text.split("src=\"").skip(1).chain(text.split("href=\"").skip(1)).next();
+    assert!(outside.is_none_or(|link| link.starts_with('#')), "{outside:?}");
+    let text = text.replacen("<head>", &format!("<head>{WATCH}"), 1).replacen("</body>", &format!("{TRY}</body>"), 1);
+    let tried = page.with_extension("tried.html");
+    std::fs::write(&tried, text).unwrap();
+    for width in [1400, 500] {
+        let found = result(&opened(&tried, width));
+        let number = |key: &str| found[key].as_u64().unwrap();
+        assert_eq!(found["wrong"], "", "{found}");
+        assert_eq!((number("runs"), number("figures"), number("run")), (runs, figures, runs - 1), "{found}");
+        assert!(number("drawn") >= figures && number("pictures") >= 10 && found["frame"] == "30", "{found}");
+        assert_eq!(found["differ"], runs > 1, "{found}");
+        assert!(found["wide"] == true, "wider than a window of {width}: {found}");
+    }
+}
+
 #[test]
 fn the_page_of_a_population_moves_without_an_error() {
     let folder = tempfile::tempdir().unwrap();
     stdout(&slipfit(folder.path(), &["population", "cd-rom-slide-drawing", "--units", "64", "--page", "units.html"]));
-    let page = std::fs::read_to_string(folder.path().join("units.html")).unwrap();
-    let outside = page.split("src=\"").skip(1).chain(page.split("href=\"").skip(1)).next();
-    assert!(outside.is_none_or(|link| link.starts_with('#')), "{outside:?}");
-    let page = page.replacen("<head>", &format!("<head>{WATCH}"), 1).replacen("</body>", &format!("{TRY}</body>"), 1);
-    let path = folder.path().join("tried.html");
-    std::fs::write(&path, page).unwrap();
-    for width in [1400, 500] {
-        let found = result(&opened(&path, width));
-        assert_eq!(found["wrong"], "", "{found}");
-        assert_eq!(found["figures"], 6, "{found}");
-        assert!(found["drawn"].as_u64() >= Some(6) && found["pictures"].as_u64() >= Some(10), "{found}");
-        assert!(found["runs"] == true && found["run"] == "1" && found["frame"] == "30", "{found}");
-        assert!(found["wide"] == true, "wider than a window of {width}: {found}");
+    moves(&folder.path().join("units.html"), 3, 6);
+}
+
+#[test]
+fn so_does_that_of_a_level_and_of_a_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    for (options, title) in [(["--n", "2.5"], "n = +2.5: runs"), (["--unit", "17"], "unit 17: ")] {
+        let command = ["simulate", "cd-rom-slide-drawing", "--stroke", "--page", "one.html"];
+        stdout(&slipfit(folder.path(), &[&command[..], &options].concat()));
+        let page = folder.path().join("one.html");
+        assert!(std::fs::read_to_string(&page).unwrap().contains(title), "{title}");
+        moves(&page, 1, 2);
     }
+}
+
+#[test]
+fn so_does_the_report_of_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    stdout(&slipfit(folder.path(), &["run", "cd-rom-slide", "--n", "0:4:1"]));
+    // The player, four pictures of units, five of the sweep.
+    moves(&folder.path().join("slipfit-out/report.html"), 3, 10);
 }

@@ -247,10 +247,8 @@ impl Arguments {
                            combinations as far from nominal."
                     .into();
             units.figures.push(Figure { caption, svg });
-            // Without the table of the worst units, which is too wide for a page.
-            let words = self.describe(scene, &found);
-            let words = words.split("\nThe worst").next().unwrap_or_default();
-            files::write(path, units_page(&scene.title, words, &units, &warnings).as_bytes())?;
+            let words = self.summary(scene, &found);
+            files::write(path, units_page(&scene.title, &words, &units, &warnings).as_bytes())?;
         }
         if self.scene.json {
             let worst = worst(&found.population.units, WORST).into_iter().map(|unit| UnitReport {

@@ -21,7 +21,7 @@ use crate::{
         confirm::confirmed,
         controller::audited,
         driven::Driven,
-        film::film,
+        film::{Film, film},
         outcome::{Outcome, Trajectory, Verdict},
         scheme::{IntegratorKind, ScalarKind},
         simulate::{Run, Settings, SimulateError, Solved, simulate},
@@ -214,15 +214,11 @@ impl Arguments {
         }
         let mut warnings = check::warnings_of(&scene);
         warnings.extend(run.trust.warning());
+        let reports = gap_reports(&scene, &scene.gaps_at(&n));
+        let words = || self.describe(&scene, &run, controller.as_ref().map(Option::as_ref), &reports, shown);
         if let Some(path) = &self.page {
-            let words = self.describe(
-                &scene,
-                &run,
-                controller.as_ref().map(Option::as_ref),
-                &gap_reports(&scene, &gaps),
-                shown,
-            );
-            files::write(path, self.moving(&scene, &run, &words, shown, &warnings)?.as_bytes())?;
+            let film = film(&scene, &scene.gaps_at(&n), MOMENTS)?;
+            files::write(path, self.page_of(&scene, &run, &film, (&words(), shown), &warnings)?.as_bytes())?;
         }
         if self.scene.json {
             let controller = controller.flatten().map(|run| ControllerReport {
@@ -238,7 +234,7 @@ impl Arguments {
                 solver: run.solved,
                 integration_ms: run.integration.as_secs_f64() * 1e3,
                 outcome: run.outcome,
-                gaps: gap_reports(&scene, &scene.gaps_at(&n)),
+                gaps: reports,
                 trust: run.trust,
                 controller,
                 audit_j: run.audit,
@@ -246,20 +242,24 @@ impl Arguments {
                 samples: &run.trajectory,
             })
         } else {
-            let controller = controller.as_ref().map(Option::as_ref);
-            print(&self.describe(&scene, &run, controller, &gap_reports(&scene, &scene.gaps_at(&n)), shown))?;
+            print(&words())?;
             warn(&warnings);
             Ok(())
         }
     }
 
-    /// The page of the run: what it comes to, the player, velocity and force.
-    fn moving(&self, scene: &Scene, run: &Run, words: &str, n: &[f64], remarks: &[String]) -> Result<String, Failure> {
-        let levels = <[f64; CONTACTS]>::try_from(n).unwrap_or([n.first().copied().unwrap_or_default(); CONTACTS]);
-        let film = film(scene, &scene.gaps_at(&levels), MOMENTS)?;
+    /// The page of a run: what it comes to, the player of the desk's `film`, velocity and force.
+    fn page_of(
+        &self,
+        scene: &Scene,
+        run: &Run,
+        film: &Film,
+        (words, n): (&str, &[f64]),
+        remarks: &[String],
+    ) -> Result<String, Failure> {
         let label = format!("{}: {}", self.of(n), word(run.outcome.verdict));
-        let caption = "The desk's run, on its pins:";
-        let player = player::figure(&[player::of_slide(scene, label, &film)], caption).map_err(anyhow::Error::from)?;
+        let played = [player::of_slide(scene, label, film)];
+        let player = player::figure(&played, "The desk's run, on its pins:").map_err(anyhow::Error::from)?;
         let svg = unit_over_time(&run.trajectory, &scene.title, n).map_err(anyhow::Error::from)?;
         let figures = vec![Figure { caption: "Velocity and force of the drive over time.".into(), svg }];
         Ok(units_page(&scene.title, words, &Units { figures, player: Some(player) }, remarks))

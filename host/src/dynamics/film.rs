@@ -16,9 +16,9 @@ pub struct Frame {
     pub t: f64,
     /// Velocity along z (m/s).
     pub vz: f64,
-    /// Displacement (m) of the centre of mass from its nominal place.
+    /// Displacement (m) of the centre of mass from its nominal place, along the frame's x, y, z.
     pub displacement: [f64; 3],
-    /// How it is turned: the axis, as long as the angle (rad).
+    /// How the slide is turned from its nominal pose: the axis in the frame, as long as the angle (rad).
     pub turn: [f64; 3],
     /// Gaps (m) in the order of Table 2, negative where pressed in.
     pub gaps: [f64; CONTACTS],

@@ -11,6 +11,7 @@ use crate::{
     scene::Scene,
     show::{
         bars::{Bar, Block, bars},
+        chart::outline,
         number::fixed,
         plot::{Chart, Look, Panel, PlotError, Series, small_chart},
     },
@@ -37,25 +38,18 @@ pub fn histogram(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<St
         forces.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (f, _)| [low.min(*f), high.max(*f)]);
     // Units that all need the same have a class of their own.
     let step = f64::max((high - low) / CLASSES as f64, 1e-6 * high.abs());
-    let outline = |failed: bool| {
+    let shares = |failed: bool| {
         let mut counts = [0u64; CLASSES];
         for (force, _) in forces.iter().filter(|(_, fails)| *fails || !failed) {
             counts[(((force - low) / step) as usize).min(CLASSES - 1)] += 1;
         }
         let share = |count: &u64| 100.0 * *count as f64 / units.len().max(1) as f64;
-        let ends = |(k, count): (usize, &u64)| {
-            let left = low + step * k as f64;
-            [(left, share(count)), (left + step, share(count))]
-        };
-        let mut points = vec![(low, 0.0)];
-        points.extend(counts.iter().enumerate().flat_map(ends));
-        points.push((low + step * CLASSES as f64, 0.0));
-        points
+        outline(counts.iter().enumerate().map(|(k, count)| (low + step * k as f64, share(count))), step)
     };
     let line = |label: &str, look, points| Series { label: label.into(), look, points };
-    let mut series = vec![line("all", Look::Level(0.0), outline(false))];
+    let mut series = vec![line("all", Look::Level(0.0), shares(false))];
     if forces.iter().any(|(_, fails)| *fails) {
-        series.push(line("malfunction", Look::Level(1.0), outline(true)));
+        series.push(line("malfunction", Look::Level(1.0), shares(true)));
     }
     let top = series[0].points.iter().map(|(_, share)| *share).fold(0.0, f64::max);
     let over = limit.map(|limit| {

@@ -124,3 +124,16 @@ impl Panel {
         lines.chain(self.markers.iter().flat_map(|markers| &markers.points)).copied()
     }
 }
+
+/// The outline of a histogram: `classes` of one `width`, ascending and side by side, each with its left end and its height.
+pub(crate) fn outline(classes: impl Iterator<Item = (f64, f64)>, width: f64) -> Vec<(f64, f64)> {
+    let mut points = Vec::new();
+    for (left, height) in classes {
+        if points.is_empty() {
+            points.push((left, 0.0));
+        }
+        points.extend([(left, height), (left + width, height)]);
+    }
+    points.extend(points.last().map(|(right, _)| (*right, 0.0)));
+    points
+}

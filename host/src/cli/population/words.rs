@@ -7,6 +7,7 @@ use crate::{
     cli::{simulate::why_undecided, text_table},
     dynamics::outcome::Verdict,
     population::{
+        Unit,
         drivers::Driver,
         picture::tightness,
         statistics::{Share, Spread, Statistics},
@@ -20,9 +21,14 @@ use crate::{
 const DRIVERS: usize = 5;
 
 impl Arguments {
-    /// The answer, for people.
+    /// The answer, for people: what the units did together, and the worst of them.
     pub(super) fn describe(&self, scene: &Scene, found: &Found) -> String {
-        let Population { units: all, statistics, of_force, of_malfunction } = &found.population;
+        self.summary(scene, found) + "\nThe worst\n" + &worst_units(scene, &found.population.units)
+    }
+
+    /// What the units did together.
+    pub(super) fn summary(&self, scene: &Scene, found: &Found) -> String {
+        let Population { statistics, of_force, of_malfunction, .. } = &found.population;
         let Statistics { units, runs, crawls, jammed, undecided, malfunctions, over_limit, sigma_level, .. } =
             *statistics;
         let mut text = format!("{}: {units} units", scene.title);
@@ -69,29 +75,30 @@ impl Arguments {
         }
         let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
         let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
-        text += &found.rare.as_ref().map(rare::describe).unwrap_or_default();
-        let rows: Vec<Vec<String>> = worst(all, WORST)
-            .into_iter()
-            .map(|unit| {
-                let outcome = unit.outcome;
-                vec![
-                    unit.number.to_string(),
-                    level((tightness(scene, &unit.gaps) * 100.0).round() / 100.0),
-                    outcome.verdict.to_string(),
-                    or_dash(outcome.peak_force, |force| fixed(force, 3)),
-                    fixed(outcome.final_velocity * 1e3, 3),
-                    fixed(outcome.end.z * 1e3, 2),
-                    or_dash(outcome.breakaway, |t| fixed(t * 1e3, 1)),
-                    outcome.most_loaded.map_or("-".into(), |(i, force)| {
-                        format!("{} ({} N)", scene.contact_names()[i], fixed(force, 2))
-                    }),
-                ]
-            })
-            .collect();
-        let heading = ["unit", "n", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
-        let _ = write!(text, "\nThe worst\n{}", text_table(&heading, &rows));
-        text
+        text + &found.rare.as_ref().map(rare::describe).unwrap_or_default()
     }
+}
+
+/// The table of the worst units.
+fn worst_units(scene: &Scene, units: &[Unit]) -> String {
+    let row = |unit: &Unit| {
+        let outcome = unit.outcome;
+        vec![
+            unit.number.to_string(),
+            level((tightness(scene, &unit.gaps) * 100.0).round() / 100.0),
+            outcome.verdict.to_string(),
+            or_dash(outcome.peak_force, |force| fixed(force, 3)),
+            fixed(outcome.final_velocity * 1e3, 3),
+            fixed(outcome.end.z * 1e3, 2),
+            or_dash(outcome.breakaway, |t| fixed(t * 1e3, 1)),
+            outcome
+                .most_loaded
+                .map_or("-".into(), |(i, force)| format!("{} ({} N)", scene.contact_names()[i], fixed(force, 2))),
+        ]
+    };
+    let rows: Vec<Vec<String>> = worst(units, WORST).into_iter().map(row).collect();
+    let heading = ["unit", "n", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
+    text_table(&heading, &rows)
 }
 
 /// The strongest of `drivers`, at most `most`, as far as they are told from nothing.

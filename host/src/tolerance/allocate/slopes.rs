@@ -7,7 +7,7 @@ use super::{AllocateError, program::Power, search::Figures};
 /// How the weights of tolerances are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Slopes {
-    /// By central differences, a tolerance at a time, over this share of it: for figures that are smooth.
+    /// By central differences, a tolerance at a time, over this share of it either way: for figures that are smooth.
     Differences(f64),
     /// By a designed experiment that moves all tolerances at once by this factor: for figures that are counted, in which a
     /// single tolerance's part is lost between those of chance.
@@ -19,7 +19,8 @@ const SWEEPS: usize = 1000;
 /// A change of a weight (share of the greatest) that no longer counts.
 const STILL: f64 = 1e-10;
 
-/// The weights of all tolerances in every figure, around `at`; tolerances stay within `ends` where the design moves them.
+/// The weights of all tolerances in every figure (one list a figure, one weight a tolerance, 1/SI to the figure's power), around
+/// `at` (SI); where the design moves them tolerances stay within `ends` (SI).
 ///
 /// # Errors
 /// [`AllocateError`], where a figure cannot be had.

@@ -5,7 +5,7 @@ use super::{MeasureReport, Report, Share};
 use crate::{
     show::{
         bars::{Bar, Block, HEAD, NAME, bars, document, longest},
-        chart::{Chart, Look, Panel, Series},
+        chart::{Chart, Look, Panel, Series, outline},
         number::{fixed, typeset},
         palette::{INK, NEGATIVE, ON_NEGATIVE, ON_POSITIVE, POSITIVE},
         plot::{PlotError, small_chart},
@@ -75,18 +75,8 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
     let classes = histogram(study.frames(), tallies, i, width);
     let frame = study.frames()[i];
     let step = factor * frame.scale * width as f64 / crate::tolerance::counting::tally::BINS_PER_DEVIATION;
-    let mut outline = Vec::new();
-    for (middle, share) in &classes {
-        let (middle, density) = (middle * factor, share / step);
-        let left = middle - step / 2.0;
-        if outline.is_empty() {
-            outline.push((left, 0.0));
-        }
-        outline.extend([(left, density), (left + step, density)]);
-    }
-    if let Some((right, _)) = outline.last().copied() {
-        outline.push((right, 0.0));
-    }
+    let classes = classes.iter().map(|(middle, share)| (middle * factor - step / 2.0, share / step));
+    let outline = outline(classes, step);
     let top = outline.iter().map(|(_, density)| *density).fold(0.0, f64::max);
     // As far as the limits, so that these stand within the picture.
     let ends = measure.limits.into_iter().flatten().map(|limit| (limit - measure.mean) / measure.sd);
