@@ -30,6 +30,7 @@ pub mod monitor;
 pub mod planar;
 pub mod pose;
 pub mod power;
+mod product;
 #[cfg(feature = "sampling")]
 pub mod sampling;
 mod scalar;

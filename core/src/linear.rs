@@ -2,7 +2,10 @@
 
 use nalgebra::Matrix3;
 
-use crate::{Scalar, Vector3};
+use crate::{
+    Scalar, Vector3,
+    product::{columns, cross, dot, product, times},
+};
 
 /// [[a, b], [c, d]]: forces and torques by velocities and angular velocities.
 #[derive(Clone, Copy, Debug)]
@@ -18,8 +21,8 @@ pub(crate) struct Blocks<S> {
 pub(crate) fn inverse<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
     let [[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]]: [[S; 3]; 3] = m.data.0;
     let (r0, r1, r2) = (Vector3::new(xx, xy, xz), Vector3::new(yx, yy, yz), Vector3::new(zx, zy, zz));
-    let (c0, c1, c2) = (r1.cross(&r2), r2.cross(&r0), r0.cross(&r1));
-    let scale = S::one() / r0.dot(&c0);
+    let (c0, c1, c2) = (cross(&r1, &r2), cross(&r2, &r0), cross(&r0, &r1));
+    let scale = S::one() / dot(&r0, &c0);
     Matrix3::from_columns(&[c0 * scale, c1 * scale, c2 * scale])
 }
 
@@ -33,9 +36,8 @@ pub(crate) fn cross_matrix<S: Scalar>(a: &Vector3<S>) -> Matrix3<S> {
 /// [a]×·`m`: the cross products of a with the columns.
 #[inline(always)]
 pub(crate) fn cross_columns<S: Scalar>(a: &Vector3<S>, m: &Matrix3<S>) -> Matrix3<S> {
-    let [x, y, z]: [[S; 3]; 3] = m.data.0;
-    let (x, y, z) = (Vector3::from(x), Vector3::from(y), Vector3::from(z));
-    Matrix3::from_columns(&[a.cross(&x), a.cross(&y), a.cross(&z)])
+    let [x, y, z] = columns(m);
+    Matrix3::from_columns(&[cross(a, &x), cross(a, &y), cross(a, &z)])
 }
 
 /// −`m`·[a]×: the cross products of a with the rows.
@@ -66,7 +68,7 @@ impl<S: Scalar> Blocks<S> {
     /// `self`·(x, y).
     #[inline(always)]
     pub fn times(&self, x: Vector3<S>, y: Vector3<S>) -> (Vector3<S>, Vector3<S>) {
-        (self.a * x + self.b * y, self.c * x + self.d * y)
+        (times(&self.a, &x) + times(&self.b, &y), times(&self.c, &x) + times(&self.d, &y))
     }
 
     /// `self` + `weight`·`other`.
@@ -85,8 +87,8 @@ impl<S: Scalar> Blocks<S> {
     #[inline(always)]
     pub fn factorised(&self) -> Factors<S> {
         let inverse_a = inverse(&self.a);
-        let c_over_a = self.c * inverse_a;
-        Factors { inverse_a, b: self.b, c_over_a, inverse_rest: inverse(&(self.d - c_over_a * self.b)) }
+        let c_over_a = product(&self.c, &inverse_a);
+        Factors { inverse_a, b: self.b, c_over_a, inverse_rest: inverse(&(self.d - product(&c_over_a, &self.b))) }
     }
 }
 
@@ -104,8 +106,8 @@ impl<S: Scalar> Factors<S> {
     /// The solution of blocks·(x, y) = (`f`, `g`).
     #[inline(always)]
     pub fn solve(&self, f: Vector3<S>, g: Vector3<S>) -> (Vector3<S>, Vector3<S>) {
-        let y = self.inverse_rest * (g - self.c_over_a * f);
-        (self.inverse_a * (f - self.b * y), y)
+        let y = times(&self.inverse_rest, &(g - times(&self.c_over_a, &f)));
+        (times(&self.inverse_a, &(f - times(&self.b, &y))), y)
     }
 }
 

@@ -2,7 +2,10 @@
 
 use nalgebra::Matrix3;
 
-use crate::{Scalar, Vector3};
+use crate::{
+    Scalar, Vector3,
+    product::{cross, dot, times, transposed_times},
+};
 
 /// A unit quaternion, body to fixed frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,10 +47,10 @@ impl<S: Scalar> Pose<S> {
     pub fn advanced(&self, velocity_w: Vector3<S>, angular_velocity_b: Vector3<S>, dt: S) -> Self {
         let Orientation { w, v } = self.orientation;
         let turn = angular_velocity_b * (dt * S::from_f64(0.5));
-        let scale = S::one() / (S::one() + turn.dot(&turn));
+        let scale = S::one() / (S::one() + dot(&turn, &turn));
         Self {
             displacement_w: self.displacement_w + velocity_w * dt,
-            orientation: Orientation { w: (w - v.dot(&turn)) * scale, v: (v + turn * w + v.cross(&turn)) * scale },
+            orientation: Orientation { w: (w - dot(&v, &turn)) * scale, v: (v + turn * w + cross(&v, &turn)) * scale },
         }
     }
 
@@ -58,7 +61,7 @@ impl<S: Scalar> Pose<S> {
         let turn = angular_velocity_b * (dt * S::from_f64(0.5));
         Self {
             displacement_w: self.displacement_w + velocity_w * dt,
-            orientation: Orientation { w: w - v.dot(&turn), v: v + turn * w + v.cross(&turn) },
+            orientation: Orientation { w: w - dot(&v, &turn), v: v + turn * w + cross(&v, &turn) },
         }
     }
 
@@ -92,7 +95,7 @@ impl<S: Scalar> Pose<S> {
     #[inline(always)]
     pub fn normalised(&self) -> Self {
         let Orientation { w, v } = self.orientation;
-        let scale = S::from_f64(0.5) * (S::from_f64(3.0) - (w * w + v.dot(&v)));
+        let scale = S::from_f64(0.5) * (S::from_f64(3.0) - (w * w + dot(&v, &v)));
         Self { displacement_w: self.displacement_w, orientation: Orientation { w: w * scale, v: v * scale } }
     }
 
@@ -100,7 +103,7 @@ impl<S: Scalar> Pose<S> {
     #[inline(always)]
     pub fn to_body(&self) -> ToBody<S> {
         let Orientation { w, v } = self.orientation;
-        let twice = v * (S::from_f64(2.0) / (w * w + v.dot(&v)));
+        let twice = v * (S::from_f64(2.0) / (w * w + dot(&v, &v)));
         let (xx, yy, zz) = (twice.x * v.x, twice.y * v.y, twice.z * v.z);
         let (xy, yz, zx) = (twice.x * v.y, twice.y * v.z, twice.z * v.x);
         let (wx, wy, wz) = (twice.x * w, twice.y * w, twice.z * w);
@@ -131,7 +134,7 @@ impl<S: Scalar> ToBody<S> {
     /// (Rᵀ − I)·`vector_w`.
     #[inline(always)]
     pub fn change(&self, vector_w: Vector3<S>) -> Vector3<S> {
-        self.change * vector_w
+        times(&self.change, &vector_w)
     }
 
     /// Rᵀ·`vector_w`: a frame vector in body axes.
@@ -143,7 +146,7 @@ impl<S: Scalar> ToBody<S> {
     /// R·`vector_b`: a body vector in frame axes.
     #[inline(always)]
     pub fn apply_inverse(&self, vector_b: Vector3<S>) -> Vector3<S> {
-        vector_b + self.change.tr_mul(&vector_b)
+        vector_b + transposed_times(&self.change, &vector_b)
     }
 }
 

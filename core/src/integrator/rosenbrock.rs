@@ -65,8 +65,8 @@ impl<S: Scalar, const D: usize> Part<S, D> {
     /// `self` + `weight`·`other`.
     #[inline(always)]
     pub fn plus(&self, other: &Self, weight: S) -> Self {
-        let sum = |a, b| a + b * weight;
-        Self { place: self.place.zip_map(&other.place, sum), velocity: self.velocity.zip_map(&other.velocity, sum) }
+        let Self { place, velocity } = other;
+        Self { place: self.place + place * weight, velocity: self.velocity + velocity * weight }
     }
 
     /// The sum of `parts` weighted by `weights`, of which zeros cost nothing.

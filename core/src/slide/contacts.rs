@@ -9,6 +9,7 @@ use crate::{
     linear::cross_rows,
     mechanism::Way,
     pose::ToBody,
+    product::cross,
 };
 
 /// Where the slide is and how it moves, in body axes.
@@ -38,6 +39,15 @@ pub(super) struct PinForce<S, M> {
     pub memory: [M; 2],
 }
 
+impl<S: Scalar, M> PinForce<S, M> {
+    /// Adds the force and its torque about the centre of mass (N·m) to those of other contacts.
+    #[inline(always)]
+    pub fn add_to(&self, (force, torque): &mut (Vector3<S>, Vector3<S>)) {
+        *force += self.force;
+        *torque += cross(&self.lever, &self.force);
+    }
+}
+
 /// A slot's part of that, its axis first, then the tangents.
 struct SlotForce<S, M> {
     force: [S; 3],
@@ -51,30 +61,30 @@ struct SlotForce<S, M> {
 }
 
 impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
-    /// The force and torque about the centre of mass that all contacts exert (N, N·m), in body axes; `collect` sees them
-    /// pin by pin.
+    /// Each pin's gaps and place, with what friction remembers there.
     #[inline(always)]
-    pub(super) fn contact_forces(
+    pub(super) fn pins<'a>(
+        &'a self,
+        memory: &'a [F::Memory; SLOTS],
+    ) -> impl Iterator<Item = ((&'a [S; 4], &'a Vector3<S>), &'a [F::Memory; 2])> {
+        self.body.gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w).zip(memory.as_chunks::<2>().0)
+    }
+
+    /// The force at one of the [`pins`](Self::pins).
+    #[inline(always)]
+    pub(super) fn at_pin(
         &self,
         at: &Placed<S>,
-        memory: &[F::Memory; SLOTS],
+        ((gaps, pin), memory): ((&[S; 4], &Vector3<S>), &[F::Memory; 2]),
         way: Way<S>,
-        mut collect: impl FnMut(&PinForce<S, F::Memory>),
-    ) -> (Vector3<S>, Vector3<S>) {
-        let mut force = Vector3::zeros();
-        let mut torque = Vector3::zeros();
-        let pins = self.body.gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w);
-        for ((gaps, pin), memory) in pins.zip(memory.as_chunks::<2>().0) {
-            let offset = at.to_body.change(*pin) - at.displacement_b;
-            let lever = *pin + offset;
-            let mut pin = self.pin(memory, *gaps, (lever, offset), at.velocity_b + at.rotation_b.cross(&lever), way);
-            force += pin.force;
-            torque += lever.cross(&pin.force);
-            // Where the slide turns, a displacement changes the velocity of its material at the pin by −ω × displacement.
-            pin.stiffness += cross_rows(&at.rotation_b, &pin.impedance);
-            collect(&pin);
-        }
-        (force, torque)
+    ) -> PinForce<S, F::Memory> {
+        let offset = at.to_body.change(*pin) - at.displacement_b;
+        let lever = *pin + offset;
+        let u = at.velocity_b + cross(&at.rotation_b, &lever);
+        let mut pin = self.pin(memory, *gaps, (lever, offset), u, way);
+        // Where the slide turns, a displacement changes the velocity of its material at the pin by −ω × displacement.
+        pin.stiffness += cross_rows(&at.rotation_b, &pin.impedance);
+        pin
     }
 
     /// The force at one pin for its `lever` and `offset` (m) as seen from the slide and the velocity `u` (m/s) of the

@@ -10,6 +10,7 @@ use crate::{
     linear::{Blocks, Factors, cross_columns, cross_matrix, cross_rows},
     mechanism::{Differentiated, Driven, Linearised, Mechanism, Way, settled, settling},
     pose::{Pose, ToBody},
+    product::{cross, dot, outer},
 };
 
 /// The balance of forces linearised in body axes, and the rotation that leads there.
@@ -142,13 +143,16 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         remembered: Option<&mut [F::Memory; SLOTS]>,
     ) -> SVector<S, 6> {
         let at = placed(pose, velocity);
-        let mut pins = remembered.into_iter().flat_map(|slots| slots.as_chunks_mut::<2>().0);
+        let mut remembered = remembered.into_iter().flat_map(|slots| slots.as_chunks_mut::<2>().0);
         let way = Way { a, mass_rate: self.body.mass / a, tangent_share: S::one() };
-        let contacts = self.contact_forces(&at, memory, way, |pin| {
-            if let Some(slots) = pins.next() {
+        let mut contacts = (Vector3::zeros(), Vector3::zeros());
+        for pin in self.pins(memory) {
+            let pin = self.at_pin(&at, pin, way);
+            pin.add_to(&mut contacts);
+            if let Some(slots) = remembered.next() {
                 *slots = pin.memory;
             }
-        });
+        }
         let push = self.pull(&at.to_body).times(self.drive.force(t, velocity.z));
         self.total(&at, contacts, push)
     }
@@ -169,7 +173,12 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         let mut blocks = self.inertia(rate);
         pull.add_to(&mut blocks, self.drive.gain);
         let way = Way { a, mass_rate: self.body.mass * rate, tangent_share };
-        let contacts = self.contact_forces(&at, memory, way, |pin| blocks.add_at(&pin.lever, &pin.impedance));
+        let mut contacts = (Vector3::zeros(), Vector3::zeros());
+        for pin in self.pins(memory) {
+            let pin = self.at_pin(&at, pin, way);
+            pin.add_to(&mut contacts);
+            blocks.add_at(&pin.lever, &pin.impedance);
+        }
         Linearised {
             force: self.total(&at, contacts, pull.times(self.drive.force(t, velocity.z))),
             linearisation: Linearisation { factors: blocks.factorised(), to_body: at.to_body },
@@ -186,7 +195,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     #[inline(always)]
     fn impulse(&self, imbalance: &SVector<S, 6>) -> S {
         let (p, l) = split(imbalance);
-        (p.dot(&p) + l.dot(&l) * self.per_lever * self.per_lever).sqrt()
+        (dot(&p, &p) + dot(&l, &l) * self.per_lever * self.per_lever).sqrt()
     }
 
     #[inline(always)]
@@ -202,13 +211,16 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         let pull = self.pull(&at.to_body);
         let [mut damping, mut stiffness] = [Blocks::diagonal(zero, zero); 2];
         let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
-        let contacts = self.contact_forces(&at, memory, way, |pin| {
+        let mut contacts = (Vector3::zeros(), Vector3::zeros());
+        for pin in self.pins(memory) {
+            let pin = self.at_pin(&at, pin, way);
+            pin.add_to(&mut contacts);
             damping.add_at(&pin.lever, &pin.impedance);
             stiffness.add_at(&pin.lever, &pin.stiffness);
             // The force stays at the pin while the slide is displaced.
             stiffness.c -= cross_matrix(&pin.force);
             stiffness.d += cross_columns(&pin.force, &cross_matrix(&pin.lever));
-        });
+        }
         // A turn θ changes the velocity that the contacts see by −θ × v.
         stiffness.b -= cross_rows(&at.velocity_b, &damping.a);
         stiffness.d -= cross_rows(&at.velocity_b, &damping.c);
@@ -244,7 +256,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     fn rate(&self, displacement: &SVector<S, 6>, velocity: &SVector<S, 6>) -> SVector<S, 6> {
         let ((_, turn_b), (v_w, w_b)) = (split(displacement), split(velocity));
         let half = turn_b * S::from_f64(0.5);
-        join(v_w, w_b + half.cross(&w_b) + half * half.dot(&w_b))
+        join(v_w, w_b + cross(&half, &w_b) + half * dot(&half, &w_b))
     }
 }
 
@@ -280,9 +292,9 @@ impl<S: Scalar> Pull<S> {
     /// Adds that the drive gives way by `gain` (N·s/m) to the speed along itself.
     #[inline(always)]
     fn add_to(&self, blocks: &mut Blocks<S>, gain: S) {
-        let along = (self.force_b * gain).transpose();
-        blocks.a += self.force_b * along;
-        blocks.c += self.torque_b * along;
+        let along = self.force_b * gain;
+        blocks.a += outer(&self.force_b, &along);
+        blocks.c += outer(&self.torque_b, &along);
     }
 }
 
@@ -297,7 +309,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     #[inline(always)]
     fn pull(&self, to_body: &ToBody<S>) -> Pull<S> {
         let z_b = to_body.z_axis();
-        Pull { force_b: z_b, torque_b: self.drive.point_b.cross(&z_b) }
+        Pull { force_b: z_b, torque_b: cross(&self.drive.point_b, &z_b) }
     }
 
     /// All forces: those of the contacts and the drive, given as force and torque in body axes, gravity, and the torque by
@@ -309,7 +321,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         contacts: (Vector3<S>, Vector3<S>),
         drive: (Vector3<S>, Vector3<S>),
     ) -> SVector<S, 6> {
-        let gyroscopic = at.rotation_b.cross(&at.rotation_b.component_mul(&self.body.inertia_b));
+        let gyroscopic = cross(&at.rotation_b, &at.rotation_b.component_mul(&self.body.inertia_b));
         join(
             at.to_body.apply_inverse(contacts.0 + drive.0) + self.body.gravity_w * self.body.mass,
             contacts.1 + drive.1 - gyroscopic,

@@ -1,0 +1,56 @@
+//! Products of vectors and matrices of three, always inlined.
+//!
+//! The library's own are calls wherever the compiler's budget for inlining is used up. A call takes a controller longer than the
+//! product, and lanes, whose instructions the library does not know of, many times as long. The sums have the library's order,
+//! so that the bits are the same.
+
+use nalgebra::Matrix3;
+
+use crate::{Scalar, Vector3};
+
+/// The columns of `m`.
+#[inline(always)]
+pub(crate) fn columns<S: Scalar>(m: &Matrix3<S>) -> [Vector3<S>; 3] {
+    let [x, y, z]: [[S; 3]; 3] = m.data.0;
+    [Vector3::from(x), Vector3::from(y), Vector3::from(z)]
+}
+
+/// `a` × `b`.
+#[inline(always)]
+pub(crate) fn cross<S: Scalar>(a: &Vector3<S>, b: &Vector3<S>) -> Vector3<S> {
+    Vector3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
+}
+
+/// `a` · `b`.
+#[inline(always)]
+pub(crate) fn dot<S: Scalar>(a: &Vector3<S>, b: &Vector3<S>) -> S {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
+/// `m` · `v`.
+#[inline(always)]
+pub(crate) fn times<S: Scalar>(m: &Matrix3<S>, v: &Vector3<S>) -> Vector3<S> {
+    let [x, y, z] = columns(m);
+    let row = |x: S, y: S, z: S| x * v.x + y * v.y + z * v.z;
+    Vector3::new(row(x.x, y.x, z.x), row(x.y, y.y, z.y), row(x.z, y.z, z.z))
+}
+
+/// `m`ᵀ · `v`.
+#[inline(always)]
+pub(crate) fn transposed_times<S: Scalar>(m: &Matrix3<S>, v: &Vector3<S>) -> Vector3<S> {
+    let [x, y, z] = columns(m);
+    Vector3::new(dot(&x, v), dot(&y, v), dot(&z, v))
+}
+
+/// `a` · `b`.
+#[inline(always)]
+pub(crate) fn product<S: Scalar>(a: &Matrix3<S>, b: &Matrix3<S>) -> Matrix3<S> {
+    let [x, y, z] = columns(b);
+    Matrix3::from_columns(&[times(a, &x), times(a, &y), times(a, &z)])
+}
+
+/// `a` · `b`ᵀ.
+#[inline(always)]
+pub(crate) fn outer<S: Scalar>(a: &Vector3<S>, b: &Vector3<S>) -> Matrix3<S> {
+    Matrix3::from_columns(&[a * b.x, a * b.y, a * b.z])
+}
