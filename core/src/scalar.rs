@@ -106,15 +106,11 @@ impl Scalar for f32 {
         if self > other { yes } else { no }
     }
 
-    /// A guess from the exponent's bits, a Newton step, which leaves 0.18 % at most, and a step of third order, whose error
-    /// is below the rounding. Some 20 instructions on a Cortex-M4F, against a software root of some 200 in `libm`, and free
-    /// of branches.
+    /// Some 20 instructions on a Cortex-M4F, against a software root of some 200 in `libm`, and free of branches.
     #[inline(always)]
     fn rsqrt(self) -> Self {
-        let guess = f32::from_bits(0x5f37_5a86u32.wrapping_sub(self.to_bits() >> 1));
-        let near = guess * (1.5 - 0.5 * self * guess * guess);
-        let miss = 1.0 - self * near * near;
-        near + near * miss * (0.5 + 0.375 * miss)
+        let guess = f32::from_bits(power::RSQRT_BITS.wrapping_sub(self.to_bits() >> 1));
+        power::refined_rsqrt(self, guess)
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@
 //! [`mechanism`] (bodies, joints, drives) or both. [`tolerance`] says how the measures vary, [`dynamics`] what one unit
 //! does, [`population`] what every unit of a production does, [`quality`] how far the solvers can be believed. [`firmware`]
 //! is what the controller gets, [`show`] what people look at. The command line is in [`cli`], one file a command.
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 pub mod cli;
 pub mod dynamics;

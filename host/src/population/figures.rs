@@ -1,5 +1,6 @@
 //! What is kept of units while they move: figures, not runs.
 
+use pulp::Simd;
 use slipfit_core::{Scalar, slide::CONTACTS};
 
 use super::pack::Pack;
@@ -50,37 +51,37 @@ impl Figures {
 const SAMPLES: usize = 32;
 
 /// Watches as many units as a pack has lanes.
-pub struct Watch<const W: usize> {
-    breakaway: Pack<W>,
-    peak: Pack<W>,
-    depths: [Pack<W>; CONTACTS],
+pub struct Watch<V: Simd> {
+    breakaway: Pack<V>,
+    peak: Pack<V>,
+    depths: [Pack<V>; CONTACTS],
     /// Force and speed at the end of the last accepted step, the force before that, and the length of the step between.
-    force: Pack<W>,
-    speed: Pack<W>,
-    force_before: Pack<W>,
-    length_before: Pack<W>,
-    windows: [Window; W],
+    force: Pack<V>,
+    speed: Pack<V>,
+    force_before: Pack<V>,
+    length_before: Pack<V>,
+    windows: Vec<Window>,
 }
 
 /// The ends of steps that are accepted in some lanes.
-pub struct Ends<'a, const W: usize> {
+pub struct Ends<'a, V: Simd> {
     /// Above 0 where the step is accepted.
-    pub accepted: Pack<W>,
+    pub accepted: Pack<V>,
     /// Time at the start of the step (s).
-    pub start: Pack<W>,
+    pub start: Pack<V>,
     /// Its length (s).
-    pub length: Pack<W>,
+    pub length: Pack<V>,
     /// Drive force (N) at its end.
-    pub force: Pack<W>,
+    pub force: Pack<V>,
     /// Speed (m/s) at its end.
-    pub speed: Pack<W>,
+    pub speed: Pack<V>,
     /// Gaps (m) at its end.
-    pub gaps: &'a [Pack<W>; CONTACTS],
+    pub gaps: &'a [Pack<V>; CONTACTS],
     /// Start of the ramp (s).
-    pub ramp_start: Pack<W>,
+    pub ramp_start: Pack<V>,
 }
 
-impl<const W: usize> Watch<W> {
+impl<V: Simd> Watch<V> {
     /// Of units that have not begun.
     pub fn new() -> Self {
         let zero = Pack::splat(0.0);
@@ -92,7 +93,7 @@ impl<const W: usize> Watch<W> {
             speed: zero,
             force_before: zero,
             length_before: Pack::splat(1.0),
-            windows: [Window::default(); W],
+            windows: vec![Window::default(); Pack::<V>::LANES],
         }
     }
 
@@ -107,22 +108,22 @@ impl<const W: usize> Watch<W> {
             (&mut self.force_before, fresh.force_before),
             (&mut self.length_before, fresh.length_before),
         ] {
-            pack.0[lane] = fresh.0[lane];
+            pack.set(lane, fresh.get(lane));
         }
-        self.depths.iter_mut().for_each(|depth| depth.0[lane] = 0.0);
+        self.depths.iter_mut().for_each(|depth| depth.set(lane, 0.0));
         self.windows[lane] = Window::default();
     }
 
     /// Takes note of the ends of steps.
     #[inline(always)]
-    pub fn observe(&mut self, ends: &Ends<W>) {
+    pub fn observe(&mut self, ends: &Ends<V>) {
         let Ends { accepted, start, length, force, speed, gaps, ramp_start } = *ends;
         let zero = Pack::splat(0.0);
-        let keep = |new: Pack<W>, old: Pack<W>| accepted.select_gt(zero, new, old);
+        let keep = |new: Pack<V>, old: Pack<V>| accepted.select_gt(zero, new, old);
         // Only what begins after the ramp's start counts; NaN keeps the old.
         let end = start + length;
-        let on = |yes: Pack<W>, no: Pack<W>| ramp_start.select_gt(end, no, yes);
-        let whole = |yes: Pack<W>, no: Pack<W>| ramp_start.select_gt(start, no, yes);
+        let on = |yes: Pack<V>, no: Pack<V>| ramp_start.select_gt(end, no, yes);
+        let whole = |yes: Pack<V>, no: Pack<V>| ramp_start.select_gt(start, no, yes);
 
         let threshold = Pack::splat(BREAKAWAY_SPEED as f32);
         let crossing = start + length * (threshold - self.speed) / (speed - self.speed);
@@ -152,18 +153,18 @@ impl<const W: usize> Watch<W> {
     /// Takes note of the force at the end of an accepted step of a `lane`, at time `t` (s).
     #[inline(always)]
     pub fn mark(&mut self, lane: usize, t: f64) {
-        self.windows[lane].mark(t, self.force.0[lane]);
+        self.windows[lane].mark(t, self.force.get(lane));
     }
 
     /// Writes what is known of the unit in a `lane` at its end, time `t` (s), to `figures`.
     pub fn conclude(&self, lane: usize, t: f64, figures: &mut Figures) {
-        figures.breakaway = self.breakaway.0[lane];
-        figures.peak_force = self.peak.0[lane];
-        figures.settled_force = self.windows[lane].settled(t, self.force.0[lane]);
-        let deepest = (0..CONTACTS).max_by(|i, j| self.depths[*i].0[lane].total_cmp(&self.depths[*j].0[lane]));
+        figures.breakaway = self.breakaway.get(lane);
+        figures.peak_force = self.peak.get(lane);
+        figures.settled_force = self.windows[lane].settled(t, self.force.get(lane));
+        let deepest = (0..CONTACTS).max_by(|i, j| self.depths[*i].get(lane).total_cmp(&self.depths[*j].get(lane)));
         let deepest = deepest.unwrap_or(0);
         figures.contact = deepest as u8;
-        figures.depth = self.depths[deepest].0[lane];
+        figures.depth = self.depths[deepest].get(lane);
         figures.end = t as f32;
     }
 }

@@ -3,6 +3,7 @@
 //! Every lane has a time and a step of its own, and takes the next unit as soon as its own has come to its end: units in
 //! lockstep, or with one step for all, would wait for each other. The steps are those of the kernel's RODAS3.
 
+use pulp::Simd;
 use slipfit_core::{
     Scalar,
     integrator::{Integrator, Rodas3},
@@ -36,20 +37,20 @@ pub struct Course {
 }
 
 /// As many slides as a pack has lanes.
-pub trait Slides<const W: usize>: Mechanism<Pack<W>, 6, Pose = Pose<Pack<W>>, Memory = [(); SLOTS]> {
+pub trait Slides<V: Simd>: Mechanism<Pack<V>, 6, Pose = Pose<Pack<V>>, Memory = [(); SLOTS]> {
     /// The gaps (m) of each.
-    fn gaps(&self, pose: &Pose<Pack<W>>) -> [Pack<W>; CONTACTS];
+    fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS];
 }
 
-impl<const W: usize, E: Elastic<Pack<W>>, F: Friction<Pack<W>, Memory = ()>> Slides<W> for Slide<Pack<W>, E, F> {
+impl<V: Simd, E: Elastic<Pack<V>>, F: Friction<Pack<V>, Memory = ()>> Slides<V> for Slide<Pack<V>, E, F> {
     #[inline(always)]
-    fn gaps(&self, pose: &Pose<Pack<W>>) -> [Pack<W>; CONTACTS] {
+    fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS] {
         self.gaps(pose)
     }
 }
 
-impl<const W: usize, M: Slides<W>> Slides<W> for OutOfLine<Pack<W>, M, 6> {
-    fn gaps(&self, pose: &Pose<Pack<W>>) -> [Pack<W>; CONTACTS] {
+impl<V: Simd, M: Slides<V>> Slides<V> for OutOfLine<Pack<V>, M, 6> {
+    fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS] {
         self.mechanism().gaps(pose)
     }
 }
@@ -62,90 +63,97 @@ const BEYOND: f64 = 1e-7;
 const MOST_STEPS: u32 = 200_000;
 
 /// Simulates all `units`, slides that `load` makes of their parameters, and writes what each did to `figures`, of the same
-/// length. Where `load` makes none there are no figures.
+/// length. Where `load` makes none there are no figures. That the machine has them is what `_instructions` prove.
 #[inline(always)]
-pub fn integrate<const W: usize, M: Slides<W>>(
+pub fn integrate<V: Simd, M: Slides<V>>(
+    _instructions: V,
     course: &Course,
     units: &[SlideData<f64>],
     figures: &mut [Figures],
-    load: impl Fn(&SlideData<Pack<W>>) -> Option<M>,
+    load: impl Fn(&SlideData<Pack<V>>) -> Option<M>,
 ) {
     let Some(first) = units.first() else { return };
-    let mut lanes = Lanes::<W>::new(first);
+    let mut all = Lanes::<V>::new(first);
     let mut next = 0;
-    for lane in 0..W {
-        lanes.load(lane, &mut next, units);
+    for lane in 0..Pack::<V>::LANES {
+        all.load(lane, &mut next, units);
     }
-    let Some(mut slide) = load(&lanes.data) else { return };
-    while lanes.busy() {
-        if lanes.step(course, &slide, figures) {
-            for lane in 0..W {
-                if lanes.ended[lane] {
-                    lanes.load(lane, &mut next, units);
+    let Some(mut slide) = load(&all.data) else { return };
+    while all.busy() {
+        if all.step(course, &slide, figures) {
+            for lane in 0..Pack::<V>::LANES {
+                if all.lanes[lane].ended {
+                    all.load(lane, &mut next, units);
                 }
             }
-            let Some(loaded) = load(&lanes.data) else { return };
+            let Some(loaded) = load(&all.data) else { return };
             slide = loaded;
         }
     }
 }
 
 /// Units at work.
-struct Lanes<const W: usize> {
-    data: SlideData<Pack<W>>,
-    motions: Motions<W>,
-    watch: Watch<W>,
-    /// Which unit is in each lane.
-    units: [Option<usize>; W],
-    ended: [bool; W],
-    times: [f64; W],
-    lengths: Pack<W>,
-    tried: [u32; W],
+struct Lanes<V: Simd> {
+    data: SlideData<Pack<V>>,
+    motions: Motions<V>,
+    watch: Watch<V>,
+    /// Lengths of the next steps (s).
+    lengths: Pack<V>,
+    lanes: Vec<Lane>,
 }
 
-impl<const W: usize> Lanes<W> {
+/// How far the unit in a lane is.
+#[derive(Clone, Copy, Default)]
+struct Lane {
+    /// Its index; none if there are no more.
+    unit: Option<usize>,
+    ended: bool,
+    /// Its time (s).
+    time: f64,
+    /// Steps, refused ones among them.
+    tried: u32,
+}
+
+impl<V: Simd> Lanes<V> {
     fn new(any: &SlideData<f64>) -> Self {
         Self {
             data: any.cast(Pack::from_f64),
             motions: at_rest(),
             watch: Watch::new(),
-            units: [None; W],
-            ended: [false; W],
-            times: [0.0; W],
             lengths: Pack::from_f64(FIRST_STEP),
-            tried: [0; W],
+            lanes: vec![Lane::default(); Pack::<V>::LANES],
         }
     }
 
     fn busy(&self) -> bool {
-        self.units.iter().any(Option::is_some)
+        self.lanes.iter().any(|lane| lane.unit.is_some())
     }
 
     /// Puts the next of `units` into a `lane`, from rest.
     fn load(&mut self, lane: usize, next: &mut usize, units: &[SlideData<f64>]) {
-        self.units[lane] = units.get(*next).map(|unit| {
+        let unit = units.get(*next).map(|unit| {
             put(&mut self.data, lane, unit);
             *next += 1;
             *next - 1
         });
-        each_number(&mut self.motions, &at_rest(), |number, rest| number.0[lane] = rest.0[lane]);
+        self.lanes[lane] = Lane { unit, ..Lane::default() };
+        each_number(&mut self.motions, &at_rest(), |number, rest| number.set(lane, rest.get(lane)));
         self.watch.clear(lane);
-        (self.ended[lane], self.times[lane], self.tried[lane]) = (false, 0.0, 0);
-        self.lengths.0[lane] = FIRST_STEP as f32;
+        self.lengths.set(lane, FIRST_STEP as f32);
     }
 
     /// A step in every lane; whether units have come to their ends by it.
     #[inline(always)]
-    fn step<M: Slides<W>>(&mut self, course: &Course, slide: &M, figures: &mut [Figures]) -> bool {
+    fn step<M: Slides<V>>(&mut self, course: &Course, slide: &M, figures: &mut [Figures]) -> bool {
         let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
         let (mut start, mut length) = (zero, zero);
-        for lane in 0..W {
-            let left = (course.duration - self.times[lane]) as f32;
-            start.0[lane] = self.times[lane] as f32;
-            let step = self.lengths.0[lane];
-            length.0[lane] = if 1.01 * step >= left { left.max(LEAST_STEP) } else { step };
+        for (lane, Lane { time, .. }) in self.lanes.iter().enumerate() {
+            let left = (course.duration - time) as f32;
+            start.set(lane, *time as f32);
+            let step = self.lengths.get(lane);
+            length.set(lane, if 1.01 * step >= left { left.max(LEAST_STEP) } else { step });
         }
-        let step = Rodas3::step::<Pack<W>, _, 6>(slide, start, length, &self.motions);
+        let step = Rodas3::step::<Pack<V>, _, 6>(slide, start, length, &self.motions);
         let error = self.error(course, [step.error, step.drift]);
         let factor = Pack::from_f64(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
         self.lengths = (length * factor.within(Pack::from_f64(CHANGES[0]), Pack::from_f64(CHANGES[1])))
@@ -175,31 +183,31 @@ impl<const W: usize> Lanes<W> {
         };
         self.watch.observe(&ends);
         let travel = self.motions.pose.displacement_w.z * along;
-        for lane in 0..W {
-            let Some(unit) = self.units[lane] else { continue };
-            self.tried[lane] += 1;
-            if accepted.0[lane] > 0.0 {
-                self.times[lane] += f64::from(length.0[lane]);
-                self.watch.mark(lane, self.times[lane]);
+        for (lane, Lane { unit, ended, time, tried }) in self.lanes.iter_mut().enumerate() {
+            let Some(unit) = *unit else { continue };
+            *tried += 1;
+            if accepted.get(lane) > 0.0 {
+                *time += f64::from(length.get(lane));
+                self.watch.mark(lane, *time);
             }
-            let stalled = (good.0[lane] == 0.0 && length.0[lane] <= LEAST_STEP) || self.tried[lane] >= MOST_STEPS;
-            let at_end = travel.0[lane] >= stroke.0[lane] - BEYOND as f32;
-            self.ended[lane] = stalled || at_end || self.times[lane] >= course.duration - f64::from(LEAST_STEP);
-            if self.ended[lane] {
+            let stalled = (good.get(lane) == 0.0 && length.get(lane) <= LEAST_STEP) || *tried >= MOST_STEPS;
+            let at_end = travel.get(lane) >= stroke.get(lane) - BEYOND as f32;
+            *ended = stalled || at_end || *time >= course.duration - f64::from(LEAST_STEP);
+            if *ended {
                 let of_unit = &mut figures[unit];
-                self.watch.conclude(lane, self.times[lane], of_unit);
-                of_unit.final_velocity = ends.speed.0[lane];
-                of_unit.travel = travel.0[lane].min(stroke.0[lane]);
-                (of_unit.steps, of_unit.stalled) = (self.tried[lane], stalled);
+                self.watch.conclude(lane, *time, of_unit);
+                of_unit.final_velocity = ends.speed.get(lane);
+                of_unit.travel = travel.get(lane).min(stroke.get(lane));
+                (of_unit.steps, of_unit.stalled) = (*tried, stalled);
             }
         }
-        self.ended.contains(&true)
+        self.lanes.iter().any(|lane| lane.ended)
     }
 
     /// The error of a step whose estimates of momentum (N·s) and of place (N·s²) these are; 1 is allowed. What is not a
     /// number is the worst of all.
     #[inline(always)]
-    fn error(&self, course: &Course, [momentum, place]: [Pack<W>; 2]) -> Pack<W> {
+    fn error(&self, course: &Course, [momentum, place]: [Pack<V>; 2]) -> Pack<V> {
         let (mass, gain) = (self.data.body.mass, self.data.drive.gain);
         let velocity_error = momentum * (gain * Pack::from_f64(1.0 / course.tolerance));
         let place_error = place * Pack::from_f64(1.0 / (PLACE * course.tolerance));

@@ -1,5 +1,6 @@
 //! One lane of a pack: a unit's parameters in it, and its state.
 
+use pulp::Simd;
 use slipfit_core::{
     SVector, Vector3,
     integrator::Motion,
@@ -11,21 +12,17 @@ use slipfit_core::{
 use super::pack::Pack;
 
 /// The motions of as many slides as a pack has lanes.
-pub type Motions<const W: usize> = Motion<Pack<W>, Pose<Pack<W>>, [(); SLOTS], 6>;
+pub type Motions<V> = Motion<Pack<V>, Pose<Pack<V>>, [(); SLOTS], 6>;
 
 /// All slides at rest in their nominal poses.
-pub fn at_rest<const W: usize>() -> Motions<W> {
+pub fn at_rest<V: Simd>() -> Motions<V> {
     let still = SVector::zeros();
     Motion { pose: Pose::nominal(), velocity: still, acceleration: still, memory: [(); SLOTS] }
 }
 
 /// Calls `number` for every number of a motion beside the same one of another.
 #[inline(always)]
-pub fn each_number<const W: usize>(
-    one: &mut Motions<W>,
-    other: &Motions<W>,
-    mut number: impl FnMut(&mut Pack<W>, Pack<W>),
-) {
+pub fn each_number<V: Simd>(one: &mut Motions<V>, other: &Motions<V>, mut number: impl FnMut(&mut Pack<V>, Pack<V>)) {
     for (one, other) in one.velocity.iter_mut().zip(other.velocity.iter()) {
         number(one, *other);
     }
@@ -40,9 +37,9 @@ pub fn each_number<const W: usize>(
 }
 
 /// Puts the slide `one` into a `lane` of `all`, its numbers rounded to single precision.
-pub fn put<const W: usize>(all: &mut SlideData<Pack<W>>, lane: usize, one: &SlideData<f64>) {
-    let set = |pack: &mut Pack<W>, value: f64| pack.0[lane] = value as f32;
-    let set_vector = |packs: &mut Vector3<Pack<W>>, values: &Vector3<f64>| {
+pub fn put<V: Simd>(all: &mut SlideData<Pack<V>>, lane: usize, one: &SlideData<f64>) {
+    let set = |pack: &mut Pack<V>, value: f64| pack.set(lane, value as f32);
+    let set_vector = |packs: &mut Vector3<Pack<V>>, values: &Vector3<f64>| {
         packs.iter_mut().zip(values.iter()).for_each(|(pack, value)| set(pack, *value));
     };
     set(&mut all.body.mass, one.body.mass);

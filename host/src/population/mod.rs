@@ -45,25 +45,20 @@ pub use unit::UnitOutcome;
 /// Units that are simulated together; they share nothing but the work.
 const PIECE: usize = 128;
 
-/// Lanes of a pack with AVX2. Elsewhere units are moved one by one: a pack of several would take longer to compile than it
-/// saves. The bits do not depend on it.
-#[cfg(target_arch = "x86_64")]
-const AVX2_LANES: usize = 8;
-
-/// The slides of some units, `W` of which are moved at a time.
-struct Work<'a, const W: usize> {
+/// The slides of some units.
+struct Work<'a> {
     course: Course,
     slides: &'a [SlideData<f64>],
     figures: &'a mut [Figures],
 }
 
-/// In the instructions of whatever the machine was found to have.
-impl<const W: usize> WithSimd for Work<'_, W> {
+/// Slides with the paper's laws, as many at a time as the instructions move.
+impl WithSimd for Work<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        integrate(&self.course, self.slides, self.figures, laws::usual::<Pack<W>>);
+    fn with_simd<V: Simd>(self, instructions: V) {
+        integrate(instructions, &self.course, self.slides, self.figures, laws::usual::<Pack<V>>);
     }
 }
 
@@ -71,12 +66,17 @@ impl<const W: usize> WithSimd for Work<'_, W> {
 /// not depend on them. A slide that cannot be simulated has no figures.
 pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     #[cfg(target_arch = "x86_64")]
-    if let Some(avx2) = pulp::x86::V3::try_new()
-        && slides.first().and_then(laws::usual).is_some()
-    {
+    if slides.first().and_then(laws::usual).is_some() {
         let mut figures = vec![Figures::NONE; slides.len()];
-        Simd::vectorize(avx2, Work::<AVX2_LANES> { course, slides, figures: &mut figures });
-        return figures;
+        let work = Work { course, slides, figures: &mut figures };
+        if let Some(avx512) = pulp::x86::V4::try_new() {
+            Simd::vectorize(avx512, work);
+            return figures;
+        }
+        if let Some(avx2) = pulp::x86::V3::try_new() {
+            Simd::vectorize(avx2, work);
+            return figures;
+        }
     }
     one_by_one(course, slides)
 }
@@ -86,9 +86,11 @@ fn one_by_one(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     let mut figures = vec![Figures::NONE; slides.len()];
     // In one function with their loop the forces would take long to compile.
     if slides.first().and_then(laws::usual).is_some() {
-        integrate(&course, slides, &mut figures, |data| laws::usual::<Pack<1>>(data).map(OutOfLine::new));
+        let load = |data: &_| laws::usual::<Pack<pulp::Scalar>>(data).map(OutOfLine::new);
+        integrate(pulp::Scalar, &course, slides, &mut figures, load);
     } else {
-        integrate(&course, slides, &mut figures, |data| laws::chosen::<Pack<1>>(data).map(OutOfLine::new));
+        let load = |data: &_| laws::chosen::<Pack<pulp::Scalar>>(data).map(OutOfLine::new);
+        integrate(pulp::Scalar, &course, slides, &mut figures, load);
     }
     figures
 }

@@ -1,125 +1,148 @@
-//! Several single-precision numbers as one: a step of the kernel moves as many units at a time.
+//! Several single-precision numbers as one, in a vector register of the machine: a step of the kernel moves as many units at a
+//! time.
 //!
 //! Every operation is done number by number, so that a unit's bits depend neither on its neighbours nor on how many there
 //! are, nor on the instructions that compute them.
 
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::{
+    ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign},
+    ptr::NonNull,
+};
 
 use num_traits::{One, Zero};
-use slipfit_core::Scalar;
+use pulp::{Simd, bytemuck};
+use slipfit_core::{Scalar, power};
 
-/// `W` numbers. A comparison holds if it holds for all of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(32))]
-pub struct Pack<const W: usize>(pub [f32; W]);
+/// As many numbers as a register of the instructions `V` holds. A comparison holds if it holds for all of them.
+///
+/// Only what was given a `V` may name `Pack<V>`: with a `V` comes the knowledge that the machine has its instructions.
+#[derive(Clone, Copy, Debug)]
+pub struct Pack<V: Simd>(V::f32s);
 
-impl<const W: usize> Pack<W> {
+/// The instructions themselves, for operators and constants, which have no argument that could bring them.
+#[expect(unsafe_code, reason = "operators are not handed the proof that the machine has their instructions")]
+#[inline(always)]
+fn instructions<V: Simd>() -> V {
+    const { assert!(size_of::<V>() == 0, "a proof has no bytes") };
+    // SAFETY: a value without bytes can be read from any aligned address. That there may be one follows from the rule above:
+    // packs are made by what was given a `V`.
+    unsafe { NonNull::<V>::dangling().read() }
+}
+
+impl<V: Simd> Pack<V> {
+    /// How many numbers there are.
+    pub const LANES: usize = V::F32_LANES;
+
     /// `x` in every lane.
     #[inline(always)]
     pub fn splat(x: f32) -> Self {
-        Self([x; W])
+        Self(instructions::<V>().splat_f32s(x))
     }
 
-    /// `f` of every number.
+    /// The number in each lane.
     #[inline(always)]
-    fn map(self, f: impl Fn(f32) -> f32) -> Self {
-        let mut result = self;
-        for x in &mut result.0 {
-            *x = f(*x);
-        }
-        result
+    pub fn numbers(&self) -> &[f32] {
+        bytemuck::cast_slice(std::slice::from_ref(&self.0))
     }
 
-    /// `f` of every number and the one of `other` beside it.
+    /// The number in each lane.
     #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
-        let mut result = self;
-        for (x, y) in result.0.iter_mut().zip(other.0) {
-            *x = f(*x, y);
-        }
-        result
+    pub fn numbers_mut(&mut self) -> &mut [f32] {
+        bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.0))
     }
 
-    fn all(&self, other: &Self, holds: impl Fn(f32, f32) -> bool) -> bool {
-        self.0.iter().zip(other.0).all(|(x, y)| holds(*x, y))
+    /// The number in a `lane`.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> f32 {
+        self.numbers()[lane]
+    }
+
+    /// Puts `x` into a `lane`.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, x: f32) {
+        self.numbers_mut()[lane] = x;
+    }
+
+    fn all(&self, other: &Self, holds: impl Fn(&f32, &f32) -> bool) -> bool {
+        self.numbers().iter().zip(other.numbers()).all(|(x, y)| holds(x, y))
     }
 }
 
-impl<const W: usize> Default for Pack<W> {
+impl<V: Simd> Default for Pack<V> {
     fn default() -> Self {
         Self::splat(0.0)
     }
 }
 
-impl<const W: usize> Add for Pack<W> {
+impl<V: Simd> Add for Pack<V> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.zip(other, |x, y| x + y)
+        Self(instructions::<V>().add_f32s(self.0, other.0))
     }
 }
 
-impl<const W: usize> Sub for Pack<W> {
+impl<V: Simd> Sub for Pack<V> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.zip(other, |x, y| x - y)
+        Self(instructions::<V>().sub_f32s(self.0, other.0))
     }
 }
 
-impl<const W: usize> Mul for Pack<W> {
+impl<V: Simd> Mul for Pack<V> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.zip(other, |x, y| x * y)
+        Self(instructions::<V>().mul_f32s(self.0, other.0))
     }
 }
 
-impl<const W: usize> Div for Pack<W> {
+impl<V: Simd> Div for Pack<V> {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        self.zip(other, |x, y| x / y)
+        Self(instructions::<V>().div_f32s(self.0, other.0))
     }
 }
 
-impl<const W: usize> Neg for Pack<W> {
+impl<V: Simd> Neg for Pack<V> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.map(|x| -x)
+        Self(instructions::<V>().neg_f32s(self.0))
     }
 }
 
-impl<const W: usize> AddAssign for Pack<W> {
+impl<V: Simd> AddAssign for Pack<V> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<const W: usize> SubAssign for Pack<W> {
+impl<V: Simd> SubAssign for Pack<V> {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl<const W: usize> MulAssign for Pack<W> {
+impl<V: Simd> MulAssign for Pack<V> {
     #[inline(always)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
-impl<const W: usize> DivAssign for Pack<W> {
+impl<V: Simd> DivAssign for Pack<V> {
     #[inline(always)]
     fn div_assign(&mut self, other: Self) {
         *self = *self / other;
     }
 }
 
-impl<const W: usize> Zero for Pack<W> {
+impl<V: Simd> Zero for Pack<V> {
     #[inline(always)]
     fn zero() -> Self {
         Self::splat(0.0)
@@ -130,38 +153,44 @@ impl<const W: usize> Zero for Pack<W> {
     }
 }
 
-impl<const W: usize> One for Pack<W> {
+impl<V: Simd> One for Pack<V> {
     #[inline(always)]
     fn one() -> Self {
         Self::splat(1.0)
     }
 }
 
-impl<const W: usize> PartialOrd for Pack<W> {
+impl<V: Simd> PartialEq for Pack<V> {
+    fn eq(&self, other: &Self) -> bool {
+        self.all(other, f32::eq)
+    }
+}
+
+impl<V: Simd> PartialOrd for Pack<V> {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         use std::cmp::Ordering::{Equal, Greater, Less};
-        let holds = |ordering: &std::cmp::Ordering| self.all(other, |x, y| x.partial_cmp(&y) == Some(*ordering));
+        let holds = |ordering: &std::cmp::Ordering| self.all(other, |x, y| x.partial_cmp(y) == Some(*ordering));
         [Less, Equal, Greater].into_iter().find(holds)
     }
 
     fn lt(&self, other: &Self) -> bool {
-        self.all(other, |x, y| x < y)
+        self.all(other, f32::lt)
     }
 
     fn le(&self, other: &Self) -> bool {
-        self.all(other, |x, y| x <= y)
+        self.all(other, f32::le)
     }
 
     fn gt(&self, other: &Self) -> bool {
-        self.all(other, |x, y| x > y)
+        self.all(other, f32::gt)
     }
 
     fn ge(&self, other: &Self) -> bool {
-        self.all(other, |x, y| x >= y)
+        self.all(other, f32::ge)
     }
 }
 
-impl<const W: usize> Scalar for Pack<W> {
+impl<V: Simd> Scalar for Pack<V> {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self::splat(value as f32)
@@ -169,7 +198,7 @@ impl<const W: usize> Scalar for Pack<W> {
 
     /// The least of the numbers.
     fn to_f64(self) -> f64 {
-        self.0.iter().fold(f64::INFINITY, |least, x| least.min(f64::from(*x)))
+        self.numbers().iter().fold(f64::INFINITY, |least, x| least.min(f64::from(*x)))
     }
 
     #[inline(always)]
@@ -184,68 +213,117 @@ impl<const W: usize> Scalar for Pack<W> {
 
     #[inline(always)]
     fn select_gt(self, other: Self, yes: Self, no: Self) -> Self {
+        let v = instructions::<V>();
+        Self(v.select_f32s(v.less_than_f32s(other.0, self.0), yes.0, no.0))
+    }
+
+    #[inline(always)]
+    fn rsqrt(self) -> Self {
+        let v = instructions::<V>();
+        let bits = v.wrapping_dyn_shr_u32s(v.transmute_u32s_f32s(self.0), v.splat_u32s(1));
+        let guess = Self(v.transmute_f32s_u32s(v.sub_u32s(v.splat_u32s(power::RSQRT_BITS), bits)));
+        power::refined_rsqrt(self, guess)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self * self.rsqrt()
+    }
+
+    #[inline(always)]
+    fn pow(self, exponent: Self) -> Self {
         let mut result = self;
-        for lane in 0..W {
-            result.0[lane] = self.0[lane].select_gt(other.0[lane], yes.0[lane], no.0[lane]);
+        for (x, y) in result.numbers_mut().iter_mut().zip(exponent.numbers()) {
+            *x = Scalar::pow(*x, *y);
         }
         result
     }
 
     #[inline(always)]
-    fn rsqrt(self) -> Self {
-        self.map(Scalar::rsqrt)
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.map(Scalar::sqrt)
-    }
-
-    #[inline(always)]
-    fn pow(self, exponent: Self) -> Self {
-        self.zip(exponent, Scalar::pow)
-    }
-
-    #[inline(always)]
     fn ln(self) -> Self {
-        self.map(Scalar::ln)
+        let mut result = self;
+        for x in result.numbers_mut() {
+            *x = Scalar::ln(*x);
+        }
+        result
     }
 
     fn is_finite(self) -> bool {
-        self.0.iter().all(|x| x.is_finite())
+        self.numbers().iter().all(|x| x.is_finite())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::Pack;
+    use pulp::{Simd, WithSimd};
     use slipfit_core::Scalar;
+
+    /// The bits of what operations give that are done on several numbers at once.
+    struct Operations;
+
+    /// Numbers to work on.
+    const NUMBERS: [f32; 8] = [0.3, 7.25, 1e-7, 4e5, 1.0, 0.999, 12.0, 3e-3];
+
+    impl WithSimd for Operations {
+        type Output = Vec<[f32; 7]>;
+
+        fn with_simd<V: Simd>(self, _: V) -> Vec<[f32; 7]> {
+            let lanes = Pack::<V>::LANES;
+            let mut x = Pack::<V>::splat(0.0);
+            (0..lanes).for_each(|lane| x.set(lane, NUMBERS[lane % 8]));
+            let y = Pack::splat(1.7);
+            let found = [x + y, x - y, x / y, x.rsqrt(), x.sqrt(), x.pow(y), x.select_gt(y, -x, x * y)]
+                .map(|pack| pack.numbers().to_vec());
+            (0..lanes).map(|lane| std::array::from_fn(|i| found[i][lane])).collect()
+        }
+    }
+
+    /// What `work` gives by every kind of instructions that the machine has, and by single numbers.
+    fn by_all<T>(work: impl Fn() -> T) -> Vec<T::Output>
+    where
+        T: WithSimd,
+    {
+        let mut all = vec![Simd::vectorize(pulp::Scalar, work())];
+        #[cfg(target_arch = "x86_64")]
+        {
+            all.extend(pulp::x86::V3::try_new().map(|avx2| Simd::vectorize(avx2, work())));
+            all.extend(pulp::x86::V4::try_new().map(|avx512| Simd::vectorize(avx512, work())));
+        }
+        all
+    }
 
     #[test]
     fn every_lane_has_the_bits_of_a_number_alone() {
-        let numbers = [0.3f32, 7.25, 1e-7, 4e5, 1.0, 0.999, 12.0, 3e-3];
-        let (x, y) = (Pack(numbers), Pack::<8>::splat(1.7));
-        type Alone = fn(f32) -> f32;
-        let pairs: [(Pack<8>, Alone); 7] = [
-            (x + y, |x| x + 1.7),
-            (x - y, |x| x - 1.7),
-            (x / y, |x| x / 1.7),
-            (x.rsqrt(), |x| Scalar::rsqrt(x)),
-            (x.sqrt(), |x| Scalar::sqrt(x)),
-            (x.pow(y), |x| Scalar::pow(x, 1.7)),
-            (x.select_gt(y, -x, x * y), |x| if x > 1.7 { -x } else { x * 1.7 }),
-        ];
-        for (pack, alone) in pairs {
-            assert_eq!(pack.0.map(f32::to_bits), numbers.map(|x| alone(x).to_bits()));
+        for found in by_all(|| Operations) {
+            for (lane, found) in found.into_iter().enumerate() {
+                let x = NUMBERS[lane % 8];
+                let chosen = if x > 1.7 { -x } else { x * 1.7 };
+                let alone = [x + 1.7, x - 1.7, x / 1.7, Scalar::rsqrt(x), Scalar::sqrt(x), Scalar::pow(x, 1.7), chosen];
+                assert_eq!(found.map(f32::to_bits), alone.map(f32::to_bits));
+            }
+        }
+    }
+
+    /// Comparisons of a pack whose first number is 1 and whose others are 3, and the least of its numbers.
+    struct Comparisons;
+
+    impl WithSimd for Comparisons {
+        type Output = Option<([bool; 4], [bool; 2], f64)>;
+
+        fn with_simd<V: Simd>(self, _: V) -> Self::Output {
+            let mut mixed = Pack::<V>::splat(3.0);
+            mixed.set(0, 1.0);
+            let [one, two, three] = [1.0, 2.0, 3.0].map(Pack::splat);
+            let within = [mixed >= one, mixed <= three];
+            (Pack::<V>::LANES > 1)
+                .then(|| ([mixed > two, mixed < two, mixed >= two, mixed <= two], within, mixed.to_f64()))
         }
     }
 
     #[test]
     fn a_comparison_holds_if_it_holds_everywhere() {
-        let mixed = Pack([1.0f32, 3.0]);
-        let two = Pack::splat(2.0);
-        assert_eq!([mixed > two, mixed < two, mixed >= two, mixed <= two], [false; 4]);
-        assert!(mixed >= Pack::splat(1.0) && mixed <= Pack::splat(3.0));
-        assert_eq!(mixed.to_f64(), 1.0);
+        let found: Vec<_> = by_all(|| Comparisons).into_iter().flatten().collect();
+        assert!(found.iter().all(|found| *found == ([false; 4], [true; 2], 1.0)), "{found:?}");
     }
 }

@@ -1,20 +1,17 @@
 //! Populations against the desk, and their laws.
 
+use pulp::Simd;
 use slipfit_core::{
     menu::{FrictionData, SlideData},
     slide::CONTACTS,
 };
 
-use super::{
-    Course, Figures, integrate::integrate, laws, one_by_one, pack::Pack, production::Production, simulate,
-    simulate_units, unit,
-};
+use super::{Course, Figures, Work, one_by_one, production::Production, simulate, simulate_units, unit};
 use crate::{
     dynamics::{
         desk,
         driven::Driven,
         example,
-        out_of_line::OutOfLine,
         outcome::{Outcome, Verdict},
         simulate as one,
         simulate::Settings,
@@ -45,9 +42,12 @@ fn figures_have_the_same_bits_for_any_number_of_lanes() {
     let course = unit::course(&scene);
     let expected = format!("{:?}", simulate(course, &slides));
     assert_eq!(format!("{:?}", one_by_one(course, &slides)), expected);
-    let mut figures = vec![Figures::NONE; slides.len()];
-    integrate(&course, &slides, &mut figures, |data| laws::usual::<Pack<4>>(data).map(OutOfLine::new));
-    assert_eq!(format!("{figures:?}"), expected);
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx2) = pulp::x86::V3::try_new() {
+        let mut figures = vec![Figures::NONE; slides.len()];
+        Simd::vectorize(avx2, Work { course, slides: &slides, figures: &mut figures });
+        assert_eq!(format!("{figures:?}"), expected);
+    }
     // In another order, and alone.
     let reversed: Vec<_> = slides.iter().rev().copied().collect();
     let figures: Vec<_> = simulate(course, &reversed).into_iter().rev().collect();
