@@ -104,6 +104,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     }
 
     /// The sixteen gaps (m) at `pose`, in the order of [`Body::gaps`]; negative where parts penetrate.
+    #[inline(always)]
     pub fn gaps(&self, pose: &Pose<S>) -> [S; CONTACTS] {
         let to_body = pose.to_body();
         let shift = to_body.apply(pose.displacement_w);

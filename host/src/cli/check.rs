@@ -210,15 +210,19 @@ fn warnings(n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
             DriveSide::Beyond => "the slide locks like a drawer",
             _ => "the drive passes on the line of the other resistances, so that the least offset outwards locks it",
         };
-        warnings.push(format!(
-            "self-locking: friction {} is not below the critical {critical:.4} of a guide {} mm long, driven {} mm \
-             beside it: {meaning}. Drive nearer to the guide, lengthen it, or lower the friction",
-            guide.friction,
-            fixed(guide.length * 1e3, 1),
-            fixed(guide.drive_distance * 1e3, 1)
-        ));
+        warnings.push(self_locking(guide.friction, critical, [guide.length, guide.drive_distance], meaning));
     }
     warnings
+}
+
+/// The warning of a guide of a length and driven at a distance (m) that locks.
+pub(super) fn self_locking(friction: f64, critical: f64, [length, distance]: [f64; 2], meaning: &str) -> String {
+    format!(
+        "self-locking: friction {friction} is not below the critical {critical:.4} of a guide {} mm long, driven {} mm \
+         beside it: {meaning}. Drive nearer to the guide, lengthen it, or lower the friction",
+        fixed(length * 1e3, 1),
+        fixed(distance * 1e3, 1)
+    )
 }
 
 /// Where the drawing's clearances are not those that the gaps add up to.

@@ -7,8 +7,11 @@
 
 use serde::Serialize;
 
-use crate::scene::{PinSpec, Scene};
+use nalgebra::Vector3;
 use slipfit_core::slide::ABSENT;
+
+use super::{Action, JointKind, Mechanism};
+use crate::scene::{PinSpec, Scene};
 
 /// Where the drive passes, seen from the guide line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -75,4 +78,82 @@ pub fn guide(scene: &Scene, n: f64) -> Option<Guide> {
     let critical_friction = (drive_distance > 1e-9 * length).then(|| length / (2.0 * drive_distance));
     let warn = side != DriveSide::Short && critical_friction.is_some_and(|critical| friction >= critical);
     Some(Guide { length, line_x, drive_distance, resistance_distance, side, critical_friction, friction, warn })
+}
+
+/// A drive that pushes a body along joints with play, but beside them, and locks it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Locked<'a> {
+    /// The drive.
+    pub drive: &'a str,
+    /// How far its line passes beside the middle of the joints (m).
+    pub distance: f64,
+    /// How long the joints guide the body along the travel, from the first end to the last (m).
+    pub length: f64,
+    /// Critical coefficient of friction L/(2b).
+    pub critical_friction: f64,
+    /// The least coefficient of friction of the joints.
+    pub friction: f64,
+}
+
+/// The drives of `mechanism` that lock their body in joints with play to the frame, all along the drive's axis. The joints
+/// carry the drive's moment at their two ends, wherever beside each other they are, and rub about their middle.
+pub fn locked(mechanism: &Mechanism) -> Vec<Locked<'_>> {
+    let locked = mechanism.drives.iter().filter_map(|driven| {
+        let Action::Pushes { axis } = driven.action else { return None };
+        let axis = Vector3::from(axis);
+        let (mut ends, mut middle, mut friction, mut count) =
+            ([f64::INFINITY, f64::NEG_INFINITY], Vector3::zeros(), f64::INFINITY, 0);
+        for joint in mechanism.joints.iter().filter(|joint| joint.between.contains(&Some(driven.body))) {
+            let (along, length) = match joint.kind {
+                JointKind::Bearing { axis, length, .. } => (axis, length),
+                JointKind::Guide { axis, edges, .. } => (axis, edges[0]),
+                _ => return None,
+            };
+            if !joint.between.contains(&None) || Vector3::from(along).cross(&axis).norm() > 1e-9 {
+                return None;
+            }
+            let at = Vector3::from(joint.at);
+            let place = at.dot(&axis);
+            ends = [ends[0].min(place - length / 2.0), ends[1].max(place + length / 2.0)];
+            middle += at;
+            friction = friction.min(joint.laws.friction.coefficient());
+            count += 1;
+        }
+        if count == 0 {
+            return None;
+        }
+        let beside =
+            Vector3::from(mechanism.bodies[driven.body].centre) + driven.drive.point_b - middle / f64::from(count);
+        let (length, distance) = (ends[1] - ends[0], (beside - axis * beside.dot(&axis)).norm());
+        let critical_friction = length / (2.0 * distance);
+        (friction >= critical_friction).then_some(Locked {
+            drive: &driven.name,
+            distance,
+            length,
+            critical_friction,
+            friction,
+        })
+    });
+    locked.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::locked;
+    use crate::scene::{Override, SceneFile, shipped};
+
+    /// The carriage on two rods guides itself over 80 mm: with friction 0.3 it locks from 80/(2·0.3) mm beside its middle on.
+    #[test]
+    fn a_carriage_locks_where_its_drive_is_far_beside_it() {
+        for (x, locks) in [("10", false), ("133", false), ("134", true), ("-134", true)] {
+            let point = Override::set(&format!("drive.motor.point=[{x}, 0, 0]"));
+            let file = SceneFile::parse("linear-guide", shipped("linear-guide").unwrap(), &[point]).unwrap();
+            let found = file.mechanism.as_ref().map(locked).unwrap();
+            assert_eq!(found.len(), usize::from(locks), "{x}");
+            assert!(
+                found.iter().all(|locked| (locked.length - 0.08).abs() < 1e-12 && locked.friction == 0.3),
+                "{found:?}"
+            );
+        }
+    }
 }

@@ -81,6 +81,20 @@ pub struct Ends<'a, V: Simd> {
     pub ramp_start: Pack<V>,
 }
 
+impl<V: Simd> Ends<'_, V> {
+    /// `new` where the step is accepted, else `old`.
+    #[inline(always)]
+    fn or_old(&self, new: Pack<V>, old: Pack<V>) -> Pack<V> {
+        self.accepted.select_gt(Pack::splat(0.0), new, old)
+    }
+
+    /// `yes` where the time `t` (s) is not before the ramp's start, else `no`.
+    #[inline(always)]
+    fn from_ramp(&self, t: Pack<V>, yes: Pack<V>, no: Pack<V>) -> Pack<V> {
+        self.ramp_start.select_gt(t, no, yes)
+    }
+}
+
 impl<V: Simd> Watch<V> {
     /// Of units that have not begun.
     pub fn new() -> Self {
@@ -117,19 +131,15 @@ impl<V: Simd> Watch<V> {
     /// Takes note of the ends of steps.
     #[inline(always)]
     pub fn observe(&mut self, ends: &Ends<V>) {
-        let Ends { accepted, start, length, force, speed, gaps, ramp_start } = *ends;
+        let Ends { start, length, force, speed, gaps, .. } = *ends;
         let zero = Pack::splat(0.0);
-        let keep = |new: Pack<V>, old: Pack<V>| accepted.select_gt(zero, new, old);
-        // Only what begins after the ramp's start counts; NaN keeps the old.
         let end = start + length;
-        let on = |yes: Pack<V>, no: Pack<V>| ramp_start.select_gt(end, no, yes);
-        let whole = |yes: Pack<V>, no: Pack<V>| ramp_start.select_gt(start, no, yes);
 
         let threshold = Pack::splat(BREAKAWAY_SPEED as f32);
         let crossing = start + length * (threshold - self.speed) / (speed - self.speed);
         let crosses =
             threshold.select_gt(self.speed, threshold.select_gt(speed, self.breakaway, crossing), self.breakaway);
-        self.breakaway = keep(whole(crosses, self.breakaway), self.breakaway);
+        self.breakaway = ends.or_old(ends.from_ramp(start, crosses, self.breakaway), self.breakaway);
 
         // The top of the parabola through three ends, where the middle one is the highest.
         let rise = (self.force - self.force_before) / self.length_before;
@@ -138,16 +148,18 @@ impl<V: Simd> Watch<V> {
         let slope = (rise * length + fall * self.length_before) / (self.length_before + length);
         let top = self.force + slope * slope / (bend * Pack::splat(4.0));
         let is_top = rise.select_gt(zero, zero.select_gt(fall, top, self.peak), self.peak);
-        let peak = whole(self.peak.max_of(is_top), self.peak).max_of(on(force, self.peak));
-        self.peak = keep(peak, self.peak);
+        // Only what begins after the ramp's start counts; NaN keeps the old.
+        let between = ends.from_ramp(start, self.peak.max_of(is_top), self.peak);
+        let peak = between.max_of(ends.from_ramp(end, force, self.peak));
+        self.peak = ends.or_old(peak, self.peak);
 
         for (depth, gap) in self.depths.iter_mut().zip(gaps) {
-            *depth = keep(depth.max_of(-*gap), *depth);
+            *depth = ends.or_old(depth.max_of(-*gap), *depth);
         }
-        self.force_before = keep(self.force, self.force_before);
-        self.length_before = keep(length, self.length_before);
-        self.force = keep(force, self.force);
-        self.speed = keep(speed, self.speed);
+        self.force_before = ends.or_old(self.force, self.force_before);
+        self.length_before = ends.or_old(length, self.length_before);
+        self.force = ends.or_old(force, self.force);
+        self.speed = ends.or_old(speed, self.speed);
     }
 
     /// Takes note of the force at the end of an accepted step of a `lane`, at time `t` (s).

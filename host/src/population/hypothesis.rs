@@ -78,25 +78,15 @@ impl Hypothesis {
 
     /// The answer in words.
     pub fn verdict(&self) -> String {
-        let side = |failed: fn(&&AtDistance) -> bool| -> f64 {
-            self.distances.iter().filter(failed).count() as f64 / self.distances.len() as f64
-        };
+        let side = |failed: fn(&&AtDistance) -> bool| self.distances.iter().filter(failed).count();
         let (tight, loose) = (side(|at| at.tight_malfunctions), side(|at| at.loose_malfunctions));
-        let random = self.distances.iter().map(|at| at.random.share).sum::<f64>() / self.distances.len() as f64;
-        let percent = |share: f64| format!("{:.0} %", share * 100.0);
-        let word = |share: f64| match share {
-            share if share > random + 0.05 => "more often than",
-            share if share < random - 0.05 => "less often than",
-            _ => "about as often as",
-        };
+        let count = self.distances.len();
+        let random = self.distances.iter().map(|at| at.random.share).sum::<f64>() / count as f64;
+        let [nearest, farthest] = [0, count - 1].map(|i| self.distances[i].distance);
         format!(
-            "over the same distances the loosest units malfunction in {} of cases, {} random combinations ({}), the \
-             tightest in {}, {} these",
-            percent(loose),
-            word(loose),
-            percent(random),
-            percent(tight),
-            word(tight)
+            "{count} levels from {nearest} to {farthest} σ: with all gaps looser {loose} of them malfunction, with all tighter \
+             {tight}; of random combinations as far from the mean {:.0} %",
+            random * 100.0
         )
     }
 }

@@ -21,7 +21,7 @@ use crate::dynamics::{
 
 use super::{
     figures::{Ends, Figures, Watch},
-    lane::{Motions, at_rest, each_number, put},
+    lane::{Motions, at_rest, numbers, put},
     pack::Pack,
 };
 
@@ -137,7 +137,9 @@ impl<V: Simd> Lanes<V> {
             *next - 1
         });
         self.lanes[lane] = Lane { unit, ..Lane::default() };
-        each_number(&mut self.motions, &at_rest(), |number, rest| number.set(lane, rest.get(lane)));
+        for (number, rest) in numbers(&mut self.motions).into_iter().zip(numbers(&mut at_rest::<V>())) {
+            number.set(lane, rest.get(lane));
+        }
         self.watch.clear(lane);
         self.lengths.set(lane, FIRST_STEP as f32);
     }
@@ -153,7 +155,7 @@ impl<V: Simd> Lanes<V> {
             let step = self.lengths.get(lane);
             length.set(lane, if 1.01 * step >= left { left.max(LEAST_STEP) } else { step });
         }
-        let step = Rodas3::step::<Pack<V>, _, 6>(slide, start, length, &self.motions);
+        let mut step = Rodas3::step::<Pack<V>, _, 6>(slide, start, length, &self.motions);
         let error = self.error(course, [step.error, step.drift]);
         let factor = Pack::from_f64(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
         self.lengths = (length * factor.within(Pack::from_f64(CHANGES[0]), Pack::from_f64(CHANGES[1])))
@@ -169,7 +171,9 @@ impl<V: Simd> Lanes<V> {
         let good = error.select_gt(one, zero, one);
         let accepted = good - good * beyond;
         self.lengths = (good * beyond).select_gt(zero, shorter.max_of(Pack::splat(LEAST_STEP)), self.lengths);
-        each_number(&mut self.motions, &step.motion, |number, new| *number = accepted.select_gt(zero, new, *number));
+        for (number, new) in numbers(&mut self.motions).into_iter().zip(numbers(&mut step.motion)) {
+            *number = accepted.select_gt(zero, *new, *number);
+        }
 
         let speed = self.motions.velocity.z;
         let ends = Ends {

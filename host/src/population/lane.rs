@@ -5,7 +5,7 @@ use slipfit_core::{
     SVector, Vector3,
     integrator::Motion,
     menu::{FrictionData, SlideData},
-    pose::Pose,
+    pose::{Orientation, Pose},
     slide::SLOTS,
 };
 
@@ -20,20 +20,13 @@ pub fn at_rest<V: Simd>() -> Motions<V> {
     Motion { pose: Pose::nominal(), velocity: still, acceleration: still, memory: [(); SLOTS] }
 }
 
-/// Calls `number` for every number of a motion beside the same one of another.
+/// Every number of where slides are and how they move.
 #[inline(always)]
-pub fn each_number<V: Simd>(one: &mut Motions<V>, other: &Motions<V>, mut number: impl FnMut(&mut Pack<V>, Pack<V>)) {
-    for (one, other) in one.velocity.iter_mut().zip(other.velocity.iter()) {
-        number(one, *other);
-    }
-    let (one, other) = (&mut one.pose, &other.pose);
-    for (one, other) in one.displacement_w.iter_mut().zip(other.displacement_w.iter()) {
-        number(one, *other);
-    }
-    number(&mut one.orientation.w, other.orientation.w);
-    for (one, other) in one.orientation.v.iter_mut().zip(other.orientation.v.iter()) {
-        number(one, *other);
-    }
+pub fn numbers<V: Simd>(motions: &mut Motions<V>) -> [&mut Pack<V>; 13] {
+    let [a, b, c, d, e, f] = &mut motions.velocity.data.0[0];
+    let Pose { displacement_w, orientation: Orientation { w, v } } = &mut motions.pose;
+    let ([x, y, z], [i, j, k]) = (&mut displacement_w.data.0[0], &mut v.data.0[0]);
+    [a, b, c, d, e, f, x, y, z, w, i, j, k]
 }
 
 /// Puts the slide `one` into a `lane` of `all`, its numbers rounded to single precision.

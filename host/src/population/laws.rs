@@ -19,7 +19,7 @@ pub fn usual<S: Scalar + PartialOrd>(data: &SlideData<S>) -> Option<Slide<S, Thr
     }
 }
 
-/// A slide with any other exponent, or no friction: chosen in each contact, at twice the time. `None` if `data` asks for the
+/// A slide with any other exponent, or no friction: chosen in each contact, at more time. `None` if `data` asks for the
 /// paper's laws or true stick, or is out of bounds.
 pub fn chosen<S: Scalar + PartialOrd>(data: &SlideData<S>) -> Option<Slide<S, AnyElastic<S>, AnySliding<S>>> {
     match AnySlide::new(data) {

@@ -45,37 +45,41 @@ pub use unit::UnitOutcome;
 /// Units that are simulated together; they share nothing but the work.
 const PIECE: usize = 128;
 
-/// The slides of some units.
+/// The slides of some units, all of the same laws.
+#[derive(Clone, Copy)]
 struct Work<'a> {
     course: Course,
     slides: &'a [SlideData<f64>],
-    figures: &'a mut [Figures],
 }
 
-/// Slides with the paper's laws, as many at a time as the instructions move.
+/// As many at a time as a register of the instructions holds.
 impl WithSimd for Work<'_> {
-    type Output = ();
+    type Output = Vec<Figures>;
 
     #[inline(always)]
-    fn with_simd<V: Simd>(self, instructions: V) {
-        integrate(instructions, &self.course, self.slides, self.figures, laws::usual::<Pack<V>>);
+    fn with_simd<V: Simd>(self, instructions: V) -> Vec<Figures> {
+        let Self { course, slides } = self;
+        let mut figures = vec![Figures::NONE; slides.len()];
+        if slides.first().and_then(laws::usual).is_some() {
+            integrate(instructions, &course, slides, &mut figures, laws::usual::<Pack<V>>);
+        } else {
+            integrate(instructions, &course, slides, &mut figures, laws::chosen::<Pack<V>>);
+        }
+        figures
     }
 }
 
-/// Simulates `slides`, all of the same laws: those of the paper in the widest instructions that the machine has. The bits do
-/// not depend on them. A slide that cannot be simulated has no figures.
+/// Simulates `slides`, all of the same laws, in the widest instructions that the machine has. The bits do not depend on them.
+/// A slide that cannot be simulated has no figures.
 pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     #[cfg(target_arch = "x86_64")]
-    if slides.first().and_then(laws::usual).is_some() {
-        let mut figures = vec![Figures::NONE; slides.len()];
-        let work = Work { course, slides, figures: &mut figures };
+    {
+        let work = Work { course, slides };
         if let Some(avx512) = pulp::x86::V4::try_new() {
-            Simd::vectorize(avx512, work);
-            return figures;
+            return Simd::vectorize(avx512, work);
         }
         if let Some(avx2) = pulp::x86::V3::try_new() {
-            Simd::vectorize(avx2, work);
-            return figures;
+            return Simd::vectorize(avx2, work);
         }
     }
     one_by_one(course, slides)

@@ -6,8 +6,11 @@ use serde::Serialize;
 
 use super::{GapReport, gap_reports};
 use crate::{
-    cli::{Failure, JSON_VERSION, SceneArguments, print, print_json, text_table, warn},
-    mechanism::{Freedom, Mechanism},
+    cli::{Failure, JSON_VERSION, SceneArguments, check::self_locking, print, print_json, text_table, warn},
+    mechanism::{
+        Freedom, Mechanism,
+        self_locking::{Locked, locked},
+    },
     show::number::{fixed, level, or_dash},
     system::files,
 };
@@ -70,5 +73,9 @@ fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
     if free < driven {
         return vec![format!("{free} degrees of freedom are left for {driven} drives: the joints hold the mechanism")];
     }
-    Vec::new()
+    let word = |locked: &Locked| {
+        let meaning = format!("what {} drives locks like a drawer", locked.drive);
+        self_locking(locked.friction, locked.critical_friction, [locked.length, locked.distance], &meaning)
+    };
+    locked(mechanism).iter().map(word).collect()
 }

@@ -44,7 +44,8 @@ pub fn units(
             Ok(shares::sides(scene, all, limit)),
         ),
         (
-            "Which tolerances drive it: tighten the first ones first. What is missing to 100 % comes from several together.",
+            "Which tolerances the force and the malfunction vary with: where narrower ones help, begin with the first. What is missing \
+             to 100 % comes from several together.",
             Ok(shares::ranking(scene, population)),
         ),
     ];

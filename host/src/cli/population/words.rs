@@ -55,7 +55,11 @@ impl Arguments {
             let _ = writeln!(text, "  {name:14}{}", percent(&share));
         }
         if let Some(level) = sigma_level {
-            let _ = writeln!(text, "Sigma level     {} σ of the function, one-sided", fixed(level, 2));
+            let _ = writeln!(
+                text,
+                "Sigma level     {} σ, one-sided: the normal quantile of the share that does its job",
+                fixed(level, 2)
+            );
         }
         for (name, spread) in [("Peak force", &statistics.peak_force), ("  that run", &statistics.running_force)] {
             if let Some(Spread { quantiles: [least, low, median, high, most], .. }) = spread {

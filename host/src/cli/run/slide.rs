@@ -222,11 +222,7 @@ impl Arguments {
                 sum.name
             );
         }
-        let _ = writeln!(
-            text,
-            "What to change  {}",
-            advice(scene, simulated.judged(), closes.map(|at| at.pin), production)
-        );
+        let _ = writeln!(text, "What to change  {}", advice(scene, simulated, closes.map(|at| at.pin), production));
         let _ = writeln!(text, "Flash table     {}", table_line(scene, &simulated.table));
         if let Some(warning) = table::coarse(scene, &simulated.table) {
             let _ = writeln!(text, "                {warning}");
@@ -235,11 +231,13 @@ impl Arguments {
     }
 }
 
-/// What to change, by what goes wrong at which levels.
-fn advice(scene: &Scene, sweep: &Sweep, closes: Option<&str>, production: Option<&Production>) -> String {
-    let Some((worst, side)) = first_to_go_wrong(sweep) else {
-        return "nothing: it runs at every level".into();
-    };
+/// What to change, by what goes wrong at which levels and with which units.
+fn advice(scene: &Scene, simulated: &Simulated, closes: Option<&str>, production: Option<&Production>) -> String {
+    let Population { statistics, of_malfunction, .. } = &simulated.population;
+    let wrong = first_to_go_wrong(simulated.judged());
+    if wrong.is_none() && statistics.malfunctions.units == 0 {
+        return "nothing: every level runs, and every unit that was drawn".into();
+    }
     if let Some(critical) = guide(scene, 0.0).filter(|guide| guide.warn).and_then(|guide| guide.critical_friction) {
         return format!(
             "bring friction below {} (it is {}), lengthen the guide, or drive nearer to it: it self-locks",
@@ -247,6 +245,10 @@ fn advice(scene: &Scene, sweep: &Sweep, closes: Option<&str>, production: Option
             scene.friction.coefficient()
         );
     }
+    let Some((worst, side)) = wrong else {
+        let first = of_malfunction.first().map_or(String::new(), |driver| format!("; start with {}", driver.name));
+        return format!("every level runs, but units do not whose gaps differ from each other{first}");
+    };
     let gap = |measure: &&crate::tolerance::report::MeasureReport| closes.is_some_and(|pin| measure.name.contains(pin));
     let widest = production.and_then(|production| {
         let measures = production.report.measures.iter().filter(gap);

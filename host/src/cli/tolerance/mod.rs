@@ -111,7 +111,10 @@ impl Arguments {
                 self.study(&file.title, &product.model, file.slide.as_ref())
             }
             (None, Some(scene)) => self.given(scene),
-            (None, None) => Ok(()),
+            (None, None) => Err(Failure::Input(format!(
+                "{}: there is no product to draw; `slipfit check` shows the gaps that the scene gives",
+                file.title
+            ))),
         }
     }
 

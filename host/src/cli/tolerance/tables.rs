@@ -118,7 +118,7 @@ fn by_formula(report: &Report) -> String {
     }
     text_table(&heading, &report.measures.iter().map(row).collect::<Vec<_>>())
         + &format!(
-            "RSS: about the middle of the limits; Bender: {BENDER} times it, Gilson: {GILSON} times, for means that shift\n"
+            "RSS: taken where every dimension is in the middle of its limits; Bender: {BENDER} times it, Gilson: {GILSON} times, for means that shift\n"
         )
 }
 

@@ -73,7 +73,8 @@ impl Mechanism {
         let bodies = self.bodies.iter().enumerate().map(|(i, body)| (Mark::Colour(colour(Some(i))), body.name.clone()));
         let joints = self.joints.iter().enumerate().map(|(i, joint)| {
             let gaps: Vec<_> = joint.kind.gaps().map(|gap| ten_digits(self.gaps[gap].statistics.mean * 1e3)).collect();
-            let play = if gaps.is_empty() { String::new() } else { format!(", play {} mm", gaps.join(", ")) };
+            let word = if gaps.len() == 1 { "gap" } else { "gaps" };
+            let play = if gaps.is_empty() { String::new() } else { format!(", {word} {} mm", gaps.join(", ")) };
             (Mark::Number(i + 1), format!("{}: {}{play}", joint.name, joint.kind.name()))
         });
         let drives = self.drives.iter().map(|drive| {

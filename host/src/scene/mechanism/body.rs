@@ -2,7 +2,7 @@
 
 use super::{Field, Problem, Quantity, SceneError, note, place, tables, unit};
 use crate::{
-    mechanism::{Body, Mechanism, Start},
+    mechanism::{Body, Joint, JointKind, Mechanism, Start},
     scene::parse::POINT,
 };
 
@@ -53,6 +53,14 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
             let name = fields[i].get("name").unwrap_or_else(|| fields[i].clone());
             let error = name.error(Problem::Floating { body: body.name.clone() }, "a [[joint]] that joins it");
             note(fields[i].found(), Err(error));
+        }
+        let slides = |joint: &Joint| {
+            let along_axis = matches!(joint.kind, JointKind::Prismatic { .. } | JointKind::PinSlot { .. });
+            along_axis && joint.between.contains(&Some(i))
+        };
+        if let Some(speed) = fields[i].get("speed").filter(|_| !mechanism.joints.iter().any(slides)) {
+            let what = format!("the speed of \"{}\", which slides along no joint without play", body.name);
+            note(fields[i].found(), Err(speed.error(Problem::Unsupported { what }, "`angle` and `spin`")));
         }
     }
     Ok(())

@@ -47,9 +47,13 @@ fn drive(name: String, table: &Field, planar: bool, names: &Names) -> Result<Nam
     Ok(NamedDrive { name, body, drive: Drive { gain, ramp_start, ramp_end, speed, point_b: point.into() }, action })
 }
 
-/// Reads the springs.
-pub(super) fn springs(root: &Field, names: &Names) -> Result<Vec<Spring>, SceneError> {
+/// Reads the springs, which turn about the plane's normal.
+pub(super) fn springs(root: &Field, planar: bool, names: &Names) -> Result<Vec<Spring>, SceneError> {
     let spring = |(name, table): (String, Field)| {
+        if !planar {
+            let what = "a torsion spring in space".into();
+            return Err(table.error(Problem::Unsupported { what }, "none, or a mechanism in a plane"));
+        }
         Ok(Spring {
             name,
             between: names.between(&table)?,

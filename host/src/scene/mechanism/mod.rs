@@ -67,7 +67,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         title,
         planar,
         gravity,
-        springs: drive::springs(root, &names)?,
+        springs: drive::springs(root, planar, &names)?,
         drives,
         bodies,
         joints,

@@ -2,7 +2,7 @@
 
 use crate::{
     mechanism::{NormalData, Rebound},
-    scene::{Override, SHIPPED, SceneFile},
+    scene::{Override, SHIPPED, SceneFile, shipped},
 };
 
 const SCENE: &str = r#"
@@ -97,6 +97,7 @@ fn mistakes_are_told_where_they_are() {
         "`joint.name` is \"bearing\" again",
         "\"bearing\"\nkind = \"prismatic\"",
     );
+    refused("inertia = 1e5\n", "inertia = 1e5\nspeed = 10\n", "which slides along no joint without play", "speed = 10");
     refused("space = \"plane\"", "space = \"line\"", "`mechanism.space` is \"line\"", "\"line\"");
     refused("radius = 5", "radius = 5\nspring = 3", "unknown key `joint.spring`", "spring = 3");
     refused(
@@ -105,6 +106,14 @@ fn mistakes_are_told_where_they_are() {
         "`contact` is missing",
         "[[joint]]\nname = \"pin\"",
     );
+}
+
+#[test]
+fn a_torsion_spring_in_space_is_refused() {
+    let spring = "[[spring]]\nname = \"twist\"\nbetween = [\"carriage\", \"frame\"]\nstiffness = 1000\n";
+    let text = format!("{}\n{spring}", shipped("linear-guide").unwrap());
+    let error = parse(&text, &[]).err().unwrap();
+    assert!(error.contains("a torsion spring in space is not supported"), "{error}");
 }
 
 const REBOUND: &str = "law = \"hunt-crossley\"\nrestitution = 0.9\nspeed = 250\n";

@@ -31,8 +31,8 @@ pub struct Modified {
     pub bender: f64,
     /// [`GILSON`] times it.
     pub gilson: f64,
-    /// With the factor 1 + ½(worst case − RSS)/(RSS·(√n − 1)) of n tolerances: 1.5 for any number of equal
-    /// ones, never more than the worst case.
+    /// With the factor 1 + ½(worst case − RSS)/(RSS·(√n − 1)) of n tolerances: 1.5 for equal ones, but
+    /// never more than the worst case, which two equal ones reach.
     pub by_count: f64,
 }
 
