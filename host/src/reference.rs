@@ -78,7 +78,7 @@ fn page() -> String {
          single quotes.\n\n",
         &functions(),
         "\n## Commands\n\n`slipfit COMMAND -h` prints a summary of a command, `--help` all of this, and `slipfit --version` the version. Results go \
-         to standard output, warnings, errors and progress to standard error. What `--json` prints is described under \
+         to standard output, warnings, errors and progress to standard error. Output files that exist are replaced. What `--json` prints is described under \
          [JSON](json.md).\n",
         &cli::reference::commands(),
         "\n## Exit codes\n\n",

@@ -21,7 +21,7 @@ use crate::{
 
 /// Joins the parts that `tolerance --shard` or `population --shard` wrote.
 ///
-/// The result has the same bytes as that of one run without --shard.
+/// The result has the same bytes as that of one run without `--shard`.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Files that `slipfit tolerance --shard` or `slipfit population --shard` wrote.

@@ -49,7 +49,7 @@ pub(super) use words::{percent, strongest};
 ///
 /// For slides only. Every unit has gaps of its own. Gaps that are measures follow from the product's tolerances; the others are drawn
 /// from the mean and the standard deviation in the scene. With `[vary]` in the scene friction, stiffness, damping, mass, gain, ramp
-/// and the direction of gravity vary, too. A unit runs the whole stroke unless --opening is given.
+/// and the direction of gravity vary, too. A unit runs the whole stroke unless `--opening` is given.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -88,7 +88,7 @@ pub(super) struct Arguments {
     /// Writes a page with all results and pictures, and an animation of one unit of each verdict.
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
-    /// Works on part I of N and writes it to --out; `slipfit merge` joins the parts.
+    /// Works on part I of N and writes it to `--out`; `slipfit merge` joins the parts.
     ///
     /// I is 1 to N. `auto` takes the part of this task in a SLURM job array.
     #[arg(long, value_name = "I/N", requires = "out", conflicts_with_all = ["csv", "plot", "plot_distance", "page", "rare"])]
@@ -96,7 +96,7 @@ pub(super) struct Arguments {
     /// Writes the results of the units to a file that `slipfit merge` reads.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Continues where an interrupted run with the same --out stopped.
+    /// Continues where an interrupted run with the same `--out` stopped.
     #[arg(long, requires = "out")]
     resume: bool,
     #[command(flatten)]

@@ -14,7 +14,8 @@ pub(crate) fn commands() -> String {
         let about = sentence(&about);
         let _ = writeln!(page, "\n### `slipfit {}`\n\n{about}\n\n| option | meaning |\n|---|---|", command.get_name());
         for arg in command.get_arguments().filter(|arg| !arg.is_hide_set()) {
-            let help = arg.get_long_help().or(arg.get_help()).unwrap_or_else(|| panic!("{arg} has no help")).to_string();
+            let help =
+                arg.get_long_help().or(arg.get_help()).unwrap_or_else(|| panic!("{arg} has no help")).to_string();
             let _ = writeln!(page, "| {} | {}{} |", name(arg), cell(&sentence(&help)), values(arg));
         }
     }

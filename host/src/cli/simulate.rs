@@ -48,12 +48,12 @@ pub(super) const MOMENTS: usize = 160;
 
 /// Simulates one unit: speed and drive force over time.
 ///
-/// For slides and mechanisms. The unit is that of a tolerance level (--n) or one of the production (--unit). A slide runs its opening
-/// (`run.duration`) unless --stroke is given. The desk computes the run by error-controlled steps. Of a slide it also says how far
-/// the controller is off, which takes steps of one length. With --step, --integrator, --scalar or --audit the run shown is the
+/// For slides and mechanisms. The unit is that of a tolerance level (`--n`) or one of the production (`--unit`). A slide runs its opening
+/// (`run.duration`) unless `--stroke` is given. The desk computes the run by error-controlled steps. Of a slide it also says how far
+/// the controller is off, which takes steps of one length. With `--step`, `--integrator`, `--scalar` or `--audit` the run shown is the
 /// controller's, and its error against the desk's is printed.
 ///
-/// For slides only: --unit, --page, --audit, --stroke, --step, --integrator, --scalar.
+/// For slides only: `--unit`, `--page`, `--audit`, `--stroke`, `--step`, `--integrator`, `--scalar`.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -66,13 +66,13 @@ pub(super) struct Arguments {
     n: Vec<f64>,
     /// Number of a unit of the production, instead of a tolerance level.
     ///
-    /// The units are those of `slipfit population`, which runs the whole stroke: add --stroke for the same run.
+    /// The units are those of `slipfit population`, which runs the whole stroke: add `--stroke` for the same run.
     #[arg(long, value_name = "NUMBER", conflicts_with = "n")]
     unit: Option<u64>,
-    /// Seed of the production, for --unit.
+    /// Seed of the production, for `--unit`.
     #[arg(long, default_value_t = 1, requires = "unit")]
     seed: u64,
-    /// Correlation between the gaps, for --unit.
+    /// Correlation between the gaps, for `--unit`.
     ///
     /// It holds for any two gaps that the scene states by mean and standard deviation.
     #[arg(long, value_name = "RHO", default_value_t = 0.0, requires = "unit", allow_hyphen_values = true)]

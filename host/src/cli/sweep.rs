@@ -32,9 +32,9 @@ use crate::{
 
 /// Simulates a slide or a mechanism at many tolerance levels: where does it run, crawl, jam?
 ///
-/// A slide runs its opening (`run.duration`) unless --stroke is given. A mechanism needs a drive. The desk computes the runs by
-/// error-controlled steps. With --step, --integrator or --scalar the controller computes them by steps of one length, and a warning
-/// names the levels whose runs cannot be trusted. These options and --stroke are for slides only.
+/// A slide runs its opening (`run.duration`) unless `--stroke` is given. A mechanism needs a drive. The desk computes the runs by
+/// error-controlled steps. With `--step`, `--integrator` or `--scalar` the controller computes them by steps of one length, and a warning
+/// names the levels whose runs cannot be trusted. These options and `--stroke` are for slides only.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -39,7 +39,7 @@ const OTHER_UNITS: u64 = 5 << 32;
 /// Chooses the cheapest tolerances that meet the requirements.
 ///
 /// A requirement limits how measures vary, or how many units of a slide malfunction. It stands in the scene (`require` of a measure,
-/// `[allocate]`) or follows --require. Tolerances with a `cost` are chosen, the others stay as they are. Where even the tightest
+/// `[allocate]`) or follows `--require`. Tolerances with a `cost` are chosen, the others stay as they are. Where even the tightest
 /// tolerances do not meet a requirement, the command says by how much and exits with 1.
 #[derive(Args)]
 #[command(mut_arg("scene", |arg| arg.default_value(None::<&str>).required(true)))]
@@ -55,7 +55,7 @@ pub(super) struct Arguments {
     require: Option<Required>,
     /// Greatest force (N) of the motor; units that need more count as malfunctioning.
     ///
-    /// Only together with --require malfunction.
+    /// Only together with `--require malfunction=SHARE`.
     #[arg(long, value_name = "N", requires = "require")]
     force_limit: Option<f64>,
     /// Units to simulate for every set of tolerances that is tried.

@@ -37,7 +37,7 @@ pub(super) const DEFAULT: Settings = Settings { method: Method::PseudoRandom, sa
 /// Shows how measures vary: Monte Carlo, worst case, RSS, contributors, capability.
 ///
 /// For scenes with a product. Where the scene has a slide as well, the output ends with the clearances of its pins at the level
-/// --n. Of a slide with stated gaps it shows the gaps and these clearances, and draws nothing.
+/// `--n`. Of a slide with stated gaps it shows the gaps and these clearances, and draws nothing.
 #[derive(Args)]
 #[command(mut_arg("scene", |arg| arg.default_value(DRAWING)))]
 pub(super) struct Arguments {
@@ -59,7 +59,7 @@ pub(super) struct Arguments {
     seed: u64,
     #[command(flatten)]
     threads: ThreadArguments,
-    /// Works on part I of N and writes it to --out; `slipfit merge` joins the parts.
+    /// Works on part I of N and writes it to `--out`; `slipfit merge` joins the parts.
     ///
     /// I is 1 to N. `auto` takes the part of this task in a SLURM job array.
     #[arg(long, value_name = "I/N", requires = "out")]
@@ -67,7 +67,7 @@ pub(super) struct Arguments {
     /// Writes the results of the units to a file that `slipfit merge` reads.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Continues where an interrupted run with the same --out stopped.
+    /// Continues where an interrupted run with the same `--out` stopped.
     #[arg(long, requires = "out")]
     resume: bool,
     /// Writes the measures of every unit as CSV.

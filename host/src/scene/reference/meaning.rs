@@ -4,25 +4,52 @@
 pub const MEANINGS: &[(&str, &str)] = &[
     ("title", "Title of plots and reports. Default: the file's name without its ending."),
     ("slide", "The moving body of a slide on pins. Something that moves is a `[slide]` or a `[mechanism]`."),
-    ("contact", "The law of the force normal to the touching surfaces. Required by a slide, and by a mechanism with play."),
-    ("friction", "The law of the friction between touching surfaces. Required by a slide; default for a mechanism: none."),
-    ("drive", "The motor with its speed controller. A slide has one, `[drive]`. A mechanism has a list `[[drive]]`, or none."),
+    (
+        "contact",
+        "The law of the force normal to the touching surfaces. Required by a slide, and by a mechanism with play.",
+    ),
+    (
+        "friction",
+        "The law of the friction between touching surfaces. Required by a slide; default for a mechanism: none.",
+    ),
+    (
+        "drive",
+        "The motor with its speed controller. A slide has one, `[drive]`. A mechanism has a list `[[drive]]`, or none.",
+    ),
     ("mechanism", "Marks a scene of bodies and joints."),
     ("body", "A list `[[body]]`: the moving bodies of a mechanism, at least one."),
     ("joint", "A list `[[joint]]`: what connects two bodies, or a body and the frame. Optional."),
     ("spring", "A list `[[spring]]`: torsion springs, each between two bodies. For mechanisms in a plane. Optional."),
     ("run", "How long a run lasts, and how exactly the desk computes it. Required by slides and mechanisms."),
-    ("controller", "Step, integration scheme and number type of the controller, the solver for firmware. Default: the defaults of its keys."),
-    ("sweep", "The tolerance levels of `run`, `sweep` and `table`. Required by a slide; default for a mechanism: `n = \"-3:3:0.5\"`."),
+    (
+        "controller",
+        "Step, integration scheme and number type of the controller, the solver for firmware. Default: the defaults of its keys.",
+    ),
+    (
+        "sweep",
+        "The tolerance levels of `run`, `sweep` and `table`. Required by a slide; default for a mechanism: `n = \"-3:3:0.5\"`.",
+    ),
     ("drawing", "Nominal clearances of the drawing, which `check` compares with the gaps. Optional."),
     ("pin", "A list `[[pin]]` of the one to four pins of the frame on which the slide moves. Required by a slide."),
     ("tolerance", "Defaults for the tolerances of dimensions and features. Optional."),
     ("dimension", "A list `[[dimension]]`: toleranced numbers that expressions use. Optional."),
-    ("part", "A list `[[part]]`: parts with toleranced features. The first one stays in place, and a `[[mate]]` places each other one. Optional."),
+    (
+        "part",
+        "A list `[[part]]`: parts with toleranced features. The first one stays in place, and a `[[mate]]` places each other one. Optional.",
+    ),
     ("mate", "A list `[[mate]]`: each places one part by contacts between features. One for each part but the first."),
-    ("measure", "A list `[[measure]]`: the results of the tolerance analysis. At least one where there are dimensions or parts."),
-    ("allocate", "What `slipfit allocate` has to reach for all measures together, or for the units of a slide. Optional."),
-    ("sum", "A list `[[sum]]`: sums of measures. `slipfit tolerance` estimates how many units have a negative sum. Optional."),
+    (
+        "measure",
+        "A list `[[measure]]`: the results of the tolerance analysis. At least one where there are dimensions or parts.",
+    ),
+    (
+        "allocate",
+        "What `slipfit allocate` has to reach for all measures together, or for the units of a slide. Optional.",
+    ),
+    (
+        "sum",
+        "A list `[[sum]]`: sums of measures. `slipfit tolerance` estimates how many units have a negative sum. Optional.",
+    ),
     ("correlation", "A list `[[correlation]]`: pairs of contributors that do not vary independently. Optional."),
     (
         "vary",
@@ -31,7 +58,10 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ),
     // The slide and its run.
     ("slide.mass", "Mass."),
-    ("slide.inertia_box", "Edges along x, y, z of a uniform box of the same mass. Its moments of inertia are the slide's."),
+    (
+        "slide.inertia_box",
+        "Edges along x, y, z of a uniform box of the same mass. Its moments of inertia are the slide's.",
+    ),
     ("slide.gravity", "Acceleration of gravity along x, y, z of the frame, such as `[0, -9.81, 0]`."),
     (
         "contact.law",
@@ -44,8 +74,14 @@ pub const MEANINGS: &[(&str, &str)] = &[
         "Stiffness k. Its unit contains the exponent e: for e = 2 it is N/mm^2 or N/m^2, and a bare number is in N/mm^2.",
     ),
     ("contact.exponent", "Exponent e of the penetration δ, such as 1.5."),
-    ("contact.damping", "Damping c, reached at the penetration `depth`. Required by `impact`; the other laws do not have it."),
-    ("contact.depth", "Penetration d from which on the damping is c. Required by `impact`; the other laws do not have it."),
+    (
+        "contact.damping",
+        "Damping c, reached at the penetration `depth`. Required by `impact`; the other laws do not have it.",
+    ),
+    (
+        "contact.depth",
+        "Penetration d from which on the damping is c. Required by `impact`; the other laws do not have it.",
+    ),
     (
         "contact.restitution",
         "Speed of rebound over speed of impact, at the impact speed `speed`. Required by `hunt-crossley` and \
@@ -62,7 +98,10 @@ pub const MEANINGS: &[(&str, &str)] = &[
          holds a part at rest. `none`: no friction.",
     ),
     ("friction.coefficient", "Coefficient of friction. Required unless the law is `none`."),
-    ("friction.stick_band", "Sliding speed below which regularised friction fades to zero. Required by the law `regularised`."),
+    (
+        "friction.stick_band",
+        "Sliding speed below which regularised friction fades to zero. Required by the law `regularised`.",
+    ),
     (
         "drive.gain",
         "Force for each unit of speed that the body is slower than commanded: force = gain · (command − speed). For a drive \
@@ -73,8 +112,14 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("drive.speed", "Commanded speed after the ramp. For a drive that turns, in rad/s."),
     ("drive.point", "Where the force acts, measured from the centre of mass. Default: the centre of mass."),
     ("drive.name", "Name of the drive. Required in a mechanism."),
-    ("drive.pushes", "For mechanisms: the body that the drive pushes along `axis`. Each drive has either `pushes` or `turns`."),
-    ("drive.turns", "For mechanisms: the body that the drive turns about `axis`. Each drive has either `pushes` or `turns`."),
+    (
+        "drive.pushes",
+        "For mechanisms: the body that the drive pushes along `axis`. Each drive has either `pushes` or `turns`.",
+    ),
+    (
+        "drive.turns",
+        "For mechanisms: the body that the drive turns about `axis`. Each drive has either `pushes` or `turns`.",
+    ),
     (
         "drive.axis",
         "For mechanisms: direction of the force, or axis of the torque. Required, except for a torque in a plane.",
@@ -102,14 +147,20 @@ pub const MEANINGS: &[(&str, &str)] = &[
          friction needs an implicit scheme. Default: `implicit-euler`.",
     ),
     ("controller.scalar", "Number type of the controller. `kernel` and `fmu` need f32. Default: f32."),
-    ("sweep.n", "Tolerance levels. At the level n every gap is its mean − n · its standard deviation: positive n is tighter."),
+    (
+        "sweep.n",
+        "Tolerance levels. At the level n every gap is its mean − n · its standard deviation: positive n is tighter.",
+    ),
     (
         "drawing.clearance",
         "Nominal clearances across, and up and down. `check` prints a note where they differ from the sums of the gaps. No \
          simulation uses them.",
     ),
     ("pin.name", "Name of the pin."),
-    ("pin.position", "Place of the pin, measured from the slide's centre of mass before the slide moves. x is across, y up, z the opening direction."),
+    (
+        "pin.position",
+        "Place of the pin, measured from the slide's centre of mass before the slide moves. x is across, y up, z the opening direction.",
+    ),
     (
         "pin.left",
         "Gap between the pin's left side (towards −x) and the slide: mean and standard deviation, or the name of a measure. \
@@ -148,7 +199,10 @@ pub const MEANINGS: &[(&str, &str)] = &[
          rod or walls that it meets are the second's.",
     ),
     ("joint.at", "Place of the joint in the drawn pose."),
-    ("joint.axis", "Direction of the sliding or of the bearing. Required by `prismatic`, `pin-slot` and `cylindrical`."),
+    (
+        "joint.axis",
+        "Direction of the sliding or of the bearing. Required by `prismatic`, `pin-slot` and `cylindrical`.",
+    ),
     (
         "joint.normal",
         "Outward normal of a stop's wall: the direction in which the wall pushes the first body. In space along x, y or z. \
@@ -191,15 +245,24 @@ pub const MEANINGS: &[(&str, &str)] = &[
          `sigma-zone`.",
     ),
     ("tolerance.sigma", "How many standard deviations half the tolerance of a size is. Default: 3."),
-    ("tolerance.correlation", "Whether the coefficients of `[[correlation]]` are of values or of ranks. Default: `pearson`."),
-    ("dimension.name", "Name, by which expressions call the dimension. A name with blanks stands in single quotes there."),
-    ("part.*.offset.value", "Nominal size: of an offset the distance along the normal, of a diameter the diameter. `at` is where the feature lies at this size. Default for an offset: 0, so that `tolerance` is a deviation from `at`."),
+    (
+        "tolerance.correlation",
+        "Whether the coefficients of `[[correlation]]` are of values or of ranks. Default: `pearson`.",
+    ),
+    (
+        "dimension.name",
+        "Name, by which expressions call the dimension. A name with blanks stands in single quotes there.",
+    ),
+    (
+        "part.*.offset.value",
+        "Nominal size: of an offset the distance along the normal, of a diameter the diameter. `at` is where the feature lies at this size. Default for an offset: 0, so that `tolerance` is a deviation from `at`.",
+    ),
     ("*.value", "Nominal value. Its unit follows from `quantity`."),
     ("dimension.quantity", "Kind of number. Default: what the unit of `value` says; a length if `value` has no unit."),
     (
         "dimension.tolerance",
         "Limits around `value`, as ± or as [lower, upper] deviations, or a class. H7 takes its size from `value`. Default: \
-         the class in `tolerance.general`.",
+         the class in `tolerance.general`. Not needed by distributions with a width of their own.",
     ),
     (
         "part.*.offset.tolerance",
@@ -208,22 +271,49 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ),
     ("dimension.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`."),
     ("part.*.offset.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`."),
-    ("dimension.distribution", "How the number varies: a name, or a table with the name as its `kind`. Default: `normal`."),
-    ("part.*.offset.distribution", "How the size varies: a name, or a table with the name as its `kind`. Default: `normal`."),
-    ("dimension.side", "Of an angle: length of its shorter side, by which ISO 2768-1 tolerates it. Required where a class of ISO 2768-1 tolerates an angle."),
+    (
+        "dimension.distribution",
+        "How the number varies: a name, or a table with the name as its `kind`. Default: `normal`.",
+    ),
+    (
+        "part.*.offset.distribution",
+        "How the size varies: a name, or a table with the name as its `kind`. Default: `normal`.",
+    ),
+    (
+        "dimension.side",
+        "Of an angle: length of its shorter side, by which ISO 2768-1 tolerates it. Required where a class of ISO 2768-1 tolerates an angle.",
+    ),
     ("part.*.offset.side", "Of no use here: only angles have it."),
-    ("dimension.edge", "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Default: an ordinary length."),
-    ("part.*.offset.edge", "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Default: an ordinary length."),
-    ("dimension.cost", "Cost of the tolerance, for `slipfit allocate`: one process, or a list of processes to choose from. Default: the tolerance stays as it is."),
-    ("part.*.*.cost", "Cost of the tolerance, for `slipfit allocate`: one process, or a list of processes to choose from. Default: the tolerance stays as it is."),
+    (
+        "dimension.edge",
+        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Default: an ordinary length.",
+    ),
+    (
+        "part.*.offset.edge",
+        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Default: an ordinary length.",
+    ),
+    (
+        "dimension.cost",
+        "Cost of the tolerance, for `slipfit allocate`: one process, or a list of processes to choose from. Default: the tolerance stays as it is.",
+    ),
+    (
+        "part.*.*.cost",
+        "Cost of the tolerance, for `slipfit allocate`: one process, or a list of processes to choose from. Default: the tolerance stays as it is.",
+    ),
     ("*.distribution.of.distribution.kind", "Which distribution; a component cannot be a mixture itself."),
     ("*.distribution.kind", "Which distribution: see [distributions](#distributions)."),
-    ("*.distribution.mode", "Of `triangular` and the two Gumbel distributions: most probable deviation from `value`. Default: the middle of the limits for `triangular`, else 0."),
+    (
+        "*.distribution.mode",
+        "Of `triangular` and the two Gumbel distributions: most probable deviation from `value`. Default: the middle of the limits for `triangular`, else 0.",
+    ),
     ("*.distribution.shoulders", "Of `trapezoidal`: the two deviations between which the density is constant."),
     ("*.distribution.skewness", "Of `skewed`: skewness, not 0."),
     ("*.distribution.deviations", "Of `table`: measured deviations from `value`, in ascending order."),
     ("*.distribution.shape", "Of `weibull`: shape parameter; 1 is exponential, 2 is Rayleigh's."),
-    ("*.distribution.shapes", "Of `beta`: a and b of the density u^(a−1)·(1−u)^(b−1), where u runs from 0 at the lower limit to 1 at the upper one."),
+    (
+        "*.distribution.shapes",
+        "Of `beta`: a and b of the density u^(a−1)·(1−u)^(b−1), where u runs from 0 at the lower limit to 1 at the upper one.",
+    ),
     ("*.distribution.scale", "Of `weibull` and the two Gumbel distributions: scale parameter."),
     ("*.distribution.location", "Of `lognormal` and `weibull`: least deviation from `value`. Default: 0."),
     ("*.distribution.mean", "Of `lognormal`: mean deviation from `value`."),
@@ -232,7 +322,10 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("*.distribution.of.weight", "Share of the component, relative to the weights of the others. Default: 1."),
     ("*.distribution.of.tolerance", "Limits of the component's deviation."),
     ("*.distribution.of.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`."),
-    ("*.distribution.of.distribution", "How the component varies: a name, or a table with the name as its `kind`. Default: `normal`."),
+    (
+        "*.distribution.of.distribution",
+        "How the component varies: a name, or a table with the name as its `kind`. Default: `normal`.",
+    ),
     ("*.distribution.of.distribution.*", "As in [`dimension.distribution`](#dimensiondistribution)."),
     ("*.cost.name", "Name of the process, for the output. Default: none."),
     ("*.cost.fixed", "Cost that does not depend on the tolerance. Default: 0."),
@@ -242,14 +335,26 @@ pub const MEANINGS: &[(&str, &str)] = &[
          process has either `reciprocal` or `exponential`.",
     ),
     ("*.cost.exponential", "B of the cost `fixed` + B·exp(−t/`at`), with t as for `reciprocal`."),
-    ("*.cost.at", "Reference tolerance in the cost, more than 0. Default: 1 in the first unit of the quantity, such as 1 mm or 1°."),
+    (
+        "*.cost.at",
+        "Reference tolerance in the cost, more than 0. Default: 1 in the first unit of the quantity, such as 1 mm or 1°.",
+    ),
     ("*.cost.power", "Exponent of the reciprocal cost. Default: 1."),
-    ("*.cost.range", "Tightest and widest tolerance t that the process holds. Each process has either `range` or `grades`."),
-    ("*.cost.step", "Increment, more than 0: only tolerances at whole steps from the tightest one can be chosen. Default: any tolerance in the range."),
-    ("*.cost.grades", "Finest and coarsest grade of ISO 286 that the process holds, such as [6, 11], instead of a range."),
+    (
+        "*.cost.range",
+        "Tightest and widest tolerance t that the process holds. Each process has either `range` or `grades`.",
+    ),
+    (
+        "*.cost.step",
+        "Increment, more than 0: only tolerances at whole steps from the tightest one can be chosen. Default: any tolerance in the range.",
+    ),
+    (
+        "*.cost.grades",
+        "Finest and coarsest grade of ISO 286 that the process holds, such as [6, 11], instead of a range.",
+    ),
     ("part.name", "Name of the part. Its features are called PART.FEATURE elsewhere."),
     ("part.at", "Origin of the part's own frame, in the frame of the product. Default: the origin."),
-    ("part.turned", "Rotation of the part's own frame: Euler angles about z, x and z. Default: none."),
+    ("part.turned", "Rotation of the part's own frame: three Euler angles, about z, x and z. Default: none."),
     ("part.plane", "A list of flat faces. Optional."),
     ("part.point", "A list of points on faces. Optional."),
     ("part.axis", "A list of axes of pins and holes. Optional."),
@@ -258,15 +363,33 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("part.point.at", "Place of the point, in the part's own frame."),
     ("part.axis.at", "Middle of the axis, in the part's own frame."),
     ("part.*.normal", "Normal of the face, out of the material: three numbers, or an axis such as \"+z\"."),
-    ("part.plane.along", "Direction of the first of the two `extents`, at a right angle to `normal`: three numbers, or an axis such as \"+x\"."),
+    (
+        "part.plane.along",
+        "Direction of the first of the two `extents`, at a right angle to `normal`: three numbers, or an axis such as \"+x\".",
+    ),
     ("part.axis.along", "Direction of the axis: three numbers, or an axis such as \"+z\"."),
     ("part.plane.extents", "Sizes of the face: along `along`, and at a right angle to it."),
-    ("part.point.extents", "Sizes of the face on which the point lies, by which general tolerances of flatness go. Required only for those."),
+    (
+        "part.point.extents",
+        "Sizes of the face on which the point lies, by which general tolerances of flatness go. Required only for those.",
+    ),
     ("part.*.length", "Length of the axis."),
-    ("part.*.diameter", "Diameter of the pin or hole: a number under the general tolerance, or a table with `value` and `tolerance`. Default: none, and a mate has no play there."),
-    ("part.*.kind", "Whether the axis is of a `hole` or of a `pin`. Default: what the letter of an ISO 286 class says; in a mate the larger one is the hole."),
-    ("part.*.offset", "Tolerance of the place along the normal: a deviation, or a table. `none`: not even the general tolerance. Default: the general tolerance of the distance from the part's origin, unless another tolerance holds the place."),
-    ("part.*.flatness", "Tolerance of flatness. `none`: not even the general tolerance. Default: the general tolerance, unless the feature has another geometric tolerance."),
+    (
+        "part.*.diameter",
+        "Diameter of the pin or hole: a number under the general tolerance, or a table with `value` and `tolerance`. Default: none, and a mate has no play there.",
+    ),
+    (
+        "part.*.kind",
+        "Whether the axis is of a `hole` or of a `pin`. Default: what the letter of an ISO 286 class says; in a mate the larger one is the hole.",
+    ),
+    (
+        "part.*.offset",
+        "Tolerance of the place along the normal: a deviation, or a table. `none`: not even the general tolerance. Default: the general tolerance of the distance from the part's origin, unless another tolerance holds the place.",
+    ),
+    (
+        "part.*.flatness",
+        "Tolerance of flatness. `none`: not even the general tolerance. Default: the general tolerance, unless the feature has another geometric tolerance.",
+    ),
     ("part.plane.straightness", "Tolerance of straightness along the first extent. Optional."),
     ("part.axis.straightness", "Tolerance of the axis's straightness. Optional."),
     ("part.*.parallelism", "Tolerance of the direction, for a feature parallel to its datum. Optional."),
@@ -274,15 +397,30 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("part.*.angularity", "Tolerance of the direction, for a feature at any other angle to its datum. Optional."),
     ("part.*.position", "Tolerance of the place relative to datums. Optional."),
     ("part.*.profile", "Tolerance of the place and direction of the face relative to datums. Optional."),
-    ("part.*.roundness", "Tolerance of roundness. It shifts the axis that mates find, by up to half the zone. Optional."),
+    (
+        "part.*.roundness",
+        "Tolerance of roundness. It shifts the axis that mates find, by up to half the zone. Optional.",
+    ),
     ("part.*.cylindricity", "Tolerance of cylindricity. It shifts and tilts the axis that mates find. Optional."),
     ("part.*.coaxiality", "Tolerance of place and direction of the axis relative to a datum axis. Optional."),
     ("part.*.concentricity", "Tolerance of the place of the axis's middle relative to a datum axis. Optional."),
     ("part.*.symmetry", "Tolerance of place and direction relative to the datum's middle plane. Optional."),
-    ("part.*.run_out", "Tolerance of circular run-out: how much a gauge may show in a turn about the datum axis. Optional."),
-    ("part.*.total_run_out", "Tolerance of total run-out: how much a gauge may show over the whole surface, in turns about the datum axis. Optional."),
-    ("part.*.vectorial", "Vectorial tolerances: one for each component of the position and of the orientation vector. Optional."),
-    ("part.*.*.zone", "Width of the tolerance zone; of an axis's zone the diameter. Default: the general tolerance, where ISO 2768-2 has one."),
+    (
+        "part.*.run_out",
+        "Tolerance of circular run-out: how much a gauge may show in a turn about the datum axis. Optional.",
+    ),
+    (
+        "part.*.total_run_out",
+        "Tolerance of total run-out: how much a gauge may show over the whole surface, in turns about the datum axis. Optional.",
+    ),
+    (
+        "part.*.vectorial",
+        "Vectorial tolerances: one for each component of the position and of the orientation vector. Optional.",
+    ),
+    (
+        "part.*.*.zone",
+        "Width of the tolerance zone; of an axis's zone the diameter. Default: the general tolerance, where ISO 2768-2 has one.",
+    ),
     (
         "part.*.*.datum",
         "One datum, or a list of up to three, the primary first. Features that are one common datum are written in one text \
@@ -300,25 +438,46 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("part.*.vectorial.orientation", "Tolerances of the orientation, a unit vector; they have no unit. Optional."),
     ("part.*.vectorial.*.*", "Deviation of this component: a tolerance alone, or a table. Optional."),
     ("part.*.vectorial.*.*.tolerance", "Limits of the deviation from the nominal value, in its unit."),
-    ("part.*.vectorial.*.*.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`; in `[vary]` 3."),
-    ("part.*.vectorial.*.*.distribution", "How the deviation varies: a name, or a table with the name as its `kind`. Default: `normal`."),
+    (
+        "part.*.vectorial.*.*.sigma",
+        "How many standard deviations half the tolerance is. Default: `tolerance.sigma`; in `[vary]` 3.",
+    ),
+    (
+        "part.*.vectorial.*.*.distribution",
+        "How the deviation varies: a name, or a table with the name as its `kind`. Default: `normal`.",
+    ),
     ("mate.part", "The part that is placed."),
     (
         "mate.contacts",
         "Pairs of features: one of the part, one that it meets. They count in this order, as datums do: the first pair holds \
          as many freedoms as it can, the next ones what is left. Together with `move` or `turn` they must hold all six.",
     ),
-    ("mate.float", "How a hole lies in its play on a pin: a rule as in `tolerance.rule`, or `none` for centred. Default: `tolerance.rule`."),
-    ("mate.move", "A table: a displacement of the part by a known length, along a freedom that the contacts leave. Optional; not with `turn`."),
-    ("mate.turn", "A table: a rotation of the part by a known angle, about an axis that the contacts leave free. Optional; not with `move`."),
+    (
+        "mate.float",
+        "How a hole lies in its play on a pin: a rule as in `tolerance.rule`, or `none` for centred. Default: `tolerance.rule`.",
+    ),
+    (
+        "mate.move",
+        "A table: a displacement of the part by a known length, along a freedom that the contacts leave. Optional; not with `turn`.",
+    ),
+    (
+        "mate.turn",
+        "A table: a rotation of the part by a known angle, about an axis that the contacts leave free. Optional; not with `move`.",
+    ),
     ("mate.move.along", "Direction of the displacement: three numbers, or an axis such as \"+z\"."),
     ("mate.move.by", "Length of the displacement."),
     ("mate.turn.about", "Direction of the rotation's axis: three numbers, or an axis such as \"+z\"."),
     ("mate.turn.at", "A place on the rotation's axis. Default: the origin."),
     ("mate.turn.by", "Angle of the rotation."),
     ("measure.name", "Name of the measure."),
-    ("measure.is", "An [expression](#expressions) of dimensions, diameters and measures further up in the file. Instead of it a measure may have `distance` or `angle`."),
-    ("measure.distance", "Instead of `is`: distance between two features. From a point to a plane it is positive outside the material."),
+    (
+        "measure.is",
+        "An [expression](#expressions) of dimensions, diameters and measures further up in the file. Instead of it a measure may have `distance` or `angle`.",
+    ),
+    (
+        "measure.distance",
+        "Instead of `is`: distance between two features. From a point to a plane it is positive outside the material.",
+    ),
     ("measure.angle", "Instead of `is`: angle between two planes or axes."),
     ("measure.lower", "Lower limit, in the unit of the measure's quantity: mm, °, N and so on. Default: no limit."),
     ("measure.upper", "Upper limit, in the unit of the measure's quantity. Default: no limit."),
@@ -329,10 +488,16 @@ pub const MEANINGS: &[(&str, &str)] = &[
          `worst-case`: no combination lies outside. Or a table with `ppm` or `ppk`. Optional.",
     ),
     ("measure.loss", "Taguchi's loss: a cost that grows with the square of the distance from the target. Optional."),
-    ("measure.require.ppm", "At most so many units in a million are outside the limits. The table has either `ppm` or `ppk`."),
+    (
+        "measure.require.ppm",
+        "At most so many units in a million are outside the limits. The table has either `ppm` or `ppk`.",
+    ),
     ("measure.require.ppk", "Ppk is at least this. The table has either `ppm` or `ppk`."),
     ("measure.loss.cost", "Cost of a unit that is off the target by `at`, in any currency."),
-    ("measure.loss.at", "Distance from the target that costs `cost`, in the measure's unit. Default: half the distance of the limits."),
+    (
+        "measure.loss.at",
+        "Distance from the target that costs `cost`, in the measure's unit. Default: half the distance of the limits.",
+    ),
     ("measure.loss.target", "Best value, in the measure's unit. Default: the middle of the limits."),
     ("measure.loss.repair", "Cost of a repair. A unit costs at most this. Default: no such limit."),
     (
@@ -348,7 +513,10 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("allocate.yield", "Required share of units with all measures within their limits. Optional."),
     ("sum.name", "Name of the sum."),
     ("sum.of", "The measures that are added, all of one quantity."),
-    ("correlation.of", "Two contributors, by the names that `slipfit tolerance` prints: dimensions, diameters and others of one variable."),
+    (
+        "correlation.of",
+        "Two contributors, by the names that `slipfit tolerance` prints: dimensions, diameters and others of one variable.",
+    ),
     ("correlation.coefficient", "Coefficient of correlation."),
     ("vary.friction", "What varies of the friction. Optional."),
     ("vary.contact", "What varies of the contacts. Optional."),
@@ -375,7 +543,10 @@ pub const DISTRIBUTIONS: &[(&str, &str)] = &[
     ("triangular", "The density is a triangle over the limits, highest at `mode` or in the middle."),
     ("trapezoidal", "The density is a trapezium over the limits, constant between its `shoulders`."),
     ("beta", "A beta distribution over the limits, with two `shapes`."),
-    ("skewed", "A shifted lognormal distribution with the mean and the standard deviation of `normal` and a stated `skewness`."),
+    (
+        "skewed",
+        "A shifted lognormal distribution with the mean and the standard deviation of `normal` and a stated `skewness`.",
+    ),
     ("lognormal", "Lognormal with a `mean` and a standard `deviation`, above a `location`."),
     ("weibull", "Weibull with a `shape` and a `scale`, above a `location`."),
     ("gumbel", "Gumbel's distribution of the greatest of many values, with a `mode` and a `scale`."),

@@ -67,7 +67,8 @@ fn names(keys: &[Key]) -> Vec<&str> {
 /// The table at `path`, which has the same keys as those at `others`.
 fn section(path: &str, keys: &[Key], others: &[&str], all: &[(String, &[Key])], used: &mut [bool], page: &mut String) {
     let heading = if path.is_empty() { "The file".to_owned() } else { format!("`{path}`") };
-    let _ = write!(page, "\n### {heading}\n\n{}| key | takes | meaning |\n|---|---|---|\n", same_keys(path, others));
+    let same = same_keys(path, others);
+    let _ = writeln!(page, "\n### {heading}\n\n{same}| key | takes | meaning |\n|---|---|---|");
     for key in keys {
         let path = join(path, key.name);
         let at = MEANINGS.iter().position(|(pattern, _)| covers(pattern, &path));
@@ -111,10 +112,7 @@ pub(crate) fn units() -> String {
         let symbols: Vec<_> = units.iter().map(|unit| format!("`{}`", unit.symbol)).collect();
         format!("| {name} | {} |\n", symbols.join(", "))
     };
-    format!(
-        "| quantity | units; a bare number is in the first one |\n|---|---|\n{}",
-        QUANTITIES.map(row).concat()
-    )
+    format!("| quantity | units; a bare number is in the first one |\n|---|---|\n{}", QUANTITIES.map(row).concat())
 }
 
 /// Every distribution.
