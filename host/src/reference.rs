@@ -4,13 +4,40 @@ use crate::{cli, product::expression::FUNCTIONS, scene};
 
 const INTRODUCTION: &str = "# Reference
 
-This page is generated from the code. What a key takes is what the reader of scenes itself says about it.
+This page is for looking up: every key of a scene, the units, distributions and functions, every command with its options, and the
+exit codes. It is generated from the program's own tables. The [tutorial](tutorial.md) shows how to write a scene, and the
+[glossary](glossary.md) explains the words.
 
 ## Keys
 
-A scene is a TOML file. A number is in the first unit named, a text carries its own: `mass = 90` and `mass = \"0.09 kg\"` are the same.
-A list of tables is written `[[name]]`. On the command line `--set KEY=VALUE` sets a key; a table in a list goes by its name there:
+A scene is a TOML file. It describes a product, something that moves, or both:
+
+- A *product* has `[[dimension]]` or `[[part]]`, and `[[measure]]`.
+- A *slide* on pins has `[slide]`, `[contact]`, `[friction]`, `[drive]`, `[run]`, `[sweep]` and `[[pin]]`.
+- A *mechanism* has `[mechanism]`, `[[body]]`, `[[joint]]` and `[run]`.
+
+Gaps of a slide or of a mechanism may be measures of the product in the same file. Keys are written like this:
+
+```toml
+title = \"Drawer\"
+
+[slide]                       # a table
+mass = 90                     # a bare number is in the first unit that the column \"takes\" names: g
+inertia_box = [\"13 cm\", 12, 150]   # a text states its own unit; bare numbers in mm
+
+[[pin]]                       # a table of a list, one for each pin
+name = \"left front\"
+left = [0.01, 0.05]
+```
+
+On the command line `--set KEY=VALUE` sets a key: `--set \"slide.mass=0.09 kg\"`. The tables of a list are told apart by their names:
 `--set \"pin.left front.left=[0.01, 0.05]\"`.
+
+A key is required in its table unless its meaning names a default, calls it optional, or says for what it is required.
+
+The column *takes* quotes the program's message about a wrong value, as it is in one example scene. Where it says mm but the key
+belongs to an angle, a force or another quantity, the number is in the first [unit](#units) of that quantity. Where a mechanism
+moves in a plane, lists of 3 are lists of 2.
 ";
 
 /// Functions of expressions and what they are.
@@ -19,12 +46,12 @@ const MEANINGS: [(&str, &str); 10] = [
     ("sin", "sine of an angle"),
     ("cos", "cosine of an angle"),
     ("tan", "tangent of an angle"),
-    ("asin", "angle with that sine"),
-    ("acos", "angle with that cosine"),
-    ("atan", "angle with that tangent"),
+    ("asin", "angle whose sine is the argument"),
+    ("acos", "angle whose cosine is the argument"),
+    ("atan", "angle whose tangent is the argument"),
     ("abs", "absolute value"),
-    ("min", "least of several"),
-    ("max", "greatest of several"),
+    ("min", "smallest of the arguments"),
+    ("max", "greatest of the arguments"),
 ];
 
 fn functions() -> String {
@@ -41,15 +68,18 @@ fn page() -> String {
     [
         INTRODUCTION,
         &scene::reference::keys(),
-        "\n## Units\n\nCommon spellings mean the same: `um`, `N*s/mm`, `Ns/mm`, `m/s^2`, `deg`. A contact's stiffness is in N/mm^e or N/m^e \
-         with the contact's exponent e.\n\n",
+        "\n## Units\n\nUnits can also be typed in plain letters, such as `um` for `µm`, `N*s/mm` or `Ns/mm` for `N·s/mm`, `m/s^2` for `m/s²`, \
+         `deg` for `°`. The stiffness of a contact is in N/mm^e or N/m^e, where e is the contact's exponent.\n\n",
         &scene::reference::units(),
-        "\n## Distributions\n\n",
+        "\n## Distributions\n\nThe `distribution` of a dimension, a size or a deviation. [Dimensions](dimensions.md) has the formulas.\n\n",
         &scene::reference::distributions(),
-        "\n## Expressions\n\nA measure's `is` has `+ - * / ^`, parentheses, numbers with units, `pi`, names of dimensions, of diameters \
-         (`PART.AXIS.diameter`) and of measures that stand above. A name with blanks stands in single quotes.\n\n",
+        "\n## Expressions\n\nThe `is` of a measure is an expression. It can have `+ - * / ^`, parentheses, numbers with units, `pi`, and names: of \
+         dimensions, of diameters (`PART.AXIS.diameter`), and of measures further up in the file. A name with blanks stands in \
+         single quotes.\n\n",
         &functions(),
-        "\n## Commands\n\nEvery command has `--help`; `slipfit --version` prints the version.\n",
+        "\n## Commands\n\n`slipfit COMMAND -h` prints a summary of a command, `--help` all of this, and `slipfit --version` the version. Results go \
+         to standard output, warnings, errors and progress to standard error. Output files that exist are replaced. What `--json` prints is described under \
+         [JSON](json.md).\n",
         &cli::reference::commands(),
         "\n## Exit codes\n\n",
         &cli::reference::exit_codes(),

@@ -16,6 +16,32 @@ fn printed(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
+const INTRODUCTION: &str = "# Gallery
+
+Every scene that slipfit ships, with a question, a picture, and the program's answer. Take the scene that is nearest to your product
+and change it. The word behind the command is the scene's name; its file is `host/scenes/NAME.toml`.
+
+- Slides on pins: `cd-rom-slide`, `cd-rom-slide-fast`, `cd-rom-slide-drawing`, `slide-processes`.
+- Dimensions that add up: `three-part-stack`, `clutch`, `clutch-processes`, `shaft-housing`, `linear-chain`, `worn-tool`.
+- Parts with geometric tolerances: `three-locators`, `lid-on-pins`, `cd-rom-slide-drawing`.
+- Mechanisms in a plane: `slider-crank`, `slider-crank-guide`, `four-bar`, `woodpecker-toy`.
+- Mechanisms in space: `linear-guide`, `telescopic-drawer`, `hatch`.
+
+How to read the answers:
+
+- **Levels.** A line has a range of tolerance levels n and their verdict: runs, crawls or jammed ([concepts](concepts.md)). n = 0 is
+  the mean unit, positive n is tighter, negative n looser. Of a mechanism the line begins with the name of its drive, such as
+  `motor`. In the picture of a slide the grey hill is the normal distribution of a single gap over n. It is no distribution of
+  units, because the gaps of a real unit vary one by one: [populations](population.md) count those.
+- **Pictures of mechanisms** show the pose in which the scene file draws them; play is not to scale. The four plays of a track are
+  left, right, rail and wall.
+- **Contributors.** Each line has a measure and what its contributors have in its variance, in %. Shown are the six largest from 1 %
+  on. `(Sobol')` stands where the measure is not linear enough for slopes; the shares are total Sobol' indices there.
+- **Yield.** The share of the units drawn that have all measures within their limits; the brackets hold its 95 % interval.
+- **Tolerances of `allocate`.** `in the scene` is the line to paste, `before` the tolerance of the scene so far. The costs are in the
+  currency of the scene.
+";
+
 /// What is asked, and what of the output is the answer.
 struct Shown {
     command: Vec<&'static str>,
@@ -65,7 +91,7 @@ fn answer(output: &str, from: &str) -> String {
 
 /// The page, and pictures by the names of their files.
 fn gallery() -> (String, Vec<(String, String)>) {
-    let mut page = "# Gallery\n\nEvery scene that slipfit ships: its picture, its question, and what the program answers. A scene goes by its name.\n".to_owned();
+    let mut page = INTRODUCTION.to_owned();
     let mut pictures = Vec::new();
     for (name, text) in SHIPPED {
         let file = SceneFile::parse(name, text, &[]).unwrap_or_else(|error| panic!("{error}"));

@@ -19,15 +19,17 @@ use crate::{
     show::number::{fixed, level},
 };
 
-/// Validates a scene: degrees of freedom, gaps at n, the n that closes each pair, warnings.
+/// Checks a scene: degrees of freedom, gaps at a level, the level that closes each pair, warnings.
+///
+/// Of a product without a slide or mechanism it prints the nominal values of the measures. Warnings do not change the exit code.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Tolerance level of the gaps shown; positive is tighter.
+    /// Tolerance level at which the gaps are shown; positive is tighter.
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true)]
     n: f64,
-    /// Draws a mechanism with its joints and gaps as SVG.
+    /// Draws a mechanism with its joints and gaps as SVG; not for slides.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }

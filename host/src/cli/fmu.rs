@@ -20,9 +20,9 @@ use crate::{
     system::{files, interrupt},
 };
 
-/// Packs the controller's kernel as an FMI co-simulation unit, for system simulators.
+/// Packs the controller's kernel as an FMI co-simulation unit (FMU), for system simulators.
 ///
-/// The kernel is compiled on this machine, which takes Cargo; the unit runs on machines like it.
+/// For slides and mechanisms. The kernel is compiled on this machine, which needs Cargo. The unit runs on machines of the same kind.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -30,10 +30,10 @@ pub(super) struct Arguments {
     /// File to write.
     #[arg(short, long, value_name = "FILE", default_value = "scene.fmu")]
     output: PathBuf,
-    /// Version of the standard, for tools that read the older one alone.
+    /// Version of the FMI standard; 2 is for tools that cannot read version 3.
     #[arg(long, value_enum, default_value_t = Version::Three)]
     fmi: Version,
-    /// Where slipfit-core lies, if not the one is to be compiled that this program was built with.
+    /// Folder of slipfit-core to compile, instead of the source that is part of this program.
     #[arg(long, value_name = "DIR")]
     core: Option<PathBuf>,
     #[command(flatten)]

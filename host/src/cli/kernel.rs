@@ -21,19 +21,23 @@ use crate::{
     system::files,
 };
 
-/// Writes the scene as a constant and a type, for firmware to compile.
+/// Writes the scene as source code for firmware: a type and its constants.
+///
+/// For slides and mechanisms.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// File to write; the extension says for whom: .rs for slipfit-core, .h for the C library
+    /// File to write: .rs for slipfit-core, .h for the C library (slides only).
     #[arg(short, long, value_name = "FILE", default_value = "scene.rs")]
     output: PathBuf,
-    /// Writes a crate named like this folder instead: its step is compiled there alone, so that one line of the profile,
-    /// which it names, keeps the step fast in an image that is built for size
+    /// Writes a crate into this folder, with the folder's name, instead of a file.
+    ///
+    /// The step is compiled in that crate alone. So a line in the workspace's Cargo profile, which the crate's Cargo.toml shows, keeps
+    /// the step fast in a firmware image that is built for size.
     #[arg(long = "crate", value_name = "DIR", conflicts_with = "output")]
     folder: Option<PathBuf>,
-    /// Where slipfit-core lies, for the crate's manifest; if not given, it says the version
+    /// Folder of slipfit-core, on which the crate depends; if not given, the crate depends on its version.
     #[arg(long, value_name = "DIR", requires = "folder", conflicts_with = "output")]
     core: Option<PathBuf>,
     #[command(flatten)]

@@ -19,16 +19,18 @@ use crate::{
     },
 };
 
-/// Joins the shards of an analysis or of a population: the same bytes as one run.
+/// Joins the parts that `tolerance --shard` or `population --shard` wrote.
+///
+/// The result has the same bytes as that of one run without `--shard`.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Files that `slipfit tolerance --shard` or `slipfit population --shard` wrote.
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// Writes the whole study as one file.
+    /// Writes all parts as one file.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Prints JSON for machines.
+    /// Prints JSON instead of text.
     #[arg(long)]
     json: bool,
     #[command(flatten)]

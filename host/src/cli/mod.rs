@@ -41,8 +41,11 @@ use crate::{
 
 /// From a drawing's tolerances to a flashed force table.
 ///
-/// Without a scene, `run` and `tolerance` start from the drawing of the paper's CD-ROM slide, the others from its Table 2 as
-/// given. Exit codes: 0 done, 1 failed, 2 bad input or usage.
+/// Without a scene, `run` and `tolerance` work on the shipped scene cd-rom-slide-drawing, a slide with its drawing. `allocate` has
+/// no default. The other commands work on cd-rom-slide, the same slide with its gaps stated.
+///
+/// Exit codes: 0 done (a unit that jams or a measure outside its limits is a result), 1 failed (no result; requirements out of
+/// reach; a full disk; interrupted), 2 bad input or usage.
 #[derive(Parser)]
 #[command(name = "slipfit", version, max_term_width = 100, after_help = EXAMPLES)]
 struct Cli {
@@ -53,16 +56,16 @@ struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   slipfit run                              the whole job on the CD-ROM slide, into slipfit-out/
-  slipfit check my-slide.toml              is the scene sound, when does a gap close
-  slipfit tolerance three-part-stack       how a product's measures vary, and what from
+  slipfit check my-slide.toml              is the scene sound, at which level does a gap close
+  slipfit tolerance three-part-stack       how a product's measures vary, and which tolerances cause it
   slipfit allocate clutch-processes        the cheapest tolerances that meet requirements
   slipfit simulate --n 2.5 --csv unit.csv  one unit, tighter by 2.5 sigma
   slipfit sweep --stroke --n 0:5:0.5 --plot force.svg
-                                           at which n does the whole stroke jam
-  slipfit population --plot units.svg      which share of the production malfunctions, and what from
+                                           at which levels n the slide jams on its stroke
+  slipfit population --plot units.svg      how many units of the production malfunction, and why
   slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)
   slipfit kernel -o scene.rs               the scene as a Rust constant and type for firmware
-  slipfit fmu -o slide.fmu                 the same kernel as a unit for system simulators (FMI)";
+  slipfit fmu -o slide.fmu                 the same kernel for system simulators (FMI)";
 
 #[derive(Subcommand)]
 enum Command {
@@ -92,9 +95,11 @@ struct SceneArguments {
     #[arg(default_value = TABLE_2)]
     scene: PathBuf,
     /// Sets a key of the scene, such as contact.stiffness=1000 or "slide.mass=90 g"; may be repeated.
+    ///
+    /// A table of a list goes by its name: "pin.left front.left=[0.01, 0.05]".
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Prints JSON for machines.
+    /// Prints JSON instead of text.
     #[arg(long)]
     json: bool,
 }
@@ -185,7 +190,7 @@ impl SceneArguments {
 /// Which drive of a mechanism.
 #[derive(Args)]
 struct DriveArguments {
-    /// The drive that it is about, where a mechanism has several.
+    /// Name of the drive, where a mechanism has several.
     #[arg(long, value_name = "NAME")]
     drive: Option<String>,
 }
@@ -221,7 +226,7 @@ impl DriveArguments {
 /// Number of threads of the commands that work on many units.
 #[derive(Args)]
 struct ThreadArguments {
-    /// Threads to work on; all cores if not given. The result does not depend on it.
+    /// Number of threads; all cores if not given. The result does not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }

@@ -45,52 +45,58 @@ use crate::{
 
 pub(super) use words::{percent, strongest};
 
-/// Simulates every unit of a production, each with gaps of its own: which share malfunctions, how, and what from.
+/// Simulates units of a slide's production one by one: how many malfunction, and why.
 ///
-/// Gaps come from the product's tolerances where the scene has parts, else from means and deviations; `[vary]` in the
-/// scene lets friction, stiffness, damping, mass, gain, ramp and gravity's direction vary too.
+/// For slides only. Every unit has gaps of its own. Gaps that are measures follow from the product's tolerances; the others are drawn
+/// from the mean and the standard deviation in the scene. With `[vary]` in the scene friction, stiffness, damping, mass, gain, ramp
+/// and the direction of gravity vary, too. A unit runs the whole stroke unless `--opening` is given.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Units to draw.
+    /// Units to simulate.
     #[arg(long, default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     units: u64,
     /// Seed of the production.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Simulates run.duration instead of the whole stroke.
+    /// Runs the opening (run.duration) instead of the whole stroke.
     #[arg(long)]
     opening: bool,
-    /// The greatest force (N) that the motor has: units that need more malfunction.
+    /// Greatest force (N) of the motor; units that need more count as malfunctioning.
     #[arg(long, value_name = "N")]
     force_limit: Option<f64>,
-    /// Correlation of any two gaps that have a mean and a deviation in the scene.
+    /// Correlation between any two gaps that the scene states by mean and standard deviation.
     #[arg(long, value_name = "RHO", default_value_t = 0.0, allow_hyphen_values = true)]
     correlation: f64,
-    /// Estimates the probability of malfunction where it is too rare to be counted, too: by kind and side.
+    /// Also estimates the probability of rare malfunctions, by subset simulation; takes minutes.
+    ///
+    /// There is an estimate for each kind of malfunction (crawls, jams, over the force limit) on each side (tight units, loose units).
     #[arg(long)]
     rare: bool,
-    /// Writes every unit with its gaps and figures as CSV.
+    /// Writes a row for every unit, with its gaps and figures, as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws force and malfunction over tightness as SVG.
+    /// Draws the peak force over the tightness of the units as SVG, and marks those that malfunction.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Draws malfunction by distance from nominal, tightest and loosest against random combinations, as SVG.
+    /// Draws which share malfunctions over the distance from the mean unit, as SVG.
+    ///
+    /// At each distance it compares the unit with all gaps tighter, the unit with all gaps looser, and random combinations of gaps.
     #[arg(long, value_name = "FILE")]
     plot_distance: Option<PathBuf>,
-    /// Writes a page with all of it: pictures, and a player of a unit of each kind, which moves on its pins.
+    /// Writes a page with all results and pictures, and an animation of one unit of each verdict.
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
-    /// Works on one of n parts, i from 1 to n, or on that of the task of a SLURM job array, if `auto`; `slipfit merge` joins
-    /// them.
+    /// Works on part I of N and writes it to `--out`; `slipfit merge` joins the parts.
+    ///
+    /// I is 1 to N. `auto` takes the part of this task in a SLURM job array.
     #[arg(long, value_name = "I/N", requires = "out", conflicts_with_all = ["csv", "plot", "plot_distance", "page", "rare"])]
     shard: Option<Shard>,
-    /// Writes what `slipfit merge` reads.
+    /// Writes the results of the units to a file that `slipfit merge` reads.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Goes on where a run with the same --out stopped.
+    /// Continues where an interrupted run with the same `--out` stopped.
     #[arg(long, requires = "out")]
     resume: bool,
     #[command(flatten)]

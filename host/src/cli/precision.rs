@@ -22,15 +22,15 @@ use crate::{
     system::files,
 };
 
-/// Measures error against run time of every integrator, step and number type.
+/// Measures error against run time of every integration scheme, step and number type.
 ///
-/// Errors are those of the drive force every millisecond, in % of its peak, against a far finer run. Explicit
-/// integrators are tried at finer steps, too, because they are stable only there.
+/// For slides only. The error is that of the drive force every millisecond, in % of its peak, against a far finer run. Explicit
+/// schemes are tried at finer steps, too, because they are stable only there.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Tolerance level, positive is tighter.
+    /// Tolerance level of the unit; positive is tighter.
     #[arg(long, default_value_t = 2.5, allow_hyphen_values = true)]
     n: f64,
     /// Writes every measured point as CSV.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use clap::{Arg, Command, CommandFactory};
+use clap::{Arg, Command, CommandFactory, builder::PossibleValue};
 
 use super::Cli;
 
@@ -10,14 +10,21 @@ use super::Cli;
 pub(crate) fn commands() -> String {
     let mut page = String::new();
     for command in Cli::command().get_subcommands() {
-        let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+        let about = command.get_long_about().or(command.get_about()).map(ToString::to_string).unwrap_or_default();
+        let about = sentence(&about);
         let _ = writeln!(page, "\n### `slipfit {}`\n\n{about}\n\n| option | meaning |\n|---|---|", command.get_name());
         for arg in command.get_arguments().filter(|arg| !arg.is_hide_set()) {
-            let help = arg.get_help().unwrap_or_else(|| panic!("{arg} has no help")).to_string();
-            let _ = writeln!(page, "| {} | {}{} |", name(arg), cell(&help), values(arg));
+            let help =
+                arg.get_long_help().or(arg.get_help()).unwrap_or_else(|| panic!("{arg} has no help")).to_string();
+            let _ = writeln!(page, "| {} | {}{} |", name(arg), cell(&sentence(&help)), values(arg));
         }
     }
     page
+}
+
+/// The `text` with the full stop that clap takes from a single paragraph.
+fn sentence(text: &str) -> String {
+    format!("{text}{}", if text.ends_with('.') { "" } else { "." })
 }
 
 /// How an argument is typed.
@@ -35,7 +42,7 @@ fn name(arg: &Arg) -> String {
 /// What an argument takes, and what it is where it is not given.
 fn values(arg: &Arg) -> String {
     let mut text = String::new();
-    let possible: Vec<_> = arg.get_possible_values().iter().map(|value| format!("`{}`", value.get_name())).collect();
+    let possible: Vec<_> = arg.get_possible_values().iter().map(value).collect();
     if arg.get_action().takes_values() && !possible.is_empty() {
         let _ = write!(text, " One of {}.", possible.join(", "));
     }
@@ -46,8 +53,14 @@ fn values(arg: &Arg) -> String {
     cell(&text)
 }
 
+/// A value that an argument may have, and what it means if that is told.
+fn value(value: &PossibleValue) -> String {
+    let help = value.get_help().map(|help| format!(" ({help})")).unwrap_or_default();
+    format!("`{}`{help}", value.get_name())
+}
+
 fn cell(text: &str) -> String {
-    text.replace('|', "\\|").replace('\n', " ")
+    text.replace('|', "\\|").replace("\n\n", " ").replace('\n', " ")
 }
 
 /// The exit codes, which the program's own description tells.

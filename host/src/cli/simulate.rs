@@ -46,40 +46,56 @@ pub(super) use words::why_undecided;
 /// Moments of a run that is played.
 pub(super) const MOMENTS: usize = 160;
 
-/// Simulates one unit: velocity and drive force over time.
+/// Simulates one unit: speed and drive force over time.
 ///
-/// The desk computes it by error-controlled steps and says how far the controller's fixed steps are off. With --step,
-/// --integrator, --scalar or --audit the run shown is the controller's, held against the desk's.
+/// For slides and mechanisms. The unit is that of a tolerance level (`--n`) or one of the production (`--unit`). A slide runs its opening
+/// (`run.duration`) unless `--stroke` is given. The desk computes the run by error-controlled steps. Of a slide it also says how far
+/// the controller is off, which takes steps of one length. With `--step`, `--integrator`, `--scalar` or `--audit` the run shown is the
+/// controller's, and its error against the desk's is printed.
+///
+/// For slides only: `--unit`, `--page`, `--audit`, `--stroke`, `--step`, `--integrator`, `--scalar`.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Tolerance level, positive is tighter: one for all gaps, or sixteen separated by commas, in the order left,
-    /// right, rail, wall of each pin.
+    /// Tolerance level, for all gaps or one for each; positive is tighter.
+    ///
+    /// One for each gap is a list with commas. A slide takes sixteen levels: left, right, rail and wall of each of four pins, whether
+    /// the scene has that gap or not. A mechanism takes them in the order in which `slipfit check` lists its gaps.
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true, default_value = "0")]
     n: Vec<f64>,
-    /// The unit of this number of the production, as `slipfit population` draws it, instead of a level.
+    /// Number of a unit of the production, instead of a tolerance level.
+    ///
+    /// The units are those of `slipfit population`, which runs the whole stroke: add `--stroke` for the same run.
     #[arg(long, value_name = "NUMBER", conflicts_with = "n")]
     unit: Option<u64>,
-    /// Seed of that production.
+    /// Seed of the production, for `--unit`.
     #[arg(long, default_value_t = 1, requires = "unit")]
     seed: u64,
-    /// Correlation of any two gaps of that production that have a mean and a deviation in the scene.
+    /// Correlation between the gaps, for `--unit`.
+    ///
+    /// It holds for any two gaps that the scene states by mean and standard deviation.
     #[arg(long, value_name = "RHO", default_value_t = 0.0, requires = "unit", allow_hyphen_values = true)]
     correlation: f64,
-    /// Writes t,vz,force,x,y,z in s, m/s, N, m, m, m.
+    /// Writes the run as CSV, in SI units.
+    ///
+    /// Of a slide the columns are t,vz,force,x,y,z: time, speed and force along the drive, displacement of the centre of mass. Of a
+    /// mechanism they are time, the force of each drive, and the motion of each body, with their units.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws velocity and force over time as SVG.
+    /// Draws speed and force over time as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Writes a page with the run and a player, in which the slide moves on its pins.
+    /// Writes a page with the run and an animation of the slide on its pins.
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
-    /// Interval of the samples, such as 1ms or 500us.
+    /// Interval between the samples in the output, such as 1ms or 500us; a bare number is in ms.
     #[arg(long, default_value = "1ms", allow_hyphen_values = true)]
     every: String,
-    /// Prints where the energy went in the controller's run: work, gains, losses, and what the scheme lost or made up.
+    /// Prints the energy balance of the controller's run.
+    ///
+    /// Work of the drive = gains + losses + defect. The defect is the error of the integration scheme: positive where the scheme lost
+    /// energy, negative where it added some.
     #[arg(long)]
     audit: bool,
     #[command(flatten)]
@@ -91,10 +107,12 @@ pub(super) struct Arguments {
 /// How long runs are and how well the desk knows them, where it differs from the scene.
 #[derive(Args)]
 pub(super) struct LengthArguments {
-    /// Runs the whole stroke (run.stroke) instead of run.duration.
+    /// Runs the whole stroke (run.stroke) instead of the opening (run.duration); for slides.
     #[arg(long)]
     pub stroke: bool,
-    /// Error of the drive force that a step of the desk may make, as a share of the drive's greatest force, such as 1e-6.
+    /// Error that one step of the desk may make, such as 1e-6; replaces run.error.
+    ///
+    /// Of a slide it is a share of the drive's greatest force, of a mechanism a share of its own speed. Smaller is more exact and slower.
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
     error: Option<String>,
 }
@@ -120,13 +138,13 @@ impl LengthArguments {
 /// How the controller computes, where it differs from the scene.
 #[derive(Args)]
 pub(super) struct ControllerArguments {
-    /// The controller's step, such as 1ms (a bare number is µs).
+    /// Length of the controller's steps, such as 1ms; a bare number is in µs.
     #[arg(long, allow_hyphen_values = true)]
     step: Option<String>,
-    /// The controller's scheme.
+    /// Integration scheme of the controller.
     #[arg(long, value_enum)]
     integrator: Option<IntegratorKind>,
-    /// The controller's number type.
+    /// Number type of the controller.
     #[arg(long, value_enum)]
     scalar: Option<ScalarKind>,
 }

@@ -19,11 +19,13 @@ use crate::{
 /// What the stability map takes besides the scene and its outputs.
 #[derive(Args)]
 pub(super) struct MapArguments {
-    /// The stability map instead: how far from the scene a fixed step still holds, and whether runs that do not hold
-    /// say so; one factor at a time and in random combinations.
+    /// Makes the stability map instead: for which parameters steps of one length are right.
+    ///
+    /// Parameters of the scene are varied one at a time and in random combinations, far beyond any slide. For each run the map says
+    /// whether its drive force is right, and whether a wrong run comes with a warning.
     #[arg(long)]
     pub stability: bool,
-    /// Random combinations of all factors.
+    /// Number of random combinations in the stability map.
     #[arg(long, default_value_t = 1000, requires = "stability")]
     random: usize,
     /// Seed of the random combinations.

@@ -30,20 +30,21 @@ use crate::{
     system::files,
 };
 
-/// Simulates the slide at many tolerance levels: from which on does it jam, and where.
+/// Simulates a slide or a mechanism at many tolerance levels: where does it run, crawl, jam?
 ///
-/// The desk computes it by error-controlled steps; with --step, --integrator or --scalar the controller does, held against
-/// the desk.
+/// A slide runs its opening (`run.duration`) unless `--stroke` is given. A mechanism needs a drive. The desk computes the runs by
+/// error-controlled steps. With `--step`, `--integrator` or `--scalar` the controller computes them by steps of one length, and a warning
+/// names the levels whose runs cannot be trusted. These options and `--stroke` are for slides only.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     #[command(flatten)]
     levels: LevelArguments,
-    /// Writes the figures over n as CSV.
+    /// Writes a row of figures for every level as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws verdict and force over n as SVG.
+    /// Draws verdict and force over the tolerance level as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -57,7 +58,9 @@ pub(super) struct Arguments {
 /// Tolerance levels, where they differ from the scene's.
 #[derive(Args)]
 pub(super) struct LevelArguments {
-    /// Tolerance levels, first:last:step; positive is tighter.
+    /// Tolerance levels from A to B, such as -3:5:0.1, or one level; positive is tighter.
+    ///
+    /// If not given, the levels are the scene's `sweep.n`.
     #[arg(long, value_name = "A:B:STEP", allow_hyphen_values = true)]
     n: Option<String>,
 }

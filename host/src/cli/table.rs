@@ -34,34 +34,45 @@ use crate::{
 pub(super) use words::coarse;
 use words::{describe, describe_short};
 
-/// Makes the flash table and says how large it is and how well it interpolates.
+/// Makes the flash table of drive force and speed, and says how large and how exact it is.
+///
+/// For slides and mechanisms with a drive. The table is over the tolerance level and over time, or over position, or over position
+/// and commanded speed.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// File to write; the extension says how: .bin .hex .h .rs
+    /// File to write; its extension gives the format: .bin, .hex, .h (C header) or .rs (Rust).
     #[arg(short, long, value_name = "FILE", default_value = "table.bin")]
     output: PathBuf,
     #[command(flatten)]
     drive: DriveArguments,
-    /// What force is looked up by, beside the tolerance level. Over position the whole stroke is simulated.
+    /// What the table is over, besides the tolerance level.
+    ///
+    /// Over position a slide's whole stroke is simulated.
     #[arg(long, value_enum, default_value_t)]
     over: Over,
-    /// Commanded speeds (mm/s; rad/s of a drive that turns) of a table over position,speed; each takes the place of drive.speed.
+    /// Commanded speeds from A to B (mm/s, or rad/s where the drive turns) of a table over position,speed.
+    ///
+    /// Each speed is simulated in place of the scene's `drive.speed`.
     #[arg(long, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: Option<String>,
-    /// Where the positions of a table end (mm; ° of a drive that turns). If not given: at the end of the stroke, or where the slowest unit is that
-    /// runs at least at half its commanded speed when its run ends.
+    /// Last position of the table (mm, or ° where the drive turns).
+    ///
+    /// If not given, it is where the slowest level with the verdict "runs" is when its run ends, at most the end of the stroke. Where no
+    /// level runs, it is the farthest position that one reaches.
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     end: Option<f64>,
-    /// Greatest error of force (N; N·m of a drive that turns) where the table is used, over time from the ramp's start on, over position where every
-    /// slide nearby comes to: the smallest table that meets it is made, as multiples of a scale (i16) or as numbers
-    /// (f32).
+    /// Greatest force error (N, or N·m where the drive turns) that the smallest table may have.
+    ///
+    /// The error counts where the table is used: over time from the ramp's start on, over position where all neighbouring levels get
+    /// to. Values are stored in 16 bits with a scale (i16), or as f32. If not given, the table has every level, the
+    /// finest steps that fit into its region of flash, and f32.
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     max_error: Option<f64>,
     #[command(flatten)]
     levels: LevelArguments,
-    /// Draws the table's force over its second axis at every level, as SVG.
+    /// Draws the force at every level over time or position, as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -71,12 +82,12 @@ pub(super) struct Arguments {
 /// What a table is over, beside the tolerance level.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum Over {
-    /// Time since the motion's start.
+    /// Time since the start of the run.
     #[default]
     Time,
-    /// How far the slide has come.
+    /// Travel of the slide, or of the body with the drive.
     Position,
-    /// How far it has come, and the speed it is commanded to.
+    /// Travel and commanded speed.
     #[value(name = "position,speed")]
     PositionAndSpeed,
 }

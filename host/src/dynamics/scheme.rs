@@ -9,7 +9,7 @@ use slipfit_core::integrator::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ScalarKind {
-    /// Single precision, the controller's.
+    /// Single precision, as on a controller.
     #[default]
     F32,
     /// Double precision.

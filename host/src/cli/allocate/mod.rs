@@ -36,27 +36,34 @@ const ALL_DIGITS: usize = 17;
 /// What the seed of the units is derived with that check malfunctions.
 const OTHER_UNITS: u64 = 5 << 32;
 
-/// Chooses the cheapest tolerances that meet what is required of measures or of units.
+/// Chooses the cheapest tolerances that meet the requirements.
 ///
-/// A tolerance with a `cost` is chosen, the others stay. What is required stands in the scene (`require` of a measure, `yield` or
-/// `malfunction` in `[allocate]`) or follows --require. Exits 1 where even the tightest tolerances do not meet it.
+/// A requirement limits how measures vary, or how many units of a slide malfunction. It stands in the scene (`require` of a measure,
+/// `[allocate]`) or follows `--require`. Tolerances with a `cost` are chosen, the others stay as they are. Where even the tightest
+/// tolerances do not meet a requirement, the command says by how much and exits with 1.
 #[derive(Args)]
 #[command(mut_arg("scene", |arg| arg.default_value(None::<&str>).required(true)))]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Requires this instead of what the scene requires, of every measure with limits: rss, rss-off-centre, worst-case,
-    /// ppm=100, ppk=1.33, or of all together: yield=0.999. Or of what units do: malfunction=0.01 is the share that may crawl or
-    /// jam.
+    /// Requirement instead of those of the scene, such as rss, ppm=100 or malfunction=0.01.
+    ///
+    /// For every measure with limits: rss, rss-off-centre, worst-case, ppm=100, ppk=1.33. For all measures together: yield=0.999, the
+    /// share of units with all measures within their limits. For the units of a slide: malfunction=0.01, the permitted share of units
+    /// that crawl or jam over the whole stroke.
     #[arg(long, value_name = "WHAT", value_parser = kind)]
     require: Option<Required>,
-    /// The greatest force (N) that the motor has, beside --require malfunction: units that need more malfunction.
+    /// Greatest force (N) of the motor; units that need more count as malfunctioning.
+    ///
+    /// Only together with `--require malfunction=SHARE`.
     #[arg(long, value_name = "N", requires = "require")]
     force_limit: Option<f64>,
-    /// Units that are simulated for every set of tolerances that is looked at, where malfunction is what counts.
+    /// Units to simulate for every set of tolerances that is tried.
+    ///
+    /// Only for requirements on malfunction. More units give a surer result and take longer.
     #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
     units: u64,
-    /// Units that are drawn to check the tolerances.
+    /// Units to draw for the check of the tolerances found.
     #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(2..=MOST_UNITS))]
     samples: u64,
     /// Seed of the production.
@@ -64,13 +71,15 @@ pub(super) struct Arguments {
     seed: u64,
     #[command(flatten)]
     threads: ThreadArguments,
-    /// Writes the scene with the tolerances that were found.
+    /// Writes the scene with the tolerances found.
     #[arg(long, value_name = "FILE", conflicts_with = "set")]
     write: Option<PathBuf>,
-    /// Writes the cost against defects, with the tolerances of every point, as CSV.
+    /// Writes the curve of cost against defects as CSV.
+    ///
+    /// A row has a number of defects, 10,000 to 1 ppm, the least cost for it, and the tolerances.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws the cost against defects as SVG.
+    /// Draws the curve of cost against defects as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }

@@ -30,24 +30,28 @@ use crate::{
     },
 };
 
-/// The main job: does the product work, from which tolerance level on not, and what force does it take?
+/// The main job: says at which tolerance levels the product works and what force it takes.
 ///
-/// Starts from the drawing of the paper's slide unless a scene is given. Analyses the tolerances, simulates the opening and
-/// the whole stroke of a slide, or the run of a mechanism, at every level, makes the flash table and a page with all
-/// pictures.
+/// For slides and mechanisms. Analyses the tolerances, where the scene has a product. Simulates the opening and the whole stroke of
+/// a slide, or the run of a mechanism, at every level, and units of a slide's production. Writes the flash table over time, and a
+/// page with all pictures.
 #[derive(Args)]
 #[command(mut_arg("scene", |arg| arg.default_value(DRAWING)))]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Folder for report.html, table.bin, sweep.csv, the figures and what the product's analysis gives.
+    /// Folder for the report and the other files.
+    ///
+    /// It gets report.html, table.bin, sweep.csv and the figures; for a product also tolerance.csv and pictures of its measures.
     #[arg(long, value_name = "DIR", default_value = "slipfit-out")]
     out: PathBuf,
     #[command(flatten)]
     drive: DriveArguments,
     #[command(flatten)]
     levels: LevelArguments,
-    /// Units of a slide's production to simulate one by one, 256 if not given; `slipfit population` tells more of them.
+    /// Units of a slide's production to simulate one by one; 256 if not given.
+    ///
+    /// For slides only. `slipfit population` simulates more units and tells more about them.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     units: Option<u64>,
     #[command(flatten)]

@@ -34,39 +34,43 @@ pub(super) use output::OutputArguments;
 /// What is drawn unless something else is asked for: as many units as in the paper.
 pub(super) const DEFAULT: Settings = Settings { method: Method::PseudoRandom, samples: 5000, replicates: 1, seed: 1 };
 
-/// How the measures vary: Monte Carlo, worst case, RSS, contributors, capability, joint statistics.
+/// Shows how measures vary: Monte Carlo, worst case, RSS, contributors, capability.
 ///
-/// Starts from the drawing of the paper's slide unless a scene is given. A scene with a slide has Table 2's derived columns
-/// shown, too; one that gives its gaps instead of a product has nothing to draw, and these are all.
+/// For scenes with a product. Where the scene has a slide as well, the output ends with the clearances of its pins at the level
+/// `--n`. Of a slide with stated gaps it shows the gaps and these clearances, and draws nothing.
 #[derive(Args)]
 #[command(mut_arg("scene", |arg| arg.default_value(DRAWING)))]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Units; of every replicate, where there are several.
+    /// Units to draw, in each replicate.
     #[arg(long, default_value_t = DEFAULT.samples)]
     samples: u64,
     /// How units are drawn.
     #[arg(long, value_enum, default_value_t = Sampling::Mc)]
     method: Sampling,
-    /// Independent designs; 8 for lhs and sobol if not given, 1 for mc. Their spread is the standard error.
+    /// Independent repetitions, 1 to 1024; if not given 8 for lhs and sobol, 1 for mc.
+    ///
+    /// Standard errors follow from their spread.
     #[arg(long)]
     replicates: Option<u64>,
-    /// Seed of the production.
+    /// Seed of the production. The same scene, seed and number give the same unit on every machine.
     #[arg(long, default_value_t = DEFAULT.seed)]
     seed: u64,
     #[command(flatten)]
     threads: ThreadArguments,
-    /// Works on one of n parts, i from 1 to n, or on that of the task of a SLURM job array, if `auto`; `slipfit merge` joins them.
+    /// Works on part I of N and writes it to `--out`; `slipfit merge` joins the parts.
+    ///
+    /// I is 1 to N. `auto` takes the part of this task in a SLURM job array.
     #[arg(long, value_name = "I/N", requires = "out")]
     shard: Option<Shard>,
-    /// Writes what `slipfit merge` reads.
+    /// Writes the results of the units to a file that `slipfit merge` reads.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Goes on where a run with the same --out stopped.
+    /// Continues where an interrupted run with the same `--out` stopped.
     #[arg(long, requires = "out")]
     resume: bool,
-    /// Writes every unit's measures as CSV.
+    /// Writes the measures of every unit as CSV.
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     draws: Option<PathBuf>,
     #[command(flatten)]
@@ -76,17 +80,17 @@ pub(super) struct Arguments {
 /// How units are drawn.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Sampling {
-    /// Pseudo-random.
+    /// Pseudo-random units.
     Mc,
     /// Latin hypercube.
     Lhs,
     /// Owen-scrambled Sobol' points.
     Sobol,
-    /// No random units: all combinations of the limits.
+    /// A designed experiment instead of random units: all combinations of the limits.
     Factorial,
-    /// No random units: the smallest two-level orthogonal array (L4, L8, …).
+    /// A designed experiment: the smallest two-level orthogonal array (L4, L8, …).
     Taguchi,
-    /// No random units: the smallest three-level orthogonal array (L9, L27, …).
+    /// A designed experiment: the smallest three-level orthogonal array (L9, L27, …).
     Taguchi3,
 }
 

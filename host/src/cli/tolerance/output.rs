@@ -34,13 +34,15 @@ fn finite(text: &str) -> Result<f64, String> {
 /// What is written of an analysis.
 #[derive(Args)]
 pub(in crate::cli) struct OutputArguments {
-    /// Tolerance level of Table 2's derived columns; positive is tighter. The paper's is 3.43.
+    /// Tolerance level at which a slide's clearances are shown; positive is tighter.
+    ///
+    /// The default is the level of the paper, which just closes the tightest pair of gaps of its slide.
     #[arg(long, default_value_t = PAPER_LEVEL, allow_hyphen_values = true, value_parser = finite)]
     pub n: f64,
     /// Writes the measures' statistics as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws histograms, contributors and correlations as SVG into a folder.
+    /// Draws histograms, contributors and correlations as SVG files in a folder.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
 }

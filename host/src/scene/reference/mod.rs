@@ -21,9 +21,9 @@ const QUANTITIES: [(&str, &[Unit]); 17] = [
     ("stiffness", unit::STIFFNESS),
     ("moment", unit::MOMENT),
     ("pressure", unit::PRESSURE),
-    ("time, in seconds if bare", unit::SECONDS),
-    ("time, in milliseconds if bare", unit::MILLISECONDS),
-    ("time, in microseconds if bare", unit::MICROSECONDS),
+    ("time of a drive's ramp, of a dimension", unit::SECONDS),
+    ("duration of a run, `--every`", unit::MILLISECONDS),
+    ("step of the controller", unit::MICROSECONDS),
     ("speed", unit::SPEED),
     ("acceleration", unit::ACCELERATION),
     ("moment of inertia", unit::INERTIA),
@@ -33,8 +33,8 @@ const QUANTITIES: [(&str, &[Unit]); 17] = [
     ("stiffness about an axis", unit::TORSION),
 ];
 
-/// Stands for what a key takes that the reader does not say at once.
-const UNREAD: &str = "see its meaning";
+/// Stands for what a key takes where the parser's message about a wrong value does not say it.
+const UNREAD: &str = "see the meaning";
 
 /// Every key by its table; a table that stands in several places is told once.
 pub(crate) fn keys() -> String {
@@ -67,7 +67,8 @@ fn names(keys: &[Key]) -> Vec<&str> {
 /// The table at `path`, which has the same keys as those at `others`.
 fn section(path: &str, keys: &[Key], others: &[&str], all: &[(String, &[Key])], used: &mut [bool], page: &mut String) {
     let heading = if path.is_empty() { "The file".to_owned() } else { format!("`{path}`") };
-    let _ = writeln!(page, "\n### {heading}\n\n| key | takes | meaning |\n|---|---|---|");
+    let same = same_keys(path, others);
+    let _ = writeln!(page, "\n### {heading}\n\n{same}| key | takes | meaning |\n|---|---|---|");
     for key in keys {
         let path = join(path, key.name);
         let at = MEANINGS.iter().position(|(pattern, _)| covers(pattern, &path));
@@ -77,9 +78,25 @@ fn section(path: &str, keys: &[Key], others: &[&str], all: &[(String, &[Key])], 
         let mut takes = takes.unwrap_or_else(|| UNREAD.to_owned());
         if !key.below.is_empty() {
             let first = all.iter().find(|(_, other)| names(other) == names(key.below));
-            let _ = write!(takes, "; keys of `{}`", first.map_or(path.as_str(), |(path, _)| path));
+            let first = first.map_or(path.as_str(), |(path, _)| path);
+            let _ = write!(takes, "; keys of [`{first}`](#{})", first.replace('.', ""));
         }
         let _ = writeln!(page, "| `{}` | {} | {} |", key.name, takes.replace('|', "\\|"), MEANINGS[at].1);
+    }
+}
+
+/// A sentence about the tables at `others` that have the keys of the one at `path` and another name; empty if there are none.
+fn same_keys(path: &str, others: &[&str]) -> String {
+    let name = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
+    let mut names: Vec<String> = Vec::new();
+    for other in others.iter().map(|other| name(other)).filter(|other| *other != name(path)) {
+        if !names.contains(&other) {
+            names.push(other);
+        }
+    }
+    match names.is_empty() {
+        true => String::new(),
+        false => format!("These are also the keys of `{}`.\n\n", names.join("`, `")),
     }
 }
 
@@ -95,10 +112,7 @@ pub(crate) fn units() -> String {
         let symbols: Vec<_> = units.iter().map(|unit| format!("`{}`", unit.symbol)).collect();
         format!("| {name} | {} |\n", symbols.join(", "))
     };
-    format!(
-        "| quantity | units, the first of which is meant where none is given |\n|---|---|\n{}",
-        QUANTITIES.map(row).concat()
-    )
+    format!("| quantity | units; a bare number is in the first one |\n|---|---|\n{}", QUANTITIES.map(row).concat())
 }
 
 /// Every distribution.
