@@ -53,8 +53,13 @@ impl Lanes {
 #[inline(always)]
 pub fn widest<T>(work: impl FnOnce() -> T) -> T {
     #[cfg(target_arch = "x86_64")]
-    if let Some(avx2) = pulp::x86::V3::try_new() {
-        return pulp::Simd::vectorize(avx2, work);
+    {
+        if let Some(avx512) = pulp::x86::V4::try_new() {
+            return pulp::Simd::vectorize(avx512, work);
+        }
+        if let Some(avx2) = pulp::x86::V3::try_new() {
+            return pulp::Simd::vectorize(avx2, work);
+        }
     }
     work()
 }
