@@ -215,7 +215,7 @@ fn malfunction_that_no_tolerance_mends_is_told() {
     assert!(errors.contains("malfunction") && errors.contains('%'), "{errors}");
     for (arguments, code, words) in [
         (&["allocate", "clutch-processes", "--require", "malfunction=0.05"][..], 2, "no [slide]"),
-        (&["allocate", "two.toml", "--require", "malfunction=0.7"], 2, "less than 0.5"),
+        (&["allocate", "two.toml", "--require", "malfunction=0.7"], 2, "at most 0.5"),
         (&["allocate", "two.toml", "--force-limit", "3"], 2, "--require"),
     ] {
         let errors = refused(folder.path(), arguments, code);

@@ -73,7 +73,7 @@ fn shown(name: &'static str, file: &SceneFile) -> Shown {
         let command = [&["allocate", name][..], &UNITS].concat();
         return Shown { command, picture, from: " tolerance of" };
     }
-    Shown { command: analysis, picture, from: "Contributors" }
+    Shown { command: analysis, picture, from: "Largest contributors" }
 }
 
 /// The first paragraph of the comment that a scene begins with.

@@ -200,8 +200,10 @@ impl Arguments {
         let scene = match self.scene.load_moving(&overrides)? {
             Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
-                if self.audit || self.controller.given() || self.length.stroke || self.page.is_some() {
-                    let why = "--audit, --step, --integrator, --scalar, --stroke and --page are for slides on pins";
+                let shown = self.audit || self.page.is_some() || self.unit.is_some();
+                if shown || self.controller.given() || self.length.stroke {
+                    let why =
+                        "--audit, --step, --integrator, --scalar, --stroke, --unit and --page are for slides on pins";
                     return Err(Failure::Input(why.into()));
                 }
                 let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot };
@@ -232,6 +234,8 @@ impl Arguments {
         }
         let mut warnings = check::warnings_of(&scene);
         warnings.extend(run.trust.warning());
+        let beside = controller.as_ref().and_then(|run| run.as_ref());
+        warnings.extend(beside.and_then(|run| run.trust.warning()));
         let reports = gap_reports(&scene, &scene.gaps_at(&n));
         let words = || self.describe(&scene, &run, controller.as_ref().map(Option::as_ref), &reports, shown);
         if let Some(path) = &self.page {

@@ -125,7 +125,7 @@ pub fn simulate_units(
 ) -> Result<(), SimulateError> {
     let starts: Vec<u64> = numbers.clone().step_by(PIECE).collect();
     // As many pieces at a time as keep all threads at work, so that memory does not grow with the population.
-    for starts in starts.chunks(8 * rayon::current_num_threads()) {
+    for starts in starts.chunks(32 * rayon::current_num_threads()) {
         let pieces: Vec<_> = starts
             .par_iter()
             .with_max_len(1)

@@ -56,26 +56,52 @@ impl Population {
         limit: Option<f64>,
         done: impl Fn(u64) + Sync,
     ) -> Result<Self, SimulateError> {
-        let mut units = Vec::new();
-        simulate_units(scene, production, 0..count, done, |_, piece| units.extend_from_slice(piece))?;
-        Ok(Self::of(production, units, limit))
+        let (mut units, mut causes) = (Vec::new(), Causes::new(production));
+        simulate_units(scene, production, 0..count, done, |drawn, piece| {
+            causes.add(&drawn.variables, piece, limit);
+            units.extend_from_slice(piece);
+        })?;
+        Ok(causes.population(production, units, limit))
     }
 
     /// Of all `units` of a `production`, in order.
     pub fn of(production: &Production, units: Vec<Unit>, limit: Option<f64>) -> Self {
-        let pilot = production.draw(0..PILOT).variables;
-        let mut drivers = [Drivers::new(&pilot), Drivers::new(&pilot)];
+        let mut causes = Causes::new(production);
         for (start, piece) in (0..).step_by(PIECE).zip(units.chunks(PIECE)) {
-            let variables = production.draw(start..start + piece.len() as u64).variables;
-            let of = |figure: &dyn Fn(&Unit) -> Option<f64>| piece.iter().map(figure).collect::<Vec<_>>();
-            let figures =
-                [of(&|unit| unit.outcome.peak_force), of(&|unit| Some(f64::from(u8::from(malfunctions(unit, limit)))))];
-            for (drivers, figures) in drivers.iter_mut().zip(&figures) {
-                drivers.add(start, &variables, figures);
-            }
+            causes.add(&production.draw(start..start + piece.len() as u64).variables, piece, limit);
         }
+        causes.population(production, units, limit)
+    }
+}
+
+/// What drives the greatest force and malfunction.
+struct Causes {
+    of_force: Drivers,
+    of_malfunction: Drivers,
+}
+
+impl Causes {
+    fn new(production: &Production) -> Self {
+        let pilot = production.draw(0..PILOT).variables;
+        Self { of_force: Drivers::new(&pilot), of_malfunction: Drivers::new(&pilot) }
+    }
+
+    /// Takes note of the `units` of a piece, drawn with these `variables`, a column each.
+    fn add(&mut self, variables: &[Vec<f64>], units: &[Unit], limit: Option<f64>) {
+        let start = units.first().map_or(0, |unit| unit.number);
+        let forces: Vec<_> = units.iter().map(|unit| unit.outcome.peak_force).collect();
+        let failed: Vec<_> = units.iter().map(|unit| Some(f64::from(u8::from(malfunctions(unit, limit))))).collect();
+        self.of_force.add(start, variables, &forces);
+        self.of_malfunction.add(start, variables, &failed);
+    }
+
+    fn population(&self, production: &Production, units: Vec<Unit>, limit: Option<f64>) -> Population {
         let contributors = production.contributors();
-        let [of_force, of_malfunction] = drivers.map(|drivers| drivers.ranked(&contributors));
-        Self { statistics: Statistics::new(&units, limit), units, of_force, of_malfunction }
+        Population {
+            statistics: Statistics::new(&units, limit),
+            units,
+            of_force: self.of_force.ranked(&contributors),
+            of_malfunction: self.of_malfunction.ranked(&contributors),
+        }
     }
 }

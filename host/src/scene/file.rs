@@ -94,7 +94,7 @@ impl SceneFile {
     /// [`SceneError`] says that there is no slide.
     pub fn into_slide(self, file_name: &str, text: &str) -> Result<(Scene, Option<Product>), SceneError> {
         if self.mechanism.is_some() {
-            let instead = "check, simulate, sweep, run, table and kernel work on this one";
+            let instead = "check, simulate, sweep, run, table, kernel and fmu work on this one";
             return Err(no_slide(file_name, text, Problem::NotASlide, instead));
         }
         match self.slide {

@@ -147,7 +147,7 @@ pub fn verdicts(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
     line_chart(&Chart {
         title: title.to_owned(),
         subtitle: format!(
-            "verdict and {}, {}; behind, how many units are drawn at each level",
+            "verdict and {}, {}; behind, how a single gap is distributed over n",
             kind.effort(),
             levels(sweep)
         ),

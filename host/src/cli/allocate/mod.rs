@@ -111,7 +111,8 @@ fn kind(text: &str) -> Result<Required, String> {
             Ok(Required { kind: Kind::Defects(1.0 - share), together: true })
         }
         ("malfunction", Some(_)) => {
-            let allowed = within(0.0, 0.5).ok_or("allowed are more than 0, less than 0.5")?;
+            let allowed = number.filter(|share| *share > 0.0 && *share <= 0.5);
+            let allowed = allowed.ok_or("allowed are more than 0, at most 0.5")?;
             Ok(Required { kind: Kind::Malfunction { allowed, force_limit: None }, together: true })
         }
         _ => Err(ALLOWED.into()),

@@ -268,7 +268,7 @@ fn figures(scene: &Scene, simulated: &Simulated) -> Result<Vec<(&'static str, Fi
     let mut figures = Vec::new();
     if simulated.judged().levels.iter().any(|level| level.outcome.peak_force.is_some()) {
         let caption = "Each mark is a tolerance level: its shape says whether the slide runs, its height what force that takes. \
-                       Behind: how many units of the production are drawn at that level, if its gaps move together.";
+                       Behind: how a single gap of the production is distributed over n.";
         figures.push((FIGURES[0], captioned(caption, verdicts(simulated.judged(), title))?));
     }
     let caption = "The opening: how fast the slide moves while the drive starts. Compressed gaps are released in the first \

@@ -123,7 +123,7 @@ fn by_formula(report: &Report) -> String {
 }
 
 fn contributors(report: &Report) -> String {
-    let mut text = "Contributors, % of variance\n".to_owned();
+    let mut text = "Largest contributors, % of variance\n".to_owned();
     for m in &report.measures {
         let shares = m.contributors.iter().filter_map(|share| Some((&share.name, share.percent?)));
         let most = shares.filter(|(_, percent)| percent.abs() >= 1.0).take(6);

@@ -23,10 +23,10 @@ use super::{Draft, SIGMA, name, quantity};
 pub(super) const RATIO: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
 const SKEWNESS: Quantity = Quantity { units: unit::ONE, range: [-10.0, 10.0] };
 
-const TOLERANCE: &str = "± as one number in mm or a text with its unit, \"0.004 in\"; [lower, upper] deviations; a class \
+const TOLERANCE: &str = "± as one number, of a length in mm, or a text with its unit, \"0.004 in\"; [lower, upper] deviations; a class \
                          of ISO 2768-1: f, m, c, v; an ISO 286 class with its size: H7, g6";
 /// The same of what has no size.
-const DEVIATION: &str = "± as one number, or [lower, upper] deviations, in mm or as texts with their units";
+const DEVIATION: &str = "± as one number or [lower, upper] deviations, of a length in mm, or texts with their units";
 pub(in crate::scene) const SHAPES: &str = "normal, truncated-normal, uniform, triangular, trapezoidal, beta, skewed, lognormal, weibull, gumbel, \
                       gumbel-smallest, mixture, table, constant";
 /// Beyond, moments are not finite enough to be computed.
