@@ -142,10 +142,11 @@ mod tests {
     use super::locked;
     use crate::scene::{Override, SceneFile, shipped};
 
-    /// The carriage on two rods guides itself over 80 mm: with friction 0.3 it locks from 80/(2·0.3) mm beside its middle on.
+    /// The carriage on two rods guides itself over 80 mm: with friction 0.3 it locks from 80/(2·0.3) mm beside its middle on,
+    /// the 10 mm by which it is driven above the rods included.
     #[test]
     fn a_carriage_locks_where_its_drive_is_far_beside_it() {
-        for (x, locks) in [("10", false), ("133", false), ("134", true), ("-134", true)] {
+        for (x, locks) in [("10", false), ("132", false), ("134", true), ("-134", true)] {
             let point = Override::set(&format!("drive.motor.point=[{x}, 0, 0]"));
             let file = SceneFile::parse("linear-guide", shipped("linear-guide").unwrap(), &[point]).unwrap();
             let found = file.mechanism.as_ref().map(locked).unwrap();

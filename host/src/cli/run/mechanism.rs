@@ -159,7 +159,7 @@ fn figures(driven: &ByDrive, sweep: &Sweep) -> Result<Vec<(&'static str, Figure)
     if sweep.levels.iter().any(|level| level.outcome.peak_force.is_some()) {
         let caption = format!(
             "Each mark is a tolerance level: its shape says whether \"{name}\" runs, its height what {} that takes. \
-             Behind: how many units of the production are drawn at that level, if its gaps move together.",
+             Behind: how a single gap of the production is distributed over n.",
             kind.effort()
         );
         figures.push((FIGURES[0], captioned(&caption, verdicts(sweep, title))?));

@@ -59,7 +59,7 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
             along_axis && joint.between.contains(&Some(i))
         };
         if let Some(speed) = fields[i].get("speed").filter(|_| !mechanism.joints.iter().any(slides)) {
-            let what = format!("the speed of \"{}\", which slides along no joint without play", body.name);
+            let what = "a speed at the start of a body that slides along no joint without play".into();
             note(fields[i].found(), Err(speed.error(Problem::Unsupported { what }, "`angle` and `spin`")));
         }
     }

@@ -97,7 +97,7 @@ fn mistakes_are_told_where_they_are() {
         "`joint.name` is \"bearing\" again",
         "\"bearing\"\nkind = \"prismatic\"",
     );
-    refused("inertia = 1e5\n", "inertia = 1e5\nspeed = 10\n", "which slides along no joint without play", "speed = 10");
+    refused("inertia = 1e5\n", "inertia = 1e5\nspeed = 10\n", "that slides along no joint without play", "10\ncentre");
     refused("space = \"plane\"", "space = \"line\"", "`mechanism.space` is \"line\"", "\"line\"");
     refused("radius = 5", "radius = 5\nspring = 3", "unknown key `joint.spring`", "spring = 3");
     refused(
