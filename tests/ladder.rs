@@ -19,7 +19,7 @@ const RUNGS: [&str; 8] = [
     "axis_pad_linear",
 ];
 
-/// Shipped mechanisms in a plane, each with the scheme and the step of its scene. The step of one in space is no function by itself.
+/// Shipped mechanisms in a plane, each with the step of its scene, by implicit Euler. The step of one in space is no function by itself.
 const MECHANISMS: [&str; 4] = ["slider_crank", "slider_crank_guide", "four_bar", "woodpecker_toy"];
 
 /// What the image printed.

@@ -40,6 +40,14 @@ belongs to an angle, a force or another quantity, the number is in the first [un
 moves in a plane, lists of 3 are lists of 2.
 ";
 
+/// The fields that the guide's page on JSON has under a `heading`.
+pub fn json_fields(heading: &str) -> Vec<String> {
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/guide/src/json.md")).unwrap();
+    let section = page.split("\n## ").flat_map(|section| section.split("\n### "));
+    let rows = section.filter(|section| section.lines().next() == Some(heading)).flat_map(str::lines);
+    rows.filter_map(|row| row.strip_prefix("| ")?.split(" |").next().map(str::to_owned)).skip(1).collect()
+}
+
 /// Functions of expressions and what they are.
 const MEANINGS: [(&str, &str); 10] = [
     ("sqrt", "square root"),

@@ -1,6 +1,8 @@
 //! `slipfit fmu` as other simulators meet it: FMPy validates and steps what is made, and has the kernel's bits.
 
 mod common;
+#[path = "common/fields.rs"]
+mod fields;
 
 use std::{
     fs,
@@ -10,6 +12,7 @@ use std::{
 };
 
 use common::{json, slipfit, stdout};
+use fields::{check_object, guide};
 use serde_json::{Value, json};
 
 /// Has FMPy look at `unit` beside what is expected of it.
@@ -57,6 +60,7 @@ fn slide_rows(folder: &Path, settings: &[&str], set: &Value, first: &Value) -> V
 fn a_slide_has_the_controllers_bits() {
     let folder = tempfile::tempdir().unwrap();
     let made = json(folder.path(), &["fmu", "-o", "my slide.fmu", "--json"]);
+    check_object(&guide(), &made, "fmu", "fmu");
     let unit = folder.path().join("my slide.fmu");
     let (names, description) = opened(&unit);
     let library = format!(

@@ -402,7 +402,7 @@ slipfit_status slipfit_ahead_restart(struct slipfit_ahead *storage,
                                      float n);
 
 // Checks the table at `region` completely and opens it in `*storage`. It must be over tolerance level and `over`,
-// SLIPFIT_AXIS_TIME or SLIPFIT_AXIS_POSITION, and made for `scene_hash`, SLIPFIT_TABLE_SCENE_HASH of its header.
+// SLIPFIT_AXIS_TIME or SLIPFIT_AXIS_POSITION, and made for `scene_hash`: SLIPFIT_SCENE_HASH of the scene's header.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; `length` bytes are at `region` and stay

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
-use super::{Failure, JSON_VERSION, SceneArguments, mechanism, print, print_json, text_table, warn};
+use super::{Failure, SceneArguments, mechanism, print, print_json, text_table, warn};
 use crate::{
     dynamics::sweep::classes,
     mechanism::{
@@ -36,7 +36,6 @@ pub(super) struct Arguments {
 
 #[derive(Serialize)]
 struct Findings {
-    json_version: u32,
     title: String,
     parts: u32,
     n_cl: u32,
@@ -54,7 +53,6 @@ struct Findings {
 /// A product without a slide.
 #[derive(Serialize)]
 struct ProductFindings {
-    json_version: u32,
     title: String,
     measures: Vec<Nominal>,
     warnings: Vec<String>,
@@ -120,8 +118,7 @@ impl Arguments {
             return Ok(());
         }
         let measures = file.product.map(nominal).unwrap_or_default();
-        let findings =
-            ProductFindings { json_version: JSON_VERSION, title: file.title, measures, warnings: of_product };
+        let findings = ProductFindings { title: file.title, measures, warnings: of_product };
         if self.scene.json {
             return print_json(&findings);
         }
@@ -158,7 +155,6 @@ fn find(scene: &Scene, n: f64) -> Findings {
     let guide = guide(scene, n);
     let (normal_law, friction_law, kernel_why) = kernel(scene);
     Findings {
-        json_version: JSON_VERSION,
         title: scene.title.clone(),
         parts: 2,
         n_cl,

@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::{Failure, JSON_VERSION, Moving, SceneArguments, print, print_json, simulate::ControllerArguments};
+use super::{Failure, Moving, SceneArguments, print, print_json, simulate::ControllerArguments};
 use crate::{
     dynamics::scheme::ScalarKind,
     firmware::fmu::{
@@ -51,7 +51,6 @@ enum Version {
 
 #[derive(Serialize)]
 struct Report<'a> {
-    json_version: u32,
     file: String,
     fmi_version: &'static str,
     /// What importers compare.
@@ -154,14 +153,7 @@ impl Arguments {
             causality: causality(one.causality),
             start: one.start,
         });
-        print_json(&Report {
-            json_version: JSON_VERSION,
-            file,
-            fmi_version,
-            token: &unit.token,
-            step_s: unit.step,
-            variables: variables.collect(),
-        })
+        print_json(&Report { file, fmi_version, token: &unit.token, step_s: unit.step, variables: variables.collect() })
     }
 }
 

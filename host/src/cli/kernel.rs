@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, JSON_VERSION, Moving, SceneArguments, print, print_json, simulate::ControllerArguments};
+use super::{Failure, Moving, SceneArguments, print, print_json, simulate::ControllerArguments};
 use crate::{
     dynamics::{
         driven::Driven,
@@ -46,7 +46,6 @@ pub(super) struct Arguments {
 
 #[derive(Serialize)]
 struct Report {
-    json_version: u32,
     file: String,
     /// What flash tables are stamped with; of a mechanism with one drive.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -133,7 +132,7 @@ impl Arguments {
         let file = written.display().to_string();
         let scene_hash = hash.map(|hash| format!("{hash:016x}"));
         if self.scene.json {
-            return print_json(&Report { json_version: JSON_VERSION, file, scene_hash });
+            return print_json(&Report { file, scene_hash });
         }
         match scene_hash {
             Some(scene_hash) => print(&format!("{file}, scene hash {scene_hash}")),

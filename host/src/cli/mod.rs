@@ -30,7 +30,7 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 
 use self::{
     failure::{Failure, refused},
-    terminal::{JSON_VERSION, counter, given, print, print_json, progress, text_table, warn},
+    terminal::{counter, given, print, print_json, progress, text_table, warn},
 };
 use crate::{
     mechanism::{ByDrive, Mechanism},

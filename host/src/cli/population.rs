@@ -10,8 +10,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Failure, JSON_VERSION, SceneArguments, ThreadArguments, check, given, print, print_json, progress,
-    tolerance::Written, warn,
+    Failure, SceneArguments, ThreadArguments, check, given, print, print_json, progress, tolerance::Written, warn,
 };
 use crate::{
     dynamics::{driven::Driven, outcome::Verdict},
@@ -131,7 +130,6 @@ struct UnitReport {
 
 #[derive(Serialize)]
 struct Report {
-    json_version: u32,
     title: String,
     seed: u64,
     statistics: Statistics,
@@ -265,7 +263,6 @@ impl Arguments {
             let worst = worst.collect();
             let Population { statistics, of_force, of_malfunction, .. } = found.population;
             return print_json(&Report {
-                json_version: JSON_VERSION,
                 title: scene.title.clone(),
                 seed: self.seed,
                 statistics,

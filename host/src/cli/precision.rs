@@ -6,9 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
-use super::{
-    Failure, JSON_VERSION, SceneArguments, given, print, print_json, progress, stability::MapArguments, text_table,
-};
+use super::{Failure, SceneArguments, given, print, print_json, progress, stability::MapArguments, text_table};
 use crate::{
     dynamics::{deviation::Deviation, simulate::ScalarKind},
     quality::precision::{
@@ -45,7 +43,6 @@ pub(super) struct Arguments {
 
 #[derive(Serialize)]
 struct Report<'a> {
-    json_version: u32,
     title: &'a str,
     n: f64,
     /// How well the truth is known, by problem (%).
@@ -81,7 +78,7 @@ impl Arguments {
         if self.scene.json {
             let floor = |(problem, truth): &(Problem, Truth)| Floor { problem: problem.name, percent: truth.floor };
             let floors = problems.iter().map(floor).collect();
-            print_json(&Report { json_version: JSON_VERSION, title: &scene.title, n: self.n, floors, points: &points })
+            print_json(&Report { title: &scene.title, n: self.n, floors, points: &points })
         } else {
             print(&describe(&scene, self.n, &problems, &points))
         }
@@ -153,4 +150,49 @@ fn row(point: &Point) -> Vec<String> {
         number(point.late_max_percent),
         number(point.late_rms_percent),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Value;
+
+    use super::{Floor, Report};
+    use crate::{
+        dynamics::{deviation::Deviation, simulate::ScalarKind},
+        quality::precision::{Knob, Point},
+        reference::json_fields,
+    };
+
+    /// Measuring takes minutes.
+    #[test]
+    fn the_guide_has_the_fields_of_its_json() {
+        let percent = Deviation { max: 0.0, rms: 0.0, late_max: 0.0, late_rms: 0.0 };
+        let point = Point {
+            problem: "opening",
+            solver: "rk4",
+            scalar: ScalarKind::F32,
+            knob: Knob::StepS,
+            setting: 1e-3,
+            run_ms: None,
+            max_percent: None,
+            rms_percent: None,
+            late_max_percent: None,
+            late_rms_percent: None,
+            blew_up_at_s: None,
+        };
+        let report =
+            Report { title: "", n: 0.0, floors: vec![Floor { problem: "opening", percent }], points: &[point] };
+        let report = serde_json::to_value(&report).unwrap();
+        let sorted = |mut fields: Vec<String>| {
+            fields.sort();
+            fields
+        };
+        let fields = |value: &Value| sorted(value.as_object().unwrap().keys().cloned().collect());
+        // The version comes with printing.
+        let documented: Vec<_> =
+            json_fields("`precision`").into_iter().filter(|field| field != "json_version").collect();
+        assert_eq!(fields(&report), sorted(documented));
+        assert_eq!(fields(&report["floors"][0]), sorted(json_fields("floor")));
+        assert_eq!(fields(&report["points"][0]), sorted(json_fields("point")));
+    }
 }

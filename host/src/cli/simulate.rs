@@ -9,7 +9,7 @@ use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
 use super::{
-    Failure, JSON_VERSION, Moving, SceneArguments,
+    Failure, Moving, SceneArguments,
     check::{self, GapReport, gap_reports},
     given,
     mechanism::{self, Wanted},
@@ -166,7 +166,6 @@ impl ControllerArguments {
 
 #[derive(Serialize)]
 struct Report<'a> {
-    json_version: u32,
     title: &'a str,
     n: &'a [f64],
     duration_s: f64,
@@ -249,7 +248,6 @@ impl Arguments {
                 trust: run.trust,
             });
             print_json(&Report {
-                json_version: JSON_VERSION,
                 title: &scene.title,
                 n: shown,
                 duration_s: scene.run.duration,

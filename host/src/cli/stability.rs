@@ -5,7 +5,7 @@ use std::{fmt::Write, path::Path};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, JSON_VERSION, ThreadArguments, print, print_json, progress, text_table};
+use super::{Failure, ThreadArguments, print, print_json, progress, text_table};
 use crate::{
     quality::{
         stability,
@@ -37,7 +37,6 @@ pub(super) struct MapArguments {
 
 #[derive(Serialize)]
 struct Report {
-    json_version: u32,
     seed: u64,
     one_at_a_time: Vec<Point>,
     /// The order of the random points' values.
@@ -63,7 +62,7 @@ impl MapArguments {
         }
         if json {
             let factors = FACTORS.map(|factor| factor.name).into();
-            print_json(&Report { json_version: JSON_VERSION, seed: self.seed, one_at_a_time: single, factors, random })
+            print_json(&Report { seed: self.seed, one_at_a_time: single, factors, random })
         } else {
             print(&describe(&scene.title, &single, &random))
         }

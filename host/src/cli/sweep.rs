@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Failure, JSON_VERSION, Moving, SceneArguments, ThreadArguments, check, given,
+    Failure, Moving, SceneArguments, ThreadArguments, check, given,
     mechanism::{self, Wanted},
     print, print_json, progress,
     simulate::{ControllerArguments, LengthArguments, why_undecided},
@@ -89,7 +89,6 @@ pub(super) struct LevelReport {
 
 #[derive(Serialize)]
 struct Report {
-    json_version: u32,
     title: String,
     ranges: Vec<Range>,
     levels: Vec<LevelReport>,
@@ -135,7 +134,6 @@ impl Arguments {
         warnings.extend(doubts(&swept));
         if self.scene.json {
             return print_json(&Report {
-                json_version: JSON_VERSION,
                 title: scene.title.clone(),
                 ranges: ranges(&swept),
                 levels: for_machines(&swept),

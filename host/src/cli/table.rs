@@ -9,8 +9,7 @@ use serde::Serialize;
 use slipfit_core::table::AxisKind;
 
 use super::{
-    DriveArguments, Failure, JSON_VERSION, Moving, SceneArguments, ThreadArguments, check, mechanism, print,
-    print_json, progress,
+    DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, check, mechanism, print, print_json, progress,
     sweep::{LevelArguments, doubts},
     warn,
 };
@@ -94,7 +93,6 @@ enum Over {
 
 #[derive(Serialize)]
 struct Report {
-    json_version: u32,
     file: String,
     bytes: usize,
     axes: Vec<AxisReport>,
@@ -197,7 +195,6 @@ impl Arguments {
             let [force_in_use, velocity_in_use] = table.worst_error_in_use;
             let [rms_force, rms_velocity] = table.rms_error;
             print_json(&Report {
-                json_version: JSON_VERSION,
                 file: self.output.display().to_string(),
                 bytes: table.bytes.len(),
                 axes: table.axes.iter().map(|axis| AxisReport::new(kind, axis)).collect(),

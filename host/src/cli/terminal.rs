@@ -40,7 +40,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// The version of what `--json` prints: raised when a field is renamed, removed or means something else.
-pub const JSON_VERSION: u32 = 1;
+const JSON_VERSION: u32 = 1;
 
 /// Tells a person of `warnings`, on standard error whatever the command.
 pub fn warn(warnings: &[String]) {
@@ -54,9 +54,17 @@ pub fn given<'a, const N: usize>(options: [(&'a str, &'a Option<PathBuf>); N]) -
     options.into_iter().filter_map(|(name, path)| Some((name, path.as_deref()?))).collect()
 }
 
-/// Prints `value` as JSON.
-pub fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    print(&serde_json::to_string_pretty(value).map_err(anyhow::Error::from)?)
+#[derive(serde::Serialize)]
+struct Versioned<'a, T> {
+    json_version: u32,
+    #[serde(flatten)]
+    value: &'a T,
+}
+
+/// Prints `value`, an object, as JSON with the version of the format before its fields.
+pub fn print_json<T: serde::Serialize>(value: &T) -> Result<(), Failure> {
+    let versioned = Versioned { json_version: JSON_VERSION, value };
+    print(&serde_json::to_string_pretty(&versioned).map_err(anyhow::Error::from)?)
 }
 
 /// A table for people: a heading and rows, numbers to the right.

@@ -104,12 +104,17 @@ pub struct Solved {
     pub worst_residual: f64,
 }
 
+/// `x` rounded to nine digits, so that products are shown as they are meant.
+fn nine_digits(x: f64) -> f64 {
+    format!("{x:.8e}").parse().unwrap_or(x)
+}
+
 impl Solved {
     /// How the run was computed, in words.
     pub fn describe(&self) -> String {
         let Effort { accepted, refused } = self.effort;
         let tolerance = match (self.tolerance_n, self.tolerance_m_per_s) {
-            (Some(force), _) => Some(format!("{force:e} N")),
+            (Some(force), _) => Some(format!("{:e} N", nine_digits(force))),
             (None, Some(speed)) => Some(format!("{speed:.1e} m/s")),
             (None, None) => None,
         };

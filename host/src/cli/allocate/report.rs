@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use crate::{
-    cli::JSON_VERSION,
     population::statistics::Share,
     product::{Product, costed::Costed},
     scene::tolerance,
@@ -30,7 +29,6 @@ const OFF_CENTRE: f64 = 0.05;
 /// The cheapest tolerances.
 #[derive(Serialize)]
 pub struct Report {
-    json_version: u32,
     /// The scene's.
     pub title: String,
     /// Of all tolerances.
@@ -184,7 +182,6 @@ impl Report {
             Required::new(&product.model, row, *figure, price)
         });
         Self {
-            json_version: JSON_VERSION,
             title: title.into(),
             cost: solution.cost,
             bound: solution.bound,

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{GapReport, gap_reports};
 use crate::{
-    cli::{Failure, JSON_VERSION, SceneArguments, check::self_locking, print, print_json, text_table, warn},
+    cli::{Failure, SceneArguments, check::self_locking, print, print_json, text_table, warn},
     mechanism::{
         Freedom, Mechanism,
         self_locking::{Locked, locked},
@@ -17,7 +17,6 @@ use crate::{
 
 #[derive(Serialize)]
 struct CheckReport<'a> {
-    json_version: u32,
     title: &'a str,
     freedom: Freedom,
     n: f64,
@@ -39,7 +38,7 @@ pub fn check(mechanism: &Mechanism, n: f64, scene: &SceneArguments, plot: Option
     if scene.json {
         let gaps = gap_reports(mechanism, &gaps);
         let title = &mechanism.title;
-        return print_json(&CheckReport { json_version: JSON_VERSION, title, freedom, n, gaps, warnings: &warnings });
+        return print_json(&CheckReport { title, freedom, n, gaps, warnings: &warnings });
     }
     let mut text = format!("{}\n\nDegrees of freedom  {}\n\n", mechanism.title, freedom.describe());
     let joints: Vec<_> = mechanism

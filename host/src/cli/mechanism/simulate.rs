@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
-    cli::{Failure, JSON_VERSION, print, print_json, text_table},
+    cli::{Failure, print, print_json, text_table},
     mechanism::{Action, Mechanism, MechanismRun, SCHEME, finer, run},
     show::{
         export::rows_csv,
@@ -18,7 +18,6 @@ use crate::{
 
 #[derive(Serialize)]
 struct SimulateReport<'a> {
-    json_version: u32,
     title: &'a str,
     n: &'a [f64],
     integrator: &'static str,
@@ -57,7 +56,6 @@ pub fn simulate(mechanism: &Mechanism, n: &[f64], every: f64, wanted: &Wanted) -
             outcome: *outcome,
         });
         return print_json(&SimulateReport {
-            json_version: JSON_VERSION,
             title: &mechanism.title,
             n,
             integrator: SCHEME,

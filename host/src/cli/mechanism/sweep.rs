@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{DriveReport, Wanted, shown, units};
 use crate::{
-    cli::{Failure, JSON_VERSION, ThreadArguments, print, print_json, progress, text_table},
+    cli::{Failure, ThreadArguments, print, print_json, progress, text_table},
     dynamics::{answer::ranges_of, outcome::Outcome},
     mechanism::{Action, Mechanism, RunError, confirmed},
     show::{
@@ -20,7 +20,6 @@ use crate::{
 
 #[derive(Serialize)]
 struct SweepReport<'a> {
-    json_version: u32,
     title: &'a str,
     levels: Vec<LevelReport<'a>>,
 }
@@ -70,7 +69,7 @@ pub fn sweep(mechanism: &Mechanism, wanted: &Wanted, threads: &ThreadArguments) 
             LevelReport { n: *n, drives: drives.collect() }
         };
         let levels = levels.iter().map(level).collect();
-        return print_json(&SweepReport { json_version: JSON_VERSION, title: &mechanism.title, levels });
+        return print_json(&SweepReport { title: &mechanism.title, levels });
     }
     let mut text = format!("{}\n", mechanism.title);
     for (k, drive) in mechanism.drives.iter().enumerate() {

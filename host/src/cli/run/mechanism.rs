@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     cli::{
-        Failure, JSON_VERSION, mechanism, print, print_json, progress,
+        Failure, mechanism, print, print_json, progress,
         sweep::{LevelReport, answer, doubts, for_machines},
         table, warn,
     },
@@ -40,7 +40,6 @@ const FIGURES: [&str; 5] = ["verdict.svg", "velocity.svg", "force.svg", "torque.
 
 #[derive(Serialize)]
 struct Report {
-    json_version: u32,
     title: String,
     /// The drive's name.
     drive: String,
@@ -107,7 +106,6 @@ impl Arguments {
         let files = output.write(&files)?;
         if self.scene.json {
             return print_json(&Report {
-                json_version: JSON_VERSION,
                 title: driven.title().to_owned(),
                 drive: driven.name().to_owned(),
                 effort_unit: driven.kind().effort_unit(),

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     cli::{
-        Failure, JSON_VERSION, check,
+        Failure, check,
         population::{page, percent, strongest},
         print, print_json, progress,
         simulate::why_undecided,
@@ -52,7 +52,6 @@ const UNITS: u64 = 256;
 
 #[derive(Serialize)]
 struct Report {
-    json_version: u32,
     title: String,
     files: Vec<String>,
     table_bytes: usize,
@@ -149,7 +148,6 @@ impl Arguments {
         let files = output.write(&files)?;
         if self.scene.json {
             return print_json(&Report {
-                json_version: JSON_VERSION,
                 title: scene.title.clone(),
                 files,
                 table_bytes: simulated.table.bytes.len(),

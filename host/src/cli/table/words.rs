@@ -24,8 +24,8 @@ pub fn coarse(driven: &dyn Driven, table: &ForceTable) -> Option<String> {
     let ([error, _], greatest) = (table.worst_error_in_use, driven.greatest_force());
     (error > COARSE * greatest).then(|| {
         format!(
-            "the table errs by up to {} {} where it is used, {} % of the drive's greatest {}: neighbouring levels do \
-             different things there; take the levels of one verdict, such as --n 1:3:0.1, or finer ones",
+            "the table errs by up to {} {} where it is used, {} % of the drive's greatest {}: neighbouring levels \
+             differ by more than can be interpolated; take finer levels, or those of one verdict, such as --n 1:3:0.1",
             fixed(error, 3),
             driven.kind().effort_unit(),
             fixed(error / greatest * 100.0, 0),
