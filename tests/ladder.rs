@@ -119,6 +119,22 @@ fn each_rung_is_cheaper_than_the_one_above() {
     insta::assert_snapshot!("costs", table);
 }
 
+#[test]
+fn the_guide_has_these_costs() {
+    let page =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/host/guide/src/firmware.md")).expect("a page");
+    let with_comma = |number: u32| match number {
+        ..1000 => number.to_string(),
+        _ => format!("{},{:03}", number / 1000, number % 1000),
+    };
+    // The toy has no drive.
+    for rung in RUNGS.into_iter().chain(MECHANISMS).filter(|rung| *rung != "woodpecker_toy") {
+        let Costs { instructions, code, stack, state, .. } = costs(rung);
+        let row = format!("| {} | {} | {stack} | {state} |", with_comma(instructions), with_comma(code));
+        assert!(page.contains(&row), "{rung}: {row}");
+    }
+}
+
 /// What a drive controller can spare at 1 kHz: about 14 % of 168 MHz at 1.48 cycles an instruction, and a stack of 512 bytes,
 /// or 640 with exact friction, which remembers.
 #[test]

@@ -1,4 +1,4 @@
-//! Sentences of the README and the guide are short: at most 30 words.
+//! The README and the guide are short: sentences of at most 30 words, a README of at most 120 lines.
 
 use std::path::{Path, PathBuf};
 
@@ -83,6 +83,12 @@ fn sentences_are_short() {
         }
     }
     assert!(long.is_empty(), "{long}");
+}
+
+#[test]
+fn the_readme_takes_two_minutes() {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")).unwrap();
+    assert!(text.lines().count() <= 120);
 }
 
 #[test]

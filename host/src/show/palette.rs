@@ -43,7 +43,7 @@ pub const POSITIVE: Colour = colour("positive", "#d55e00", "#f0803c");
 /// Text on the full colour of positive numbers.
 pub const ON_POSITIVE: Colour = colour("on-positive", "#000000", "#10141a");
 
-/// Kinds by their number (Okabe and Ito: told apart by every eye).
+/// Kinds by their number (Okabe and Ito's and an indigo: told apart by every eye).
 pub const KINDS: [Colour; 8] = [
     colour("kind-0", "#0072b2", "#4aa3df"),
     colour("kind-1", "#d55e00", "#f0803c"),
@@ -52,7 +52,7 @@ pub const KINDS: [Colour; 8] = [
     colour("kind-4", "#e69f00", "#e69f00"),
     colour("kind-5", "#222222", "#e6e6e6"),
     colour("kind-6", "#56b4e9", "#8fd0f5"),
-    colour("kind-7", "#663399", "#b48ae0"),
+    colour("kind-7", "#332288", "#7766ee"),
 ];
 
 /// Tolerance levels from low to high: viridis without the end that the paper swallows.
@@ -91,16 +91,60 @@ pub fn style_sheet() -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
+    use nalgebra::{Matrix3, Vector3};
+
     use super::{Colour, INK, KINDS, LEVELS, MARK, NEGATIVE, ON_NEGATIVE, ON_POSITIVE, PAPER, POSITIVE, SOFT};
+
+    /// Red, green and blue by their light, 0 to 1.
+    fn linear(colour: &str) -> Vector3<f64> {
+        Vector3::new(1, 3, 5).map(|i: usize| {
+            let c = f64::from(u8::from_str_radix(&colour[i..i + 2], 16).unwrap()) / 255.0;
+            if c <= 0.040_45 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
+        })
+    }
 
     /// Relative luminance (WCAG 2).
     fn luminance(colour: &str) -> f64 {
-        let channel = |i: usize| {
-            let c = f64::from(u8::from_str_radix(&colour[i..i + 2], 16).unwrap()) / 255.0;
-            if c <= 0.040_45 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
-        };
-        0.2126 * channel(1) + 0.7152 * channel(3) + 0.0722 * channel(5)
+        Vector3::new(0.2126, 0.7152, 0.0722).dot(&linear(colour))
+    }
+
+    /// What eyes make of linear red, green and blue: all cones, no long-wave ones, no medium-wave ones (Machado, Oliveira and
+    /// Fernandes 2009, table 1, severity 1).
+    #[rustfmt::skip]
+    const EYES: [Matrix3<f64>; 3] = [
+        Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+        Matrix3::new(0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998),
+        Matrix3::new(0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940, 0.968881),
+    ];
+
+    /// CIE L*a*b* of a `colour` as an eye sees it, D65.
+    fn lab(colour: &str, eye: &Matrix3<f64>) -> Vector3<f64> {
+        let to_xyz = Matrix3::new(0.4124, 0.3576, 0.1805, 0.2126, 0.7152, 0.0722, 0.0193, 0.1192, 0.9505);
+        let xyz = to_xyz * (eye * linear(colour)).map(|c| c.clamp(0.0, 1.0));
+        let f = |t: f64| if t > 216.0 / 24389.0 { libm::cbrt(t) } else { (24389.0 / 27.0 * t + 16.0) / 116.0 };
+        let [x, y, z] = [f(xyz.x / 0.95047), f(xyz.y), f(xyz.z / 1.08883)];
+        Vector3::new(116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z))
+    }
+
+    /// All `colours` differ by at least 14 (CIE 1976), six times what is just noticeable, for every kind of eye.
+    pub(crate) fn told_apart(colours: &[&str]) {
+        for eye in &EYES {
+            for (i, one) in colours.iter().enumerate() {
+                for other in &colours[..i] {
+                    let difference = (lab(one, eye) - lab(other, eye)).norm();
+                    assert!(difference >= 14.0, "{one} and {other}: {difference}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn kinds_and_signs_are_told_apart_by_every_eye() {
+        told_apart(&KINDS.map(|colour| colour.light));
+        told_apart(&KINDS.map(|colour| colour.dark));
+        told_apart(&[NEGATIVE.light, POSITIVE.light]);
+        told_apart(&[NEGATIVE.dark, POSITIVE.dark]);
     }
 
     fn contrast(one: &str, other: &str) -> f64 {

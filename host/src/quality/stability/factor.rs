@@ -8,6 +8,7 @@ use crate::{
         simulate::Settings,
     },
     scene::{ControllerSpec, Scene},
+    show::number::fixed,
 };
 
 /// One point of the map: a scene with the unit to be simulated.
@@ -57,6 +58,8 @@ pub struct Factor {
     pub range: Range,
     /// Sets it.
     pub set: fn(&mut Setup, f64),
+    /// What a value is called under its strip of the map.
+    pub label: fn(f64) -> String,
 }
 
 /// The values of a factor.
@@ -118,32 +121,81 @@ pub const FACTORS: [Factor; 13] = [
         name: "stiffness, ×",
         range: Range::Decades(-2, 4, Zero::Not),
         set: |setup, x| setup.scene.contact.stiffness *= x,
+        label: few_digits,
     },
-    Factor { name: "mass, ×", range: Range::Decades(-2, 2, Zero::Not), set: |setup, x| setup.scene.slide.mass *= x },
+    Factor {
+        name: "mass, ×",
+        range: Range::Decades(-2, 2, Zero::Not),
+        set: |setup, x| setup.scene.slide.mass *= x,
+        label: few_digits,
+    },
     Factor {
         name: "damping, ×",
         range: Range::Decades(-2, 2, Zero::Too),
         set: |setup, x| setup.scene.contact.damping *= x,
+        label: few_digits,
     },
-    Factor { name: "exponent e", range: Range::Even(1.0, 3.0, 8), set: set_exponent },
-    Factor { name: "friction law: smooth, exact", range: Range::These(&[0.0, 1.0]), set: set_law },
-    Factor { name: "friction μ", range: Range::Even(0.0, 1.4, 14), set: set_coefficient },
-    Factor { name: "stick band, m/s", range: Range::Decades(-9, -3, Zero::Not), set: set_stick_band },
-    Factor { name: "tolerance level n", range: Range::Even(-6.0, 8.0, 14), set: |setup, x| setup.n = x },
-    Factor { name: "interference, mm", range: Range::Even(0.0, 1.0, 8), set: |setup, x| setup.interference = x * 1e-3 },
+    Factor { name: "exponent e", range: Range::Even(1.0, 3.0, 8), set: set_exponent, label: few_digits },
+    Factor {
+        name: "friction law",
+        range: Range::These(&[0.0, 1.0]),
+        set: set_law,
+        label: |law| if law == 0.0 { "regularised" } else { "exact" }.into(),
+    },
+    Factor { name: "friction μ", range: Range::Even(0.0, 1.4, 14), set: set_coefficient, label: few_digits },
+    Factor {
+        name: "stick band, m/s",
+        range: Range::Decades(-9, -3, Zero::Not),
+        set: set_stick_band,
+        label: few_digits,
+    },
+    Factor {
+        name: "tolerance level n",
+        range: Range::Even(-6.0, 8.0, 14),
+        set: |setup, x| setup.n = x,
+        label: few_digits,
+    },
+    Factor {
+        name: "interference, mm",
+        range: Range::Even(0.0, 1.0, 8),
+        set: |setup, x| setup.interference = x * 1e-3,
+        label: few_digits,
+    },
     Factor {
         name: "drive point x, mm",
         range: Range::Even(-62.0, 62.0, 8),
         set: |setup, x| setup.scene.drive.point_b.x = x * 1e-3,
+        label: few_digits,
     },
-    Factor { name: "gravity towards", range: Range::Even(0.0, 1.0, 13), set: set_gravity },
+    Factor {
+        name: "gravity, ° from down",
+        range: Range::Even(0.0, 1.0, 13),
+        set: set_gravity,
+        label: |share| fixed(libm::acos(1.0 - 2.0 * share).to_degrees(), 0),
+    },
     Factor {
         name: "step, µs",
         range: Range::These(&[10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0]),
         set: |setup, x| setup.scene.controller.step = x * 1e-6,
+        label: few_digits,
     },
-    Factor { name: "f32, f64", range: Range::These(&[32.0, 64.0]), set: set_scalar },
+    Factor {
+        name: "number type",
+        range: Range::These(&[32.0, 64.0]),
+        set: set_scalar,
+        label: |bits| format!("f{bits}"),
+    },
 ];
+
+/// Few digits: powers of ten as such, others with at most two decimals.
+fn few_digits(value: f64) -> String {
+    if value != 0.0 && !(0.01..1e5).contains(&value.abs()) {
+        return format!("{value:.0e}");
+    }
+    let decimals = if value.abs() >= 10.0 { 0 } else { 2 };
+    let text = fixed(value, decimals);
+    if decimals > 0 { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
 
 /// k in N/mm^e stays, as `--set contact.exponent` leaves it.
 fn set_exponent(setup: &mut Setup, exponent: f64) {

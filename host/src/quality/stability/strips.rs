@@ -3,7 +3,7 @@
 
 use super::{FACTORS, Grade, Point, SCHEMES, tally};
 use crate::show::{
-    number::{fixed, typeset},
+    number::typeset,
     palette::{Colour, INK, PAPER},
     svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE},
 };
@@ -59,7 +59,7 @@ pub fn stability_map(single: &[Point], random: &[Point], title: &str) -> String 
         }
         for (column, value) in values.iter().enumerate() {
             let x = LEFT + NAME + pitch * (column as f64 + 0.5) - 0.5;
-            svg.text([x, top + ROW * SCHEMES.len() as f64 + 7.0], &short(*value), middle);
+            svg.text([x, top + ROW * SCHEMES.len() as f64 + 7.0], &typeset(&(factor.label)(*value)), middle);
         }
     }
     if !random.is_empty() {
@@ -95,14 +95,14 @@ fn cell(svg: &mut Svg, [x, y, width]: [f64; 3], grade: Grade) {
     }
 }
 
-/// Few digits: powers of ten as such, others with at most two decimals.
-fn short(value: f64) -> String {
-    let text = if value != 0.0 && !(0.01..1e5).contains(&value.abs()) {
-        format!("{value:.0e}")
-    } else {
-        let decimals = if value.abs() >= 10.0 { 0 } else { 2 };
-        let text = fixed(value, decimals);
-        if decimals > 0 { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-    };
-    typeset(&text)
+#[cfg(test)]
+mod tests {
+    use super::{Grade, look};
+    use crate::show::palette::tests::told_apart;
+
+    #[test]
+    fn grades_are_told_apart_by_every_eye() {
+        let grades = [Grade::Sound, Grade::Cautious, Grade::Warned, Grade::Stopped, Grade::Silent];
+        told_apart(&grades.map(|grade| look(grade).0.light));
+    }
 }
