@@ -25,6 +25,9 @@ pub(super) struct Placed<S> {
     pub rotation_b: Vector3<S>,
 }
 
+/// A pin's gaps (m), its place from the centre of mass (m), and what friction remembers at it.
+type Pin<'a, S, M> = ((&'a [S; 4], &'a Vector3<S>), &'a [M; 2]);
+
 /// The force on the slide at one pin and its changes. Axes of the body; of the matrices rows are forces.
 pub(super) struct PinForce<S, M> {
     /// Where it acts, from the centre of mass (m).
@@ -61,12 +64,9 @@ struct SlotForce<S, M> {
 }
 
 impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
-    /// Each pin's gaps and place, with what friction remembers there.
+    /// The pins, with what friction has in `memory`.
     #[inline(always)]
-    pub(super) fn pins<'a>(
-        &'a self,
-        memory: &'a [F::Memory; SLOTS],
-    ) -> impl Iterator<Item = ((&'a [S; 4], &'a Vector3<S>), &'a [F::Memory; 2])> {
+    pub(super) fn pins<'a>(&'a self, memory: &'a [F::Memory; SLOTS]) -> impl Iterator<Item = Pin<'a, S, F::Memory>> {
         self.body.gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w).zip(memory.as_chunks::<2>().0)
     }
 
@@ -75,7 +75,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     pub(super) fn at_pin(
         &self,
         at: &Placed<S>,
-        ((gaps, pin), memory): ((&[S; 4], &Vector3<S>), &[F::Memory; 2]),
+        ((gaps, pin), memory): Pin<S, F::Memory>,
         way: Way<S>,
     ) -> PinForce<S, F::Memory> {
         let offset = at.to_body.change(*pin) - at.displacement_b;

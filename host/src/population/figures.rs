@@ -90,7 +90,7 @@ impl<V: Simd> Ends<'_, V> {
 
     /// `yes` where the time `t` (s) is not before the ramp's start, else `no`.
     #[inline(always)]
-    fn from_ramp(&self, t: Pack<V>, yes: Pack<V>, no: Pack<V>) -> Pack<V> {
+    fn since_ramp(&self, t: Pack<V>, yes: Pack<V>, no: Pack<V>) -> Pack<V> {
         self.ramp_start.select_gt(t, no, yes)
     }
 }
@@ -139,7 +139,7 @@ impl<V: Simd> Watch<V> {
         let crossing = start + length * (threshold - self.speed) / (speed - self.speed);
         let crosses =
             threshold.select_gt(self.speed, threshold.select_gt(speed, self.breakaway, crossing), self.breakaway);
-        self.breakaway = ends.or_old(ends.from_ramp(start, crosses, self.breakaway), self.breakaway);
+        self.breakaway = ends.or_old(ends.since_ramp(start, crosses, self.breakaway), self.breakaway);
 
         // The top of the parabola through three ends, where the middle one is the highest.
         let rise = (self.force - self.force_before) / self.length_before;
@@ -149,8 +149,8 @@ impl<V: Simd> Watch<V> {
         let top = self.force + slope * slope / (bend * Pack::splat(4.0));
         let is_top = rise.select_gt(zero, zero.select_gt(fall, top, self.peak), self.peak);
         // Only what begins after the ramp's start counts; NaN keeps the old.
-        let between = ends.from_ramp(start, self.peak.max_of(is_top), self.peak);
-        let peak = between.max_of(ends.from_ramp(end, force, self.peak));
+        let between = ends.since_ramp(start, self.peak.max_of(is_top), self.peak);
+        let peak = between.max_of(ends.since_ramp(end, force, self.peak));
         self.peak = ends.or_old(peak, self.peak);
 
         for (depth, gap) in self.depths.iter_mut().zip(gaps) {
