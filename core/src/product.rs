@@ -54,3 +54,29 @@ pub(crate) fn product<S: Scalar>(a: &Matrix3<S>, b: &Matrix3<S>) -> Matrix3<S> {
 pub(crate) fn outer<S: Scalar>(a: &Vector3<S>, b: &Vector3<S>) -> Matrix3<S> {
     Matrix3::from_columns(&[a * b.x, a * b.y, a * b.z])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{cross, dot, outer, product, times, transposed_times};
+    use crate::Vector3;
+    use nalgebra::Matrix3;
+
+    #[test]
+    fn the_bits_are_those_of_the_library() {
+        let mut seed = 7u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (f64::from(seed) / 4_294_967_296.0 - 0.5) as f32
+        };
+        for _ in 0..if cfg!(miri) { 5 } else { 1000 } {
+            let [a, b] = [(); 2].map(|()| Vector3::from_fn(|_, _| next()));
+            let [m, n] = [(); 2].map(|()| Matrix3::from_fn(|_, _| next()));
+            assert_eq!(cross(&a, &b), a.cross(&b));
+            assert_eq!(dot(&a, &b), a.dot(&b));
+            assert_eq!(times(&m, &a), m * a);
+            assert_eq!(transposed_times(&m, &a), m.tr_mul(&a));
+            assert_eq!(product(&m, &n), m * n);
+            assert_eq!(outer(&a, &b), a * b.transpose());
+        }
+    }
+}
