@@ -113,7 +113,7 @@ fn predictor(scene: &slipfit_scene, n: f32) -> Result<Predictor, Refusal> {
 
 /// Makes a predictor in `*predictor` for a unit of tolerance level `n` of `*scene`, at rest at time 0. It is tried over its
 /// first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a
-/// tenth of its greatest, or the motion cannot be moved.
+/// tenth of the greatest, gain times speed plus the weight, or the motion cannot be moved.
 ///
 /// # Safety
 /// Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*predictor` meanwhile.

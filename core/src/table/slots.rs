@@ -4,8 +4,8 @@
 //! at its start; its last [`RECORD_SIZE`] bytes hold the sequence number (u32, little-endian) and the number's complement,
 //! or are erased. The record has its own programming words at the slot's end, erased but for these bytes, see [`Word`]. An
 //! update goes in this order, and a power cut at any moment of it leaves a valid table:
-//! 1. take the slot that [`Slots::spare`] names and the number that it gives; do without if the table is longer than
-//!    [`Word::room`] says; erase that slot;
+//! 1. take the slot that [`Slots::spare`] names and the number that it gives; if the table is longer than [`Word::room`]
+//!    says, it does not fit: stop here; erase that slot;
 //! 2. write the table into it and check it there, by [`Table::open`], [`Table::expect_axes`] and [`Table::expect_scene`];
 //! 3. write the [`record`](Word::record) to the slot's end.
 //!

@@ -138,7 +138,7 @@ impl Desk<'_> {
             memory: slide.fresh(),
         };
         let mut observer = Observer::new(scene.drive, settings.run);
-        let mut keepers = Keepers::default();
+        let mut walls = Walls::default();
         let mut knots: Vec<Knot<[f64; 4]>> = Vec::new();
         let start = Clock::now();
         let duration = settings.run.duration;
@@ -149,7 +149,7 @@ impl Desk<'_> {
             if let Some(see) = &mut see {
                 see(t, motion.velocity.z, &motion.pose, &slide.gaps(&motion.pose));
             }
-            if t >= scene.drive.ramp_start && keepers.meet(&slide.gaps(&motion.pose)) {
+            if t >= scene.drive.ramp_start && walls.meet(&slide.gaps(&motion.pose)) {
                 observer.tips(t, r.z);
             }
             if observer.is_at_end(r.z) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -171,18 +171,18 @@ impl Desk<'_> {
     }
 }
 
-/// The keeper walls of the pins, as far as they have been free.
+/// The walls below the pins, as far as they have been free.
 #[derive(Default)]
-struct Keepers {
+struct Walls {
     were_free: [bool; CONTACTS / 4],
 }
 
-impl Keepers {
+impl Walls {
     /// Whether one of them, free until now, meets its pin at these `gaps` (m).
     fn meet(&mut self, gaps: &[f64; CONTACTS]) -> bool {
-        let keepers = gaps.iter().skip(3).step_by(4);
+        let walls = gaps.iter().skip(3).step_by(4);
         let mut meets = false;
-        for (was_free, gap) in self.were_free.iter_mut().zip(keepers) {
+        for (was_free, gap) in self.were_free.iter_mut().zip(walls) {
             meets |= *was_free && *gap <= 0.0;
             *was_free |= *gap > 0.0;
         }

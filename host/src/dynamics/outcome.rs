@@ -143,7 +143,7 @@ pub struct Outcome {
     pub slows: Option<Moment>,
     /// From where on it is slower than 1 % of the command, likewise.
     pub stops: Option<Moment>,
-    /// Where the slide tips: the first keeper wall that meets its pin after the ramp's start, having been free until then.
+    /// Where the slide tips: the first wall below a pin that meets its pin after the ramp's start, having been free until then.
     pub tips: Option<Moment>,
     /// The verdict, at the end.
     pub verdict: Verdict,

@@ -140,8 +140,8 @@ fn in_space<const N: usize, const D: usize>(mechanism: &Mechanism, gaps: &[f64])
         match element {
             SpatialElement::Pin(element) => {
                 let gradient = gradient(&element.link, &bodies, &placed);
-                let [left, right, rail, keeper] = element.law.gaps.map(|gap| gap < spatial::NONE);
-                let held = [left || right, rail || keeper, false];
+                let [left, right, rail, wall] = element.law.gaps.map(|gap| gap < spatial::NONE);
+                let held = [left || right, rail || wall, false];
                 let all = scaled(&gradient, bodies.per_lever());
                 rows.extend(all.into_iter().zip(held).filter(|(_, held)| *held).map(|(row, _)| row));
             }

@@ -148,7 +148,7 @@ pub enum JointKind {
         radius: f64,
     },
     /// A pin of the first body between walls of the second, in space: to the left (normal +x), right (−x), rail (−y) and
-    /// keeper (+y).
+    /// wall (+y).
     Track {
         /// Their gaps; `None` where there is no such wall.
         gaps: [Option<usize>; 4],

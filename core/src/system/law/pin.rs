@@ -10,7 +10,7 @@ use crate::{
 /// A pin between two walls across (the x axis of the walls' body) and two walls up and down (its y axis); it slides along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pin<S, N, F> {
-    /// Gaps (m) at the nominal poses: left, right, rail, keeper.
+    /// Gaps (m) at the nominal poses: left, right, rail, wall.
     pub gaps: [S; 4],
     /// Their laws.
     pub contact: Contact<N, F>,
@@ -36,11 +36,11 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
         way: Way<S>,
     ) -> (Response<S, 3>, [F::Memory; 2]) {
         let zero = S::zero();
-        let [left, right, rail, keeper] = self.gaps;
+        let [left, right, rail, wall] = self.gaps;
         let mut next = *memory;
         let mut force = SVector::<S, 3>::zeros();
         let (mut impedance, mut stiffness) = (SMatrix::<S, 3, 3>::zeros(), SMatrix::<S, 3, 3>::zeros());
-        let slots = [([left, right], [0, 1, 2]), ([keeper, rail], [1, 0, 2])];
+        let slots = [([left, right], [0, 1, 2]), ([wall, rail], [1, 0, 2])];
         for ((([low, high], [n, first, second]), memory), next) in slots.into_iter().zip(memory).zip(&mut next) {
             // The slot is told the velocity of its own material, and answers with the force on it.
             let slot = self.contact.normal.slot(low, high, place[n], -rate[n]);
