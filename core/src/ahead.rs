@@ -1,8 +1,8 @@
 //! Prediction ahead of the clock: error-controlled steps in constant work a period.
 //!
 //! A prediction needs no measurement, so it need not keep step with the clock. Every period makes one attempt of RODAS3, with
-//! the step that its error estimates ask for, and accepts it or not. Where the motion is smooth a step takes several
-//! periods, and the lead so won is spent where only short ones will do. Accepted motions go into a ring, from which a cubic
+//! the step that its error estimates ask for, and accepts it or not. Where the motion is smooth a step takes up to
+//! two periods, and the lead so won is spent where only short ones will do. Accepted motions go into a ring, from which a cubic
 //! reads the value at the present instant. The state decides by selects only: every period takes the same instructions.
 //!
 //! The less lead is left, the more the tolerance gives way, in steps, and the error that is then made is reported. Where it falls

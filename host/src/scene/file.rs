@@ -94,12 +94,12 @@ impl SceneFile {
     /// [`SceneError`] says that there is no slide.
     pub fn into_slide(self, file_name: &str, text: &str) -> Result<(Scene, Option<Product>), SceneError> {
         if self.mechanism.is_some() {
-            let instead = "check, simulate, sweep, run, table, kernel and fmu work on this one";
+            let instead = "check, simulate, sweep, run, table, kernel, fmu and, with a product, tolerance and allocate work on this one";
             return Err(no_slide(file_name, text, Problem::NotASlide, instead));
         }
         match self.slide {
             Some(slide) => Ok((slide, self.product)),
-            None => Err(no_slide(file_name, text, Problem::NoSlide, "slipfit tolerance works on this one")),
+            None => Err(no_slide(file_name, text, Problem::NoSlide, "check, tolerance and allocate work on this one")),
         }
     }
 }

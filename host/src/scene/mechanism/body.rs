@@ -1,8 +1,10 @@
 //! Bodies.
 
+use slipfit_core::system::planar::Coordinate;
+
 use super::{Field, Problem, Quantity, SceneError, note, place, tables, unit};
 use crate::{
-    mechanism::{Body, Joint, JointKind, Mechanism, Start},
+    mechanism::{Body, Mechanism, Mounts, Start},
     scene::parse::POINT,
 };
 
@@ -54,14 +56,24 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
             let error = name.error(Problem::Floating { body: body.name.clone() }, "a [[joint]] that joins it");
             note(fields[i].found(), Err(error));
         }
-        let slides = |joint: &Joint| {
-            let along_axis = matches!(joint.kind, JointKind::Prismatic { .. } | JointKind::PinSlot { .. });
-            along_axis && joint.between.contains(&Some(i))
-        };
-        if let Some(speed) = fields[i].get("speed").filter(|_| !mechanism.joints.iter().any(slides)) {
-            let what = "a speed at the start of a body that slides along no joint without play".into();
-            note(fields[i].found(), Err(speed.error(Problem::Unsupported { what }, "`angle` and `spin`")));
-        }
+    }
+    // A loop of joints is told elsewhere.
+    if let Some(mounts) = mechanism.planar.then(|| Mounts::of(mechanism).ok()).flatten() {
+        fields.iter().enumerate().for_each(|(i, table)| check_start(&mounts, i, table));
     }
     Ok(())
+}
+
+/// Whether body `i`, read from `table`, can start as it says: turned where it turns by itself, with a speed where its own joint lets it
+/// slide along one axis.
+fn check_start(mounts: &Mounts, i: usize, table: &Field) {
+    let own = || mounts.coordinates().iter().filter(|owned| owned.body == i).map(|owned| &owned.coordinate);
+    let turns = own().any(|coordinate| matches!(coordinate, Coordinate::Turn));
+    let slides = own().filter(|coordinate| matches!(coordinate, Coordinate::Slide { .. })).count() == 1;
+    for (key, can) in [("angle", turns), ("spin", turns), ("speed", slides)] {
+        if let Some(field) = table.get(key).filter(|_| !can) {
+            let what = format!("`{key}` at the start of a body that no joint lets move so");
+            note(table.found(), Err(field.error(Problem::Unsupported { what }, "to leave it out")));
+        }
+    }
 }

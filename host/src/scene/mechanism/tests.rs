@@ -97,7 +97,15 @@ fn mistakes_are_told_where_they_are() {
         "`joint.name` is \"bearing\" again",
         "\"bearing\"\nkind = \"prismatic\"",
     );
-    refused("inertia = 1e5\n", "inertia = 1e5\nspeed = 10\n", "that slides along no joint without play", "10\ncentre");
+    refused(
+        "inertia = 1e5\n",
+        "inertia = 1e5\nspeed = 10\n",
+        "`speed` at the start of a body that no joint lets move so",
+        "10\ncentre",
+    );
+    // The second body slides and does not turn.
+    let slider = "name = \"slider\"\n";
+    refused(slider, "name = \"slider\"\nspin = 7\n", "`spin` at the start of a body", "7\nmass");
     refused("space = \"plane\"", "space = \"line\"", "`mechanism.space` is \"line\"", "\"line\"");
     refused("radius = 5", "radius = 5\nspring = 3", "unknown key `joint.spring`", "spring = 3");
     refused(
