@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::{Failure, Moving, SceneArguments, print, print_json, simulate::ControllerArguments};
+use super::{Failure, Moving, SceneArguments, kernel::core_folder, print, print_json, simulate::ControllerArguments};
 use crate::{
     dynamics::scheme::ScalarKind,
     firmware::fmu::{
@@ -114,13 +114,7 @@ impl Arguments {
 
     /// Where slipfit-core is taken from.
     fn sources(&self) -> Result<Sources, Failure> {
-        let Some(folder) = &self.core else { return Ok(Sources::Embedded) };
-        let unusable = |why: &dyn std::fmt::Display| {
-            Failure::Input(format!("--core: {} is not slipfit-core's folder: {why}", folder.display()))
-        };
-        let folder = std::path::absolute(folder).map_err(|error| unusable(&error))?;
-        std::fs::read(folder.join("Cargo.toml")).map_err(|error| unusable(&format!("its Cargo.toml: {error}")))?;
-        Ok(Sources::Folder(folder))
+        Ok(self.core.as_deref().map(core_folder).transpose()?.map_or(Sources::Embedded, Sources::Folder))
     }
 
     fn entries(&self, unit: &Unit, fmi: Fmi, library: Vec<u8>) -> Result<Vec<Entry>, Failure> {

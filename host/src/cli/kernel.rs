@@ -52,6 +52,16 @@ struct Report {
     scene_hash: Option<String>,
 }
 
+/// The `folder` of slipfit-core that was given as `--core`, absolute: what it is written to lies elsewhere.
+pub(super) fn core_folder(folder: &Path) -> Result<PathBuf, Failure> {
+    let unusable = |why: &dyn std::fmt::Display| {
+        Failure::Input(format!("--core: {} is not slipfit-core's folder: {why}", folder.display()))
+    };
+    let absolute = std::path::absolute(folder).map_err(|error| unusable(&error))?;
+    std::fs::read(absolute.join("Cargo.toml")).map_err(|error| unusable(&format!("its Cargo.toml: {error}")))?;
+    Ok(absolute)
+}
+
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let moving = self.scene.load_moving(&self.controller.overrides())?;
@@ -67,7 +77,8 @@ impl Arguments {
             Moving::Mechanism(mechanism) => return self.write_mechanism(&mechanism),
         };
         if let Some(folder) = &self.folder {
-            let files = |name: &str| Ok(slide_crate(&scene, name, self.core.as_deref()));
+            let core = self.core.as_deref().map(core_folder).transpose()?;
+            let files = |name: &str| Ok(slide_crate(&scene, name, core.as_deref()));
             return self.write_crate(folder, Some(scene.hash()), files);
         }
         let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
@@ -99,7 +110,8 @@ impl Arguments {
     fn write_mechanism(&self, mechanism: &Mechanism) -> Result<(), Failure> {
         let hash = ByDrive::new(mechanism, 0).filter(|_| mechanism.drives.len() == 1).map(|driven| driven.hash());
         if let Some(folder) = &self.folder {
-            let files = |name: &str| Ok(mechanism_crate(mechanism, name, self.core.as_deref())?);
+            let core = self.core.as_deref().map(core_folder).transpose()?;
+            let files = |name: &str| Ok(mechanism_crate(mechanism, name, core.as_deref())?);
             return self.write_crate(folder, hash, files);
         }
         if self.output.extension().is_none_or(|extension| extension != "rs") {

@@ -248,7 +248,7 @@ impl Arguments {
             let svg = picture::hypothesis(scene, &found.hypothesis).map_err(anyhow::Error::from)?;
             let caption =
                 "Are the tightest and the loosest combinations the most probable to malfunction? Both, against random \
-                           combinations as far from nominal."
+                           combinations as far from the mean unit."
                     .into();
             units.figures.push(Figure { caption, svg });
             let words = self.summary(scene, &found);

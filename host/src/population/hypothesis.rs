@@ -1,6 +1,6 @@
 //! Are the tightest and the loosest combinations the most probable to malfunction?
 //!
-//! All gaps moved by the same n, as eq. 9 moves them, against as many random combinations as far from nominal: random
+//! All gaps moved by the same n, as eq. 9 moves them, against as many random combinations as far from the mean unit: random
 //! directions in the space of all gaps, each gap measured by its standard deviation, of the same root mean square.
 
 use rayon::prelude::*;
@@ -20,13 +20,13 @@ use crate::{
     tolerance::distribution::normal,
 };
 
-/// Distances from nominal, root mean square in standard deviations of the gaps.
+/// Distances from the mean unit, root mean square in standard deviations of the gaps.
 pub const DISTANCES: [f64; 7] = [0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
 
 /// What seeds of directions are derived with.
 const STREAM: u64 = 5 << 32;
 
-/// What units do at one distance from nominal.
+/// What units do at one distance from the mean unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AtDistance {
     /// Root mean square over the gaps (σ).

@@ -106,27 +106,28 @@ fn with_interval(shares: &[(f64, Share)], label: &str) -> Vec<Series> {
     ]
 }
 
-/// Malfunction by distance from nominal: of random combinations, of the tightest and of the loosest.
+/// Malfunction by distance from the mean unit: of random combinations, of the tightest and of the loosest.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to show.
 pub fn hypothesis(scene: &Scene, tested: &Hypothesis) -> Result<String, PlotError> {
     let shares: Vec<(f64, Share)> = tested.distances.iter().map(|at| (at.distance, at.random)).collect();
-    let side = |label: &str, shape, failed: fn(&AtDistance) -> bool| Markers {
+    // Apart, so that neither hides the other.
+    let side = |label: &str, shape, apart: f64, failed: fn(&AtDistance) -> bool| Markers {
         label: label.into(),
         shape,
-        points: tested.distances.iter().map(|at| (at.distance, if failed(at) { 100.0 } else { 0.0 })).collect(),
+        points: tested.distances.iter().map(|at| (at.distance + apart, if failed(at) { 100.0 } else { 0.0 })).collect(),
     };
     line_chart(&Chart {
         title: scene.title.clone(),
-        subtitle: "random combinations of gaps against the tightest and the loosest, as far from nominal".into(),
-        x_label: "distance from nominal (root mean square over the gaps, σ)".into(),
+        subtitle: "random combinations of gaps against the tightest and the loosest, as far from the mean unit".into(),
+        x_label: "distance from the mean unit (root mean square over the gaps, σ)".into(),
         panels: vec![Panel {
             y_label: "share that malfunctions (%)".into(),
             series: with_interval(&shares, "random"),
             markers: vec![
-                side("tightest", Shape::Triangle, |at| at.tight_malfunctions),
-                side("loosest", Shape::Square, |at| at.loose_malfunctions),
+                side("tightest", Shape::Triangle, 0.03, |at| at.tight_malfunctions),
+                side("loosest", Shape::Square, -0.03, |at| at.loose_malfunctions),
             ],
             ..Panel::default()
         }],

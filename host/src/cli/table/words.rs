@@ -25,7 +25,8 @@ pub fn coarse(driven: &dyn Driven, table: &ForceTable) -> Option<String> {
     (error > COARSE * greatest).then(|| {
         format!(
             "the table errs by up to {} {} where it is used, {} % of the drive's greatest {}: neighbouring levels \
-             differ by more than can be interpolated; take finer levels, or those of one verdict, such as --n 1:3:0.1",
+             differ by more than can be interpolated; take levels further from where \
+             the verdict changes, such as --n 1:3:0.1, or finer ones",
             fixed(error, 3),
             driven.kind().effort_unit(),
             fixed(error / greatest * 100.0, 0),
