@@ -234,7 +234,9 @@ impl Arguments {
         let mut warnings = check::warnings_of(&scene);
         warnings.extend(run.trust.warning());
         let beside = controller.as_ref().and_then(|run| run.as_ref());
-        warnings.extend(beside.and_then(|run| run.trust.warning()));
+        let of_controller =
+            |warning| format!("{warning}. This is about the controller beside it, not about the desk's result");
+        warnings.extend(beside.and_then(|run| run.trust.warning()).map(of_controller));
         let reports = gap_reports(&scene, &scene.gaps_at(&n));
         let words = || self.describe(&scene, &run, controller.as_ref().map(Option::as_ref), &reports, shown);
         if let Some(path) = &self.page {
