@@ -247,8 +247,8 @@ impl Arguments {
             let (mut units, _) = page::units(scene, production, &found.population, self.force_limit)?;
             let svg = picture::hypothesis(scene, &found.hypothesis).map_err(anyhow::Error::from)?;
             let caption =
-                "Are the tightest and the loosest combinations the most probable to malfunction? Both, against random \
-                           combinations as far from the mean unit."
+                "Do the tightest and the loosest units malfunction most often? Triangles and squares have all gaps tighter, or looser, by \
+                           the same n; the line is the share of random combinations as far from the mean unit."
                     .into();
             units.figures.push(Figure { caption, svg });
             let words = self.summary(scene, &found);

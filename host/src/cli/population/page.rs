@@ -44,8 +44,8 @@ pub fn units(
             Ok(shares::sides(scene, all, limit)),
         ),
         (
-            "Which tolerances the force and the malfunction vary with: where narrower ones help, begin with the first. What is missing \
-             to 100 % comes from several together.",
+            "Which tolerances the force and the malfunction vary with, the strongest first. What is missing to 100 % comes from \
+             weaker ones and from several together.",
             Ok(shares::ranking(scene, population)),
         ),
     ];
@@ -65,7 +65,7 @@ pub fn units(
         Ok::<_, Failure>(player::of_slide(scene, format!("unit {number}: {}", word(outcome.verdict)), &film))
     };
     let runs = one_of_each(all).par_iter().map(run).collect::<Result<Vec<_>, _>>()?;
-    let words = "Of the units that jam, crawl and run the one whose greatest force is in their middle, on its pins:";
+    let words = "A typical unit of each kind (that with the median of the greatest force among those that jam, crawl or run), on its pins:";
     let player = (!runs.is_empty()).then(|| player::figure(&runs, words)).transpose().map_err(anyhow::Error::from)?;
     Ok((Units { figures, player }, names))
 }

@@ -23,7 +23,11 @@ const DRIVERS: usize = 5;
 impl Arguments {
     /// The answer, for people: what the units did together, and the worst of them.
     pub(super) fn describe(&self, scene: &Scene, found: &Found) -> String {
-        self.summary(scene, found) + "\nThe worst\n" + &worst_units(scene, &found.population.units)
+        let title = match found.population.statistics.malfunctions.units {
+            0 => "None malfunctions; the greatest forces",
+            _ => "The worst",
+        };
+        format!("{}\n{title}\n{}", self.summary(scene, found), worst_units(scene, &found.population.units))
     }
 
     /// What the units did together.
