@@ -54,10 +54,12 @@ fn what_c_cannot_do_is_refused_at_the_desk() {
 #[test]
 fn a_crate_is_written_whole_or_not_at_all() {
     let folder = tempfile::tempdir().unwrap();
-    let written = json(folder.path(), "kernel --crate firmware/slide --core ../slipfit/core");
+    std::fs::create_dir_all(folder.path().join("slipfit/core")).unwrap();
+    std::fs::write(folder.path().join("slipfit/core/Cargo.toml"), "").unwrap();
+    let written = json(folder.path(), "kernel --crate firmware/slide --core slipfit/core");
     assert_eq!(written["file"], "firmware/slide");
     let text = |name: &str| std::fs::read_to_string(folder.path().join("firmware/slide").join(name)).unwrap();
-    assert!(text("Cargo.toml").contains("slipfit-core = { path = \"../slipfit/core\" }\n"));
+    assert!(text("Cargo.toml").contains("slipfit-core = { path = \"../../slipfit/core\" }\n"));
     let stamp = written["scene_hash"].as_str().unwrap();
     assert!(text("src/lib.rs").contains(&format!("pub const SCENE_HASH: u64 = 0x{stamp};")));
     for line in [

@@ -52,12 +52,22 @@ struct Report {
     scene_hash: Option<String>,
 }
 
-/// The `folder` of slipfit-core that was given as `--core`, absolute: what it is written to lies elsewhere.
+/// The way from one absolute folder to another.
+fn way(from: &Path, to: &Path) -> PathBuf {
+    let common = from.components().zip(to.components()).take_while(|(one, other)| one == other).count();
+    if common == 0 {
+        return to.to_owned();
+    }
+    let up = from.components().skip(common).map(|_| std::path::Component::ParentDir);
+    up.chain(to.components().skip(common)).collect()
+}
+
+/// The `folder` of slipfit-core that was given as `--core`, absolute and without links.
 pub(super) fn core_folder(folder: &Path) -> Result<PathBuf, Failure> {
     let unusable = |why: &dyn std::fmt::Display| {
         Failure::Input(format!("--core: {} is not slipfit-core's folder: {why}", folder.display()))
     };
-    let absolute = std::path::absolute(folder).map_err(|error| unusable(&error))?;
+    let absolute = folder.canonicalize().map_err(|error| unusable(&error))?;
     std::fs::read(absolute.join("Cargo.toml")).map_err(|error| unusable(&format!("its Cargo.toml: {error}")))?;
     Ok(absolute)
 }
@@ -77,7 +87,7 @@ impl Arguments {
             Moving::Mechanism(mechanism) => return self.write_mechanism(&mechanism),
         };
         if let Some(folder) = &self.folder {
-            let core = self.core.as_deref().map(core_folder).transpose()?;
+            let core = self.core_from(folder)?;
             let files = |name: &str| Ok(slide_crate(&scene, name, core.as_deref()));
             return self.write_crate(folder, Some(scene.hash()), files);
         }
@@ -102,6 +112,22 @@ impl Arguments {
         self.report(Some(scene.hash()), &self.output)
     }
 
+    /// Where slipfit-core is, as seen from the `folder` of a crate that is about to be written.
+    fn core_from(&self, folder: &Path) -> Result<Option<PathBuf>, Failure> {
+        let Some(core) = &self.core else { return Ok(None) };
+        let core = core_folder(core)?;
+        let mut parent = std::path::absolute(folder).map_err(anyhow::Error::from)?;
+        let mut missing = PathBuf::new();
+        // Of what is not there yet there are no links to follow.
+        while !parent.exists() {
+            let Some(name) = parent.file_name().map(PathBuf::from) else { break };
+            missing = name.join(missing);
+            parent.pop();
+        }
+        let folder = parent.canonicalize().map_err(anyhow::Error::from)?.join(missing);
+        Ok(Some(way(&folder, &core)))
+    }
+
     fn write_text(&self, text: &str) -> Result<(), Failure> {
         self.scene.check_outputs(&[("--output", &self.output)])?;
         Ok(files::write(&self.output, text.as_bytes())?)
@@ -110,7 +136,7 @@ impl Arguments {
     fn write_mechanism(&self, mechanism: &Mechanism) -> Result<(), Failure> {
         let hash = ByDrive::new(mechanism, 0).filter(|_| mechanism.drives.len() == 1).map(|driven| driven.hash());
         if let Some(folder) = &self.folder {
-            let core = self.core.as_deref().map(core_folder).transpose()?;
+            let core = self.core_from(folder)?;
             let files = |name: &str| Ok(mechanism_crate(mechanism, name, core.as_deref())?);
             return self.write_crate(folder, hash, files);
         }
