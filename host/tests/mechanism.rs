@@ -118,3 +118,30 @@ fn a_drive_is_asked_for_by_name() {
     }
     assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none());
 }
+
+#[test]
+fn what_a_mechanism_has_not_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, why) in [
+        (&["simulate", "slider-crank", "--unit", "3"][..], "--unit and --page are for slides on pins"),
+        (&["tolerance", "slider-crank"], "there is no product to draw"),
+    ] {
+        let output = slipfit(folder.path(), arguments);
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
+        assert!(errors.contains(why), "{arguments:?}: {errors}");
+    }
+}
+
+/// Driven 10 mm beside its middle the carriage runs, at 150 mm it stands still: `check` says so before.
+#[test]
+fn a_carriage_that_locks_is_told_before() {
+    let folder = tempfile::tempdir().unwrap();
+    for (x, locks) in [("10", false), ("150", true)] {
+        let set = format!("drive.motor.point=[{x}, 0, 0]");
+        let check = slipfit(folder.path(), &["check", "linear-guide", "--set", &set]);
+        let warned = String::from_utf8_lossy(&check.stderr).contains("self-locking: friction 0.3");
+        let sweep = stdout(&slipfit(folder.path(), &["sweep", "linear-guide", "--n", "0:0:1", "--set", &set]));
+        assert_eq!([warned, sweep.contains("jammed")], [locks; 2], "{x}: {sweep}");
+    }
+}
