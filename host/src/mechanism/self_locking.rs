@@ -46,6 +46,11 @@ pub struct Guide {
     pub warn: bool,
 }
 
+/// Critical coefficient of friction L/(2b) of a guide of a `length` L, driven at a `distance` b beside it (m).
+fn critical(length: f64, distance: f64) -> f64 {
+    length / (2.0 * distance)
+}
+
 /// Finds the guide of `scene` at tolerance level `n`: the two pins, apart along the travel, whose slots across have
 /// the least clearance. `None` if there are no two such slots.
 pub fn guide(scene: &Scene, n: f64) -> Option<Guide> {
@@ -75,7 +80,7 @@ pub fn guide(scene: &Scene, n: f64) -> Option<Guide> {
         DriveSide::Short
     };
     let friction = scene.friction.coefficient();
-    let critical_friction = (drive_distance > 1e-9 * length).then(|| length / (2.0 * drive_distance));
+    let critical_friction = (drive_distance > 1e-9 * length).then(|| critical(length, drive_distance));
     let warn = side != DriveSide::Short && critical_friction.is_some_and(|critical| friction >= critical);
     Some(Guide { length, line_x, drive_distance, resistance_distance, side, critical_friction, friction, warn })
 }
@@ -125,7 +130,7 @@ pub fn locked(mechanism: &Mechanism) -> Vec<Locked<'_>> {
         let beside =
             Vector3::from(mechanism.bodies[driven.body].centre) + driven.drive.point_b - middle / f64::from(count);
         let (length, distance) = (ends[1] - ends[0], (beside - axis * beside.dot(&axis)).norm());
-        let critical_friction = length / (2.0 * distance);
+        let critical_friction = critical(length, distance);
         (friction >= critical_friction).then_some(Locked {
             drive: &driven.name,
             distance,

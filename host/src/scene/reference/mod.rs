@@ -72,7 +72,7 @@ fn section(path: &str, keys: &[Key], others: &[&str], all: &[(String, &[Key])], 
     for key in keys {
         let path = join(path, key.name);
         let at = MEANINGS.iter().position(|(pattern, _)| covers(pattern, &path));
-        let at = at.unwrap_or_else(|| panic!("no description of `{path}`: add one to scene/reference/meaning.rs"));
+        let at = at.unwrap_or_else(|| panic!("no description of `{path}`: add one to scene/reference/meaning"));
         used[at] = true;
         let takes = others.iter().find_map(|other| probe::takes(&join(other, key.name)));
         let mut takes = takes.unwrap_or_else(|| UNREAD.to_owned());

@@ -1,0 +1,182 @@
+//! What the keys of slides and mechanisms mean.
+
+/// Keys of the slide and its run, and their meaning.
+pub const SLIDE: &[(&str, &str)] = &[
+    ("slide.mass", "Mass."),
+    (
+        "slide.inertia_box",
+        "Edges along x, y, z of a uniform box of the same mass. Its moments of inertia are the slide's.",
+    ),
+    ("slide.gravity", "Acceleration of gravity along x, y, z of the frame, such as `[0, -9.81, 0]`."),
+    (
+        "contact.law",
+        "Force F for a penetration δ > 0 and its rate δ̇. `impact`: k·δ^e + c·S(δ/d)·δ̇, at least 0, with S(s) = s²·(3 − 2s) \
+         up to s = 1, then 1. `hunt-crossley` and `lankarani-nikravesh`: k·δ^e·(1 + a·δ̇), where a follows from \
+         `restitution` and `speed`; for mechanisms only. Default: `impact`.",
+    ),
+    (
+        "contact.stiffness",
+        "Stiffness k. Its unit contains the exponent e: for e = 2 it is N/mm^2 or N/m^2, and a bare number is in N/mm^2.",
+    ),
+    ("contact.exponent", "Exponent e of the penetration δ, such as 1.5."),
+    (
+        "contact.damping",
+        "Damping c, reached at the penetration `depth`. Required by `impact`; the other laws do not have it.",
+    ),
+    (
+        "contact.depth",
+        "Penetration d from which on the damping is c. Required by `impact`; the other laws do not have it.",
+    ),
+    (
+        "contact.restitution",
+        "Speed of rebound over speed of impact, at the impact speed `speed`. Required by `hunt-crossley` and \
+         `lankarani-nikravesh`; `impact` does not have it.",
+    ),
+    (
+        "contact.speed",
+        "Speed of impact at which `restitution` holds. Required by `hunt-crossley` and `lankarani-nikravesh`; `impact` does \
+         not have it.",
+    ),
+    (
+        "friction.law",
+        "Coulomb friction. `regularised`: fades to zero below the speed `stick_band`, so that a loaded part creeps. `exact`: \
+         holds a part at rest. `none`: no friction.",
+    ),
+    ("friction.coefficient", "Coefficient of friction. Required unless the law is `none`."),
+    (
+        "friction.stick_band",
+        "Sliding speed below which regularised friction fades to zero. Required by the law `regularised`.",
+    ),
+    (
+        "drive.gain",
+        "Force for each unit of speed that the body is slower than commanded: force = gain · (command − speed). For a drive \
+         that turns, torque for each unit of angular velocity, in N·m·s/rad.",
+    ),
+    ("drive.ramp_start", "When the commanded speed begins to rise from zero."),
+    ("drive.ramp_end", "When the commanded speed reaches `speed`, at least 1 µs after `ramp_start`."),
+    ("drive.speed", "Commanded speed after the ramp. For a drive that turns, in rad/s."),
+    ("drive.point", "Where the force acts, measured from the centre of mass. Default: the centre of mass."),
+    ("drive.name", "Name of the drive. Required in a mechanism."),
+    (
+        "drive.pushes",
+        "For mechanisms: the body that the drive pushes along `axis`. Each drive has either `pushes` or `turns`.",
+    ),
+    (
+        "drive.turns",
+        "For mechanisms: the body that the drive turns about `axis`. Each drive has either `pushes` or `turns`.",
+    ),
+    (
+        "drive.axis",
+        "For mechanisms: direction of the force, or axis of the torque. Required, except for a torque in a plane.",
+    ),
+    (
+        "run.duration",
+        "How long a run lasts: of a slide its opening, of a mechanism the whole run. A slide's run of the whole stroke lasts \
+         at most until the ramp's end plus `stroke` over the commanded speed.",
+    ),
+    (
+        "run.stroke",
+        "Travel at which a run ends. Of a mechanism it is the travel of the first drive's body, an angle in ° where that \
+         drive turns. Default: no limit; `--stroke` and the stroke's part of `slipfit run` need it.",
+    ),
+    (
+        "run.error",
+        "Error that one step of the desk may make. Of a slide it is a share of the drive's greatest force, gain · speed, or of \
+         the slide's weight where that is 0. Of a mechanism it is a share of its own speed: the greatest commanded or \
+         starting speed, else one that follows from gravity. A smaller value is more exact and takes longer. Default: 3e-7.",
+    ),
+    ("controller.step", "Length of the controller's steps. Default: 1 ms."),
+    (
+        "controller.integrator",
+        "Integration scheme of the controller. `semi-implicit-euler` and `rk4` are explicit and need finer steps; exact \
+         friction needs an implicit scheme. Default: `implicit-euler`.",
+    ),
+    ("controller.scalar", "Number type of the controller. `kernel` and `fmu` need f32. Default: f32."),
+    (
+        "sweep.n",
+        "Tolerance levels. At the level n every gap is its mean − n · its standard deviation: positive n is tighter.",
+    ),
+    (
+        "drawing.clearance",
+        "Nominal clearances across, and up and down. `check` prints a note where they differ from the sums of the gaps. No \
+         simulation uses them.",
+    ),
+    ("pin.name", "Name of the pin."),
+    (
+        "pin.position",
+        "Place of the pin, measured from the slide's centre of mass before the slide moves. x is across, y up, z the opening direction.",
+    ),
+    (
+        "pin.left",
+        "Gap between the pin's left side (towards −x) and the slide: mean and standard deviation, or the name of a measure. \
+         Leave the key out where the slide has no such surface.",
+    ),
+    ("pin.right", "As `left`, for the pin's right side (towards +x)."),
+    ("pin.rail", "As `left`, for the slide's rail, which lies on top of the pin."),
+    ("pin.wall", "As `left`, for the slide's wall below the pin."),
+];
+
+/// Keys of mechanisms, and their meaning.
+pub const MECHANISM: &[(&str, &str)] = &[
+    (
+        "mechanism.space",
+        "`plane`: bodies move in the plane of x and y, and places and directions are lists of 2. `space`: lists of 3. \
+         Default: `space`.",
+    ),
+    ("mechanism.gravity", "Acceleration of gravity. Default: none."),
+    ("body.name", "Name of the body; not `frame`."),
+    ("body.mass", "Mass."),
+    (
+        "body.inertia",
+        "Moments of inertia about the centre of mass. In space a list of three, about x, y and z; in a plane one number.",
+    ),
+    ("body.centre", "Centre of mass in the pose in which the mechanism is drawn."),
+    ("body.angle", "In a plane: rotation from the drawn pose at the start. Default: 0."),
+    ("body.spin", "In a plane: angular velocity at the start. Default: 0."),
+    ("body.speed", "In a plane: speed at the start along the axis of the body's joint. Default: 0."),
+    ("joint.name", "Name of the joint."),
+    (
+        "joint.kind",
+        "What the joint is. In a plane: `fixed`, `revolute`, `prismatic`, `pin-slot`, `stop`. In space: `cylindrical`, \
+         `track`, `stop`. The column *takes* shows those in space.",
+    ),
+    (
+        "joint.between",
+        "The two bodies; `frame` is the body at rest. Their order matters where a joint has play: a hole (`revolute`), \
+         rectangle (`prismatic`), bearing (`cylindrical`), pin (`track`) or point (`stop`) is the first body's, and the pin, \
+         rod or walls that it meets are the second's.",
+    ),
+    ("joint.at", "Place of the joint in the drawn pose."),
+    (
+        "joint.axis",
+        "Direction of the sliding or of the bearing. Required by `prismatic`, `pin-slot` and `cylindrical`.",
+    ),
+    (
+        "joint.normal",
+        "Outward normal of a stop's wall: the direction in which the wall pushes the first body. In space along x, y or z. \
+         Required by `stop`.",
+    ),
+    (
+        "joint.clearance",
+        "Gap: mean and standard deviation, or the name of a measure. Of `revolute` and `cylindrical` it is radial, of \
+         `prismatic` on either side, of `stop` the distance to the wall. Required by `cylindrical` and `stop`. `revolute` and \
+         `prismatic` without it are ideal, without play.",
+    ),
+    ("joint.radius", "Radius of the pin or rod. Required by `cylindrical`, and by `revolute` with a clearance."),
+    ("joint.length", "Length along the axis. Required by `cylindrical`, and by `prismatic` with a clearance."),
+    ("joint.width", "Width across the axis. Required by `prismatic` with a clearance."),
+    (
+        "joint.left",
+        "Of a track: gap between the pin's left side (towards −x) and the second body. Leave the key out where there is no \
+         such surface.",
+    ),
+    ("joint.right", "As `left`, for the pin's right side (towards +x)."),
+    ("joint.rail", "As `left`, for the rail, which lies on top of the pin."),
+    ("joint.wall", "As `left`, for the wall below the pin."),
+    ("joint.contact", "The joint's own contact law. Default: the scene's `[contact]`."),
+    ("joint.friction", "The joint's own friction law. Default: the scene's `[friction]`."),
+    ("spring.name", "Name of the spring."),
+    ("spring.between", "The two bodies; `frame` is the body at rest. The spring is relaxed in the drawn pose."),
+    ("spring.stiffness", "Torque for each unit of angle."),
+    ("spring.damping", "Torque for each unit of angular velocity. Default: 0."),
+];
