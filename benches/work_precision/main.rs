@@ -1,7 +1,8 @@
 //! Error against run time of the kernel's integrators and of general stiff solvers, in one run on one thread.
 //!
 //! All solve the paper's slide at n = 2.5, in f64 with the smoothed friction law, and give the drive force every
-//! millisecond; errors are against the reference runs. diffsol and, where it is installed, SUNDIALS
+//! millisecond; errors are against the reference runs. Error control computes the pins as the desk does: side by side where the
+//! machine can. diffsol and, where it is installed, SUNDIALS
 //! CVODE get the kernel's own forces as their right-hand side and a range of tolerances, of which the best found counts.
 //!
 //! `cargo bench --bench work_precision` prints each solver's quickest run within 1, 0.1 and 0.01 %, `-- --all` every run.
@@ -24,7 +25,7 @@ use slipfit::dynamics::{
 };
 use slipfit_core::{
     SVector,
-    integrator::{Integrator, Motion, Rodas3, Rodas4},
+    integrator::{Integrator, Motion, MotionOf, Rodas3, Rodas4},
     kernel::Kernel,
     mechanism::Mechanism,
     pose::Pose,
@@ -64,8 +65,8 @@ fn compare(reference: &Reference, cvode: Option<&Cvode>, all: bool) {
     let slide = cd_rom::slide(reference.n);
     let milliseconds = (reference.duration * 1e3).round() as u32;
     let mut entries = kernels(&slide, milliseconds);
-    entries.extend(controlled::<Rodas3>("error control, rodas3", &slide, milliseconds));
-    entries.extend(controlled::<Rodas4>("error control, rodas4", &slide, milliseconds));
+    entries.extend(controlled::<Rodas3>("error control, rodas3", reference.n, milliseconds));
+    entries.extend(controlled::<Rodas4>("error control, rodas4", reference.n, milliseconds));
     entries.extend(diffsol_peer::entries(&slide, milliseconds));
     entries.extend(cvode.map(|cvode| cvode.entries(milliseconds)).into_iter().flatten());
     let findings = entries.iter().enumerate().filter_map(|(i, entry)| measure(i, entry, reference));
@@ -127,10 +128,10 @@ fn kernels(slide: &CdRomSlide<f64>, milliseconds: u32) -> Vec<Entry> {
 }
 
 /// The kernel's steps under error control, at every tolerance.
-fn controlled<I: Integrator>(solver: &'static str, slide: &CdRomSlide<f64>, milliseconds: u32) -> Vec<Entry> {
+fn controlled<I: Integrator>(solver: &'static str, n: f64, milliseconds: u32) -> Vec<Entry> {
     let entry = |force: f64| {
-        let slide = *slide;
         let work = move || {
+            let slide = cd_rom::slide(n);
             let body = cd_rom::data::<f64>(0.0).body;
             let sensitivity = Sensitivity { mass: body.mass, gain: slide.drive().gain };
             let rest = Motion {
@@ -144,10 +145,18 @@ fn controlled<I: Integrator>(solver: &'static str, slide: &CdRomSlide<f64>, mill
             let start = Instant::now();
             let tolerance = Tolerance::of_force(force);
             let error = |step: &_, length| sensitivity.error(tolerance, step, length);
-            integrate::<I, _, 6>(&OutOfLine::new(slide), rest, duration, error, |t, motion| {
+            let see = |t: f64, motion: &MotionOf<f64, CdRomSlide<f64>, 6>| {
                 knots.push(Knot { t, values: [motion.velocity.z] });
                 ControlFlow::Continue(())
-            })
+            };
+            #[cfg(target_arch = "x86_64")]
+            let side_by_side = slipfit::dynamics::abreast::SideBySide::new(&cd_rom::data(n), cd_rom::STICK_BAND);
+            #[cfg(not(target_arch = "x86_64"))]
+            let side_by_side: Option<InTurn> = None;
+            match side_by_side {
+                Some(pins) => integrate::<I, _, 6>(&OutOfLine::by(slide, pins), rest, duration, error, see),
+                None => integrate::<I, _, 6>(&OutOfLine::new(slide), rest, duration, error, see),
+            }
             .ok()?;
             let times = (0..=milliseconds).map(|k| f64::from(k) * 1e-3);
             let values = sampled(&knots, times.clone());

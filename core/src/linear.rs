@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use crate::{
     Scalar, Vector3,
-    product::{columns, cross, dot, product, times},
+    product::{columns, cross, dot, mapped_entries, product, times},
 };
 
 /// [[a, b], [c, d]]: forces and torques by velocities and angular velocities.
@@ -46,6 +46,14 @@ pub(crate) fn cross_rows<S: Scalar>(a: &Vector3<S>, m: &Matrix3<S>) -> Matrix3<S
     cross_columns(a, &m.transpose()).transpose()
 }
 
+/// [b]×·[a]× of the `outer` product a·bᵀ, or a sum of such products: a·bᵀ − (a·b)·1.
+#[inline(always)]
+pub(crate) fn twice_crossed<S: Scalar>(outer: &Matrix3<S>) -> Matrix3<S> {
+    let [[xx, ..], [_, yy, _], [.., zz]]: [[S; 3]; 3] = outer.data.0;
+    let trace = xx + yy + zz;
+    outer - Matrix3::from_diagonal(&Vector3::new(trace, trace, trace))
+}
+
 impl<S: Scalar> Blocks<S> {
     /// All zero but for the diagonal.
     #[inline(always)]
@@ -80,6 +88,13 @@ impl<S: Scalar> Blocks<S> {
             c: self.c + other.c * weight,
             d: self.d + other.d * weight,
         }
+    }
+
+    /// The same in numbers of another type.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> Blocks<T> {
+        let block = |m| mapped_entries(m, &number);
+        Blocks { a: block(&self.a), b: block(&self.b), c: block(&self.c), d: block(&self.d) }
     }
 
     /// What solving takes. Eliminates x; no pivoting is needed, because the diagonal blocks carry mass and inertia plus

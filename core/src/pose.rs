@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use crate::{
     Scalar, Vector3,
-    product::{cross, dot, times, transposed_times},
+    product::{cross, dot, mapped_entries, times, transposed_times},
 };
 
 /// A unit quaternion, body to fixed frame.
@@ -118,6 +118,12 @@ impl<S: Scalar> Pose<S> {
 }
 
 impl<S: Scalar> ToBody<S> {
+    /// The same rotation in numbers of another type.
+    #[inline(always)]
+    pub(crate) fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> ToBody<T> {
+        ToBody { change: mapped_entries(&self.change, number) }
+    }
+
     /// Rᵀ.
     #[inline(always)]
     pub fn matrix(&self) -> Matrix3<S> {

@@ -55,6 +55,20 @@ pub(crate) fn outer<S: Scalar>(a: &Vector3<S>, b: &Vector3<S>) -> Matrix3<S> {
     Matrix3::from_columns(&[a * b.x, a * b.y, a * b.z])
 }
 
+/// `number` of each component.
+#[inline(always)]
+pub(crate) fn mapped<S: Copy, T: Scalar>(v: &Vector3<S>, number: impl Fn(S) -> T) -> Vector3<T> {
+    let [x, y, z] = v.data.0[0];
+    Vector3::from([number(x), number(y), number(z)])
+}
+
+/// `number` of each entry.
+#[inline(always)]
+pub(crate) fn mapped_entries<S: Scalar, T: Scalar>(m: &Matrix3<S>, number: impl Fn(S) -> T) -> Matrix3<T> {
+    let [x, y, z] = columns(m);
+    Matrix3::from_columns(&[mapped(&x, &number), mapped(&y, &number), mapped(&z, &number)])
+}
+
 #[cfg(test)]
 mod tests {
     use super::{cross, dot, outer, product, times, transposed_times};

@@ -7,6 +7,7 @@
 //! still along the axes, and the gaps are q + d·N: a difference of small numbers, not of positions, so that f32 keeps
 //! its digits. Opposing planes of a pin form a slot.
 
+mod abreast;
 mod contacts;
 mod energy;
 mod mechanics;
@@ -19,6 +20,7 @@ use crate::{
     pose::Pose,
 };
 
+pub use abreast::{Abreast, Lanes, abreast};
 pub use energy::{Energy, Power};
 
 /// Pins of the slide.

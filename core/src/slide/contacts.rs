@@ -6,10 +6,10 @@ use super::{SLOTS, Slide};
 use crate::{
     Scalar, Vector3,
     law::{Elastic, Friction, Normal},
-    linear::cross_rows,
+    linear::{Blocks, cross_rows},
     mechanism::Way,
     pose::ToBody,
-    product::cross,
+    product::{cross, mapped, mapped_entries, outer},
 };
 
 /// Where the slide is and how it moves, in body axes.
@@ -23,6 +23,19 @@ pub(super) struct Placed<S> {
     pub velocity_b: Vector3<S>,
     /// Angular velocity (rad/s).
     pub rotation_b: Vector3<S>,
+}
+
+impl<S: Scalar> Placed<S> {
+    /// The same in numbers of another type.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> Placed<T> {
+        Placed {
+            to_body: self.to_body.cast(&number),
+            displacement_b: mapped(&self.displacement_b, &number),
+            velocity_b: mapped(&self.velocity_b, &number),
+            rotation_b: mapped(&self.rotation_b, &number),
+        }
+    }
 }
 
 /// A pin's gaps (m), its place from the centre of mass (m), and what friction remembers at it.
@@ -51,7 +64,54 @@ impl<S: Scalar, M> PinForce<S, M> {
     }
 }
 
-/// A slot's part of that, its axis first, then the tangents.
+/// What contacts do to the slide and how that changes with its motion and place, in body axes.
+pub(super) struct Response<S> {
+    /// Force (N).
+    pub force: Vector3<S>,
+    /// Torque about the centre of mass (N·m).
+    pub torque: Vector3<S>,
+    /// Sum of lever·forceᵀ (N·m).
+    pub moments: Matrix3<S>,
+    /// −∂force/∂velocity.
+    pub damping: Blocks<S>,
+    /// −∂force/∂displacement, as far as contacts change: that their forces move and turn with the slide is left out.
+    pub stiffness: Blocks<S>,
+}
+
+impl<S: Scalar> Response<S> {
+    /// Of no contacts.
+    #[inline(always)]
+    pub fn none() -> Self {
+        let (zero, none) = (Vector3::zeros(), Matrix3::zeros());
+        let [damping, stiffness] = [Blocks { a: none, b: none, c: none, d: none }; 2];
+        Self { force: zero, torque: zero, moments: none, damping, stiffness }
+    }
+
+    /// Adds what happens at a pin.
+    #[inline(always)]
+    pub fn add<M>(&mut self, pin: &PinForce<S, M>) {
+        let PinForce { lever, force, impedance, stiffness, .. } = pin;
+        self.force += force;
+        self.torque += cross(lever, force);
+        self.moments += outer(lever, force);
+        self.damping.add_at(lever, impedance);
+        self.stiffness.add_at(lever, stiffness);
+    }
+
+    /// The same in numbers of another type.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> Response<T> {
+        Response {
+            force: mapped(&self.force, &number),
+            torque: mapped(&self.torque, &number),
+            moments: mapped_entries(&self.moments, &number),
+            damping: self.damping.cast(&number),
+            stiffness: self.stiffness.cast(&number),
+        }
+    }
+}
+
+/// What happens in a slot, its axis first, then the tangents.
 struct SlotForce<S, M> {
     force: [S; 3],
     /// Column of the axis.

@@ -2,12 +2,16 @@
 
 use nalgebra::Matrix3;
 
-use super::{SLOTS, Slide, contacts::Placed, join, split};
+use super::{
+    SLOTS, Slide,
+    contacts::{Placed, Response},
+    join, split,
+};
 use crate::{
     SVector, Scalar, Vector3,
     drive::Drive,
     law::{Elastic, Friction},
-    linear::{Blocks, Factors, cross_columns, cross_matrix, cross_rows},
+    linear::{Blocks, Factors, cross_matrix, cross_rows, twice_crossed},
     mechanism::{Differentiated, Driven, Linearised, Mechanism, Way, settled, settling},
     pose::{Pose, ToBody},
     product::{cross, dot, outer},
@@ -153,8 +157,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
                 *slots = pin.memory;
             }
         }
-        let push = self.pull(&at.to_body).times(self.drive.force(t, velocity.z));
-        self.total(&at, contacts, push)
+        self.balance(t, &at, contacts, velocity.z)
     }
 
     #[inline(always)]
@@ -207,34 +210,12 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         velocity: &SVector<S, 6>,
     ) -> Differentiated<S, Slopes<S>, 6> {
         let at = placed(pose, velocity);
-        let zero = Vector3::zeros();
-        let pull = self.pull(&at.to_body);
-        let [mut damping, mut stiffness] = [Blocks::diagonal(zero, zero); 2];
         let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
-        let mut contacts = (Vector3::zeros(), Vector3::zeros());
+        let mut contacts = Response::none();
         for pin in self.pins(memory) {
-            let pin = self.at_pin(&at, pin, way);
-            pin.add_to(&mut contacts);
-            damping.add_at(&pin.lever, &pin.impedance);
-            stiffness.add_at(&pin.lever, &pin.stiffness);
-            // The force stays at the pin while the slide is displaced.
-            stiffness.c -= cross_matrix(&pin.force);
-            stiffness.d += cross_columns(&pin.force, &cross_matrix(&pin.lever));
+            contacts.add(&self.at_pin(&at, pin, way));
         }
-        // A turn θ changes the velocity that the contacts see by −θ × v.
-        stiffness.b -= cross_rows(&at.velocity_b, &damping.a);
-        stiffness.d -= cross_rows(&at.velocity_b, &damping.c);
-        pull.add_to(&mut damping, self.drive.gain);
-        // The contacts' forces turn with the slide, the drive's does not.
-        let push = self.drive.force(t, velocity.z);
-        stiffness.b += cross_matrix(&contacts.0);
-        stiffness.d -= cross_columns(&self.drive.point_b, &cross_matrix(&(pull.force_b * push)));
-        let (force_b, torque_b) = pull.times(self.drive.gain * self.drive.command_rate(t));
-        Differentiated {
-            force: self.total(&at, contacts, pull.times(push)),
-            per_time: join(at.to_body.apply_inverse(force_b), torque_b),
-            slopes: Slopes { damping, stiffness, to_body: at.to_body },
-        }
+        self.completed(t, &at, contacts, velocity.z)
     }
 
     #[inline(always)]
@@ -306,6 +287,41 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         Blocks::diagonal(Vector3::new(mass, mass, mass), self.body.inertia_b * rate)
     }
 
+    /// All forces, from force and torque of the `contacts` in body axes, at time `t` (s) and the speed `vz` (m/s) along the
+    /// drive.
+    #[inline(always)]
+    pub(super) fn balance(&self, t: S, at: &Placed<S>, contacts: (Vector3<S>, Vector3<S>), vz: S) -> SVector<S, 6> {
+        self.total(at, contacts, self.pull(&at.to_body).times(self.drive.force(t, vz)))
+    }
+
+    /// All forces and their derivatives, from those of the `contacts`, at time `t` (s) and the speed `vz` (m/s) along the drive.
+    #[inline(always)]
+    pub(super) fn completed(
+        &self,
+        t: S,
+        at: &Placed<S>,
+        contacts: Response<S>,
+        vz: S,
+    ) -> Differentiated<S, Slopes<S>, 6> {
+        let Response { force, torque, moments, mut damping, mut stiffness } = contacts;
+        let pull = self.pull(&at.to_body);
+        let push = self.drive.force(t, vz);
+        // A turn θ changes the velocity that the contacts see by −θ × v.
+        stiffness.b -= cross_rows(&at.velocity_b, &damping.a);
+        stiffness.d -= cross_rows(&at.velocity_b, &damping.c);
+        pull.add_to(&mut damping, self.drive.gain);
+        // The contacts' forces stay at the pins while the slide is displaced, and turn with it. The drive's does not turn.
+        stiffness.c -= cross_matrix(&force);
+        stiffness.b += cross_matrix(&force);
+        stiffness.d += twice_crossed(&(moments - outer(&(pull.force_b * push), &self.drive.point_b)));
+        let (force_b, torque_b) = pull.times(self.drive.gain * self.drive.command_rate(t));
+        Differentiated {
+            force: self.total(at, (force, torque), pull.times(push)),
+            per_time: join(at.to_body.apply_inverse(force_b), torque_b),
+            slopes: Slopes { damping, stiffness, to_body: at.to_body },
+        }
+    }
+
     #[inline(always)]
     fn pull(&self, to_body: &ToBody<S>) -> Pull<S> {
         let z_b = to_body.z_axis();
@@ -329,8 +345,9 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     }
 }
 
+/// The `pose` and `velocity` in body axes.
 #[inline(always)]
-fn placed<S: Scalar>(pose: &Pose<S>, velocity: &SVector<S, 6>) -> Placed<S> {
+pub(super) fn placed<S: Scalar>(pose: &Pose<S>, velocity: &SVector<S, 6>) -> Placed<S> {
     let (v_w, rotation_b) = split(velocity);
     let to_body = pose.to_body();
     Placed { displacement_b: to_body.apply(pose.displacement_w), velocity_b: to_body.apply(v_w), rotation_b, to_body }

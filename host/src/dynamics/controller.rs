@@ -15,7 +15,7 @@ use slipfit_core::{
 use super::{
     audit::Auditor,
     error_control::Effort,
-    laws::AnySlide,
+    laws::{AnySlide, SlidingSlide, StickingSlide},
     out_of_line::OutOfLine,
     outcome::{Instant, Observer, Trajectory},
     scheme::{IntegratorVisitor, ScalarKind},
@@ -93,10 +93,14 @@ impl Stepper<'_> {
     fn visit_any<S: Scalar + PartialOrd + std::fmt::Display>(self, slide: AnySlide<S>) -> Result<Run, SimulateError> {
         let integrator = self.spec.integrator;
         match slide {
-            AnySlide::ThreeHalvesRegularised(slide) => integrator.visit(Started { stepper: self, slide }),
-            AnySlide::ThreeHalvesExact(slide) => integrator.visit_implicit(Started { stepper: self, slide }),
-            AnySlide::Sliding(slide) => integrator.visit(Started { stepper: self, slide }),
-            AnySlide::Sticking(slide) => integrator.visit_implicit(Started { stepper: self, slide }),
+            AnySlide::Sliding(SlidingSlide::Usual(slide)) => integrator.visit(Started { stepper: self, slide }),
+            AnySlide::Sliding(SlidingSlide::Chosen(slide)) => integrator.visit(Started { stepper: self, slide }),
+            AnySlide::Sticking(StickingSlide::Usual(slide)) => {
+                integrator.visit_implicit(Started { stepper: self, slide })
+            }
+            AnySlide::Sticking(StickingSlide::Chosen(slide)) => {
+                integrator.visit_implicit(Started { stepper: self, slide })
+            }
         }
     }
 }

@@ -18,12 +18,14 @@ use slipfit_core::{
     slide::{CONTACTS, Slide},
 };
 
+#[cfg(target_arch = "x86_64")]
+use super::abreast::SideBySide;
 use super::{
     driven::Driven,
     error_control::{Knot, Sensitivity, Stopped, Tolerance, integrate, sampled},
-    laws::AnySlide,
+    laws::SlidingSlide,
     looks::{end, looks, samples},
-    out_of_line::OutOfLine,
+    out_of_line::{Contacts, OutOfLine},
     outcome::{Instant, Observer, Trajectory},
     scheme::ScalarKind,
     simulate::{Run, Settings, SimulateError, Solved},
@@ -93,11 +95,8 @@ pub fn seen<'a>(
     tolerance: f64,
     see: Option<See<'a>>,
 ) -> Result<Run, SimulateError> {
-    let mut data = scene.slide_data::<f64>(gaps);
+    let data = scene.slide_data::<f64>(gaps);
     let stick_band = stick_band(scene, tolerance);
-    if let (FrictionData::Exact { coefficient }, Some(stick_band)) = (data.friction, stick_band) {
-        data.friction = FrictionData::Regularised { coefficient, stick_band };
-    }
     let solved = Solved {
         by: "desk",
         integrator: Rodas4::NAME,
@@ -110,11 +109,16 @@ pub fn seen<'a>(
         worst_residual: 0.0,
     };
     let desk = Desk { scene, settings, tolerance: Tolerance::of_force(tolerance), solved, see };
-    Ok(match AnySlide::new(&data)? {
-        AnySlide::ThreeHalvesRegularised(slide) => desk.run(slide),
-        AnySlide::ThreeHalvesExact(slide) => desk.run(slide),
-        AnySlide::Sliding(slide) => desk.run(slide),
-        AnySlide::Sticking(slide) => desk.run(slide),
+    let band = stick_band.unwrap_or(STICK_BAND[1]);
+    Ok(match SlidingSlide::new(&data, band)? {
+        SlidingSlide::Usual(slide) => {
+            #[cfg(target_arch = "x86_64")]
+            if let Some(pins) = SideBySide::new(&data, band) {
+                return Ok(desk.run(&OutOfLine::by(slide, pins))?);
+            }
+            desk.run(&OutOfLine::new(slide))
+        }
+        SlidingSlide::Chosen(slide) => desk.run(&OutOfLine::new(slide)),
     }?)
 }
 
@@ -128,7 +132,11 @@ struct Desk<'a> {
 }
 
 impl Desk<'_> {
-    fn run<E: Elastic<f64>, F: Friction<f64>>(self, slide: Slide<f64, E, F>) -> Result<Run, Stopped> {
+    fn run<E: Elastic<f64>, F: Friction<f64>, C: Contacts<f64, Slide<f64, E, F>, 6>>(
+        self,
+        driven: &OutOfLine<f64, Slide<f64, E, F>, 6, C>,
+    ) -> Result<Run, Stopped> {
+        let slide = driven.mechanism();
         let Self { scene, settings, tolerance, mut solved, mut see } = self;
         let sensitivity = Sensitivity { mass: scene.slide.mass, gain: scene.drive.gain };
         let rest = Motion {
@@ -143,7 +151,7 @@ impl Desk<'_> {
         let start = Clock::now();
         let duration = settings.run.duration;
         let error = |step: &_, length| sensitivity.error(tolerance, step, length);
-        let effort = integrate::<Rodas4, _, 6>(&OutOfLine::new(slide), rest, duration, error, |t, motion| {
+        let effort = integrate::<Rodas4, _, 6>(driven, rest, duration, error, |t, motion| {
             let r = motion.pose.displacement_w;
             knots.push(Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] });
             if let Some(see) = &mut see {

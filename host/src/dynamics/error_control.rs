@@ -209,16 +209,24 @@ struct Cubics<V> {
 impl<V: Values> Cubics<V> {
     /// Between the knots `i` and `i + 1`.
     fn of(knots: &[Knot<V>], i: usize) -> Self {
-        let (from, to) = (knots[i], knots[i + 1]);
-        let length = to.t - from.t;
-        Self {
-            from: from.t,
-            length,
-            start: from.values,
-            end: to.values,
-            start_slope: from.values.with(|k| from.values.rate(k).unwrap_or_else(|| slope(knots, i, i, k)) * length),
-            end_slope: from.values.with(|k| to.values.rate(k).unwrap_or_else(|| slope(knots, i + 1, i, k)) * length),
-        }
+        let chord = |j: usize| {
+            let (from, to) = (knots[j], knots[j + 1]);
+            let length = to.t - from.t;
+            (length, from.values.with(|k| (to.values.get(k) - from.values.get(k)) / length))
+        };
+        let (from, to) = (knots[i].values, knots[i + 1].values);
+        let own @ (length, _) = chord(i);
+        let before = i.checked_sub(1).map(chord);
+        let after = (i + 2 < knots.len()).then(|| chord(i + 1));
+        let of = |k: usize| move |(length, chords): (f64, V)| (length, chords.get(k));
+        let slopes = |at: V, [other, further]: [Option<(f64, V)>; 2]| {
+            from.with(|k| {
+                let known = at.rate(k);
+                known.unwrap_or_else(|| slope(of(k)(own), other.map(of(k)), further.map(of(k)))) * length
+            })
+        };
+        let (start_slope, end_slope) = (slopes(from, [before, after]), slopes(to, [after, before]));
+        Self { from: knots[i].t, length, start: from, end: to, start_slope, end_slope }
     }
 
     /// At time `t` (s).
@@ -239,21 +247,17 @@ pub fn between<V: Values>(knots: &[Knot<V>], i: usize, t: f64) -> V {
 /// values bend, and the slope on one side is no guide to the other.
 const EVENT: f64 = 4.0;
 
-/// Slope of value `k` at knot `i`, an end of the step from knot `of`: that of the parabola through the knot and its neighbours, or,
-/// at an event and at either end, through three knots on the step's own side; of the chord where there are only two.
-fn slope<V: Values>(knots: &[Knot<V>], i: usize, of: usize, k: usize) -> f64 {
-    let length = |j: usize| knots[j + 1].t - knots[j].t;
-    let chord = |j: usize| (knots[j + 1].values.get(k) - knots[j].values.get(k)) / length(j);
-    let last = knots.len() - 2;
-    // The step on the other side of the knot, and the next one on this side.
-    let (other, further) = if i == of { (of.checked_sub(1), Some(of + 1)) } else { (Some(of + 1), of.checked_sub(1)) };
-    let other = other.filter(|j| *j <= last);
-    let further = further.filter(|j| *j <= last);
-    let is_event = other.is_none_or(|j| !(1.0 / EVENT..=EVENT).contains(&(length(j) / length(of))));
+/// The slope at an end of a step whose `own` length and chord are given: that of the parabola through three knots, the one in
+/// the middle there, if the `other` step beyond is known; at an event and where there is none, that of the parabola through
+/// three knots on the step's own side; of the chord where there are only two.
+fn slope((length, own): (f64, f64), other: Option<(f64, f64)>, further: Option<(f64, f64)>) -> f64 {
+    let goes_on = |beyond: f64| beyond <= EVENT * length && length <= EVENT * beyond;
     match (other, further) {
-        (_, Some(j)) if is_event => chord(of) + (chord(of) - chord(j)) * length(of) / (length(j) + length(of)),
-        (Some(j), _) => (chord(j) * length(of) + chord(of) * length(j)) / (length(j) + length(of)),
-        _ => chord(of),
+        (Some((beyond, chord)), _) if further.is_none() || goes_on(beyond) => {
+            (chord * length + own * beyond) / (beyond + length)
+        }
+        (_, Some((beyond, chord))) => own + (own - chord) * length / (beyond + length),
+        _ => own,
     }
 }
 

@@ -145,18 +145,74 @@ impl<S: Scalar> Friction<S> for AnySliding<S> {
     fn or_old((): &(), _: S, (): &()) {}
 }
 
-/// A slide whose laws were chosen at run time. The exponent 3/2 has types of its own, as fast as firmware's: a choice within
-/// each contact makes a step more than twice as slow.
+/// A slide without true stick, whose laws were chosen at run time. The paper's laws have a type of their own, as fast as
+/// firmware's: a choice within each contact makes a step more than twice as slow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SlidingSlide<S> {
+    /// The paper's laws: exponent 3/2, regularised Coulomb friction.
+    Usual(Slide<S, ThreeHalves<S>, Regularised<S>>),
+    /// Any others.
+    Chosen(Slide<S, AnyElastic<S>, AnySliding<S>>),
+}
+
+/// A slide with true stick, likewise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StickingSlide<S> {
+    /// Exponent 3/2.
+    Usual(Slide<S, ThreeHalves<S>, Exact<S>>),
+    /// Any other.
+    Chosen(Slide<S, AnyElastic<S>, Exact<S>>),
+}
+
+/// A slide whose laws were chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AnySlide<S> {
-    /// Exponent 3/2, regularised Coulomb friction.
-    ThreeHalvesRegularised(Slide<S, ThreeHalves<S>, Regularised<S>>),
-    /// Exponent 3/2, exact Coulomb friction.
-    ThreeHalvesExact(Slide<S, ThreeHalves<S>, Exact<S>>),
-    /// Friction without internal variables.
-    Sliding(Slide<S, AnyElastic<S>, AnySliding<S>>),
-    /// Exact Coulomb friction.
-    Sticking(Slide<S, AnyElastic<S>, Exact<S>>),
+    /// Without true stick.
+    Sliding(SlidingSlide<S>),
+    /// With true stick.
+    Sticking(StickingSlide<S>),
+}
+
+impl<S: Scalar + PartialOrd> SlidingSlide<S> {
+    /// The slide that `data` describes, true stick stood for by a `stick_band` (m/s).
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    pub fn new(data: &SlideData<S>, stick_band: S) -> Result<Self, ParameterError<S>> {
+        let SlideData { body, contact, friction, drive } = *data;
+        let friction = match (friction.friction_type(), friction) {
+            (FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
+                AnySliding::Regularised(Regularised::new(coefficient, stick_band)?)
+            }
+            (FrictionType::Exact, FrictionData::Exact { coefficient }) => {
+                AnySliding::Regularised(Regularised::new(coefficient, stick_band)?)
+            }
+            _ => AnySliding::Frictionless,
+        };
+        Ok(match (AnyElastic::new(&contact)?, friction) {
+            (AnyElastic::ThreeHalves(elastic), AnySliding::Regularised(friction)) => {
+                Self::Usual(Slide::new(body, normal(elastic, &contact)?, friction, drive)?)
+            }
+            (elastic, friction) => Self::Chosen(Slide::new(body, normal(elastic, &contact)?, friction, drive)?),
+        })
+    }
+}
+
+impl<S: Scalar + PartialOrd> StickingSlide<S> {
+    /// The slide that `data` describes, with true stick of this `coefficient`.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    fn new(data: &SlideData<S>, coefficient: S) -> Result<Self, ParameterError<S>> {
+        let SlideData { body, contact, drive, .. } = *data;
+        let friction = Exact::new(coefficient)?;
+        Ok(match AnyElastic::new(&contact)? {
+            AnyElastic::ThreeHalves(elastic) => {
+                Self::Usual(Slide::new(body, normal(elastic, &contact)?, friction, drive)?)
+            }
+            elastic => Self::Chosen(Slide::new(body, normal(elastic, &contact)?, friction, drive)?),
+        })
+    }
 }
 
 impl<S: Scalar + PartialOrd> AnySlide<S> {
@@ -165,32 +221,35 @@ impl<S: Scalar + PartialOrd> AnySlide<S> {
     /// # Errors
     /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
     pub fn new(data: &SlideData<S>) -> Result<Self, ParameterError<S>> {
-        let SlideData { body, contact, friction, drive } = *data;
-        let elastic = AnyElastic::new(&contact)?;
-        if let AnyElastic::ThreeHalves(elastic) = elastic {
-            let normal = Impact::new(elastic, contact.damping, contact.depth)?;
-            match (friction.friction_type(), friction) {
-                (FrictionType::Exact, FrictionData::Exact { coefficient }) => {
-                    let slide = Slide::new(body, normal, Exact::new(coefficient)?, drive)?;
-                    return Ok(Self::ThreeHalvesExact(slide));
-                }
-                (FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
-                    let slide = Slide::new(body, normal, Regularised::new(coefficient, stick_band)?, drive)?;
-                    return Ok(Self::ThreeHalvesRegularised(slide));
-                }
-                _ => {}
-            }
-        }
-        let normal = Impact::new(elastic, contact.damping, contact.depth)?;
-        Ok(match (friction.friction_type(), friction) {
+        match (data.friction.friction_type(), data.friction) {
             (FrictionType::Exact, FrictionData::Exact { coefficient }) => {
-                Self::Sticking(Slide::new(body, normal, Exact::new(coefficient)?, drive)?)
+                Ok(Self::Sticking(StickingSlide::new(data, coefficient)?))
             }
-            (FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
-                let friction = AnySliding::Regularised(Regularised::new(coefficient, stick_band)?);
-                Self::Sliding(Slide::new(body, normal, friction, drive)?)
-            }
-            _ => Self::Sliding(Slide::new(body, normal, AnySliding::Frictionless, drive)?),
-        })
+            _ => Ok(Self::Sliding(SlidingSlide::new(data, S::one())?)),
+        }
+    }
+}
+
+/// The law along the normal with this spring and the damper of `contact`.
+fn normal<S: Scalar + PartialOrd, E: Elastic<S>>(
+    elastic: E,
+    contact: &ContactData<S>,
+) -> Result<Impact<S, E>, ParameterError<S>> {
+    Impact::new(elastic, contact.damping, contact.depth)
+}
+
+/// The slide of `data` if it has the paper's laws. `None` if it has others, or is out of bounds.
+pub fn usual<S: Scalar + PartialOrd>(data: &SlideData<S>) -> Option<Slide<S, ThreeHalves<S>, Regularised<S>>> {
+    match AnySlide::new(data) {
+        Ok(AnySlide::Sliding(SlidingSlide::Usual(slide))) => Some(slide),
+        _ => None,
+    }
+}
+
+/// The slide of `data` if it has other laws, but no true stick: chosen in each contact, at more time. `None` likewise.
+pub fn chosen<S: Scalar + PartialOrd>(data: &SlideData<S>) -> Option<Slide<S, AnyElastic<S>, AnySliding<S>>> {
+    match AnySlide::new(data) {
+        Ok(AnySlide::Sliding(SlidingSlide::Chosen(slide))) => Some(slide),
+        _ => None,
     }
 }

@@ -1,5 +1,7 @@
 //! What one unit does when it is driven: its run by the desk and by the controller, and sweeps over tolerance levels.
 
+#[cfg(target_arch = "x86_64")]
+pub mod abreast;
 pub mod answer;
 pub mod audit;
 pub mod confirm;
@@ -15,6 +17,7 @@ pub(crate) mod laws;
 pub(crate) mod looks;
 pub mod out_of_line;
 pub mod outcome;
+pub mod pack;
 pub mod scheme;
 pub mod simulate;
 pub mod sweep;

@@ -12,9 +12,68 @@ use slipfit_core::{
     mechanism::{Differentiated, Linearised, Mechanism},
 };
 
+/// How the forces of a mechanism `M` are computed.
+pub trait Contacts<S: Scalar, M: Mechanism<S, D>, const D: usize> {
+    /// As [`Mechanism::forces`].
+    #[expect(clippy::too_many_arguments, reason = "those of the mechanism")]
+    fn forces(
+        &self,
+        mechanism: &M,
+        t: S,
+        pose: &M::Pose,
+        memory: &M::Memory,
+        velocity: &SVector<S, D>,
+        a: S,
+        remembered: Option<&mut M::Memory>,
+    ) -> SVector<S, D>;
+
+    /// As [`Mechanism::differentiated`].
+    fn differentiated(
+        &self,
+        mechanism: &M,
+        t: S,
+        pose: &M::Pose,
+        memory: &M::Memory,
+        velocity: &SVector<S, D>,
+    ) -> Differentiated<S, M::Slopes, D>;
+}
+
+/// One contact after the other, as the mechanism does it.
+#[derive(Clone, Copy, Debug)]
+pub struct InTurn;
+
+impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Contacts<S, M, D> for InTurn {
+    #[inline(always)]
+    fn forces(
+        &self,
+        mechanism: &M,
+        t: S,
+        pose: &M::Pose,
+        memory: &M::Memory,
+        velocity: &SVector<S, D>,
+        a: S,
+        remembered: Option<&mut M::Memory>,
+    ) -> SVector<S, D> {
+        mechanism.forces(t, pose, memory, velocity, a, remembered)
+    }
+
+    #[inline(always)]
+    fn differentiated(
+        &self,
+        mechanism: &M,
+        t: S,
+        pose: &M::Pose,
+        memory: &M::Memory,
+        velocity: &SVector<S, D>,
+    ) -> Differentiated<S, M::Slopes, D> {
+        mechanism.differentiated(t, pose, memory, velocity)
+    }
+}
+
 /// The mechanism `M`, its forces out of line.
-pub struct OutOfLine<S: Scalar, M: Mechanism<S, D>, const D: usize> {
+pub struct OutOfLine<S: Scalar, M: Mechanism<S, D>, const D: usize, C = InTurn> {
     mechanism: M,
+    contacts: C,
     last: RefCell<Option<Last<S, M, D>>>,
 }
 
@@ -29,7 +88,14 @@ struct Last<S: Scalar, M: Mechanism<S, D>, const D: usize> {
 impl<S: Scalar, M: Mechanism<S, D>, const D: usize> OutOfLine<S, M, D> {
     /// `mechanism`, its laws without internal variables where it is differentiated.
     pub fn new(mechanism: M) -> Self {
-        Self { mechanism, last: RefCell::new(None) }
+        Self::by(mechanism, InTurn)
+    }
+}
+
+impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> OutOfLine<S, M, D, C> {
+    /// The same, with what computes its contacts.
+    pub fn by(mechanism: M, contacts: C) -> Self {
+        Self { mechanism, contacts, last: RefCell::new(None) }
     }
 
     /// The mechanism.
@@ -38,7 +104,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> OutOfLine<S, M, D> {
     }
 }
 
-impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLine<S, M, D> {
+impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechanism<S, D> for OutOfLine<S, M, D, C> {
     type Pose = M::Pose;
     type Memory = M::Memory;
     type Linearisation = M::Linearisation;
@@ -102,7 +168,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLin
         a: S,
         remembered: Option<&mut M::Memory>,
     ) -> SVector<S, D> {
-        self.mechanism.forces(t, pose, memory, velocity, a, remembered)
+        self.contacts.forces(&self.mechanism, t, pose, memory, velocity, a, remembered)
     }
 
     #[inline(never)]
@@ -145,7 +211,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Mechanism<S, D> for OutOfLin
         {
             return last.found;
         }
-        let found = self.mechanism.differentiated(t, pose, memory, velocity);
+        let found = self.contacts.differentiated(&self.mechanism, t, pose, memory, velocity);
         *last = Some(Last { t, pose: *pose, velocity: *velocity, found });
         found
     }

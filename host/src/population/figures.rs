@@ -3,8 +3,10 @@
 use pulp::Simd;
 use slipfit_core::{Scalar, slide::CONTACTS};
 
-use super::pack::Pack;
-use crate::dynamics::outcome::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled};
+use crate::dynamics::{
+    outcome::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled},
+    pack::Pack,
+};
 
 /// Figures of one unit, in SI units. Speeds, forces and travel count along the commanded direction.
 #[derive(Clone, Copy, Debug, PartialEq)]

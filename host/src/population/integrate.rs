@@ -17,12 +17,12 @@ use slipfit_core::{
 use crate::dynamics::{
     error_control::{CHANGES, FIRST_STEP, GREATEST_STEP, PLACE, SAFETY},
     out_of_line::OutOfLine,
+    pack::Pack,
 };
 
 use super::{
     figures::{Ends, Figures, Watch},
     lane::{Motions, at_rest, numbers, put},
-    pack::Pack,
 };
 
 /// What all units are simulated for.

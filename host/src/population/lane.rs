@@ -9,7 +9,7 @@ use slipfit_core::{
     slide::SLOTS,
 };
 
-use super::pack::Pack;
+use crate::dynamics::pack::Pack;
 
 /// The motions of as many slides as a pack has lanes.
 pub type Motions<V> = Motion<Pack<V>, Pose<Pack<V>>, [(); SLOTS], 6>;

@@ -9,9 +9,7 @@ pub mod finding;
 pub mod hypothesis;
 mod integrate;
 mod lane;
-mod laws;
 pub mod limit_state;
-mod pack;
 pub mod part;
 pub mod picture;
 pub mod production;
@@ -27,7 +25,7 @@ use rayon::prelude::*;
 use slipfit_core::{menu::SlideData, slide::CONTACTS};
 
 use crate::{
-    dynamics::{out_of_line::OutOfLine, simulate::SimulateError},
+    dynamics::{laws, out_of_line::OutOfLine, pack::Pack, simulate::SimulateError},
     scene::Scene,
     system::interrupt,
 };
@@ -38,7 +36,6 @@ mod tests;
 pub use figures::Figures;
 pub use integrate::Course;
 use integrate::integrate;
-use pack::Pack;
 use production::{Drawn, Production};
 pub use unit::UnitOutcome;
 

@@ -239,7 +239,9 @@ fn a_slot_that_cannot_be_read_holds_nothing() {
 fn every_length<const WORD: usize>() {
     let table = numbered(1, 4);
     let least = least(WORD, &table);
-    for length in (0..least + 3 * WORD + 40).step_by(WORD) {
+    // An interpreter has time for the lengths about the least only.
+    let (first, beyond) = if cfg!(miri) { (least - 2 * WORD, WORD + 1) } else { (0, 3 * WORD + 40) };
+    for length in (first..least + beyond).step_by(WORD) {
         let mut flash = Flash::<WORD>::new(length, true, 1);
         if length < table.len() {
             assert!(flash.newest().is_err() && flash.update(&numbered(2, 4)).is_ok(), "{length}");
@@ -273,10 +275,12 @@ fn every_length<const WORD: usize>() {
 #[test]
 fn slots_of_every_length() {
     every_length::<1>();
-    every_length::<2>();
-    every_length::<4>();
-    every_length::<8>();
-    every_length::<16>();
+    if !cfg!(miri) {
+        every_length::<2>();
+        every_length::<4>();
+        every_length::<8>();
+        every_length::<16>();
+    }
     every_length::<32>();
 }
 

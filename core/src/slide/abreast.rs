@@ -1,0 +1,106 @@
+//! The four pins side by side: where a number is a lane of four, contacts take the time of one pin.
+//!
+//! For desks, whose processors have such lanes. The bits are those of one pin after the other.
+
+use super::{
+    PINS, SLOTS, Slide,
+    contacts::{Placed, Response},
+    mechanics::{Slopes, placed},
+};
+use crate::{
+    SVector, Scalar,
+    law::{Elastic, Friction},
+    mechanism::{Differentiated, Way},
+    menu::SlideData,
+    pose::Pose,
+    product::mapped,
+};
+
+/// Numbers `S` side by side, one for each pin.
+pub trait Lanes<S>: Scalar {
+    /// The `numbers`, each in its lane.
+    fn of(numbers: [S; PINS]) -> Self;
+
+    /// The sum over the lanes, from the first to the last.
+    fn sum(self) -> S;
+}
+
+/// `number` in every lane.
+#[inline(always)]
+fn everywhere<S: Copy, L: Lanes<S>>(number: S) -> L {
+    L::of([number; PINS])
+}
+
+/// The pins of a slide side by side, with its contact laws.
+#[derive(Clone, Copy, Debug)]
+pub struct Abreast<L, E, F> {
+    /// Its first pin has each of the pins in a lane.
+    lanes: Slide<L, E, F>,
+}
+
+/// What a slide of lanes is to be made of for [`Abreast::new`]: the parameters of `slide` in every lane, and all pins, each in
+/// its lane, in place of the first.
+pub fn abreast<S: Scalar, L: Lanes<S>>(slide: &SlideData<S>) -> SlideData<L> {
+    let mut lanes = slide.cast(everywhere);
+    let SlideData { body, .. } = slide;
+    for (axis, place) in lanes.body.pins_w[0].iter_mut().enumerate() {
+        *place = L::of(body.pins_w.map(|pin| pin.data.0[0][axis]));
+    }
+    let pins = body.gaps.as_chunks::<4>().0;
+    for (contact, gap) in lanes.body.gaps.iter_mut().take(4).enumerate() {
+        *gap = L::of([pins[0][contact], pins[1][contact], pins[2][contact], pins[3][contact]]);
+    }
+    lanes
+}
+
+impl<L, E: Elastic<L>, F: Friction<L, Memory = ()>> Abreast<L, E, F> {
+    /// From the slide whose parameters are those of [`abreast`].
+    pub fn new(lanes: Slide<L, E, F>) -> Self {
+        Self { lanes }
+    }
+
+    /// What happens at each pin, in its lane, of a slide that is and moves as `at`.
+    #[inline(always)]
+    fn response<S: Scalar>(&self, at: &Placed<S>, way: Way<L>) -> Response<L>
+    where
+        L: Lanes<S>,
+    {
+        let mut response = Response::none();
+        if let Some(pin) = self.lanes.pins(&[(); SLOTS]).next() {
+            response.add(&self.lanes.at_pin(&at.cast(everywhere), pin, way));
+        }
+        response
+    }
+}
+
+impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
+    /// [`Mechanism::forces`](crate::mechanism::Mechanism::forces) with its `pins` side by side.
+    #[inline(always)]
+    pub fn forces_abreast<L: Lanes<S>, EL: Elastic<L>, FL: Friction<L, Memory = ()>>(
+        &self,
+        pins: &Abreast<L, EL, FL>,
+        t: S,
+        pose: &Pose<S>,
+        velocity: &SVector<S, 6>,
+    ) -> SVector<S, 6> {
+        let at = placed(pose, velocity);
+        // No derivatives are taken, and there is no memory: whatever stands for the step.
+        let way = Way { a: L::one(), mass_rate: L::one(), tangent_share: L::one() };
+        let Response { force, torque, .. } = pins.response(&at, way);
+        self.balance(t, &at, (mapped(&force, L::sum), mapped(&torque, L::sum)), velocity.z)
+    }
+
+    /// [`Mechanism::differentiated`](crate::mechanism::Mechanism::differentiated) with its `pins` side by side.
+    #[inline(always)]
+    pub fn differentiated_abreast<L: Lanes<S>, EL: Elastic<L>, FL: Friction<L, Memory = ()>>(
+        &self,
+        pins: &Abreast<L, EL, FL>,
+        t: S,
+        pose: &Pose<S>,
+        velocity: &SVector<S, 6>,
+    ) -> Differentiated<S, Slopes<S>, 6> {
+        let at = placed(pose, velocity);
+        let way = Way { a: L::zero(), mass_rate: L::zero(), tangent_share: L::one() };
+        self.completed(t, &at, pins.response(&at, way).cast(L::sum), velocity.z)
+    }
+}

@@ -1,0 +1,474 @@
+//! Several numbers as one, in a vector register of the machine: a step of the kernel moves as many units at a time, or the desk
+//! sees the pins of a slide side by side.
+//!
+//! Every operation is done number by number, so that the bits in a lane depend neither on its neighbours nor on how many there
+//! are, nor on the instructions that compute them.
+
+use std::{
+    ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign},
+    ptr::NonNull,
+};
+
+use num_traits::{One, Zero};
+use pulp::{
+    Simd,
+    bytemuck::{self, Pod},
+};
+use slipfit_core::{Scalar, power, slide::Lanes};
+
+/// A number that registers hold.
+pub trait Number: Scalar + PartialOrd + Pod {
+    /// A register of the instructions `V`.
+    type Register<V: Simd>: Pod + std::fmt::Debug + Send + Sync;
+
+    /// `x` in every lane.
+    fn splat<V: Simd>(instructions: V, x: Self) -> Self::Register<V>;
+    /// x + y.
+    fn sum<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
+    /// x − y.
+    fn difference<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
+    /// x·y.
+    fn product<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
+    /// x/y.
+    fn quotient<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
+    /// −x.
+    fn negated<V: Simd>(instructions: V, x: Self::Register<V>) -> Self::Register<V>;
+    /// The first of `chosen` where x > y, else the second.
+    fn chosen<V: Simd>(
+        instructions: V,
+        x: Self::Register<V>,
+        y: Self::Register<V>,
+        chosen: [Self::Register<V>; 2],
+    ) -> Self::Register<V>;
+    /// As [`Scalar::rsqrt`].
+    fn reciprocal_root<V: Simd>(x: Pack<V, Self>) -> Pack<V, Self>;
+    /// As [`Scalar::sqrt`].
+    fn root<V: Simd>(x: Pack<V, Self>) -> Pack<V, Self>;
+}
+
+/// As many numbers `T` as a register of the instructions `V` holds. A comparison holds if it holds for all of them.
+///
+/// Only what was given a `V` may name `Pack<V>`: with a `V` comes the knowledge that the machine has its instructions.
+#[derive(Clone, Copy, Debug)]
+pub struct Pack<V: Simd, T: Number = f32>(T::Register<V>);
+
+/// The instructions themselves, for operators and constants, which have no argument that could bring them.
+#[expect(unsafe_code, reason = "operators are not handed the proof that the machine has their instructions")]
+#[inline(always)]
+fn instructions<V: Simd>() -> V {
+    const { assert!(size_of::<V>() == 0, "a proof has no bytes") };
+    // SAFETY: a value without bytes can be read from any aligned address. That there may be one follows from the rule above:
+    // packs are made by what was given a `V`.
+    unsafe { NonNull::<V>::dangling().read() }
+}
+
+impl Number for f32 {
+    type Register<V: Simd> = V::f32s;
+
+    #[inline(always)]
+    fn splat<V: Simd>(v: V, x: f32) -> V::f32s {
+        v.splat_f32s(x)
+    }
+
+    #[inline(always)]
+    fn sum<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
+        v.add_f32s(x, y)
+    }
+
+    #[inline(always)]
+    fn difference<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
+        v.sub_f32s(x, y)
+    }
+
+    #[inline(always)]
+    fn product<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
+        v.mul_f32s(x, y)
+    }
+
+    #[inline(always)]
+    fn quotient<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
+        v.div_f32s(x, y)
+    }
+
+    #[inline(always)]
+    fn negated<V: Simd>(v: V, x: V::f32s) -> V::f32s {
+        v.neg_f32s(x)
+    }
+
+    #[inline(always)]
+    fn chosen<V: Simd>(v: V, x: V::f32s, y: V::f32s, [yes, no]: [V::f32s; 2]) -> V::f32s {
+        v.select_f32s(v.less_than_f32s(y, x), yes, no)
+    }
+
+    #[inline(always)]
+    fn reciprocal_root<V: Simd>(x: Pack<V, f32>) -> Pack<V, f32> {
+        let v = instructions::<V>();
+        let bits = v.wrapping_dyn_shr_u32s(v.transmute_u32s_f32s(x.0), v.splat_u32s(1));
+        let guess = Pack(v.transmute_f32s_u32s(v.sub_u32s(v.splat_u32s(power::RSQRT_BITS), bits)));
+        power::refined_rsqrt(x, guess)
+    }
+
+    #[inline(always)]
+    fn root<V: Simd>(x: Pack<V, f32>) -> Pack<V, f32> {
+        x * x.rsqrt()
+    }
+}
+
+impl Number for f64 {
+    type Register<V: Simd> = V::f64s;
+
+    #[inline(always)]
+    fn splat<V: Simd>(v: V, x: f64) -> V::f64s {
+        v.splat_f64s(x)
+    }
+
+    #[inline(always)]
+    fn sum<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
+        v.add_f64s(x, y)
+    }
+
+    #[inline(always)]
+    fn difference<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
+        v.sub_f64s(x, y)
+    }
+
+    #[inline(always)]
+    fn product<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
+        v.mul_f64s(x, y)
+    }
+
+    #[inline(always)]
+    fn quotient<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
+        v.div_f64s(x, y)
+    }
+
+    #[inline(always)]
+    fn negated<V: Simd>(v: V, x: V::f64s) -> V::f64s {
+        v.neg_f64s(x)
+    }
+
+    #[inline(always)]
+    fn chosen<V: Simd>(v: V, x: V::f64s, y: V::f64s, [yes, no]: [V::f64s; 2]) -> V::f64s {
+        v.select_f64s(v.less_than_f64s(y, x), yes, no)
+    }
+
+    #[inline(always)]
+    fn reciprocal_root<V: Simd>(x: Pack<V, f64>) -> Pack<V, f64> {
+        Pack::splat(1.0) / x.sqrt()
+    }
+
+    #[inline(always)]
+    fn root<V: Simd>(x: Pack<V, f64>) -> Pack<V, f64> {
+        Pack(instructions::<V>().sqrt_f64s(x.0))
+    }
+}
+
+/// The four pins of a slide.
+#[cfg(target_arch = "x86_64")]
+impl Lanes<f64> for Pack<pulp::x86::V3, f64> {
+    #[inline(always)]
+    fn of(numbers: [f64; 4]) -> Self {
+        Self(bytemuck::cast(numbers))
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        let [a, b, c, d]: [f64; 4] = bytemuck::cast(self.0);
+        a + b + c + d
+    }
+}
+
+impl<V: Simd, T: Number> Pack<V, T> {
+    /// How many numbers there are.
+    pub const LANES: usize = size_of::<T::Register<V>>() / size_of::<T>();
+
+    /// `x` in every lane.
+    #[inline(always)]
+    pub fn splat(x: T) -> Self {
+        Self(T::splat(instructions::<V>(), x))
+    }
+
+    /// The number in each lane.
+    #[inline(always)]
+    pub fn numbers(&self) -> &[T] {
+        bytemuck::cast_slice(std::slice::from_ref(&self.0))
+    }
+
+    /// The number in each lane.
+    #[inline(always)]
+    pub fn numbers_mut(&mut self) -> &mut [T] {
+        bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.0))
+    }
+
+    /// The number in a `lane`.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> T {
+        self.numbers()[lane]
+    }
+
+    /// Puts `x` into a `lane`.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, x: T) {
+        self.numbers_mut()[lane] = x;
+    }
+
+    fn all(&self, other: &Self, holds: impl Fn(&T, &T) -> bool) -> bool {
+        self.numbers().iter().zip(other.numbers()).all(|(x, y)| holds(x, y))
+    }
+}
+
+impl<V: Simd, T: Number> Default for Pack<V, T> {
+    fn default() -> Self {
+        Self::splat(T::zero())
+    }
+}
+
+impl<V: Simd, T: Number> Add for Pack<V, T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(T::sum(instructions::<V>(), self.0, other.0))
+    }
+}
+
+impl<V: Simd, T: Number> Sub for Pack<V, T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(T::difference(instructions::<V>(), self.0, other.0))
+    }
+}
+
+impl<V: Simd, T: Number> Mul for Pack<V, T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(T::product(instructions::<V>(), self.0, other.0))
+    }
+}
+
+impl<V: Simd, T: Number> Div for Pack<V, T> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self(T::quotient(instructions::<V>(), self.0, other.0))
+    }
+}
+
+impl<V: Simd, T: Number> Neg for Pack<V, T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(T::negated(instructions::<V>(), self.0))
+    }
+}
+
+impl<V: Simd, T: Number> AddAssign for Pack<V, T> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<V: Simd, T: Number> SubAssign for Pack<V, T> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<V: Simd, T: Number> MulAssign for Pack<V, T> {
+    #[inline(always)]
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl<V: Simd, T: Number> DivAssign for Pack<V, T> {
+    #[inline(always)]
+    fn div_assign(&mut self, other: Self) {
+        *self = *self / other;
+    }
+}
+
+impl<V: Simd, T: Number> Zero for Pack<V, T> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::splat(T::zero())
+    }
+
+    fn is_zero(&self) -> bool {
+        *self == Self::splat(T::zero())
+    }
+}
+
+impl<V: Simd, T: Number> One for Pack<V, T> {
+    #[inline(always)]
+    fn one() -> Self {
+        Self::splat(T::one())
+    }
+}
+
+impl<V: Simd, T: Number> PartialEq for Pack<V, T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.all(other, T::eq)
+    }
+}
+
+impl<V: Simd, T: Number> PartialOrd for Pack<V, T> {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        use std::cmp::Ordering::{Equal, Greater, Less};
+        let holds = |ordering: &std::cmp::Ordering| self.all(other, |x, y| x.partial_cmp(y) == Some(*ordering));
+        [Less, Equal, Greater].into_iter().find(holds)
+    }
+
+    fn lt(&self, other: &Self) -> bool {
+        self.all(other, T::lt)
+    }
+
+    fn le(&self, other: &Self) -> bool {
+        self.all(other, T::le)
+    }
+
+    fn gt(&self, other: &Self) -> bool {
+        self.all(other, T::gt)
+    }
+
+    fn ge(&self, other: &Self) -> bool {
+        self.all(other, T::ge)
+    }
+}
+
+impl<V: Simd, T: Number> Scalar for Pack<V, T> {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        Self::splat(T::from_f64(value))
+    }
+
+    /// The least of the numbers.
+    fn to_f64(self) -> f64 {
+        self.numbers().iter().fold(f64::INFINITY, |least, x| least.min(x.to_f64()))
+    }
+
+    #[inline(always)]
+    fn from_count(count: u32) -> Self {
+        Self::splat(T::from_count(count))
+    }
+
+    #[inline(always)]
+    fn from_word(word: u64) -> Self {
+        Self::splat(T::from_word(word))
+    }
+
+    #[inline(always)]
+    fn select_gt(self, other: Self, yes: Self, no: Self) -> Self {
+        Self(T::chosen(instructions::<V>(), self.0, other.0, [yes.0, no.0]))
+    }
+
+    #[inline(always)]
+    fn rsqrt(self) -> Self {
+        T::reciprocal_root(self)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        T::root(self)
+    }
+
+    #[inline(always)]
+    fn pow(self, exponent: Self) -> Self {
+        let mut result = self;
+        for (x, y) in result.numbers_mut().iter_mut().zip(exponent.numbers()) {
+            *x = x.pow(*y);
+        }
+        result
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        let mut result = self;
+        for x in result.numbers_mut() {
+            *x = x.ln();
+        }
+        result
+    }
+
+    fn is_finite(self) -> bool {
+        self.numbers().iter().all(|x| x.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pack;
+    use pulp::{Simd, WithSimd};
+    use slipfit_core::Scalar;
+
+    /// The bits of what operations give that are done on several numbers at once.
+    struct Operations;
+
+    /// Numbers to work on.
+    const NUMBERS: [f32; 8] = [0.3, 7.25, 1e-7, 4e5, 1.0, 0.999, 12.0, 3e-3];
+
+    impl WithSimd for Operations {
+        type Output = Vec<[f32; 7]>;
+
+        fn with_simd<V: Simd>(self, _: V) -> Vec<[f32; 7]> {
+            let lanes = Pack::<V>::LANES;
+            let mut x = Pack::<V>::splat(0.0);
+            (0..lanes).for_each(|lane| x.set(lane, NUMBERS[lane % 8]));
+            let y = Pack::splat(1.7);
+            let found = [x + y, x - y, x / y, x.rsqrt(), x.sqrt(), x.pow(y), x.select_gt(y, -x, x * y)]
+                .map(|pack| pack.numbers().to_vec());
+            (0..lanes).map(|lane| std::array::from_fn(|i| found[i][lane])).collect()
+        }
+    }
+
+    /// What `work` gives by every kind of instructions that the machine has, and by single numbers.
+    fn by_all<T>(work: impl Fn() -> T) -> Vec<T::Output>
+    where
+        T: WithSimd,
+    {
+        let mut all = vec![Simd::vectorize(pulp::Scalar, work())];
+        #[cfg(target_arch = "x86_64")]
+        {
+            all.extend(pulp::x86::V3::try_new().map(|avx2| Simd::vectorize(avx2, work())));
+            all.extend(pulp::x86::V4::try_new().map(|avx512| Simd::vectorize(avx512, work())));
+        }
+        all
+    }
+
+    #[test]
+    fn every_lane_has_the_bits_of_a_number_alone() {
+        for found in by_all(|| Operations) {
+            for (lane, found) in found.into_iter().enumerate() {
+                let x = NUMBERS[lane % 8];
+                let chosen = if x > 1.7 { -x } else { x * 1.7 };
+                let alone = [x + 1.7, x - 1.7, x / 1.7, Scalar::rsqrt(x), Scalar::sqrt(x), Scalar::pow(x, 1.7), chosen];
+                assert_eq!(found.map(f32::to_bits), alone.map(f32::to_bits));
+            }
+        }
+    }
+
+    /// Comparisons of a pack whose first number is 1 and whose others are 3, and the least of its numbers.
+    struct Comparisons;
+
+    impl WithSimd for Comparisons {
+        type Output = Option<([bool; 4], [bool; 2], f64)>;
+
+        fn with_simd<V: Simd>(self, _: V) -> Self::Output {
+            let mut mixed = Pack::<V>::splat(3.0);
+            mixed.set(0, 1.0);
+            let [one, two, three] = [1.0, 2.0, 3.0].map(Pack::splat);
+            let within = [mixed >= one, mixed <= three];
+            (Pack::<V>::LANES > 1)
+                .then(|| ([mixed > two, mixed < two, mixed >= two, mixed <= two], within, mixed.to_f64()))
+        }
+    }
+
+    #[test]
+    fn a_comparison_holds_if_it_holds_everywhere() {
+        let found: Vec<_> = by_all(|| Comparisons).into_iter().flatten().collect();
+        assert!(found.iter().all(|found| *found == ([false; 4], [true; 2], 1.0)), "{found:?}");
+    }
+}
