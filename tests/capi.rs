@@ -6,7 +6,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     process::Command,
-    sync::LazyLock,
+    sync::{LazyLock, Mutex},
 };
 
 use slipfit::{
@@ -53,11 +53,18 @@ static HEADERS: LazyLock<PathBuf> = LazyLock::new(|| {
     folder
 });
 
-/// The library, built with `options`.
-fn library(options: &[&str]) -> PathBuf {
-    printed(cargo(FOLDER).args(["build", "--release", "-p", "slipfit-capi"]).args(options));
+/// The library, built with the arguments `build` of Cargo and kept as `name`: the builds share what they depend on, and each
+/// would overwrite the one before.
+fn library(name: &str, build: &[&str]) -> PathBuf {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _building = ONE_AT_A_TIME.lock();
+    let (command, options) = build.split_first().expect("a command");
+    printed(cargo(FOLDER).args([command, "--release", "-p", "slipfit-capi"]).args(options));
     let target = if options.contains(&TARGET) { TARGET } else { "" };
-    Path::new(FOLDER).join("cross").join(target).join("release/libslipfit_capi.a")
+    let built = Path::new(FOLDER).join("cross").join(target).join("release/libslipfit_capi.a");
+    let kept = Path::new(FOLDER).join(format!("libslipfit_capi-{name}.a"));
+    fs::copy(built, &kept).expect("the test's folder takes files");
+    kept
 }
 
 /// A C compiler that finds every header.
@@ -84,7 +91,7 @@ fn compiler_for_target(image: &Path) -> Command {
 static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
     cross::require_target();
     let image = Path::new(FOLDER).join("capi.elf");
-    let library = library(&["--target", TARGET]);
+    let library = library("target", &["build", "--target", TARGET]);
     printed(compiler_for_target(&image).arg(library).arg("-lgcc"));
     image
 });
@@ -100,7 +107,7 @@ fn on_host(name: &str, library: &Path) -> String {
 
 #[test]
 fn the_same_bits_from_c_on_host_and_target_and_from_rust() {
-    let on_host = on_host("capi-program", &library(&[]));
+    let on_host = on_host("capi-program", &library("host", &["build"]));
     let expected = in_rust();
     assert!(on_host.starts_with(&expected), "C on the left, Rust on the right:\n{on_host}\n{expected}");
 
@@ -118,17 +125,18 @@ fn the_same_bits_from_c_on_host_and_target_and_from_rust() {
 /// Neither what the compiler optimises nor what the processor offers, fused multiply-add for one, changes a bit.
 #[test]
 fn the_same_bits_at_every_optimisation_and_for_every_processor() {
-    let baseline = on_host("capi-program-baseline", &library(&[]));
-    for (name, variable, value) in [
-        ("unoptimised", "CARGO_PROFILE_RELEASE_OPT_LEVEL", "0"),
-        ("small", "CARGO_PROFILE_RELEASE_OPT_LEVEL", "s"),
-        ("native", "CARGO_ENCODED_RUSTFLAGS", "-Ctarget-cpu=native"),
+    let baseline = on_host("capi-program-baseline", &library("baseline", &["build"]));
+    let level = |level: &str| {
+        ["slipfit-capi", "slipfit-core"]
+            .map(|package| format!("--config=profile.release.package.{package}.opt-level={level}"))
+    };
+    let (unoptimised, small) = (level("0"), level("\"s\""));
+    for (name, build) in [
+        ("unoptimised", &["build", &unoptimised[0], &unoptimised[1]][..]),
+        ("small", &["build", &small[0], &small[1]]),
+        ("native", &["rustc", "--crate-type=staticlib", "--", "-Ctarget-cpu=native"]),
     ] {
-        let folder = Path::new(FOLDER).join(name);
-        let mut cargo = cargo(&folder.to_string_lossy());
-        printed(cargo.args(["build", "--release", "-p", "slipfit-capi"]).env(variable, value));
-        let library = folder.join("cross/release/libslipfit_capi.a");
-        assert_eq!(baseline, on_host(&format!("capi-program-{name}"), &library), "{name}");
+        assert_eq!(baseline, on_host(&format!("capi-program-{name}"), &library(name, build)), "{name}");
     }
 }
 
@@ -242,9 +250,7 @@ fn a_program_links_only_without_panics() {
     // It links as it is: that is what IMAGE does.
     assert!(IMAGE.exists());
     // The other way round: with one panic in reach it does not, and for this reason.
-    let library =
-        library(&["--target", TARGET, "--features", "reachable-panic", "--target-dir", &format!("{FOLDER}/panic")]);
-    let library = Path::new(FOLDER).join("panic").join(library.strip_prefix(Path::new(FOLDER).join("cross")).unwrap());
+    let library = library("panic", &["build", "--target", TARGET, "--features", "reachable-panic"]);
     let image = Path::new(FOLDER).join("panics.elf");
     let mut compiler = compiler_for_target(&image);
     let output = finished(compiler.arg("-Wl,--undefined=slipfit_panic").arg(library).arg("-lgcc"));

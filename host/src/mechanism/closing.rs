@@ -151,6 +151,11 @@ impl Table2 {
     }
 }
 
+/// The tolerance level that closes the first pair of gaps of `scene`, to a hundredth; 0 if none closes one.
+pub fn closing_level(scene: &Scene) -> f64 {
+    derived(scene, 0.0).tightest().map_or(0.0, |tightest| (tightest.n * 100.0).round() / 100.0)
+}
+
 /// A length (m) in mm with four decimals, as Table 2 prints it; a dash for none.
 pub fn millimetres(length: Option<f64>) -> String {
     length.map_or_else(|| "-".to_owned(), |length| fixed(length * 1e3, 4))

@@ -2,6 +2,8 @@
 //! it may not. No test is ever skipped. Arguments go to `cargo test`.
 #![forbid(unsafe_code)]
 
+mod programs;
+
 use std::{
     env,
     path::Path,
@@ -12,7 +14,7 @@ use std::{
 const TARGETS: [&str; 1] = ["thumbv7em-none-eabihf"];
 
 /// Programs that tests run, and the Debian packages that have them.
-const PROGRAMS: [(&str, &str); 3] =
+const TOOLS: [(&str, &str); 3] =
     [("qemu-system-arm", "qemu-system-arm"), ("arm-none-eabi-gcc", "gcc-arm-none-eabi"), ("chromium", "chromium")];
 
 /// Packages of Python that tests import.
@@ -28,7 +30,7 @@ type Outcome = Result<String, String>;
 type Step = fn() -> Outcome;
 
 fn main() -> ExitCode {
-    let steps: [(&str, Step); 4] = [("targets", targets), ("programs", programs), ("python", python), ("tests", tests)];
+    let steps: [(&str, Step); 4] = [("targets", targets), ("tools", tools), ("python", python), ("tests", tests)];
     let mut done = Vec::new();
     for (name, step) in steps {
         eprintln!("== {name}");
@@ -63,9 +65,9 @@ fn has_target(target: &str) -> bool {
     output.is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir())
 }
 
-/// Has the programs installed.
-fn programs() -> Outcome {
-    let missing: Vec<_> = PROGRAMS.into_iter().filter(|(program, _)| !has_program(program)).collect();
+/// Has the programs installed that tests run.
+fn tools() -> Outcome {
+    let missing: Vec<_> = TOOLS.into_iter().filter(|(program, _)| !has_program(program)).collect();
     if !missing.is_empty() {
         let packages: Vec<_> = missing.iter().map(|(_, package)| *package).collect();
         if !install(&packages) || !missing.iter().all(|(program, _)| has_program(program)) {
@@ -74,7 +76,7 @@ fn programs() -> Outcome {
             return Err(format!("missing: {names}; to install it on Debian: sudo apt-get install {packages}"));
         }
     }
-    Ok(PROGRAMS.map(|(program, _)| program).join(", "))
+    Ok(TOOLS.map(|(program, _)| program).join(", "))
 }
 
 /// Has the packages of Python installed.
@@ -122,12 +124,33 @@ fn install(packages: &[&str]) -> bool {
         && runs(apt_get().args(["install", "--yes", "--no-install-recommends"]).args(packages))
 }
 
-/// Runs the tests of the whole workspace.
+/// Runs the tests of the whole workspace: all at once, or by Cargo where it is given arguments.
 fn tests() -> Outcome {
-    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command.current_dir(ROOT).args(["test", "--workspace"]).args(env::args_os().skip(1));
-    if runs(&mut command) { Ok("cargo test --workspace".to_owned()) } else { Err("tests failed".to_owned()) }
+    let arguments: Vec<_> = env::args_os().skip(1).collect();
+    if !arguments.is_empty() {
+        let mut command = cargo_test();
+        command.args(arguments);
+        return if runs(&mut command) {
+            Ok("cargo test --workspace".to_owned())
+        } else {
+            Err("tests failed".to_owned())
+        };
+    }
+    let programs = programs::built(cargo_test(), &Path::new(ROOT).canonicalize().map_err(|error| error.to_string())?)?;
+    let count = programs.len();
+    programs::run(programs)?;
+    if !runs(cargo_test().args(["--doc", "--quiet"])) {
+        return Err("examples in the documentation failed".to_owned());
+    }
+    Ok(format!("{count} programs, and the examples in the documentation"))
+}
+
+/// The Cargo that runs this, to test the whole workspace.
+fn cargo_test() -> Command {
+    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    // With the one feature that no member of the workspace asks for.
+    command.current_dir(ROOT).args(["test", "--workspace", "--features", "slipfit-core/embedded-storage"]);
+    command
 }
 
 /// Whether `command` starts and succeeds, saying what it is.

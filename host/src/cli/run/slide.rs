@@ -30,7 +30,10 @@ use crate::{
         force_table,
         force_table::{Demand, ForceTable},
     },
-    mechanism::{closing::derived, self_locking::guide},
+    mechanism::{
+        closing::{closing_level, derived},
+        self_locking::guide,
+    },
     population::{production::Production as DrawnProduction, statistics::Statistics, study::Population},
     product::Product,
     scene::Scene,
@@ -125,10 +128,7 @@ impl Arguments {
             sweep: simulated.judged(),
             answer: &answer,
             figures: &figures.iter().map(|(_, figure)| figure.clone()).collect::<Vec<_>>(),
-            clearances: Clearances::Pins {
-                scene,
-                n: derived(scene, 0.0).tightest().map_or(0.0, |tightest| (tightest.n * 100.0).round() / 100.0),
-            },
+            clearances: Clearances::Pins { scene, n: closing_level(scene) },
             flash: Some(Flash { bytes: simulated.table.bytes.len(), worst_force_error, worst_velocity_error }),
             units: Some(&simulated.units.0),
             production: production.as_ref(),

@@ -125,7 +125,7 @@ impl Arguments {
     /// The gaps as the scene gives them.
     fn given(&self, scene: &Scene) -> Result<(), Failure> {
         self.refuse_files("the scene gives its gaps, there is no product to draw")?;
-        let given = Given::new(scene, self.outputs.n);
+        let given = Given::new(scene, self.outputs.level(scene));
         if self.scene.json { print_json(&given) } else { print(&given.describe()) }
     }
 

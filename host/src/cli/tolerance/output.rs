@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::{gaps::Columns, tables::tables};
 use crate::{
     cli::{Failure, print, print_json, refused},
+    mechanism::closing::closing_level,
     scene::Scene,
     system::files,
     tolerance::{
@@ -24,9 +25,6 @@ use crate::{
     },
 };
 
-/// The paper's tolerance level, which just closes its tightest pair.
-const PAPER_LEVEL: f64 = 3.43;
-
 fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|n: &f64| n.is_finite()).ok_or_else(|| "allowed is any finite number".into())
 }
@@ -36,9 +34,9 @@ fn finite(text: &str) -> Result<f64, String> {
 pub(in crate::cli) struct OutputArguments {
     /// Tolerance level at which a slide's clearances are shown; positive is tighter.
     ///
-    /// The default is the level of the paper, which just closes the tightest pair of gaps of its slide.
-    #[arg(long, default_value_t = PAPER_LEVEL, allow_hyphen_values = true, value_parser = finite)]
-    pub n: f64,
+    /// The default is the level that closes the first pair of gaps, to a hundredth: 3.43 for the paper's slide.
+    #[arg(long, allow_hyphen_values = true, value_parser = finite)]
+    n: Option<f64>,
     /// Writes the measures' statistics as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -67,6 +65,11 @@ impl OutputArguments {
         folder.map_or(Ok(()), |folder| files::prepare_folder(folder).map_err(refused))
     }
 
+    /// The level at which the clearances of `slide` are shown.
+    pub fn level(&self, slide: &Scene) -> f64 {
+        self.n.unwrap_or_else(|| closing_level(slide))
+    }
+
     /// The option given that asks for a file, if any does.
     pub fn asked(&self) -> Option<&'static str> {
         self.csv.as_ref().map(|_| "--csv").or(self.plots.as_ref().map(|_| "--plots"))
@@ -91,7 +94,7 @@ impl OutputArguments {
                 files::write(&folder.join(picture.file), picture.svg.as_bytes())?;
             }
         }
-        let columns = slide.map(|slide| Columns::new(slide, self.n));
+        let columns = slide.map(|slide| Columns::new(slide, self.level(slide)));
         if json {
             return print_json(&Shown { report: &report, columns });
         }
