@@ -115,11 +115,25 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// M⁻¹·`momentum` at `pose`: generalised velocities (m/s, rad/s).
     fn velocity(&self, pose: &Self::Pose, momentum: &SVector<S, D>) -> SVector<S, D>;
 
-    /// What has at the pose `start` the effect (m/s², rad/s²) that `force` (N, N·m) has at `pose`: `force` itself where the
-    /// mass matrix is the same everywhere.
+    /// M·`velocity` (N·s, N·m·s) at the motion whose `slopes` these are, at its `pose`.
     #[inline(always)]
-    fn referred(&self, _start: &Self::Pose, _pose: &Self::Pose, force: SVector<S, D>) -> SVector<S, D> {
-        force
+    fn momentum_by(&self, _slopes: &Self::Slopes, pose: &Self::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
+        self.momentum(pose, velocity)
+    }
+
+    /// What has at the motion whose `slopes` these are the effect (m/s², rad/s²) that the [`forces`](Self::forces) have at another
+    /// one: the forces themselves where the mass matrix is the same everywhere.
+    #[inline(always)]
+    fn forces_by(
+        &self,
+        _slopes: &Self::Slopes,
+        t: S,
+        pose: &Self::Pose,
+        memory: &Self::Memory,
+        velocity: &SVector<S, D>,
+        a: S,
+    ) -> SVector<S, D> {
+        self.forces(t, pose, memory, velocity, a, None)
     }
 
     /// Forces (N, N·m) at time `t` (s); `a` (s) is the implicit part of the step. Writes to `remembered` what the laws

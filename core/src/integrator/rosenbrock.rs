@@ -137,8 +137,8 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
         let pose = mechanism.moved(start, &at.place, S::one());
         let velocity = velocity + at.velocity;
         let t = self.t + S::from_f64(time) * self.h;
-        let there = mechanism.forces(t, &pose, memory, &velocity, self.h, None);
-        Evaluation { force: mechanism.referred(start, &pose, there), rate: mechanism.rate(&at.place, &velocity) }
+        let force = mechanism.forces_by(&self.slopes, t, &pose, memory, &velocity, self.h);
+        Evaluation { force, rate: mechanism.rate(&at.place, &velocity) }
     }
 
     /// The stage with the evaluation `here`, with what earlier stages add `before` and the weight `time_rate` of the force's
@@ -152,7 +152,7 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
         }
         if let Some(before) = before {
             rate += before.place * per_step;
-            force += mechanism.momentum(self.from.0, &before.velocity) * per_step;
+            force += mechanism.momentum_by(&self.slopes, self.from.0, &before.velocity) * per_step;
         }
         // The equation of the place is solved for first.
         let velocity = mechanism.solve(&self.linearisation, &(force + mechanism.pushed(&self.slopes, &(rate * a))));

@@ -158,8 +158,26 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     }
 
     #[inline(always)]
-    fn referred(&self, start: &B::Pose, pose: &B::Pose, force: SVector<S, D>) -> SVector<S, D> {
-        if B::MASS_IS_CONSTANT { force } else { self.momentum(start, &self.velocity(pose, &force)) }
+    fn momentum_by(&self, slopes: &Slopes<S, D>, _: &B::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
+        slopes.mass * velocity
+    }
+
+    #[inline(always)]
+    fn forces_by(
+        &self,
+        slopes: &Slopes<S, D>,
+        t: S,
+        pose: &B::Pose,
+        memory: &E::Memory,
+        velocity: &SVector<S, D>,
+        a: S,
+    ) -> SVector<S, D> {
+        let placed = self.bodies.placed(pose, velocity);
+        let force = self.sum(t, &placed, memory, a, None);
+        if B::MASS_IS_CONSTANT {
+            return force;
+        }
+        slopes.mass * Lu::of(self.bodies.mass(&placed)).solve(&force)
     }
 
     #[inline(always)]
@@ -172,11 +190,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         a: S,
         remembered: Option<&mut E::Memory>,
     ) -> SVector<S, D> {
-        let placed = self.bodies.placed(pose, velocity);
-        let way = Way { a, mass_rate: self.bodies.least_mass() / a, tangent_share: S::one() };
-        let mut sum = Sum(self.bodies.own_force(&placed));
-        self.elements.act((t, way), (&self.bodies, &placed), memory, remembered, &mut sum);
-        sum.0
+        self.sum(t, &self.bodies.placed(pose, velocity), memory, a, remembered)
     }
 
     #[inline(always)]
@@ -253,6 +267,28 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         self.bodies.rate(displacement, velocity)
+    }
+}
+
+impl<B, E> System<B, E> {
+    /// The generalised force (N, N·m) at time `t` (s) of a mechanism that is `placed`; see [`Mechanism::forces`].
+    #[inline(always)]
+    fn sum<S: Scalar, const D: usize>(
+        &self,
+        t: S,
+        placed: &B::Placed,
+        memory: &E::Memory,
+        a: S,
+        remembered: Option<&mut E::Memory>,
+    ) -> SVector<S, D>
+    where
+        B: Bodies<S, D>,
+        E: Elements<S, B, D>,
+    {
+        let way = Way { a, mass_rate: self.bodies.least_mass() / a, tangent_share: S::one() };
+        let mut sum = Sum(self.bodies.own_force(placed));
+        self.elements.act((t, way), (&self.bodies, placed), memory, remembered, &mut sum);
+        sum.0
     }
 }
 

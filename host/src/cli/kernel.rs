@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, Moving, SceneArguments, print, print_json, simulate::ControllerArguments};
+use super::{Failure, Moving, SceneArguments, print, print_json, simulate::ControllerArguments, terminal::warn};
 use crate::{
     dynamics::{
         driven::Driven,
@@ -162,6 +162,11 @@ impl Arguments {
         self.scene.check_outputs(&files.each_ref().map(|(path, _)| ("--crate", path.as_path())))?;
         for (path, text) in &files {
             files::write(path, text.as_bytes())?;
+        }
+        if self.core.is_none() {
+            warn(&[
+                "the crate asks crates.io for slipfit-core, which is not there: give its folder as --core".to_owned()
+            ]);
         }
         self.report(hash, folder)
     }

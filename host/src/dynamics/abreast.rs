@@ -54,6 +54,19 @@ where
         self.instructions.vectorize(Forces(Call { slide, pins: &self.pins, t, pose, velocity }))
     }
 
+    fn forces_by(
+        &self,
+        slide: &Slide<f64, E, F>,
+        _: &<Slide<f64, E, F> as Mechanism<f64, 6>>::Slopes,
+        t: f64,
+        pose: &Pose<f64>,
+        memory: &[(); SLOTS],
+        velocity: &SVector<f64, 6>,
+        a: f64,
+    ) -> SVector<f64, 6> {
+        self.forces(slide, t, pose, memory, velocity, a, None)
+    }
+
     fn differentiated(
         &self,
         slide: &Slide<f64, E, F>,

@@ -27,6 +27,19 @@ pub trait Contacts<S: Scalar, M: Mechanism<S, D>, const D: usize> {
         remembered: Option<&mut M::Memory>,
     ) -> SVector<S, D>;
 
+    /// As [`Mechanism::forces_by`].
+    #[expect(clippy::too_many_arguments, reason = "those of the mechanism")]
+    fn forces_by(
+        &self,
+        mechanism: &M,
+        slopes: &M::Slopes,
+        t: S,
+        pose: &M::Pose,
+        memory: &M::Memory,
+        velocity: &SVector<S, D>,
+        a: S,
+    ) -> SVector<S, D>;
+
     /// As [`Mechanism::differentiated`].
     fn differentiated(
         &self,
@@ -55,6 +68,20 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Contacts<S, M, D> for InTurn
         remembered: Option<&mut M::Memory>,
     ) -> SVector<S, D> {
         mechanism.forces(t, pose, memory, velocity, a, remembered)
+    }
+
+    #[inline(always)]
+    fn forces_by(
+        &self,
+        mechanism: &M,
+        slopes: &M::Slopes,
+        t: S,
+        pose: &M::Pose,
+        memory: &M::Memory,
+        velocity: &SVector<S, D>,
+        a: S,
+    ) -> SVector<S, D> {
+        mechanism.forces_by(slopes, t, pose, memory, velocity, a)
     }
 
     #[inline(always)]
@@ -154,8 +181,21 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechan
         self.mechanism.velocity(pose, momentum)
     }
 
-    fn referred(&self, start: &M::Pose, pose: &M::Pose, force: SVector<S, D>) -> SVector<S, D> {
-        self.mechanism.referred(start, pose, force)
+    fn momentum_by(&self, slopes: &M::Slopes, pose: &M::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
+        self.mechanism.momentum_by(slopes, pose, velocity)
+    }
+
+    #[inline(never)]
+    fn forces_by(
+        &self,
+        slopes: &M::Slopes,
+        t: S,
+        pose: &M::Pose,
+        memory: &M::Memory,
+        velocity: &SVector<S, D>,
+        a: S,
+    ) -> SVector<S, D> {
+        self.contacts.forces_by(&self.mechanism, slopes, t, pose, memory, velocity, a)
     }
 
     #[inline(never)]

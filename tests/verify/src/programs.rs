@@ -65,8 +65,8 @@ pub fn run(programs: Vec<Program>) -> Result<(), String> {
         for i in 0..threads {
             let (waiting, failed) = (&waiting, &failed);
             scope.spawn(move || {
-                // Images wait for each other while they are built. Their tests are the last, so that one thread in two takes
-                // them and the others what computes.
+                // Images wait for each other while they are built. Their tests come last by name, so that one thread in two
+                // takes them and the others what computes.
                 let next = || {
                     let mut waiting = waiting.lock().expect("no thread panics");
                     if i % 2 == 0 { waiting.pop_back() } else { waiting.pop_front() }

@@ -1,5 +1,7 @@
 //! The log as lines of text.
 
+use core::fmt;
+
 use slipfit_core::table::TableError;
 use slipfit_firmware::machine::{Machine, print};
 
@@ -7,6 +9,18 @@ use crate::{
     control::{Record, Rig},
     program::{CLOCK, CYCLES, Everything, Stroke},
 };
+
+/// When something happened first (ms), if it did.
+struct When(Option<u32>);
+
+impl fmt::Display for When {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(milliseconds) => write!(f, "at {milliseconds} ms"),
+            None => f.write_str("never"),
+        }
+    }
+}
 
 /// That there is no table to work with.
 pub fn refused(machine: &mut impl Machine, error: TableError) {
@@ -30,7 +44,7 @@ pub fn record(machine: &mut impl Machine, record: &Record) {
 /// A stroke that has ended.
 pub fn stroke(machine: &mut impl Machine, stroke: &Stroke) {
     let Stroke { firsts, least_lead, estimate, damaged, stack } = stroke;
-    print(machine, format_args!("first tight at {:?} ms, first jam at {:?} ms", firsts.tight, firsts.jam));
+    print(machine, format_args!("first tight {}, first jam {}", When(firsts.tight), When(firsts.jam)));
     if let Some(estimate) = estimate {
         let [low, high] = estimate.interval;
         print(machine, format_args!("n = {:.3}, with 95 % between {low:.3} and {high:.3}", estimate.level));
