@@ -99,8 +99,9 @@ impl Program {
             Ok(Output { status, stdout, .. }) if status.success() => {
                 let said = String::from_utf8_lossy(&stdout);
                 let result = said.lines().rev().find(|line| line.starts_with("test result: ")).unwrap_or("");
-                let count = result.split(';').next().unwrap_or("").trim_start_matches("test result: ");
-                eprintln!("{seconds:6.1} s  {}: {count}", self.name);
+                let count =
+                    result.trim_start_matches("test result: ").split(';').next().filter(|count| !count.is_empty());
+                eprintln!("{seconds:6.1} s  {}: {}", self.name, count.unwrap_or("ok"));
                 true
             }
             Ok(Output { status, stdout, stderr }) => {
