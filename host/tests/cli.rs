@@ -203,7 +203,7 @@ fn a_run_is_sampled_as_asked_and_json_carries_its_figures() {
     assert_eq!(report["verdict"], "undecided");
     let csv = std::fs::read_to_string(folder.path().join("run.csv")).unwrap();
     let lines: Vec<_> = csv.lines().collect();
-    assert_eq!((lines[0], lines.len()), ("t,vz,force,x,y,z", 202));
+    assert_eq!((lines[0], lines.len()), ("t (s),vz (m/s),force (N),x (m),y (m),z (m)", 202));
     assert!(lines[201].starts_with("0.2,"));
     let sixteen = ["2.5"; 16].join(",");
     let each = json(folder.path(), &["simulate", "--n", &sixteen, "--step", "1ms", "--json", "--scalar", "f32"]);

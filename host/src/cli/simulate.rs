@@ -79,8 +79,8 @@ pub(super) struct Arguments {
     correlation: f64,
     /// Writes the run as CSV, in SI units.
     ///
-    /// Of a slide the columns are t,vz,force,x,y,z: time, speed and force along the drive, displacement of the centre of mass. Of a
-    /// mechanism they are time, the force of each drive, and the motion of each body, with their units.
+    /// Of a slide the columns are time, speed and force along the drive, displacement of the centre of mass. Of a mechanism they are
+    /// time, the force of each drive, and the motion of each body. Their heads have units.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Draws speed and force over time as SVG.

@@ -14,13 +14,13 @@ use crate::{
     scene::Scene,
 };
 
-/// `t,vz,force,x,y,z` in s, m/s, N, m, m, m, ten digits.
+/// Time, speed and force along the drive, displacement of the centre of mass; ten digits.
 ///
 /// # Errors
 /// Those of the writer, none in memory.
 pub fn trajectory_csv(trajectory: &Trajectory) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["t", "vz", "force", "x", "y", "z"])?;
+    writer.write_record(["t (s)", "vz (m/s)", "force (N)", "x (m)", "y (m)", "z (m)"])?;
     for (i, t) in trajectory.t.iter().enumerate() {
         let Trajectory { vz, force, x, y, z, .. } = trajectory;
         let columns = [*t, vz[i], force[i], x[i], y[i], z[i]];
