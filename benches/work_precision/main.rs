@@ -152,7 +152,7 @@ fn controlled<I: Integrator>(solver: &'static str, n: f64, milliseconds: u32) ->
             #[cfg(target_arch = "x86_64")]
             let side_by_side = slipfit::dynamics::abreast::SideBySide::new(&cd_rom::data(n), cd_rom::STICK_BAND);
             #[cfg(not(target_arch = "x86_64"))]
-            let side_by_side: Option<InTurn> = None;
+            let side_by_side: Option<slipfit::dynamics::out_of_line::InTurn> = None;
             match side_by_side {
                 Some(pins) => integrate::<I, _, 6>(&OutOfLine::by(slide, pins), rest, duration, error, see),
                 None => integrate::<I, _, 6>(&OutOfLine::new(slide), rest, duration, error, see),

@@ -2,7 +2,10 @@
 
 mod common;
 
-use std::path::Path;
+use std::{
+    path::Path,
+    process::{Command, Stdio},
+};
 
 use common::{slipfit, stdout};
 
@@ -169,9 +172,60 @@ fn no_figure_is_given_without_a_verdict() {
     assert_eq!(of("3"), found);
 }
 
-/// Shards in any order, and a run that was killed, end in the bytes of one run.
+/// Starts a population and sends it a signal once it has kept something, with as many units as that takes. What it says on
+/// errors, its exit code, and the command.
+fn stopped(folder: &Path, out: &str, signal: &str) -> (String, Option<i32>, Vec<String>) {
+    let partial = folder.join(format!("{out}.partial"));
+    let mut units = 10_000;
+    loop {
+        let count = units.to_string();
+        let command = ["population", "--seed", "4", "--opening", "--json", "--out", out, "--units", &count];
+        let mut victim = Command::new(env!("CARGO_BIN_EXE_slipfit"))
+            .current_dir(folder)
+            .args(command)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        while !partial.exists() && victim.try_wait().unwrap().is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let sent = Command::new("kill").args([signal, &victim.id().to_string()]).stderr(Stdio::null()).status();
+        assert!(sent.is_ok());
+        let ended = victim.wait_with_output().unwrap();
+        if partial.exists() {
+            let said = String::from_utf8(ended.stderr).unwrap();
+            return (said, ended.status.code(), command.map(str::to_owned).into());
+        }
+        let _ = std::fs::remove_file(folder.join(out));
+        units *= 2;
+    }
+}
+
+/// What was reported done is kept, whether a run is killed or interrupted: it goes on from there, to the bytes of one run.
 #[test]
-fn shards_and_killed_runs_end_in_the_same_bytes() {
+fn stopped_runs_go_on_where_they_were() {
+    let folder = tempfile::tempdir().unwrap();
+    for (out, signal, code) in [("killed", "-KILL", None), ("interrupted", "-INT", Some(1))] {
+        let (said, ended, command) = stopped(folder.path(), out, signal);
+        assert_eq!(ended, code, "{said}");
+        assert!(!folder.path().join(out).exists());
+        let command: Vec<_> = command.iter().map(String::as_str).collect();
+        let left = slipfit(folder.path(), &command);
+        assert!(String::from_utf8(left.stderr).unwrap().contains("--resume goes on"));
+        let resumed = stdout(&slipfit(folder.path(), &[&command[..], &["--resume"]].concat()));
+        std::fs::remove_file(folder.path().join(out)).unwrap();
+        assert_eq!(stdout(&slipfit(folder.path(), &[&command[..], &["--threads", "3"]].concat())), resumed);
+    }
+    // Nowhere to keep anything: told before the first unit.
+    let nowhere = slipfit(folder.path(), &["population", "--units", "10", "--opening", "--out", "no/where"]);
+    assert_eq!(nowhere.status.code(), Some(2));
+    assert!(String::from_utf8(nowhere.stderr).unwrap().contains("no/where"));
+}
+
+/// Shards in any order end in the bytes of one run.
+#[test]
+fn shards_end_in_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let common = ["population", "--units", "1300", "--opening", "--seed", "4", "--json"];
@@ -183,42 +237,6 @@ fn shards_and_killed_runs_end_in_the_same_bytes() {
     }
     let merged = stdout(&slipfit(folder.path(), &["merge", "c", "a", "b", "--out", "merged", "--json"]));
     assert!(merged == whole && std::fs::read(at("merged")).unwrap() == std::fs::read(at("whole")).unwrap());
-
-    // As many units as take longer than it takes to a checkpoint.
-    let mut units = 5_000;
-    while !at("killed.partial").exists() {
-        let _ = std::fs::remove_file(at("killed"));
-        units *= 2;
-        let mut victim = std::process::Command::new(env!("CARGO_BIN_EXE_slipfit"))
-            .current_dir(folder.path())
-            .args([
-                "population",
-                "--seed",
-                "4",
-                "--opening",
-                "--json",
-                "--out",
-                "killed",
-                "--units",
-                &units.to_string(),
-            ])
-            .stdout(std::process::Stdio::null())
-            .spawn()
-            .unwrap();
-        while !at("killed.partial").exists() && victim.try_wait().unwrap().is_none() {
-            std::thread::sleep(std::time::Duration::from_millis(5));
-        }
-        // On Unix this is signal 9.
-        victim.kill().unwrap();
-        victim.wait().unwrap();
-    }
-    let units = units.to_string();
-    let command = ["population", "--seed", "4", "--opening", "--json", "--out", "killed", "--units", &units];
-    let left = slipfit(folder.path(), &command);
-    assert!(String::from_utf8(left.stderr).unwrap().contains("--resume goes on"));
-    let resumed = stdout(&slipfit(folder.path(), &[&command[..], &["--resume"]].concat()));
-    std::fs::remove_file(at("killed")).unwrap();
-    assert_eq!(stdout(&slipfit(folder.path(), &[&command[..], &["--threads", "3"]].concat())), resumed);
 
     let refused = |arguments: &[&str]| {
         let output = slipfit(folder.path(), arguments);

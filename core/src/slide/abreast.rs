@@ -8,7 +8,7 @@ use super::{
     mechanics::{Slopes, placed},
 };
 use crate::{
-    SVector, Scalar,
+    SVector, Scalar, Vector3,
     law::{Elastic, Friction},
     mechanism::{Differentiated, Way},
     menu::SlideData,
@@ -34,22 +34,33 @@ fn everywhere<S: Copy, L: Lanes<S>>(number: S) -> L {
 /// The pins of a slide side by side, with its contact laws.
 #[derive(Clone, Copy, Debug)]
 pub struct Abreast<L, E, F> {
-    /// Its first pin has each of the pins in a lane.
+    /// Each of its pins stands for all of them.
     lanes: Slide<L, E, F>,
 }
 
-/// What a slide of lanes is to be made of for [`Abreast::new`]: the parameters of `slide` in every lane, and all pins, each in
-/// its lane, in place of the first.
+/// What a slide of lanes is to be made of for [`Abreast::new`]: the parameters of `slide` in every lane, and in place of each
+/// pin all of them, each in its lane.
 pub fn abreast<S: Scalar, L: Lanes<S>>(slide: &SlideData<S>) -> SlideData<L> {
     let mut lanes = slide.cast(everywhere);
-    let SlideData { body, .. } = slide;
-    for (axis, place) in lanes.body.pins_w[0].iter_mut().enumerate() {
-        *place = L::of(body.pins_w.map(|pin| pin.data.0[0][axis]));
-    }
-    let pins = body.gaps.as_chunks::<4>().0;
-    for (contact, gap) in lanes.body.gaps.iter_mut().take(4).enumerate() {
-        *gap = L::of([pins[0][contact], pins[1][contact], pins[2][contact], pins[3][contact]]);
-    }
+    let [a, b, c, d] = slide.body.pins_w;
+    let place = Vector3::new(L::of([a.x, b.x, c.x, d.x]), L::of([a.y, b.y, c.y, d.y]), L::of([a.z, b.z, c.z, d.z]));
+    lanes.body.pins_w = [place; PINS];
+    #[rustfmt::skip]
+    let [
+        left_a, right_a, rail_a, wall_a,
+        left_b, right_b, rail_b, wall_b,
+        left_c, right_c, rail_c, wall_c,
+        left_d, right_d, rail_d, wall_d,
+    ] = slide.body.gaps;
+    let [left, right, rail, wall] = [
+        [left_a, left_b, left_c, left_d],
+        [right_a, right_b, right_c, right_d],
+        [rail_a, rail_b, rail_c, rail_d],
+        [wall_a, wall_b, wall_c, wall_d],
+    ]
+    .map(L::of);
+    lanes.body.gaps =
+        [left, right, rail, wall, left, right, rail, wall, left, right, rail, wall, left, right, rail, wall];
     lanes
 }
 

@@ -4,47 +4,20 @@
 //! Every operation is done number by number, so that the bits in a lane depend neither on its neighbours nor on how many there
 //! are, nor on the instructions that compute them.
 
+mod number;
+
 use std::{
     ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign},
     ptr::NonNull,
 };
 
 use num_traits::{One, Zero};
-use pulp::{
-    Simd,
-    bytemuck::{self, Pod},
-};
-use slipfit_core::{Scalar, power, slide::Lanes};
+use pulp::{Simd, bytemuck};
+use slipfit_core::Scalar;
+#[cfg(target_arch = "x86_64")]
+use slipfit_core::slide::Lanes;
 
-/// A number that registers hold.
-pub trait Number: Scalar + PartialOrd + Pod {
-    /// A register of the instructions `V`.
-    type Register<V: Simd>: Pod + std::fmt::Debug + Send + Sync;
-
-    /// `x` in every lane.
-    fn splat<V: Simd>(instructions: V, x: Self) -> Self::Register<V>;
-    /// x + y.
-    fn sum<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
-    /// x − y.
-    fn difference<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
-    /// x·y.
-    fn product<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
-    /// x/y.
-    fn quotient<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
-    /// −x.
-    fn negated<V: Simd>(instructions: V, x: Self::Register<V>) -> Self::Register<V>;
-    /// The first of `chosen` where x > y, else the second.
-    fn chosen<V: Simd>(
-        instructions: V,
-        x: Self::Register<V>,
-        y: Self::Register<V>,
-        chosen: [Self::Register<V>; 2],
-    ) -> Self::Register<V>;
-    /// As [`Scalar::rsqrt`].
-    fn reciprocal_root<V: Simd>(x: Pack<V, Self>) -> Pack<V, Self>;
-    /// As [`Scalar::sqrt`].
-    fn root<V: Simd>(x: Pack<V, Self>) -> Pack<V, Self>;
-}
+pub use number::Number;
 
 /// As many numbers `T` as a register of the instructions `V` holds. A comparison holds if it holds for all of them.
 ///
@@ -60,107 +33,6 @@ fn instructions<V: Simd>() -> V {
     // SAFETY: a value without bytes can be read from any aligned address. That there may be one follows from the rule above:
     // packs are made by what was given a `V`.
     unsafe { NonNull::<V>::dangling().read() }
-}
-
-impl Number for f32 {
-    type Register<V: Simd> = V::f32s;
-
-    #[inline(always)]
-    fn splat<V: Simd>(v: V, x: f32) -> V::f32s {
-        v.splat_f32s(x)
-    }
-
-    #[inline(always)]
-    fn sum<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
-        v.add_f32s(x, y)
-    }
-
-    #[inline(always)]
-    fn difference<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
-        v.sub_f32s(x, y)
-    }
-
-    #[inline(always)]
-    fn product<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
-        v.mul_f32s(x, y)
-    }
-
-    #[inline(always)]
-    fn quotient<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
-        v.div_f32s(x, y)
-    }
-
-    #[inline(always)]
-    fn negated<V: Simd>(v: V, x: V::f32s) -> V::f32s {
-        v.neg_f32s(x)
-    }
-
-    #[inline(always)]
-    fn chosen<V: Simd>(v: V, x: V::f32s, y: V::f32s, [yes, no]: [V::f32s; 2]) -> V::f32s {
-        v.select_f32s(v.less_than_f32s(y, x), yes, no)
-    }
-
-    #[inline(always)]
-    fn reciprocal_root<V: Simd>(x: Pack<V, f32>) -> Pack<V, f32> {
-        let v = instructions::<V>();
-        let bits = v.wrapping_dyn_shr_u32s(v.transmute_u32s_f32s(x.0), v.splat_u32s(1));
-        let guess = Pack(v.transmute_f32s_u32s(v.sub_u32s(v.splat_u32s(power::RSQRT_BITS), bits)));
-        power::refined_rsqrt(x, guess)
-    }
-
-    #[inline(always)]
-    fn root<V: Simd>(x: Pack<V, f32>) -> Pack<V, f32> {
-        x * x.rsqrt()
-    }
-}
-
-impl Number for f64 {
-    type Register<V: Simd> = V::f64s;
-
-    #[inline(always)]
-    fn splat<V: Simd>(v: V, x: f64) -> V::f64s {
-        v.splat_f64s(x)
-    }
-
-    #[inline(always)]
-    fn sum<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
-        v.add_f64s(x, y)
-    }
-
-    #[inline(always)]
-    fn difference<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
-        v.sub_f64s(x, y)
-    }
-
-    #[inline(always)]
-    fn product<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
-        v.mul_f64s(x, y)
-    }
-
-    #[inline(always)]
-    fn quotient<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
-        v.div_f64s(x, y)
-    }
-
-    #[inline(always)]
-    fn negated<V: Simd>(v: V, x: V::f64s) -> V::f64s {
-        v.neg_f64s(x)
-    }
-
-    #[inline(always)]
-    fn chosen<V: Simd>(v: V, x: V::f64s, y: V::f64s, [yes, no]: [V::f64s; 2]) -> V::f64s {
-        v.select_f64s(v.less_than_f64s(y, x), yes, no)
-    }
-
-    #[inline(always)]
-    fn reciprocal_root<V: Simd>(x: Pack<V, f64>) -> Pack<V, f64> {
-        Pack::splat(1.0) / x.sqrt()
-    }
-
-    #[inline(always)]
-    fn root<V: Simd>(x: Pack<V, f64>) -> Pack<V, f64> {
-        Pack(instructions::<V>().sqrt_f64s(x.0))
-    }
 }
 
 /// The four pins of a slide.
@@ -400,24 +272,26 @@ impl<V: Simd, T: Number> Scalar for Pack<V, T> {
 
 #[cfg(test)]
 mod tests {
-    use super::Pack;
+    use std::marker::PhantomData;
+
+    use super::{Number, Pack};
     use pulp::{Simd, WithSimd};
     use slipfit_core::Scalar;
 
-    /// The bits of what operations give that are done on several numbers at once.
-    struct Operations;
+    /// What operations give that are done on several numbers at once.
+    struct Operations<T>(PhantomData<T>);
 
     /// Numbers to work on.
-    const NUMBERS: [f32; 8] = [0.3, 7.25, 1e-7, 4e5, 1.0, 0.999, 12.0, 3e-3];
+    const NUMBERS: [f64; 8] = [0.3, 7.25, 1e-7, 4e5, 1.0, 0.999, 12.0, 3e-3];
 
-    impl WithSimd for Operations {
-        type Output = Vec<[f32; 7]>;
+    impl<T: Number> WithSimd for Operations<T> {
+        type Output = Vec<[T; 7]>;
 
-        fn with_simd<V: Simd>(self, _: V) -> Vec<[f32; 7]> {
-            let lanes = Pack::<V>::LANES;
-            let mut x = Pack::<V>::splat(0.0);
-            (0..lanes).for_each(|lane| x.set(lane, NUMBERS[lane % 8]));
-            let y = Pack::splat(1.7);
+        fn with_simd<V: Simd>(self, _: V) -> Vec<[T; 7]> {
+            let lanes = Pack::<V, T>::LANES;
+            let mut x = Pack::<V, T>::splat(T::zero());
+            (0..lanes).for_each(|lane| x.set(lane, T::from_f64(NUMBERS[lane % 8])));
+            let y = Pack::splat(T::from_f64(1.7));
             let found = [x + y, x - y, x / y, x.rsqrt(), x.sqrt(), x.pow(y), x.select_gt(y, -x, x * y)]
                 .map(|pack| pack.numbers().to_vec());
             (0..lanes).map(|lane| std::array::from_fn(|i| found[i][lane])).collect()
@@ -440,12 +314,17 @@ mod tests {
 
     #[test]
     fn every_lane_has_the_bits_of_a_number_alone() {
-        for found in by_all(|| Operations) {
+        every_lane::<f32>();
+        every_lane::<f64>();
+    }
+
+    fn every_lane<T: Number>() {
+        for found in by_all(|| Operations(PhantomData::<T>)) {
             for (lane, found) in found.into_iter().enumerate() {
-                let x = NUMBERS[lane % 8];
-                let chosen = if x > 1.7 { -x } else { x * 1.7 };
-                let alone = [x + 1.7, x - 1.7, x / 1.7, Scalar::rsqrt(x), Scalar::sqrt(x), Scalar::pow(x, 1.7), chosen];
-                assert_eq!(found.map(f32::to_bits), alone.map(f32::to_bits));
+                let (x, y) = (T::from_f64(NUMBERS[lane % 8]), T::from_f64(1.7));
+                let chosen = if x > y { -x } else { x * y };
+                let alone = [x + y, x - y, x / y, Scalar::rsqrt(x), Scalar::sqrt(x), Scalar::pow(x, y), chosen];
+                assert_eq!(found.map(|x| x.to_f64().to_bits()), alone.map(|x| x.to_f64().to_bits()));
             }
         }
     }
