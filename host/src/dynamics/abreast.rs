@@ -1,5 +1,5 @@
-//! The four pins of a slide in the four lanes of a register: the desk's steps take two thirds of the time. The bits are those of
-//! one pin after the other.
+//! The four pins of a slide in the four lanes of a register, where the desk spends most of its time. The bits are those of one
+//! pin after the other.
 
 use pulp::{NullaryFnOnce, x86::V3};
 use slipfit_core::{

@@ -138,9 +138,11 @@ impl Assembly {
     /// Writes all features where they are in the assembled units.
     #[inline(always)]
     pub fn locate(&self, variables: &[Lanes], located: &mut Vec<Located>) {
-        located.clear();
-        located.extend(self.features.iter().map(Feature::perfect));
+        if let Some(first) = self.features.first() {
+            located.resize_with(self.features.len(), || first.perfect());
+        }
         for (feature, located) in self.features.iter().zip(&mut *located) {
+            *located = feature.perfect();
             feature.deviate(variables, located);
         }
         for placement in &self.placements {
