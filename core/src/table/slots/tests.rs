@@ -8,7 +8,7 @@ use crate::table::example;
 const AXES: [AxisKind; 2] = [AxisKind::Level, AxisKind::Time];
 
 /// Cuts of the power for each programming word.
-const CUTS: u64 = if cfg!(miri) { 5 } else { 10_000 };
+const CUTS: u64 = if cfg!(miri) { 2 } else { 10_000 };
 
 /// The power is gone, or the flash has answered with a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
