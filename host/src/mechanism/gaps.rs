@@ -3,14 +3,17 @@
 use slipfit_core::clearance::GapStatistics;
 
 use super::{Gap, Mechanism};
-use crate::{scene::GAP_MOST, show::number::level};
+use crate::{
+    scene::GAP_MOST,
+    show::number::{level, ten_digits},
+};
 
 /// All gaps (m) of one unit, in the mechanism's order.
 pub type Gaps = Vec<f64>;
 
 /// A tolerance level at which a gap is out of bounds.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("at n = {} the gap \"{name}\" is {} mm, allowed is {} to {} mm", level(*n), gap * 1e3, least * 1e3, GAP_MOST * 1e3)]
+#[error("at n = {} the gap \"{name}\" is {} mm, allowed is {} to {} mm", level(*n), ten_digits(gap * 1e3), least * 1e3, GAP_MOST * 1e3)]
 pub struct GapError {
     /// Tolerance level.
     pub n: f64,

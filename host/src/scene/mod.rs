@@ -32,7 +32,10 @@ use slipfit_core::{
     slide::{ABSENT, Body, CONTACTS, PINS, box_inertia},
 };
 
-use crate::dynamics::scheme::{IntegratorKind, ScalarKind};
+use crate::{
+    dynamics::scheme::{IntegratorKind, ScalarKind},
+    show::number::ten_digits,
+};
 
 pub use diagnostic::{Problem, SceneError};
 pub use file::SceneFile;
@@ -177,7 +180,13 @@ pub const GAP_MOST: f64 = 0.1;
 
 /// A tolerance level at which a gap is out of bounds.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("at n = {n} the {contact} gap is {} mm, allowed is -{} to {} mm", gap * 1e3, GAP_MOST * 1e3, GAP_MOST * 1e3)]
+#[error(
+    "at n = {} the {contact} gap is {} mm, allowed is -{} to {} mm",
+    ten_digits(*n),
+    ten_digits(gap * 1e3),
+    GAP_MOST * 1e3,
+    GAP_MOST * 1e3
+)]
 pub struct GapError {
     /// Tolerance level.
     pub n: f64,

@@ -46,17 +46,24 @@ pub(super) fn pins(root: &Field, model: Option<&Model>) -> Result<([PinSpec; PIN
     let mut measures = [[None; 4]; PINS];
     for (i, node) in nodes.iter().enumerate() {
         let table = Field { key: "pin".into(), node };
-        let (found, of_measures) = pin(&table, model)?;
+        let (found, of_measures) = match pin(&table, model) {
+            Ok(read) => read,
+            Err(error) => {
+                // Reading goes on, with a pin somewhere else in its place.
+                table.found().note(error);
+                (PinSpec { position: [1.0 + i as f64, 0.0, 0.0], name: format!("\0{i}"), gaps: [None; 4] }, [None; 4])
+            }
+        };
         if pins.iter().take(i).any(|other| other.name == found.name) {
-            let name = table.get("name").unwrap_or(table);
+            let name = table.get("name").unwrap_or(table.clone());
             let problem = Problem::OutOfRange { key: "pin.name".into(), written: format!("\"{}\" again", found.name) };
-            return Err(name.error(problem, "a name of its own for each pin"));
+            name.found().note(name.error(problem, "a name of its own for each pin"));
         }
         if let Some(other) = pins.iter().take(i).find(|other| other.position == found.position) {
             let position = table.get("position").unwrap_or(table);
             let written = format!("{}, where the pin \"{}\" is", position.written("mm"), other.name);
             let problem = Problem::OutOfRange { key: "pin.position".into(), written };
-            return Err(position.error(problem, "a place of its own for each pin"));
+            position.found().note(position.error(problem, "a place of its own for each pin"));
         }
         *pins.get_mut(i).ok_or_else(|| wrong_length(Field { key: "pin".into(), node }))? = found;
         measures[i] = of_measures;

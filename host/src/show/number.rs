@@ -11,6 +11,9 @@ pub fn fixed(value: f64, decimals: usize) -> String {
 
 /// A tolerance level with its sign and no more digits than it needs: `+2.5`, `0`, `-1`.
 pub fn level(n: f64) -> String {
+    if n.abs() >= 1e10 {
+        return format!("{n:+e}");
+    }
     let digits = fixed(n, 4);
     let short = digits.trim_end_matches('0').trim_end_matches('.');
     if short.starts_with('-') || short == "0" { short.to_owned() } else { format!("+{short}") }
@@ -94,8 +97,8 @@ mod tests {
     #[test]
     fn a_level_shows_its_sign() {
         assert_eq!(
-            [2.5, 0.0, -0.0, -1.0, 10.0, 3.43, 0.1 + 0.2].map(level),
-            ["+2.5", "0", "0", "-1", "+10", "+3.43", "+0.3"]
+            [2.5, 0.0, -0.0, -1.0, 10.0, 3.43, 0.1 + 0.2, 1e300].map(level),
+            ["+2.5", "0", "0", "-1", "+10", "+3.43", "+0.3", "+1e300"]
         );
         assert_eq!(typeset("-1"), "\u{2212}1");
     }

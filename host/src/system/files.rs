@@ -42,7 +42,13 @@ pub enum Coincidence {
 }
 
 fn failed<'a>(path: &'a Path) -> impl FnOnce(std::io::Error) -> WriteError + 'a {
-    move |source| WriteError { path: path.into(), source }
+    move |error| WriteError { path: path.into(), source: plain(error) }
+}
+
+/// The system's own error, without the temporary name that it may be wrapped with.
+fn plain(error: std::io::Error) -> std::io::Error {
+    let cause = error.get_ref().and_then(|wrapped| wrapped.source()?.downcast_ref::<std::io::Error>()?.raw_os_error());
+    cause.map_or(error, std::io::Error::from_raw_os_error)
 }
 
 fn temporary_beside(path: &Path) -> Result<tempfile::NamedTempFile, WriteError> {

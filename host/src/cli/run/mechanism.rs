@@ -5,14 +5,14 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::{
-    Arguments, first_to_go_wrong,
+    Arguments, answer, first_to_go_wrong,
     output::{Output, PAGE, SWEEP, TABLE, captioned, of_production},
     table_line,
 };
 use crate::{
     cli::{
         Failure, mechanism, print, print_json, progress,
-        sweep::{LevelReport, answer, doubts, for_machines},
+        sweep::{LevelReport, doubts, for_machines},
         table, warn,
     },
     dynamics::{

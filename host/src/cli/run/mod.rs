@@ -16,6 +16,7 @@ use output::Output;
 
 use crate::{
     dynamics::{
+        answer::ranges,
         driven::Driven,
         outcome::Verdict,
         sweep::{Level, Sweep},
@@ -113,6 +114,26 @@ fn first_to_go_wrong(sweep: &Sweep) -> Option<(&Level, &'static str)> {
     let first = sweep.levels.iter().find(|level| level.outcome.verdict == Verdict::Runs);
     let looser = first.is_none_or(|first| worst.n < first.n);
     Some((worst, if looser { "loose" } else { "tight" }))
+}
+
+/// The most ranges of levels on the first screen.
+const RANGES: usize = 6;
+
+/// From which level to which the sweep runs, crawls or jams, a line each: all ranges, or the widest if there are many.
+fn answer(sweep: &Sweep) -> String {
+    let ranges = ranges(sweep);
+    let mut widest: Vec<usize> = (0..ranges.len()).collect();
+    let width = |k: &usize| ranges[*k].last - ranges[*k].first;
+    widest.sort_by(|one, other| width(other).total_cmp(&width(one)).then(one.cmp(other)));
+    let most = if ranges.len() > RANGES { RANGES - 1 } else { RANGES };
+    widest.truncate(most);
+    widest.sort_unstable();
+    let mut text: String = widest.iter().map(|k| ranges[*k].describe() + "\n").collect();
+    let left = ranges.len() - widest.len();
+    if left > 0 {
+        text += &format!("{left} narrower ranges are not shown here: sweep.csv has every level\n");
+    }
+    text
 }
 
 /// The table's size and error, in words.

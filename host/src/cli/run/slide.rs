@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::{
-    Arguments, first_to_go_wrong,
+    Arguments, answer, first_to_go_wrong,
     output::{Output, PAGE, SWEEP, TABLE, captioned, of_production},
     table_line,
 };
@@ -15,7 +15,7 @@ use crate::{
         population::{page, percent, strongest},
         print, print_json, progress,
         simulate::why_undecided,
-        sweep::{LevelReport, answer, doubts, for_machines},
+        sweep::{LevelReport, doubts, for_machines},
         table,
         tolerance::DEFAULT,
         warn,
@@ -43,6 +43,7 @@ use crate::{
         number::{fixed, per_million},
         report::{Clearances, Figure, Flash, Production, ReportInput, Units, report},
     },
+    tolerance::distribution::normal::tail,
     tolerance::report::Report as Measures,
 };
 
@@ -195,12 +196,18 @@ impl Arguments {
         let mut text = answer(simulated.judged());
         text.push('\n');
         let Population { statistics, of_malfunction, .. } = &simulated.population;
-        let _ = writeln!(
-            text,
-            "Production      {} of {} units malfunction",
-            percent(&statistics.malfunctions),
-            statistics.units
-        );
+        let (units, undecided) = (statistics.units, statistics.undecided.units);
+        let unknown = if undecided > 0 { format!("; {undecided} come to no verdict") } else { String::new() };
+        let _ = match undecided < units {
+            true => {
+                writeln!(
+                    text,
+                    "Production      {} of {units} units malfunction{unknown}",
+                    percent(&statistics.malfunctions)
+                )
+            }
+            false => writeln!(text, "Production      none of {units} units comes to a verdict"),
+        };
         if statistics.malfunctions.units > 0 {
             let _ = writeln!(text, "Drives failure  {}", strongest(of_malfunction, 2));
         }
@@ -219,6 +226,9 @@ impl Arguments {
                 "How probable    {drawn} by the drawing ({}); {together} if its gaps move together (eq. 9)",
                 sum.name
             );
+        } else if let Some(tightest) = closes {
+            let together = per_million(1e6 * tail(tightest.n));
+            let _ = writeln!(text, "How probable    {together} ppm, if all gaps move together (eq. 9)");
         }
         let _ = writeln!(text, "What to change  {}", advice(scene, simulated, closes.map(|at| at.pin), production));
         let _ = writeln!(text, "Flash table     {}", table_line(scene, &simulated.table));
@@ -234,6 +244,10 @@ fn advice(scene: &Scene, simulated: &Simulated, closes: Option<&str>, production
     let Population { statistics, of_malfunction, .. } = &simulated.population;
     let wrong = first_to_go_wrong(simulated.judged());
     if wrong.is_none() && statistics.malfunctions.units == 0 {
+        let undecided = simulated.judged().levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided);
+        if undecided || statistics.undecided.units > 0 {
+            return "the run: it ends before there are verdicts; state a stroke, such as run.stroke = 80".into();
+        }
         return "nothing: every level runs, and every unit that was drawn".into();
     }
     if let Some(critical) = guide(scene, 0.0).filter(|guide| guide.warn).and_then(|guide| guide.critical_friction) {
@@ -245,7 +259,7 @@ fn advice(scene: &Scene, simulated: &Simulated, closes: Option<&str>, production
     }
     let Some((worst, side)) = wrong else {
         let first = of_malfunction.first().map_or(String::new(), |driver| format!("; start with {}", driver.name));
-        return format!("every level runs, but units do not whose gaps differ from each other{first}");
+        return format!("no level malfunctions, but units do whose gaps differ from each other{first}");
     };
     let gap = |measure: &&crate::tolerance::report::MeasureReport| closes.is_some_and(|pin| measure.name.contains(pin));
     let widest = production.and_then(|production| {

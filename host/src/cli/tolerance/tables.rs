@@ -129,7 +129,8 @@ fn contributors(report: &Report) -> String {
         let most = shares.filter(|(_, percent)| percent.abs() >= 1.0).take(6);
         let most: Vec<String> = most.map(|(name, percent)| format!("{name} {}", fixed(percent, 1))).collect();
         let by = if m.rss.is_some() { "" } else { " (Sobol')" };
-        let _ = writeln!(text, "  {}{by}: {}", m.name, most.join(", "));
+        let most = if most.is_empty() { "-".to_owned() } else { most.join(", ") };
+        let _ = writeln!(text, "  {}{by}: {most}", m.name);
     }
     text
 }

@@ -21,19 +21,50 @@ const COST: Quantity = Quantity { units: unit::ONE, range: [0.0, 1e12] };
 pub(super) fn measures(root: &Field, draft: &mut Draft, function: &mut Measures) -> Result<Vec<Measure>, SceneError> {
     let mut measures = Vec::new();
     for table in tables(root, "measure")? {
-        let (name, name_field) = name(&table)?;
-        let formula = formula(&table, draft, function)?;
-        let quantity = formula.quantity();
-        function.push(formula);
-        draft.name(&name_field, name, Source::Measure(measures.len()), Kind::of(quantity))?;
-        let limits = limits(&table, quantity)?;
-        function.losses.push(loss(&table, quantity, limits)?);
-        measures.push(Measure { name: name.into(), quantity, limits });
+        let number = measures.len();
+        measures.push(match measure(&table, number, draft, function) {
+            Ok(measure) => measure,
+            Err(error) => {
+                table.found().note(error);
+                stand_in(&table, number, draft, function)
+            }
+        });
     }
     if measures.is_empty() {
         return Err(root.error(Problem::Missing("measure".into()), "one or more tables [[measure]]"));
     }
     Ok(measures)
+}
+
+/// Reads the measure of this `number` and adds its formula to `function`.
+fn measure(table: &Field, number: usize, draft: &mut Draft, function: &mut Measures) -> Result<Measure, SceneError> {
+    let (name, name_field) = name(table)?;
+    let formula = formula(table, draft, function)?;
+    let quantity = formula.quantity();
+    function.push(formula);
+    draft.name(&name_field, name, Source::Measure(number), Kind::of(quantity))?;
+    let limits = limits(table, quantity)?;
+    function.losses.push(loss(table, quantity, limits)?);
+    Ok(Measure { name: name.into(), quantity, limits })
+}
+
+/// A constant in place of the measure of this `number`, which cannot be read: what uses its name is not wrong as well.
+fn stand_in(table: &Field, number: usize, draft: &mut Draft, function: &mut Measures) -> Measure {
+    let one = parse("1 mm", |_| None);
+    if let (true, Ok(one)) = (function.count() == number, one) {
+        function.push(Formula::Expression(one));
+    }
+    function.losses.resize(function.count(), None);
+    let name = name(table);
+    if let Ok((name, field)) = &name {
+        // Another measure may have the name: then that stands for it.
+        let _ = draft.name(field, name, Source::Measure(number), Kind::of(Measured::Length));
+    }
+    Measure {
+        name: name.map_or_else(|_| String::new(), |(name, _)| name.into()),
+        quantity: Measured::Length,
+        limits: [None; 2],
+    }
 }
 
 /// Reads the one of the keys `is`, `distance` and `angle` that a measure has.

@@ -221,7 +221,11 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         warnings: Vec::new(),
     };
     for table in tables(root, "dimension")? {
-        toleranced::dimension(&table, &mut draft)?;
+        if let Err(error) = toleranced::dimension(&table, &mut draft) {
+            // Reading goes on: what uses its name is not wrong as well.
+            table.found().note(error);
+            toleranced::stand_in(&table, &mut draft);
+        }
     }
     let mut parts = part::parts(root)?;
     let mates = mate::mates(root, &mut parts)?;

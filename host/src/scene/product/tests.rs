@@ -331,3 +331,16 @@ pub(super) fn check_all(text: &str, cases: &[(&str, &str, [&str; 3])]) {
     let failures: Vec<_> = failures.collect();
     assert!(failures.is_empty(), "{}", failures.join("\n\n"));
 }
+
+/// Three wrong dimensions and measures are three errors; what uses their names is not wrong as well.
+#[test]
+fn every_mistake_of_a_product_is_told() {
+    let text = "[[dimension]]\nname = \"a\"\nvalue = 30\ntolerance = 0\n\
+                [[dimension]]\nname = \"b\"\nvalue = 30\ntolerance = [0.1, -0.1]\n\
+                [[measure]]\nname = \"c\"\nis = \"hypot(a, b)\"\n\
+                [[measure]]\nname = \"d\"\nis = \"a + zz\"\n\
+                [[measure]]\nname = \"e\"\nis = \"a + c\"\nlower = 31\nupper = 29\n";
+    let said = SceneFile::parse("x.toml", text, &[]).err().unwrap().to_string();
+    let places: Vec<_> = said.lines().filter_map(|line| line.split_once("x.toml:")).map(|(_, place)| place).collect();
+    assert_eq!(places, ["4:13", "8:13", "11:7", "14:11", "18:9"], "{said}");
+}

@@ -13,7 +13,7 @@ use crate::{
         unit::{self, Quantity},
         value::Field,
     },
-    tolerance::model::Quantity as Measured,
+    tolerance::model::{Contributor, Distribution, Quantity as Measured, Variation},
 };
 
 pub(super) use super::quantity::LENGTH;
@@ -42,6 +42,17 @@ pub(super) fn dimension(table: &Field, draft: &mut Draft) -> Result<(), SceneErr
     let variable = draft.add(toleranced.contributor(name.into()), &[toleranced.nominal]);
     draft.quantities[variable] = measured;
     draft.name(&name_field, name, Source::Variable(variable), Kind::of(measured))
+}
+
+/// Gives the name of a dimension that cannot be read to a constant.
+pub(super) fn stand_in(table: &Field, draft: &mut Draft) {
+    let Ok((name, field)) = name(table) else { return };
+    if draft.names.iter().all(|(known, ..)| known != name) {
+        let variation = Variation::Scalar { distribution: Distribution::Constant(1.0), limits: [1.0; 2] };
+        let variable = draft.add(Contributor { name: name.into(), variation }, &[1.0]);
+        // Nobody else has the name.
+        let _ = draft.name(&field, name, Source::Variable(variable), Kind::of(Measured::Length));
+    }
 }
 
 /// The diameter of an axis.
