@@ -1,14 +1,14 @@
 //! The four pins of a slide in the four lanes of a register, where the desk spends most of its time. The bits are those of one
 //! pin after the other.
 
-use pulp::x86::V3;
+use pulp::{NullaryFnOnce, x86::V3};
 use slipfit_core::{
     SVector,
     law::{Elastic, Friction, Regularised, ThreeHalves},
     mechanism::{Differentiated, Mechanism},
     menu::SlideData,
     pose::Pose,
-    slide::{Abreast, SLOTS, Slide, abreast},
+    slide::{Abreast, Lanes, SLOTS, Slide, abreast},
 };
 
 use super::{laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
@@ -51,10 +51,7 @@ where
         _: f64,
         _: Option<&mut [(); SLOTS]>,
     ) -> SVector<f64, 6> {
-        self.instructions.vectorize(
-            #[inline(always)]
-            || slide.forces_abreast(&self.pins, t, pose, velocity),
-        )
+        self.instructions.vectorize(Forces(Call { slide, pins: &self.pins, t, pose, velocity }))
     }
 
     fn forces_by(
@@ -78,10 +75,58 @@ where
         _: &[(); SLOTS],
         velocity: &SVector<f64, 6>,
     ) -> Differentiated<f64, <Slide<f64, E, F> as Mechanism<f64, 6>>::Slopes, 6> {
-        self.instructions.vectorize(
-            #[inline(always)]
-            || slide.differentiated_abreast(&self.pins, t, pose, velocity),
-        )
+        self.instructions.vectorize(Slopes(Call { slide, pins: &self.pins, t, pose, velocity }))
+    }
+}
+
+// Types of their own, not closures: those are not inlined here, and each number would be a call.
+
+/// What forces are computed of.
+struct Call<'a, E, F, L, EL, FL> {
+    slide: &'a Slide<f64, E, F>,
+    pins: &'a Abreast<L, EL, FL>,
+    t: f64,
+    pose: &'a Pose<f64>,
+    velocity: &'a SVector<f64, 6>,
+}
+
+/// Forces, to be computed with wide instructions.
+struct Forces<'a, E, F, L, EL, FL>(Call<'a, E, F, L, EL, FL>);
+
+/// Forces and their derivatives, likewise.
+struct Slopes<'a, E, F, L, EL, FL>(Call<'a, E, F, L, EL, FL>);
+
+impl<E, F, L, EL, FL> NullaryFnOnce for Forces<'_, E, F, L, EL, FL>
+where
+    E: Elastic<f64>,
+    F: Friction<f64>,
+    L: Lanes<f64>,
+    EL: Elastic<L>,
+    FL: Friction<L, Memory = ()>,
+{
+    type Output = SVector<f64, 6>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Call { slide, pins, t, pose, velocity } = self.0;
+        slide.forces_abreast(pins, t, pose, velocity)
+    }
+}
+
+impl<E, F, L, EL, FL> NullaryFnOnce for Slopes<'_, E, F, L, EL, FL>
+where
+    E: Elastic<f64>,
+    F: Friction<f64>,
+    L: Lanes<f64>,
+    EL: Elastic<L>,
+    FL: Friction<L, Memory = ()>,
+{
+    type Output = Differentiated<f64, <Slide<f64, E, F> as Mechanism<f64, 6>>::Slopes, 6>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Call { slide, pins, t, pose, velocity } = self.0;
+        slide.differentiated_abreast(pins, t, pose, velocity)
     }
 }
 

@@ -342,5 +342,5 @@ fn every_mistake_of_a_product_is_told() {
                 [[measure]]\nname = \"e\"\nis = \"a + c\"\nlower = 31\nupper = 29\n";
     let said = SceneFile::parse("x.toml", text, &[]).err().unwrap().to_string();
     let places: Vec<_> = said.lines().filter_map(|line| line.split_once("x.toml:")).map(|(_, place)| place).collect();
-    assert_eq!(places, ["4:13", "8:13", "11:7", "14:11", "18:9"], "{said}");
+    assert_eq!(places, ["4:13", "8:13", "11:7", "14:11", "19:9"], "{said}");
 }
