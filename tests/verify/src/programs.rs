@@ -23,7 +23,7 @@ pub struct Program {
     folder: PathBuf,
 }
 
-/// Builds all programs with tests of the workspace at `root`, by the `cargo` that would run them.
+/// Builds all programs with tests of the workspace at `root`, by name, by the `cargo` that would run them.
 ///
 /// # Errors
 /// If they cannot be built.
@@ -34,8 +34,9 @@ pub fn built(mut cargo: Command, root: &Path) -> Result<Vec<Program>, String> {
     if !output.status.success() {
         return Err("the tests cannot be built".to_owned());
     }
-    let programs: Vec<_> =
-        String::from_utf8_lossy(&output.stdout).lines().filter_map(|line| program(line, root)).collect();
+    let said = String::from_utf8_lossy(&output.stdout);
+    let mut programs: Vec<_> = said.lines().filter_map(|line| program(line, root)).collect();
+    programs.sort_by(|one, other| one.name.cmp(&other.name));
     if programs.is_empty() { Err("there are no tests".to_owned()) } else { Ok(programs) }
 }
 
