@@ -4,11 +4,11 @@
 use pulp::{NullaryFnOnce, x86::V3};
 use slipfit_core::{
     SVector,
-    law::{Elastic, Friction, Regularised, ThreeHalves},
+    law::{Regularised, ThreeHalves},
     mechanism::{Differentiated, Mechanism},
     menu::SlideData,
     pose::Pose,
-    slide::{Abreast, Lanes, SLOTS, Slide, abreast},
+    slide::{Abreast, SLOTS, Slide, abreast},
 };
 
 use super::{laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
@@ -16,13 +16,19 @@ use super::{laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
 /// A number for each pin.
 type Quad = Pack<V3, f64>;
 
+/// A slide with the paper's laws.
+type Usual<S> = Slide<S, ThreeHalves<S>, Regularised<S>>;
+
+/// Derivatives of its forces.
+type Slopes = <Usual<f64> as Mechanism<f64, 6>>::Slopes;
+
 /// Pins side by side, and the proof that the machine has the instructions for them.
-pub struct SideBySide<E, F> {
+pub struct SideBySide {
     instructions: V3,
-    pins: Abreast<Quad, E, F>,
+    pins: Abreast<Quad, ThreeHalves<Quad>, Regularised<Quad>>,
 }
 
-impl SideBySide<ThreeHalves<Quad>, Regularised<Quad>> {
+impl SideBySide {
     /// The pins of the slide that `data` describes, true stick stood for by a `stick_band` (m/s). `None` where the machine has
     /// no such registers, or the laws are not the paper's.
     pub fn new(data: &SlideData<f64>, stick_band: f64) -> Option<Self> {
@@ -34,99 +40,65 @@ impl SideBySide<ThreeHalves<Quad>, Regularised<Quad>> {
     }
 }
 
-impl<E, F, EL, FL> Contacts<f64, Slide<f64, E, F>, 6> for SideBySide<EL, FL>
-where
-    E: Elastic<f64>,
-    F: Friction<f64, Memory = ()>,
-    EL: Elastic<Quad>,
-    FL: Friction<Quad, Memory = ()>,
-{
-    fn forces(
+impl Contacts<f64, Usual<f64>, 6> for SideBySide {
+    fn forces_by(
         &self,
-        slide: &Slide<f64, E, F>,
+        slide: &Usual<f64>,
+        _: &Slopes,
         t: f64,
         pose: &Pose<f64>,
         _: &[(); SLOTS],
         velocity: &SVector<f64, 6>,
         _: f64,
-        _: Option<&mut [(); SLOTS]>,
     ) -> SVector<f64, 6> {
-        self.instructions.vectorize(Forces(Call { slide, pins: &self.pins, t, pose, velocity }))
-    }
-
-    fn forces_by(
-        &self,
-        slide: &Slide<f64, E, F>,
-        _: &<Slide<f64, E, F> as Mechanism<f64, 6>>::Slopes,
-        t: f64,
-        pose: &Pose<f64>,
-        memory: &[(); SLOTS],
-        velocity: &SVector<f64, 6>,
-        a: f64,
-    ) -> SVector<f64, 6> {
-        self.forces(slide, t, pose, memory, velocity, a, None)
+        self.instructions.vectorize(Forces(Call { slide, pins: self, t, pose, velocity }))
     }
 
     fn differentiated(
         &self,
-        slide: &Slide<f64, E, F>,
+        slide: &Usual<f64>,
         t: f64,
         pose: &Pose<f64>,
         _: &[(); SLOTS],
         velocity: &SVector<f64, 6>,
-    ) -> Differentiated<f64, <Slide<f64, E, F> as Mechanism<f64, 6>>::Slopes, 6> {
-        self.instructions.vectorize(Slopes(Call { slide, pins: &self.pins, t, pose, velocity }))
+    ) -> Differentiated<f64, Slopes, 6> {
+        self.instructions.vectorize(Derivatives(Call { slide, pins: self, t, pose, velocity }))
     }
 }
 
-// Types of their own, not closures: those are not inlined here, and each number would be a call.
-
 /// What forces are computed of.
-struct Call<'a, E, F, L, EL, FL> {
-    slide: &'a Slide<f64, E, F>,
-    pins: &'a Abreast<L, EL, FL>,
+struct Call<'a> {
+    slide: &'a Usual<f64>,
+    pins: &'a SideBySide,
     t: f64,
     pose: &'a Pose<f64>,
     velocity: &'a SVector<f64, 6>,
 }
 
-/// Forces, to be computed with wide instructions.
-struct Forces<'a, E, F, L, EL, FL>(Call<'a, E, F, L, EL, FL>);
+/// Forces, to be computed with wide instructions. A type of its own, not a closure: that is not inlined here, and each number
+/// would be a call.
+struct Forces<'a>(Call<'a>);
 
 /// Forces and their derivatives, likewise.
-struct Slopes<'a, E, F, L, EL, FL>(Call<'a, E, F, L, EL, FL>);
+struct Derivatives<'a>(Call<'a>);
 
-impl<E, F, L, EL, FL> NullaryFnOnce for Forces<'_, E, F, L, EL, FL>
-where
-    E: Elastic<f64>,
-    F: Friction<f64>,
-    L: Lanes<f64>,
-    EL: Elastic<L>,
-    FL: Friction<L, Memory = ()>,
-{
+impl NullaryFnOnce for Forces<'_> {
     type Output = SVector<f64, 6>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
         let Call { slide, pins, t, pose, velocity } = self.0;
-        slide.forces_abreast(pins, t, pose, velocity)
+        slide.forces_abreast(&pins.pins, t, pose, velocity)
     }
 }
 
-impl<E, F, L, EL, FL> NullaryFnOnce for Slopes<'_, E, F, L, EL, FL>
-where
-    E: Elastic<f64>,
-    F: Friction<f64>,
-    L: Lanes<f64>,
-    EL: Elastic<L>,
-    FL: Friction<L, Memory = ()>,
-{
-    type Output = Differentiated<f64, <Slide<f64, E, F> as Mechanism<f64, 6>>::Slopes, 6>;
+impl NullaryFnOnce for Derivatives<'_> {
+    type Output = Differentiated<f64, Slopes, 6>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
         let Call { slide, pins, t, pose, velocity } = self.0;
-        slide.differentiated_abreast(pins, t, pose, velocity)
+        slide.differentiated_abreast(&pins.pins, t, pose, velocity)
     }
 }
 

@@ -12,21 +12,9 @@ use slipfit_core::{
     mechanism::{Differentiated, Linearised, Mechanism},
 };
 
-/// How the forces of a mechanism `M` are computed.
+/// How the forces of a mechanism `M` are computed where their derivatives are known, as methods with error control ask for
+/// them.
 pub trait Contacts<S: Scalar, M: Mechanism<S, D>, const D: usize> {
-    /// As [`Mechanism::forces`].
-    #[expect(clippy::too_many_arguments, reason = "those of the mechanism")]
-    fn forces(
-        &self,
-        mechanism: &M,
-        t: S,
-        pose: &M::Pose,
-        memory: &M::Memory,
-        velocity: &SVector<S, D>,
-        a: S,
-        remembered: Option<&mut M::Memory>,
-    ) -> SVector<S, D>;
-
     /// As [`Mechanism::forces_by`].
     #[expect(clippy::too_many_arguments, reason = "those of the mechanism")]
     fn forces_by(
@@ -56,20 +44,6 @@ pub trait Contacts<S: Scalar, M: Mechanism<S, D>, const D: usize> {
 pub struct InTurn;
 
 impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Contacts<S, M, D> for InTurn {
-    #[inline(always)]
-    fn forces(
-        &self,
-        mechanism: &M,
-        t: S,
-        pose: &M::Pose,
-        memory: &M::Memory,
-        velocity: &SVector<S, D>,
-        a: S,
-        remembered: Option<&mut M::Memory>,
-    ) -> SVector<S, D> {
-        mechanism.forces(t, pose, memory, velocity, a, remembered)
-    }
-
     #[inline(always)]
     fn forces_by(
         &self,
@@ -208,7 +182,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechan
         a: S,
         remembered: Option<&mut M::Memory>,
     ) -> SVector<S, D> {
-        self.contacts.forces(&self.mechanism, t, pose, memory, velocity, a, remembered)
+        self.mechanism.forces(t, pose, memory, velocity, a, remembered)
     }
 
     #[inline(never)]
