@@ -128,9 +128,16 @@ impl<S: Scalar> Factors<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::Blocks;
-    use crate::Vector3;
+    use super::{Blocks, cross_columns, cross_matrix, twice_crossed};
+    use crate::{Vector3, product::outer};
     use nalgebra::{Matrix3, SMatrix, SVector};
+
+    #[test]
+    fn crossed_twice_is_the_product_of_two_cross_matrices() {
+        let (a, b) = (Vector3::new(0.3, -1.2, 2.0), Vector3::new(1.5, 0.4, -0.7));
+        let found = twice_crossed(&outer(&a, &b));
+        assert!((found - cross_columns(&b, &cross_matrix(&a))).norm() < 1e-15, "{found}");
+    }
 
     #[test]
     fn agrees_with_nalgebra() {

@@ -85,7 +85,7 @@ impl<L, E: Elastic<L>, F: Friction<L, Memory = ()>> Abreast<L, E, F> {
 }
 
 impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
-    /// [`Mechanism::forces`](crate::mechanism::Mechanism::forces) with its `pins` side by side.
+    /// [`Mechanism::forces`](crate::mechanism::Mechanism::forces) (N, N·m) at time `t` (s) with its `pins` side by side.
     #[inline(always)]
     pub fn forces_abreast<L: Lanes<S>, EL: Elastic<L>, FL: Friction<L, Memory = ()>>(
         &self,
@@ -97,11 +97,11 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         let at = placed(pose, velocity);
         // No derivatives are taken, and there is no memory: whatever stands for the step.
         let way = Way { a: L::one(), mass_rate: L::one(), tangent_share: L::one() };
-        let Response { force, torque, .. } = pins.response(&at, way);
+        let Response { wrench: (force, torque), .. } = pins.response(&at, way);
         self.balance(t, &at, (mapped(&force, L::sum), mapped(&torque, L::sum)), velocity.z)
     }
 
-    /// [`Mechanism::differentiated`](crate::mechanism::Mechanism::differentiated) with its `pins` side by side.
+    /// [`Mechanism::differentiated`](crate::mechanism::Mechanism::differentiated) at time `t` (s) with its `pins` side by side.
     #[inline(always)]
     pub fn differentiated_abreast<L: Lanes<S>, EL: Elastic<L>, FL: Friction<L, Memory = ()>>(
         &self,

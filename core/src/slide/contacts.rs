@@ -66,10 +66,8 @@ impl<S: Scalar, M> PinForce<S, M> {
 
 /// What contacts do to the slide and how that changes with its motion and place, in body axes.
 pub(super) struct Response<S> {
-    /// Force (N).
-    pub force: Vector3<S>,
-    /// Torque about the centre of mass (N·m).
-    pub torque: Vector3<S>,
+    /// Force (N), and torque about the centre of mass (N·m).
+    pub wrench: (Vector3<S>, Vector3<S>),
     /// Sum of lever·forceᵀ (N·m).
     pub moments: Matrix3<S>,
     /// −∂force/∂velocity.
@@ -84,15 +82,14 @@ impl<S: Scalar> Response<S> {
     pub fn none() -> Self {
         let (zero, none) = (Vector3::zeros(), Matrix3::zeros());
         let [damping, stiffness] = [Blocks { a: none, b: none, c: none, d: none }; 2];
-        Self { force: zero, torque: zero, moments: none, damping, stiffness }
+        Self { wrench: (zero, zero), moments: none, damping, stiffness }
     }
 
     /// Adds what happens at a pin.
     #[inline(always)]
     pub fn add<M>(&mut self, pin: &PinForce<S, M>) {
         let PinForce { lever, force, impedance, stiffness, .. } = pin;
-        self.force += force;
-        self.torque += cross(lever, force);
+        pin.add_to(&mut self.wrench);
         self.moments += outer(lever, force);
         self.damping.add_at(lever, impedance);
         self.stiffness.add_at(lever, stiffness);
@@ -102,8 +99,7 @@ impl<S: Scalar> Response<S> {
     #[inline(always)]
     pub fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> Response<T> {
         Response {
-            force: mapped(&self.force, &number),
-            torque: mapped(&self.torque, &number),
+            wrench: (mapped(&self.wrench.0, &number), mapped(&self.wrench.1, &number)),
             moments: mapped_entries(&self.moments, &number),
             damping: self.damping.cast(&number),
             stiffness: self.stiffness.cast(&number),

@@ -303,7 +303,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         contacts: Response<S>,
         vz: S,
     ) -> Differentiated<S, Slopes<S>, 6> {
-        let Response { force, torque, moments, mut damping, mut stiffness } = contacts;
+        let Response { wrench, moments, mut damping, mut stiffness } = contacts;
         let pull = self.pull(&at.to_body);
         let push = self.drive.force(t, vz);
         // A turn θ changes the velocity that the contacts see by −θ × v.
@@ -311,12 +311,12 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         stiffness.d -= cross_rows(&at.velocity_b, &damping.c);
         pull.add_to(&mut damping, self.drive.gain);
         // The contacts' forces stay at the pins while the slide is displaced, and turn with it. The drive's does not turn.
-        stiffness.c -= cross_matrix(&force);
-        stiffness.b += cross_matrix(&force);
+        stiffness.c -= cross_matrix(&wrench.0);
+        stiffness.b += cross_matrix(&wrench.0);
         stiffness.d += twice_crossed(&(moments - outer(&(pull.force_b * push), &self.drive.point_b)));
         let (force_b, torque_b) = pull.times(self.drive.gain * self.drive.command_rate(t));
         Differentiated {
-            force: self.total(at, (force, torque), pull.times(push)),
+            force: self.total(at, wrench, pull.times(push)),
             per_time: join(at.to_body.apply_inverse(force_b), torque_b),
             slopes: Slopes { damping, stiffness, to_body: at.to_body },
         }
