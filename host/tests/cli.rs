@@ -45,6 +45,7 @@ fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
         "table.bin",
         "verdict.svg",
     ];
+    expected.extend((2..=4).map(|i| format!("contributors-{i}.svg")));
     expected.extend(
         of_slide.iter().chain(&["contributors.svg", "correlation.svg", "tolerance.csv"]).map(|name| (*name).to_owned()),
     );
@@ -104,7 +105,49 @@ fn the_main_job_answers_in_its_first_lines_and_leaves_no_level_undecided() {
     // What an earlier run of another scene has left is told of.
     let again = slipfit(folder.path(), &["run", "cd-rom-slide", "--n", "0:4:1", "--out", "cd-rom-slide-drawing"]);
     let warnings = String::from_utf8_lossy(&again.stderr).into_owned();
-    assert!(warnings.contains("also holds what this run did not write: contributors.svg"), "{warnings}");
+    assert!(warnings.contains("also holds what this run did not write: contributors-2.svg"), "{warnings}");
+    assert!(warnings.contains(" more\n") && warnings.lines().all(|line| line.len() < 400), "{warnings}");
+}
+
+#[test]
+fn a_clearance_that_contradicts_the_gaps_is_told_by_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in ["check", "simulate", "sweep", "table", "run", "population"] {
+        let mut arguments = vec![command, "cd-rom-slide"];
+        arguments
+            .extend(["sweep", "table", "run"].contains(&command).then_some(["--n", "0:1:1"]).into_iter().flatten());
+        arguments.extend((command == "population").then_some(["--units", "200"]).into_iter().flatten());
+        let output = slipfit(folder.path(), &arguments);
+        let warnings = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            warnings.contains("states a clearance of 0.40 mm across where its gaps add up to"),
+            "{command} {warnings}"
+        );
+    }
+}
+
+#[test]
+fn a_controller_is_told_a_step_that_does_and_where_its_slide_tips() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |step: &str| json(folder.path(), &["simulate", "--n", "0", "--stroke", "--step", step, "--json"]);
+    let coarse = run("1ms");
+    let advice = &coarse["trust"];
+    assert_eq!(advice["better_step_tried"], true, "{advice}");
+    let step = advice["better_step"].as_f64().unwrap();
+    let warning = coarse["warnings"].as_array().unwrap().last().unwrap().as_str().unwrap().to_owned();
+    assert!(warning.contains(&format!("take --step {}us", step * 1e6)), "{warning}");
+    let fine = run(&format!("{}us", step * 1e6));
+    assert!(fine["trust"]["better_step"].is_null() && fine["trust"]["difference"].as_f64().unwrap() < 5e-3, "{step}");
+    let desk = json(folder.path(), &["simulate", "--n", "0", "--stroke", "--json"]);
+    let tips = |report: &serde_json::Value| report["tips"]["z"].as_f64().unwrap();
+    assert!((tips(&fine) - tips(&desk)).abs() < 1e-4, "{} {}", tips(&fine), tips(&desk));
+    // A sweep by the controller says so of its worst level.
+    let swept = slipfit(folder.path(), &["sweep", "--n", "0:2:1", "--stroke", "--step", "1ms"]);
+    assert!(
+        String::from_utf8_lossy(&swept.stderr).contains("; take --step "),
+        "{}",
+        String::from_utf8_lossy(&swept.stderr)
+    );
 }
 
 #[test]

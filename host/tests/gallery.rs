@@ -33,8 +33,8 @@ How to read the answers:
   the mean unit, positive n is tighter, negative n looser. Of a mechanism the line begins with the name of its drive, such as
   `motor`. In the picture of a slide the grey hill is the normal distribution of a single gap over n. It is no distribution of
   units, because the gaps of a real unit vary one by one: [populations](population.md) count those.
-- **Pictures of mechanisms** show the pose in which the scene file draws them; play is not to scale. The four plays of a track are
-  left, right, rail and wall.
+- **Pictures of mechanisms** show the pose in which the scene file draws them; play is not to scale. In a *track* a point of one body
+  moves between four surfaces of another; its four gaps are left, right, rail and wall.
 - **Contributors.** Each line has a measure and what its contributors have in its variance, in %. Shown are the six largest from 1 %
   on. `(Sobol')` stands where the measure is not linear enough for slopes; the shares are total Sobol' indices there.
 - **Yield.** The share of the units drawn that have all measures within their limits; the brackets hold its 95 % interval.

@@ -78,7 +78,7 @@ fn moves(page: &Path, runs: u64, figures: u64) {
 #[test]
 fn the_page_of_a_population_moves_without_an_error() {
     let folder = tempfile::tempdir().unwrap();
-    stdout(&slipfit(folder.path(), &["population", "cd-rom-slide-drawing", "--units", "64", "--page", "units.html"]));
+    stdout(&slipfit(folder.path(), &["population", "cd-rom-slide-drawing", "--units", "128", "--page", "units.html"]));
     moves(&folder.path().join("units.html"), 3, 6);
 }
 

@@ -164,7 +164,7 @@ fn find(scene: &Scene, n: f64) -> Findings {
         kernel_why,
         n,
         gaps: gap_reports(scene, &gaps),
-        warnings: warnings(n_cl, guide.as_ref()).into_iter().chain(clearance_notes(scene)).collect(),
+        warnings: warnings_of(scene),
         n_star,
         guide,
     }
@@ -188,7 +188,9 @@ fn kernel(scene: &Scene) -> (&'static str, &'static str, String) {
 
 /// What a designer should know of `scene` before trusting a run.
 pub(super) fn warnings_of(scene: &Scene) -> Vec<String> {
-    warnings(rank_of_normals(&contacts(scene)), guide(scene, 0.0).as_ref())
+    let mut warnings = warnings(rank_of_normals(&contacts(scene)), guide(scene, 0.0).as_ref());
+    warnings.extend(clearance_note(scene));
+    warnings
 }
 
 fn warnings(n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
@@ -223,27 +225,24 @@ pub(super) fn self_locking(friction: f64, critical: f64, [length, distance]: [f6
     )
 }
 
-/// Where the drawing's clearances are not those that the gaps add up to.
-pub(super) fn clearance_notes(scene: &Scene) -> Vec<String> {
-    let mut notes = Vec::new();
-    if let Some(nominal) = scene.nominal_clearance {
-        let pins = derived(scene, 0.0).pins;
-        let across: Vec<f64> = pins.iter().filter_map(|pin| Some(pin.across?.clearance)).collect();
-        let up_down: Vec<f64> = pins.iter().filter_map(|pin| Some(pin.up_down?.clearance)).collect();
-        for (pair, nominal, sums) in [("across", nominal[0], across), ("up-down", nominal[1], up_down)] {
-            let [least, greatest] =
-                [f64::min, f64::max].map(|pick| sums.iter().copied().reduce(pick).unwrap_or(nominal));
-            if (least - nominal).abs().max((greatest - nominal).abs()) > 0.005e-3 {
-                notes.push(format!(
-                    "the scene states a clearance of {} mm {pair}, but its gaps add up to {} to {} mm: the simulation uses the gaps",
-                    fixed(nominal * 1e3, 2),
-                    fixed(least * 1e3, 4),
-                    fixed(greatest * 1e3, 4)
-                ));
-            }
-        }
-    }
-    notes
+/// Where the scene's clearances are not those that its gaps add up to.
+fn clearance_note(scene: &Scene) -> Option<String> {
+    let nominal = scene.nominal_clearance?;
+    let pins = derived(scene, 0.0).pins;
+    let across: Vec<f64> = pins.iter().filter_map(|pin| Some(pin.across?.clearance)).collect();
+    let up_down: Vec<f64> = pins.iter().filter_map(|pin| Some(pin.up_down?.clearance)).collect();
+    let contradicts = |(pair, nominal, sums): (&str, f64, Vec<f64>)| {
+        let [least, greatest] = [f64::min, f64::max].map(|pick| sums.iter().copied().reduce(pick).unwrap_or(nominal));
+        let off = (least - nominal).abs().max((greatest - nominal).abs());
+        let [nominal, least, greatest] = [(nominal, 2), (least, 4), (greatest, 4)].map(|(x, n)| fixed(x * 1e3, n));
+        (off > 0.005e-3).then(|| format!("{nominal} mm {pair} where its gaps add up to {least} to {greatest} mm"))
+    };
+    let found: Vec<String> = [("across", nominal[0], across), ("up-down", nominal[1], up_down)]
+        .into_iter()
+        .filter_map(contradicts)
+        .collect();
+    let stated = found.join(", and ");
+    (!found.is_empty()).then(|| format!("the scene states a clearance of {stated}: the simulation uses the gaps"))
 }
 
 /// Whether the slide locks, in words.

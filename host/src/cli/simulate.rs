@@ -18,7 +18,7 @@ use super::{
 use crate::{
     dynamics::{
         audit::Audit,
-        confirm::confirmed,
+        confirm::{confirmed, with_step_tried},
         controller::audited,
         driven::Driven,
         film::{Film, film},
@@ -223,7 +223,11 @@ impl Arguments {
         let run = if self.audit { audited } else { simulate };
         let run = confirmed(&scene, &gaps, &settings, run(&scene, &gaps, &settings)?)?;
         let controller = if by_controller { None } else { Some(controllers(&scene, &n)) };
-        let controller = controller.transpose()?;
+        let mut controller = controller.transpose()?;
+        let mut run = run;
+        let tried = |run: &mut Run| with_step_tried(&scene, &n, run.trust).map(|trust| run.trust = trust);
+        let of_controller = if by_controller { Some(&mut run) } else { controller.as_mut().and_then(Option::as_mut) };
+        of_controller.map(tried).transpose()?;
         if let Some(path) = &self.csv {
             files::write(path, &export::trajectory_csv(&run.trajectory)?)?;
         }

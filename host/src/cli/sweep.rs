@@ -4,6 +4,7 @@ use std::{collections::BTreeMap, fmt::Write, path::PathBuf};
 
 use clap::Args;
 use serde::Serialize;
+use slipfit_core::slide::CONTACTS;
 
 use super::{
     Failure, Moving, SceneArguments, ThreadArguments, check, given,
@@ -15,6 +16,7 @@ use super::{
 use crate::{
     dynamics::{
         answer::{Range, on_the_way, ranges},
+        confirm::with_step_tried,
         driven::slide_level,
         outcome::{Outcome, Verdict},
         simulate::{Settings, Solved},
@@ -123,7 +125,10 @@ impl Arguments {
             .threads
             .install(|| sweep(&scene, &levels, Keep::Figures, |n| slide_level(&scene, n, &settings), || bar.inc(1)))?;
         bar.finish_and_clear();
-        let swept = swept?;
+        let mut swept = swept?;
+        if let Some(worst) = worst_doubt(&swept).map(|k| &mut swept.levels[k]) {
+            worst.trust = with_step_tried(&scene, &[worst.n; CONTACTS], worst.trust)?;
+        }
         if let Some(path) = &self.csv {
             files::write(path, &sweep_csv(&swept)?)?;
         }
@@ -202,13 +207,17 @@ fn for_people(scene: &Scene, sweep: &Sweep) -> String {
     text
 }
 
+/// The place of the level whose run can be trusted least; `None` if all can.
+fn worst_doubt(sweep: &Sweep) -> Option<usize> {
+    let difference = |k: &usize| sweep.levels[*k].trust.difference.unwrap_or_default();
+    let doubtful = (0..sweep.levels.len()).filter(|k| !sweep.levels[*k].trust.is_sound());
+    doubtful.max_by(|one, other| difference(one).total_cmp(&difference(other)))
+}
+
 /// A warning for the levels whose runs cannot be trusted, with the advice of the worst.
 pub(super) fn doubts(sweep: &Sweep) -> Option<String> {
     let doubtful: Vec<&Level> = sweep.levels.iter().filter(|level| !level.trust.is_sound()).collect();
-    let worst = doubtful.iter().max_by(|one, other| {
-        let [one, other] = [one, other].map(|level| level.trust.difference.unwrap_or_default());
-        one.total_cmp(&other)
-    })?;
+    let worst = &sweep.levels[worst_doubt(sweep)?];
     let levels = doubtful.iter().map(|at| level(at.n)).collect::<Vec<_>>().join(", ");
     let warning = worst.trust.warning()?;
     let levels = if doubtful.len() > 12 { format!("{} levels", doubtful.len()) } else { format!("n = {levels}") };

@@ -6,11 +6,18 @@ use super::{
     desk,
     outcome::Verdict,
     simulate::{Run, Settings, SimulateError, Solver, simulate},
+    trust::Trust,
 };
 use crate::scene::Scene;
 
 /// How much finer than the desk's run the one is that it is held against.
 const FINER: f64 = 0.1;
+
+/// How many shorter steps of a controller are tried.
+const TRIES: usize = 4;
+
+/// The shortest step (s) that is tried: with shorter ones a stroke takes seconds.
+const SHORTEST_TRIED: f64 = 5e-6;
 
 /// `run`, made by `settings`, held against a better one: a run of the desk against one at a tenth of its tolerance, a run of
 /// the controller against the desk's. Its verdict is undecided where the two disagree, and its trust takes in how far their
@@ -24,6 +31,30 @@ pub fn confirmed(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, run
         Solver::Controller(_) => desk::tolerance(scene),
     };
     Ok(against(&simulate(scene, gaps, &settings.to(tolerance))?, scene, settings, run))
+}
+
+/// What is known of a controller's run at the levels `n`, its `trust` so far: where its step is too long, shorter ones are
+/// tried, so that the one advised does.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn with_step_tried(scene: &Scene, n: &[f64; CONTACTS], trust: Trust) -> Result<Trust, SimulateError> {
+    let mut shorter = scene.clone();
+    let mut next = trust.better_step;
+    for _ in 0..TRIES {
+        let Some(step) = next.filter(|step| *step >= SHORTEST_TRIED) else { break };
+        shorter.controller.step = step;
+        let settings = Settings::controller(&shorter, (1e-3 / step).round().max(1.0) * step);
+        let gaps = settings.gaps(&shorter, n);
+        let run = simulate(&shorter, &gaps, &settings).and_then(|run| confirmed(&shorter, &gaps, &settings, run));
+        next = match run {
+            Ok(run) if run.trust.is_sound() => return Ok(trust.tried(step)),
+            Ok(run) => run.trust.better_step,
+            Err(SimulateError::Interrupted) => return Err(SimulateError::Interrupted),
+            Err(_) => None,
+        };
+    }
+    Ok(trust)
 }
 
 /// `run`, made by `settings`, held against the `better` one, which is sampled at the same times.

@@ -20,6 +20,7 @@ use super::{
     outcome::{Instant, Observer, Trajectory},
     scheme::{IntegratorVisitor, ScalarKind},
     simulate::{Run, Settings, SimulateError, Solved, Solver},
+    tipping::Tipping,
     trust::Watch,
 };
 use crate::{
@@ -73,6 +74,7 @@ fn started(
         auditor,
         watch: Watch::new(spec.step, scene.slide.mass, &scene.drive),
         per_sample: per_sample as u32,
+        ramp_start: scene.drive.ramp_start,
     };
     match spec.scalar {
         ScalarKind::F32 => stepper.visit_any(AnySlide::<f32>::new(&scene.slide_data(gaps))?),
@@ -87,6 +89,7 @@ struct Stepper<'a> {
     auditor: Option<Auditor>,
     watch: Watch,
     per_sample: u32,
+    ramp_start: f64,
 }
 
 impl Stepper<'_> {
@@ -129,8 +132,10 @@ where
     type Output = Result<Run, SimulateError>;
 
     fn visit<I: Integrator>(self) -> Self::Output {
-        let Self { stepper: Stepper { settings, spec, mut observer, mut auditor, mut watch, per_sample }, slide } =
-            self;
+        let Self {
+            stepper: Stepper { settings, spec, mut observer, mut auditor, mut watch, per_sample, ramp_start },
+            slide,
+        } = self;
         let step = spec.step;
         let kernel = Kernel::<S, _, I>::new(OutOfLine::new(slide), S::from_f64(step))?;
         // The last step is the one that still ends within the run.
@@ -138,6 +143,7 @@ where
         let mut state = kernel.at_rest(Pose::nominal());
         let mut trajectory = Trajectory::default();
         let mut worst_residual = 0.0f64;
+        let mut tipping = Tipping::default();
         let start = Clock::now();
         loop {
             let t = f64::from(state.steps) * step;
@@ -145,6 +151,10 @@ where
             let force = kernel.mechanism().mechanism().drive().force(kernel.time(state.steps), vz).to_f64();
             let r = state.motion.pose.displacement_w.map(S::to_f64);
             observer.observe(Instant { t, vz: vz.to_f64(), force, z: r.z });
+            let gaps = kernel.mechanism().mechanism().gaps(&state.motion.pose).map(S::to_f64);
+            if t >= ramp_start && tipping.begins(&gaps) {
+                observer.tips(t, r.z);
+            }
             if let Some(auditor) = &mut auditor {
                 let slide = kernel.mechanism().mechanism();
                 auditor.observe(slide.energy(&state.motion), slide.power(kernel.time(state.steps), &state.motion));

@@ -29,6 +29,7 @@ use super::{
     outcome::{Instant, Observer, Trajectory},
     scheme::ScalarKind,
     simulate::{Run, Settings, SimulateError, Solved},
+    tipping::Tipping,
     trust::Trust,
 };
 use crate::scene::Scene;
@@ -146,7 +147,7 @@ impl Desk<'_> {
             memory: slide.fresh(),
         };
         let mut observer = Observer::new(scene.drive, settings.run);
-        let mut walls = Walls::default();
+        let mut tipping = Tipping::default();
         let mut knots: Vec<Knot<[f64; 4]>> = Vec::new();
         let start = Clock::now();
         let duration = settings.run.duration;
@@ -157,7 +158,7 @@ impl Desk<'_> {
             if let Some(see) = &mut see {
                 see(t, motion.velocity.z, &motion.pose, &slide.gaps(&motion.pose));
             }
-            if t >= scene.drive.ramp_start && walls.meet(&slide.gaps(&motion.pose)) {
+            if t >= scene.drive.ramp_start && tipping.begins(&slide.gaps(&motion.pose)) {
                 observer.tips(t, r.z);
             }
             if observer.is_at_end(r.z) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -176,25 +177,6 @@ impl Desk<'_> {
         }
         let outcome = observer.outcome();
         Ok(Run { trajectory, outcome, solved, trust: Trust::default(), audit: None, integration })
-    }
-}
-
-/// The walls below the pins, as far as they have been free.
-#[derive(Default)]
-struct Walls {
-    were_free: [bool; CONTACTS / 4],
-}
-
-impl Walls {
-    /// Whether one of them, free until now, meets its pin at these `gaps` (m).
-    fn meet(&mut self, gaps: &[f64; CONTACTS]) -> bool {
-        let walls = gaps.iter().skip(3).step_by(4);
-        let mut meets = false;
-        for (was_free, gap) in self.were_free.iter_mut().zip(walls) {
-            meets |= *was_free && *gap <= 0.0;
-            *was_free |= *gap > 0.0;
-        }
-        meets
     }
 }
 

@@ -21,4 +21,5 @@ pub mod pack;
 pub mod scheme;
 pub mod simulate;
 pub mod sweep;
+pub mod tipping;
 pub mod trust;

@@ -31,6 +31,8 @@ pub struct Trust {
     pub difference: Option<f64>,
     /// A step (s) that should do, where a controller's is too large; `None` if it is not, and for the desk.
     pub better_step: Option<f64>,
+    /// Whether a run with that step was made and found good enough.
+    pub better_step_tried: bool,
 }
 
 impl Trust {
@@ -45,7 +47,7 @@ impl Trust {
         let exceeded = finer.into_iter().filter(|(excess, _)| *excess > 1.0);
         let times = exceeded.map(|(excess, least)| libm::sqrt(excess).clamp(least, 100.0)).reduce(f64::max);
         let better_step = step.zip(times).map(|(step, times)| round_step(step / times));
-        Self { doubtful_force, imbalance, difference, better_step }
+        Self { doubtful_force, imbalance, difference, better_step, better_step_tried: false }
     }
 
     /// Whether nothing speaks against the run.
@@ -58,6 +60,11 @@ impl Trust {
         Self::new(self.doubtful_force, self.imbalance, Some(difference), step)
     }
 
+    /// The same, after runs with shorter steps: `step` (s) is one that does.
+    pub fn tried(self, step: f64) -> Self {
+        Self { better_step: Some(step), better_step_tried: true, ..self }
+    }
+
     /// What a designer should know, if anything.
     pub fn warning(&self) -> Option<String> {
         if self.is_sound() {
@@ -68,8 +75,8 @@ impl Trust {
         let Some(step) = self.better_step.map(|step| step * 1e6) else {
             let difference = percent(difference.unwrap_or_default());
             return Some(format!(
-                "the tolerance is too loose for this scene: a tenth of it changes the drive force by {difference} of its \
-                 peak; take a tenth of run.error"
+                "the desk's error limit is too large for this scene: a tenth of it changes the drive force by {difference} \
+                 of its peak; take a tenth of run.error"
             ));
         };
         let why = match difference {
@@ -82,8 +89,10 @@ impl Trust {
         let advice = if step < 1.0 {
             "no step above 1 µs will do: the contacts are too stiff or too deep, look at gaps, stiffness and friction"
                 .into()
-        } else {
+        } else if self.better_step_tried {
             format!("take --step {step}us")
+        } else {
+            format!("try --step {step}us")
         };
         Some(format!("the controller's step is too large for this scene: {why}; {advice}"))
     }

@@ -10,6 +10,8 @@ use serde::Serialize;
 
 /// Classes of a variable, equally probable.
 const CLASSES: usize = 12;
+/// Units from which on contributors are told: ten in a class.
+pub const LEAST_UNITS: usize = 10 * CLASSES;
 /// Parts of the population of which one at a time is left out.
 const PARTS: usize = 16;
 
@@ -64,8 +66,14 @@ impl Drivers {
         }
     }
 
-    /// The contributors, each with its variables, by falling share.
+    /// The contributors, each with its variables, by falling share; none from fewer than [`LEAST_UNITS`] figures, of which the
+    /// luckiest of many contributors would explain all.
     pub fn ranked(&self, contributors: &[(&str, std::ops::Range<usize>)]) -> Vec<Driver> {
+        let figures =
+            |cells: &[[Cell; CLASSES]; PARTS]| cells.as_flattened().iter().map(|cell| cell.count).sum::<f64>();
+        if self.cells.first().is_none_or(|cells| figures(cells) < LEAST_UNITS as f64) {
+            return Vec::new();
+        }
         let of = |(name, own): &(&str, std::ops::Range<usize>)| {
             let share = |without: Option<usize>| own.clone().map(|k| ratio(&self.cells[k], without)).sum::<f64>();
             let all = share(None);
@@ -104,6 +112,15 @@ fn ratio(cells: &[[Cell; CLASSES]; PARTS], without: Option<usize>) -> f64 {
 mod tests {
     use super::Drivers;
     use slipfit_core::sampling::stream::{Rng, unit_stream};
+
+    /// Of three units one of many contributors always explains all: nothing is said.
+    #[test]
+    fn few_units_tell_nothing() {
+        let columns = vec![vec![0.1, 0.2, 0.3]; 2];
+        let mut drivers = Drivers::new(&columns);
+        drivers.add(0, &columns, &[Some(1.0), Some(0.0), Some(0.0)]);
+        assert!(drivers.ranked(&[("a", 0..1), ("b", 1..2)]).is_empty());
+    }
 
     /// y = 2·a + b + (a pair's) c₀·c₁: shares 4/6, 1/6, and the product's that no single variable has.
     #[test]

@@ -77,7 +77,7 @@ pub fn forces(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<Strin
                 markers: vec![
                     kind(Verdict::Runs, "runs", Shape::Ring),
                     kind(Verdict::Crawls, "crawls", Shape::Triangle),
-                    kind(Verdict::Jammed, "jams", Shape::Cross),
+                    kind(Verdict::Jammed, "jammed", Shape::Cross),
                 ],
                 ..Panel::default()
             },
@@ -121,7 +121,7 @@ pub fn hypothesis(scene: &Scene, tested: &Hypothesis) -> Result<String, PlotErro
     line_chart(&Chart {
         title: scene.title.clone(),
         subtitle: "random combinations of gaps against the tightest and the loosest, as far from the mean unit".into(),
-        x_label: "distance from the mean unit (root mean square over the gaps, σ)".into(),
+        x_label: "distance from the mean unit (root mean square of the gaps, σ)".into(),
         panels: vec![Panel {
             y_label: "share that malfunctions (%)".into(),
             series: with_interval(&shares, "random"),

@@ -102,7 +102,10 @@ pub fn sides(scene: &Scene, units: &[Unit], limit: Option<f64>) -> String {
 }
 
 /// What drives force and malfunction, the strongest first.
-pub fn ranking(scene: &Scene, population: &Population) -> String {
+///
+/// # Errors
+/// If no contributor is told from nothing.
+pub fn ranking(scene: &Scene, population: &Population) -> Result<String, PlotError> {
     let block = |heading: &str, drivers: &[Driver]| {
         let bar = |driver: &Driver| Bar {
             name: driver.name.clone(),
@@ -115,7 +118,10 @@ pub fn ranking(scene: &Scene, population: &Population) -> String {
     let mut blocks =
         vec![block("malfunction", &population.of_malfunction), block("greatest force", &population.of_force)];
     blocks.retain(|block| !block.bars.is_empty());
-    bars(&scene.title, "shares in the variance, % (correlation ratios), with the standard error", &blocks)
+    if blocks.is_empty() {
+        return Err(PlotError::Empty);
+    }
+    Ok(bars(&scene.title, "shares in the variance, % (correlation ratios), with the standard error", &blocks))
 }
 
 /// So many of all, with the standard error.
@@ -139,17 +145,17 @@ mod tests {
         let mut scene = example::cd_rom();
         scene.run.duration = scene.stroke_duration().unwrap();
         let production = Production::new(&scene, None, 0.0, 1).unwrap();
-        let mut population = Population::study(&scene, &production, 60, None, |_| {}).unwrap();
+        let mut population = Population::study(&scene, &production, 240, None, |_| {}).unwrap();
         let failed = population.statistics.malfunctions.units;
-        assert!(failed > 5 && failed < 55, "{failed}");
+        assert!(failed > 20 && failed < 220, "{failed}");
         // A limit that half of all forces exceed.
         let mut forces: Vec<f64> = population.units.iter().filter_map(|unit| unit.outcome.peak_force).collect();
         forces.sort_by(f64::total_cmp);
-        let drawn = histogram(&scene, &population.units, Some(0.5 * (forces[29] + forces[30]))).unwrap();
+        let drawn = histogram(&scene, &population.units, Some(0.5 * (forces[119] + forces[120]))).unwrap();
         assert!(drawn.contains("which 50.00 % exceed") && drawn.contains("malfunction"), "{drawn}");
         let drawn = sides(&scene, &population.units, None);
         assert!(drawn.contains("the tightest tenth") && drawn.contains("press hardest at"), "{drawn}");
-        assert!(ranking(&scene, &population).contains("greatest force"));
+        assert!(ranking(&scene, &population).unwrap().contains("greatest force"));
         // Without failures and without forces there is less to show, and no error.
         population.units.iter_mut().for_each(|unit| {
             (unit.outcome.peak_force, unit.outcome.verdict) = (None, crate::dynamics::outcome::Verdict::Undecided);

@@ -87,7 +87,7 @@ pub struct Feature {
     pub shape: Shape,
     /// Nominal place (m) and unit direction.
     pub nominal: [[f64; 3]; 2],
-    /// Deviations.
+    /// Deviations, by component.
     pub terms: Vec<Term>,
     /// Those in zones that go with the size.
     pub widened: Vec<Widened>,
@@ -119,9 +119,11 @@ impl Feature {
     }
 
     fn add(&mut self, variable: usize, first: usize, vector: [f64; 3], factor: f64) {
-        let factors = vector.into_iter().enumerate().map(|(i, x)| (first + i, x * factor));
-        let terms = factors.filter(|(_, factor)| *factor != 0.0);
-        self.terms.extend(terms.map(|(component, factor)| Term { variable, component, factor }));
+        for (i, x) in vector.into_iter().enumerate().filter(|(_, x)| x * factor != 0.0) {
+            let component = first + i;
+            let place = self.terms.partition_point(|term| term.component <= component);
+            self.terms.insert(place, Term { variable, component, factor: x * factor });
+        }
     }
 
     /// Where the drawing has it.
@@ -134,8 +136,14 @@ impl Feature {
     /// Adds the deviations of the units with these `variables` to where the feature is.
     #[inline(always)]
     pub fn deviate(&self, variables: &[Lanes], located: &mut Located) {
-        for term in &self.terms {
-            *located.component(term.component) += variables[term.variable] * term.factor;
+        // A sum at a time, so that it stays in a register.
+        for terms in self.terms.chunk_by(|one, next| one.component == next.component) {
+            let component = located.component(terms[0].component);
+            let mut sum = *component;
+            for term in terms {
+                sum += variables[term.variable] * term.factor;
+            }
+            *component = sum;
         }
         for Widened { term, bonus } in &self.widened {
             let width = variables[bonus.size].map(|size| bonus.at(size));

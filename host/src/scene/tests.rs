@@ -273,6 +273,7 @@ fn errors_in_overrides_point_into_them() {
         ("slide.gravity=[0, -9.81", "`slide.gravity` is a text"),
         ("slide.gravity=[0, nan, 0]", "1:25"),
         ("pin.middle.left=[0, 1]", "there is no pin `middle`"),
+        ("dimension.x.value=3", "there is no dimension `x`"),
         ("pin.left front.left=[0, -1]", "1:31"),
         ("title=3", "`title` is a number"),
     ] {

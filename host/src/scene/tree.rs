@@ -150,6 +150,9 @@ impl<'s> Place<'s> {
     }
 }
 
+/// Lists of tables that have names.
+const LISTS: [&str; 8] = ["body", "dimension", "joint", "measure", "part", "pin", "spring", "sum"];
+
 impl<'s> Node<'s> {
     /// What this is, with its article.
     pub fn kind(&self) -> &'static str {
@@ -191,6 +194,13 @@ impl<'s> Node<'s> {
             _ => bare(),
         };
 
+        if let Some((list, name)) = key.trim().split_once('.').filter(|(list, _)| LISTS.contains(list))
+            && self.get(list).is_none()
+        {
+            let name = name.rsplit_once('.').map_or(name, |(name, _)| name);
+            let problem = Problem::UnknownName { of: list.into(), name: name.into() };
+            return Err(place.error(problem, format!("a key of the scene: it has no [[{list}]]")));
+        }
         let mut node = self;
         let mut rest = Some(key.trim());
         while let Some(path) = rest {

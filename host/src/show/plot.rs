@@ -8,7 +8,7 @@ use axis::Axis;
 use super::{
     layout::{apart, chosen, thinned},
     palette::{GRID, GUIDE, KINDS, LEVELS, MARK, SHADE, SOFT},
-    svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, wrapped},
+    svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, WIDTH, wrapped},
 };
 
 pub use super::chart::{Chart, Look, Markers, Panel, Scale, Series, Shape};
@@ -29,24 +29,24 @@ pub const LABELLED: usize = LEVELS.len();
 /// The most points of a line.
 pub const POINTS: usize = 600;
 
-/// Width and height (px) of a chart, and of one of several side by side, whose texts a phone shows at their size.
-const LARGE: [f64; 2] = [900.0, 540.0];
+/// Width and height (px) of a chart, and of one of several side by side.
+const LARGE: [f64; 2] = [WIDTH, 440.0];
 const SMALL: [f64; 2] = [456.0, 340.0];
 /// Height of a logarithmic chart's panel.
-const LOG_PANEL: f64 = 400.0;
+const LOG_PANEL: f64 = 360.0;
 /// Heading of the chart with one line below the title, one more such line, heading of a panel, axis below, axis to the left.
 const HEADING: f64 = 62.0;
 const LINE: f64 = 17.0;
 const PANEL_HEADING: f64 = 30.0;
 const BELOW: f64 = 28.0;
-const LEFT: f64 = 58.0;
+const LEFT: f64 = 62.0;
 /// Right of the axes without labels at the ends of lines, and with them before their first character.
 const BLANK: f64 = 24.0;
 const LEADER: f64 = 37.0;
 /// About how wide a character is, of labels, of the subtitle, of the title.
-const CHARACTER: [f64; 3] = [7.0, 6.7, 10.8];
+const CHARACTER: [f64; 3] = [7.4, 6.7, 10.2];
 /// Distance of labels from each other.
-const LABEL_PITCH: f64 = 15.0;
+const LABEL_PITCH: f64 = 16.0;
 /// The most characters of a label.
 const LABEL: usize = 24;
 /// Deviation of a thinned line (pixels).
@@ -58,7 +58,7 @@ const SHAPES: [Shape; KINDS.len()] =
 /// Lines of neighbouring levels differ in their dashes, as their colours are alike.
 const DASHES: [&str; 4] = ["", "9 4", "2 3", "11 3 2 3"];
 
-/// The chart as an SVG document, 900 pixels wide; the same bytes for the same chart.
+/// The chart as an SVG document, [`WIDTH`] pixels wide; the same bytes for the same chart.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to plot or a value is not finite.
@@ -66,7 +66,7 @@ pub fn line_chart(chart: &Chart) -> Result<String, PlotError> {
     drawn(chart, LARGE)
 }
 
-/// The chart at half of the width, for several side by side.
+/// The chart somewhat smaller, for several side by side.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to plot or a value is not finite.
@@ -80,7 +80,7 @@ fn drawn(chart: &Chart, [width, height]: [f64; 2]) -> Result<String, PlotError> 
     if let Some(panel) = chart.panels.iter().find(|panel| !finite(panel)) {
         return Err(PlotError::NotFinite(panel.y_label.clone()));
     }
-    let x_axis = Axis::abscissa(chart, (width / 90.0).floor())?;
+    let x_axis = Axis::abscissa(chart, (width / 80.0).floor())?;
     let y_axes = chart.panels.iter().map(|panel| Axis::ordinate(chart, panel)).collect::<Result<Vec<_>, _>>()?;
     let right = width - chart.panels.iter().flat_map(|panel| &panel.series).map(label_room).fold(BLANK, f64::max);
     let characters = |width: f64, of: usize| (width / CHARACTER[of]) as usize;
@@ -98,13 +98,12 @@ fn drawn(chart: &Chart, [width, height]: [f64; 2]) -> Result<String, PlotError> 
     for (i, line) in below.iter().enumerate() {
         svg.text([16.0, 48.0 + LINE * i as f64], line, SUBTITLE);
     }
-    let label = Font { size: 13.0, ..PLAIN };
     let most = characters(right - LEFT, 1);
-    let middle = Font { anchor: Anchor::Middle, most, ..label };
+    let middle = Font { anchor: Anchor::Middle, most, ..PLAIN };
     svg.text([(LEFT + right) / 2.0, height - 14.0], &chart.x_label, middle);
     for (i, (panel, y)) in chart.panels.iter().zip(y_axes).enumerate() {
         let top = heading + pitch * i as f64;
-        svg.text([16.0, top + 14.0], &panel.y_label, Font { most, ..label });
+        svg.text([16.0, top + 14.0], &panel.y_label, Font { most, ..PLAIN });
         svg.text([right, top + 14.0], &panel.note, Font { colour: SOFT, anchor: Anchor::End, ..PLAIN });
         let from = 36.0 + CHARACTER[0] * panel.y_label.chars().count() as f64;
         legend(&mut svg, &panel.markers, [from, top + 14.0]);

@@ -1,6 +1,6 @@
 //! A small writer of SVG documents, in pixels.
 
-use std::fmt::Write;
+use std::{collections::BTreeMap, fmt::Write};
 
 use super::{
     markup::escape,
@@ -9,9 +9,15 @@ use super::{
 
 const FONTS: &str = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif";
 
+/// Width (px) of a picture: a phone of 400 px shows its texts at two thirds of their size.
+pub const WIDTH: f64 = 560.0;
+
 /// A picture under way.
 pub struct Svg {
+    head: String,
     text: String,
+    /// Attributes and colours, for those who read in the dark.
+    used: BTreeMap<(&'static str, &'static str), &'static str>,
 }
 
 /// The end of a text that stands at its place.
@@ -44,9 +50,9 @@ pub struct Font {
 
 /// Labels.
 pub const PLAIN: Font =
-    Font { size: 12.0, bold: false, colour: INK, anchor: Anchor::Start, turned: 0.0, most: usize::MAX };
+    Font { size: 13.0, bold: false, colour: INK, anchor: Anchor::Start, turned: 0.0, most: usize::MAX };
 /// A picture's title.
-pub const TITLE: Font = Font { size: 18.0, bold: true, ..PLAIN };
+pub const TITLE: Font = Font { size: 17.0, bold: true, ..PLAIN };
 /// Below the title.
 pub const SUBTITLE: Font = Font { size: 13.0, colour: SOFT, ..PLAIN };
 
@@ -73,21 +79,38 @@ impl Stroke {
 impl Svg {
     /// An empty picture of this width and height (px) with a title for readers that do not see it.
     pub fn new([width, height]: [f64; 2], title: &str) -> Self {
-        let mut text = format!(
+        let head = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{width}\" height=\"{height}\" \
              viewBox=\"0 0 {width} {height}\" style=\"--width: {width}px\" font-family=\"{FONTS}\" \
              stroke-linejoin=\"round\" stroke-linecap=\"butt\">\n<title>{}</title>\n",
             escape(title)
         );
-        let Colour { name, light, .. } = PAPER;
-        let _ = writeln!(text, "<rect class=\"f-{name}\" width=\"{width}\" height=\"{height}\" fill=\"{light}\"/>");
-        Self { text }
+        let mut svg = Self { head, text: String::new(), used: BTreeMap::new() };
+        svg.rectangle([0.0, 0.0, width, height], PAPER, 1.0);
+        svg
+    }
+
+    /// The class of what is filled with `colour`, and the attribute.
+    fn filled(&mut self, colour: Colour) -> (String, String) {
+        self.painted("fill", colour)
+    }
+
+    /// The class of what has an outline of `colour`, and the attribute.
+    fn stroked(&mut self, colour: Colour) -> (String, String) {
+        self.painted("stroke", colour)
+    }
+
+    fn painted(&mut self, attribute: &'static str, Colour { name, light, dark }: Colour) -> (String, String) {
+        if light != dark {
+            self.used.insert((attribute, name), dark);
+        }
+        (format!("{}-{name}", &attribute[..1]), format!(" {attribute}=\"{light}\""))
     }
 
     /// A filled rectangle: left, top, width, height.
     pub fn rectangle(&mut self, [x, y, width, height]: [f64; 4], colour: Colour, opacity: f64) {
         let [x, y, width, height] = [x, y, width, height].map(number);
-        let (fill, opacity) = (fill(colour), shown("fill-opacity", opacity));
+        let (fill, opacity) = (self.filled(colour), shown("fill-opacity", opacity));
         let _ = writeln!(
             self.text,
             "<rect class=\"{}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"{}{opacity}/>",
@@ -97,11 +120,12 @@ impl Svg {
 
     /// A line through `points`.
     pub fn line(&mut self, points: &[[f64; 2]], stroke: Stroke) {
-        let Stroke { colour: Colour { name, light, .. }, width, opacity, dash } = stroke;
+        let Stroke { colour, width, opacity, dash } = stroke;
+        let (class, paint) = self.stroked(colour);
         let dash = if dash.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{dash}\"") };
         let _ = writeln!(
             self.text,
-            "<polyline class=\"s-{name}\" points=\"{}\" fill=\"none\" stroke=\"{light}\" stroke-width=\"{width}\"{}{dash}/>",
+            "<polyline class=\"{class}\" points=\"{}\" fill=\"none\"{paint} stroke-width=\"{width}\"{}{dash}/>",
             places(points),
             shown("stroke-opacity", opacity),
         );
@@ -109,7 +133,7 @@ impl Svg {
 
     /// A filled area within `points`.
     pub fn area(&mut self, points: &[[f64; 2]], colour: Colour) {
-        let fill = fill(colour);
+        let fill = self.filled(colour);
         let _ = writeln!(self.text, "<polygon class=\"{}\" points=\"{}\"{}/>", fill.0, places(points), fill.1);
     }
 
@@ -118,15 +142,16 @@ impl Svg {
         let (mut classes, mut paint) = (Vec::new(), String::new());
         match inside {
             Some(colour) => {
-                let (class, attribute) = fill(colour);
+                let (class, attribute) = self.filled(colour);
                 classes.push(class);
                 paint.push_str(&attribute);
             }
             None => paint.push_str(" fill=\"none\""),
         }
-        if let Some(Stroke { colour: Colour { name, light, .. }, width, .. }) = outline {
-            classes.push(format!("s-{name}"));
-            let _ = write!(paint, " stroke=\"{light}\" stroke-width=\"{width}\"");
+        if let Some(Stroke { colour, width, .. }) = outline {
+            let (class, attribute) = self.stroked(colour);
+            classes.push(class);
+            let _ = write!(paint, "{attribute} stroke-width=\"{width}\"");
         }
         let _ = writeln!(self.text, "<path class=\"{}\" d=\"{path}\"{paint}/>", classes.join(" "));
     }
@@ -134,7 +159,7 @@ impl Svg {
     /// A text, its middle at the height y.
     pub fn text(&mut self, [x, y]: [f64; 2], words: &str, font: Font) {
         let Font { size, bold, colour, anchor, turned, most } = font;
-        let (class, fill) = fill(colour);
+        let (class, fill) = self.filled(colour);
         // Half the height of capitals, as the middle of a text is not in every reader's reach.
         let baseline = number(y + if turned == 0.0 { 0.35 * size } else { 0.0 });
         let x = number(x);
@@ -158,9 +183,15 @@ impl Svg {
         );
     }
 
-    /// The document, without an XML declaration.
+    /// The document, without an XML declaration. As a file of its own it is dark where its reader wants that; on a page these are
+    /// the page's own colours.
     pub fn finish(self) -> String {
-        self.text + "</svg>\n"
+        let rule = |((attribute, name), dark): (&(&str, &str), &&str)| {
+            format!(".{}-{name} {{ {attribute}: {dark}; }}", &attribute[..1])
+        };
+        let rules: Vec<String> = self.used.iter().map(rule).collect();
+        let dark = format!("<style>@media screen and (prefers-color-scheme: dark) {{ {} }}</style>\n", rules.join(" "));
+        format!("{}{dark}{}</svg>\n", self.head, self.text)
     }
 }
 
@@ -188,11 +219,6 @@ pub fn wrapped(words: &str, most: usize) -> Vec<String> {
         }
     }
     lines
-}
-
-/// Class and attribute.
-fn fill(Colour { name, light, .. }: Colour) -> (String, String) {
-    (format!("f-{name}"), format!(" fill=\"{light}\""))
 }
 
 fn shown(attribute: &str, opacity: f64) -> String {

@@ -46,7 +46,7 @@ pub fn units(
         (
             "Which tolerances the force and the malfunction vary with, the strongest first. What is missing to 100 % comes from \
              weaker ones and from several together.",
-            Ok(shares::ranking(scene, population)),
+            shares::ranking(scene, population),
         ),
     ];
     let (mut figures, mut names) = (Vec::new(), Vec::new());

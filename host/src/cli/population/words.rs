@@ -8,7 +8,7 @@ use crate::{
     dynamics::outcome::Verdict,
     population::{
         Unit,
-        drivers::Driver,
+        drivers::{Driver, LEAST_UNITS},
         picture::tightness,
         statistics::{Share, Spread, Statistics},
         study::Population,
@@ -42,7 +42,7 @@ impl Arguments {
         };
         let _ = writeln!(text, ", {length}\n");
         let _ = writeln!(text, "Malfunction     {}", percent(&malfunctions));
-        for (name, share) in [("runs", runs), ("crawls", crawls), ("jams", jammed), ("undecided", undecided)] {
+        for (name, share) in [("runs", runs), ("crawls", crawls), ("jammed", jammed), ("undecided", undecided)] {
             if share.units > 0 {
                 let _ = writeln!(text, "  {name:14}{}", percent(&share));
             }
@@ -111,6 +111,9 @@ fn worst_units(scene: &Scene, units: &[Unit]) -> String {
 
 /// The strongest of `drivers`, at most `most`, as far as they are told from nothing.
 pub fn strongest(drivers: &[Driver], most: usize) -> String {
+    if drivers.is_empty() {
+        return format!("not known: that takes {LEAST_UNITS} units or more");
+    }
     let shown = drivers.iter().filter(|driver| driver.share > 2.0 * driver.error).take(most);
     let shown: Vec<String> = shown
         .map(|driver| {

@@ -21,6 +21,9 @@ pub const SWEEP: &str = "sweep.csv";
 /// The statistics of the product's measures.
 const MEASURES: &str = "tolerance.csv";
 
+/// Files of others that are named.
+const STRANGERS: usize = 3;
+
 /// Files by name.
 pub type Files = Vec<(String, Vec<u8>)>;
 
@@ -74,8 +77,11 @@ impl<'a> Output<'a> {
             .filter(|name| !files.iter().any(|(own, _)| own == name))
             .collect();
         names.sort();
-        let folder = self.folder.display();
-        (!names.is_empty()).then(|| format!("{folder} also holds what this run did not write: {}", names.join(", ")))
+        let left = names.len().saturating_sub(STRANGERS);
+        names.truncate(STRANGERS);
+        let more = if left > 0 { format!(" and {left} more") } else { String::new() };
+        let (folder, names) = (self.folder.display(), names.join(", "));
+        (!names.is_empty()).then(|| format!("{folder} also holds what this run did not write: {names}{more}"))
     }
 
     /// Gives back what was `done`; after a failure, the folder goes if this run made it and wrote nothing.

@@ -122,8 +122,6 @@ impl Arguments {
         let answer = self.answer(scene, &simulated, production.as_ref());
         let figures = figures(scene, &simulated)?;
         let ForceTable { worst_error_in_use: [worst_force_error, worst_velocity_error], .. } = simulated.table;
-        let mut notes = warnings.clone();
-        notes.extend(check::clearance_notes(scene));
         let page = report(&ReportInput {
             title: &scene.title,
             sweep: simulated.judged(),
@@ -133,7 +131,7 @@ impl Arguments {
             flash: Some(Flash { bytes: simulated.table.bytes.len(), worst_force_error, worst_velocity_error }),
             units: Some(&simulated.units.0),
             production: production.as_ref(),
-            notes: &notes,
+            notes: &warnings,
         });
         let mut files: Vec<(String, Vec<u8>)> = vec![
             (PAGE.into(), page.into_bytes()),

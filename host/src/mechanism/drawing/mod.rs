@@ -10,16 +10,21 @@ use super::{Action, Joint, JointKind, Mechanism};
 use crate::show::{
     number::ten_digits,
     palette::{Colour, KINDS, SOFT},
-    svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE},
+    svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, WIDTH},
 };
 use symbol::Pen;
 use view::{Extent, View};
 
-const WIDTH: f64 = 900.0;
 const HEADING: f64 = 62.0;
-/// Height of a line of the list (px), and how many columns it has.
-const LINE: f64 = 19.0;
-const COLUMNS: usize = 2;
+/// Height of the line below a view (px).
+const NOTE: f64 = 20.0;
+/// Height of a line of the list (px).
+const LINE: f64 = 20.0;
+
+/// Whether two rectangles (left, top, width, height) share anything.
+fn overlap(one: [f64; 4], other: [f64; 4]) -> bool {
+    (0..2).all(|k| one[k] < other[k] + other[k + 2] && other[k] < one[k] + one[k + 2])
+}
 
 /// What stands before a line of the list.
 enum Mark {
@@ -33,37 +38,35 @@ fn colour(body: Option<usize>) -> Colour {
 }
 
 impl Mechanism {
-    /// The picture as SVG, 900 pixels wide.
+    /// The picture as SVG.
     pub fn drawing(&self) -> String {
         let list = self.list();
-        let rows = list.len().div_ceil(COLUMNS);
         let views: &[([usize; 2], &str)] = if self.planar {
             &[([0, 1], "x to the right, y up")]
         } else {
             &[([0, 1], "x to the right, y up"), ([2, 1], "z to the right, y up")]
         };
-        let (extent, width) = (Extent::of(self), WIDTH / views.len() as f64);
-        let views_height = views.iter().map(|(axes, _)| extent.height(*axes, width)).fold(0.0, f64::max);
-        let list_top = HEADING + views_height + 32.0;
+        let extent = Extent::of(self);
+        let heights: Vec<f64> = views.iter().map(|(axes, _)| extent.height(*axes, WIDTH) + NOTE).collect();
+        let list_top = HEADING + heights.iter().sum::<f64>() + 12.0;
         let below = "as drawn; clearances are not to scale";
-        let mut svg = Svg::new([WIDTH, list_top + LINE * rows as f64], &format!("{}: {below}", self.title));
-        svg.text([16.0, 26.0], &self.title, Font { most: 80, ..TITLE });
+        let mut svg = Svg::new([WIDTH, list_top + LINE * list.len() as f64], &format!("{}: {below}", self.title));
+        svg.text([16.0, 26.0], &self.title, Font { most: 50, ..TITLE });
         svg.text([16.0, 48.0], below, SUBTITLE);
-        for (i, (axes, name)) in views.iter().enumerate() {
-            let frame = [width * i as f64, HEADING, width, views_height];
+        let mut top = HEADING;
+        for ((axes, name), height) in views.iter().zip(heights) {
             let note = Font { colour: SOFT, anchor: Anchor::Middle, ..PLAIN };
-            svg.text([frame[0] + 0.5 * width, HEADING + views_height], name, note);
-            self.draw(&mut svg, &View::of(&extent, *axes, frame));
+            svg.text([0.5 * WIDTH, top + height - NOTE], name, note);
+            self.draw(&mut svg, &View::of(&extent, *axes, [0.0, top, WIDTH, height - NOTE]));
+            top += height;
         }
-        for (i, (mark, text)) in list.iter().enumerate() {
-            let (column, row) = (i / rows, i % rows);
-            let x = 24.0 + column as f64 * (WIDTH - 32.0) / COLUMNS as f64;
-            let y = list_top + LINE * row as f64;
+        for (row, (mark, text)) in list.iter().enumerate() {
+            let (x, y) = (24.0, list_top + LINE * row as f64);
             match mark {
                 Mark::Colour(colour) => svg.rectangle([x + 2.0, y - 5.0, 10.0, 10.0], *colour, 1.0),
                 Mark::Number(number) => svg.text([x, y], &number.to_string(), Font { bold: true, ..PLAIN }),
             }
-            svg.text([x + 22.0, y], text, Font { most: 60, ..PLAIN });
+            svg.text([x + 26.0, y], text, Font { most: 68, ..PLAIN });
         }
         svg.finish()
     }
@@ -120,8 +123,23 @@ impl Mechanism {
                 None => labels.push((at, (i + 1).to_string())),
             }
         }
+        let mut taken: Vec<[f64; 4]> = Vec::new();
         for ([x, y], label) in labels {
-            pen.svg.text([x + 10.0, y - 22.0], &label, Font { bold: true, ..PLAIN });
+            let width = 8.0 * label.chars().count() as f64;
+            let room = |[dx, dy]: [f64; 2]| [x + dx, y + dy - 8.0, width, 16.0];
+            // The first place beside the joint that no other label has.
+            let free = |offset: &&[f64; 2]| !taken.iter().any(|other| overlap(*other, room(**offset)));
+            let places = [
+                [10.0, -22.0],
+                [10.0, 24.0],
+                [-10.0 - width, -22.0],
+                [-10.0 - width, 24.0],
+                [10.0, -40.0],
+                [10.0, 42.0],
+            ];
+            let [dx, dy] = *places.iter().find(free).unwrap_or(&places[0]);
+            taken.push(room([dx, dy]));
+            pen.svg.text([x + dx, y + dy], &label, Font { bold: true, ..PLAIN });
         }
     }
 

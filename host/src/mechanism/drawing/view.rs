@@ -9,7 +9,7 @@ const MARGIN: f64 = 56.0;
 const LEAST: f64 = 1e-3;
 
 /// Greatest and least height of a view (px).
-const HEIGHTS: [f64; 2] = [380.0, 180.0];
+const HEIGHTS: [f64; 2] = [380.0, 150.0];
 
 /// A mechanism seen along one axis.
 pub struct View {

@@ -5,17 +5,18 @@ use super::{FACTORS, Grade, Point, SCHEMES, tally};
 use crate::show::{
     number::typeset,
     palette::{Colour, INK, PAPER},
-    svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE},
+    svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE, WIDTH},
 };
 
-const LEFT: f64 = 190.0;
-const WIDTH: f64 = 900.0;
-const TOP: f64 = 92.0;
-const ROW: f64 = 13.0;
-const LABELS: f64 = 15.0;
-const GAP: f64 = 9.0;
-const NAME: f64 = 96.0;
-const LABEL: Font = Font { size: 11.0, ..PLAIN };
+/// Left end of the cells.
+const LEFT: f64 = 112.0;
+const ROW: f64 = 16.0;
+/// Height of a strip's name and of the labels below it.
+const HEADING: f64 = 20.0;
+const LABELS: f64 = 18.0;
+const GAP: f64 = 8.0;
+/// Least distance of labels from each other.
+const LABEL_PITCH: f64 = 46.0;
 
 /// Colour, letter and meaning.
 fn look(grade: Grade) -> (Colour, &'static str, &'static str) {
@@ -31,40 +32,44 @@ fn look(grade: Grade) -> (Colour, &'static str, &'static str) {
 
 /// The map of `single`, with the tally of `random` below, as an SVG document.
 pub fn stability_map(single: &[Point], random: &[Point], title: &str) -> String {
-    let block = ROW * SCHEMES.len() as f64 + LABELS + GAP;
-    let height = TOP + block * FACTORS.len() as f64 + if random.is_empty() { 10.0 } else { 64.0 };
+    let block = HEADING + ROW * SCHEMES.len() as f64 + LABELS + GAP;
+    let grades = [Grade::Sound, Grade::Cautious, Grade::Warned, Grade::Stopped, Grade::Silent];
+    let top = 64.0 + ROW * grades.len() as f64 + 10.0;
+    let height = top + block * FACTORS.len() as f64 + if random.is_empty() { 6.0 } else { 74.0 };
     let mut svg = Svg::new([WIDTH, height], &format!("{title}: stability map"));
-    svg.text([16.0, 26.0], title, Font { most: 80, ..TITLE });
+    svg.text([16.0, 26.0], title, Font { most: 50, ..TITLE });
     let what = "stability: one factor at a time, opening of 200 ms, against a quarter of the step";
     svg.text([16.0, 48.0], what, SUBTITLE);
-    let (start, middle, end) = (LABEL, Font { anchor: Anchor::Middle, ..LABEL }, Font { anchor: Anchor::End, ..LABEL });
-    let mut x = 16.0;
-    for grade in [Grade::Sound, Grade::Cautious, Grade::Warned, Grade::Stopped, Grade::Silent] {
-        cell(&mut svg, [x, 62.0, 14.0], grade);
-        svg.text([x + 19.0, 69.0], look(grade).2, start);
-        x += 34.0 + 5.7 * look(grade).2.len() as f64;
+    let (middle, end) = (Font { anchor: Anchor::Middle, ..PLAIN }, Font { anchor: Anchor::End, ..PLAIN });
+    for (i, grade) in grades.into_iter().enumerate() {
+        let y = 64.0 + ROW * i as f64;
+        cell(&mut svg, [16.0, y, 16.0], grade);
+        svg.text([40.0, y + 0.5 * ROW], look(grade).2, PLAIN);
     }
     for (i, factor) in FACTORS.iter().enumerate() {
-        let top = TOP + block * i as f64;
-        svg.text([16.0, top + ROW * 0.5], &typeset(factor.name), start);
+        let heading = top + block * i as f64;
+        svg.text([16.0, heading + 0.5 * HEADING], &typeset(factor.name), Font { bold: true, ..PLAIN });
         let values = factor.range.values();
-        let pitch = (WIDTH - 16.0 - LEFT - NAME) / values.len() as f64;
+        let pitch = (WIDTH - 16.0 - LEFT) / values.len() as f64;
+        let first = heading + HEADING;
         for (row, scheme) in SCHEMES.iter().enumerate() {
-            let y = top + ROW * row as f64;
-            svg.text([LEFT + NAME - 6.0, y + ROW * 0.5], scheme.name(), end);
+            let y = first + ROW * row as f64;
+            svg.text([LEFT - 6.0, y + 0.5 * ROW], scheme.name(), end);
             let found = single.iter().filter(|point| point.factor == factor.name && point.integrator == scheme.name());
             for (column, point) in found.enumerate() {
-                cell(&mut svg, [LEFT + NAME + pitch * column as f64, y, pitch - 1.0], point.grade());
+                cell(&mut svg, [LEFT + pitch * column as f64, y, pitch - 1.0], point.grade());
             }
         }
-        for (column, value) in values.iter().enumerate() {
-            let x = LEFT + NAME + pitch * (column as f64 + 0.5) - 0.5;
-            svg.text([x, top + ROW * SCHEMES.len() as f64 + 7.0], &typeset(&(factor.label)(*value)), middle);
+        let every = (LABEL_PITCH / pitch).ceil() as usize;
+        for (column, value) in values.iter().enumerate().step_by(every) {
+            let x = LEFT + pitch * (column as f64 + 0.5) - 0.5;
+            let below = first + ROW * SCHEMES.len() as f64 + 0.5 * LABELS;
+            svg.text([x, below], &typeset(&(factor.label)(*value)), middle);
         }
     }
     if !random.is_empty() {
-        let y = height - 44.0;
-        svg.text([16.0, y - 10.0], &format!("{} random combinations of all factors", random.len()), start);
+        let y = height - 46.0;
+        svg.text([16.0, y - 14.0], &format!("{} random combinations of all factors", random.len()), PLAIN);
         let mut x = 16.0;
         let mut few = Vec::new();
         for (grade, count) in tally(random) {
@@ -73,14 +78,14 @@ pub fn stability_map(single: &[Point], random: &[Point], title: &str) -> String 
                 cell(&mut svg, [x, y, width], grade);
             }
             if width > 40.0 {
-                svg.text([x + width / 2.0, y + 22.0], &count.to_string(), middle);
+                svg.text([x + width / 2.0, y + ROW + 9.0], &count.to_string(), middle);
             } else if count > 0 {
                 few.push(format!("{count} {}", look(grade).1));
             }
             x += width;
         }
         // Beside the heading, because there is no room below.
-        svg.text([WIDTH - 16.0, y - 10.0], &few.join(", "), end);
+        svg.text([WIDTH - 16.0, y - 14.0], &few.join(", "), end);
     }
     svg.finish()
 }
@@ -90,8 +95,8 @@ fn cell(svg: &mut Svg, [x, y, width]: [f64; 3], grade: Grade) {
     svg.rectangle([x, y, width, ROW - 1.0], colour, 1.0);
     if !letter.is_empty() && width > 8.0 {
         let colour = if grade == Grade::Silent { PAPER } else { INK };
-        let font = Font { size: 10.0, colour, anchor: Anchor::Middle, ..PLAIN };
-        svg.text([x + width / 2.0, y + 6.0], letter, font);
+        let font = Font { colour, anchor: Anchor::Middle, ..PLAIN };
+        svg.text([x + width / 2.0, y + 0.5 * (ROW - 1.0)], letter, font);
     }
 }
 

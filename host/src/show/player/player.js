@@ -395,11 +395,12 @@
 
     if ((run.events || []).length) {
       const [, chart] = row("events");
+      chart.style.height = `${1.35 * run.events.length}em`;
       run.events.forEach(({ t, name: text }, i) => {
-        // A name stands behind its line, unless the next one is close.
-        const next = i + 1 < run.events.length ? share(run.events[i + 1].t) : 1;
-        const side = next - share(t) < 0.2 ? "before" : "after";
-        html(chart, "span", { style: `left:${percent(t)}`, class: side, title: milliseconds(t) }, text);
+        // A line of its own each, so that no name meets another however narrow the page; on the side with more room.
+        const side = share(t) > 0.5 ? "before" : "after";
+        const style = `left:${percent(t)}; top:${1.35 * i}em`;
+        html(chart, "span", { style, class: side, title: milliseconds(t) }, text);
       });
     }
     const plots = run.plots.map(({ name, unit, values }, i) => {

@@ -46,7 +46,7 @@ fn labels_axes_and_ends() {
         "n = -1",
         "n = 0",
         "n = 2.5",
-        "1400",
+        "1500",
         "\u{2212}1",
     ] {
         assert!(texts.iter().any(|text| text == expected), "{expected} in {texts:?}");

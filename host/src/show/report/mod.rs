@@ -11,6 +11,7 @@ pub use self::production::Production;
 use super::{markup::escape, palette::style_sheet, player};
 use crate::{
     dynamics::{
+        answer::on_the_way,
         driven::DriveKind,
         outcome::Verdict,
         sweep::{Level, Sweep},
@@ -191,18 +192,22 @@ fn levels(sweep: &Sweep) -> String {
             optional(outcome.peak_force, 4),
             optional(outcome.settled_force, 4),
             real(sweep.kind.speed(outcome.final_velocity), 2),
+            real(sweep.kind.travel(outcome.end.z), 1),
             compressed,
             zero,
             free,
+            on_the_way(sweep.kind, outcome),
         ];
         tr("", &cells)
     };
-    let (effort, unit, speed) = (sweep.kind.effort(), sweep.kind.effort_unit(), sweep.kind.speed_unit());
+    let (effort, unit) = (sweep.kind.effort(), sweep.kind.effort_unit());
+    let (speed, travel) = (sweep.kind.speed_unit(), sweep.kind.travel_unit());
     let head = format!(
         "<tr><th scope=\"col\" rowspan=\"2\">n</th><th scope=\"col\" rowspan=\"2\">verdict</th>\
         <th scope=\"col\" rowspan=\"2\">breakaway<br/>(ms)</th><th scope=\"col\" rowspan=\"2\">peak {effort}<br/>({unit})</th><th scope=\"col\" rowspan=\"2\">settled {effort}<br/>({unit})</th>\
         <th scope=\"col\" rowspan=\"2\">final velocity<br/>({speed})</th>\
-        <th scope=\"colgroup\" colspan=\"3\">gaps</th></tr>\n\
+        <th scope=\"col\" rowspan=\"2\">travel<br/>({travel})</th>\
+        <th scope=\"colgroup\" colspan=\"3\">gaps</th><th scope=\"col\" rowspan=\"2\">on the way</th></tr>\n\
         <tr class=\"sub\"><th scope=\"col\">compressed</th><th scope=\"col\">zero</th><th scope=\"col\">free</th></tr>\n"
     );
     let caption =
@@ -292,7 +297,7 @@ mod tests {
         for query in ["(max-width: 640px)", "screen and (prefers-color-scheme: dark)", "print"] {
             assert!(html.contains(&format!("@media {query} {{")), "{query}");
         }
-        for rule in ["figure { margin: 1.4rem 0; break-inside: avoid; }", "min-width: calc(.76 * var(--width))"] {
+        for rule in ["figure { margin: 1.4rem 0; break-inside: avoid; }", "min-width: calc(.62 * var(--width))"] {
             assert!(html.contains(rule), "{rule}");
         }
         // No table may be kept on one sheet: longer ones would leave a blank one before them.

@@ -29,13 +29,18 @@ fn ppm(number: f64) -> String {
 
 /// Tables and pictures.
 pub fn section(Production { report, pictures }: &Production) -> String {
-    let pictures: String = pictures.iter().map(|Picture { caption, svg, .. }| figure(caption, svg)).collect();
+    let figures = |small| -> String {
+        let shown = pictures.iter().filter(|picture| picture.small == small);
+        shown.map(|Picture { caption, svg, .. }| figure(caption, svg)).collect()
+    };
     format!(
-        "<h2>Tolerance analysis</h2>\n{}{}{}{}<div class=\"multiples\">\n{pictures}</div>\n",
+        "<h2>Tolerance analysis</h2>\n{}{}{}{}{}<div class=\"multiples\">\n{}</div>\n",
         measures(report),
         beside(report),
         sums(report),
         list(&report.notes),
+        figures(false),
+        figures(true),
     )
 }
 

@@ -4,10 +4,10 @@
 use super::{MeasureReport, Report, Share};
 use crate::{
     show::{
-        bars::{Bar, Block, HEAD, NAME, bars, document, longest},
+        bars::{Bar, Block, HEAD, bars, document, longest, sheets},
         chart::{Chart, Look, Panel, Series, outline},
         number::{fixed, typeset},
-        palette::{INK, NEGATIVE, ON_NEGATIVE, ON_POSITIVE, POSITIVE},
+        palette::{INK, NEGATIVE, ON_NEGATIVE, ON_POSITIVE, POSITIVE, SOFT},
         plot::{PlotError, small_chart},
         svg::{Anchor, Font, PLAIN},
     },
@@ -31,18 +31,25 @@ pub struct Picture {
     pub caption: String,
     /// An SVG document without XML declaration.
     pub svg: String,
+    /// Whether it is one of many small ones.
+    pub small: bool,
 }
 
-const CONTRIBUTORS: &str = "contributors.svg";
 const CORRELATION: &str = "correlation.svg";
+
+/// The `i`th picture of contributors.
+fn contributors_file(i: usize) -> String {
+    if i == 0 { "contributors.svg".into() } else { format!("contributors-{}.svg", i + 1) }
+}
 
 fn histogram_file(i: usize) -> String {
     format!("histogram-{}.svg", i + 1)
 }
 
-/// Names of the files of all pictures of `measures` measures.
+/// Names that the files of pictures of `measures` measures can have.
 pub fn file_names(measures: usize) -> impl Iterator<Item = String> {
-    [CONTRIBUTORS, CORRELATION].map(str::to_owned).into_iter().chain((0..measures).map(histogram_file))
+    let of_measures = (0..measures).flat_map(|i| [contributors_file(i), histogram_file(i)]);
+    std::iter::once(CORRELATION.to_owned()).chain(of_measures)
 }
 
 /// All pictures: contributors, correlations, and a histogram for every measure.
@@ -50,19 +57,18 @@ pub fn file_names(measures: usize) -> impl Iterator<Item = String> {
 /// # Errors
 /// [`PlotError`], if a number is not finite.
 pub fn pictures(report: &Report, study: &Study, tallies: &[Tally]) -> Result<Vec<Picture>, PlotError> {
-    let picture = |file: &str, caption: &str, svg| Picture { file: file.into(), caption: caption.into(), svg };
+    let picture =
+        |file: &str, caption: &str, svg| Picture { file: file.into(), caption: caption.into(), svg, small: false };
     let histogram = |(i, measure): (usize, &MeasureReport)| {
-        Ok(picture(
-            &histogram_file(i),
-            &format!("{} over the production.", measure.name),
-            histogram_svg(report, study, tallies, i)?,
-        ))
+        let svg = histogram_svg(report, study, tallies, i)?;
+        let caption = format!("{} over the production.", measure.name);
+        Ok(Picture { small: true, ..picture(&histogram_file(i), &caption, svg) })
     };
-    let all = [
-        picture(CONTRIBUTORS, "What the measures' variances come from.", contributors_svg(report)),
-        picture(CORRELATION, "Which measures vary together.", correlation_svg(report)),
-    ];
-    all.into_iter().map(Ok).chain(report.measures.iter().enumerate().map(histogram)).collect()
+    let contributors = contributors_svgs(report).into_iter().enumerate();
+    let contributors =
+        contributors.map(|(i, svg)| picture(&contributors_file(i), "What the measures' variances come from.", svg));
+    let correlation = picture(CORRELATION, "Which measures vary together.", correlation_svg(report));
+    contributors.chain([correlation]).map(Ok).chain(report.measures.iter().enumerate().map(histogram)).collect()
 }
 
 /// The histogram of measure `i` with the normal of the same moments and its limits.
@@ -112,7 +118,7 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
 }
 
 /// Shares of the contributors in the variance of every measure that varies, largest first.
-fn contributors_svg(report: &Report) -> String {
+fn contributors_svgs(report: &Report) -> Vec<String> {
     const MOST: usize = 8;
     let bar = |share: &Share| Some(Bar { name: share.name.clone(), percent: share.percent?, error: None });
     let shown = |m: &MeasureReport| Block {
@@ -120,33 +126,37 @@ fn contributors_svg(report: &Report) -> String {
         bars: m.contributors.iter().filter_map(bar).filter(|bar| bar.percent.abs() >= 0.05).take(MOST).collect(),
     };
     let blocks: Vec<Block> = report.measures.iter().map(shown).filter(|block| !block.bars.is_empty()).collect();
-    bars(&report.title, "contributors, % of the variance", &blocks)
+    let drawn = |sheet: &[Block]| bars(&report.title, "contributors, % of the variance", sheet);
+    sheets(&blocks).into_iter().map(drawn).collect()
 }
 
 /// The correlation matrix of the measures as coloured cells with numbers.
 fn correlation_svg(report: &Report) -> String {
-    const CELL: f64 = 42.0;
-    // Names stand up at 60°: the last one leans out to the right.
-    const LEAN: [f64; 2] = [0.5, 0.866];
-    let names = longest(report.measures.iter().map(|measure| measure.name.as_str()));
-    let (left, top) = (names + 22.0, HEAD + LEAN[1] * names + 16.0);
+    const CELL: f64 = 27.0;
+    // What numbers of rows and columns take.
+    const NUMBER: f64 = 26.0;
+    const SHORT: usize = 24;
+    let names = longest(report.measures.iter().map(|measure| measure.name.as_str())).min(7.2 * SHORT as f64);
+    let (left, top) = (16.0 + NUMBER + names + 8.0, HEAD + NUMBER);
     let across = CELL * report.measures.len() as f64;
-    let (width, height) = ((left + across + LEAN[0] * names + 8.0).max(460.0), top + across + 16.0);
-    let heading = "correlation of the measures: blue negative, orange positive";
+    let (width, height) = ((left + across + 16.0).max(460.0), top + across + 16.0);
+    let heading = "correlation of the measures in %: blue negative, orange positive";
     let mut svg = document([width, height], &report.title, heading);
-    let name = Font { most: NAME, ..PLAIN };
+    let middle = Font { anchor: Anchor::Middle, ..PLAIN };
     for (i, measure) in report.measures.iter().enumerate() {
         let place = (i as f64 + 0.5) * CELL;
-        svg.text([left - 6.0, top + place], &measure.name, Font { anchor: Anchor::End, ..name });
-        svg.text([left + place + 4.0, top - 6.0], &measure.name, Font { turned: -60.0, ..name });
+        let number = (i + 1).to_string();
+        svg.text([16.0, top + place], &number, Font { colour: SOFT, ..PLAIN });
+        svg.text([left + place, top - 10.0], &number, Font { colour: SOFT, ..middle });
+        svg.text([left - 8.0, top + place], &measure.name, Font { anchor: Anchor::End, most: SHORT, ..PLAIN });
         for (j, rho) in report.correlation[i].iter().enumerate() {
             let (x, y) = (left + j as f64 * CELL, top + i as f64 * CELL);
             let strength = rho.abs().min(1.0);
             let (full, on_full) = if *rho < 0.0 { (NEGATIVE, ON_NEGATIVE) } else { (POSITIVE, ON_POSITIVE) };
             svg.rectangle([x, y, CELL - 1.0, CELL - 1.0], full, strength);
             let colour = if strength < FULL { INK } else { on_full };
-            let number = typeset(&fixed(*rho, 2));
-            svg.text([x + CELL / 2.0, y + CELL / 2.0], &number, Font { colour, anchor: Anchor::Middle, ..PLAIN });
+            let number = typeset(&fixed(100.0 * rho, 0));
+            svg.text([x + (CELL - 1.0) / 2.0, y + CELL / 2.0], &number, Font { colour, ..middle });
         }
     }
     svg.finish()
@@ -154,7 +164,7 @@ fn correlation_svg(report: &Report) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{contributors_svg, correlation_svg, histogram_svg};
+    use super::{contributors_svgs, correlation_svg, histogram_svg};
     use crate::tolerance::{
         analysis::conclude,
         counting::study::{Settings, Study},
@@ -175,7 +185,7 @@ mod tests {
         let histogram = histogram_svg(&report, &study, &tallies, 0).unwrap();
         for (name, svg) in [
             ("histogram", histogram),
-            ("contributors", contributors_svg(&report)),
+            ("contributors", contributors_svgs(&report).swap_remove(0)),
             ("correlation", correlation_svg(&report)),
         ] {
             let document = roxmltree::Document::parse(&svg).unwrap();
@@ -202,7 +212,7 @@ mod tests {
             document.root_element().attribute("width").unwrap().parse::<f64>().unwrap()
         };
         let report = report("a part", &model, &conclusion);
-        for svg in [contributors_svg(&report), correlation_svg(&report)] {
+        for svg in [contributors_svgs(&report).swap_remove(0), correlation_svg(&report)] {
             assert!(width(&svg) <= 900.0, "{}", width(&svg));
             assert!(svg.contains(&format!("<title>{name}</title>")));
         }
