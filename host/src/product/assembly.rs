@@ -142,8 +142,7 @@ impl Assembly {
             located.resize_with(self.features.len(), || first.perfect());
         }
         for (feature, located) in self.features.iter().zip(&mut *located) {
-            *located = feature.perfect();
-            feature.deviate(variables, located);
+            feature.locate(variables, located);
         }
         for placement in &self.placements {
             placement.place(self, variables, located);
@@ -155,7 +154,7 @@ impl Assembly {
     pub fn misfits(&self, variables: &[Lanes], mut fit: impl FnMut(usize, usize)) -> usize {
         let mut located: Vec<_> = self.features.iter().map(Feature::perfect).collect();
         for (feature, located) in self.features.iter().zip(&mut located) {
-            feature.deviate(variables, located);
+            feature.locate(variables, located);
         }
         let mut open = 0;
         for placement in &self.placements {

@@ -133,17 +133,18 @@ impl Feature {
         Located { place: Vector::splat(place), direction: Vector::splat(direction) }
     }
 
-    /// Adds the deviations of the units with these `variables` to where the feature is.
+    /// Writes where the feature is in the units with these `variables`, before its datums move.
     #[inline(always)]
-    pub fn deviate(&self, variables: &[Lanes], located: &mut Located) {
-        // A sum at a time, so that it stays in a register.
+    pub fn locate(&self, variables: &[Lanes], located: &mut Located) {
+        *located = self.perfect();
+        // A sum at a time and from the constant that it starts with, so that it stays in a register.
         for terms in self.terms.chunk_by(|one, next| one.component == next.component) {
-            let component = located.component(terms[0].component);
-            let mut sum = *component;
+            let component = terms[0].component;
+            let mut sum = Lanes::splat(self.nominal.as_flattened()[component]);
             for term in terms {
                 sum += variables[term.variable] * term.factor;
             }
-            *component = sum;
+            *located.component(component) = sum;
         }
         for Widened { term, bonus } in &self.widened {
             let width = variables[bonus.size].map(|size| bonus.at(size));

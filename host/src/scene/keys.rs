@@ -68,7 +68,16 @@ const TOLERANCED: &[Key] =
 const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
-const ZONE: &[Key] = &[key("zone"), key("datum"), key("material"), key("within"), key("pattern"), key("rule"), COST];
+const ZONE: &[Key] = &[
+    key("zone"),
+    key("datum"),
+    key("material"),
+    key("within"),
+    key("within_datum"),
+    key("pattern"),
+    key("rule"),
+    COST,
+];
 
 const PLANE: &[Key] = &[
     key("name"),

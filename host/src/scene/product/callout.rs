@@ -210,8 +210,8 @@ pub(super) fn read<'t, 's>(
 /// Warns of a form that moves nothing.
 fn told_within(form: &Callout, wider: &Callout, made: &FeatureDraft, draft: &mut Draft) {
     draft.warnings.push(format!(
-        "{}: {} lies within {}, which has all that the feature moves by",
-        made.name, form.name, wider.name
+        "{}: {} beside {} moves nothing more: the feature moves as {} allows",
+        made.name, form.name, wider.name, wider.name
     ));
 }
 

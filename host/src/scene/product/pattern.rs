@@ -1,7 +1,8 @@
 //! Composite position: a pattern of holes or pins to its datums, and each of them within the pattern.
 //!
 //! The pattern shifts by (x, y) and turns by θ about its middle, so that every axis stays within what the wider zone has over the
-//! narrower one: √(x² + y²) + R·|θ| is at most half of their difference, R the distance of the farthest axis.
+//! narrower one: √(x² + y²) + R·|θ| is at most half of their difference, R the distance of the farthest axis. Where the narrower
+//! zone has datums that hold the turn, it does not turn.
 
 use crate::{
     product::{
@@ -18,7 +19,7 @@ use crate::{
 use super::{
     Draft,
     callout::{Callout, WIDTH},
-    datum::Datum,
+    datum::{Datum, datums},
     part::FeatureDraft,
     toleranced,
 };
@@ -31,7 +32,9 @@ pub(super) struct Pattern<'t, 's> {
     /// Widths (m) of the zones of the pattern, and within it.
     zones: [f64; 2],
     datums: Vec<Datum>,
-    /// First of its variables: x, y, θ.
+    /// Whether it turns within its zone.
+    turns: bool,
+    /// First of its variables: x, y, and θ if it turns.
     first: usize,
     /// Indices of its features.
     members: Vec<usize>,
@@ -47,8 +50,9 @@ pub(super) fn of_callout<'t, 's>(
     patterns: &mut Vec<Pattern<'t, 's>>,
     draft: &mut Draft,
 ) -> Result<Option<(usize, f64)>, SceneError> {
+    let held = read.field.get("within_datum");
     let (name, within) = match (read.field.get("pattern"), read.field.get("within")) {
-        (None, None) => return Ok(None),
+        (None, None) if held.is_none() => return Ok(None),
         (Some(name), Some(within)) => (name, within),
         (name, _) => {
             let missing = if name.is_some() { "within" } else { "pattern" };
@@ -67,20 +71,37 @@ pub(super) fn of_callout<'t, 's>(
     if narrower >= width {
         return Err(within.out_of_range("mm", "less than the zone of the pattern"));
     }
+    let turns = match held {
+        None => true,
+        Some(list) => {
+            let held = datums(&list, draft)?;
+            if !read.datums.starts_with(&held) {
+                let what = format!("{} other than the first datums of the zone", list.key);
+                return Err(list.error(Problem::Unsupported { what }, "the first of its datums, in their order"));
+            }
+            // The primary datum alone holds tilts of the axes, which a position does not have.
+            held.len() < 2
+        }
+    };
     let (part, _) = made.name.split_once('.').unwrap_or_default();
     let full = format!("{part}.{}", name.to_text()?);
     let zones = [width, narrower];
     if let Some(known) = patterns.iter().position(|pattern| pattern.name == full) {
-        if patterns[known].zones != zones || patterns[known].datums != read.datums {
+        let Pattern { zones: known_zones, datums: known_datums, turns: known_turns, .. } = &patterns[known];
+        if *known_zones != zones || *known_datums != read.datums || *known_turns != turns {
             let what = format!("the pattern `{full}` with different zones or datums");
             return Err(name.error(Problem::Unsupported { what }, "the same of all its features"));
         }
         return Ok(Some((known, narrower)));
     }
     // Of the two tilts of such a zone θ is one; the other moves nothing.
-    let variation = Variation::Nested(Nested { of: Nest::Axis, rule: read.rule, tilts: 1.0 });
-    let first = draft.add(Contributor { name: format!("{full} pattern"), variation }, &[0.0; 4]);
-    patterns.push(Pattern { name: full, zones, datums: read.datums.clone(), first, members: Vec::new(), field: name });
+    let (variation, means): (_, &[f64]) = match turns {
+        true => (Variation::Nested(Nested { of: Nest::Axis, rule: read.rule, tilts: 1.0 }), &[0.0; 4]),
+        false => (Variation::Disc(read.rule), &[0.0; 2]),
+    };
+    let first = draft.add(Contributor { name: format!("{full} pattern"), variation }, means);
+    let datums = read.datums.clone();
+    patterns.push(Pattern { name: full, zones, datums, turns, first, members: Vec::new(), field: name });
     Ok(Some((patterns.len() - 1, narrower)))
 }
 
@@ -119,7 +140,9 @@ impl Pattern<'_, '_> {
             let feature = &mut features[*member];
             feature.shift(self.first, first, half);
             feature.shift(self.first + 1, cross(axis, first), half);
-            feature.shift(self.first + 2, arm, half / farthest);
+            if self.turns {
+                feature.shift(self.first + 2, arm, half / farthest);
+            }
         }
         Ok(())
     }

@@ -4,7 +4,7 @@
 
 use crate::tolerance::model::{
     Model,
-    lanes::{LANES, widest},
+    lanes::{LANES, Lanes, widest},
 };
 
 /// Units worked on at a time: their measures fit the innermost cache.
@@ -243,17 +243,17 @@ fn range(values: &[f64]) -> ([f64; 2], f64) {
 /// Sums of the first four powers, eight apart, so that they are vectors.
 #[inline(always)]
 fn powers(row: &[f64; TILE]) -> [f64; 4] {
-    let mut sums = [[0.0; LANES]; 4];
-    for values in row.chunks_exact(LANES) {
-        for (lane, d) in values.iter().enumerate() {
-            let square = d * d;
-            sums[0][lane] += d;
-            sums[1][lane] += square;
-            sums[2][lane] += square * d;
-            sums[3][lane] += square * square;
-        }
+    // One operation on all lanes after another: otherwise the four sums of a lane become a vector, which is slower.
+    let [mut one, mut two, mut three, mut four] = [Lanes::ZERO; 4];
+    for values in row.as_chunks::<LANES>().0 {
+        let d = Lanes(*values);
+        let square = d * d;
+        one += d;
+        two += square;
+        three += square * d;
+        four += square * square;
     }
-    [total(&sums[0]), total(&sums[1]), total(&sums[2]), total(&sums[3])]
+    [total(&one.0), total(&two.0), total(&three.0), total(&four.0)]
 }
 
 #[inline(always)]

@@ -5,7 +5,7 @@
 //! |place| + |tilts| ≤ 1 and |tilts| ≤ ρ, ρ ≤ 1 the narrower width over the wider one: no corner leaves the wider zone, no
 //! tilt the narrower.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use super::ZoneRule;
 use crate::tolerance::{
@@ -50,13 +50,17 @@ impl Nested {
         }
     }
 
-    /// Standard deviations of place and tilts where these are normal: those that each tolerance has alone.
+    /// Standard deviations of place and tilts where these are normal. Of a face they are those that each tolerance has alone.
+    /// An end of an axis is off by place and tilt together, and has the deviation that a place alone has; where tilts are wide,
+    /// both have equal parts.
     pub fn deviations(&self) -> [f64; 2] {
-        let own = match self.of {
-            Nest::Face => SIGMA_ZONE,
-            Nest::Axis => SIGMA_DISC,
-        };
-        [own, own * self.tilts]
+        match self.of {
+            Nest::Face => [SIGMA_ZONE, SIGMA_ZONE * self.tilts],
+            Nest::Axis => {
+                let tilts = (SIGMA_DISC * self.tilts).min(SIGMA_DISC * FRAC_1_SQRT_2);
+                [libm::sqrt(SIGMA_DISC * SIGMA_DISC - tilts * tilts), tilts]
+            }
+        }
     }
 
     /// Whether its variables are independent normals: by the rules of sigma-zone and translation.
@@ -256,6 +260,18 @@ mod tests {
                 let expected = nodes.iter().map(|node| node.weight * node.at[k] * node.at[k]).sum::<f64>() / total;
                 assert!((found / expected - 1.0).abs() < 0.01, "{zone:?} {k}: {found} {expected}");
             }
+        }
+    }
+
+    /// Ends of an axis lie in their zone as often as that of an axis that only shifts, whatever its tilts may be.
+    #[test]
+    fn an_end_of_an_axis_has_a_sixth_of_the_zone() {
+        for tilts in [0.1, 0.5, 0.8, 1.0] {
+            let [place, tilts] = Nested { of: Nest::Axis, rule: ZoneRule::SigmaZone, tilts }.deviations();
+            assert!(
+                (9.0 * (place * place + tilts * tilts) - 1.0).abs() < 1e-12 && tilts <= place + 1e-12,
+                "{place} {tilts}"
+            );
         }
     }
 

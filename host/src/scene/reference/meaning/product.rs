@@ -202,6 +202,11 @@ pub const PRODUCT: &[(&str, &str)] = &[
          position, coaxiality, perpendicularity, parallelism and angularity of an axis with a diameter. Default: no bonus.",
     ),
     ("part.*.*.within", "Composite position: zone of each axis within its pattern. It goes with `pattern`."),
+    (
+        "part.*.*.within_datum",
+        "Composite position: datums of the zone of each axis, the first of `datum` in their order. Two or more keep the pattern from \
+         turning. Default: none.",
+    ),
     ("part.*.*.pattern", "Composite position: name of the pattern, the same for all its axes. It goes with `within`."),
     ("part.*.*.rule", "How the feature varies in this zone. Default: `tolerance.rule`."),
     ("part.*.vectorial.position", "Tolerances of the position. Optional."),
