@@ -161,6 +161,48 @@ fn a_table_across_two_worlds_warns() {
 }
 
 #[test]
+fn a_table_that_no_finer_levels_help_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = slipfit(folder.path(), &["table", "--over", "position", "--n", "1:3:0.1"]);
+    let warnings = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(warnings.contains("something happens between its positions, where no finer levels help"), "{warnings}");
+}
+
+#[test]
+fn the_advice_follows_what_drives_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = stdout(&slipfit(folder.path(), &["run", "--n", "-3:5:0.5", "--set", "friction.coefficient=0.25"]));
+    let line = |start: &str| text.lines().find(|line| line.starts_with(start)).unwrap().to_owned();
+    let strongest = line("Drives failure")[16..].split(" 1").next().unwrap().to_owned();
+    assert!(line("What to change").contains(&format!("start with {strongest}; tight levels")), "{text}");
+}
+
+#[test]
+fn all_mistakes_of_a_slide_are_told_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let changes =
+        ["controller.step=0", "pin.left back.wall=nope", "sweep.n=5:-3:0.1", "drive.ramp_end=0.01", "slide.mass=-1"];
+    let mut arguments = vec!["check", "cd-rom-slide"];
+    arguments.extend(changes.iter().flat_map(|change| ["--set", change]));
+    let output = slipfit(folder.path(), &arguments);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{errors}");
+    for place in
+        ["`controller.step` is 0", "nope", "is below the first", "`drive.ramp_end` is 0.01", "`slide.mass` is -1"]
+    {
+        assert!(errors.contains(place), "{place}\n{errors}");
+    }
+}
+
+#[test]
+fn a_controller_s_motion_without_end_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = slipfit(folder.path(), &["simulate", "--n", "2.5", "--integrator", "rk4"]);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(1) && errors.contains("left the finite range"), "{errors}");
+}
+
+#[test]
 fn pictures_are_drawn_when_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, words) in [

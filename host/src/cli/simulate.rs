@@ -196,7 +196,8 @@ struct ControllerReport {
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let overrides: Vec<_> = self.controller.overrides().into_iter().chain(self.length.overrides()).collect();
-        let scene = match self.scene.load_moving(&overrides)? {
+        let (moving, product) = self.scene.load_moving_with_product(&overrides)?;
+        let scene = match moving {
             Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
                 let shown = self.audit || self.page.is_some() || self.unit.is_some();
@@ -236,6 +237,7 @@ impl Arguments {
             files::write(path, svg.as_bytes())?;
         }
         let mut warnings = check::warnings_of(&scene);
+        warnings.extend(product.into_iter().flat_map(|product| product.warnings));
         warnings.extend(run.trust.warning());
         let beside = controller.as_ref().and_then(|run| run.as_ref());
         let of_controller =

@@ -101,7 +101,8 @@ impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let of_run = self.controller.overrides().into_iter().chain(self.length.overrides());
         let overrides: Vec<_> = of_run.chain(self.levels.overrides()).collect();
-        let scene = match self.scene.load_moving(&overrides)? {
+        let (moving, product) = self.scene.load_moving_with_product(&overrides)?;
+        let scene = match moving {
             Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
                 if self.controller.given() || self.length.stroke {
@@ -136,6 +137,7 @@ impl Arguments {
             files::write(path, verdicts(&swept, &scene.title).map_err(anyhow::Error::from)?.as_bytes())?;
         }
         let mut warnings = check::warnings_of(&scene);
+        warnings.extend(product.into_iter().flat_map(|product| product.warnings));
         warnings.extend(doubts(&swept));
         if self.scene.json {
             return print_json(&Report {
@@ -221,5 +223,6 @@ pub(super) fn doubts(sweep: &Sweep) -> Option<String> {
     let levels = doubtful.iter().map(|at| level(at.n)).collect::<Vec<_>>().join(", ");
     let warning = worst.trust.warning()?;
     let levels = if doubtful.len() > 12 { format!("{} levels", doubtful.len()) } else { format!("n = {levels}") };
-    Some(format!("at {levels}, worst at n = {}: {warning}", level(worst.n)))
+    let alone = if worst.trust.better_step_tried && doubtful.len() > 1 { ", which does there" } else { "" };
+    Some(format!("at {levels}, worst at n = {}: {warning}{alone}", level(worst.n)))
 }

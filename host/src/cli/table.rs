@@ -138,12 +138,15 @@ impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         let overrides: Vec<_> = self.levels.overrides().into_iter().collect();
         let is_stroke = self.over != Over::Time;
-        match self.scene.load_moving(&overrides)? {
+        let (moving, product) = self.scene.load_moving_with_product(&overrides)?;
+        match moving {
             Moving::Slide(mut scene) => {
                 self.drive.refuse()?;
                 let duration = scene.stroke_duration().filter(|_| is_stroke);
                 scene.run.duration = scene.run.duration.max(duration.unwrap_or_default());
-                self.make(&*scene, check::warnings_of(&scene))
+                let mut warnings = check::warnings_of(&scene);
+                warnings.extend(product.into_iter().flat_map(|product| product.warnings));
+                self.make(&*scene, warnings)
             }
             Moving::Mechanism(mechanism) => {
                 let driven = self.drive.of(&mechanism)?;

@@ -95,12 +95,18 @@ impl Range {
     }
 }
 
-/// Where on its way a unit tips, slows or stops, in words; empty where it does not.
+/// Where on its way a unit tips, slows or stops, or that it never was faster, in words; empty where it runs all the way.
 pub fn on_the_way(kind: DriveKind, outcome: &Outcome) -> String {
     let at = |what: &str, moment: Option<Moment>| {
         moment.map(|moment| format!("{what} at {} {}", fixed(kind.travel(moment.z), 1), kind.travel_unit()))
     };
-    let slows = if outcome.stops.is_some() { at("stops", outcome.stops) } else { at("slows", outcome.slows) };
+    let slows = match (outcome.verdict, outcome.slows, outcome.stops) {
+        (_, _, Some(_)) => at("stops", outcome.stops),
+        (Verdict::Jammed, ..) => Some("never moves".into()),
+        (_, Some(_), _) => at("slows", outcome.slows),
+        (Verdict::Crawls, ..) => Some("slow from the start".into()),
+        _ => None,
+    };
     [at("tips", outcome.tips), slows].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
@@ -141,11 +147,17 @@ mod tests {
         let mut outcome = example::sweep(LevelRange { first: 0.0, step: 1.0, count: 1 }, 0.1, 0.1).levels[0].outcome;
         let kind = DriveKind::Pushes;
         let moment = |z: f64| Some(Moment { t: 1.0, z });
+        outcome.verdict = Verdict::Runs;
         (outcome.tips, outcome.slows, outcome.stops) = (None, None, None);
         assert_eq!(on_the_way(kind, &outcome), "");
         (outcome.tips, outcome.slows) = (moment(0.0312), moment(0.04));
         assert_eq!(on_the_way(kind, &outcome), "tips at 31.2 mm, slows at 40.0 mm");
+        outcome.verdict = Verdict::Jammed;
         outcome.stops = moment(0.05);
         assert_eq!(on_the_way(kind, &outcome), "tips at 31.2 mm, stops at 50.0 mm");
+        (outcome.tips, outcome.slows, outcome.stops) = (None, None, None);
+        assert_eq!(on_the_way(kind, &outcome), "never moves");
+        outcome.verdict = Verdict::Crawls;
+        assert_eq!(on_the_way(kind, &outcome), "slow from the start");
     }
 }

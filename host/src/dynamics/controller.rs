@@ -28,6 +28,9 @@ use crate::{
     system::interrupt,
 };
 
+/// A speed (m/s) that no slide has: numbers grow without end from there on.
+const RUNAWAY: f64 = 1e4;
+
 /// Steps between two looks at whether somebody asked to stop.
 const STEPS_PER_LOOK: u32 = 1024;
 
@@ -190,7 +193,7 @@ where
             }
             let report = step_of(&kernel, &mut state);
             let residual = report.residual.to_f64();
-            if !residual.is_finite() {
+            if !residual.is_finite() || state.motion.velocity.z.to_f64().abs() > RUNAWAY {
                 return Err(SimulateError::NotFinite { time: t, step });
             }
             worst_residual = worst_residual.max(residual);

@@ -60,6 +60,11 @@ impl Trust {
         Self::new(self.doubtful_force, self.imbalance, Some(difference), step)
     }
 
+    /// The same, after runs with shorter steps that do not do: `step` (s) may.
+    pub fn advised(self, step: Option<f64>) -> Self {
+        Self { better_step: step, ..self }
+    }
+
     /// The same, after runs with shorter steps: `step` (s) is one that does.
     pub fn tried(self, step: f64) -> Self {
         Self { better_step: Some(step), better_step_tried: true, ..self }

@@ -30,7 +30,7 @@ pub enum LevelError {
     #[error("the step is {0}, it must be positive")]
     Step(f64),
     /// More than [`MOST_LEVELS`].
-    #[error("the step of {step} makes more than {MOST_LEVELS} values")]
+    #[error("the step of {step:?} makes more than {MOST_LEVELS} values")]
     TooMany {
         /// The step.
         step: f64,

@@ -65,25 +65,29 @@ pub(super) fn scene(
     let controller = found.recover(controller(root, &friction), DEFAULT_CONTROLLER);
     let nothing = RunSpec { duration: 1.0, stroke: None, error: DEFAULT_ERROR };
     let run = found.recover(root.table("run").and_then(|table| run(&table, false)), nothing);
-    let sweep_table = root.table("sweep")?;
+    let nothing = Drive { gain: 1.0, ramp_start: 0.0, ramp_end: 1.0, speed: 0.0, point_b: [0.0; 3].into() };
+    let drive = found.recover(root.table("drive").and_then(|table| drive(&table)), nothing);
+    let nothing = LevelRange { first: 0.0, step: 1.0, count: 1 };
+    let levels = found.recover(root.table("sweep").and_then(|table| sweep(&table)), nothing);
+    let nominal_clearance = found.recover(nominal_clearance(root), None);
     let scene = Scene {
         title,
         slide,
         contact,
         friction,
-        drive: drive(&root.table("drive")?)?,
+        drive,
         pins,
-        nominal_clearance: nominal_clearance(root)?,
+        nominal_clearance,
         run,
         controller,
-        sweep: sweep(&sweep_table)?,
+        sweep: levels,
         vary: found.recover(vary(root), Vec::new()),
         gap_measures,
     };
     for i in [0, scene.sweep.count - 1] {
         scene.check_gaps(&[scene.sweep.level(i); CONTACTS]).map_err(|error| {
-            let field = sweep_table.get("n").unwrap_or(sweep_table.clone());
-            field.error(Problem::Gap(error), "")
+            let table = root.get("sweep").unwrap_or(root.clone());
+            table.get("n").unwrap_or(table).error(Problem::Gap(error), "")
         })?;
     }
     Ok(scene)

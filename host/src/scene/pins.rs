@@ -93,7 +93,11 @@ pub(super) fn length(field: &Field, model: Option<&Model>) -> Result<usize, Scen
     at.ok_or_else(|| {
         let lengths = measures.iter().filter(|measure| measure.quantity == Kind::Length);
         let names: Vec<_> = lengths.map(|measure| measure.name.as_str()).collect();
-        let allowed = format!("[mean, standard deviation] in mm, or a measure that is a length: {}", names.join(", "));
+        let measures = match names.is_empty() {
+            true => "a measure, of which the scene has none that is a length".to_owned(),
+            false => format!("a measure that is a length: {}", names.join(", ")),
+        };
+        let allowed = format!("[mean, standard deviation] in mm, or {measures}");
         field.error(Problem::UnknownName { of: "measure".into(), name: name.into() }, allowed)
     })
 }

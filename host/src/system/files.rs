@@ -9,10 +9,10 @@ use thiserror::Error;
 
 /// A file or folder that cannot be written.
 #[derive(Debug, Error)]
-#[error("cannot write {}: {source}", path.display())]
+#[error("cannot write {}: {cause}", path.display())]
 pub struct WriteError {
     path: PathBuf,
-    source: std::io::Error,
+    cause: std::io::Error,
 }
 
 /// Outputs that would replace an input or each other.
@@ -42,13 +42,12 @@ pub enum Coincidence {
 }
 
 fn failed<'a>(path: &'a Path) -> impl FnOnce(std::io::Error) -> WriteError + 'a {
-    move |error| WriteError { path: path.into(), source: plain(error) }
+    move |error| WriteError { path: path.into(), cause: plain(error) }
 }
 
 /// The system's own error, without the temporary name that it may be wrapped with.
 fn plain(error: std::io::Error) -> std::io::Error {
-    let cause = error.get_ref().and_then(|wrapped| wrapped.source()?.downcast_ref::<std::io::Error>()?.raw_os_error());
-    cause.map_or(error, std::io::Error::from_raw_os_error)
+    if error.get_ref().is_some() { error.kind().into() } else { error }
 }
 
 fn temporary_beside(path: &Path) -> Result<tempfile::NamedTempFile, WriteError> {
@@ -82,7 +81,7 @@ fn resolved(path: &Path) -> PathBuf {
 /// [`WriteError`] if not.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     if path.is_dir() {
-        return Err(WriteError { path: path.into(), source: std::io::ErrorKind::IsADirectory.into() });
+        return Err(WriteError { path: path.into(), cause: std::io::ErrorKind::IsADirectory.into() });
     }
     if is_stream(path) { Ok(()) } else { temporary_beside(&resolved(path)).map(drop) }
 }

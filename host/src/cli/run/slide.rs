@@ -228,7 +228,7 @@ impl Arguments {
             let together = per_million(1e6 * tail(tightest.n));
             let _ = writeln!(text, "How probable    {together} ppm, if all gaps move together (eq. 9)");
         }
-        let _ = writeln!(text, "What to change  {}", advice(scene, simulated, closes.map(|at| at.pin), production));
+        let _ = writeln!(text, "What to change  {}", advice(scene, simulated));
         let _ = writeln!(text, "Flash table     {}", table_line(scene, &simulated.table));
         if let Some(warning) = table::coarse(scene, &simulated.table) {
             let _ = writeln!(text, "                {warning}");
@@ -238,7 +238,7 @@ impl Arguments {
 }
 
 /// What to change, by what goes wrong at which levels and with which units.
-fn advice(scene: &Scene, simulated: &Simulated, closes: Option<&str>, production: Option<&Production>) -> String {
+fn advice(scene: &Scene, simulated: &Simulated) -> String {
     let Population { statistics, of_malfunction, .. } = &simulated.population;
     let wrong = first_to_go_wrong(simulated.judged());
     if wrong.is_none() && statistics.malfunctions.units == 0 {
@@ -250,25 +250,25 @@ fn advice(scene: &Scene, simulated: &Simulated, closes: Option<&str>, production
     }
     if let Some(critical) = guide(scene, 0.0).filter(|guide| guide.warn).and_then(|guide| guide.critical_friction) {
         return format!(
-            "bring friction below {} (it is {}), lengthen the guide, or drive nearer to it: it self-locks",
+            "bring friction well below {} (it is {}), lengthen the guide, or drive nearer to it: it self-locks",
             fixed(critical, 3),
             scene.friction.coefficient()
         );
     }
-    let Some((worst, side)) = wrong else {
-        let first = of_malfunction.first().map_or(String::new(), |driver| format!("; start with {}", driver.name));
-        return format!("no level malfunctions, but units do whose gaps differ from each other{first}");
-    };
-    let gap = |measure: &&crate::tolerance::report::MeasureReport| closes.is_some_and(|pin| measure.name.contains(pin));
-    let widest = production.and_then(|production| {
-        let measures = production.report.measures.iter().filter(gap);
-        measures.max_by(|one, other| one.sd.total_cmp(&other.sd))?.contributors.first()
-    });
-    match widest {
-        Some(widest) => {
-            format!("{side} units go wrong first, from n = {}; start with the tolerance of {}", worst.n, widest.name)
+    // What levels do tells little of units, each of which has gaps of its own.
+    let judged = &simulated.judged().levels;
+    if judged.iter().any(|level| level.n.abs() < 1e-9 && level.outcome.verdict.is_malfunction()) {
+        return "a nominal value, the friction or the drive: the mean unit itself malfunctions".into();
+    }
+    let strongest = of_malfunction.first().filter(|driver| driver.share > 2.0 * driver.error);
+    let first = strongest
+        .map_or_else(|| "no single tolerance stands out".to_owned(), |driver| format!("start with {}", driver.name));
+    match wrong {
+        Some((worst, side)) if statistics.malfunctions.units == 0 => {
+            format!("nothing for these units: only {side} levels malfunction, from n = {} on", worst.n)
         }
-        None => format!("{side} units go wrong first, from n = {}", worst.n),
+        Some((worst, side)) => format!("{first}; {side} levels malfunction from n = {} on", worst.n),
+        None => format!("{first}: no level malfunctions, but units do whose gaps differ from each other"),
     }
 }
 

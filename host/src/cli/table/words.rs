@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use slipfit_core::table::AxisKind;
+use slipfit_core::table::{AxisKind, MotionVerdict};
 
 use crate::{
     dynamics::{
@@ -13,7 +13,7 @@ use crate::{
         flash::{AxisSpec, TABLE_REGION},
         force_table::{ForceTable, position::Reach},
     },
-    show::number::{fixed, level},
+    show::number::{fixed, level, ten_digits},
 };
 
 /// Share of the drive's greatest force from which a table's error is worth a warning.
@@ -22,15 +22,29 @@ const COARSE: f64 = 0.05;
 /// A warning where the table errs by much of what the drive can push.
 pub fn coarse(driven: &dyn Driven, table: &ForceTable) -> Option<String> {
     let ([error, _], greatest) = (table.worst_error_in_use, driven.greatest_force());
+    let kind = driven.kind();
+    let [error_words, share] = [fixed(error, 3), fixed(error / greatest * 100.0, 0)];
+    let advice = if table.worst_at_levels > 0.5 * error {
+        let over_time = table.axes.get(1).is_none_or(|axis| axis.kind == AxisKind::Time);
+        let (nodes, apart) = if over_time {
+            ("instants", "fewer levels leave room for more instants, a shorter run has closer ones")
+        } else {
+            ("positions", "they are no closer than that, so never decide by a single sample")
+        };
+        format!("something happens between its {nodes}, where no finer levels help: {apart}")
+    } else {
+        let one_side = table.longest(MotionVerdict::Runs).filter(|_| !table.mixed().is_empty());
+        let or = one_side.map_or_else(String::new, |ends| {
+            let [first, last] = ends.map(|n| level((f64::from(n) * 1e4).round() / 1e4).replace('+', ""));
+            format!(", or those of one verdict, --n {first}:{last}:{}", ten_digits(driven.levels().step))
+        });
+        format!("neighbouring levels differ by more than can be interpolated: take finer ones{or}")
+    };
     (error > COARSE * greatest).then(|| {
         format!(
-            "the table errs by up to {} {} where it is used, {} % of the drive's greatest {}: neighbouring levels \
-             differ by more than can be interpolated; take levels further from where \
-             the verdict changes, such as --n 1:3:0.1, or finer ones",
-            fixed(error, 3),
-            driven.kind().effort_unit(),
-            fixed(error / greatest * 100.0, 0),
-            driven.kind().effort()
+            "the table errs by up to {error_words} {} where it is used, {share} % of the drive's greatest {}: {advice}",
+            kind.effort_unit(),
+            kind.effort()
         )
     })
 }

@@ -47,7 +47,7 @@ pub(in crate::cli) struct OutputArguments {
 
 impl OutputArguments {
     /// Whether what is written of `measures` measures, and the `files` that other options ask for, can be written, and
-    /// none is an input or another output. Makes the folder for pictures.
+    /// none is an input or another output.
     pub fn prepare(
         &self,
         inputs: &[(&str, &Path)],
@@ -62,7 +62,14 @@ impl OutputArguments {
         let plots = folder.into_iter().chain(pictures.iter().map(PathBuf::as_path)).map(|path| ("--plots", path));
         files::check_distinct(inputs, &files.iter().copied().chain(plots).collect::<Vec<_>>())?;
         files.iter().try_for_each(|(_, path)| files::check_writable(path).map_err(refused))?;
-        folder.map_or(Ok(()), |folder| files::prepare_folder(folder).map_err(refused))
+        let Some(folder) = folder else { return Ok(()) };
+        let made = !folder.exists();
+        files::prepare_folder(folder).map_err(refused)?;
+        if made {
+            // Made when there is something to put into it. Where it cannot be removed it stays, and does no harm.
+            let _ = std::fs::remove_dir(folder);
+        }
+        Ok(())
     }
 
     /// The level at which the clearances of `slide` are shown.
@@ -90,6 +97,7 @@ impl OutputArguments {
             files::write(path, &measures_csv(&report)?)?;
         }
         if let Some(folder) = &self.plots {
+            files::prepare_folder(folder).map_err(refused)?;
             for picture in pictures(&report, study, tallies).map_err(anyhow::Error::from)? {
                 files::write(&folder.join(picture.file), picture.svg.as_bytes())?;
             }

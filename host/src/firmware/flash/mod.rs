@@ -129,7 +129,9 @@ pub enum FlashError {
         rms: f32,
     },
     /// It does not fit.
-    #[error("the table takes {bytes} bytes, the TABLE region has {region}: use fewer nodes or i16")]
+    #[error(
+        "the table takes {bytes} bytes, the TABLE region has {region}: take fewer levels, or --max-error of `slipfit table`"
+    )]
     TooLarge {
         /// Length of the table.
         bytes: usize,

@@ -201,6 +201,7 @@ impl<const N: usize> Samples<N> {
 
         let (mut worst_error, mut worst_error_in_use) = ([0.0f64; 2], [0.0f64; 2]);
         let (mut squares, mut count) = ([0.0f64; 2], 0u32);
+        let mut worst_at_levels = 0.0f64;
         for (i, sample) in self.values.iter().enumerate() {
             let Some(in_use) = self.in_use(i, &grid) else { continue };
             let place = self.place(i);
@@ -208,6 +209,9 @@ impl<const N: usize> Samples<N> {
             let [force, velocity] = sample.values;
             let error = [f64::from(found.force) - force, f64::from(found.velocity) - velocity].map(f64::abs);
             count += u32::from(in_use);
+            if in_use && place[0].is_multiple_of(grid.strides[0]) {
+                worst_at_levels = worst_at_levels.max(error[0]);
+            }
             for (k, error) in error.into_iter().enumerate() {
                 worst_error[k] = worst_error[k].max(error);
                 if in_use {
@@ -223,7 +227,7 @@ impl<const N: usize> Samples<N> {
         }
         let bytes = flash::encode(&spec)?;
         let encoding = grid.encoding;
-        Ok(ForceTable { bytes, axes, encoding, verdicts, worst_error, worst_error_in_use, rms_error })
+        Ok(ForceTable { bytes, axes, encoding, verdicts, worst_error, worst_error_in_use, rms_error, worst_at_levels })
     }
 
     /// The verdicts on the motions that are nodes of `grid`.

@@ -39,9 +39,21 @@ pub struct ForceTable {
     pub worst_error_in_use: [f64; 2],
     /// Root mean square of the error where the table is used.
     pub rms_error: [f64; 2],
+    /// Worst error of the force (N) at the levels themselves, where the table is used: what no finer levels help against.
+    pub worst_at_levels: f64,
 }
 
 impl ForceTable {
+    /// The longest row of neighbouring levels with this verdict: the first and the last.
+    pub fn longest(&self, verdict: MotionVerdict) -> Option<[f32; 2]> {
+        let (levels, speeds) = (self.axes[0], self.axes.get(2).map_or(1, |axis| axis.count));
+        let by_level: Vec<_> = self.verdicts.chunks(speeds).zip(0u16..).collect();
+        let all = |verdicts: &[MotionVerdict]| verdicts.iter().all(|found| *found == verdict);
+        let rows = by_level.chunk_by(|one, next| all(one.0) == all(next.0)).filter(|row| all(row[0].0));
+        let row = rows.max_by_key(|row| row.len())?;
+        Some([row[0].1, row[row.len() - 1].1].map(|i| levels.first + levels.step * f32::from(i)))
+    }
+
     /// Neighbouring levels between which a verdict changes: what is looked up there is no unit's.
     pub fn mixed(&self) -> Vec<[f32; 2]> {
         let (levels, speeds) = (self.axes[0], self.axes.get(2).map_or(1, |axis| axis.count));
