@@ -16,7 +16,7 @@ const SHARD: &str = "A shard of tolerance or population";
 fn every_field_is_in_the_guide() {
     let tables = guide();
     let folder = tempfile::tempdir().unwrap();
-    let commands: [(&str, &[&str]); 31] = [
+    let commands: [(&str, &[&str]); 32] = [
         ("check", &["check"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
         ("check of a product", &["check", "clutch"]),
@@ -29,6 +29,10 @@ fn every_field_is_in_the_guide() {
         ("sweep of a mechanism", &["sweep", "slider-crank", "--n", "0:1:1"]),
         ("simulate", &["simulate", "cd-rom-slide-drawing", "--unit", "17", "--stroke"]),
         ("population", &["population", "--units", "300", "--force-limit", "2"]),
+        (
+            "population of a mechanism",
+            &["population", "slider-crank", "--units", "200", "--force-limit", "0.6", "--set", "run.duration=50"],
+        ),
         // Forces have a figure, verdicts have none in an opening.
         ("population", &["population", "--units", "300", "--opening", "--force-limit", "0.25", "--rare"]),
         ("table", &["table", "--n", "0:2:1", "-o", "table.bin"]),

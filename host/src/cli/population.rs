@@ -10,10 +10,15 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{
-    Failure, SceneArguments, ThreadArguments, check, given, print, print_json, progress, tolerance::Written, warn,
+    DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, check, given, mechanism, print, print_json,
+    progress, tolerance::Written, warn,
 };
 use crate::{
-    dynamics::{driven::Driven, outcome::Verdict},
+    dynamics::{
+        driven::{DriveKind, Driven},
+        outcome::Verdict,
+    },
+    mechanism::Mechanism,
     population::{
         Unit,
         drivers::Driver,
@@ -44,15 +49,20 @@ use crate::{
 
 pub(super) use words::{percent, strongest};
 
-/// Simulates units of a slide's production one by one: how many malfunction, and why.
+/// Simulates units of a production one by one: how many malfunction, and why.
 ///
-/// For slides only. Every unit has gaps of its own. Gaps that are measures follow from the product's tolerances; the others are drawn
+/// For slides and mechanisms with a drive. Every unit has gaps of its own. Gaps that are measures follow from the product's tolerances; the others are drawn
 /// from the mean and the standard deviation in the scene. With `[vary]` in the scene friction, stiffness, damping, mass, gain, ramp
-/// and the direction of gravity vary, too. A unit runs the whole stroke unless `--opening` is given.
+/// and the direction of gravity vary, too. A slide runs the whole stroke unless `--opening` is given, a mechanism
+/// `run.duration` or to the end of its stroke.
+///
+/// For slides only: `--opening`, `--rare`, `--plot-distance`, `--page`, `--shard`, `--out`, `--resume`.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    drive: DriveArguments,
     /// Units to simulate.
     #[arg(long, default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     units: u64,
@@ -62,7 +72,7 @@ pub(super) struct Arguments {
     /// Runs the opening (run.duration) instead of the whole stroke.
     #[arg(long)]
     opening: bool,
-    /// Greatest force (N) of the motor; units that need more count as malfunctioning.
+    /// Greatest force (N) of the motor, or torque (N·m); units that need more count as malfunctioning.
     #[arg(long, value_name = "N")]
     force_limit: Option<f64>,
     /// Correlation between any two gaps that the scene states by mean and standard deviation.
@@ -153,13 +163,18 @@ struct Found {
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let (mut scene, product) = self.scene.load_with_product(&[])?;
         if !(-1.0..=1.0).contains(&self.correlation) {
             return Err(Failure::Input(format!("--correlation {}: allowed is -1 to 1", self.correlation)));
         }
         if let Some(limit) = self.force_limit.filter(|limit| !(limit.is_finite() && *limit > 0.0)) {
             return Err(Failure::Input(format!("--force-limit {limit}: allowed is more than 0 N")));
         }
+        let (moving, product) = self.scene.load_moving_with_product(&[])?;
+        let mut scene = match moving {
+            Moving::Slide(scene) => *scene,
+            Moving::Mechanism(mechanism) => return self.of_mechanism(&mechanism, product.as_ref()),
+        };
+        self.drive.refuse()?;
         let partial = self.out.as_deref().map(checkpoint);
         let outputs = [
             ("--csv", &self.csv),
@@ -192,12 +207,33 @@ impl Arguments {
         }
     }
 
+    /// The population of a `mechanism`.
+    fn of_mechanism(&self, mechanism: &Mechanism, product: Option<&Product>) -> Result<(), Failure> {
+        let page = self.page.is_some() || self.plot_distance.is_some();
+        if self.opening || self.rare || page || self.shard.is_some() || self.out.is_some() || self.resume {
+            let why = "--opening, --rare, --plot-distance, --page, --shard, --out and --resume are for slides on pins";
+            return Err(Failure::Input(why.into()));
+        }
+        let asked = mechanism::population::Asked {
+            scene: &self.scene,
+            units: self.units,
+            seed: self.seed,
+            limit: self.force_limit,
+            correlation: self.correlation,
+            csv: &self.csv,
+            plot: &self.plot,
+            threads: &self.threads,
+        };
+        mechanism::population::population(&self.drive.of(mechanism)?, product, &asked)
+    }
+
     /// As it was asked for when a population was split, `settings` among it.
     pub fn of_parts(settings: &Settings, json: bool) -> Self {
         Self {
             scene: SceneArguments { scene: PathBuf::new(), set: Vec::new(), json },
             units: settings.units,
             seed: settings.seed,
+            drive: DriveArguments { drive: None },
             opening: settings.opening,
             force_limit: settings.limit(),
             correlation: settings.correlation(),
@@ -231,10 +267,23 @@ impl Arguments {
     ) -> Result<(), Failure> {
         let found = self.threads.install(|| self.find(scene, production, units))??;
         if let Some(path) = &self.csv {
-            files::write(path, &population_csv(scene, &found.population.units)?)?;
+            files::write(
+                path,
+                &population_csv(
+                    DriveKind::Pushes,
+                    &scene.contact_names(),
+                    &picture::placed(scene, &found.population.units),
+                )?,
+            )?;
         }
         if let Some(path) = &self.plot {
-            let svg = picture::forces(scene, &found.population.units, self.force_limit).map_err(anyhow::Error::from)?;
+            let svg = picture::forces(
+                &scene.title,
+                picture::FORCE,
+                &picture::placed(scene, &found.population.units),
+                self.force_limit,
+            )
+            .map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         if let Some(path) = &self.plot_distance {

@@ -53,7 +53,7 @@ pub(super) const MOMENTS: usize = 160;
 /// the controller is off, which takes steps of one length. With `--step`, `--integrator`, `--scalar` or `--audit` the run shown is the
 /// controller's, and its error against the desk's is printed.
 ///
-/// For slides only: `--unit`, `--page`, `--audit`, `--stroke`, `--step`, `--integrator`, `--scalar`.
+/// For slides only: `--page`, `--audit`, `--stroke`, `--step`, `--integrator`, `--scalar`.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -200,14 +200,22 @@ impl Arguments {
         let scene = match moving {
             Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
-                let shown = self.audit || self.page.is_some() || self.unit.is_some();
+                let shown = self.audit || self.page.is_some();
                 if shown || self.controller.given() || self.length.stroke {
-                    let why =
-                        "--audit, --step, --integrator, --scalar, --stroke, --unit and --page are for slides on pins";
+                    let why = "--audit, --step, --integrator, --scalar, --stroke and --page are for slides on pins; a mechanism runs for run.duration, or to run.stroke";
                     return Err(Failure::Input(why.into()));
                 }
                 let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot };
-                return mechanism::simulate(&mechanism, &self.n, parse_every(&self.every)?, &wanted);
+                let unit = match self.unit {
+                    Some(number) => {
+                        let production =
+                            Production::of_mechanism(&mechanism, product.as_ref(), self.correlation, self.seed);
+                        let production = production.map_err(|error| Failure::Input(error.to_string()))?;
+                        mechanism::OneUnit::of_production(&mechanism, &production, check_number(number)?)?
+                    }
+                    None => mechanism::OneUnit::at_levels(&mechanism, &self.n)?,
+                };
+                return mechanism::simulate(&mechanism, &unit, parse_every(&self.every)?, &wanted);
             }
         };
         let (scene, n) = match self.unit {
@@ -303,14 +311,17 @@ impl Arguments {
         let (_, product) = self.scene.load_with_product(overrides)?;
         let production = Production::new(&scene, product.as_ref(), self.correlation, self.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
-        if number >= MOST_UNITS {
-            return Err(Failure::Input(format!("--unit {number}: allowed is 0 to {}", MOST_UNITS - 1)));
-        }
-        let (drawn, i) = production.draw_one(number);
+        let (drawn, i) = production.draw_one(check_number(number)?);
         // What does not vary has any level.
         let n = scene.levels_of(&drawn.gaps[i]).map(Option::unwrap_or_default);
         Ok((scene_of(&scene, &drawn, i), n))
     }
+}
+
+/// The `number` of a unit, if there is one.
+fn check_number(number: u64) -> Result<u64, Failure> {
+    let most = MOST_UNITS - 1;
+    if number > most { Err(Failure::Input(format!("--unit {number}: allowed is 0 to {most}"))) } else { Ok(number) }
 }
 
 /// The run of the scene's controller held against the desk's; `None` where it leaves the finite range.

@@ -58,6 +58,11 @@ impl<'a> ByDrive<'a> {
         self.mechanism
     }
 
+    /// Which of its drives it is.
+    pub fn index(&self) -> usize {
+        self.drive
+    }
+
     /// The drive's name.
     pub fn name(&self) -> &'a str {
         &self.mechanism.drives[self.drive].name

@@ -58,6 +58,11 @@ impl Mechanism {
         self.gaps.iter().enumerate().map(at).collect()
     }
 
+    /// The first of a unit's `gaps` (m) that its joint does not allow: such a unit cannot be assembled.
+    pub fn misfit(&self, gaps: &[f64]) -> Option<usize> {
+        (0..gaps.len()).find(|i| !(self.least_gap(*i)..=GAP_MOST).contains(&gaps[*i]))
+    }
+
     /// The least value (m) of gap `i`: 0 for a pin in a hole.
     fn least_gap(&self, i: usize) -> f64 {
         use super::JointKind::{Bearing, Journal};

@@ -230,6 +230,8 @@ pub struct Gap {
     pub name: String,
     /// Mean and standard deviation (m).
     pub statistics: GapStatistics<f64>,
+    /// The measure of the product that it is, if it is one.
+    pub measure: Option<usize>,
 }
 
 impl Mechanism {

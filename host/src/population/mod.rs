@@ -10,6 +10,7 @@ pub mod hypothesis;
 mod integrate;
 mod lane;
 pub mod limit_state;
+pub mod mechanism;
 pub mod part;
 pub mod picture;
 pub mod production;
@@ -98,11 +99,11 @@ fn one_by_one(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
 
 /// One unit of a population.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unit {
+pub struct Unit<G = [f64; CONTACTS]> {
     /// Its number in the production, from 0 on.
     pub number: u64,
-    /// Its gaps (m) in the order of Table 2.
-    pub gaps: [f64; CONTACTS],
+    /// Its gaps (m): of a slide in the order of Table 2, else in the mechanism's order.
+    pub gaps: G,
     /// What it did.
     pub outcome: UnitOutcome,
 }

@@ -30,12 +30,26 @@ pub fn tightness(scene: &Scene, gaps: &[f64; CONTACTS]) -> f64 {
     levels.iter().sum::<f64>() / levels.len().max(1) as f64
 }
 
-/// Greatest force over joint tightness with the units that malfunction marked, and the share of these.
+/// The `units` of a slide, each with its tightness.
+pub fn placed<'u>(scene: &Scene, units: &'u [Unit]) -> Vec<(f64, &'u Unit)> {
+    units.iter().map(|unit| (tightness(scene, &unit.gaps), unit)).collect()
+}
+
+/// What [`forces`] calls the force of a slide's drive.
+pub const FORCE: &str = "greatest drive force (N)";
+
+/// `effort`, the greatest force with its unit, over the tightness that each unit is `placed` at, with the units that malfunction
+/// marked; and the share of these.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to show.
-pub fn forces(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<String, PlotError> {
-    let placed: Vec<(f64, &Unit)> = units.iter().map(|unit| (tightness(scene, &unit.gaps), unit)).collect();
+pub fn forces<G>(
+    title: &str,
+    effort: &str,
+    placed: &[(f64, &Unit<G>)],
+    limit: Option<f64>,
+) -> Result<String, PlotError> {
+    let units = placed;
     let every = units.len().div_ceil(MARKED).max(1);
     let kind = |verdict: Verdict, label: &str, shape| Markers {
         label: label.into(),
@@ -63,16 +77,18 @@ pub fn forces(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<Strin
             (own.len() >= LEAST).then(|| ((from + to) / 2.0, Share::new(failed as u64, own.len() as u64)))
         })
         .collect();
-    let failed =
-        Share::new(units.iter().filter(|unit| malfunctions(unit, limit)).count() as u64, units.len().max(1) as u64);
+    let failed = Share::new(
+        units.iter().filter(|(_, unit)| malfunctions(unit, limit)).count() as u64,
+        units.len().max(1) as u64,
+    );
     let remark = if every > 1 { format!("; one unit in {every} is marked") } else { String::new() };
     line_chart(&Chart {
-        title: scene.title.clone(),
+        title: title.into(),
         subtitle: format!("{} units, {} % malfunction{remark}", units.len(), fixed(failed.share * 100.0, 1)),
         x_label: "joint tightness n (mean over the gaps, σ; positive is tighter)".into(),
         panels: vec![
             Panel {
-                y_label: "greatest drive force (N)".into(),
+                y_label: effort.into(),
                 series: limits.into_iter().collect(),
                 markers: vec![
                     kind(Verdict::Runs, "runs", Shape::Ring),

@@ -2,7 +2,10 @@
 //!
 //! A unit is a pure function of scene, seed and its number.
 
-use std::ops::{Deref, Range};
+use std::{
+    marker::PhantomData,
+    ops::{Deref, Range},
+};
 
 use slipfit_core::{
     clearance::GapStatistics,
@@ -11,6 +14,7 @@ use slipfit_core::{
 };
 
 use crate::{
+    mechanism::{self, Mechanism},
     product::Product,
     scene::Scene,
     tolerance::{
@@ -33,9 +37,35 @@ pub const MOST_UNITS: u64 = 1 << 40;
 /// What seeds of gaps and of parameters are derived with.
 const STREAMS: [u64; 2] = [3 << 32, 4 << 32];
 
-/// A production of a scene.
-pub struct Production<'a> {
-    gaps: [Gap; CONTACTS],
+/// The gaps (m) of one unit: as many as a slide's pins have, or as many as a mechanism has.
+pub trait UnitGaps: Clone + Send + Sync + AsMut<[f64]> {
+    /// `count` that are [`ABSENT`].
+    fn absent(count: usize) -> Self;
+}
+
+impl UnitGaps for [f64; CONTACTS] {
+    fn absent(_: usize) -> Self {
+        [ABSENT; CONTACTS]
+    }
+}
+
+impl UnitGaps for Vec<f64> {
+    fn absent(count: usize) -> Self {
+        vec![ABSENT; count]
+    }
+}
+
+/// What a scene says of a gap.
+struct Stated {
+    name: String,
+    statistics: GapStatistics<f64>,
+    measure: Option<usize>,
+}
+
+/// A production of a scene with a slide, or with a mechanism.
+pub struct Production<'a, G = [f64; CONTACTS]> {
+    kind: PhantomData<G>,
+    gaps: Vec<Gap>,
     /// Of the measures that gaps are, of the gaps that have statistics of their own, and of parameters.
     sources: Vec<Source<'a>>,
     parameters: usize,
@@ -74,11 +104,11 @@ impl Deref for Held<'_> {
 }
 
 /// Some units, as they were drawn.
-pub struct Drawn {
+pub struct Drawn<G = [f64; CONTACTS]> {
     /// Their numbers.
     pub numbers: Range<u64>,
     /// Gaps (m) of each; [`ABSENT`] for none.
-    pub gaps: Vec<[f64; CONTACTS]>,
+    pub gaps: Vec<G>,
     /// Deviations (SI) of the parameters of each, in the order of the scene's `vary`.
     pub deviations: Vec<Vec<f64>>,
     /// Values of all variables, a column each, in the order of [`Production::contributors`].
@@ -92,40 +122,70 @@ impl<'a> Production<'a> {
     /// # Errors
     /// [`DrawError`], if no joint distribution has the correlations.
     pub fn new(scene: &Scene, product: Option<&'a Product>, correlation: f64, seed: u64) -> Result<Self, DrawError> {
+        let gaps = scene.pins.iter().flat_map(|pin| pin.gaps);
+        let named = gaps.zip(scene.contact_names()).zip(scene.gap_measures.as_flattened());
+        let stated =
+            named.map(|((gap, name), measure)| Some(Stated { name, statistics: gap?, measure: *measure })).collect();
+        let vary = scene.vary.iter().map(|varied| varied.deviation.clone()).collect();
+        Self::of(stated, product, correlation, vary, seed)
+    }
+}
+
+impl<'a> Production<'a, Vec<f64>> {
+    /// Of `mechanism`, whose gaps are measures of `product` or have means and deviations; any two of the latter have the
+    /// `correlation`.
+    ///
+    /// # Errors
+    /// [`DrawError`], if no joint distribution has the correlations.
+    pub fn of_mechanism(
+        mechanism: &Mechanism,
+        product: Option<&'a Product>,
+        correlation: f64,
+        seed: u64,
+    ) -> Result<Self, DrawError> {
+        let stated = |gap: &mechanism::Gap| {
+            Some(Stated { name: gap.name.clone(), statistics: gap.statistics, measure: gap.measure })
+        };
+        Self::of(mechanism.gaps.iter().map(stated).collect(), product, correlation, Vec::new(), seed)
+    }
+}
+
+impl<'a, G: UnitGaps> Production<'a, G> {
+    /// Of gaps as they are `stated`, none where there is no gap, and of parameters that `vary`.
+    fn of(
+        stated: Vec<Option<Stated>>,
+        product: Option<&'a Product>,
+        correlation: f64,
+        vary: Vec<Contributor>,
+        seed: u64,
+    ) -> Result<Self, DrawError> {
         let mut sources = Vec::new();
-        let mut gaps = [Gap::Absent; CONTACTS];
-        let measured = scene.gap_measures.as_flattened();
-        let own: Vec<(usize, GapStatistics<f64>)> = scene
-            .pins
-            .iter()
-            .flat_map(|pin| pin.gaps)
-            .enumerate()
-            .filter_map(|(i, gap)| Some((i, gap?)))
-            .filter(|(i, _)| product.is_none() || measured[*i].is_none())
-            .collect();
-        if let Some(product) = product.filter(|_| measured.iter().any(Option::is_some)) {
-            for (gap, measure) in gaps.iter_mut().zip(measured) {
-                if let Some(measure) = measure {
-                    *gap = Gap::Drawn(sources.len(), *measure);
+        let mut gaps = vec![Gap::Absent; stated.len()];
+        let measure = |gap: &Option<Stated>| gap.as_ref()?.measure;
+        if let Some(product) = product.filter(|_| stated.iter().any(|gap| measure(gap).is_some())) {
+            for (gap, stated) in gaps.iter_mut().zip(&stated) {
+                if let Some(measure) = measure(stated) {
+                    *gap = Gap::Drawn(sources.len(), measure);
                 }
             }
             sources.push(Source::new(Held::Shared(&product.model), derived(seed, STREAMS[0]))?);
         }
+        let own = stated.iter().enumerate().filter_map(|(i, gap)| Some((i, gap.as_ref()?)));
+        let own: Vec<(usize, &Stated)> = own.filter(|(_, gap)| product.is_none() || gap.measure.is_none()).collect();
         if !own.is_empty() {
             for (measure, (i, _)) in own.iter().enumerate() {
                 gaps[*i] = Gap::Drawn(sources.len(), measure);
             }
-            let names = scene.contact_names();
-            let model = of_statistics(&own, &names, correlation);
+            let model = of_statistics(&own, correlation);
             sources.push(Source::new(Held::Own(Box::new(model)), derived(seed, STREAMS[0] + 1))?);
         }
-        if !scene.vary.is_empty() {
-            let deviations = scene.vary.iter().map(|varied| varied.deviation.clone()).collect();
-            sources.push(Source::new(Held::Own(Box::new(each_itself(deviations))), derived(seed, STREAMS[1]))?);
+        let parameters = vary.len();
+        if parameters > 0 {
+            sources.push(Source::new(Held::Own(Box::new(each_itself(vary))), derived(seed, STREAMS[1]))?);
         }
         let contributors = sources.iter().flat_map(|source| &source.model.contributors);
         let names = contributors.map(|contributor| contributor.name.clone()).collect();
-        Ok(Self { gaps, sources, parameters: scene.vary.len(), names })
+        Ok(Self { kind: PhantomData, gaps, sources, parameters, names })
     }
 
     /// What varies: name, and which of the variables are its own.
@@ -140,13 +200,13 @@ impl<'a> Production<'a> {
     }
 
     /// The units `numbers`.
-    pub fn draw(&self, numbers: Range<u64>) -> Drawn {
+    pub fn draw(&self, numbers: Range<u64>) -> Drawn<G> {
         let columns = self.sources.iter().map(|source| source.draw(&numbers)).collect();
         self.assembled(numbers, columns)
     }
 
     /// Units among which is that of this `number`, and its place among them.
-    pub fn draw_one(&self, number: u64) -> (Drawn, usize) {
+    pub fn draw_one(&self, number: u64) -> (Drawn<G>, usize) {
         let first = number - number % LANES as u64;
         (self.draw(first..number + 1), (number - first) as usize)
     }
@@ -157,7 +217,7 @@ impl<'a> Production<'a> {
     }
 
     /// The units at `points` of the space of scores, and which of them are made: those with all truncated zones inside.
-    pub fn at(&self, points: &[Vec<f64>]) -> (Drawn, Vec<bool>) {
+    pub fn at(&self, points: &[Vec<f64>]) -> (Drawn<G>, Vec<bool>) {
         let mut made = vec![true; points.len()];
         let mut first = 0;
         let columns = self.sources.iter().map(|source| {
@@ -176,9 +236,9 @@ impl<'a> Production<'a> {
     }
 
     /// Units from what each source has drawn.
-    fn assembled(&self, numbers: Range<u64>, sources: Vec<Columns>) -> Drawn {
+    fn assembled(&self, numbers: Range<u64>, sources: Vec<Columns>) -> Drawn<G> {
         let count = (numbers.end - numbers.start) as usize;
-        let mut gaps = vec![[ABSENT; CONTACTS]; count];
+        let mut gaps = vec![G::absent(self.gaps.len()); count];
         let mut deviations = vec![Vec::with_capacity(self.parameters); count];
         let mut variables = Vec::new();
         for (s, Columns { variables: columns, measures }) in sources.into_iter().enumerate() {
@@ -186,7 +246,7 @@ impl<'a> Production<'a> {
                 if let Gap::Drawn(of, measure) = gap
                     && *of == s
                 {
-                    gaps.iter_mut().zip(&measures[*measure]).for_each(|(gaps, value)| gaps[i] = *value);
+                    gaps.iter_mut().zip(&measures[*measure]).for_each(|(gaps, value)| gaps.as_mut()[i] = *value);
                 }
             }
             if self.parameters > 0 && s + 1 == self.sources.len() {
@@ -254,15 +314,15 @@ impl<'a> Source<'a> {
 }
 
 /// Normal gaps of the given statistics, any two with the same correlation.
-fn of_statistics(gaps: &[(usize, GapStatistics<f64>)], names: &[String], correlation: f64) -> Model {
-    let normal = |(i, gap): &(usize, GapStatistics<f64>)| {
-        let GapStatistics { mean, deviation } = *gap;
+fn of_statistics(gaps: &[(usize, &Stated)], correlation: f64) -> Model {
+    let normal = |(_, gap): &(usize, &Stated)| {
+        let GapStatistics { mean, deviation } = gap.statistics;
         let distribution =
             if deviation > 0.0 { Distribution::Normal { mean, deviation } } else { Distribution::Constant(mean) };
         let limits = [mean - 3.0 * deviation, mean + 3.0 * deviation];
-        Contributor { name: format!("{} gap", names[*i]), variation: Variation::Scalar { distribution, limits } }
+        Contributor { name: format!("{} gap", gap.name), variation: Variation::Scalar { distribution, limits } }
     };
-    let varying: Vec<usize> = (0..gaps.len()).filter(|i| gaps[*i].1.deviation > 0.0).collect();
+    let varying: Vec<usize> = (0..gaps.len()).filter(|i| gaps[*i].1.statistics.deviation > 0.0).collect();
     let pairs = varying.iter().flat_map(|i| varying.iter().filter(move |j| *j > i).map(move |j| (*i, *j, correlation)));
     let correlations = if correlation == 0.0 { Vec::new() } else { pairs.collect() };
     Model { correlations, ..each_itself(gaps.iter().map(normal).collect()) }

@@ -102,20 +102,20 @@ pub struct Statistics {
 }
 
 /// Whether a unit malfunctions: it crawls, jams, or needs more than the `limit` (N).
-pub fn malfunctions(unit: &Unit, limit: Option<f64>) -> bool {
+pub fn malfunctions<G>(unit: &Unit<G>, limit: Option<f64>) -> bool {
     unit.outcome.verdict.is_malfunction() || is_over(unit, limit)
 }
 
 /// Whether a unit needs more than the `limit` (N).
-pub fn is_over(unit: &Unit, limit: Option<f64>) -> bool {
+pub fn is_over<G>(unit: &Unit<G>, limit: Option<f64>) -> bool {
     unit.outcome.peak_force.zip(limit).is_some_and(|(force, limit)| force > limit)
 }
 
 impl Statistics {
     /// Of `units`, of which there is at least one, with a motor's force `limit` (N).
-    pub fn new(units: &[Unit], limit: Option<f64>) -> Self {
+    pub fn new<G>(units: &[Unit<G>], limit: Option<f64>) -> Self {
         let all = units.len().max(1) as u64;
-        let count = |of: &dyn Fn(&Unit) -> bool| units.iter().filter(|unit| of(unit)).count() as u64;
+        let count = |of: &dyn Fn(&Unit<G>) -> bool| units.iter().filter(|unit| of(unit)).count() as u64;
         let verdict = |verdict: Verdict| Share::new(count(&|unit| unit.outcome.verdict == verdict), all);
         let failed = Share::new(count(&|unit| malfunctions(unit, limit)), all);
         let running = units.iter().filter(|unit| unit.outcome.verdict == Verdict::Runs);

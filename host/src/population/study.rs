@@ -3,20 +3,21 @@
 use super::{
     PIECE, Unit,
     drivers::{Driver, Drivers},
-    production::Production,
+    production::{Production, UnitGaps},
     simulate_units,
     statistics::{Share, Statistics, malfunctions},
 };
 use crate::{dynamics::simulate::SimulateError, scene::Scene};
+use slipfit_core::slide::CONTACTS;
 
 /// Units that find classes for what drives the figures.
 const PILOT: u64 = 1024;
 
 /// A population.
 #[derive(Clone, Debug)]
-pub struct Population {
+pub struct Population<G = [f64; CONTACTS]> {
     /// Every unit, in order.
-    pub units: Vec<Unit>,
+    pub units: Vec<Unit<G>>,
     /// What they did together.
     pub statistics: Statistics,
     /// What drives the greatest force, the strongest first.
@@ -63,9 +64,11 @@ impl Population {
         })?;
         Ok(causes.population(production, units, limit))
     }
+}
 
+impl<G: UnitGaps> Population<G> {
     /// Of all `units` of a `production`, in order.
-    pub fn of(production: &Production, units: Vec<Unit>, limit: Option<f64>) -> Self {
+    pub fn of(production: &Production<G>, units: Vec<Unit<G>>, limit: Option<f64>) -> Self {
         let mut causes = Causes::new(production);
         for (start, piece) in (0..).step_by(PIECE).zip(units.chunks(PIECE)) {
             causes.add(&production.draw(start..start + piece.len() as u64).variables, piece, limit);
@@ -81,13 +84,13 @@ struct Causes {
 }
 
 impl Causes {
-    fn new(production: &Production) -> Self {
+    fn new<G: UnitGaps>(production: &Production<G>) -> Self {
         let pilot = production.draw(0..PILOT).variables;
         Self { of_force: Drivers::new(&pilot), of_malfunction: Drivers::new(&pilot) }
     }
 
     /// Takes note of the `units` of a piece, drawn with these `variables`, a column each.
-    fn add(&mut self, variables: &[Vec<f64>], units: &[Unit], limit: Option<f64>) {
+    fn add<G>(&mut self, variables: &[Vec<f64>], units: &[Unit<G>], limit: Option<f64>) {
         let start = units.first().map_or(0, |unit| unit.number);
         let forces: Vec<_> = units.iter().map(|unit| unit.outcome.peak_force).collect();
         let failed: Vec<_> = units.iter().map(|unit| Some(f64::from(u8::from(malfunctions(unit, limit))))).collect();
@@ -95,7 +98,12 @@ impl Causes {
         self.of_malfunction.add(start, variables, &failed);
     }
 
-    fn population(&self, production: &Production, units: Vec<Unit>, limit: Option<f64>) -> Population {
+    fn population<G: UnitGaps>(
+        &self,
+        production: &Production<G>,
+        units: Vec<Unit<G>>,
+        limit: Option<f64>,
+    ) -> Population<G> {
         let contributors = production.contributors();
         Population {
             statistics: Statistics::new(&units, limit),

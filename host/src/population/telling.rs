@@ -1,5 +1,7 @@
 //! Units worth a closer look.
 
+use std::cmp::Ordering;
+
 use super::{Unit, production::Production, unit::scene_of};
 use crate::{
     dynamics::{
@@ -10,14 +12,15 @@ use crate::{
     scene::Scene,
 };
 
-/// The worst `count` units: those that come least far, then those that need most force.
-pub fn worst(units: &[Unit], count: usize) -> Vec<&Unit> {
-    let mut sorted: Vec<&Unit> = units.iter().collect();
+/// The worst `count` units: of those that malfunction the ones that come least far; then those that need most force.
+pub fn worst<G>(units: &[Unit<G>], count: usize) -> Vec<&Unit<G>> {
+    let mut sorted: Vec<&Unit<G>> = units.iter().collect();
     sorted.sort_by(|one, other| {
-        let key = |unit: &Unit| (!unit.outcome.verdict.is_malfunction(), unit.outcome.end.z);
+        let key = |unit: &Unit<G>| (!unit.outcome.verdict.is_malfunction(), unit.outcome.end.z);
         let ((runs, z), (other_runs, other_z)) = (key(one), key(other));
-        runs.cmp(&other_runs).then(z.total_cmp(&other_z)).then_with(|| {
-            let force = |unit: &Unit| unit.outcome.peak_force.unwrap_or(f64::NEG_INFINITY);
+        let by_travel = if runs { Ordering::Equal } else { z.total_cmp(&other_z) };
+        runs.cmp(&other_runs).then(by_travel).then_with(|| {
+            let force = |unit: &Unit<G>| unit.outcome.peak_force.unwrap_or(f64::NEG_INFINITY);
             force(other).total_cmp(&force(one))
         })
     });

@@ -171,9 +171,13 @@ pub fn decisive(scene: &Scene, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Opt
 
 /// Whether the verdict of a unit may be another to a better tolerance.
 fn is_doubtful(slide: &SlideData<f64>, figures: &Figures) -> bool {
-    let (share, _) = share(slide, figures);
+    figures.stalled || is_near_a_limit(share(slide, figures).0)
+}
+
+/// Whether a final speed, as a `share` of the command, is so near to a limit between two verdicts that a better run has to decide.
+pub fn is_near_a_limit(share: f64) -> bool {
     let near = |limit: f64| (share / limit - 1.0).abs() < DOUBT;
-    figures.stalled || !share.is_finite() || near(RUNS) || near(JAMMED)
+    !share.is_finite() || near(RUNS) || near(JAMMED)
 }
 
 /// Unit `i` once more, at the desk; what only lanes know is kept of `found`.

@@ -9,6 +9,7 @@ use crate::product::{
 };
 
 use super::{GapError, LevelError};
+use crate::show::number::ten_digits;
 
 /// What is wrong with a scene. Keys are written in full, such as `slide.mass`; values as they were typed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -211,10 +212,12 @@ pub enum Problem {
         joint: String,
     },
     /// A joint that is nowhere near its bodies.
-    #[error("the joint \"{joint}\" is far from the bodies that it joins")]
+    #[error("the joint \"{joint}\" is {} mm from the centre of the nearer body that it joins", ten_digits(away.round()))]
     Far {
         /// The joint.
         joint: String,
+        /// How far (mm).
+        away: f64,
     },
     /// A mechanism as a whole.
     #[error("{0}")]
@@ -230,6 +233,9 @@ pub enum Problem {
     /// Tolerance levels at which a gap is out of bounds.
     #[error("`sweep.n`: {0}")]
     Gap(GapError),
+    /// The same of a mechanism.
+    #[error("`sweep.n`: {0}")]
+    Play(crate::mechanism::GapError),
 }
 
 impl Problem {

@@ -9,9 +9,9 @@ use super::{
 /// Height of the title.
 pub const HEAD: f64 = 66.0;
 /// The most characters of a name.
-pub const NAME: usize = 30;
+pub const NAME: usize = 36;
 const ROW: f64 = 20.0;
-const BARS: f64 = 228.0;
+const BARS: f64 = 186.0;
 /// A picture of several blocks is no taller than this (px), so that a sheet of paper holds it in a size that can be read.
 const TALL: f64 = 720.0;
 
@@ -78,7 +78,7 @@ pub fn bars(title: &str, subtitle: &str, blocks: &[Block]) -> String {
             svg.rectangle(bar, if *percent < 0.0 { POSITIVE } else { NEGATIVE }, 1.0);
             let mut end = zero + scale * percent.max(0.0);
             if let Some(error) = error {
-                let [from, to] = [percent - error, percent + error].map(|percent| zero + scale * percent);
+                let [from, to] = [(percent - error).max(low), percent + error].map(|percent| zero + scale * percent);
                 svg.line(&[[from, y + 10.0], [to, y + 10.0]], Stroke::new(INK, 1.5));
                 end = end.max(to);
             }

@@ -5,13 +5,13 @@ use slipfit_core::{clearance::GapClass, slide::ABSENT};
 use super::number::ten_digits;
 use crate::{
     dynamics::{
+        driven::DriveKind,
         outcome::{Moment, Trajectory},
         sweep::Sweep,
     },
     mechanism::Samples,
-    population::{Unit, picture::tightness},
+    population::Unit,
     quality::{precision, stability},
-    scene::Scene,
 };
 
 /// Time, speed and force along the drive, displacement of the centre of mass; ten digits.
@@ -42,31 +42,36 @@ pub fn rows_csv(samples: &Samples) -> anyhow::Result<Vec<u8>> {
     Ok(writer.into_inner()?)
 }
 
-/// Every unit of a population, one line each: number, joint tightness n, figures and gaps, ten digits; empty where there is none.
+/// Every unit of a population, one line each: number, joint tightness n at which it is `placed`, figures and gaps, ten digits; empty
+/// where there is none.
 ///
 /// # Errors
 /// Those of the writer, none in memory.
-pub fn population_csv(scene: &Scene, units: &[Unit]) -> anyhow::Result<Vec<u8>> {
+pub fn population_csv<G: AsRef<[f64]>>(
+    kind: DriveKind,
+    gaps: &[String],
+    placed: &[(f64, &Unit<G>)],
+) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let figures = [
         "unit",
         "n",
         "breakaway_s",
-        "peak_force_N",
-        "settled_force_N",
-        "final_velocity_m_per_s",
+        kind.choose("peak_force_N", "peak_torque_N_m"),
+        kind.choose("settled_force_N", "settled_torque_N_m"),
+        kind.choose("final_velocity_m_per_s", "final_velocity_rad_per_s"),
         "end_s",
-        "travel_m",
+        kind.choose("travel_m", "travel_rad"),
         "verdict",
         "at_desk",
     ];
-    let gaps = scene.contact_names().map(|name| format!("{name} (m)"));
+    let gaps = gaps.iter().map(|name| format!("{name} (m)"));
     writer.write_record(figures.into_iter().map(str::to_owned).chain(gaps))?;
-    for Unit { number, gaps, outcome } in units {
+    for (tightness, Unit { number, gaps, outcome }) in placed {
         let optional = |value: Option<f64>| value.map_or(String::new(), ten_digits);
         let own = [
             number.to_string(),
-            ten_digits(tightness(scene, gaps)),
+            ten_digits(*tightness),
             optional(outcome.breakaway),
             optional(outcome.peak_force),
             optional(outcome.settled_force),
@@ -76,7 +81,7 @@ pub fn population_csv(scene: &Scene, units: &[Unit]) -> anyhow::Result<Vec<u8>> 
             outcome.verdict.to_string(),
             outcome.at_desk.to_string(),
         ];
-        let gaps = gaps.iter().map(|gap| optional((*gap != ABSENT).then_some(*gap)));
+        let gaps = gaps.as_ref().iter().map(|gap| optional((*gap != ABSENT).then_some(*gap)));
         writer.write_record(own.into_iter().chain(gaps))?;
     }
     Ok(writer.into_inner()?)

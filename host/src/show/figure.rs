@@ -66,7 +66,7 @@ pub fn unit_over_time(run: &Trajectory, title: &str, n: &[f64]) -> Result<String
 ///
 /// # Errors
 /// [`PlotError`], if the run has no sample or is not finite.
-pub fn columns_over_time(samples: &Samples, columns: &[String], title: &str, n: &str) -> Result<String, PlotError> {
+pub fn columns_over_time(samples: &Samples, columns: &[String], title: &str, of: &str) -> Result<String, PlotError> {
     let panel = |name: &String| {
         let column = samples.columns.iter().position(|one| one == name).unwrap_or_default();
         let points = samples.rows.iter().map(|row| (row[0] * 1e3, row[column])).collect();
@@ -75,7 +75,7 @@ pub fn columns_over_time(samples: &Samples, columns: &[String], title: &str, n: 
     };
     line_chart(&Chart {
         title: title.to_owned(),
-        subtitle: format!("one unit, n = {}", typeset(n)),
+        subtitle: format!("one unit, {}", typeset(of)),
         x_label: "time (ms)".to_owned(),
         scale: Scale::Linear,
         panels: columns.iter().map(panel).collect(),

@@ -242,7 +242,7 @@ impl Plot<'_> {
         let right = self.columns[1];
         for (([x, y], series, stroke), row) in ends.into_iter().zip(apart(&wanted, LABEL_PITCH, top..bottom)) {
             // The line may end far from the edge: what leads from there is not part of it.
-            svg.line(&[[x, y], [right + 4.0, y]], Stroke { opacity: 0.3, dash: "", width: 1.0, ..stroke });
+            svg.line(&[[x, y], [right + 4.0, y]], Stroke { opacity: 0.4, dash: "1 4", width: 1.0, ..stroke });
             svg.line(&[[right + 4.0, y], [right + 10.0, row]], Stroke { dash: "", width: 1.0, ..stroke });
             svg.line(&[[right + 10.0, row], [right + 26.0, row]], stroke);
             svg.text([right + 29.0, row], &series.label, Font { most: LABEL, ..PLAIN });

@@ -8,10 +8,10 @@ use super::{GapReport, gap_reports};
 use crate::{
     cli::{Failure, SceneArguments, check::self_locking, print, print_json, text_table, warn},
     mechanism::{
-        Freedom, Mechanism,
+        Freedom, Mechanism, Spring,
         self_locking::{Locked, locked},
     },
-    show::number::{fixed, level, or_dash},
+    show::number::{fixed, level, or_dash, ten_digits},
     system::files,
 };
 
@@ -55,7 +55,18 @@ pub fn check(mechanism: &Mechanism, n: f64, scene: &SceneArguments, plot: Option
         .into_iter()
         .map(|gap| vec![gap.name.to_owned(), fixed(gap.mm, 4), or_dash(gap.closes_at_n, |n| fixed(n, 2))])
         .collect();
-    let _ = write!(text, "\n{}", text_table(&[&format!("gap at n = {}", level(n)), "mm", "closes at n"], &rows));
+    if !rows.is_empty() {
+        let _ = write!(text, "\n{}", text_table(&[&format!("gap at n = {}", level(n)), "mm", "closes at n"], &rows));
+    }
+    if !mechanism.springs.is_empty() {
+        let row = |spring: &Spring| {
+            let [first, second] = spring.between.map(|port| mechanism.name_of(port).to_owned());
+            vec![spring.name.clone(), first, second, ten_digits(spring.stiffness), ten_digits(spring.damping)]
+        };
+        let rows: Vec<_> = mechanism.springs.iter().map(row).collect();
+        let heading = ["torsion spring", "of", "and", "stiffness, N·m/rad", "damping, N·m·s/rad"];
+        let _ = write!(text, "\n{}", text_table(&heading, &rows));
+    }
     print(&text)?;
     warn(&warnings);
     Ok(())

@@ -1,6 +1,7 @@
 //! What `check`, `simulate` and `sweep` say of a mechanism of bodies and joints, one file a command.
 
 mod check;
+pub(super) mod population;
 mod simulate;
 mod sweep;
 
@@ -15,7 +16,7 @@ use crate::{
 };
 
 pub(super) use check::{check, warnings_of};
-pub(super) use simulate::simulate;
+pub(super) use simulate::{OneUnit, simulate};
 pub(super) use sweep::sweep;
 
 impl From<RunError> for Failure {

@@ -3,11 +3,13 @@
 use std::fmt::Write;
 
 use serde::Serialize;
+use slipfit_core::clearance::GapStatistics;
 
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{Failure, print, print_json, text_table},
     mechanism::{Action, Mechanism, MechanismRun, SCHEME, finer, run},
+    population::production::Production,
     show::{
         export::rows_csv,
         figure::columns_over_time,
@@ -33,19 +35,55 @@ struct SimulateReport<'a> {
     samples: &'a [Vec<f64>],
 }
 
+/// A unit that is simulated.
+pub struct OneUnit {
+    /// Which it is, in words.
+    label: String,
+    /// The level of all its gaps, or of each.
+    n: Vec<f64>,
+    gaps: Vec<f64>,
+}
+
+impl OneUnit {
+    /// That of the levels `n`: one for all gaps, or one each.
+    pub fn at_levels(mechanism: &Mechanism, n: &[f64]) -> Result<Self, Failure> {
+        let gaps = mechanism.gaps_at(levels(mechanism, n)?)?;
+        let words = if n.len() == 1 { level(n[0]) } else { "one for each gap".to_owned() };
+        Ok(Self { label: format!("n = {words}"), n: n.to_vec(), gaps })
+    }
+
+    /// That with this `number` in a `production`.
+    pub fn of_production(
+        mechanism: &Mechanism,
+        production: &Production<Vec<f64>>,
+        number: u64,
+    ) -> Result<Self, Failure> {
+        let (drawn, i) = production.draw_one(number);
+        let gaps = drawn.gaps[i].clone();
+        if let Some(gap) = mechanism.misfit(&gaps) {
+            let (name, mm) = (&mechanism.gaps[gap].name, fixed(gaps[gap] * 1e3, 4));
+            return Err(Failure::Input(format!("unit {number} cannot be assembled: its gap \"{name}\" is {mm} mm")));
+        }
+        let n = mechanism.gaps.iter().zip(&gaps).map(|(gap, value)| {
+            let GapStatistics { mean, deviation } = gap.statistics;
+            if deviation > 0.0 { (mean - value) / deviation } else { 0.0 }
+        });
+        Ok(Self { label: format!("unit {number}"), n: n.collect(), gaps })
+    }
+}
+
 /// `simulate`.
-pub fn simulate(mechanism: &Mechanism, n: &[f64], every: f64, wanted: &Wanted) -> Result<(), Failure> {
-    let gaps = mechanism.gaps_at(levels(mechanism, n)?)?;
+pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Wanted) -> Result<(), Failure> {
+    let OneUnit { label, n, gaps } = unit;
     wanted.check_outputs()?;
-    let one = run(mechanism, &gaps, every)?;
-    let difference = difference(mechanism, &one, &finer(mechanism, &gaps, every)?);
+    let one = run(mechanism, gaps, every)?;
+    let difference = difference(mechanism, &one, &finer(mechanism, gaps, every)?);
     if let Some(path) = wanted.csv {
         files::write(path, &rows_csv(&one.samples)?)?;
     }
     if let Some(path) = wanted.plot {
-        let n = if n.len() == 1 { level(n[0]) } else { "one for each gap".to_owned() };
         let columns = plotted(mechanism);
-        let svg = columns_over_time(&one.samples, &columns, &mechanism.title, &n).map_err(anyhow::Error::from)?;
+        let svg = columns_over_time(&one.samples, &columns, &mechanism.title, label).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
     }
     if wanted.scene.json {
@@ -65,12 +103,12 @@ pub fn simulate(mechanism: &Mechanism, n: &[f64], every: f64, wanted: &Wanted) -
             integration_ms: one.integration.as_secs_f64() * 1e3,
             difference,
             drives: drives.collect(),
-            gaps: gap_reports(mechanism, &gaps),
+            gaps: gap_reports(mechanism, gaps),
             columns: &one.samples.columns,
             samples: &one.samples.rows,
         });
     }
-    print(&described(mechanism, n, &one, difference))
+    print(&described(mechanism, label, &one, difference))
 }
 
 /// The greatest difference of the drives' forces between two runs, as a share of the greatest force; of the first body's columns where
@@ -114,10 +152,9 @@ fn plotted(mechanism: &Mechanism) -> Vec<String> {
     columns
 }
 
-fn described(mechanism: &Mechanism, n: &[f64], run: &MechanismRun, difference: f64) -> String {
+fn described(mechanism: &Mechanism, label: &str, run: &MechanismRun, difference: f64) -> String {
     let mut text = String::new();
-    let n: Vec<String> = n.iter().map(|&n| level(n)).collect();
-    let _ = writeln!(text, "{}, n = {}\n", mechanism.title, n.join(", "));
+    let _ = writeln!(text, "{}, {label}\n", mechanism.title);
     let rows: Vec<_> = mechanism
         .drives
         .iter()

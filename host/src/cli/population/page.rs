@@ -34,9 +34,9 @@ pub fn units(
     let all = &population.units;
     let pictures = [
         (
-            "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: units of the same \
-             mean tightness run, crawl and jam.",
-            picture::forces(scene, all, limit),
+            "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: its gaps differ from \
+             each other.",
+            picture::forces(&scene.title, picture::FORCE, &picture::placed(scene, all), limit),
         ),
         ("What force units need. Those that jam need all that the drive has.", shares::histogram(scene, all, limit)),
         (

@@ -55,8 +55,8 @@ impl Arguments {
             let _ = writeln!(text, "                undecided{why}");
         }
         if let (Some(share), Some(limit)) = (over_limit, self.force_limit) {
-            let name = format!("over {limit} N");
-            let _ = writeln!(text, "  {name:14}{}", percent(&share));
+            let name = format!("  over {limit} N ");
+            let _ = writeln!(text, "{name:16}{}", percent(&share));
         }
         if let Some(level) = sigma_level {
             let _ = writeln!(

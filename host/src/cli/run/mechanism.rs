@@ -11,9 +11,14 @@ use super::{
 };
 use crate::{
     cli::{
-        Failure, mechanism, print, print_json, progress,
+        Failure,
+        mechanism::{self, population::tightness},
+        population::{percent, strongest},
+        print, print_json, progress,
         sweep::{LevelReport, doubts, for_machines},
-        table, warn,
+        table,
+        tolerance::DEFAULT,
+        warn,
     },
     dynamics::{
         answer::{Range, ranges},
@@ -25,6 +30,12 @@ use crate::{
         force_table::{Demand, ForceTable},
     },
     mechanism::ByDrive,
+    population::{
+        mechanism::{MechanismPopulation, study},
+        picture::forces as forces_of_units,
+        production::Production as DrawnProduction,
+        statistics::Statistics,
+    },
     product::Product,
     show::{
         export::sweep_csv,
@@ -36,7 +47,11 @@ use crate::{
 };
 
 /// The pictures: of a force, and of a torque.
-const FIGURES: [&str; 5] = ["verdict.svg", "velocity.svg", "force.svg", "torque.svg", "mechanism.svg"];
+const FIGURES: [&str; 6] =
+    ["verdict.svg", "velocity.svg", "force.svg", "torque.svg", "mechanism.svg", "population.svg"];
+
+/// Units of the production that are simulated where no number is given.
+const UNITS: u64 = 256;
 
 #[derive(Serialize)]
 struct Report {
@@ -51,6 +66,8 @@ struct Report {
     /// The answer: neighbouring levels with the same verdict.
     ranges: Vec<Range>,
     levels: Vec<LevelReport>,
+    /// What units drawn one by one do; none where no gap varies.
+    population: Option<Statistics>,
     /// How the product's measures vary, as `slipfit tolerance --json` shows it.
     tolerance: Option<Measures>,
     warnings: Vec<String>,
@@ -70,16 +87,30 @@ impl Arguments {
         product: Option<&Product>,
         production: Option<Production>,
     ) -> Result<(), Failure> {
-        let bar = progress("simulating", force_table::levels(driven.levels()).count);
-        let made = self.threads.install(|| force_table::make(driven, Demand::Full, || bar.inc(1)))?;
+        let mechanism = driven.mechanism();
+        let varies = mechanism.gaps.iter().any(|gap| gap.statistics.deviation > 0.0);
+        let units = if varies { self.units.unwrap_or(UNITS) } else { 0 };
+        let drawn = DrawnProduction::of_mechanism(mechanism, product, 0.0, DEFAULT.seed)
+            .map_err(|error| Failure::Input(error.to_string()))?;
+        let bar = progress("simulating", force_table::levels(driven.levels()).count + units as usize);
+        let ((table, sweep), population) = self.threads.install(|| {
+            let made = force_table::make(driven, Demand::Full, || bar.inc(1))?;
+            let population = varies.then(|| study(driven, &drawn, units, None, |units| bar.inc(units))).transpose()?;
+            Ok::<_, Failure>((made, population))
+        })??;
         bar.finish_and_clear();
-        let (table, sweep) = made?;
         let mut warnings = mechanism::warnings_of(driven.mechanism())?;
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.clone()));
         warnings.extend(doubts(&sweep));
 
-        let answer = said(driven, &table, &sweep);
-        let figures = figures(driven, &sweep)?;
+        let answer = said(driven, &table, &sweep, population.as_ref());
+        let mut figures = figures(driven, &sweep)?;
+        if let Some(population) = &population {
+            let placed: Vec<_> = population.units.iter().map(|unit| (tightness(mechanism, &unit.gaps), unit)).collect();
+            let effort = format!("greatest {} ({})", driven.kind().effort(), driven.kind().effort_unit());
+            let caption = "Every mark is a unit of the production, drawn with gaps of its own.";
+            figures.push((FIGURES[5], captioned(caption, forces_of_units(driven.title(), &effort, &placed, None))?));
+        }
         let page = report(&ReportInput {
             title: driven.title(),
             sweep: &sweep,
@@ -114,6 +145,7 @@ impl Arguments {
                 worst_force_error_n: table.worst_error[0],
                 ranges: ranges(&sweep),
                 levels: for_machines(&sweep),
+                population: population.map(|population| population.statistics),
                 tolerance: production.map(|production| production.report),
                 warnings,
             });
@@ -125,9 +157,17 @@ impl Arguments {
 }
 
 /// What the mechanism does at which levels, what closes first, what to change, and the table.
-fn said(driven: &ByDrive, table: &ForceTable, sweep: &Sweep) -> String {
+fn said(driven: &ByDrive, table: &ForceTable, sweep: &Sweep, population: Option<&MechanismPopulation>) -> String {
     let mut text = answer(sweep);
     text.push('\n');
+    let failed = population.map(|population| population.statistics.malfunctions);
+    if let (Some(failed), Some(population)) = (failed, population) {
+        let units = population.statistics.units;
+        let _ = writeln!(text, "Production      {} of {units} units malfunction", percent(&failed));
+        if failed.units > 0 {
+            let _ = writeln!(text, "Drives failure  {}", strongest(&population.of_malfunction, 2));
+        }
+    }
     if let Some((gap, n)) = driven.mechanism().first_to_close() {
         let closed = per_million(normal::tail(n) * 1e6);
         let _ = writeln!(
@@ -137,9 +177,16 @@ fn said(driven: &ByDrive, table: &ForceTable, sweep: &Sweep) -> String {
             fixed(n, 3)
         );
     }
+    let fails = failed.is_some_and(|failed| failed.units > 0);
+    let mean_unit = sweep.levels.iter().any(|level| level.n.abs() < 1e-9 && level.outcome.verdict.is_malfunction());
     let change = match first_to_go_wrong(sweep) {
-        None => "nothing: it runs at every level".into(),
-        Some((worst, side)) => format!("{side} units go wrong first, from n = {}", worst.n),
+        _ if mean_unit => "a nominal value, the friction or the drive: the mean unit itself malfunctions".into(),
+        None if fails => "no level malfunctions, but units do whose gaps differ from each other".into(),
+        None => "nothing: every level runs, and every unit that was drawn".into(),
+        Some((worst, side)) if fails => format!("{side} levels malfunction from n = {} on", worst.n),
+        Some((worst, side)) => {
+            format!("nothing for these units: only {side} levels malfunction, from n = {} on", worst.n)
+        }
     };
     let _ = writeln!(text, "What to change  {change}");
     let _ = writeln!(text, "Flash table     {}", table_line(driven, table));

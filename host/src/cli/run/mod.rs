@@ -34,7 +34,7 @@ use crate::{
 /// The main job: says at which tolerance levels the product works and what force it takes.
 ///
 /// For slides and mechanisms. Analyses the tolerances, where the scene has a product. Simulates the opening and the whole stroke of
-/// a slide, or the run of a mechanism, at every level, and units of a slide's production. Writes the flash table over time, and a
+/// a slide, or the run of a mechanism, at every level, and units of the production. Writes the flash table over time, and a
 /// page with all pictures.
 #[derive(Args)]
 #[command(mut_arg("scene", |arg| arg.default_value(DRAWING)))]
@@ -50,9 +50,9 @@ pub(super) struct Arguments {
     drive: DriveArguments,
     #[command(flatten)]
     levels: LevelArguments,
-    /// Units of a slide's production to simulate one by one; 256 if not given.
+    /// Units of the production to simulate one by one; 256 if not given.
     ///
-    /// For slides only. `slipfit population` simulates more units and tells more about them.
+    /// `slipfit population` simulates more units and tells more about them.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     units: Option<u64>,
     #[command(flatten)]
@@ -68,9 +68,6 @@ impl Arguments {
                 self.drive.refuse()?;
                 self.run_slide(&scene, product.as_ref())
             }
-            Moving::Mechanism(_) if self.units.is_some() => Err(Failure::Input(
-                "--units is for slides: units of a mechanism's production are not simulated yet".into(),
-            )),
             Moving::Mechanism(mechanism) => self.run_mechanism(&self.drive.of(&mechanism)?, product.as_ref()),
         }
     }

@@ -80,12 +80,16 @@ impl Mechanism {
             let play = if gaps.is_empty() { String::new() } else { format!(", {word} {} mm", gaps.join(", ")) };
             (Mark::Number(i + 1), format!("{}: {}{play}", joint.name, joint.kind.name()))
         });
+        let springs = self.springs.iter().map(|spring| {
+            let [one, other] = spring.between.map(|port| self.name_of(port));
+            (Mark::Colour(SOFT), format!("{}: torsion spring, {one} to {other}", spring.name))
+        });
         let drives = self.drives.iter().map(|drive| {
             let body = &self.bodies[drive.body].name;
             let does = drive.action.kind().choose("pushes", "turns");
             (Mark::Colour(symbol::DRIVE), format!("{} {does} {body}", drive.name))
         });
-        bodies.chain(joints).chain(drives).collect()
+        bodies.chain(joints).chain(springs).chain(drives).collect()
     }
 
     fn draw(&self, svg: &mut Svg, view: &View) {

@@ -6,6 +6,7 @@ use super::{Field, Gaps, Laws, Names, Problem, Quantity, SceneError, direction, 
 use crate::{
     mechanism::{Joint, JointKind, Mechanism, NormalData},
     scene::{SURFACES, parse::POINT},
+    show::number::ten_digits,
 };
 
 const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 1e5] };
@@ -125,16 +126,19 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
 /// Whether each joint is somewhere near its bodies.
 pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), SceneError> {
     for (joint, field) in mechanism.joints.iter().zip(fields) {
+        // How far it is from a body, and how far it may be.
         let distances = joint.between.iter().flatten().map(|body| {
             let body = &mechanism.bodies[*body];
             let apart: f64 = joint.at.iter().zip(body.centre).map(|(a, b)| (a - b) * (a - b)).sum();
             let gyration = body.inertia.iter().fold(0.0, |most: f64, i| most.max(*i)) / body.mass;
-            libm::sqrt(apart) / libm::sqrt(gyration).max(1e-9)
+            [libm::sqrt(apart), FAR * libm::sqrt(gyration).max(1e-9)]
         });
-        if distances.fold(f64::INFINITY, f64::min) > FAR {
+        let nearest = distances.min_by(|one, other| (one[0] / one[1]).total_cmp(&(other[0] / other[1])));
+        if let Some([away, most]) = nearest.filter(|[away, most]| away > most) {
             let at = field.get("at").unwrap_or_else(|| field.clone());
-            let problem = Problem::Far { joint: joint.name.clone() };
-            note(field.found(), Err(at.error(problem, "a place near one of them, in mm in the drawn pose")));
+            let problem = Problem::Far { joint: joint.name.clone(), away: away * 1e3 };
+            let allowed = format!("{} mm at most, {FAR} of its radii of gyration", ten_digits((most * 1e3).round()));
+            note(field.found(), Err(at.error(problem, allowed)));
         }
     }
     Ok(())

@@ -83,8 +83,28 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         if mechanism.planar {
             check_tree(&mechanism, &joint_fields, root)?;
         }
+        check_gaps(&mechanism, &joint_fields, root)?;
     }
     Ok(mechanism)
+}
+
+/// Whether the gaps of the mean unit and of all levels are possible.
+fn check_gaps(mechanism: &Mechanism, joints: &[Field], root: &Field) -> Result<(), SceneError> {
+    if let Err(error) = mechanism.gaps_at(&[0.0]) {
+        let is_of =
+            |joint: &crate::mechanism::Joint| joint.kind.gaps().any(|gap| mechanism.gaps[gap].name == error.name);
+        let joint = &joints[mechanism.joints.iter().position(is_of).unwrap_or_default()];
+        let field = joint.get("clearance").unwrap_or_else(|| joint.clone());
+        return Err(field.error(Problem::Mechanism(error.to_string()), "a mean gap that is not negative"));
+    }
+    let Some(table) = root.get("sweep") else { return Ok(()) };
+    for i in [0, mechanism.sweep.count - 1] {
+        if let Err(error) = mechanism.gaps_at(&[mechanism.sweep.level(i)]) {
+            let field = table.get("n").unwrap_or_else(|| table.clone());
+            return Err(field.error(Problem::Play(error), "levels below `closes at n` of `check`, or less deviation"));
+        }
+    }
+    Ok(())
 }
 
 /// Whether ideal joints make a tree.
@@ -150,20 +170,20 @@ struct Gaps<'p> {
 impl Gaps<'_> {
     /// The index of a new gap with the statistics that `field` gives, by itself or as a measure of the product.
     fn add(&mut self, name: String, field: &Field) -> Result<usize, SceneError> {
-        let statistics = match field.node.value {
+        let (statistics, measure) = match field.node.value {
             Value::Text(_) => self.measured(field)?,
-            _ => super::pins::statistics(field)?,
+            _ => (super::pins::statistics(field)?, None),
         };
-        self.gaps.push(Gap { name, statistics });
+        self.gaps.push(Gap { name, statistics, measure });
         Ok(self.gaps.len() - 1)
     }
 
-    fn measured(&self, field: &Field) -> Result<GapStatistics<f64>, SceneError> {
+    fn measured(&self, field: &Field) -> Result<(GapStatistics<f64>, Option<usize>), SceneError> {
         let model = self.product.map(|product| &product.model);
         let index = super::pins::length(field, model)?;
         let moments = model.map(crate::tolerance::theory::moments::of_measures).unwrap_or_default();
         let of = moments.get(index).map(|of| GapStatistics { mean: of.mean, deviation: of.deviation });
-        of.ok_or_else(|| field.wrong_type("a measure of the product"))
+        of.map(|of| (of, Some(index))).ok_or_else(|| field.wrong_type("a measure of the product"))
     }
 }
 

@@ -83,7 +83,8 @@ fn mistakes_are_told_where_they_are() {
     refused("[\"crank\", \"slider\"]", "[\"crank\", \"rod\"]", "there is no body `rod`", "\"rod\"");
     refused("inertia = 1e5\n", "", "`body.inertia` is missing", "[[body]]");
     refused("axis = [1, 0]", "axis = [0, 0]", "`joint.axis` is [0, 0]", "[0, 0]\n\n[[joint]]\nname = \"pin\"");
-    refused("at = [0, 0]", "at = [90000, 0]", "far from the bodies", "[90000, 0]");
+    refused("clearance = [0.1, 0.01]", "clearance = [-0.1, 0.01]", "the gap \"pin\" is -0.1 mm", "[-0.1, 0.01]");
+    refused("at = [0, 0]", "at = [90000, 0]", "mm from the centre of the nearer body", "[90000, 0]");
     refused(
         "clearance = [0.1, 0.01]\nradius = 5\n",
         "",

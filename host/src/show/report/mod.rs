@@ -136,8 +136,8 @@ fn verdict(answer: &str) -> String {
         return String::new();
     }
     // Line by line: what escapes a text takes control characters out of it.
-    let lines: Vec<String> = answer.lines().map(escape).collect();
-    format!("<pre class=\"answer\">{}</pre>\n", lines.join("\n"))
+    let lines: String = answer.lines().map(|line| format!("<span>{}</span>", escape(line))).collect();
+    format!("<pre class=\"answer\">{lines}</pre>\n")
 }
 
 fn summary(input: &ReportInput) -> String {
@@ -270,9 +270,13 @@ mod tests {
         for absent in ["<script", "<i>a figure", "left <back>", "a < b", "src=", "href=", "url(", "@import", "NaN"] {
             assert!(!html.contains(absent), "{absent}");
         }
-        for present in
-            ["&lt;script&gt;", "left &lt;back&gt;", "a &lt; b", "&amp; co", "runs &amp; &lt;b&gt;\nCloses first</pre>"]
-        {
+        for present in [
+            "&lt;script&gt;",
+            "left &lt;back&gt;",
+            "a &lt; b",
+            "&amp; co",
+            "runs &amp; &lt;b&gt;</span><span>Closes first</span></pre>",
+        ] {
             assert!(html.contains(present), "{present}");
         }
     }
@@ -297,7 +301,9 @@ mod tests {
         for query in ["(max-width: 640px)", "screen and (prefers-color-scheme: dark)", "print"] {
             assert!(html.contains(&format!("@media {query} {{")), "{query}");
         }
-        for rule in ["figure { margin: 1.4rem 0; break-inside: avoid; }", "min-width: calc(.62 * var(--width))"] {
+        for rule in
+            ["figure { margin: 1.4rem 0; break-inside: avoid; }", "min-width: min(calc(.62 * var(--width)), 350px)"]
+        {
             assert!(html.contains(rule), "{rule}");
         }
         // No table may be kept on one sheet: longer ones would leave a blank one before them.
