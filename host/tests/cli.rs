@@ -45,7 +45,7 @@ fn the_main_job_writes_its_files_and_the_same_for_any_number_of_threads() {
         "table.bin",
         "verdict.svg",
     ];
-    expected.extend((2..=4).map(|i| format!("contributors-{i}.svg")));
+    expected.extend((2..=6).map(|i| format!("contributors-{i}.svg")));
     expected.extend(
         of_slide.iter().chain(&["contributors.svg", "correlation.svg", "tolerance.csv"]).map(|name| (*name).to_owned()),
     );

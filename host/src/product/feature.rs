@@ -136,13 +136,15 @@ impl Feature {
     /// Writes where the feature is in the units with these `variables`, before its datums move.
     #[inline(always)]
     pub fn locate(&self, variables: &[Lanes], located: &mut Located) {
-        *located = self.perfect();
         // A sum at a time and from the constant that it starts with, so that it stays in a register.
-        for terms in self.terms.chunk_by(|one, next| one.component == next.component) {
-            let component = terms[0].component;
-            let mut sum = Lanes::splat(self.nominal.as_flattened()[component]);
-            for term in terms {
+        let mut terms = self.terms.as_slice();
+        for (component, nominal) in self.nominal.as_flattened().iter().enumerate() {
+            let mut sum = Lanes::splat(*nominal);
+            while let [term, rest @ ..] = terms
+                && term.component == component
+            {
                 sum += variables[term.variable] * term.factor;
+                terms = rest;
             }
             *located.component(component) = sum;
         }

@@ -13,7 +13,7 @@ pub const NAME: usize = 36;
 const ROW: f64 = 20.0;
 const BARS: f64 = 186.0;
 /// A picture of several blocks is no taller than this (px), so that a sheet of paper holds it in a size that can be read.
-const TALL: f64 = 720.0;
+const TALL: f64 = 520.0;
 
 /// A share of something, as a bar.
 #[derive(Clone, Debug, PartialEq)]

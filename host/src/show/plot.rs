@@ -104,10 +104,19 @@ fn drawn(chart: &Chart, [width, height]: [f64; 2]) -> Result<String, PlotError> 
     for (i, (panel, y)) in chart.panels.iter().zip(y_axes).enumerate() {
         let top = heading + pitch * i as f64;
         svg.text([16.0, top + 14.0], &panel.y_label, Font { most, ..PLAIN });
-        svg.text([right, top + 14.0], &panel.note, Font { colour: SOFT, anchor: Anchor::End, ..PLAIN });
+        let soft = Font { colour: SOFT, ..PLAIN };
+        // Beside the label if there is room, else below it.
+        let beside = panel.y_label.chars().count() + panel.note.chars().count() + 4 <= most;
+        let below = if beside { Vec::new() } else { wrapped(&panel.note, characters(width - 32.0, 1)) };
+        if beside {
+            svg.text([right, top + 14.0], &panel.note, Font { anchor: Anchor::End, ..soft });
+        }
+        for (line, text) in below.iter().enumerate() {
+            svg.text([16.0, top + 14.0 + LINE * (line + 1) as f64], text, soft);
+        }
         let from = 36.0 + CHARACTER[0] * panel.y_label.chars().count() as f64;
         legend(&mut svg, &panel.markers, [from, top + 14.0]);
-        let rows = [top + PANEL_HEADING, top + pitch - BELOW];
+        let rows = [top + PANEL_HEADING + LINE * below.len() as f64, top + pitch - BELOW];
         Plot { columns: [LEFT, right], rows, x: &x_axis, y: &y }.draw(&mut svg, panel);
     }
     Ok(svg.finish())

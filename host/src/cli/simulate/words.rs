@@ -45,9 +45,9 @@ impl Arguments {
         let way = on_the_way(DriveKind::Pushes, &run.outcome);
         let _ = writeln!(text, "{}, {of}\n", scene.title);
         let _ = writeln!(text, "Verdict         {verdict}{}", why_undecided(scene, verdict));
-        let _ = writeln!(text, "Breakaway       {} ms", or_dash(breakaway, |t| fixed(t * 1e3, 2)));
-        let _ = writeln!(text, "Peak force      {} N", or_dash(peak_force, |f| fixed(f, 4)));
-        let _ = writeln!(text, "Settled force   {} N", or_dash(settled_force, |f| fixed(f, 4)));
+        let _ = writeln!(text, "Breakaway       {}", or_dash(breakaway, |t| fixed(t * 1e3, 2) + " ms"));
+        let _ = writeln!(text, "Peak force      {}", or_dash(peak_force, |f| fixed(f, 4) + " N"));
+        let _ = writeln!(text, "Settled force   {}", or_dash(settled_force, |f| fixed(f, 4) + " N"));
         let _ = writeln!(text, "Final velocity  {} mm/s", fixed(final_velocity * 1e3, 3));
         let reached = match stroke_reached {
             Some(true) => ", the end of the stroke",

@@ -169,9 +169,14 @@ impl<'a> Tile<'a> {
             }
             // Nothing is summed of what is not there.
             row[units..].fill(0.0);
-            for value in &row[..units] {
-                let place = value.clamp(-10.0, 10.0) * BINS_PER_DEVIATION + (MAGIC + (BINS / 2) as f64);
-                counts.bins[((place.to_bits() & 0xfff) as usize).min(BINS - 1)] += 1;
+            // All places first, which vectors do.
+            let mut places = [0; TILE];
+            for (place, value) in places.iter_mut().zip(row.iter()) {
+                let at = value.clamp(-10.0, 10.0) * BINS_PER_DEVIATION + (MAGIC + (BINS / 2) as f64);
+                *place = (at.to_bits() & 0xfff).min(BINS as u64 - 1);
+            }
+            for place in &places[..units] {
+                counts.bins[*place as usize] += 1;
             }
             if counts.undefined > 0 {
                 for value in row[..units].iter_mut().filter(|value| value.is_nan()) {
