@@ -49,7 +49,9 @@ impl Arguments {
         }
         if undecided.units > 0 {
             let why = match self.opening {
-                true => ": the opening ends before the ramp does; without --opening the whole stroke is simulated".into(),
+                true => {
+                    ": the opening ends before the ramp does; without --opening the whole stroke is simulated".into()
+                }
                 false => why_undecided(scene, Verdict::Undecided),
             };
             let _ = writeln!(text, "                undecided{why}");
