@@ -58,7 +58,7 @@ const SHAPES: [Shape; KINDS.len()] =
 /// Lines of neighbouring levels differ in their dashes, as their colours are alike.
 const DASHES: [&str; 4] = ["", "9 4", "2 3", "11 3 2 3"];
 
-/// The chart as an SVG document, [`WIDTH`] pixels wide; the same bytes for the same chart.
+/// The chart as an SVG document of the usual width; the same bytes for the same chart.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to plot or a value is not finite.
