@@ -113,15 +113,15 @@ pub(super) struct Arguments {
 }
 
 /// Levels of eq. 9 that are looked for in the population.
-const LEVELS: [f64; 13] = [-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+pub(super) const LEVELS: [f64; 13] = [-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
 /// Random combinations at each distance.
 const DIRECTIONS: u64 = 512;
 /// Worst units that are listed.
-const WORST: usize = 5;
+pub(super) const WORST: usize = 5;
 
 /// Where the unit of a level lies in the population.
 #[derive(Serialize)]
-struct LevelReport {
+pub(super) struct LevelReport {
     n: f64,
     verdict: Verdict,
     peak_force_n: Option<f64>,
@@ -129,13 +129,22 @@ struct LevelReport {
     share_below: f64,
 }
 
+impl LevelReport {
+    /// Of level `n`, whose unit did this, among the `units` of a population.
+    pub fn new<G>(n: f64, outcome: &UnitOutcome, units: &[Unit<G>]) -> Self {
+        let below = units.iter().filter(|unit| unit.outcome.peak_force < outcome.peak_force).count();
+        let share_below = below as f64 / units.len().max(1) as f64;
+        Self { n, verdict: outcome.verdict, peak_force_n: outcome.peak_force, share_below }
+    }
+}
+
 /// A unit for machines.
 #[derive(Serialize)]
-struct UnitReport {
-    number: u64,
-    tightness: f64,
+pub(super) struct UnitReport {
+    pub number: u64,
+    pub tightness: f64,
     #[serde(flatten)]
-    outcome: UnitOutcome,
+    pub outcome: UnitOutcome,
 }
 
 #[derive(Serialize)]
@@ -331,16 +340,8 @@ impl Arguments {
 
     fn find(&self, scene: &Scene, production: &Production, units: Vec<Unit>) -> Result<Found, Failure> {
         let population = Population::of(production, units, self.force_limit);
-        let below = |force: Option<f64>| {
-            let count = population.units.iter().filter(|unit| unit.outcome.peak_force < force).count();
-            count as f64 / population.units.len().max(1) as f64
-        };
-        let levels = at_levels(scene, &LEVELS)?.into_iter().zip(LEVELS).map(|(unit, n)| LevelReport {
-            n,
-            verdict: unit.outcome.verdict,
-            peak_force_n: unit.outcome.peak_force,
-            share_below: below(unit.outcome.peak_force),
-        });
+        let at_levels = at_levels(scene, &LEVELS)?.into_iter().zip(LEVELS);
+        let levels = at_levels.map(|(unit, n)| LevelReport::new(n, &unit.outcome, &population.units));
         let levels = levels.collect();
         let hypothesis = Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?;
         let rare = self.rare.then(|| self.estimate(scene, production, &population)).transpose()?;

@@ -9,10 +9,10 @@ use super::warnings_of;
 use crate::{
     cli::{
         Failure, SceneArguments, ThreadArguments, given,
-        population::{percent, strongest},
+        population::{LEVELS, LevelReport, UnitReport, WORST, percent, strongest},
         print, print_json, progress, text_table, warn,
     },
-    dynamics::{answer::ranges_of, driven::Driven, outcome::Verdict},
+    dynamics::{answer::ranges_of, driven::Driven},
     mechanism::{ByDrive, Mechanism},
     population::{
         Unit, UnitOutcome,
@@ -43,29 +43,8 @@ pub struct Asked<'a> {
     pub threads: &'a ThreadArguments,
 }
 
-/// Levels that are simulated beside the units.
-const LEVELS: [f64; 13] = [-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
-/// Worst units that are listed.
-const WORST: usize = 5;
 /// Drivers that are listed.
 const DRIVERS: usize = 5;
-
-#[derive(Serialize)]
-struct LevelReport {
-    n: f64,
-    verdict: Verdict,
-    peak_force_n: Option<f64>,
-    /// Share of the population that needs less.
-    share_below: f64,
-}
-
-#[derive(Serialize)]
-struct UnitReport {
-    number: u64,
-    tightness: f64,
-    #[serde(flatten)]
-    outcome: UnitOutcome,
-}
 
 #[derive(Serialize)]
 struct Report<'a> {
@@ -131,15 +110,6 @@ pub fn population(driven: &ByDrive, product: Option<&Product>, asked: &Asked) ->
         files::write(path, svg.as_bytes())?;
     }
     if asked.scene.json {
-        let of_level = |(n, outcome): &(f64, UnitOutcome)| {
-            let below = found.units.iter().filter(|unit| unit.outcome.peak_force < outcome.peak_force).count();
-            LevelReport {
-                n: *n,
-                verdict: outcome.verdict,
-                peak_force_n: outcome.peak_force,
-                share_below: below as f64 / units as f64,
-            }
-        };
         let of_unit = |unit: &Unit<Vec<f64>>| UnitReport {
             number: unit.number,
             tightness: tightness(mechanism, &unit.gaps),
@@ -150,7 +120,7 @@ pub fn population(driven: &ByDrive, product: Option<&Product>, asked: &Asked) ->
             drive: driven.name(),
             effort_unit: driven.kind().effort_unit(),
             seed,
-            levels: levels.iter().map(of_level).collect(),
+            levels: levels.iter().map(|(n, outcome)| LevelReport::new(*n, outcome, &found.units)).collect(),
             worst: worst(&found.units, WORST).into_iter().map(of_unit).collect(),
             statistics: found.statistics,
             force_drivers: found.of_force,
