@@ -16,6 +16,7 @@ pub mod picture;
 pub mod production;
 pub mod rare;
 pub mod shares;
+mod source;
 pub mod statistics;
 pub mod study;
 pub mod telling;

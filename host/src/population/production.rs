@@ -2,32 +2,24 @@
 //!
 //! A unit is a pure function of scene, seed and its number.
 
-use std::{
-    marker::PhantomData,
-    ops::{Deref, Range},
-};
+use std::{marker::PhantomData, ops::Range};
 
 use slipfit_core::{
-    clearance::GapStatistics,
     sampling::stream::derived,
     slide::{ABSENT, CONTACTS},
 };
 
+use super::source::{Columns, Held, Source, Stated, each_itself, of_statistics};
 use crate::{
     mechanism::{self, Mechanism},
     product::Product,
     scene::Scene,
     tolerance::{
-        failure::gathered,
         model::{
-            Contributor, Distribution, Measure, Model, Quantity, Variation,
+            Contributor,
             lanes::{LANES, Lanes},
-            linear::Linear,
         },
-        sampling::{
-            draw::{Draw, DrawError},
-            sampler::{Method, Sampler},
-        },
+        sampling::draw::DrawError,
     },
 };
 
@@ -55,13 +47,6 @@ impl UnitGaps for Vec<f64> {
     }
 }
 
-/// What a scene says of a gap.
-struct Stated {
-    name: String,
-    statistics: GapStatistics<f64>,
-    measure: Option<usize>,
-}
-
 /// A production of a scene with a slide, or with a mechanism.
 pub struct Production<'a, G = [f64; CONTACTS]> {
     kind: PhantomData<G>,
@@ -78,29 +63,6 @@ enum Gap {
     Absent,
     /// Source and measure.
     Drawn(usize, usize),
-}
-
-/// A model whose units are drawn.
-struct Source<'a> {
-    model: Held<'a>,
-    draw: Draw,
-    sampler: Sampler,
-}
-
-enum Held<'a> {
-    Shared(&'a Model),
-    Own(Box<Model>),
-}
-
-impl Deref for Held<'_> {
-    type Target = Model;
-
-    fn deref(&self) -> &Model {
-        match self {
-            Self::Shared(model) => model,
-            Self::Own(model) => model,
-        }
-    }
 }
 
 /// Some units, as they were drawn.
@@ -257,91 +219,6 @@ impl<'a, G: UnitGaps> Production<'a, G> {
             variables.extend(columns);
         }
         Drawn { numbers, gaps, deviations, variables }
-    }
-}
-
-/// Values of some units, a column for each variable and for each measure.
-struct Columns {
-    variables: Vec<Vec<f64>>,
-    measures: Vec<Vec<f64>>,
-}
-
-impl<'a> Source<'a> {
-    fn new(model: Held<'a>, seed: u64) -> Result<Self, DrawError> {
-        let draw = Draw::new(&model, seed)?;
-        let sampler = Sampler::new(Method::PseudoRandom, seed, draw.dimensions(), 1, MOST_UNITS);
-        Ok(Self { model, draw, sampler })
-    }
-
-    /// Of the units `numbers`.
-    fn draw(&self, numbers: &Range<u64>) -> Columns {
-        let mut bits = vec![[0; LANES]; self.draw.dimensions()];
-        self.columns((numbers.end - numbers.start) as usize, |start, variables| {
-            let first = numbers.start + start as u64;
-            self.sampler.fill(first, &mut bits);
-            self.draw.variables(first, &bits, variables);
-        })
-    }
-
-    /// Of the units at `points`, whose scores `own` are this source's; those that it does not make are not `made`.
-    fn at(&self, points: &[Vec<f64>], own: Range<usize>, made: &mut [bool]) -> Columns {
-        self.columns(points.len(), |start, variables| {
-            let group = &points[start..points.len().min(start + LANES)];
-            let scores: Vec<Vec<f64>> = group.iter().map(|point| point[own.clone()].to_vec()).collect();
-            variables.copy_from_slice(&gathered(&scores));
-            self.draw.transform(variables);
-            let (inside, _) = self.draw.is_inside(variables);
-            made[start..].iter_mut().zip(inside).for_each(|(made, inside)| *made &= inside);
-        })
-    }
-
-    /// Of `count` units, some at a time, for which `fill` is given the first and writes variables.
-    fn columns(&self, count: usize, mut fill: impl FnMut(usize, &mut [Lanes])) -> Columns {
-        let mut variables = vec![Lanes::ZERO; self.draw.dimensions()];
-        let mut measures = vec![Lanes::ZERO; self.model.measures.len()];
-        let mut columns = [vec![Vec::new(); variables.len()], vec![Vec::new(); measures.len()]];
-        for start in (0..count).step_by(LANES) {
-            fill(start, &mut variables);
-            self.model.function.evaluate(&variables, &mut measures);
-            let here = (count - start).min(LANES);
-            for (columns, values) in columns.iter_mut().zip([&variables, &measures]) {
-                columns.iter_mut().zip(values.iter()).for_each(|(column, lanes)| column.extend(&lanes.0[..here]));
-            }
-        }
-        let [variables, measures] = columns;
-        Columns { variables, measures }
-    }
-}
-
-/// Normal gaps of the given statistics, any two with the same correlation.
-fn of_statistics(gaps: &[(usize, &Stated)], correlation: f64) -> Model {
-    let normal = |(_, gap): &(usize, &Stated)| {
-        let GapStatistics { mean, deviation } = gap.statistics;
-        let distribution =
-            if deviation > 0.0 { Distribution::Normal { mean, deviation } } else { Distribution::Constant(mean) };
-        let limits = [mean - 3.0 * deviation, mean + 3.0 * deviation];
-        Contributor { name: format!("{} gap", gap.name), variation: Variation::Scalar { distribution, limits } }
-    };
-    let varying: Vec<usize> = (0..gaps.len()).filter(|i| gaps[*i].1.statistics.deviation > 0.0).collect();
-    let pairs = varying.iter().flat_map(|i| varying.iter().filter(move |j| *j > i).map(move |j| (*i, *j, correlation)));
-    let correlations = if correlation == 0.0 { Vec::new() } else { pairs.collect() };
-    Model { correlations, ..each_itself(gaps.iter().map(normal).collect()) }
-}
-
-/// Every contributor, a scalar, as a measure.
-fn each_itself(contributors: Vec<Contributor>) -> Model {
-    let count = contributors.len();
-    let row = |i: usize| (0..count).map(|k| if k == i { 1.0 } else { 0.0 }).collect();
-    let measures = contributors
-        .iter()
-        .map(|contributor| Measure { name: contributor.name.clone(), quantity: Quantity::Length, limits: [None; 2] })
-        .collect();
-    Model {
-        contributors,
-        correlations: Vec::new(),
-        measures,
-        sums: Vec::new(),
-        function: Box::new(Linear::new(&vec![0.0; count], &(0..count).map(row).collect::<Vec<_>>())),
     }
 }
 
