@@ -23,3 +23,12 @@ pub fn stdout(output: &Output) -> String {
 pub fn json(folder: &Path, arguments: &[&str]) -> serde_json::Value {
     serde_json::from_str(&stdout(&slipfit(folder, arguments))).unwrap()
 }
+
+/// The names of what a folder holds, in order; not every test looks.
+#[allow(dead_code)]
+pub fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
