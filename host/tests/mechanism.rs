@@ -94,6 +94,18 @@ fn the_main_job_of_a_mechanism_answers_and_writes_its_files() {
     assert_eq!((report["effort_unit"].as_str(), report["drive"].as_str()), (Some("N·m"), Some("motor")));
 }
 
+/// Of a run that ends before its ramp nobody knows whether anything works.
+#[test]
+fn the_main_job_of_a_mechanism_says_where_there_are_no_verdicts() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = ["run", "slider-crank", "--n", "-1:1:1", "--units", "20", "--set", "run.duration=40"];
+    let text = stdout(&slipfit(folder.path(), &run));
+    for part in ["none of 20 units comes to a verdict", "it ends before there are verdicts; take a longer run.duration"]
+    {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+}
+
 /// The firmware of a mechanism refuses the table of another.
 #[test]
 fn kernel_and_table_of_a_mechanism_have_one_hash() {

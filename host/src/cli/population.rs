@@ -51,8 +51,8 @@ pub(super) use words::{percent, strongest};
 
 /// Simulates units of a production one by one: how many malfunction, and why.
 ///
-/// For slides and mechanisms with a drive. Every unit has gaps of its own. Gaps that are measures follow from the product's tolerances; the others are drawn
-/// from the mean and the standard deviation in the scene. With `[vary]` in the scene friction, stiffness, damping, mass, gain, ramp
+/// For slides and mechanisms with a drive. Every unit has gaps of its own. Gaps that are measures follow from the product's
+/// tolerances; the others are drawn from the mean and the standard deviation in the scene. With `[vary]` in the scene friction, stiffness, damping, mass, gain, ramp
 /// and the direction of gravity vary, too. A slide runs the whole stroke unless `--opening` is given, a mechanism
 /// `run.duration` or to the end of its stroke.
 ///

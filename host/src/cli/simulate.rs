@@ -202,7 +202,8 @@ impl Arguments {
             Moving::Mechanism(mechanism) => {
                 let shown = self.audit || self.page.is_some();
                 if shown || self.controller.given() || self.length.stroke {
-                    let why = "--audit, --step, --integrator, --scalar, --stroke and --page are for slides on pins; a mechanism runs for run.duration, or to run.stroke";
+                    let why = "--audit, --step, --integrator, --scalar, --stroke and --page are for slides on pins; \
+                               a mechanism runs for run.duration, or to run.stroke";
                     return Err(Failure::Input(why.into()));
                 }
                 let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot };

@@ -106,7 +106,8 @@ impl Arguments {
             Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
                 if self.controller.given() || self.length.stroke {
-                    let why = "--step, --integrator, --scalar and --stroke are for slides on pins; a mechanism runs for run.duration, or to run.stroke";
+                    let why = "--step, --integrator, --scalar and --stroke are for slides on pins; \
+                               a mechanism runs for run.duration, or to run.stroke";
                     return Err(Failure::Input(why.into()));
                 }
                 let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot };

@@ -40,7 +40,7 @@ pub fn confirmed(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, run
 /// See [`SimulateError`].
 pub fn with_step_tried(scene: &Scene, n: &[f64; CONTACTS], trust: Trust) -> Result<Trust, SimulateError> {
     let mut shorter = scene.clone();
-    let (mut next, mut untried) = (trust.better_step, trust.better_step);
+    let (mut next, mut shortest) = (trust.better_step, trust.better_step);
     for _ in 0..TRIES {
         let Some(step) = next.filter(|step| *step >= SHORTEST_TRIED) else { break };
         shorter.controller.step = step;
@@ -53,9 +53,9 @@ pub fn with_step_tried(scene: &Scene, n: &[f64; CONTACTS], trust: Trust) -> Resu
             Err(SimulateError::Interrupted) => return Err(SimulateError::Interrupted),
             Err(_) => None,
         };
-        untried = next.or(untried);
+        shortest = next.or(shortest);
     }
-    Ok(trust.advised(untried))
+    Ok(trust.advised(shortest))
 }
 
 /// `run`, made by `settings`, held against the `better` one, which is sampled at the same times.

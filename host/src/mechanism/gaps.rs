@@ -63,6 +63,12 @@ impl Mechanism {
         (0..gaps.len()).find(|i| !(self.least_gap(*i)..=GAP_MOST).contains(&gaps[*i]))
     }
 
+    /// The tolerance levels at which the gaps are `gaps` (m); `None` for one that does not vary.
+    pub fn levels_of(&self, gaps: &[f64]) -> Vec<Option<f64>> {
+        let level = |(of, gap): (&Gap, &f64)| (of.statistics.deviation > 0.0).then(|| of.statistics.level(*gap));
+        self.gaps.iter().zip(gaps).map(level).collect()
+    }
+
     /// The least value (m) of gap `i`: 0 for a pin in a hole.
     fn least_gap(&self, i: usize) -> f64 {
         use super::JointKind::{Bearing, Journal};

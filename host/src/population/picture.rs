@@ -26,7 +26,12 @@ const LEAST: usize = 20;
 /// How much tighter than the mean unit this one is: the mean over its gaps, each in its standard deviations, signed like
 /// the level n of eq. 9.
 pub fn tightness(scene: &Scene, gaps: &[f64; CONTACTS]) -> f64 {
-    let levels: Vec<f64> = scene.levels_of(gaps).into_iter().flatten().collect();
+    joint_tightness(scene.levels_of(gaps))
+}
+
+/// The mean of the `levels` at which gaps are, of those that vary.
+pub fn joint_tightness(levels: impl IntoIterator<Item = Option<f64>>) -> f64 {
+    let levels: Vec<f64> = levels.into_iter().flatten().collect();
     levels.iter().sum::<f64>() / levels.len().max(1) as f64
 }
 
@@ -49,8 +54,7 @@ pub fn forces<G>(
     placed: &[(f64, &Unit<G>)],
     limit: Option<f64>,
 ) -> Result<String, PlotError> {
-    let units = placed;
-    let every = units.len().div_ceil(MARKED).max(1);
+    let every = placed.len().div_ceil(MARKED).max(1);
     let kind = |verdict: Verdict, label: &str, shape| Markers {
         label: label.into(),
         shape,
@@ -77,14 +81,12 @@ pub fn forces<G>(
             (own.len() >= LEAST).then(|| ((from + to) / 2.0, Share::new(failed as u64, own.len() as u64)))
         })
         .collect();
-    let failed = Share::new(
-        units.iter().filter(|(_, unit)| malfunctions(unit, limit)).count() as u64,
-        units.len().max(1) as u64,
-    );
+    let failed = placed.iter().filter(|(_, unit)| malfunctions(unit, limit)).count() as u64;
+    let failed = Share::new(failed, placed.len().max(1) as u64);
     let remark = if every > 1 { format!("; one unit in {every} is marked") } else { String::new() };
     line_chart(&Chart {
         title: title.into(),
-        subtitle: format!("{} units, {} % malfunction{remark}", units.len(), fixed(failed.share * 100.0, 1)),
+        subtitle: format!("{} units, {} % malfunction{remark}", placed.len(), fixed(failed.share * 100.0, 1)),
         x_label: "joint tightness n (mean over the gaps, σ; positive is tighter)".into(),
         panels: vec![
             Panel {

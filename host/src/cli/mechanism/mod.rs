@@ -1,4 +1,4 @@
-//! What `check`, `simulate` and `sweep` say of a mechanism of bodies and joints, one file a command.
+//! What `check`, `simulate`, `sweep` and `population` say of a mechanism of bodies and joints, one file a command.
 
 mod check;
 pub(super) mod population;

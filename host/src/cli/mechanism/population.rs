@@ -18,7 +18,7 @@ use crate::{
         Unit, UnitOutcome,
         drivers::Driver,
         mechanism::{MechanismPopulation, study, unit},
-        picture::forces,
+        picture::{forces, joint_tightness},
         production::Production,
         statistics::{Share, Spread, Statistics},
         telling::worst,
@@ -27,6 +27,7 @@ use crate::{
     show::{
         export::population_csv,
         number::{fixed, level, or_dash},
+        plot::PlotError,
     },
     system::files,
 };
@@ -63,12 +64,18 @@ struct Report<'a> {
     warnings: Vec<String>,
 }
 
-/// How much tighter than the mean unit one with these `gaps` (m) is: the mean over its gaps that vary, in their standard deviations.
-pub fn tightness(mechanism: &Mechanism, gaps: &[f64]) -> f64 {
-    let varying = mechanism.gaps.iter().zip(gaps).filter(|(gap, _)| gap.statistics.deviation > 0.0);
-    let levels: Vec<f64> =
-        varying.map(|(gap, value)| (gap.statistics.mean - value) / gap.statistics.deviation).collect();
-    levels.iter().sum::<f64>() / levels.len().max(1) as f64
+/// The `units` of `mechanism`, each with its tightness.
+pub fn placed<'u>(
+    mechanism: &Mechanism,
+    units: impl IntoIterator<Item = &'u Unit<Vec<f64>>>,
+) -> Vec<(f64, &'u Unit<Vec<f64>>)> {
+    units.into_iter().map(|unit| (joint_tightness(mechanism.levels_of(&unit.gaps)), unit)).collect()
+}
+
+/// The greatest force or torque of the `placed` units over their tightness; `limit` (N, N·m) is the motor's greatest.
+pub fn picture(driven: &ByDrive, placed: &[(f64, &Unit<Vec<f64>>)], limit: Option<f64>) -> Result<String, PlotError> {
+    let effort = format!("greatest {} ({})", driven.kind().effort(), driven.kind().effort_unit());
+    forces(driven.title(), &effort, placed, limit)
 }
 
 /// `population`.
@@ -100,19 +107,18 @@ pub fn population(driven: &ByDrive, product: Option<&Product>, asked: &Asked) ->
             misfits.units
         ));
     }
-    let placed: Vec<_> = found.units.iter().map(|unit| (tightness(mechanism, &unit.gaps), unit)).collect();
+    let placed = placed(mechanism, &found.units);
     if let Some(path) = asked.csv {
         files::write(path, &population_csv(driven.kind(), &driven.gap_names(), &placed)?)?;
     }
     if let Some(path) = asked.plot {
-        let effort = format!("greatest {} ({})", driven.kind().effort(), driven.kind().effort_unit());
-        let svg = forces(&mechanism.title, &effort, &placed, limit).map_err(anyhow::Error::from)?;
+        let svg = picture(driven, &placed, limit).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
     }
     if asked.scene.json {
         let of_unit = |unit: &Unit<Vec<f64>>| UnitReport {
             number: unit.number,
-            tightness: tightness(mechanism, &unit.gaps),
+            tightness: joint_tightness(mechanism.levels_of(&unit.gaps)),
             outcome: unit.outcome,
         };
         return print_json(&Report {
@@ -189,7 +195,7 @@ fn described(
         let outcome = one.outcome;
         vec![
             one.number.to_string(),
-            level((tightness(mechanism, &one.gaps) * 100.0).round() / 100.0),
+            level((joint_tightness(mechanism.levels_of(&one.gaps)) * 100.0).round() / 100.0),
             outcome.verdict.to_string(),
             or_dash(outcome.peak_force, |force| fixed(force, 4)),
             fixed(kind.speed(outcome.final_velocity), 3),

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use slipfit_core::clearance::GapStatistics;
 
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
@@ -48,8 +47,8 @@ impl OneUnit {
     /// That of the levels `n`: one for all gaps, or one each.
     pub fn at_levels(mechanism: &Mechanism, n: &[f64]) -> Result<Self, Failure> {
         let gaps = mechanism.gaps_at(levels(mechanism, n)?)?;
-        let words = if n.len() == 1 { level(n[0]) } else { "one for each gap".to_owned() };
-        Ok(Self { label: format!("n = {words}"), n: n.to_vec(), gaps })
+        let words: Vec<String> = n.iter().map(|&n| level(n)).collect();
+        Ok(Self { label: format!("n = {}", words.join(", ")), n: n.to_vec(), gaps })
     }
 
     /// That with this `number` in a `production`.
@@ -64,10 +63,8 @@ impl OneUnit {
             let (name, mm) = (&mechanism.gaps[gap].name, fixed(gaps[gap] * 1e3, 4));
             return Err(Failure::Input(format!("unit {number} cannot be assembled: its gap \"{name}\" is {mm} mm")));
         }
-        let n = mechanism.gaps.iter().zip(&gaps).map(|(gap, value)| {
-            let GapStatistics { mean, deviation } = gap.statistics;
-            if deviation > 0.0 { (mean - value) / deviation } else { 0.0 }
-        });
+        // What does not vary has any level.
+        let n = mechanism.levels_of(&gaps).into_iter().map(Option::unwrap_or_default);
         Ok(Self { label: format!("unit {number}"), n: n.collect(), gaps })
     }
 }

@@ -5,15 +5,19 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::{
-    Arguments, answer, first_to_go_wrong,
+    Arguments, UNITS,
+    advice::{Units, nothing_wrong, remedy},
+    answer,
     output::{Output, PAGE, SWEEP, TABLE, captioned, of_production},
     table_line,
 };
 use crate::{
     cli::{
         Failure,
-        mechanism::{self, population::tightness},
-        population::{percent, strongest},
+        mechanism::{
+            self,
+            population::{picture, placed},
+        },
         print, print_json, progress,
         sweep::{LevelReport, doubts, for_machines},
         table,
@@ -32,7 +36,6 @@ use crate::{
     mechanism::ByDrive,
     population::{
         mechanism::{MechanismPopulation, study},
-        picture::forces as forces_of_units,
         production::Production as DrawnProduction,
         statistics::Statistics,
     },
@@ -41,6 +44,7 @@ use crate::{
         export::sweep_csv,
         figure::{forces, velocities, verdicts},
         number::{fixed, per_million},
+        plot::PlotError,
         report::{Clearances, Figure, Flash, Production, ReportInput, report},
     },
     tolerance::{distribution::normal, report::Report as Measures},
@@ -49,9 +53,6 @@ use crate::{
 /// The pictures: of a force, and of a torque.
 const FIGURES: [&str; 6] =
     ["verdict.svg", "velocity.svg", "force.svg", "torque.svg", "mechanism.svg", "population.svg"];
-
-/// Units of the production that are simulated where no number is given.
-const UNITS: u64 = 256;
 
 #[derive(Serialize)]
 struct Report {
@@ -105,11 +106,14 @@ impl Arguments {
 
         let answer = said(driven, &table, &sweep, population.as_ref());
         let mut figures = figures(driven, &sweep)?;
-        if let Some(population) = &population {
-            let placed: Vec<_> = population.units.iter().map(|unit| (tightness(mechanism, &unit.gaps), unit)).collect();
-            let effort = format!("greatest {} ({})", driven.kind().effort(), driven.kind().effort_unit());
-            let caption = "Every mark is a unit of the production, drawn with gaps of its own.";
-            figures.push((FIGURES[5], captioned(caption, forces_of_units(driven.title(), &effort, &placed, None))?));
+        let units = population.iter().flat_map(|population| &population.units);
+        match picture(driven, &placed(mechanism, units), None) {
+            // Too few units, or none that has a force.
+            Err(PlotError::Empty) => {}
+            svg => {
+                let caption = "Every mark is a unit of the production, drawn with gaps of its own.";
+                figures.push((FIGURES[5], captioned(caption, svg)?));
+            }
         }
         let page = report(&ReportInput {
             title: driven.title(),
@@ -160,14 +164,9 @@ impl Arguments {
 fn said(driven: &ByDrive, table: &ForceTable, sweep: &Sweep, population: Option<&MechanismPopulation>) -> String {
     let mut text = answer(sweep);
     text.push('\n');
-    let failed = population.map(|population| population.statistics.malfunctions);
-    if let (Some(failed), Some(population)) = (failed, population) {
-        let units = population.statistics.units;
-        let _ = writeln!(text, "Production      {} of {units} units malfunction", percent(&failed));
-        if failed.units > 0 {
-            let _ = writeln!(text, "Drives failure  {}", strongest(&population.of_malfunction, 2));
-        }
-    }
+    let units = population
+        .map(|population| Units { statistics: &population.statistics, of_malfunction: &population.of_malfunction });
+    text += &units.map(|units| units.describe()).unwrap_or_default();
     if let Some((gap, n)) = driven.mechanism().first_to_close() {
         let closed = per_million(normal::tail(n) * 1e6);
         let _ = writeln!(
@@ -177,17 +176,7 @@ fn said(driven: &ByDrive, table: &ForceTable, sweep: &Sweep, population: Option<
             fixed(n, 3)
         );
     }
-    let fails = failed.is_some_and(|failed| failed.units > 0);
-    let mean_unit = sweep.levels.iter().any(|level| level.n.abs() < 1e-9 && level.outcome.verdict.is_malfunction());
-    let change = match first_to_go_wrong(sweep) {
-        _ if mean_unit => "a nominal value, the friction or the drive: the mean unit itself malfunctions".into(),
-        None if fails => "no level malfunctions, but units do whose gaps differ from each other".into(),
-        None => "nothing: every level runs, and every unit that was drawn".into(),
-        Some((worst, side)) if fails => format!("{side} levels malfunction from n = {} on", worst.n),
-        Some((worst, side)) => {
-            format!("nothing for these units: only {side} levels malfunction, from n = {} on", worst.n)
-        }
-    };
+    let change = nothing_wrong(sweep, units, "take a longer run.duration").unwrap_or_else(|| remedy(sweep, units));
     let _ = writeln!(text, "What to change  {change}");
     let _ = writeln!(text, "Flash table     {}", table_line(driven, table));
     if let Some(warning) = table::coarse(driven, table) {

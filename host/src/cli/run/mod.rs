@@ -1,5 +1,6 @@
 //! `slipfit run`: the main job, from tolerances to a flash table and a report. Its first lines are the answer.
 
+mod advice;
 mod mechanism;
 mod output;
 mod slide;
@@ -15,12 +16,7 @@ use super::{
 use output::Output;
 
 use crate::{
-    dynamics::{
-        answer::ranges,
-        driven::Driven,
-        outcome::Verdict,
-        sweep::{Level, Sweep},
-    },
+    dynamics::{answer::ranges, driven::Driven, sweep::Sweep},
     firmware::{force_table, force_table::Demand},
     product::Product,
     show::{number::fixed, report::Production},
@@ -104,14 +100,8 @@ impl Arguments {
     }
 }
 
-/// The level nearest to nominal at which something goes wrong, and "loose" or "tight" units.
-fn first_to_go_wrong(sweep: &Sweep) -> Option<(&Level, &'static str)> {
-    let bad = |level: &&Level| level.outcome.verdict.is_malfunction();
-    let worst = sweep.levels.iter().filter(bad).min_by(|one, other| one.n.abs().total_cmp(&other.n.abs()))?;
-    let first = sweep.levels.iter().find(|level| level.outcome.verdict == Verdict::Runs);
-    let looser = first.is_none_or(|first| worst.n < first.n);
-    Some((worst, if looser { "loose" } else { "tight" }))
-}
+/// Units of the production that are simulated where no number is given.
+const UNITS: u64 = 256;
 
 /// The most ranges of levels on the first screen.
 const RANGES: usize = 6;

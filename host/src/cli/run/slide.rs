@@ -5,14 +5,16 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::{
-    Arguments, answer, first_to_go_wrong,
+    Arguments, UNITS,
+    advice::{Units, nothing_wrong, remedy},
+    answer,
     output::{Output, PAGE, SWEEP, TABLE, captioned, of_production},
     table_line,
 };
 use crate::{
     cli::{
         Failure, check,
-        population::{page, percent, strongest},
+        population::page,
         print, print_json, progress,
         simulate::why_undecided,
         sweep::{LevelReport, doubts, for_machines},
@@ -41,18 +43,14 @@ use crate::{
         export::sweep_csv,
         figure::{forces, velocities, verdicts},
         number::{fixed, per_million},
-        report::{Clearances, Figure, Flash, Production, ReportInput, Units, report},
+        report::{Clearances, Figure, Flash, Production, ReportInput, Units as UnitsShown, report},
     },
-    tolerance::distribution::normal::tail,
-    tolerance::report::Report as Measures,
+    tolerance::{distribution::normal::tail, report::Report as Measures},
 };
 
 /// The pictures.
 const FIGURES: [&str; 5] =
     ["verdict.svg", "opening-velocity.svg", "opening-force.svg", "stroke-velocity.svg", "stroke-force.svg"];
-
-/// Units of the production that are simulated where no number is given.
-const UNITS: u64 = 256;
 
 #[derive(Serialize)]
 struct Report {
@@ -80,10 +78,16 @@ struct Simulated {
     /// Units of the production over the same run.
     population: Population,
     /// The same for the page, and the names of its pictures' files.
-    units: (Units, Vec<&'static str>),
+    units: (UnitsShown, Vec<&'static str>),
 }
 
 impl Simulated {
+    /// The units of the production.
+    fn of_units(&self) -> Units<'_> {
+        let Population { statistics, of_malfunction, .. } = &self.population;
+        Units { statistics, of_malfunction }
+    }
+
     /// What verdicts are given by.
     fn judged(&self) -> &Sweep {
         self.stroke.as_ref().unwrap_or(&self.opening)
@@ -193,22 +197,8 @@ impl Arguments {
     fn answer(&self, scene: &Scene, simulated: &Simulated, production: Option<&Production>) -> String {
         let mut text = answer(simulated.judged());
         text.push('\n');
-        let Population { statistics, of_malfunction, .. } = &simulated.population;
-        let (units, undecided) = (statistics.units, statistics.undecided.units);
-        let unknown = if undecided > 0 { format!("; {undecided} come to no verdict") } else { String::new() };
-        let _ = match undecided < units {
-            true => {
-                writeln!(
-                    text,
-                    "Production      {} of {units} units malfunction{unknown}",
-                    percent(&statistics.malfunctions)
-                )
-            }
-            false => writeln!(text, "Production      none of {units} units comes to a verdict"),
-        };
-        if statistics.malfunctions.units > 0 {
-            let _ = writeln!(text, "Drives failure  {}", strongest(of_malfunction, 2));
-        }
+        let units = simulated.of_units();
+        text += &units.describe();
         let derived = derived(scene, 0.0);
         let closes = derived.tightest();
         if let Some(tightest) = closes {
@@ -228,7 +218,7 @@ impl Arguments {
             let together = per_million(1e6 * tail(tightest.n));
             let _ = writeln!(text, "How probable    {together} ppm, if all gaps move together (eq. 9)");
         }
-        let _ = writeln!(text, "What to change  {}", advice(scene, simulated));
+        let _ = writeln!(text, "What to change  {}", advice(scene, simulated.judged(), units));
         let _ = writeln!(text, "Flash table     {}", table_line(scene, &simulated.table));
         if let Some(warning) = table::coarse(scene, &simulated.table) {
             let _ = writeln!(text, "                {warning}");
@@ -237,38 +227,17 @@ impl Arguments {
     }
 }
 
-/// What to change, by what goes wrong at which levels and with which units.
-fn advice(scene: &Scene, simulated: &Simulated) -> String {
-    let Population { statistics, of_malfunction, .. } = &simulated.population;
-    let wrong = first_to_go_wrong(simulated.judged());
-    if wrong.is_none() && statistics.malfunctions.units == 0 {
-        let undecided = simulated.judged().levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided);
-        if undecided || statistics.undecided.units > 0 {
-            return "the run: it ends before there are verdicts; state a stroke, such as run.stroke = 80".into();
-        }
-        return "nothing: every level runs, and every unit that was drawn".into();
-    }
-    if let Some(critical) = guide(scene, 0.0).filter(|guide| guide.warn).and_then(|guide| guide.critical_friction) {
-        return format!(
+/// What to change, by what goes wrong at which levels and with which `units`.
+fn advice(scene: &Scene, sweep: &Sweep, units: Units) -> String {
+    let locks = guide(scene, 0.0).filter(|guide| guide.warn).and_then(|guide| guide.critical_friction);
+    match (nothing_wrong(sweep, Some(units), "state a stroke, such as run.stroke = 80"), locks) {
+        (Some(nothing), _) => nothing,
+        (None, Some(critical)) => format!(
             "bring friction well below {} (it is {}), lengthen the guide, or drive nearer to it: it self-locks",
             fixed(critical, 3),
             scene.friction.coefficient()
-        );
-    }
-    // What levels do tells little of units, each of which has gaps of its own.
-    let judged = &simulated.judged().levels;
-    if judged.iter().any(|level| level.n.abs() < 1e-9 && level.outcome.verdict.is_malfunction()) {
-        return "a nominal value, the friction or the drive: the mean unit itself malfunctions".into();
-    }
-    let strongest = of_malfunction.first().filter(|driver| driver.share > 2.0 * driver.error);
-    let first = strongest
-        .map_or_else(|| "no single tolerance stands out".to_owned(), |driver| format!("start with {}", driver.name));
-    match wrong {
-        Some((worst, side)) if statistics.malfunctions.units == 0 => {
-            format!("nothing for these units: only {side} levels malfunction, from n = {} on", worst.n)
-        }
-        Some((worst, side)) => format!("{first}; {side} levels malfunction from n = {} on", worst.n),
-        None => format!("{first}: no level malfunctions, but units do whose gaps differ from each other"),
+        ),
+        (None, None) => remedy(sweep, Some(units)),
     }
 }
 

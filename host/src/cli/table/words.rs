@@ -35,7 +35,7 @@ pub fn coarse(driven: &dyn Driven, table: &ForceTable) -> Option<String> {
     } else {
         let one_side = table.longest(MotionVerdict::Runs).filter(|_| !table.mixed().is_empty());
         let or = one_side.map_or_else(String::new, |ends| {
-            let [first, last] = ends.map(|n| level((f64::from(n) * 1e4).round() / 1e4).replace('+', ""));
+            let [first, last] = ends.map(|n| ten_digits((f64::from(n) * 1e4).round() / 1e4));
             format!(", or those of one verdict, --n {first}:{last}:{}", ten_digits(driven.levels().step))
         });
         format!("neighbouring levels differ by more than can be interpolated: take finer ones{or}")
