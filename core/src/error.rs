@@ -27,6 +27,7 @@ impl<S: core::fmt::Display + core::fmt::Debug> core::error::Error for ParameterE
 ///
 /// # Errors
 /// [`ParameterError`] if it does not, or is NaN.
+#[inline(always)]
 pub(crate) fn bounded<S: crate::Scalar + PartialOrd>(
     parameter: &'static str,
     value: S,

@@ -74,6 +74,7 @@ pub enum NormalType {
 
 impl NormalType {
     /// The cheapest type that covers `exponent`.
+    #[inline(always)]
     pub fn of<S: Scalar + PartialOrd>(exponent: S) -> Self {
         if exponent == S::one() {
             Self::Linear
@@ -98,6 +99,7 @@ pub enum FrictionType {
 
 impl<S: Scalar + PartialOrd> ContactData<S> {
     /// The cheapest normal law that covers the exponent.
+    #[inline(always)]
     pub fn normal_type(&self) -> NormalType {
         NormalType::of(self.exponent)
     }
@@ -105,6 +107,7 @@ impl<S: Scalar + PartialOrd> ContactData<S> {
 
 impl<S: Scalar + PartialOrd> FrictionData<S> {
     /// Coefficient μ, 0 without friction.
+    #[inline(always)]
     pub fn coefficient(&self) -> S {
         match *self {
             Self::None => S::zero(),
@@ -113,6 +116,7 @@ impl<S: Scalar + PartialOrd> FrictionData<S> {
     }
 
     /// The cheapest friction law that covers the data.
+    #[inline(always)]
     pub fn friction_type(&self) -> FrictionType {
         match self {
             _ if self.coefficient() == S::zero() => FrictionType::Frictionless,

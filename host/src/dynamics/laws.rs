@@ -231,6 +231,7 @@ impl<S: Scalar + PartialOrd> AnySlide<S> {
 }
 
 /// The law along the normal with this spring and the damper of `contact`.
+#[inline(always)]
 fn normal<S: Scalar + PartialOrd, E: Elastic<S>>(
     elastic: E,
     contact: &ContactData<S>,
@@ -239,9 +240,21 @@ fn normal<S: Scalar + PartialOrd, E: Elastic<S>>(
 }
 
 /// The slide of `data` if it has the paper's laws. `None` if it has others, or is out of bounds.
+///
+/// Inlined with all that it calls, so that packs are made by their own instructions.
+#[inline(always)]
 pub fn usual<S: Scalar + PartialOrd>(data: &SlideData<S>) -> Option<Slide<S, ThreeHalves<S>, Regularised<S>>> {
-    match AnySlide::new(data) {
-        Ok(AnySlide::Sliding(SlidingSlide::Usual(slide))) => Some(slide),
+    let SlideData { body, contact, friction, drive } = *data;
+    match (contact.normal_type(), friction.friction_type(), friction) {
+        (
+            NormalType::ThreeHalves,
+            FrictionType::Regularised,
+            FrictionData::Regularised { coefficient, stick_band },
+        ) => {
+            let elastic = ThreeHalves::new(contact.stiffness).ok()?;
+            let friction = Regularised::new(coefficient, stick_band).ok()?;
+            Slide::new(body, normal(elastic, &contact).ok()?, friction, drive).ok()
+        }
         _ => None,
     }
 }

@@ -84,8 +84,10 @@ impl<V: Simd, T: Number> Pack<V, T> {
         self.numbers_mut()[lane] = x;
     }
 
+    /// Compares all, whatever the first ones give: without branches, several at a time.
+    #[inline(always)]
     fn all(&self, other: &Self, holds: impl Fn(&T, &T) -> bool) -> bool {
-        self.numbers().iter().zip(other.numbers()).all(|(x, y)| holds(x, y))
+        self.numbers().iter().zip(other.numbers()).fold(true, |all, (x, y)| all & holds(x, y))
     }
 }
 
@@ -182,6 +184,7 @@ impl<V: Simd, T: Number> One for Pack<V, T> {
 }
 
 impl<V: Simd, T: Number> PartialEq for Pack<V, T> {
+    #[inline(always)]
     fn eq(&self, other: &Self) -> bool {
         self.all(other, T::eq)
     }
@@ -194,18 +197,22 @@ impl<V: Simd, T: Number> PartialOrd for Pack<V, T> {
         [Less, Equal, Greater].into_iter().find(holds)
     }
 
+    #[inline(always)]
     fn lt(&self, other: &Self) -> bool {
         self.all(other, T::lt)
     }
 
+    #[inline(always)]
     fn le(&self, other: &Self) -> bool {
         self.all(other, T::le)
     }
 
+    #[inline(always)]
     fn gt(&self, other: &Self) -> bool {
         self.all(other, T::gt)
     }
 
+    #[inline(always)]
     fn ge(&self, other: &Self) -> bool {
         self.all(other, T::ge)
     }

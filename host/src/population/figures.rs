@@ -51,6 +51,8 @@ impl Figures {
 
 /// Ends of steps whose force counts for whether it has settled: one in this share of the window.
 const SAMPLES: usize = 32;
+/// Least time (s) between two of them.
+pub const BETWEEN_NOTES: f64 = SETTLED_WINDOW / SAMPLES as f64;
 
 /// Watches as many units as a pack has lanes.
 pub struct Watch<V: Simd> {
@@ -101,33 +103,28 @@ impl<V: Simd> Watch<V> {
     /// Of units that have not begun.
     pub fn new() -> Self {
         let zero = Pack::splat(0.0);
-        Self {
-            breakaway: Pack::splat(f32::NAN),
-            peak: Pack::splat(f32::NEG_INFINITY),
+        let mut watch = Self {
+            breakaway: zero,
+            peak: zero,
             depths: [zero; CONTACTS],
             force: zero,
             speed: zero,
             force_before: zero,
-            length_before: Pack::splat(1.0),
-            windows: vec![Window::default(); Pack::<V>::LANES],
-        }
+            length_before: zero,
+            windows: vec![Window { times: [0.0; 2 * SAMPLES], forces: [0.0; 2 * SAMPLES], count: 0 }; Pack::<V>::LANES],
+        };
+        (0..Pack::<V>::LANES).for_each(|lane| watch.clear(lane));
+        watch
     }
 
     /// Forgets what was in a `lane`.
     pub fn clear(&mut self, lane: usize) {
-        let fresh = Self::new();
-        for (pack, fresh) in [
-            (&mut self.breakaway, fresh.breakaway),
-            (&mut self.peak, fresh.peak),
-            (&mut self.force, fresh.force),
-            (&mut self.speed, fresh.speed),
-            (&mut self.force_before, fresh.force_before),
-            (&mut self.length_before, fresh.length_before),
-        ] {
-            pack.set(lane, fresh.get(lane));
-        }
-        self.depths.iter_mut().for_each(|depth| depth.set(lane, 0.0));
-        self.windows[lane] = Window::default();
+        let Self { breakaway, peak, depths, force, speed, force_before, length_before, windows } = self;
+        breakaway.set(lane, f32::NAN);
+        peak.set(lane, f32::NEG_INFINITY);
+        length_before.set(lane, 1.0);
+        depths.iter_mut().chain([force, speed, force_before]).for_each(|pack| pack.set(lane, 0.0));
+        windows[lane].clear();
     }
 
     /// Takes note of the ends of steps.
@@ -166,8 +163,8 @@ impl<V: Simd> Watch<V> {
 
     /// Takes note of the force at the end of an accepted step of a `lane`, at time `t` (s).
     #[inline(always)]
-    pub fn mark(&mut self, lane: usize, t: f64) {
-        self.windows[lane].mark(t, self.force.get(lane));
+    pub fn note(&mut self, lane: usize, t: f64) {
+        self.windows[lane].note(t, self.force.get(lane));
     }
 
     /// Writes what is known of the unit in a `lane` at its end, time `t` (s), to `figures`.
@@ -191,21 +188,17 @@ struct Window {
     count: usize,
 }
 
-impl Default for Window {
-    fn default() -> Self {
-        Self { times: [f64::NEG_INFINITY; 2 * SAMPLES], forces: [0.0; 2 * SAMPLES], count: 0 }
-    }
-}
-
 impl Window {
+    fn clear(&mut self) {
+        self.times.fill(f64::NEG_INFINITY);
+        self.count = 0;
+    }
+
     #[inline(always)]
-    fn mark(&mut self, t: f64, force: f32) {
-        let last = self.count.wrapping_sub(1) % (2 * SAMPLES);
-        if t - self.times[last] >= SETTLED_WINDOW / SAMPLES as f64 {
-            let at = self.count % (2 * SAMPLES);
-            (self.times[at], self.forces[at]) = (t, force);
-            self.count += 1;
-        }
+    fn note(&mut self, t: f64, force: f32) {
+        let at = self.count % (2 * SAMPLES);
+        (self.times[at], self.forces[at]) = (t, force);
+        self.count += 1;
     }
 
     /// The mean force, if it varies by less than 1 %, over the last 20 ms before `end` (s), where it is `force` (N).

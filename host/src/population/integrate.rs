@@ -21,7 +21,7 @@ use crate::dynamics::{
 };
 
 use super::{
-    figures::{Ends, Figures, Watch},
+    figures::{BETWEEN_NOTES, Ends, Figures, Watch},
     lane::{Motions, at_rest, numbers, put},
 };
 
@@ -75,20 +75,17 @@ pub fn integrate<V: Simd, M: Slides<V>>(
     let Some(first) = units.first() else { return };
     let mut all = Lanes::<V>::new(first);
     let mut next = 0;
-    for lane in 0..Pack::<V>::LANES {
-        all.load(lane, &mut next, units);
-    }
-    let Some(mut slide) = load(&all.data) else { return };
-    while all.busy() {
-        if all.step(course, &slide, figures) {
-            for lane in 0..Pack::<V>::LANES {
-                if all.lanes[lane].ended {
-                    all.load(lane, &mut next, units);
-                }
+    loop {
+        for lane in 0..Pack::<V>::LANES {
+            if all.lanes[lane].ended {
+                all.load(lane, &mut next, units);
             }
-            let Some(loaded) = load(&all.data) else { return };
-            slide = loaded;
         }
+        if !all.busy() {
+            return;
+        }
+        let Some(slide) = load(&all.data) else { return };
+        while !all.step(course, &slide, figures) {}
     }
 }
 
@@ -110,6 +107,8 @@ struct Lane {
     ended: bool,
     /// Its time (s).
     time: f64,
+    /// When its force was noted last (s).
+    noted: f64,
     /// Steps, refused ones among them.
     tried: u32,
 }
@@ -121,7 +120,7 @@ impl<V: Simd> Lanes<V> {
             motions: at_rest(),
             watch: Watch::new(),
             lengths: Pack::from_f64(FIRST_STEP),
-            lanes: vec![Lane::default(); Pack::<V>::LANES],
+            lanes: vec![Lane { ended: true, ..Lane::default() }; Pack::<V>::LANES],
         }
     }
 
@@ -136,7 +135,7 @@ impl<V: Simd> Lanes<V> {
             *next += 1;
             *next - 1
         });
-        self.lanes[lane] = Lane { unit, ..Lane::default() };
+        self.lanes[lane] = Lane { unit, noted: f64::NEG_INFINITY, ..Lane::default() };
         for (number, rest) in numbers(&mut self.motions).into_iter().zip(numbers(&mut at_rest::<V>())) {
             number.set(lane, rest.get(lane));
         }
@@ -187,12 +186,15 @@ impl<V: Simd> Lanes<V> {
         };
         self.watch.observe(&ends);
         let travel = self.motions.pose.displacement_w.z * along;
-        for (lane, Lane { unit, ended, time, tried }) in self.lanes.iter_mut().enumerate() {
+        for (lane, Lane { unit, ended, time, noted, tried }) in self.lanes.iter_mut().enumerate() {
             let Some(unit) = *unit else { continue };
             *tried += 1;
             if accepted.get(lane) > 0.0 {
                 *time += f64::from(length.get(lane));
-                self.watch.mark(lane, *time);
+                if *time - *noted >= BETWEEN_NOTES {
+                    self.watch.note(lane, *time);
+                    *noted = *time;
+                }
             }
             let stalled = (good.get(lane) == 0.0 && length.get(lane) <= LEAST_STEP) || *tried >= MOST_STEPS;
             let at_end = travel.get(lane) >= stroke.get(lane) - BEYOND as f32;
