@@ -35,9 +35,9 @@ On the command line `--set KEY=VALUE` sets a key: `--set \"slide.mass=0.09 kg\"`
 
 A key is required in its table unless its meaning names a default, calls it optional, or says for what it is required.
 
-The column *takes* quotes the program's message about a wrong value, as it is in one example scene. Where it says mm but the key
-belongs to an angle, a force or another quantity, the number is in the first [unit](#units) of that quantity. Where a mechanism
-moves in a plane, lists of 3 are lists of 2.
+The column *takes* quotes the program's error message about a wrong value. Some keys take a length in one scene, and an angle, a force
+or a plain number in another. There the message is that for a length; a number without a unit is in the first [unit](#units) of the
+quantity. Where a mechanism moves in a plane, lists of 3 are lists of 2.
 ";
 
 /// The fields that the guide's page on JSON has under a `heading`.

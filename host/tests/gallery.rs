@@ -30,16 +30,18 @@ and change it. The word behind the command is the scene's name; its file is `hos
 How to read the answers:
 
 - **Levels.** A line has a range of tolerance levels n and their verdict: runs, crawls or jammed ([concepts](concepts.md)). n = 0 is
-  the mean unit, positive n is tighter, negative n looser. Of a mechanism the line begins with the name of its drive, such as
+  the mean unit, positive n is tighter, negative n looser. For a mechanism the line begins with the name of its drive, such as
   `motor`. In the picture of a slide the grey hill is the normal distribution of a single gap over n. It is no distribution of
   units, because the gaps of a real unit vary one by one: [populations](population.md) count those.
 - **Pictures of mechanisms** show the pose in which the scene file draws them; play is not to scale. In a *track* a point of one body
   moves between four surfaces of another; its four gaps are left, right, rail and wall.
-- **Contributors.** Each line has a measure and what its contributors have in its variance, in %. Shown are the six largest from 1 %
-  on. `(Sobol')` stands where the measure is not linear enough for slopes; the shares are total Sobol' indices there.
+- **Measures.** Mean and standard deviation σ; the other columns of the table are left out here.
+- **Contributors.** Each line names a measure and the share of its variance, in %, that comes from each contributor. Listed are the six
+  largest of at least 1 %. `(Sobol')` marks a measure that is not nearly linear; its shares are total Sobol' indices
+  ([glossary](glossary.md#statistics)).
 - **Yield.** The share of the units drawn that have all measures within their limits; the brackets hold its 95 % interval.
-- **Tolerances of `allocate`.** `in the scene` is the line to paste, `before` the tolerance of the scene so far. The costs are in the
-  currency of the scene.
+- **Tolerances of `allocate`.** `new line` is the line to paste, `before` the tolerance that it replaces. The costs are in the currency
+  of the scene.
 ";
 
 /// What is asked, and what of the output is the answer.
@@ -89,6 +91,16 @@ fn answer(output: &str, from: &str) -> String {
     lines.chain(of_yield).map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
+/// Mean and standard deviation of the measures, the first columns of the first table.
+fn measures(output: &str) -> String {
+    let mut lines = output.lines().skip_while(|line| !line.starts_with(" measure")).peekable();
+    let width =
+        lines.peek().map_or(0, |line| line.split(" skew").next().unwrap_or_default().trim_end().chars().count());
+    let table = lines.take_while(|line| !line.is_empty());
+    let cut = table.map(|line| format!("{}\n", line.chars().take(width).collect::<String>().trim_end()));
+    cut.collect::<String>() + "\n"
+}
+
 /// The page, and pictures by the names of their files.
 fn gallery() -> (String, Vec<(String, String)>) {
     let mut page = INTRODUCTION.to_owned();
@@ -103,7 +115,9 @@ fn gallery() -> (String, Vec<(String, String)>) {
             pictures.push((format!("{name}.svg"), std::fs::read_to_string(folder.path().join(written)).unwrap()));
             let _ = write!(page, "![{}](gallery/{name}.svg)\n\n", file.title);
         }
-        let found = answer(&printed(folder.path(), &command), from);
+        let output = printed(folder.path(), &command);
+        let measures = if command[0] == "tolerance" { measures(&output) } else { String::new() };
+        let found = measures + &answer(&output, from);
         assert!(!found.is_empty(), "{name}");
         let _ = write!(page, "```console\n$ slipfit {}\n{found}```\n", command.join(" "));
     }

@@ -141,7 +141,7 @@ fn what_a_mechanism_has_not_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, why) in [
         (&["simulate", "slider-crank", "--page", "a.html"][..], "--stroke and --page are for slides on pins"),
-        (&["population", "slider-crank", "--rare"], "--rare, --plot-distance, --page, --shard"),
+        (&["population", "slider-crank", "--opening"], "--opening is for slides on pins"),
         (&["tolerance", "slider-crank"], "there is no product to draw"),
     ] {
         let output = slipfit(folder.path(), arguments);
@@ -162,105 +162,4 @@ fn a_carriage_that_locks_is_told_before() {
         let sweep = stdout(&slipfit(folder.path(), &["sweep", "linear-guide", "--n", "0:0:1", "--set", &set]));
         assert_eq!([warned, sweep.contains("jammed")], [locks; 2], "{x}: {sweep}");
     }
-}
-
-/// A slider that comes 21 mm far, if it does not meet a stop before.
-const STOPPED: &str = r#"
-title = "Slider before a stop"
-[mechanism]
-space = "plane"
-[contact]
-stiffness = "1e8 N/m^1.5"
-exponent = 1.5
-damping = "200 N·s/m"
-depth = 0.01
-[[body]]
-name = "slider"
-mass = 200
-inertia = "1e-4 kg·m²"
-centre = [0, 0]
-[[joint]]
-name = "guide"
-kind = "prismatic"
-between = ["frame", "slider"]
-at = [0, 0]
-axis = [1, 0]
-[[joint]]
-name = "stop"
-kind = "stop"
-between = ["frame", "slider"]
-at = [0, 0]
-normal = [1, 0]
-clearance = [20, 1]
-[[drive]]
-name = "motor"
-pushes = "slider"
-axis = [1, 0]
-gain = "20 N·s/m"
-ramp_start = 0
-ramp_end = 0.05
-speed = 100
-[run]
-duration = 245
-[sweep]
-n = "-2:2:1"
-"#;
-
-/// Units whose stop is nearer than that malfunction: Φ(1) of them.
-#[test]
-fn units_of_a_mechanism_fail_as_often_as_their_gap_says() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("stop.toml"), STOPPED).unwrap();
-    let found = json(folder.path(), &["population", "stop.toml", "--units", "4000", "--json"]);
-    let share = &found["statistics"]["malfunctions"];
-    let (least, most) = (share["interval"][0].as_f64().unwrap(), share["interval"][1].as_f64().unwrap());
-    assert!(least < 0.841_345 && 0.841_345 < most && most - least < 0.03, "{share}");
-    assert_eq!(found["malfunction_drivers"][0]["name"], "stop gap");
-    // `run` draws the same units.
-    let run = json(folder.path(), &["run", "stop.toml", "--units", "500", "--json"]);
-    let few = json(folder.path(), &["population", "stop.toml", "--units", "500", "--json"]);
-    assert_eq!(run["population"], few["statistics"]);
-    // The worst unit again, alone and by the desk's own error.
-    let worst = &found["worst"][0];
-    let number = worst["number"].to_string();
-    let alone = json(folder.path(), &["simulate", "stop.toml", "--unit", &number, "--json"]);
-    let of = |report: &serde_json::Value, key: &str| report[key].as_f64().unwrap();
-    assert!((of(&alone["drives"][0], "peak_force") / of(worst, "peak_force") - 1.0).abs() < 1e-3, "{worst}");
-    assert!((alone["n"][0].as_f64().unwrap() - of(worst, "tightness")).abs() < 1e-9, "{worst}");
-}
-
-/// A sixth of pins whose mean play is one standard deviation are wider than their holes.
-#[test]
-fn units_that_cannot_be_assembled_count_as_jammed() {
-    let folder = tempfile::tempdir().unwrap();
-    let set = ["--set", "run.duration=20", "--set", "joint.big end.clearance=[0.05, 0.05]"];
-    let found = json(folder.path(), &[&["population", "slider-crank", "--units", "800", "--json"][..], &set].concat());
-    let share = found["misfits"]["share"].as_f64().unwrap();
-    assert!((share - 0.158_655).abs() < 3.0 * libm::sqrt(0.1335 / 800.0), "{share}");
-    assert!(found["statistics"]["jammed"]["units"].as_u64() >= found["misfits"]["units"].as_u64());
-    assert!(found["warnings"][0].as_str().unwrap().contains("cannot be assembled"), "{found}");
-}
-
-/// Two joints whose gap is the same measure have the same gap in every unit, with the spread that its dimensions give.
-#[test]
-fn joints_of_one_measure_have_one_gap() {
-    let folder = tempfile::tempdir().unwrap();
-    let text = shipped("linear-guide").unwrap();
-    let of_measure = "clearance = \"play\"";
-    let lines = text.lines().map(|line| if line.starts_with("clearance = ") { of_measure } else { line });
-    let product = "[[dimension]]\nname = \"hole\"\nvalue = 8.1\ntolerance = 0.03\n\
-                   [[dimension]]\nname = \"rod\"\nvalue = 8\ntolerance = 0.03\n\
-                   [[measure]]\nname = \"play\"\nis = \"(hole - rod) / 2\"\n";
-    let scene = format!("{}\n{product}", lines.collect::<Vec<_>>().join("\n"));
-    std::fs::write(folder.path().join("guide.toml"), scene).unwrap();
-    let arguments = ["population", "guide.toml", "--units", "400", "--csv", "units.csv", "--set", "run.duration=5"];
-    stdout(&slipfit(folder.path(), &arguments));
-    let mut reader = csv::Reader::from_path(folder.path().join("units.csv")).unwrap();
-    let gaps: Vec<Vec<f64>> =
-        reader.records().map(|row| row.unwrap().iter().skip(10).map(|cell| cell.parse().unwrap()).collect()).collect();
-    assert!(gaps.iter().all(|unit| unit.len() == 4 && unit.iter().all(|gap| *gap == unit[0])));
-    let mean = gaps.iter().map(|unit| unit[0]).sum::<f64>() / 400.0;
-    let square = gaps.iter().map(|unit| (unit[0] - mean) * (unit[0] - mean)).sum::<f64>() / 400.0;
-    let deviation = 0.005e-3 * std::f64::consts::SQRT_2;
-    assert!((mean - 0.05e-3).abs() < 4.0 * deviation / 20.0 && (libm::sqrt(square) / deviation - 1.0).abs() < 0.12);
 }

@@ -223,6 +223,27 @@ fn stopped_runs_go_on_where_they_were() {
     assert!(String::from_utf8(nowhere.stderr).unwrap().contains("no/where"));
 }
 
+/// A disk that is full when the first checkpoint, or the result, is written: told by name, and nothing half written is left. With
+/// room again the run goes on to the bytes of one run.
+#[test]
+fn a_full_disk_is_told_and_nothing_is_half_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = "population --units 2000 --opening --seed 4 --json --out units";
+    let program = env!("CARGO_BIN_EXE_slipfit");
+    // No file may grow beyond 100 blocks; without the trap a signal would end the program.
+    let script = format!("trap '' XFSZ; ulimit -f 100; exec {program} {options}");
+    let full = Command::new("sh").current_dir(folder.path()).args(["-c", &script]).output().unwrap();
+    let said = String::from_utf8(full.stderr).unwrap();
+    assert!(full.status.code() == Some(1) && said.contains("units"), "{said}");
+    assert!(full.stdout.is_empty());
+    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(left.iter().all(|name| name == "units.partial"), "{left:?}");
+    let command: Vec<_> = options.split(' ').chain(["--resume"]).collect();
+    let resumed = stdout(&slipfit(folder.path(), &command));
+    let whole = ["population", "--units", "2000", "--opening", "--seed", "4", "--json"];
+    assert_eq!(stdout(&slipfit(folder.path(), &whole)), resumed);
+}
+
 /// Shards in any order end in the bytes of one run.
 #[test]
 fn shards_end_in_the_same_bytes() {

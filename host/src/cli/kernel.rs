@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     /// the step fast in a firmware image that is built for size.
     #[arg(long = "crate", value_name = "DIR", conflicts_with = "output")]
     folder: Option<PathBuf>,
-    /// Folder of slipfit-core, on which the crate depends; if not given, the crate depends on its version.
+    /// Folder of slipfit-core, on which the crate depends. If not given, the crate asks crates.io for it, which does not have it: it then does not build.
     #[arg(long, value_name = "DIR", requires = "folder", conflicts_with = "output")]
     core: Option<PathBuf>,
     #[command(flatten)]

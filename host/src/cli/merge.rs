@@ -9,7 +9,8 @@ use clap::Args;
 
 use super::{Failure, population, tolerance::OutputArguments};
 use crate::{
-    population::Unit,
+    mechanism::ByDrive,
+    population::{Unit, part::StoredGaps},
     scene::{Override, SceneFile},
     system::files,
     tolerance::counting::{
@@ -42,6 +43,9 @@ impl Arguments {
         if self.files.first().is_some_and(|path| is_of::<Vec<Unit>>(path)) {
             return self.population();
         }
+        if self.files.first().is_some_and(|path| is_of::<Vec<Unit<Vec<f64>>>>(path)) {
+            return self.population_of_mechanism();
+        }
         let part: Part = merge(&self.files)?;
         let source = &part.header.source;
         let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
@@ -59,21 +63,42 @@ impl Arguments {
         self.outputs.show(&file.title, file.slide.as_ref(), &study, &part.tallies, self.json)
     }
 
-    /// The shards of a population.
-    fn population(&self) -> Result<(), Failure> {
+    /// All shards of a population, written as one if that is asked for.
+    fn units<G: StoredGaps>(&self) -> Result<Part<Vec<Unit<G>>>, Failure> {
         if let Some(option) = self.outputs.asked() {
             return Err(Failure::Input(format!("{option}: these are shards of a population, which has no measures")));
         }
-        let part: Part<Vec<Unit>> = merge(&self.files)?;
-        let source = &part.header.source;
-        let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
-        let (mut scene, product) = SceneFile::parse_with_slide(&source.name, &source.text, &set)?;
+        let part: Part<Vec<Unit<G>>> = merge(&self.files)?;
         let shards: Vec<_> = self.files.iter().map(|path| ("one of the shards", path.as_path())).collect();
         let own: Vec<_> = self.out.iter().map(|path| ("--out", path.as_path())).collect();
         files::check_distinct(&shards, &own)?;
         if let Some(path) = &self.out {
             files::write(path, &part.encode().map_err(RunError::from)?)?;
         }
+        Ok(part)
+    }
+
+    /// The shards of a mechanism's population.
+    fn population_of_mechanism(&self) -> Result<(), Failure> {
+        let part = self.units::<Vec<f64>>()?;
+        let (source, settings) = (&part.header.source, &part.header.settings);
+        let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
+        let file = SceneFile::parse(&source.name, &source.text, &set)?;
+        let driven = file.mechanism.as_ref().and_then(|mechanism| ByDrive::new(mechanism, settings.drive()));
+        let driven = driven.ok_or_else(|| Failure::Input(format!("{}: the scene has no such drive", source.name)))?;
+        population::Arguments::of_parts(settings, self.json).conclude_mechanism(
+            &driven,
+            part.tallies,
+            file.product.as_ref(),
+        )
+    }
+
+    /// The shards of a slide's population.
+    fn population(&self) -> Result<(), Failure> {
+        let part = self.units()?;
+        let source = &part.header.source;
+        let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
+        let (mut scene, product) = SceneFile::parse_with_slide(&source.name, &source.text, &set)?;
         let asked = population::Arguments::of_parts(&part.header.settings, self.json);
         let production = asked.prepare(&mut scene, product.as_ref())?;
         asked.conclude(&scene, &production, part.tallies, product.as_ref())

@@ -1,7 +1,7 @@
 //! `slipfit population`: what every unit of a production does.
 
 pub(super) mod page;
-mod rare;
+pub(super) mod rare;
 mod words;
 
 use std::path::PathBuf;
@@ -17,22 +17,23 @@ use crate::{
     dynamics::{
         driven::{DriveKind, Driven},
         outcome::Verdict,
+        simulate::SimulateError,
     },
-    mechanism::Mechanism,
+    mechanism::{ByDrive, Mechanism},
     population::{
         Unit,
         drivers::Driver,
         hypothesis::Hypothesis,
         limit_state::{Kind, Side},
-        part::{Settings, Simulation},
+        part::{Settings, Simulation, StoredGaps},
         picture,
-        picture::tightness,
         production::Production,
         rare::{Question, Rare},
         statistics::Statistics,
         study::Population,
+        subject::Subject,
         telling::worst,
-        unit::{UnitOutcome, at_levels},
+        unit::UnitOutcome,
     },
     product::Product,
     scene::Scene,
@@ -47,7 +48,7 @@ use crate::{
     },
 };
 
-pub(super) use words::{percent, strongest};
+pub(super) use words::{levels, percent, strongest};
 
 /// Simulates units of a production one by one: how many malfunction, and why.
 ///
@@ -56,25 +57,25 @@ pub(super) use words::{percent, strongest};
 /// and the direction of gravity vary, too. A slide runs the whole stroke unless `--opening` is given, a mechanism
 /// `run.duration` or to the end of its stroke.
 ///
-/// For slides only: `--opening`, `--rare`, `--plot-distance`, `--page`, `--shard`, `--out`, `--resume`.
+/// For slides only: `--opening`.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub scene: SceneArguments,
     #[command(flatten)]
     drive: DriveArguments,
     /// Units to simulate.
     #[arg(long, default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
-    units: u64,
+    pub units: u64,
     /// Seed of the production.
     #[arg(long, default_value_t = 1)]
-    seed: u64,
+    pub seed: u64,
     /// Runs the opening (run.duration) instead of the whole stroke.
     #[arg(long)]
     opening: bool,
     /// Greatest force (N) of the motor, or torque (N·m); units that need more count as malfunctioning.
     #[arg(long, value_name = "N")]
-    force_limit: Option<f64>,
+    pub force_limit: Option<f64>,
     /// Correlation between any two gaps that the scene states by mean and standard deviation.
     #[arg(long, value_name = "RHO", default_value_t = 0.0, allow_hyphen_values = true)]
     correlation: f64,
@@ -82,21 +83,21 @@ pub(super) struct Arguments {
     ///
     /// There is an estimate for each kind of malfunction (crawls, jams, over the force limit) on each side (tight units, loose units).
     #[arg(long)]
-    rare: bool,
+    pub rare: bool,
     /// Writes a row for every unit, with its gaps and figures, as CSV.
     #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
+    pub csv: Option<PathBuf>,
     /// Draws the peak force over the tightness of the units as SVG, and marks those that malfunction.
     #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    pub plot: Option<PathBuf>,
     /// Draws which share malfunctions over the distance from the mean unit, as SVG.
     ///
     /// At each distance it compares the unit with all gaps tighter, the unit with all gaps looser, and random combinations of gaps.
     #[arg(long, value_name = "FILE")]
-    plot_distance: Option<PathBuf>,
+    pub plot_distance: Option<PathBuf>,
     /// Writes a page with all results and pictures, and an animation of one unit of each verdict.
     #[arg(long, value_name = "FILE")]
-    page: Option<PathBuf>,
+    pub page: Option<PathBuf>,
     /// Works on part I of N and writes it to `--out`; `slipfit merge` joins the parts.
     ///
     /// I is 1 to N. `auto` takes the part of this task in a SLURM job array.
@@ -109,13 +110,17 @@ pub(super) struct Arguments {
     #[arg(long, requires = "out")]
     resume: bool,
     #[command(flatten)]
-    threads: ThreadArguments,
+    pub threads: ThreadArguments,
 }
 
 /// Levels of eq. 9 that are looked for in the population.
 pub(super) const LEVELS: [f64; 13] = [-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
 /// Random combinations at each distance.
 const DIRECTIONS: u64 = 512;
+/// What the picture of the hypothesis shows.
+pub(super) const HYPOTHESIS: &str = "Do the tightest and the loosest units malfunction most often? Triangles and squares have all \
+                                     gaps tighter, or looser, by the same n; the line is the share of random combinations as far \
+                                     from the mean unit.";
 /// Worst units that are listed.
 pub(super) const WORST: usize = 5;
 
@@ -135,6 +140,12 @@ impl LevelReport {
         let below = units.iter().filter(|unit| unit.outcome.peak_force < outcome.peak_force).count();
         let share_below = below as f64 / units.len().max(1) as f64;
         Self { n, verdict: outcome.verdict, peak_force_n: outcome.peak_force, share_below }
+    }
+
+    /// Of those of [`LEVELS`] at which a unit of `subject` can be assembled.
+    pub fn all<S: Subject>(subject: &S, units: &[Unit<S::Gaps>]) -> Result<Vec<Self>, SimulateError> {
+        let at = subject.at_levels(&LEVELS)?;
+        Ok(at.iter().map(|(n, unit)| Self::new(*n, &unit.outcome, units)).collect())
     }
 }
 
@@ -184,6 +195,36 @@ impl Arguments {
             Moving::Mechanism(mechanism) => return self.of_mechanism(&mechanism, product.as_ref()),
         };
         self.drive.refuse()?;
+        let production = self.prepare(&mut scene, product.as_ref())?;
+        match self.simulated(&scene, &production, 0)? {
+            Some(units) => self.conclude(&scene, &production, units, product.as_ref()),
+            None => Ok(()),
+        }
+    }
+
+    /// The population of a `mechanism`.
+    fn of_mechanism(&self, mechanism: &Mechanism, product: Option<&Product>) -> Result<(), Failure> {
+        if self.opening {
+            return Err(Failure::Input(
+                "--opening is for slides on pins: a mechanism has one run, `run.duration`".into(),
+            ));
+        }
+        let driven = self.drive.of(mechanism)?;
+        let production = self.production_of(mechanism, product)?;
+        match self.simulated(&driven, &production, driven.index())? {
+            Some(units) => mechanism::population::conclude(self, &driven, &production, units, product),
+            None => Ok(()),
+        }
+    }
+
+    /// Simulates what is asked for of a `production` of `subject`, by the `drive` of that number. None, if it is one of several
+    /// shards, which is written to its file.
+    fn simulated<S: Subject<Gaps: StoredGaps>>(
+        &self,
+        subject: &S,
+        production: &Production<S::Gaps>,
+        drive: usize,
+    ) -> Result<Option<Vec<Unit<S::Gaps>>>, Failure> {
         let partial = self.out.as_deref().map(checkpoint);
         let outputs = [
             ("--csv", &self.csv),
@@ -195,45 +236,42 @@ impl Arguments {
         ];
         self.scene.check_outputs(&given(outputs))?;
         let settings = Settings::new(self.units, self.seed, self.opening, self.correlation, self.force_limit);
-        let production = self.prepare(&mut scene, product.as_ref())?;
+        let settings = settings.by_drive(drive);
         let (name, text) = self.scene.text()?;
         let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
         let shard = self.shard.unwrap_or(Shard::ALL);
         let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
-        let numbers = settings.units_in(&shard.blocks(<Vec<Unit>>::blocks(&settings)));
+        let numbers = settings.units_in(&shard.blocks(<Vec<Unit<S::Gaps>>>::blocks(&settings)));
         let bar = progress("simulating", (numbers.end - numbers.start.min(numbers.end)) as usize);
-        let simulation = Simulation { scene: &scene, production: &production, settings };
+        let simulation = Simulation { subject, production, settings };
         let units =
             self.threads.install(|| run(&simulation, &source, shard, keep.as_ref(), |units| bar.inc(units)))??;
         bar.finish_and_clear();
-        match (&self.out, shard) {
-            (Some(out), Shard { number, count: 2.. }) => {
-                let units = units.len() as u64;
-                let written = Written { shard: number, of: shard.count, units, file: out.display().to_string() };
-                if self.scene.json { print_json(&written) } else { print(&written.to_string()) }
-            }
-            _ => self.conclude(&scene, &production, units, product.as_ref()),
-        }
+        let (Some(out), Shard { number, count: 2.. }) = (&self.out, shard) else { return Ok(Some(units)) };
+        let units = units.len() as u64;
+        let written = Written { shard: number, of: shard.count, units, file: out.display().to_string() };
+        if self.scene.json { print_json(&written) } else { print(&written.to_string()) }.map(|()| None)
     }
 
-    /// The population of a `mechanism`.
-    fn of_mechanism(&self, mechanism: &Mechanism, product: Option<&Product>) -> Result<(), Failure> {
-        let page = self.page.is_some() || self.plot_distance.is_some();
-        if self.opening || self.rare || page || self.shard.is_some() || self.out.is_some() || self.resume {
-            let why = "--opening, --rare, --plot-distance, --page, --shard, --out and --resume are for slides on pins";
-            return Err(Failure::Input(why.into()));
-        }
-        let asked = mechanism::population::Asked {
-            scene: &self.scene,
-            units: self.units,
-            seed: self.seed,
-            limit: self.force_limit,
-            correlation: self.correlation,
-            csv: &self.csv,
-            plot: &self.plot,
-            threads: &self.threads,
-        };
-        mechanism::population::population(&self.drive.of(mechanism)?, product, &asked)
+    /// The production of `mechanism`.
+    pub fn production_of<'a>(
+        &self,
+        mechanism: &Mechanism,
+        product: Option<&'a Product>,
+    ) -> Result<Production<'a, Vec<f64>>, Failure> {
+        Production::of_mechanism(mechanism, product, self.correlation, self.seed)
+            .map_err(|error| Failure::Input(error.to_string()))
+    }
+
+    /// Shows and writes what all `units` of a mechanism did, by the drive that they were simulated by.
+    pub fn conclude_mechanism(
+        &self,
+        driven: &ByDrive,
+        units: Vec<Unit<Vec<f64>>>,
+        product: Option<&Product>,
+    ) -> Result<(), Failure> {
+        let production = self.production_of(driven.mechanism(), product)?;
+        mechanism::population::conclude(self, driven, &production, units, product)
     }
 
     /// As it was asked for when a population was split, `settings` among it.
@@ -286,36 +324,28 @@ impl Arguments {
             )?;
         }
         if let Some(path) = &self.plot {
-            let svg = picture::forces(
-                &scene.title,
-                picture::FORCE,
-                &picture::placed(scene, &found.population.units),
-                self.force_limit,
-            )
-            .map_err(anyhow::Error::from)?;
+            let placed = picture::placed(scene, &found.population.units);
+            let svg = picture::forces(&scene.title, DriveKind::Pushes, &placed, self.force_limit);
+            let svg = svg.map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         if let Some(path) = &self.plot_distance {
-            let svg = picture::hypothesis(scene, &found.hypothesis).map_err(anyhow::Error::from)?;
+            let svg = picture::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
         if let Some(path) = &self.page {
             let (mut units, _) = page::units(scene, production, &found.population, self.force_limit)?;
-            let svg = picture::hypothesis(scene, &found.hypothesis).map_err(anyhow::Error::from)?;
-            let caption =
-                "Do the tightest and the loosest units malfunction most often? Triangles and squares have all gaps tighter, or looser, by \
-                           the same n; the line is the share of random combinations as far from the mean unit."
-                    .into();
-            units.figures.push(Figure { caption, svg });
+            let svg = picture::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;
+            units.figures.push(Figure { caption: HYPOTHESIS.into(), svg });
             let words = self.summary(scene, &found);
             files::write(path, units_page(&scene.title, &words, &units, &warnings).as_bytes())?;
         }
         if self.scene.json {
             let worst = worst(&found.population.units, WORST).into_iter().map(|unit| UnitReport {
                 number: unit.number,
-                tightness: tightness(scene, &unit.gaps),
+                tightness: scene.tightness(&unit.gaps),
                 outcome: unit.outcome,
             });
             let worst = worst.collect();
@@ -340,21 +370,24 @@ impl Arguments {
 
     fn find(&self, scene: &Scene, production: &Production, units: Vec<Unit>) -> Result<Found, Failure> {
         let population = Population::of(production, units, self.force_limit);
-        let at_levels = at_levels(scene, &LEVELS)?.into_iter().zip(LEVELS);
-        let levels = at_levels.map(|(unit, n)| LevelReport::new(n, &unit.outcome, &population.units));
-        let levels = levels.collect();
+        let levels = LevelReport::all(scene, &population.units)?;
         let hypothesis = Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?;
         let rare = self.rare.then(|| self.estimate(scene, production, &population)).transpose()?;
         Ok(Found { population, levels, hypothesis, rare })
     }
 
     /// Rare malfunction, which the units of the `population` must not contradict.
-    fn estimate(&self, scene: &Scene, production: &Production, population: &Population) -> Result<Rare, Failure> {
+    pub fn estimate<S: Subject>(
+        &self,
+        subject: &S,
+        production: &Production<S::Gaps>,
+        population: &Population<S::Gaps>,
+    ) -> Result<Rare, Failure> {
         let limit = self.force_limit;
-        let question = Question { scene, production, seed: self.seed, limit };
+        let question = Question { subject, production, seed: self.seed, limit };
         let bar = progress("estimating", question.repeats());
         let counted = |kind, side: Side| {
-            let here = |unit: &&Unit| Kind::of(unit, limit) == Some(kind) && side.has(scene, &unit.gaps);
+            let here = |unit: &&Unit<S::Gaps>| Kind::of(unit, limit) == Some(kind) && side.has(subject, &unit.gaps);
             (population.units.iter().filter(here).count() as u64, population.units.len() as u64)
         };
         let rare = question.answer(counted, |repeats| bar.inc(repeats as u64))?;

@@ -207,14 +207,17 @@ impl Arguments {
                     return Err(Failure::Input(why.into()));
                 }
                 let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot };
-                let unit = match self.unit {
+                let (mechanism, unit) = match self.unit {
                     Some(number) => {
                         let production =
                             Production::of_mechanism(&mechanism, product.as_ref(), self.correlation, self.seed);
                         let production = production.map_err(|error| Failure::Input(error.to_string()))?;
                         mechanism::OneUnit::of_production(&mechanism, &production, check_number(number)?)?
                     }
-                    None => mechanism::OneUnit::at_levels(&mechanism, &self.n)?,
+                    None => {
+                        let unit = mechanism::OneUnit::at_levels(&mechanism, &self.n)?;
+                        (*mechanism, unit)
+                    }
                 };
                 return mechanism::simulate(&mechanism, &unit, parse_every(&self.every)?, &wanted);
             }

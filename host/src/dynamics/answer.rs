@@ -86,7 +86,7 @@ impl Range {
         let time = between(self.time, 2);
         let way = match (self.verdict, self.stroke_reached) {
             (_, Some(true)) => format!("the stroke of {travel} {unit} in {time} s"),
-            (Verdict::Jammed, _) => format!("comes {travel} {unit} in {time} s"),
+            (Verdict::Jammed, _) => format!("gets {travel} {unit} far in {time} s"),
             _ => format!("is at {travel} {unit} after {time} s"),
         };
         let peak = |force| format!(", peak {} {} {}", kind.effort(), between(force, 3), kind.effort_unit());

@@ -246,11 +246,7 @@ fn normal<S: Scalar + PartialOrd, E: Elastic<S>>(
 pub fn usual<S: Scalar + PartialOrd>(data: &SlideData<S>) -> Option<Slide<S, ThreeHalves<S>, Regularised<S>>> {
     let SlideData { body, contact, friction, drive } = *data;
     match (contact.normal_type(), friction.friction_type(), friction) {
-        (
-            NormalType::ThreeHalves,
-            FrictionType::Regularised,
-            FrictionData::Regularised { coefficient, stick_band },
-        ) => {
+        (NormalType::ThreeHalves, FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
             let elastic = ThreeHalves::new(contact.stiffness).ok()?;
             let friction = Regularised::new(coefficient, stick_band).ok()?;
             Slide::new(body, normal(elastic, &contact).ok()?, friction, drive).ok()

@@ -19,6 +19,7 @@ mod run;
 pub mod self_locking;
 mod source;
 pub mod spatial;
+mod vary;
 
 pub use driven::{ByDrive, confirmed, finer};
 pub use freedom::Freedom;
@@ -27,6 +28,7 @@ pub use laws::{Laws, NormalData, Rebound};
 pub use mounts::{MountError, Mounts};
 pub use run::{MechanismRun, Rest, RunError, SCHEME, Samples, run};
 pub use source::{drive_names, element_paths, rust_source};
+pub use vary::{Parameter, Varied, tilted_x, tilted_z};
 
 use slipfit_core::{clearance::GapStatistics, drive::Drive};
 
@@ -51,6 +53,8 @@ pub struct Mechanism {
     pub drives: Vec<NamedDrive>,
     /// Gaps of the joints with play, over the production.
     pub gaps: Vec<Gap>,
+    /// Parameters that vary over the production, beside the gaps.
+    pub vary: Vec<Varied>,
     /// What is simulated: the stroke (m) is the first drive's, and the error a share of the mechanism's own speed.
     pub run: RunSpec,
     /// How a controller computes it.

@@ -7,16 +7,15 @@ use rayon::prelude::*;
 use serde::Serialize;
 use slipfit_core::{
     sampling::stream::{Rng, derived, unit_stream},
-    slide::{ABSENT, CONTACTS},
+    slide::ABSENT,
 };
 
 use super::{
     statistics::{Share, malfunctions},
-    unit::{as_drawn, at_levels, units},
+    subject::Subject,
 };
 use crate::{
     dynamics::{outcome::Verdict, simulate::SimulateError},
-    scene::Scene,
     tolerance::distribution::normal,
 };
 
@@ -56,12 +55,18 @@ impl Hypothesis {
     ///
     /// # Errors
     /// See [`SimulateError`].
-    pub fn test(scene: &Scene, directions: u64, seed: u64, limit: Option<f64>) -> Result<Self, SimulateError> {
+    pub fn test<S: Subject>(
+        subject: &S,
+        directions: u64,
+        seed: u64,
+        limit: Option<f64>,
+    ) -> Result<Self, SimulateError> {
         let at = |distance: f64| {
-            let sides = at_levels(scene, &[-distance, distance])?;
+            let sides = [-distance, distance].map(|n| subject.gaps_at(&[n]));
+            let sides = subject.units(&subject.as_drawn(sides.into()))?;
             let [loose, tight] = [0, 1].map(|i| (sides[i].outcome.verdict, malfunctions(&sides[i], limit)));
-            let gaps = (0..directions).map(|i| combination(scene, distance, seed, i)).collect();
-            let random = units(scene, &as_drawn(scene, gaps, 0..directions))?;
+            let gaps = (0..directions).map(|i| combination(subject, distance, seed, i)).collect();
+            let random = subject.units(&subject.as_drawn(gaps))?;
             let failed = random.iter().filter(|unit| malfunctions(unit, limit)).count() as u64;
             Ok::<_, SimulateError>(AtDistance {
                 distance,
@@ -92,15 +97,15 @@ impl Hypothesis {
 }
 
 /// Gaps (m) in a random direction from the means, at a root mean square of `distance` standard deviations.
-fn combination(scene: &Scene, distance: f64, seed: u64, number: u64) -> [f64; CONTACTS] {
+fn combination<S: Subject>(subject: &S, distance: f64, seed: u64, number: u64) -> S::Gaps {
     let mut stream = unit_stream(derived(seed, STREAM), number);
-    let mut n = [0.0; CONTACTS];
-    let present = scene.gaps_at(&[0.0; CONTACTS]).map(|gap| gap != ABSENT);
-    for (n, present) in n.iter_mut().zip(present) {
+    let mut n = |gap: &f64| {
         let uniform = (stream.next_u64() >> 11) as f64 / (1u64 << 53) as f64 + 0.5 / (1u64 << 53) as f64;
-        *n = if present { normal::quantile(uniform) } else { 0.0 };
-    }
-    let count = present.iter().filter(|present| **present).count().max(1) as f64;
-    let square = n.iter().map(|n| n * n).sum::<f64>() / count;
-    scene.gaps_at(&n.map(|n| n * distance / libm::sqrt(square.max(f64::MIN_POSITIVE))))
+        if *gap == ABSENT { None } else { Some(normal::quantile(uniform)) }
+    };
+    let n: Vec<Option<f64>> = subject.gaps_at(&[0.0]).as_ref().iter().map(&mut n).collect();
+    let present = n.iter().flatten();
+    let square = present.clone().map(|n| n * n).sum::<f64>() / present.count().max(1) as f64;
+    let scale = distance / libm::sqrt(square.max(f64::MIN_POSITIVE));
+    subject.gaps_at(&n.iter().map(|n| n.unwrap_or_default() * scale).collect::<Vec<_>>())
 }

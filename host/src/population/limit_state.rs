@@ -1,21 +1,13 @@
 //! Kinds of malfunction as limit states over independent standard normal scores: margins that change steadily with the unit.
 
 use serde::Serialize;
-use slipfit_core::slide::CONTACTS;
 
-use super::{
-    Unit,
-    picture::tightness,
-    production::Production,
-    statistics::is_over,
-    unit::{Decisive, decisive},
-};
+use super::{Unit, production::Production, statistics::is_over, subject::Subject, unit::Decisive};
 use crate::{
     dynamics::{
         outcome::{JAMMED, RUNS, Verdict},
         simulate::SimulateError,
     },
-    scene::Scene,
     system::interrupt,
     tolerance::failure::Margins,
 };
@@ -34,7 +26,7 @@ pub enum Kind {
 
 impl Kind {
     /// Of a `unit`, with a motor's force `limit` (N); none if it does not malfunction.
-    pub fn of(unit: &Unit, limit: Option<f64>) -> Option<Self> {
+    pub fn of<G>(unit: &Unit<G>, limit: Option<f64>) -> Option<Self> {
         match unit.outcome.verdict {
             Verdict::Crawls => Some(Self::Crawls),
             Verdict::Jammed => Some(Self::Jams),
@@ -68,28 +60,27 @@ pub enum Side {
 }
 
 impl Side {
-    /// Those that a production of `scene` has.
-    pub fn all(scene: &Scene) -> &'static [Self] {
-        let varies = scene.pins.iter().flat_map(|pin| pin.gaps).flatten().any(|gap| gap.deviation > 0.0);
-        if varies { &[Self::Tight, Self::Loose] } else { &[Self::Any] }
+    /// Those that a production of `subject` has.
+    pub fn all<S: Subject>(subject: &S) -> &'static [Self] {
+        if subject.has_levels() { &[Self::Tight, Self::Loose] } else { &[Self::Any] }
     }
 
     /// Whether a unit with these `gaps` (m) is on it.
-    pub fn has(self, scene: &Scene, gaps: &[f64; CONTACTS]) -> bool {
+    pub fn has<S: Subject>(self, subject: &S, gaps: &S::Gaps) -> bool {
         match self {
-            Self::Tight => tightness(scene, gaps) > 0.0,
-            Self::Loose => tightness(scene, gaps) <= 0.0,
+            Self::Tight => subject.tightness(gaps) > 0.0,
+            Self::Loose => subject.tightness(gaps) <= 0.0,
             Self::Any => true,
         }
     }
 }
 
 /// The limit state of one kind on one side.
-pub struct LimitState<'a> {
-    /// The scene.
-    pub scene: &'a Scene,
+pub struct LimitState<'a, S: Subject> {
+    /// What the units are of.
+    pub subject: &'a S,
     /// What varies.
-    pub production: &'a Production<'a>,
+    pub production: &'a Production<'a, S::Gaps>,
     /// How units malfunction.
     pub kind: Kind,
     /// Which units do.
@@ -113,7 +104,7 @@ pub struct Log {
     pub error: Option<SimulateError>,
 }
 
-impl LimitState<'_> {
+impl<S: Subject> LimitState<'_, S> {
     fn found(&mut self, points: &[Vec<f64>]) -> Result<Vec<f64>, SimulateError> {
         if interrupt::requested() {
             return Err(SimulateError::Interrupted);
@@ -121,8 +112,8 @@ impl LimitState<'_> {
         let mut margins = vec![f64::INFINITY; points.len()];
         let (drawn, made) = self.production.at(points);
         let asked: Vec<usize> =
-            (0..points.len()).filter(|i| made[*i] && self.side.has(self.scene, &drawn.gaps[*i])).collect();
-        for (i, figures) in asked.iter().zip(decisive(self.scene, &drawn, &asked)?) {
+            (0..points.len()).filter(|i| made[*i] && self.side.has(self.subject, &drawn.gaps[*i])).collect();
+        for (i, figures) in asked.iter().zip(self.subject.decisive(&drawn, &asked)?) {
             self.log.simulated += 1;
             let Some(figures) = figures else {
                 self.log.out_of_bounds += 1;
@@ -137,7 +128,7 @@ impl LimitState<'_> {
     }
 }
 
-impl Margins for LimitState<'_> {
+impl<S: Subject> Margins for LimitState<'_, S> {
     /// As many as keep the lanes of a pack busy while units end one by one.
     const TOGETHER: usize = 64;
 
@@ -195,7 +186,7 @@ mod tests {
         assert!(tight + loose == 200 && tight > 70 && loose > 70);
         // The opening ends before the ramp does.
         let mut state = LimitState {
-            scene: &scene,
+            subject: &scene,
             production: &production,
             kind: Kind::Jams,
             side: Side::Any,

@@ -2,10 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::{PIECE, Unit, UnitOutcome, production::Production, study::Population, unit::is_near_a_limit};
+use super::{
+    Unit, UnitOutcome,
+    production::Drawn,
+    study::Population,
+    subject::Subject,
+    unit::{Decisive, is_near_a_limit},
+};
 use crate::{
     dynamics::{
-        driven::Driven,
         outcome::{Moment, Outcome, Verdict},
         simulate::SimulateError,
     },
@@ -20,55 +25,74 @@ const ERROR: f64 = 1e-5;
 /// A population of a mechanism.
 pub type MechanismPopulation = Population<Vec<f64>>;
 
-/// The first `count` units of a `production`, by the drive of `driven`, whose effort `limit` (N, N·m) is the motor's greatest;
-/// `done` is called with how many have been simulated. A unit whose gaps its joints do not allow cannot be assembled: it is jammed
-/// where it stands.
-///
-/// # Errors
-/// [`SimulateError`] of the first unit that cannot be solved.
-pub fn study(
-    driven: &ByDrive,
-    production: &Production<Vec<f64>>,
-    count: u64,
-    limit: Option<f64>,
-    done: impl Fn(u64) + Sync,
-) -> Result<MechanismPopulation, SimulateError> {
-    let starts: Vec<u64> = (0..count).step_by(PIECE).collect();
-    let piece = |start: &u64| -> Result<Vec<Unit<Vec<f64>>>, SimulateError> {
-        let numbers = *start..(start + PIECE as u64).min(count);
-        let gaps = production.draw(numbers.clone()).gaps;
-        let unit = |(number, gaps): (u64, Vec<f64>)| {
-            let outcome = unit(driven, &gaps)?;
-            done(1);
-            Ok(Unit { number, gaps, outcome })
+impl Subject for ByDrive<'_> {
+    type Gaps = Vec<f64>;
+
+    /// A unit whose gaps its joints do not allow cannot be assembled: it is jammed where it stands.
+    fn units(&self, drawn: &Drawn<Vec<f64>>) -> Result<Vec<Unit<Vec<f64>>>, SimulateError> {
+        let unit = |(i, gaps): (usize, &Vec<f64>)| {
+            let (found, _) = unit(self, drawn, i)?;
+            Ok(Unit { number: drawn.numbers.start + i as u64, gaps: gaps.clone(), outcome: found })
         };
-        numbers.zip(gaps).collect::<Vec<_>>().into_par_iter().map(unit).collect()
-    };
-    let units: Vec<_> = starts.iter().map(piece).collect::<Result<_, _>>()?;
-    Ok(Population::of(production, units.concat(), limit))
+        drawn.gaps.par_iter().enumerate().with_max_len(1).map(unit).collect()
+    }
+
+    fn decisive(&self, drawn: &Drawn<Vec<f64>>, asked: &[usize]) -> Result<Vec<Option<Decisive>>, SimulateError> {
+        let decisive = |i: &usize| {
+            let (outcome, share) = unit(self, drawn, *i)?;
+            let speed = (outcome.verdict != Verdict::Undecided).then_some(share);
+            Ok(Some(Decisive { speed, force: outcome.peak_force }))
+        };
+        asked.par_iter().with_max_len(1).map(decisive).collect()
+    }
+
+    fn gaps_at(&self, n: &[f64]) -> Vec<f64> {
+        let level = |i: usize| n.get(i).or(n.last()).copied().unwrap_or_default();
+        self.mechanism().gaps.iter().enumerate().map(|(i, gap)| gap.statistics.at(level(i))).collect()
+    }
+
+    fn levels_of(&self, gaps: &Vec<f64>) -> Vec<Option<f64>> {
+        self.mechanism().levels_of(gaps)
+    }
+
+    fn fits(&self, gaps: &Vec<f64>) -> bool {
+        self.mechanism().misfit(gaps).is_none()
+    }
+
+    fn parameters(&self) -> usize {
+        self.mechanism().vary.len()
+    }
 }
 
-/// What the unit with these `gaps` (m) does.
-///
-/// # Errors
-/// [`SimulateError`], if it cannot be solved.
-pub fn unit(driven: &ByDrive, gaps: &[f64]) -> Result<UnitOutcome, SimulateError> {
+/// The mechanism of unit `i` of those `drawn`.
+pub fn mechanism_of(mechanism: &Mechanism, drawn: &Drawn<Vec<f64>>, i: usize) -> Mechanism {
+    let mut own = mechanism.clone();
+    for (varied, deviation) in mechanism.vary.iter().zip(&drawn.deviations[i]) {
+        varied.parameter.apply(&mut own, *deviation);
+    }
+    own
+}
+
+/// What unit `i` of those `drawn` does, and its final speed as a share of the command.
+fn unit(driven: &ByDrive, drawn: &Drawn<Vec<f64>>, i: usize) -> Result<(UnitOutcome, f64), SimulateError> {
     if interrupt::requested() {
         return Err(SimulateError::Interrupted);
     }
-    let mechanism = driven.mechanism();
-    if mechanism.misfit(gaps).is_some() {
-        return Ok(UNASSEMBLED);
+    let gaps = &drawn.gaps[i];
+    if !driven.fits(gaps) {
+        return Ok((UNASSEMBLED, 0.0));
     }
-    let spec = RunSpec { error: mechanism.run.error.max(ERROR), ..mechanism.run };
-    let quick = Mechanism { run: spec, ..mechanism.clone() };
-    let outcome = run(&quick, gaps, spec.duration)?.outcomes[driven.index()];
-    let share = outcome.final_velocity / driven.drive().command(outcome.end.t).abs();
-    if !is_near_a_limit(share) {
-        return Ok(told(&outcome, false));
+    let own = mechanism_of(driven.mechanism(), drawn, i);
+    let spec = RunSpec { error: own.run.error.max(ERROR), ..own.run };
+    let outcome = run(&Mechanism { run: spec, ..own.clone() }, gaps, spec.duration)?.outcomes[driven.index()];
+    let drive = own.drives[driven.index()].drive;
+    let share = |outcome: &Outcome| outcome.final_velocity / drive.command(outcome.end.t).abs();
+    if !is_near_a_limit(share(&outcome)) {
+        return Ok((told(&outcome, false), share(&outcome)));
     }
-    let [exact, _] = confirmed(mechanism, gaps, spec.duration)?;
-    Ok(told(&exact.outcomes[driven.index()], true))
+    let [exact, _] = confirmed(&own, gaps, spec.duration)?;
+    let exact = exact.outcomes[driven.index()];
+    Ok((told(&exact, true), share(&exact)))
 }
 
 /// What a unit does that cannot be assembled.

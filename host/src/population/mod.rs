@@ -19,6 +19,7 @@ pub mod shares;
 mod source;
 pub mod statistics;
 pub mod study;
+pub mod subject;
 pub mod telling;
 pub mod unit;
 
@@ -28,7 +29,6 @@ use slipfit_core::{menu::SlideData, slide::CONTACTS};
 
 use crate::{
     dynamics::{laws, out_of_line::OutOfLine, pack::Pack, simulate::SimulateError},
-    scene::Scene,
     system::interrupt,
 };
 
@@ -39,6 +39,7 @@ pub use figures::Figures;
 pub use integrate::Course;
 use integrate::integrate;
 use production::{Drawn, Production};
+use subject::Subject;
 pub use unit::UnitOutcome;
 
 /// Units that are simulated together; they share nothing but the work.
@@ -109,18 +110,18 @@ pub struct Unit<G = [f64; CONTACTS]> {
     pub outcome: UnitOutcome,
 }
 
-/// Simulates the units `numbers` of a `production` of `scene` on all threads of the current pool; `done` is called with how
+/// Simulates the units `numbers` of a `production` of `subject` on all threads of the current pool; `done` is called with how
 /// many are. `see` gets the units of each piece in order, with what they were drawn as. The result does not depend on the
 /// number of threads.
 ///
 /// # Errors
 /// [`SimulateError`] of the first unit whose parameters are out of bounds, or that cannot be solved.
-pub fn simulate_units(
-    scene: &Scene,
-    production: &Production,
+pub fn simulate_units<S: Subject>(
+    subject: &S,
+    production: &Production<S::Gaps>,
     numbers: std::ops::Range<u64>,
     done: impl Fn(u64) + Sync,
-    mut see: impl FnMut(&Drawn, &[Unit]),
+    mut see: impl FnMut(&Drawn<S::Gaps>, &[Unit<S::Gaps>]),
 ) -> Result<(), SimulateError> {
     let starts: Vec<u64> = numbers.clone().step_by(PIECE).collect();
     // As many pieces at a time as keep all threads at work, so that memory does not grow with the population.
@@ -135,7 +136,7 @@ pub fn simulate_units(
                 let piece = *start..(start + PIECE as u64).min(numbers.end);
                 let count = piece.end - piece.start;
                 let drawn = production.draw(piece);
-                let units = unit::units(scene, &drawn)?;
+                let units = subject.units(&drawn)?;
                 done(count);
                 Ok((drawn, units))
             })

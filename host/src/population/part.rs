@@ -5,10 +5,15 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 use slipfit_core::slide::CONTACTS;
 
-use super::{Unit, production::Production, simulate_units, unit::UnitOutcome};
+use super::{
+    Unit,
+    production::Production,
+    simulate_units,
+    subject::{Subject, UnitGaps},
+    unit::UnitOutcome,
+};
 use crate::{
     dynamics::outcome::{Moment, Verdict},
-    scene::Scene,
     tolerance::counting::{
         file::{FormatError, Found, Part, Reader, integer},
         run::{RunError, Work},
@@ -18,6 +23,52 @@ use crate::{
 /// Units of a block.
 const BLOCK: u64 = 512;
 const VERDICTS: [Verdict; 4] = [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Undecided];
+
+/// Gaps that files hold.
+pub trait StoredGaps: UnitGaps {
+    /// The first bytes of files with populations of them.
+    const MAGIC: &'static [u8; 8];
+
+    /// Adds their bytes.
+    fn encode(&self, out: &mut Vec<u8>);
+    /// Reads them.
+    ///
+    /// # Errors
+    /// [`FormatError::Damaged`].
+    fn decode(reader: &mut Reader) -> Result<Self, FormatError>;
+}
+
+/// All sixteen.
+impl StoredGaps for [f64; CONTACTS] {
+    const MAGIC: &'static [u8; 8] = b"SLIPPOPN";
+
+    fn encode(&self, out: &mut Vec<u8>) {
+        self.iter().for_each(|gap| out.extend(gap.to_le_bytes()));
+    }
+
+    fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
+        let mut gaps = [0.0; CONTACTS];
+        for gap in &mut gaps {
+            *gap = reader.number()?;
+        }
+        Ok(gaps)
+    }
+}
+
+/// How many there are, then all.
+impl StoredGaps for Vec<f64> {
+    const MAGIC: &'static [u8; 8] = b"SLIPMPOP";
+
+    fn encode(&self, out: &mut Vec<u8>) {
+        integer(out, self.len() as u64);
+        self.iter().for_each(|gap| out.extend(gap.to_le_bytes()));
+    }
+
+    fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
+        let count = reader.count()?;
+        (0..count).map(|_| reader.number()).collect()
+    }
+}
 
 /// What a population of a scene is made with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,12 +83,25 @@ pub struct Settings {
     correlation: u64,
     /// Bits of a motor's force (N).
     limit: Option<u64>,
+    /// Which of the drives of a mechanism, from 0 on.
+    drive: usize,
 }
 
 impl Settings {
-    /// Of `units` of the production `seed`, with the `correlation` of gaps and a motor's force `limit` (N).
+    /// Of `units` of the production `seed`, with the `correlation` of gaps and a motor's force `limit` (N), by the first drive.
     pub fn new(units: u64, seed: u64, opening: bool, correlation: f64, limit: Option<f64>) -> Self {
-        Self { units, seed, opening, correlation: correlation.to_bits(), limit: limit.map(f64::to_bits) }
+        let (correlation, limit) = (correlation.to_bits(), limit.map(f64::to_bits));
+        Self { units, seed, opening, correlation, limit, drive: 0 }
+    }
+
+    /// The same by the `drive` of that number of a mechanism, from 0 on.
+    pub fn by_drive(self, drive: usize) -> Self {
+        Self { drive, ..self }
+    }
+
+    /// Which of the drives of a mechanism, from 0 on.
+    pub fn drive(&self) -> usize {
+        self.drive
     }
 
     /// Correlation of any two gaps.
@@ -57,35 +121,40 @@ impl Settings {
 }
 
 /// Units to be simulated.
-pub struct Simulation<'a> {
-    /// Their scene.
-    pub scene: &'a Scene,
+pub struct Simulation<'a, S: Subject> {
+    /// What they are units of.
+    pub subject: &'a S,
     /// What varies in it.
-    pub production: &'a Production<'a>,
+    pub production: &'a Production<'a, S::Gaps>,
     /// Which units.
     pub settings: Settings,
 }
 
-impl Work for Simulation<'_> {
-    type Found = Vec<Unit>;
+impl<S: Subject<Gaps: StoredGaps>> Work for Simulation<'_, S> {
+    type Found = Vec<Unit<S::Gaps>>;
 
     fn settings(&self) -> Settings {
         self.settings
     }
 
-    fn empty(&self) -> Vec<Unit> {
+    fn empty(&self) -> Vec<Unit<S::Gaps>> {
         Vec::new()
     }
 
-    fn fits(&self, part: &Part<Vec<Unit>>) -> bool {
+    fn fits(&self, part: &Part<Vec<Unit<S::Gaps>>>) -> bool {
         part.tallies.iter().all(|unit| unit.number < self.settings.units)
     }
 
-    fn add(&self, blocks: Range<u64>, found: &mut Vec<Unit>, done: &(impl Fn(u64) + Sync)) -> Result<(), RunError> {
+    fn add(
+        &self,
+        blocks: Range<u64>,
+        found: &mut Vec<Unit<S::Gaps>>,
+        done: &(impl Fn(u64) + Sync),
+    ) -> Result<(), RunError> {
         let before = found.len();
         let numbers = self.settings.units_in(&blocks);
         let added =
-            simulate_units(self.scene, self.production, numbers, done, |_, units| found.extend_from_slice(units));
+            simulate_units(self.subject, self.production, numbers, done, |_, units| found.extend_from_slice(units));
         if added.is_err() {
             found.truncate(before);
         }
@@ -93,9 +162,9 @@ impl Work for Simulation<'_> {
     }
 }
 
-impl Found for Vec<Unit> {
+impl<G: StoredGaps> Found for Vec<Unit<G>> {
     type Settings = Settings;
-    const MAGIC: &'static [u8; 8] = b"SLIPPOPN";
+    const MAGIC: &'static [u8; 8] = G::MAGIC;
 
     fn blocks(settings: &Settings) -> u64 {
         settings.units.div_ceil(BLOCK)
@@ -110,6 +179,8 @@ impl Found for Vec<Unit> {
             Some("length")
         } else if one.correlation != other.correlation {
             Some("correlation")
+        } else if one.drive != other.drive {
+            Some("drive")
         } else {
             (one.limit != other.limit).then_some("force limit")
         }
@@ -128,8 +199,8 @@ impl Found for Vec<Unit> {
         self.sort_by_key(|unit| unit.number);
     }
 
-    /// Of each: number, gaps, verdict, breakaway, peak and settled force, final speed, end, contact (16 if none), its force,
-    /// whether the desk computed it. NaN is none.
+    /// Of each: number, verdict, contact (16 if none), whether the desk computed it, breakaway, peak and settled force, final
+    /// speed, end, the contact's force, gaps. NaN is none.
     fn encode(&self, out: &mut Vec<u8>) {
         integer(out, self.len() as u64);
         for Unit { number, gaps, outcome } in self {
@@ -139,8 +210,9 @@ impl Found for Vec<Unit> {
             out.extend([verdict as u8, contact as u8, u8::from(outcome.at_desk)]);
             let optional = [outcome.breakaway, outcome.peak_force, outcome.settled_force];
             let figures = optional.map(|figure| figure.unwrap_or(f64::NAN)).into_iter();
-            let numbers = figures.chain([outcome.final_velocity, outcome.end.t, outcome.end.z, force]).chain(*gaps);
+            let numbers = figures.chain([outcome.final_velocity, outcome.end.t, outcome.end.z, force]);
             numbers.for_each(|number| out.extend(number.to_le_bytes()));
+            gaps.encode(out);
         }
     }
 
@@ -150,7 +222,7 @@ impl Found for Vec<Unit> {
     }
 }
 
-fn unit(reader: &mut Reader) -> Result<Unit, FormatError> {
+fn unit<G: StoredGaps>(reader: &mut Reader) -> Result<Unit<G>, FormatError> {
     let number = reader.integer()?;
     let [verdict, contact, at_desk] = reader.array()?;
     let verdict = *VERDICTS.get(usize::from(verdict)).ok_or(FormatError::Damaged)?;
@@ -159,10 +231,7 @@ fn unit(reader: &mut Reader) -> Result<Unit, FormatError> {
     let final_velocity = reader.number()?;
     let end = Moment { t: reader.number()?, z: reader.number()? };
     let force = reader.number()?;
-    let mut gaps = [0.0; CONTACTS];
-    for gap in &mut gaps {
-        *gap = reader.number()?;
-    }
+    let gaps = G::decode(reader)?;
     let most_loaded = match usize::from(contact) {
         CONTACTS => None,
         contact if contact < CONTACTS => Some((contact, force)),
@@ -191,7 +260,7 @@ mod tests {
         let scene = example::cd_rom();
         let production = Production::new(&scene, None, 0.25, 5).unwrap();
         let settings = Settings::new(1100, 5, true, 0.25, Some(0.3));
-        let simulation = Simulation { scene: &scene, production: &production, settings };
+        let simulation = Simulation { subject: &scene, production: &production, settings };
         let source = Source { name: "cd-rom".into(), text: "its text".into(), set: Vec::new() };
         let folder = tempfile::tempdir().unwrap();
         let path = |name: String| folder.path().join(name);

@@ -1,15 +1,13 @@
 //! Pictures of a population.
 
-use slipfit_core::slide::CONTACTS;
-
 use super::{
     Unit,
     hypothesis::{AtDistance, Hypothesis},
     statistics::{Share, malfunctions},
+    subject::Subject,
 };
 use crate::{
-    dynamics::outcome::Verdict,
-    scene::Scene,
+    dynamics::{driven::DriveKind, outcome::Verdict},
     show::{
         number::fixed,
         plot::{Chart, Look, Markers, Panel, PlotError, Series, Shape, line_chart},
@@ -23,39 +21,35 @@ const CLASSES: usize = 16;
 /// Units that a class needs to be shown.
 const LEAST: usize = 20;
 
-/// How much tighter than the mean unit this one is: the mean over its gaps, each in its standard deviations, signed like
-/// the level n of eq. 9.
-pub fn tightness(scene: &Scene, gaps: &[f64; CONTACTS]) -> f64 {
-    joint_tightness(scene.levels_of(gaps))
+/// The `units` of `subject`, each with its tightness.
+pub fn placed<'u, S: Subject>(
+    subject: &S,
+    units: impl IntoIterator<Item = &'u Unit<S::Gaps>>,
+) -> Vec<(f64, &'u Unit<S::Gaps>)>
+where
+    S::Gaps: 'u,
+{
+    units.into_iter().map(|unit| (subject.tightness(&unit.gaps), unit)).collect()
 }
 
-/// The mean of the `levels` at which gaps are, of those that vary.
-pub fn joint_tightness(levels: impl IntoIterator<Item = Option<f64>>) -> f64 {
-    let levels: Vec<f64> = levels.into_iter().flatten().collect();
-    levels.iter().sum::<f64>() / levels.len().max(1) as f64
+/// What pictures call the greatest force or torque of a drive of this `kind`.
+pub fn effort(kind: DriveKind) -> String {
+    format!("greatest drive {} ({})", kind.effort(), kind.effort_unit())
 }
 
-/// The `units` of a slide, each with its tightness.
-pub fn placed<'u>(scene: &Scene, units: &'u [Unit]) -> Vec<(f64, &'u Unit)> {
-    units.iter().map(|unit| (tightness(scene, &unit.gaps), unit)).collect()
-}
-
-/// What [`forces`] calls the force of a slide's drive.
-pub const FORCE: &str = "greatest drive force (N)";
-
-/// `effort`, the greatest force with its unit, over the tightness that each unit is `placed` at, with the units that malfunction
-/// marked; and the share of these.
+/// The greatest force or torque of a drive of this `kind` over the tightness that each unit is `placed` at, with the units that
+/// malfunction marked; and the share of these. `limit` (N, N·m) is the motor's greatest.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to show.
 pub fn forces<G>(
     title: &str,
-    effort: &str,
+    kind: DriveKind,
     placed: &[(f64, &Unit<G>)],
     limit: Option<f64>,
 ) -> Result<String, PlotError> {
     let every = placed.len().div_ceil(MARKED).max(1);
-    let kind = |verdict: Verdict, label: &str, shape| Markers {
+    let marked = |verdict: Verdict, label: &str, shape| Markers {
         label: label.into(),
         shape,
         points: placed
@@ -90,12 +84,12 @@ pub fn forces<G>(
         x_label: "joint tightness n (mean over the gaps, σ; positive is tighter)".into(),
         panels: vec![
             Panel {
-                y_label: effort.into(),
+                y_label: effort(kind),
                 series: limits.into_iter().collect(),
                 markers: vec![
-                    kind(Verdict::Runs, "runs", Shape::Ring),
-                    kind(Verdict::Crawls, "crawls", Shape::Triangle),
-                    kind(Verdict::Jammed, "jammed", Shape::Cross),
+                    marked(Verdict::Runs, "runs", Shape::Ring),
+                    marked(Verdict::Crawls, "crawls", Shape::Triangle),
+                    marked(Verdict::Jammed, "jammed", Shape::Cross),
                 ],
                 ..Panel::default()
             },
@@ -128,7 +122,7 @@ fn with_interval(shares: &[(f64, Share)], label: &str) -> Vec<Series> {
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to show.
-pub fn hypothesis(scene: &Scene, tested: &Hypothesis) -> Result<String, PlotError> {
+pub fn hypothesis(title: &str, tested: &Hypothesis) -> Result<String, PlotError> {
     let shares: Vec<(f64, Share)> = tested.distances.iter().map(|at| (at.distance, at.random)).collect();
     // Apart, so that neither hides the other.
     let side = |label: &str, shape, apart: f64, failed: fn(&AtDistance) -> bool| Markers {
@@ -137,7 +131,7 @@ pub fn hypothesis(scene: &Scene, tested: &Hypothesis) -> Result<String, PlotErro
         points: tested.distances.iter().map(|at| (at.distance + apart, if failed(at) { 100.0 } else { 0.0 })).collect(),
     };
     line_chart(&Chart {
-        title: scene.title.clone(),
+        title: title.into(),
         subtitle: "random combinations of gaps against the tightest and the loosest, as far from the mean unit".into(),
         x_label: "distance from the mean unit (root mean square of the gaps, σ)".into(),
         panels: vec![Panel {

@@ -4,12 +4,12 @@
 
 use std::{marker::PhantomData, ops::Range};
 
-use slipfit_core::{
-    sampling::stream::derived,
-    slide::{ABSENT, CONTACTS},
-};
+use slipfit_core::{sampling::stream::derived, slide::CONTACTS};
 
-use super::source::{Columns, Held, Source, Stated, each_itself, of_statistics};
+use super::{
+    source::{Columns, Held, Source, Stated, each_itself, of_statistics},
+    subject::UnitGaps,
+};
 use crate::{
     mechanism::{self, Mechanism},
     product::Product,
@@ -28,24 +28,6 @@ pub const MOST_UNITS: u64 = 1 << 40;
 
 /// What seeds of gaps and of parameters are derived with.
 const STREAMS: [u64; 2] = [3 << 32, 4 << 32];
-
-/// The gaps (m) of one unit: as many as a slide's pins have, or as many as a mechanism has.
-pub trait UnitGaps: Clone + Send + Sync + AsMut<[f64]> {
-    /// `count` that are [`ABSENT`].
-    fn absent(count: usize) -> Self;
-}
-
-impl UnitGaps for [f64; CONTACTS] {
-    fn absent(_: usize) -> Self {
-        [ABSENT; CONTACTS]
-    }
-}
-
-impl UnitGaps for Vec<f64> {
-    fn absent(count: usize) -> Self {
-        vec![ABSENT; count]
-    }
-}
 
 /// A production of a scene with a slide, or with a mechanism.
 pub struct Production<'a, G = [f64; CONTACTS]> {
@@ -71,7 +53,7 @@ pub struct Drawn<G = [f64; CONTACTS]> {
     pub numbers: Range<u64>,
     /// Gaps (m) of each; [`ABSENT`] for none.
     pub gaps: Vec<G>,
-    /// Deviations (SI) of the parameters of each, in the order of the scene's `vary`.
+    /// Deviations (SI) of the parameters of each, in the order in which the scene says what varies.
     pub deviations: Vec<Vec<f64>>,
     /// Values of all variables, a column each, in the order of [`Production::contributors`].
     pub variables: Vec<Vec<f64>>,
@@ -108,7 +90,8 @@ impl<'a> Production<'a, Vec<f64>> {
         let stated = |gap: &mechanism::Gap| {
             Some(Stated { name: gap.name.clone(), statistics: gap.statistics, measure: gap.measure })
         };
-        Self::of(mechanism.gaps.iter().map(stated).collect(), product, correlation, Vec::new(), seed)
+        let vary = mechanism.vary.iter().map(|varied| varied.deviation.clone()).collect();
+        Self::of(mechanism.gaps.iter().map(stated).collect(), product, correlation, vary, seed)
     }
 }
 

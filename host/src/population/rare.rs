@@ -12,10 +12,10 @@ use super::{
     finding::{Finding, REPEATS, Reason},
     limit_state::{Kind, LimitState, Log, Side},
     production::Production,
+    subject::Subject,
 };
 use crate::{
     dynamics::simulate::SimulateError,
-    scene::Scene,
     tolerance::failure::{Margins, subset},
 };
 
@@ -52,23 +52,23 @@ pub struct Rare {
 }
 
 /// What is asked for.
-pub struct Question<'a> {
-    /// The scene.
-    pub scene: &'a Scene,
+pub struct Question<'a, S: Subject> {
+    /// What the units are of.
+    pub subject: &'a S,
     /// What varies in it.
-    pub production: &'a Production<'a>,
+    pub production: &'a Production<'a, S::Gaps>,
     /// Seed of the repeats.
     pub seed: u64,
     /// A motor's force (N).
     pub limit: Option<f64>,
 }
 
-impl Question<'_> {
+impl<S: Subject> Question<'_, S> {
     /// Kinds and sides.
     fn cells(&self) -> Vec<(Kind, Side)> {
         let kinds = [Kind::Crawls, Kind::Jams, Kind::OverLimit];
         let kinds = kinds.into_iter().filter(|kind| *kind != Kind::OverLimit || self.limit.is_some());
-        kinds.flat_map(|kind| Side::all(self.scene).iter().map(move |side| (kind, *side))).collect()
+        kinds.flat_map(|kind| Side::all(self.subject).iter().map(move |side| (kind, *side))).collect()
     }
 
     /// How many repeats there are, at most.
@@ -86,9 +86,9 @@ impl Question<'_> {
         counted: impl Fn(Kind, Side) -> (u64, u64) + Sync,
         done: impl Fn(usize) + Sync,
     ) -> Result<Rare, SimulateError> {
-        let Self { scene, production, limit, .. } = *self;
+        let Self { subject, production, limit, .. } = *self;
         let part = |(number, (kind, side)): (usize, (Kind, Side))| {
-            let state = || LimitState { scene, production, kind, side, limit, log: Log::default() };
+            let state = || LimitState { subject, production, kind, side, limit, log: Log::default() };
             let seed = derived(self.seed, STREAM + number as u64);
             let (finding, states) = probability(&state, production.factor(), seed, &done);
             let mut all = Log::default();

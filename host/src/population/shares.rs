@@ -3,11 +3,13 @@
 use super::{
     Unit,
     drivers::Driver,
-    picture::tightness,
+    picture::effort,
     statistics::{Share, malfunctions},
     study::Population,
+    subject::Subject,
 };
 use crate::{
+    dynamics::driven::DriveKind,
     scene::Scene,
     show::{
         bars::{Bar, Block, bars},
@@ -28,7 +30,7 @@ const LEAST: f64 = 0.1;
 ///
 /// # Errors
 /// [`PlotError`], if no unit has a force.
-pub fn histogram(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<String, PlotError> {
+pub fn histogram<G>(title: &str, kind: DriveKind, units: &[Unit<G>], limit: Option<f64>) -> Result<String, PlotError> {
     let forces: Vec<(f64, bool)> =
         units.iter().filter_map(|unit| Some((unit.outcome.peak_force?, malfunctions(unit, limit)))).collect();
     if forces.is_empty() {
@@ -56,12 +58,13 @@ pub fn histogram(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<St
         series.push(line("", Look::Guide, vec![(limit, 0.0), (limit, 1.05 * top)]));
         let over = forces.iter().filter(|(force, _)| *force > limit).count() as u64;
         let share = 100.0 * Share::new(over, units.len().max(1) as u64).share;
-        format!("; grey: the motor's {} N, which {} % exceed", fixed(limit, 2), fixed(share, 2))
+        let unit = kind.effort_unit();
+        format!("; grey: the motor's {} {unit}, which {} % exceed", fixed(limit, 2), fixed(share, 2))
     });
     small_chart(&Chart {
-        title: scene.title.clone(),
+        title: title.into(),
         subtitle: format!("{} units{}", units.len(), over.unwrap_or_default()),
-        x_label: "greatest drive force (N)".into(),
+        x_label: effort(kind),
         panels: vec![Panel { y_label: "share of the units (%)".into(), series, ..Panel::default() }],
         ..Chart::default()
     })
@@ -69,7 +72,7 @@ pub fn histogram(scene: &Scene, units: &[Unit], limit: Option<f64>) -> Result<St
 
 /// On which side units malfunction: loose or tight, and the contact that is pressed hardest.
 pub fn sides(scene: &Scene, units: &[Unit], limit: Option<f64>) -> String {
-    let mut placed: Vec<(f64, &Unit)> = units.iter().map(|unit| (tightness(scene, &unit.gaps), unit)).collect();
+    let mut placed: Vec<(f64, &Unit)> = units.iter().map(|unit| (scene.tightness(&unit.gaps), unit)).collect();
     placed.sort_by(|(one, _), (other, _)| one.total_cmp(other));
     let tenth = placed.len().div_ceil(10);
     let failing = |name: &str, of: &[(f64, &Unit)]| {
@@ -105,7 +108,7 @@ pub fn sides(scene: &Scene, units: &[Unit], limit: Option<f64>) -> String {
 ///
 /// # Errors
 /// If no contributor is told from nothing.
-pub fn ranking(scene: &Scene, population: &Population) -> Result<String, PlotError> {
+pub fn ranking<G>(title: &str, kind: DriveKind, population: &Population<G>) -> Result<String, PlotError> {
     let block = |heading: &str, drivers: &[Driver]| {
         let bar = |driver: &Driver| Bar {
             name: driver.name.clone(),
@@ -115,13 +118,15 @@ pub fn ranking(scene: &Scene, population: &Population) -> Result<String, PlotErr
         let bars = drivers.iter().map(bar).filter(|bar| bar.percent >= LEAST).take(MOST).collect();
         Block { heading: heading.into(), bars }
     };
-    let mut blocks =
-        vec![block("malfunction", &population.of_malfunction), block("greatest force", &population.of_force)];
+    let mut blocks = vec![
+        block("malfunction", &population.of_malfunction),
+        block(&format!("greatest {}", kind.effort()), &population.of_force),
+    ];
     blocks.retain(|block| !block.bars.is_empty());
     if blocks.is_empty() {
         return Err(PlotError::Empty);
     }
-    Ok(bars(&scene.title, "shares in the variance, % (correlation ratios), with the standard error", &blocks))
+    Ok(bars(title, "shares in the variance, % (correlation ratios), with the standard error", &blocks))
 }
 
 /// So many of all, with the standard error.
@@ -135,7 +140,10 @@ fn bar(name: &str, some: usize, all: usize) -> Bar {
 mod tests {
     use super::{histogram, ranking, sides};
     use crate::{
-        dynamics::{driven::Driven, example},
+        dynamics::{
+            driven::{DriveKind, Driven},
+            example,
+        },
         population::{production::Production, study::Population},
         show::plot::PlotError,
     };
@@ -151,16 +159,18 @@ mod tests {
         // A limit that half of all forces exceed.
         let mut forces: Vec<f64> = population.units.iter().filter_map(|unit| unit.outcome.peak_force).collect();
         forces.sort_by(f64::total_cmp);
-        let drawn = histogram(&scene, &population.units, Some(0.5 * (forces[119] + forces[120]))).unwrap();
+        let drawn =
+            histogram(&scene.title, DriveKind::Pushes, &population.units, Some(0.5 * (forces[119] + forces[120])))
+                .unwrap();
         assert!(drawn.contains("which 50.00 % exceed") && drawn.contains("malfunction"), "{drawn}");
         let drawn = sides(&scene, &population.units, None);
         assert!(drawn.contains("the tightest tenth") && drawn.contains("press hardest at"), "{drawn}");
-        assert!(ranking(&scene, &population).unwrap().contains("greatest force"));
+        assert!(ranking(&scene.title, DriveKind::Pushes, &population).unwrap().contains("greatest force"));
         // Without failures and without forces there is less to show, and no error.
         population.units.iter_mut().for_each(|unit| {
             (unit.outcome.peak_force, unit.outcome.verdict) = (None, crate::dynamics::outcome::Verdict::Undecided);
         });
-        assert_eq!(histogram(&scene, &population.units, None), Err(PlotError::Empty));
+        assert_eq!(histogram(&scene.title, DriveKind::Pushes, &population.units, None), Err(PlotError::Empty));
         assert!(!sides(&scene, &population.units, None).contains("press hardest"));
     }
 }

@@ -3,11 +3,12 @@
 use super::{
     PIECE, Unit,
     drivers::{Driver, Drivers},
-    production::{Production, UnitGaps},
+    production::Production,
     simulate_units,
     statistics::{Share, Statistics, malfunctions},
+    subject::{Subject, UnitGaps},
 };
-use crate::{dynamics::simulate::SimulateError, scene::Scene};
+use crate::dynamics::simulate::SimulateError;
 use slipfit_core::slide::CONTACTS;
 
 /// Units that find classes for what drives the figures.
@@ -26,47 +27,45 @@ pub struct Population<G = [f64; CONTACTS]> {
     pub of_malfunction: Vec<Driver>,
 }
 
-/// The share of the first `count` units of a `production` of `scene` that malfunction; see [`Population::study`].
+/// The share of the first `count` units of a `production` of `subject` that malfunction; see [`Population::study`].
 ///
 /// # Errors
 /// See [`simulate_units`].
-pub fn share_of_malfunctions(
-    scene: &Scene,
-    production: &Production,
+pub fn share_of_malfunctions<S: Subject>(
+    subject: &S,
+    production: &Production<S::Gaps>,
     count: u64,
     limit: Option<f64>,
     done: impl Fn(u64) + Sync,
 ) -> Result<Share, SimulateError> {
     let mut failed = 0;
-    simulate_units(scene, production, 0..count, done, |_, units| {
+    simulate_units(subject, production, 0..count, done, |_, units| {
         failed += units.iter().filter(|unit| malfunctions(unit, limit)).count() as u64;
     })?;
     Ok(Share::new(failed, count))
 }
 
-impl Population {
-    /// The first `count` units of a `production` of `scene`, on all threads of the current pool; `limit` (N) is a motor's
+impl<G: UnitGaps> Population<G> {
+    /// The first `count` units of a `production` of `subject`, on all threads of the current pool; `limit` (N) is a motor's
     /// greatest force. `done` is called with how many have been simulated.
     ///
     /// # Errors
     /// See [`simulate_units`].
-    pub fn study(
-        scene: &Scene,
-        production: &Production,
+    pub fn study<S: Subject<Gaps = G>>(
+        subject: &S,
+        production: &Production<G>,
         count: u64,
         limit: Option<f64>,
         done: impl Fn(u64) + Sync,
     ) -> Result<Self, SimulateError> {
         let (mut units, mut causes) = (Vec::new(), Causes::new(production));
-        simulate_units(scene, production, 0..count, done, |drawn, piece| {
+        simulate_units(subject, production, 0..count, done, |drawn, piece| {
             causes.add(&drawn.variables, piece, limit);
             units.extend_from_slice(piece);
         })?;
         Ok(causes.population(production, units, limit))
     }
-}
 
-impl<G: UnitGaps> Population<G> {
     /// Of all `units` of a `production`, in order.
     pub fn of(production: &Production<G>, units: Vec<Unit<G>>, limit: Option<f64>) -> Self {
         let mut causes = Causes::new(production);

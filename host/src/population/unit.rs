@@ -1,12 +1,9 @@
 //! What one unit of a population did, and how surely.
 
-use std::ops::Range;
-
 use serde::Serialize;
 use slipfit_core::{
     law::Elastic,
     menu::{FrictionData, SlideData},
-    slide::CONTACTS,
 };
 
 use crate::{
@@ -195,19 +192,4 @@ fn at_desk(scene: &Scene, drawn: &Drawn, i: usize, found: UnitOutcome) -> Result
         most_loaded: found.most_loaded,
         at_desk: true,
     })
-}
-
-/// Units at the tolerance levels `n` of eq. 9, all parameters as the scene states them.
-///
-/// # Errors
-/// As [`units`].
-pub fn at_levels(scene: &Scene, n: &[f64]) -> Result<Vec<Unit>, SimulateError> {
-    let gaps = n.iter().map(|n| scene.gaps_at(&[*n; CONTACTS])).collect();
-    units(scene, &as_drawn(scene, gaps, 0..n.len() as u64))
-}
-
-/// Units with the given `gaps` (m) and the scene's own parameters.
-pub fn as_drawn(scene: &Scene, gaps: Vec<[f64; CONTACTS]>, numbers: Range<u64>) -> Drawn {
-    let deviations = vec![vec![0.0; scene.vary.len()]; gaps.len()];
-    Drawn { numbers, gaps, deviations, variables: Vec::new() }
 }

@@ -246,7 +246,9 @@ pub(super) const ROOT: &[Key] = &[
             table("friction", &[table("coefficient", DEVIATION)]),
             table("contact", &[table("stiffness", DEVIATION), table("damping", DEVIATION)]),
             table("slide", &[table("mass", DEVIATION), table("tilt_x", DEVIATION), table("tilt_z", DEVIATION)]),
-            table("drive", &[table("gain", DEVIATION), table("ramp_end", DEVIATION)]),
+            table("mechanism", &[table("tilt_x", DEVIATION), table("tilt_z", DEVIATION)]),
+            table("body", &[key("name"), table("mass", DEVIATION)]),
+            table("drive", &[key("name"), table("gain", DEVIATION), table("ramp_end", DEVIATION)]),
         ],
     ),
 ];

@@ -1,13 +1,27 @@
 //! Parameters of a slide that vary over the production, beside its gaps.
 
 use super::{
-    Scene, SceneError,
+    Problem, Scene, SceneError,
     product::{SIGMA_DEFAULT, deviation},
     unit::{self, Quantity},
     value::Field,
 };
-use crate::tolerance::model::Contributor;
+use crate::{
+    mechanism::{tilted_x, tilted_z},
+    tolerance::model::Contributor,
+};
 use slipfit_core::menu::FrictionData;
+
+/// A deviation that is a number without a unit.
+pub(super) const SHARE: Quantity = Quantity { units: unit::ONE, range: [-100.0, 100.0] };
+/// A deviation of damping, or of a gain.
+pub(super) const DAMPING: Quantity = Quantity { units: unit::DAMPING, range: [-1e6, 1e6] };
+/// A deviation of a mass.
+pub(super) const MASS: Quantity = Quantity { units: unit::MASS, range: [-1e7, 1e7] };
+/// A deviation of a ramp's end.
+pub(super) const RAMP_END: Quantity = Quantity { units: unit::SECONDS, range: [-1000.0, 1000.0] };
+/// A rotation of gravity.
+pub(super) const TILT: Quantity = Quantity { units: unit::ANGLE, range: [-180.0, 180.0] };
 
 /// A parameter that varies, and by how much from the scene's value.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,15 +81,14 @@ impl Parameter {
     }
 
     /// What its deviation may be. A stiffness varies by shares of itself.
-    const fn quantity(self) -> Quantity {
-        let (units, range) = match self {
-            Self::Friction | Self::Stiffness => (unit::ONE, [-100.0, 100.0]),
-            Self::Damping | Self::Gain => (unit::DAMPING, [-1e6, 1e6]),
-            Self::Mass => (unit::MASS, [-1e7, 1e7]),
-            Self::RampEnd => (unit::SECONDS, [-1000.0, 1000.0]),
-            Self::TiltX | Self::TiltZ => (unit::ANGLE, [-180.0, 180.0]),
-        };
-        Quantity { units, range }
+    const fn quantity(self) -> &'static Quantity {
+        match self {
+            Self::Friction | Self::Stiffness => &SHARE,
+            Self::Damping | Self::Gain => &DAMPING,
+            Self::Mass => &MASS,
+            Self::RampEnd => &RAMP_END,
+            Self::TiltX | Self::TiltZ => &TILT,
+        }
     }
 
     /// Moves the parameter of `scene` by a `deviation` (SI).
@@ -92,16 +105,8 @@ impl Parameter {
             Self::Mass => scene.slide.mass += deviation,
             Self::Gain => scene.drive.gain += deviation,
             Self::RampEnd => scene.drive.ramp_end += deviation,
-            Self::TiltX => {
-                let [x, y, z] = scene.slide.gravity;
-                let (sin, cos) = (libm::sin(deviation), libm::cos(deviation));
-                scene.slide.gravity = [x, cos * y - sin * z, sin * y + cos * z];
-            }
-            Self::TiltZ => {
-                let [x, y, z] = scene.slide.gravity;
-                let (sin, cos) = (libm::sin(deviation), libm::cos(deviation));
-                scene.slide.gravity = [cos * x - sin * y, sin * x + cos * y, z];
-            }
+            Self::TiltX => scene.slide.gravity = tilted_x(scene.slide.gravity, deviation),
+            Self::TiltZ => scene.slide.gravity = tilted_z(scene.slide.gravity, deviation),
         }
     }
 }
@@ -110,13 +115,19 @@ impl Parameter {
 pub(super) fn vary(root: &Field) -> Result<Vec<Varied>, SceneError> {
     let Some(table) = root.get("vary") else { return Ok(Vec::new()) };
     table.expect_table()?;
+    for of_mechanism in ["body", "mechanism"] {
+        if let Some(field) = table.get(of_mechanism) {
+            let what = format!("`vary.{of_mechanism}` without a mechanism");
+            return Err(field.error(Problem::Unsupported { what }, "vary.slide, whose mass and tilts are those of the slide"));
+        }
+    }
     let mut varied = Vec::new();
     for parameter in Parameter::ALL {
         let [group, key] = parameter.key();
         let Some(of_group) = table.get(group) else { continue };
         of_group.expect_table()?;
         let Some(field) = of_group.get(key) else { continue };
-        let spread = deviation(&field, &parameter.quantity(), SIGMA_DEFAULT)?;
+        let spread = deviation(&field, parameter.quantity(), SIGMA_DEFAULT)?;
         varied.push(Varied { parameter, deviation: spread.contributor(format!("{group}.{key}")) });
     }
     Ok(varied)

@@ -14,8 +14,13 @@ use std::{
 const TARGETS: [&str; 1] = ["thumbv7em-none-eabihf"];
 
 /// Programs that tests run, and the Debian packages that have them.
-const TOOLS: [(&str, &str); 3] =
-    [("qemu-system-arm", "qemu-system-arm"), ("arm-none-eabi-gcc", "gcc-arm-none-eabi"), ("chromium", "chromium")];
+const TOOLS: [(&str, &str); 5] = [
+    ("qemu-system-arm", "qemu-system-arm"),
+    ("arm-none-eabi-gcc", "gcc-arm-none-eabi"),
+    ("chromium", "chromium"),
+    ("sbatch", "slurm-wlm"),
+    ("munge", "munge"),
+];
 
 /// Packages of Python that tests import.
 const PYTHON_PACKAGES: [&str; 1] = ["fmpy"];

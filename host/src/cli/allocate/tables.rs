@@ -33,7 +33,7 @@ pub fn tables(report: &Report) -> String {
             ]
         })
         .collect();
-    text += &text_table(&["tolerance of", "in the scene", "before", "process", "cost"], &rows);
+    text += &text_table(&["tolerance of", "new line", "before", "process", "cost"], &rows);
     let rows: Vec<_> = report.requirements.iter().map(requirement).collect();
     text += "\n";
     text += &text_table(&["requirement", "found", "allowed", "price", "of"], &rows);

@@ -1,26 +1,30 @@
 //! What `population` says of a mechanism.
 
-use std::{fmt::Write, path::PathBuf};
+use std::fmt::Write;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::warnings_of;
 use crate::{
     cli::{
-        Failure, SceneArguments, ThreadArguments, given,
-        population::{LEVELS, LevelReport, UnitReport, WORST, percent, strongest},
-        print, print_json, progress, text_table, warn,
+        Failure,
+        population::{Arguments, HYPOTHESIS, LevelReport, UnitReport, WORST, levels, percent, rare, strongest},
+        print, print_json, text_table, warn,
     },
-    dynamics::{answer::ranges_of, driven::Driven},
-    mechanism::{ByDrive, Mechanism},
+    dynamics::driven::Driven,
+    mechanism::ByDrive,
     population::{
-        Unit, UnitOutcome,
+        Unit,
         drivers::Driver,
-        mechanism::{MechanismPopulation, study, unit},
-        picture::{forces, joint_tightness},
+        hypothesis::Hypothesis,
+        mechanism::MechanismPopulation,
+        picture::{forces, hypothesis, placed},
         production::Production,
+        rare::Rare,
+        shares::{histogram, ranking},
         statistics::{Share, Spread, Statistics},
+        study::Population,
+        subject::Subject,
         telling::worst,
     },
     product::Product,
@@ -28,22 +32,13 @@ use crate::{
         export::population_csv,
         number::{fixed, level, or_dash},
         plot::PlotError,
+        report::{Figure, Units, units_page},
     },
     system::files,
 };
 
-/// What is asked for.
-pub struct Asked<'a> {
-    pub scene: &'a SceneArguments,
-    pub units: u64,
-    pub seed: u64,
-    pub limit: Option<f64>,
-    pub correlation: f64,
-    pub csv: &'a Option<PathBuf>,
-    pub plot: &'a Option<PathBuf>,
-    pub threads: &'a ThreadArguments,
-}
-
+/// Random combinations at each distance: fewer than of a slide, whose units take less time.
+const DIRECTIONS: u64 = 128;
 /// Drivers that are listed.
 const DRIVERS: usize = 5;
 
@@ -60,95 +55,139 @@ struct Report<'a> {
     /// Units that cannot be assembled.
     misfits: Share,
     levels: Vec<LevelReport>,
+    hypothesis: Hypothesis,
+    /// None if it was not asked for.
+    rare: Option<Rare>,
     worst: Vec<UnitReport>,
     warnings: Vec<String>,
 }
 
-/// The `units` of `mechanism`, each with its tightness.
-pub fn placed<'u>(
-    mechanism: &Mechanism,
-    units: impl IntoIterator<Item = &'u Unit<Vec<f64>>>,
-) -> Vec<(f64, &'u Unit<Vec<f64>>)> {
-    units.into_iter().map(|unit| (joint_tightness(mechanism.levels_of(&unit.gaps)), unit)).collect()
-}
-
 /// The greatest force or torque of the `placed` units over their tightness; `limit` (N, N·m) is the motor's greatest.
 pub fn picture(driven: &ByDrive, placed: &[(f64, &Unit<Vec<f64>>)], limit: Option<f64>) -> Result<String, PlotError> {
-    let effort = format!("greatest {} ({})", driven.kind().effort(), driven.kind().effort_unit());
-    forces(driven.title(), &effort, placed, limit)
+    forces(driven.title(), driven.kind(), placed, limit)
 }
 
-/// `population`.
-pub fn population(driven: &ByDrive, product: Option<&Product>, asked: &Asked) -> Result<(), Failure> {
+/// All that was found.
+struct Found {
+    population: MechanismPopulation,
+    levels: Vec<LevelReport>,
+    hypothesis: Hypothesis,
+    rare: Option<Rare>,
+}
+
+impl Found {
+    /// Of all `units` of a `production`.
+    fn of(
+        asked: &Arguments,
+        driven: &ByDrive,
+        production: &Production<Vec<f64>>,
+        units: Vec<Unit<Vec<f64>>>,
+    ) -> Result<Self, Failure> {
+        let population = Population::of(production, units, asked.force_limit);
+        let levels = LevelReport::all(driven, &population.units)?;
+        let hypothesis = Hypothesis::test(driven, DIRECTIONS, asked.seed, asked.force_limit)?;
+        let rare = asked.rare.then(|| asked.estimate(driven, production, &population)).transpose()?;
+        Ok(Self { population, levels, hypothesis, rare })
+    }
+}
+
+/// Shows and writes what all `units` of a mechanism did.
+pub fn conclude(
+    asked: &Arguments,
+    driven: &ByDrive,
+    production: &Production<Vec<f64>>,
+    units: Vec<Unit<Vec<f64>>>,
+    product: Option<&Product>,
+) -> Result<(), Failure> {
     let mechanism = driven.mechanism();
-    let Asked { units, seed, limit, correlation, .. } = *asked;
-    asked.scene.check_outputs(&given([("--csv", asked.csv), ("--plot", asked.plot)]))?;
-    let production = Production::of_mechanism(mechanism, product, correlation, seed)
-        .map_err(|error| Failure::Input(error.to_string()))?;
-    let bar = progress("simulating", units as usize);
-    let (found, levels) = asked.threads.install(|| {
-        let found = study(driven, &production, units, limit, |units| bar.inc(units))?;
-        let at = |n: &f64| {
-            // A level at which a pin is wider than its hole is no unit.
-            let gaps = mechanism.gaps_at(&[*n]).ok()?;
-            Some(unit(driven, &gaps).map(|outcome| (*n, outcome)))
-        };
-        let levels: Vec<_> = LEVELS.par_iter().filter_map(at).collect::<Result<_, _>>()?;
-        Ok::<_, Failure>((found, levels))
-    })??;
-    bar.finish_and_clear();
-    let misfits = found.units.iter().filter(|unit| mechanism.misfit(&unit.gaps).is_some()).count() as u64;
-    let misfits = Share::new(misfits, units);
+    let limit = asked.force_limit;
+    let found = asked.threads.install(|| Found::of(asked, driven, production, units))??;
+    let units = &found.population.units;
+    let misfits = units.iter().filter(|unit| !driven.fits(&unit.gaps)).count() as u64;
+    let misfits = Share::new(misfits, units.len() as u64);
     let mut warnings = warnings_of(mechanism)?;
     warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
     if misfits.units > 0 {
         warnings.push(format!(
-            "{} of {units} units cannot be assembled, because a pin is wider than its hole: they count as jammed",
-            misfits.units
+            "{} of {} units cannot be assembled, because a pin is wider than its hole: they count as jammed",
+            misfits.units,
+            units.len()
         ));
     }
-    let placed = placed(mechanism, &found.units);
-    if let Some(path) = asked.csv {
+    let placed = placed(driven, units);
+    if let Some(path) = &asked.csv {
         files::write(path, &population_csv(driven.kind(), &driven.gap_names(), &placed)?)?;
     }
-    if let Some(path) = asked.plot {
+    if let Some(path) = &asked.plot {
         let svg = picture(driven, &placed, limit).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
+    }
+    if let Some(path) = &asked.plot_distance {
+        let svg = hypothesis(driven.title(), &found.hypothesis).map_err(anyhow::Error::from)?;
+        files::write(path, svg.as_bytes())?;
+    }
+    if let Some(path) = &asked.page {
+        let page = Units { figures: figures(driven, &found, &placed, limit)?, player: None };
+        let words = summary(driven, &found, limit);
+        files::write(path, units_page(&mechanism.title, &words, &page, &warnings).as_bytes())?;
     }
     if asked.scene.json {
         let of_unit = |unit: &Unit<Vec<f64>>| UnitReport {
             number: unit.number,
-            tightness: joint_tightness(mechanism.levels_of(&unit.gaps)),
+            tightness: driven.tightness(&unit.gaps),
             outcome: unit.outcome,
         };
         return print_json(&Report {
             title: &mechanism.title,
             drive: driven.name(),
             effort_unit: driven.kind().effort_unit(),
-            seed,
-            levels: levels.iter().map(|(n, outcome)| LevelReport::new(*n, outcome, &found.units)).collect(),
-            worst: worst(&found.units, WORST).into_iter().map(of_unit).collect(),
-            statistics: found.statistics,
-            force_drivers: found.of_force,
-            malfunction_drivers: found.of_malfunction,
+            seed: asked.seed,
+            worst: worst(units, WORST).into_iter().map(of_unit).collect(),
+            levels: found.levels,
+            hypothesis: found.hypothesis,
+            rare: found.rare,
+            statistics: found.population.statistics,
+            force_drivers: found.population.of_force,
+            malfunction_drivers: found.population.of_malfunction,
             misfits,
             warnings,
         });
     }
-    print(&described(driven, &found, &levels, limit))?;
+    print(&described(driven, &found, limit))?;
     warn(&warnings);
     Ok(())
 }
 
-fn described(
+/// The pictures of the page.
+fn figures(
     driven: &ByDrive,
-    found: &MechanismPopulation,
-    levels: &[(f64, UnitOutcome)],
+    found: &Found,
+    placed: &[(f64, &Unit<Vec<f64>>)],
     limit: Option<f64>,
-) -> String {
+) -> Result<Vec<Figure>, Failure> {
+    let (title, kind) = (driven.title(), driven.kind());
+    let pictures = [
+        ("Every mark is a unit of the production, drawn with gaps of its own.", picture(driven, placed, limit)),
+        ("How much units need of the drive.", histogram(title, kind, &found.population.units, limit)),
+        (
+            "Which gaps and tolerances the drive's greatest and the malfunction vary with, the strongest first.",
+            ranking(title, kind, &found.population),
+        ),
+        (HYPOTHESIS, hypothesis(title, &found.hypothesis)),
+    ];
+    // Those that would show nothing are left out.
+    let shown = pictures.into_iter().filter(|(_, svg)| !matches!(svg, Err(PlotError::Empty)));
+    let figure = |(caption, svg): (&str, Result<String, PlotError>)| {
+        Ok(Figure { caption: caption.into(), svg: svg.map_err(anyhow::Error::from)? })
+    };
+    shown.map(figure).collect()
+}
+
+/// What the units did together.
+fn summary(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
     let (mechanism, kind) = (driven.mechanism(), driven.kind());
     let (effort, unit) = (kind.effort(), kind.effort_unit());
-    let statistics = &found.statistics;
+    let statistics = &found.population.statistics;
     let mut text = format!(
         "{}: {} units, {} ms, by {}\n\nMalfunction     {}\n",
         mechanism.title,
@@ -180,14 +219,24 @@ fn described(
             );
         }
     }
-    for (name, drivers) in
-        [(format!("Drives {effort}"), &found.of_force), ("Drives failure".into(), &found.of_malfunction)]
-    {
+    for (name, drivers) in [
+        (format!("Drives {effort}"), &found.population.of_force),
+        ("Drives failure".into(), &found.population.of_malfunction),
+    ] {
         let _ = writeln!(text, "{name:16}{}", strongest(drivers, DRIVERS));
     }
-    let verdicts: Vec<_> = levels.iter().map(|(n, outcome)| (*n, outcome.verdict)).collect();
-    let _ = writeln!(text, "Levels          {}", ranges_of(&verdicts).join("; "));
-    let heading = match statistics.malfunctions.units {
+    if driven.has_levels() {
+        let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
+        let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
+    }
+    text + &found.rare.as_ref().map(rare::describe).unwrap_or_default()
+}
+
+/// The answer, for people: what the units did together, and the worst of them.
+fn described(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
+    let kind = driven.kind();
+    let (effort, unit) = (kind.effort(), kind.effort_unit());
+    let heading = match found.population.statistics.malfunctions.units {
         0 => format!("None malfunctions; the greatest {effort}s"),
         _ => "The worst".to_owned(),
     };
@@ -195,14 +244,14 @@ fn described(
         let outcome = one.outcome;
         vec![
             one.number.to_string(),
-            level((joint_tightness(mechanism.levels_of(&one.gaps)) * 100.0).round() / 100.0),
+            level((driven.tightness(&one.gaps) * 100.0).round() / 100.0),
             outcome.verdict.to_string(),
             or_dash(outcome.peak_force, |force| fixed(force, 4)),
             fixed(kind.speed(outcome.final_velocity), 3),
             fixed(kind.travel(outcome.end.z), 2),
         ]
     };
-    let rows: Vec<_> = worst(&found.units, WORST).into_iter().map(row).collect();
+    let rows: Vec<_> = worst(&found.population.units, WORST).into_iter().map(row).collect();
     let columns = [
         "unit",
         "n",
@@ -211,5 +260,5 @@ fn described(
         &format!("final, {}", kind.speed_unit()),
         &format!("travel, {}", kind.travel_unit()),
     ];
-    text + &format!("\n{heading}\n{}", text_table(&columns, &rows))
+    format!("{}\n{heading}\n{}", summary(driven, found, limit), text_table(&columns, &rows))
 }

@@ -8,7 +8,7 @@ use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{Failure, print, print_json, text_table},
     mechanism::{Action, Mechanism, MechanismRun, SCHEME, finer, run},
-    population::production::Production,
+    population::{mechanism::mechanism_of, production::Production},
     show::{
         export::rows_csv,
         figure::columns_over_time,
@@ -51,12 +51,12 @@ impl OneUnit {
         Ok(Self { label: format!("n = {}", words.join(", ")), n: n.to_vec(), gaps })
     }
 
-    /// That with this `number` in a `production`.
+    /// That with this `number` in a `production`, and the mechanism with its parameters.
     pub fn of_production(
         mechanism: &Mechanism,
         production: &Production<Vec<f64>>,
         number: u64,
-    ) -> Result<Self, Failure> {
+    ) -> Result<(Mechanism, Self), Failure> {
         let (drawn, i) = production.draw_one(number);
         let gaps = drawn.gaps[i].clone();
         if let Some(gap) = mechanism.misfit(&gaps) {
@@ -65,7 +65,8 @@ impl OneUnit {
         }
         // What does not vary has any level.
         let n = mechanism.levels_of(&gaps).into_iter().map(Option::unwrap_or_default);
-        Ok(Self { label: format!("unit {number}"), n: n.collect(), gaps })
+        let unit = Self { label: format!("unit {number}"), n: n.collect(), gaps };
+        Ok((mechanism_of(mechanism, &drawn, i), unit))
     }
 }
 

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::{
     cli::{Failure, simulate::MOMENTS},
+    dynamics::driven::DriveKind,
     population::{
         Unit, picture,
         production::Production,
@@ -36,9 +37,12 @@ pub fn units(
         (
             "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: its gaps differ from \
              each other.",
-            picture::forces(&scene.title, picture::FORCE, &picture::placed(scene, all), limit),
+            picture::forces(&scene.title, DriveKind::Pushes, &picture::placed(scene, all), limit),
         ),
-        ("What force units need. Those that jam need all that the drive has.", shares::histogram(scene, all, limit)),
+        (
+            "What force units need. Those that jam need all that the drive has.",
+            shares::histogram(&scene.title, DriveKind::Pushes, all, limit),
+        ),
         (
             "Where units fail: how many of the loose and of the tight ones, and which contact presses hardest.",
             Ok(shares::sides(scene, all, limit)),
@@ -46,7 +50,7 @@ pub fn units(
         (
             "Which tolerances the force and the malfunction vary with, the strongest first. What is missing to 100 % comes from \
              weaker ones and from several together.",
-            shares::ranking(scene, population),
+            shares::ranking(&scene.title, DriveKind::Pushes, population),
         ),
     ];
     let (mut figures, mut names) = (Vec::new(), Vec::new());

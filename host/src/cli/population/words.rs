@@ -9,9 +9,9 @@ use crate::{
     population::{
         Unit,
         drivers::{Driver, LEAST_UNITS},
-        picture::tightness,
         statistics::{Share, Spread, Statistics},
         study::Population,
+        subject::Subject,
     },
     scene::Scene,
     show::number::{fixed, level, or_dash},
@@ -83,8 +83,10 @@ impl Arguments {
         for (name, drivers) in [("Drives force", of_force), ("Drives failure", of_malfunction)] {
             let _ = writeln!(text, "{name:16}{}", strongest(drivers, DRIVERS));
         }
-        let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
-        let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
+        if scene.has_levels() {
+            let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
+            let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
+        }
         text + &found.rare.as_ref().map(rare::describe).unwrap_or_default()
     }
 }
@@ -95,7 +97,7 @@ fn worst_units(scene: &Scene, units: &[Unit]) -> String {
         let outcome = unit.outcome;
         vec![
             unit.number.to_string(),
-            level((tightness(scene, &unit.gaps) * 100.0).round() / 100.0),
+            level((scene.tightness(&unit.gaps) * 100.0).round() / 100.0),
             outcome.verdict.to_string(),
             or_dash(outcome.peak_force, |force| fixed(force, 3)),
             fixed(outcome.final_velocity * 1e3, 3),
@@ -133,7 +135,7 @@ pub fn percent(share: &Share) -> String {
 }
 
 /// Which levels do what, as ranges.
-fn levels(levels: &[LevelReport]) -> String {
+pub fn levels(levels: &[LevelReport]) -> String {
     let mut parts: Vec<(Verdict, f64, f64)> = Vec::new();
     for at in levels {
         match parts.last_mut() {

@@ -14,10 +14,7 @@ use super::{
 use crate::{
     cli::{
         Failure,
-        mechanism::{
-            self,
-            population::{picture, placed},
-        },
+        mechanism::{self, population::picture},
         print, print_json, progress,
         sweep::{LevelReport, doubts, for_machines},
         table,
@@ -35,9 +32,8 @@ use crate::{
     },
     mechanism::ByDrive,
     population::{
-        mechanism::{MechanismPopulation, study},
-        production::Production as DrawnProduction,
-        statistics::Statistics,
+        mechanism::MechanismPopulation, picture::placed, production::Production as DrawnProduction,
+        statistics::Statistics, study::Population,
     },
     product::Product,
     show::{
@@ -96,7 +92,8 @@ impl Arguments {
         let bar = progress("simulating", force_table::levels(driven.levels()).count + units as usize);
         let ((table, sweep), population) = self.threads.install(|| {
             let made = force_table::make(driven, Demand::Full, || bar.inc(1))?;
-            let population = varies.then(|| study(driven, &drawn, units, None, |units| bar.inc(units))).transpose()?;
+            let population =
+                varies.then(|| Population::study(driven, &drawn, units, None, |units| bar.inc(units))).transpose()?;
             Ok::<_, Failure>((made, population))
         })??;
         bar.finish_and_clear();
@@ -107,7 +104,7 @@ impl Arguments {
         let answer = said(driven, &table, &sweep, population.as_ref());
         let mut figures = figures(driven, &sweep)?;
         let units = population.iter().flat_map(|population| &population.units);
-        match picture(driven, &placed(mechanism, units), None) {
+        match picture(driven, &placed(driven, units), None) {
             // Too few units, or none that has a force.
             Err(PlotError::Empty) => {}
             svg => {

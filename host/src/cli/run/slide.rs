@@ -34,7 +34,7 @@ use crate::{
     },
     mechanism::{
         closing::{closing_level, derived},
-        self_locking::guide,
+        self_locking::{DriveSide, guide},
     },
     population::{production::Production as DrawnProduction, statistics::Statistics, study::Population},
     product::Product,
@@ -229,11 +229,16 @@ impl Arguments {
 
 /// What to change, by what goes wrong at which levels and with which `units`.
 fn advice(scene: &Scene, sweep: &Sweep, units: Units) -> String {
-    let locks = guide(scene, 0.0).filter(|guide| guide.warn).and_then(|guide| guide.critical_friction);
+    let guide = guide(scene, 0.0).filter(|guide| guide.warn);
+    let how = match guide.map(|guide| guide.side) {
+        Some(DriveSide::Edge) => "is on the edge of self-locking",
+        _ => "self-locks",
+    };
+    let locks = guide.and_then(|guide| guide.critical_friction);
     match (nothing_wrong(sweep, Some(units), "state a stroke, such as run.stroke = 80"), locks) {
         (Some(nothing), _) => nothing,
         (None, Some(critical)) => format!(
-            "bring friction well below {} (it is {}), lengthen the guide, or drive nearer to it: it self-locks",
+            "bring friction well below {} (it is {}), lengthen the guide, or drive nearer to it: it {how}",
             fixed(critical, 3),
             scene.friction.coefficient()
         ),

@@ -5,6 +5,7 @@ mod drive;
 mod joint;
 #[cfg(test)]
 mod tests;
+mod vary;
 
 use slipfit_core::{clearance::GapStatistics, menu::FrictionData};
 
@@ -63,8 +64,10 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
     let drives = drive::drives(root, planar, &names)?;
     let turns = drives.first().is_some_and(|first| first.action.kind() == DriveKind::Turns);
     let run = parse::run(&root.table("run")?, turns)?;
+    let vary = vary::vary(root, planar, &names, &drives)?;
     let mechanism = Mechanism {
         title,
+        vary,
         planar,
         gravity,
         springs: drive::springs(root, planar, &names)?,

@@ -62,8 +62,8 @@ const WHOLE: &[(&str, &str)] = &[
     ("correlation", "A list `[[correlation]]`: pairs of contributors that do not vary independently. Optional."),
     (
         "vary",
-        "Parameters of the slide that vary from unit to unit, besides the gaps, in `slipfit population`. Each takes a \
-         tolerance, around the scene's value. Optional.",
+        "Parameters that vary from unit to unit, besides the gaps, in `slipfit population`. Each takes a tolerance, around \
+         the scene's value. Optional.",
     ),
 ];
 

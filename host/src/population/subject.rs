@@ -1,0 +1,117 @@
+//! What a population is of: a slide on pins, or a mechanism by one of its drives.
+
+use slipfit_core::slide::{ABSENT, CONTACTS};
+
+use super::{
+    Unit,
+    production::Drawn,
+    unit::{self, Decisive},
+};
+use crate::{dynamics::simulate::SimulateError, scene::Scene};
+
+/// The gaps (m) of one unit: as many as a slide's pins have, or as many as a mechanism has.
+pub trait UnitGaps: Clone + Send + Sync + AsRef<[f64]> + AsMut<[f64]> {
+    /// `count` that are [`ABSENT`].
+    fn absent(count: usize) -> Self;
+}
+
+impl UnitGaps for [f64; CONTACTS] {
+    fn absent(_: usize) -> Self {
+        [ABSENT; CONTACTS]
+    }
+}
+
+impl UnitGaps for Vec<f64> {
+    fn absent(count: usize) -> Self {
+        vec![ABSENT; count]
+    }
+}
+
+/// What the units of a production are units of.
+pub trait Subject: Sync {
+    /// The gaps of a unit.
+    type Gaps: UnitGaps;
+
+    /// Simulates the units that were `drawn`.
+    ///
+    /// # Errors
+    /// [`SimulateError`] of the first whose parameters are out of bounds, or that cannot be solved.
+    fn units(&self, drawn: &Drawn<Self::Gaps>) -> Result<Vec<Unit<Self::Gaps>>, SimulateError>;
+
+    /// The figures that decide whether units do their job, of those `drawn` units that are `asked` for. None of a unit whose
+    /// parameters are out of bounds.
+    ///
+    /// # Errors
+    /// [`SimulateError`] of the first that cannot be solved.
+    fn decisive(&self, drawn: &Drawn<Self::Gaps>, asked: &[usize]) -> Result<Vec<Option<Decisive>>, SimulateError>;
+
+    /// The gaps (m) at the tolerance levels `n`, one for each; the last holds for all that follow.
+    fn gaps_at(&self, n: &[f64]) -> Self::Gaps;
+
+    /// The tolerance levels at which the `gaps` (m) are; `None` for one that does not vary.
+    fn levels_of(&self, gaps: &Self::Gaps) -> Vec<Option<f64>>;
+
+    /// Whether a unit with these `gaps` (m) can be assembled.
+    fn fits(&self, gaps: &Self::Gaps) -> bool;
+
+    /// How many parameters vary beside the gaps.
+    fn parameters(&self) -> usize;
+
+    /// Whether any gap varies.
+    fn has_levels(&self) -> bool {
+        self.levels_of(&self.gaps_at(&[0.0])).iter().any(Option::is_some)
+    }
+
+    /// How much tighter than the mean unit one with these `gaps` (m) is: the mean over its gaps, each in its standard
+    /// deviations, signed like the level n of eq. 9.
+    fn tightness(&self, gaps: &Self::Gaps) -> f64 {
+        let levels: Vec<f64> = self.levels_of(gaps).into_iter().flatten().collect();
+        levels.iter().sum::<f64>() / levels.len().max(1) as f64
+    }
+
+    /// Units with the given `gaps` (m) and the scene's own parameters.
+    fn as_drawn(&self, gaps: Vec<Self::Gaps>) -> Drawn<Self::Gaps> {
+        let deviations = vec![vec![0.0; self.parameters()]; gaps.len()];
+        Drawn { numbers: 0..gaps.len() as u64, gaps, deviations, variables: Vec::new() }
+    }
+
+    /// Those of the levels `n` of eq. 9 at which a unit can be assembled, and what it does there, all parameters as the scene
+    /// states them.
+    ///
+    /// # Errors
+    /// As [`Subject::units`].
+    fn at_levels(&self, n: &[f64]) -> Result<Vec<(f64, Unit<Self::Gaps>)>, SimulateError> {
+        let (n, gaps): (Vec<_>, Vec<_>) =
+            n.iter().map(|n| (*n, self.gaps_at(&[*n]))).filter(|(_, gaps)| self.fits(gaps)).unzip();
+        Ok(n.into_iter().zip(self.units(&self.as_drawn(gaps))?).collect())
+    }
+}
+
+impl Subject for Scene {
+    type Gaps = [f64; CONTACTS];
+
+    fn units(&self, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError> {
+        unit::units(self, drawn)
+    }
+
+    fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Option<Decisive>>, SimulateError> {
+        unit::decisive(self, drawn, asked)
+    }
+
+    fn gaps_at(&self, n: &[f64]) -> [f64; CONTACTS] {
+        let level = |i: usize| n.get(i).or(n.last()).copied().unwrap_or_default();
+        Scene::gaps_at(self, &std::array::from_fn(level))
+    }
+
+    fn levels_of(&self, gaps: &[f64; CONTACTS]) -> Vec<Option<f64>> {
+        Scene::levels_of(self, gaps).to_vec()
+    }
+
+    fn fits(&self, _: &[f64; CONTACTS]) -> bool {
+        true
+    }
+
+    fn parameters(&self) -> usize {
+        self.vary.len()
+    }
+}
