@@ -202,11 +202,11 @@ fn laws(table: &Field, otherwise: Option<Laws>) -> Result<Option<Laws>, SceneErr
 /// Reads a list of tables, each with a name of its own.
 fn tables<'t, 's>(root: &Field<'t, 's>, key: &str) -> Result<Vec<(String, Field<'t, 's>)>, SceneError> {
     let Some(list) = root.get(key) else { return Ok(Vec::new()) };
-    let allowed = format!("tables [[{key}]]");
+    let allowed = format!("tables [[{}]]", list.key);
     let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(allowed)) };
     let mut named: Vec<(String, Field)> = Vec::new();
     for node in nodes {
-        let table = Field { key: key.into(), node };
+        let table = Field { key: list.key.clone(), node };
         table.expect_table()?;
         let field = table.require("name", "a text in quotes")?;
         let name = field.to_text()?;
