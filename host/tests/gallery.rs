@@ -40,8 +40,8 @@ How to read the answers:
   largest of at least 1 %. `(Sobol')` marks a measure that is not nearly linear; its shares are total Sobol' indices
   ([glossary](glossary.md#statistics)).
 - **Yield.** The share of the units drawn that have all measures within their limits; the brackets hold its 95 % interval.
-- **Tolerances of `allocate`.** `new line` is the line to paste, `before` the tolerance that it replaces. The costs are in the currency
-  of the scene.
+- **Tolerances of `allocate`.** `new line` is the line to paste, `before` the tolerance that it replaces, in mm. The costs
+  are in the currency of the scene.
 ";
 
 /// What is asked, and what of the output is the answer.

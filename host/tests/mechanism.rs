@@ -163,3 +163,33 @@ fn a_carriage_that_locks_is_told_before() {
         assert_eq!([warned, sweep.contains("jammed")], [locks; 2], "{x}: {sweep}");
     }
 }
+
+/// The controller's error falls with the square of its step, as that of a scheme of second order does; without short steps it is
+/// told what to do.
+#[test]
+fn the_controller_of_a_mechanism_is_held_against_the_desk() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |options: &[&str]| {
+        let found = json(folder.path(), &[&["simulate", "slider-crank-guide", "--json"][..], options].concat());
+        (found["controller"]["difference"].as_f64().unwrap(), found["controller"]["shown"].as_bool().unwrap(), found)
+    };
+    let (own, shown, desk) = of(&[]);
+    assert!(!shown && own < 2e-3, "{own}");
+    let (coarse, shown, controller) = of(&["--step", "500us"]);
+    assert!(shown && coarse > 2.5 * own, "{coarse} {own}");
+    let (fine, ..) = of(&["--step", "125us"]);
+    assert!(2.5 * fine < own, "{fine} {own}");
+    // What is shown is the controller's: its peak differs by no more than it does somewhere.
+    let peak = |found: &serde_json::Value| found["drives"][0]["peak_force"].as_f64().unwrap();
+    let apart = (peak(&controller) / peak(&desk) - 1.0).abs();
+    assert!(0.0 < apart && apart <= coarse, "{apart} {coarse}");
+    for (options, code, why) in [
+        (["--integrator", "rk4"], 2, "only implicit ones"),
+        (["--scalar", "f32"], 2, "--scalar"),
+        (["--step", "2s"], 2, "step"),
+    ] {
+        let output = slipfit(folder.path(), &[&["simulate", "slider-crank"][..], &options].concat());
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(code) && errors.contains(why), "{options:?}: {errors}");
+    }
+}

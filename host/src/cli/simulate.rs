@@ -53,7 +53,7 @@ pub(super) const MOMENTS: usize = 160;
 /// the controller is off, which takes steps of one length. With `--step`, `--integrator`, `--scalar` or `--audit` the run shown is the
 /// controller's, and its error against the desk's is printed.
 ///
-/// For slides only: `--page`, `--audit`, `--stroke`, `--step`, `--integrator`, `--scalar`.
+/// For slides only: `--page`, `--audit`, `--stroke`, `--scalar`.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -201,12 +201,13 @@ impl Arguments {
             Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
                 let shown = self.audit || self.page.is_some();
-                if shown || self.controller.given() || self.length.stroke {
-                    let why = "--audit, --step, --integrator, --scalar, --stroke and --page are for slides on pins; \
-                               a mechanism runs for run.duration, or to run.stroke";
+                if shown || self.controller.scalar.is_some() || self.length.stroke {
+                    let why = "--audit, --scalar, --stroke and --page are for slides on pins; a mechanism runs for \
+                               run.duration, or to run.stroke, and its controller is computed in double precision";
                     return Err(Failure::Input(why.into()));
                 }
-                let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot };
+                let by_controller = self.controller.given();
+                let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot, by_controller };
                 let (mechanism, unit) = match self.unit {
                     Some(number) => {
                         let production =

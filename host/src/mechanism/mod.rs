@@ -26,7 +26,7 @@ pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps};
 pub use laws::{Laws, NormalData, Rebound};
 pub use mounts::{MountError, Mounts};
-pub use run::{MechanismRun, Rest, RunError, SCHEME, Samples, run};
+pub use run::{MechanismRun, Rest, RunError, SCHEME, Samples, controller_run, run};
 pub use source::{drive_names, element_paths, rust_source};
 pub use vary::{Parameter, Varied, tilted_x, tilted_z};
 

@@ -1,4 +1,4 @@
-//! The desk: one unit of any mechanism by error-controlled steps.
+//! One unit of any mechanism: by the desk in error-controlled steps, or by its controller's in steps of one length.
 
 use std::{
     ops::ControlFlow,
@@ -8,6 +8,7 @@ use std::{
 use slipfit_core::{
     ParameterError, SVector,
     integrator::{Integrator, Motion, Rodas4, Step},
+    kernel::{Kernel, State as KernelState},
     mechanism::Mechanism as _,
     system::{Bodies, Elements, System, planar::Coordinate},
 };
@@ -24,10 +25,11 @@ use crate::{
         looks::{end, looks, samples},
         out_of_line::OutOfLine,
         outcome::{Observer, Outcome, Trajectory},
-        scheme::ScalarKind,
+        scheme::{IntegratorVisitor, ScalarKind},
         simulate::{SimulateError, Solved},
     },
-    scene::RunSpec,
+    scene::{ControllerSpec, RunSpec},
+    system::interrupt,
 };
 
 /// How long (s) an error of speed may last: what makes an error of place of it.
@@ -56,6 +58,14 @@ pub enum RunError {
         "from t = {0} s on no step meets the tolerance, however short: the contacts may be too stiff for their masses"
     )]
     Unsolved(f64),
+    /// The motion left the finite range.
+    #[error("the motion left the finite range at t = {time} s: take a smaller step than {step} s")]
+    NotFinite {
+        /// When (s).
+        time: f64,
+        /// Step (s).
+        step: f64,
+    },
     /// Stopped from outside.
     #[error("interrupted")]
     Interrupted,
@@ -65,6 +75,7 @@ impl From<RunError> for SimulateError {
     fn from(error: RunError) -> Self {
         match error {
             RunError::Unsolved(time) => Self::Unsolved { time },
+            RunError::NotFinite { time, step } => Self::NotFinite { time, step },
             RunError::Interrupted => Self::Interrupted,
             bad => Self::Parameter(bad.to_string()),
         }
@@ -128,31 +139,59 @@ impl MechanismRun {
 /// # Errors
 /// See [`RunError`].
 pub fn run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
+    run_by(mechanism, gaps, every, None)
+}
+
+/// The same by the steps of its controller, in double precision. Only implicit schemes are known; implicit Euler stands for the
+/// others. A narrow stick band stands for true stick, as at the desk.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn controller_run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
+    run_by(mechanism, gaps, every, Some(mechanism.controller))
+}
+
+fn run_by(
+    mechanism: &Mechanism,
+    gaps: &[f64],
+    every: f64,
+    controller: Option<ControllerSpec>,
+) -> Result<MechanismRun, RunError> {
+    let by = By { every, controller };
     if mechanism.planar {
         let mounts = Mounts::of(mechanism)?;
         match mounts.coordinates().len() {
-            1 => in_plane::<1>(mechanism, &mounts, gaps, every),
-            2 => in_plane::<2>(mechanism, &mounts, gaps, every),
-            3 => in_plane::<3>(mechanism, &mounts, gaps, every),
-            4 => in_plane::<4>(mechanism, &mounts, gaps, every),
-            5 => in_plane::<5>(mechanism, &mounts, gaps, every),
-            _ => in_plane::<6>(mechanism, &mounts, gaps, every),
+            1 => in_plane::<1>(mechanism, &mounts, gaps, by),
+            2 => in_plane::<2>(mechanism, &mounts, gaps, by),
+            3 => in_plane::<3>(mechanism, &mounts, gaps, by),
+            4 => in_plane::<4>(mechanism, &mounts, gaps, by),
+            5 => in_plane::<5>(mechanism, &mounts, gaps, by),
+            _ => in_plane::<6>(mechanism, &mounts, gaps, by),
         }
     } else {
         match mechanism.bodies.len() {
-            1 => in_space::<1, 6>(mechanism, gaps, every),
-            2 => in_space::<2, 12>(mechanism, gaps, every),
-            3 => in_space::<3, 18>(mechanism, gaps, every),
+            1 => in_space::<1, 6>(mechanism, gaps, by),
+            2 => in_space::<2, 12>(mechanism, gaps, by),
+            3 => in_space::<3, 18>(mechanism, gaps, by),
             other => Err(RunError::Bodies(other)),
         }
     }
+}
+
+/// How a unit is computed and told of.
+#[derive(Clone, Copy)]
+struct By {
+    /// Time (s) between two samples.
+    every: f64,
+    /// A controller's steps; the desk's, if there are none.
+    controller: Option<ControllerSpec>,
 }
 
 fn in_plane<const D: usize>(
     mechanism: &Mechanism,
     mounts: &Mounts,
     gaps: &[f64],
-    every: f64,
+    by: By,
 ) -> Result<MechanismRun, RunError> {
     let tree = planar::bodies::<D>(mechanism, mounts)?;
     let limits = Limits::of(mechanism, |body| mounts.turn(Some(body)).map_or(0.0, |turn| tree.lever(turn)));
@@ -167,20 +206,20 @@ fn in_plane<const D: usize>(
         state
     };
     let told = |state: &State<D>| columns::planar(mechanism, mounts, &tree, state);
-    solve(mechanism, &System::new(tree, &elements[..]), (pose, rates), &limits, every, state, told)
+    solve(mechanism, &System::new(tree, &elements[..]), (pose, rates), &limits, by, state, told)
 }
 
 fn in_space<const N: usize, const D: usize>(
     mechanism: &Mechanism,
     gaps: &[f64],
-    every: f64,
+    by: By,
 ) -> Result<MechanismRun, RunError> {
     let bodies = spatial::bodies::<N, D>(mechanism)?;
     let limits = Limits::of(mechanism, |body| bodies.lever(body));
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let start = (bodies.nominal(), [0.0; D]);
     let system = System::new(bodies, &elements[..]);
-    solve(mechanism, &system, start, &limits, every, State::spatial::<N>, columns::spatial)
+    solve(mechanism, &system, start, &limits, by, State::spatial::<N>, columns::spatial)
 }
 
 /// Where and how fast a mechanism in a plane starts.
@@ -249,7 +288,7 @@ fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize
     system: &System<B, E>,
     (pose, rates): (B::Pose, [f64; D]),
     limits: &Limits,
-    every: f64,
+    by: By,
     mut state: impl FnMut(&B::Pose, [f64; D]) -> State<D>,
     told: impl Fn(&State<D>) -> Vec<BodyMotion>,
 ) -> Result<MechanismRun, RunError> {
@@ -268,11 +307,18 @@ fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
     let error = |step: &_, length| limits.error(step, length, least_mass);
-    let effort = integrate::<Rodas4, _, D>(&desk, start, mechanism.run.duration, error, |t, motion| {
+    let keep = |t: f64, motion: &Motion<f64, B::Pose, _, D>| {
         let values = state(&motion.pose, motion.velocity.into());
         knots.push(Knot { t, values });
         if ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })?;
+    };
+    let duration = mechanism.run.duration;
+    let effort = match by.controller {
+        None => integrate::<Rodas4, _, D>(&desk, start, duration, error, keep)?,
+        Some(ControllerSpec { step, integrator, .. }) => {
+            integrator.visit_implicit(FixedSteps { desk, start, duration, step, keep })?
+        }
+    };
     let integration = clock.elapsed();
     let end = end(&knots, |state| ends(&observers, state));
     looks(&knots, end, |t, state| {
@@ -283,7 +329,7 @@ fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize
     });
     let mut trajectories = vec![Trajectory::default(); mechanism.drives.len()];
     let mut rows = Vec::new();
-    let times = samples(end, every);
+    let times = samples(end, by.every);
     for (t, state) in times.clone().zip(sampled(&knots, times)) {
         let motions = told(&state);
         rows.push(mechanism.row(t, &motions));
@@ -297,6 +343,48 @@ fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize
     let outcomes = observers.iter().map(Observer::outcome).collect();
     let samples = Samples { columns: mechanism.columns(), rows };
     Ok(MechanismRun { samples, outcomes, trajectories, tolerance: limits.speed, effort, integration })
+}
+
+/// Steps of one length.
+struct FixedSteps<M, P, R, F, const D: usize> {
+    desk: M,
+    start: Motion<f64, P, R, D>,
+    /// How long (s).
+    duration: f64,
+    /// Length of a step (s).
+    step: f64,
+    /// Is told of the start and of every step, and says whether to go on.
+    keep: F,
+}
+
+impl<M, F, const D: usize> IntegratorVisitor for FixedSteps<M, M::Pose, M::Memory, F, D>
+where
+    M: slipfit_core::mechanism::Mechanism<f64, D>,
+    F: FnMut(f64, &Motion<f64, M::Pose, M::Memory, D>) -> ControlFlow<()>,
+{
+    type Output = Result<Effort, RunError>;
+
+    fn visit<I: Integrator>(mut self) -> Self::Output {
+        let kernel = Kernel::<f64, M, I>::new(self.desk, self.step)?;
+        let mut state = KernelState { steps: 0, motion: self.start };
+        let _ = (self.keep)(0.0, &state.motion);
+        let mut accepted = 0;
+        while kernel.time(state.steps) < self.duration * (1.0 - 1e-12) {
+            let report = kernel.step(&mut state);
+            let time = kernel.time(state.steps);
+            if !report.residual.is_finite() {
+                return Err(RunError::NotFinite { time, step: self.step });
+            }
+            if interrupt::requested() {
+                return Err(RunError::Interrupted);
+            }
+            accepted += 1;
+            if (self.keep)(time, &state.motion).is_break() {
+                break;
+            }
+        }
+        Ok(Effort { accepted, refused: 0 })
+    }
 }
 
 /// The scheme by which the desk integrates.

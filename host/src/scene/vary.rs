@@ -118,7 +118,9 @@ pub(super) fn vary(root: &Field) -> Result<Vec<Varied>, SceneError> {
     for of_mechanism in ["body", "mechanism"] {
         if let Some(field) = table.get(of_mechanism) {
             let what = format!("`vary.{of_mechanism}` without a mechanism");
-            return Err(field.error(Problem::Unsupported { what }, "vary.slide, whose mass and tilts are those of the slide"));
+            return Err(
+                field.error(Problem::Unsupported { what }, "vary.slide, whose mass and tilts are those of the slide")
+            );
         }
     }
     let mut varied = Vec::new();

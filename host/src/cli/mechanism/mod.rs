@@ -22,7 +22,7 @@ pub(super) use sweep::sweep;
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
-            RunError::Unsolved(_) | RunError::Interrupted => Self::Work(error.into()),
+            RunError::Unsolved(_) | RunError::NotFinite { .. } | RunError::Interrupted => Self::Work(error.into()),
             RunError::Mounts(_) | RunError::Bodies(_) | RunError::Parameter(_) => Self::Input(error.to_string()),
         }
     }
@@ -39,6 +39,8 @@ pub(super) struct Wanted<'a> {
     pub scene: &'a SceneArguments,
     pub csv: &'a Option<PathBuf>,
     pub plot: &'a Option<PathBuf>,
+    /// Whether the controller's run is shown, not the desk's.
+    pub by_controller: bool,
 }
 
 impl Wanted<'_> {

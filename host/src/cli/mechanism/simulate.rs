@@ -7,12 +7,13 @@ use serde::Serialize;
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{Failure, print, print_json, text_table},
-    mechanism::{Action, Mechanism, MechanismRun, SCHEME, finer, run},
+    mechanism::{Action, Mechanism, MechanismRun, RunError, SCHEME, controller_run, finer, run},
     population::{mechanism::mechanism_of, production::Production},
+    scene::ControllerSpec,
     show::{
         export::rows_csv,
         figure::columns_over_time,
-        number::{fixed, level, or_dash},
+        number::{fixed, level, or_dash, ten_digits},
     },
     system::files,
 };
@@ -28,10 +29,23 @@ struct SimulateReport<'a> {
     integration_ms: f64,
     /// The greatest difference of a drive's force or torque to a run at a tenth of the tolerance, as a share of its peak.
     difference: f64,
+    /// None without a drive.
+    controller: Option<ControllerReport>,
     drives: Vec<DriveReport<'a>>,
     gaps: Vec<GapReport<'a>>,
     columns: &'a [String],
     samples: &'a [Vec<f64>],
+}
+
+/// What the controller computes with, and how far it is off.
+#[derive(Serialize)]
+struct ControllerReport {
+    integrator: &'static str,
+    step_s: f64,
+    /// Whether figures and samples are its own.
+    shown: bool,
+    /// From the desk, as a share of the peak; none if the motion left the finite range.
+    difference: Option<f64>,
 }
 
 /// A unit that is simulated.
@@ -74,8 +88,13 @@ impl OneUnit {
 pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Wanted) -> Result<(), Failure> {
     let OneUnit { label, n, gaps } = unit;
     wanted.check_outputs()?;
-    let one = run(mechanism, gaps, every)?;
-    let difference = difference(mechanism, &one, &finer(mechanism, gaps, every)?);
+    let desk = run(mechanism, gaps, every)?;
+    let difference = differing(mechanism, &desk, &finer(mechanism, gaps, every)?);
+    let controller = controller(mechanism, gaps, every, &desk, wanted.by_controller)?;
+    let one = match &controller {
+        Some(Controller { run: Some(run), .. }) if wanted.by_controller => run,
+        _ => &desk,
+    };
     if let Some(path) = wanted.csv {
         files::write(path, &rows_csv(&one.samples)?)?;
     }
@@ -95,23 +114,67 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
             title: &mechanism.title,
             n,
             integrator: SCHEME,
-            tolerance_m_per_s: one.tolerance,
-            accepted: one.effort.accepted,
-            refused: one.effort.refused,
-            integration_ms: one.integration.as_secs_f64() * 1e3,
+            tolerance_m_per_s: desk.tolerance,
+            accepted: desk.effort.accepted,
+            refused: desk.effort.refused,
+            integration_ms: desk.integration.as_secs_f64() * 1e3,
             difference,
+            controller: controller.as_ref().map(|controller| ControllerReport {
+                integrator: mechanism.controller.integrator.name(),
+                step_s: mechanism.controller.step,
+                shown: wanted.by_controller,
+                difference: controller.difference,
+            }),
             drives: drives.collect(),
             gaps: gap_reports(mechanism, gaps),
             columns: &one.samples.columns,
             samples: &one.samples.rows,
         });
     }
-    print(&described(mechanism, label, &one, difference))
+    let computed = computed(&desk, difference) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
+    print(&format!("{}{computed}", described(mechanism, label, one)))
+}
+
+/// What the controller of a mechanism does.
+struct Controller {
+    /// Its run; none if it left the finite range.
+    run: Option<MechanismRun>,
+    /// The greatest difference of the drives' forces from the desk's, as a share of the peak.
+    difference: Option<f64>,
+}
+
+/// The controller beside the run of the `desk`: where there is a drive, or somebody has `asked` for it.
+fn controller(
+    mechanism: &Mechanism,
+    gaps: &[f64],
+    every: f64,
+    desk: &MechanismRun,
+    asked: bool,
+) -> Result<Option<Controller>, Failure> {
+    let scheme = mechanism.controller.integrator;
+    if !scheme.is_implicit() {
+        let why = format!(
+            "the controller's scheme is {}: of a mechanism only implicit ones are computed, such as extrapolated",
+            scheme.name()
+        );
+        return if asked { Err(Failure::Input(why)) } else { Ok(None) };
+    }
+    if mechanism.drives.is_empty() && !asked {
+        return Ok(None);
+    }
+    match controller_run(mechanism, gaps, every) {
+        Err(RunError::NotFinite { .. }) if !asked => Ok(Some(Controller { run: None, difference: None })),
+        run => {
+            let run = run?;
+            let difference = Some(differing(mechanism, &run, desk));
+            Ok(Some(Controller { run: Some(run), difference }))
+        }
+    }
 }
 
 /// The greatest difference of the drives' forces between two runs, as a share of the greatest force; of the first body's columns where
 /// there is no drive.
-fn difference(mechanism: &Mechanism, one: &MechanismRun, finer: &MechanismRun) -> f64 {
+fn differing(mechanism: &Mechanism, one: &MechanismRun, finer: &MechanismRun) -> f64 {
     let columns =
         if mechanism.drives.is_empty() { 1..one.samples.columns.len() } else { 1..1 + mechanism.drives.len() };
     let of_column = |k: usize| {
@@ -150,7 +213,37 @@ fn plotted(mechanism: &Mechanism) -> Vec<String> {
     columns
 }
 
-fn described(mechanism: &Mechanism, label: &str, run: &MechanismRun, difference: f64) -> String {
+/// How the desk has computed its run.
+fn computed(run: &MechanismRun, difference: f64) -> String {
+    format!(
+        "Computed by the desk, error-controlled to {:.1e} m/s a step ({SCHEME}, {} steps, {} refused) in {} ms\n\
+         A run at a tenth of that differs by {:.4} % of the peak\n",
+        run.tolerance,
+        run.effort.accepted,
+        run.effort.refused,
+        fixed(run.integration.as_secs_f64() * 1e3, 2),
+        difference * 100.0
+    )
+}
+
+/// How far the controller is off; its run is what was `shown`, if it was asked for.
+fn controllers(mechanism: &Mechanism, controller: Option<&Controller>, shown: bool) -> String {
+    let Some(controller) = controller else { return String::new() };
+    let ControllerSpec { step, integrator, .. } = mechanism.controller;
+    let by = format!("{}, steps of {} µs, double precision", integrator.name(), ten_digits(step * 1e6));
+    let whose = if shown { "The run above is the controller's" } else { "The controller" };
+    match controller.difference {
+        Some(difference) if difference < 10.0 => {
+            format!("{whose} ({by}): differs from the desk by {:.2} % of the peak\n", difference * 100.0)
+        }
+        Some(_) => {
+            format!("{whose} ({by}): differs from the desk by more than 1000 % of the peak: take shorter steps\n")
+        }
+        None => format!("{whose} ({by}): its motion leaves the finite range: take shorter steps\n"),
+    }
+}
+
+fn described(mechanism: &Mechanism, label: &str, run: &MechanismRun) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "{}, {label}\n", mechanism.title);
     let rows: Vec<_> = mechanism
@@ -189,14 +282,5 @@ fn described(mechanism: &Mechanism, label: &str, run: &MechanismRun, difference:
         })
         .collect();
     let _ = writeln!(text, "{}", text_table(heading, &rows));
-    let _ = writeln!(
-        text,
-        "Computed by the desk, error-controlled to {:.1e} m/s a step ({SCHEME}, {} steps, {} refused) in {} ms",
-        run.tolerance,
-        run.effort.accepted,
-        run.effort.refused,
-        fixed(run.integration.as_secs_f64() * 1e3, 2)
-    );
-    let _ = writeln!(text, "A run at a tenth of that differs by {:.4} % of the peak", difference * 100.0);
     text
 }
