@@ -193,3 +193,26 @@ fn the_controller_of_a_mechanism_is_held_against_the_desk() {
         assert!(output.status.code() == Some(code) && errors.contains(why), "{options:?}: {errors}");
     }
 }
+
+/// All schemes at all steps: the smallest error is that of extrapolated implicit Euler at its smallest step, or of error control, and
+/// both are known.
+#[test]
+fn schemes_of_a_mechanism_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = ["--set", "run.duration=60"];
+    let found = json(folder.path(), &[&["precision", "four-bar", "--n", "0", "--json"][..], &set].concat());
+    let floor = found["floors"][0]["max"].as_f64().unwrap();
+    assert!(floor < 1e-3, "{floor}");
+    let error = |solver: &str, setting: f64| {
+        let points = found["points"].as_array().unwrap();
+        let is = |point: &&serde_json::Value| point["solver"] == solver && point["setting"] == setting;
+        points.iter().find(is).unwrap_or_else(|| panic!("{solver} {setting}"))["max_percent"].as_f64().unwrap()
+    };
+    let [coarse, fine] = [100e-6, 25e-6].map(|step| error("extrapolated", step));
+    assert!((8.0..24.0).contains(&(coarse / fine)), "{coarse} {fine}");
+    let [coarse, fine] = [100e-6, 25e-6].map(|step| error("implicit-euler", step));
+    assert!((3.0..5.0).contains(&(coarse / fine)), "{coarse} {fine}");
+    assert!(error("error-controlled", 1e-8) < error("error-controlled", 1e-5));
+    let output = slipfit(folder.path(), &["precision", "four-bar", "--stability"]);
+    assert_eq!(output.status.code(), Some(2));
+}

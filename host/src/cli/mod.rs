@@ -128,12 +128,6 @@ impl SceneArguments {
         Ok(SceneFile::parse(&name, &text, &self.overrides(options))?)
     }
 
-    /// Reads the slide of the scene, with `options` as further settings.
-    fn load(&self, options: &[Override]) -> Result<Scene, Failure> {
-        let (name, text) = self.text()?;
-        Ok(Scene::parse(&name, &text, &self.overrides(options))?)
-    }
-
     /// Reads what moves in the scene, with `options` as further settings.
     fn load_moving(&self, options: &[Override]) -> Result<Moving, Failure> {
         Ok(self.load_moving_with_product(options)?.0)

@@ -6,11 +6,16 @@ use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
-use super::{Failure, SceneArguments, given, print, print_json, progress, stability::MapArguments, text_table};
+use super::{
+    DriveArguments, Failure, Moving, SceneArguments, given, print, print_json, progress, stability::MapArguments,
+    text_table,
+};
 use crate::{
-    dynamics::{deviation::Deviation, simulate::ScalarKind},
+    dynamics::deviation::Deviation,
+    mechanism::ByDrive,
     quality::precision::{
-        OPENING, Point, Problem, STROKE, Truth, measure, quickest_within, solvers, truth, work_precision,
+        OPENING, Point, Problem, STROKE, Solver, Truth, measure, quickest_within, solvers, solvers_of, truth, truth_of,
+        work_precision,
     },
     scene::Scene,
     show::{
@@ -22,12 +27,17 @@ use crate::{
 
 /// Measures error against run time of every integration scheme, step and number type.
 ///
-/// For slides only. The error is that of the drive force every millisecond, in % of its peak, against a far finer run. Explicit
-/// schemes are tried at finer steps, too, because they are stable only there.
+/// For slides, and mechanisms with a drive. The error is that of the drive's force or torque every millisecond, in % of its peak, against
+/// a far finer run. Explicit schemes are tried at finer steps, too, because they are stable only there. Of a mechanism the implicit
+/// schemes are tried, in double precision.
+///
+/// For slides only: `--stability`.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    drive: DriveArguments,
     /// Tolerance level of the unit; positive is tighter.
     #[arg(long, default_value_t = 2.5, allow_hyphen_values = true)]
     n: f64,
@@ -59,28 +69,39 @@ struct Floor {
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let scene = self.scene.load(&[])?;
         if !self.n.is_finite() {
             return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
         }
         self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
-        if self.map.stability {
-            return self.map.run(&scene, self.scene.json, self.csv.as_deref(), self.plot.as_deref());
-        }
-        let Study { problems, points } = study(&scene, self.n)?;
+        let (title, Study { problems, points }) = match self.scene.load_moving(&[])? {
+            Moving::Slide(scene) => {
+                self.drive.refuse()?;
+                if self.map.stability {
+                    return self.map.run(&scene, self.scene.json, self.csv.as_deref(), self.plot.as_deref());
+                }
+                (scene.title.clone(), study(&scene, self.n)?)
+            }
+            Moving::Mechanism(mechanism) => {
+                if self.map.stability {
+                    return Err(Failure::Input("--stability is for slides on pins".into()));
+                }
+                let gaps = mechanism.gaps_at(&[self.n])?;
+                (mechanism.title.clone(), study_of(&self.drive.of(&mechanism)?, &gaps)?)
+            }
+        };
         if let Some(path) = &self.csv {
             files::write(path, &precision_csv(&points)?)?;
         }
         if let Some(path) = &self.plot {
-            let svg = work_precision(&scene, self.n, &problems, &points).map_err(anyhow::Error::from)?;
+            let svg = work_precision(&title, self.n, &problems, &points).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         if self.scene.json {
             let floor = |(problem, truth): &(Problem, Truth)| Floor { problem: problem.name, percent: truth.floor };
             let floors = problems.iter().map(floor).collect();
-            print_json(&Report { title: &scene.title, n: self.n, floors, points: &points })
+            print_json(&Report { title: &title, n: self.n, floors, points: &points })
         } else {
-            print(&describe(&scene, self.n, &problems, &points))
+            print(&describe(&title, self.n, &problems, &points))
         }
     }
 }
@@ -94,29 +115,41 @@ struct Study {
 /// One run after the other, so that they do not disturb each other's time.
 fn study(scene: &Scene, n: f64) -> Result<Study, Failure> {
     let gaps = scene.gaps_at(&[n; CONTACTS]);
-    let solvers = solvers(scene);
-    let settings: usize = solvers.iter().map(|solver| solver.settings.len()).sum();
-    let bar = progress("measuring", 2 * (1 + 2 * settings));
     let (mut problems, mut points) = (Vec::new(), Vec::new());
     for problem in [OPENING, STROKE] {
         let truth = truth(scene, &gaps, problem)?;
-        bar.inc(1);
-        for solver in &solvers {
-            for scalar in [ScalarKind::F32, ScalarKind::F64].into_iter().filter(|scalar| solver.does(*scalar)) {
-                for setting in &solver.settings {
-                    points.push(measure(scene, &gaps, (problem, &truth), (solver, *setting), scalar)?);
-                    bar.inc(1);
-                }
-            }
-        }
+        points.extend(measured((problem, &truth), &solvers(scene, &gaps, problem))?);
         problems.push((problem, truth));
     }
-    bar.finish_and_clear();
     Ok(Study { problems, points })
 }
 
-fn describe(scene: &Scene, n: f64, problems: &[(Problem, Truth)], points: &[Point]) -> String {
-    let mut text = format!("{}, n = {}, errors in % of the peak force\n", scene.title, level(n));
+/// The same of the unit of a mechanism with these `gaps` (m).
+fn study_of(driven: &ByDrive, gaps: &[f64]) -> Result<Study, Failure> {
+    let (problem, truth) = truth_of(driven, gaps)?;
+    let points = measured((problem, &truth), &solvers_of(driven, gaps))?;
+    Ok(Study { problems: vec![(problem, truth)], points })
+}
+
+/// Every setting of the `solvers`.
+fn measured((problem, truth): (Problem, &Truth), solvers: &[Solver]) -> Result<Vec<Point>, Failure> {
+    let count: usize = solvers.iter().map(|solver| solver.settings.len() * solver.scalars.len()).sum();
+    let bar = progress("measuring", count);
+    let mut points = Vec::with_capacity(count);
+    for solver in solvers {
+        for scalar in solver.scalars {
+            for setting in &solver.settings {
+                points.push(measure((problem, truth), (solver, *setting), *scalar)?);
+                bar.inc(1);
+            }
+        }
+    }
+    bar.finish_and_clear();
+    Ok(points)
+}
+
+fn describe(title: &str, n: f64, problems: &[(Problem, Truth)], points: &[Point]) -> String {
+    let mut text = format!("{title}, n = {}, errors in % of the peak force\n", level(n));
     for (problem, truth) in problems {
         let here = || points.iter().filter(|point| point.problem == problem.name);
         let (name, milliseconds) = (problem.name, problem.duration * 1e3);

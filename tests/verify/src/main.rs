@@ -18,7 +18,7 @@ const TOOLS: [(&str, &str); 5] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("arm-none-eabi-gcc", "gcc-arm-none-eabi"),
     ("chromium", "chromium"),
-    ("sbatch", "slurm-wlm"),
+    ("slurmd", "slurm-wlm"),
     ("munge", "munge"),
 ];
 
@@ -108,7 +108,8 @@ fn has_package(package: &str) -> bool {
 
 /// Whether the program starts.
 fn has_program(program: &str) -> bool {
-    quietly(Command::new(program).arg("--version"))
+    // Daemons lie where not every user's shell looks.
+    [program.to_owned(), format!("/usr/sbin/{program}")].iter().any(|path| quietly(Command::new(path).arg("--version")))
 }
 
 /// Installs Debian packages, as root or with a sudo that asks nothing.

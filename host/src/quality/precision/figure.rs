@@ -3,7 +3,6 @@
 use super::{Point, Problem, Truth};
 use crate::{
     dynamics::simulate::ScalarKind,
-    scene::Scene,
     show::{
         layout::extent,
         number::{level, typeset},
@@ -20,7 +19,7 @@ const LOST: f64 = 100.0;
 /// # Errors
 /// [`PlotError`], if there is nothing to plot.
 pub fn work_precision(
-    scene: &Scene,
+    title: &str,
     n: f64,
     problems: &[(Problem, Truth)],
     points: &[Point],
@@ -36,7 +35,7 @@ pub fn work_precision(
         panel(problem, truth, &names, &here)
     });
     line_chart(&Chart {
-        title: scene.title.clone(),
+        title: title.into(),
         subtitle: format!(
             "error against run time, n = {}: a mark for each setting; thick f64, thin f32; grey: how well the truth is known",
             typeset(&level(n))

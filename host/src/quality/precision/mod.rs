@@ -9,20 +9,24 @@ use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
 pub use figure::work_precision;
-pub use solver::{Knob, Solver, solvers};
+pub use solver::{Knob, Solver, Timed, solvers, solvers_of};
 
 use crate::{
     dynamics::{
         deviation::Deviation,
         simulate::{Run, ScalarKind, Settings, SimulateError, simulate},
     },
+    mechanism::{ByDrive, run},
     scene::{RunSpec, Scene},
 };
+use solver::{to, whole};
 
 /// Interval of the samples that are compared (s).
 pub const EVERY: f64 = 1e-3;
 /// Error of force (N) that a step of the finest run may make.
 const FINEST: f64 = 1e-9;
+/// The same of a mechanism, as a share of its own speed.
+const FINEST_SHARE: f64 = 1e-9;
 
 /// A stretch of motion to be simulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +45,7 @@ pub const STROKE: Problem = Problem { name: "stroke", duration: 1.5 };
 /// What every run of a problem is compared with.
 #[derive(Clone, Debug)]
 pub struct Truth {
-    /// Drive force (N) every millisecond.
+    /// Drive force (N), or torque (N·m), every millisecond.
     pub force: Vec<f64>,
     /// How far a run at ten times the tolerance is off: errors below are not known.
     pub floor: Deviation,
@@ -88,13 +92,25 @@ pub fn truth(scene: &Scene, gaps: &[f64; CONTACTS], problem: Problem) -> Result<
     Ok(Truth { force: finest, floor })
 }
 
+/// The same of the unit of a mechanism with these `gaps` (m), over its whole duration.
+///
+/// # Errors
+/// See [`SimulateError`].
+pub fn truth_of(driven: &ByDrive, gaps: &[f64]) -> Result<(Problem, Truth), SimulateError> {
+    let mechanism = whole(driven);
+    let force = |share| -> Result<Vec<f64>, SimulateError> {
+        Ok(run(&to(&mechanism, share), gaps, EVERY)?.trajectories.swap_remove(driven.index()).force)
+    };
+    let (fine, finest) = (force(10.0 * FINEST_SHARE)?, force(FINEST_SHARE)?);
+    let floor = Deviation::between(&fine, &finest);
+    Ok((Problem { name: "run", duration: mechanism.run.duration }, Truth { force: finest, floor }))
+}
+
 /// Runs `solver` at `setting` again and again until the least run time can be trusted.
 ///
 /// # Errors
 /// See [`SimulateError`]; a motion that leaves the finite range is a finding, not an error.
 pub fn measure(
-    scene: &Scene,
-    gaps: &[f64; CONTACTS],
     (problem, truth): (Problem, &Truth),
     (solver, setting): (&Solver, f64),
     scalar: ScalarKind,
@@ -112,9 +128,9 @@ pub fn measure(
         late_rms_percent: None,
         blew_up_at_s: None,
     };
-    match quickest(|| solver.run(scene, gaps, problem.duration, setting, scalar)) {
+    match quickest(|| solver.run(setting, scalar)) {
         Ok(run) => {
-            let error = Deviation::between(&run.trajectory.force, &truth.force);
+            let error = Deviation::between(&run.force, &truth.force);
             Ok(Point {
                 run_ms: Some(run.integration.as_secs_f64() * 1e3),
                 max_percent: Some(error.max),
@@ -130,7 +146,7 @@ pub fn measure(
 }
 
 /// The quickest of at least 5 runs and 50 ms, unless these take more than a second.
-fn quickest(run: impl Fn() -> Result<Run, SimulateError>) -> Result<Run, SimulateError> {
+fn quickest(run: impl Fn() -> Result<Timed, SimulateError>) -> Result<Timed, SimulateError> {
     let start = Instant::now();
     let mut best = run()?;
     let mut count = 1;
@@ -171,10 +187,10 @@ mod tests {
         let gaps = scene.gaps_at(&[2.5; CONTACTS]);
         let truth = truth(&scene, &gaps, SHORT).unwrap();
         assert!(truth.force.len() == 61 && truth.floor.max < 0.01, "{:?}", truth.floor);
-        let solvers = solvers(&scene);
+        let solvers = solvers(&scene, &gaps, SHORT);
         let of = |name: &str, setting| {
             let solver = solvers.iter().find(|solver| solver.name == name).unwrap();
-            measure(&scene, &gaps, (SHORT, &truth), (solver, setting), ScalarKind::F64).unwrap()
+            measure((SHORT, &truth), (solver, setting), ScalarKind::F64).unwrap()
         };
         let points = [1e-3, 1e-4, 1e-5].map(|step| of("extrapolated", step));
         assert!(points.windows(2).all(|pair| pair[1].max_percent < pair[0].max_percent), "{points:?}");
@@ -184,16 +200,17 @@ mod tests {
         // An explicit scheme far beyond its stable step.
         let lost = of("rk4", 1e-3);
         assert!(lost.blew_up_at_s.is_some() || lost.max_percent.unwrap() > 10.0, "{lost:?}");
-        let svg = work_precision(&scene, 2.5, &[(SHORT, truth)], &points).unwrap();
+        let svg = work_precision(&scene.title, 2.5, &[(SHORT, truth)], &points).unwrap();
         assert!(svg.contains("extrapolated") && svg.contains("opening"));
     }
 
     #[test]
     fn exact_friction_is_for_implicit_solvers() {
         let mut scene = example::cd_rom();
-        assert_eq!(solvers(&scene).len(), IntegratorKind::ALL.len() + 1, "and error control");
+        let gaps = scene.gaps_at(&[0.0; CONTACTS]);
+        assert_eq!(solvers(&scene, &gaps, SHORT).len(), IntegratorKind::ALL.len() + 1, "and error control");
         scene.friction = FrictionData::Exact { coefficient: 0.3 };
-        let names: Vec<_> = solvers(&scene).iter().map(|solver| solver.name).collect();
+        let names: Vec<_> = solvers(&scene, &gaps, SHORT).iter().map(|solver| solver.name).collect();
         assert!(names.contains(&"sdirk2") && !names.contains(&"rk4"), "{names:?}");
     }
 }
