@@ -3,11 +3,15 @@
 use super::{
     number::{fixed, typeset},
     palette::{INK, NEGATIVE, POSITIVE},
-    svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE},
+    svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, wrapped},
 };
 
-/// Height of the title.
+/// Height of a title with a subtitle of one line.
 pub const HEAD: f64 = 66.0;
+/// Height of a further line of the subtitle.
+const LINE: f64 = 17.0;
+/// About how wide (px) a character of the subtitle is.
+const CHARACTER: f64 = 7.8;
 /// The most characters of a name.
 pub const NAME: usize = 36;
 const ROW: f64 = 20.0;
@@ -60,15 +64,17 @@ pub fn sheets(blocks: &[Block]) -> Vec<&[Block]> {
 
 /// Bars of `blocks` as an SVG document without XML declaration.
 pub fn bars(title: &str, subtitle: &str, blocks: &[Block]) -> String {
-    let height: f64 = HEAD + blocks.iter().map(Block::height).sum::<f64>();
     let all = || blocks.iter().flat_map(|block| &block.bars);
     let left = longest(all().map(|bar| bar.name.as_str())).max(100.0) + 32.0;
     let low = all().map(|bar| bar.percent).fold(0.0, f64::min);
     let high = all().map(|bar| bar.percent + bar.error.unwrap_or(0.0)).fold(100.0, f64::max);
     let scale = BARS / (high - low);
-    let mut svg = document([left + BARS + 80.0, height], title, subtitle);
+    let width = left + BARS + 80.0;
+    let head = head(width, subtitle);
+    let height: f64 = head + blocks.iter().map(Block::height).sum::<f64>();
+    let mut svg = document([width, height], title, subtitle);
     let name = Font { most: NAME, anchor: Anchor::End, ..PLAIN };
-    let (zero, mut y) = (left - scale * low, HEAD);
+    let (zero, mut y) = (left - scale * low, head);
     for block in blocks {
         svg.text([16.0, y + 10.0], &block.heading, Font { bold: true, most: NAME, ..PLAIN });
         y += ROW;
@@ -94,8 +100,20 @@ pub fn bars(title: &str, subtitle: &str, blocks: &[Block]) -> String {
 pub fn document([width, height]: [f64; 2], title: &str, subtitle: &str) -> Svg {
     let mut svg = Svg::new([width, height], &format!("{title}: {subtitle}"));
     svg.text([16.0, 26.0], title, Font { most: ((width - 32.0) / 10.2) as usize, ..TITLE });
-    svg.text([16.0, 48.0], subtitle, SUBTITLE);
+    for (line, y) in broken(width, subtitle).iter().zip((0..).map(|k| 48.0 + LINE * f64::from(k))) {
+        svg.text([16.0, y], line, SUBTITLE);
+    }
     svg
+}
+
+/// Height of the title of a picture of this `width` (px).
+fn head(width: f64, subtitle: &str) -> f64 {
+    HEAD + LINE * (broken(width, subtitle).len() as f64 - 1.0).max(0.0)
+}
+
+/// The lines of a subtitle.
+fn broken(width: f64, subtitle: &str) -> Vec<String> {
+    wrapped(subtitle, ((width - 32.0) / CHARACTER) as usize)
 }
 
 /// About how wide the longest of some names is.

@@ -168,9 +168,12 @@ fn figures(
     let (title, kind) = (driven.title(), driven.kind());
     let pictures = [
         ("Every mark is a unit of the production, drawn with gaps of its own.", picture(driven, placed, limit)),
-        ("How much units need of the drive.", histogram(title, kind, &found.population.units, limit)),
         (
-            "Which gaps and tolerances the drive's greatest and the malfunction vary with, the strongest first.",
+            "The greatest force or torque that units need of the drive.",
+            histogram(title, kind, &found.population.units, limit),
+        ),
+        (
+            "Which gaps and tolerances malfunction and the greatest force or torque vary with, the strongest first.",
             ranking(title, kind, &found.population),
         ),
         (HYPOTHESIS, hypothesis(title, &found.hypothesis)),

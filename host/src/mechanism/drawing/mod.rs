@@ -127,17 +127,21 @@ impl Mechanism {
                 None => labels.push((at, (i + 1).to_string())),
             }
         }
+        let turns = self.drives.iter().filter(|drive| matches!(drive.action, Action::Turns { .. }));
+        let arcs: Vec<[f64; 2]> = turns.map(|drive| view.at(self.pivot(drive.body))).collect();
         let mut taken: Vec<[f64; 4]> = Vec::new();
         for ([x, y], label) in labels {
             let width = 8.0 * label.chars().count() as f64;
+            // Beyond the arc of a drive that turns.
+            let out = if arcs.iter().any(|arc| (arc[0] - x).hypot(arc[1] - y) < 24.0) { 7.0 } else { 0.0 };
             let room = |[dx, dy]: [f64; 2]| [x + dx, y + dy - 8.0, width, 16.0];
             // The first place beside the joint that no other label has.
             let free = |offset: &&[f64; 2]| !taken.iter().any(|other| overlap(*other, room(**offset)));
             let places = [
-                [10.0, -22.0],
-                [10.0, 24.0],
-                [-10.0 - width, -22.0],
-                [-10.0 - width, 24.0],
+                [10.0 + out, -22.0 - out],
+                [10.0 + out, 24.0 + out],
+                [-10.0 - out - width, -22.0 - out],
+                [-10.0 - out - width, 24.0 + out],
                 [10.0, -40.0],
                 [10.0, 42.0],
             ];
