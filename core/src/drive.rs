@@ -26,7 +26,6 @@ impl<S: Scalar + PartialOrd> Drive<S> {
     ///
     /// # Errors
     /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
-    #[inline(always)]
     pub fn checked(self) -> Result<Self, ParameterError<S>> {
         bounded("drive.gain", self.gain, [0.0, 1e9])?;
         bounded("drive.ramp_start", self.ramp_start, [-1e6, 1e6])?;

@@ -27,7 +27,6 @@ impl<S: core::fmt::Display + core::fmt::Debug> core::error::Error for ParameterE
 ///
 /// # Errors
 /// [`ParameterError`] if it does not, or is NaN.
-#[inline(always)]
 pub(crate) fn bounded<S: crate::Scalar + PartialOrd>(
     parameter: &'static str,
     value: S,

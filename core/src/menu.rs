@@ -74,7 +74,6 @@ pub enum NormalType {
 
 impl NormalType {
     /// The cheapest type that covers `exponent`.
-    #[inline(always)]
     pub fn of<S: Scalar + PartialOrd>(exponent: S) -> Self {
         if exponent == S::one() {
             Self::Linear
@@ -99,7 +98,6 @@ pub enum FrictionType {
 
 impl<S: Scalar + PartialOrd> ContactData<S> {
     /// The cheapest normal law that covers the exponent.
-    #[inline(always)]
     pub fn normal_type(&self) -> NormalType {
         NormalType::of(self.exponent)
     }
@@ -107,7 +105,6 @@ impl<S: Scalar + PartialOrd> ContactData<S> {
 
 impl<S: Scalar + PartialOrd> FrictionData<S> {
     /// Coefficient μ, 0 without friction.
-    #[inline(always)]
     pub fn coefficient(&self) -> S {
         match *self {
             Self::None => S::zero(),
@@ -116,7 +113,6 @@ impl<S: Scalar + PartialOrd> FrictionData<S> {
     }
 
     /// The cheapest friction law that covers the data.
-    #[inline(always)]
     pub fn friction_type(&self) -> FrictionType {
         match self {
             _ if self.coefficient() == S::zero() => FrictionType::Frictionless,

@@ -76,7 +76,6 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     /// # Errors
     /// [`ParameterError`] names the first parameter of `body` or `drive` that is not finite or out of bounds.
     /// The laws are validated where they are made, see [`menu`](crate::menu).
-    #[inline(always)]
     pub fn new(body: Body<S>, contact: Impact<S, E>, friction: F, drive: Drive<S>) -> Result<Self, ParameterError<S>> {
         bounded("slide.mass", body.mass, [1e-6, 1e6])?;
         for moment in body.inertia_b.iter() {

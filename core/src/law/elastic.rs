@@ -51,7 +51,6 @@ impl<S: Scalar + PartialOrd> ThreeHalves<S> {
     ///
     /// # Errors
     /// If it is negative, above 1e20 or not finite.
-    #[inline(always)]
     pub fn new(stiffness: S) -> Result<Self, ParameterError<S>> {
         Ok(Self { stiffness: bounded("contact.stiffness", stiffness, STIFFNESS)? })
     }

@@ -23,7 +23,6 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>> Impact<S, E> {
     ///
     /// # Errors
     /// If c is negative or d not positive, or either out of bounds or not finite.
-    #[inline(always)]
     pub fn new(elastic: E, damping: S, depth: S) -> Result<Self, ParameterError<S>> {
         let damping = bounded("contact.damping", damping, [0.0, 1e12])?;
         let depth = bounded("contact.depth", depth, [1e-9, 1e3])?;

@@ -51,7 +51,7 @@ enum Gap {
 pub struct Drawn<G = [f64; CONTACTS]> {
     /// Their numbers.
     pub numbers: Range<u64>,
-    /// Gaps (m) of each; [`ABSENT`] for none.
+    /// Gaps (m) of each; [`ABSENT`](slipfit_core::slide::ABSENT) for none.
     pub gaps: Vec<G>,
     /// Deviations (SI) of the parameters of each, in the order in which the scene says what varies.
     pub deviations: Vec<Vec<f64>>,

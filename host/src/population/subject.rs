@@ -27,6 +27,9 @@ impl UnitGaps for Vec<f64> {
     }
 }
 
+/// A level of eq. 9, and the unit there.
+pub type AtLevel<G> = (f64, Unit<G>);
+
 /// What the units of a production are units of.
 pub trait Subject: Sync {
     /// The gaps of a unit.
@@ -80,7 +83,7 @@ pub trait Subject: Sync {
     ///
     /// # Errors
     /// As [`Subject::units`].
-    fn at_levels(&self, n: &[f64]) -> Result<Vec<(f64, Unit<Self::Gaps>)>, SimulateError> {
+    fn at_levels(&self, n: &[f64]) -> Result<Vec<AtLevel<Self::Gaps>>, SimulateError> {
         let (n, gaps): (Vec<_>, Vec<_>) =
             n.iter().map(|n| (*n, self.gaps_at(&[*n]))).filter(|(_, gaps)| self.fits(gaps)).unzip();
         Ok(n.into_iter().zip(self.units(&self.as_drawn(gaps))?).collect())

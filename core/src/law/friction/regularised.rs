@@ -18,7 +18,6 @@ impl<S: Scalar + PartialOrd> Regularised<S> {
     ///
     /// # Errors
     /// If μ is negative or v_s not positive, or either out of bounds or not finite.
-    #[inline(always)]
     pub fn new(coefficient: S, stick_band: S) -> Result<Self, ParameterError<S>> {
         let coefficient = bounded("friction.coefficient", coefficient, [0.0, 100.0])?;
         let stick_band = bounded("friction.stick_band", stick_band, [1e-10, 1e3])?;
