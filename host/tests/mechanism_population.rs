@@ -5,11 +5,14 @@ mod common;
 use common::{json, slipfit, stdout};
 use slipfit::scene::shipped;
 
-/// A slider that comes 21 mm far, if it does not meet a stop before.
-const STOPPED: &str = r#"
-title = "Slider before a stop"
+/// A slider of 200 g on an ideal guide, which a motor pushes to 100 mm/s in 0.05 s, and `more`.
+fn slider(title: &str, gravity: &str, gain: u32, duration: u32, more: &str) -> String {
+    format!(
+        r#"
+title = "{title}"
 [mechanism]
 space = "plane"
+gravity = {gravity}
 [contact]
 stiffness = "1e8 N/m^1.5"
 exponent = 1.5
@@ -26,6 +29,23 @@ kind = "prismatic"
 between = ["frame", "slider"]
 at = [0, 0]
 axis = [1, 0]
+[[drive]]
+name = "motor"
+pushes = "slider"
+axis = [1, 0]
+gain = "{gain} N·s/m"
+ramp_start = 0
+ramp_end = 0.05
+speed = 100
+[run]
+duration = {duration}
+{more}"#
+    )
+}
+
+/// It comes 21 mm far, if it does not meet a stop before.
+fn stopped() -> String {
+    let stop = r#"
 [[joint]]
 name = "stop"
 kind = "stop"
@@ -33,25 +53,17 @@ between = ["frame", "slider"]
 at = [0, 0]
 normal = [1, 0]
 clearance = [20, 1]
-[[drive]]
-name = "motor"
-pushes = "slider"
-axis = [1, 0]
-gain = "20 N·s/m"
-ramp_start = 0
-ramp_end = 0.05
-speed = 100
-[run]
-duration = 245
 [sweep]
 n = "-2:2:1"
 "#;
+    slider("Slider before a stop", "[0, 0]", 20, 245, stop)
+}
 
 /// Units whose stop is nearer than that malfunction: Φ(1) of them.
 #[test]
 fn units_of_a_mechanism_fail_as_often_as_their_gap_says() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("stop.toml"), STOPPED).unwrap();
+    std::fs::write(folder.path().join("stop.toml"), stopped()).unwrap();
     let found = json(folder.path(), &["population", "stop.toml", "--units", "4000", "--json"]);
     let share = &found["statistics"]["malfunctions"];
     let (least, most) = (share["interval"][0].as_f64().unwrap(), share["interval"][1].as_f64().unwrap());
@@ -106,42 +118,15 @@ fn joints_of_one_measure_have_one_gap() {
     assert!((mean - 0.05e-3).abs() < 4.0 * deviation / 20.0 && (libm::sqrt(square) / deviation - 1.0).abs() < 0.12);
 }
 
-/// A weight that is lifted without friction.
-const LIFTED: &str = r#"
-title = "Lift"
-[mechanism]
-space = "plane"
-gravity = [-9.81, 0]
-[contact]
-stiffness = "1e8 N/m^1.5"
-exponent = 1.5
-damping = "200 N·s/m"
-depth = 0.01
-[[body]]
-name = "weight"
-mass = 200
-inertia = "1e-4 kg·m²"
-centre = [0, 0]
-[[joint]]
-name = "guide"
-kind = "prismatic"
-between = ["frame", "weight"]
-at = [0, 0]
-axis = [1, 0]
-[[drive]]
-name = "motor"
-pushes = "weight"
-axis = [1, 0]
-gain = "200 N·s/m"
-ramp_start = 0
-ramp_end = 0.05
-speed = 100
-[run]
-duration = 100
+/// It is lifted, without friction, and its mass varies.
+fn lifted() -> String {
+    let varies = r#"
 [[vary.body]]
-name = "weight"
+name = "slider"
 mass = { tolerance = 30, sigma = 3 }
 "#;
+    slider("Lift", "[-9.81, 0]", 200, 100, varies)
+}
 
 /// Its greatest force (N) with a `mass` m (kg): of Ḟ = gain·(v̇ + g − F/m), v the ramp's speed, by exact steps with a constant
 /// acceleration.
@@ -162,7 +147,7 @@ fn lifting(mass: f64) -> f64 {
 #[test]
 fn a_motor_is_too_weak_as_often_as_the_mass_says() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("lift.toml"), LIFTED).unwrap();
+    std::fs::write(folder.path().join("lift.toml"), lifted()).unwrap();
     let of = |units: &str, mass: f64, options: &[&str]| {
         let limit = lifting(mass).to_string();
         let arguments = ["population", "lift.toml", "--json", "--units", units, "--force-limit", &limit];
@@ -171,7 +156,7 @@ fn a_motor_is_too_weak_as_often_as_the_mass_says() {
     let found = of("2000", 0.21, &[]);
     let share = found["statistics"]["over_limit"]["share"].as_f64().unwrap();
     assert!((share - 0.158_655).abs() < 3.0 * libm::sqrt(0.1335 / 2000.0), "{share}");
-    assert_eq!(found["force_drivers"][0]["name"], "weight.mass");
+    assert_eq!(found["force_drivers"][0]["name"], "slider.mass");
     // The unit alone has the mass that it was drawn with.
     let worst = &found["worst"][0];
     let alone = json(folder.path(), &["simulate", "lift.toml", "--json", "--unit", &worst["number"].to_string()]);
@@ -188,13 +173,13 @@ fn a_motor_is_too_weak_as_often_as_the_mass_says() {
 fn what_varies_has_to_be_there() {
     let folder = tempfile::tempdir().unwrap();
     for (from, to, why) in [
-        ("name = \"weight\"\nmass = {", "name = \"box\"\nmass = {", "box"),
-        ("[[vary.body]]\nname = \"weight\"\nmass", "[[vary.drive]]\nname = \"pump\"\ngain", "allowed: motor"),
-        ("[[vary.body]]\nname = \"weight\"\nmass", "[vary.mechanism]\ntilt_x", "leaves the plane"),
-        ("[[vary.body]]\nname = \"weight\"\n", "[vary.slide]\n", "[[vary.body]]"),
-        ("[[vary.body]]\nname = \"weight\"\nmass", "[vary.drive]\ngain", "allowed"),
+        ("name = \"slider\"\nmass = {", "name = \"box\"\nmass = {", "box"),
+        ("[[vary.body]]\nname = \"slider\"\nmass", "[[vary.drive]]\nname = \"pump\"\ngain", "allowed: motor"),
+        ("[[vary.body]]\nname = \"slider\"\nmass", "[vary.mechanism]\ntilt_x", "leaves the plane"),
+        ("[[vary.body]]\nname = \"slider\"\n", "[vary.slide]\n", "[[vary.body]]"),
+        ("[[vary.body]]\nname = \"slider\"\nmass", "[vary.drive]\ngain", "allowed"),
     ] {
-        std::fs::write(folder.path().join("lift.toml"), LIFTED.replace(from, to)).unwrap();
+        std::fs::write(folder.path().join("lift.toml"), lifted().replace(from, to)).unwrap();
         let output = slipfit(folder.path(), &["population", "lift.toml"]);
         let errors = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{to}: {errors}");
@@ -206,7 +191,7 @@ fn what_varies_has_to_be_there() {
 #[test]
 fn shards_of_a_mechanism_are_the_whole() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("stop.toml"), STOPPED).unwrap();
+    std::fs::write(folder.path().join("stop.toml"), stopped()).unwrap();
     let at = |name: &str| folder.path().join(name);
     let common = ["population", "stop.toml", "--units", "1100", "--force-limit", "3", "--json"];
     let of = |options: &[&str]| stdout(&slipfit(folder.path(), &[&common[..], options].concat()));

@@ -45,17 +45,19 @@ impl Mechanism {
     /// # Errors
     /// [`GapError`] names the first gap that is out of bounds.
     pub fn gaps_at(&self, n: &[f64]) -> Result<Gaps, GapError> {
-        let level = |i: usize| n.get(i).or(n.last()).copied().unwrap_or_default();
-        let at = |(i, gap): (usize, &Gap)| {
-            let value = gap.statistics.at(level(i));
-            let least = self.least_gap(i);
-            if value >= least && value <= GAP_MOST {
-                Ok(value)
-            } else {
-                Err(GapError { n: level(i), name: gap.name.clone(), gap: value, least })
+        let gaps = self.stated_gaps_at(n);
+        match self.misfit(&gaps) {
+            None => Ok(gaps),
+            Some(i) => {
+                let (name, least) = (self.gaps[i].name.clone(), self.least_gap(i));
+                Err(GapError { n: level_of(n, i), name, gap: gaps[i], least })
             }
-        };
-        self.gaps.iter().enumerate().map(at).collect()
+        }
+    }
+
+    /// The same, whether the joints allow such gaps or not.
+    pub fn stated_gaps_at(&self, n: &[f64]) -> Gaps {
+        self.gaps.iter().enumerate().map(|(i, gap)| gap.statistics.at(level_of(n, i))).collect()
     }
 
     /// The first of a unit's `gaps` (m) that its joint does not allow: such a unit cannot be assembled.
@@ -75,4 +77,9 @@ impl Mechanism {
         let round = |kind: &_| matches!(kind, Journal { gap, .. } | Bearing { gap, .. } if *gap == i);
         if self.joints.iter().any(|joint| round(&joint.kind)) { 0.0 } else { -GAP_MOST }
     }
+}
+
+/// The level of gap `i` among the levels `n`, the last of which holds for all that follow.
+pub fn level_of(n: &[f64], i: usize) -> f64 {
+    n.get(i).or(n.last()).copied().unwrap_or_default()
 }

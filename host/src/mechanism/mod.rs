@@ -23,12 +23,12 @@ mod vary;
 
 pub use driven::{ByDrive, confirmed, finer};
 pub use freedom::Freedom;
-pub use gaps::{GapError, Gaps};
+pub use gaps::{GapError, Gaps, level_of};
 pub use laws::{Laws, NormalData, Rebound};
 pub use mounts::{MountError, Mounts};
 pub use run::{MechanismRun, Rest, RunError, SCHEME, Samples, controller_run, run};
 pub use source::{drive_names, element_paths, rust_source};
-pub use vary::{Parameter, Varied, tilted_x, tilted_z};
+pub use vary::{Parameter, Varied, rub_more, tilted_x, tilted_z};
 
 use slipfit_core::{clearance::GapStatistics, drive::Drive};
 

@@ -5,11 +5,11 @@ use slipfit_core::menu::FrictionData;
 use super::{Mechanism, NormalData};
 use crate::tolerance::model::Contributor;
 
-/// A parameter that varies, and by how much from the scene's value.
+/// A parameter that varies, and by how much from the scene's value: a mechanism's, or of another menu `P`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Varied {
+pub struct Varied<P = Parameter> {
     /// Which.
-    pub parameter: Parameter,
+    pub parameter: P,
     /// Its deviation (SI) from the scene's value.
     pub deviation: Contributor,
 }
@@ -40,12 +40,7 @@ impl Parameter {
     pub fn apply(self, mechanism: &mut Mechanism, deviation: f64) {
         let laws = mechanism.joints.iter_mut().map(|joint| &mut joint.laws);
         match self {
-            Self::Friction => laws.for_each(|laws| match &mut laws.friction {
-                FrictionData::Regularised { coefficient, .. } | FrictionData::Exact { coefficient } => {
-                    *coefficient += deviation;
-                }
-                FrictionData::None => {}
-            }),
+            Self::Friction => laws.for_each(|laws| rub_more(&mut laws.friction, deviation)),
             Self::Stiffness => laws.for_each(|laws| match &mut laws.contact {
                 NormalData::Impact(data) => data.stiffness *= 1.0 + deviation,
                 NormalData::HuntCrossley(data) | NormalData::LankaraniNikravesh(data) => {
@@ -71,13 +66,23 @@ impl Parameter {
     }
 }
 
-/// `gravity` turned about x by an `angle` (rad).
+/// Raises the coefficient of `friction` by a `deviation`; where there is no friction there is none.
+pub fn rub_more(friction: &mut FrictionData<f64>, deviation: f64) {
+    match friction {
+        FrictionData::Regularised { coefficient, .. } | FrictionData::Exact { coefficient } => {
+            *coefficient += deviation
+        }
+        FrictionData::None => {}
+    }
+}
+
+/// `gravity` (m/s²) turned about x by an `angle` (rad).
 pub fn tilted_x([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
     [x, cos * y - sin * z, sin * y + cos * z]
 }
 
-/// `gravity` turned about z by an `angle` (rad).
+/// `gravity` (m/s²) turned about z by an `angle` (rad).
 pub fn tilted_z([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
     [cos * x - sin * y, sin * x + cos * y, z]

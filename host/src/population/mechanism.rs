@@ -47,8 +47,7 @@ impl Subject for ByDrive<'_> {
     }
 
     fn gaps_at(&self, n: &[f64]) -> Vec<f64> {
-        let level = |i: usize| n.get(i).or(n.last()).copied().unwrap_or_default();
-        self.mechanism().gaps.iter().enumerate().map(|(i, gap)| gap.statistics.at(level(i))).collect()
+        self.mechanism().stated_gaps_at(n)
     }
 
     fn levels_of(&self, gaps: &Vec<f64>) -> Vec<Option<f64>> {

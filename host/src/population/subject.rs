@@ -7,7 +7,7 @@ use super::{
     production::Drawn,
     unit::{self, Decisive},
 };
-use crate::{dynamics::simulate::SimulateError, scene::Scene};
+use crate::{dynamics::simulate::SimulateError, mechanism::level_of, scene::Scene};
 
 /// The gaps (m) of one unit: as many as a slide's pins have, or as many as a mechanism has.
 pub trait UnitGaps: Clone + Send + Sync + AsRef<[f64]> + AsMut<[f64]> {
@@ -102,8 +102,7 @@ impl Subject for Scene {
     }
 
     fn gaps_at(&self, n: &[f64]) -> [f64; CONTACTS] {
-        let level = |i: usize| n.get(i).or(n.last()).copied().unwrap_or_default();
-        Scene::gaps_at(self, &std::array::from_fn(level))
+        Scene::gaps_at(self, &std::array::from_fn(|i| level_of(n, i)))
     }
 
     fn levels_of(&self, gaps: &[f64; CONTACTS]) -> Vec<Option<f64>> {

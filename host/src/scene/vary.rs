@@ -6,11 +6,7 @@ use super::{
     unit::{self, Quantity},
     value::Field,
 };
-use crate::{
-    mechanism::{tilted_x, tilted_z},
-    tolerance::model::Contributor,
-};
-use slipfit_core::menu::FrictionData;
+use crate::mechanism::{self, rub_more, tilted_x, tilted_z};
 
 /// A deviation that is a number without a unit.
 pub(super) const SHARE: Quantity = Quantity { units: unit::ONE, range: [-100.0, 100.0] };
@@ -23,14 +19,8 @@ pub(super) const RAMP_END: Quantity = Quantity { units: unit::SECONDS, range: [-
 /// A rotation of gravity.
 pub(super) const TILT: Quantity = Quantity { units: unit::ANGLE, range: [-180.0, 180.0] };
 
-/// A parameter that varies, and by how much from the scene's value.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Varied {
-    /// Which.
-    pub parameter: Parameter,
-    /// Its deviation (SI) from the scene's value.
-    pub deviation: Contributor,
-}
+/// A parameter of a slide that varies, and by how much from the scene's value.
+pub type Varied = mechanism::Varied<Parameter>;
 
 /// A parameter that can vary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,12 +84,7 @@ impl Parameter {
     /// Moves the parameter of `scene` by a `deviation` (SI).
     pub fn apply(self, scene: &mut Scene, deviation: f64) {
         match self {
-            Self::Friction => match &mut scene.friction {
-                FrictionData::Regularised { coefficient, .. } | FrictionData::Exact { coefficient } => {
-                    *coefficient += deviation;
-                }
-                FrictionData::None => {}
-            },
+            Self::Friction => rub_more(&mut scene.friction, deviation),
             Self::Stiffness => scene.contact.stiffness *= 1.0 + deviation,
             Self::Damping => scene.contact.damping += deviation,
             Self::Mass => scene.slide.mass += deviation,
