@@ -1,6 +1,6 @@
 //! Clearance at a tolerance level (eq. 9) and its class.
 
-use crate::Scalar;
+use crate::{ParameterError, Scalar, error::bounded};
 
 /// A gap over the production: mean and standard deviation (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +9,16 @@ pub struct GapStatistics<S> {
     pub mean: S,
     /// Standard deviation σ (m).
     pub deviation: S,
+}
+
+impl<S: Scalar + PartialOrd> GapStatistics<S> {
+    /// The gap [`at`](Self::at) level `n`, if it is not below `least` (m).
+    ///
+    /// # Errors
+    /// If it is, or above 1 km, or not finite.
+    pub fn checked_at(&self, n: S, least: f64) -> Result<S, ParameterError<S>> {
+        bounded("gap", self.at(n), [least, 1e3])
+    }
 }
 
 impl<S: Scalar> GapStatistics<S> {
@@ -65,6 +75,16 @@ impl core::fmt::Display for GapClass {
 #[cfg(test)]
 mod tests {
     use super::{GapClass, GapStatistics};
+
+    #[test]
+    fn refuses_what_a_joint_does_not_allow() {
+        let gap = GapStatistics { mean: 2e-4f32, deviation: 1e-4 };
+        assert_eq!(gap.checked_at(1.5, 0.0), Ok(gap.at(1.5)));
+        for n in [2.5, 1e12, -1e12, f32::NAN, f32::INFINITY] {
+            assert!(gap.checked_at(n, 0.0).is_err(), "{n}");
+        }
+        assert!(gap.checked_at(2.5, -0.1).is_ok());
+    }
 
     #[test]
     fn tightens_with_n_and_classifies() {

@@ -2,7 +2,7 @@
 
 use super::{
     Bodies, Element, Elements, System,
-    law::{Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
+    law::{Axis, Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
     planar::{self, Coordinate, PlanarTree, Point},
     spatial::{self, FreeBodies, Port, Seat, Turned},
 };
@@ -152,7 +152,7 @@ fn spatial_derivatives_are_those_of_the_forces() {
         (
             Element::<_, _, 3> {
                 link: Seat { point: port(Some(0), -0.2, 0.1, 0.1), from: Some(1) },
-                law: Wall { axis: 2, sign: -1.0, gap: 0.01, contact: contact() },
+                law: Wall { axis: Axis::Z, sign: -1.0, gap: 0.01, contact: contact() },
             },
             (
                 Element::<_, _, 6> {

@@ -72,7 +72,7 @@ impl Mechanism {
     }
 
     /// The least value (m) of gap `i`: 0 for a pin in a hole.
-    fn least_gap(&self, i: usize) -> f64 {
+    pub(super) fn least_gap(&self, i: usize) -> f64 {
         use super::JointKind::{Bearing, Journal};
         let round = |kind: &_| matches!(kind, Journal { gap, .. } | Bearing { gap, .. } if *gap == i);
         if self.joints.iter().any(|joint| round(&joint.kind)) { 0.0 } else { -GAP_MOST }

@@ -5,7 +5,7 @@ use slipfit_core::{
     ParameterError, Vector3,
     system::{
         Element,
-        law::{Motor, Pin, Pusher, Ring, Wall},
+        law::{Axis, Motor, Pin, Pusher, Ring, Wall},
         spatial::{About, Along, FreeBodies, Port as PointOf, Rigid, Seat, Turned},
     },
 };
@@ -108,10 +108,10 @@ fn add(
 }
 
 /// Which axis of the frame the unit vector `normal` is, and its sign; `None` where it is none of them.
-pub fn axis_of(normal: [f64; 3]) -> Option<(usize, f64)> {
-    let axis = normal.iter().position(|x| x.abs() == 1.0)?;
-    let others = normal.iter().enumerate().all(|(k, x)| k == axis || *x == 0.0);
-    others.then(|| (axis, normal[axis]))
+pub fn axis_of(normal: [f64; 3]) -> Option<(Axis, f64)> {
+    let axis = [Axis::X, Axis::Y, Axis::Z].into_iter().find(|axis| axis.of(normal).abs() == 1.0)?;
+    let is_alone = normal.iter().filter(|x| **x != 0.0).count() == 1;
+    is_alone.then(|| (axis, axis.of(normal)))
 }
 
 /// Axes of which the third is `axis`, of unit length; those of the frame where it is their third.

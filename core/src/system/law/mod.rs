@@ -12,7 +12,7 @@ pub use journal::Journal;
 pub use pin::Pin;
 pub use ring::Ring;
 pub use spring::Spring;
-pub use wall::{Pad, Wall};
+pub use wall::{Axis, Pad, Wall};
 
 use super::{Law, Response};
 use crate::{

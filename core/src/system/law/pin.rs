@@ -16,6 +16,42 @@ pub struct Pin<S, N, F> {
     pub contact: Contact<N, F>,
 }
 
+impl<S: Scalar, N: Normal<S>, F: Friction<S>> Pin<S, N, F> {
+    /// Adds what the slot along axis `A`, with the tangents `T` and `U`, does to the `response`; what friction in it remembers then.
+    #[inline(always)]
+    fn slot<const A: usize, const T: usize, const U: usize>(
+        &self,
+        [low, high]: [S; 2],
+        place: &SVector<S, 3>,
+        rate: &SVector<S, 3>,
+        (memory, way): (&F::Memory, Way<S>),
+        response: &mut Response<S, 3>,
+    ) -> F::Memory {
+        // The slot is told the velocity of its own material, and answers with the force on it.
+        let slot = self.contact.normal.slot(low, high, place[A], -rate[A]);
+        let (traction, kept) =
+            self.contact.friction.traction(memory, &way.sliding([-rate[T], -rate[U]], slot.normal()));
+        let Response { force, impedance, stiffness, .. } = response;
+        force[A] -= slot.force();
+        force[T] -= traction.force[0];
+        force[U] -= traction.force[1];
+        let ([own, normal], [own_stiffness, normal_stiffness]) = (slot.impedances(S::zero()), slot.stiffnesses());
+        let [by_first, by_second] = traction.per_normal;
+        impedance[(A, A)] += own;
+        impedance[(T, A)] += by_first * normal;
+        impedance[(U, A)] += by_second * normal;
+        stiffness[(A, A)] += own_stiffness;
+        stiffness[(T, A)] += by_first * normal_stiffness;
+        stiffness[(U, A)] += by_second * normal_stiffness;
+        let [a, b, c] = traction.impedance;
+        impedance[(T, T)] += a;
+        impedance[(T, U)] += b;
+        impedance[(U, T)] += b;
+        impedance[(U, U)] += c;
+        kept
+    }
+}
+
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
     type Memory = [F::Memory; 2];
 
@@ -35,38 +71,19 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
         memory: &[F::Memory; 2],
         way: Way<S>,
     ) -> (Response<S, 3>, [F::Memory; 2]) {
-        let zero = S::zero();
         let [left, right, rail, wall] = self.gaps;
-        let mut next = *memory;
-        let mut force = SVector::<S, 3>::zeros();
-        let (mut impedance, mut stiffness) = (SMatrix::<S, 3, 3>::zeros(), SMatrix::<S, 3, 3>::zeros());
-        let slots = [([left, right], [0, 1, 2]), ([wall, rail], [1, 0, 2])];
-        for ((([low, high], [n, first, second]), memory), next) in slots.into_iter().zip(memory).zip(&mut next) {
-            // The slot is told the velocity of its own material, and answers with the force on it.
-            let slot = self.contact.normal.slot(low, high, place[n], -rate[n]);
-            let sliding = [-rate[first], -rate[second]];
-            let (traction, kept) = self.contact.friction.traction(memory, &way.sliding(sliding, slot.normal()));
-            *next = kept;
-            force[n] -= slot.force();
-            force[first] -= traction.force[0];
-            force[second] -= traction.force[1];
-            let ([own, normal], [own_stiffness, normal_stiffness]) = (slot.impedances(zero), slot.stiffnesses());
-            let [by_first, by_second] = traction.per_normal;
-            for (row, by_rate, by_place) in [
-                (n, own, own_stiffness),
-                (first, by_first * normal, by_first * normal_stiffness),
-                (second, by_second * normal, by_second * normal_stiffness),
-            ] {
-                impedance[(row, n)] += by_rate;
-                stiffness[(row, n)] += by_place;
-            }
-            let [a, b, c] = traction.impedance;
-            for (row, column, value) in [(first, first, a), (first, second, b), (second, first, b), (second, second, c)]
-            {
-                impedance[(row, column)] += value;
-            }
-        }
-        (Response { force, impedance, stiffness, per_time: SVector::zeros() }, next)
+        let mut response = Response {
+            force: SVector::zeros(),
+            impedance: SMatrix::zeros(),
+            stiffness: SMatrix::zeros(),
+            per_time: SVector::zeros(),
+        };
+        let [across, up] = memory;
+        let next = [
+            self.slot::<0, 1, 2>([left, right], place, rate, (across, way), &mut response),
+            self.slot::<1, 0, 2>([wall, rail], place, rate, (up, way), &mut response),
+        ];
+        (response, next)
     }
 
     #[inline(always)]

@@ -16,11 +16,54 @@ pub struct Pad<S, N, F> {
     pub contact: Contact<N, F>,
 }
 
+/// An axis of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+impl Axis {
+    /// What belongs to this axis of what belongs to x, y and z.
+    #[inline(always)]
+    pub fn of<T>(self, [x, y, z]: [T; 3]) -> T {
+        match self {
+            Self::X => x,
+            Self::Y => y,
+            Self::Z => z,
+        }
+    }
+
+    /// What belongs to this axis, and to the two that follow it in turn, of what belongs to x, y and z.
+    #[inline(always)]
+    fn first<T: Copy>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+        match self {
+            Self::X => [x, y, z],
+            Self::Y => [y, z, x],
+            Self::Z => [z, x, y],
+        }
+    }
+
+    /// The other way round.
+    #[inline(always)]
+    fn in_order<T: Copy>(self, [own, second, third]: [T; 3]) -> [T; 3] {
+        match self {
+            Self::X => [own, second, third],
+            Self::Y => [third, own, second],
+            Self::Z => [second, third, own],
+        }
+    }
+}
+
 /// A plane in space whose outward normal, towards the point, is an axis of the body that carries it, or its opposite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall<S, N, F> {
-    /// Which axis, 0 to 2.
-    pub axis: usize,
+    /// Which axis.
+    pub axis: Axis,
     /// 1 if the normal points along the axis, −1 if against it.
     pub sign: S,
     /// Gap (m) at the nominal poses; negative is preload.
@@ -89,27 +132,23 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
         memory: &F::Memory,
         way: Way<S>,
     ) -> (Response<S, 3>, F::Memory) {
-        let one = S::one();
-        let [n, first, second] = [self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3];
-        let depth = (-(self.gap + self.sign * place[n]), along::<S, 4>(0, -self.sign));
-        let approach = (-self.sign * rate[n], along(1, -self.sign));
-        let sliding = [(rate[first], along(2, one)), (rate[second], along(3, one))];
+        let (zero, one) = (S::zero(), S::one());
+        let [place, _, _] = self.axis.first(place.data.0[0]);
+        let [rate, first, second] = self.axis.first(rate.data.0[0]);
+        let depth = (-(self.gap + self.sign * place), along::<S, 4>(0, -self.sign));
+        let approach = (-self.sign * rate, along(1, -self.sign));
+        let sliding = [(first, along(2, one)), (second, along(3, one))];
         let touch = self.contact.touch(memory, way, [depth, approach], sliding);
-        let mut force = SVector::zeros();
-        let (mut impedance, mut stiffness) = (SMatrix::zeros(), SMatrix::zeros());
-        let rows = [
-            (n, touch.force * self.sign, touch.force_slope * self.sign),
-            (first, touch.traction[0], touch.traction_slopes[0]),
-            (second, touch.traction[1], touch.traction_slopes[1]),
-        ];
-        for (row, value, slope) in rows {
-            force[row] = value;
-            stiffness[(row, n)] = -slope[0];
-            impedance[(row, n)] = -slope[1];
-            impedance[(row, first)] = -slope[2];
-            impedance[(row, second)] = -slope[3];
-        }
-        (steady(force, impedance, stiffness), touch.memory)
+        let slopes = [touch.force_slope * self.sign, touch.traction_slopes[0], touch.traction_slopes[1]];
+        // By place along the normal; by the rates along normal and tangents.
+        let [by_place, by_rate, by_first, by_second] = [0, 1, 2, 3].map(|k| slopes.map(|slope| -slope[k]));
+        let matrix = |columns: [[S; 3]; 3]| {
+            SMatrix::<S, 3, 3>::from(self.axis.in_order(columns.map(|column| self.axis.in_order(column))))
+        };
+        let force = self.axis.in_order([touch.force * self.sign, touch.traction[0], touch.traction[1]]);
+        let impedance = matrix([by_rate, by_first, by_second]);
+        let response = steady(force.into(), impedance, matrix([by_place, [zero; 3], [zero; 3]]));
+        (response, touch.memory)
     }
 
     #[inline(always)]

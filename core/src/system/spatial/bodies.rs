@@ -75,13 +75,25 @@ impl<S: Scalar, const N: usize, const D: usize> FreeBodies<S, N, D> {
     pub fn lever(&self, i: usize) -> S {
         self.per_lever.get(6 * i + 3).map_or(S::one(), |per_lever| S::one() / *per_lever)
     }
+}
 
-    #[inline(always)]
-    fn each(&self, velocity: &SVector<S, D>, mut act: impl FnMut(usize, Vector3<S>, Vector3<S>)) {
-        for (i, [vx, vy, vz, wx, wy, wz]) in velocity.data.0[0].as_chunks::<6>().0.iter().enumerate() {
-            act(i, Vector3::new(*vx, *vy, *vz), Vector3::new(*wx, *wy, *wz));
-        }
-    }
+/// The six numbers of each body: velocities and angular velocities, or displacements and turns.
+#[inline(always)]
+fn each<S: Scalar, const D: usize>(of: &SVector<S, D>) -> impl Iterator<Item = (Vector3<S>, Vector3<S>)> {
+    let split = |[vx, vy, vz, wx, wy, wz]: &[S; 6]| (Vector3::new(*vx, *vy, *vz), Vector3::new(*wx, *wy, *wz));
+    of.data.0[0].as_chunks::<6>().0.iter().map(split)
+}
+
+/// The same to be written.
+#[inline(always)]
+fn each_mut<S: Scalar, const D: usize>(of: &mut SVector<S, D>) -> impl Iterator<Item = &mut [S; 6]> {
+    of.data.0[0].as_chunks_mut::<6>().0.iter_mut()
+}
+
+/// The columns of each body in a matrix, six at a time.
+#[inline(always)]
+fn columns_mut<S: Scalar, const D: usize>(of: &mut SMatrix<S, D, D>) -> impl Iterator<Item = &mut [[S; D]; 6]> {
+    of.data.0.as_chunks_mut::<6>().0.iter_mut()
 }
 
 /// A body at a pose and motion.
@@ -95,6 +107,27 @@ pub struct PlacedBody<S> {
     pub velocity_w: Vector3<S>,
     /// Angular velocity (rad/s).
     pub rotation_b: Vector3<S>,
+}
+
+impl<S: Scalar> PlacedBody<S> {
+    /// In the nominal pose, at rest.
+    #[inline(always)]
+    pub(super) fn still() -> Self {
+        Self {
+            to_frame: Matrix3::identity(),
+            displacement_w: Vector3::zeros(),
+            velocity_w: Vector3::zeros(),
+            rotation_b: Vector3::zeros(),
+        }
+    }
+}
+
+impl<S: Scalar, const N: usize, const D: usize> Placed<S, N, D> {
+    /// The body of this number; one that is not there stands still.
+    #[inline(always)]
+    pub(super) fn body(&self, number: usize) -> PlacedBody<S> {
+        self.bodies.get(number).copied().unwrap_or(PlacedBody::still())
+    }
 }
 
 /// All bodies at a pose and motion.
@@ -115,14 +148,14 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     #[inline(always)]
     fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
         let mut next = *pose;
-        self.each(velocity, |i, v, w| next[i] = pose[i].advanced(v, w, dt));
+        next.iter_mut().zip(each(velocity)).for_each(|(pose, (v, w))| *pose = pose.advanced(v, w, dt));
         next
     }
 
     #[inline(always)]
     fn moved(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
         let mut next = *pose;
-        self.each(velocity, |i, v, w| next[i] = pose[i].moved(v, w, dt));
+        next.iter_mut().zip(each(velocity)).for_each(|(pose, (v, w))| *pose = pose.moved(v, w, dt));
         next
     }
 
@@ -159,38 +192,36 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         let mut rate = *velocity;
-        self.each(displacement, |i, _, turn| {
+        for ((_, turn), [.., x, y, z]) in each(displacement).zip(each_mut(&mut rate)) {
             let half = turn * S::from_f64(0.5);
-            let w = Vector3::new(velocity[6 * i + 3], velocity[6 * i + 4], velocity[6 * i + 5]);
+            let w = Vector3::new(*x, *y, *z);
             let turning = w + half.cross(&w) + half * half.dot(&w);
-            rate.fixed_rows_mut::<3>(6 * i + 3).copy_from(&turning);
-        });
+            (*x, *y, *z) = (turning.x, turning.y, turning.z);
+        }
         rate
     }
 
     #[inline(always)]
     fn placed(&self, pose: &Self::Pose, velocity: &SVector<S, D>) -> Self::Placed {
-        let still = PlacedBody {
-            to_frame: Matrix3::identity(),
-            displacement_w: Vector3::zeros(),
-            velocity_w: Vector3::zeros(),
-            rotation_b: Vector3::zeros(),
-        };
-        let mut bodies = [still; N];
-        self.each(velocity, |i, velocity_w, rotation_b| {
-            let to_frame = pose[i].to_body().matrix().transpose();
-            bodies[i] = PlacedBody { to_frame, displacement_w: pose[i].displacement_w, velocity_w, rotation_b };
-        });
+        let mut bodies = [PlacedBody::still(); N];
+        for ((body, pose), (velocity_w, rotation_b)) in bodies.iter_mut().zip(pose).zip(each(velocity)) {
+            let to_frame = pose.to_body().matrix().transpose();
+            *body = PlacedBody { to_frame, displacement_w: pose.displacement_w, velocity_w, rotation_b };
+        }
         Placed { bodies, rates: *velocity }
     }
 
     #[inline(always)]
     fn mass(&self, _: &Self::Placed) -> SMatrix<S, D, D> {
         let mut mass = SMatrix::<S, D, D>::zeros();
-        for (i, body) in self.bodies.iter().enumerate() {
-            for k in 0..3 {
-                mass[(6 * i + k, 6 * i + k)] = body.mass;
-                mass[(6 * i + 3 + k, 6 * i + 3 + k)] = body.inertia_b[k];
+        let moments = |body: &Rigid<S>| {
+            let Rigid { mass, inertia_b: j, .. } = *body;
+            [mass, mass, mass, j.x, j.y, j.z]
+        };
+        let diagonal = self.bodies.iter().flat_map(moments);
+        for ((k, column), moment) in mass.data.0.iter_mut().enumerate().zip(diagonal) {
+            if let Some(entry) = column.get_mut(k) {
+                *entry = moment;
             }
         }
         mass
@@ -199,10 +230,10 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     #[inline(always)]
     fn own_force(&self, placed: &Self::Placed) -> SVector<S, D> {
         let mut force = SVector::<S, D>::zeros();
-        for (i, (body, at)) in self.bodies.iter().zip(&placed.bodies).enumerate() {
+        for ((body, at), force) in self.bodies.iter().zip(&placed.bodies).zip(each_mut(&mut force)) {
             let momentum = at.rotation_b.component_mul(&body.inertia_b);
-            force.fixed_rows_mut::<3>(6 * i).copy_from(&(self.gravity_w * body.mass));
-            force.fixed_rows_mut::<3>(6 * i + 3).copy_from(&momentum.cross(&at.rotation_b));
+            let (weight, torque) = (self.gravity_w * body.mass, momentum.cross(&at.rotation_b));
+            *force = [weight.x, weight.y, weight.z, torque.x, torque.y, torque.z];
         }
         force
     }
@@ -215,12 +246,14 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
         damping: &mut SMatrix<S, D, D>,
         _: &mut SMatrix<S, D, D>,
     ) {
-        for (i, (body, at)) in self.bodies.iter().zip(&placed.bodies).enumerate() {
+        let bodies = self.bodies.iter().zip(&placed.bodies).zip(columns_mut(damping));
+        for (i, ((body, at), [.., x, y, z])) in bodies.enumerate() {
             let momentum = at.rotation_b.component_mul(&body.inertia_b);
             let gyroscopic =
                 cross_matrix(&at.rotation_b) * Matrix3::from_diagonal(&body.inertia_b) - cross_matrix(&momentum);
-            let mut block = damping.fixed_view_mut::<3, 3>(6 * i + 3, 6 * i + 3);
-            block += gyroscopic;
+            for (column, own) in [x, y, z].into_iter().zip(&gyroscopic.data.0) {
+                column.iter_mut().skip(6 * i + 3).zip(own).for_each(|(entry, own)| *entry += *own);
+            }
         }
     }
 

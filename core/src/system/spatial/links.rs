@@ -12,7 +12,7 @@ use crate::{
 /// A point of a body, or of the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Port<S> {
-    /// Which body; `None` for the frame.
+    /// Which body; `None` for the frame, which also stands for a body that is not there.
     pub body: Option<usize>,
     /// The point (m) from the body's centre of mass, in its axes; in the frame from its origin.
     pub lever: Vector3<S>,
@@ -42,7 +42,7 @@ pub struct Turned<S> {
 /// A point of a body along an axis of the frame, and the body's centre of mass, whose speed along it counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Along<S> {
-    /// The body.
+    /// The body; one that is not there stands still.
     pub body: usize,
     /// Where the force acts (m), from the centre of mass in the body's axes.
     pub lever: Vector3<S>,
@@ -53,7 +53,7 @@ pub struct Along<S> {
 /// How fast a body turns about an axis of the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct About<S> {
-    /// The body.
+    /// The body; one that is not there stands still.
     pub body: usize,
     /// Direction in the frame, of unit length.
     pub axis_w: Vector3<S>,
@@ -79,14 +79,10 @@ pub struct View<S> {
 impl<S: Scalar> Seat<S> {
     #[inline(always)]
     fn look<const N: usize, const D: usize>(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> View<S> {
-        let still = PlacedBody {
-            to_frame: Matrix3::identity(),
-            displacement_w: Vector3::zeros(),
-            velocity_w: Vector3::zeros(),
-            rotation_b: Vector3::zeros(),
+        let get = |body: Option<usize>| body.map_or(PlacedBody::still(), |body| placed.body(body));
+        let centre = |body: Option<usize>| {
+            body.and_then(|body| bodies.bodies().get(body)).map_or(Vector3::zeros(), |body| body.centre_w)
         };
-        let get = |body: Option<usize>| body.map_or(still, |body| placed.bodies[body]);
-        let centre = |body: Option<usize>| body.map_or(Vector3::zeros(), |body| bodies.bodies()[body].centre_w);
         let (of, from) = (get(self.point.body), get(self.from));
         let nominal = centre(self.point.body) + self.point.lever - centre(self.from);
         let moved = of.displacement_w + (of.to_frame * self.point.lever - self.point.lever) - from.displacement_w;
@@ -138,8 +134,7 @@ impl<S: Scalar> Seat<S> {
         }
         if let Some(j) = self.from {
             sub(stiffness, (6 * j, 6 * j + 3), &(to_frame * turned));
-            let mut rows = stiffness.fixed_rows_mut::<3>(6 * j + 3);
-            rows -= turned * gradient;
+            sub_rows(stiffness, 6 * j + 3, &(turned * gradient));
         }
     }
 
@@ -154,8 +149,7 @@ impl<S: Scalar> Seat<S> {
         let [of, from] = &view.rotations;
         let carried = of.cross(&self.point.lever);
         if let Some(j) = self.from {
-            let mut rows = swept.fixed_rows_mut::<3>(0);
-            rows -= cross_matrix(from) * gradient;
+            sub_rows(swept, 0, &(cross_matrix(from) * gradient));
             add(swept, (0, 6 * j + 3), &cross_matrix(&(view.velocity + view.across * carried)));
         }
         if let Some(i) = self.point.body {
@@ -210,7 +204,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> Seen<S, 6, D> {
         let mut gradient = SMatrix::<S, 6, D>::zeros();
         let lengths: SMatrix<S, 3, D> = self.seat.gradient(view);
-        gradient.fixed_rows_mut::<3>(0).copy_from(&self.axes.tr_mul(&lengths));
+        change(&mut gradient, (0, 0), &self.axes.tr_mul(&lengths), |entry, from| *entry = from);
         if let Some(i) = self.seat.point.body {
             put(&mut gradient, (3, 6 * i + 3), &self.axes.tr_mul(&view.across));
         }
@@ -218,8 +212,8 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
             put(&mut gradient, (3, 6 * j + 3), &-self.axes.transpose());
         }
         let place = self.axes.tr_mul(&view.displacement) + self.offset;
-        let mut all = SVector::<S, 6>::zeros();
-        all.fixed_rows_mut::<3>(0).copy_from(&place);
+        let zero = S::zero();
+        let all = SVector::<S, 6>::from([place.x, place.y, place.z, zero, zero, zero]);
         Seen { place: all, rate: gradient * placed.rates, gradient }
     }
 
@@ -248,7 +242,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         let mut lengths = SMatrix::<S, 3, D>::zeros();
         self.seat.sweep(view, &self.seat.gradient(view), &mut lengths);
         let mut swept = SMatrix::<S, 6, D>::zeros();
-        swept.fixed_rows_mut::<3>(0).copy_from(&self.axes.tr_mul(&lengths));
+        change(&mut swept, (0, 0), &self.axes.tr_mul(&lengths), |entry, from| *entry = from);
         let rotation = view.across * view.rotations[0];
         if let Some(j) = self.seat.from {
             put(&mut swept, (3, 6 * j + 3), &self.axes.tr_mul(&cross_matrix(&rotation)));
@@ -268,14 +262,12 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
 
     #[inline(always)]
     fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 2, D> {
-        let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w);
+        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w);
         let arm = self.lever.cross(&axis_b);
         let mut gradient = SMatrix::<S, 2, D>::zeros();
-        for k in 0..3 {
-            gradient[(0, 6 * self.body + k)] = self.axis_w[k];
-            gradient[(1, 6 * self.body + k)] = self.axis_w[k];
-            gradient[(0, 6 * self.body + 3 + k)] = arm[k];
-        }
+        put_row(&mut gradient, (0, 6 * self.body), &self.axis_w);
+        put_row(&mut gradient, (1, 6 * self.body), &self.axis_w);
+        put_row(&mut gradient, (0, 6 * self.body + 3), &arm);
         Seen { place: SVector::zeros(), rate: gradient * placed.rates, gradient }
     }
 
@@ -288,21 +280,19 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         force: &SVector<S, 2>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w) * force[0];
+        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w) * force[0];
         let at = 6 * self.body + 3;
         sub(stiffness, (at, at), &(cross_matrix(&self.lever) * cross_matrix(&axis_b)));
     }
 
     #[inline(always)]
     fn swept(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 2, D> {
-        let at = &placed.bodies[self.body];
+        let at = placed.body(self.body);
         let axis_b = at.to_frame.tr_mul(&self.axis_w);
         // ω·(lever × axis), the axis turning against the body: ∂axis = axis × θ.
         let by_turn = axis_b.cross(&self.lever.cross(&at.rotation_b));
         let mut swept = SMatrix::<S, 2, D>::zeros();
-        for k in 0..3 {
-            swept[(0, 6 * self.body + 3 + k)] = by_turn[k];
-        }
+        put_row(&mut swept, (0, 6 * self.body + 3), &by_turn);
         swept
     }
 }
@@ -315,11 +305,9 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
 
     #[inline(always)]
     fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 1, D> {
-        let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w);
+        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w);
         let mut gradient = SMatrix::<S, 1, D>::zeros();
-        for k in 0..3 {
-            gradient[(0, 6 * self.body + 3 + k)] = axis_b[k];
-        }
+        put_row(&mut gradient, (0, 6 * self.body + 3), &axis_b);
         Seen { place: SVector::zeros(), rate: gradient * placed.rates, gradient }
     }
 
@@ -332,21 +320,35 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         force: &SVector<S, 1>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let axis_b = placed.bodies[self.body].to_frame.tr_mul(&self.axis_w) * force[0];
+        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w) * force[0];
         let at = 6 * self.body + 3;
         sub(stiffness, (at, at), &cross_matrix(&axis_b));
     }
 
     #[inline(always)]
     fn swept(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 1, D> {
-        let at = &placed.bodies[self.body];
+        let at = placed.body(self.body);
         // ω·axis with ∂axis = axis × θ.
         let by_turn = at.rotation_b.cross(&at.to_frame.tr_mul(&self.axis_w));
         let mut swept = SMatrix::<S, 1, D>::zeros();
-        for k in 0..3 {
-            swept[(0, 6 * self.body + 3 + k)] = by_turn[k];
-        }
+        put_row(&mut swept, (0, 6 * self.body + 3), &by_turn);
         swept
+    }
+}
+
+/// Does `change` to each entry of a block of `matrix` that begins `at` a row and a column, with that of `block`; what of it lies
+/// outside is left out.
+#[inline(always)]
+fn change<S: Scalar, const R: usize, const D: usize, const H: usize, const W: usize>(
+    matrix: &mut SMatrix<S, R, D>,
+    at: (usize, usize),
+    block: &SMatrix<S, H, W>,
+    change: impl Fn(&mut S, S),
+) {
+    for (column, from) in matrix.data.0.iter_mut().skip(at.1).zip(&block.data.0) {
+        for (entry, from) in column.iter_mut().skip(at.0).zip(from) {
+            change(entry, *from);
+        }
     }
 }
 
@@ -356,7 +358,16 @@ fn put<S: Scalar, const R: usize, const D: usize>(
     at: (usize, usize),
     block: &Matrix3<S>,
 ) {
-    matrix.fixed_view_mut::<3, 3>(at.0, at.1).copy_from(block);
+    change(matrix, at, block, |entry, from| *entry = from);
+}
+
+#[inline(always)]
+fn put_row<S: Scalar, const R: usize, const D: usize>(
+    matrix: &mut SMatrix<S, R, D>,
+    at: (usize, usize),
+    row: &Vector3<S>,
+) {
+    change(matrix, at, &row.transpose(), |entry, from| *entry = from);
 }
 
 #[inline(always)]
@@ -365,8 +376,7 @@ fn add<S: Scalar, const R: usize, const D: usize>(
     at: (usize, usize),
     block: &Matrix3<S>,
 ) {
-    let mut view = matrix.fixed_view_mut::<3, 3>(at.0, at.1);
-    view += block;
+    change(matrix, at, block, |entry, from| *entry += from);
 }
 
 #[inline(always)]
@@ -375,6 +385,15 @@ fn sub<S: Scalar, const R: usize, const D: usize>(
     at: (usize, usize),
     block: &Matrix3<S>,
 ) {
-    let mut view = matrix.fixed_view_mut::<3, 3>(at.0, at.1);
-    view -= block;
+    change(matrix, at, block, |entry, from| *entry -= from);
+}
+
+/// Subtracts `rows` from those of `matrix` from `first` on.
+#[inline(always)]
+fn sub_rows<S: Scalar, const R: usize, const D: usize>(
+    matrix: &mut SMatrix<S, R, D>,
+    first: usize,
+    rows: &SMatrix<S, 3, D>,
+) {
+    change(matrix, (first, 0), rows, |entry, from| *entry -= from);
 }

@@ -226,7 +226,10 @@ fn read_joints(mechanism: &Mechanism, joints: &[(&str, &Joint)], variables: &mut
             Guide { .. } => output(name, format!("{element}.law.gap + place[0]")),
             Stop { .. } if mechanism.planar => output(name, format!("{element}.law.gap + place[0]")),
             Stop { .. } => {
-                output(name, format!("{element}.law.gap + {element}.law.sign * place[{element}.law.axis]"));
+                output(
+                    name,
+                    format!("{element}.law.gap + {element}.law.sign * {element}.law.axis.of(place.data.0[0])"),
+                );
             }
             Track { gaps } => {
                 for (wall, (gap, offset)) in

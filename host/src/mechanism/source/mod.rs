@@ -109,11 +109,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
         "/// The unit of tolerance level `n`.\n///\n/// # Errors\n/// If a gap at that level, or another parameter, is out of bounds.\n\
          pub fn unit<S: Scalar + PartialOrd>({}: S) -> Result<Unit<S>, ParameterError<S>> {{\n    let s = S::from_f64;\n{}",
         if mechanism.gaps.is_empty() { "_" } else { "n" },
-        if mechanism.gaps.is_empty() {
-            ""
-        } else {
-            "    let gaps = GAPS.map(|[mean, deviation]| GapStatistics { mean: s(mean), deviation: s(deviation) }.at(n));\n"
-        },
+        gaps_at_level(mechanism)
     );
     let _ = write!(
         text,
@@ -218,6 +214,19 @@ pub fn drive_names(mechanism: &Mechanism) -> Vec<String> {
         .enumerate()
         .map(|(k, name)| if is_double(name) { format!("{name}_{k}") } else { name.clone() })
         .collect()
+}
+
+/// The gaps of level `n`, none below what its joint allows.
+fn gaps_at_level(mechanism: &Mechanism) -> String {
+    if mechanism.gaps.is_empty() {
+        return String::new();
+    }
+    let gap = |i| format!("gap(GAPS[{i}], {:?})?", mechanism.least_gap(i));
+    format!(
+        "    let gap = |[mean, deviation]: [f64; 2], least| GapStatistics {{ mean: s(mean), deviation: s(deviation) }}.checked_at(n, least);\n    \
+         let gaps = [{}];\n",
+        (0..mechanism.gaps.len()).map(gap).collect::<Vec<_>>().join(", ")
+    )
 }
 
 /// Adds the gaps over the production.

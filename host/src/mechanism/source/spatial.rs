@@ -90,14 +90,14 @@ fn elements(
             }
             SpatialElement::Wall(one) => {
                 names.extend(["Port", "Seat"]);
-                laws.push("Wall");
+                laws.extend(["Axis", "Wall"]);
                 let (axis, sign) = (one.law.axis, one.law.sign);
                 element(
                     typed("Seat<S>", seat(&one.link)),
                     typed(
                         format!("Wall<S, {}>", contact.of),
                         format!(
-                            "Wall {{ axis: {axis}, sign: s({sign:?}), gap: gaps[{gap}], contact: {} }}",
+                            "Wall {{ axis: Axis::{axis:?}, sign: s({sign:?}), gap: gaps[{gap}], contact: {} }}",
                             contact.value
                         ),
                     ),

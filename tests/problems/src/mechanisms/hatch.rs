@@ -10,7 +10,7 @@ use slipfit_core::{
     pose::Pose,
     system::{
         Driving, Element, System,
-        law::{Contact, Motor, Ring, Wall},
+        law::{Axis, Contact, Motor, Ring, Wall},
         spatial::{About, FreeBodies, Port, Rigid, Seat, Turned},
     },
 };
@@ -53,16 +53,17 @@ pub const GAPS: [[f64; 2]; 4] = [
 /// If a gap at that level, or another parameter, is out of bounds.
 pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
     let s = S::from_f64;
-    let gaps = GAPS.map(|[mean, deviation]| GapStatistics { mean: s(mean), deviation: s(deviation) }.at(n));
+    let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
+    let gaps = [gap(GAPS[0], 0.0)?, gap(GAPS[1], -0.1)?, gap(GAPS[2], 0.0)?, gap(GAPS[3], -0.1)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(100000000.0))?, s(300.0), s(1e-5))?, friction: Regularised::new(s(0.15), s(0.001))? };
     let bodies = FreeBodies::new([Rigid { mass: s(2.0), inertia_b: Vector3::new(s(0.015), s(0.042), s(0.027)), centre_w: Vector3::new(s(0.0), s(0.0), s(0.15)) }], Vector3::new(s(0.0), s(-9.81), s(0.0)))?;
     let elements = ([
         Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.16499999999999998), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[0], radius: s(0.004), contact: contact_0 } },
         Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.135), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[0], radius: s(0.004), contact: contact_0 } },
-    ], (Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.165), s(0.0), s(-0.15)) }, from: None }, law: Wall { axis: 0, sign: s(1.0), gap: gaps[1], contact: contact_0 } }, ([
+    ], (Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.165), s(0.0), s(-0.15)) }, from: None }, law: Wall { axis: Axis::X, sign: s(1.0), gap: gaps[1], contact: contact_0 } }, ([
         Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.135), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[2], radius: s(0.004), contact: contact_0 } },
         Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.16499999999999998), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)), offset: Vector3::new(s(0.0), s(0.0), s(0.0)) }, law: Ring { clearance: gaps[2], radius: s(0.004), contact: contact_0 } },
-    ], (Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.165), s(0.0), s(-0.15)) }, from: None }, law: Wall { axis: 0, sign: s(-1.0), gap: gaps[3], contact: contact_0 } }, Element { link: About { body: 0, axis_w: Vector3::new(s(-1.0), s(0.0), s(0.0)) }, law: Motor(Drive { gain: s(20.0), ramp_start: s(0.05), ramp_end: s(0.3), speed: s(1.0), point_b: Vector3::new(s(0.0), s(0.0), s(0.0)) }.checked()?) }))));
+    ], (Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.165), s(0.0), s(-0.15)) }, from: None }, law: Wall { axis: Axis::X, sign: s(-1.0), gap: gaps[3], contact: contact_0 } }, Element { link: About { body: 0, axis_w: Vector3::new(s(-1.0), s(0.0), s(0.0)) }, law: Motor(Drive { gain: s(20.0), ramp_start: s(0.05), ramp_end: s(0.3), speed: s(1.0), point_b: Vector3::new(s(0.0), s(0.0), s(0.0)) }.checked()?) }))));
     Ok(System::new(bodies, elements))
 }
 

@@ -53,7 +53,8 @@ pub const GAPS: [[f64; 2]; 4] = [
 /// If a gap at that level, or another parameter, is out of bounds.
 pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
     let s = S::from_f64;
-    let gaps = GAPS.map(|[mean, deviation]| GapStatistics { mean: s(mean), deviation: s(deviation) }.at(n));
+    let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
+    let gaps = [gap(GAPS[0], 0.0)?, gap(GAPS[1], 0.0)?, gap(GAPS[2], 0.0)?, gap(GAPS[3], 0.0)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(100000000.0))?, s(300.0), s(1e-5))?, friction: Regularised::new(s(0.3), s(0.001))? };
     let bodies = FreeBodies::new([Rigid { mass: s(0.6), inertia_b: Vector3::new(s(0.0008), s(0.002), s(0.0014)), centre_w: Vector3::new(s(0.0), s(0.0), s(0.0)) }], Vector3::new(s(0.0), s(-9.81), s(0.0)))?;
     let elements = ([

@@ -60,7 +60,8 @@ pub const GAPS: [[f64; 2]; 1] = [
 /// If a gap at that level, or another parameter, is out of bounds.
 pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
     let s = S::from_f64;
-    let gaps = GAPS.map(|[mean, deviation]| GapStatistics { mean: s(mean), deviation: s(deviation) }.at(n));
+    let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
+    let gaps = [gap(GAPS[0], -0.1)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(10000000.0))?, s(300.0), s(5e-6))?, friction: Regularised::new(s(0.1), s(0.001))? };
     let bodies = PlanarTree::of(Joints, [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))], (Rigid { mass: s(0.038), inertia: s(7.4e-5), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0765), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, (Rigid { mass: s(0.038), inertia: s(0.00059), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.076), inertia: s(7.9e-5), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.30600000000000005), s(0.0)), Vector2::new(s(0.0), s(0.0))] } })), Vector2::new(s(0.0), s(-9.81)))?;
     let elements = ([

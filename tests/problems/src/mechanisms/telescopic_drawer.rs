@@ -10,7 +10,7 @@ use slipfit_core::{
     pose::Pose,
     system::{
         Driving, Element, System,
-        law::{Contact, Pin, Pusher, Wall},
+        law::{Axis, Contact, Pin, Pusher, Wall},
         spatial::{Along, FreeBodies, Port, Rigid, Seat},
     },
 };
@@ -85,7 +85,8 @@ pub const GAPS: [[f64; 2]; 36] = [
 /// If a gap at that level, or another parameter, is out of bounds.
 pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
     let s = S::from_f64;
-    let gaps = GAPS.map(|[mean, deviation]| GapStatistics { mean: s(mean), deviation: s(deviation) }.at(n));
+    let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
+    let gaps = [gap(GAPS[0], -0.1)?, gap(GAPS[1], -0.1)?, gap(GAPS[2], -0.1)?, gap(GAPS[3], -0.1)?, gap(GAPS[4], -0.1)?, gap(GAPS[5], -0.1)?, gap(GAPS[6], -0.1)?, gap(GAPS[7], -0.1)?, gap(GAPS[8], -0.1)?, gap(GAPS[9], -0.1)?, gap(GAPS[10], -0.1)?, gap(GAPS[11], -0.1)?, gap(GAPS[12], -0.1)?, gap(GAPS[13], -0.1)?, gap(GAPS[14], -0.1)?, gap(GAPS[15], -0.1)?, gap(GAPS[16], -0.1)?, gap(GAPS[17], -0.1)?, gap(GAPS[18], -0.1)?, gap(GAPS[19], -0.1)?, gap(GAPS[20], -0.1)?, gap(GAPS[21], -0.1)?, gap(GAPS[22], -0.1)?, gap(GAPS[23], -0.1)?, gap(GAPS[24], -0.1)?, gap(GAPS[25], -0.1)?, gap(GAPS[26], -0.1)?, gap(GAPS[27], -0.1)?, gap(GAPS[28], -0.1)?, gap(GAPS[29], -0.1)?, gap(GAPS[30], -0.1)?, gap(GAPS[31], -0.1)?, gap(GAPS[32], -0.1)?, gap(GAPS[33], -0.1)?, gap(GAPS[34], -0.1)?, gap(GAPS[35], -0.1)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(10000000.0))?, s(300.0), s(5e-5))?, friction: Regularised::new(s(0.2), s(0.001))? };
     let bodies = FreeBodies::new([Rigid { mass: s(0.15), inertia_b: Vector3::new(s(0.0002), s(0.0004), s(0.00025)), centre_w: Vector3::new(s(0.0), s(0.0), s(0.0)) }, Rigid { mass: s(0.4), inertia_b: Vector3::new(s(0.0008), s(0.0016), s(0.0009)), centre_w: Vector3::new(s(0.0), s(0.012), s(0.0)) }], Vector3::new(s(0.0), s(-9.81), s(0.0)))?;
     let elements = ([
@@ -98,10 +99,10 @@ pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> 
         Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.05), s(0.012), s(0.03)) }, from: Some(1) }, law: Pin { gaps: [gaps[24], gaps[25], gaps[26], gaps[27]], contact: contact_0 } },
         Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.05), s(0.012), s(0.03)) }, from: Some(1) }, law: Pin { gaps: [gaps[28], gaps[29], gaps[30], gaps[31]], contact: contact_0 } },
     ], ([
-        Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.04), s(0.004), s(0.0)) }, from: None }, law: Wall { axis: 2, sign: s(-1.0), gap: gaps[32], contact: contact_0 } },
-        Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.04), s(0.004), s(0.0)) }, from: None }, law: Wall { axis: 2, sign: s(-1.0), gap: gaps[33], contact: contact_0 } },
-        Element { link: Seat { point: Port { body: Some(1), lever: Vector3::new(s(-0.04), s(0.004), s(0.0)) }, from: Some(0) }, law: Wall { axis: 2, sign: s(-1.0), gap: gaps[34], contact: contact_0 } },
-        Element { link: Seat { point: Port { body: Some(1), lever: Vector3::new(s(0.04), s(0.004), s(0.0)) }, from: Some(0) }, law: Wall { axis: 2, sign: s(-1.0), gap: gaps[35], contact: contact_0 } },
+        Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.04), s(0.004), s(0.0)) }, from: None }, law: Wall { axis: Axis::Z, sign: s(-1.0), gap: gaps[32], contact: contact_0 } },
+        Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.04), s(0.004), s(0.0)) }, from: None }, law: Wall { axis: Axis::Z, sign: s(-1.0), gap: gaps[33], contact: contact_0 } },
+        Element { link: Seat { point: Port { body: Some(1), lever: Vector3::new(s(-0.04), s(0.004), s(0.0)) }, from: Some(0) }, law: Wall { axis: Axis::Z, sign: s(-1.0), gap: gaps[34], contact: contact_0 } },
+        Element { link: Seat { point: Port { body: Some(1), lever: Vector3::new(s(0.04), s(0.004), s(0.0)) }, from: Some(0) }, law: Wall { axis: Axis::Z, sign: s(-1.0), gap: gaps[35], contact: contact_0 } },
     ], Element { link: Along { body: 1, lever: Vector3::new(s(0.01), s(0.0), s(0.05)), axis_w: Vector3::new(s(0.0), s(0.0), s(1.0)) }, law: Pusher(Drive { gain: s(60.0), ramp_start: s(0.05), ramp_end: s(0.25), speed: s(0.2), point_b: Vector3::new(s(0.01), s(0.0), s(0.05)) }.checked()?) }));
     Ok(System::new(bodies, elements))
 }
