@@ -2,19 +2,14 @@
 //!
 //! `libm::pow` leaves early for many arguments, so that its run time depends on them, and cannot be vectorised.
 
-use crate::Scalar;
-
-/// Less half the bits of x as f32, these are the bits of a guess at 1/√x: halving and negating the exponent.
-pub const RSQRT_BITS: u32 = 0x5f37_5a86;
-
-/// 1/√`x` from the guess that [`RSQRT_BITS`] gives: a Newton step, which leaves 0.18 % at most, and a step of third order,
-/// whose error is below the rounding of f32.
+/// 1/√`x` for x > 0 from a guess whose bits halve and negate the exponent: a Newton step, which leaves 0.18 % at most, and a
+/// step of third order, whose error is below the rounding.
 #[inline(always)]
-pub fn refined_rsqrt<S: Scalar>(x: S, guess: S) -> S {
-    let half = S::from_f64(0.5);
-    let near = guess * (S::from_f64(1.5) - half * x * guess * guess);
-    let miss = S::one() - x * near * near;
-    near + near * miss * (half + S::from_f64(0.375) * miss)
+pub fn rsqrt_f32(x: f32) -> f32 {
+    let guess = f32::from_bits(0x5f37_5a86u32.wrapping_sub(x.to_bits() >> 1));
+    let near = guess * (1.5 - 0.5 * x * guess * guess);
+    let miss = 1.0 - x * near * near;
+    near + near * miss * (0.5 + 0.375 * miss)
 }
 
 /// `x` to the power of `y` for x ≥ 0, y > 0. Relative error ≤ 2e-6 for results inside 2^±126; 0 at 0.

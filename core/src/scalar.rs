@@ -36,7 +36,7 @@ pub trait Scalar:
     fn select_gt(self, other: Self, yes: Self, no: Self) -> Self;
 
     /// 1/√`self` for a positive normal number. Relative error ≤ 2.5e-7 in f32, 3e-16 in f64. At zero it is finite
-    /// in f32 and infinite in f64.
+    /// in f32 and infinite in f64 and in lanes.
     fn rsqrt(self) -> Self;
 
     /// √`self` for `self` ≥ 0, exactly 0 at 0. Relative error ≤ 3e-7 in f32, half a unit in the last place in f64.
@@ -67,6 +67,12 @@ pub trait Scalar:
         self.select_gt(other, self, other)
     }
 
+    /// `self`, or `high` where `self` is above it.
+    #[inline(always)]
+    fn at_most(self, high: Self) -> Self {
+        self.select_gt(high, high, self)
+    }
+
     /// |`self`|.
     #[inline(always)]
     fn magnitude(self) -> Self {
@@ -76,8 +82,7 @@ pub trait Scalar:
     /// `self` held inside [`low`, `high`].
     #[inline(always)]
     fn within(self, low: Self, high: Self) -> Self {
-        let raised = self.select_gt(low, self, low);
-        raised.select_gt(high, high, raised)
+        self.max_of(low).at_most(high)
     }
 }
 
@@ -109,8 +114,7 @@ impl Scalar for f32 {
     /// Some 20 instructions on a Cortex-M4F, against a software root of some 200 in `libm`, and free of branches.
     #[inline(always)]
     fn rsqrt(self) -> Self {
-        let guess = f32::from_bits(power::RSQRT_BITS.wrapping_sub(self.to_bits() >> 1));
-        power::refined_rsqrt(self, guess)
+        power::rsqrt_f32(self)
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ pub fn cubic<S: Scalar>(s: S) -> (S, S) {
 /// The same for an s that is not negative.
 #[inline(always)]
 pub fn risen<S: Scalar>(s: S) -> (S, S) {
-    let s = s.select_gt(S::one(), S::one(), s);
+    let s = s.at_most(S::one());
     let square = s * s;
     (square * (S::from_f64(3.0) - (s + s)), s - square)
 }

@@ -72,13 +72,18 @@ impl WithSimd for Work<'_> {
 /// Simulates `slides`, all of the same laws, in the widest instructions that the machine has. The bits do not depend on them.
 /// A slide that cannot be simulated has no figures.
 pub fn simulate(course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
+    simulate_in(usize::MAX, course, slides)
+}
+
+/// The same, as many at a time as the machine's registers have lanes, but at most `lanes`.
+pub fn simulate_in(lanes: usize, course: Course, slides: &[SlideData<f64>]) -> Vec<Figures> {
     #[cfg(target_arch = "x86_64")]
     {
         let work = Work { course, slides };
-        if let Some(avx512) = pulp::x86::V4::try_new() {
+        if let Some(avx512) = pulp::x86::V4::try_new().filter(|_| lanes >= 16) {
             return Simd::vectorize(avx512, work);
         }
-        if let Some(avx2) = pulp::x86::V3::try_new() {
+        if let Some(avx2) = pulp::x86::V3::try_new().filter(|_| lanes >= 8) {
             return Simd::vectorize(avx2, work);
         }
     }

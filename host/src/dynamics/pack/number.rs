@@ -1,14 +1,24 @@
 //! The numbers of which a pack holds several, and what the instructions of a machine do with registers of them.
 
 use pulp::{Simd, bytemuck::Pod};
-use slipfit_core::{Scalar, power};
+use slipfit_core::Scalar;
 
-use super::{Pack, instructions};
+/// Aligned as the registers of AVX2.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub struct Of32Bytes;
+
+/// Aligned as the registers of AVX-512.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub struct Of64Bytes;
 
 /// A number that registers hold.
 pub trait Number: Scalar + PartialOrd + Pod {
     /// A register of the instructions `V`.
     type Register<V: Simd>: Pod + std::fmt::Debug + Send + Sync;
+    /// Something aligned as the widest register that is used for such numbers.
+    type Aligned: Copy + std::fmt::Debug + Send + Sync;
 
     /// `x` in every lane.
     fn splat<V: Simd>(instructions: V, x: Self) -> Self::Register<V>;
@@ -29,14 +39,17 @@ pub trait Number: Scalar + PartialOrd + Pod {
         y: Self::Register<V>,
         chosen: [Self::Register<V>; 2],
     ) -> Self::Register<V>;
-    /// As [`Scalar::rsqrt`].
-    fn reciprocal_root<V: Simd>(x: Pack<V, Self>) -> Pack<V, Self>;
-    /// As [`Scalar::sqrt`].
-    fn root<V: Simd>(x: Pack<V, Self>) -> Pack<V, Self>;
+    /// x where x > y, else y.
+    fn larger<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
+    /// x where x < y, else y.
+    fn smaller<V: Simd>(instructions: V, x: Self::Register<V>, y: Self::Register<V>) -> Self::Register<V>;
+    /// √x, to half a unit in the last place.
+    fn root<V: Simd>(instructions: V, x: Self::Register<V>) -> Self::Register<V>;
 }
 
 impl Number for f32 {
     type Register<V: Simd> = V::f32s;
+    type Aligned = Of64Bytes;
 
     #[inline(always)]
     fn splat<V: Simd>(v: V, x: f32) -> V::f32s {
@@ -74,21 +87,26 @@ impl Number for f32 {
     }
 
     #[inline(always)]
-    fn reciprocal_root<V: Simd>(x: Pack<V, f32>) -> Pack<V, f32> {
-        let v = instructions::<V>();
-        let bits = v.wrapping_dyn_shr_u32s(v.transmute_u32s_f32s(x.0), v.splat_u32s(1));
-        let guess = Pack(v.transmute_f32s_u32s(v.sub_u32s(v.splat_u32s(power::RSQRT_BITS), bits)));
-        power::refined_rsqrt(x, guess)
+    fn larger<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
+        // Registers have the maximum that is meant; the library's of single numbers is another where one is not a number.
+        if V::IS_SCALAR { Self::chosen(v, x, y, [x, y]) } else { v.max_f32s(x, y) }
     }
 
     #[inline(always)]
-    fn root<V: Simd>(x: Pack<V, f32>) -> Pack<V, f32> {
-        x * x.rsqrt()
+    fn smaller<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
+        if V::IS_SCALAR { Self::chosen(v, y, x, [x, y]) } else { v.min_f32s(x, y) }
+    }
+
+    #[inline(always)]
+    fn root<V: Simd>(v: V, x: V::f32s) -> V::f32s {
+        v.sqrt_f32s(x)
     }
 }
 
 impl Number for f64 {
     type Register<V: Simd> = V::f64s;
+    /// The desk's pins are as many as an AVX2 register holds.
+    type Aligned = Of32Bytes;
 
     #[inline(always)]
     fn splat<V: Simd>(v: V, x: f64) -> V::f64s {
@@ -126,12 +144,18 @@ impl Number for f64 {
     }
 
     #[inline(always)]
-    fn reciprocal_root<V: Simd>(x: Pack<V, f64>) -> Pack<V, f64> {
-        Pack::splat(1.0) / x.sqrt()
+    fn larger<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
+        // Registers have the maximum that is meant; the library's of single numbers is another where one is not a number.
+        if V::IS_SCALAR { Self::chosen(v, x, y, [x, y]) } else { v.max_f64s(x, y) }
     }
 
     #[inline(always)]
-    fn root<V: Simd>(x: Pack<V, f64>) -> Pack<V, f64> {
-        Pack(instructions::<V>().sqrt_f64s(x.0))
+    fn smaller<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
+        if V::IS_SCALAR { Self::chosen(v, y, x, [x, y]) } else { v.min_f64s(x, y) }
+    }
+
+    #[inline(always)]
+    fn root<V: Simd>(v: V, x: V::f64s) -> V::f64s {
+        v.sqrt_f64s(x)
     }
 }
