@@ -207,7 +207,7 @@ fn warnings(n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
     if let Some(guide) = guide.filter(|guide| guide.warn) {
         let critical = guide.critical_friction.unwrap_or(f64::INFINITY);
         let meaning = match guide.side {
-            DriveSide::Beyond => "the slide locks like a drawer",
+            DriveSide::Beyond => "no force moves the slide",
             _ => "the drive passes on the line of the other resistances, so that the least offset outwards locks it",
         };
         warnings.push(self_locking(guide.friction, critical, [guide.length, guide.drive_distance], meaning));
@@ -219,7 +219,7 @@ fn warnings(n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
 pub(super) fn self_locking(friction: f64, critical: f64, [length, distance]: [f64; 2], meaning: &str) -> String {
     format!(
         "self-locking: friction {friction} is not below the critical {critical:.4} of a guide {} mm long, driven {} mm \
-         beside it: {meaning}. Drive nearer to the guide, lengthen it, or lower the friction",
+         beside it: {meaning}. Drive nearer to the guide, lengthen the guide, or lower the friction",
         fixed(length * 1e3, 1),
         fixed(distance * 1e3, 1)
     )

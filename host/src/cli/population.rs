@@ -48,7 +48,7 @@ use crate::{
     },
 };
 
-pub(super) use words::{levels, percent, strongest};
+pub(super) use words::{levels, percent, strongest, verdicts};
 
 /// Simulates units of a production one by one: how many malfunction, and why.
 ///
@@ -369,7 +369,7 @@ impl Arguments {
     }
 
     fn find(&self, scene: &Scene, production: &Production, units: Vec<Unit>) -> Result<Found, Failure> {
-        let population = Population::of(production, units, self.force_limit);
+        let population = Population::of(production, units, (self.force_limit, self.stroke_of(scene)));
         let levels = LevelReport::all(scene, &population.units)?;
         let hypothesis = Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?;
         let rare = self.rare.then(|| self.estimate(scene, production, &population)).transpose()?;

@@ -95,7 +95,8 @@ impl Range {
     }
 }
 
-/// Where on its way a unit tips, slows or stops, or that it never was faster, in words; empty where it runs all the way.
+/// Where on its way a unit tips, slows or stops, or that it never was faster, and between which speeds it swings at the end, in
+/// words; empty where it runs all the way.
 pub fn on_the_way(kind: DriveKind, outcome: &Outcome) -> String {
     let at = |what: &str, moment: Option<Moment>| {
         moment.map(|moment| format!("{what} at {} {}", fixed(kind.travel(moment.z), 1), kind.travel_unit()))
@@ -107,7 +108,11 @@ pub fn on_the_way(kind: DriveKind, outcome: &Outcome) -> String {
         (Verdict::Crawls, ..) => Some("slow from the start".into()),
         _ => None,
     };
-    [at("tips", outcome.tips), slows].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let swings = outcome.swings.map(|speeds| {
+        let speeds = speeds.map(|speed| fixed(kind.speed(speed), 1));
+        format!("swings between {} and {} {} at the end", speeds[0], speeds[1], kind.speed_unit())
+    });
+    [at("tips", outcome.tips), slows, swings].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
@@ -149,6 +154,9 @@ mod tests {
         let moment = |z: f64| Some(Moment { t: 1.0, z });
         outcome.verdict = Verdict::Runs;
         (outcome.tips, outcome.slows, outcome.stops) = (None, None, None);
+        outcome.swings = Some([0.004, 0.079]);
+        assert_eq!(on_the_way(kind, &outcome), "swings between 4.0 and 79.0 mm/s at the end");
+        outcome.swings = None;
         assert_eq!(on_the_way(kind, &outcome), "");
         (outcome.tips, outcome.slows) = (moment(0.0312), moment(0.04));
         assert_eq!(on_the_way(kind, &outcome), "tips at 31.2 mm, slows at 40.0 mm");

@@ -139,6 +139,9 @@ pub struct Outcome {
     pub end: Moment,
     /// Whether the run came to the end of the stroke; `None` where the scene states no stroke.
     pub stroke_reached: Option<bool>,
+    /// Least and greatest velocity (m/s) over the last 20 ms, if a limit between two verdicts lies between them: the verdict is
+    /// then that of the last instant, and another a moment before.
+    pub swings: Option<[f64; 2]>,
     /// From where on the unit is slower than half of the command, if it is so at the end and was faster before.
     pub slows: Option<Moment>,
     /// From where on it is slower than 1 % of the command, likewise.
@@ -173,8 +176,8 @@ pub struct Observer {
     /// Below which the unit was seen last: half of the command, and 1 % of it.
     below: [Below; 2],
     tips: Option<Moment>,
-    /// Times and forces of the last [`SETTLED_WINDOW`].
-    window: std::collections::VecDeque<(f64, f64)>,
+    /// The last [`SETTLED_WINDOW`].
+    window: std::collections::VecDeque<Instant>,
 }
 
 /// Whether a unit is slower than a share of its command, and since when.
@@ -234,9 +237,9 @@ impl Observer {
             }
         }
         self.last = Some(now);
-        self.window.push_back((t, force));
+        self.window.push_back(now);
         // A hair early, so that rounding of the time cannot cost the first sample of the window.
-        while self.window.front().is_some_and(|first| first.0 < t - SETTLED_WINDOW * (1.0 + 1e-9)) {
+        while self.window.front().is_some_and(|first| first.t < t - SETTLED_WINDOW * (1.0 + 1e-9)) {
             self.window.pop_front();
         }
     }
@@ -256,20 +259,30 @@ impl Observer {
         // At the stroke's end what the command is by then counts.
         let over = t >= self.drive.ramp_end || is_at_end == Some(true);
         let verdict = Verdict::of(share, over && command > 0.0);
+        let speeds = || self.window.iter().map(|at| at.vz);
+        let extremes = speeds().reduce(f64::min).zip(speeds().reduce(f64::max)).map(|(least, most)| [least, most]);
+        let swings = extremes
+            .filter(|speeds| verdict != Verdict::Undecided && between_verdicts(speeds.map(|speed| speed / command)));
         let [slows, stops] = self.below.map(|below| below.since.filter(|_| over));
         Outcome {
             breakaway: self.breakaway,
             peak_force: self.peak,
-            settled_force: settled(self.window.iter().copied()),
+            settled_force: settled(self.window.iter().map(|at| (at.t, at.force))),
             final_velocity: vz,
             end: Moment { t, z },
             stroke_reached: is_at_end,
+            swings,
             slows,
             stops,
             tips: self.tips,
             verdict,
         }
     }
+}
+
+/// Whether a limit between two verdicts lies between the least and the greatest of these speeds, as shares of the command.
+pub fn between_verdicts([least, greatest]: [f64; 2]) -> bool {
+    [RUNS, JAMMED].iter().any(|limit| least < *limit && *limit <= greatest)
 }
 
 /// The mean force (N) over ascending times (s), each with its force, if it varies by less than 1 %.

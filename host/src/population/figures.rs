@@ -17,6 +17,8 @@ pub struct Figures {
     pub peak_force: f32,
     /// Mean force over the last 20 ms (N), if it varies by less than 1 %; else NaN.
     pub settled_force: f32,
+    /// Least and greatest velocity (m/s) over the last 20 ms.
+    pub end_speeds: [f32; 2],
     /// Velocity at the end (m/s).
     pub final_velocity: f32,
     /// End of the run (s).
@@ -39,6 +41,7 @@ impl Figures {
         breakaway: f32::NAN,
         peak_force: f32::NAN,
         settled_force: f32::NAN,
+        end_speeds: [f32::NAN; 2],
         final_velocity: f32::NAN,
         end: 0.0,
         travel: 0.0,
@@ -49,7 +52,7 @@ impl Figures {
     };
 }
 
-/// Ends of steps whose force counts for whether it has settled: one in this share of the window.
+/// Ends of steps whose force and speed count for whether it has settled: one in this share of the window.
 const SAMPLES: usize = 32;
 /// Least time (s) between two of them.
 pub const BETWEEN_NOTES: f64 = SETTLED_WINDOW / SAMPLES as f64;
@@ -111,7 +114,7 @@ impl<V: Simd> Watch<V> {
             speed: zero,
             force_before: zero,
             length_before: zero,
-            windows: vec![Window { times: [0.0; 2 * SAMPLES], forces: [0.0; 2 * SAMPLES], count: 0 }; Pack::<V>::LANES],
+            windows: vec![Window::EMPTY; Pack::<V>::LANES],
         };
         (0..Pack::<V>::LANES).for_each(|lane| watch.clear(lane));
         watch
@@ -161,17 +164,19 @@ impl<V: Simd> Watch<V> {
         self.speed = ends.or_old(speed, self.speed);
     }
 
-    /// Takes note of the force at the end of an accepted step of a `lane`, at time `t` (s).
+    /// Takes note of force and speed at the end of an accepted step of a `lane`, at time `t` (s).
     #[inline(always)]
     pub fn note(&mut self, lane: usize, t: f64) {
-        self.windows[lane].note(t, self.force.get(lane));
+        self.windows[lane].note(t, [self.force, self.speed].map(|pack| pack.get(lane)));
     }
 
     /// Writes what is known of the unit in a `lane` at its end, time `t` (s), to `figures`.
     pub fn conclude(&self, lane: usize, t: f64, figures: &mut Figures) {
         figures.breakaway = self.breakaway.get(lane);
         figures.peak_force = self.peak.get(lane);
-        figures.settled_force = self.windows[lane].settled(t, self.force.get(lane));
+        let [force, speed] = [self.force, self.speed].map(|pack| pack.get(lane));
+        figures.settled_force = self.windows[lane].settled(t, force);
+        figures.end_speeds = self.windows[lane].speeds(t, speed);
         let deepest = (0..CONTACTS).max_by(|i, j| self.depths[*i].get(lane).total_cmp(&self.depths[*j].get(lane)));
         let deepest = deepest.unwrap_or(0);
         figures.contact = deepest as u8;
@@ -180,35 +185,53 @@ impl<V: Simd> Watch<V> {
     }
 }
 
-/// Forces of the last 20 ms.
+/// Forces and speeds of the last 20 ms.
 #[derive(Clone, Copy)]
 struct Window {
     times: [f64; 2 * SAMPLES],
     forces: [f32; 2 * SAMPLES],
+    speeds: [f32; 2 * SAMPLES],
     count: usize,
 }
 
 impl Window {
+    const EMPTY: Self = Self {
+        times: [f64::NEG_INFINITY; 2 * SAMPLES],
+        forces: [0.0; 2 * SAMPLES],
+        speeds: [0.0; 2 * SAMPLES],
+        count: 0,
+    };
+
     fn clear(&mut self) {
         self.times.fill(f64::NEG_INFINITY);
         self.count = 0;
     }
 
     #[inline(always)]
-    fn note(&mut self, t: f64, force: f32) {
+    fn note(&mut self, t: f64, [force, speed]: [f32; 2]) {
         let at = self.count % (2 * SAMPLES);
-        (self.times[at], self.forces[at]) = (t, force);
+        (self.times[at], self.forces[at], self.speeds[at]) = (t, force, speed);
         self.count += 1;
+    }
+
+    /// What was noted in the last 20 ms before `end` (s).
+    fn within(&self, end: f64) -> impl Iterator<Item = usize> {
+        let times = &self.times;
+        (0..2 * SAMPLES).filter(move |i| times[*i] >= end - SETTLED_WINDOW * (1.0 + 1e-9) && times[*i] < end)
     }
 
     /// The mean force, if it varies by less than 1 %, over the last 20 ms before `end` (s), where it is `force` (N).
     fn settled(&self, end: f64, force: f32) -> f32 {
-        let mut marks: Vec<(f64, f64)> = (0..2 * SAMPLES)
-            .map(|i| (self.times[i], f64::from(self.forces[i])))
-            .filter(|(t, _)| *t >= end - SETTLED_WINDOW * (1.0 + 1e-9) && *t < end)
-            .collect();
+        let mut marks: Vec<(f64, f64)> = self.within(end).map(|i| (self.times[i], f64::from(self.forces[i]))).collect();
         marks.push((end, f64::from(force)));
         marks.sort_by(|one, other| one.0.total_cmp(&other.0));
         settled(marks.iter().copied()).map_or(f32::NAN, |mean| mean as f32)
+    }
+
+    /// The least and the greatest speed over the same time, at whose end it is `speed` (m/s).
+    fn speeds(&self, end: f64, speed: f32) -> [f32; 2] {
+        self.within(end)
+            .map(|i| self.speeds[i])
+            .fold([speed; 2], |[least, greatest], speed| [least.min(speed), greatest.max(speed)])
     }
 }

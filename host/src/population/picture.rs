@@ -81,7 +81,7 @@ pub fn forces<G>(
     line_chart(&Chart {
         title: title.into(),
         subtitle: format!("{} units, {} % malfunction{remark}", placed.len(), fixed(failed.share * 100.0, 1)),
-        x_label: "joint tightness n (mean over the gaps, σ; positive is tighter)".into(),
+        x_label: "tightness (σ, mean over the gaps; positive is tighter)".into(),
         panels: vec![
             Panel {
                 y_label: effort(kind),

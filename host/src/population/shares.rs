@@ -153,7 +153,7 @@ mod tests {
         let mut scene = example::cd_rom();
         scene.run.duration = scene.stroke_duration().unwrap();
         let production = Production::new(&scene, None, 0.0, 1).unwrap();
-        let mut population = Population::study(&scene, &production, 240, None, |_| {}).unwrap();
+        let mut population = Population::study(&scene, &production, 240, (None, None), |_| {}).unwrap();
         let failed = population.statistics.malfunctions.units;
         assert!(failed > 20 && failed < 220, "{failed}");
         // A limit that half of all forces exceed.

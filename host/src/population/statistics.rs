@@ -11,6 +11,9 @@ use crate::{
 /// Chance beyond either end of an interval of 95 %.
 const SIDE: f64 = 0.025;
 
+/// How far (m) before the end of its stroke a unit has not come to it; lanes stop within 0.1 µm of it.
+const SHORT: f64 = 1e-6;
+
 /// A share of the population.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Share {
@@ -77,6 +80,8 @@ pub struct Statistics {
     pub units: u64,
     /// Those that run.
     pub runs: Share,
+    /// Those that run, but have not come to the end of the stroke when the run is over; none if no stroke is asked for.
+    pub short: Option<Share>,
     /// Those that crawl.
     pub crawls: Share,
     /// Those that jam.
@@ -112,16 +117,19 @@ pub fn is_over<G>(unit: &Unit<G>, limit: Option<f64>) -> bool {
 }
 
 impl Statistics {
-    /// Of `units`, of which there is at least one, with a motor's force `limit` (N).
-    pub fn new<G>(units: &[Unit<G>], limit: Option<f64>) -> Self {
+    /// Of `units`, of which there is at least one, with a motor's force `limit` (N) and the `stroke` (m) that they are to travel.
+    pub fn new<G>(units: &[Unit<G>], limit: Option<f64>, stroke: Option<f64>) -> Self {
         let all = units.len().max(1) as u64;
         let count = |of: &dyn Fn(&Unit<G>) -> bool| units.iter().filter(|unit| of(unit)).count() as u64;
         let verdict = |verdict: Verdict| Share::new(count(&|unit| unit.outcome.verdict == verdict), all);
         let failed = Share::new(count(&|unit| malfunctions(unit, limit)), all);
         let running = units.iter().filter(|unit| unit.outcome.verdict == Verdict::Runs);
+        let is_short =
+            |unit: &Unit<G>, stroke: f64| unit.outcome.verdict == Verdict::Runs && unit.outcome.end.z < stroke - SHORT;
         Self {
             units: all,
             runs: verdict(Verdict::Runs),
+            short: stroke.map(|stroke| Share::new(count(&|unit| is_short(unit, stroke)), all)),
             crawls: verdict(Verdict::Crawls),
             jammed: verdict(Verdict::Jammed),
             undecided: verdict(Verdict::Undecided),

@@ -47,7 +47,7 @@ pub fn share_of_malfunctions<S: Subject>(
 
 impl<G: UnitGaps> Population<G> {
     /// The first `count` units of a `production` of `subject`, on all threads of the current pool; `limit` (N) is a motor's
-    /// greatest force. `done` is called with how many have been simulated.
+    /// greatest force, `stroke` (m) what each unit is to travel. `done` is called with how many have been simulated.
     ///
     /// # Errors
     /// See [`simulate_units`].
@@ -55,7 +55,7 @@ impl<G: UnitGaps> Population<G> {
         subject: &S,
         production: &Production<G>,
         count: u64,
-        limit: Option<f64>,
+        (limit, stroke): (Option<f64>, Option<f64>),
         done: impl Fn(u64) + Sync,
     ) -> Result<Self, SimulateError> {
         let (mut units, mut causes) = (Vec::new(), Causes::new(production));
@@ -63,16 +63,16 @@ impl<G: UnitGaps> Population<G> {
             causes.add(&drawn.variables, piece, limit);
             units.extend_from_slice(piece);
         })?;
-        Ok(causes.population(production, units, limit))
+        Ok(causes.population(production, units, (limit, stroke)))
     }
 
-    /// Of all `units` of a `production`, in order.
-    pub fn of(production: &Production<G>, units: Vec<Unit<G>>, limit: Option<f64>) -> Self {
+    /// Of all `units` of a `production`, in order; `limit` and `stroke` as in [`study`](Self::study).
+    pub fn of(production: &Production<G>, units: Vec<Unit<G>>, (limit, stroke): (Option<f64>, Option<f64>)) -> Self {
         let mut causes = Causes::new(production);
         for (start, piece) in (0..).step_by(PIECE).zip(units.chunks(PIECE)) {
             causes.add(&production.draw(start..start + piece.len() as u64).variables, piece, limit);
         }
-        causes.population(production, units, limit)
+        causes.population(production, units, (limit, stroke))
     }
 }
 
@@ -101,11 +101,11 @@ impl Causes {
         &self,
         production: &Production<G>,
         units: Vec<Unit<G>>,
-        limit: Option<f64>,
+        (limit, stroke): (Option<f64>, Option<f64>),
     ) -> Population<G> {
         let contributors = production.contributors();
         Population {
-            statistics: Statistics::new(&units, limit),
+            statistics: Statistics::new(&units, limit, stroke),
             units,
             of_force: self.of_force.ranked(&contributors),
             of_malfunction: self.of_malfunction.ranked(&contributors),

@@ -10,7 +10,7 @@ use crate::{
     dynamics::{
         desk,
         laws::{AnyElastic, AnySlide},
-        outcome::{JAMMED, Moment, RUNS, Verdict},
+        outcome::{JAMMED, Moment, RUNS, Verdict, between_verdicts},
         simulate::{Settings, SimulateError, simulate},
     },
     scene::Scene,
@@ -168,7 +168,9 @@ pub fn decisive(scene: &Scene, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Opt
 
 /// Whether the verdict of a unit may be another to a better tolerance.
 fn is_doubtful(slide: &SlideData<f64>, figures: &Figures) -> bool {
-    figures.stalled || is_near_a_limit(share(slide, figures).0)
+    let command = slide.drive.command(f64::from(figures.end)).abs();
+    let swings = between_verdicts(figures.end_speeds.map(|speed| f64::from(speed) / command));
+    figures.stalled || swings || is_near_a_limit(share(slide, figures).0)
 }
 
 /// Whether a final speed, as a `share` of the command, is so near to a limit between two verdicts that a better run has to decide.

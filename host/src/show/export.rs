@@ -42,7 +42,7 @@ pub fn rows_csv(samples: &Samples) -> anyhow::Result<Vec<u8>> {
     Ok(writer.into_inner()?)
 }
 
-/// Every unit of a population, one line each: number, joint tightness n at which it is `placed`, figures and gaps, ten digits; empty
+/// Every unit of a population, one line each: number, tightness at which it is `placed`, figures and gaps, ten digits; empty
 /// where there is none.
 ///
 /// # Errors

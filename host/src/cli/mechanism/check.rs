@@ -84,7 +84,7 @@ fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
         return vec![format!("{free} degrees of freedom are left for {driven} drives: the joints hold the mechanism")];
     }
     let word = |locked: &Locked| {
-        let meaning = format!("what {} drives locks like a drawer", locked.drive);
+        let meaning = format!("no force of {} moves it", locked.drive);
         self_locking(locked.friction, locked.critical_friction, [locked.length, locked.distance], &meaning)
     };
     locked(mechanism).iter().map(word).collect()

@@ -8,7 +8,9 @@ use super::warnings_of;
 use crate::{
     cli::{
         Failure,
-        population::{Arguments, HYPOTHESIS, LevelReport, UnitReport, WORST, levels, percent, rare, strongest},
+        population::{
+            Arguments, HYPOTHESIS, LevelReport, UnitReport, WORST, levels, percent, rare, strongest, verdicts,
+        },
         print, print_json, text_table, warn,
     },
     dynamics::driven::Driven,
@@ -83,7 +85,7 @@ impl Found {
         production: &Production<Vec<f64>>,
         units: Vec<Unit<Vec<f64>>>,
     ) -> Result<Self, Failure> {
-        let population = Population::of(production, units, asked.force_limit);
+        let population = Population::of(production, units, (asked.force_limit, driven.mechanism().run.stroke));
         let levels = LevelReport::all(driven, &population.units)?;
         let hypothesis = Hypothesis::test(driven, DIRECTIONS, asked.seed, asked.force_limit)?;
         let rare = asked.rare.then(|| asked.estimate(driven, production, &population)).transpose()?;
@@ -199,12 +201,7 @@ fn summary(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
         driven.name(),
         percent(&statistics.malfunctions)
     );
-    let Statistics { runs, crawls, jammed, undecided, .. } = *statistics;
-    for (name, share) in [("runs", runs), ("crawls", crawls), ("jammed", jammed), ("undecided", undecided)] {
-        if share.units > 0 {
-            let _ = writeln!(text, "  {name:14}{}", percent(&share));
-        }
-    }
+    text += &verdicts(statistics);
     if let (Some(share), Some(limit)) = (statistics.over_limit, limit) {
         let name = format!("  over {limit} {unit} ");
         let _ = writeln!(text, "{name:16}{}", percent(&share));
@@ -257,7 +254,7 @@ fn described(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
     let rows: Vec<_> = worst(&found.population.units, WORST).into_iter().map(row).collect();
     let columns = [
         "unit",
-        "n",
+        "tightness",
         "verdict",
         &format!("peak, {unit}"),
         &format!("final, {}", kind.speed_unit()),

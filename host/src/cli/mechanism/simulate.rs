@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{Failure, print, print_json, text_table},
+    dynamics::answer::on_the_way,
     mechanism::{Action, Mechanism, MechanismRun, RunError, SCHEME, controller_run, finer, run},
     population::{mechanism::mechanism_of, production::Production},
     scene::ControllerSpec,
@@ -263,6 +264,12 @@ fn described(mechanism: &Mechanism, label: &str, run: &MechanismRun) -> String {
         .collect();
     if !rows.is_empty() {
         let _ = writeln!(text, "{}", text_table(&["drive", "verdict", "peak", "settled", "final speed"], &rows));
+    }
+    for (drive, outcome) in mechanism.drives.iter().zip(&run.outcomes) {
+        let way = on_the_way(drive.action.kind(), outcome);
+        if !way.is_empty() {
+            let _ = writeln!(text, "On the way of {}: {way}\n", drive.name);
+        }
     }
     let last = run.samples.rows.last().map(Vec::as_slice).unwrap_or_default();
     let heading: &[&str] = if mechanism.planar {

@@ -30,23 +30,23 @@ impl Arguments {
         format!("{}\n{title}\n{}", self.summary(scene, found), worst_units(scene, &found.population.units))
     }
 
+    /// The stroke (m) that units are to travel.
+    pub(super) fn stroke_of(&self, scene: &Scene) -> Option<f64> {
+        scene.run.stroke.filter(|_| !self.opening)
+    }
+
     /// What the units did together.
     pub(super) fn summary(&self, scene: &Scene, found: &Found) -> String {
         let Population { statistics, of_force, of_malfunction, .. } = &found.population;
-        let Statistics { units, runs, crawls, jammed, undecided, malfunctions, over_limit, sigma_level, .. } =
-            *statistics;
+        let Statistics { units, undecided, malfunctions, over_limit, sigma_level, .. } = *statistics;
         let mut text = format!("{}: {units} units", scene.title);
-        let length = match scene.run.stroke.filter(|_| !self.opening) {
+        let length = match self.stroke_of(scene) {
             Some(stroke) => format!("the stroke of {} mm", fixed(stroke * 1e3, 1)),
             None => format!("{} ms", fixed(scene.run.duration * 1e3, 0)),
         };
         let _ = writeln!(text, ", {length}\n");
         let _ = writeln!(text, "Malfunction     {}", percent(&malfunctions));
-        for (name, share) in [("runs", runs), ("crawls", crawls), ("jammed", jammed), ("undecided", undecided)] {
-            if share.units > 0 {
-                let _ = writeln!(text, "  {name:14}{}", percent(&share));
-            }
-        }
+        text += &verdicts(statistics);
         if undecided.units > 0 {
             let why = match self.opening {
                 true => {
@@ -91,6 +91,31 @@ impl Arguments {
     }
 }
 
+/// How many units have which verdict, in lines; those without any are left out.
+pub(in crate::cli) fn verdicts(statistics: &Statistics) -> String {
+    let Statistics { runs, short, crawls, jammed, undecided, .. } = *statistics;
+    let mut text = String::new();
+    let mut line = |name: &str, share: Share| {
+        if share.units > 0 {
+            let _ = writeln!(text, "  {name:14}{}", percent(&share));
+        }
+    };
+    line("runs", runs);
+    if let Some(short) = short {
+        line("  too slowly", short);
+    }
+    line("crawls", crawls);
+    line("jammed", jammed);
+    line("undecided", undecided);
+    if short.is_some_and(|short| short.units > 0) {
+        let _ = writeln!(
+            text,
+            "                too slowly: they run when the time is over, but are not at the end of the stroke"
+        );
+    }
+    text
+}
+
 /// The table of the worst units.
 fn worst_units(scene: &Scene, units: &[Unit]) -> String {
     let row = |unit: &Unit| {
@@ -109,7 +134,8 @@ fn worst_units(scene: &Scene, units: &[Unit]) -> String {
         ]
     };
     let rows: Vec<Vec<String>> = worst(units, WORST).into_iter().map(row).collect();
-    let heading = ["unit", "n", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
+    let heading =
+        ["unit", "tightness", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
     text_table(&heading, &rows)
 }
 

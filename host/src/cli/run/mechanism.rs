@@ -92,8 +92,13 @@ impl Arguments {
         let bar = progress("simulating", force_table::levels(driven.levels()).count + units as usize);
         let ((table, sweep), population) = self.threads.install(|| {
             let made = force_table::make(driven, Demand::Full, || bar.inc(1))?;
-            let population =
-                varies.then(|| Population::study(driven, &drawn, units, None, |units| bar.inc(units))).transpose()?;
+            let population = varies
+                .then(|| {
+                    Population::study(driven, &drawn, units, (None, driven.mechanism().run.stroke), |units| {
+                        bar.inc(units)
+                    })
+                })
+                .transpose()?;
             Ok::<_, Failure>((made, population))
         })??;
         bar.finish_and_clear();

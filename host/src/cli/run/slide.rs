@@ -184,7 +184,8 @@ impl Arguments {
             whole.run.duration = duration.unwrap_or(scene.run.duration);
             let unit = |n| whole.level(n, whole.motion(1e-3));
             let stroke = duration.map(|_| sweep(&whole, &levels, Keep::Samples, unit, || bar.inc(1)));
-            let population = Population::study(&whole, &production, units, None, |units| bar.inc(units))?;
+            let population =
+                Population::study(&whole, &production, units, (None, whole.run.stroke), |units| bar.inc(units))?;
             let units = page::units(&whole, &production, &population, None)?;
             Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()?, population, units })
         })??;
