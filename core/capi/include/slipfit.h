@@ -2,12 +2,18 @@
  *
  * Every object lives in memory of the caller's, which has to be written once (static memory is) before its first use;
  * there is no global state. Calls that take an object by a const pointer only read it, so that an interrupt and a thread
- * may make them at once; any other call needs the object to itself. Whatever is made of a table keeps what it needs of it. */
+ * may make them at once; any other call needs the object to itself. Whatever is made of a table keeps what it needs of it.
+ *
+ * Link with -Wl,--gc-sections, which leaves out what a program does not call. How the caller is compiled changes no bit of the
+ * library, not -ffp-contract either. The header is C11 and C++17. */
 
 #ifndef SLIPFIT_H
 #define SLIPFIT_H
 
 #include <stdint.h>
+
+// The version of the library, 10000·major + 100·minor + patch.
+#define SLIPFIT_VERSION 100
 
 // Implicit Euler with four Newton passes.
 #define SLIPFIT_SCHEME_IMPLICIT_EULER 1
@@ -340,6 +346,12 @@ typedef struct slipfit_estimate {
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
+
+// The version of the library that is linked, to be compared with the header's `SLIPFIT_VERSION`.
+uint32_t slipfit_version(void);
+
+// What a status is called, such as `SLIPFIT_OK`; `unknown` for what no function returns. Ends with a zero, and stays.
+const char *slipfit_status_name(slipfit_status status);
 
 // Makes a predictor in `*predictor` for a unit of tolerance level `n` of `*scene`, at rest at time 0. It is tried over its
 // first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a

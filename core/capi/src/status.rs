@@ -1,5 +1,7 @@
 //! What functions return.
 
+use core::ffi::c_char;
+
 use slipfit_core::{ParameterError, monitor::MonitorError, table::TableError};
 
 /// 0 if a function did what it says, or why it did nothing.
@@ -49,6 +51,46 @@ pub const SLIPFIT_TABLE_SLOT: slipfit_status = 25;
 pub const SLIPFIT_BANK_LEVELS: slipfit_status = 32;
 /// Too few samples for an estimate.
 pub const SLIPFIT_BANK_SAMPLES: slipfit_status = 33;
+
+/// The version of the library, 10000·major + 100·minor + patch.
+pub const SLIPFIT_VERSION: u32 = 100;
+
+/// The version of the library that is linked, to be compared with the header's `SLIPFIT_VERSION`.
+#[unsafe(no_mangle)]
+pub extern "C" fn slipfit_version() -> u32 {
+    SLIPFIT_VERSION
+}
+
+/// What a status is called, such as `SLIPFIT_OK`; `unknown` for what no function returns. Ends with a zero, and stays.
+#[unsafe(no_mangle)]
+pub extern "C" fn slipfit_status_name(status: slipfit_status) -> *const c_char {
+    let name = match status {
+        SLIPFIT_OK => c"SLIPFIT_OK",
+        SLIPFIT_NULL => c"SLIPFIT_NULL",
+        SLIPFIT_MISALIGNED => c"SLIPFIT_MISALIGNED",
+        SLIPFIT_LENGTH => c"SLIPFIT_LENGTH",
+        SLIPFIT_NOT_MADE => c"SLIPFIT_NOT_MADE",
+        SLIPFIT_PARAMETER => c"SLIPFIT_PARAMETER",
+        SLIPFIT_LAW => c"SLIPFIT_LAW",
+        SLIPFIT_NOT_FINITE => c"SLIPFIT_NOT_FINITE",
+        SLIPFIT_STEP => c"SLIPFIT_STEP",
+        SLIPFIT_BEHIND => c"SLIPFIT_BEHIND",
+        SLIPFIT_TABLE_TRUNCATED => c"SLIPFIT_TABLE_TRUNCATED",
+        SLIPFIT_TABLE_MAGIC => c"SLIPFIT_TABLE_MAGIC",
+        SLIPFIT_TABLE_VERSION => c"SLIPFIT_TABLE_VERSION",
+        SLIPFIT_TABLE_CHECKSUM => c"SLIPFIT_TABLE_CHECKSUM",
+        SLIPFIT_TABLE_HEADER => c"SLIPFIT_TABLE_HEADER",
+        SLIPFIT_TABLE_VALUE => c"SLIPFIT_TABLE_VALUE",
+        SLIPFIT_TABLE_AXES => c"SLIPFIT_TABLE_AXES",
+        SLIPFIT_TABLE_SCENE => c"SLIPFIT_TABLE_SCENE",
+        SLIPFIT_TABLE_KIND => c"SLIPFIT_TABLE_KIND",
+        SLIPFIT_TABLE_SLOT => c"SLIPFIT_TABLE_SLOT",
+        SLIPFIT_BANK_LEVELS => c"SLIPFIT_BANK_LEVELS",
+        SLIPFIT_BANK_SAMPLES => c"SLIPFIT_BANK_SAMPLES",
+        _ => c"unknown",
+    };
+    name.as_ptr()
+}
 
 /// Why a call did nothing.
 pub(crate) struct Refusal(pub(crate) slipfit_status);

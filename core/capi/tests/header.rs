@@ -23,3 +23,11 @@ fn the_header_is_current() {
         "to write it: SLIPFIT_WRITE_HEADER=1 cargo test -p slipfit-capi"
     );
 }
+
+#[test]
+fn the_version_is_the_packages() {
+    let [major, minor, patch] =
+        [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")]
+            .map(|number| number.parse::<u32>().unwrap());
+    assert_eq!(slipfit_capi::SLIPFIT_VERSION, 10_000 * major + 100 * minor + patch);
+}

@@ -28,16 +28,18 @@ use crate::{
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// File to write: .rs for slipfit-core, .h for the C library (slides only).
+    /// File to write: .rs for slipfit-core, .h for the C library (slides only; `--crate` is for any scene).
     #[arg(short, long, value_name = "FILE", default_value = "scene.rs")]
     output: PathBuf,
-    /// Writes a crate into this folder, with the folder's name, instead of a file.
+    /// Writes a crate into this folder, with the folder's name, instead of a file; with functions and a header for C.
     ///
     /// The step is compiled in that crate alone. So a line in the workspace's Cargo profile, which the crate's Cargo.toml shows, keeps
     /// the step fast in a firmware image that is built for size.
     #[arg(long = "crate", value_name = "DIR", conflicts_with = "output")]
     folder: Option<PathBuf>,
-    /// Folder of slipfit-core, on which the crate depends. If not given, the crate asks crates.io for it, which does not have it: it then does not build.
+    /// Folder of slipfit-core, on which the crate depends.
+    ///
+    /// If not given, the crate asks crates.io for it. crates.io does not have it, so the crate does not build.
     #[arg(long, value_name = "DIR", requires = "folder", conflicts_with = "output")]
     core: Option<PathBuf>,
     #[command(flatten)]
@@ -142,7 +144,7 @@ impl Arguments {
         }
         if self.output.extension().is_none_or(|extension| extension != "rs") {
             return Err(Failure::Input(
-                "a mechanism is written as a Rust module, --output FILE.rs, or as a crate, --crate DIR".into(),
+                "a mechanism is written as a Rust module, --output FILE.rs, or as a crate that C can call, too, --crate DIR".into(),
             ));
         }
         self.write_text(&mechanism::rust_source(mechanism)?)?;

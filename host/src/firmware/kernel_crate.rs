@@ -3,10 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
-use super::kernel_source::rust_source;
+use super::{
+    c_border::{Border, Driven as CDrive, bytes_of_mechanism},
+    kernel_source::rust_source,
+};
 use crate::{
+    dynamics::driven::{DriveKind, Driven},
     mechanism,
-    mechanism::{Mechanism, RunError},
+    mechanism::{ByDrive, Mechanism, NamedDrive, RunError},
     scene::Scene,
 };
 
@@ -28,11 +32,37 @@ pub fn crate_name(folder: &Path) -> Result<String, NameError> {
 }
 
 /// Files, each with its path in the crate's folder.
-pub type CrateFiles = [(PathBuf, String); 2];
+pub type CrateFiles = [(PathBuf, String); 4];
+
+/// Bytes of a slide's object for C, at least.
+const BYTES_OF_SLIDE: usize = 1024;
 
 /// The files of the crate `name` of a slide. `core` is where slipfit-core lies; if not given, its version is.
 pub fn slide_crate(scene: &Scene, name: &str, core: Option<&Path>) -> CrateFiles {
-    crate_files(&rust_source(scene), OF_SLIDE, name, core)
+    let found = "Driven { effort: force(parameters, state), speed: velocity(state) }";
+    let border = Border {
+        name,
+        title: &scene.title,
+        step: scene.controller.step as f32,
+        hash: Some(scene.hash()),
+        bytes: BYTES_OF_SLIDE,
+        drives: vec![CDrive { function: "drive".into(), name: "drive", kind: DriveKind::Pushes, found: found.into() }],
+        start: "predictor(n).map(|unit| { let state = at_rest(&unit); (unit, state) })",
+    };
+    crate_files(&rust_source(scene), OF_SLIDE, &border, core)
+}
+
+/// A drive of a mechanism, whose module has this `function` of it.
+fn of_drive((function, drive): (String, &NamedDrive)) -> CDrive<'_> {
+    CDrive {
+        found: format!(
+            "let found = {function}(parameters.mechanism(), parameters.time(state.steps), &state.motion.pose, \
+             &state.motion.velocity);\n    Driven {{ effort: found.effort, speed: found.speed }}"
+        ),
+        function,
+        name: &drive.name,
+        kind: drive.action.kind(),
+    }
 }
 
 /// The same of a mechanism.
@@ -40,16 +70,35 @@ pub fn slide_crate(scene: &Scene, name: &str, core: Option<&Path>) -> CrateFiles
 /// # Errors
 /// If the mechanism has no run, see [`RunError`].
 pub fn mechanism_crate(mechanism: &Mechanism, name: &str, core: Option<&Path>) -> Result<CrateFiles, RunError> {
-    Ok(crate_files(&mechanism::rust_source(mechanism)?, OF_MECHANISM, name, core))
+    let source = mechanism::rust_source(mechanism)?;
+    let dimension = source.split_once("pub const DIMENSION: usize = ").and_then(|(_, rest)| rest.split_once(';'));
+    let border = Border {
+        name,
+        title: &mechanism.title,
+        step: mechanism.controller.step as f32,
+        hash: ByDrive::new(mechanism, 0).filter(|_| mechanism.drives.len() == 1).map(|driven| driven.hash()),
+        bytes: bytes_of_mechanism(&source, dimension.and_then(|(count, _)| count.parse().ok()).unwrap_or_default()),
+        drives: mechanism::drive_names(mechanism).into_iter().zip(&mechanism.drives).map(of_drive).collect(),
+        start: "predictor(n)",
+    };
+    Ok(crate_files(&source, OF_MECHANISM, &border, core))
 }
 
-fn crate_files(source: &str, functions: &str, name: &str, core: Option<&Path>) -> CrateFiles {
-    let library = library(source, functions, name);
-    [(PathBuf::from("Cargo.toml"), manifest(name, core)), (Path::new("src").join("lib.rs"), library)]
+fn crate_files(source: &str, functions: &str, border: &Border, core: Option<&Path>) -> CrateFiles {
+    let name = border.name;
+    [
+        (PathBuf::from("Cargo.toml"), manifest(name, core)),
+        (Path::new("src").join("lib.rs"), library(source, functions, name)),
+        (Path::new("src").join("c.rs"), border.rust()),
+        (PathBuf::from(header_name(name)), border.header()),
+    ]
 }
 
 /// What the crate of a slide has besides its module.
 const OF_SLIDE: &str = "\
+/// What does not change.
+pub type Parameters = Predictor;
+
 /// What changes from step to step.
 pub type State = slipfit_core::kernel::StateOf<f32, Unit, 6>;
 
@@ -96,8 +145,14 @@ pub fn step(parameters: &Parameters, state: &mut State) -> Report {
 }
 ";
 
+/// The header's file name.
+fn header_name(name: &str) -> String {
+    format!("{}.h", name.replace('-', "_"))
+}
+
 fn manifest(name: &str, core: Option<&Path>) -> String {
     let version = env!("CARGO_PKG_VERSION");
+    let header = header_name(name);
     // As TOML has a string.
     let core = core.map(|path| format!("path = {}", toml::Value::from(path.to_string_lossy().as_ref())));
     let core = core.unwrap_or_else(|| format!("version = \"{version}\""));
@@ -105,7 +160,7 @@ fn manifest(name: &str, core: Option<&Path>) -> String {
         "# Written by slipfit. In the workspace's Cargo.toml, for an image that is built for size:\n#\n\
          # [profile.release.package.{name}]\n# opt-level = 3\n\n\
          [package]\nname = \"{name}\"\nversion = \"{version}\"\nedition = \"2024\"\npublish = false\n\n\
-         [dependencies]\nslipfit-core = {{ {core} }}\n"
+         [features]\n# Functions for C, see {header}.\nc = []\n\n[dependencies]\nslipfit-core = {{ {core} }}\n"
     )
 }
 
@@ -118,7 +173,9 @@ fn library(source: &str, functions: &str, name: &str) -> String {
          //! The step is compiled in this crate alone, by what the profile says of it. In an image that\n\
          //! is built for size, or in a dev build, these lines in the workspace's Cargo.toml keep it fast:\n//!\n\
          //! ```toml\n//! [profile.release.package.{name}]\n//! opt-level = 3\n//!\n\
-         //! [profile.dev.package.{name}]\n//! opt-level = 3\n//! ```\n#![no_std]\n#![forbid(unsafe_code)]\n{module}\n{functions}"
+         //! [profile.dev.package.{name}]\n//! opt-level = 3\n//! ```\n#![no_std]\n#![cfg_attr(not(feature = \"c\"), forbid(unsafe_code))]\n{module}\n{functions}\n\
+         #[cfg(all(feature = \"c\", not(target_os = \"none\")))]\nextern crate std;\n\n\
+         #[cfg(feature = \"c\")]\nmod c;\n"
     )
 }
 

@@ -1,5 +1,6 @@
 //! What the controller gets: force tables in flash, kernels as source text, and as units for other simulators.
 
+mod c_border;
 pub mod flash;
 pub mod fmu;
 pub mod force_table;

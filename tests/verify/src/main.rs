@@ -14,10 +14,13 @@ use std::{
 const TARGETS: [&str; 1] = ["thumbv7em-none-eabihf"];
 
 /// Programs that tests run, and the Debian packages that have them.
-const TOOLS: [(&str, &str); 5] = [
+const TOOLS: [(&str, &str); 8] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("arm-none-eabi-gcc", "gcc-arm-none-eabi"),
     ("chromium", "chromium"),
+    ("c++", "g++"),
+    ("cmake", "cmake"),
+    ("pkg-config", "pkg-config"),
     ("slurmd", "slurm-wlm"),
     ("munge", "munge"),
 ];

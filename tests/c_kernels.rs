@@ -1,0 +1,218 @@
+//! The crates that `slipfit kernel --crate` writes, from C: on the PC and on the emulated Cortex-M4F one program prints the bits of
+//! the same kernel in Rust. It links only while no panic is reachable.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use slipfit::{
+    firmware::kernel_crate::{mechanism_crate, slide_crate},
+    scene::{CD_ROM_SLIDE, Override, Scene, SceneFile, shipped},
+};
+use slipfit_core::pose::Pose;
+use slipfit_problems::mechanisms;
+use slipfit_tests::cross::{self, TARGET, cargo, printed};
+
+#[rustfmt::skip]
+#[path = "reference/scene.rs"]
+#[allow(dead_code, reason = "one of its functions is enough here")]
+mod slide;
+
+const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// Level of the units.
+const LEVEL: f32 = 1.5;
+
+/// A C program for the kernel NAME, whose drive has the function NAME_DRIVE: a hash of the bits of all that the drive gives and sees.
+const PROGRAM: &str = r#"#include "NAME.h"
+
+#include <stddef.h>
+
+void put(const char *text);
+
+static NAME unit;
+
+/* FNV-1a over the bits of a number. */
+static uint64_t add(uint64_t hash, float number) {
+    union {
+        float number;
+        uint32_t bits;
+    } seen;
+    seen.number = number;
+    for (int i = 0; i < 32; i += 8) {
+        hash = (hash ^ (seen.bits >> i & 255u)) * 0x100000001b3ull;
+    }
+    return hash;
+}
+
+int main(void) {
+    uint64_t hash = 0xcbf29ce484222325ull;
+    char text[18];
+    if (NAME_init(NULL, 0.0f) != UPPER_NULL || NAME_init(&unit, 1e12f) != UPPER_OUT_OF_BOUNDS || NAME_step(NULL) != UPPER_NULL) {
+        put("not refused\n");
+    }
+    if (NAME_init(&unit, LEVELf) != UPPER_OK || NAME_time(&unit) != 0.0f) {
+        put("no unit\n");
+    }
+    for (int i = 0; i < STEPS; i++) {
+        if (NAME_step(&unit) != UPPER_OK) {
+            put("held\n");
+        }
+        NAME_driven found = NAME_DRIVE(&unit);
+        hash = add(add(hash, found.effort), found.speed);
+    }
+    for (int i = 0; i < 16; i++) {
+        text[i] = "0123456789abcdef"[hash >> (60 - 4 * i) & 15u];
+    }
+    text[16] = '\n';
+    text[17] = 0;
+    put(text);
+    return 0;
+}
+"#;
+
+/// A kernel as C has it, and what the program of it is to print.
+struct Kernel {
+    /// The crate.
+    name: &'static str,
+    /// Function of the drive, without the crate's name.
+    drive: &'static str,
+    steps: u32,
+    expected: String,
+}
+
+/// FNV-1a over the bits of numbers, as the program prints it.
+fn hashed(numbers: impl Iterator<Item = [f32; 2]>) -> String {
+    let bytes = numbers.flatten().flat_map(|number| number.to_bits().to_le_bytes());
+    let hash = bytes
+        .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
+    format!("{hash:016x}\n")
+}
+
+/// The scene of the committed module: the paper's slide with exact friction.
+fn slide_of() -> Kernel {
+    let kernel = slide::predictor(LEVEL).expect("the level is in bounds");
+    let mut state = kernel.at_rest(Pose::nominal());
+    let steps = 300;
+    let seen = (0..steps).map(|_| {
+        kernel.step(&mut state);
+        let speed = state.motion.velocity.z;
+        [kernel.mechanism().drive().force(kernel.time(state.steps), speed), speed]
+    });
+    Kernel { name: "cd-rom-slide", drive: "drive", steps, expected: hashed(seen) }
+}
+
+macro_rules! of_mechanisms {
+    ($($module:ident, $name:literal, $drive:ident, $steps:literal;)*) => {[$({
+        let (kernel, mut state) = mechanisms::$module::predictor(LEVEL).expect("the level is in bounds");
+        let seen = (0..$steps).map(|_| {
+            kernel.step(&mut state);
+            let (time, motion) = (kernel.time(state.steps), &state.motion);
+            let found = mechanisms::$module::$drive(kernel.mechanism(), time, &motion.pose, &motion.velocity);
+            [found.effort, found.speed]
+        });
+        Kernel { name: $name, drive: stringify!($drive), steps: $steps, expected: hashed(seen) }
+    }),*]};
+}
+
+/// Every shipped mechanism with a drive.
+fn kernels() -> Vec<Kernel> {
+    let mechanisms = of_mechanisms! {
+        four_bar, "four-bar", drive_motor, 300;
+        hatch, "hatch", drive_motor, 300;
+        linear_guide, "linear-guide", drive_motor, 300;
+        slider_crank, "slider-crank", drive_motor, 300;
+        slider_crank_guide, "slider-crank-guide", drive_motor, 300;
+        telescopic_drawer, "telescopic-drawer", drive_motor, 300;
+    };
+    mechanisms.into_iter().chain([slide_of()]).collect()
+}
+
+/// Writes a workspace of the crates of all `kernels`, and their programs, into a folder of the test's own.
+fn workspace(kernels: &[Kernel]) -> PathBuf {
+    let folder = Path::new(FOLDER).join("c-kernels");
+    let write = |path: PathBuf, text: &str| {
+        fs::create_dir_all(path.parent().expect("a folder")).expect("the test's folder takes folders");
+        fs::write(path, text).expect("the test's folder takes files");
+    };
+    let core = Path::new(ROOT).join("core");
+    for Kernel { name, drive, steps, .. } in kernels {
+        let files = if *name == "cd-rom-slide" {
+            let set = ["friction.law=exact"].map(Override::set);
+            slide_crate(&Scene::parse(name, CD_ROM_SLIDE, &set).expect("a shipped scene"), name, Some(&core))
+        } else {
+            let scene = SceneFile::parse(name, shipped(name).expect("a shipped scene"), &[]).expect("a shipped scene");
+            mechanism_crate(&scene.mechanism.expect("a mechanism"), name, Some(&core)).expect("it runs")
+        };
+        for (path, text) in files {
+            write(folder.join(name).join(path), &text);
+        }
+        let prefix = name.replace('-', "_");
+        let program = PROGRAM
+            .replace("NAME_DRIVE", &format!("{prefix}_{drive}"))
+            .replace("NAME", &prefix)
+            .replace("UPPER", &prefix.to_uppercase())
+            .replace("LEVEL", &format!("{LEVEL:?}"))
+            .replace("STEPS", &steps.to_string());
+        write(folder.join(name).join("program.c"), &program);
+    }
+    let members: Vec<_> = kernels.iter().map(|kernel| format!("{:?}", kernel.name)).collect();
+    write(
+        folder.join("Cargo.toml"),
+        &format!(
+            "[workspace]\nmembers = [{}]\nresolver = \"3\"\n\n[profile.release]\nlto = \"fat\"\ncodegen-units = 1\n",
+            members.join(", ")
+        ),
+    );
+    fs::copy(Path::new(ROOT).join("Cargo.lock"), folder.join("Cargo.lock")).expect("the repository's own versions");
+    folder
+}
+
+/// The library of a kernel in the workspace `folder`, for a `target` or the PC.
+fn library(folder: &Path, name: &str, target: Option<&str>) -> PathBuf {
+    // In the folder of all tests that build for the target: they share what they depend on.
+    let mut build = cargo(FOLDER);
+    build.current_dir(folder).args(["rustc", "--offline", "--release", "-p", name, "--features", "c"]);
+    build.args(["--crate-type", "staticlib"]).args(target.iter().flat_map(|target| ["--target", target]));
+    printed(&mut build);
+    Path::new(FOLDER)
+        .join("cross")
+        .join(target.unwrap_or_default())
+        .join(format!("release/lib{}.a", name.replace('-', "_")))
+}
+
+#[test]
+fn kernels_of_all_scenes_have_the_same_bits_from_c_on_host_and_target_and_from_rust() {
+    cross::require_target();
+    cross::require_c_compiler();
+    cross::require_emulator();
+    let kernels = kernels();
+    let folder = workspace(&kernels);
+    let strict = ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2", "-ffp-contract=off"];
+    for Kernel { name, expected, .. } in &kernels {
+        let program = folder.join(name).join("program.c");
+        let compiled = |compiler: &str, suffix: &str| {
+            let mut command = Command::new(compiler);
+            let image = folder.join(format!("{name}{suffix}"));
+            command.current_dir(ROOT).args(strict).arg("-I").arg(folder.join(name)).arg(&program).arg("-o").arg(&image);
+            (command, image)
+        };
+        let (mut compiler, image) = compiled("cc", "-host");
+        printed(compiler.arg("core/capi/examples/desk.c").arg(library(&folder, name, None)));
+        assert_eq!(printed(&mut Command::new(image)), *expected, "{name} on the PC");
+
+        let (mut compiler, image) = compiled("arm-none-eabi-gcc", ".elf");
+        compiler
+            .args(["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16", "-ffreestanding"])
+            .args(["-nostdlib", "-Wl,--gc-sections", "-Tcore/capi/examples/m4.ld", "-L."])
+            .arg("core/capi/examples/m4.c")
+            .arg(library(&folder, name, Some(TARGET)))
+            .arg("-lgcc");
+        printed(&mut compiler);
+        let on_target = printed(Command::new(Path::new(ROOT).join(".cargo/qemu")).arg(image));
+        assert_eq!(on_target, *expected, "{name} on the target");
+    }
+}

@@ -1,0 +1,133 @@
+//! What C and C++ projects take the library by: CMake, pkg-config, headers that are C++17, too; and Cargo's packages.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use slipfit::{
+    firmware::{flash::export, force_table, force_table::Demand, kernel_crate::mechanism_crate, kernel_source},
+    scene::{CD_ROM_SLIDE, Override, Scene, SceneFile, shipped},
+};
+use slipfit_tests::cross::{cargo, printed};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// Prints every status of the library, and whether it is the header's.
+const PROGRAM: &str = r#"#include <stdio.h>
+
+#include "slipfit.h"
+
+int main(void) {
+    printf("%d\n", slipfit_version() == SLIPFIT_VERSION);
+    for (slipfit_status status = 0; status < 64; status++) {
+        const char *name = slipfit_status_name(status);
+        if (name[0] == 'S') {
+            printf("%s %d\n", name, (int)status);
+        }
+    }
+    return 0;
+}
+"#;
+
+/// A folder of the test's own, emptied.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the test's folder takes folders");
+    folder
+}
+
+fn write(path: PathBuf, text: &str) {
+    fs::write(path, text).expect("the test's folder takes files");
+}
+
+/// Every status that the header names, as the program prints it.
+fn statuses() -> String {
+    let header =
+        fs::read_to_string(Path::new(ROOT).join("core/capi/include/slipfit.h")).expect("a file of the repository");
+    let constants = header.lines().filter_map(|line| line.strip_prefix("#define SLIPFIT_")?.split_once(' '));
+    let source = fs::read_to_string(Path::new(ROOT).join("core/capi/src/status.rs")).expect("a file of the repository");
+    let is_status = |name: &str| source.contains(&format!("pub const SLIPFIT_{name}: slipfit_status"));
+    let mut found: Vec<(u32, &str)> = constants
+        .filter(|(name, _)| is_status(name))
+        .map(|(name, value)| (value.parse().expect("a number"), name))
+        .collect();
+    found.sort_unstable();
+    assert!(found.len() > 20, "{found:?}");
+    found.into_iter().map(|(value, name)| format!("SLIPFIT_{name} {value}\n")).collect()
+}
+
+#[test]
+fn c_projects_find_the_library_by_cmake_and_by_pkg_config() {
+    let folder = folder("packages");
+    let prefix = folder.join("prefix");
+    let run = |program: &str, arguments: &[&str]| {
+        printed(Command::new(program).current_dir(&folder).env_remove("CARGO_TARGET_DIR").args(arguments))
+    };
+    let source = format!("{ROOT}/core/capi");
+    let install = format!("-DCMAKE_INSTALL_PREFIX={}", prefix.display());
+    run("cmake", &["-S", &source, "-B", "library", &install, "-DCMAKE_INSTALL_LIBDIR=lib"]);
+    run("cmake", &["--build", "library"]);
+    run("cmake", &["--install", "library"]);
+
+    write(folder.join("program.c"), PROGRAM);
+    write(
+        folder.join("CMakeLists.txt"),
+        "cmake_minimum_required(VERSION 3.20)\nproject(program LANGUAGES C)\nfind_package(slipfit 0.1 REQUIRED)\n\
+         add_executable(program program.c)\ntarget_link_libraries(program PRIVATE slipfit::slipfit)\n",
+    );
+    run("cmake", &["-S", ".", "-B", "by-cmake", &format!("-DCMAKE_PREFIX_PATH={}", prefix.display())]);
+    run("cmake", &["--build", "by-cmake"]);
+    let expected = format!("1\n{}", statuses());
+    assert_eq!(printed(&mut Command::new(folder.join("by-cmake/program"))), expected);
+
+    let packages = prefix.join("lib/pkgconfig");
+    let flags =
+        printed(Command::new("pkg-config").env("PKG_CONFIG_PATH", packages).args(["--cflags", "--libs", "slipfit"]));
+    let flags: Vec<_> = flags.split_whitespace().collect();
+    run("cc", &[&["program.c", "-o", "by-pkg-config"], &flags[..]].concat());
+    assert_eq!(printed(&mut Command::new(folder.join("by-pkg-config"))), expected);
+}
+
+#[test]
+fn every_header_is_c_plus_plus_17() {
+    let folder = folder("c-plus-plus");
+    let scene =
+        Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[Override::set("run.duration=60")]).expect("it is shipped");
+    write(folder.join("scene.h"), &kernel_source::c_header(&scene).expect("an exponent of 1.5"));
+    let table = force_table::make(&scene, Demand::Full, || ()).expect("its table").0.bytes;
+    write(
+        folder.join("table.h"),
+        &export::render("h", &table, 0).map(|text| String::from_utf8_lossy(&text).into_owned()).expect("a header"),
+    );
+    let crank =
+        SceneFile::parse("slider-crank", shipped("slider-crank").expect("it is shipped"), &[]).expect("it is sound");
+    for (path, text) in mechanism_crate(&crank.mechanism.expect("a mechanism"), "crank", None).expect("it runs") {
+        if path.extension().is_some_and(|extension| extension == "h") {
+            write(folder.join(path), &text);
+        }
+    }
+    let program = "#include \"slipfit.h\"\n#include \"scene.h\"\n#include \"table.h\"\n#include \"crank.h\"\n\
+                   int main() {\n    return slipfit_this_scene.mass > 0 && SLIPFIT_TABLE_SIZE > 0 && sizeof(crank) > 0 ? 0 : 1;\n}\n";
+    write(folder.join("program.cpp"), program);
+    let strict = ["-std=c++17", "-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "program.cpp"];
+    printed(Command::new("c++").current_dir(&folder).arg(format!("-I{ROOT}/core/capi/include")).args(strict));
+}
+
+/// As they would be published: each builds from its own files alone.
+#[test]
+fn cargo_packages_core_and_the_c_library() {
+    let folder = env!("CARGO_TARGET_TMPDIR");
+    let mut package = cargo(folder);
+    package.args(["package", "--offline", "--allow-dirty", "--quiet", "-p", "slipfit-core", "-p", "slipfit-capi"]);
+    printed(&mut package);
+    for name in ["slipfit-core", "slipfit-capi"] {
+        let archive = Path::new(folder).join(format!("cross/package/{name}-0.1.0.crate"));
+        let files = printed(Command::new("tar").arg("tzf").arg(archive));
+        for file in ["README.md", "Cargo.toml", "src/lib.rs", "LICENSE-MIT", "LICENSE-APACHE"] {
+            assert!(files.contains(&format!("{name}-0.1.0/{file}\n")), "{file} is missing in {files}");
+        }
+    }
+}
