@@ -390,6 +390,22 @@ mod tests {
     }
 
     #[test]
+    fn tells_where_the_verdict_is_that_of_a_moment() {
+        // Shaken at 30 Hz about a mean speed, by so much to either side.
+        let shaken = |mean: f64, by: f64| {
+            observe(move |t| mean + by * libm::sin(2.0 * core::f64::consts::PI * 30.0 * t), 1.5, 1e-4)
+        };
+        let [least, greatest] = shaken(0.05, 0.03).swings.unwrap();
+        assert!(least < 0.03 && greatest > 0.06, "{least} {greatest}");
+        // Where all of it runs, or crawls, nothing is said.
+        assert_eq!(shaken(0.09, 0.03).swings, None);
+        assert_eq!(shaken(0.02, 0.01).swings, None);
+        assert_eq!(observe(|_| 0.0, 1.5, 1e-4).swings, None);
+        // Nor of what was over before the last 20 ms.
+        assert_eq!(observe(|t| if t < 1.45 { 0.02 } else { 0.1 }, 1.5, 1e-4).swings, None);
+    }
+
+    #[test]
     fn the_stroke_ends_the_run_in_either_direction() {
         for direction in [1.0, -1.0] {
             let speed = 0.1 * direction;

@@ -203,6 +203,11 @@ mod tests {
         let by_version: toml::Table = slide_crate(&example::cd_rom(), "slide", None)[0].1.parse().unwrap();
         let version = by_version["dependencies"]["slipfit-core"]["version"].as_str();
         assert_eq!(version, Some(env!("CARGO_PKG_VERSION")));
-        assert!(files.iter().all(|(_, text)| text.contains("[profile.release.package.slide]")));
+        assert!(files[..2].iter().all(|(_, text)| text.contains("[profile.release.package.slide]")));
+        let header = &files[3];
+        assert!(
+            header.0 == Path::new("slide.h") && header.1.contains("int32_t slide_step(slide *unit);"),
+            "{header:?}"
+        );
     }
 }

@@ -235,3 +235,22 @@ impl Window {
             .fold([speed; 2], |[least, greatest], speed| [least.min(speed), greatest.max(speed)])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{SAMPLES, Window};
+
+    #[test]
+    fn a_window_knows_the_last_twenty_milliseconds() {
+        let mut window = Window::EMPTY;
+        // One note a millisecond, the speed ever slower.
+        for k in 0..3 * SAMPLES as u32 {
+            window.note(f64::from(k) * 1e-3, [2.0, 0.2 - 1e-3 * k as f32]);
+        }
+        let end = (3 * SAMPLES) as f64 * 1e-3;
+        let [least, greatest] = window.speeds(end, 0.05);
+        assert_eq!((least, greatest), (0.05, 0.2 - 1e-3 * (3 * SAMPLES - 20) as f32));
+        assert_eq!(window.settled(end, 2.0), 2.0);
+        assert_eq!(Window::EMPTY.speeds(end, 0.05), [0.05; 2]);
+    }
+}

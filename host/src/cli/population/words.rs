@@ -95,24 +95,18 @@ impl Arguments {
 pub(in crate::cli) fn verdicts(statistics: &Statistics) -> String {
     let Statistics { runs, short, crawls, jammed, undecided, .. } = *statistics;
     let mut text = String::new();
-    let mut line = |name: &str, share: Share| {
+    let mut line = |name: &str, share: Share, note: &str| {
         if share.units > 0 {
-            let _ = writeln!(text, "  {name:14}{}", percent(&share));
+            let _ = writeln!(text, "  {name:14}{}{note}", percent(&share));
         }
     };
-    line("runs", runs);
+    line("runs", runs, "");
     if let Some(short) = short {
-        line("  too slowly", short);
+        line("  too slowly", short, ": short of the end of the stroke when their time is over");
     }
-    line("crawls", crawls);
-    line("jammed", jammed);
-    line("undecided", undecided);
-    if short.is_some_and(|short| short.units > 0) {
-        let _ = writeln!(
-            text,
-            "                too slowly: they run when the time is over, but are not at the end of the stroke"
-        );
-    }
+    line("crawls", crawls, "");
+    line("jammed", jammed, "");
+    line("undecided", undecided, "");
     text
 }
 
