@@ -20,7 +20,6 @@ use slipfit_tests::cross::{self, TARGET, cargo, printed};
 #[allow(dead_code, reason = "one of its functions is enough here")]
 mod slide;
 
-const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// Level of the units.
@@ -133,7 +132,7 @@ fn kernels() -> Vec<Kernel> {
 
 /// Writes a workspace of the crates of all `kernels`, and their programs, into a folder of the test's own.
 fn workspace(kernels: &[Kernel]) -> PathBuf {
-    let folder = Path::new(FOLDER).join("c-kernels");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c-kernels");
     let write = |path: PathBuf, text: &str| {
         fs::create_dir_all(path.parent().expect("a folder")).expect("the test's folder takes folders");
         fs::write(path, text).expect("the test's folder takes files");
@@ -160,28 +159,19 @@ fn workspace(kernels: &[Kernel]) -> PathBuf {
         write(folder.join(name).join("program.c"), &program);
     }
     let members: Vec<_> = kernels.iter().map(|kernel| format!("{:?}", kernel.name)).collect();
-    write(
-        folder.join("Cargo.toml"),
-        &format!(
-            "[workspace]\nmembers = [{}]\nresolver = \"3\"\n\n[profile.release]\nlto = \"fat\"\ncodegen-units = 1\n",
-            members.join(", ")
-        ),
-    );
+    write(folder.join("Cargo.toml"), &format!("[workspace]\nmembers = [{}]\nresolver = \"3\"\n", members.join(", ")));
     fs::copy(Path::new(ROOT).join("Cargo.lock"), folder.join("Cargo.lock")).expect("the repository's own versions");
     folder
 }
 
 /// The library of a kernel in the workspace `folder`, for a `target` or the PC.
 fn library(folder: &Path, name: &str, target: Option<&str>) -> PathBuf {
-    // In the folder of all tests that build for the target: they share what they depend on.
-    let mut build = cargo(FOLDER);
+    // By the default profile, as a user would: even so no panic is reachable.
+    let mut build = cargo(&folder.to_string_lossy());
     build.current_dir(folder).args(["rustc", "--offline", "--release", "-p", name, "--features", "c"]);
     build.args(["--crate-type", "staticlib"]).args(target.iter().flat_map(|target| ["--target", target]));
     printed(&mut build);
-    Path::new(FOLDER)
-        .join("cross")
-        .join(target.unwrap_or_default())
-        .join(format!("release/lib{}.a", name.replace('-', "_")))
+    folder.join("cross").join(target.unwrap_or_default()).join(format!("release/lib{}.a", name.replace('-', "_")))
 }
 
 #[test]

@@ -139,16 +139,15 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
         let approach = (-self.sign * rate, along(1, -self.sign));
         let sliding = [(first, along(2, one)), (second, along(3, one))];
         let touch = self.contact.touch(memory, way, [depth, approach], sliding);
-        let slopes = [touch.force_slope * self.sign, touch.traction_slopes[0], touch.traction_slopes[1]];
-        // By place along the normal; by the rates along normal and tangents.
-        let [by_place, by_rate, by_first, by_second] = [0, 1, 2, 3].map(|k| slopes.map(|slope| -slope[k]));
-        let matrix = |columns: [[S; 3]; 3]| {
-            SMatrix::<S, 3, 3>::from(self.axis.in_order(columns.map(|column| self.axis.in_order(column))))
-        };
+        let along_normal = touch.force_slope * self.sign;
+        let [along_first, along_second] = touch.traction_slopes;
+        // Columns by place along the normal, and by the rates along normal and tangents.
+        let column = |k: usize| self.axis.in_order([-along_normal[k], -along_first[k], -along_second[k]]);
+        let matrix = |columns: [[S; 3]; 3]| SMatrix::<S, 3, 3>::from(self.axis.in_order(columns));
         let force = self.axis.in_order([touch.force * self.sign, touch.traction[0], touch.traction[1]]);
-        let impedance = matrix([by_rate, by_first, by_second]);
-        let response = steady(force.into(), impedance, matrix([by_place, [zero; 3], [zero; 3]]));
-        (response, touch.memory)
+        let impedance = matrix([column(1), column(2), column(3)]);
+        let stiffness = matrix([column(0), [zero; 3], [zero; 3]]);
+        (steady(force.into(), impedance, stiffness), touch.memory)
     }
 
     #[inline(always)]

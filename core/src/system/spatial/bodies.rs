@@ -170,7 +170,9 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
 
     #[inline(always)]
     fn normalised(&self, pose: &Self::Pose) -> Self::Pose {
-        pose.map(|pose| pose.normalised())
+        let mut normalised = *pose;
+        normalised.iter_mut().for_each(|pose| *pose = pose.normalised());
+        normalised
     }
 
     #[inline(always)]
