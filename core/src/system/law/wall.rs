@@ -30,12 +30,9 @@ pub enum Axis {
 impl Axis {
     /// What belongs to this axis of what belongs to x, y and z.
     #[inline(always)]
-    pub fn of<T>(self, [x, y, z]: [T; 3]) -> T {
-        match self {
-            Self::X => x,
-            Self::Y => y,
-            Self::Z => z,
-        }
+    pub fn of<T: Copy>(self, each: [T; 3]) -> T {
+        let [own, _, _] = self.first(each);
+        own
     }
 
     /// What belongs to this axis, and to the two that follow it in turn, of what belongs to x, y and z.
@@ -133,7 +130,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
         way: Way<S>,
     ) -> (Response<S, 3>, F::Memory) {
         let (zero, one) = (S::zero(), S::one());
-        let [place, _, _] = self.axis.first(place.data.0[0]);
+        let place = self.axis.of(place.data.0[0]);
         let [rate, first, second] = self.axis.first(rate.data.0[0]);
         let depth = (-(self.gap + self.sign * place), along::<S, 4>(0, -self.sign));
         let approach = (-self.sign * rate, along(1, -self.sign));
