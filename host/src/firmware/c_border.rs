@@ -37,11 +37,18 @@ pub struct Driven<'a> {
     pub found: String,
 }
 
-/// The bytes of an object of the mechanism that `source` describes: each number of it may be kept twice, each contact has some of its
-/// own and remembers some. The crate does not compile if they are too few.
-pub fn bytes_of_mechanism(source: &str, dimension: usize) -> usize {
+/// What functions of C return, beside 0 for done: the pointer is null.
+const NULL: i32 = 1;
+/// A gap at level n is out of bounds, or n.
+const OUT_OF_BOUNDS: i32 = 2;
+/// The motion left the finite range and was held as it was.
+const HELD: i32 = 3;
+
+/// The bytes of an object of the mechanism that `source` describes, with at most so many `coordinates`: each number of the source may
+/// be kept twice, each contact has some of its own and remembers some. The crate does not compile if they are too few.
+pub fn bytes_of_mechanism(source: &str, coordinates: usize) -> usize {
     let count = |text: &str| source.matches(text).count();
-    (8 * count("s(") + 64 * count("contact_") + 32 * dimension + 128).next_multiple_of(8)
+    (8 * count("s(") + 64 * count("contact_") + 32 * coordinates + 128).next_multiple_of(8)
 }
 
 impl Border<'_> {
@@ -62,18 +69,18 @@ impl Border<'_> {
              pub struct Object {{\n    parameters: Parameters,\n    state: State,\n}}\n\n\
              /// What the header has room for.\n\
              const _: () = assert!(size_of::<Object>() <= {bytes} && align_of::<Object>() <= 8);\n\n\
-             /// Force or torque, and speed, of a drive.\n\
+             /// Force (N) or torque (N·m), and speed (m/s or rad/s), of a drive.\n\
              #[repr(C)]\n\
              pub struct Driven {{\n    pub effort: f32,\n    pub speed: f32,\n}}\n\n\
              #[unsafe(no_mangle)]\n\
              pub extern \"C\" fn {prefix}_init(unit: Option<&mut MaybeUninit<Object>>, n: f32) -> i32 {{\n    \
-             let Some(unit) = unit else {{ return 1 }};\n    \
-             let Ok((parameters, state)) = {start} else {{ return 2 }};\n    \
+             let Some(unit) = unit else {{ return {NULL} }};\n    \
+             let Ok((parameters, state)) = {start} else {{ return {OUT_OF_BOUNDS} }};\n    \
              unit.write(Object {{ parameters, state }});\n    0\n}}\n\n\
              #[unsafe(no_mangle)]\n\
              pub extern \"C\" fn {prefix}_step(unit: Option<&mut Object>) -> i32 {{\n    \
-             let Some(Object {{ parameters, state }}) = unit else {{ return 1 }};\n    \
-             if step(parameters, state).residual < f32::INFINITY {{ 0 }} else {{ 3 }}\n}}\n\n\
+             let Some(Object {{ parameters, state }}) = unit else {{ return {NULL} }};\n    \
+             if step(parameters, state).residual < f32::INFINITY {{ 0 }} else {{ {HELD} }}\n}}\n\n\
              #[unsafe(no_mangle)]\n\
              pub extern \"C\" fn {prefix}_time(unit: Option<&Object>) -> f32 {{\n    \
              unit.map_or(f32::NAN, |unit| unit.parameters.time(unit.state.steps))\n}}\n"
@@ -122,9 +129,9 @@ impl Border<'_> {
         let _ = write!(
             text,
             "\n/* What functions return. */\n\
-             enum {{\n    {upper}_OK = 0,\n    {upper}_NULL = 1,          /* the pointer is null */\n    \
-             {upper}_OUT_OF_BOUNDS = 2, /* a gap at level n is, or n */\n    \
-             {upper}_HELD = 3           /* the motion left the finite range and was held as it was */\n}};\n\n\
+             enum {{\n    {upper}_OK = 0,\n    {upper}_NULL = {NULL},          /* the pointer is null */\n    \
+             {upper}_OUT_OF_BOUNDS = {OUT_OF_BOUNDS}, /* a gap at level n is, or n */\n    \
+             {upper}_HELD = {HELD}           /* the motion left the finite range and was held as it was */\n}};\n\n\
              /* A unit and where it is; {name} keeps its numbers in it. */\n\
              typedef struct {{\n    uint64_t words[{words}];\n}} {prefix};\n\n\
              /* What a drive gives and sees. */\n\

@@ -71,13 +71,13 @@ fn of_drive((function, drive): (String, &NamedDrive)) -> CDrive<'_> {
 /// If the mechanism has no run, see [`RunError`].
 pub fn mechanism_crate(mechanism: &Mechanism, name: &str, core: Option<&Path>) -> Result<CrateFiles, RunError> {
     let source = mechanism::rust_source(mechanism)?;
-    let dimension = source.split_once("pub const DIMENSION: usize = ").and_then(|(_, rest)| rest.split_once(';'));
+    let coordinates = mechanism.bodies.len() * if mechanism.planar { 3 } else { 6 };
     let border = Border {
         name,
         title: &mechanism.title,
         step: mechanism.controller.step as f32,
         hash: ByDrive::new(mechanism, 0).filter(|_| mechanism.drives.len() == 1).map(|driven| driven.hash()),
-        bytes: bytes_of_mechanism(&source, dimension.and_then(|(count, _)| count.parse().ok()).unwrap_or_default()),
+        bytes: bytes_of_mechanism(&source, coordinates),
         drives: mechanism::drive_names(mechanism).into_iter().zip(&mechanism.drives).map(of_drive).collect(),
         start: "predictor(n)",
     };

@@ -1,6 +1,6 @@
 //! A run as a function of position: the force with which the slide first passes each place.
 
-use crate::dynamics::outcome::Trajectory;
+use crate::dynamics::trajectory::Trajectory;
 
 /// What a slide does at each place it comes to. Places count along the drive's direction from the start; forces and
 /// velocities along the frame's z, as over time.
@@ -46,7 +46,7 @@ impl Passage {
 #[cfg(test)]
 mod tests {
     use super::Passage;
-    use crate::dynamics::outcome::Trajectory;
+    use crate::dynamics::trajectory::Trajectory;
 
     fn passage(samples: &[[f64; 3]], speed: f64) -> Passage {
         let column = |k: usize| samples.iter().map(|sample| sample[k]).collect::<Vec<f64>>();

@@ -10,8 +10,8 @@ use super::{
 use crate::{
     dynamics::{
         driven::Driven,
-        outcome::Trajectory,
         sweep::{Keep, Level, Sweep, sweep},
+        trajectory::Trajectory,
     },
     firmware::{flash, flash::FlashError},
 };
