@@ -8,8 +8,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use slipfit::{
     dynamics::{
-        outcome::Trajectory,
         simulate::{Settings, simulate},
+        trajectory::Trajectory,
     },
     firmware::{
         flash::{AxisSpec, ChannelSpec, TableSpec, encode},

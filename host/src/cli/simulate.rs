@@ -22,9 +22,10 @@ use crate::{
         controller::audited,
         driven::Driven,
         film::{Film, film},
-        outcome::{Outcome, Trajectory, Verdict},
+        outcome::{Outcome, Verdict},
         scheme::{IntegratorKind, ScalarKind},
         simulate::{Run, Settings, SimulateError, Solved, simulate},
+        trajectory::Trajectory,
         trust::Trust,
     },
     population::{

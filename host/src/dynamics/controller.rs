@@ -17,10 +17,11 @@ use super::{
     error_control::Effort,
     laws::{AnySlide, SlidingSlide, StickingSlide},
     out_of_line::OutOfLine,
-    outcome::{Instant, Observer, Trajectory},
+    outcome::{Instant, Observer},
     scheme::{IntegratorVisitor, ScalarKind},
     simulate::{Run, Settings, SimulateError, Solved, Solver},
     tipping::Tipping,
+    trajectory::Trajectory,
     trust::Watch,
 };
 use crate::{

@@ -26,10 +26,11 @@ use super::{
     laws::SlidingSlide,
     looks::{end, looks, samples},
     out_of_line::{Contacts, OutOfLine},
-    outcome::{Instant, Observer, Trajectory},
+    outcome::{Instant, Observer},
     scheme::ScalarKind,
     simulate::{Run, Settings, SimulateError, Solved},
     tipping::Tipping,
+    trajectory::Trajectory,
     trust::Trust,
 };
 use crate::scene::Scene;

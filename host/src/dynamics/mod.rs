@@ -22,4 +22,5 @@ pub mod scheme;
 pub mod simulate;
 pub mod sweep;
 pub mod tipping;
+pub mod trajectory;
 pub mod trust;

@@ -10,7 +10,8 @@ use super::{
     audit::Audit,
     controller, desk,
     error_control::{Effort, Stopped},
-    outcome::{Outcome, Trajectory},
+    outcome::Outcome,
+    trajectory::Trajectory,
     trust::Trust,
 };
 use crate::{

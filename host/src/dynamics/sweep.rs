@@ -5,8 +5,9 @@ use slipfit_core::{clearance::GapClass, slide::ABSENT};
 
 use super::{
     driven::{DriveKind, Driven},
-    outcome::{Outcome, Trajectory},
+    outcome::Outcome,
     simulate::{SimulateError, Solved},
+    trajectory::Trajectory,
     trust::Trust,
 };
 

@@ -4,11 +4,7 @@ use slipfit_core::{clearance::GapClass, slide::ABSENT};
 
 use super::number::ten_digits;
 use crate::{
-    dynamics::{
-        driven::DriveKind,
-        outcome::{Moment, Trajectory},
-        sweep::Sweep,
-    },
+    dynamics::{driven::DriveKind, outcome::Moment, sweep::Sweep, trajectory::Trajectory},
     mechanism::Samples,
     population::Unit,
     quality::{precision, stability},

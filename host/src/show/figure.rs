@@ -7,8 +7,9 @@ use super::{
 };
 use crate::{
     dynamics::{
-        outcome::{Outcome, Trajectory, Verdict},
+        outcome::{Outcome, Verdict},
         sweep::{Level, Sweep},
+        trajectory::Trajectory,
     },
     mechanism::Samples,
 };
