@@ -59,7 +59,7 @@ fn a_stroke_s_table_has_fewer_instants_and_gives_verdicts() {
     let verdicts: Vec<_> = report["levels"].as_array().unwrap().iter().map(|level| &level["verdict"]).collect();
     assert!(verdicts.contains(&&"jammed".into()) && verdicts.contains(&&"runs".into()), "{verdicts:?}");
     assert_eq!(report["levels"][0]["classes"]["left front left"], "compressed");
-    let csv = std::fs::read_to_string(folder.path().join("slipfit-out/sweep.csv")).unwrap();
+    let csv = std::fs::read_to_string(folder.path().join("slipfit-out/cd-rom-slide-drawing/sweep.csv")).unwrap();
     assert!(csv.starts_with("n,breakaway_s,") && csv.lines().next().unwrap().ends_with(",right front wall"));
 }
 

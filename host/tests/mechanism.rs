@@ -82,7 +82,7 @@ fn the_main_job_of_a_mechanism_answers_and_writes_its_files() {
         "Production      0.00 %",
     ];
     assert!(parts.iter().all(|part| text.contains(part)), "{text}");
-    let out = folder.path().join("slipfit-out");
+    let out = folder.path().join("slipfit-out/slider-crank");
     for file in ["mechanism.svg", "sweep.csv", "table.bin", "torque.svg", "velocity.svg", "verdict.svg"] {
         assert!(out.join(file).exists(), "{file}");
     }

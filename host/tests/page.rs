@@ -99,5 +99,5 @@ fn so_does_the_report_of_a_run() {
     let folder = tempfile::tempdir().unwrap();
     stdout(&slipfit(folder.path(), &["run", "cd-rom-slide", "--n", "0:4:1"]));
     // The player, four pictures of units, five of the sweep.
-    moves(&folder.path().join("slipfit-out/report.html"), 3, 10);
+    moves(&folder.path().join("slipfit-out/cd-rom-slide/report.html"), 3, 10);
 }

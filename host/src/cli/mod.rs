@@ -55,7 +55,7 @@ struct Cli {
 
 const EXAMPLES: &str = "\
 Examples:
-  slipfit run                              the whole job on the CD-ROM slide, into slipfit-out/
+  slipfit run                              the whole job on the CD-ROM slide, into slipfit-out/cd-rom-slide-drawing/
   slipfit check my-slide.toml              is the scene sound, at which level does a gap close
   slipfit tolerance three-part-stack       how a product's measures vary, and which tolerances cause it
   slipfit allocate clutch-processes        the cheapest tolerances that meet requirements
@@ -155,6 +155,12 @@ impl SceneArguments {
     }
 
     /// Name and text of the scene: a file, or a shipped one by its name.
+    /// The scene's name without folder and ending.
+    fn stem(&self) -> &std::ffi::OsStr {
+        self.scene.file_stem().unwrap_or("scene".as_ref())
+    }
+
+    /// Its name for messages, and its text.
     fn text(&self) -> Result<(String, Cow<'static, str>), Failure> {
         let path = &self.scene;
         let unreadable =

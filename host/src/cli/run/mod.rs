@@ -5,7 +5,7 @@ mod mechanism;
 mod output;
 mod slide;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -37,11 +37,11 @@ use crate::{
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Folder for the report and the other files.
+    /// Folder for the report and the other files; if not given, slipfit-out with a folder named after the scene.
     ///
     /// It gets report.html, table.bin, sweep.csv and the figures; for a product also tolerance.csv and pictures of its measures.
-    #[arg(long, value_name = "DIR", default_value = "slipfit-out")]
-    out: PathBuf,
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     #[command(flatten)]
     drive: DriveArguments,
     #[command(flatten)]
@@ -79,7 +79,8 @@ impl Arguments {
     ) -> Result<(), Failure> {
         force_table::check(driven, Demand::Full).map_err(|error| Failure::Input(error.to_string()))?;
         let production = product.map(|product| self.analyse(driven.title(), product)).transpose()?;
-        let output = Output::prepare(&self.out, &self.scene, figures, production.as_ref())?;
+        let folder = self.out.clone().unwrap_or_else(|| Path::new(OUT).join(self.scene.stem()));
+        let output = Output::prepare(folder, &self.scene, figures, production.as_ref())?;
         let done = fill(&output, production);
         output.close(done)
     }
@@ -99,6 +100,9 @@ impl Arguments {
         Ok(Production { report, pictures })
     }
 }
+
+/// Where runs go that name no folder, each scene into one of its own: the next scene's run leaves this one's files alone.
+const OUT: &str = "slipfit-out";
 
 /// Units of the production that are simulated where no number is given.
 const UNITS: u64 = 256;

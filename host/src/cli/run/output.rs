@@ -1,6 +1,6 @@
 //! Where the files of a run go.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::{
     cli::{Failure, SceneArguments, refused},
@@ -28,24 +28,24 @@ const STRANGERS: usize = 3;
 pub type Files = Vec<(String, Vec<u8>)>;
 
 /// The folder that a run writes into.
-pub struct Output<'a> {
-    folder: &'a Path,
+pub struct Output {
+    folder: PathBuf,
     made: bool,
 }
 
-impl<'a> Output<'a> {
+impl Output {
     /// The `folder`, made if it is not there, with room for the files of these names and those of the `production`.
     ///
     /// # Errors
     /// If one of them cannot be written or is the scene itself.
     pub fn prepare(
-        folder: &'a Path,
+        folder: PathBuf,
         scene: &SceneArguments,
         names: &[&str],
         production: Option<&Production>,
     ) -> Result<Self, Failure> {
         let made = !folder.exists();
-        files::prepare_folder(folder).map_err(refused)?;
+        files::prepare_folder(&folder).map_err(refused)?;
         let pictures = production.iter().flat_map(|production| &production.pictures);
         let names = names.iter().copied().chain([PAGE, TABLE, SWEEP, MEASURES]);
         let paths: Vec<_> =
@@ -71,7 +71,7 @@ impl<'a> Output<'a> {
 
     /// A warning of files in the folder that this run does not write.
     pub fn strangers(&self, files: &Files) -> Option<String> {
-        let mut names: Vec<String> = std::fs::read_dir(self.folder)
+        let mut names: Vec<String> = std::fs::read_dir(&self.folder)
             .ok()?
             .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
             .filter(|name| !files.iter().any(|(own, _)| own == name))
@@ -88,7 +88,7 @@ impl<'a> Output<'a> {
     pub fn close(self, done: Result<(), Failure>) -> Result<(), Failure> {
         if self.made && done.is_err() {
             // Only if nothing was written.
-            let _ = std::fs::remove_dir(self.folder);
+            let _ = std::fs::remove_dir(&self.folder);
         }
         done
     }
