@@ -53,6 +53,48 @@ fn the_files_do_not_depend_on_threads_and_a_unit_can_be_drawn_again() {
     assert!((alone["gaps"][0]["mm"].as_f64().unwrap() - 1e3 * gap).abs() < 1e-8);
 }
 
+/// The most memory (bytes) that a process had.
+#[cfg(target_os = "linux")]
+fn peak_memory(folder: &Path, arguments: &[&str]) -> u64 {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_slipfit"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0;
+    while child.try_wait().unwrap().is_none() {
+        let status = std::fs::read_to_string(&status).unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok());
+        peak = kilobytes.map_or(peak, |kilobytes| peak.max(1024 * kilobytes));
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert!(child.wait().unwrap().success());
+    peak
+}
+
+/// Whatever is kept of a unit for good would take 6 MB of memory for every 20 bytes of it.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_does_not_grow_with_the_population() {
+    let folder = tempfile::tempdir().unwrap();
+    let units = |units: &str| {
+        let arguments = ["population", "--opening", "--units", units, "--csv", "units.csv", "--out", "units.pop"];
+        let peak = peak_memory(folder.path(), &arguments);
+        let size = |file: &str| std::fs::metadata(folder.path().join(file)).unwrap().len();
+        assert!(size("units.csv") > 100 * units.parse::<u64>().unwrap());
+        [peak, size("units.pop")]
+    };
+    // Counted one by one up to about 30,000 values, then in as many classes.
+    let [few, many] = [units("50000"), units("350000")];
+    println!("memory and file (bytes): of 50,000 units {few:?}, of 350,000 {many:?}");
+    assert!(many[0] < few[0] + (6 << 20), "{few:?} {many:?}");
+    assert!(many[1] < few[1] + (1 << 20), "{few:?} {many:?}");
+}
+
 #[test]
 fn what_varies_is_read_and_what_cannot_be_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
@@ -179,7 +221,9 @@ fn stopped(folder: &Path, out: &str, signal: &str) -> (String, Option<i32>, Vec<
     let mut units = 10_000;
     loop {
         let count = units.to_string();
-        let command = ["population", "--seed", "4", "--opening", "--json", "--out", out, "--units", &count];
+        let csv = format!("{out}.csv");
+        let command =
+            ["population", "--seed", "4", "--opening", "--json", "--out", out, "--csv", &csv, "--units", &count];
         let mut victim = Command::new(env!("CARGO_BIN_EXE_slipfit"))
             .current_dir(folder)
             .args(command)
@@ -213,9 +257,11 @@ fn stopped_runs_go_on_where_they_were() {
         let command: Vec<_> = command.iter().map(String::as_str).collect();
         let left = slipfit(folder.path(), &command);
         assert!(String::from_utf8(left.stderr).unwrap().contains("--resume goes on"));
-        let resumed = stdout(&slipfit(folder.path(), &[&command[..], &["--resume"]].concat()));
+        let rows = || std::fs::read(folder.path().join(format!("{out}.csv"))).unwrap();
+        let resumed = (stdout(&slipfit(folder.path(), &[&command[..], &["--resume"]].concat())), rows());
         std::fs::remove_file(folder.path().join(out)).unwrap();
-        assert_eq!(stdout(&slipfit(folder.path(), &[&command[..], &["--threads", "3"]].concat())), resumed);
+        let whole = (stdout(&slipfit(folder.path(), &[&command[..], &["--threads", "3"]].concat())), rows());
+        assert!(whole == resumed);
     }
     // Nowhere to keep anything: told before the first unit.
     let nowhere = slipfit(folder.path(), &["population", "--units", "10", "--opening", "--out", "no/where"]);

@@ -6,11 +6,12 @@ use std::{
 };
 
 use clap::Args;
+use slipfit_core::slide::CONTACTS;
 
 use super::{Failure, population, tolerance::OutputArguments};
 use crate::{
     mechanism::ByDrive,
-    population::{Unit, part::StoredGaps},
+    population::{part::StoredGaps, tally::Tally},
     scene::{Override, SceneFile},
     system::files,
     tolerance::counting::{
@@ -40,10 +41,10 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        if self.files.first().is_some_and(|path| is_of::<Vec<Unit>>(path)) {
+        if self.files.first().is_some_and(|path| is_of::<Tally<[f64; CONTACTS]>>(path)) {
             return self.population();
         }
-        if self.files.first().is_some_and(|path| is_of::<Vec<Unit<Vec<f64>>>>(path)) {
+        if self.files.first().is_some_and(|path| is_of::<Tally<Vec<f64>>>(path)) {
             return self.population_of_mechanism();
         }
         let part: Part = merge(&self.files)?;
@@ -64,11 +65,11 @@ impl Arguments {
     }
 
     /// All shards of a population, written as one if that is asked for.
-    fn units<G: StoredGaps>(&self) -> Result<Part<Vec<Unit<G>>>, Failure> {
+    fn tally<G: StoredGaps>(&self) -> Result<Part<Tally<G>>, Failure> {
         if let Some(option) = self.outputs.asked() {
             return Err(Failure::Input(format!("{option}: these are shards of a population, which has no measures")));
         }
-        let part: Part<Vec<Unit<G>>> = merge(&self.files)?;
+        let part: Part<Tally<G>> = merge(&self.files)?;
         let shards: Vec<_> = self.files.iter().map(|path| ("one of the shards", path.as_path())).collect();
         let own: Vec<_> = self.out.iter().map(|path| ("--out", path.as_path())).collect();
         files::check_distinct(&shards, &own)?;
@@ -80,7 +81,7 @@ impl Arguments {
 
     /// The shards of a mechanism's population.
     fn population_of_mechanism(&self) -> Result<(), Failure> {
-        let part = self.units::<Vec<f64>>()?;
+        let part = self.tally::<Vec<f64>>()?;
         let (source, settings) = (&part.header.source, &part.header.settings);
         let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
         let file = SceneFile::parse(&source.name, &source.text, &set)?;
@@ -95,7 +96,7 @@ impl Arguments {
 
     /// The shards of a slide's population.
     fn population(&self) -> Result<(), Failure> {
-        let part = self.units()?;
+        let part = self.tally()?;
         let source = &part.header.source;
         let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
         let (mut scene, product) = SceneFile::parse_with_slide(&source.name, &source.text, &set)?;

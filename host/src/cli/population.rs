@@ -4,44 +4,46 @@ pub(super) mod page;
 pub(super) mod rare;
 mod words;
 
-use std::path::PathBuf;
+use std::{
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+};
 
 use clap::Args;
 use serde::Serialize;
+use slipfit_core::slide::CONTACTS;
 
 use super::{
     DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, check, given, mechanism, print, print_json,
     progress, tolerance::Written, warn,
 };
 use crate::{
-    dynamics::{
-        driven::{DriveKind, Driven},
-        outcome::Verdict,
-        simulate::SimulateError,
-    },
+    dynamics::{driven::Driven, outcome::Verdict, simulate::SimulateError},
     mechanism::{ByDrive, Mechanism},
     population::{
         Unit,
         drivers::Driver,
         hypothesis::Hypothesis,
-        limit_state::{Kind, Side},
-        part::{Settings, Simulation, StoredGaps},
+        part::{Listener, Settings, Simulation, StoredGaps},
         picture,
         production::Production,
         rare::{Question, Rare},
         statistics::Statistics,
         study::Population,
         subject::Subject,
-        telling::worst,
+        tally::{Counter, Duty, Tally},
         unit::UnitOutcome,
     },
     product::Product,
     scene::Scene,
     show::{
-        export::population_csv,
+        export::UnitRows,
         report::{Figure, units_page},
     },
-    system::files,
+    system::{
+        files,
+        files::{WriteError, Writing},
+    },
     tolerance::counting::{
         file::{Found as _, Source},
         run::{Keep, Shard, checkpoint, run},
@@ -121,9 +123,6 @@ const DIRECTIONS: u64 = 512;
 pub(super) const HYPOTHESIS: &str = "Do the tightest and the loosest units malfunction most often? Triangles and squares have all \
                                      gaps tighter, or looser, by the same n; the line is the share of random combinations as far \
                                      from the mean unit.";
-/// Worst units that are listed.
-pub(super) const WORST: usize = 5;
-
 /// Where the unit of a level lies in the population.
 #[derive(Serialize)]
 pub(super) struct LevelReport {
@@ -135,17 +134,20 @@ pub(super) struct LevelReport {
 }
 
 impl LevelReport {
-    /// Of level `n`, whose unit did this, among the `units` of a population.
-    pub fn new<G>(n: f64, outcome: &UnitOutcome, units: &[Unit<G>]) -> Self {
-        let below = units.iter().filter(|unit| unit.outcome.peak_force < outcome.peak_force).count();
-        let share_below = below as f64 / units.len().max(1) as f64;
+    /// Of level `n`, whose unit did this, among the units of a `tally`.
+    pub fn new<G>(n: f64, outcome: &UnitOutcome, tally: &Tally<G>) -> Self {
+        // Those that have no force need none.
+        let Tally { counts, figures, .. } = tally;
+        let without = counts.units - figures.force.units();
+        let below = outcome.peak_force.map_or(0, |force| without + figures.force.below(force));
+        let share_below = below as f64 / counts.units.max(1) as f64;
         Self { n, verdict: outcome.verdict, peak_force_n: outcome.peak_force, share_below }
     }
 
     /// Of those of [`LEVELS`] at which a unit of `subject` can be assembled.
-    pub fn all<S: Subject>(subject: &S, units: &[Unit<S::Gaps>]) -> Result<Vec<Self>, SimulateError> {
+    pub fn all<S: Subject>(subject: &S, tally: &Tally<S::Gaps>) -> Result<Vec<Self>, SimulateError> {
         let at = subject.at_levels(&LEVELS)?;
-        Ok(at.iter().map(|(n, unit)| Self::new(*n, &unit.outcome, units)).collect())
+        Ok(at.iter().map(|(n, unit)| Self::new(*n, &unit.outcome, tally)).collect())
     }
 }
 
@@ -156,6 +158,41 @@ pub(super) struct UnitReport {
     pub tightness: f64,
     #[serde(flatten)]
     pub outcome: UnitOutcome,
+}
+
+impl UnitReport {
+    /// The worst units of `subject`, the worst first.
+    pub fn worst<S: Subject>(subject: &S, tally: &Tally<S::Gaps>) -> Vec<Self> {
+        let report = |unit: &Unit<S::Gaps>| Self {
+            number: unit.number,
+            tightness: subject.tightness(&unit.gaps),
+            outcome: unit.outcome,
+        };
+        tally.worst.iter().map(report).collect()
+    }
+}
+
+/// Rows of units on their way into a file.
+struct Rows<'a, S> {
+    path: &'a Path,
+    subject: &'a S,
+    rows: UnitRows<Writing>,
+}
+
+impl<'a, S: Subject> Rows<'a, S> {
+    fn begin(path: &'a Path, subject: &'a S) -> Result<Self, WriteError> {
+        let rows = UnitRows::new(Writing::begin(path)?, subject.kind(), &subject.gap_names());
+        Ok(Self { path, subject, rows: rows.map_err(files::failed(path))? })
+    }
+
+    fn add(&mut self, units: &[Unit<S::Gaps>]) -> Result<(), WriteError> {
+        let mut add = |unit: &Unit<S::Gaps>| self.rows.add(self.subject.tightness(&unit.gaps), unit);
+        units.iter().try_for_each(&mut add).map_err(files::failed(self.path))
+    }
+
+    fn end(self) -> Result<(), WriteError> {
+        self.rows.finish().map_err(files::failed(self.path))?.end(self.path)
+    }
 }
 
 #[derive(Serialize)]
@@ -196,8 +233,8 @@ impl Arguments {
         };
         self.drive.refuse()?;
         let production = self.prepare(&mut scene, product.as_ref())?;
-        match self.simulated(&scene, &production, 0)? {
-            Some(units) => self.conclude(&scene, &production, units, product.as_ref()),
+        match self.simulated(&scene, &production, self.duty_of(&scene), 0)? {
+            Some(tally) => self.conclude(&scene, &production, tally, product.as_ref()),
             None => Ok(()),
         }
     }
@@ -211,20 +248,31 @@ impl Arguments {
         }
         let driven = self.drive.of(mechanism)?;
         let production = self.production_of(mechanism, product)?;
-        match self.simulated(&driven, &production, driven.index())? {
-            Some(units) => mechanism::population::conclude(self, &driven, &production, units, product),
+        match self.simulated(&driven, &production, self.duty_of_mechanism(mechanism), driven.index())? {
+            Some(tally) => mechanism::population::conclude(self, &driven, &production, tally, product),
             None => Ok(()),
         }
     }
 
-    /// Simulates what is asked for of a `production` of `subject`, by the `drive` of that number. None, if it is one of several
-    /// shards, which is written to its file.
+    /// What units have to do: for a slide.
+    pub fn duty_of(&self, scene: &Scene) -> Duty {
+        Duty { limit: self.force_limit, stroke: scene.run.stroke.filter(|_| !self.opening) }
+    }
+
+    /// The same for a mechanism.
+    pub fn duty_of_mechanism(&self, mechanism: &Mechanism) -> Duty {
+        Duty { limit: self.force_limit, stroke: mechanism.run.stroke }
+    }
+
+    /// Simulates what is asked for of a `production` of `subject` with this `duty`, by the `drive` of that number. None, if it is
+    /// one of several shards, which is written to its file.
     fn simulated<S: Subject<Gaps: StoredGaps>>(
         &self,
         subject: &S,
         production: &Production<S::Gaps>,
+        duty: Duty,
         drive: usize,
-    ) -> Result<Option<Vec<Unit<S::Gaps>>>, Failure> {
+    ) -> Result<Option<Tally<S::Gaps>>, Failure> {
         let partial = self.out.as_deref().map(checkpoint);
         let outputs = [
             ("--csv", &self.csv),
@@ -241,14 +289,26 @@ impl Arguments {
         let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
         let shard = self.shard.unwrap_or(Shard::ALL);
         let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
-        let numbers = settings.units_in(&shard.blocks(<Vec<Unit<S::Gaps>>>::blocks(&settings)));
+        let numbers = settings.units_in(&shard.blocks(Tally::<S::Gaps>::blocks(&settings)));
         let bar = progress("simulating", (numbers.end - numbers.start.min(numbers.end)) as usize);
-        let simulation = Simulation { subject, production, settings };
-        let units =
-            self.threads.install(|| run(&simulation, &source, shard, keep.as_ref(), |units| bar.inc(units)))??;
+        let rows = self.csv.as_deref().map(|path| Rows::begin(path, subject)).transpose()?.map(Mutex::new);
+        let listener = rows.as_ref().map(|rows| {
+            let hear = |units: &[Unit<S::Gaps>]| rows.lock().unwrap_or_else(PoisonError::into_inner).add(units);
+            Listener::new(Box::new(hear))
+        });
+        let counter = Counter::new(subject, production, duty);
+        let simulation = Simulation { subject, production, settings, counter, listener };
+        let tally = self.threads.install(|| {
+            let tally = run(&simulation, &source, shard, keep.as_ref(), |units| bar.inc(units))?;
+            simulation.catch_up(numbers.end).map(|()| tally)
+        })??;
         bar.finish_and_clear();
-        let (Some(out), Shard { number, count: 2.. }) = (&self.out, shard) else { return Ok(Some(units)) };
-        let units = units.len() as u64;
+        drop(simulation);
+        if let Some(rows) = rows {
+            rows.into_inner().unwrap_or_else(PoisonError::into_inner).end()?;
+        }
+        let (Some(out), Shard { number, count: 2.. }) = (&self.out, shard) else { return Ok(Some(tally)) };
+        let units = tally.counts.units;
         let written = Written { shard: number, of: shard.count, units, file: out.display().to_string() };
         if self.scene.json { print_json(&written) } else { print(&written.to_string()) }.map(|()| None)
     }
@@ -263,15 +323,15 @@ impl Arguments {
             .map_err(|error| Failure::Input(error.to_string()))
     }
 
-    /// Shows and writes what all `units` of a mechanism did, by the drive that they were simulated by.
+    /// Shows and writes what all units of a mechanism, counted in `tally`, did, by the drive that they were simulated by.
     pub fn conclude_mechanism(
         &self,
         driven: &ByDrive,
-        units: Vec<Unit<Vec<f64>>>,
+        tally: Tally<Vec<f64>>,
         product: Option<&Product>,
     ) -> Result<(), Failure> {
         let production = self.production_of(driven.mechanism(), product)?;
-        mechanism::population::conclude(self, driven, &production, units, product)
+        mechanism::population::conclude(self, driven, &production, tally, product)
     }
 
     /// As it was asked for when a population was split, `settings` among it.
@@ -304,28 +364,17 @@ impl Arguments {
         Production::new(scene, product, self.correlation, self.seed).map_err(|error| Failure::Input(error.to_string()))
     }
 
-    /// Shows and writes what all `units` did.
+    /// Shows and writes what all units, counted in `tally`, did.
     pub fn conclude(
         &self,
         scene: &Scene,
         production: &Production,
-        units: Vec<Unit>,
+        tally: Tally<[f64; CONTACTS]>,
         product: Option<&Product>,
     ) -> Result<(), Failure> {
-        let found = self.threads.install(|| self.find(scene, production, units))??;
-        if let Some(path) = &self.csv {
-            files::write(
-                path,
-                &population_csv(
-                    DriveKind::Pushes,
-                    &scene.contact_names(),
-                    &picture::placed(scene, &found.population.units),
-                )?,
-            )?;
-        }
+        let found = self.threads.install(|| self.find(scene, production, tally))??;
         if let Some(path) = &self.plot {
-            let placed = picture::placed(scene, &found.population.units);
-            let svg = picture::forces(&scene.title, DriveKind::Pushes, &placed, self.force_limit);
+            let svg = picture::forces(scene, &found.population.tally, self.force_limit);
             let svg = svg.map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
@@ -343,12 +392,7 @@ impl Arguments {
             files::write(path, units_page(&scene.title, &words, &units, &warnings).as_bytes())?;
         }
         if self.scene.json {
-            let worst = worst(&found.population.units, WORST).into_iter().map(|unit| UnitReport {
-                number: unit.number,
-                tightness: scene.tightness(&unit.gaps),
-                outcome: unit.outcome,
-            });
-            let worst = worst.collect();
+            let worst = UnitReport::worst(scene, &found.population.tally);
             let Population { statistics, of_force, of_malfunction, .. } = found.population;
             return print_json(&Report {
                 title: scene.title.clone(),
@@ -368,9 +412,9 @@ impl Arguments {
         Ok(())
     }
 
-    fn find(&self, scene: &Scene, production: &Production, units: Vec<Unit>) -> Result<Found, Failure> {
-        let population = Population::of(production, units, (self.force_limit, self.stroke_of(scene)));
-        let levels = LevelReport::all(scene, &population.units)?;
+    fn find(&self, scene: &Scene, production: &Production, tally: Tally<[f64; CONTACTS]>) -> Result<Found, Failure> {
+        let population = Population::of(production, tally, self.duty_of(scene));
+        let levels = LevelReport::all(scene, &population.tally)?;
         let hypothesis = Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?;
         let rare = self.rare.then(|| self.estimate(scene, production, &population)).transpose()?;
         Ok(Found { population, levels, hypothesis, rare })
@@ -386,10 +430,8 @@ impl Arguments {
         let limit = self.force_limit;
         let question = Question { subject, production, seed: self.seed, limit };
         let bar = progress("estimating", question.repeats());
-        let counted = |kind, side: Side| {
-            let here = |unit: &&Unit<S::Gaps>| Kind::of(unit, limit) == Some(kind) && side.has(subject, &unit.gaps);
-            (population.units.iter().filter(here).count() as u64, population.units.len() as u64)
-        };
+        let tally = &population.tally;
+        let counted = |kind, side| (tally.of_kind(kind, side), tally.counts.units);
         let rare = question.answer(counted, |repeats| bar.inc(repeats as u64))?;
         bar.finish_and_clear();
         Ok(rare)

@@ -86,7 +86,9 @@ fn unit(driven: &ByDrive, drawn: &Drawn<Vec<f64>>, i: usize) -> Result<(UnitOutc
     let outcome = run(&Mechanism { run: spec, ..own.clone() }, gaps, spec.duration)?.outcomes[driven.index()];
     let drive = own.drives[driven.index()].drive;
     let share = |outcome: &Outcome| outcome.final_velocity / drive.command(outcome.end.t).abs();
-    if !is_near_a_limit(share(&outcome)) && outcome.swings.is_none() {
+    let is_doubtful = is_near_a_limit(share(&outcome)) || outcome.swings.is_some();
+    // No verdict stays none.
+    if outcome.verdict == Verdict::Undecided || !is_doubtful {
         return Ok((told(&outcome, false), share(&outcome)));
     }
     let [exact, _] = confirmed(&own, gaps, spec.duration)?;

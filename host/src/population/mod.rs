@@ -14,12 +14,14 @@ pub mod mechanism;
 pub mod part;
 pub mod picture;
 pub mod production;
+pub mod ranked;
 pub mod rare;
 pub mod shares;
 mod source;
 pub mod statistics;
 pub mod study;
 pub mod subject;
+pub mod tally;
 pub mod telling;
 pub mod unit;
 

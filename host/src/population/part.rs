@@ -1,19 +1,26 @@
 //! Parts of a population, by the files and runs of tolerance studies.
 
-use std::ops::Range;
+use std::{
+    ops::Range,
+    sync::{Mutex, PoisonError},
+};
 
 use serde::{Deserialize, Serialize};
 use slipfit_core::slide::CONTACTS;
 
 use super::{
     Unit,
+    drivers::Sums,
     production::Production,
+    ranked::Ranked,
     simulate_units,
     subject::{Subject, UnitGaps},
+    tally::{Counter, Tally, VERDICTS},
     unit::UnitOutcome,
 };
 use crate::{
-    dynamics::outcome::{Moment, Verdict},
+    dynamics::outcome::Moment,
+    system::files::WriteError,
     tolerance::counting::{
         file::{FormatError, Found, Part, Reader, integer},
         run::{RunError, Work},
@@ -22,7 +29,6 @@ use crate::{
 
 /// Units of a block.
 const BLOCK: u64 = 512;
-const VERDICTS: [Verdict; 4] = [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Undecided];
 
 /// Gaps that files hold.
 pub trait StoredGaps: UnitGaps {
@@ -40,7 +46,7 @@ pub trait StoredGaps: UnitGaps {
 
 /// All sixteen.
 impl StoredGaps for [f64; CONTACTS] {
-    const MAGIC: &'static [u8; 8] = b"SLIPPOPN";
+    const MAGIC: &'static [u8; 8] = b"SLIPSTAL";
 
     fn encode(&self, out: &mut Vec<u8>) {
         self.iter().for_each(|gap| out.extend(gap.to_le_bytes()));
@@ -57,7 +63,7 @@ impl StoredGaps for [f64; CONTACTS] {
 
 /// How many there are, then all.
 impl StoredGaps for Vec<f64> {
-    const MAGIC: &'static [u8; 8] = b"SLIPMPOP";
+    const MAGIC: &'static [u8; 8] = b"SLIPMTAL";
 
     fn encode(&self, out: &mut Vec<u8>) {
         integer(out, self.len() as u64);
@@ -120,6 +126,23 @@ impl Settings {
     }
 }
 
+/// Where units go one by one, beside being counted: in order, each once.
+pub struct Listener<'a, G> {
+    /// The first unit that it has not heard of.
+    next: u64,
+    hear: Hear<'a, G>,
+}
+
+/// What a [`Listener`] does with some units.
+pub type Hear<'a, G> = Box<dyn FnMut(&[Unit<G>]) -> Result<(), WriteError> + Send + 'a>;
+
+impl<'a, G> Listener<'a, G> {
+    /// That does this with units.
+    pub fn new(hear: Hear<'a, G>) -> Mutex<Self> {
+        Mutex::new(Self { next: 0, hear })
+    }
+}
+
 /// Units to be simulated.
 pub struct Simulation<'a, S: Subject> {
     /// What they are units of.
@@ -128,41 +151,73 @@ pub struct Simulation<'a, S: Subject> {
     pub production: &'a Production<'a, S::Gaps>,
     /// Which units.
     pub settings: Settings,
+    /// What counts them.
+    pub counter: Counter<'a, S>,
+    /// Who else wants them.
+    pub listener: Option<Mutex<Listener<'a, S::Gaps>>>,
+}
+
+impl<S: Subject<Gaps: StoredGaps>> Simulation<'_, S> {
+    /// Simulates the units `numbers`, counts them and lets the listener know of those that it has not heard of.
+    fn counted(&self, numbers: Range<u64>, done: &(impl Fn(u64) + Sync)) -> Result<Tally<S::Gaps>, RunError> {
+        let mut tally = self.counter.nothing();
+        let mut heard = Ok(());
+        let mut listener =
+            self.listener.as_ref().map(|listener| listener.lock().unwrap_or_else(PoisonError::into_inner));
+        simulate_units(self.subject, self.production, numbers, done, |drawn, units| {
+            self.counter.add(&mut tally, drawn, units);
+            if let Some(listener) = listener.as_mut().filter(|listener| listener.next == drawn.numbers.start)
+                && heard.is_ok()
+            {
+                heard = (listener.hear)(units);
+                listener.next = drawn.numbers.end;
+            }
+        })?;
+        Ok(heard.map(|()| tally)?)
+    }
+
+    /// Lets the listener know of the units before `end` that it has not heard of: of those that an interrupted run counted.
+    ///
+    /// # Errors
+    /// As [`Work::add`].
+    pub fn catch_up(&self, end: u64) -> Result<(), RunError> {
+        let heard = |listener: &Mutex<Listener<_>>| listener.lock().unwrap_or_else(PoisonError::into_inner).next;
+        match self.listener.as_ref().map(heard) {
+            Some(next) if next < end => self.counted(next..end, &|_| ()).map(drop),
+            _ => Ok(()),
+        }
+    }
 }
 
 impl<S: Subject<Gaps: StoredGaps>> Work for Simulation<'_, S> {
-    type Found = Vec<Unit<S::Gaps>>;
+    type Found = Tally<S::Gaps>;
 
     fn settings(&self) -> Settings {
         self.settings
     }
 
-    fn empty(&self) -> Vec<Unit<S::Gaps>> {
-        Vec::new()
+    fn empty(&self) -> Tally<S::Gaps> {
+        self.counter.nothing()
     }
 
-    fn fits(&self, part: &Part<Vec<Unit<S::Gaps>>>) -> bool {
-        part.tallies.iter().all(|unit| unit.number < self.settings.units)
+    fn fits(&self, part: &Part<Tally<S::Gaps>>) -> bool {
+        part.tallies.fits(&self.counter.nothing())
     }
 
     fn add(
         &self,
         blocks: Range<u64>,
-        found: &mut Vec<Unit<S::Gaps>>,
+        found: &mut Tally<S::Gaps>,
         done: &(impl Fn(u64) + Sync),
     ) -> Result<(), RunError> {
-        let before = found.len();
         let numbers = self.settings.units_in(&blocks);
-        let added =
-            simulate_units(self.subject, self.production, numbers, done, |_, units| found.extend_from_slice(units));
-        if added.is_err() {
-            found.truncate(before);
-        }
-        Ok(added?)
+        self.catch_up(numbers.start)?;
+        found.join(self.counted(numbers, done)?);
+        Ok(())
     }
 }
 
-impl<G: StoredGaps> Found for Vec<Unit<G>> {
+impl<G: StoredGaps> Found for Tally<G> {
     type Settings = Settings;
     const MAGIC: &'static [u8; 8] = G::MAGIC;
 
@@ -187,39 +242,57 @@ impl<G: StoredGaps> Found for Vec<Unit<G>> {
     }
 
     fn units(&self) -> u64 {
-        self.len() as u64
+        self.counts.units
     }
 
-    fn fits(&self, _: &Self) -> bool {
-        true
+    fn fits(&self, other: &Self) -> bool {
+        self.sums.variables() == other.sums.variables()
     }
 
     fn join(&mut self, other: Self) {
-        self.extend(other);
-        self.sort_by_key(|unit| unit.number);
+        self.join(other);
     }
 
-    /// Of each: number, verdict, contact (16 if none), whether the desk computed it, breakaway, peak and settled force, final
-    /// speed, end, the contact's force, gaps. NaN is none.
+    /// Counts, figures, sums, then units: the worst, and the first of each verdict.
     fn encode(&self, out: &mut Vec<u8>) {
-        integer(out, self.len() as u64);
-        for Unit { number, gaps, outcome } in self {
-            integer(out, *number);
-            let verdict = VERDICTS.iter().position(|verdict| *verdict == outcome.verdict).unwrap_or(VERDICTS.len() - 1);
-            let (contact, force) = outcome.most_loaded.unwrap_or((CONTACTS, 0.0));
-            out.extend([verdict as u8, contact as u8, u8::from(outcome.at_desk)]);
-            let optional = [outcome.breakaway, outcome.peak_force, outcome.settled_force];
-            let figures = optional.map(|figure| figure.unwrap_or(f64::NAN)).into_iter();
-            let numbers = figures.chain([outcome.final_velocity, outcome.end.t, outcome.end.z, force]);
-            numbers.for_each(|number| out.extend(number.to_le_bytes()));
-            gaps.encode(out);
+        let mut counts = self.counts;
+        counts.each().for_each(|count| integer(out, *count));
+        self.figures.each().into_iter().for_each(|figure| figure.encode(out));
+        self.sums.encode(out);
+        for units in [&self.worst].into_iter().chain(&self.first) {
+            integer(out, units.len() as u64);
+            units.iter().for_each(|unit| encode(unit, out));
         }
     }
 
     fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
-        let count = reader.count()?;
-        (0..count).map(|_| unit(reader)).collect()
+        let mut found = Self::new(0);
+        for count in found.counts.each() {
+            *count = reader.integer()?;
+        }
+        for figure in found.figures.each_mut() {
+            *figure = Ranked::decode(reader)?;
+        }
+        found.sums = Sums::decode(reader)?;
+        for units in [&mut found.worst].into_iter().chain(&mut found.first) {
+            *units = (0..reader.count()?).map(|_| unit(reader)).collect::<Result<_, _>>()?;
+        }
+        Ok(found)
     }
+}
+
+/// Adds the bytes of a unit: number, verdict, contact (16 if none), whether the desk computed it, breakaway, peak and settled
+/// force, final speed, end, the contact's force, gaps. NaN is none.
+fn encode<G: StoredGaps>(Unit { number, gaps, outcome }: &Unit<G>, out: &mut Vec<u8>) {
+    integer(out, *number);
+    let verdict = VERDICTS.iter().position(|verdict| *verdict == outcome.verdict).unwrap_or(VERDICTS.len() - 1);
+    let (contact, force) = outcome.most_loaded.unwrap_or((CONTACTS, 0.0));
+    out.extend([verdict as u8, contact as u8, u8::from(outcome.at_desk)]);
+    let optional = [outcome.breakaway, outcome.peak_force, outcome.settled_force];
+    let figures = optional.map(|figure| figure.unwrap_or(f64::NAN)).into_iter();
+    let numbers = figures.chain([outcome.final_velocity, outcome.end.t, outcome.end.z, force]);
+    numbers.for_each(|number| out.extend(number.to_le_bytes()));
+    gaps.encode(out);
 }
 
 fn unit<G: StoredGaps>(reader: &mut Reader) -> Result<Unit<G>, FormatError> {
@@ -248,7 +321,10 @@ mod tests {
     use super::{Settings, Simulation};
     use crate::{
         dynamics::example,
-        population::{Unit, production::Production},
+        population::{
+            production::Production,
+            tally::{Counter, Duty, Tally},
+        },
         tolerance::counting::{
             file::{Found, Source},
             run::{Keep, RunError, Shard, merge, run},
@@ -260,7 +336,8 @@ mod tests {
         let scene = example::cd_rom();
         let production = Production::new(&scene, None, 0.25, 5).unwrap();
         let settings = Settings::new(1100, 5, true, 0.25, Some(0.3));
-        let simulation = Simulation { subject: &scene, production: &production, settings };
+        let counter = Counter::new(&scene, &production, Duty { limit: settings.limit(), stroke: None });
+        let simulation = Simulation { subject: &scene, production: &production, settings, counter, listener: None };
         let source = Source { name: "cd-rom".into(), text: "its text".into(), set: Vec::new() };
         let folder = tempfile::tempdir().unwrap();
         let path = |name: String| folder.path().join(name);
@@ -269,13 +346,13 @@ mod tests {
         };
         let whole = path("whole".into());
         let units = shard(&whole, Shard::ALL, false).unwrap();
-        assert_eq!(units.len(), 1100);
+        assert_eq!(units.counts.units, 1100);
         let parts: Vec<_> = (1..=3).map(|number| path(format!("part{number}"))).collect();
         for (number, out) in (1..).zip(&parts) {
             shard(out, Shard { number, count: 3 }, false).unwrap();
         }
         for order in [[0, 1, 2], [2, 0, 1]] {
-            let merged = merge::<Vec<Unit>>(&order.map(|i: usize| parts[i].clone())).unwrap();
+            let merged = merge::<Tally<[f64; 16]>>(&order.map(|i: usize| parts[i].clone())).unwrap();
             assert_eq!(merged.encode().unwrap(), std::fs::read(&whole).unwrap());
             assert_eq!(merged.tallies, units);
         }
@@ -284,9 +361,9 @@ mod tests {
         let mut bytes = std::fs::read(&parts[1]).unwrap();
         bytes.truncate(bytes.len() / 2);
         std::fs::write(&parts[1], bytes).unwrap();
-        assert!(matches!(merge::<Vec<Unit>>(&parts), Err(RunError::Format { .. })));
+        assert!(matches!(merge::<Tally<[f64; 16]>>(&parts), Err(RunError::Format { .. })));
         let other = Settings::new(1100, 5, true, 0.25, None);
-        assert_eq!(<Vec<Unit>>::difference(&settings, &other), Some("force limit"));
+        assert_eq!(Tally::<[f64; 16]>::difference(&settings, &other), Some("force limit"));
         assert_eq!((settings.correlation(), settings.limit()), (0.25, Some(0.3)));
     }
 }

@@ -1,10 +1,10 @@
 //! Pictures of a population.
 
 use super::{
-    Unit,
     hypothesis::{AtDistance, Hypothesis},
-    statistics::{Share, malfunctions},
+    statistics::Share,
     subject::Subject,
+    tally::Tally,
 };
 use crate::{
     dynamics::{driven::DriveKind, outcome::Verdict},
@@ -19,48 +19,29 @@ const MARKED: usize = 1500;
 /// Classes of tightness.
 const CLASSES: usize = 16;
 /// Units that a class needs to be shown.
-const LEAST: usize = 20;
-
-/// The `units` of `subject`, each with its tightness.
-pub fn placed<'u, S: Subject>(
-    subject: &S,
-    units: impl IntoIterator<Item = &'u Unit<S::Gaps>>,
-) -> Vec<(f64, &'u Unit<S::Gaps>)>
-where
-    S::Gaps: 'u,
-{
-    units.into_iter().map(|unit| (subject.tightness(&unit.gaps), unit)).collect()
-}
+const LEAST: u64 = 20;
 
 /// What pictures call the greatest force or torque of a drive of this `kind`.
 pub fn effort(kind: DriveKind) -> String {
     format!("greatest drive {} ({})", kind.effort(), kind.effort_unit())
 }
 
-/// The greatest force or torque of a drive of this `kind` over the tightness that each unit is `placed` at, with the units that
-/// malfunction marked; and the share of these. `limit` (N, N·m) is the motor's greatest.
+/// The greatest force or torque of the units of `subject`, counted in `tally`, over their tightness, with those that malfunction
+/// marked; and the share of these. `limit` (N, N·m) is the motor's greatest.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to show.
-pub fn forces<G>(
-    title: &str,
-    kind: DriveKind,
-    placed: &[(f64, &Unit<G>)],
-    limit: Option<f64>,
-) -> Result<String, PlotError> {
-    let every = placed.len().div_ceil(MARKED).max(1);
-    let marked = |verdict: Verdict, label: &str, shape| Markers {
-        label: label.into(),
-        shape,
-        points: placed
-            .iter()
-            .step_by(every)
-            .filter(|(_, unit)| unit.outcome.verdict == verdict)
-            .filter_map(|(n, unit)| Some((*n, unit.outcome.peak_force?)))
-            .collect(),
+pub fn forces<S: Subject>(subject: &S, tally: &Tally<S::Gaps>, limit: Option<f64>) -> Result<String, PlotError> {
+    let first = tally.first_units();
+    let marks = first.iter().take(MARKED);
+    let marks: Vec<_> = marks.map(|unit| (subject.tightness(&unit.gaps), unit.outcome)).collect();
+    let marked = |verdict: Verdict, label: &str, shape| {
+        let own = marks.iter().filter(|(_, outcome)| outcome.verdict == verdict);
+        let points = own.filter_map(|(n, outcome)| Some((*n, outcome.peak_force?))).collect();
+        Markers { label: label.into(), shape, points }
     };
-    let [low, high] =
-        placed.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (n, _)| [low.min(*n), high.max(*n)]);
+    let (all, failing) = (&tally.figures.tightness, &tally.figures.failing_tightness);
+    let [low, high] = all.ends().ok_or(PlotError::Empty)?;
     let limits = limit.map(|limit| Series {
         label: String::new(),
         look: Look::Guide,
@@ -70,21 +51,21 @@ pub fn forces<G>(
     let shares: Vec<(f64, Share)> = (0..CLASSES)
         .filter_map(|k| {
             let [from, to] = class(k);
-            let own: Vec<_> = placed.iter().filter(|(n, _)| from <= *n && *n < to).collect();
-            let failed = own.iter().filter(|(_, unit)| malfunctions(unit, limit)).count();
-            (own.len() >= LEAST).then(|| ((from + to) / 2.0, Share::new(failed as u64, own.len() as u64)))
+            let [own, failed] = [all, failing].map(|units| units.below(to) - units.below(from));
+            (own >= LEAST).then(|| ((from + to) / 2.0, Share::new(failed, own)))
         })
         .collect();
-    let failed = placed.iter().filter(|(_, unit)| malfunctions(unit, limit)).count() as u64;
-    let failed = Share::new(failed, placed.len().max(1) as u64);
-    let remark = if every > 1 { format!("; one unit in {every} is marked") } else { String::new() };
+    let units = tally.counts.units;
+    let failed = Share::new(tally.counts.malfunctions, units.max(1));
+    let left = marks.len() as u64 != units;
+    let remark = if left { format!("; the first {} are marked", marks.len()) } else { String::new() };
     line_chart(&Chart {
-        title: title.into(),
-        subtitle: format!("{} units, {} % malfunction{remark}", placed.len(), fixed(failed.share * 100.0, 1)),
+        title: subject.title().into(),
+        subtitle: format!("{units} units, {} % malfunction{remark}", fixed(failed.share * 100.0, 1)),
         x_label: "tightness (σ, mean over the gaps; positive is tighter)".into(),
         panels: vec![
             Panel {
-                y_label: effort(kind),
+                y_label: effort(subject.kind()),
                 series: limits.into_iter().collect(),
                 markers: vec![
                     marked(Verdict::Runs, "runs", Shape::Ring),

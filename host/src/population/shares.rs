@@ -1,12 +1,14 @@
 //! Pictures of where malfunction comes from: the histogram of forces, the sides on which units fail, what drives them.
 
+use slipfit_core::slide::CONTACTS;
+
 use super::{
-    Unit,
     drivers::Driver,
     picture::effort,
-    statistics::{Share, malfunctions},
+    ranked::Ranked,
+    statistics::Share,
     study::Population,
-    subject::Subject,
+    tally::{Counts, Tally},
 };
 use crate::{
     dynamics::driven::DriveKind,
@@ -26,44 +28,39 @@ const MOST: usize = 8;
 /// Least share (%) that is shown.
 const LEAST: f64 = 0.1;
 
-/// How the greatest force spreads over all units and over those that malfunction, beside a motor's greatest force.
+/// How the greatest force spreads over all units of a `tally` and over those that malfunction, beside a motor's greatest force.
 ///
 /// # Errors
 /// [`PlotError`], if no unit has a force.
-pub fn histogram<G>(title: &str, kind: DriveKind, units: &[Unit<G>], limit: Option<f64>) -> Result<String, PlotError> {
-    let forces: Vec<(f64, bool)> =
-        units.iter().filter_map(|unit| Some((unit.outcome.peak_force?, malfunctions(unit, limit)))).collect();
-    if forces.is_empty() {
-        return Err(PlotError::Empty);
-    }
-    let [low, high] =
-        forces.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (f, _)| [low.min(*f), high.max(*f)]);
+pub fn histogram<G>(title: &str, kind: DriveKind, tally: &Tally<G>, limit: Option<f64>) -> Result<String, PlotError> {
+    let Tally { counts: Counts { units, over_limit, .. }, figures, .. } = tally;
+    let [low, high] = figures.force.ends().ok_or(PlotError::Empty)?;
+    let all = (*units).max(1);
     // Units that all need the same have a class of their own.
     let step = f64::max((high - low) / CLASSES as f64, 1e-6 * high.abs());
-    let shares = |failed: bool| {
+    let shares = |forces: &Ranked| {
         let mut counts = [0u64; CLASSES];
-        for (force, _) in forces.iter().filter(|(_, fails)| *fails || !failed) {
-            counts[(((force - low) / step) as usize).min(CLASSES - 1)] += 1;
+        for (force, units) in forces.values() {
+            counts[(((force - low) / step) as usize).min(CLASSES - 1)] += units;
         }
-        let share = |count: &u64| 100.0 * *count as f64 / units.len().max(1) as f64;
+        let share = |count: &u64| 100.0 * *count as f64 / all as f64;
         outline(counts.iter().enumerate().map(|(k, count)| (low + step * k as f64, share(count))), step)
     };
     let line = |label: &str, look, points| Series { label: label.into(), look, points };
-    let mut series = vec![line("all", Look::Level(0.0), shares(false))];
-    if forces.iter().any(|(_, fails)| *fails) {
-        series.push(line("malfunction", Look::Level(1.0), shares(true)));
+    let mut series = vec![line("all", Look::Level(0.0), shares(&figures.force))];
+    if figures.failing_force.units() > 0 {
+        series.push(line("malfunction", Look::Level(1.0), shares(&figures.failing_force)));
     }
     let top = series[0].points.iter().map(|(_, share)| *share).fold(0.0, f64::max);
     let over = limit.map(|limit| {
         series.push(line("", Look::Guide, vec![(limit, 0.0), (limit, 1.05 * top)]));
-        let over = forces.iter().filter(|(force, _)| *force > limit).count() as u64;
-        let share = 100.0 * Share::new(over, units.len().max(1) as u64).share;
+        let share = 100.0 * Share::new(*over_limit, all).share;
         let unit = kind.effort_unit();
         format!("; grey: the motor's {} {unit}, which {} % exceed", fixed(limit, 2), fixed(share, 2))
     });
     small_chart(&Chart {
         title: title.into(),
-        subtitle: format!("{} units{}", units.len(), over.unwrap_or_default()),
+        subtitle: format!("{units} units{}", over.unwrap_or_default()),
         x_label: effort(kind),
         panels: vec![Panel { y_label: "share of the units (%)".into(), series, ..Panel::default() }],
         ..Chart::default()
@@ -71,30 +68,31 @@ pub fn histogram<G>(title: &str, kind: DriveKind, units: &[Unit<G>], limit: Opti
 }
 
 /// On which side units malfunction: loose or tight, and the contact that is pressed hardest.
-pub fn sides(scene: &Scene, units: &[Unit], limit: Option<f64>) -> String {
-    let mut placed: Vec<(f64, &Unit)> = units.iter().map(|unit| (scene.tightness(&unit.gaps), unit)).collect();
-    placed.sort_by(|(one, _), (other, _)| one.total_cmp(other));
-    let tenth = placed.len().div_ceil(10);
-    let failing = |name: &str, of: &[(f64, &Unit)]| {
-        let failed = of.iter().filter(|(_, unit)| malfunctions(unit, limit)).count();
-        bar(name, failed, of.len())
+pub fn sides(scene: &Scene, tally: &Tally<[f64; CONTACTS]>) -> String {
+    let Tally { counts, figures, .. } = tally;
+    let (all, failing) = (&figures.tightness, &figures.failing_tightness);
+    // Units before the unit of this rank, from the loosest on, and those that malfunction among them.
+    let before = |rank: u64| all.at(rank).map_or([0, 0], |n| [all.below(n), failing.below(n)]);
+    let looser = |name: &str, rank: u64| {
+        let [units, failed] = before(rank);
+        bar(name, failed, units)
     };
-    let (loose, tight) = placed.split_at(placed.len() / 2);
+    let tighter = |name: &str, rank: u64| {
+        let [units, failed] = before(rank);
+        bar(name, failing.units() - failed, all.units() - units)
+    };
+    let (half, tenth) = (counts.units / 2, counts.units.div_ceil(10));
     let mut blocks = vec![Block {
         heading: "of these units malfunction".into(),
         bars: vec![
-            failing("the loosest tenth", &placed[..tenth]),
-            failing("the looser half", loose),
-            failing("the tighter half", tight),
-            failing("the tightest tenth", &placed[placed.len() - tenth..]),
+            looser("the loosest tenth", tenth),
+            looser("the looser half", half),
+            tighter("the tighter half", half),
+            tighter("the tightest tenth", counts.units - tenth),
         ],
     }];
-    let failed: Vec<&Unit> = units.iter().filter(|unit| malfunctions(unit, limit)).collect();
-    let pressed = |(contact, name): (usize, String)| {
-        let own = |unit: &&&Unit| unit.outcome.most_loaded.is_some_and(|(most, _)| most == contact);
-        bar(&name, failed.iter().filter(own).count(), failed.len())
-    };
-    let mut contacts: Vec<Bar> = scene.contact_names().into_iter().enumerate().map(pressed).collect();
+    let pressed = |(units, name): (&u64, String)| bar(&name, *units, counts.malfunctions);
+    let mut contacts: Vec<Bar> = counts.pressed.iter().zip(scene.contact_names()).map(pressed).collect();
     contacts.retain(|bar| bar.percent >= LEAST);
     contacts.sort_by(|one, other| other.percent.total_cmp(&one.percent));
     contacts.truncate(MOST);
@@ -130,7 +128,7 @@ pub fn ranking<G>(title: &str, kind: DriveKind, population: &Population<G>) -> R
 }
 
 /// So many of all, with the standard error.
-fn bar(name: &str, some: usize, all: usize) -> Bar {
+fn bar(name: &str, some: u64, all: u64) -> Bar {
     let all = all.max(1) as f64;
     let share = some as f64 / all;
     Bar { name: name.into(), percent: 100.0 * share, error: Some(100.0 * libm::sqrt(share * (1.0 - share) / all)) }
@@ -144,7 +142,11 @@ mod tests {
             driven::{DriveKind, Driven},
             example,
         },
-        population::{production::Production, study::Population},
+        population::{
+            production::Production,
+            study::Population,
+            tally::{Duty, Tally},
+        },
         show::plot::PlotError,
     };
 
@@ -153,24 +155,24 @@ mod tests {
         let mut scene = example::cd_rom();
         scene.run.duration = scene.stroke_duration().unwrap();
         let production = Production::new(&scene, None, 0.0, 1).unwrap();
-        let mut population = Population::study(&scene, &production, 240, (None, None), |_| {}).unwrap();
+        let study = |limit| {
+            let duty = Duty { limit, stroke: None };
+            Population::study(&scene, &production, 240, duty, |_| {}).unwrap()
+        };
+        let population = study(None);
         let failed = population.statistics.malfunctions.units;
         assert!(failed > 20 && failed < 220, "{failed}");
         // A limit that half of all forces exceed.
-        let mut forces: Vec<f64> = population.units.iter().filter_map(|unit| unit.outcome.peak_force).collect();
-        forces.sort_by(f64::total_cmp);
-        let drawn =
-            histogram(&scene.title, DriveKind::Pushes, &population.units, Some(0.5 * (forces[119] + forces[120])))
-                .unwrap();
+        let force = &population.tally.figures.force;
+        let limit = Some(0.5 * (force.at(119).unwrap() + force.at(120).unwrap()));
+        let drawn = histogram(&scene.title, DriveKind::Pushes, &study(limit).tally, limit).unwrap();
         assert!(drawn.contains("which 50.00 % exceed") && drawn.contains("malfunction"), "{drawn}");
-        let drawn = sides(&scene, &population.units, None);
+        let drawn = sides(&scene, &population.tally);
         assert!(drawn.contains("the tightest tenth") && drawn.contains("press hardest at"), "{drawn}");
         assert!(ranking(&scene.title, DriveKind::Pushes, &population).unwrap().contains("greatest force"));
         // Without failures and without forces there is less to show, and no error.
-        population.units.iter_mut().for_each(|unit| {
-            (unit.outcome.peak_force, unit.outcome.verdict) = (None, crate::dynamics::outcome::Verdict::Undecided);
-        });
-        assert_eq!(histogram(&scene.title, DriveKind::Pushes, &population.units, None), Err(PlotError::Empty));
-        assert!(!sides(&scene, &population.units, None).contains("press hardest"));
+        let nothing = Tally::new(0);
+        assert_eq!(histogram(&scene.title, DriveKind::Pushes, &nothing, None), Err(PlotError::Empty));
+        assert!(!sides(&scene, &nothing).contains("press hardest"));
     }
 }

@@ -2,17 +2,15 @@
 
 use serde::Serialize;
 
-use super::Unit;
-use crate::{
-    dynamics::outcome::Verdict,
-    tolerance::{distribution::normal, statistics::binomial},
+use super::{
+    Unit,
+    ranked::Ranked,
+    tally::{Duty, Tally},
 };
+use crate::tolerance::{distribution::normal, statistics::binomial};
 
 /// Chance beyond either end of an interval of 95 %.
 const SIDE: f64 = 0.025;
-
-/// How far (m) before the end of its stroke a unit has not come to it; lanes stop within 0.1 µm of it.
-const SHORT: f64 = 1e-6;
 
 /// A share of the population.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -56,20 +54,19 @@ pub const QUANTILES: [f64; 5] = [0.0, 0.05, 0.5, 0.95, 1.0];
 
 impl Spread {
     /// Of `values`; none if there are none.
-    pub fn new(values: impl Iterator<Item = f64>) -> Option<Self> {
-        let mut values: Vec<f64> = values.collect();
-        values.sort_by(f64::total_cmp);
-        let last = values.len().checked_sub(1)?;
-        let count = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let square: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
-        let quantile = |share: f64| values[(share * last as f64).round() as usize];
-        Some(Self {
-            units: values.len() as u64,
-            mean,
-            deviation: libm::sqrt(square / (count - 1.0).max(1.0)),
-            quantiles: QUANTILES.map(quantile),
-        })
+    pub fn of(values: &Ranked) -> Option<Self> {
+        let last = values.units().checked_sub(1)?;
+        let count = values.units() as f64;
+        let total =
+            |of: &dyn Fn(f64) -> f64| values.values().map(|(value, count)| of(value) * count as f64).sum::<f64>();
+        let mean = total(&|value| value) / count;
+        let square = total(&|value| (value - mean) * (value - mean));
+        let mut quantiles = [0.0; QUANTILES.len()];
+        for (quantile, share) in quantiles.iter_mut().zip(QUANTILES) {
+            *quantile = values.at(libm::round(share * last as f64) as u64)?;
+        }
+        let deviation = libm::sqrt(square / (count - 1.0).max(1.0));
+        Some(Self { units: values.units(), mean, deviation, quantiles })
     }
 }
 
@@ -117,30 +114,27 @@ pub fn is_over<G>(unit: &Unit<G>, limit: Option<f64>) -> bool {
 }
 
 impl Statistics {
-    /// Of `units`, of which there is at least one, with a motor's force `limit` (N) and the `stroke` (m) that they are to travel.
-    pub fn new<G>(units: &[Unit<G>], limit: Option<f64>, stroke: Option<f64>) -> Self {
-        let all = units.len().max(1) as u64;
-        let count = |of: &dyn Fn(&Unit<G>) -> bool| units.iter().filter(|unit| of(unit)).count() as u64;
-        let verdict = |verdict: Verdict| Share::new(count(&|unit| unit.outcome.verdict == verdict), all);
-        let failed = Share::new(count(&|unit| malfunctions(unit, limit)), all);
-        let running = units.iter().filter(|unit| unit.outcome.verdict == Verdict::Runs);
-        let is_short =
-            |unit: &Unit<G>, stroke: f64| unit.outcome.verdict == Verdict::Runs && unit.outcome.end.z < stroke - SHORT;
+    /// Of a `tally` of at least one unit with this `duty`.
+    pub fn new<G>(tally: &Tally<G>, duty: Duty) -> Self {
+        let (counts, figures) = (&tally.counts, &tally.figures);
+        let all = counts.units.max(1);
+        let [runs, crawls, jammed, undecided] = counts.verdicts.map(|units| Share::new(units, all));
+        let failed = Share::new(counts.malfunctions, all);
         Self {
             units: all,
-            runs: verdict(Verdict::Runs),
-            short: stroke.map(|stroke| Share::new(count(&|unit| is_short(unit, stroke)), all)),
-            crawls: verdict(Verdict::Crawls),
-            jammed: verdict(Verdict::Jammed),
-            undecided: verdict(Verdict::Undecided),
+            runs,
+            short: duty.stroke.map(|_| Share::new(counts.short, all)),
+            crawls,
+            jammed,
+            undecided,
             malfunctions: failed,
-            over_limit: limit.map(|limit| Share::new(count(&|unit| is_over(unit, Some(limit))), all)),
+            over_limit: duty.limit.map(|_| Share::new(counts.over_limit, all)),
             sigma_level: failed.sigma_level(),
-            peak_force: Spread::new(units.iter().filter_map(|unit| unit.outcome.peak_force)),
-            running_force: Spread::new(running.filter_map(|unit| unit.outcome.peak_force)),
-            breakaway: Spread::new(units.iter().filter_map(|unit| unit.outcome.breakaway)),
-            final_velocity: Spread::new(units.iter().map(|unit| unit.outcome.final_velocity)),
-            at_desk: count(&|unit| unit.outcome.at_desk),
+            peak_force: Spread::of(&figures.force),
+            running_force: Spread::of(&figures.running_force),
+            breakaway: Spread::of(&figures.breakaway),
+            final_velocity: Spread::of(&figures.final_velocity),
+            at_desk: counts.at_desk,
         }
     }
 }
@@ -148,6 +142,7 @@ impl Statistics {
 #[cfg(test)]
 mod tests {
     use super::{Share, Spread};
+    use crate::population::ranked::Ranked;
 
     #[test]
     fn shares_have_their_interval_and_sigma_level() {
@@ -159,9 +154,11 @@ mod tests {
 
     #[test]
     fn spreads_are_of_the_values() {
-        let spread = Spread::new((0..=100).map(f64::from)).unwrap();
+        let mut values = Ranked::default();
+        (0..=100).for_each(|value| values.add(f64::from(value)));
+        let spread = Spread::of(&values).unwrap();
         assert_eq!((spread.mean, spread.quantiles), (50.0, [0.0, 5.0, 50.0, 95.0, 100.0]));
         assert!((spread.deviation - libm::sqrt(101.0 * 102.0 / 12.0)).abs() < 1e-9);
-        assert_eq!(Spread::new(std::iter::empty()), None);
+        assert_eq!(Spread::of(&Ranked::default()), None);
     }
 }

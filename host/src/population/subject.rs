@@ -7,7 +7,11 @@ use super::{
     production::Drawn,
     unit::{self, Decisive},
 };
-use crate::{dynamics::simulate::SimulateError, mechanism::level_of, scene::Scene};
+use crate::{
+    dynamics::{driven::Driven, simulate::SimulateError},
+    mechanism::level_of,
+    scene::Scene,
+};
 
 /// The gaps (m) of one unit: as many as a slide's pins have, or as many as a mechanism has.
 pub trait UnitGaps: Clone + Send + Sync + AsRef<[f64]> + AsMut<[f64]> {
@@ -31,7 +35,7 @@ impl UnitGaps for Vec<f64> {
 pub type AtLevel<G> = (f64, Unit<G>);
 
 /// What the units of a production are units of.
-pub trait Subject: Sync {
+pub trait Subject: Driven {
     /// The gaps of a unit.
     type Gaps: UnitGaps;
 

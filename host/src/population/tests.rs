@@ -78,6 +78,15 @@ fn a_population_is_the_same_for_any_number_of_threads_and_any_split() {
     assert_eq!(units(8, &[0, 256, 700]), expected);
 }
 
+/// Where no verdict can follow, a better run would tell nothing more.
+#[test]
+fn units_without_a_verdict_are_not_run_again() {
+    let scene = example::cd_rom();
+    let drawn = Production::new(&scene, None, 0.0, 1).unwrap().draw(0..500);
+    let units = unit::units(&scene, &drawn).unwrap();
+    assert!(units.iter().all(|unit| unit.outcome.verdict == Verdict::Undecided && !unit.outcome.at_desk));
+}
+
 /// The 95th percentile and the greatest of some errors.
 fn p95_and_worst(mut errors: Vec<f64>) -> [f64; 2] {
     errors.sort_by(f64::total_cmp);

@@ -79,7 +79,7 @@ pub fn units(scene: &Scene, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError> {
     let unit = |(i, (slide, figures)): (usize, (&SlideData<f64>, &Figures))| {
         let found = outcome(scene, slide, figures);
         let gaps = drawn.gaps[i];
-        let outcome = if is_doubtful(slide, figures) { at_desk(scene, drawn, i, found)? } else { found };
+        let outcome = if is_doubtful(slide, figures, found.verdict) { at_desk(scene, drawn, i, found)? } else { found };
         Ok(Unit { number: drawn.numbers.start + i as u64, gaps, outcome })
     };
     slides.iter().zip(&figures).enumerate().map(unit).collect()
@@ -166,11 +166,12 @@ pub fn decisive(scene: &Scene, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Opt
     slides.iter().zip(asked).map(of).collect()
 }
 
-/// Whether the verdict of a unit may be another to a better tolerance.
-fn is_doubtful(slide: &SlideData<f64>, figures: &Figures) -> bool {
+/// Whether the `verdict` of a unit may be another to a better tolerance. None stays none.
+fn is_doubtful(slide: &SlideData<f64>, figures: &Figures, verdict: Verdict) -> bool {
     let command = slide.drive.command(f64::from(figures.end)).abs();
-    let swings = between_verdicts(figures.end_speeds.map(|speed| f64::from(speed) / command));
-    figures.stalled || swings || is_near_a_limit(share(slide, figures).0)
+    let swings = || between_verdicts(figures.end_speeds.map(|speed| f64::from(speed) / command));
+    let near = || is_near_a_limit(share(slide, figures).0);
+    figures.stalled || (verdict != Verdict::Undecided && (swings() || near()))
 }
 
 /// Whether a final speed, as a `share` of the command, is so near to a limit between two verdicts that a better run has to decide.

@@ -1,5 +1,7 @@
 //! Results as CSV.
 
+use std::{io, io::Write};
+
 use slipfit_core::{clearance::GapClass, slide::ABSENT};
 
 use super::number::ten_digits;
@@ -38,36 +40,43 @@ pub fn rows_csv(samples: &Samples) -> anyhow::Result<Vec<u8>> {
     Ok(writer.into_inner()?)
 }
 
-/// Every unit of a population, one line each: number, tightness at which it is `placed`, figures and gaps, ten digits; empty
-/// where there is none.
-///
-/// # Errors
-/// Those of the writer, none in memory.
-pub fn population_csv<G: AsRef<[f64]>>(
-    kind: DriveKind,
-    gaps: &[String],
-    placed: &[(f64, &Unit<G>)],
-) -> anyhow::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let figures = [
-        "unit",
-        "n",
-        "breakaway_s",
-        kind.choose("peak_force_N", "peak_torque_N_m"),
-        kind.choose("settled_force_N", "settled_torque_N_m"),
-        kind.choose("final_velocity_m_per_s", "final_velocity_rad_per_s"),
-        "end_s",
-        kind.choose("travel_m", "travel_rad"),
-        "verdict",
-        "at_desk",
-    ];
-    let gaps = gaps.iter().map(|name| format!("{name} (m)"));
-    writer.write_record(figures.into_iter().map(str::to_owned).chain(gaps))?;
-    for (tightness, Unit { number, gaps, outcome }) in placed {
+/// Units of a population as CSV, one line each: number, tightness, figures and gaps, ten digits; empty where there is none.
+pub struct UnitRows<W: Write>(csv::Writer<W>);
+
+impl<W: Write> UnitRows<W> {
+    /// Into `writer`, with the heading for a drive of this `kind` and gaps of these names.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn new(writer: W, kind: DriveKind, gaps: &[String]) -> io::Result<Self> {
+        let figures = [
+            "unit",
+            "n",
+            "breakaway_s",
+            kind.choose("peak_force_N", "peak_torque_N_m"),
+            kind.choose("settled_force_N", "settled_torque_N_m"),
+            kind.choose("final_velocity_m_per_s", "final_velocity_rad_per_s"),
+            "end_s",
+            kind.choose("travel_m", "travel_rad"),
+            "verdict",
+            "at_desk",
+        ];
+        let gaps = gaps.iter().map(|name| format!("{name} (m)"));
+        let mut writer = csv::Writer::from_writer(writer);
+        writer.write_record(figures.into_iter().map(str::to_owned).chain(gaps))?;
+        Ok(Self(writer))
+    }
+
+    /// Adds a unit of this `tightness`.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn add<G: AsRef<[f64]>>(&mut self, tightness: f64, unit: &Unit<G>) -> io::Result<()> {
+        let Unit { number, gaps, outcome } = unit;
         let optional = |value: Option<f64>| value.map_or(String::new(), ten_digits);
         let own = [
             number.to_string(),
-            ten_digits(*tightness),
+            ten_digits(tightness),
             optional(outcome.breakaway),
             optional(outcome.peak_force),
             optional(outcome.settled_force),
@@ -78,9 +87,16 @@ pub fn population_csv<G: AsRef<[f64]>>(
             outcome.at_desk.to_string(),
         ];
         let gaps = gaps.as_ref().iter().map(|gap| optional((*gap != ABSENT).then_some(*gap)));
-        writer.write_record(own.into_iter().chain(gaps))?;
+        Ok(self.0.write_record(own.into_iter().chain(gaps))?)
     }
-    Ok(writer.into_inner()?)
+
+    /// The writer, with everything in it.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn finish(self) -> io::Result<W> {
+        self.0.into_inner().map_err(csv::IntoInnerError::into_error)
+    }
 }
 
 /// Figures and the class of each gap over n, one line a level; empty where there is none.

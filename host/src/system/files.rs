@@ -41,7 +41,8 @@ pub enum Coincidence {
     },
 }
 
-fn failed<'a>(path: &'a Path) -> impl FnOnce(std::io::Error) -> WriteError + 'a {
+/// The error of writing to `path`.
+pub fn failed<'a>(path: &'a Path) -> impl FnOnce(std::io::Error) -> WriteError + 'a {
     move |error| WriteError { path: path.into(), cause: plain(error) }
 }
 
@@ -140,16 +141,65 @@ fn destination(path: &Path) -> PathBuf {
 /// # Errors
 /// [`WriteError`]; then a file is as it was.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    if is_stream(path) {
-        let mut stream = std::fs::OpenOptions::new().write(true).open(path).map_err(failed(path))?;
-        return stream.write_all(bytes).map_err(failed(path));
+    let mut writing = Writing::begin(path)?;
+    writing.write_all(bytes).map_err(failed(path))?;
+    writing.end(path)
+}
+
+/// A file that is being written: it has a temporary name until it is whole, and is gone if it does not become so.
+pub enum Writing {
+    /// A device or a pipe.
+    Stream(std::fs::File),
+    /// A file that is to replace another.
+    File {
+        /// What is written so far.
+        file: tempfile::NamedTempFile,
+        /// Where it goes.
+        target: PathBuf,
+    },
+}
+
+impl Writing {
+    /// Beside `path`.
+    ///
+    /// # Errors
+    /// [`WriteError`], if it cannot be begun.
+    pub fn begin(path: &Path) -> Result<Self, WriteError> {
+        if is_stream(path) {
+            return std::fs::OpenOptions::new().write(true).open(path).map(Self::Stream).map_err(failed(path));
+        }
+        let target = resolved(path);
+        Ok(Self::File { file: temporary_beside(&target)?, target })
     }
-    let target = resolved(path);
-    let mut file = temporary_beside(&target)?;
-    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(failed(path))?;
-    file.persist(&target).map_err(|error| failed(path)(error.error)).map(drop)?;
-    sync_folder(&target);
-    Ok(())
+
+    /// Whole: from now on it is `path`, which messages name.
+    ///
+    /// # Errors
+    /// [`WriteError`]; then a file is as it was.
+    pub fn end(self, path: &Path) -> Result<(), WriteError> {
+        if let Self::File { file, target } = self {
+            file.as_file().sync_all().map_err(failed(path))?;
+            file.persist(&target).map_err(|error| failed(path)(error.error))?;
+            sync_folder(&target);
+        }
+        Ok(())
+    }
+}
+
+impl Write for Writing {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        match self {
+            Self::Stream(stream) => stream.write(bytes),
+            Self::File { file, .. } => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        match self {
+            Self::Stream(stream) => stream.flush(),
+            Self::File { file, .. } => file.flush(),
+        }
+    }
 }
 
 /// Makes a new name last through a power cut, where the system can: not all can open a folder.

@@ -8,9 +8,7 @@ use super::warnings_of;
 use crate::{
     cli::{
         Failure,
-        population::{
-            Arguments, HYPOTHESIS, LevelReport, UnitReport, WORST, levels, percent, rare, strongest, verdicts,
-        },
+        population::{Arguments, HYPOTHESIS, LevelReport, UnitReport, levels, percent, rare, strongest, verdicts},
         print, print_json, text_table, warn,
     },
     dynamics::driven::Driven,
@@ -20,18 +18,17 @@ use crate::{
         drivers::Driver,
         hypothesis::Hypothesis,
         mechanism::MechanismPopulation,
-        picture::{forces, hypothesis, placed},
+        picture::{forces, hypothesis},
         production::Production,
         rare::Rare,
         shares::{histogram, ranking},
         statistics::{Share, Spread, Statistics},
         study::Population,
         subject::Subject,
-        telling::worst,
+        tally::Tally,
     },
     product::Product,
     show::{
-        export::population_csv,
         number::{fixed, level, or_dash},
         plot::PlotError,
         report::{Figure, Units, units_page},
@@ -64,11 +61,6 @@ struct Report<'a> {
     warnings: Vec<String>,
 }
 
-/// The greatest force or torque of the `placed` units over their tightness; `limit` (N, N·m) is the motor's greatest.
-pub fn picture(driven: &ByDrive, placed: &[(f64, &Unit<Vec<f64>>)], limit: Option<f64>) -> Result<String, PlotError> {
-    forces(driven.title(), driven.kind(), placed, limit)
-}
-
 /// All that was found.
 struct Found {
     population: MechanismPopulation,
@@ -78,50 +70,44 @@ struct Found {
 }
 
 impl Found {
-    /// Of all `units` of a `production`.
+    /// Of all units of a `production`, counted in `tally`.
     fn of(
         asked: &Arguments,
         driven: &ByDrive,
         production: &Production<Vec<f64>>,
-        units: Vec<Unit<Vec<f64>>>,
+        tally: Tally<Vec<f64>>,
     ) -> Result<Self, Failure> {
-        let population = Population::of(production, units, (asked.force_limit, driven.mechanism().run.stroke));
-        let levels = LevelReport::all(driven, &population.units)?;
+        let population = Population::of(production, tally, asked.duty_of_mechanism(driven.mechanism()));
+        let levels = LevelReport::all(driven, &population.tally)?;
         let hypothesis = Hypothesis::test(driven, DIRECTIONS, asked.seed, asked.force_limit)?;
         let rare = asked.rare.then(|| asked.estimate(driven, production, &population)).transpose()?;
         Ok(Self { population, levels, hypothesis, rare })
     }
 }
 
-/// Shows and writes what all `units` of a mechanism did.
+/// Shows and writes what all units of a mechanism, counted in `tally`, did.
 pub fn conclude(
     asked: &Arguments,
     driven: &ByDrive,
     production: &Production<Vec<f64>>,
-    units: Vec<Unit<Vec<f64>>>,
+    tally: Tally<Vec<f64>>,
     product: Option<&Product>,
 ) -> Result<(), Failure> {
     let mechanism = driven.mechanism();
     let limit = asked.force_limit;
-    let found = asked.threads.install(|| Found::of(asked, driven, production, units))??;
-    let units = &found.population.units;
-    let misfits = units.iter().filter(|unit| !driven.fits(&unit.gaps)).count() as u64;
-    let misfits = Share::new(misfits, units.len() as u64);
+    let found = asked.threads.install(|| Found::of(asked, driven, production, tally))??;
+    let counts = found.population.tally.counts;
+    let misfits = Share::new(counts.misfits, counts.units.max(1));
     let mut warnings = warnings_of(mechanism)?;
     warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
     if misfits.units > 0 {
         warnings.push(format!(
             "{} of {} units cannot be assembled, because a pin is wider than its hole: they count as jammed",
-            misfits.units,
-            units.len()
+            misfits.units, counts.units
         ));
     }
-    let placed = placed(driven, units);
-    if let Some(path) = &asked.csv {
-        files::write(path, &population_csv(driven.kind(), &driven.gap_names(), &placed)?)?;
-    }
     if let Some(path) = &asked.plot {
-        let svg = picture(driven, &placed, limit).map_err(anyhow::Error::from)?;
+        let svg = forces(driven, &found.population.tally, limit).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
     }
     if let Some(path) = &asked.plot_distance {
@@ -129,22 +115,17 @@ pub fn conclude(
         files::write(path, svg.as_bytes())?;
     }
     if let Some(path) = &asked.page {
-        let page = Units { figures: figures(driven, &found, &placed, limit)?, player: None };
+        let page = Units { figures: figures(driven, &found, limit)?, player: None };
         let words = summary(driven, &found, limit);
         files::write(path, units_page(&mechanism.title, &words, &page, &warnings).as_bytes())?;
     }
     if asked.scene.json {
-        let of_unit = |unit: &Unit<Vec<f64>>| UnitReport {
-            number: unit.number,
-            tightness: driven.tightness(&unit.gaps),
-            outcome: unit.outcome,
-        };
         return print_json(&Report {
             title: &mechanism.title,
             drive: driven.name(),
             effort_unit: driven.kind().effort_unit(),
             seed: asked.seed,
-            worst: worst(units, WORST).into_iter().map(of_unit).collect(),
+            worst: UnitReport::worst(driven, &found.population.tally),
             levels: found.levels,
             hypothesis: found.hypothesis,
             rare: found.rare,
@@ -161,18 +142,16 @@ pub fn conclude(
 }
 
 /// The pictures of the page.
-fn figures(
-    driven: &ByDrive,
-    found: &Found,
-    placed: &[(f64, &Unit<Vec<f64>>)],
-    limit: Option<f64>,
-) -> Result<Vec<Figure>, Failure> {
+fn figures(driven: &ByDrive, found: &Found, limit: Option<f64>) -> Result<Vec<Figure>, Failure> {
     let (title, kind) = (driven.title(), driven.kind());
     let pictures = [
-        ("Every mark is a unit of the production, drawn with gaps of its own.", picture(driven, placed, limit)),
+        (
+            "Every mark is a unit of the production, drawn with gaps of its own.",
+            forces(driven, &found.population.tally, limit),
+        ),
         (
             "The greatest force or torque that units need of the drive.",
-            histogram(title, kind, &found.population.units, limit),
+            histogram(title, kind, &found.population.tally, limit),
         ),
         (
             "Which gaps and tolerances malfunction and the greatest force or torque vary with, the strongest first.",
@@ -251,7 +230,7 @@ fn described(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
             fixed(kind.travel(outcome.end.z), 2),
         ]
     };
-    let rows: Vec<_> = worst(&found.population.units, WORST).into_iter().map(row).collect();
+    let rows: Vec<_> = found.population.tally.worst.iter().map(row).collect();
     let columns = [
         "unit",
         "tightness",

@@ -32,12 +32,12 @@ pub fn units(
     population: &Population,
     limit: Option<f64>,
 ) -> Result<(Units, Vec<&'static str>), Failure> {
-    let all = &population.units;
+    let all = &population.tally;
     let pictures = [
         (
             "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: its gaps differ from \
              each other.",
-            picture::forces(&scene.title, DriveKind::Pushes, &picture::placed(scene, all), limit),
+            picture::forces(scene, all, limit),
         ),
         (
             "What force units need. Those that jam need all that the drive has.",
@@ -45,7 +45,7 @@ pub fn units(
         ),
         (
             "Where units fail: how many of the loose and of the tight ones, and which contact presses hardest.",
-            Ok(shares::sides(scene, all, limit)),
+            Ok(shares::sides(scene, all)),
         ),
         (
             "Which tolerances the force and the malfunction vary with, the strongest first. What is missing to 100 % comes from \

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Arguments, Found, LevelReport, WORST, rare, worst};
+use super::{Arguments, Found, LevelReport, rare};
 use crate::{
     cli::{simulate::why_undecided, text_table},
     dynamics::outcome::Verdict,
@@ -27,12 +27,7 @@ impl Arguments {
             0 => "None malfunctions; the greatest forces",
             _ => "The worst",
         };
-        format!("{}\n{title}\n{}", self.summary(scene, found), worst_units(scene, &found.population.units))
-    }
-
-    /// The stroke (m) that units are to travel.
-    pub(super) fn stroke_of(&self, scene: &Scene) -> Option<f64> {
-        scene.run.stroke.filter(|_| !self.opening)
+        format!("{}\n{title}\n{}", self.summary(scene, found), worst_units(scene, &found.population.tally.worst))
     }
 
     /// What the units did together.
@@ -40,7 +35,7 @@ impl Arguments {
         let Population { statistics, of_force, of_malfunction, .. } = &found.population;
         let Statistics { units, undecided, malfunctions, over_limit, sigma_level, .. } = *statistics;
         let mut text = format!("{}: {units} units", scene.title);
-        let length = match self.stroke_of(scene) {
+        let length = match self.duty_of(scene).stroke {
             Some(stroke) => format!("the stroke of {} mm", fixed(stroke * 1e3, 1)),
             None => format!("{} ms", fixed(scene.run.duration * 1e3, 0)),
         };
@@ -127,7 +122,7 @@ fn worst_units(scene: &Scene, units: &[Unit]) -> String {
                 .map_or("-".into(), |(i, force)| format!("{} ({} N)", scene.contact_names()[i], fixed(force, 2))),
         ]
     };
-    let rows: Vec<Vec<String>> = worst(units, WORST).into_iter().map(row).collect();
+    let rows: Vec<Vec<String>> = units.iter().map(row).collect();
     let heading =
         ["unit", "tightness", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
     text_table(&heading, &rows)

@@ -13,9 +13,7 @@ use super::{
 };
 use crate::{
     cli::{
-        Failure,
-        mechanism::{self, population::picture},
-        print, print_json, progress,
+        Failure, mechanism, print, print_json, progress,
         sweep::{LevelReport, doubts, for_machines},
         table,
         tolerance::DEFAULT,
@@ -32,8 +30,8 @@ use crate::{
     },
     mechanism::ByDrive,
     population::{
-        mechanism::MechanismPopulation, picture::placed, production::Production as DrawnProduction,
-        statistics::Statistics, study::Population,
+        mechanism::MechanismPopulation, picture::forces as forces_of_units, production::Production as DrawnProduction,
+        statistics::Statistics, study::Population, tally::Duty,
     },
     product::Product,
     show::{
@@ -94,9 +92,8 @@ impl Arguments {
             let made = force_table::make(driven, Demand::Full, || bar.inc(1))?;
             let population = varies
                 .then(|| {
-                    Population::study(driven, &drawn, units, (None, driven.mechanism().run.stroke), |units| {
-                        bar.inc(units)
-                    })
+                    let duty = Duty { limit: None, stroke: mechanism.run.stroke };
+                    Population::study(driven, &drawn, units, duty, |units| bar.inc(units))
                 })
                 .transpose()?;
             Ok::<_, Failure>((made, population))
@@ -108,11 +105,10 @@ impl Arguments {
 
         let answer = said(driven, &table, &sweep, population.as_ref());
         let mut figures = figures(driven, &sweep)?;
-        let units = population.iter().flat_map(|population| &population.units);
-        match picture(driven, &placed(driven, units), None) {
-            // Too few units, or none that has a force.
-            Err(PlotError::Empty) => {}
-            svg => {
+        match population.as_ref().map(|population| forces_of_units(driven, &population.tally, None)) {
+            // No units, too few, or none that has a force.
+            None | Some(Err(PlotError::Empty)) => {}
+            Some(svg) => {
                 let caption = "Every mark is a unit of the production, drawn with gaps of its own.";
                 figures.push((FIGURES[5], captioned(caption, svg)?));
             }

@@ -36,7 +36,7 @@ use crate::{
         closing::{closing_level, derived},
         self_locking::{DriveSide, guide},
     },
-    population::{production::Production as DrawnProduction, statistics::Statistics, study::Population},
+    population::{production::Production as DrawnProduction, statistics::Statistics, study::Population, tally::Duty},
     product::Product,
     scene::Scene,
     show::{
@@ -184,8 +184,8 @@ impl Arguments {
             whole.run.duration = duration.unwrap_or(scene.run.duration);
             let unit = |n| whole.level(n, whole.motion(1e-3));
             let stroke = duration.map(|_| sweep(&whole, &levels, Keep::Samples, unit, || bar.inc(1)));
-            let population =
-                Population::study(&whole, &production, units, (None, whole.run.stroke), |units| bar.inc(units))?;
+            let duty = Duty { limit: None, stroke: whole.run.stroke };
+            let population = Population::study(&whole, &production, units, duty, |units| bar.inc(units))?;
             let units = page::units(&whole, &production, &population, None)?;
             Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()?, population, units })
         })??;

@@ -1,0 +1,268 @@
+//! What is kept of a population's units: counts, how figures spread, and a few units. Memory does not grow with the population.
+
+use std::cmp::Ordering;
+
+use slipfit_core::slide::CONTACTS;
+
+use super::{
+    Unit,
+    drivers::{Classes, Sums},
+    limit_state::{Kind, Side},
+    production::{Drawn, Production},
+    ranked::Ranked,
+    statistics::{is_over, malfunctions},
+    subject::Subject,
+};
+use crate::dynamics::outcome::Verdict;
+
+/// How far (m) before the end of its stroke a unit has not come to it; lanes stop within 0.1 µm of it.
+const SHORT: f64 = 1e-6;
+/// The worst units, which are kept.
+pub const WORST: usize = 5;
+/// First units of each verdict, which are kept.
+const FIRST: usize = 1024;
+/// Verdicts, in the order in which units are counted by them.
+pub const VERDICTS: [Verdict; 4] = [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Undecided];
+/// Kinds of malfunction, in the order in which units are counted by them.
+pub const KINDS: [Kind; 3] = [Kind::Crawls, Kind::Jams, Kind::OverLimit];
+
+/// What units have to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Duty {
+    /// The motor's greatest force (N, N·m), if it has a limit.
+    pub limit: Option<f64>,
+    /// How far (m, rad) they are to travel, if they are.
+    pub stroke: Option<f64>,
+}
+
+/// Counts of units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// All.
+    pub units: u64,
+    /// By verdict, as in [`VERDICTS`].
+    pub verdicts: [u64; 4],
+    /// Those that run, but have not come to the end of the stroke when the run is over.
+    pub short: u64,
+    /// Those that need more than the limit.
+    pub over_limit: u64,
+    /// Those that malfunction.
+    pub malfunctions: u64,
+    /// Those that the desk computed.
+    pub at_desk: u64,
+    /// Those that cannot be assembled.
+    pub misfits: u64,
+    /// Those that malfunction, by kind as in [`KINDS`]: tight ones and loose ones.
+    pub kinds: [[u64; 2]; 3],
+    /// Those that malfunction, by the contact that is pressed in deepest.
+    pub pressed: [u64; CONTACTS],
+}
+
+impl Counts {
+    /// Every count, in one order.
+    pub fn each(&mut self) -> impl Iterator<Item = &mut u64> {
+        let Self { units, verdicts, short, over_limit, malfunctions, at_desk, misfits, kinds, pressed } = self;
+        [units, short, over_limit, malfunctions, at_desk, misfits]
+            .into_iter()
+            .chain(verdicts)
+            .chain(kinds.as_flattened_mut())
+            .chain(pressed)
+    }
+}
+
+/// How figures of units spread.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Figures {
+    /// Greatest force (N, N·m).
+    pub force: Ranked,
+    /// The same of units that run.
+    pub running_force: Ranked,
+    /// The same of units that malfunction.
+    pub failing_force: Ranked,
+    /// Breakaway time (s).
+    pub breakaway: Ranked,
+    /// Velocity at the end (m/s, rad/s).
+    pub final_velocity: Ranked,
+    /// Tightness (σ, the mean over the gaps).
+    pub tightness: Ranked,
+    /// The same of units that malfunction.
+    pub failing_tightness: Ranked,
+}
+
+impl Figures {
+    /// Every figure, in one order.
+    pub fn each(&self) -> [&Ranked; 7] {
+        let Self { force, running_force, failing_force, breakaway, final_velocity, tightness, failing_tightness } =
+            self;
+        [force, running_force, failing_force, breakaway, final_velocity, tightness, failing_tightness]
+    }
+
+    /// The same, to be changed.
+    pub fn each_mut(&mut self) -> [&mut Ranked; 7] {
+        let Self { force, running_force, failing_force, breakaway, final_velocity, tightness, failing_tightness } =
+            self;
+        [force, running_force, failing_force, breakaway, final_velocity, tightness, failing_tightness]
+    }
+}
+
+/// What is kept of units. The order in which they come does not matter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tally<G> {
+    /// Counts.
+    pub counts: Counts,
+    /// How figures spread.
+    pub figures: Figures,
+    /// What the greatest force and malfunction vary with.
+    pub sums: Sums,
+    /// The worst, at most [`WORST`]: of those that malfunction the ones that come least far, then those that need most force.
+    pub worst: Vec<Unit<G>>,
+    /// The first of each verdict, as in [`VERDICTS`], in order.
+    pub first: [Vec<Unit<G>>; 4],
+}
+
+/// The worse first. Of equal ones the first of the production.
+fn by_badness<G>(one: &Unit<G>, other: &Unit<G>) -> Ordering {
+    let key = |unit: &Unit<G>| (!unit.outcome.verdict.is_malfunction(), unit.outcome.end.z);
+    let ((runs, z), (other_runs, other_z)) = (key(one), key(other));
+    let by_travel = if runs { Ordering::Equal } else { z.total_cmp(&other_z) };
+    let force = |unit: &Unit<G>| unit.outcome.peak_force.unwrap_or(f64::NEG_INFINITY);
+    let by_force = force(other).total_cmp(&force(one));
+    runs.cmp(&other_runs).then(by_travel).then(by_force).then(one.number.cmp(&other.number))
+}
+
+/// Puts `unit` in its place by `order` and keeps the first `most`.
+fn keep<G: Clone>(
+    kept: &mut Vec<Unit<G>>,
+    unit: &Unit<G>,
+    most: usize,
+    order: impl Fn(&Unit<G>, &Unit<G>) -> Ordering,
+) {
+    let place = kept.partition_point(|other| order(other, unit) == Ordering::Less);
+    if place < most {
+        kept.insert(place, unit.clone());
+        kept.truncate(most);
+    }
+}
+
+impl<G: Clone> Tally<G> {
+    /// Of no units, with so many `variables` each.
+    pub fn new(variables: usize) -> Self {
+        Self {
+            counts: Counts::default(),
+            figures: Figures::default(),
+            sums: Sums::new(variables),
+            worst: Vec::new(),
+            first: [const { Vec::new() }; 4],
+        }
+    }
+
+    /// Adds those of another.
+    pub fn join(&mut self, mut other: Self) {
+        self.counts.each().zip(other.counts.each()).for_each(|(own, other)| *own += *other);
+        self.figures.each_mut().into_iter().zip(other.figures.each()).for_each(|(own, other)| own.join(other));
+        self.sums.join(&mut other.sums);
+        other.worst.iter().for_each(|unit| keep(&mut self.worst, unit, WORST, by_badness));
+        other.first.iter().flatten().for_each(|unit| self.keep_first(unit));
+    }
+
+    fn keep_first(&mut self, unit: &Unit<G>) {
+        let verdict = VERDICTS.iter().position(|verdict| *verdict == unit.outcome.verdict).unwrap_or(0);
+        keep(&mut self.first[verdict], unit, FIRST, |one, other| one.number.cmp(&other.number));
+    }
+
+    /// Units that malfunction so on that side.
+    pub fn of_kind(&self, kind: Kind, side: Side) -> u64 {
+        let [tight, loose] = KINDS
+            .iter()
+            .zip(self.counts.kinds)
+            .find_map(|(own, count)| (*own == kind).then_some(count))
+            .unwrap_or_default();
+        match side {
+            Side::Tight => tight,
+            Side::Loose => loose,
+            Side::Any => tight + loose,
+        }
+    }
+
+    /// The first units of the production, in order, as far as all of them are kept.
+    pub fn first_units(&self) -> Vec<&Unit<G>> {
+        let full = self.first.iter().filter(|kept| kept.len() == FIRST);
+        let last = full.filter_map(|kept| kept.last()).map(|unit| unit.number).min().unwrap_or(u64::MAX);
+        let mut units: Vec<_> = self.first.iter().flatten().filter(|unit| unit.number <= last).collect();
+        units.sort_by_key(|unit| unit.number);
+        units
+    }
+}
+
+/// Counts the units of a production.
+pub struct Counter<'a, S: Subject> {
+    subject: &'a S,
+    duty: Duty,
+    classes: Classes,
+}
+
+impl<'a, S: Subject> Counter<'a, S> {
+    /// Of a `production` of `subject`.
+    pub fn new(subject: &'a S, production: &Production<S::Gaps>, duty: Duty) -> Self {
+        Self { subject, duty, classes: Classes::new(production, subject.greatest_force()) }
+    }
+
+    /// What units have to do.
+    pub fn duty(&self) -> Duty {
+        self.duty
+    }
+
+    /// Of no units.
+    pub fn nothing(&self) -> Tally<S::Gaps> {
+        Tally::new(self.classes.variables())
+    }
+
+    /// Adds the `units`, as `drawn`.
+    pub fn add(&self, tally: &mut Tally<S::Gaps>, drawn: &Drawn<S::Gaps>, units: &[Unit<S::Gaps>]) {
+        let Duty { limit, stroke } = self.duty;
+        let forces = units.iter().map(|unit| unit.outcome.peak_force);
+        let failures = units.iter().map(|unit| malfunctions(unit, limit));
+        self.classes.add(&mut tally.sums, drawn, forces.zip(failures));
+        let Figures { force, running_force, failing_force, breakaway, final_velocity, tightness, failing_tightness } =
+            &mut tally.figures;
+        let counts = &mut tally.counts;
+        let count = |count: &mut u64, is: bool| *count += u64::from(is);
+        for unit in units {
+            let outcome = &unit.outcome;
+            let (runs, fails) = (outcome.verdict == Verdict::Runs, malfunctions(unit, limit));
+            counts.units += 1;
+            VERDICTS.iter().zip(&mut counts.verdicts).for_each(|(of, own)| count(own, *of == outcome.verdict));
+            count(&mut counts.short, runs && stroke.is_some_and(|stroke| outcome.end.z < stroke - SHORT));
+            count(&mut counts.over_limit, is_over(unit, limit));
+            count(&mut counts.malfunctions, fails);
+            count(&mut counts.at_desk, outcome.at_desk);
+            count(&mut counts.misfits, !self.subject.fits(&unit.gaps));
+            let n = self.subject.tightness(&unit.gaps);
+            tightness.add(n);
+            if let Some(peak) = outcome.peak_force {
+                force.add(peak);
+                if runs {
+                    running_force.add(peak);
+                }
+                if fails {
+                    failing_force.add(peak);
+                }
+            }
+            outcome.breakaway.into_iter().for_each(|t| breakaway.add(t));
+            final_velocity.add(outcome.final_velocity);
+            if fails {
+                failing_tightness.add(n);
+                let kind = Kind::of(unit, limit);
+                let side = usize::from(n <= 0.0);
+                KINDS.iter().zip(&mut counts.kinds).for_each(|(of, own)| count(&mut own[side], Some(*of) == kind));
+                if let Some((contact, _)) = outcome.most_loaded {
+                    counts.pressed[contact] += 1;
+                }
+            }
+        }
+        for unit in units {
+            keep(&mut tally.worst, unit, WORST, by_badness);
+            tally.keep_first(unit);
+        }
+    }
+}
