@@ -140,7 +140,7 @@ fn a_drive_is_asked_for_by_name() {
 fn what_a_mechanism_has_not_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, why) in [
-        (&["simulate", "slider-crank", "--page", "a.html"][..], "--stroke and --page are for slides on pins"),
+        (&["simulate", "slider-crank", "--audit"][..], "--scalar and --stroke are for slides on pins"),
         (&["population", "slider-crank", "--opening"], "--opening is for slides on pins"),
         (&["tolerance", "slider-crank"], "there is no product to draw"),
     ] {

@@ -101,3 +101,19 @@ fn so_does_the_report_of_a_run() {
     // The player, four pictures of units, five of the sweep.
     moves(&folder.path().join("slipfit-out/cd-rom-slide/report.html"), 3, 10);
 }
+
+#[test]
+fn so_do_the_pages_of_mechanisms() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = |arguments: &[&str]| {
+        stdout(&slipfit(folder.path(), &[arguments, &["--page", "page.html"]].concat()));
+        folder.path().join("page.html")
+    };
+    // The player, forces over tightness, their histogram, the hypothesis.
+    moves(&page(&["population", "telescopic-drawer", "--units", "24"]), 1, 4);
+    for scene in ["slider-crank", "slider-crank-guide", "woodpecker-toy", "hatch", "linear-guide"] {
+        moves(&page(&["simulate", scene, "--set", "run.duration=300"]), 1, 2);
+    }
+    stdout(&slipfit(folder.path(), &["run", "four-bar", "--n", "-1:1:1", "--units", "24"]));
+    moves(&folder.path().join("slipfit-out/four-bar/report.html"), 1, 7);
+}

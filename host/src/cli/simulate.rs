@@ -54,7 +54,7 @@ pub(super) const MOMENTS: usize = 160;
 /// the controller is off, which takes steps of one length. With `--step`, `--integrator`, `--scalar` or `--audit` the run shown is the
 /// controller's, and its error against the desk's is printed.
 ///
-/// For slides only: `--page`, `--audit`, `--stroke`, `--scalar`.
+/// For slides only: `--audit`, `--stroke`, `--scalar`.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -87,7 +87,7 @@ pub(super) struct Arguments {
     /// Draws speed and force over time as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Writes a page with the run and an animation of the slide on its pins.
+    /// Writes a page with the run and an animation of the bodies on their joints, gaps enlarged, by the desk's run.
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
     /// Interval between the samples in the output, such as 1ms or 500us; a bare number is in ms.
@@ -201,14 +201,14 @@ impl Arguments {
         let scene = match moving {
             Moving::Slide(scene) => self.length.applied(*scene)?,
             Moving::Mechanism(mechanism) => {
-                let shown = self.audit || self.page.is_some();
-                if shown || self.controller.scalar.is_some() || self.length.stroke {
-                    let why = "--audit, --scalar, --stroke and --page are for slides on pins; a mechanism runs for \
-                               run.duration, or to run.stroke, and its controller is computed in double precision";
+                if self.audit || self.controller.scalar.is_some() || self.length.stroke {
+                    let why = "--audit, --scalar and --stroke are for slides on pins; a mechanism runs for run.duration, \
+                               or to run.stroke, and its controller is computed in double precision";
                     return Err(Failure::Input(why.into()));
                 }
                 let by_controller = self.controller.given();
-                let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot, by_controller };
+                let Self { scene, csv, plot, page, .. } = self;
+                let wanted = Wanted { scene, csv, plot, page, by_controller };
                 let (mechanism, unit) = match self.unit {
                     Some(number) => {
                         let production =

@@ -110,7 +110,8 @@ impl Arguments {
                                a mechanism runs for run.duration, or to run.stroke";
                     return Err(Failure::Input(why.into()));
                 }
-                let wanted = Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot, by_controller: false };
+                let wanted =
+                    Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot, page: &None, by_controller: false };
                 return mechanism::sweep(&mechanism, &wanted, &self.threads);
             }
         };

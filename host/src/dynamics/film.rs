@@ -43,7 +43,9 @@ pub fn film(scene: &Scene, gaps: &[f64; CONTACTS], count: usize) -> Result<Film,
     let mut see = |t: f64, vz: f64, pose: &Pose<f64>, gaps: &[f64; CONTACTS]| frames.push(frame(t, vz, pose, gaps));
     let settings = Settings::desk(scene, 1e-3);
     let run = desk::seen(scene, gaps, &settings, desk::tolerance(scene), Some(&mut see))?;
-    Ok(Film { frames: chosen(&frames, count), outcome: run.outcome })
+    let times: Vec<f64> = frames.iter().map(|frame| frame.t).collect();
+    let frames = chosen(&times, count).into_iter().map(|number| frames[number]).collect();
+    Ok(Film { frames, outcome: run.outcome })
 }
 
 fn frame(t: f64, vz: f64, pose: &Pose<f64>, gaps: &[f64; CONTACTS]) -> Frame {
@@ -54,18 +56,19 @@ fn frame(t: f64, vz: f64, pose: &Pose<f64>, gaps: &[f64; CONTACTS]) -> Frame {
     Frame { t, vz, displacement: pose.displacement_w.into(), turn: (v * factor).into(), gaps: *gaps }
 }
 
-fn chosen(frames: &[Frame], count: usize) -> Vec<Frame> {
-    let Some(last) = frames.last() else { return Vec::new() };
+/// Which of ascending `times` are shown where about `count` are: half of them evenly spread over all, half over the time.
+pub fn chosen(times: &[f64], count: usize) -> Vec<usize> {
+    let Some(last) = times.last() else { return Vec::new() };
     let half = (count / 2).max(1);
-    let by_step = (0..=half).map(|k| k * (frames.len() - 1) / half);
+    let by_step = (0..=half).map(|k| k * (times.len() - 1) / half);
     let by_time = (0..=half).map(|k| {
-        let t = last.t * k as f64 / half as f64;
-        frames.partition_point(|frame| frame.t < t).min(frames.len() - 1)
+        let t = last * k as f64 / half as f64;
+        times.partition_point(|time| *time < t).min(times.len() - 1)
     });
     let mut numbers: Vec<usize> = by_step.chain(by_time).collect();
     numbers.sort_unstable();
     numbers.dedup();
-    numbers.into_iter().map(|number| frames[number]).collect()
+    numbers
 }
 
 #[cfg(test)]

@@ -21,12 +21,13 @@ mod source;
 pub mod spatial;
 mod vary;
 
+pub use columns::BodyMotion;
 pub use driven::{ByDrive, confirmed, finer};
 pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps, level_of};
 pub use laws::{Laws, NormalData, Rebound};
 pub use mounts::{MountError, Mounts};
-pub use run::{MechanismRun, Rest, RunError, SCHEME, Samples, controller_run, run};
+pub use run::{MechanismRun, Moment, Rest, RunError, SCHEME, Samples, controller_run, film, run};
 pub use source::{drive_names, element_paths, rust_source};
 pub use vary::{Parameter, Varied, rub_more, tilted_x, tilted_z};
 

@@ -22,6 +22,7 @@ use super::{
 use crate::{
     dynamics::{
         error_control::{Effort, Knot, Stopped, integrate, sampled},
+        film::chosen,
         looks::{end, looks, samples},
         out_of_line::OutOfLine,
         outcome::{Observer, Outcome},
@@ -101,6 +102,15 @@ pub struct Samples {
     pub rows: Vec<Vec<f64>>,
 }
 
+/// Where all bodies are at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// When (s).
+    pub t: f64,
+    /// How each body has moved.
+    pub motions: Vec<BodyMotion>,
+}
+
 /// A finished run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MechanismRun {
@@ -110,6 +120,8 @@ pub struct MechanismRun {
     pub outcomes: Vec<Outcome>,
     /// What each drive does over time, likewise; x and y are its body's.
     pub trajectories: Vec<Trajectory>,
+    /// Moments that show the motion, from rest to the end; none unless [`film`] asks for them.
+    pub film: Vec<Moment>,
     /// Error of speed (m/s) that a step was allowed.
     pub tolerance: f64,
     /// Steps.
@@ -140,7 +152,16 @@ impl MechanismRun {
 /// # Errors
 /// See [`RunError`].
 pub fn run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
-    run_by(mechanism, gaps, every, None)
+    run_by(mechanism, gaps, By { every, controller: None, moments: 0 })
+}
+
+/// The same with about `count` moments of the motion, half of them evenly spread over the steps, which are short where much
+/// happens, and half over the time.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn film(mechanism: &Mechanism, gaps: &[f64], count: usize) -> Result<MechanismRun, RunError> {
+    run_by(mechanism, gaps, By { every: mechanism.run.duration, controller: None, moments: count })
 }
 
 /// The same by the steps of its controller, in double precision. Only implicit schemes are known; implicit Euler stands for the
@@ -149,16 +170,10 @@ pub fn run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismR
 /// # Errors
 /// See [`RunError`].
 pub fn controller_run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
-    run_by(mechanism, gaps, every, Some(mechanism.controller))
+    run_by(mechanism, gaps, By { every, controller: Some(mechanism.controller), moments: 0 })
 }
 
-fn run_by(
-    mechanism: &Mechanism,
-    gaps: &[f64],
-    every: f64,
-    controller: Option<ControllerSpec>,
-) -> Result<MechanismRun, RunError> {
-    let by = By { every, controller };
+fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, RunError> {
     if mechanism.planar {
         let mounts = Mounts::of(mechanism)?;
         match mounts.coordinates().len() {
@@ -186,6 +201,8 @@ struct By {
     every: f64,
     /// A controller's steps; the desk's, if there are none.
     controller: Option<ControllerSpec>,
+    /// Moments that show the motion.
+    moments: usize,
 }
 
 fn in_plane<const D: usize>(
@@ -341,9 +358,13 @@ fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize
             trajectory.push(t, [at.vz, place.x, place.y, at.z], at.force);
         }
     }
+    let before_end: Vec<f64> = knots.iter().map(|knot| knot.t).filter(|t| *t <= end).collect();
+    let shown = if by.moments > 0 { chosen(&before_end, by.moments) } else { Vec::new() };
+    let moment = |k: usize| Moment { t: knots[k].t, motions: told(&knots[k].values) };
+    let film = shown.into_iter().map(moment).collect();
     let outcomes = observers.iter().map(Observer::outcome).collect();
     let samples = Samples { columns: mechanism.columns(), rows };
-    Ok(MechanismRun { samples, outcomes, trajectories, tolerance: limits.speed, effort, integration })
+    Ok(MechanismRun { samples, outcomes, trajectories, film, tolerance: limits.speed, effort, integration })
 }
 
 /// Steps of one length.

@@ -39,13 +39,14 @@ pub(super) struct Wanted<'a> {
     pub scene: &'a SceneArguments,
     pub csv: &'a Option<PathBuf>,
     pub plot: &'a Option<PathBuf>,
+    pub page: &'a Option<PathBuf>,
     /// Whether the controller's run is shown, not the desk's.
     pub by_controller: bool,
 }
 
 impl Wanted<'_> {
     fn check_outputs(&self) -> Result<(), Failure> {
-        self.scene.check_outputs(&given([("--csv", self.csv), ("--plot", self.plot)]))
+        self.scene.check_outputs(&given([("--csv", self.csv), ("--plot", self.plot), ("--page", self.page)]))
     }
 }
 

@@ -8,7 +8,10 @@ use super::warnings_of;
 use crate::{
     cli::{
         Failure,
-        population::{Arguments, HYPOTHESIS, LevelReport, UnitReport, levels, percent, rare, strongest, verdicts},
+        population::{
+            Arguments, HYPOTHESIS, LevelReport, UnitReport, levels, page::units_of_mechanism, percent, rare, strongest,
+            verdicts,
+        },
         print, print_json, text_table, warn,
     },
     dynamics::driven::Driven,
@@ -21,7 +24,6 @@ use crate::{
         picture::{forces, hypothesis},
         production::Production,
         rare::Rare,
-        shares::{histogram, ranking},
         statistics::{Share, Spread, Statistics},
         study::Population,
         subject::Subject,
@@ -30,8 +32,7 @@ use crate::{
     product::Product,
     show::{
         number::{fixed, level, or_dash},
-        plot::PlotError,
-        report::{Figure, Units, units_page},
+        report::{Figure, units_page},
     },
     system::files,
 };
@@ -115,7 +116,10 @@ pub fn conclude(
         files::write(path, svg.as_bytes())?;
     }
     if let Some(path) = &asked.page {
-        let page = Units { figures: figures(driven, &found, limit)?, player: None };
+        let (mut page, _) =
+            asked.threads.install(|| units_of_mechanism(driven, production, &found.population, limit))??;
+        let svg = hypothesis(driven.title(), &found.hypothesis);
+        page.figures.push(Figure { caption: HYPOTHESIS.into(), svg: svg.map_err(anyhow::Error::from)? });
         let words = summary(driven, &found, limit);
         files::write(path, units_page(&mechanism.title, &words, &page, &warnings).as_bytes())?;
     }
@@ -139,32 +143,6 @@ pub fn conclude(
     print(&described(driven, &found, limit))?;
     warn(&warnings);
     Ok(())
-}
-
-/// The pictures of the page.
-fn figures(driven: &ByDrive, found: &Found, limit: Option<f64>) -> Result<Vec<Figure>, Failure> {
-    let (title, kind) = (driven.title(), driven.kind());
-    let pictures = [
-        (
-            "Every mark is a unit of the production, drawn with gaps of its own.",
-            forces(driven, &found.population.tally, limit),
-        ),
-        (
-            "The greatest force or torque that units need of the drive.",
-            histogram(title, kind, &found.population.tally, limit),
-        ),
-        (
-            "Which gaps and tolerances malfunction and the greatest force or torque vary with, the strongest first.",
-            ranking(title, kind, &found.population),
-        ),
-        (HYPOTHESIS, hypothesis(title, &found.hypothesis)),
-    ];
-    // Those that would show nothing are left out.
-    let shown = pictures.into_iter().filter(|(_, svg)| !matches!(svg, Err(PlotError::Empty)));
-    let figure = |(caption, svg): (&str, Result<String, PlotError>)| {
-        Ok(Figure { caption: caption.into(), svg: svg.map_err(anyhow::Error::from)? })
-    };
-    shown.map(figure).collect()
 }
 
 /// What the units did together.

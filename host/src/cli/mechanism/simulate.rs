@@ -4,17 +4,19 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
+use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units, warnings_of};
 use crate::{
-    cli::{Failure, print, print_json, text_table},
+    cli::{Failure, print, print_json, simulate::MOMENTS, text_table},
     dynamics::answer::on_the_way,
-    mechanism::{Action, Mechanism, MechanismRun, RunError, SCHEME, controller_run, finer, run},
+    mechanism::{Action, ByDrive, Mechanism, MechanismRun, RunError, SCHEME, controller_run, film, finer, run},
     population::{mechanism::mechanism_of, production::Production},
     scene::ControllerSpec,
     show::{
         export::rows_csv,
-        figure::columns_over_time,
+        figure::{columns_over_time, word},
         number::{fixed, level, or_dash, ten_digits},
+        player,
+        report::{Figure, Units, units_page},
     },
     system::files,
 };
@@ -104,6 +106,11 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
         let svg = columns_over_time(&one.samples, &columns, &mechanism.title, label).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
     }
+    let computed = || computed(&desk, difference) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
+    let words = || described(mechanism, label, one) + &computed();
+    if let Some(path) = wanted.page {
+        files::write(path, page(mechanism, unit, one, &words())?.as_bytes())?;
+    }
     if wanted.scene.json {
         let named = mechanism.drives.iter().zip(&one.outcomes);
         let drives = named.map(|(drive, outcome)| DriveReport {
@@ -132,8 +139,24 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
             samples: &one.samples.rows,
         });
     }
-    let computed = computed(&desk, difference) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
-    print(&format!("{}{computed}", described(mechanism, label, one)))
+    print(&words())
+}
+
+/// The page of `one` run of a unit, with the desk's for the player.
+fn page(mechanism: &Mechanism, unit: &OneUnit, one: &MechanismRun, words: &str) -> Result<String, Failure> {
+    let OneUnit { label, gaps, .. } = unit;
+    let driven = ByDrive::new(mechanism, 0).filter(|_| !mechanism.drives.is_empty());
+    let label = |run: &MechanismRun| match run.outcomes.first() {
+        Some(outcome) => format!("{label}: {}", word(outcome.verdict)),
+        None => label.clone(),
+    };
+    let desk = film(mechanism, gaps, MOMENTS)?;
+    let played = player::of_mechanism(mechanism, driven.as_ref(), gaps, label(&desk), &desk);
+    let player = player::figure(&[played], "The desk's run, on its joints:").map_err(anyhow::Error::from)?;
+    let svg = columns_over_time(&one.samples, &plotted(mechanism), &mechanism.title, &unit.label);
+    let svg = svg.map_err(anyhow::Error::from)?;
+    let figures = vec![Figure { caption: "Over time, as CSV files have it.".into(), svg }];
+    Ok(units_page(&mechanism.title, words, &Units { figures, player: Some(player) }, &warnings_of(mechanism)?))
 }
 
 /// What the controller of a mechanism does.

@@ -4,12 +4,17 @@ use rayon::prelude::*;
 
 use crate::{
     cli::{Failure, simulate::MOMENTS},
-    dynamics::driven::DriveKind,
+    dynamics::driven::{DriveKind, Driven},
+    mechanism::{ByDrive, film},
     population::{
-        Unit, picture,
+        Unit,
+        mechanism::{MechanismPopulation, mechanism_of},
+        picture,
         production::Production,
         shares,
         study::Population,
+        subject::Subject,
+        tally::Tally,
         telling::{filmed, one_of_each},
     },
     scene::Scene,
@@ -24,6 +29,9 @@ use crate::{
 /// Names of the pictures' files, of which those that would show nothing are not made.
 pub const FIGURES: [&str; 4] =
     ["population.svg", "population-forces.svg", "population-sides.svg", "population-drivers.svg"];
+
+/// The same of a mechanism.
+pub const MECHANISM_FIGURES: [&str; 3] = ["population.svg", "population-forces.svg", "population-drivers.svg"];
 
 /// Pictures and player of a `population`, with a motor's force `limit` (N), and the names of the pictures' files.
 pub fn units(
@@ -53,8 +61,75 @@ pub fn units(
             shares::ranking(&scene.title, DriveKind::Pushes, population),
         ),
     ];
+    let run = |unit: &Unit| {
+        let film = filmed(scene, production, unit.number, MOMENTS)?;
+        Ok(player::of_slide(scene, label(unit), &film))
+    };
+    let player = played(&population.tally, run, "on its pins")?;
+    let (figures, names) = shown(FIGURES, pictures)?;
+    Ok((Units { figures, player }, names))
+}
+
+/// The same of a mechanism.
+pub fn units_of_mechanism(
+    driven: &ByDrive,
+    production: &Production<Vec<f64>>,
+    population: &MechanismPopulation,
+    limit: Option<f64>,
+) -> Result<(Units, Vec<&'static str>), Failure> {
+    let (title, kind, all) = (driven.title(), driven.kind(), &population.tally);
+    let pictures = [
+        (
+            "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: its gaps differ from \
+             each other.",
+            picture::forces(driven, all, limit),
+        ),
+        ("The greatest force or torque that units need of the drive.", shares::histogram(title, kind, all, limit)),
+        (
+            "Which gaps and tolerances malfunction and the greatest force or torque vary with, the strongest first.",
+            shares::ranking(title, kind, population),
+        ),
+    ];
+    let run = |unit: &Unit<Vec<f64>>| {
+        let (drawn, i) = production.draw_one(unit.number);
+        let own = mechanism_of(driven.mechanism(), &drawn, i);
+        let own = ByDrive::new(&own, driven.index()).ok_or_else(|| Failure::Input("no such drive".into()))?;
+        let filmed = film(own.mechanism(), &drawn.gaps[i], MOMENTS)?;
+        Ok(player::of_mechanism(own.mechanism(), Some(&own), &drawn.gaps[i], label(unit), &filmed))
+    };
+    // What cannot be assembled does not move.
+    let mut moving = all.clone();
+    moving.first.iter_mut().for_each(|units| units.retain(|unit| driven.fits(&unit.gaps)));
+    let player = played(&moving, run, "on its joints")?;
+    let (figures, names) = shown(MECHANISM_FIGURES, pictures)?;
+    Ok((Units { figures, player }, names))
+}
+
+/// What tells a unit from others.
+fn label<G>(unit: &Unit<G>) -> String {
+    format!("unit {}: {}", unit.number, word(unit.outcome.verdict))
+}
+
+/// The player of a unit of each kind, `whereon` it moves; none if there is no unit.
+fn played<G: Sync + Send>(
+    tally: &Tally<G>,
+    run: impl Fn(&Unit<G>) -> Result<player::Run, Failure> + Sync + Send,
+    whereon: &str,
+) -> Result<Option<String>, Failure> {
+    let runs = one_of_each(tally).into_par_iter().map(run).collect::<Result<Vec<_>, _>>()?;
+    let words = format!(
+        "A typical unit of each kind (that with the median of the greatest force among those that jam, crawl or run), {whereon}:"
+    );
+    Ok((!runs.is_empty()).then(|| player::figure(&runs, &words)).transpose().map_err(anyhow::Error::from)?)
+}
+
+/// Those of the `pictures` that show something, and the names of their files.
+fn shown<const N: usize>(
+    files: [&'static str; N],
+    pictures: [(&str, Result<String, PlotError>); N],
+) -> Result<(Vec<Figure>, Vec<&'static str>), Failure> {
     let (mut figures, mut names) = (Vec::new(), Vec::new());
-    for (name, (caption, svg)) in FIGURES.into_iter().zip(pictures) {
+    for (name, (caption, svg)) in files.into_iter().zip(pictures) {
         match svg {
             Err(PlotError::Empty) => {}
             svg => {
@@ -63,13 +138,5 @@ pub fn units(
             }
         }
     }
-    let run = |unit: &&Unit| {
-        let Unit { number, outcome, .. } = unit;
-        let film = filmed(scene, production, *number, MOMENTS)?;
-        Ok::<_, Failure>(player::of_slide(scene, format!("unit {number}: {}", word(outcome.verdict)), &film))
-    };
-    let runs = one_of_each(all).par_iter().map(run).collect::<Result<Vec<_>, _>>()?;
-    let words = "A typical unit of each kind (that with the median of the greatest force among those that jam, crawl or run), on its pins:";
-    let player = (!runs.is_empty()).then(|| player::figure(&runs, words)).transpose().map_err(anyhow::Error::from)?;
-    Ok((Units { figures, player }, names))
+    Ok((figures, names))
 }

@@ -13,7 +13,9 @@ use super::{
 };
 use crate::{
     cli::{
-        Failure, mechanism, print, print_json, progress,
+        Failure, mechanism,
+        population::page::{MECHANISM_FIGURES, units_of_mechanism},
+        print, print_json, progress,
         sweep::{LevelReport, doubts, for_machines},
         table,
         tolerance::DEFAULT,
@@ -30,23 +32,21 @@ use crate::{
     },
     mechanism::ByDrive,
     population::{
-        mechanism::MechanismPopulation, picture::forces as forces_of_units, production::Production as DrawnProduction,
-        statistics::Statistics, study::Population, tally::Duty,
+        mechanism::MechanismPopulation, production::Production as DrawnProduction, statistics::Statistics,
+        study::Population, tally::Duty,
     },
     product::Product,
     show::{
         export::sweep_csv,
         figure::{forces, velocities, verdicts},
         number::{fixed, per_million},
-        plot::PlotError,
         report::{Clearances, Figure, Flash, Production, ReportInput, report},
     },
     tolerance::{distribution::normal, report::Report as Measures},
 };
 
 /// The pictures: of a force, and of a torque.
-const FIGURES: [&str; 6] =
-    ["verdict.svg", "velocity.svg", "force.svg", "torque.svg", "mechanism.svg", "population.svg"];
+const FIGURES: [&str; 5] = ["verdict.svg", "velocity.svg", "force.svg", "torque.svg", "mechanism.svg"];
 
 #[derive(Serialize)]
 struct Report {
@@ -70,7 +70,7 @@ struct Report {
 
 impl Arguments {
     pub(super) fn run_mechanism(&self, driven: &ByDrive, product: Option<&Product>) -> Result<(), Failure> {
-        self.written(driven, product, &FIGURES, |output, production| {
+        self.written(driven, product, &[FIGURES.as_slice(), &MECHANISM_FIGURES].concat(), |output, production| {
             self.fill_with_mechanism(output, driven, product, production)
         })
     }
@@ -88,31 +88,24 @@ impl Arguments {
         let drawn = DrawnProduction::of_mechanism(mechanism, product, 0.0, DEFAULT.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
         let bar = progress("simulating", force_table::levels(driven.levels()).count + units as usize);
-        let ((table, sweep), population) = self.threads.install(|| {
+        let ((table, sweep), found) = self.threads.install(|| {
             let made = force_table::make(driven, Demand::Full, || bar.inc(1))?;
-            let population = varies
-                .then(|| {
-                    let duty = Duty { limit: None, stroke: mechanism.run.stroke };
-                    Population::study(driven, &drawn, units, duty, |units| bar.inc(units))
-                })
-                .transpose()?;
-            Ok::<_, Failure>((made, population))
+            let duty = Duty { limit: None, stroke: mechanism.run.stroke };
+            let found = varies.then(|| {
+                let population = Population::study(driven, &drawn, units, duty, |units| bar.inc(units))?;
+                let shown = units_of_mechanism(driven, &drawn, &population, None)?;
+                Ok::<_, Failure>((population, shown))
+            });
+            Ok::<_, Failure>((made, found.transpose()?))
         })??;
+        let (population, shown) = found.unzip();
         bar.finish_and_clear();
         let mut warnings = mechanism::warnings_of(driven.mechanism())?;
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.clone()));
         warnings.extend(doubts(&sweep));
 
         let answer = said(driven, &table, &sweep, population.as_ref());
-        let mut figures = figures(driven, &sweep)?;
-        match population.as_ref().map(|population| forces_of_units(driven, &population.tally, None)) {
-            // No units, too few, or none that has a force.
-            None | Some(Err(PlotError::Empty)) => {}
-            Some(svg) => {
-                let caption = "Every mark is a unit of the production, drawn with gaps of its own.";
-                figures.push((FIGURES[5], captioned(caption, svg)?));
-            }
-        }
+        let figures = figures(driven, &sweep)?;
         let page = report(&ReportInput {
             title: driven.title(),
             sweep: &sweep,
@@ -124,7 +117,7 @@ impl Arguments {
                 worst_force_error: table.worst_error_in_use[0],
                 worst_velocity_error: table.worst_error_in_use[1],
             }),
-            units: None,
+            units: shown.as_ref().map(|(units, _)| units),
             production: production.as_ref(),
             notes: &warnings,
         });
@@ -134,6 +127,10 @@ impl Arguments {
             (SWEEP.into(), sweep_csv(&sweep)?),
         ];
         files.extend(figures.into_iter().map(|(name, figure)| (name.to_owned(), figure.svg.into_bytes())));
+        if let Some((units, names)) = shown {
+            let own = names.into_iter().zip(units.figures);
+            files.extend(own.map(|(name, figure)| (name.to_owned(), figure.svg.into_bytes())));
+        }
         files.extend(of_production(production.as_ref())?);
         warnings.extend(output.strangers(&files));
         let files = output.write(&files)?;

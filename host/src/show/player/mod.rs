@@ -3,12 +3,15 @@
 //! The head of `player.js` says what every field is and in which units; the script draws what it is given, the page needs
 //! nothing else.
 
+mod hull;
+mod mechanism;
 mod slide;
 
 use serde::{Serialize, Serializer};
 
 use super::markup::escape;
 
+pub use mechanism::run as of_mechanism;
 pub use slide::run as of_slide;
 
 /// The script, once a page.
@@ -100,12 +103,18 @@ pub struct Joint {
     /// The pin (mm) in the drawn pose.
     pub at: [f64; 3],
     /// The body that carries the pin, and the one that carries the gap.
-    pub between: [&'static str; 2],
+    pub between: [String; 2],
     /// The axes of the plane in which the gap lies.
     pub axes: [&'static str; 2],
     /// Limits (mm) of the pin's place: left, right, low, high; open where there is none.
     #[serde(rename = "box")]
     pub limits: [Option<f64>; 4],
+    /// Whether the gap is the circle in these limits.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub round: bool,
+    /// Angle (rad) from the axes in the drawn pose to those of limits and place.
+    #[serde(skip_serializing_if = "is_nothing")]
+    pub turn: f64,
     /// The pin's place (mm) along the two axes.
     pub pin: [Series; 2],
     /// Its contacts.
@@ -115,7 +124,7 @@ pub struct Joint {
 /// A side of a joint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contact {
-    /// left, right, low or high.
+    /// left, right, low or high; around in a circle.
     pub side: &'static str,
     /// What the side is called.
     pub name: &'static str,
@@ -132,6 +141,18 @@ pub struct Plot {
     pub unit: &'static str,
     /// Values.
     pub values: Series,
+}
+
+/// Whether an angle need not be written.
+fn is_nothing(angle: &f64) -> bool {
+    *angle == 0.0
+}
+
+/// With so many decimals: a page has no use for more.
+fn rounded(value: f64, digits: i32) -> f64 {
+    let scale = libm::pow(10.0, f64::from(digits));
+    // Without a negative zero.
+    libm::round(value * scale) / scale + 0.0
 }
 
 /// A moment to mark.

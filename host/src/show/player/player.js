@@ -22,6 +22,8 @@
 //             axes     the two axes of the plane in which the gap lies, such as ["x", "y"]
 //             box      [left, right, low, high]: limits of the pin's place in the gap, along the first axis and the second;
 //                      null: open. A limit beyond 0 is a preload
+//             round    true where the gap is the circle in this box; its one contact has the side "around"
+//             turn     angle from the axes in the drawn pose to those of box and pin; absent: 0
 //             pin      two series: the pin's place in the gap along the axes, 0 in the drawn pose
 //             contacts list of { side, name, force }: side "left", "right", "low" or "high", name what the side is called, force
 //                      a series
@@ -110,6 +112,7 @@
     const unit = ({ index, sign }) => [0, 1, 2].map((i) => (i === index ? sign : 0));
     return cross(unit(axes[0]), unit(axes[1])).reduce((sum, value, i) => sum + value * turn[i], 0);
   };
+  const sways = ({ sway }) => Object.keys(sway || {}).length > 0;
   const bodyOf = (run, name) => run.bodies.find((body) => body.name === name);
 
   // What all runs of a player have in common: enlargement, pictures' limits, colours --------------------------------------
@@ -128,7 +131,7 @@
       if (!between.every(known)) return `${name}: unknown body`;
       if (pin.length !== 2 || pin.some(wrong)) return `${name}: pin needs two lists of ${frames} numbers`;
       for (const { side, force } of contacts)
-        if (wrong(force) || !SIDES.includes(side)) return `${name}: contact ${side || ""}`;
+        if (wrong(force) || !(SIDES.includes(side) || side === "around")) return `${name}: contact ${side || ""}`;
     }
     for (const { name, values } of run.plots) if (wrong(values)) return `${name}: needs ${frames} numbers`;
     return undefined;
@@ -189,6 +192,10 @@
   // The pin's place as it is drawn: a contact gives way under its force, but here its surfaces stay where they are.
   const rigid = (joint, frame) => {
     const pin = joint.pin.map((series) => at(series, frame));
+    if (joint.round) {
+      const [distance, radius] = [Math.hypot(...pin), joint.box[1]];
+      return distance > radius ? pin.map((value) => value * radius / distance) : pin;
+    }
     return pin.map((value, axis) => {
       const [low, high] = limitsOf(joint, axis);
       return Math.min(high === null ? Infinity : high, Math.max(low === null ? -Infinity : low, value));
@@ -224,9 +231,16 @@
       low === null ? -reach : low * scale - radius, high === null ? reach : high * scale + radius,
     ];
     const [across, up] = along.map(ends);
-    svg(gap, "rect", { class: "room", x: px(Math.min(...across)), y: px(-Math.max(...up)),
+    // A hole that is seen along its pin.
+    const hole = joint.round && along.every(({ limits }) => limits[0] !== null);
+    if (hole) {
+      const r = px(joint.box[1] * scale + radius);
+      svg(gap, "circle", { class: "room", r });
+      const line = svg(gap, "circle", { class: "side hole", r });
+      parts.push({ contact: joint.contacts[0], line, text: label(0, -joint.box[1] * scale - radius - 8, "middle") });
+    } else if (along.some(({ limits }) => !limits.includes(null))) svg(gap, "rect", { class: "room", x: px(Math.min(...across)), y: px(-Math.max(...up)),
       width: px(Math.abs(across[1] - across[0])), height: px(Math.abs(up[1] - up[0])) });
-    along.forEach(({ limits, sides }, axis) => limits.forEach((limit, i) => {
+    if (!hole) along.forEach(({ limits, sides }, axis) => limits.forEach((limit, i) => {
       if (limit === null) return;
       const contact = joint.contacts.find(({ side }) => side === sides[i]);
       const [x1, x2, y1, y2] = axis === 0 ? [across[i], across[i], ...up] : [...across, up[i], up[i]];
@@ -246,7 +260,7 @@
       for (const { contact, line, text } of parts) {
         const force = contact ? at(contact.force, frame) : 0;
         const colour = level(force);
-        set(line, { class: colour ? `side touches force-${colour}` : "side" });
+        set(line, { class: (colour ? `side touches force-${colour}` : "side") + (hole ? " hole" : "") });
         if (text) text.textContent = colour ? `${shown(force, 2)} N` : "";
       }
     };
@@ -271,14 +285,14 @@
     const box = html(parent, "div", { class: "view" });
     const head = html(box, "p", { class: "head" });
     html(head, "b", {}, name);
-    html(head, "span", {}, `travel × 1, play × ${shown(common.play)}`);
+    html(head, "span", {}, `travel × 1, gaps × ${shown(common.play)}`);
     const picture = svg(box, "svg", { viewBox: `0 0 ${px(width)} ${px(height)}`, role: "img", "aria-label": `${run.title}, ${name}` });
     const outline = (polygon, move) => `M${polygon.map((point) => place(move(point)).map(px).join(" ")).join("L")}Z`;
     const depth = (point) => seenTurn(axes, point);
     const mean = (points) => points.reduce((sum, point) => sum + depth(point), 0) / points.length;
     const bodies = run.bodies.map((body, i) => {
       const colour = `body kind-${BODY_COLOURS[i % BODY_COLOURS.length]}`;
-      const ghost = body.sway ? svg(picture, "path", { class: "ghost" }) : null;
+      const ghost = sways(body) ? svg(picture, "path", { class: "ghost" }) : null;
       // Faces that are farther from the reader are drawn first, and fainter.
       const depths = body.outline.map(mean);
       const [far, near] = [extreme(depths, Math.min), extreme(depths, Math.max)];
@@ -290,11 +304,12 @@
     const nearest = extreme(run.joints.map((joint) => depth(joint.at)), Math.max);
     // What travels to a stop has a gap too large to be enlarged here.
     const small = ({ box: limits }) => limits.every((limit) => Math.abs(limit) * common.play < 0.3 * Math.max(wide, tall));
-    const gaps = run.joints.filter(small).sort((a, b) => depth(a.at) - depth(b.at)).map((joint) => {
+    const whole = ({ round, axes: own }) => !round || axes.every(({ letter }) => own.includes(letter));
+    const gaps = run.joints.filter((joint) => small(joint) && whole(joint)).sort((a, b) => depth(a.at) - depth(b.at)).map((joint) => {
       const group = svg(picture, "g", depth(joint.at) < nearest - 1e-6 ? { class: "far" } : {});
       return { joint, update: gapPicture(group, joint, axes, { scale: scale * common.play, radius: 3.5, reach: 22, level: common.level }) };
     });
-    const centres = bodies.filter(({ body }) => body.sway).map(({ body }) => {
+    const centres = bodies.map(({ body }) => {
       const group = svg(picture, "g", { class: "centre" });
       svg(group, "title", {}, `centre of mass of ${body.name}`);
       svg(group, "circle", { r: 6 });
@@ -317,7 +332,7 @@
       for (const { joint, update } of gaps) {
         const [pinBody, gapBody] = joint.between.map((body) => pose(bodyOf(run, body), frame, common.play));
         // Walls turn with their body.
-        update(frame, place(pinBody.place(joint.at)), seenTurn(axes, gapBody.turn));
+        update(frame, place(pinBody.place(joint.at)), seenTurn(axes, gapBody.turn) + (joint.turn || 0));
       }
       for (const { body, group } of centres) {
         set(group, { transform: `translate(${place(pose(body, frame, common.play).place(body.at)).map(px).join(" ")})` });
@@ -362,7 +377,7 @@
       set(trail, { points: path.map(([right, up]) => `${px(origin[0] + scale * right)},${px(origin[1] - scale * up)}`).join(" ") });
       const bar = round125(48 / scale);
       svg(picture, "path", { class: "bar", d: `M8 ${height - 12}v4h${px(bar * scale)}v-4` });
-      svg(picture, "text", { class: "note", x: px(14 + bar * scale), y: height - 7 }, `${shown(bar)} mm`);
+      svg(picture, "text", { class: "note", x: 8, y: height - 14 }, `${shown(bar)} mm`);
       return (frame) => update(frame, origin, 0, true);
     });
     return (frame) => pictures.forEach((draw) => draw(frame));
@@ -496,10 +511,12 @@
     const rate = html(head, "select", { id: `player-${number}-rate`, class: "rate", "aria-label": "speed" });
     const clock = html(head, "output", { "aria-live": "off" });
     const body = html(figure, "div", {});
-    const swaying = runs.some(({ bodies }) => bodies.some(({ sway }) => sway));
+    const swaying = runs.some(({ bodies }) => bodies.some(sways));
     const caption = html(figure, "figcaption", {},
-      `Travel is drawn to scale; gaps and the motion within them are enlarged × ${shown(common.play)}. `
-      + (swaying ? "A dashed outline is a body as it would be without play, a round mark its centre of mass. " : "")
+      (swaying ? `Travel is drawn to scale; gaps and the motion within them are enlarged × ${shown(common.play)}. `
+        + "A dashed outline is a body as it would be without play, a round mark its centre of mass. "
+        : `Bodies are drawn to scale, as the shapes that hold their joints together; gaps and the pins in them are enlarged × ${shown(common.play)}. `
+        + "A round mark is a centre of mass. ")
       + "Coloured sides touch their pin; how far they give way is not drawn.");
     html(caption, "span", { class: "keys" }, " Drag over the curves, or use the arrow keys on the slider, to see a moment.");
 
@@ -562,7 +579,7 @@
         .filter((speed) => speed === 1 || (length / speed >= 2 && length / speed <= 60));
       const usual = speeds.reduce((best, speed) => (Math.abs(Math.log(length / speed / 8)) < Math.abs(Math.log(length / best / 8)) ? speed : best));
       rate.replaceChildren();
-      speeds.forEach((speed) => html(rate, "option", { value: speed }, speed === 1 ? "real time" : `× ${speed}, ${shown(length / speed, 2)} s`));
+      speeds.forEach((speed) => html(rate, "option", { value: speed }, speed === 1 ? "real time" : `× ${speed}: takes ${shown(length / speed, 2)} s`));
       rate.value = usual;
       controls.button.addEventListener("click", () => (playing ? pause() : play()));
       controls.slider.addEventListener("input", () => seek(Number(controls.slider.value)));
@@ -576,6 +593,8 @@
       });
       pause();
       show(restFrame(run));
+      // Why it opens there.
+      clock.textContent += `: greatest ${run.plots.length ? run.plots[0].name : "contact force"}`;
     };
     if (select) select.addEventListener("change", () => choose(Number(select.value)));
     let before;

@@ -2,7 +2,7 @@
 
 use slipfit_core::{law::Elastic, slide::ABSENT};
 
-use super::{Body, Contact, Event, Joint, Motion, Plot, Run, Series, View};
+use super::{Body, Contact, Event, Joint, Motion, Plot, Run, Series, View, rounded};
 use crate::{
     dynamics::{
         film::{Film, Frame},
@@ -102,8 +102,10 @@ fn joint(scene: &Scene, frames: &[Frame], pin: usize) -> Joint {
     Joint {
         name: scene.pins[pin].name.clone(),
         at: scene.pins[pin].position.map(|x| x * MM),
-        between: [FRAME, SLIDE],
+        between: [FRAME, SLIDE].map(str::to_owned),
         axes: ["x", "y"],
+        round: false,
+        turn: 0.0,
         limits: [limit(0, -1.0), limit(1, 1.0), limit(3, -1.0), limit(2, 1.0)],
         pin: [moved(0, 1, 1.0), moved(3, 2, 1.0)],
         contacts: (0..4).filter(|surface| drawn[*surface] != ABSENT).map(contact).collect(),
@@ -112,13 +114,6 @@ fn joint(scene: &Scene, frames: &[Frame], pin: usize) -> Joint {
 
 fn series(frames: &[Frame], digits: i32, of: impl Fn(&Frame) -> f64) -> Series {
     Series(frames.iter().map(|frame| rounded(of(frame), digits)).collect())
-}
-
-/// With so many decimals: a page has no use for more.
-fn rounded(value: f64, digits: i32) -> f64 {
-    let scale = libm::pow(10.0, f64::from(digits));
-    // Without a negative zero.
-    libm::round(value * scale) / scale + 0.0
 }
 
 #[cfg(test)]
