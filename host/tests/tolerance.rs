@@ -363,7 +363,7 @@ fn the_drawing_is_analysed_down_to_table_2_s_derived_columns() {
     }
     assert!(sum["correlation"].as_f64().unwrap() < -0.5 && sum["model"]["dpm"].as_f64().unwrap() < 1e-5, "{sum}");
     let text = done(folder, &["tolerance", "--samples", "1000", "--n", "0"]);
-    assert!(text.contains("n* = 3.4302 closes the first pair: left front, across"), "{text}");
+    assert!(text.contains("n* = 3.4302 closes left front across first"), "{text}");
     // A product without a slide has no such columns.
     let clutch = json(folder, &["tolerance", "clutch", "--json", "--samples", "1000"]);
     assert!(clutch["derived_m"].is_null() && clutch["measures"][0]["quadrature"]["sd"].is_number());

@@ -86,7 +86,11 @@ pub(super) struct Arguments {
     /// There is an estimate for each kind of malfunction (crawls, jams, over the force limit) on each side (tight units, loose units).
     #[arg(long)]
     pub rare: bool,
-    /// Writes a row for every unit, with its gaps and figures, as CSV.
+    /// Writes a row for every unit as CSV.
+    ///
+    /// Its columns: number of the unit, tightness (σ, mean over its gaps), breakaway time, peak force, settled force, final velocity, end
+    /// of the run, travel, verdict, whether the desk decided it, then every gap (m). Units stand in the names; what a unit does not have
+    /// is empty.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
     /// Draws the peak force over the tightness of the units as SVG, and marks those that malfunction.
@@ -120,8 +124,8 @@ pub(super) const LEVELS: [f64; 13] = [-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1
 /// Random combinations at each distance.
 const DIRECTIONS: u64 = 512;
 /// What the picture of the hypothesis shows.
-pub(super) const HYPOTHESIS: &str = "Do the tightest and the loosest units malfunction most often? Triangles and squares have all \
-                                     gaps tighter, or looser, by the same n; the line is the share of random combinations as far \
+pub(super) const HYPOTHESIS: &str = "Do the tightest and the loosest units malfunction most often? A triangle or square is one unit \
+                                     with all gaps tighter, or looser, by the same n: at 100 % it malfunctions. The line is the share of random units as far \
                                      from the mean unit.";
 /// Where the unit of a level lies in the population.
 #[derive(Serialize)]

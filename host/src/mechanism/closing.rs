@@ -145,6 +145,15 @@ impl Table2 {
         })
     }
 
+    /// The level n* at which the first pair closes, and every pair that closes there, in words.
+    pub fn first_to_close(&self) -> Option<(f64, String)> {
+        let n = self.tightest()?.n;
+        let together = |closure: &Closure| (closure.n - n).abs() <= 1e-9 * n.abs().max(1.0);
+        let pairs: Vec<_> =
+            self.closures().filter(together).map(|pair| format!("{} {}", pair.pin, pair.direction)).collect();
+        Some((n, pairs.join(" and ")))
+    }
+
     /// The pair that closes first: its n* is the product's.
     pub fn tightest(&self) -> Option<Closure<'_>> {
         self.closures().min_by(|a, b| a.n.total_cmp(&b.n))
@@ -202,8 +211,8 @@ impl fmt::Display for Table2 {
             writeln!(f, "  front - back of right - left: {}", mm(toes.front_minus_back))?;
             writeln!(f, "  right - left of front - back: {}", mm(toes.right_minus_left))?;
         }
-        if let Some(Closure { pin, direction, n }) = self.tightest() {
-            writeln!(f, "\nn* = {} closes the first pair: {pin}, {direction}", fixed(n, 4))?;
+        if let Some((n, pairs)) = self.first_to_close() {
+            writeln!(f, "\nn* = {} closes {pairs} first", fixed(n, 4))?;
         }
         Ok(())
     }

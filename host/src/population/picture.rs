@@ -113,14 +113,14 @@ pub fn hypothesis(title: &str, tested: &Hypothesis) -> Result<String, PlotError>
     };
     line_chart(&Chart {
         title: title.into(),
-        subtitle: "random combinations of gaps against the tightest and the loosest, as far from the mean unit".into(),
+        subtitle: "random units against the tightest and the loosest one as far from the mean unit".into(),
         x_label: "distance from the mean unit (root mean square of the gaps, σ)".into(),
         panels: vec![Panel {
             y_label: "share that malfunctions (%)".into(),
             series: with_interval(&shares, "random"),
             markers: vec![
-                side("tightest", Shape::Triangle, 0.03, |at| at.tight_malfunctions),
-                side("loosest", Shape::Square, -0.03, |at| at.loose_malfunctions),
+                side("tightest unit", Shape::Triangle, 0.03, |at| at.tight_malfunctions),
+                side("loosest unit", Shape::Square, -0.03, |at| at.loose_malfunctions),
             ],
             ..Panel::default()
         }],

@@ -8,14 +8,21 @@ pub enum Scale {
     Linear,
     /// By powers of ten, for positive numbers.
     Log,
+    /// The abscissa by powers of ten, the ordinate in proportion.
+    LogAcross,
 }
 
 impl Scale {
-    /// Where `value` stands; not finite for what the scale cannot show.
+    /// That of the ordinate.
+    pub(crate) fn upwards(self) -> Self {
+        if self == Self::LogAcross { Self::Linear } else { self }
+    }
+
+    /// Where `value` stands on the abscissa; not finite for what the scale cannot show.
     pub(crate) fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
-            Self::Log => libm::log10(value),
+            Self::Log | Self::LogAcross => libm::log10(value),
         }
     }
 }

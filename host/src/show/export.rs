@@ -51,7 +51,7 @@ impl<W: Write> UnitRows<W> {
     pub fn new(writer: W, kind: DriveKind, gaps: &[String]) -> io::Result<Self> {
         let figures = [
             "unit",
-            "n",
+            "tightness",
             "breakaway_s",
             kind.choose("peak_force_N", "peak_torque_N_m"),
             kind.choose("settled_force_N", "settled_torque_N_m"),

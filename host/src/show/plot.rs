@@ -76,7 +76,8 @@ pub fn small_chart(chart: &Chart) -> Result<String, PlotError> {
 
 fn drawn(chart: &Chart, [width, height]: [f64; 2]) -> Result<String, PlotError> {
     let place = |value: f64| chart.scale.place(value);
-    let finite = |panel: &Panel| panel.points().all(|(x, y)| place(x).is_finite() && place(y).is_finite());
+    let up = |value: f64| chart.scale.upwards().place(value);
+    let finite = |panel: &Panel| panel.points().all(|(x, y)| place(x).is_finite() && up(y).is_finite());
     if let Some(panel) = chart.panels.iter().find(|panel| !finite(panel)) {
         return Err(PlotError::NotFinite(panel.y_label.clone()));
     }
@@ -88,7 +89,7 @@ fn drawn(chart: &Chart, [width, height]: [f64; 2]) -> Result<String, PlotError> 
     let heading = HEADING + LINE * below.len().saturating_sub(1) as f64;
     let panels = chart.panels.len() as f64;
     let height = match chart.scale {
-        Scale::Linear => height + heading - HEADING,
+        Scale::Linear | Scale::LogAcross => height + heading - HEADING,
         Scale::Log => heading + BELOW + LOG_PANEL * panels,
     };
     let pitch = (height - heading - BELOW) / panels;
@@ -228,7 +229,7 @@ impl Plot<'_> {
                 let pixel = (self.y.high - self.y.low) / (self.rows[1] - self.rows[0]);
                 thinned(&series.points, INVISIBLE * pixel * coarse as f64, POINTS / coarse)
             }
-            Scale::Log => series.points.clone(),
+            Scale::Log | Scale::LogAcross => series.points.clone(),
         };
         svg.line(&self.at(&points), stroke);
     }

@@ -26,14 +26,18 @@ pub fn csv(report: &Report) -> anyhow::Result<Vec<u8>> {
 pub fn svg(report: &Report) -> Result<String, PlotError> {
     let mut points: Vec<_> = report.curve.iter().map(|point| (point.ppm, point.cost)).collect();
     points.reverse();
+    let ends = [points.first(), points.last()].into_iter().flatten();
+    let chosen = ends.map(|(ppm, _)| (*ppm, report.cost)).collect();
+    let line = |look, points| Series { label: String::new(), look, points };
     line_chart(&Chart {
         title: report.title.clone(),
         subtitle: format!("cost of the cheapest tolerances against defects; chosen: {}", three_digits(report.cost)),
         x_label: "units with a measure outside of its limits (ppm)".into(),
-        scale: Scale::Log,
+        scale: Scale::LogAcross,
         panels: vec![Panel {
             y_label: "cost".into(),
-            series: vec![Series { label: String::new(), look: Look::Kind(0), points }],
+            note: "grey: what is chosen costs".into(),
+            series: vec![line(Look::Guide, chosen), line(Look::Kind(0), points)],
             ..Panel::default()
         }],
     })

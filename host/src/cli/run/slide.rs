@@ -201,10 +201,9 @@ impl Arguments {
         let units = simulated.of_units();
         text += &units.describe();
         let derived = derived(scene, 0.0);
-        let closes = derived.tightest();
-        if let Some(tightest) = closes {
-            let (pin, direction) = (tightest.pin, tightest.direction);
-            let _ = writeln!(text, "Closes first    {pin} {direction}, at n* = {}", fixed(tightest.n, 3));
+        let closes = derived.first_to_close();
+        if let Some((n, pairs)) = &closes {
+            let _ = writeln!(text, "Closes first    {pairs}, at n* = {}", fixed(*n, 3));
         }
         let sums = production.map(|production| &production.report.sums[..]).unwrap_or_default();
         let likeliest = sums.iter().max_by(|one, other| one.model.dpm.total_cmp(&other.model.dpm));
@@ -212,12 +211,12 @@ impl Arguments {
             let [drawn, together] = [sum.model.dpm, sum.eq9_ppm].map(|ppm| per_million(ppm) + " ppm");
             let _ = writeln!(
                 text,
-                "How probable    {drawn} by the drawing ({}); {together} if its gaps move together (eq. 9)",
+                "Gap closed in   {drawn} of the units by the drawing ({}); {together} if its gaps moved together (eq. 9)",
                 sum.name
             );
-        } else if let Some(tightest) = closes {
-            let together = per_million(1e6 * tail(tightest.n));
-            let _ = writeln!(text, "How probable    {together} ppm, if all gaps move together (eq. 9)");
+        } else if let Some((n, _)) = closes {
+            let together = per_million(1e6 * tail(n));
+            let _ = writeln!(text, "Gap closed in   {together} ppm of the units, if all gaps moved together (eq. 9)");
         }
         let _ = writeln!(text, "What to change  {}", advice(scene, simulated.judged(), units));
         let _ = writeln!(text, "Flash table     {}", table_line(scene, &simulated.table));

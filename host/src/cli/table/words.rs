@@ -16,12 +16,12 @@ use crate::{
     show::number::{fixed, level, ten_digits},
 };
 
-/// Share of the drive's greatest force from which a table's error is worth a warning.
+/// Share of what units that run need from which a table's error is worth a warning.
 const COARSE: f64 = 0.05;
 
-/// A warning where the table errs by much of what the drive can push.
+/// A warning where the table errs by much of what units that run need.
 pub fn coarse(driven: &dyn Driven, table: &ForceTable) -> Option<String> {
-    let ([error, _], greatest) = (table.worst_error_in_use, driven.greatest_force());
+    let ([error, _], greatest) = (table.worst_error_in_use, table.running_force);
     let kind = driven.kind();
     let [error_words, share] = [fixed(error, 3), fixed(error / greatest * 100.0, 0)];
     let advice = if table.worst_at_levels > 0.5 * error {
@@ -42,7 +42,7 @@ pub fn coarse(driven: &dyn Driven, table: &ForceTable) -> Option<String> {
     };
     (error > COARSE * greatest).then(|| {
         format!(
-            "the table errs by up to {error_words} {} where it is used, {share} % of the drive's greatest {}: {advice}",
+            "the table errs by up to {error_words} {} where it is used, {share} % of the greatest {} of units that run: {advice}",
             kind.effort_unit(),
             kind.effort()
         )
@@ -72,9 +72,9 @@ pub fn describe(kind: DriveKind, table: &ForceTable) -> String {
         ]
     } else {
         [
-            " where every unit comes to: ",
-            "Its root mean square:                               ",
-            ", the rest included:         ",
+            " up to where all units come: ",
+            "Its root mean square:                                ",
+            ", the rest included:          ",
         ]
     };
     let mixed = match table.mixed() {

@@ -12,7 +12,7 @@ use indicatif::ProgressBar;
 use serde::Serialize;
 
 use self::gaps::Given;
-use super::{DRAWING, Failure, SceneArguments, ThreadArguments, print, print_json, progress};
+use super::{DRAWING, Failure, SceneArguments, ThreadArguments, print, print_json, progress, warn};
 use crate::{
     scene::Scene,
     show::number::ten_digits,
@@ -111,8 +111,9 @@ impl Arguments {
         let file = self.scene.load_file(&[])?;
         match (&file.product, &file.slide) {
             (Some(product), _) => {
-                product.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
-                self.study(&file.title, &product.model, file.slide.as_ref())
+                self.study(&file.title, &product.model, file.slide.as_ref())?;
+                warn(&product.warnings);
+                Ok(())
             }
             (None, Some(scene)) => self.given(scene),
             (None, None) => Err(Failure::Input(format!(

@@ -201,7 +201,8 @@ impl<const N: usize> Samples<N> {
 
         let (mut worst_error, mut worst_error_in_use) = ([0.0f64; 2], [0.0f64; 2]);
         let (mut squares, mut count) = ([0.0f64; 2], 0u32);
-        let mut worst_at_levels = 0.0f64;
+        let (mut worst_at_levels, mut running, mut greatest) = (0.0f64, 0.0f64, 0.0f64);
+        let speeds = self.axes.get(2).map_or(1, |axis| axis.at.len());
         for (i, sample) in self.values.iter().enumerate() {
             let Some(in_use) = self.in_use(i, &grid) else { continue };
             let place = self.place(i);
@@ -209,6 +210,13 @@ impl<const N: usize> Samples<N> {
             let [force, velocity] = sample.values;
             let error = [f64::from(found.force) - force, f64::from(found.velocity) - velocity].map(f64::abs);
             count += u32::from(in_use);
+            if in_use {
+                greatest = greatest.max(force.abs());
+                let motion = place[0] * speeds + place.get(2).copied().unwrap_or(0);
+                if self.verdicts.get(motion) == Some(&MotionVerdict::Runs) {
+                    running = running.max(force.abs());
+                }
+            }
             if in_use && place[0].is_multiple_of(grid.strides[0]) {
                 worst_at_levels = worst_at_levels.max(error[0]);
             }
@@ -226,8 +234,18 @@ impl<const N: usize> Samples<N> {
             channel.rms_error = rms_error[k] as f32;
         }
         let bytes = flash::encode(&spec)?;
-        let encoding = grid.encoding;
-        Ok(ForceTable { bytes, axes, encoding, verdicts, worst_error, worst_error_in_use, rms_error, worst_at_levels })
+        let running_force = if running > 0.0 { running } else { greatest };
+        Ok(ForceTable {
+            bytes,
+            axes,
+            encoding: grid.encoding,
+            verdicts,
+            worst_error,
+            worst_error_in_use,
+            rms_error,
+            worst_at_levels,
+            running_force,
+        })
     }
 
     /// The verdicts on the motions that are nodes of `grid`.

@@ -41,6 +41,8 @@ pub struct ForceTable {
     pub rms_error: [f64; 2],
     /// Worst error of the force (N) at the levels themselves, where the table is used: what no finer levels help against.
     pub worst_at_levels: f64,
+    /// The greatest force (N) of motions that run, where the table is used; of all, if none runs.
+    pub running_force: f64,
 }
 
 impl ForceTable {

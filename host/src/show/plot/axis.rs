@@ -21,7 +21,7 @@ impl Axis {
     pub fn abscissa(chart: &Chart, most_ticks: f64) -> Result<Self, PlotError> {
         let points = || chart.panels.iter().flat_map(Panel::points);
         let (low, high) = extent(points().map(|(x, _)| chart.scale.place(x))).ok_or(PlotError::Empty)?;
-        if chart.scale == Scale::Log {
+        if chart.scale != Scale::Linear {
             return Ok(Self::decades(low, high));
         }
         let marked = chart.panels.iter().any(|panel| panel.markers.iter().any(|markers| !markers.points.is_empty()));
@@ -38,7 +38,8 @@ impl Axis {
     /// Around all values, on a linear scale around zero and with a little room, too.
     pub fn ordinate(chart: &Chart, panel: &Panel) -> Result<Self, PlotError> {
         let error = || PlotError::NotFinite(panel.y_label.clone());
-        let values = panel.points().map(|(_, y)| chart.scale.place(y));
+        let scale = chart.scale.upwards();
+        let values = panel.points().map(|(_, y)| scale.place(y));
         if chart.scale == Scale::Log {
             let (low, high) = extent(values).unwrap_or((0.0, 0.0));
             return Ok(Self::decades(low, high));
@@ -47,7 +48,7 @@ impl Axis {
         let high = if high > low { high } else { 1.0 };
         let ticks = Ticks::over(high - low, if chart.panels.len() > 1 { 4.0 } else { 8.0 }).ok_or_else(error)?;
         let room = 0.04 * (high - low);
-        Ok(Self { scale: chart.scale, low: if low < 0.0 { low - room } else { low }, high: high + room, ticks })
+        Ok(Self { scale, low: if low < 0.0 { low - room } else { low }, high: high + room, ticks })
     }
 
     /// Whole powers of ten around the exponents `low` to `high`, at least one, each with a tick.
@@ -67,13 +68,13 @@ impl Axis {
         let places = self.ticks.within(self.low, self.high);
         match self.scale {
             Scale::Linear => places,
-            Scale::Log => places.into_iter().map(|exponent| libm::pow(10.0, exponent)).collect(),
+            Scale::Log | Scale::LogAcross => places.into_iter().map(|exponent| libm::pow(10.0, exponent)).collect(),
         }
     }
 
     /// A tick's value as it is written.
     pub fn label(&self, value: f64) -> String {
-        if self.scale == Scale::Log {
+        if self.scale != Scale::Linear {
             let exponent = libm::log10(value).round();
             let plain = (-4.0..6.0).contains(&exponent);
             return if plain { fixed(value, (-exponent).max(0.0) as usize) } else { typeset(&format!("{value:.0e}")) };

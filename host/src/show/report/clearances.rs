@@ -27,10 +27,8 @@ pub fn section(clearances: &Clearances, computed: bool) -> String {
 pub fn first_to_close(clearances: &Clearances) -> Option<(&'static str, String)> {
     match clearances {
         Clearances::Pins { scene, n } => {
-            let table = derived(scene, *n);
-            let tightest = table.tightest()?;
-            let (n, pin) = (real(tightest.n, 4), escape(tightest.pin));
-            Some(("First pair to close", format!("{pin}, {}, at n* = {n}", tightest.direction)))
+            let (n, pairs) = derived(scene, *n).first_to_close()?;
+            Some(("First pair to close", format!("{}, at n* = {}", escape(&pairs), real(n, 4))))
         }
         Clearances::Joints(mechanism) => {
             let (gap, n) = mechanism.first_to_close()?;
@@ -41,7 +39,7 @@ pub fn first_to_close(clearances: &Clearances) -> Option<(&'static str, String)>
 
 /// The gaps of a mechanism's joints.
 fn of_joints(mechanism: &Mechanism) -> String {
-    let head = "<tr><th scope=\"col\">gap</th><th scope=\"col\">mean</th><th scope=\"col\">sd</th>\
+    let head = "<tr><th scope=\"col\">gap</th><th scope=\"col\">mean</th><th scope=\"col\">σ</th>\
         <th scope=\"col\">n*</th></tr>\n";
     let row = |gap: &Gap| {
         let GapStatistics { mean, deviation } = gap.statistics;
@@ -57,7 +55,7 @@ fn given(scene: &Scene, computed: bool) -> String {
     let mut head = "<tr><th scope=\"col\" rowspan=\"2\">pin</th>".to_owned();
     head.extend(SURFACES.map(|surface| format!("<th scope=\"colgroup\" colspan=\"2\">{surface}</th>")));
     head.push_str("</tr>\n<tr class=\"sub\">");
-    head.push_str(&"<th scope=\"col\">mean</th><th scope=\"col\">sd</th>".repeat(SURFACES.len()));
+    head.push_str(&"<th scope=\"col\">mean</th><th scope=\"col\">σ</th>".repeat(SURFACES.len()));
     head.push_str("</tr>\n");
     let cells = |gap: &Option<GapStatistics<f64>>| [gap.map(|gap| gap.mean), gap.map(|gap| gap.deviation)].map(mm);
     let rows: String = scene
@@ -87,9 +85,8 @@ fn derived_columns(derived: &Table2) -> String {
     };
     let row =
         |pin: &Pin| tr(&escape(&pin.name), &[&pin.gaps.map(mm)[..], &pair(pin.across), &pair(pin.up_down)].concat());
-    let first = derived.tightest().map_or_else(String::new, |tightest| {
-        let (n, pin) = (real(tightest.n, 4), escape(tightest.pin));
-        format!(" The product's is the least, {n}: {pin}, {}.", tightest.direction)
+    let first = derived.first_to_close().map_or_else(String::new, |(n, pairs)| {
+        format!(" The product's is the least, {}: {}.", real(n, 4), escape(&pairs))
     });
     let caption = format!(
         "At n = {n} (mm): clearance is the sum of a pair's gaps, mean half their difference; n* is the level that closes \

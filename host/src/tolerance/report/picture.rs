@@ -132,7 +132,7 @@ fn contributors_svgs(report: &Report) -> Vec<String> {
 
 /// The correlation matrix of the measures as coloured cells with numbers.
 fn correlation_svg(report: &Report) -> String {
-    const CELL: f64 = 27.0;
+    const CELL: f64 = 29.0;
     // What numbers of rows and columns take.
     const NUMBER: f64 = 26.0;
     const SHORT: usize = 24;
@@ -156,7 +156,7 @@ fn correlation_svg(report: &Report) -> String {
             svg.rectangle([x, y, CELL - 1.0, CELL - 1.0], full, strength);
             let colour = if strength < FULL { INK } else { on_full };
             let number = typeset(&fixed(100.0 * rho, 0));
-            svg.text([x + (CELL - 1.0) / 2.0, y + CELL / 2.0], &number, Font { colour, ..middle });
+            svg.text([x + (CELL - 1.0) / 2.0, y + CELL / 2.0], &number, Font { colour, size: 12.0, ..middle });
         }
     }
     svg.finish()
