@@ -2,10 +2,12 @@
 
 pub(super) mod page;
 pub(super) mod rare;
+mod reports;
+mod rows;
 mod words;
 
 use std::{
-    path::{Path, PathBuf},
+    path::PathBuf,
     sync::{Mutex, PoisonError},
 };
 
@@ -18,38 +20,34 @@ use super::{
     progress, tolerance::Written, warn,
 };
 use crate::{
-    dynamics::{driven::Driven, outcome::Verdict, simulate::SimulateError},
+    dynamics::driven::Driven,
     mechanism::{ByDrive, Mechanism},
     population::{
         Unit,
         drivers::Driver,
         hypothesis::Hypothesis,
-        part::{Listener, Settings, Simulation, StoredGaps},
+        part::{Settings, StoredGaps},
         picture,
         production::Production,
         rare::{Question, Rare},
+        simulation::{Listener, Simulation},
         statistics::Statistics,
         study::Population,
         subject::Subject,
         tally::{Counter, Duty, Tally},
-        unit::UnitOutcome,
     },
     product::Product,
     scene::Scene,
-    show::{
-        export::UnitRows,
-        report::{Figure, units_page},
-    },
-    system::{
-        files,
-        files::{WriteError, Writing},
-    },
+    show::report::{Figure, units_page},
+    system::files,
     tolerance::counting::{
         file::{Found as _, Source},
         run::{Keep, Shard, checkpoint, run},
     },
 };
 
+pub(super) use reports::{LevelReport, UnitReport};
+use rows::Rows;
 pub(super) use words::{levels, percent, strongest, verdicts};
 
 /// Simulates units of a production one by one: how many malfunction, and why.
@@ -119,86 +117,12 @@ pub(super) struct Arguments {
     pub threads: ThreadArguments,
 }
 
-/// Levels of eq. 9 that are looked for in the population.
-pub(super) const LEVELS: [f64; 13] = [-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
 /// Random combinations at each distance.
 const DIRECTIONS: u64 = 512;
 /// What the picture of the hypothesis shows.
 pub(super) const HYPOTHESIS: &str = "Do the tightest and the loosest units malfunction most often? A triangle or square is one unit \
                                      with all gaps tighter, or looser, by the same n: at 100 % it malfunctions. The line is the share of random units as far \
                                      from the mean unit.";
-/// Where the unit of a level lies in the population.
-#[derive(Serialize)]
-pub(super) struct LevelReport {
-    n: f64,
-    verdict: Verdict,
-    peak_force_n: Option<f64>,
-    /// Share of the population that needs less force.
-    share_below: f64,
-}
-
-impl LevelReport {
-    /// Of level `n`, whose unit did this, among the units of a `tally`.
-    pub fn new<G>(n: f64, outcome: &UnitOutcome, tally: &Tally<G>) -> Self {
-        // Those that have no force need none.
-        let Tally { counts, figures, .. } = tally;
-        let without = counts.units - figures.force.units();
-        let below = outcome.peak_force.map_or(0, |force| without + figures.force.below(force));
-        let share_below = below as f64 / counts.units.max(1) as f64;
-        Self { n, verdict: outcome.verdict, peak_force_n: outcome.peak_force, share_below }
-    }
-
-    /// Of those of [`LEVELS`] at which a unit of `subject` can be assembled.
-    pub fn all<S: Subject>(subject: &S, tally: &Tally<S::Gaps>) -> Result<Vec<Self>, SimulateError> {
-        let at = subject.at_levels(&LEVELS)?;
-        Ok(at.iter().map(|(n, unit)| Self::new(*n, &unit.outcome, tally)).collect())
-    }
-}
-
-/// A unit for machines.
-#[derive(Serialize)]
-pub(super) struct UnitReport {
-    pub number: u64,
-    pub tightness: f64,
-    #[serde(flatten)]
-    pub outcome: UnitOutcome,
-}
-
-impl UnitReport {
-    /// The worst units of `subject`, the worst first.
-    pub fn worst<S: Subject>(subject: &S, tally: &Tally<S::Gaps>) -> Vec<Self> {
-        let report = |unit: &Unit<S::Gaps>| Self {
-            number: unit.number,
-            tightness: subject.tightness(&unit.gaps),
-            outcome: unit.outcome,
-        };
-        tally.worst.iter().map(report).collect()
-    }
-}
-
-/// Rows of units on their way into a file.
-struct Rows<'a, S> {
-    path: &'a Path,
-    subject: &'a S,
-    rows: UnitRows<Writing>,
-}
-
-impl<'a, S: Subject> Rows<'a, S> {
-    fn begin(path: &'a Path, subject: &'a S) -> Result<Self, WriteError> {
-        let rows = UnitRows::new(Writing::begin(path)?, subject.kind(), &subject.gap_names());
-        Ok(Self { path, subject, rows: rows.map_err(files::failed(path))? })
-    }
-
-    fn add(&mut self, units: &[Unit<S::Gaps>]) -> Result<(), WriteError> {
-        let mut add = |unit: &Unit<S::Gaps>| self.rows.add(self.subject.tightness(&unit.gaps), unit);
-        units.iter().try_for_each(&mut add).map_err(files::failed(self.path))
-    }
-
-    fn end(self) -> Result<(), WriteError> {
-        self.rows.finish().map_err(files::failed(self.path))?.end(self.path)
-    }
-}
-
 #[derive(Serialize)]
 struct Report {
     title: String,

@@ -7,16 +7,17 @@ use std::{
 
 use slipfit_core::{
     ParameterError, SVector,
-    integrator::{Integrator, Motion, Rodas4, Step},
-    kernel::{Kernel, State as KernelState},
+    integrator::{Integrator, Motion, Rodas4},
     mechanism::Mechanism as _,
     system::{Bodies, Elements, System, planar::Coordinate},
 };
 use thiserror::Error;
 
 use super::{
-    Action, Mechanism, MountError, Mounts,
+    Mechanism, MountError, Mounts,
     columns::{self, BodyMotion, State},
+    fixed_steps::FixedSteps,
+    limits::Limits,
     planar, spatial,
 };
 use crate::{
@@ -26,22 +27,12 @@ use crate::{
         looks::{end, looks, samples},
         out_of_line::OutOfLine,
         outcome::{Observer, Outcome},
-        scheme::{IntegratorVisitor, ScalarKind},
+        scheme::ScalarKind,
         simulate::{SimulateError, Solved},
         trajectory::Trajectory,
     },
     scene::{ControllerSpec, RunSpec},
-    system::interrupt,
 };
-
-/// How long (s) an error of speed may last: what makes an error of place of it.
-const LASTING: f64 = 1.2e-3;
-
-/// Stick bands in the error of speed that a step may make.
-const STICK_BANDS: f64 = 4.0;
-
-/// The speed (m/s) of a mechanism that neither a drive nor its start nor gravity moves.
-const SLOWEST: f64 = 1e-3;
 
 /// Why a unit has no run.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -263,44 +254,6 @@ impl<const D: usize> Rest<D> {
     }
 }
 
-/// What a step may err by.
-struct Limits {
-    /// Speed (m/s).
-    speed: f64,
-}
-
-impl Limits {
-    /// A share of how fast the mechanism goes by itself; `lever` (m) of a body makes a speed of its angular one.
-    fn of(mechanism: &Mechanism, lever: impl Fn(usize) -> f64) -> Self {
-        let driven = mechanism.drives.iter().filter(|named| named.drive.gain > 0.0).map(|named| match named.action {
-            Action::Pushes { .. } => named.drive.speed.abs(),
-            Action::Turns { .. } => named.drive.speed.abs() * lever(named.body),
-        });
-        let thrown = mechanism
-            .bodies
-            .iter()
-            .enumerate()
-            .map(|(i, body)| body.start.speed.abs().max(body.start.spin.abs() * lever(i)));
-        let longest = (0..mechanism.bodies.len()).map(&lever).fold(0.0, f64::max);
-        let gravity = libm::sqrt(mechanism.gravity.iter().map(|g| g * g).sum());
-        let greatest = driven.chain(thrown).fold(0.0, f64::max);
-        let own = if greatest > 0.0 { greatest } else { libm::sqrt(gravity * longest).max(SLOWEST) };
-        Self { speed: mechanism.run.error * own }
-    }
-
-    /// The stick band (m/s) that stands for true stick.
-    fn stick_band(&self) -> f64 {
-        (STICK_BANDS * self.speed).clamp(1e-9, 1e-4)
-    }
-
-    /// The error of a `step` of `length` (s) that moves at least the mass `least_mass` (kg); 1 is allowed.
-    fn error<P, R, const D: usize>(&self, step: &Step<f64, P, R, D>, length: f64, least_mass: f64) -> f64 {
-        let speed = step.error.max(step.residual) / (least_mass * self.speed);
-        let place = step.drift.max(step.residual * length) / (least_mass * self.speed * LASTING);
-        speed.max(place)
-    }
-}
-
 fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize>(
     mechanism: &Mechanism,
     system: &System<B, E>,
@@ -365,48 +318,6 @@ fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize
     let outcomes = observers.iter().map(Observer::outcome).collect();
     let samples = Samples { columns: mechanism.columns(), rows };
     Ok(MechanismRun { samples, outcomes, trajectories, film, tolerance: limits.speed, effort, integration })
-}
-
-/// Steps of one length.
-struct FixedSteps<M, P, R, F, const D: usize> {
-    desk: M,
-    start: Motion<f64, P, R, D>,
-    /// How long (s).
-    duration: f64,
-    /// Length of a step (s).
-    step: f64,
-    /// Is told of the start and of every step, and says whether to go on.
-    keep: F,
-}
-
-impl<M, F, const D: usize> IntegratorVisitor for FixedSteps<M, M::Pose, M::Memory, F, D>
-where
-    M: slipfit_core::mechanism::Mechanism<f64, D>,
-    F: FnMut(f64, &Motion<f64, M::Pose, M::Memory, D>) -> ControlFlow<()>,
-{
-    type Output = Result<Effort, RunError>;
-
-    fn visit<I: Integrator>(mut self) -> Self::Output {
-        let kernel = Kernel::<f64, M, I>::new(self.desk, self.step)?;
-        let mut state = KernelState { steps: 0, motion: self.start };
-        let _ = (self.keep)(0.0, &state.motion);
-        let mut accepted = 0;
-        while kernel.time(state.steps) < self.duration * (1.0 - 1e-12) {
-            let report = kernel.step(&mut state);
-            let time = kernel.time(state.steps);
-            if !report.residual.is_finite() {
-                return Err(RunError::NotFinite { time, step: self.step });
-            }
-            if interrupt::requested() {
-                return Err(RunError::Interrupted);
-            }
-            accepted += 1;
-            if (self.keep)(time, &state.motion).is_break() {
-                break;
-            }
-        }
-        Ok(Effort { accepted, refused: 0 })
-    }
 }
 
 /// The scheme by which the desk integrates.

@@ -17,6 +17,7 @@ pub mod production;
 pub mod ranked;
 pub mod rare;
 pub mod shares;
+pub mod simulation;
 mod source;
 pub mod statistics;
 pub mod study;

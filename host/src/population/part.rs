@@ -1,9 +1,6 @@
 //! Parts of a population, by the files and runs of tolerance studies.
 
-use std::{
-    ops::Range,
-    sync::{Mutex, PoisonError},
-};
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 use slipfit_core::slide::CONTACTS;
@@ -11,20 +8,14 @@ use slipfit_core::slide::CONTACTS;
 use super::{
     Unit,
     drivers::Sums,
-    production::Production,
     ranked::Ranked,
-    simulate_units,
-    subject::{Subject, UnitGaps},
-    tally::{Counter, Tally, VERDICTS},
+    subject::UnitGaps,
+    tally::{Tally, VERDICTS},
     unit::UnitOutcome,
 };
 use crate::{
     dynamics::outcome::Moment,
-    system::files::WriteError,
-    tolerance::counting::{
-        file::{FormatError, Found, Part, Reader, integer},
-        run::{RunError, Work},
-    },
+    tolerance::counting::file::{FormatError, Found, Reader, integer},
 };
 
 /// Units of a block.
@@ -123,97 +114,6 @@ impl Settings {
     /// Units of `blocks`.
     pub fn units_in(&self, blocks: &Range<u64>) -> Range<u64> {
         blocks.start * BLOCK..(blocks.end * BLOCK).min(self.units)
-    }
-}
-
-/// Where units go one by one, beside being counted: in order, each once.
-pub struct Listener<'a, G> {
-    /// The first unit that it has not heard of.
-    next: u64,
-    hear: Hear<'a, G>,
-}
-
-/// What a [`Listener`] does with some units.
-pub type Hear<'a, G> = Box<dyn FnMut(&[Unit<G>]) -> Result<(), WriteError> + Send + 'a>;
-
-impl<'a, G> Listener<'a, G> {
-    /// That does this with units.
-    pub fn new(hear: Hear<'a, G>) -> Mutex<Self> {
-        Mutex::new(Self { next: 0, hear })
-    }
-}
-
-/// Units to be simulated.
-pub struct Simulation<'a, S: Subject> {
-    /// What they are units of.
-    pub subject: &'a S,
-    /// What varies in it.
-    pub production: &'a Production<'a, S::Gaps>,
-    /// Which units.
-    pub settings: Settings,
-    /// What counts them.
-    pub counter: Counter<'a, S>,
-    /// Who else wants them.
-    pub listener: Option<Mutex<Listener<'a, S::Gaps>>>,
-}
-
-impl<S: Subject<Gaps: StoredGaps>> Simulation<'_, S> {
-    /// Simulates the units `numbers`, counts them and lets the listener know of those that it has not heard of.
-    fn counted(&self, numbers: Range<u64>, done: &(impl Fn(u64) + Sync)) -> Result<Tally<S::Gaps>, RunError> {
-        let mut tally = self.counter.nothing();
-        let mut heard = Ok(());
-        let mut listener =
-            self.listener.as_ref().map(|listener| listener.lock().unwrap_or_else(PoisonError::into_inner));
-        simulate_units(self.subject, self.production, numbers, done, |drawn, units| {
-            self.counter.add(&mut tally, drawn, units);
-            if let Some(listener) = listener.as_mut().filter(|listener| listener.next == drawn.numbers.start)
-                && heard.is_ok()
-            {
-                heard = (listener.hear)(units);
-                listener.next = drawn.numbers.end;
-            }
-        })?;
-        Ok(heard.map(|()| tally)?)
-    }
-
-    /// Lets the listener know of the units before `end` that it has not heard of: of those that an interrupted run counted.
-    ///
-    /// # Errors
-    /// As [`Work::add`].
-    pub fn catch_up(&self, end: u64) -> Result<(), RunError> {
-        let heard = |listener: &Mutex<Listener<_>>| listener.lock().unwrap_or_else(PoisonError::into_inner).next;
-        match self.listener.as_ref().map(heard) {
-            Some(next) if next < end => self.counted(next..end, &|_| ()).map(drop),
-            _ => Ok(()),
-        }
-    }
-}
-
-impl<S: Subject<Gaps: StoredGaps>> Work for Simulation<'_, S> {
-    type Found = Tally<S::Gaps>;
-
-    fn settings(&self) -> Settings {
-        self.settings
-    }
-
-    fn empty(&self) -> Tally<S::Gaps> {
-        self.counter.nothing()
-    }
-
-    fn fits(&self, part: &Part<Tally<S::Gaps>>) -> bool {
-        part.tallies.fits(&self.counter.nothing())
-    }
-
-    fn add(
-        &self,
-        blocks: Range<u64>,
-        found: &mut Tally<S::Gaps>,
-        done: &(impl Fn(u64) + Sync),
-    ) -> Result<(), RunError> {
-        let numbers = self.settings.units_in(&blocks);
-        self.catch_up(numbers.start)?;
-        found.join(self.counted(numbers, done)?);
-        Ok(())
     }
 }
 
@@ -318,11 +218,12 @@ fn unit<G: StoredGaps>(reader: &mut Reader) -> Result<Unit<G>, FormatError> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Settings, Simulation};
+    use super::Settings;
     use crate::{
         dynamics::example,
         population::{
             production::Production,
+            simulation::Simulation,
             tally::{Counter, Duty, Tally},
         },
         tolerance::counting::{

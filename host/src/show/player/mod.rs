@@ -4,6 +4,7 @@
 //! nothing else.
 
 mod hull;
+mod joints;
 mod mechanism;
 mod slide;
 

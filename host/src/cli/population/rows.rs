@@ -1,0 +1,38 @@
+//! Units on their way into a CSV file.
+
+use std::path::Path;
+
+use crate::{
+    population::{Unit, subject::Subject},
+    show::export::UnitRows,
+    system::{
+        files,
+        files::{WriteError, Writing},
+    },
+};
+
+/// Rows of units on their way into a file.
+pub struct Rows<'a, S> {
+    path: &'a Path,
+    subject: &'a S,
+    rows: UnitRows<Writing>,
+}
+
+impl<'a, S: Subject> Rows<'a, S> {
+    /// Into the file `path`, for units of `subject`.
+    pub fn begin(path: &'a Path, subject: &'a S) -> Result<Self, WriteError> {
+        let rows = UnitRows::new(Writing::begin(path)?, subject.kind(), &subject.gap_names());
+        Ok(Self { path, subject, rows: rows.map_err(files::failed(path))? })
+    }
+
+    /// Adds some units.
+    pub fn add(&mut self, units: &[Unit<S::Gaps>]) -> Result<(), WriteError> {
+        let mut add = |unit: &Unit<S::Gaps>| self.rows.add(self.subject.tightness(&unit.gaps), unit);
+        units.iter().try_for_each(&mut add).map_err(files::failed(self.path))
+    }
+
+    /// The file is whole.
+    pub fn end(self) -> Result<(), WriteError> {
+        self.rows.finish().map_err(files::failed(self.path))?.end(self.path)
+    }
+}
