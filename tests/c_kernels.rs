@@ -158,7 +158,11 @@ fn workspace(kernels: &[Kernel]) -> PathBuf {
             .replace("STEPS", &steps.to_string());
         write(folder.join(name).join("program.c"), &program);
     }
-    let members: Vec<_> = kernels.iter().map(|kernel| format!("{:?}", kernel.name)).collect();
+    for (path, text) in both_kernels([kernels[0].name, kernels[1].name]) {
+        write(folder.join(BOTH).join(path), &text);
+    }
+    let members = kernels.iter().map(|kernel| kernel.name).chain([BOTH]);
+    let members: Vec<_> = members.map(|name| format!("{name:?}")).collect();
     write(folder.join("Cargo.toml"), &format!("[workspace]\nmembers = [{}]\nresolver = \"3\"\n", members.join(", ")));
     fs::copy(Path::new(ROOT).join("Cargo.lock"), folder.join("Cargo.lock")).expect("the repository's own versions");
     folder
@@ -196,8 +200,8 @@ fn kernels_of_all_scenes_have_the_same_bits_from_c_on_host_and_target_and_from_r
 
         let (mut compiler, image) = compiled("arm-none-eabi-gcc", ".elf");
         compiler
-            .args(["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16", "-ffreestanding"])
-            .args(["-nostdlib", "-Wl,--gc-sections", "-Tcore/capi/examples/m4.ld", "-L."])
+            .args(M4)
+            .args(BARE)
             .arg("core/capi/examples/m4.c")
             .arg(library(&folder, name, Some(TARGET)))
             .arg("-lgcc");
@@ -205,4 +209,55 @@ fn kernels_of_all_scenes_have_the_same_bits_from_c_on_host_and_target_and_from_r
         let on_target = printed(Command::new(Path::new(ROOT).join(".cargo/qemu")).arg(image));
         assert_eq!(on_target, *expected, "{name} on the target");
     }
+    let [one, other] = &kernels[..2] else { panic!("there are two") };
+    let both = [one, other].map(|kernel| kernel.expected.as_str()).concat();
+    assert_eq!(together(&folder, [one, other], strict), both);
+}
+
+const M4: [&str; 5] = ["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16", "-ffreestanding"];
+const BARE: [&str; 4] = ["-nostdlib", "-Wl,--gc-sections", "-Tcore/capi/examples/m4.ld", "-L."];
+
+/// What the programs of two kernels print, one after the other as one program on the target, with one library for both.
+fn together(folder: &Path, kernels: [&Kernel; 2], strict: [&str; 7]) -> String {
+    let library = library(folder, BOTH, Some(TARGET));
+    let mut compiler = Command::new("arm-none-eabi-gcc");
+    let image = folder.join("both.elf");
+    compiler.current_dir(ROOT).args(strict).args(M4).args(BARE).arg("-o").arg(&image);
+    for Kernel { name, .. } in kernels {
+        let (object, entry) = (folder.join(format!("{name}.o")), name.replace('-', "_"));
+        let mut own = Command::new("arm-none-eabi-gcc");
+        own.current_dir(ROOT).args(strict).args(M4).arg("-I").arg(folder.join(name));
+        printed(
+            own.arg(format!("-Dmain={entry}_main"))
+                .arg("-c")
+                .arg(folder.join(name).join("program.c"))
+                .arg("-o")
+                .arg(&object),
+        );
+        compiler.arg(object);
+    }
+    let program = folder.join(BOTH).join("program.c");
+    printed(compiler.arg(program).arg("core/capi/examples/m4.c").arg(library).arg("-lgcc"));
+    printed(Command::new(Path::new(ROOT).join(".cargo/qemu")).arg(image))
+}
+
+/// The crate that makes one library of two kernels.
+const BOTH: &str = "both";
+
+/// The files of that crate: what the guide tells to write.
+fn both_kernels(kernels: [&str; 2]) -> [(&'static str, String); 3] {
+    let [one, other] = kernels.map(|name| name.replace('-', "_"));
+    let depends =
+        kernels.map(|name| format!("{name} = {{ path = \"../{name}\", features = [\"c-functions\"] }}\n")).concat();
+    let manifest = format!(
+        "[package]\nname = \"{BOTH}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[features]\nc = []\n\n[dependencies]\n{depends}"
+    );
+    let library = format!(
+        "#![no_std]\n\nuse {{{one} as _, {other} as _}};\n\nunsafe extern \"C\" {{\n    safe fn a_panic_is_reachable() -> !;\n}}\n\n\
+         #[panic_handler]\nfn panic(_: &core::panic::PanicInfo<'_>) -> ! {{\n    a_panic_is_reachable()\n}}\n"
+    );
+    let program = format!(
+        "int {one}_main(void);\nint {other}_main(void);\n\nint main(void) {{\n    return {one}_main() + {other}_main();\n}}\n"
+    );
+    [("Cargo.toml", manifest), ("src/lib.rs", library), ("program.c", program)]
 }

@@ -98,7 +98,7 @@ impl Border<'_> {
         let _ = write!(
             text,
             "\n/// A program links only while no panic is reachable: this calls what nobody defines.\n\
-             #[cfg(target_os = \"none\")]\n\
+             #[cfg(all(feature = \"c\", target_os = \"none\"))]\n\
              #[panic_handler]\n\
              fn panic(_: &core::panic::PanicInfo<'_>) -> ! {{\n    \
              unsafe extern \"C\" {{\n        safe fn {prefix}_panic_is_reachable() -> !;\n    }}\n    \

@@ -160,7 +160,8 @@ fn manifest(name: &str, core: Option<&Path>) -> String {
         "# Written by slipfit. In the workspace's Cargo.toml, for an image that is built for size:\n#\n\
          # [profile.release.package.{name}]\n# opt-level = 3\n\n\
          [package]\nname = \"{name}\"\nversion = \"{version}\"\nedition = \"2024\"\npublish = false\n\n\
-         [features]\n# Functions for C, see {header}.\nc = []\n\n[dependencies]\nslipfit-core = {{ {core} }}\n"
+         [features]\n# Functions for C, see {header}, for a library of this kernel alone.\nc = [\"c-functions\"]\n\
+         # The same without a panic handler, for a library of several kernels, which has its own.\nc-functions = []\n\n[dependencies]\nslipfit-core = {{ {core} }}\n"
     )
 }
 
@@ -173,9 +174,9 @@ fn library(source: &str, functions: &str, name: &str) -> String {
          //! The step is compiled in this crate alone, by what the profile says of it. In an image that\n\
          //! is built for size, or in a dev build, these lines in the workspace's Cargo.toml keep it fast:\n//!\n\
          //! ```toml\n//! [profile.release.package.{name}]\n//! opt-level = 3\n//!\n\
-         //! [profile.dev.package.{name}]\n//! opt-level = 3\n//! ```\n#![no_std]\n#![cfg_attr(not(feature = \"c\"), forbid(unsafe_code))]\n{module}\n{functions}\n\
-         #[cfg(all(feature = \"c\", not(target_os = \"none\")))]\nextern crate std;\n\n\
-         #[cfg(feature = \"c\")]\nmod c;\n"
+         //! [profile.dev.package.{name}]\n//! opt-level = 3\n//! ```\n#![no_std]\n#![cfg_attr(not(feature = \"c-functions\"), forbid(unsafe_code))]\n{module}\n{functions}\n\
+         #[cfg(all(feature = \"c-functions\", not(target_os = \"none\")))]\nextern crate std;\n\n\
+         #[cfg(feature = \"c-functions\")]\nmod c;\n"
     )
 }
 
