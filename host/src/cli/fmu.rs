@@ -22,7 +22,7 @@ use crate::{
 
 /// Packs the controller's kernel as an FMI co-simulation unit (FMU), for system simulators.
 ///
-/// For slides and mechanisms. The kernel is compiled on this machine, which needs Cargo. The unit runs on machines of the same kind.
+/// For slides and mechanisms. The kernel is compiled on this machine, which needs Cargo. The FMU runs on machines of the same kind only.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

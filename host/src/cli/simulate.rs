@@ -50,7 +50,7 @@ pub(super) const MOMENTS: usize = 160;
 /// Simulates one unit: speed and drive force over time.
 ///
 /// For slides and mechanisms. The unit is that of a tolerance level (`--n`) or one of the production (`--unit`). A slide runs its opening
-/// (`run.duration`) unless `--stroke` is given. The desk computes the run by error-controlled steps. Of a slide it also says how far
+/// (`run.duration`) unless `--stroke` is given. The desk computes the run by error-controlled steps. It also says how far
 /// the controller is off, which takes steps of one length. With `--step`, `--integrator`, `--scalar` or `--audit` the run shown is the
 /// controller's, and its error against the desk's is printed.
 ///

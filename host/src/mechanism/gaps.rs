@@ -2,7 +2,7 @@
 
 use slipfit_core::clearance::GapStatistics;
 
-use super::{Gap, Mechanism};
+use super::{Gap, Joint, JointKind, Mechanism};
 use crate::{
     scene::GAP_MOST,
     show::number::{level, ten_digits},
@@ -34,10 +34,28 @@ impl Gap {
 }
 
 impl Mechanism {
-    /// The gap that closes at the lowest level, and that level; of those that are open by their mean.
-    pub fn first_to_close(&self) -> Option<(&Gap, f64)> {
-        let open = self.gaps.iter().filter_map(|gap| Some((gap, gap.closes_at()?))).filter(|(_, n)| *n > 0.0);
-        open.min_by(|one, other| one.1.total_cmp(&other.1))
+    /// The joint that loses its play at the lowest level, and that level, of those that have some by their mean. A track loses it
+    /// where two opposite gaps together are nothing, any other joint where its gap is.
+    pub fn first_to_close(&self) -> Option<(String, f64)> {
+        let of_joint = |joint: &Joint| -> Vec<(String, Vec<usize>)> {
+            match joint.kind {
+                JointKind::Track { gaps: [left, right, rail, wall] } => {
+                    let pair = |one: Option<usize>, other: Option<usize>, name: &str| {
+                        Some((format!("{} {name}", joint.name), vec![one?, other?]))
+                    };
+                    [pair(left, right, "across"), pair(rail, wall, "up-down")].into_iter().flatten().collect()
+                }
+                ref kind => kind.gaps().map(|gap| (self.gaps[gap].name.clone(), vec![gap])).collect(),
+            }
+        };
+        let level = |(name, gaps): (String, Vec<usize>)| {
+            let sum = |of: fn(&GapStatistics<f64>) -> f64| {
+                gaps.iter().map(|gap| of(&self.gaps[*gap].statistics)).sum::<f64>()
+            };
+            Some((name, sum(|gap| gap.mean) / sum(|gap| gap.deviation))).filter(|(_, n)| n.is_finite() && *n > 0.0)
+        };
+        let levels = self.joints.iter().flat_map(of_joint).filter_map(level);
+        levels.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
     /// The gaps at the tolerance levels `n`: one for all, or one a gap.

@@ -63,8 +63,8 @@ pub fn forces<S: Subject>(subject: &S, tally: &Tally<S::Gaps>, limit: Option<f64
         title: subject.title().into(),
         subtitle: format!("{units} units, {} % malfunction{remark}", fixed(failed.share * 100.0, 1)),
         x_label: "tightness (σ, mean over the gaps; positive is tighter)".into(),
-        panels: vec![
-            Panel {
+        panels: [
+            Some(Panel {
                 y_label: effort(subject.kind()),
                 series: limits.into_iter().collect(),
                 markers: vec![
@@ -73,14 +73,18 @@ pub fn forces<S: Subject>(subject: &S, tally: &Tally<S::Gaps>, limit: Option<f64
                     marked(Verdict::Jammed, "jammed", Shape::Cross),
                 ],
                 ..Panel::default()
-            },
-            Panel {
+            }),
+            // Of few units no class has enough.
+            (!shares.is_empty()).then(|| Panel {
                 y_label: "share that malfunctions (%)".into(),
                 note: "grey: 95 % interval".into(),
                 series: with_interval(&shares, "units"),
                 ..Panel::default()
-            },
-        ],
+            }),
+        ]
+        .into_iter()
+        .flatten()
+        .collect(),
         ..Chart::default()
     })
 }

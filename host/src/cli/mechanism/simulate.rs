@@ -214,20 +214,22 @@ fn plotted(mechanism: &Mechanism) -> Vec<String> {
     let speed = |body: usize, action: Option<Action>| {
         let name = &mechanism.bodies[body].name;
         match action {
-            Some(Action::Turns { .. }) | None if mechanism.planar => format!("{name}.spin (rad/s)"),
+            Some(Action::Turns { .. }) | None if mechanism.planar => Some(format!("{name}.spin (rad/s)")),
             Some(Action::Pushes { axis }) => {
                 let most = (0..3).max_by(|a, b| axis[*a].abs().total_cmp(&axis[*b].abs())).unwrap_or(2);
-                format!("{name}.v{} (m/s)", ["x", "y", "z"][most])
+                Some(format!("{name}.v{} (m/s)", ["x", "y", "z"][most]))
             }
-            _ => format!("{name}.vz (m/s)"),
+            None => Some(format!("{name}.vz (m/s)")),
+            // No column has an angular velocity in space.
+            Some(Action::Turns { .. }) => None,
         }
     };
     let all = mechanism.columns();
     if mechanism.drives.is_empty() {
-        return (0..mechanism.bodies.len()).map(|body| speed(body, None)).collect();
+        return (0..mechanism.bodies.len()).filter_map(|body| speed(body, None)).collect();
     }
     let forces = all.iter().skip(1).take(mechanism.drives.len()).cloned();
-    let speeds = mechanism.drives.iter().map(|drive| speed(drive.body, Some(drive.action)));
+    let speeds = mechanism.drives.iter().filter_map(|drive| speed(drive.body, Some(drive.action)));
     let mut columns: Vec<String> = Vec::new();
     for column in speeds.chain(forces) {
         if !columns.contains(&column) && all.contains(&column) {

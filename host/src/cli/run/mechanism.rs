@@ -162,12 +162,12 @@ fn said(driven: &ByDrive, table: &ForceTable, sweep: &Sweep, population: Option<
     let units = population
         .map(|population| Units { statistics: &population.statistics, of_malfunction: &population.of_malfunction });
     text += &units.map(|units| units.describe()).unwrap_or_default();
-    if let Some((gap, n)) = driven.mechanism().first_to_close() {
+    if let Some((joint, n)) = driven.mechanism().first_to_close() {
         let closed = per_million(normal::tail(n) * 1e6);
         let _ = writeln!(
             text,
-            "Closes first    {}, at n* = {}: {closed} ppm of a normal production",
-            gap.name,
+            "Closes first    {}, at n* = {}: {closed} ppm of the units, if all gaps moved together (eq. 9)",
+            joint,
             fixed(n, 3)
         );
     }

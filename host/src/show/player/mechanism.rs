@@ -35,6 +35,7 @@ pub fn run(mechanism: &Mechanism, driven: Option<&ByDrive>, gaps: &[f64], label:
         joints: mechanism.joints.iter().flat_map(|joint| joints(mechanism, joint, gaps, moments)).collect(),
         plots,
         events,
+        from: driven.map_or(0.0, |driven| rounded(driven.drive().ramp_start * MM, 3)),
     }
 }
 

@@ -39,6 +39,8 @@ pub struct Run {
     pub plots: Vec<Plot>,
     /// Moments.
     pub events: Vec<Event>,
+    /// From when (ms) on the first curve's greatest value is its peak: the ramp's start.
+    pub from: f64,
 }
 
 /// One number a frame.

@@ -29,6 +29,7 @@
 //                      a series
 //   plots   list of { name, unit, values }: curves over time
 //   events  list of { t, name }: moments to mark; may be absent
+//   from    from when on the greatest value of the first curve is its peak, at which the player opens; absent: from the start
 // The element of the figure has the property `player` with show(frame), choose(run), play(), pause() and the attributes
 // data-frame and data-run, which follow what is seen.
 (() => {
@@ -495,7 +496,8 @@
     const restFrame = (run) => {
       const force = run.plots.length ? run.plots[0].values : run.t.map((_, frame) =>
         extreme(run.joints.flatMap(({ contacts }) => contacts.map((contact) => at(contact.force, frame))).concat(0), Math.max));
-      const sizes = run.t.map((_, frame) => Math.abs(at(force, frame)));
+      const late = run.t[run.t.length - 1] > (run.from || 0) ? run.from || 0 : 0;
+      const sizes = run.t.map((t, frame) => (t < late ? -1 : Math.abs(at(force, frame))));
       return sizes.indexOf(extreme(sizes, Math.max));
     };
     figure.querySelectorAll("noscript").forEach((element) => element.remove());
@@ -557,12 +559,21 @@
       if (controls) pause();
       [chosen, run, resting] = [Number(index), runs[index], true];
       if (select) select.value = chosen;
-      heading.textContent = run.title;
+      heading.textContent = runs.length === 1 && run.label ? `${run.title}, ${run.label}` : run.title;
       figure.dataset.run = chosen;
       body.replaceChildren();
       const stage = html(body, "div", { class: "stage" });
       const main = html(stage, "div", { class: "main" });
       const pictures = [viewPicture(main, run, 0, common)];
+      if (run.bodies.length > 1) {
+        const names = html(main, "div", { class: "legend" });
+        run.bodies.forEach(({ name }, i) => {
+          const key = html(names, "span", { class: "key" });
+          svg(svg(key, "svg", { viewBox: "0 0 12 12", width: 12, height: 12 }), "rect",
+            { width: 12, height: 12, class: `body kind-${BODY_COLOURS[i % BODY_COLOURS.length]}` });
+          key.append(` ${name}`);
+        });
+      }
       const side = html(stage, "div", { class: "beside" });
       if (run.views.length > 1) pictures.push(viewPicture(side, run, 1, common));
       if (run.joints.length) {
@@ -594,7 +605,7 @@
       pause();
       show(restFrame(run));
       // Why it opens there.
-      clock.textContent += `: greatest ${run.plots.length ? run.plots[0].name : "contact force"}`;
+      clock.textContent += `: peak ${run.plots.length ? run.plots[0].name : "contact force"}`;
     };
     if (select) select.addEventListener("change", () => choose(Number(select.value)));
     let before;

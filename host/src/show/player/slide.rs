@@ -47,6 +47,7 @@ pub fn run(scene: &Scene, label: String, film: &Film) -> Run {
             Plot { name: "speed", unit: "mm/s", values: series(frames, 3, |frame| sign * frame.vz * MM) },
         ],
         events: events.into_iter().flatten().collect(),
+        from: rounded(scene.drive.ramp_start * MM, 3),
     }
 }
 

@@ -31,8 +31,8 @@ pub fn first_to_close(clearances: &Clearances) -> Option<(&'static str, String)>
             Some(("First pair to close", format!("{}, at n* = {}", escape(&pairs), real(n, 4))))
         }
         Clearances::Joints(mechanism) => {
-            let (gap, n) = mechanism.first_to_close()?;
-            Some(("First gap to close", format!("{}, at n* = {}", escape(&gap.name), real(n, 4))))
+            let (joint, n) = mechanism.first_to_close()?;
+            Some(("First to lose its play", format!("{}, at n* = {}", escape(&joint), real(n, 4))))
         }
     }
 }

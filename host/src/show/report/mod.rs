@@ -127,7 +127,7 @@ fn page(title: &str, sections: &str, units: Option<&Units>) -> String {
 
 fn units(Units { figures, player }: &Units) -> String {
     let figures: String = figures.iter().map(|Figure { caption, svg }| figure(caption, svg)).collect();
-    format!("<h2>What every unit does</h2>\n{}{figures}", player.as_deref().unwrap_or_default())
+    format!("<h2>What units do</h2>\n{}{figures}", player.as_deref().unwrap_or_default())
 }
 
 /// The answer, line by line.
