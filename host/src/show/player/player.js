@@ -497,7 +497,7 @@
       const force = run.plots.length ? run.plots[0].values : run.t.map((_, frame) =>
         extreme(run.joints.flatMap(({ contacts }) => contacts.map((contact) => at(contact.force, frame))).concat(0), Math.max));
       const late = run.t[run.t.length - 1] > (run.from || 0) ? run.from || 0 : 0;
-      const sizes = run.t.map((t, frame) => (t < late ? -1 : Math.abs(at(force, frame))));
+      const sizes = run.t.map((t, frame) => (t < late ? -Infinity : at(force, frame)));
       return sizes.indexOf(extreme(sizes, Math.max));
     };
     figure.querySelectorAll("noscript").forEach((element) => element.remove());
