@@ -105,13 +105,22 @@ impl Sums {
     /// # Errors
     /// [`FormatError::Damaged`].
     pub fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
-        let mut found = Self::new(reader.count()?);
-        for cell in found.each() {
-            let (count, zigzag) = (reader.integer()?, reader.integer()?);
-            let square = u128::from(reader.integer()?) | u128::from(reader.integer()?) << 64;
-            *cell = Cell { count, sum: (zigzag >> 1) as i64 ^ -((zigzag & 1) as i64), square };
-        }
-        Ok(found)
+        let variables = reader.count()?;
+        // Variable by variable, so that nothing is allocated of which no bytes are there.
+        let mut all = || {
+            let mut read = Vec::new();
+            for _ in 0..variables {
+                let mut cells = [[Cell::default(); CLASSES]; PARTS];
+                for cell in cells.as_flattened_mut() {
+                    let (count, zigzag) = (reader.integer()?, reader.integer()?);
+                    let square = u128::from(reader.integer()?) | u128::from(reader.integer()?) << 64;
+                    *cell = Cell { count, sum: (zigzag >> 1) as i64 ^ -((zigzag & 1) as i64), square };
+                }
+                read.push(cells);
+            }
+            Ok(read)
+        };
+        Ok(Self { of_force: all()?, of_malfunction: all()? })
     }
 }
 
