@@ -101,3 +101,22 @@ impl Mechanism {
 pub fn level_of(n: &[f64], i: usize) -> f64 {
     n.get(i).or(n.last()).copied().unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{SceneFile, shipped};
+
+    /// A track has play as long as two opposite gaps together are more than nothing, whatever one of them is.
+    #[test]
+    fn tracks_lose_their_play_in_pairs() {
+        let first = |name: &str| {
+            let scene = SceneFile::parse(name, shipped(name).unwrap(), &[]).unwrap_or_else(|error| panic!("{error}"));
+            scene.mechanism.unwrap().first_to_close().unwrap()
+        };
+        // (0.05 + 0.3)/(0.02 + 0.02) at the inner pins; 0.2/0.02 at the big end.
+        let (joint, n) = first("telescopic-drawer");
+        assert!(joint == "inner left back across" && (n - 8.75).abs() < 1e-9, "{joint} {n}");
+        let (joint, n) = first("slider-crank");
+        assert!(joint == "big end" && (n - 10.0).abs() < 1e-9, "{joint} {n}");
+    }
+}

@@ -317,6 +317,17 @@ mod tests {
     }
 
     #[test]
+    fn what_units_need_is_told_by_those_that_run() {
+        let force = |[n, _, _]: [f64; 3]| if n > 0.4 { 4.0 } else { 1.0 + n };
+        let mut samples = samples(force, |[_, z, _]| if z < 1.0 { Stage::Before } else { Stage::InUse });
+        // The tightest two levels jam, at every speed.
+        samples.verdicts[3 * 3..].fill(MotionVerdict::Jammed);
+        assert_eq!(samples.table(1, Demand::Full).unwrap().running_force, 1.0);
+        samples.verdicts.fill(MotionVerdict::Jammed);
+        assert_eq!(samples.table(1, Demand::Full).unwrap().running_force, 4.0);
+    }
+
+    #[test]
     fn what_is_linear_along_every_axis_costs_nothing() {
         let samples = samples(|[n, z, v]| (1.0 + n) * (2.0 - z) * v, |_| Stage::InUse);
         let table = samples.table(1, Demand::Full).unwrap();
