@@ -6,10 +6,7 @@ mod reports;
 mod rows;
 mod words;
 
-use std::{
-    path::PathBuf,
-    sync::{Mutex, PoisonError},
-};
+use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
@@ -23,7 +20,6 @@ use crate::{
     dynamics::driven::Driven,
     mechanism::{ByDrive, Mechanism},
     population::{
-        Unit,
         drivers::Driver,
         hypothesis::Hypothesis,
         part::{Settings, StoredGaps},
@@ -219,11 +215,8 @@ impl Arguments {
         let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
         let numbers = settings.units_in(&shard.blocks(Tally::<S::Gaps>::blocks(&settings)));
         let bar = progress("simulating", (numbers.end - numbers.start.min(numbers.end)) as usize);
-        let rows = self.csv.as_deref().map(|path| Rows::begin(path, subject)).transpose()?.map(Mutex::new);
-        let listener = rows.as_ref().map(|rows| {
-            let hear = |units: &[Unit<S::Gaps>]| rows.lock().unwrap_or_else(PoisonError::into_inner).add(units);
-            Listener::new(Box::new(hear))
-        });
+        let mut rows = self.csv.as_deref().map(|path| Rows::begin(path, subject)).transpose()?;
+        let listener = rows.as_mut().map(|rows| Listener::new(Box::new(|units| rows.add(units))));
         let counter = Counter::new(subject, production, duty);
         let simulation = Simulation { subject, production, settings, counter, listener };
         let tally = self.threads.install(|| {
@@ -232,9 +225,7 @@ impl Arguments {
         })??;
         bar.finish_and_clear();
         drop(simulation);
-        if let Some(rows) = rows {
-            rows.into_inner().unwrap_or_else(PoisonError::into_inner).end()?;
-        }
+        rows.map_or(Ok(()), Rows::end)?;
         let (Some(out), Shard { number, count: 2.. }) = (&self.out, shard) else { return Ok(Some(tally)) };
         let units = tally.counts.units;
         let written = Written { shard: number, of: shard.count, units, file: out.display().to_string() };

@@ -32,7 +32,7 @@ pub struct Listener<'a, G> {
 pub type Hear<'a, G> = Box<dyn FnMut(&[Unit<G>]) -> Result<(), WriteError> + Send + 'a>;
 
 impl<'a, G> Listener<'a, G> {
-    /// That does this with units.
+    /// That does this with units, one thread at a time.
     pub fn new(hear: Hear<'a, G>) -> Mutex<Self> {
         Mutex::new(Self { next: 0, hear })
     }

@@ -207,11 +207,6 @@ impl<'a, S: Subject> Counter<'a, S> {
         Self { subject, duty, classes: Classes::new(production, subject.greatest_force()) }
     }
 
-    /// What units have to do.
-    pub fn duty(&self) -> Duty {
-        self.duty
-    }
-
     /// Of no units.
     pub fn nothing(&self) -> Tally<S::Gaps> {
         Tally::new(self.classes.variables())

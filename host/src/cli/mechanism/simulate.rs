@@ -145,7 +145,7 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
 /// The page of `one` run of a unit, with the desk's for the player.
 fn page(mechanism: &Mechanism, unit: &OneUnit, one: &MechanismRun, words: &str) -> Result<String, Failure> {
     let OneUnit { label, gaps, .. } = unit;
-    let driven = ByDrive::new(mechanism, 0).filter(|_| !mechanism.drives.is_empty());
+    let driven = ByDrive::new(mechanism, 0);
     let label = |run: &MechanismRun| match run.outcomes.first() {
         Some(outcome) => format!("{label}: {}", word(outcome.verdict)),
         None => label.clone(),

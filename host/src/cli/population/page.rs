@@ -14,7 +14,6 @@ use crate::{
         shares,
         study::Population,
         subject::Subject,
-        tally::Tally,
         telling::{filmed, one_of_each},
     },
     scene::Scene,
@@ -33,6 +32,10 @@ pub const FIGURES: [&str; 4] =
 /// The same of a mechanism.
 pub const MECHANISM_FIGURES: [&str; 3] = ["population.svg", "population-forces.svg", "population-drivers.svg"];
 
+/// What the picture of forces shows.
+const EVERY_MARK: &str = "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: its gaps \
+                          differ from each other.";
+
 /// Pictures and player of a `population`, with a motor's force `limit` (N), and the names of the pictures' files.
 pub fn units(
     scene: &Scene,
@@ -42,11 +45,7 @@ pub fn units(
 ) -> Result<(Units, Vec<&'static str>), Failure> {
     let all = &population.tally;
     let pictures = [
-        (
-            "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: its gaps differ from \
-             each other.",
-            picture::forces(scene, all, limit),
-        ),
+        (EVERY_MARK, picture::forces(scene, all, limit)),
         (
             "What force units need. Those that jam need all that the drive has.",
             shares::histogram(&scene.title, DriveKind::Pushes, all, limit),
@@ -65,7 +64,7 @@ pub fn units(
         let film = filmed(scene, production, unit.number, MOMENTS)?;
         Ok(player::of_slide(scene, label(unit), &film))
     };
-    let player = played(&population.tally, run, "on its pins")?;
+    let player = played(&one_of_each(all, |_| true), run, "on its pins")?;
     let (figures, names) = shown(FIGURES, pictures)?;
     Ok((Units { figures, player }, names))
 }
@@ -79,11 +78,7 @@ pub fn units_of_mechanism(
 ) -> Result<(Units, Vec<&'static str>), Failure> {
     let (title, kind, all) = (driven.title(), driven.kind(), &population.tally);
     let pictures = [
-        (
-            "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: its gaps differ from \
-             each other.",
-            picture::forces(driven, all, limit),
-        ),
+        (EVERY_MARK, picture::forces(driven, all, limit)),
         ("The greatest force or torque that units need of the drive.", shares::histogram(title, kind, all, limit)),
         (
             "Which gaps and tolerances malfunction and the greatest force or torque vary with, the strongest first.",
@@ -98,8 +93,7 @@ pub fn units_of_mechanism(
         Ok(player::of_mechanism(own.mechanism(), Some(&own), &drawn.gaps[i], label(unit), &filmed))
     };
     // What cannot be assembled does not move.
-    let mut moving = all.clone();
-    moving.first.iter_mut().for_each(|units| units.retain(|unit| driven.fits(&unit.gaps)));
+    let moving = one_of_each(all, |unit| driven.fits(&unit.gaps));
     let player = played(&moving, run, "on its joints")?;
     let (figures, names) = shown(MECHANISM_FIGURES, pictures)?;
     Ok((Units { figures, player }, names))
@@ -110,13 +104,13 @@ fn label<G>(unit: &Unit<G>) -> String {
     format!("unit {}: {}", unit.number, word(unit.outcome.verdict))
 }
 
-/// The player of a unit of each kind, `whereon` it moves; none if there is no unit.
-fn played<G: Sync + Send>(
-    tally: &Tally<G>,
+/// The player of `units`, one of each kind, `whereon` they move; none if there is no unit.
+fn played<G: Sync>(
+    units: &[&Unit<G>],
     run: impl Fn(&Unit<G>) -> Result<player::Run, Failure> + Sync + Send,
     whereon: &str,
 ) -> Result<Option<String>, Failure> {
-    let runs = one_of_each(tally).into_par_iter().map(run).collect::<Result<Vec<_>, _>>()?;
+    let runs = units.par_iter().map(|unit| run(unit)).collect::<Result<Vec<_>, _>>()?;
     let words = format!(
         "A typical unit of each kind (that with the median of the greatest force among those that jam, crawl or run), {whereon}:"
     );

@@ -4,8 +4,8 @@ use nalgebra::{Rotation3, Vector2, Vector3};
 use slipfit_core::law::Elastic;
 
 use super::{
-    Contact, Joint, Series,
-    mechanism::{AXES, MM, series},
+    Contact, Joint, MM, Series,
+    mechanism::{AXES, series},
     rounded,
 };
 use crate::{

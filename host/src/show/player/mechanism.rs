@@ -1,13 +1,11 @@
 //! A mechanism of bodies and joints for the player: bodies at true scale, pins enlarged in their gaps.
 
-use super::{Body, Event, Motion, Plot, Run, Series, View, hull::hull, joints::joints, rounded};
+use super::{Body, Event, MM, Motion, Plot, Run, Series, View, events, hull::hull, joints::joints, rounded};
 use crate::{
     dynamics::driven::Driven,
     mechanism::{Body as Drawn, BodyMotion, ByDrive, JointKind, Mechanism, MechanismRun, Moment},
 };
 
-/// Millimetres in a metre.
-pub const MM: f64 = 1e3;
 /// How far a body is drawn beyond its joints, as a share of the mechanism's size.
 const RIM: f64 = 0.025;
 /// Letters of the axes.
@@ -42,14 +40,7 @@ pub fn run(mechanism: &Mechanism, driven: Option<&ByDrive>, gaps: &[f64], label:
 /// What a drive does, and when.
 fn of_drive(driven: &ByDrive, run: &MechanismRun) -> (Vec<Plot>, Vec<Event>) {
     let (mechanism, moments) = (driven.mechanism(), &run.film[..]);
-    let outcome = &run.outcomes[driven.index()];
     let kind = driven.kind();
-    let event = |moment: Option<f64>, name| Some(Event { t: rounded(moment? * MM, 1), name });
-    let events = [
-        event(outcome.breakaway, "breaks away"),
-        event(outcome.tips.map(|tips| tips.t), "tips"),
-        event(outcome.stops.map(|stops| stops.t), "stops"),
-    ];
     let sign = if driven.drive().speed < 0.0 { -1.0 } else { 1.0 };
     let at_drive = |of: &dyn Fn(f64, f64) -> f64, digits| {
         series(moments, digits, |moment| {
@@ -63,7 +54,7 @@ fn of_drive(driven: &ByDrive, run: &MechanismRun) -> (Vec<Plot>, Vec<Event>) {
         values: at_drive(&|force, _| force, 4),
     };
     let speed = Plot { name: "speed", unit: kind.speed_unit(), values: at_drive(&|_, speed| kind.speed(speed), 3) };
-    (vec![force, speed], events.into_iter().flatten().collect())
+    (vec![force, speed], events(&run.outcomes[driven.index()]))
 }
 
 /// A number of every moment, with so many decimals.

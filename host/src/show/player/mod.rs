@@ -11,6 +11,7 @@ mod slide;
 use serde::{Serialize, Serializer};
 
 use super::markup::escape;
+use crate::dynamics::outcome::Outcome;
 
 pub use mechanism::run as of_mechanism;
 pub use slide::run as of_slide;
@@ -149,6 +150,20 @@ pub struct Plot {
 /// Whether an angle need not be written.
 fn is_nothing(angle: &f64) -> bool {
     *angle == 0.0
+}
+
+/// Millimetres in a metre, and milliseconds in a second.
+const MM: f64 = 1e3;
+
+/// What happens in a run, as far as it does.
+fn events(outcome: &Outcome) -> Vec<Event> {
+    let event = |moment: Option<f64>, name| Some(Event { t: rounded(moment? * MM, 1), name });
+    let events = [
+        event(outcome.breakaway, "breaks away"),
+        event(outcome.tips.map(|tips| tips.t), "tips"),
+        event(outcome.stops.map(|stops| stops.t), "stops"),
+    ];
+    events.into_iter().flatten().collect()
 }
 
 /// With so many decimals: a page has no use for more.

@@ -2,7 +2,7 @@
 
 use slipfit_core::{law::Elastic, slide::ABSENT};
 
-use super::{Body, Contact, Event, Joint, Motion, Plot, Run, Series, View, rounded};
+use super::{Body, Contact, Joint, MM, Motion, Plot, Run, Series, View, events, rounded};
 use crate::{
     dynamics::{
         film::{Film, Frame},
@@ -11,7 +11,6 @@ use crate::{
     scene::{SURFACES, Scene},
 };
 
-const MM: f64 = 1e3;
 /// How far (mm) the slide is drawn beyond its pins at least.
 const RIM: f64 = 10.0;
 /// What sides the surfaces of a slot are of its pin; the rail lies on the pin.
@@ -23,13 +22,6 @@ const FRAME: &str = "frame";
 /// A `film` of the slide of `scene`, whose `label` tells it from other runs.
 pub fn run(scene: &Scene, label: String, film: &Film) -> Run {
     let frames = &film.frames;
-    let outcome = &film.outcome;
-    let event = |moment: Option<f64>, name| Some(Event { t: rounded(moment? * MM, 1), name });
-    let events = [
-        event(outcome.breakaway, "breaks away"),
-        event(outcome.tips.map(|tips| tips.t), "tips"),
-        event(outcome.stops.map(|stops| stops.t), "stops"),
-    ];
     let sign = if scene.drive.speed < 0.0 { -1.0 } else { 1.0 };
     Run {
         title: scene.title.clone(),
@@ -46,7 +38,7 @@ pub fn run(scene: &Scene, label: String, film: &Film) -> Run {
             },
             Plot { name: "speed", unit: "mm/s", values: series(frames, 3, |frame| sign * frame.vz * MM) },
         ],
-        events: events.into_iter().flatten().collect(),
+        events: events(&film.outcome),
         from: rounded(scene.drive.ramp_start * MM, 3),
     }
 }
