@@ -318,11 +318,11 @@ mod tests {
 
     #[test]
     fn what_units_need_is_told_by_those_that_run() {
-        let force = |[n, _, _]: [f64; 3]| if n > 0.4 { 4.0 } else { 1.0 + n };
+        let force = |[n, _, _]: [f64; 3]| if n > -0.4 { 4.0 } else { 1.0 + n };
         let mut samples = samples(force, |[_, z, _]| if z < 1.0 { Stage::Before } else { Stage::InUse });
         // The tightest two levels jam, at every speed.
         samples.verdicts[3 * 3..].fill(MotionVerdict::Jammed);
-        assert_eq!(samples.table(1, Demand::Full).unwrap().running_force, 1.0);
+        assert_eq!(samples.table(1, Demand::Full).unwrap().running_force, 0.5);
         samples.verdicts.fill(MotionVerdict::Jammed);
         assert_eq!(samples.table(1, Demand::Full).unwrap().running_force, 4.0);
     }
