@@ -43,6 +43,12 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// What gravity does and what turning resists (N, N·m): force = M·V̇ where no element acts.
     fn own_force(&self, placed: &Self::Placed) -> SVector<S, D>;
 
+    /// Both.
+    #[inline(always)]
+    fn mass_and_own_force(&self, placed: &Self::Placed) -> (SMatrix<S, D, D>, SVector<S, D>) {
+        (self.mass(placed), self.own_force(placed))
+    }
+
     /// Adds how [`own_force`](Self::own_force) less M·`acceleration` goes by velocity and by place, negated; the acceleration
     /// is held, and not looked at where the mass matrix is constant.
     fn own_slopes(

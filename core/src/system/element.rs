@@ -3,15 +3,13 @@
 use super::{Bodies, assembly::Assembly};
 use crate::{SMatrix, SVector, Scalar, mechanism::Way};
 
-/// What an element sees: `R` lengths and angles, how fast they change, and how they go by the coordinates.
+/// What an element sees: `R` lengths and angles, and how fast they change.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<S, const R: usize, const D: usize> {
+pub struct Seen<S, const R: usize> {
     /// x (m, rad); zero where a law needs the rate alone.
     pub place: SVector<S, R>,
     /// ẋ (m/s, rad/s).
     pub rate: SVector<S, R>,
-    /// Λ = ∂ẋ/∂V.
-    pub gradient: SMatrix<S, R, D>,
 }
 
 /// What a law answers: forces along what it sees and how they change.
@@ -35,27 +33,37 @@ pub trait Link<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usize> {
     /// The bodies as the link looks at them.
     fn view(&self, bodies: &B, placed: &B::Placed) -> Self::View;
 
-    /// Whether the number `i` goes by the coordinate `k`. Where it says no, in any pose, derivatives are zero and not looked at.
+    /// Whether the coordinate `k` moves anything that there is to see. Where it does not, in any pose, derivatives are zero and
+    /// not looked at.
+    fn moves(&self, k: usize) -> bool;
+
+    /// Whether it moves the number `i`, where it moves any.
     #[inline(always)]
     fn depends(&self, _i: usize, _k: usize) -> bool {
         true
     }
 
     /// What there is to see.
-    fn seen(&self, at: (&B, &B::Placed), view: &Self::View) -> Seen<S, R, D>;
+    fn seen(&self, at: (&B, &B::Placed), view: &Self::View) -> Seen<S, R>;
+
+    /// Λ = ∂ẋ/∂V.
+    fn gradient(&self, at: (&B, &B::Placed), view: &Self::View) -> SMatrix<S, R, D>;
+
+    /// Adds the generalised force (N, N·m) Λᵀφ of a `force` φ to `sum`.
+    fn add_force(&self, at: (&B, &B::Placed), view: &Self::View, force: &SVector<S, R>, sum: &mut SVector<S, D>);
 
     /// Adds −∂(Λᵀφ)/∂Q for a `force` φ that is held to `stiffness`.
     fn add_carried(
         &self,
         at: (&B, &B::Placed),
         view: &Self::View,
-        seen: &Seen<S, R, D>,
+        gradient: &SMatrix<S, R, D>,
         force: &SVector<S, R>,
         stiffness: &mut SMatrix<S, D, D>,
     );
 
     /// ∂(Λ·V)/∂Q, the velocities V being held.
-    fn swept(&self, at: (&B, &B::Placed), view: &Self::View) -> SMatrix<S, R, D>;
+    fn swept(&self, at: (&B, &B::Placed), view: &Self::View, gradient: &SMatrix<S, R, D>) -> SMatrix<S, R, D>;
 }
 
 /// A force law of `R` lengths and angles.
@@ -65,6 +73,13 @@ pub trait Law<S: Scalar, const R: usize> {
 
     /// Whether it can hold bodies at rest.
     const STICKS: bool;
+
+    /// How many of the numbers, the first ones, it answers to by their place, not by their rate alone: the other columns of its
+    /// stiffness are zero and not looked at.
+    const PLACES: usize;
+
+    /// Whether it changes with time where nothing moves; where not, [`Response::per_time`] is zero and not looked at.
+    const TIMED: bool = false;
 
     /// The memory of a law that nothing has happened to yet.
     fn fresh() -> Self::Memory;
@@ -150,7 +165,7 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
         if let Some(slot) = remembered {
             *slot = next;
         }
-        sum.add(&self.link, at, &view, &seen, &response);
+        sum.add::<B, L, W, R>(&self.link, at, &view, &response);
     }
 
     #[inline(always)]

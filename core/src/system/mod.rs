@@ -173,11 +173,11 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         a: S,
     ) -> SVector<S, D> {
         let placed = self.bodies.placed(pose, velocity);
-        let force = self.sum(t, &placed, memory, a, None);
         if B::MASS_IS_CONSTANT {
-            return force;
+            return self.sum(t, &placed, self.bodies.own_force(&placed), memory, a, None);
         }
-        slopes.mass * Lu::of(self.bodies.mass(&placed)).solve(&force)
+        let (mass, own) = self.bodies.mass_and_own_force(&placed);
+        slopes.mass * Lu::of(mass).solve(&self.sum(t, &placed, own, memory, a, None))
     }
 
     #[inline(always)]
@@ -190,7 +190,8 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         a: S,
         remembered: Option<&mut E::Memory>,
     ) -> SVector<S, D> {
-        self.sum(t, &self.bodies.placed(pose, velocity), memory, a, remembered)
+        let placed = self.bodies.placed(pose, velocity);
+        self.sum(t, &placed, self.bodies.own_force(&placed), memory, a, remembered)
     }
 
     #[inline(always)]
@@ -206,7 +207,8 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         let placed = self.bodies.placed(pose, velocity);
         let rate = S::one() / a;
         let way = Way { a, mass_rate: self.bodies.least_mass() * rate, tangent_share };
-        let mut sum = Balance { force: self.bodies.own_force(&placed), matrix: self.bodies.mass(&placed) * rate, a };
+        let (mass, force) = self.bodies.mass_and_own_force(&placed);
+        let mut sum = Balance { force, matrix: mass * rate, a };
         self.elements.act((t, way), (&self.bodies, &placed), memory, None, &mut sum);
         Linearised { force: sum.force, linearisation: Lu::of(sum.matrix) }
     }
@@ -239,14 +241,9 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     ) -> Differentiated<S, Slopes<S, D>, D> {
         let placed = self.bodies.placed(pose, velocity);
         let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
-        let mass = self.bodies.mass(&placed);
+        let (mass, force) = self.bodies.mass_and_own_force(&placed);
         let zero = SMatrix::zeros();
-        let mut sum = Derivatives {
-            force: self.bodies.own_force(&placed),
-            per_time: SVector::zeros(),
-            damping: zero,
-            stiffness: zero,
-        };
+        let mut sum = Derivatives { force, per_time: SVector::zeros(), damping: zero, stiffness: zero };
         self.elements.act((t, way), (&self.bodies, &placed), memory, None, &mut sum);
         let acceleration = if B::MASS_IS_CONSTANT { SVector::zeros() } else { Lu::of(mass).solve(&sum.force) };
         self.bodies.own_slopes(&placed, &acceleration, &mut sum.damping, &mut sum.stiffness);
@@ -271,12 +268,14 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
 }
 
 impl<B, E> System<B, E> {
-    /// The generalised force (N, N·m) at time `t` (s) of a mechanism that is `placed`; see [`Mechanism::forces`].
+    /// The generalised force (N, N·m) at time `t` (s) of a mechanism that is `placed`, its `own` included; see
+    /// [`Mechanism::forces`].
     #[inline(always)]
     fn sum<S: Scalar, const D: usize>(
         &self,
         t: S,
         placed: &B::Placed,
+        own: SVector<S, D>,
         memory: &E::Memory,
         a: S,
         remembered: Option<&mut E::Memory>,
@@ -286,7 +285,7 @@ impl<B, E> System<B, E> {
         E: Elements<S, B, D>,
     {
         let way = Way { a, mass_rate: self.bodies.least_mass() / a, tangent_share: S::one() };
-        let mut sum = Sum(self.bodies.own_force(placed));
+        let mut sum = Sum(own);
         self.elements.act((t, way), (&self.bodies, placed), memory, remembered, &mut sum);
         sum.0
     }

@@ -90,7 +90,7 @@ fn gradient<B: Bodies<f64, D>, L: Link<f64, B, D, R>, const R: usize, const D: u
     bodies: &B,
     placed: &B::Placed,
 ) -> SMatrix<f64, R, D> {
-    link.seen((bodies, placed), &link.view(bodies, placed)).gradient
+    link.gradient((bodies, placed), &link.view(bodies, placed))
 }
 
 fn rank_of<const D: usize>(rows: &[[f64; D]]) -> usize {

@@ -49,6 +49,10 @@ impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
 
     const STICKS: bool = false;
 
+    const PLACES: usize = 0;
+
+    const TIMED: bool = true;
+
     #[inline(always)]
     fn fresh() {}
 
@@ -75,6 +79,10 @@ impl<S: Scalar, P: Push<S>> Law<S, 1> for Motor<P> {
     type Memory = ();
 
     const STICKS: bool = false;
+
+    const PLACES: usize = 0;
+
+    const TIMED: bool = true;
 
     #[inline(always)]
     fn fresh() {}

@@ -31,6 +31,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
 
     const STICKS: bool = F::STICKS;
 
+    const PLACES: usize = 2;
+
     #[inline(always)]
     fn fresh() -> F::Memory {
         F::fresh()

@@ -57,6 +57,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
 
     const STICKS: bool = F::STICKS;
 
+    const PLACES: usize = 2;
+
     #[inline(always)]
     fn fresh() -> [F::Memory; 2] {
         [F::fresh(); 2]

@@ -27,6 +27,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
 
     const STICKS: bool = F::STICKS;
 
+    const PLACES: usize = 2;
+
     #[inline(always)]
     fn fresh() -> F::Memory {
         F::fresh()
@@ -41,7 +43,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
         memory: &F::Memory,
         way: Way<S>,
     ) -> (Response<S, 6>, F::Memory) {
-        let (zero, one) = (S::zero(), S::one());
+        let one = S::one();
         let apart = Vector2::new(place[0], place[1]);
         let squared = apart.dot(&apart);
         let per_distance = squared.max_of(S::from_f64(1e-30)).rsqrt();
@@ -77,18 +79,17 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
         let push = tangent * turn - normal * touch.force;
         let moment = tangent * (rim * rub);
         let force = SVector::<S, 6>::new(push.x, push.y, rub, moment.x, moment.y, -(rim * turn));
-        let by_place = SMatrix::<S, 6, 6>::from_fn(|i, j| if j < 2 { rows[i][j] } else { zero });
-        let by_rate = SMatrix::<S, 6, 6>::from_fn(|i, j| rows[i][j + 2]);
-        let axes = SMatrix::<S, 6, 6>::from_fn(|i, j| match (i, j) {
-            (0, 0) | (3, 3) => normal.x,
-            (1, 0) | (4, 3) => normal.y,
-            (0, 1) | (3, 4) => tangent.x,
-            (1, 1) | (4, 4) => tangent.y,
-            (2, 2) | (5, 5) => one,
-            _ => zero,
-        });
-        let in_frame = |local: SMatrix<S, 6, 6>| -(axes * local * axes.transpose());
-        (steady(force, in_frame(by_rate), in_frame(by_place)), touch.memory)
+        let (mut by_place, mut by_rate) = (SMatrix::<S, 6, 6>::zeros(), SMatrix::<S, 6, 6>::zeros());
+        for (i, row) in rows.iter().enumerate() {
+            for j in 0..2 {
+                by_place[(i, j)] = -row[j];
+            }
+            for j in 0..6 {
+                by_rate[(i, j)] = -row[j + 2];
+            }
+        }
+        let axes = [normal, tangent];
+        (steady(force, in_link(&axes, by_rate), in_link(&axes, by_place)), touch.memory)
     }
 
     #[inline(always)]
@@ -100,4 +101,23 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
     fn or_old(new: &F::Memory, condition: S, old: &F::Memory) -> F::Memory {
         F::or_old(new, condition, old)
     }
+}
+
+/// A·`local`·Aᵀ, where A turns two triples from the axes normal, tangent and rod into those of the link. Written out, because most
+/// of A is zero.
+#[inline(always)]
+fn in_link<S: Scalar>([normal, tangent]: &[Vector2<S>; 2], mut local: SMatrix<S, 6, 6>) -> SMatrix<S, 6, 6> {
+    for first in [0, 3] {
+        for j in 0..6 {
+            let turned = normal * local[(first, j)] + tangent * local[(first + 1, j)];
+            (local[(first, j)], local[(first + 1, j)]) = (turned.x, turned.y);
+        }
+    }
+    for first in [0, 3] {
+        for i in 0..6 {
+            let turned = normal * local[(i, first)] + tangent * local[(i, first + 1)];
+            (local[(i, first)], local[(i, first + 1)]) = (turned.x, turned.y);
+        }
+    }
+    local
 }

@@ -19,6 +19,8 @@ impl<S: Scalar> Law<S, 1> for Spring<S> {
 
     const STICKS: bool = false;
 
+    const PLACES: usize = 1;
+
     #[inline(always)]
     fn fresh() {}
 

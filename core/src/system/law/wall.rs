@@ -74,6 +74,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
 
     const STICKS: bool = F::STICKS;
 
+    const PLACES: usize = 1;
+
     #[inline(always)]
     fn fresh() -> F::Memory {
         F::fresh()
@@ -114,6 +116,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
     type Memory = F::Memory;
 
     const STICKS: bool = F::STICKS;
+
+    const PLACES: usize = 3;
 
     #[inline(always)]
     fn fresh() -> F::Memory {

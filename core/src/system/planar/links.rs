@@ -91,6 +91,16 @@ impl<S: Scalar, const D: usize, P: Carrier<D>, Q: Carrier<D>> Pair<S, D, P, Q> {
         self.less(&self.point.swept(topology, placed, rates), &self.seat.swept(topology, placed, rates))
     }
 
+    /// Adds the generalised force (N, N·m) of a `force` (N) on the point, and the opposite one on the seat.
+    #[inline(always)]
+    fn add_force(&self, force: &Vector2<S>, sum: &mut SVector<S, D>) {
+        for (k, column) in self.gradient().iter().enumerate() {
+            if self.point.moves(k) || self.seat.moves(k) {
+                sum[k] += column.dot(force);
+            }
+        }
+    }
+
     /// Its rate (m/s).
     #[inline(always)]
     fn rate(&self, rates: &SVector<S, D>) -> Vector2<S> {
@@ -133,23 +143,44 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>
     }
 
     #[inline(always)]
-    fn depends(&self, _: usize, k: usize) -> bool {
+    fn moves(&self, k: usize) -> bool {
         self.point.carrier.moves(k) || self.seat.carrier.moves(k)
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 2, D> {
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 2> {
         let axes = self.axes(placed);
         let apart = pair.point.place - pair.seat.place;
-        let mut columns = pair.gradient();
         let mut rate = pair.rate(&placed.rates);
         if let Some(turn) = self.seat.carrier.turn() {
-            let carried = left(&apart);
-            columns[turn] -= carried;
-            rate -= carried * placed.rates[turn];
+            rate -= left(&apart) * placed.rates[turn];
         }
-        let gradient = SMatrix::<S, 2, D>::from_columns(&columns.map(|column| axes.tr_mul(&column)));
-        Seen { place: axes.tr_mul(&apart), rate: axes.tr_mul(&rate), gradient }
+        Seen { place: axes.tr_mul(&apart), rate: axes.tr_mul(&rate) }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 2, D> {
+        let axes = self.axes(placed);
+        let mut columns = pair.gradient();
+        if let Some(turn) = self.seat.carrier.turn() {
+            columns[turn] -= left(&(pair.point.place - pair.seat.place));
+        }
+        SMatrix::<S, 2, D>::from_columns(&columns.map(|column| axes.tr_mul(&column)))
+    }
+
+    #[inline(always)]
+    fn add_force(
+        &self,
+        (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        pair: &Self::View,
+        force: &SVector<S, 2>,
+        sum: &mut SVector<S, D>,
+    ) {
+        let force = self.axes(placed) * force;
+        pair.add_force(&force, sum);
+        if let Some(turn) = self.seat.carrier.turn() {
+            sum[turn] -= left(&(pair.point.place - pair.seat.place)).dot(&force);
+        }
     }
 
     #[inline(always)]
@@ -157,7 +188,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>
         &self,
         (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
         pair: &Self::View,
-        _: &Seen<S, 2, D>,
+        _: &SMatrix<S, 2, D>,
         force: &SVector<S, 2>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
@@ -179,7 +210,12 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>
     }
 
     #[inline(always)]
-    fn swept(&self, (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 2, D> {
+    fn swept(
+        &self,
+        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        pair: &Self::View,
+        _: &SMatrix<S, 2, D>,
+    ) -> SMatrix<S, 2, D> {
         let rates = &placed.rates;
         let mut swept = pair.swept(tree.topology(), placed);
         if let Some(turn) = self.seat.carrier.turn() {
@@ -195,6 +231,16 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>
         }
         let axes = self.axes(placed);
         SMatrix::<S, 2, D>::from_columns(&swept.map(|column| axes.tr_mul(&column)))
+    }
+}
+
+impl<S: Scalar, const D: usize, C> Along<S, D, C> {
+    /// What the columns of point and sensor have along the axis, a row each.
+    #[inline(always)]
+    fn along(&self, [point, sensor]: [&[Vector2<S>; D]; 2]) -> SMatrix<S, 2, D> {
+        let columns: [_; D] =
+            core::array::from_fn(|k| SVector::<S, 2>::new(self.axis.dot(&point[k]), self.axis.dot(&sensor[k])));
+        SMatrix::<S, 2, D>::from_columns(&columns)
     }
 }
 
@@ -216,28 +262,58 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>
     }
 
     #[inline(always)]
+    fn moves(&self, k: usize) -> bool {
+        self.hole.carrier.moves(k) || self.pin.carrier.moves(k)
+    }
+
+    #[inline(always)]
     fn depends(&self, i: usize, k: usize) -> bool {
         match i {
             2 => self.hole.carrier.turn() == Some(k),
             3 => self.pin.carrier.turn() == Some(k),
-            _ => self.hole.carrier.moves(k) || self.pin.carrier.moves(k),
+            _ => true,
         }
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 4, D> {
-        let (zero, one) = (S::zero(), S::one());
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 4> {
+        let zero = S::zero();
         let apart = pair.point.place - pair.seat.place;
-        let mut gradient = above_zeros(&pair.gradient());
         let velocity = pair.rate(&placed.rates);
         let mut rate = SVector::<S, 4>::new(velocity.x, velocity.y, zero, zero);
         for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
             if let Some(turn) = turn {
-                gradient[(i, turn)] = one;
                 rate[i] = placed.rates[turn];
             }
         }
-        Seen { place: SVector::<S, 4>::new(apart.x, apart.y, zero, zero), rate, gradient }
+        Seen { place: SVector::<S, 4>::new(apart.x, apart.y, zero, zero), rate }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 4, D> {
+        let mut gradient = above_zeros(&pair.gradient());
+        for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
+            if let Some(turn) = turn {
+                gradient[(i, turn)] = S::one();
+            }
+        }
+        gradient
+    }
+
+    #[inline(always)]
+    fn add_force(
+        &self,
+        _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        pair: &Self::View,
+        force: &SVector<S, 4>,
+        sum: &mut SVector<S, D>,
+    ) {
+        pair.add_force(&Vector2::new(force[0], force[1]), sum);
+        for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
+            if let Some(turn) = turn {
+                sum[turn] += force[i];
+            }
+        }
     }
 
     #[inline(always)]
@@ -245,7 +321,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>
         &self,
         (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
         pair: &Self::View,
-        _: &Seen<S, 4, D>,
+        _: &SMatrix<S, 4, D>,
         force: &SVector<S, 4>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
@@ -253,7 +329,12 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>
     }
 
     #[inline(always)]
-    fn swept(&self, (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 4, D> {
+    fn swept(
+        &self,
+        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        pair: &Self::View,
+        _: &SMatrix<S, 4, D>,
+    ) -> SMatrix<S, 4, D> {
         above_zeros(&pair.swept(tree.topology(), placed))
     }
 }
@@ -267,27 +348,52 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D:
     fn view(&self, _: &PlanarTree<S, D, J, R>, _: &Placed<S, D>) {}
 
     #[inline(always)]
-    fn depends(&self, _: usize, k: usize) -> bool {
+    fn moves(&self, k: usize) -> bool {
         self.body.turn() == Some(k) || self.against.turn() == Some(k)
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &()) -> Seen<S, 1, D> {
-        let mut gradient = SMatrix::<S, 1, D>::zeros();
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &()) -> Seen<S, 1> {
         let mut axis = Vector2::new(S::one(), S::zero());
         let mut rate = S::zero();
         if let Some(body) = self.body.turn() {
-            gradient[(0, body)] = S::one();
             axis = placed.axes[body];
             rate = placed.rates[body];
         }
         if let Some(against) = self.against.turn() {
-            gradient[(0, against)] = -S::one();
             let back = placed.axes[against];
             axis = turned(&Vector2::new(back.x, -back.y), &axis);
             rate -= placed.rates[against];
         }
-        Seen { place: SVector::<S, 1>::new(angle(&axis)), rate: SVector::<S, 1>::new(rate), gradient }
+        Seen { place: SVector::<S, 1>::new(angle(&axis)), rate: SVector::<S, 1>::new(rate) }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &()) -> SMatrix<S, 1, D> {
+        let mut gradient = SMatrix::<S, 1, D>::zeros();
+        if let Some(body) = self.body.turn() {
+            gradient[(0, body)] = S::one();
+        }
+        if let Some(against) = self.against.turn() {
+            gradient[(0, against)] = -S::one();
+        }
+        gradient
+    }
+
+    #[inline(always)]
+    fn add_force(
+        &self,
+        _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        (): &(),
+        force: &SVector<S, 1>,
+        sum: &mut SVector<S, D>,
+    ) {
+        if let Some(body) = self.body.turn() {
+            sum[body] += force[0];
+        }
+        if let Some(against) = self.against.turn() {
+            sum[against] -= force[0];
+        }
     }
 
     #[inline(always)]
@@ -295,14 +401,14 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D:
         &self,
         _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
         (): &(),
-        _: &Seen<S, 1, D>,
+        _: &SMatrix<S, 1, D>,
         _: &SVector<S, 1>,
         _: &mut SMatrix<S, D, D>,
     ) {
     }
 
     #[inline(always)]
-    fn swept(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &()) -> SMatrix<S, 1, D> {
+    fn swept(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &(), _: &SMatrix<S, 1, D>) -> SMatrix<S, 1, D> {
         SMatrix::zeros()
     }
 }
@@ -318,20 +424,33 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usiz
     }
 
     #[inline(always)]
-    fn depends(&self, _: usize, k: usize) -> bool {
+    fn moves(&self, k: usize) -> bool {
         self.point.carrier.moves(k)
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), view: &Self::View) -> Seen<S, 2, D> {
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), view: &Self::View) -> Seen<S, 2> {
         let [point, sensor] = view;
         let along = |of: [&Vector2<S>; 2]| SVector::<S, 2>::new(self.axis.dot(of[0]), self.axis.dot(of[1]));
-        let columns: [_; D] = core::array::from_fn(|k| along([&point.gradient[k], &sensor.gradient[k]]));
         let velocities = [point, sensor].map(|at| at.velocity(&placed.rates));
-        Seen {
-            place: along([&point.place, &sensor.place]),
-            rate: along(velocities.each_ref()),
-            gradient: SMatrix::<S, 2, D>::from_columns(&columns),
+        Seen { place: along([&point.place, &sensor.place]), rate: along(velocities.each_ref()) }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), view: &Self::View) -> SMatrix<S, 2, D> {
+        self.along(view.each_ref().map(|at| &at.gradient))
+    }
+
+    #[inline(always)]
+    fn add_force(
+        &self,
+        _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        view: &Self::View,
+        force: &SVector<S, 2>,
+        sum: &mut SVector<S, D>,
+    ) {
+        for (at, force) in view.iter().zip(force) {
+            at.add_force(&(self.axis * *force), sum);
         }
     }
 
@@ -340,7 +459,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usiz
         &self,
         (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
         view: &Self::View,
-        _: &Seen<S, 2, D>,
+        _: &SMatrix<S, 2, D>,
         force: &SVector<S, 2>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
@@ -350,11 +469,14 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usiz
     }
 
     #[inline(always)]
-    fn swept(&self, (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), view: &Self::View) -> SMatrix<S, 2, D> {
+    fn swept(
+        &self,
+        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        view: &Self::View,
+        _: &SMatrix<S, 2, D>,
+    ) -> SMatrix<S, 2, D> {
         let [point, sensor] = view.each_ref().map(|at| at.swept(tree.topology(), placed, &placed.rates));
-        let columns: [_; D] =
-            core::array::from_fn(|k| SVector::<S, 2>::new(self.axis.dot(&point[k]), self.axis.dot(&sensor[k])));
-        SMatrix::<S, 2, D>::from_columns(&columns)
+        self.along([&point, &sensor])
     }
 }
 

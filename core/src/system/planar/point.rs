@@ -149,11 +149,18 @@ impl<S: Scalar, const D: usize, C: Carrier<D>> At<S, D, C> {
     /// J̇·V (m/s²).
     #[inline(always)]
     pub fn resisted<J: Topology<D>>(&self, topology: &J, placed: &Placed<S, D>) -> Vector2<S> {
-        let swept = self.swept(topology, placed, &placed.rates);
+        let rates = &placed.rates;
         let mut resisted = Vector2::zeros();
-        for (k, (swept, rate)) in swept.iter().zip(placed.rates.iter()).enumerate() {
+        for k in 0..D {
             if self.carrier.moves(k) {
-                resisted += swept * *rate;
+                match topology.kind(k) {
+                    Kind::Turn => resisted -= self.arms[k] * (rates[k] * rates[k]),
+                    Kind::Slide { on: Some(on) } => {
+                        let twice = rates[on] * rates[k];
+                        resisted += left(&placed.axes[k]) * (twice + twice);
+                    }
+                    Kind::Slide { on: None } => {}
+                }
             }
         }
         resisted

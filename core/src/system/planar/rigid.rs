@@ -35,13 +35,16 @@ pub trait Rigids<S: Scalar, J, const D: usize>: Copy {
     where
         S: PartialOrd;
 
-    /// Adds to the mass matrix.
-    fn add_mass(&self, at: (&J, &Placed<S, D>), mass: &mut SMatrix<S, D, D>);
+    /// Adds to the `mass` matrix, and what `gravity` (m/s²) does and what turning resists to the `force`.
+    fn add(
+        &self,
+        at: (&J, &Placed<S, D>),
+        gravity: &Vector2<S>,
+        mass: Option<&mut SMatrix<S, D, D>>,
+        force: Option<&mut SVector<S, D>>,
+    );
 
-    /// Adds what `gravity` (m/s²) does and what turning resists.
-    fn add_force(&self, at: (&J, &Placed<S, D>), gravity: &Vector2<S>, force: &mut SVector<S, D>);
-
-    /// Adds how that less M·`acceleration` goes by velocity and by place, negated.
+    /// Adds how that force less M·`acceleration` goes by velocity and by place, negated.
     fn add_slopes(
         &self,
         at: (&J, &Placed<S, D>),
@@ -68,29 +71,34 @@ impl<S: Scalar, J: Topology<D>, C: Carrier<D>, const D: usize> Rigids<S, J, D> f
     }
 
     #[inline(always)]
-    fn add_mass(&self, (topology, placed): (&J, &Placed<S, D>), mass: &mut SMatrix<S, D, D>) {
+    fn add(
+        &self,
+        (topology, placed): (&J, &Placed<S, D>),
+        gravity: &Vector2<S>,
+        mass: Option<&mut SMatrix<S, D, D>>,
+        force: Option<&mut SVector<S, D>>,
+    ) {
         let carrier = self.centre.carrier;
-        let gradient = At::of(topology, &self.centre, placed).gradient;
-        for j in 0..D {
-            for i in 0..=j {
-                if carrier.moves(i) && carrier.moves(j) {
-                    let entry = gradient[i].dot(&gradient[j]) * self.mass;
-                    mass[(i, j)] += entry;
-                    if i != j {
-                        mass[(j, i)] += entry;
+        let at = At::of(topology, &self.centre, placed);
+        if let Some(mass) = mass {
+            for j in 0..D {
+                for i in 0..=j {
+                    if carrier.moves(i) && carrier.moves(j) {
+                        let entry = at.gradient[i].dot(&at.gradient[j]) * self.mass;
+                        mass[(i, j)] += entry;
+                        if i != j {
+                            mass[(j, i)] += entry;
+                        }
                     }
                 }
             }
+            if let Some(turn) = carrier.turn() {
+                mass[(turn, turn)] += self.inertia;
+            }
         }
-        if let Some(turn) = carrier.turn() {
-            mass[(turn, turn)] += self.inertia;
+        if let Some(force) = force {
+            at.add_force(&((gravity - at.resisted(topology, placed)) * self.mass), force);
         }
-    }
-
-    #[inline(always)]
-    fn add_force(&self, (topology, placed): (&J, &Placed<S, D>), gravity: &Vector2<S>, force: &mut SVector<S, D>) {
-        let at = At::of(topology, &self.centre, placed);
-        at.add_force(&((gravity - at.resisted(topology, placed)) * self.mass), force);
     }
 
     #[inline(always)]
@@ -123,15 +131,15 @@ impl<S: Scalar, J, A: Rigids<S, J, D>, B: Rigids<S, J, D>, const D: usize> Rigid
     }
 
     #[inline(always)]
-    fn add_mass(&self, at: (&J, &Placed<S, D>), mass: &mut SMatrix<S, D, D>) {
-        self.0.add_mass(at, mass);
-        self.1.add_mass(at, mass);
-    }
-
-    #[inline(always)]
-    fn add_force(&self, at: (&J, &Placed<S, D>), gravity: &Vector2<S>, force: &mut SVector<S, D>) {
-        self.0.add_force(at, gravity, force);
-        self.1.add_force(at, gravity, force);
+    fn add(
+        &self,
+        at: (&J, &Placed<S, D>),
+        gravity: &Vector2<S>,
+        mut mass: Option<&mut SMatrix<S, D, D>>,
+        mut force: Option<&mut SVector<S, D>>,
+    ) {
+        self.0.add(at, gravity, mass.as_deref_mut(), force.as_deref_mut());
+        self.1.add(at, gravity, mass, force);
     }
 
     #[inline(always)]
@@ -179,12 +187,15 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Rigids<S, J, D> for Many<S, D> {
         self.iter().try_for_each(|body| Rigids::<S, J, D>::measure(body, least_mass, levers))
     }
 
-    fn add_mass(&self, at: (&J, &Placed<S, D>), mass: &mut SMatrix<S, D, D>) {
-        self.iter().for_each(|body| body.add_mass(at, mass));
-    }
-
-    fn add_force(&self, at: (&J, &Placed<S, D>), gravity: &Vector2<S>, force: &mut SVector<S, D>) {
-        self.iter().for_each(|body| body.add_force(at, gravity, force));
+    #[inline(always)]
+    fn add(
+        &self,
+        at: (&J, &Placed<S, D>),
+        gravity: &Vector2<S>,
+        mut mass: Option<&mut SMatrix<S, D, D>>,
+        mut force: Option<&mut SVector<S, D>>,
+    ) {
+        self.iter().for_each(|body| body.add(at, gravity, mass.as_deref_mut(), force.as_deref_mut()));
     }
 
     fn add_slopes(

@@ -241,15 +241,22 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
     #[inline(always)]
     fn mass(&self, placed: &Placed<S, D>) -> SMatrix<S, D, D> {
         let mut mass = SMatrix::<S, D, D>::zeros();
-        self.bodies.add_mass((&self.topology, placed), &mut mass);
+        self.bodies.add((&self.topology, placed), &self.gravity, Some(&mut mass), None);
         mass
     }
 
     #[inline(always)]
     fn own_force(&self, placed: &Placed<S, D>) -> SVector<S, D> {
         let mut force = SVector::<S, D>::zeros();
-        self.bodies.add_force((&self.topology, placed), &self.gravity, &mut force);
+        self.bodies.add((&self.topology, placed), &self.gravity, None, Some(&mut force));
         force
+    }
+
+    #[inline(always)]
+    fn mass_and_own_force(&self, placed: &Placed<S, D>) -> (SMatrix<S, D, D>, SVector<S, D>) {
+        let (mut mass, mut force) = (SMatrix::<S, D, D>::zeros(), SVector::<S, D>::zeros());
+        self.bodies.add((&self.topology, placed), &self.gravity, Some(&mut mass), Some(&mut force));
+        (mass, force)
     }
 
     #[inline(always)]

@@ -77,30 +77,71 @@ pub struct View<S> {
 }
 
 impl<S: Scalar> Seat<S> {
+    /// Whether the coordinate `k` moves the point or what it is seen from.
     #[inline(always)]
-    fn look<const N: usize, const D: usize>(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> View<S> {
-        let get = |body: Option<usize>| body.map_or(PlacedBody::still(), |body| placed.body(body));
-        let centre = |body: Option<usize>| {
-            body.and_then(|body| bodies.bodies().get(body)).map_or(Vector3::zeros(), |body| body.centre_w)
-        };
-        let (of, from) = (get(self.point.body), get(self.from));
-        let nominal = centre(self.point.body) + self.point.lever - centre(self.from);
-        let moved = of.displacement_w + (of.to_frame * self.point.lever - self.point.lever) - from.displacement_w;
-        let to_seat = from.to_frame.transpose();
-        let displacement = (to_seat * nominal - nominal) + to_seat * moved;
-        View {
-            displacement,
-            lever: nominal + displacement,
-            across: to_seat * of.to_frame,
-            to_seat,
-            velocity: to_seat * (of.velocity_w - from.velocity_w),
-            rotations: [of.rotation_b, from.rotation_b],
-        }
+    fn is_moved_by(&self, k: usize) -> bool {
+        let body = Some(k / 6);
+        self.point.body == body || self.from == body
     }
 
     #[inline(always)]
-    fn gradient<const R: usize, const D: usize>(&self, view: &View<S>) -> SMatrix<S, R, D> {
-        let mut gradient = SMatrix::<S, R, D>::zeros();
+    fn look<const N: usize, const D: usize>(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> View<S> {
+        let centre = |body: Option<usize>| {
+            body.and_then(|body| bodies.bodies().get(body)).map_or(Vector3::zeros(), |body| body.centre_w)
+        };
+        let nominal = centre(self.point.body) + self.point.lever - centre(self.from);
+        let of = self.point.body.map_or(PlacedBody::still(), |body| placed.body(body));
+        let moved_w = of.displacement_w + (of.to_frame * self.point.lever - self.point.lever);
+        match self.from {
+            Some(body) => {
+                let from = placed.body(body);
+                let to_seat = from.to_frame.transpose();
+                let displacement = (to_seat * nominal - nominal) + to_seat * (moved_w - from.displacement_w);
+                View {
+                    displacement,
+                    lever: nominal + displacement,
+                    across: to_seat * of.to_frame,
+                    to_seat,
+                    velocity: to_seat * (of.velocity_w - from.velocity_w),
+                    rotations: [of.rotation_b, from.rotation_b],
+                }
+            }
+            None => View {
+                displacement: moved_w,
+                lever: nominal + moved_w,
+                across: of.to_frame,
+                to_seat: Matrix3::identity(),
+                velocity: of.velocity_w,
+                rotations: [of.rotation_b, Vector3::zeros()],
+            },
+        }
+    }
+
+    /// How fast the point moves, seen from the body.
+    #[inline(always)]
+    fn rate(&self, view: &View<S>) -> Vector3<S> {
+        let [of, from] = &view.rotations;
+        let rate = view.velocity + view.across * of.cross(&self.point.lever);
+        if self.from.is_some() { rate - from.cross(&view.lever) } else { rate }
+    }
+
+    /// Adds the generalised force (N, N·m) of a `force` (N) on the point, given in the axes of the body that it is seen from.
+    #[inline(always)]
+    fn add_force<const D: usize>(&self, view: &View<S>, force: &Vector3<S>, sum: &mut SVector<S, D>) {
+        let force_w = if self.from.is_some() { view.to_seat.tr_mul(force) } else { *force };
+        if let Some(i) = self.point.body {
+            let torque_b = self.point.lever.cross(&view.across.tr_mul(force));
+            add_wrench(sum, i, [&force_w, &torque_b]);
+        }
+        if let Some(j) = self.from {
+            add_wrench(sum, j, [&-force_w, &force.cross(&view.lever)]);
+        }
+    }
+
+    /// How these lengths go by the velocities.
+    #[inline(always)]
+    fn lengths<const D: usize>(&self, view: &View<S>) -> SMatrix<S, 3, D> {
+        let mut gradient = SMatrix::<S, 3, D>::zeros();
         if let Some(i) = self.point.body {
             put(&mut gradient, (0, 6 * i), &view.to_seat);
             put(&mut gradient, (0, 6 * i + 3), &-(view.across * cross_matrix(&self.point.lever)));
@@ -140,12 +181,7 @@ impl<S: Scalar> Seat<S> {
 
     /// ∂(Λ·V)/∂Q.
     #[inline(always)]
-    fn sweep<const R: usize, const D: usize>(
-        &self,
-        view: &View<S>,
-        gradient: &SMatrix<S, 3, D>,
-        swept: &mut SMatrix<S, R, D>,
-    ) {
+    fn sweep<const D: usize>(&self, view: &View<S>, gradient: &SMatrix<S, 3, D>, swept: &mut SMatrix<S, 3, D>) {
         let [of, from] = &view.rotations;
         let carried = of.cross(&self.point.lever);
         if let Some(j) = self.from {
@@ -167,9 +203,29 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> Seen<S, 3, D> {
-        let gradient = self.gradient(view);
-        Seen { place: view.displacement, rate: gradient * placed.rates, gradient }
+    fn moves(&self, k: usize) -> bool {
+        self.is_moved_by(k)
+    }
+
+    #[inline(always)]
+    fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> Seen<S, 3> {
+        Seen { place: view.displacement, rate: self.rate(view) }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> SMatrix<S, 3, D> {
+        self.lengths(view)
+    }
+
+    #[inline(always)]
+    fn add_force(
+        &self,
+        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        view: &View<S>,
+        force: &SVector<S, 3>,
+        sum: &mut SVector<S, D>,
+    ) {
+        Seat::add_force(self, view, force, sum);
     }
 
     #[inline(always)]
@@ -177,18 +233,32 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         &self,
         _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
         view: &View<S>,
-        seen: &Seen<S, 3, D>,
+        gradient: &SMatrix<S, 3, D>,
         force: &SVector<S, 3>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        self.carry(view, &seen.gradient, force, stiffness);
+        self.carry(view, gradient, force, stiffness);
     }
 
     #[inline(always)]
-    fn swept(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> SMatrix<S, 3, D> {
+    fn swept(
+        &self,
+        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        view: &View<S>,
+        gradient: &SMatrix<S, 3, D>,
+    ) -> SMatrix<S, 3, D> {
         let mut swept = SMatrix::zeros();
-        self.sweep(view, &self.gradient(view), &mut swept);
+        self.sweep(view, gradient, &mut swept);
         swept
+    }
+}
+
+impl<S: Scalar> Turned<S> {
+    /// The force (N) and the moment (N·m) in `force`, in the axes of the body that it is seen from.
+    #[inline(always)]
+    fn halves(&self, force: &SVector<S, 6>) -> [Vector3<S>; 2] {
+        let [a, b, c, d, e, f] = force.data.0[0];
+        [self.axes * Vector3::new(a, b, c), self.axes * Vector3::new(d, e, f)]
     }
 }
 
@@ -201,9 +271,34 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> Seen<S, 6, D> {
+    fn moves(&self, k: usize) -> bool {
+        self.seat.is_moved_by(k)
+    }
+
+    /// Displacements do not turn.
+    #[inline(always)]
+    fn depends(&self, i: usize, k: usize) -> bool {
+        i < 3 || k % 6 >= 3
+    }
+
+    #[inline(always)]
+    fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> Seen<S, 6> {
+        let place = self.axes.tr_mul(&view.displacement) + self.offset;
+        let rate = self.axes.tr_mul(&self.seat.rate(view));
+        let [of, from] = &view.rotations;
+        let turning = view.across * of;
+        let turning = self.axes.tr_mul(&if self.seat.from.is_some() { turning - from } else { turning });
+        let zero = S::zero();
+        Seen {
+            place: SVector::<S, 6>::from([place.x, place.y, place.z, zero, zero, zero]),
+            rate: SVector::<S, 6>::from([rate.x, rate.y, rate.z, turning.x, turning.y, turning.z]),
+        }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> SMatrix<S, 6, D> {
         let mut gradient = SMatrix::<S, 6, D>::zeros();
-        let lengths: SMatrix<S, 3, D> = self.seat.gradient(view);
+        let lengths: SMatrix<S, 3, D> = self.seat.lengths(view);
         change(&mut gradient, (0, 0), &self.axes.tr_mul(&lengths), |entry, from| *entry = from);
         if let Some(i) = self.seat.point.body {
             put(&mut gradient, (3, 6 * i + 3), &self.axes.tr_mul(&view.across));
@@ -211,10 +306,26 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         if let Some(j) = self.seat.from {
             put(&mut gradient, (3, 6 * j + 3), &-self.axes.transpose());
         }
-        let place = self.axes.tr_mul(&view.displacement) + self.offset;
-        let zero = S::zero();
-        let all = SVector::<S, 6>::from([place.x, place.y, place.z, zero, zero, zero]);
-        Seen { place: all, rate: gradient * placed.rates, gradient }
+        gradient
+    }
+
+    #[inline(always)]
+    fn add_force(
+        &self,
+        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        view: &View<S>,
+        force: &SVector<S, 6>,
+        sum: &mut SVector<S, D>,
+    ) {
+        let [push, moment] = self.halves(force);
+        self.seat.add_force(view, &push, sum);
+        let none = Vector3::zeros();
+        if let Some(i) = self.seat.point.body {
+            add_wrench(sum, i, [&none, &view.across.tr_mul(&moment)]);
+        }
+        if let Some(j) = self.seat.from {
+            add_wrench(sum, j, [&none, &-moment]);
+        }
     }
 
     #[inline(always)]
@@ -222,13 +333,12 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         &self,
         _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
         view: &View<S>,
-        _: &Seen<S, 6, D>,
+        _: &SMatrix<S, 6, D>,
         force: &SVector<S, 6>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let push = self.axes * Vector3::new(force[0], force[1], force[2]);
-        let moment = self.axes * Vector3::new(force[3], force[4], force[5]);
-        self.seat.carry(view, &self.seat.gradient(view), &push, stiffness);
+        let [push, moment] = self.halves(force);
+        self.seat.carry(view, &self.seat.lengths(view), &push, stiffness);
         if let Some(i) = self.seat.point.body {
             sub(stiffness, (6 * i + 3, 6 * i + 3), &cross_matrix(&view.across.tr_mul(&moment)));
             if let Some(j) = self.seat.from {
@@ -238,9 +348,14 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 
     #[inline(always)]
-    fn swept(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &View<S>) -> SMatrix<S, 6, D> {
+    fn swept(
+        &self,
+        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        view: &View<S>,
+        _: &SMatrix<S, 6, D>,
+    ) -> SMatrix<S, 6, D> {
         let mut lengths = SMatrix::<S, 3, D>::zeros();
-        self.seat.sweep(view, &self.seat.gradient(view), &mut lengths);
+        self.seat.sweep(view, &self.seat.lengths(view), &mut lengths);
         let mut swept = SMatrix::<S, 6, D>::zeros();
         change(&mut swept, (0, 0), &self.axes.tr_mul(&lengths), |entry, from| *entry = from);
         let rotation = view.across * view.rotations[0];
@@ -254,6 +369,14 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 }
 
+impl<S: Scalar> Along<S> {
+    /// How the speed at the point goes by the angular velocity of the body, which is `at` a pose.
+    #[inline(always)]
+    fn arm(&self, at: &PlacedBody<S>) -> Vector3<S> {
+        self.lever.cross(&at.to_frame.tr_mul(&self.axis_w))
+    }
+}
+
 impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 2> for Along<S> {
     type View = ();
 
@@ -261,14 +384,38 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     fn view(&self, _: &FreeBodies<S, N, D>, _: &Placed<S, N, D>) {}
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 2, D> {
-        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w);
-        let arm = self.lever.cross(&axis_b);
+    fn moves(&self, k: usize) -> bool {
+        self.body == k / 6
+    }
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 2> {
+        let at = placed.body(self.body);
+        let along = self.axis_w.dot(&at.velocity_w);
+        let turning = self.arm(&at).dot(&at.rotation_b);
+        Seen { place: SVector::zeros(), rate: SVector::<S, 2>::new(along + turning, along) }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 2, D> {
+        let arm = self.arm(&placed.body(self.body));
         let mut gradient = SMatrix::<S, 2, D>::zeros();
         put_row(&mut gradient, (0, 6 * self.body), &self.axis_w);
         put_row(&mut gradient, (1, 6 * self.body), &self.axis_w);
         put_row(&mut gradient, (0, 6 * self.body + 3), &arm);
-        Seen { place: SVector::zeros(), rate: gradient * placed.rates, gradient }
+        gradient
+    }
+
+    #[inline(always)]
+    fn add_force(
+        &self,
+        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        (): &(),
+        force: &SVector<S, 2>,
+        sum: &mut SVector<S, D>,
+    ) {
+        let torque_b = self.arm(&placed.body(self.body)) * force[0];
+        add_wrench(sum, self.body, [&(self.axis_w * (force[0] + force[1])), &torque_b]);
     }
 
     #[inline(always)]
@@ -276,7 +423,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         &self,
         (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
         (): &(),
-        _: &Seen<S, 2, D>,
+        _: &SMatrix<S, 2, D>,
         force: &SVector<S, 2>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
@@ -286,7 +433,12 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 
     #[inline(always)]
-    fn swept(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 2, D> {
+    fn swept(
+        &self,
+        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        (): &(),
+        _: &SMatrix<S, 2, D>,
+    ) -> SMatrix<S, 2, D> {
         let at = placed.body(self.body);
         let axis_b = at.to_frame.tr_mul(&self.axis_w);
         // ω·(lever × axis), the axis turning against the body: ∂axis = axis × θ.
@@ -304,11 +456,35 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     fn view(&self, _: &FreeBodies<S, N, D>, _: &Placed<S, N, D>) {}
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 1, D> {
+    fn moves(&self, k: usize) -> bool {
+        self.body == k / 6
+    }
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 1> {
+        let at = placed.body(self.body);
+        let rate = at.to_frame.tr_mul(&self.axis_w).dot(&at.rotation_b);
+        Seen { place: SVector::zeros(), rate: SVector::<S, 1>::new(rate) }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 1, D> {
         let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w);
         let mut gradient = SMatrix::<S, 1, D>::zeros();
         put_row(&mut gradient, (0, 6 * self.body + 3), &axis_b);
-        Seen { place: SVector::zeros(), rate: gradient * placed.rates, gradient }
+        gradient
+    }
+
+    #[inline(always)]
+    fn add_force(
+        &self,
+        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        (): &(),
+        force: &SVector<S, 1>,
+        sum: &mut SVector<S, D>,
+    ) {
+        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w);
+        add_wrench(sum, self.body, [&Vector3::zeros(), &(axis_b * force[0])]);
     }
 
     #[inline(always)]
@@ -316,7 +492,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         &self,
         (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
         (): &(),
-        _: &Seen<S, 1, D>,
+        _: &SMatrix<S, 1, D>,
         force: &SVector<S, 1>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
@@ -326,13 +502,27 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 
     #[inline(always)]
-    fn swept(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 1, D> {
+    fn swept(
+        &self,
+        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        (): &(),
+        _: &SMatrix<S, 1, D>,
+    ) -> SMatrix<S, 1, D> {
         let at = placed.body(self.body);
         // ω·axis with ∂axis = axis × θ.
         let by_turn = at.rotation_b.cross(&at.to_frame.tr_mul(&self.axis_w));
         let mut swept = SMatrix::<S, 1, D>::zeros();
         put_row(&mut swept, (0, 6 * self.body + 3), &by_turn);
         swept
+    }
+}
+
+/// Adds a force (N) and a torque (N·m) on a body to `sum`; those on one that is not there are left out.
+#[inline(always)]
+fn add_wrench<S: Scalar, const D: usize>(sum: &mut SVector<S, D>, body: usize, [force, torque]: [&Vector3<S>; 2]) {
+    if let Some([x, y, z, a, b, c]) = sum.data.0[0].as_chunks_mut::<6>().0.get_mut(body) {
+        (*x, *y, *z) = (*x + force.x, *y + force.y, *z + force.z);
+        (*a, *b, *c) = (*a + torque.x, *b + torque.y, *c + torque.z);
     }
 }
 
