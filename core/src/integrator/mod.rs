@@ -77,6 +77,19 @@ pub trait Integrator: Copy {
     ) -> StepOf<S, M, D>;
 }
 
+/// A scheme that is also known within its steps.
+pub trait Dense: Integrator {
+    /// [`Integrator::step`], with the accelerations (m/s², rad/s²) at its start and at its end that make the velocities in
+    /// between a cubic of the scheme's accuracy. Vibrations that the step damps are damped in them: the accelerations of the
+    /// motion itself turn a velocity's last digits into large numbers where a contact is stiff.
+    fn dense_step<S: Scalar, M: Mechanism<S, D>, const D: usize>(
+        mechanism: &M,
+        t: S,
+        h: S,
+        motion: &MotionOf<S, M, D>,
+    ) -> (StepOf<S, M, D>, [SVector<S, D>; 2]);
+}
+
 /// An implicit stage, solved.
 struct Stage<S, P, R, L, const D: usize> {
     motion: Motion<S, P, R, D>,

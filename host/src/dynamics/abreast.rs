@@ -132,7 +132,7 @@ mod tests {
         let sensitivity = Sensitivity { mass: 0.0818, gain: 40.0 };
         let error = |step: &_, length| sensitivity.error(Tolerance::of_force(1e-4), step, length);
         let mut steps = Vec::new();
-        integrate::<Rodas4, _, 6>(&OutOfLine::by(slide, contacts), rest, 0.3, error, |t, motion| {
+        integrate::<Rodas4, _, 6>(&OutOfLine::by(slide, contacts), rest, 0.3, error, |t, motion, _| {
             let [a, b, c, d, e, f] = motion.velocity.data.0[0];
             steps.push([t, a, b, c, d, e, f].map(f64::to_bits));
             ControlFlow::Continue(())

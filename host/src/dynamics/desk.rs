@@ -150,12 +150,17 @@ impl Desk<'_> {
         let mut observer = Observer::new(scene.drive, settings.run);
         let mut tipping = Tipping::default();
         let mut knots: Vec<Knot<[f64; 4]>> = Vec::new();
+        let mut before = rest.velocity;
+        let slope = |velocity: &SVector<f64, 6>, by: &SVector<f64, 6>| [by.z, velocity.x, velocity.y, velocity.z];
         let start = Clock::now();
         let duration = settings.run.duration;
         let error = |step: &_, length| sensitivity.error(tolerance, step, length);
-        let effort = integrate::<Rodas4, _, 6>(driven, rest, duration, error, |t, motion| {
+        let effort = integrate::<Rodas4, _, 6>(driven, rest, duration, error, |t, motion, accelerations| {
             let r = motion.pose.displacement_w;
-            knots.push(Knot { t, values: [motion.velocity.z, r.x, r.y, r.z] });
+            let after = motion.velocity;
+            let slopes = accelerations.map(|[from, to]| [slope(&before, &from), slope(&after, &to)]);
+            before = after;
+            knots.push(Knot { t, values: [after.z, r.x, r.y, r.z], slopes });
             if let Some(see) = &mut see {
                 see(t, motion.velocity.z, &motion.pose, &slide.gaps(&motion.pose));
             }

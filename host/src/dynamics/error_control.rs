@@ -1,14 +1,14 @@
 //! Error control: steps as long as their own error estimates allow, the truth that fixed steps are measured against.
 //!
 //! The steps are those of the kernel's schemes, so that no law is written twice; only their length changes. Between the
-//! ends of steps velocities and positions are cubics whose slopes come from the neighbouring ends: the accelerations
-//! themselves are no use, because a stiff contact turns a velocity's last digits into large ones. Deterministic: the same
-//! scene and tolerance give the same bits.
+//! ends of steps velocities and positions are cubics whose slopes the scheme tells. Deterministic: the same scene and
+//! tolerance give the same bits.
 
 use std::ops::ControlFlow;
 
 use slipfit_core::{
-    integrator::{Integrator, MotionOf, Step, StepOf},
+    SVector,
+    integrator::{Dense, MotionOf, Step, StepOf},
     mechanism::Mechanism,
 };
 
@@ -70,6 +70,8 @@ pub struct Knot<V> {
     pub t: f64,
     /// What is kept of the motion.
     pub values: V,
+    /// How fast that changes at the start and at the end of the step, as far as its scheme knows.
+    pub slopes: Option<[V; 2]>,
 }
 
 impl Sensitivity {
@@ -125,20 +127,23 @@ pub const FIRST_STEP: f64 = 2e-5;
 /// Steps between two looks at whether somebody asked to stop.
 const STEPS_PER_LOOK: u32 = 256;
 
+/// The accelerations (m/s², rad/s²) at the start and the end of a step; see [`Dense`].
+pub type Accelerations<const D: usize> = [SVector<f64, D>; 2];
+
 /// Integrates `mechanism` from `start` at time 0 over `duration` (s) or until `accept` breaks, which sees the start and the
-/// motion at the end of each accepted step. A step is accepted if `error`, which also sees its length (s), is at most 1.
+/// motion at the end of each accepted step, with the step's accelerations. A step is accepted if `error`, which also sees its length (s), is at most 1.
 ///
 /// # Errors
 /// See [`Stopped`].
-pub fn integrate<I: Integrator, M: Mechanism<f64, D>, const D: usize>(
+pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
     mechanism: &M,
     start: MotionOf<f64, M, D>,
     duration: f64,
     error: impl Fn(&StepOf<f64, M, D>, f64) -> f64,
-    mut accept: impl FnMut(f64, &MotionOf<f64, M, D>) -> ControlFlow<()>,
+    mut accept: impl FnMut(f64, &MotionOf<f64, M, D>, Option<Accelerations<D>>) -> ControlFlow<()>,
 ) -> Result<Effort, Stopped> {
     let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
-    let mut flow = accept(t, &motion);
+    let mut flow = accept(t, &motion, None);
     while t < duration && flow.is_continue() {
         let tried = effort.accepted + effort.refused;
         if tried.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
@@ -146,7 +151,7 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, D>, const D: usize>(
         }
         // A last step that would leave a splinter takes it along.
         let length = if t + 1.01 * h >= duration { duration - t } else { h };
-        let step = I::step(mechanism, t, length, &motion);
+        let (step, accelerations) = I::dense_step(mechanism, t, length, &motion);
         // A step whose estimate is not a number is the worst of all.
         let error = Some(error(&step, length)).filter(|error| error.is_finite()).unwrap_or(1e12);
         let factor = (SAFETY / root(error.max(1e-12), I::ORDER)).clamp(CHANGES[0], CHANGES[1]);
@@ -161,7 +166,7 @@ pub fn integrate<I: Integrator, M: Mechanism<f64, D>, const D: usize>(
         effort.accepted += 1;
         t = if length == duration - t { duration } else { t + length };
         motion = step.motion;
-        flow = accept(t, &motion);
+        flow = accept(t, &motion, Some(accelerations));
     }
     Ok(effort)
 }
@@ -209,6 +214,16 @@ struct Cubics<V> {
 impl<V: Values> Cubics<V> {
     /// Between the knots `i` and `i + 1`.
     fn of(knots: &[Knot<V>], i: usize) -> Self {
+        let (from, to) = (&knots[i], &knots[i + 1]);
+        let [start_slope, end_slope] = match to.slopes {
+            Some(slopes) => slopes.map(|slope| slope.with(|k| slope.get(k) * (to.t - from.t))),
+            None => Self::guessed(knots, i),
+        };
+        Self { from: from.t, length: to.t - from.t, start: from.values, end: to.values, start_slope, end_slope }
+    }
+
+    /// Slopes over the length between the knots `i` and `i + 1`, by those next to them.
+    fn guessed(knots: &[Knot<V>], i: usize) -> [V; 2] {
         let chord = |j: usize| {
             let (from, to) = (knots[j], knots[j + 1]);
             let length = to.t - from.t;
@@ -225,8 +240,7 @@ impl<V: Values> Cubics<V> {
                 known.unwrap_or_else(|| slope(of(k)(own), other.map(of(k)), further.map(of(k)))) * length
             })
         };
-        let (start_slope, end_slope) = (slopes(from, [before, after]), slopes(to, [after, before]));
-        Self { from: knots[i].t, length, start: from, end: to, start_slope, end_slope }
+        [slopes(from, [before, after]), slopes(to, [after, before])]
     }
 
     /// At time `t` (s).
@@ -274,7 +288,8 @@ mod tests {
     #[test]
     fn a_bend_between_a_long_and_a_short_step_does_not_reach_into_the_long_one() {
         let y = |t: f64| if t < 0.4 { t * t } else { 0.16 + 7.0 * (t - 0.4) };
-        let knots: Vec<_> = [0.0, 0.2, 0.4, 0.41, 0.42, 0.44].map(|t| Knot { t, values: [y(t); 4] }).into();
+        let knots: Vec<_> =
+            [0.0, 0.2, 0.4, 0.41, 0.42, 0.44].map(|t| Knot { t, values: [y(t); 4], slopes: None }).into();
         for t in [0.25, 0.3, 0.39, 0.405, 0.43] {
             let [found, ..] = sampled(&knots, std::iter::once(t))[0];
             assert!((found - y(t)).abs() < 1e-14, "{t}: {found}");
@@ -284,7 +299,8 @@ mod tests {
     #[test]
     fn parabolas_are_met_exactly_between_uneven_knots() {
         let y = |t: f64| 1.0 + t * (2.0 - 3.0 * t);
-        let knots: Vec<_> = [0.0, 0.1, 0.4, 0.5, 1.0].map(|t| Knot { t, values: [y(t), 0.0, t, 0.0] }).into();
+        let knots: Vec<_> =
+            [0.0, 0.1, 0.4, 0.5, 1.0].map(|t| Knot { t, values: [y(t), 0.0, t, 0.0], slopes: None }).into();
         let times = [0.05, 0.1, 0.25, 0.4, 0.45, 0.5, 0.7];
         for (t, found) in times.into_iter().zip(sampled(&knots, times.into_iter())) {
             assert!((found[0] - y(t)).abs() < 1e-14 && (found[2] - t).abs() < 1e-14, "{t}: {found:?}");

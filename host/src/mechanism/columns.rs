@@ -1,12 +1,12 @@
 //! What is told of a motion: drives and bodies, column by column.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use slipfit_core::{
     SVector,
     pose::Pose,
     system::{
         Bodies,
-        planar::{Kind, PlanarTree},
+        planar::{Kind, PlanarTree, Point},
     },
 };
 
@@ -58,6 +58,13 @@ impl<const D: usize> State<D> {
     }
 }
 
+impl<const D: usize> State<D> {
+    /// How fast these numbers change, where the velocities do by `accelerations` (m/s², rad/s²).
+    pub fn slope(&self, accelerations: [f64; D]) -> Self {
+        Self { rates: accelerations, places: self.place_rates, place_rates: [0.0; D] }
+    }
+}
+
 /// `angle` (rad) by so many turns that it is next to `last`.
 fn near(angle: f64, last: f64) -> f64 {
     let turn = 2.0 * std::f64::consts::PI;
@@ -91,28 +98,39 @@ pub struct BodyMotion {
     pub spin: Vector3<f64>,
 }
 
-/// The bodies of a mechanism in a plane.
-pub fn planar<const D: usize>(
-    mechanism: &Mechanism,
-    mounts: &Mounts,
-    tree: &PlanarTree<f64, D>,
-    state: &State<D>,
-) -> Vec<BodyMotion> {
-    let pose = tree.pose(state.places, |angle| [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]);
-    let placed = tree.placed(&pose, &SVector::from(state.rates));
-    let body = |(i, body): (usize, &super::Body)| {
-        let drawn = flat(body.centre);
-        let [place, velocity] = tree.motion_of(&mounts.point(Some(i), drawn), &placed);
-        let moved = place - drawn;
-        let about = |values: &[f64; D]| Vector3::z() * mounts.turn(Some(i)).map_or(0.0, |turn| values[turn]);
-        BodyMotion {
-            displacement: Vector3::new(moved.x, moved.y, 0.0),
-            turn: about(&state.places),
-            velocity: Vector3::new(velocity.x, velocity.y, 0.0),
-            spin: about(&state.rates),
-        }
-    };
-    mechanism.bodies.iter().enumerate().map(body).collect()
+/// The bodies of a mechanism in a plane: their centres of mass, where they are drawn (m), and what turns them.
+pub struct PlanarBodies<'a, const D: usize> {
+    tree: &'a PlanarTree<f64, D>,
+    bodies: Vec<(Point<f64, D>, Vector2<f64>, Option<usize>)>,
+}
+
+impl<'a, const D: usize> PlanarBodies<'a, D> {
+    /// Those of `mechanism` on its `mounts`.
+    pub fn of(mechanism: &Mechanism, mounts: &Mounts, tree: &'a PlanarTree<f64, D>) -> Self {
+        let body = |(i, body): (usize, &super::Body)| {
+            let drawn = flat(body.centre);
+            (mounts.point(Some(i), drawn), drawn, mounts.turn(Some(i)))
+        };
+        Self { tree, bodies: mechanism.bodies.iter().enumerate().map(body).collect() }
+    }
+
+    /// How they move.
+    pub fn told(&self, state: &State<D>) -> Vec<BodyMotion> {
+        let pose = self.tree.pose(state.places, |angle| [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]);
+        let placed = self.tree.placed(&pose, &SVector::from(state.rates));
+        let body = |(centre, drawn, turn): &(Point<f64, D>, Vector2<f64>, Option<usize>)| {
+            let [place, velocity] = self.tree.motion_of(centre, &placed);
+            let moved = place - drawn;
+            let about = |values: &[f64; D]| Vector3::z() * turn.map_or(0.0, |turn| values[turn]);
+            BodyMotion {
+                displacement: Vector3::new(moved.x, moved.y, 0.0),
+                turn: about(&state.places),
+                velocity: Vector3::new(velocity.x, velocity.y, 0.0),
+                spin: about(&state.rates),
+            }
+        };
+        self.bodies.iter().map(body).collect()
+    }
 }
 
 /// The free bodies of a mechanism in space.

@@ -9,7 +9,10 @@ use slipfit_core::{
 
 use super::RunError;
 use crate::{
-    dynamics::{error_control::Effort, scheme::IntegratorVisitor},
+    dynamics::{
+        error_control::{Accelerations, Effort},
+        scheme::IntegratorVisitor,
+    },
     system::interrupt,
 };
 
@@ -30,14 +33,14 @@ pub struct FixedSteps<M, P, R, F, const D: usize> {
 impl<M, F, const D: usize> IntegratorVisitor for FixedSteps<M, M::Pose, M::Memory, F, D>
 where
     M: slipfit_core::mechanism::Mechanism<f64, D>,
-    F: FnMut(f64, &Motion<f64, M::Pose, M::Memory, D>) -> ControlFlow<()>,
+    F: FnMut(f64, &Motion<f64, M::Pose, M::Memory, D>, Option<Accelerations<D>>) -> ControlFlow<()>,
 {
     type Output = Result<Effort, RunError>;
 
     fn visit<I: Integrator>(mut self) -> Self::Output {
         let kernel = Kernel::<f64, M, I>::new(self.desk, self.step)?;
         let mut state = KernelState { steps: 0, motion: self.start };
-        let _ = (self.keep)(0.0, &state.motion);
+        let _ = (self.keep)(0.0, &state.motion, None);
         let mut accepted = 0;
         while kernel.time(state.steps) < self.duration * (1.0 - 1e-12) {
             let report = kernel.step(&mut state);
@@ -49,7 +52,7 @@ where
                 return Err(RunError::Interrupted);
             }
             accepted += 1;
-            if (self.keep)(time, &state.motion).is_break() {
+            if (self.keep)(time, &state.motion, None).is_break() {
                 break;
             }
         }

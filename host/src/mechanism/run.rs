@@ -15,14 +15,14 @@ use thiserror::Error;
 
 use super::{
     Mechanism, MountError, Mounts,
-    columns::{self, BodyMotion, State},
+    columns::{self, BodyMotion, PlanarBodies, State},
     fixed_steps::FixedSteps,
     limits::Limits,
     planar, spatial,
 };
 use crate::{
     dynamics::{
-        error_control::{Effort, Knot, Stopped, integrate, sampled},
+        error_control::{Accelerations, Effort, Knot, Stopped, integrate, sampled},
         film::chosen,
         looks::{end, looks, samples},
         out_of_line::OutOfLine,
@@ -214,8 +214,9 @@ fn in_plane<const D: usize>(
         last = state.places;
         state
     };
-    let told = |state: &State<D>| columns::planar(mechanism, mounts, &tree, state);
-    solve(mechanism, &System::new(tree, &elements[..]), (pose, rates), &limits, by, state, told)
+    let bodies = PlanarBodies::of(mechanism, mounts, &tree);
+    let system = System::new(tree, &elements[..]);
+    solve(mechanism, &system, (pose, rates), &limits, by, state, |state: &State<D>| bodies.told(state))
 }
 
 fn in_space<const N: usize, const D: usize>(
@@ -278,9 +279,11 @@ fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
     let error = |step: &_, length| limits.error(step, length, least_mass);
-    let keep = |t: f64, motion: &Motion<f64, B::Pose, _, D>| {
+    let keep = |t: f64, motion: &Motion<f64, B::Pose, _, D>, accelerations: Option<Accelerations<D>>| {
         let values = state(&motion.pose, motion.velocity.into());
-        knots.push(Knot { t, values });
+        let before = knots.last().map_or(values, |knot| knot.values);
+        let slopes = accelerations.map(|[from, to]| [before.slope(from.into()), values.slope(to.into())]);
+        knots.push(Knot { t, values, slopes });
         if ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let duration = mechanism.run.duration;
