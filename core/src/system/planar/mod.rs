@@ -3,17 +3,24 @@
 //! x and y span the plane, angles turn from x to y. Angles are those of bodies in the frame, not between bodies, so that a
 //! point's place is a sum of turned arms and its second derivatives are those arms again.
 
-mod links;
+mod across;
+mod along;
+mod between;
+mod pair;
 mod point;
 mod rigid;
 mod topology;
 mod tree;
+mod turning;
 
-pub use links::{Across, Along, Between, Turning};
+pub use across::Across;
+pub use along::Along;
+pub use between::Between;
 pub use point::{At, Point};
 pub use rigid::{Many, Rigid, Rigids};
 pub use topology::{Carrier, Chain, Frame, Kind, Path, STRAIGHT, Topology, Turns};
 pub use tree::{Coordinate, Placed, PlanarTree};
+pub use turning::Turning;
 
 use crate::{Scalar, Vector2};
 

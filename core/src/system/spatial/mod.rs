@@ -3,8 +3,13 @@
 //! Generalised velocities are, body by body, the velocity of the centre of mass in the frame (m/s) and the angular
 //! velocity in the body (rad/s), so that the mass matrix is constant and free flight is exact.
 
+mod blocks;
 mod bodies;
-mod links;
+mod driven;
+mod seat;
+mod turned;
 
 pub use bodies::{FreeBodies, Placed, PlacedBody, Rigid};
-pub use links::{About, Along, Port, Seat, Turned};
+pub use driven::{About, Along};
+pub use seat::{Port, Seat};
+pub use turned::Turned;

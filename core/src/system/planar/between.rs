@@ -1,0 +1,117 @@
+//! A pin as seen from a hole.
+
+use super::{
+    Placed, PlanarTree, Point,
+    pair::Pair,
+    rigid::Rigids,
+    topology::{Carrier, Chain, Topology},
+};
+use crate::{
+    SMatrix, SVector, Scalar, Vector2,
+    system::{Link, Seen},
+};
+
+/// The same link from a hole's centre, the `seat`, to a pin's, in the axes of the frame, with the turning of both bodies: displacement along x and
+/// y, then how fast the hole's and the pin's body turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between<S, const D: usize, H = Chain<D>, P = Chain<D>> {
+    /// Centre of the hole.
+    pub hole: Point<S, D, H>,
+    /// Centre of the pin.
+    pub pin: Point<S, D, P>,
+}
+
+/// `columns` above rows of zeros.
+#[inline(always)]
+fn above_zeros<S: Scalar, const D: usize>(columns: &[Vector2<S>; D]) -> SMatrix<S, 4, D> {
+    let zero = S::zero();
+    SMatrix::<S, 4, D>::from_columns(&columns.map(|column| SVector::<S, 4>::new(column.x, column.y, zero, zero)))
+}
+
+impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>, const D: usize>
+    Link<S, PlanarTree<S, D, J, R>, D, 4> for Between<S, D, H, P>
+{
+    type View = Pair<S, D, P, H>;
+
+    #[inline(always)]
+    fn view(&self, tree: &PlanarTree<S, D, J, R>, placed: &Placed<S, D>) -> Self::View {
+        Pair { point: tree.at(&self.pin, placed), seat: tree.at(&self.hole, placed) }
+    }
+
+    #[inline(always)]
+    fn moves(&self, k: usize) -> bool {
+        self.hole.carrier.moves(k) || self.pin.carrier.moves(k)
+    }
+
+    #[inline(always)]
+    fn depends(&self, i: usize, k: usize) -> bool {
+        match i {
+            2 => self.hole.carrier.turn() == Some(k),
+            3 => self.pin.carrier.turn() == Some(k),
+            _ => true,
+        }
+    }
+
+    #[inline(always)]
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 4> {
+        let zero = S::zero();
+        let apart = pair.point.place - pair.seat.place;
+        let velocity = pair.rate(&placed.rates);
+        let mut rate = SVector::<S, 4>::new(velocity.x, velocity.y, zero, zero);
+        for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
+            if let Some(turn) = turn {
+                rate[i] = placed.rates[turn];
+            }
+        }
+        Seen { place: SVector::<S, 4>::new(apart.x, apart.y, zero, zero), rate }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 4, D> {
+        let mut gradient = above_zeros(&pair.gradient());
+        for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
+            if let Some(turn) = turn {
+                gradient[(i, turn)] = S::one();
+            }
+        }
+        gradient
+    }
+
+    #[inline(always)]
+    fn add_force(
+        &self,
+        _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        pair: &Self::View,
+        force: &SVector<S, 4>,
+        sum: &mut SVector<S, D>,
+    ) {
+        pair.add_force(&Vector2::new(force[0], force[1]), sum);
+        for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
+            if let Some(turn) = turn {
+                sum[turn] += force[i];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_carried(
+        &self,
+        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        pair: &Self::View,
+        _: &SMatrix<S, 4, D>,
+        force: &SVector<S, 4>,
+        stiffness: &mut SMatrix<S, D, D>,
+    ) {
+        pair.add_carried(tree.topology(), placed, &Vector2::new(force[0], force[1]), stiffness);
+    }
+
+    #[inline(always)]
+    fn swept(
+        &self,
+        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        pair: &Self::View,
+        _: &SMatrix<S, 4, D>,
+    ) -> SMatrix<S, 4, D> {
+        above_zeros(&pair.swept(tree.topology(), placed))
+    }
+}
