@@ -79,9 +79,11 @@ pub trait Integrator: Copy {
 
 /// A scheme that is also known within its steps.
 pub trait Dense: Integrator {
-    /// [`Integrator::step`], with the accelerations (m/s², rad/s²) at its start and at its end that make the velocities in
-    /// between a cubic of the scheme's accuracy. Vibrations that the step damps are damped in them: the accelerations of the
-    /// motion itself turn a velocity's last digits into large numbers where a contact is stiff.
+    /// [`Integrator::step`], with the accelerations (m/s², rad/s²) at its start and at its end. Velocities within the step are
+    /// cubics with these slopes; on smooth motion their error falls with `h`⁴.
+    ///
+    /// They are no accelerations of the motion itself, which turn a velocity's last digits into large numbers where a contact is
+    /// stiff: vibrations that the step damps are damped in them.
     fn dense_step<S: Scalar, M: Mechanism<S, D>, const D: usize>(
         mechanism: &M,
         t: S,

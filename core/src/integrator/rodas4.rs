@@ -1,11 +1,11 @@
-//! RODAS (Hairer and Wanner, *Solving Ordinary Differential Equations II*, table IV.7): fourth order, one set of
-//! derivatives and five more forces a step.
+//! RODAS (Hairer and Wanner, *Solving Ordinary Differential Equations II*, table IV.7; between the ends of a step as in the
+//! authors' program of that name): fourth order, one set of derivatives and five more forces a step.
 //!
 //! A step takes some 1.6 times as long as one of RODAS3, and fewer are needed the tighter the tolerance is.
 
 use super::{
     Dense, Integrator, MotionOf, StepOf,
-    rosenbrock::{DenseTableau, StageOf, Tableau, dense_step, step},
+    rosenbrock::{StageOf, Tableau, step},
 };
 use crate::{SVector, Scalar, mechanism::Mechanism};
 
@@ -55,9 +55,7 @@ impl Tableau for Rodas4 {
     ];
 
     const RESULT: &'static [f64] = &[LAST[0], LAST[1], LAST[2], LAST[3], 1.0, 1.0];
-}
 
-impl DenseTableau for Rodas4 {
     const BENDS: [&'static [f64]; 2] = [
         &[10.12623508344586, -7.487995877610167, -34.80091861555747, -7.992771707568823, 1.025137723295662],
         &[-0.6762803392801253, 6.087714651680015, 16.43084320892478, 24.76722511418386, -6.594389125716872],
@@ -76,7 +74,7 @@ impl Integrator for Rodas4 {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        step::<Self, S, M, D>(mechanism, t, h, motion)
+        step::<Self, S, M, D>(mechanism, t, h, motion).0
     }
 }
 
@@ -88,7 +86,7 @@ impl Dense for Rodas4 {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> (StepOf<S, M, D>, [SVector<S, D>; 2]) {
-        dense_step::<Self, S, M, D>(mechanism, t, h, motion)
+        step::<Self, S, M, D>(mechanism, t, h, motion)
     }
 }
 

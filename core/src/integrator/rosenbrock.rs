@@ -28,12 +28,8 @@ pub(super) trait Tableau {
 
     /// mᵢ: weight of each stage in the result.
     const RESULT: &'static [f64];
-}
 
-/// The coefficients of a method that is also known within the step: at the share s of it, the change is
-/// s·(whole + (1 − s)·(b₀ + s·b₁)), where b₀ and b₁ are sums of the stages.
-pub(super) trait DenseTableau: Tableau {
-    /// Weights of the stages in b₀ and b₁.
+    /// Weights of the stages in b₀ and b₁: at the share s of the step the change is s·(whole + (1 − s)·(b₀ + s·b₁)).
     const BENDS: [&'static [f64]; 2];
 }
 
@@ -197,12 +193,16 @@ impl<S: Scalar, P, const D: usize> End<S, P, D> {
     }
 }
 
-/// All stages of a step, and the last of them.
+/// One step of the method `T`, with the accelerations at its start and end; see [`Dense`](super::Dense).
 #[inline(always)]
-fn parts<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
-    start: &Start<'_, S, M, D>,
-    mut here: Evaluation<S, D>,
-) -> ([Part<S, D>; MOST_STAGES], Part<S, D>) {
+pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
+    mechanism: &M,
+    t: S,
+    h: S,
+    motion: &MotionOf<S, M, D>,
+) -> (StepOf<S, M, D>, [SVector<S, D>; 2]) {
+    let from = (&motion.pose, &motion.velocity, &motion.memory);
+    let (start, mut here) = Start::new(mechanism, t, h, from, T::GAMMA);
     let mut parts = [Part::zero(); MOST_STAGES];
     let mut last = Part::zero();
     for (i, stage) in T::STAGES.iter().enumerate() {
@@ -215,36 +215,8 @@ fn parts<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
             *part = last;
         }
     }
-    (parts, last)
-}
-
-/// One step of the method `T`; see [`Integrator::step`](super::Integrator::step).
-#[inline(always)]
-pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
-    mechanism: &M,
-    t: S,
-    h: S,
-    motion: &MotionOf<S, M, D>,
-) -> StepOf<S, M, D> {
-    let from = (&motion.pose, &motion.velocity, &motion.memory);
-    let (start, here) = Start::new(mechanism, t, h, from, T::GAMMA);
-    let (parts, last) = parts::<T, S, M, D>(&start, here);
-    start.end(&Part::weighted(&parts, T::RESULT), &last).step(motion, h)
-}
-
-/// The same, with the accelerations at its start and end; see [`Dense`](super::Dense).
-#[inline(always)]
-pub(super) fn dense_step<T: DenseTableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
-    mechanism: &M,
-    t: S,
-    h: S,
-    motion: &MotionOf<S, M, D>,
-) -> (StepOf<S, M, D>, [SVector<S, D>; 2]) {
-    let from = (&motion.pose, &motion.velocity, &motion.memory);
-    let (start, here) = Start::new(mechanism, t, h, from, T::GAMMA);
-    let (parts, last) = parts::<T, S, M, D>(&start, here);
     let whole = Part::weighted(&parts, T::RESULT);
-    let [bend, twist] = T::BENDS.map(|weights| Part::weighted(&parts, weights).velocity);
-    let ends = [whole.velocity + bend, whole.velocity - bend - twist].map(|change| change * start.per_step);
-    (start.end(&whole, &last).step(motion, h), ends)
+    let [first, second] = T::BENDS.map(|weights| Part::weighted(&parts, weights).velocity);
+    let slopes = [whole.velocity + first, whole.velocity - first - second];
+    (start.end(&whole, &last).step(motion, h), slopes.map(|slope| slope * start.per_step))
 }
