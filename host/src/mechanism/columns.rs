@@ -56,9 +56,7 @@ impl<const D: usize> State<D> {
         }
         Self { rates, places, place_rates }
     }
-}
 
-impl<const D: usize> State<D> {
     /// How fast these numbers change, where the velocities do by `accelerations` (m/s², rad/s²).
     pub fn slope(&self, accelerations: [f64; D]) -> Self {
         Self { rates: accelerations, places: self.place_rates, place_rates: [0.0; D] }

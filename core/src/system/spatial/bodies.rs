@@ -120,6 +120,12 @@ impl<S: Scalar> PlacedBody<S> {
             rotation_b: Vector3::zeros(),
         }
     }
+
+    /// A `direction` of the frame in the body's axes.
+    #[inline(always)]
+    pub(super) fn in_body(&self, direction: &Vector3<S>) -> Vector3<S> {
+        self.to_frame.tr_mul(direction)
+    }
 }
 
 impl<S: Scalar, const N: usize, const D: usize> Placed<S, N, D> {

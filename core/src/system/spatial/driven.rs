@@ -34,7 +34,7 @@ impl<S: Scalar> Along<S> {
     /// How the speed at the point goes by the angular velocity of the body, which is `at` a pose.
     #[inline(always)]
     fn arm(&self, at: &PlacedBody<S>) -> Vector3<S> {
-        self.lever.cross(&at.to_frame.tr_mul(&self.axis_w))
+        self.lever.cross(&at.in_body(&self.axis_w))
     }
 }
 
@@ -88,7 +88,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         force: &SVector<S, 2>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w) * force[0];
+        let axis_b = placed.body(self.body).in_body(&self.axis_w) * force[0];
         let at = 6 * self.body + 3;
         sub(stiffness, (at, at), &(cross_matrix(&self.lever) * cross_matrix(&axis_b)));
     }
@@ -101,7 +101,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         _: &SMatrix<S, 2, D>,
     ) -> SMatrix<S, 2, D> {
         let at = placed.body(self.body);
-        let axis_b = at.to_frame.tr_mul(&self.axis_w);
+        let axis_b = at.in_body(&self.axis_w);
         // ω·(lever × axis), the axis turning against the body: ∂axis = axis × θ.
         let by_turn = axis_b.cross(&self.lever.cross(&at.rotation_b));
         let mut swept = SMatrix::<S, 2, D>::zeros();
@@ -124,13 +124,13 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     #[inline(always)]
     fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 1> {
         let at = placed.body(self.body);
-        let rate = at.to_frame.tr_mul(&self.axis_w).dot(&at.rotation_b);
+        let rate = at.in_body(&self.axis_w).dot(&at.rotation_b);
         Seen { place: SVector::zeros(), rate: SVector::<S, 1>::new(rate) }
     }
 
     #[inline(always)]
     fn gradient(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 1, D> {
-        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w);
+        let axis_b = placed.body(self.body).in_body(&self.axis_w);
         let mut gradient = SMatrix::<S, 1, D>::zeros();
         put_row(&mut gradient, (0, 6 * self.body + 3), &axis_b);
         gradient
@@ -144,7 +144,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         force: &SVector<S, 1>,
         sum: &mut SVector<S, D>,
     ) {
-        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w);
+        let axis_b = placed.body(self.body).in_body(&self.axis_w);
         add_wrench(sum, self.body, [&Vector3::zeros(), &(axis_b * force[0])]);
     }
 
@@ -157,7 +157,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         force: &SVector<S, 1>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let axis_b = placed.body(self.body).to_frame.tr_mul(&self.axis_w) * force[0];
+        let axis_b = placed.body(self.body).in_body(&self.axis_w) * force[0];
         let at = 6 * self.body + 3;
         sub(stiffness, (at, at), &cross_matrix(&axis_b));
     }
@@ -171,7 +171,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     ) -> SMatrix<S, 1, D> {
         let at = placed.body(self.body);
         // ω·axis with ∂axis = axis × θ.
-        let by_turn = at.rotation_b.cross(&at.to_frame.tr_mul(&self.axis_w));
+        let by_turn = at.rotation_b.cross(&at.in_body(&self.axis_w));
         let mut swept = SMatrix::<S, 1, D>::zeros();
         put_row(&mut swept, (0, 6 * self.body + 3), &by_turn);
         swept
