@@ -140,7 +140,8 @@ fn every_shipped_mechanism_keeps_its_energy() {
         };
         let [coarser, finer] = [30.0, 1.0 / 30.0].map(|factor| at(factor * error));
         println!(
-            "{scene:20} {touches:3} touches, energy drifts by {found:.1e}; at 30 times the tolerance {coarser:.1e}, at a thirtieth {finer:.1e}"
+            "{scene:20} {touches:3} touches, energy drifts by {found:.1e}; \
+             at 30 times the tolerance {coarser:.1e}, at a thirtieth {finer:.1e}"
         );
         assert!(touches > 0 && found < 5e-6, "{scene}: {touches} {found:e}");
         // By 900 times, if it went by the tolerance alone.

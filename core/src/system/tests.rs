@@ -155,14 +155,14 @@ fn spatial_derivatives_are_those_of_the_forces() {
                 law: Wall { axis: Axis::Z, sign: -1.0, gap: 0.01, contact: contact() },
             },
             (
-                Element::<_, _, 6> {
+                [Some(0), None].map(|from| Element::<_, _, 6> {
                     link: Turned {
-                        seat: Seat { point: port(Some(1), 0.1, 0.1, -0.1), from: Some(0) },
+                        seat: Seat { point: port(Some(1), 0.1, 0.1, -0.1), from },
                         axes: axes.to_body().matrix(),
                         offset: Vector3::new(0.01, 0.0, 0.02),
                     },
                     law: Ring { clearance: 0.02, radius: 0.05, contact: contact() },
-                },
+                }),
                 (
                     Element::<_, _, 2> {
                         link: spatial::Along { body: 1, lever: Vector3::new(0.1, -0.2, 0.3), axis_w: Vector3::z() },

@@ -131,7 +131,8 @@ const STEPS_PER_LOOK: u32 = 256;
 pub type Accelerations<const D: usize> = [SVector<f64, D>; 2];
 
 /// Integrates `mechanism` from `start` at time 0 over `duration` (s) or until `accept` breaks, which sees the start and the
-/// motion at the end of each accepted step, with the step's accelerations. A step is accepted if `error`, which also sees its length (s), is at most 1.
+/// motion at the end of each accepted step, with the step's accelerations. A step is accepted if `error`, which also sees its
+/// length (s), is at most 1.
 ///
 /// # Errors
 /// See [`Stopped`].
@@ -292,6 +293,17 @@ mod tests {
             [0.0, 0.2, 0.4, 0.41, 0.42, 0.44].map(|t| Knot { t, values: [y(t); 4], slopes: None }).into();
         for t in [0.25, 0.3, 0.39, 0.405, 0.43] {
             let [found, ..] = sampled(&knots, std::iter::once(t))[0];
+            assert!((found - y(t)).abs() < 1e-14, "{t}: {found}");
+        }
+    }
+
+    #[test]
+    fn cubics_are_met_exactly_where_the_scheme_tells_their_slopes() {
+        let (y, rate) = (|t: f64| 1.0 + t * (2.0 + t * (5.0 * t - 3.0)), |t: f64| 2.0 + t * (15.0 * t - 6.0));
+        let knot = |[from, t]: [f64; 2]| Knot { t, values: [y(t); 1], slopes: Some([[rate(from)], [rate(t)]]) };
+        let knots: Vec<_> = [[0.0, 0.0], [0.0, 0.1], [0.1, 0.9], [0.9, 1.0]].map(knot).into();
+        for t in [0.05, 0.3, 0.5, 0.8, 0.95] {
+            let [found] = sampled(&knots, std::iter::once(t))[0];
             assert!((found - y(t)).abs() < 1e-14, "{t}: {found}");
         }
     }
