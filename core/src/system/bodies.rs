@@ -43,7 +43,7 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// What gravity does and what turning resists (N, N·m): force = M·V̇ where no element acts.
     fn own_force(&self, placed: &Self::Placed) -> SVector<S, D>;
 
-    /// Both.
+    /// [`mass`](Self::mass) and [`own_force`](Self::own_force), for bodies that find both by the same way.
     #[inline(always)]
     fn mass_and_own_force(&self, placed: &Self::Placed) -> (SMatrix<S, D, D>, SVector<S, D>) {
         (self.mass(placed), self.own_force(placed))

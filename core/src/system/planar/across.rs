@@ -14,7 +14,8 @@ use crate::{
     system::{Link, Seen},
 };
 
-/// A point of one body seen from another, in the axes of the latter: displacement from `seat` to `point` along `normal` and to the left of it.
+/// A point of one body seen from another, in the axes of the latter: displacement (m) from `seat` to `point` along `normal` and to the
+/// left of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Across<S, const D: usize, P = Chain<D>, Q = Chain<D>> {
     /// The point.

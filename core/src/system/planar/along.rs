@@ -11,7 +11,7 @@ use crate::{
     system::{Link, Seen},
 };
 
-/// A point along an axis of the frame, and another of the same body whose speed along it counts: a drive's point and its sensor.
+/// Displacements (m) along an axis of the frame: of a drive's point, and of its sensor on the same body, whose speed counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Along<S, const D: usize, C = Chain<D>> {
     /// Where the force acts.

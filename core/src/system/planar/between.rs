@@ -11,8 +11,8 @@ use crate::{
     system::{Link, Seen},
 };
 
-/// The same link from a hole's centre, the `seat`, to a pin's, in the axes of the frame, with the turning of both bodies: displacement along x and
-/// y, then how fast the hole's and the pin's body turn.
+/// The centre of a pin as seen from a hole's, in the axes of the frame, with the turning of both bodies: displacement along x and y
+/// (m), then how fast the hole's and the pin's body turn (rad/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between<S, const D: usize, H = Chain<D>, P = Chain<D>> {
     /// Centre of the hole.

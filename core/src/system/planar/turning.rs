@@ -11,7 +11,7 @@ use crate::{
     system::{Link, Seen},
 };
 
-/// How much a body has turned against another, 0 where it has not been told; and how fast.
+/// How much (rad) a body has turned against another, or against the frame where there is none; and how fast (rad/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turning<A = Option<usize>, B = Option<usize>> {
     /// What turns the body.

@@ -13,8 +13,8 @@ use crate::{
     system::{Link, Seen},
 };
 
-/// The same, in axes that are turned against those of the body, and with the rotation of the point's body against it: the
-/// first three are lengths, the last three angles of which the rates alone are told.
+/// A point of one body as seen from another, and the rotation of its body against that one, both in axes that are turned against
+/// those of the latter: three lengths (m), then three angles (rad) of which the rates alone are told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turned<S> {
     /// The point and where it is seen from.
