@@ -2,10 +2,10 @@
 
 use slipfit_core::{
     SVector,
-    axis::AxisBody,
     integrator::{Extrapolated, ImplicitEuler, Integrator, RungeKutta4, Sdirk2, SemiImplicitEuler},
     kernel::Kernel,
-    law::{Impact, Linear},
+    law::{Impact, Linear, Pad},
+    system::on_axis,
 };
 use slipfit_problems::laws::{BALL, BALL_HEIGHTS};
 
@@ -13,7 +13,7 @@ use slipfit_problems::laws::{BALL, BALL_HEIGHTS};
 fn run<I: Integrator>(duration: f64, h: f64) -> (f64, f64) {
     let contact = Impact::new(Linear::new(BALL.stiffness).unwrap(), 0.0, 1e-3).unwrap();
     // Positions count from where the ball touches.
-    let body = AxisBody::new(BALL.mass, BALL.gravity, 0.0, contact).unwrap();
+    let body = on_axis(BALL.mass, BALL.gravity, Pad::new(0.0).unwrap(), contact, ()).unwrap();
     let kernel = Kernel::<f64, _, I>::new(body, h).unwrap();
     let mut state = kernel.at_rest(BALL.height - BALL.radius);
     state.motion.velocity = SVector::<f64, 1>::new(BALL.velocity);

@@ -2,14 +2,14 @@
 
 use slipfit_core::{
     SVector, Scalar, Vector2,
-    axis::AxisBody,
     integrator::{Extrapolated, ImplicitEuler, Integrator, Rodas4, Sdirk2},
     kernel::Kernel,
-    law::{Frictionless, HuntCrossley, Impact, LankaraniNikravesh, Linear, Normal, ThreeHalves},
+    law::{self, Frictionless, HuntCrossley, Impact, LankaraniNikravesh, Linear, Normal, ThreeHalves},
     pose::Pose,
     system::{
         Element, System,
         law::{Contact, Pad},
+        on_axis,
         planar::{Across, Coordinate, PlanarTree, Point, Rigid},
     },
 };
@@ -88,7 +88,7 @@ fn bistop_is_the_same_law_at_both_ends() {
 
 /// What a bounce did, from a run in steps of `h` (s) that ends `duration` (s) after the start in contact.
 fn bounce<I: Integrator>(speed: f64, h: f64, duration: f64) -> Bounce {
-    let body = AxisBody::new(BOUNCE_MASS, 0.0, 0.0, contact::<f64>()).unwrap();
+    let body = on_axis(BOUNCE_MASS, 0.0, law::Pad::new(0.0).unwrap(), contact::<f64>(), ()).unwrap();
     let kernel = Kernel::<f64, _, I>::new(body, h).unwrap();
     let mut state = kernel.at_rest(0.0);
     state.motion.velocity = SVector::<f64, 1>::new(-speed);
@@ -97,7 +97,7 @@ fn bounce<I: Integrator>(speed: f64, h: f64, duration: f64) -> Bounce {
         kernel.step(&mut state);
         let (x, v) = (state.motion.pose, state.motion.velocity.x);
         peak_penetration = peak_penetration.max(-x);
-        peak_force = peak_force.max(kernel.mechanism().pad_force(x, v));
+        peak_force = peak_force.max(kernel.mechanism().stop_force(x, v));
         if x < 0.0 {
             // The crossing inside the step that leaves is at most one step away; velocity is steady there.
             contact_time = kernel.time(state.steps) - x / v;

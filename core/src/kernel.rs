@@ -111,10 +111,10 @@ mod tests {
     use super::Kernel;
     use crate::{
         Vector3,
-        axis::AxisBody,
         drive::Drive,
         integrator::ImplicitEuler,
         law::{Impact, Pad, ThreeHalves},
+        system::{AxisBody, on_axis},
     };
 
     type Driven = AxisBody<f32, ThreeHalves<f32>, Pad<f32>, Drive<f32>>;
@@ -123,7 +123,7 @@ mod tests {
     fn kernel() -> Kernel<f32, Driven, ImplicitEuler<4>> {
         let contact = Impact::new(ThreeHalves::new(3e6).unwrap(), 1000.0, 1e-4).unwrap();
         let drive = Drive { gain: 40.0, ramp_start: 0.05, ramp_end: 1.0, speed: -0.1, point_b: Vector3::zeros() };
-        let body = AxisBody::driven(0.1, 0.0, Pad::new(1e-3).unwrap(), contact, drive).unwrap();
+        let body = on_axis(0.1, 0.0, Pad::new(1e-3).unwrap(), contact, drive).unwrap();
         Kernel::new(body, 1e-3).unwrap()
     }
 

@@ -16,7 +16,6 @@
 extern crate std;
 
 pub mod ahead;
-pub mod axis;
 pub mod clearance;
 pub mod drive;
 mod error;
@@ -27,7 +26,6 @@ mod linear;
 pub mod mechanism;
 pub mod menu;
 pub mod monitor;
-pub mod planar;
 pub mod pose;
 pub mod power;
 mod product;

@@ -5,8 +5,9 @@ use crate::{SVector, Scalar, drive::Drive, law::friction::SlidingContact};
 /// How forces are to be linearised.
 #[derive(Clone, Copy, Debug)]
 pub struct Way<S> {
-    /// Implicit part of the step (s): over it a velocity moves the body.
-    pub a: S,
+    /// The time (s) over which a velocity also moves the bodies, where derivatives by the one take in those by the other; `None`
+    /// where the two are told apart.
+    pub over: Option<S>,
     /// Mass over the implicit part that friction's memory yields over (kg/s).
     pub mass_rate: S,
     /// See [`SlidingContact`].

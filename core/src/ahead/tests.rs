@@ -1,9 +1,9 @@
 use super::{Ahead, Limits, State, Status};
 use crate::{
     Vector3,
-    axis::AxisBody,
     drive::Drive,
     law::{Impact, Pad, ThreeHalves},
+    system::{AxisBody, on_axis},
 };
 
 type Driven = AxisBody<f64, ThreeHalves<f64>, Pad<f64>, Drive<f64>>;
@@ -16,7 +16,7 @@ const MASS: f64 = 0.1;
 fn body(speed: f64) -> Driven {
     let contact = Impact::new(ThreeHalves::new(3e6).unwrap(), 1000.0, 1e-4).unwrap();
     let drive = Drive { gain: 2.0, ramp_start: -2.0, ramp_end: -1.0, speed, point_b: Vector3::zeros() };
-    AxisBody::driven(MASS, 0.0, Pad::new(1e-3).unwrap(), contact, drive).unwrap()
+    on_axis(MASS, 0.0, Pad::new(1e-3).unwrap(), contact, drive).unwrap()
 }
 
 fn ahead(speed: f64) -> Ahead<f64, Driven> {

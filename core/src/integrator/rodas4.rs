@@ -94,10 +94,10 @@ impl Dense for Rodas4 {
 mod tests {
     use super::Rodas4;
     use crate::{
-        axis::AxisBody,
         integrator::{Dense, Integrator, Rodas3},
         kernel::Kernel,
         law::{Impact, Linear, Slot},
+        system::on_axis,
     };
 
     /// How far from the closed form a mass between two springs is that falls from their middle, after 0.1 s in steps of `h` (s).
@@ -105,7 +105,7 @@ mod tests {
         let (mass, stiffness) = (0.1, 100.0);
         let law = Impact::new(Linear::new(stiffness / 2.0).unwrap(), 0.0, 1.0).unwrap();
         let held = Slot::new(-1.0, -1.0).unwrap();
-        let body = AxisBody::driven(mass, -9.81, held, law, ()).unwrap();
+        let body = on_axis(mass, -9.81, held, law, ()).unwrap();
         let kernel = Kernel::<f64, _, I>::new(body, h).unwrap();
         let mut state = kernel.at_rest(0.0);
         while state.steps < (0.1 / h + 0.5) as u32 {
@@ -120,7 +120,7 @@ mod tests {
         let (mass, stiffness) = (0.1, 100.0);
         let law = Impact::new(Linear::new(stiffness / 2.0).unwrap(), 0.0, 1.0).unwrap();
         let held = Slot::new(-1.0, -1.0).unwrap();
-        let body = AxisBody::driven(mass, -9.81, held, law, ()).unwrap();
+        let body = on_axis(mass, -9.81, held, law, ()).unwrap();
         let rest = Kernel::<f64, _, Rodas4>::new(body, h).unwrap().at_rest(0.0).motion;
         let (step, [from, to]) = Rodas4::dense_step(&body, 0.0, h, &rest);
         // The cubic with these slopes, in its middle.

@@ -33,11 +33,11 @@ impl<S: Scalar> SlotResponse<S> {
         self.high.force + self.low.force
     }
 
-    /// −∂force/∂u and ∂normal/∂u (N·s/m), for a body velocity u along the axis that also moves the offset by −a·u, `a` (s)
-    /// being the part of a step over which it does.
+    /// −∂force/∂u and ∂normal/∂u (N·s/m), for a body velocity u along the axis that also moves the offset, by −u times
+    /// the time `over` which it does (s), if one is given.
     #[inline(always)]
-    pub fn impedances(&self, a: S) -> [S; 2] {
-        let (low, high) = (self.low.impedance(a), self.high.impedance(a));
+    pub fn impedances(&self, over: Option<S>) -> [S; 2] {
+        let (low, high) = (self.low.impedance(over), self.high.impedance(over));
         [high + low, low - high]
     }
 
@@ -65,11 +65,11 @@ mod tests {
             let h = 1e-7;
             let force_slope = -(at(speed + h).force() - at(speed - h).force()) / (2.0 * h);
             let normal_slope = (at(speed + h).normal() - at(speed - h).normal()) / (2.0 * h);
-            let [impedance, normal_impedance] = slot.impedances(a);
+            let [impedance, normal_impedance] = slot.impedances(Some(a));
             assert!(libm::fabs(impedance - force_slope) < 1e-5 * (1.0 + force_slope));
             assert!(libm::fabs(normal_impedance - normal_slope) < 1e-5 * (1.0 + libm::fabs(normal_slope)));
             let [stiffness, normal_stiffness] = slot.stiffnesses();
-            let [damping, normal_damping] = slot.impedances(0.0);
+            let [damping, normal_damping] = slot.impedances(None);
             assert!(libm::fabs(damping + a * stiffness - impedance) <= 1e-12 * impedance);
             assert!(libm::fabs(normal_damping + a * normal_stiffness - normal_impedance) <= 1e-12 * impedance);
         }

@@ -47,7 +47,7 @@ mod tests {
         let response = law.response(1e-3, 0.4);
         // 1e6·1e-3·(1 + ¾·(1 − ¼)/2·0.4)
         assert!(libm::fabs(response.force - 1112.5) < 1e-9, "{}", response.force);
-        assert!(libm::fabs(response.impedance(0.0) - 281.25) < 1e-9);
+        assert!(libm::fabs(response.impedance(None) - 281.25) < 1e-9);
         assert!(libm::fabs(law.energy(1e-3) - 0.5) < 1e-12);
     }
 }

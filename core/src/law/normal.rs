@@ -47,10 +47,13 @@ impl<S: Scalar> NormalResponse<S> {
         self.if_pushing(self.pushing_stiffness)
     }
 
-    /// ∂F/∂δ̇ (N·s/m) at a rate that also changes the penetration over the time `a` (s).
+    /// ∂F/∂δ̇ (N·s/m), at a rate that also changes the penetration `over` a time (s) if one is given.
     #[inline(always)]
-    pub fn impedance(&self, a: S) -> S {
-        self.if_pushing(self.pushing_damping + a * self.pushing_stiffness)
+    pub fn impedance(&self, over: Option<S>) -> S {
+        self.if_pushing(match over {
+            Some(a) => self.pushing_damping + a * self.pushing_stiffness,
+            None => self.pushing_damping,
+        })
     }
 
     #[inline(always)]

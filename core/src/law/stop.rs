@@ -15,8 +15,8 @@ pub trait Resistance<S> {
     /// Sum of the normal forces (N), which friction goes by.
     fn normal(&self) -> S;
 
-    /// −∂force/∂u and ∂normal/∂u (N·s/m) by the body's speed u, which also moves it over the time `a` (s).
-    fn impedances(&self, a: S) -> [S; 2];
+    /// −∂force/∂u and ∂normal/∂u (N·s/m) by the body's speed u, which also moves it `over` a time (s) if one is given.
+    fn impedances(&self, over: Option<S>) -> [S; 2];
 
     /// −∂force/∂x and ∂normal/∂x (N/m) by the body's displacement x.
     fn stiffnesses(&self) -> [S; 2];
@@ -69,8 +69,8 @@ impl<S: Scalar> Resistance<S> for NormalResponse<S> {
     }
 
     #[inline(always)]
-    fn impedances(&self, a: S) -> [S; 2] {
-        let impedance = self.impedance(a);
+    fn impedances(&self, over: Option<S>) -> [S; 2] {
+        let impedance = self.impedance(over);
         [impedance, -impedance]
     }
 
@@ -119,8 +119,8 @@ impl<S: Scalar> Resistance<S> for SlotResponse<S> {
     }
 
     #[inline(always)]
-    fn impedances(&self, a: S) -> [S; 2] {
-        self.impedances(a)
+    fn impedances(&self, over: Option<S>) -> [S; 2] {
+        self.impedances(over)
     }
 
     #[inline(always)]
@@ -144,7 +144,7 @@ mod tests {
             let pad = Pad::new(1e-5).unwrap().resistance(&law, offset, speed);
             let slot = Slot::new(ABSENT, 1e-5).unwrap().resistance(&law, offset, speed);
             assert_eq!((pad.force(), Resistance::normal(&pad)), (slot.force(), slot.normal()));
-            assert_eq!(pad.impedances(1e-3), slot.impedances(1e-3));
+            assert_eq!(pad.impedances(Some(1e-3)), slot.impedances(Some(1e-3)));
             assert_eq!(pad.stiffnesses(), slot.stiffnesses());
             assert_eq!(pad.force > 0.0, offset > 1e-5);
         }

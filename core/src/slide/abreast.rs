@@ -96,7 +96,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     ) -> SVector<S, 6> {
         let at = placed(pose, velocity);
         // No derivatives are taken, and there is no memory: whatever stands for the step.
-        let way = Way { a: L::one(), mass_rate: L::one(), tangent_share: L::one() };
+        let way = Way { over: None, mass_rate: L::one(), tangent_share: L::one() };
         let Response { wrench: (force, torque), .. } = pins.response(&at, way);
         self.balance(t, &at, (mapped(&force, L::sum), mapped(&torque, L::sum)), velocity.z)
     }
@@ -111,7 +111,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         velocity: &SVector<S, 6>,
     ) -> Differentiated<S, Slopes<S>, 6> {
         let at = placed(pose, velocity);
-        let way = Way { a: L::zero(), mass_rate: L::zero(), tangent_share: L::one() };
+        let way = Way { over: None, mass_rate: L::zero(), tangent_share: L::one() };
         self.completed(t, &at, pins.response(&at, way).cast(L::sum), velocity.z)
     }
 }

@@ -198,7 +198,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
         SlotForce {
             force: [slot.force(), traction.force[0], traction.force[1]],
-            impedance: column(slot.impedances(way.a)),
+            impedance: column(slot.impedances(way.over)),
             tangential: traction.impedance,
             stiffness: column(slot.stiffnesses()),
             memory,

@@ -148,7 +148,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
     ) -> SVector<S, 6> {
         let at = placed(pose, velocity);
         let mut remembered = remembered.into_iter().flat_map(|slots| slots.as_chunks_mut::<2>().0);
-        let way = Way { a, mass_rate: self.body.mass / a, tangent_share: S::one() };
+        let way = Way { over: Some(a), mass_rate: self.body.mass / a, tangent_share: S::one() };
         let mut contacts = (Vector3::zeros(), Vector3::zeros());
         for pin in self.pins(memory) {
             let pin = self.at_pin(&at, pin, way);
@@ -175,7 +175,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         let pull = self.pull(&at.to_body);
         let mut blocks = self.inertia(rate);
         pull.add_to(&mut blocks, self.drive.gain);
-        let way = Way { a, mass_rate: self.body.mass * rate, tangent_share };
+        let way = Way { over: Some(a), mass_rate: self.body.mass * rate, tangent_share };
         let mut contacts = (Vector3::zeros(), Vector3::zeros());
         for pin in self.pins(memory) {
             let pin = self.at_pin(&at, pin, way);
@@ -210,7 +210,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Mechanism<S, 6> for Slide<S, E, F
         velocity: &SVector<S, 6>,
     ) -> Differentiated<S, Slopes<S>, 6> {
         let at = placed(pose, velocity);
-        let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
+        let way = Way { over: None, mass_rate: S::zero(), tangent_share: S::one() };
         let mut contacts = Response::none();
         for pin in self.pins(memory) {
             contacts.add(&self.at_pin(&at, pin, way));

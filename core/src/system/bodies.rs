@@ -1,6 +1,11 @@
 //! Bodies that move together by some coordinates.
 
-use crate::{SMatrix, SVector, Scalar};
+use super::{Axes, Jacobian};
+use crate::{SVector, Scalar};
+
+/// Bodies whose elements add up by generalised velocities, so that a link need only tell its gradient
+/// ([`GradientLink`](super::GradientLink)).
+pub trait ByCoordinate {}
 
 /// Bodies with `D` generalised velocities. Ideal joints are in the coordinates: what they forbid has none.
 pub trait Bodies<S: Scalar, const D: usize> {
@@ -10,8 +15,21 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// Where they are and how they move, worked out for links.
     type Placed;
 
+    /// The mass matrix (kg, kg·m, kg·m²) at a pose; `()` where it is the same at every pose.
+    type Mass: Copy;
+
+    /// The axes in which elements add up.
+    type Axes: Axes<S, D>;
+
+    /// What derivatives add up in.
+    type Jacobian: Jacobian<S, D>;
+
     /// Whether the mass matrix is the same at every pose.
     const MASS_IS_CONSTANT: bool;
+
+    /// Whether a stage's matrix takes from a law how its force goes by rates that also move places over the implicit part of the
+    /// step, as one matrix, and leaves out how links turn meanwhile. It steers, the force decides.
+    const MATRIX_IS_LEAN: bool = false;
 
     /// `pose` + `dt`·Q̇(Q, `velocity`), implicit in Q.
     fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
@@ -37,31 +55,65 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// The bodies at `pose`, moving with `velocity`.
     fn placed(&self, pose: &Self::Pose, velocity: &SVector<S, D>) -> Self::Placed;
 
-    /// The mass matrix (kg, kg·m, kg·m²).
-    fn mass(&self, placed: &Self::Placed) -> SMatrix<S, D, D>;
+    /// The axes in which elements add up.
+    fn axes(&self, placed: &Self::Placed) -> Self::Axes;
 
-    /// What gravity does and what turning resists (N, N·m): force = M·V̇ where no element acts.
+    /// The mass matrix M.
+    fn mass(&self, placed: &Self::Placed) -> Self::Mass;
+
+    /// M·`rate`.
+    fn inertia(&self, mass: &Self::Mass, rate: S) -> Self::Jacobian;
+
+    /// M·`velocity` (N·s, N·m·s).
+    fn momentum(&self, mass: &Self::Mass, velocity: &SVector<S, D>) -> SVector<S, D>;
+
+    /// M⁻¹·`momentum` (m/s, rad/s).
+    fn velocity(&self, mass: &Self::Mass, momentum: &SVector<S, D>) -> SVector<S, D>;
+
+    /// What the sum over the elements begins with (N, N·m).
     fn own_force(&self, placed: &Self::Placed) -> SVector<S, D>;
+
+    /// The generalised force (N, N·m), force = M·V̇, where the elements have added up to `sum`: with gravity and what turning
+    /// resists, where these are not in [`own_force`](Self::own_force), and in the axes of the frame.
+    #[inline(always)]
+    fn total(&self, placed: &Self::Placed, sum: &SVector<S, D>) -> SVector<S, D> {
+        self.axes(placed).to_frame(sum)
+    }
 
     /// [`mass`](Self::mass) and [`own_force`](Self::own_force), for bodies that find both by the same way.
     #[inline(always)]
-    fn mass_and_own_force(&self, placed: &Self::Placed) -> (SMatrix<S, D, D>, SVector<S, D>) {
+    fn mass_and_own_force(&self, placed: &Self::Placed) -> (Self::Mass, SVector<S, D>) {
         (self.mass(placed), self.own_force(placed))
     }
 
-    /// Adds how [`own_force`](Self::own_force) less M·`acceleration` goes by velocity and by place, negated; the acceleration
+    /// Adds how gravity and what turning resists, less M·`acceleration`, go by velocity and by place, negated; the acceleration
     /// is held, and not looked at where the mass matrix is constant.
     fn own_slopes(
         &self,
         placed: &Self::Placed,
         acceleration: &SVector<S, D>,
-        damping: &mut SMatrix<S, D, D>,
-        stiffness: &mut SMatrix<S, D, D>,
+        damping: &mut Self::Jacobian,
+        stiffness: &mut Self::Jacobian,
     );
 
     /// The least mass (kg) that an element may meet: what friction that sticks yields by.
     fn least_mass(&self) -> S;
 
     /// 1 for a coordinate that is a length, 1 over a length (1/m) for an angle: what makes momenta, and speeds, comparable.
-    fn per_lever(&self) -> &SVector<S, D>;
+    fn per_lever(&self) -> SVector<S, D>;
+
+    /// See [`Mechanism::impulse`](crate::mechanism::Mechanism::impulse).
+    #[inline(always)]
+    fn impulse(&self, imbalance: &SVector<S, D>) -> S {
+        let weighted = imbalance.component_mul(&self.per_lever());
+        weighted.dot(&weighted).sqrt()
+    }
+
+    /// See [`Mechanism::weighed`](crate::mechanism::Mechanism::weighed). By default the least mass times the speed, angles by their
+    /// levers: what counts is each coordinate, not what it weighs.
+    #[inline(always)]
+    fn weighed(&self, change: &SVector<S, D>) -> S {
+        let speeds = change.component_div(&self.per_lever());
+        self.least_mass() * speeds.dot(&speeds).sqrt()
+    }
 }

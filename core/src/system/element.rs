@@ -1,23 +1,14 @@
 //! Elements: a link that measures and a law that answers.
 
-use super::{Bodies, assembly::Assembly};
+use super::{Bodies, Link, assembly::Assembly};
 use crate::{SMatrix, SVector, Scalar, mechanism::Way};
-
-/// What an element sees: `R` lengths and angles, and how fast they change.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen<S, const R: usize> {
-    /// x (m, rad); zero where a law needs the rate alone.
-    pub place: SVector<S, R>,
-    /// ẋ (m/s, rad/s).
-    pub rate: SVector<S, R>,
-}
 
 /// What a law answers: forces along what it sees and how they change.
 #[derive(Clone, Copy, Debug)]
 pub struct Response<S, const R: usize> {
     /// φ (N, N·m): its power is φ·ẋ.
     pub force: SVector<S, R>,
-    /// −∂φ/∂ẋ; rows are forces.
+    /// −∂φ/∂ẋ of rates that also move the places over the time [`Way::over`], if one is given; rows are forces.
     pub impedance: SMatrix<S, R, R>,
     /// −∂φ/∂x; rows are forces.
     pub stiffness: SMatrix<S, R, R>,
@@ -25,45 +16,21 @@ pub struct Response<S, const R: usize> {
     pub per_time: SVector<S, R>,
 }
 
-/// Measures `R` lengths and angles of bodies `B`.
-pub trait Link<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usize> {
-    /// What places, rates and their derivatives are made of.
-    type View;
-
-    /// The bodies as the link looks at them.
-    fn view(&self, bodies: &B, placed: &B::Placed) -> Self::View;
-
-    /// Whether the coordinate `k` moves anything that there is to see. Where it does not, in any pose, derivatives are zero and
-    /// not looked at.
-    fn moves(&self, k: usize) -> bool;
-
-    /// Whether it moves the number `i`, where it moves any.
+impl<S: Scalar, const R: usize> Response<S, R> {
+    /// The same for rates that also move the first `places` numbers `over` a time (s), if one is given: for laws that find damping
+    /// and stiffness apart.
     #[inline(always)]
-    fn depends(&self, _i: usize, _k: usize) -> bool {
-        true
+    #[must_use]
+    pub fn moving(mut self, over: Option<S>, places: usize) -> Self {
+        if let Some(a) = over {
+            for (column, by_place) in self.impedance.data.0.iter_mut().zip(&self.stiffness.data.0).take(places) {
+                for (entry, by_place) in column.iter_mut().zip(by_place) {
+                    *entry += *by_place * a;
+                }
+            }
+        }
+        self
     }
-
-    /// What there is to see.
-    fn seen(&self, at: (&B, &B::Placed), view: &Self::View) -> Seen<S, R>;
-
-    /// Λ = ∂ẋ/∂V.
-    fn gradient(&self, at: (&B, &B::Placed), view: &Self::View) -> SMatrix<S, R, D>;
-
-    /// Adds the generalised force (N, N·m) Λᵀφ of a `force` φ to `sum`.
-    fn add_force(&self, at: (&B, &B::Placed), view: &Self::View, force: &SVector<S, R>, sum: &mut SVector<S, D>);
-
-    /// Adds −∂(Λᵀφ)/∂Q for a `force` φ that is held to `stiffness`.
-    fn add_carried(
-        &self,
-        at: (&B, &B::Placed),
-        view: &Self::View,
-        gradient: &SMatrix<S, R, D>,
-        force: &SVector<S, R>,
-        stiffness: &mut SMatrix<S, D, D>,
-    );
-
-    /// ∂(Λ·V)/∂Q, the velocities V being held.
-    fn swept(&self, at: (&B, &B::Placed), view: &Self::View, gradient: &SMatrix<S, R, D>) -> SMatrix<S, R, D>;
 }
 
 /// A force law of `R` lengths and angles.
@@ -77,6 +44,10 @@ pub trait Law<S: Scalar, const R: usize> {
     /// How many of the numbers, the first ones, it answers to by their place, not by their rate alone: the other columns of its
     /// stiffness are zero and not looked at.
     const PLACES: usize;
+
+    /// Which force answers to which rate: `ANSWERS[i][j]` where entry (i, j) of the impedance is not zero. The others are not
+    /// looked at.
+    const ANSWERS: [[bool; R]; R] = [[true; R]; R];
 
     /// Whether it changes with time where nothing moves; where not, [`Response::per_time`] is zero and not looked at.
     const TIMED: bool = false;
@@ -128,7 +99,7 @@ pub trait Elements<S: Scalar, B: Bodies<S, D>, const D: usize> {
         at: (&B, &B::Placed),
         memory: &Self::Memory,
         remembered: Option<&mut Self::Memory>,
-        sum: &mut impl Assembly<S, D>,
+        sum: &mut impl Assembly<S, B, D>,
     );
 
     /// `base + weight·(to − from)`.
@@ -157,7 +128,7 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
         at: (&B, &B::Placed),
         memory: &W::Memory,
         remembered: Option<&mut W::Memory>,
-        sum: &mut impl Assembly<S, D>,
+        sum: &mut impl Assembly<S, B, D>,
     ) {
         let view = self.link.view(at.0, at.1);
         let seen = self.link.seen(at, &view);
@@ -165,7 +136,7 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
         if let Some(slot) = remembered {
             *slot = next;
         }
-        sum.add::<B, L, W, R>(&self.link, at, &view, &response);
+        sum.add::<L, W, R>(&self.link, at, &view, &response);
     }
 
     #[inline(always)]
@@ -188,7 +159,7 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Elements<S, B, D> for () {
     fn fresh(&self) {}
 
     #[inline(always)]
-    fn act(&self, _: (S, Way<S>), _: (&B, &B::Placed), (): &(), _: Option<&mut ()>, _: &mut impl Assembly<S, D>) {}
+    fn act(&self, _: (S, Way<S>), _: (&B, &B::Placed), (): &(), _: Option<&mut ()>, _: &mut impl Assembly<S, B, D>) {}
 
     #[inline(always)]
     fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
@@ -216,7 +187,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, F: Elements<S, B, D>, con
         at: (&B, &B::Placed),
         memory: &Self::Memory,
         remembered: Option<&mut Self::Memory>,
-        sum: &mut impl Assembly<S, D>,
+        sum: &mut impl Assembly<S, B, D>,
     ) {
         let (first, second) = match remembered {
             Some((first, second)) => (Some(first), Some(second)),
@@ -255,7 +226,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
         at: (&B, &B::Placed),
         memory: &Self::Memory,
         remembered: Option<&mut Self::Memory>,
-        sum: &mut impl Assembly<S, D>,
+        sum: &mut impl Assembly<S, B, D>,
     ) {
         let mut slots = remembered.into_iter().flatten();
         for (element, memory) in self.iter().zip(memory) {
@@ -289,7 +260,14 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Memory = ()>, const D: usi
     fn fresh(&self) {}
 
     #[inline(always)]
-    fn act(&self, way: (S, Way<S>), at: (&B, &B::Placed), (): &(), _: Option<&mut ()>, sum: &mut impl Assembly<S, D>) {
+    fn act(
+        &self,
+        way: (S, Way<S>),
+        at: (&B, &B::Placed),
+        (): &(),
+        _: Option<&mut ()>,
+        sum: &mut impl Assembly<S, B, D>,
+    ) {
         for element in *self {
             element.act(way, at, &(), None, sum);
         }

@@ -9,20 +9,28 @@
 //! Elements compose by type, as tuples and arrays, so that what a mechanism does not have leaves no code.
 
 mod assembly;
+mod axes;
+mod axis;
 mod bodies;
 mod element;
+mod jacobian;
 pub mod law;
+mod link;
 mod lu;
 pub mod planar;
 pub mod spatial;
 
 pub use assembly::Assembly;
-pub use bodies::Bodies;
-pub use element::{Element, Elements, Law, Link, Response, Seen};
+pub use axes::Axes;
+pub use axis::{AxisBody, Displacement, OnAxis, on_axis};
+pub use bodies::{Bodies, ByCoordinate};
+pub use element::{Element, Elements, Law, Response};
+pub use jacobian::Jacobian;
+pub use link::{GradientLink, Link, Seen};
 pub use lu::Lu;
 
 use crate::{
-    SMatrix, SVector, Scalar,
+    SVector, Scalar,
     mechanism::{Differentiated, Linearised, Mechanism, Way, settled, settling},
 };
 use assembly::{Balance, Derivatives, Sum};
@@ -81,21 +89,29 @@ pub struct Driving<S> {
     pub effort: S,
 }
 
-/// How the balance of forces goes by time, velocity and place, at one motion.
+/// The balance of forces linearised, and what leads to the axes in which it is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Linearisation<F, A> {
+    factors: F,
+    axes: A,
+}
+
+/// How the balance of forces goes by velocity and place, at one motion.
 #[derive(Clone, Copy, Debug)]
-pub struct Slopes<S, const D: usize> {
-    mass: SMatrix<S, D, D>,
+pub struct Slopes<M, A, J> {
+    mass: M,
+    axes: A,
     /// −∂force/∂V.
-    damping: SMatrix<S, D, D>,
+    damping: J,
     /// −∂(force − M·V̇)/∂Q.
-    stiffness: SMatrix<S, D, D>,
+    stiffness: J,
 }
 
 impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism<S, D> for System<B, E> {
     type Pose = B::Pose;
     type Memory = E::Memory;
-    type Linearisation = Lu<S, D>;
-    type Slopes = Slopes<S, D>;
+    type Linearisation = Linearisation<<B::Jacobian as Jacobian<S, D>>::Factors, B::Axes>;
+    type Slopes = Slopes<B::Mass, B::Axes, B::Jacobian>;
 
     #[inline(always)]
     fn advanced(&self, pose: &B::Pose, velocity: &SVector<S, D>, dt: S) -> B::Pose {
@@ -144,28 +160,28 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
             return *velocity;
         }
         let unit = settling(a);
-        velocity.zip_map(self.bodies.per_lever(), |x, per_lever| settled(x, unit * per_lever))
+        velocity.zip_map(&self.bodies.per_lever(), |x, per_lever| settled(x, unit * per_lever))
     }
 
     #[inline(always)]
     fn momentum(&self, pose: &B::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
-        self.bodies.mass(&self.bodies.placed(pose, &SVector::zeros())) * velocity
+        self.bodies.momentum(&self.mass_at(pose), velocity)
     }
 
     #[inline(always)]
     fn velocity(&self, pose: &B::Pose, momentum: &SVector<S, D>) -> SVector<S, D> {
-        Lu::of(self.bodies.mass(&self.bodies.placed(pose, &SVector::zeros()))).solve(momentum)
+        self.bodies.velocity(&self.mass_at(pose), momentum)
     }
 
     #[inline(always)]
-    fn momentum_by(&self, slopes: &Slopes<S, D>, _: &B::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
-        slopes.mass * velocity
+    fn momentum_by(&self, slopes: &Self::Slopes, _: &B::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
+        self.bodies.momentum(&slopes.mass, velocity)
     }
 
     #[inline(always)]
     fn forces_by(
         &self,
-        slopes: &Slopes<S, D>,
+        slopes: &Self::Slopes,
         t: S,
         pose: &B::Pose,
         memory: &E::Memory,
@@ -177,7 +193,8 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
             return self.sum(t, &placed, self.bodies.own_force(&placed), memory, a, None);
         }
         let (mass, own) = self.bodies.mass_and_own_force(&placed);
-        slopes.mass * Lu::of(mass).solve(&self.sum(t, &placed, own, memory, a, None))
+        let force = self.sum(t, &placed, own, memory, a, None);
+        self.bodies.momentum(&slopes.mass, &self.bodies.velocity(&mass, &force))
     }
 
     #[inline(always)]
@@ -203,32 +220,34 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         velocity: &SVector<S, D>,
         a: S,
         tangent_share: S,
-    ) -> Linearised<S, Lu<S, D>, D> {
+    ) -> Linearised<S, Self::Linearisation, D> {
         let placed = self.bodies.placed(pose, velocity);
         let rate = S::one() / a;
-        let way = Way { a, mass_rate: self.bodies.least_mass() * rate, tangent_share };
+        let over = if B::MATRIX_IS_LEAN { Some(a) } else { None };
+        let way = Way { over, mass_rate: self.bodies.least_mass() * rate, tangent_share };
         let (mass, force) = self.bodies.mass_and_own_force(&placed);
-        let mut sum = Balance { force, matrix: mass * rate, a };
+        let mut sum = Balance { force, matrix: self.bodies.inertia(&mass, rate), a };
         self.elements.act((t, way), (&self.bodies, &placed), memory, None, &mut sum);
-        Linearised { force: sum.force, linearisation: Lu::of(sum.matrix) }
+        Linearised {
+            force: self.bodies.total(&placed, &sum.force),
+            linearisation: Linearisation { factors: sum.matrix.factorised(), axes: self.bodies.axes(&placed) },
+        }
     }
 
     #[inline(always)]
-    fn solve(&self, linearisation: &Lu<S, D>, residual: &SVector<S, D>) -> SVector<S, D> {
-        linearisation.solve(residual)
+    fn solve(&self, linearisation: &Self::Linearisation, residual: &SVector<S, D>) -> SVector<S, D> {
+        let Linearisation { factors, axes } = linearisation;
+        axes.to_frame(&B::Jacobian::solve(factors, &axes.to_own(residual)))
     }
 
     #[inline(always)]
     fn impulse(&self, imbalance: &SVector<S, D>) -> S {
-        let weighted = imbalance.component_mul(self.bodies.per_lever());
-        weighted.dot(&weighted).sqrt()
+        self.bodies.impulse(imbalance)
     }
 
-    /// The least mass times the speed, angles by their levers: what counts is each coordinate, not what it weighs.
     #[inline(always)]
     fn weighed(&self, _: &B::Pose, change: &SVector<S, D>) -> S {
-        let speeds = change.component_div(self.bodies.per_lever());
-        self.bodies.least_mass() * speeds.dot(&speeds).sqrt()
+        self.bodies.weighed(change)
     }
 
     #[inline(always)]
@@ -238,27 +257,33 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         pose: &B::Pose,
         memory: &E::Memory,
         velocity: &SVector<S, D>,
-    ) -> Differentiated<S, Slopes<S, D>, D> {
+    ) -> Differentiated<S, Self::Slopes, D> {
         let placed = self.bodies.placed(pose, velocity);
-        let way = Way { a: S::zero(), mass_rate: S::zero(), tangent_share: S::one() };
+        let way = Way { over: None, mass_rate: S::zero(), tangent_share: S::one() };
         let (mass, force) = self.bodies.mass_and_own_force(&placed);
-        let zero = SMatrix::zeros();
+        let zero = B::Jacobian::zero();
         let mut sum = Derivatives { force, per_time: SVector::zeros(), damping: zero, stiffness: zero };
         self.elements.act((t, way), (&self.bodies, &placed), memory, None, &mut sum);
-        let acceleration = if B::MASS_IS_CONSTANT { SVector::zeros() } else { Lu::of(mass).solve(&sum.force) };
+        let force = self.bodies.total(&placed, &sum.force);
+        let acceleration = if B::MASS_IS_CONSTANT { SVector::zeros() } else { self.bodies.velocity(&mass, &force) };
         self.bodies.own_slopes(&placed, &acceleration, &mut sum.damping, &mut sum.stiffness);
-        let Derivatives { force, per_time, damping, stiffness } = sum;
-        Differentiated { force, per_time, slopes: Slopes { mass, damping, stiffness } }
+        let axes = self.bodies.axes(&placed);
+        let Derivatives { per_time, damping, stiffness, .. } = sum;
+        let slopes = Slopes { mass, axes, damping, stiffness };
+        Differentiated { force, per_time: axes.to_frame(&per_time), slopes }
     }
 
     #[inline(always)]
-    fn linearisation(&self, slopes: &Slopes<S, D>, a: S) -> Lu<S, D> {
-        Lu::of(slopes.mass * (S::one() / a) + slopes.damping + slopes.stiffness * a)
+    fn linearisation(&self, slopes: &Self::Slopes, a: S) -> Self::Linearisation {
+        let Slopes { mass, axes, damping, stiffness } = slopes;
+        let matrix = self.bodies.inertia(mass, S::one() / a).plus(damping, S::one()).plus(stiffness, a);
+        Linearisation { factors: matrix.factorised(), axes: *axes }
     }
 
     #[inline(always)]
-    fn pushed(&self, slopes: &Slopes<S, D>, displacement: &SVector<S, D>) -> SVector<S, D> {
-        -(slopes.stiffness * displacement)
+    fn pushed(&self, slopes: &Self::Slopes, displacement: &SVector<S, D>) -> SVector<S, D> {
+        let Slopes { axes, stiffness, .. } = slopes;
+        -axes.to_frame(&stiffness.times(&axes.to_own(displacement)))
     }
 
     #[inline(always)]
@@ -284,10 +309,19 @@ impl<B, E> System<B, E> {
         B: Bodies<S, D>,
         E: Elements<S, B, D>,
     {
-        let way = Way { a, mass_rate: self.bodies.least_mass() / a, tangent_share: S::one() };
+        let way = Way { over: None, mass_rate: self.bodies.least_mass() / a, tangent_share: S::one() };
         let mut sum = Sum(own);
         self.elements.act((t, way), (&self.bodies, placed), memory, remembered, &mut sum);
-        sum.0
+        self.bodies.total(placed, &sum.0)
+    }
+
+    /// The mass matrix at a `pose`.
+    #[inline(always)]
+    fn mass_at<S: Scalar, const D: usize>(&self, pose: &B::Pose) -> B::Mass
+    where
+        B: Bodies<S, D>,
+    {
+        self.bodies.mass(&self.bodies.placed(pose, &SVector::zeros()))
     }
 }
 

@@ -1,15 +1,15 @@
 //! Derivatives against differences, for every link and law.
 
 use super::{
-    Bodies, Element, Elements, System,
-    law::{Axis, Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
+    Axes, Bodies, Displacement, Element, Elements, Jacobian, OnAxis, System,
+    law::{Axis, Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Slot, Spring, Stopped, Wall},
     planar::{self, Coordinate, PlanarTree, Point},
     spatial::{self, FreeBodies, Port, Seat, Turned},
 };
 use crate::{
     SVector, Vector2, Vector3,
     drive::Drive,
-    law::{Impact, Regularised, ThreeHalves},
+    law::{self, Frictionless, Impact, Regularised, ThreeHalves},
     mechanism::Mechanism,
 };
 
@@ -67,9 +67,11 @@ fn check<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
             let mut step = zero;
             step[k] = h;
             let by_place = (residual(t, &step, &v) - residual(t, &-step, &v)) / (2.0 * h);
-            close(-found.slopes.stiffness.column(k), by_place, "place");
+            close(system.pushed(&found.slopes, &step) / h, by_place, "place");
             let by_rate = (residual(t, &zero, &(v + step)) - residual(t, &zero, &(v - step))) / (2.0 * h);
-            close(-found.slopes.damping.column(k), by_rate, "velocity");
+            let axes = &found.slopes.axes;
+            let damped = axes.to_frame(&found.slopes.damping.times(&axes.to_own(&step)));
+            close(-damped / h, by_rate, "velocity");
         }
     }
     assert!(cfg!(miri) || (20..=100).contains(&touched), "{touched}");
@@ -178,4 +180,41 @@ fn spatial_derivatives_are_those_of_the_forces() {
     );
     let start = bodies.nominal();
     check(&System::new(bodies, elements), start, 0.1, |force| force.norm() > 20.0);
+}
+
+#[test]
+fn a_floating_body_has_the_derivatives_of_its_forces() {
+    let body = planar::Floating::new(0.5, 0.02, Vector2::new(1.0, -9.81), 0.2).unwrap();
+    let at = |x, y| Vector2::new(x, y);
+    let elements = (
+        [at(0.2, 0.1), at(-0.2, 0.1)].map(|place| Element::<_, _, 2> {
+            link: planar::Pin { place },
+            law: Slot { gaps: [-0.01, 0.03], contact: contact() },
+        }),
+        (
+            Element::<_, _, 4> {
+                link: planar::Hole { centre: at(0.1, -0.2) },
+                law: Journal { clearance: 0.02, radius: 0.05, contact: contact() },
+            },
+            Element::<_, _, 2> { link: planar::Pull { point: at(0.1, 0.3), axis: at(0.6, 0.8) }, law: Pusher(drive()) },
+        ),
+    );
+    check(&System::new(body, elements), planar::PlanarPose::nominal(), 0.1, |force| force.norm() > 20.0);
+    let smooth = Contact { normal: contact().normal, friction: Frictionless };
+    let hole = Element::<_, _, 4> {
+        link: planar::Hole { centre: at(0.1, -0.2) },
+        law: Journal { clearance: 0.02, radius: 0.05, contact: smooth },
+    };
+    check(&System::new(body, hole), planar::PlanarPose::nominal(), 0.1, |force| force.norm() > 20.0);
+}
+
+#[test]
+fn a_body_on_an_axis_has_the_derivatives_of_its_forces() {
+    let stop = Element::<_, _, 1> {
+        link: Displacement,
+        law: Stopped { stop: law::Slot::new(0.01, 0.02).unwrap(), contact: contact().normal },
+    };
+    let motor = Element::<_, _, 1> { link: Displacement, law: Motor(drive()) };
+    let system = System::new(OnAxis::new(0.5, -9.81).unwrap(), (stop, motor));
+    check(&system, 0.0, 0.1, |force| force.norm() > 10.0);
 }

@@ -85,7 +85,7 @@ impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
         at: (&PlanarTree<f64, D>, &planar::Placed<f64, D>),
         (): &(),
         _: Option<&mut ()>,
-        sum: &mut impl Assembly<f64, D>,
+        sum: &mut impl Assembly<f64, PlanarTree<f64, D>, D>,
     ) {
         match self {
             Self::Journal(element) => element.act(way, at, &(), None, sum),
@@ -115,7 +115,7 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
         at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
         (): &(),
         _: Option<&mut ()>,
-        sum: &mut impl Assembly<f64, D>,
+        sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
     ) {
         match self {
             Self::Pin(element) => element.act(way, at, &[(); 2], None, sum),

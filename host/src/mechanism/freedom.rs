@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, SMatrix, SVector};
 use slipfit_core::{
     ParameterError,
-    system::{Bodies, Link, planar::PlanarTree, spatial::FreeBodies},
+    system::{Bodies, GradientLink, planar::PlanarTree, spatial::FreeBodies},
 };
 
 use super::{JointKind, Mechanism, Mounts, RunError, element::PlanarElement, element::SpatialElement, planar, spatial};
@@ -85,7 +85,7 @@ fn scaled<const R: usize, const D: usize>(gradient: &SMatrix<f64, R, D>, per_lev
 }
 
 /// How the numbers of `link` go by the velocities.
-fn gradient<B: Bodies<f64, D>, L: Link<f64, B, D, R>, const R: usize, const D: usize>(
+fn gradient<B: Bodies<f64, D>, L: GradientLink<f64, B, D, R>, const R: usize, const D: usize>(
     link: &L,
     bodies: &B,
     placed: &B::Placed,
@@ -120,11 +120,11 @@ fn in_plane<const D: usize>(
         match element {
             PlanarElement::Journal(element) => {
                 let gradient = gradient(&element.link, &tree, &placed);
-                rows.extend(scaled(&gradient, tree.per_lever()).into_iter().take(2));
+                rows.extend(scaled(&gradient, &tree.per_lever()).into_iter().take(2));
             }
             PlanarElement::Pad(element) => {
                 let gradient = gradient(&element.link, &tree, &placed);
-                rows.extend(scaled(&gradient, tree.per_lever()).into_iter().take(1));
+                rows.extend(scaled(&gradient, &tree.per_lever()).into_iter().take(1));
             }
             _ => {}
         }
@@ -142,12 +142,12 @@ fn in_space<const N: usize, const D: usize>(mechanism: &Mechanism, gaps: &[f64])
                 let gradient = gradient(&element.link, &bodies, &placed);
                 let [left, right, rail, wall] = element.law.gaps.map(|gap| gap < spatial::NONE);
                 let held = [left || right, rail || wall, false];
-                let all = scaled(&gradient, bodies.per_lever());
+                let all = scaled(&gradient, &bodies.per_lever());
                 rows.extend(all.into_iter().zip(held).filter(|(_, held)| *held).map(|(row, _)| row));
             }
             SpatialElement::Ring(element) => {
                 let gradient = gradient(&element.link, &bodies, &placed);
-                rows.extend(scaled(&gradient, bodies.per_lever()).into_iter().take(2));
+                rows.extend(scaled(&gradient, &bodies.per_lever()).into_iter().take(2));
             }
             _ => {}
         }

@@ -4,15 +4,19 @@ use core::hint::black_box;
 
 use slipfit_core::{
     ParameterError, Vector2,
-    axis::AxisBody,
     integrator::{Extrapolated, ImplicitEuler, Integrator, Sdirk2},
     kernel::Kernel,
     law::{Elastic, Exact, Friction, Impact, Slot, ThreeHalves},
     menu::SlideVisitor,
     monitor::{LevelBank, Limits, Monitor, Sample, Watch},
-    planar::{Across, Journal, Planar, PlanarBody, PlanarPose},
     pose::Pose,
     slide::Slide,
+    system::{
+        Element, System,
+        law::{Contact, Journal, Pusher, Slot as PlanarSlot},
+        on_axis,
+        planar::{Floating, Hole, Pin, PlanarPose, Pull},
+    },
     table::{AxisKind, Scrubber, Slots, Table, TableError, Word},
 };
 use slipfit_problems::{cd_rom, mechanisms};
@@ -54,25 +58,22 @@ fn step<E: Elastic<f32>, F: Friction<f32>, I: Integrator>(slide: Slide<f32, E, F
 /// Makes and steps a planar body and one on an axis.
 fn smaller_scenes() -> Result<(), ParameterError<f32>> {
     let data = black_box(cd_rom::data(black_box(0.0)));
-    let contact = Impact::new(ThreeHalves::new(black_box(3e6))?, black_box(1e3), black_box(1e-4))?;
+    let normal = Impact::new(ThreeHalves::new(black_box(3e6))?, black_box(1e3), black_box(1e-4))?;
     let slot = Slot::new(black_box(0.0), black_box(1e-4))?;
-    let body = black_box(PlanarBody {
-        mass: data.body.mass,
-        inertia: data.body.inertia_b.y,
-        gravity_w: Vector2::zeros(),
-        pins_w: [Vector2::zeros(); 4],
-        joints: [Across(slot); 4],
-    });
-    let flat = Planar::new(body, contact, Exact::new(black_box(0.3))?, data.drive)?;
+    let body = Floating::new(data.body.mass, data.body.inertia_b.y, black_box(Vector2::zeros()), black_box(0.1))?;
+    let pull =
+        Element { link: black_box(Pull { point: Vector2::zeros(), axis: Vector2::y() }), law: Pusher(data.drive) };
+    let contact = Contact { normal, friction: Exact::new(black_box(0.3))? };
+    let pin = Element { link: Pin { place: Vector2::zeros() }, law: PlanarSlot { gaps: [0.0, 1e-4], contact } };
+    let flat = System::new(body, black_box(([pin; 4], pull)));
     let kernel = Kernel::<f32, _, Extrapolated<2, 4>>::new(flat, black_box(1e-3))?;
     black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
-    let joints = [Journal::new(black_box(1e-5), black_box(5e-3))?; 4];
-    let PlanarBody { mass, inertia, gravity_w, pins_w, .. } = body;
-    let swing = PlanarBody { mass, inertia, gravity_w, pins_w, joints };
-    let swing = Planar::new(swing, contact, Exact::new(black_box(0.3))?, data.drive)?;
+    let hole =
+        Element { link: Hole { centre: Vector2::zeros() }, law: Journal { clearance: 1e-5, radius: 5e-3, contact } };
+    let swing = System::new(body, black_box(([hole; 4], pull)));
     let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(swing, black_box(1e-3))?;
     black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
-    let driven = AxisBody::driven(black_box(1.0), black_box(0.0), slot, contact, data.drive)?;
+    let driven = on_axis(black_box(1.0), black_box(0.0), slot, normal, data.drive)?;
     let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(driven, black_box(1e-3))?;
     black_box(kernel.step(&mut black_box(kernel.at_rest::<1>(0.0))));
     Ok(())

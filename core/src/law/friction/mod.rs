@@ -39,6 +39,9 @@ pub trait Friction<S>: Copy {
     /// What the law remembers of a contact from one step to the next.
     type Memory: Copy + core::fmt::Debug + PartialEq;
 
+    /// Whether there is any friction.
+    const RUBS: bool = true;
+
     /// Whether the law can hold a body at rest.
     const STICKS: bool;
 
@@ -61,6 +64,8 @@ pub struct Frictionless;
 
 impl<S: Scalar> Friction<S> for Frictionless {
     type Memory = ();
+
+    const RUBS: bool = false;
 
     const STICKS: bool = false;
 

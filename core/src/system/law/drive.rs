@@ -51,6 +51,8 @@ impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
 
     const PLACES: usize = 0;
 
+    const ANSWERS: [[bool; 2]; 2] = [[false, true], [false, false]];
+
     const TIMED: bool = true;
 
     #[inline(always)]

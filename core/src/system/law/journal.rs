@@ -4,6 +4,8 @@
 //! along n at the rim of the pin, and there they rub, so that friction also has moments about both centres. Where the pin is
 //! inside there is no force, and so none where ρ = 0 has no direction.
 
+use nalgebra::Matrix2;
+
 use super::{Contact, Law, Response, Rub, steady};
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
@@ -50,13 +52,13 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
         let zero = S::zero();
         let apart = Vector2::new(place[0], place[1]);
         let moving = Vector2::new(rate[0], rate[1]);
+        let [hole, pin] = [rate[2], rate[3]];
         let squared = apart.dot(&apart);
         let per_distance = squared.max_of(S::from_f64(1e-30)).rsqrt();
         let distance = squared * per_distance;
         let normal = apart * per_distance;
         let tangent = left(&normal);
         let (outward, aside) = (moving.dot(&normal), moving.dot(&tangent));
-        let [hole, pin] = [rate[2], rate[3]];
         let (rim, radius) = (distance + self.radius, self.radius);
         let sliding = rim * hole - aside - radius * pin;
         let touch = self.contact.rub(memory, way, [distance - self.clearance, outward], sliding);
@@ -72,6 +74,21 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
             [per_force * push_by_place[0] + per_sliding * hole, per_force * push_by_place[1] + per_sliding * turned[1]];
         let rub_by_rate = [per_force * damping, -per_sliding];
         let in_frame = |along: S, across: S| normal * along + tangent * across;
+        let moving = |by_rate: Vector2<S>, by_place: Vector2<S>| match way.over {
+            Some(a) => by_rate + by_place * a,
+            None => by_rate,
+        };
+        let block = |n: Vector2<S>, t: Vector2<S>| n * normal.transpose() + t * tangent.transpose();
+        if !F::RUBS {
+            let by_place = [normal * push_by_place[0], in_frame(push_by_place[1], per_distance * push)];
+            let by_rate = [moving(normal * damping, by_place[0]), moving(Vector2::zeros(), by_place[1])];
+            let among = |block: Matrix2<S>| block.fixed_resize::<4, 4>(zero);
+            let force = SVector::<S, 4>::new(-normal.x * push, -normal.y * push, zero, zero);
+            return (
+                steady(force, among(block(by_rate[0], by_rate[1])), among(block(by_place[0], by_place[1]))),
+                memory,
+            );
+        }
         let by_place = [
             in_frame(push_by_place[0], -rub_by_place[0]),
             in_frame(push_by_place[1] - per_distance * traction, per_distance * push - rub_by_place[1]),
@@ -80,14 +97,16 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
         let rub_by_place = in_frame(rub_by_place[0], rub_by_place[1]);
         let rub_by_rate = in_frame(rub_by_rate[0], rub_by_rate[1]);
         let rim_by_place = rub_by_place * rim - normal * traction;
-        let block = |[n, t]: [Vector2<S>; 2]| n * normal.transpose() + t * tangent.transpose();
-        let (place_block, rate_block) = (block(by_place), block(by_rate));
+        let rim_by_rate = rub_by_rate * rim;
+        let by_rate = [moving(by_rate[0], by_place[0]), moving(by_rate[1], by_place[1])];
+        let (rim_by_rate, rub_by_rate) = (moving(rim_by_rate, rim_by_place), moving(rub_by_rate, rub_by_place));
+        let (place_block, rate_block) = (block(by_place[0], by_place[1]), block(by_rate[0], by_rate[1]));
         let dragged = tangent * -per_sliding;
         #[rustfmt::skip]
         let impedance = SMatrix::<S, 4, 4>::new(
             rate_block.m11, rate_block.m12, dragged.x * rim, -dragged.x * radius,
             rate_block.m21, rate_block.m22, dragged.y * rim, -dragged.y * radius,
-            rim * rub_by_rate.x, rim * rub_by_rate.y, rim * rim * per_sliding, -(rim * radius * per_sliding),
+            rim_by_rate.x, rim_by_rate.y, rim * rim * per_sliding, -(rim * radius * per_sliding),
             -(radius * rub_by_rate.x), -(radius * rub_by_rate.y), -(rim * radius * per_sliding), radius * radius * per_sliding,
         );
         #[rustfmt::skip]

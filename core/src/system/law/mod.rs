@@ -4,14 +4,18 @@ mod drive;
 mod journal;
 mod pin;
 mod ring;
+mod slot;
 mod spring;
+mod stopped;
 mod wall;
 
 pub use drive::{DriveLaw, Motor, Pusher};
 pub use journal::Journal;
 pub use pin::Pin;
 pub use ring::Ring;
+pub use slot::Slot;
 pub use spring::Spring;
+pub use stopped::Stopped;
 pub use wall::{Axis, Pad, Wall};
 
 use super::{Law, Response};
@@ -93,7 +97,7 @@ impl<N, F> Contact<N, F> {
         Rub {
             force: pressed.force,
             stiffness: pressed.stiffness(),
-            damping: pressed.impedance(S::zero()),
+            damping: pressed.impedance(None),
             traction: traction.force[0],
             per_force: traction.per_normal[0],
             per_sliding: traction.impedance[0],
@@ -115,7 +119,7 @@ impl<N, F> Contact<N, F> {
         F: Friction<S>,
     {
         let (pressed, traction, memory) = self.meet(memory, way, [penetration.0, rate.0], [first.0, second.0]);
-        let force_slope = penetration.1 * pressed.stiffness() + rate.1 * pressed.impedance(S::zero());
+        let force_slope = penetration.1 * pressed.stiffness() + rate.1 * pressed.impedance(None);
         let [own, mixed, other] = traction.impedance;
         let [by_first, by_second] = traction.per_normal;
         let traction_slopes = [

@@ -35,7 +35,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Pin<S, N, F> {
         force[A] -= slot.force();
         force[T] -= traction.force[0];
         force[U] -= traction.force[1];
-        let ([own, normal], [own_stiffness, normal_stiffness]) = (slot.impedances(S::zero()), slot.stiffnesses());
+        let ([own, normal], [own_stiffness, normal_stiffness]) = (slot.impedances(way.over), slot.stiffnesses());
         let [by_first, by_second] = traction.per_normal;
         impedance[(A, A)] += own;
         impedance[(T, A)] += by_first * normal;

@@ -89,7 +89,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
             }
         }
         let axes = [normal, tangent];
-        (steady(force, in_link(&axes, by_rate), in_link(&axes, by_place)), touch.memory)
+        (steady(force, in_link(&axes, by_rate), in_link(&axes, by_place)).moving(way.over, 2), touch.memory)
     }
 
     #[inline(always)]

@@ -25,10 +25,17 @@ impl<S: Scalar> Law<S, 1> for Spring<S> {
     fn fresh() {}
 
     #[inline(always)]
-    fn response(&self, _: S, place: &SVector<S, 1>, rate: &SVector<S, 1>, (): &(), _: Way<S>) -> (Response<S, 1>, ()) {
+    fn response(
+        &self,
+        _: S,
+        place: &SVector<S, 1>,
+        rate: &SVector<S, 1>,
+        (): &(),
+        way: Way<S>,
+    ) -> (Response<S, 1>, ()) {
         let force = -(self.stiffness * (place.x - self.rest) + self.damping * rate.x);
         let one = |x: S| SMatrix::<S, 1, 1>::new(x);
-        (steady(SVector::<S, 1>::new(force), one(self.damping), one(self.stiffness)), ())
+        (steady(SVector::<S, 1>::new(force), one(self.damping), one(self.stiffness)).moving(way.over, 1), ())
     }
 
     #[inline(always)]

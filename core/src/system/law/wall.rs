@@ -98,7 +98,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
             SMatrix::<S, 2, 2>::new(damping, zero, -(per_force * damping), per_sliding),
             SMatrix::<S, 2, 2>::new(stiffness, zero, -(per_force * stiffness), zero),
         );
-        (response, memory)
+        (response.moving(way.over, 1), memory)
     }
 
     #[inline(always)]
@@ -148,7 +148,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
         let force = self.axis.in_order([touch.force * self.sign, touch.traction[0], touch.traction[1]]);
         let impedance = matrix([column(1), column(2), column(3)]);
         let stiffness = matrix([column(0), [zero; 3], [zero; 3]]);
-        (steady(force.into(), impedance, stiffness), touch.memory)
+        (steady(force.into(), impedance, stiffness).moving(way.over, 3), touch.memory)
     }
 
     #[inline(always)]

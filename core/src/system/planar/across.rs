@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
-    system::{Link, Seen},
+    system::{GradientLink, Seen},
 };
 
 /// A point of one body seen from another, in the axes of the latter: displacement (m) from `seat` to `point` along `normal` and to the
@@ -39,7 +39,7 @@ impl<S: Scalar, const D: usize, P, Q: Carrier<D>> Across<S, D, P, Q> {
 }
 
 impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>, const D: usize>
-    Link<S, PlanarTree<S, D, J, R>, D, 2> for Across<S, D, P, Q>
+    GradientLink<S, PlanarTree<S, D, J, R>, D, 2> for Across<S, D, P, Q>
 {
     type View = Pair<S, D, P, Q>;
 

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
-    system::{Link, Seen},
+    system::{GradientLink, Seen},
 };
 
 /// Displacements (m) along an axis of the frame: of a drive's point, and of its sensor on the same body, whose speed counts.
@@ -32,8 +32,8 @@ impl<S: Scalar, const D: usize, C> Along<S, D, C> {
     }
 }
 
-impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usize> Link<S, PlanarTree<S, D, J, R>, D, 2>
-    for Along<S, D, C>
+impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usize>
+    GradientLink<S, PlanarTree<S, D, J, R>, D, 2> for Along<S, D, C>
 {
     type View = [At<S, D, C>; 2];
 

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
-    system::{Link, Seen},
+    system::{GradientLink, Seen},
 };
 
 /// The centre of a pin as seen from a hole's, in the axes of the frame, with the turning of both bodies: displacement along x and y
@@ -29,7 +29,7 @@ fn above_zeros<S: Scalar, const D: usize>(columns: &[Vector2<S>; D]) -> SMatrix<
 }
 
 impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>, const D: usize>
-    Link<S, PlanarTree<S, D, J, R>, D, 4> for Between<S, D, H, P>
+    GradientLink<S, PlanarTree<S, D, J, R>, D, 4> for Between<S, D, H, P>
 {
     type View = Pair<S, D, P, H>;
 

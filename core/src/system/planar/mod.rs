@@ -6,6 +6,7 @@
 mod across;
 mod along;
 mod between;
+mod floating;
 mod pair;
 mod point;
 mod rigid;
@@ -16,6 +17,7 @@ mod turning;
 pub use across::Across;
 pub use along::Along;
 pub use between::Between;
+pub use floating::{Floating, Hole, Pin, PlanarPose, Pull};
 pub use point::{At, Point};
 pub use rigid::{Many, Rigid, Rigids};
 pub use topology::{Carrier, Chain, Frame, Kind, Path, STRAIGHT, Topology, Turns};

@@ -6,7 +6,11 @@ use super::{
     rigid::{Many, Rigid, Rigids},
     topology::{Carrier, Kind, Topology},
 };
-use crate::{ParameterError, SMatrix, SVector, Scalar, Vector2, error::bounded, system::Bodies};
+use crate::{
+    ParameterError, SMatrix, SVector, Scalar, Vector2,
+    error::bounded,
+    system::{Bodies, ByCoordinate, Lu},
+};
 
 /// A generalised coordinate of ideal joints in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,6 +145,10 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
     type Pose = [[S; 2]; D];
     type Placed = Placed<S, D>;
 
+    type Mass = SMatrix<S, D, D>;
+    type Axes = ();
+    type Jacobian = SMatrix<S, D, D>;
+
     const MASS_IS_CONSTANT: bool = false;
 
     #[inline(always)]
@@ -239,6 +247,24 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
     }
 
     #[inline(always)]
+    fn axes(&self, _: &Placed<S, D>) {}
+
+    #[inline(always)]
+    fn inertia(&self, mass: &SMatrix<S, D, D>, rate: S) -> SMatrix<S, D, D> {
+        mass * rate
+    }
+
+    #[inline(always)]
+    fn momentum(&self, mass: &SMatrix<S, D, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
+        mass * velocity
+    }
+
+    #[inline(always)]
+    fn velocity(&self, mass: &SMatrix<S, D, D>, momentum: &SVector<S, D>) -> SVector<S, D> {
+        Lu::of(*mass).solve(momentum)
+    }
+
+    #[inline(always)]
     fn mass(&self, placed: &Placed<S, D>) -> SMatrix<S, D, D> {
         let mut mass = SMatrix::<S, D, D>::zeros();
         self.bodies.add((&self.topology, placed), &self.gravity, Some(&mut mass), None);
@@ -276,10 +302,12 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
     }
 
     #[inline(always)]
-    fn per_lever(&self) -> &SVector<S, D> {
-        &self.per_lever
+    fn per_lever(&self) -> SVector<S, D> {
+        self.per_lever
     }
 }
+
+impl<S, const D: usize, J, R> ByCoordinate for PlanarTree<S, D, J, R> {}
 
 /// `p` turned by the angle whose cosine and sine `by` holds.
 #[inline(always)]

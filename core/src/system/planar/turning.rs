@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
-    system::{Link, Seen},
+    system::{GradientLink, Seen},
 };
 
 /// How much (rad) a body has turned against another, or against the frame where there is none; and how fast (rad/s).
@@ -21,7 +21,7 @@ pub struct Turning<A = Option<usize>, B = Option<usize>> {
 }
 
 impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D: usize>
-    Link<S, PlanarTree<S, D, J, R>, D, 1> for Turning<A, B>
+    GradientLink<S, PlanarTree<S, D, J, R>, D, 1> for Turning<A, B>
 {
     type View = ();
 

@@ -3,7 +3,11 @@
 use nalgebra::Matrix3;
 
 use crate::{
-    ParameterError, SMatrix, SVector, Scalar, Vector3, error::bounded, linear::cross_matrix, pose::Pose, system::Bodies,
+    ParameterError, SMatrix, SVector, Scalar, Vector3,
+    error::bounded,
+    linear::cross_matrix,
+    pose::Pose,
+    system::{Bodies, ByCoordinate},
 };
 
 /// A rigid body in space.
@@ -71,11 +75,19 @@ impl<S: Scalar, const N: usize, const D: usize> FreeBodies<S, N, D> {
         [Pose::nominal(); N]
     }
 
+    /// The diagonal of the mass matrix.
+    #[inline(always)]
+    fn moments(&self) -> impl Iterator<Item = S> {
+        self.bodies.iter().flat_map(|Rigid { mass, inertia_b: j, .. }| [*mass, *mass, *mass, j.x, j.y, j.z])
+    }
+
     /// By which length (m) angles of body `i` are compared with displacements.
     pub fn lever(&self, i: usize) -> S {
         self.per_lever.get(6 * i + 3).map_or(S::one(), |per_lever| S::one() / *per_lever)
     }
 }
+
+impl<S, const N: usize, const D: usize> ByCoordinate for FreeBodies<S, N, D> {}
 
 /// The six numbers of each body: velocities and angular velocities, or displacements and turns.
 #[inline(always)]
@@ -148,6 +160,9 @@ pub struct Placed<S, const N: usize, const D: usize> {
 impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N, D> {
     type Pose = [Pose<S>; N];
     type Placed = Placed<S, N, D>;
+    type Mass = ();
+    type Axes = ();
+    type Jacobian = SMatrix<S, D, D>;
 
     const MASS_IS_CONSTANT: bool = true;
 
@@ -220,19 +235,34 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     }
 
     #[inline(always)]
-    fn mass(&self, _: &Self::Placed) -> SMatrix<S, D, D> {
-        let mut mass = SMatrix::<S, D, D>::zeros();
-        let moments = |body: &Rigid<S>| {
-            let Rigid { mass, inertia_b: j, .. } = *body;
-            [mass, mass, mass, j.x, j.y, j.z]
-        };
-        let diagonal = self.bodies.iter().flat_map(moments);
-        for ((k, column), moment) in mass.data.0.iter_mut().enumerate().zip(diagonal) {
+    fn axes(&self, _: &Self::Placed) {}
+
+    #[inline(always)]
+    fn mass(&self, _: &Self::Placed) {}
+
+    #[inline(always)]
+    fn inertia(&self, (): &(), rate: S) -> SMatrix<S, D, D> {
+        let mut inertia = SMatrix::<S, D, D>::zeros();
+        for ((k, column), moment) in inertia.data.0.iter_mut().enumerate().zip(self.moments()) {
             if let Some(entry) = column.get_mut(k) {
-                *entry = moment;
+                *entry = moment * rate;
             }
         }
-        mass
+        inertia
+    }
+
+    #[inline(always)]
+    fn momentum(&self, (): &(), velocity: &SVector<S, D>) -> SVector<S, D> {
+        let mut momentum = *velocity;
+        momentum.iter_mut().zip(self.moments()).for_each(|(x, moment)| *x *= moment);
+        momentum
+    }
+
+    #[inline(always)]
+    fn velocity(&self, (): &(), momentum: &SVector<S, D>) -> SVector<S, D> {
+        let mut velocity = *momentum;
+        velocity.iter_mut().zip(self.moments()).for_each(|(x, moment)| *x /= moment);
+        velocity
     }
 
     #[inline(always)]
@@ -271,7 +301,7 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     }
 
     #[inline(always)]
-    fn per_lever(&self) -> &SVector<S, D> {
-        &self.per_lever
+    fn per_lever(&self) -> SVector<S, D> {
+        self.per_lever
     }
 }

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
     linear::cross_matrix,
-    system::{Link, Seen},
+    system::{GradientLink, Seen},
 };
 
 /// A point of a body along an axis of the frame, and the body's centre of mass, whose speed along it counts.
@@ -38,7 +38,7 @@ impl<S: Scalar> Along<S> {
     }
 }
 
-impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 2> for Along<S> {
+impl<S: Scalar, const N: usize, const D: usize> GradientLink<S, FreeBodies<S, N, D>, D, 2> for Along<S> {
     type View = ();
 
     #[inline(always)]
@@ -110,7 +110,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     }
 }
 
-impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 1> for About<S> {
+impl<S: Scalar, const N: usize, const D: usize> GradientLink<S, FreeBodies<S, N, D>, D, 1> for About<S> {
     type View = ();
 
     #[inline(always)]

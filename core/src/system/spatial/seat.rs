@@ -9,7 +9,7 @@ use super::{
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
     linear::cross_matrix,
-    system::{Link, Seen},
+    system::{GradientLink, Seen},
 };
 
 /// A point of a body, or of the frame.
@@ -174,7 +174,7 @@ impl<S: Scalar> Seat<S> {
     }
 }
 
-impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 3> for Seat<S> {
+impl<S: Scalar, const N: usize, const D: usize> GradientLink<S, FreeBodies<S, N, D>, D, 3> for Seat<S> {
     type View = View<S>;
 
     #[inline(always)]

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
     linear::cross_matrix,
-    system::{Link, Seen},
+    system::{GradientLink, Seen},
 };
 
 /// A point of one body as seen from another, and the rotation of its body against that one, both in axes that are turned against
@@ -34,7 +34,7 @@ impl<S: Scalar> Turned<S> {
     }
 }
 
-impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 6> for Turned<S> {
+impl<S: Scalar, const N: usize, const D: usize> GradientLink<S, FreeBodies<S, N, D>, D, 6> for Turned<S> {
     type View = View<S>;
 
     #[inline(always)]

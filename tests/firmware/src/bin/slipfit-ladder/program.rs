@@ -5,16 +5,20 @@ use core::{fmt::Display, hint::black_box};
 use slipfit_core::{
     Vector2,
     ahead::{self, Ahead, Prediction},
-    axis::AxisBody,
     drive::Drive,
     integrator::{ImplicitEuler, Integrator},
     kernel::{Kernel, Report, StateOf},
     law::{Elastic, Exact, Friction, Frictionless, Impact, Linear, Pad, Power, Regularised, Slot, ThreeHalves},
     mechanism::Mechanism,
     menu::SlideData,
-    planar::{Across, Journal, Planar, PlanarBody, PlanarPose},
     pose::Pose,
-    slide::{PINS, Slide},
+    slide::{Body, PINS, Slide},
+    system::{
+        AxisBody, Element, System,
+        law::{Contact, Journal, Pusher, Slot as PlanarSlot},
+        on_axis,
+        planar::{Floating, Hole, Pin, PlanarPose, Pull},
+    },
 };
 use slipfit_problems::{
     cd_rom::{self, STICK_BAND},
@@ -38,6 +42,9 @@ const MECHANISM_STEPS: u32 = 100;
 /// Coefficient of friction, where there is any.
 const COEFFICIENT: f32 = 0.3;
 
+/// How far the farthest pin of the planar bodies is (m).
+const FARTHEST: f32 = 0.06456;
+
 /// Tolerance level of every rung.
 const LEVEL: f32 = 2.5;
 
@@ -46,8 +53,11 @@ const EARLY: u32 = 70;
 
 type Unit<E, F> = Slide<f32, E, F>;
 type FullSlide = Unit<ThreeHalves<f32>, Exact<f32>>;
-type Flat = Planar<f32, Across<Slot<f32>>, ThreeHalves<f32>, Regularised<f32>, PINS>;
-type Lever = Planar<f32, Journal<f32>, ThreeHalves<f32>, Frictionless, 1>;
+type Normal = Impact<f32, ThreeHalves<f32>>;
+type Pulled = Element<Pull<f32>, Pusher<Drive<f32>>, 2>;
+type Slotted = Element<Pin<f32>, PlanarSlot<f32, Normal, Regularised<f32>>, 2>;
+type Flat = System<Floating<f32>, ([Slotted; PINS], Pulled)>;
+type Lever = System<Floating<f32>, (Element<Hole<f32>, Journal<f32, Normal, Frictionless>, 4>, Pulled)>;
 type Driven = AxisBody<f32, ThreeHalves<f32>, Slot<f32>, Drive<f32>>;
 type Ball = AxisBody<f32, Linear<f32>, Pad<f32>>;
 
@@ -121,35 +131,33 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     ahead(machine, slide(three_halves, smoothed));
     rung(machine, "slide_frictionless", slide(three_halves, Frictionless), nominal, slide_frictionless);
 
-    let contact = impact(three_halves);
-    let body = PlanarBody {
-        mass: data.body.mass,
-        inertia: data.body.inertia_b.y,
-        gravity_w: Vector2::zeros(),
-        pins_w: data.body.pins_w.map(|pin| Vector2::new(pin.x, pin.z)),
-        joints: [0, 1, 2, 3].map(|pin| {
-            let [left, right] = [data.body.gaps[4 * pin], data.body.gaps[4 * pin + 1]];
-            Across(Slot::new(left, right).expect("the gaps are in bounds"))
-        }),
+    let normal = impact(three_halves);
+    let place = |pin: usize| Vector2::new(data.body.pins_w[pin].x, data.body.pins_w[pin].z);
+    let floating = |gravity: f32| {
+        let Body { mass, inertia_b, .. } = data.body;
+        Floating::new(mass, inertia_b.y, Vector2::new(0.0, gravity), FARTHEST).expect("the body is in bounds")
     };
-    let flat = Planar::new(body, contact, smoothed, drive).expect("the body is in bounds");
-    rung(machine, "planar_smoothed", flat, PlanarPose::nominal(), planar_smoothed);
-    let lever = PlanarBody {
-        mass: body.mass,
-        inertia: body.inertia,
-        gravity_w: Vector2::new(0.0, -9.81),
-        pins_w: [body.pins_w[0]],
-        joints: [Journal::new(1e-5, 5e-3).expect("the journal is in bounds")],
-    };
-    let lever = Planar::new(lever, contact, Frictionless, drive).expect("the body is in bounds");
+    let pull = Element { link: Pull { point: Vector2::zeros(), axis: Vector2::new(0.0, 1.0) }, law: Pusher(drive) };
+    let slots = [0, 1, 2, 3].map(|pin| Element {
+        link: Pin { place: place(pin) },
+        law: PlanarSlot {
+            gaps: [data.body.gaps[4 * pin], data.body.gaps[4 * pin + 1]],
+            contact: Contact { normal, friction: smoothed },
+        },
+    });
+    rung(machine, "planar_smoothed", System::new(floating(0.0), (slots, pull)), PlanarPose::nominal(), planar_smoothed);
+    let law = Journal { clearance: 1e-5, radius: 5e-3, contact: Contact { normal, friction: Frictionless } };
+    let journal = Element { link: Hole { centre: place(0) }, law };
+    let lever = System::new(floating(-9.81), (journal, pull));
     rung(machine, "planar_journal", lever, PlanarPose::nominal(), planar_journal);
 
     // Off its slot's middle, and pushed against the end.
     let slot = Slot::new(1e-5, 1e-4).expect("the gaps are in bounds");
-    let driven = AxisBody::driven(data.body.mass, 0.0, slot, contact, drive).expect("the body is in bounds");
+    let driven = on_axis(data.body.mass, 0.0, slot, normal, drive).expect("the body is in bounds");
     rung(machine, "axis_slot_driven", driven, 0.0, axis_slot_driven);
     let linear = Linear::new(2e4).expect("the law is in bounds");
-    let ball = AxisBody::new(data.body.mass, -9.81, 0.0, impact(linear)).expect("the body is in bounds");
+    let pad = Pad::new(0.0).expect("the gap is in bounds");
+    let ball = on_axis(data.body.mass, -9.81, pad, impact(linear), ()).expect("the body is in bounds");
     rung(machine, "axis_pad_linear", ball, 1e-3, axis_pad_linear);
     every_mechanism(machine);
     true

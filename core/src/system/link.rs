@@ -1,0 +1,187 @@
+//! What elements measure.
+
+use super::{Bodies, Law, Response, bodies::ByCoordinate};
+use crate::{SMatrix, SVector, Scalar};
+
+/// What an element sees: `R` lengths and angles, and how fast they change.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<S, const R: usize> {
+    /// x (m, rad); zero where a law needs the rate alone.
+    pub place: SVector<S, R>,
+    /// ẋ (m/s, rad/s).
+    pub rate: SVector<S, R>,
+}
+
+/// Measures `R` lengths and angles x of bodies `B`, and gives them the forces φ that work along these.
+pub trait Link<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usize> {
+    /// What places, rates and their derivatives are made of.
+    type View;
+
+    /// The bodies as the link looks at them.
+    fn view(&self, bodies: &B, placed: &B::Placed) -> Self::View;
+
+    /// What there is to see.
+    fn seen(&self, at: (&B, &B::Placed), view: &Self::View) -> Seen<S, R>;
+
+    /// Adds the generalised force (N, N·m) Λᵀφ of a `force` φ to `sum`, with Λ = ∂ẋ/∂V.
+    fn add_force(&self, at: (&B, &B::Placed), view: &Self::View, force: &SVector<S, R>, sum: &mut SVector<S, D>);
+
+    /// Adds −∂(Λᵀφ)/∂V for the `response` of a law `W` and for velocities that also move the bodies over the time `a` (s).
+    fn add_impedance<W: Law<S, R>>(
+        &self,
+        at: (&B, &B::Placed),
+        view: &Self::View,
+        response: &Response<S, R>,
+        a: S,
+        matrix: &mut B::Jacobian,
+    );
+
+    /// Adds −∂(Λᵀφ)/∂V to `damping` and −∂(Λᵀφ)/∂Q to `stiffness`, for the `response` of a law `W`.
+    fn add_derivatives<W: Law<S, R>>(
+        &self,
+        at: (&B, &B::Placed),
+        view: &Self::View,
+        response: &Response<S, R>,
+        damping: &mut B::Jacobian,
+        stiffness: &mut B::Jacobian,
+    );
+}
+
+/// A link of bodies whose forces add up by generalised velocities, which tells its gradient Λ = ∂ẋ/∂V entry by entry.
+pub trait GradientLink<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usize> {
+    /// See [`Link::View`].
+    type View;
+
+    /// See [`Link::view`].
+    fn view(&self, bodies: &B, placed: &B::Placed) -> Self::View;
+
+    /// Whether the coordinate `k` moves anything that there is to see. Where it does not, in any pose, derivatives are zero and
+    /// not looked at.
+    fn moves(&self, k: usize) -> bool;
+
+    /// Whether it moves the number `i`, where it moves any.
+    #[inline(always)]
+    fn depends(&self, _i: usize, _k: usize) -> bool {
+        true
+    }
+
+    /// See [`Link::seen`].
+    fn seen(&self, at: (&B, &B::Placed), view: &Self::View) -> Seen<S, R>;
+
+    /// Λ.
+    fn gradient(&self, at: (&B, &B::Placed), view: &Self::View) -> SMatrix<S, R, D>;
+
+    /// See [`Link::add_force`].
+    fn add_force(&self, at: (&B, &B::Placed), view: &Self::View, force: &SVector<S, R>, sum: &mut SVector<S, D>);
+
+    /// Adds −∂(Λᵀφ)/∂Q for a `force` φ that is held to `stiffness`.
+    fn add_carried(
+        &self,
+        at: (&B, &B::Placed),
+        view: &Self::View,
+        gradient: &SMatrix<S, R, D>,
+        force: &SVector<S, R>,
+        stiffness: &mut SMatrix<S, D, D>,
+    );
+
+    /// ∂(Λ·V)/∂Q, the velocities V being held.
+    fn swept(&self, at: (&B, &B::Placed), view: &Self::View, gradient: &SMatrix<S, R, D>) -> SMatrix<S, R, D>;
+
+    /// Adds Λᵀ·C, as far as Λ is not zero. Column k of C is the sum over the numbers i of what forces change by with the number i
+    /// where the coordinate k changes: `change(i, k)`.
+    #[inline(always)]
+    fn add_product(
+        &self,
+        gradient: &SMatrix<S, R, D>,
+        change: impl Fn(usize, usize) -> SVector<S, R>,
+        sum: &mut SMatrix<S, D, D>,
+    ) {
+        let mut moved = [false; D];
+        for (k, moved) in moved.iter_mut().enumerate() {
+            *moved = self.moves(k);
+        }
+        for k in 0..D {
+            if moved[k] {
+                let mut column = SVector::<S, R>::zeros();
+                for i in 0..R {
+                    if self.depends(i, k) {
+                        column += change(i, k);
+                    }
+                }
+                for j in 0..D {
+                    if moved[j] {
+                        for i in 0..R {
+                            if self.depends(i, j) {
+                                sum[(j, k)] += gradient[(i, j)] * column[i];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl<S, B, L, const D: usize, const R: usize> Link<S, B, D, R> for L
+where
+    S: Scalar,
+    B: Bodies<S, D, Jacobian = SMatrix<S, D, D>> + ByCoordinate,
+    L: GradientLink<S, B, D, R>,
+{
+    type View = <L as GradientLink<S, B, D, R>>::View;
+
+    #[inline(always)]
+    fn view(&self, bodies: &B, placed: &B::Placed) -> Self::View {
+        GradientLink::view(self, bodies, placed)
+    }
+
+    #[inline(always)]
+    fn seen(&self, at: (&B, &B::Placed), view: &Self::View) -> Seen<S, R> {
+        GradientLink::seen(self, at, view)
+    }
+
+    #[inline(always)]
+    fn add_force(&self, at: (&B, &B::Placed), view: &Self::View, force: &SVector<S, R>, sum: &mut SVector<S, D>) {
+        GradientLink::add_force(self, at, view, force, sum);
+    }
+
+    #[inline(always)]
+    fn add_impedance<W: Law<S, R>>(
+        &self,
+        at: (&B, &B::Placed),
+        view: &Self::View,
+        response: &Response<S, R>,
+        a: S,
+        matrix: &mut SMatrix<S, D, D>,
+    ) {
+        let gradient = &self.gradient(at, view);
+        let rates = gradient + self.swept(at, view, gradient) * a;
+        let stiffness = response.stiffness * a;
+        let change = |i, k| {
+            let by_rate = response.impedance.column(i) * rates[(i, k)];
+            if i < W::PLACES { by_rate + stiffness.column(i) * gradient[(i, k)] } else { by_rate }
+        };
+        self.add_product(gradient, change, matrix);
+        self.add_carried(at, view, gradient, &(response.force * a), matrix);
+    }
+
+    #[inline(always)]
+    fn add_derivatives<W: Law<S, R>>(
+        &self,
+        at: (&B, &B::Placed),
+        view: &Self::View,
+        response: &Response<S, R>,
+        damping: &mut SMatrix<S, D, D>,
+        stiffness: &mut SMatrix<S, D, D>,
+    ) {
+        let gradient = &self.gradient(at, view);
+        let swept = self.swept(at, view, gradient);
+        self.add_product(gradient, |i, k| response.impedance.column(i) * gradient[(i, k)], damping);
+        let change = |i, k| {
+            let by_rate = response.impedance.column(i) * swept[(i, k)];
+            if i < W::PLACES { response.stiffness.column(i) * gradient[(i, k)] + by_rate } else { by_rate }
+        };
+        self.add_product(gradient, change, stiffness);
+        self.add_carried(at, view, gradient, &response.force, stiffness);
+    }
+}
