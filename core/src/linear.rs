@@ -9,7 +9,7 @@ use crate::{
 
 /// [[a, b], [c, d]]: forces and torques by velocities and angular velocities.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Blocks<S> {
+pub struct Blocks<S> {
     pub a: Matrix3<S>,
     pub b: Matrix3<S>,
     pub c: Matrix3<S>,
@@ -109,7 +109,7 @@ impl<S: Scalar> Blocks<S> {
 
 /// [`Blocks`] made ready for solving.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Factors<S> {
+pub struct Factors<S> {
     pub inverse_a: Matrix3<S>,
     pub b: Matrix3<S>,
     pub c_over_a: Matrix3<S>,

@@ -184,12 +184,12 @@ impl<S: Scalar + PartialOrd> SlideData<S> {
         match (friction.friction_type(), friction) {
             (FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
                 let friction = Regularised::new(coefficient, stick_band)?;
-                Ok(visitor.visit(Slide::new(body, contact, friction, drive)?))
+                Ok(visitor.visit(body.slide(contact, friction, drive)?))
             }
             (FrictionType::Exact, FrictionData::Exact { coefficient }) => {
-                Ok(visitor.visit(Slide::new(body, contact, Exact::new(coefficient)?, drive)?))
+                Ok(visitor.visit(body.slide(contact, Exact::new(coefficient)?, drive)?))
             }
-            _ => Ok(visitor.visit(Slide::new(body, contact, Frictionless, drive)?)),
+            _ => Ok(visitor.visit(body.slide(contact, Frictionless, drive)?)),
         }
     }
 }

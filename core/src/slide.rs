@@ -8,16 +8,20 @@
 //! its digits. Opposing planes of a pin form a slot.
 
 mod abreast;
-mod contacts;
 mod energy;
-mod mechanics;
 
 use crate::{
     ParameterError, SVector, Scalar, Vector3,
     drive::Drive,
     error::bounded,
     law::{Elastic, Friction, Impact},
+    mechanism::Driven,
     pose::Pose,
+    system::{
+        Alike, Element, System,
+        law::{Contact, Pusher},
+        spatial::{Floating, PinOfFrame, Pull},
+    },
 };
 
 pub use abreast::{Abreast, Lanes, abreast};
@@ -28,9 +32,6 @@ pub const PINS: usize = 4;
 
 /// Contacts of the slide: left, right, rail, wall of each pin in turn.
 pub const CONTACTS: usize = 4 * PINS;
-
-/// Slots of the slide, each two opposing contacts: across, then up and down, of each pin in turn.
-pub const SLOTS: usize = 2 * PINS;
 
 /// A gap (m) that never closes: what a contact that the scene leaves out has.
 pub const ABSENT: f64 = 1e6;
@@ -56,53 +57,54 @@ pub fn box_inertia<S: Scalar>(mass: S, [x, y, z]: [S; 3]) -> Vector3<S> {
     Vector3::new((y * y + z * z) * twelfth, (x * x + z * z) * twelfth, (x * x + y * y) * twelfth)
 }
 
-/// A slide with its normal law, friction law and drive.
-///
-/// Generalised velocities are the velocity of the centre of mass in the frame (m/s) and the angular velocity in the
-/// body (rad/s), so that the mass matrix is constant and free flight is exact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slide<S, E, F> {
-    body: Body<S>,
-    contact: Impact<S, E>,
-    friction: F,
-    drive: Drive<S>,
-    /// 1/m: the inverse of the farthest pin's distance.
-    per_lever: S,
-}
+/// Pins between their four walls, whose gaps (m) are told.
+pub type Pins<S, E, F> = Alike<Contact<Impact<S, E>, F>, PinOfFrame<S>, [S; 4], PINS, 3>;
 
-impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
-    /// A slide of parameters that can be stepped without failing.
+/// A slide with its normal law `E`, friction law `F` and drive.
+pub type Slide<S, E, F> = System<Floating<S>, (Pins<S, E, F>, Element<Pull<S>, Pusher<Drive<S>>, 2>)>;
+
+/// What friction with the memory `M` of a contact remembers on a slide.
+pub type Memory<M> = ([[M; 2]; PINS], ());
+
+/// The memory of laws that remember nothing.
+pub const NO_MEMORY: Memory<()> = ([[(); 2]; PINS], ());
+
+impl<S: Scalar + PartialOrd> Body<S> {
+    /// The slide of this body with its laws and its drive, of parameters that can be stepped without failing.
     ///
     /// # Errors
-    /// [`ParameterError`] names the first parameter of `body` or `drive` that is not finite or out of bounds.
+    /// [`ParameterError`] names the first parameter of the body or the `drive` that is not finite or out of bounds.
     /// The laws are validated where they are made, see [`menu`](crate::menu).
-    pub fn new(body: Body<S>, contact: Impact<S, E>, friction: F, drive: Drive<S>) -> Result<Self, ParameterError<S>> {
-        bounded("slide.mass", body.mass, [1e-6, 1e6])?;
-        for moment in body.inertia_b.iter() {
-            bounded("slide.inertia", *moment, [1e-12, 1e9])?;
-        }
-        for component in body.gravity_w.iter() {
-            bounded("slide.gravity", *component, [-1e4, 1e4])?;
-        }
-        let mut farthest = S::from_f64(1e-6);
-        for pin in &body.pins_w {
-            for component in pin.iter() {
-                bounded("pin.position", *component, [-1e3, 1e3])?;
-            }
-            farthest = farthest.max_of(pin.dot(pin).sqrt());
-        }
-        for gap in body.gaps {
+    pub fn slide<E: Elastic<S>, F: Friction<S>>(
+        &self,
+        contact: Impact<S, E>,
+        friction: F,
+        drive: Drive<S>,
+    ) -> Result<Slide<S, E, F>, ParameterError<S>> {
+        let body = Floating::new(self.mass, self.inertia_b, self.gravity_w, &self.pins_w)?;
+        for gap in self.gaps {
             bounded("gap", gap, [-1.0, ABSENT])?;
         }
+        let mut each = [(PinOfFrame { place_w: Vector3::zeros() }, [S::zero(); 4]); PINS];
+        for ((pin, place_w), gaps) in each.iter_mut().zip(self.pins_w).zip(self.gaps.as_chunks::<4>().0) {
+            *pin = (PinOfFrame { place_w }, *gaps);
+        }
+        let pins = Alike { contact: Contact { normal: contact, friction }, each };
         let drive = drive.checked()?;
-        Ok(Self { body, contact, friction, drive, per_lever: S::one() / farthest })
+        let pull = Element { link: Pull { point_b: drive.point_b }, law: Pusher(drive) };
+        Ok(System::new(body, (pins, pull)))
     }
 }
 
 impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     /// The drive.
     pub fn drive(&self) -> &Drive<S> {
-        &self.drive
+        &self.elements().1.law.0
+    }
+
+    /// The laws of its contacts.
+    pub fn contact(&self) -> &Contact<Impact<S, E>, F> {
+        &self.elements().0.contact
     }
 
     /// The sixteen gaps (m) at `pose`, in the order of [`Body::gaps`]; negative where parts penetrate.
@@ -110,23 +112,29 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     pub fn gaps(&self, pose: &Pose<S>) -> [S; CONTACTS] {
         let to_body = pose.to_body();
         let shift = to_body.apply(pose.displacement_w);
-        let mut gaps = self.body.gaps;
-        for (quad, pin) in gaps.as_chunks_mut::<4>().0.iter_mut().zip(&self.body.pins_w) {
-            let d = to_body.change(*pin) - shift;
-            let [left, right, rail, wall] = *quad;
+        let mut gaps = [S::zero(); CONTACTS];
+        for (quad, (pin, gaps)) in gaps.as_chunks_mut::<4>().0.iter_mut().zip(&self.elements().0.each) {
+            let d = to_body.change(pin.place_w) - shift;
+            let [left, right, rail, wall] = *gaps;
             *quad = [left + d.x, right - d.x, rail - d.y, wall + d.y];
         }
         gaps
     }
 }
 
-#[inline(always)]
-fn split<S: Scalar>(v: &SVector<S, 6>) -> (Vector3<S>, Vector3<S>) {
-    let [a, b, c, d, e, f] = v.data.0[0];
-    (Vector3::new(a, b, c), Vector3::new(d, e, f))
-}
+impl<S: Scalar, E: Elastic<S>, F: Friction<S, Memory = ()>> Driven<S, 6> for Slide<S, E, F> {
+    #[inline(always)]
+    fn drive(&self) -> &Drive<S> {
+        &self.elements().1.law.0
+    }
 
-#[inline(always)]
-fn join<S: Scalar>(a: Vector3<S>, b: Vector3<S>) -> SVector<S, 6> {
-    SVector::<S, 6>::new(a.x, a.y, a.z, b.x, b.y, b.z)
+    #[inline(always)]
+    fn mass(&self) -> S {
+        *self.bodies().mass()
+    }
+
+    #[inline(always)]
+    fn speed(&self, velocity: &SVector<S, 6>) -> S {
+        velocity.z
+    }
 }

@@ -47,5 +47,5 @@ pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
     let unit = SCENE.at(n)?;
     let ContactData { stiffness, damping, depth, .. } = unit.contact;
     let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
-    Kernel::new(Slide::new(unit.body, contact, Exact::new(0.3)?, unit.drive)?, STEP)
+    Kernel::new(unit.body.slide(contact, Exact::new(0.3)?, unit.drive)?, STEP)
 }

@@ -115,7 +115,7 @@ typedef struct slipfit_prediction {
 
 // Memory of a prediction ahead of the clock; opaque.
 typedef struct slipfit_ahead {
-  uint32_t words[3681];
+  uint32_t words[3684];
 } slipfit_ahead;
 
 // What prediction ahead of the clock is held to.

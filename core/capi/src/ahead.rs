@@ -58,7 +58,7 @@ pub struct slipfit_ahead_prediction {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct slipfit_ahead {
-    words: [u32; 3681],
+    words: [u32; 3684],
 }
 
 type RegularisedUnit = Unit<Regularised<f32>>;

@@ -106,6 +106,6 @@ impl slipfit_scene {
         }
         let ContactData { stiffness, damping, depth, .. } = unit.contact;
         let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
-        Ok(Slide::new(unit.body, contact, friction(unit.friction)?, unit.drive)?)
+        Ok(unit.body.slide(contact, friction(unit.friction)?, unit.drive)?)
     }
 }

@@ -2,18 +2,18 @@
 //!
 //! For desks, whose processors have such lanes. The bits are those of one pin after the other.
 
-use super::{
-    PINS, SLOTS, Slide,
-    contacts::{Placed, Response},
-    mechanics::{Slopes, placed},
-};
+use super::{PINS, Slide};
 use crate::{
     SVector, Scalar, Vector3,
     law::{Elastic, Friction},
+    linear::Blocks,
     mechanism::{Differentiated, Way},
     menu::SlideData,
     pose::Pose,
-    product::mapped,
+    system::{
+        Assembly, Bodies, Derivatives, Elements, Jacobian, SlopesOf, Sum,
+        spatial::{Floating, FloatingPlaced as Placed},
+    },
 };
 
 /// Numbers `S` side by side, one for each pin.
@@ -70,18 +70,22 @@ impl<L, E: Elastic<L>, F: Friction<L, Memory = ()>> Abreast<L, E, F> {
         Self { lanes }
     }
 
-    /// What happens at each pin, in its lane, of a slide that is and moves as `at`.
+    /// Adds what happens at each pin, in its lane, of a slide that is and moves as `at`.
     #[inline(always)]
-    fn response<S: Scalar>(&self, at: &Placed<S>, way: Way<L>) -> Response<L>
+    fn act<S: Scalar>(&self, at: &Placed<S>, sum: &mut impl Assembly<L, Floating<L>, 6>)
     where
         L: Lanes<S>,
     {
-        let mut response = Response::none();
-        if let Some(pin) = self.lanes.pins(&[(); SLOTS]).next() {
-            response.add(&self.lanes.at_pin(&at.cast(everywhere), pin, way));
+        for pin in self.lanes.elements().0.iter().take(1) {
+            pin.act((L::zero(), still()), (self.lanes.bodies(), &at.cast(everywhere)), &[(); 2], None, sum);
         }
-        response
     }
+}
+
+/// There is no step, and no friction that remembers.
+#[inline(always)]
+fn still<S: Scalar>() -> Way<S> {
+    Way { over: None, mass_rate: S::zero(), tangent_share: S::one() }
 }
 
 impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
@@ -94,11 +98,12 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         pose: &Pose<S>,
         velocity: &SVector<S, 6>,
     ) -> SVector<S, 6> {
-        let at = placed(pose, velocity);
-        // No derivatives are taken, and there is no memory: whatever stands for the step.
-        let way = Way { over: None, mass_rate: L::one(), tangent_share: L::one() };
-        let Response { wrench: (force, torque), .. } = pins.response(&at, way);
-        self.balance(t, &at, (mapped(&force, L::sum), mapped(&torque, L::sum)), velocity.z)
+        let at = self.bodies().placed(pose, velocity);
+        let mut lanes = Sum(SVector::zeros());
+        pins.act(&at, &mut lanes);
+        let mut sum = Sum(summed(&lanes.0));
+        self.elements().1.act((t, still()), (self.bodies(), &at), &(), None, &mut sum);
+        self.bodies().total(&at, &sum.0)
     }
 
     /// [`Mechanism::differentiated`](crate::mechanism::Mechanism::differentiated) at time `t` (s) with its `pins` side by side.
@@ -109,9 +114,25 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         t: S,
         pose: &Pose<S>,
         velocity: &SVector<S, 6>,
-    ) -> Differentiated<S, Slopes<S>, 6> {
-        let at = placed(pose, velocity);
-        let way = Way { over: None, mass_rate: L::zero(), tangent_share: L::one() };
-        self.completed(t, &at, pins.response(&at, way).cast(L::sum), velocity.z)
+    ) -> Differentiated<S, SlopesOf<S, Floating<S>, 6>, 6> {
+        let at = self.bodies().placed(pose, velocity);
+        let (zero, none) = (SVector::zeros(), Blocks::zero());
+        let mut lanes = Derivatives { force: zero, per_time: zero, damping: none, stiffness: none };
+        pins.act(&at, &mut lanes);
+        let mut sum = Derivatives {
+            force: summed(&lanes.force),
+            per_time: SVector::zeros(),
+            damping: lanes.damping.cast(L::sum),
+            stiffness: lanes.stiffness.cast(L::sum),
+        };
+        self.elements().1.act((t, still()), (self.bodies(), &at), &(), None, &mut sum);
+        self.completed(&at, (), sum)
     }
+}
+
+/// The sum over the lanes, number by number.
+#[inline(always)]
+fn summed<S: Scalar, L: Lanes<S>>(lanes: &SVector<L, 6>) -> SVector<S, 6> {
+    let [a, b, c, d, e, f] = lanes.data.0[0];
+    SVector::<S, 6>::new(a.sum(), b.sum(), c.sum(), d.sum(), e.sum(), f.sum())
 }

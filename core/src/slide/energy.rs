@@ -1,11 +1,12 @@
 //! Where the slide's energy is and where it goes. For audits on the host; no step computes any of it.
 
-use super::{Slide, split};
+use super::Slide;
 use crate::{
     Scalar,
     integrator::MotionOf,
     law::{Elastic, Friction, Normal, friction::SlidingContact},
     mechanism::Mechanism,
+    system::spatial::split,
 };
 
 /// Energy of a slide at one motion (J).
@@ -37,8 +38,8 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         let gaps = self.gaps(&motion.pose);
         Energy {
             kinetic: motion.velocity.dot(&momentum) / S::from_f64(2.0),
-            gravity: -self.body.gravity_w.dot(&motion.pose.displacement_w) * self.body.mass,
-            elastic: gaps.iter().fold(S::zero(), |sum, gap| sum + self.contact.energy(-*gap)),
+            gravity: -self.bodies().gravity_w().dot(&motion.pose.displacement_w) * *self.bodies().mass(),
+            elastic: gaps.iter().fold(S::zero(), |sum, gap| sum + self.contact().normal.energy(-*gap)),
         }
     }
 
@@ -51,27 +52,28 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         let zero = S::zero();
         let gaps = self.gaps(&motion.pose);
         let (mut damping, mut friction) = (zero, zero);
-        let pins = gaps.as_chunks::<4>().0.iter().zip(&self.body.pins_w);
-        for (([left, right, rail, wall], pin), memory) in pins.zip(motion.memory.as_chunks::<2>().0) {
-            let lever = *pin + to_body.change(*pin) - to_body.apply(motion.pose.displacement_w);
+        let contact = self.contact();
+        let pins = gaps.as_chunks::<4>().0.iter().zip(&self.elements().0.each);
+        for (([left, right, rail, wall], (pin, _)), memory) in pins.zip(&motion.memory.0) {
+            let lever = pin.place_w + to_body.change(pin.place_w) - to_body.apply(motion.pose.displacement_w);
             let u = v_b + w_b.cross(&lever);
             let slots = [([left, right], [u.x, u.y, u.z]), ([wall, rail], [u.y, u.x, u.z])];
             for ((gaps, [along, sliding_0, sliding_1]), memory) in slots.into_iter().zip(memory) {
                 // The gaps of this pose, so that the slot stands at offset 0.
-                let slot = self.contact.slot(*gaps[0], *gaps[1], zero, along);
-                let contact = SlidingContact {
+                let slot = contact.normal.slot(*gaps[0], *gaps[1], zero, along);
+                let touching = SlidingContact {
                     sliding: [sliding_0, sliding_1],
                     normal: slot.normal(),
                     // Without grip the remembered force stands.
                     mass_rate: zero,
                     tangent_share: zero,
                 };
-                let (traction, _) = self.friction.traction(memory, &contact);
+                let (traction, _) = contact.friction.traction(memory, &touching);
                 friction -= traction.force[0] * sliding_0 + traction.force[1] * sliding_1;
-                damping += self.contact.loss(-*gaps[0], along) + self.contact.loss(-*gaps[1], -along);
+                damping += contact.normal.loss(-*gaps[0], along) + contact.normal.loss(-*gaps[1], -along);
             }
         }
-        let point_speed = v_w.z + to_body.apply_inverse(w_b.cross(&self.drive.point_b)).z;
-        Power { drive: self.drive.force(t, v_w.z) * point_speed, damping, friction }
+        let point_speed = v_w.z + to_body.apply_inverse(w_b.cross(&self.drive().point_b)).z;
+        Power { drive: self.drive().force(t, v_w.z) * point_speed, damping, friction }
     }
 }

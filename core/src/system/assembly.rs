@@ -16,7 +16,7 @@ pub trait Assembly<S: Scalar, B: Bodies<S, D>, const D: usize> {
 }
 
 /// The generalised force (N, N·m).
-pub(super) struct Sum<S, const D: usize>(pub SVector<S, D>);
+pub(crate) struct Sum<S, const D: usize>(pub SVector<S, D>);
 
 /// The force, and how M·V/a − force goes by velocities that also move the bodies over the time a.
 pub(super) struct Balance<S, J, const D: usize> {

@@ -8,6 +8,7 @@
 //!
 //! Elements compose by type, as tuples and arrays, so that what a mechanism does not have leaves no code.
 
+mod alike;
 mod assembly;
 mod axes;
 mod axis;
@@ -20,6 +21,7 @@ mod lu;
 pub mod planar;
 pub mod spatial;
 
+pub use alike::{Alike, Shape};
 pub use assembly::Assembly;
 pub use axes::Axes;
 pub use axis::{AxisBody, Displacement, OnAxis, on_axis};
@@ -33,7 +35,8 @@ use crate::{
     SVector, Scalar,
     mechanism::{Differentiated, Linearised, Mechanism, Way, settled, settling},
 };
-use assembly::{Balance, Derivatives, Sum};
+use assembly::Balance;
+pub(crate) use assembly::{Derivatives, Sum};
 use law::DriveLaw;
 
 /// Bodies and the elements that act on them, as integrators see them.
@@ -107,11 +110,15 @@ pub struct Slopes<M, A, J> {
     stiffness: J,
 }
 
+/// [`Slopes`] of bodies `B`.
+pub type SlopesOf<S, B, const D: usize> =
+    Slopes<<B as Bodies<S, D>>::Mass, <B as Bodies<S, D>>::Axes, <B as Bodies<S, D>>::Jacobian>;
+
 impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism<S, D> for System<B, E> {
     type Pose = B::Pose;
     type Memory = E::Memory;
     type Linearisation = Linearisation<<B::Jacobian as Jacobian<S, D>>::Factors, B::Axes>;
-    type Slopes = Slopes<B::Mass, B::Axes, B::Jacobian>;
+    type Slopes = SlopesOf<S, B, D>;
 
     #[inline(always)]
     fn advanced(&self, pose: &B::Pose, velocity: &SVector<S, D>, dt: S) -> B::Pose {
@@ -264,13 +271,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         let zero = B::Jacobian::zero();
         let mut sum = Derivatives { force, per_time: SVector::zeros(), damping: zero, stiffness: zero };
         self.elements.act((t, way), (&self.bodies, &placed), memory, None, &mut sum);
-        let force = self.bodies.total(&placed, &sum.force);
-        let acceleration = if B::MASS_IS_CONSTANT { SVector::zeros() } else { self.bodies.velocity(&mass, &force) };
-        self.bodies.own_slopes(&placed, &acceleration, &mut sum.damping, &mut sum.stiffness);
-        let axes = self.bodies.axes(&placed);
-        let Derivatives { per_time, damping, stiffness, .. } = sum;
-        let slopes = Slopes { mass, axes, damping, stiffness };
-        Differentiated { force, per_time: axes.to_frame(&per_time), slopes }
+        self.completed(&placed, mass, sum)
     }
 
     #[inline(always)]
@@ -313,6 +314,26 @@ impl<B, E> System<B, E> {
         let mut sum = Sum(own);
         self.elements.act((t, way), (&self.bodies, placed), memory, remembered, &mut sum);
         self.bodies.total(placed, &sum.0)
+    }
+
+    /// What elements have added up to, of bodies that are `placed`, with what these add.
+    #[inline(always)]
+    pub(crate) fn completed<S: Scalar, const D: usize>(
+        &self,
+        placed: &B::Placed,
+        mass: B::Mass,
+        mut sum: Derivatives<S, B::Jacobian, D>,
+    ) -> Differentiated<S, SlopesOf<S, B, D>, D>
+    where
+        B: Bodies<S, D>,
+    {
+        let force = self.bodies.total(placed, &sum.force);
+        let acceleration = if B::MASS_IS_CONSTANT { SVector::zeros() } else { self.bodies.velocity(&mass, &force) };
+        self.bodies.own_slopes(placed, &acceleration, &mut sum.damping, &mut sum.stiffness);
+        let axes = self.bodies.axes(placed);
+        let Derivatives { per_time, damping, stiffness, .. } = sum;
+        let slopes = Slopes { mass, axes, damping, stiffness };
+        Differentiated { force, per_time: axes.to_frame(&per_time), slopes }
     }
 
     /// The mass matrix at a `pose`.

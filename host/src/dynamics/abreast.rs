@@ -8,7 +8,7 @@ use slipfit_core::{
     mechanism::{Differentiated, Mechanism},
     menu::SlideData,
     pose::Pose,
-    slide::{Abreast, SLOTS, Slide, abreast},
+    slide::{Abreast, Memory, Slide, abreast},
 };
 
 use super::{laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
@@ -47,7 +47,7 @@ impl Contacts<f64, Usual<f64>, 6> for SideBySide {
         _: &Slopes,
         t: f64,
         pose: &Pose<f64>,
-        _: &[(); SLOTS],
+        _: &Memory<()>,
         velocity: &SVector<f64, 6>,
         _: f64,
     ) -> SVector<f64, 6> {
@@ -59,7 +59,7 @@ impl Contacts<f64, Usual<f64>, 6> for SideBySide {
         slide: &Usual<f64>,
         t: f64,
         pose: &Pose<f64>,
-        _: &[(); SLOTS],
+        _: &Memory<()>,
         velocity: &SVector<f64, 6>,
     ) -> Differentiated<f64, Slopes, 6> {
         self.instructions.vectorize(Derivatives(Call { slide, pins: self, t, pose, velocity }))
@@ -111,7 +111,7 @@ mod tests {
         integrator::{Motion, Rodas4},
         mechanism::Mechanism,
         pose::Pose,
-        slide::{CONTACTS, SLOTS, Slide},
+        slide::{CONTACTS, Memory, NO_MEMORY, Slide},
     };
 
     use super::SideBySide;
@@ -124,11 +124,11 @@ mod tests {
     /// The motion at the end of every step, as bits.
     fn steps<M, C>(slide: M, contacts: C) -> Vec<[u64; 7]>
     where
-        M: Mechanism<f64, 6, Pose = Pose<f64>, Memory = [(); SLOTS]>,
+        M: Mechanism<f64, 6, Pose = Pose<f64>, Memory = Memory<()>>,
         C: Contacts<f64, M, 6>,
     {
         let zero = SVector::zeros();
-        let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, memory: [(); SLOTS] };
+        let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, memory: NO_MEMORY };
         let sensitivity = Sensitivity { mass: 0.0818, gain: 40.0 };
         let error = |step: &_, length| sensitivity.error(Tolerance::of_force(1e-4), step, length);
         let mut steps = Vec::new();

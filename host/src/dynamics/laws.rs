@@ -191,9 +191,9 @@ impl<S: Scalar + PartialOrd> SlidingSlide<S> {
         };
         Ok(match (AnyElastic::new(&contact)?, friction) {
             (AnyElastic::ThreeHalves(elastic), AnySliding::Regularised(friction)) => {
-                Self::Usual(Slide::new(body, normal(elastic, &contact)?, friction, drive)?)
+                Self::Usual(body.slide(normal(elastic, &contact)?, friction, drive)?)
             }
-            (elastic, friction) => Self::Chosen(Slide::new(body, normal(elastic, &contact)?, friction, drive)?),
+            (elastic, friction) => Self::Chosen(body.slide(normal(elastic, &contact)?, friction, drive)?),
         })
     }
 }
@@ -207,10 +207,8 @@ impl<S: Scalar + PartialOrd> StickingSlide<S> {
         let SlideData { body, contact, drive, .. } = *data;
         let friction = Exact::new(coefficient)?;
         Ok(match AnyElastic::new(&contact)? {
-            AnyElastic::ThreeHalves(elastic) => {
-                Self::Usual(Slide::new(body, normal(elastic, &contact)?, friction, drive)?)
-            }
-            elastic => Self::Chosen(Slide::new(body, normal(elastic, &contact)?, friction, drive)?),
+            AnyElastic::ThreeHalves(elastic) => Self::Usual(body.slide(normal(elastic, &contact)?, friction, drive)?),
+            elastic => Self::Chosen(body.slide(normal(elastic, &contact)?, friction, drive)?),
         })
     }
 }
@@ -249,7 +247,7 @@ pub fn usual<S: Scalar + PartialOrd>(data: &SlideData<S>) -> Option<Slide<S, Thr
         (NormalType::ThreeHalves, FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
             let elastic = ThreeHalves::new(contact.stiffness).ok()?;
             let friction = Regularised::new(coefficient, stick_band).ok()?;
-            Slide::new(body, normal(elastic, &contact).ok()?, friction, drive).ok()
+            body.slide(normal(elastic, &contact).ok()?, friction, drive).ok()
         }
         _ => None,
     }

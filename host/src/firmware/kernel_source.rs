@@ -117,7 +117,7 @@ pub fn rust_source(scene: &Scene) -> String {
          pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {{\n    let unit = SCENE.at(n)?;\n    \
          let ContactData {{ stiffness, {exponent}damping, depth, .. }} = unit.contact;\n    \
          let contact = Impact::new({made_elastic}, damping, depth)?;\n    \
-         Kernel::new(Slide::new(unit.body, contact, {made_friction}, unit.drive)?, STEP)\n}}\n"
+         Kernel::new(unit.body.slide(contact, {made_friction}, unit.drive)?, STEP)\n}}\n"
     )
 }
 

@@ -11,7 +11,7 @@ use slipfit_core::{
     mechanism::Mechanism,
     menu::SlideData,
     pose::Pose,
-    slide::{CONTACTS, SLOTS, Slide},
+    slide::{CONTACTS, Memory, Slide},
 };
 
 use crate::dynamics::{
@@ -37,7 +37,7 @@ pub struct Course {
 }
 
 /// As many slides as a pack has lanes.
-pub trait Slides<V: Simd>: Mechanism<Pack<V>, 6, Pose = Pose<Pack<V>>, Memory = [(); SLOTS]> {
+pub trait Slides<V: Simd>: Mechanism<Pack<V>, 6, Pose = Pose<Pack<V>>, Memory = Memory<()>> {
     /// The gaps (m) of each.
     fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS];
 }

@@ -18,7 +18,6 @@ mod uses {
         ahead::{Ahead, Limits, State},
         law::{Impact, Regularised, ThreeHalves},
         pose::Pose,
-        slide::Slide,
     };
     use slipfit_problems::cd_rom;
 
@@ -32,7 +31,7 @@ mod uses {
         let contact = Impact::new(ThreeHalves::new(black_box(3e6))?, black_box(1e3), black_box(1e-4))?;
         let friction = Regularised::new(black_box(0.3), black_box(1e-4))?;
         let limits = black_box(Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2 });
-        let ahead = black_box(Ahead::new(Slide::new(data.body, contact, friction, data.drive)?, limits)?);
+        let ahead = black_box(Ahead::new(data.body.slide(contact, friction, data.drive)?, limits)?);
         let mut state: State<f32, _, 6, 256> = black_box(ahead.at_rest(Pose::nominal(), black_box(70)));
         black_box(black_box(ahead.step(&mut state)).status());
         ahead.restart(black_box(&mut state));

@@ -115,7 +115,7 @@ pub fn with_friction<S: Scalar + PartialOrd, F: Friction<S>>(
 ) -> Slide<S, ThreeHalves<S>, F> {
     let ContactData { stiffness, damping, depth, .. } = data.contact;
     let contact = built(Impact::new(built(ThreeHalves::new(stiffness)), damping, depth));
-    built(Slide::new(data.body, contact, friction, data.drive))
+    built(data.body.slide(contact, friction, data.drive))
 }
 
 fn built<T, S>(result: Result<T, ParameterError<S>>) -> T {

@@ -1,10 +1,11 @@
 //! A pin between the walls of two slots, as the slide of the paper has them.
 
-use super::{Contact, Law, Response};
+use super::{Contact, Law, Response, steady};
 use crate::{
     SMatrix, SVector, Scalar,
     law::{Friction, Normal},
     mechanism::Way,
+    system::Shape,
 };
 
 /// A pin between two walls across (the x axis of the walls' body) and two walls up and down (its y axis); it slides along z.
@@ -16,39 +17,51 @@ pub struct Pin<S, N, F> {
     pub contact: Contact<N, F>,
 }
 
-impl<S: Scalar, N: Normal<S>, F: Friction<S>> Pin<S, N, F> {
-    /// Adds what the slot along axis `A`, with the tangents `T` and `U`, does to the `response`; what friction in it remembers then.
+/// The gaps of a pin.
+impl<S: Scalar, N: Normal<S>, F: Friction<S>> Shape<Contact<N, F>> for [S; 4] {
+    type Law = Pin<S, N, F>;
+
     #[inline(always)]
-    fn slot<const A: usize, const T: usize, const U: usize>(
+    fn with(&self, contact: &Contact<N, F>) -> Pin<S, N, F> {
+        Pin { gaps: *self, contact: *contact }
+    }
+}
+
+/// What a slot does to its walls' body, its axis first, then the tangents.
+struct Slotted<S, M> {
+    force: [S; 3],
+    /// Column of the axis.
+    impedance: [S; 3],
+    /// Between the tangents: first, mixed, second.
+    tangential: [S; 3],
+    /// The only column there is, that of the axis.
+    stiffness: [S; 3],
+    memory: M,
+}
+
+impl<S: Scalar, N: Normal<S>, F: Friction<S>> Pin<S, N, F> {
+    /// A slot whose pin is off by `offset` while the walls' body moves against it with `u` along its axis, `v` and `w` along its
+    /// tangents.
+    #[inline(always)]
+    fn slot(
         &self,
+        memory: &F::Memory,
         [low, high]: [S; 2],
-        place: &SVector<S, 3>,
-        rate: &SVector<S, 3>,
-        (memory, way): (&F::Memory, Way<S>),
-        response: &mut Response<S, 3>,
-    ) -> F::Memory {
-        // The slot is told the velocity of its own material, and answers with the force on it.
-        let slot = self.contact.normal.slot(low, high, place[A], -rate[A]);
-        let (traction, kept) =
-            self.contact.friction.traction(memory, &way.sliding([-rate[T], -rate[U]], slot.normal()));
-        let Response { force, impedance, stiffness, .. } = response;
-        force[A] -= slot.force();
-        force[T] -= traction.force[0];
-        force[U] -= traction.force[1];
-        let ([own, normal], [own_stiffness, normal_stiffness]) = (slot.impedances(way.over), slot.stiffnesses());
-        let [by_first, by_second] = traction.per_normal;
-        impedance[(A, A)] += own;
-        impedance[(T, A)] += by_first * normal;
-        impedance[(U, A)] += by_second * normal;
-        stiffness[(A, A)] += own_stiffness;
-        stiffness[(T, A)] += by_first * normal_stiffness;
-        stiffness[(U, A)] += by_second * normal_stiffness;
-        let [a, b, c] = traction.impedance;
-        impedance[(T, T)] += a;
-        impedance[(T, U)] += b;
-        impedance[(U, T)] += b;
-        impedance[(U, U)] += c;
-        kept
+        offset: S,
+        [u, v, w]: [S; 3],
+        way: Way<S>,
+    ) -> Slotted<S, F::Memory> {
+        let slot = self.contact.normal.slot(low, high, offset, u);
+        let (traction, memory) = self.contact.friction.traction(memory, &way.sliding([v, w], slot.normal()));
+        let [first, second] = traction.per_normal;
+        let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
+        Slotted {
+            force: [slot.force(), traction.force[0], traction.force[1]],
+            impedance: column(slot.impedances(way.over)),
+            tangential: traction.impedance,
+            stiffness: column(slot.stiffnesses()),
+            memory,
+        }
     }
 }
 
@@ -74,18 +87,31 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
         way: Way<S>,
     ) -> (Response<S, 3>, [F::Memory; 2]) {
         let [left, right, rail, wall] = self.gaps;
-        let mut response = Response {
-            force: SVector::zeros(),
-            impedance: SMatrix::zeros(),
-            stiffness: SMatrix::zeros(),
-            per_time: SVector::zeros(),
-        };
-        let [across, up] = memory;
-        let next = [
-            self.slot::<0, 1, 2>([left, right], place, rate, (across, way), &mut response),
-            self.slot::<1, 0, 2>([wall, rail], place, rate, (up, way), &mut response),
-        ];
-        (response, next)
+        let [x, y, _] = place.data.0[0];
+        // The walls' body moves against the pin the other way.
+        let [u, v, w] = rate.data.0[0].map(|rate| -rate);
+        let across = self.slot(&memory[0], [left, right], x, [u, v, w], way);
+        let up = self.slot(&memory[1], [wall, rail], y, [v, u, w], way);
+        let (f, g) = (across.force, up.force);
+        let ([xx, yx, zx], [yy, xy, zy]) = (across.impedance, up.impedance);
+        let ([a_yy, a_yz, a_zz], [u_xx, u_xz, u_zz]) = (across.tangential, up.tangential);
+        let ([k_xx, k_yx, k_zx], [k_yy, k_xy, k_zy]) = (across.stiffness, up.stiffness);
+        let zero = S::zero();
+        #[rustfmt::skip]
+        let (impedance, stiffness) = (
+            SMatrix::<S, 3, 3>::new(
+                xx + u_xx, xy, u_xz,
+                yx, yy + a_yy, a_yz,
+                zx + u_xz, zy + a_yz, a_zz + u_zz,
+            ),
+            SMatrix::<S, 3, 3>::new(
+                k_xx, k_xy, zero,
+                k_yx, k_yy, zero,
+                k_zx, k_zy, zero,
+            ),
+        );
+        let force = SVector::<S, 3>::new(-(f[0] + g[1]), -(f[1] + g[0]), -(f[2] + g[2]));
+        (steady(force, impedance, stiffness), [across.memory, up.memory])
     }
 
     #[inline(always)]

@@ -6,10 +6,13 @@
 mod blocks;
 mod bodies;
 mod driven;
+mod floating;
 mod seat;
 mod turned;
 
 pub use bodies::{FreeBodies, Placed, PlacedBody, Rigid};
 pub use driven::{About, Along};
+pub use floating::{Floating, PinOfFrame, Pull};
+pub(crate) use floating::{Placed as FloatingPlaced, split};
 pub use seat::{Port, Seat};
 pub use turned::Turned;

@@ -87,7 +87,7 @@ pub fn slide_unit(scene: &Scene, core: &Path) -> Unit {
          let mut unit = SCENE.at(values[0] as f32)?;\n{body}        \
          let ContactData {{ stiffness, {exponent}damping, depth, .. }} = unit.contact;\n        \
          let contact = Impact::new({made_elastic}, damping, depth)?;\n        \
-         Ok(Self(Kernel::new(Slide::new(unit.body, contact, {made_friction}, unit.drive)?, KERNEL_STEP)?))\n    }}\n\n    \
+         Ok(Self(Kernel::new(unit.body.slide(contact, {made_friction}, unit.drive)?, KERNEL_STEP)?))\n    }}\n\n    \
          /// Where it starts.\n    pub fn start(&self) -> State {{\n        kernel::at_rest(&self.0)\n    }}\n\n    \
          pub fn step(&self, state: &mut State) -> Report<f32> {{\n        kernel::step(&self.0, state)\n    }}\n\n    \
          pub fn outputs(&self, state: &State, report: &Report<f32>) -> [f64; OUTPUTS] {{\n        \

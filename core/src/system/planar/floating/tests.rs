@@ -53,7 +53,7 @@ fn both<F: Friction<f64>>(friction: F) -> (Slide<f64, ThreeHalves<f64>, F>, Flat
     let pull = Pull { point: Vector2::new(0.03, -0.01), axis: Vector2::new(0.0, 1.0) };
     let flat = Floating::new(0.08, 3e-4, Vector2::new(2.0, 0.5), libm::hypot(0.062, 0.018)).unwrap();
     (
-        Slide::new(body, normal(), friction, drive).unwrap(),
+        body.slide(normal(), friction, drive).unwrap(),
         System::new(flat, (slots, Element { link: pull, law: Pusher(drive) })),
     )
 }

@@ -109,7 +109,7 @@ fn unit<F: Friction<f32>>(
     let unit = SCENE.at(level)?;
     let ContactData { stiffness, damping, depth, .. } = unit.contact;
     let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
-    Slide::new(unit.body, contact, law(unit.friction.coefficient())?, unit.drive)
+    unit.body.slide(contact, law(unit.friction.coefficient())?, unit.drive)
 }
 
 /// The kernel of a unit whose friction is `factor` times the scene's.

@@ -230,7 +230,7 @@ fn impact<E: Elastic<f32>>(elastic: E) -> Impact<f32, E> {
 
 fn slide<E: Elastic<f32>, F: Friction<f32>>(elastic: E, friction: F) -> Unit<E, F> {
     let SlideData { body, drive, .. } = cd_rom::data(LEVEL);
-    Slide::new(body, impact(elastic), friction, drive).expect("the slide is in bounds")
+    body.slide(impact(elastic), friction, drive).expect("the slide is in bounds")
 }
 
 /// Steps `mechanism` from `pose` and says what that takes.
