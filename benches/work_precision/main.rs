@@ -19,13 +19,13 @@ use std::{
 use cvode_peer::Cvode;
 use entry::{Achieved, Entry};
 use slipfit::dynamics::{
-    error_control::{Knot, Sensitivity, Tolerance, integrate, sampled},
+    error_control::{Accelerations, Knot, Sensitivity, Tolerance, integrate, sampled},
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},
 };
 use slipfit_core::{
     SVector,
-    integrator::{Integrator, Motion, MotionOf, Rodas3, Rodas4},
+    integrator::{Integrator, Motion, MotionOf, Rodas4},
     kernel::Kernel,
     mechanism::Mechanism,
     pose::Pose,
@@ -65,8 +65,7 @@ fn compare(reference: &Reference, cvode: Option<&Cvode>, all: bool) {
     let slide = cd_rom::slide(reference.n);
     let milliseconds = (reference.duration * 1e3).round() as u32;
     let mut entries = kernels(&slide, milliseconds);
-    entries.extend(controlled::<Rodas3>("error control, rodas3", reference.n, milliseconds));
-    entries.extend(controlled::<Rodas4>("error control, rodas4", reference.n, milliseconds));
+    entries.extend(controlled(reference.n, milliseconds));
     entries.extend(diffsol_peer::entries(&slide, milliseconds));
     entries.extend(cvode.map(|cvode| cvode.entries(milliseconds)).into_iter().flatten());
     let findings = entries.iter().enumerate().filter_map(|(i, entry)| measure(i, entry, reference));
@@ -127,8 +126,8 @@ fn kernels(slide: &CdRomSlide<f64>, milliseconds: u32) -> Vec<Entry> {
     IntegratorKind::ALL.into_iter().flat_map(every).collect()
 }
 
-/// The kernel's steps under error control, at every tolerance.
-fn controlled<I: Integrator>(solver: &'static str, n: f64, milliseconds: u32) -> Vec<Entry> {
+/// The desk's steps under error control, at every tolerance.
+fn controlled(n: f64, milliseconds: u32) -> Vec<Entry> {
     let entry = |force: f64| {
         let work = move || {
             let slide = cd_rom::slide(n);
@@ -145,8 +144,9 @@ fn controlled<I: Integrator>(solver: &'static str, n: f64, milliseconds: u32) ->
             let start = Instant::now();
             let tolerance = Tolerance::of_force(force);
             let error = |step: &_, length| sensitivity.error(tolerance, step, length);
-            let see = |t: f64, motion: &MotionOf<f64, CdRomSlide<f64>, 6>| {
-                knots.push(Knot { t, values: [motion.velocity.z] });
+            let see = |t: f64, motion: &MotionOf<f64, CdRomSlide<f64>, 6>, accelerations: Option<Accelerations<6>>| {
+                let slopes = accelerations.map(|both| both.map(|acceleration| [acceleration.z]));
+                knots.push(Knot { t, values: [motion.velocity.z], slopes });
                 ControlFlow::Continue(())
             };
             #[cfg(target_arch = "x86_64")]
@@ -154,8 +154,8 @@ fn controlled<I: Integrator>(solver: &'static str, n: f64, milliseconds: u32) ->
             #[cfg(not(target_arch = "x86_64"))]
             let side_by_side: Option<slipfit::dynamics::out_of_line::InTurn> = None;
             match side_by_side {
-                Some(pins) => integrate::<I, _, 6>(&OutOfLine::by(slide, pins), rest, duration, error, see),
-                None => integrate::<I, _, 6>(&OutOfLine::new(slide), rest, duration, error, see),
+                Some(pins) => integrate::<Rodas4, _, 6>(&OutOfLine::by(slide, pins), rest, duration, error, see),
+                None => integrate::<Rodas4, _, 6>(&OutOfLine::new(slide), rest, duration, error, see),
             }
             .ok()?;
             let times = (0..=milliseconds).map(|k| f64::from(k) * 1e-3);
@@ -163,7 +163,7 @@ fn controlled<I: Integrator>(solver: &'static str, n: f64, milliseconds: u32) ->
             let force = times.zip(values).map(|(t, [vz])| slide.drive().force(t, vz)).collect();
             Some(Achieved { force, time: start.elapsed() })
         };
-        Entry { solver, setting: format!("{force:.1e} N"), work: Box::new(work) }
+        Entry { solver: "error control, rodas4", setting: format!("{force:.1e} N"), work: Box::new(work) }
     };
     (0..41).map(|i| entry(1e-2 * libm::pow(10.0, -0.1 * f64::from(i)))).collect()
 }
