@@ -26,8 +26,8 @@ impl<S: Scalar> Pull<S> {
                 if W::ANSWERS[i][j] {
                     for row in 0..length[i] {
                         let along = pull[row] * impedance[(i, j)];
-                        for column in 0..length[j] {
-                            sum.0[(row, column)] += along * pull[column];
+                        for (column, pull) in pull.iter().enumerate().take(length[j]) {
+                            sum.0[(row, column)] += along * *pull;
                         }
                     }
                 }

@@ -98,11 +98,10 @@ const INERTIA: f64 = 3e-4;
 const LEVER: f64 = 0.05;
 const GRAVITY: f64 = 9.81;
 
+type Pendulum<F> = System<Floating<f64>, Element<Hole<f64>, Journal<f64, Normal, F>, 4>>;
+
 /// A body that hangs from one pin, which is at `pin` (m) from its centre of mass.
-fn pendulum<F: Friction<f64>>(
-    pin: Vector2<f64>,
-    friction: F,
-) -> System<Floating<f64>, Element<Hole<f64>, Journal<f64, Normal, F>, 4>> {
+fn pendulum<F: Friction<f64>>(pin: Vector2<f64>, friction: F) -> Pendulum<F> {
     let contact = Contact { normal: normal(), friction };
     let body = Floating::new(MASS, INERTIA, Vector2::new(0.0, -GRAVITY), pin.norm()).unwrap();
     let law = Journal { clearance: CLEARANCE, radius: RADIUS, contact };
