@@ -225,3 +225,30 @@ impl<S: Scalar> Link<S, OnAxis<S>, 1, 1> for Displacement {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::on_axis;
+    use crate::{
+        Vector3,
+        drive::Drive,
+        law::{Impact, Pad, ThreeHalves},
+    };
+
+    #[test]
+    fn refuses_a_drive_that_is_none() {
+        let contact = Impact::new(ThreeHalves::new(3e6f32).unwrap(), 1000.0, 1e-4).unwrap();
+        let good = Drive { gain: 40.0, ramp_start: 0.05, ramp_end: 1.0, speed: 0.1, point_b: Vector3::zeros() };
+        let made = |drive| on_axis(0.1, 0.0, Pad::new(0.0).unwrap(), contact, drive).map(drop);
+        assert_eq!(made(good), Ok(()));
+        for (bad, parameter) in [
+            (Drive { gain: f32::NAN, ..good }, "drive.gain"),
+            (Drive { gain: -1.0, ..good }, "drive.gain"),
+            (Drive { ramp_end: 0.05, ..good }, "drive.ramp_duration"),
+            (Drive { ramp_end: 0.0, ..good }, "drive.ramp_end"),
+            (Drive { speed: f32::INFINITY, ..good }, "drive.speed"),
+        ] {
+            assert_eq!(made(bad).unwrap_err().parameter, parameter);
+        }
+    }
+}

@@ -129,3 +129,6 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
         F::or_old(new, condition, old)
     }
 }
+
+#[cfg(test)]
+mod tests;
