@@ -99,6 +99,13 @@ impl<S: Scalar> Pose<S> {
         Self { displacement_w: self.displacement_w, orientation: Orientation { w: w * scale, v: v * scale } }
     }
 
+    /// 0 if all numbers are finite, else NaN.
+    #[inline(always)]
+    pub(crate) fn finiteness_probe(&self) -> S {
+        let Self { displacement_w: r, orientation: q } = self;
+        (r.x + r.y + r.z + q.w + q.v.x + q.v.y + q.v.z) * S::zero()
+    }
+
     /// The rotation from the fixed frame into the body.
     #[inline(always)]
     pub fn to_body(&self) -> ToBody<S> {
@@ -154,6 +161,14 @@ impl<S: Scalar> ToBody<S> {
     pub fn apply_inverse(&self, vector_b: Vector3<S>) -> Vector3<S> {
         vector_b + transposed_times(&self.change, &vector_b)
     }
+}
+
+/// How fast the turn θ (rad) of [`Pose::moved`] grows while the body turns with `angular_velocity_b` ω (rad/s): the orientation is
+/// that of the quaternion (1, θ/2) after the pose's, so that θ̇ = ω + ½·θ×ω + ¼·θ(θ·ω).
+#[inline(always)]
+pub(crate) fn turn_rate<S: Scalar>(turn_b: &Vector3<S>, angular_velocity_b: &Vector3<S>) -> Vector3<S> {
+    let half = turn_b * S::from_f64(0.5);
+    angular_velocity_b + cross(&half, angular_velocity_b) + half * dot(&half, angular_velocity_b)
 }
 
 #[cfg(test)]

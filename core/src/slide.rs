@@ -18,7 +18,7 @@ use crate::{
     mechanism::Driven,
     pose::Pose,
     system::{
-        Alike, Element, System,
+        Alike, Bodies, Element, System,
         law::{Contact, Pusher},
         spatial::{Floating, PinOfFrame, Pull},
     },
@@ -130,7 +130,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S, Memory = ()>> Driven<S, 6> for Sli
 
     #[inline(always)]
     fn mass(&self) -> S {
-        *self.bodies().mass()
+        self.bodies().least_mass()
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ use crate::{
     integrator::MotionOf,
     law::{Elastic, Friction, Normal, friction::SlidingContact},
     mechanism::Mechanism,
-    system::spatial::split,
+    system::{Bodies, spatial::split},
 };
 
 /// Energy of a slide at one motion (J).
@@ -38,7 +38,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         let gaps = self.gaps(&motion.pose);
         Energy {
             kinetic: motion.velocity.dot(&momentum) / S::from_f64(2.0),
-            gravity: -self.bodies().gravity_w().dot(&motion.pose.displacement_w) * *self.bodies().mass(),
+            gravity: -self.bodies().gravity_w().dot(&motion.pose.displacement_w) * self.bodies().least_mass(),
             elastic: gaps.iter().fold(S::zero(), |sum, gap| sum + self.contact().normal.energy(-*gap)),
         }
     }

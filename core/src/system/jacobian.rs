@@ -54,9 +54,44 @@ impl<S: Scalar, const D: usize> Jacobian<S, D> for SMatrix<S, D, D> {
     }
 }
 
-/// A matrix of one body in its own axes, solved with by its inverse.
+/// A matrix of one body in its own axes, as a type apart, so that its links need no gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Own<S, const D: usize>(pub SMatrix<S, D, D>);
+
+/// How an [`Own`] matrix is solved with, where `D` is small.
+pub trait Small<S, const D: usize> {
+    /// What [`solution`](Self::solution) takes.
+    #[must_use]
+    fn prepared(&self) -> Self;
+
+    /// The solution x of matrix·x = `b`, of the matrix that was prepared.
+    fn solution(&self, b: &SVector<S, D>) -> SVector<S, D>;
+}
+
+impl<S: Scalar> Small<S, 1> for Own<S, 1> {
+    #[inline(always)]
+    fn prepared(&self) -> Self {
+        *self
+    }
+
+    #[inline(always)]
+    fn solution(&self, b: &SVector<S, 1>) -> SVector<S, 1> {
+        SVector::<S, 1>::new(b.x / self.0.x)
+    }
+}
+
+/// By the inverse.
+impl<S: Scalar> Small<S, 3> for Own<S, 3> {
+    #[inline(always)]
+    fn prepared(&self) -> Self {
+        Self(inverse(&self.0))
+    }
+
+    #[inline(always)]
+    fn solution(&self, b: &SVector<S, 3>) -> SVector<S, 3> {
+        self.0 * b
+    }
+}
 
 impl<S: Scalar, const D: usize> Default for Own<S, D> {
     #[inline(always)]
@@ -65,8 +100,10 @@ impl<S: Scalar, const D: usize> Default for Own<S, D> {
     }
 }
 
-impl<S: Scalar> Jacobian<S, 1> for Own<S, 1> {
-    /// The matrix itself.
+impl<S: Scalar, const D: usize> Jacobian<S, D> for Own<S, D>
+where
+    Self: Small<S, D>,
+{
     type Factors = Self;
 
     #[inline(always)]
@@ -80,47 +117,17 @@ impl<S: Scalar> Jacobian<S, 1> for Own<S, 1> {
     }
 
     #[inline(always)]
-    fn times(&self, v: &SVector<S, 1>) -> SVector<S, 1> {
+    fn times(&self, v: &SVector<S, D>) -> SVector<S, D> {
         self.0 * v
     }
 
     #[inline(always)]
     fn factorised(&self) -> Self {
-        *self
+        self.prepared()
     }
 
     #[inline(always)]
-    fn solve(factors: &Self, b: &SVector<S, 1>) -> SVector<S, 1> {
-        SVector::<S, 1>::new(b.x / factors.0.x)
-    }
-}
-
-impl<S: Scalar> Jacobian<S, 3> for Own<S, 3> {
-    /// The inverse.
-    type Factors = Self;
-
-    #[inline(always)]
-    fn zero() -> Self {
-        Self::default()
-    }
-
-    #[inline(always)]
-    fn plus(&self, other: &Self, weight: S) -> Self {
-        Self(self.0 + other.0 * weight)
-    }
-
-    #[inline(always)]
-    fn times(&self, v: &SVector<S, 3>) -> SVector<S, 3> {
-        self.0 * v
-    }
-
-    #[inline(always)]
-    fn factorised(&self) -> Self {
-        Self(inverse(&self.0))
-    }
-
-    #[inline(always)]
-    fn solve(factors: &Self, b: &SVector<S, 3>) -> SVector<S, 3> {
-        factors.0 * b
+    fn solve(factors: &Self, b: &SVector<S, D>) -> SVector<S, D> {
+        factors.solution(b)
     }
 }

@@ -184,7 +184,7 @@ fn spatial_derivatives_are_those_of_the_forces() {
 
 #[test]
 fn a_floating_body_has_the_derivatives_of_its_forces() {
-    let body = planar::Floating::new(0.5, 0.02, Vector2::new(1.0, -9.81), 0.2).unwrap();
+    let body = planar::Floating::new(0.5, 0.02, Vector2::new(1.0, -9.81), &[Vector2::new(0.2, 0.0)]).unwrap();
     let at = |x, y| Vector2::new(x, y);
     let elements = (
         [at(0.2, 0.1), at(-0.2, 0.1)].map(|place| Element::<_, _, 2> {

@@ -60,7 +60,12 @@ fn smaller_scenes() -> Result<(), ParameterError<f32>> {
     let data = black_box(cd_rom::data(black_box(0.0)));
     let normal = Impact::new(ThreeHalves::new(black_box(3e6))?, black_box(1e3), black_box(1e-4))?;
     let slot = Slot::new(black_box(0.0), black_box(1e-4))?;
-    let body = Floating::new(data.body.mass, data.body.inertia_b.y, black_box(Vector2::zeros()), black_box(0.1))?;
+    let body = Floating::new(
+        data.body.mass,
+        data.body.inertia_b.y,
+        black_box(Vector2::zeros()),
+        black_box(&[Vector2::zeros(); 4]),
+    )?;
     let pull =
         Element { link: black_box(Pull { point: Vector2::zeros(), axis: Vector2::y() }), law: Pusher(data.drive) };
     let contact = Contact { normal, friction: Exact::new(black_box(0.3))? };

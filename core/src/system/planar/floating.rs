@@ -19,7 +19,7 @@ pub use pin::Pin;
 pub use pull::Pull;
 pub use turn::Turn;
 
-use super::left;
+use super::{half_turn, left};
 
 /// A body with its inertia and gravity.
 ///
@@ -34,20 +34,28 @@ pub struct Floating<S> {
 }
 
 impl<S: Scalar + PartialOrd> Floating<S> {
-    /// A body of `mass` (kg) and moment of `inertia` about the centre of mass (kg·m²) under `gravity` (m/s²), whose angles are
-    /// compared with displacements by the length `lever` (m): the distance of its farthest pin.
+    /// A body of `mass` (kg) and moment of `inertia` about the centre of mass (kg·m²) under `gravity` (m/s²). Its
+    /// angles are compared with displacements by the distance of the farthest of its `pins`, which are told from the centre of mass at
+    /// the nominal pose (m).
     ///
     /// # Errors
     /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
-    pub fn new(mass: S, inertia: S, gravity: Vector2<S>, lever: S) -> Result<Self, ParameterError<S>> {
+    pub fn new(mass: S, inertia: S, gravity: Vector2<S>, pins: &[Vector2<S>]) -> Result<Self, ParameterError<S>> {
         for component in gravity.iter() {
             bounded("gravity", *component, [-1e4, 1e4])?;
+        }
+        let mut farthest = S::from_f64(1e-6);
+        for pin in pins {
+            for component in pin.iter() {
+                bounded("pin.position", *component, [-1e3, 1e3])?;
+            }
+            farthest = farthest.max_of(pin.dot(pin).sqrt());
         }
         Ok(Self {
             mass: bounded("mass", mass, [1e-6, 1e6])?,
             inertia: bounded("inertia", inertia, [1e-12, 1e9])?,
             gravity,
-            per_lever: S::one() / bounded("lever", lever, [1e-6, 1e3])?,
+            per_lever: S::one() / farthest,
         })
     }
 }
@@ -107,17 +115,15 @@ impl<S: Scalar> Bodies<S, 3> for Floating<S> {
     #[inline(always)]
     fn advanced(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>, dt: S) -> PlanarPose<S> {
         let PlanarPose { displacement, half_turn } = self.moved(pose, velocity, dt);
-        let half = velocity.z * dt * S::from_f64(0.5);
-        let scale = S::one() / (S::one() + half * half);
-        PlanarPose { displacement, half_turn: half_turn.map(|x| x * scale) }
+        PlanarPose { displacement, half_turn: half_turn::shortened(half_turn, velocity.z * dt * S::from_f64(0.5)) }
     }
 
     #[inline(always)]
     fn moved(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>, dt: S) -> PlanarPose<S> {
-        let [w, v] = pose.half_turn;
-        let half = velocity.z * dt * S::from_f64(0.5);
-        let displacement = pose.displacement + Vector2::new(velocity.x, velocity.y) * dt;
-        PlanarPose { displacement, half_turn: [w - v * half, v + w * half] }
+        PlanarPose {
+            displacement: pose.displacement + Vector2::new(velocity.x, velocity.y) * dt,
+            half_turn: half_turn::turned_on(pose.half_turn, velocity.z * dt * S::from_f64(0.5)),
+        }
     }
 
     #[inline(always)]
@@ -131,9 +137,7 @@ impl<S: Scalar> Bodies<S, 3> for Floating<S> {
 
     #[inline(always)]
     fn normalised(&self, pose: &PlanarPose<S>) -> PlanarPose<S> {
-        let [w, v] = pose.half_turn;
-        let scale = S::from_f64(0.5) * (S::from_f64(3.0) - (w * w + v * v));
-        PlanarPose { half_turn: [w * scale, v * scale], ..*pose }
+        PlanarPose { half_turn: half_turn::normalised(pose.half_turn), ..*pose }
     }
 
     #[inline(always)]
@@ -151,11 +155,9 @@ impl<S: Scalar> Bodies<S, 3> for Floating<S> {
         displacement.x * zero + displacement.y * zero + *w * zero + *v * zero
     }
 
-    /// With the angle θ of [`moved`](Bodies::moved), tan(θ/2) is what it adds, so that θ̇ = ω·(1 + θ²/4).
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, 3>, velocity: &SVector<S, 3>) -> SVector<S, 3> {
-        let half = displacement.z * S::from_f64(0.5);
-        SVector::<S, 3>::new(velocity.x, velocity.y, velocity.z + half * half * velocity.z)
+        SVector::<S, 3>::new(velocity.x, velocity.y, half_turn::angle_rate(displacement.z, velocity.z))
     }
 
     #[inline(always)]

@@ -7,6 +7,7 @@ mod across;
 mod along;
 mod between;
 mod floating;
+mod half_turn;
 mod pair;
 mod point;
 mod rigid;

@@ -1,7 +1,7 @@
 //! The tree: coordinates, bodies, and how they resist.
 
 use super::{
-    Point, left,
+    Point, half_turn, left,
     point::At,
     rigid::{Many, Rigid, Rigids},
     topology::{Carrier, Kind, Topology},
@@ -156,9 +156,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
         let mut next = self.moved(pose, velocity, dt);
         for (k, (pose, rate)) in next.iter_mut().zip(velocity).enumerate() {
             if self.topology.kind(k) == Kind::Turn {
-                let half = *rate * dt * S::from_f64(0.5);
-                let scale = S::one() / (S::one() + half * half);
-                *pose = pose.map(|x| x * scale);
+                *pose = half_turn::shortened(*pose, *rate * dt * S::from_f64(0.5));
             }
         }
         next
@@ -170,10 +168,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
         for (k, (pose, rate)) in next.iter_mut().zip(velocity).enumerate() {
             let [w, v] = *pose;
             *pose = match self.topology.kind(k) {
-                Kind::Turn => {
-                    let half = *rate * dt * S::from_f64(0.5);
-                    [w - v * half, v + w * half]
-                }
+                Kind::Turn => half_turn::turned_on(*pose, *rate * dt * S::from_f64(0.5)),
                 Kind::Slide { .. } => [w + *rate * dt, v],
             };
         }
@@ -194,9 +189,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
         let mut normalised = *pose;
         for (k, pose) in normalised.iter_mut().enumerate() {
             if self.topology.kind(k) == Kind::Turn {
-                let [w, v] = *pose;
-                let scale = S::from_f64(0.5) * (S::from_f64(3.0) - (w * w + v * v));
-                *pose = [w * scale, v * scale];
+                *pose = half_turn::normalised(*pose);
             }
         }
         normalised
@@ -214,13 +207,12 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
         pose.as_flattened().iter().fold(S::zero(), |sum, x| sum + *x * S::zero())
     }
 
-    /// With the angle θ of [`moved`](Bodies::moved), tan(θ/2) is what it adds, so that θ̇ = ω·(1 + θ²/4).
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         let mut rate = *velocity;
         for (k, (rate, place)) in rate.iter_mut().zip(displacement).enumerate() {
             if self.topology.kind(k) == Kind::Turn {
-                *rate *= S::one() + *place * *place * S::from_f64(0.25);
+                *rate = half_turn::angle_rate(*place, *rate);
             }
         }
         rate
@@ -229,13 +221,10 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
     #[inline(always)]
     fn placed(&self, pose: &Self::Pose, velocity: &SVector<S, D>) -> Placed<S, D> {
         let (mut axes, mut places) = (self.axes, [S::zero(); D]);
-        for (k, ((axis, place), [w, v])) in axes.iter_mut().zip(&mut places).zip(pose).enumerate() {
+        for (k, ((axis, place), pose)) in axes.iter_mut().zip(&mut places).zip(pose).enumerate() {
             match self.topology.kind(k) {
-                Kind::Turn => {
-                    let twice = *v * (S::from_f64(2.0) / (*w * *w + *v * *v));
-                    *axis = Vector2::new(S::one() - twice * *v, twice * *w);
-                }
-                Kind::Slide { .. } => *place = *w,
+                Kind::Turn => *axis = half_turn::whole(*pose),
+                Kind::Slide { .. } => *place = pose[0],
             }
         }
         for k in 0..D {

@@ -6,7 +6,7 @@ use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector3,
     error::bounded,
     linear::cross_matrix,
-    pose::Pose,
+    pose::{Pose, turn_rate},
     system::{Bodies, ByCoordinate},
 };
 
@@ -205,20 +205,14 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
 
     #[inline(always)]
     fn finiteness_probe(&self, pose: &Self::Pose) -> S {
-        pose.iter().fold(S::zero(), |sum, Pose { displacement_w: r, orientation: q }| {
-            sum + (r.x + r.y + r.z + q.w + q.v.x + q.v.y + q.v.z) * S::zero()
-        })
+        pose.iter().fold(S::zero(), |sum, pose| sum + pose.finiteness_probe())
     }
 
-    /// With the turn θ of [`Pose::moved`], the orientation is that of the quaternion (1, θ/2) after the pose's, so that
-    /// θ̇ = ω + ½·θ×ω + ¼·θ(θ·ω).
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         let mut rate = *velocity;
         for ((_, turn), [.., x, y, z]) in each(displacement).zip(each_mut(&mut rate)) {
-            let half = turn * S::from_f64(0.5);
-            let w = Vector3::new(*x, *y, *z);
-            let turning = w + half.cross(&w) + half * half.dot(&w);
+            let turning = turn_rate(&turn, &Vector3::new(*x, *y, *z));
             (*x, *y, *z) = (turning.x, turning.y, turning.z);
         }
         rate

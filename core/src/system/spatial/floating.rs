@@ -12,7 +12,7 @@ use crate::{
     ParameterError, SVector, Scalar, Vector3,
     error::bounded,
     linear::{Blocks, Factors},
-    pose::{Pose, ToBody},
+    pose::{Pose, ToBody, turn_rate},
     product::{cross, dot, mapped},
     system::{Axes, Bodies, Jacobian},
 };
@@ -20,7 +20,7 @@ use crate::{
 pub use pin::PinOfFrame;
 pub use pull::Pull;
 
-/// A body with its inertia and gravity.
+/// A body with its inertia and gravity. Errors name its parameters as the keys of a slide's scene.
 ///
 /// Its generalised velocities are the velocity of the centre of mass in the frame (m/s) and the angular velocity in the body
 /// (rad/s), so that the mass matrix is constant and free flight is exact.
@@ -66,11 +66,6 @@ impl<S: Scalar + PartialOrd> Floating<S> {
 }
 
 impl<S> Floating<S> {
-    /// Mass (kg).
-    pub fn mass(&self) -> &S {
-        &self.mass
-    }
-
     /// Gravity (m/s²).
     pub fn gravity_w(&self) -> &Vector3<S> {
         &self.gravity_w
@@ -225,17 +220,14 @@ impl<S: Scalar> Bodies<S, 6> for Floating<S> {
     }
 
     #[inline(always)]
-    fn finiteness_probe(&self, Pose { displacement_w: r, orientation: q }: &Pose<S>) -> S {
-        (r.x + r.y + r.z + q.w + q.v.x + q.v.y + q.v.z) * S::zero()
+    fn finiteness_probe(&self, pose: &Pose<S>) -> S {
+        pose.finiteness_probe()
     }
 
-    /// With the turn θ of [`Pose::moved`], the orientation is that of the quaternion (1, θ/2) after the pose's, so that
-    /// θ̇ = ω + ½·θ×ω + ¼·θ(θ·ω).
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, 6>, velocity: &SVector<S, 6>) -> SVector<S, 6> {
         let ((_, turn_b), (v_w, w_b)) = (split(displacement), split(velocity));
-        let half = turn_b * S::from_f64(0.5);
-        join(v_w, w_b + cross(&half, &w_b) + half * dot(&half, &w_b))
+        join(v_w, turn_rate(&turn_b, &w_b))
     }
 
     #[inline(always)]

@@ -6,7 +6,8 @@ use crate::{
     system::{Law, Link, Response, Seen, jacobian::Own, planar::left},
 };
 
-/// A point of the body along an axis of the frame, and the body's centre of mass, whose speed along it counts.
+/// A point of the body along an axis of the frame, and the body's centre of mass, whose speed along it counts. It is a drive's: it
+/// pushes at the point alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pull<S> {
     /// Where the force acts, from the centre of mass in the body's axes (m).
@@ -16,19 +17,17 @@ pub struct Pull<S> {
 }
 
 impl<S: Scalar> Pull<S> {
-    /// Adds how the forces by rates of the `impedance` go by the body's velocity. What acts at the centre of mass has no torque.
+    /// Adds how the force at the point by the rates of point and centre, the first row of the `impedance`, goes by the body's velocity.
     #[inline(always)]
     fn spread<W: Law<S, 2>>(&self, axis: &Vector2<S>, impedance: &SMatrix<S, 2, 2>, sum: &mut Own<S, 3>) {
         let pull = [axis.x, axis.y, left(&self.point).dot(axis)];
-        let length = [3, 2];
-        for i in 0..2 {
-            for j in 0..2 {
-                if W::ANSWERS[i][j] {
-                    for row in 0..length[i] {
-                        let along = pull[row] * impedance[(i, j)];
-                        for (column, pull) in pull.iter().enumerate().take(length[j]) {
-                            sum.0[(row, column)] += along * *pull;
-                        }
+        // The speed of the centre does not go by the rotation.
+        for (j, coordinates) in [3, 2].into_iter().enumerate() {
+            if W::ANSWERS[0][j] {
+                for (row, pushed) in pull.iter().enumerate() {
+                    let along = *pushed * impedance[(0, j)];
+                    for (column, seen) in pull.iter().enumerate().take(coordinates) {
+                        sum.0[(row, column)] += along * *seen;
                     }
                 }
             }

@@ -51,7 +51,7 @@ fn both<F: Friction<f64>>(friction: F) -> (Slide<f64, ThreeHalves<f64>, F>, Flat
         law: Slot { gaps: GAPS[i], contact: Contact { normal: normal(), friction } },
     });
     let pull = Pull { point: Vector2::new(0.03, -0.01), axis: Vector2::new(0.0, 1.0) };
-    let flat = Floating::new(0.08, 3e-4, Vector2::new(2.0, 0.5), libm::hypot(0.062, 0.018)).unwrap();
+    let flat = Floating::new(0.08, 3e-4, Vector2::new(2.0, 0.5), &PINS.map(Vector2::from)).unwrap();
     (
         body.slide(normal(), friction, drive).unwrap(),
         System::new(flat, (slots, Element { link: pull, law: Pusher(drive) })),
@@ -87,10 +87,18 @@ fn moves_as_the_slide_in_its_plane() {
 
 #[test]
 fn refuses_what_it_cannot_step() {
-    for [mass, inertia, lever] in [[0.0, 1.0, 1.0], [1.0, f64::NAN, 1.0], [1.0, 1.0, -1.0]] {
-        assert!(Floating::new(mass, inertia, Vector2::zeros(), lever).is_err());
+    let made = |mass, inertia, gravity, pin| {
+        Floating::new(mass, inertia, Vector2::new(0.0, gravity), &[Vector2::new(pin, 0.0)]).map(drop)
+    };
+    assert_eq!(made(1.0, 1.0, -9.81, 0.1), Ok(()));
+    for (mass, inertia, gravity, pin, parameter) in [
+        (0.0, 1.0, 0.0, 1.0, "mass"),
+        (1.0, f64::NAN, 0.0, 1.0, "inertia"),
+        (1.0, 1.0, f64::INFINITY, 1.0, "gravity"),
+        (1.0, 1.0, 0.0, f64::NAN, "pin.position"),
+    ] {
+        assert_eq!(made(mass, inertia, gravity, pin).unwrap_err().parameter, parameter);
     }
-    assert!(Floating::new(1.0, 1.0, Vector2::new(0.0, f64::INFINITY), 1.0).is_err());
 }
 
 const MASS: f64 = 0.08;
@@ -103,7 +111,7 @@ type Pendulum<F> = System<Floating<f64>, Element<Hole<f64>, Journal<f64, Normal,
 /// A body that hangs from one pin, which is at `pin` (m) from its centre of mass.
 fn pendulum<F: Friction<f64>>(pin: Vector2<f64>, friction: F) -> Pendulum<F> {
     let contact = Contact { normal: normal(), friction };
-    let body = Floating::new(MASS, INERTIA, Vector2::new(0.0, -GRAVITY), pin.norm()).unwrap();
+    let body = Floating::new(MASS, INERTIA, Vector2::new(0.0, -GRAVITY), &[pin]).unwrap();
     let law = Journal { clearance: CLEARANCE, radius: RADIUS, contact };
     System::new(body, Element { link: Hole { centre: pin }, law })
 }

@@ -1,6 +1,9 @@
 //! The turn of a floating body.
 
-use crate::{SVector, Scalar, Vector2, system::Axes};
+use crate::{
+    SVector, Scalar, Vector2,
+    system::{Axes, planar::half_turn::less_and_sine},
+};
 
 /// Rᵀ − I by its diagonal and the sine: what carries a vector of the frame into the body, less the vector itself.
 ///
@@ -21,9 +24,9 @@ impl<S: Scalar> Default for Turn<S> {
 impl<S: Scalar> Turn<S> {
     /// The turn by twice the angle whose cosine and sine, to some scale, are given.
     #[inline(always)]
-    pub(super) fn of([w, v]: [S; 2]) -> Self {
-        let twice = v * (S::from_f64(2.0) / (w * w + v * v));
-        Self { less: twice * v, sine: twice * w }
+    pub(super) fn of(half: [S; 2]) -> Self {
+        let [less, sine] = less_and_sine(half);
+        Self { less, sine }
     }
 
     /// What `p` changes by on the way into the body.

@@ -8,7 +8,8 @@ use crate::{
     system::{Law, Link, Response, Seen},
 };
 
-/// A point of the body along the frame's z axis, and the body's centre of mass, whose speed along it counts.
+/// A point of the body along the frame's z axis, and the body's centre of mass, whose speed along it counts. It is a drive's: it
+/// pushes at the point alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pull<S> {
     /// Where the force acts, from the centre of mass in the body's axes (m).
@@ -23,24 +24,20 @@ pub struct View<S> {
 }
 
 impl<S: Scalar> View<S> {
-    /// Adds how the forces on point and centre of mass by rates of the impedance in `response` go by the body's velocity.
+    /// Adds how the force at the point by the rates of point and centre, the first row of the impedance in `response`, goes by the
+    /// body's velocity.
     #[inline(always)]
     fn spread<W: Law<S, 2>>(&self, response: &Response<S, 2>, sum: &mut Blocks<S>) {
         let Self { force_b, torque_b } = self;
-        for (i, answers) in W::ANSWERS.iter().enumerate() {
-            for (j, answers) in answers.iter().enumerate() {
-                if *answers {
-                    let along = force_b * response.impedance[(i, j)];
-                    sum.a += outer(force_b, &along);
-                    if i == 0 {
-                        sum.c += outer(torque_b, &along);
-                    }
-                    if j == 0 {
-                        sum.b += outer(&along, torque_b);
-                    }
-                    if i == 0 && j == 0 {
-                        sum.d += outer(torque_b, torque_b) * response.impedance[(i, j)];
-                    }
+        for (j, answers) in W::ANSWERS[0].into_iter().enumerate() {
+            if answers {
+                let along = force_b * response.impedance[(0, j)];
+                sum.a += outer(force_b, &along);
+                sum.c += outer(torque_b, &along);
+                // The speed of the centre does not go by the rotation.
+                if j == 0 {
+                    sum.b += outer(&along, torque_b);
+                    sum.d += outer(torque_b, torque_b) * response.impedance[(0, j)];
                 }
             }
         }
@@ -63,7 +60,6 @@ impl<S: Scalar> Link<S, Floating<S>, 6, 2> for Pull<S> {
         Seen { place: SVector::zeros(), rate: SVector::<S, 2>::new(point, centre) }
     }
 
-    /// Only of what acts on the point: a drive pushes nowhere else.
     #[inline(always)]
     fn add_force(&self, _: (&Floating<S>, &Placed<S>), view: &View<S>, force: &SVector<S, 2>, sum: &mut SVector<S, 6>) {
         add(&(view.force_b * force.x), &(view.torque_b * force.x), sum);

@@ -42,9 +42,6 @@ const MECHANISM_STEPS: u32 = 100;
 /// Coefficient of friction, where there is any.
 const COEFFICIENT: f32 = 0.3;
 
-/// How far the farthest pin of the planar bodies is (m).
-const FARTHEST: f32 = 0.06456;
-
 /// Tolerance level of every rung.
 const LEVEL: f32 = 2.5;
 
@@ -132,14 +129,14 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     rung(machine, "slide_frictionless", slide(three_halves, Frictionless), nominal, slide_frictionless);
 
     let normal = impact(three_halves);
-    let place = |pin: usize| Vector2::new(data.body.pins_w[pin].x, data.body.pins_w[pin].z);
+    let places = data.body.pins_w.map(|pin| Vector2::new(pin.x, pin.z));
     let floating = |gravity: f32| {
         let Body { mass, inertia_b, .. } = data.body;
-        Floating::new(mass, inertia_b.y, Vector2::new(0.0, gravity), FARTHEST).expect("the body is in bounds")
+        Floating::new(mass, inertia_b.y, Vector2::new(0.0, gravity), &places).expect("the body is in bounds")
     };
     let pull = Element { link: Pull { point: Vector2::zeros(), axis: Vector2::new(0.0, 1.0) }, law: Pusher(drive) };
     let slots = [0, 1, 2, 3].map(|pin| Element {
-        link: Pin { place: place(pin) },
+        link: Pin { place: places[pin] },
         law: PlanarSlot {
             gaps: [data.body.gaps[4 * pin], data.body.gaps[4 * pin + 1]],
             contact: Contact { normal, friction: smoothed },
@@ -147,7 +144,7 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     });
     rung(machine, "planar_smoothed", System::new(floating(0.0), (slots, pull)), PlanarPose::nominal(), planar_smoothed);
     let law = Journal { clearance: 1e-5, radius: 5e-3, contact: Contact { normal, friction: Frictionless } };
-    let journal = Element { link: Hole { centre: place(0) }, law };
+    let journal = Element { link: Hole { centre: places[0] }, law };
     let lever = System::new(floating(-9.81), (journal, pull));
     rung(machine, "planar_journal", lever, PlanarPose::nominal(), planar_journal);
 

@@ -1,0 +1,44 @@
+//! Turns in a plane by cosine and sine of half the angle. They are kept near unit length, and never assumed to have it exactly.
+
+use crate::{Scalar, Vector2};
+
+/// `half` after a turn whose half angle has the tangent `by`; its length grows.
+#[inline(always)]
+pub(super) fn turned_on<S: Scalar>([w, v]: [S; 2], by: S) -> [S; 2] {
+    [w - v * by, v + w * by]
+}
+
+/// By what a turn to the end of an implicit step is shorter than [`turned_on`] makes it.
+#[inline(always)]
+pub(super) fn shortened<S: Scalar>(half: [S; 2], by: S) -> [S; 2] {
+    let scale = S::one() / (S::one() + by * by);
+    half.map(|x| x * scale)
+}
+
+/// One Newton step nearer to unit length.
+#[inline(always)]
+pub(super) fn normalised<S: Scalar>([w, v]: [S; 2]) -> [S; 2] {
+    let scale = S::from_f64(0.5) * (S::from_f64(3.0) - (w * w + v * v));
+    [w * scale, v * scale]
+}
+
+/// 1 − cosine and sine of the whole angle.
+#[inline(always)]
+pub(super) fn less_and_sine<S: Scalar>([w, v]: [S; 2]) -> [S; 2] {
+    let twice = v * (S::from_f64(2.0) / (w * w + v * v));
+    [twice * v, twice * w]
+}
+
+/// Cosine and sine of the whole angle.
+#[inline(always)]
+pub(super) fn whole<S: Scalar>(half: [S; 2]) -> Vector2<S> {
+    let [less, sine] = less_and_sine(half);
+    Vector2::new(S::one() - less, sine)
+}
+
+/// How fast the angle θ (rad) grows whose half has the tangent θ/2, by which [`turned_on`] goes, while the body turns with the `rate`
+/// ω (rad/s): θ̇ = ω·(1 + θ²/4).
+#[inline(always)]
+pub(super) fn angle_rate<S: Scalar>(angle: S, rate: S) -> S {
+    rate * (S::one() + angle * angle * S::from_f64(0.25))
+}
