@@ -11,9 +11,9 @@ const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 const RUNGS: [&str; 8] = [
     "slide_general_exponent",
     "slide_exact",
-    "slide_smoothed",
+    "slide_regularised",
     "slide_frictionless",
-    "planar_smoothed",
+    "planar_regularised",
     "planar_journal",
     "axis_slot_driven",
     "axis_pad_linear",
@@ -139,7 +139,7 @@ fn the_guide_has_these_costs() {
 /// or 640 with exact friction, which remembers.
 #[test]
 fn the_full_slide_keeps_its_budget() {
-    assert!(costs("slide_smoothed").stack <= 512 && costs("slide_exact").stack <= 640);
+    assert!(costs("slide_regularised").stack <= 512 && costs("slide_exact").stack <= 640);
     assert!(costs("slide_exact").instructions <= 16_000);
     let pass = ON_TARGET.lines().find_map(|line| line.strip_prefix("instructions of a pass: ")?.parse::<u32>().ok());
     let pass = pass.expect("the image says so");
@@ -174,8 +174,8 @@ fn what_is_left_out_is_not_there() {
         assert_eq!(has(rung, root), rung != "axis_pad_linear", "root in {rung}");
     }
     // Exact friction remembers two forces a slot, other laws nothing.
-    assert_eq!(costs("slide_exact").state - costs("slide_smoothed").state, 8 * 2 * 4);
-    assert_eq!(costs("slide_smoothed").state, costs("slide_frictionless").state);
+    assert_eq!(costs("slide_exact").state - costs("slide_regularised").state, 8 * 2 * 4);
+    assert_eq!(costs("slide_regularised").state, costs("slide_frictionless").state);
 }
 
 /// What sets the integer flags, so that they are not those of numbers any more.

@@ -111,7 +111,7 @@ fn exact_friction_is_the_limit_of_a_vanishing_stick_band() {
             let [coarse, fine] = [1e-3, 1e-4].map(errors);
             eprintln!("{} {}: {coarse:.4} % at 1 ms, {fine:.4} % at 100 µs", reference.name, scheme.name());
             assert!(fine <= 0.05, "{} {scheme:?}: {fine}", reference.name);
-            // SDIRK2's own error at 1 ms is 0.21 % at n = 2.5, with smoothed friction too.
+            // SDIRK2's own error at 1 ms is 0.21 % at n = 2.5, with regularised friction too.
             assert!(
                 coarse <= if scheme == IntegratorKind::Sdirk2 { 0.25 } else { 0.2 },
                 "{} {scheme:?}: {coarse}",

@@ -1,6 +1,6 @@
 //! Error against run time of the kernel's integrators and of general stiff solvers, in one run on one thread.
 //!
-//! All solve the paper's slide at n = 2.5, in f64 with the smoothed friction law, and give the drive force every
+//! All solve the paper's slide at n = 2.5, in f64 with regularised friction, and give the drive force every
 //! millisecond; errors are against the reference runs. Error control computes the pins as the desk does: side by side where the
 //! machine can. diffsol and, where it is installed, SUNDIALS
 //! CVODE get the kernel's own forces as their right-hand side and a range of tolerances, of which the best found counts.

@@ -90,7 +90,7 @@ impl NormalType {
 pub enum FrictionType {
     /// No friction asked for, or μ = 0.
     Frictionless,
-    /// The smoothed law.
+    /// The regularised law.
     Regularised,
     /// The law with true stick.
     Exact,

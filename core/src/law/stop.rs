@@ -12,14 +12,11 @@ pub trait Resistance<S> {
     /// Force on the body (N) along the axis.
     fn force(&self) -> S;
 
-    /// Sum of the normal forces (N), which friction goes by.
-    fn normal(&self) -> S;
+    /// −∂force/∂u (N·s/m) by the body's speed u, which also moves it `over` a time (s) if one is given.
+    fn impedance(&self, over: Option<S>) -> S;
 
-    /// −∂force/∂u and ∂normal/∂u (N·s/m) by the body's speed u, which also moves it `over` a time (s) if one is given.
-    fn impedances(&self, over: Option<S>) -> [S; 2];
-
-    /// −∂force/∂x and ∂normal/∂x (N/m) by the body's displacement x.
-    fn stiffnesses(&self) -> [S; 2];
+    /// −∂force/∂x (N/m) by the body's displacement x.
+    fn stiffness(&self) -> S;
 }
 
 /// Something fixed that the body meets along one axis.
@@ -64,20 +61,13 @@ impl<S: Scalar> Resistance<S> for NormalResponse<S> {
     }
 
     #[inline(always)]
-    fn normal(&self) -> S {
-        self.force
+    fn impedance(&self, over: Option<S>) -> S {
+        self.impedance(over)
     }
 
     #[inline(always)]
-    fn impedances(&self, over: Option<S>) -> [S; 2] {
-        let impedance = self.impedance(over);
-        [impedance, -impedance]
-    }
-
-    #[inline(always)]
-    fn stiffnesses(&self) -> [S; 2] {
-        let stiffness = self.stiffness();
-        [stiffness, -stiffness]
+    fn stiffness(&self) -> S {
+        self.stiffness()
     }
 }
 
@@ -114,18 +104,15 @@ impl<S: Scalar> Resistance<S> for SlotResponse<S> {
     }
 
     #[inline(always)]
-    fn normal(&self) -> S {
-        self.normal()
+    fn impedance(&self, over: Option<S>) -> S {
+        let [own, _] = self.impedances(over);
+        own
     }
 
     #[inline(always)]
-    fn impedances(&self, over: Option<S>) -> [S; 2] {
-        self.impedances(over)
-    }
-
-    #[inline(always)]
-    fn stiffnesses(&self) -> [S; 2] {
-        self.stiffnesses()
+    fn stiffness(&self) -> S {
+        let [own, _] = self.stiffnesses();
+        own
     }
 }
 
@@ -143,9 +130,12 @@ mod tests {
         for (offset, speed) in [(2e-5, 0.001), (3e-5, -0.02), (0.5e-5, 0.1)] {
             let pad = Pad::new(1e-5).unwrap().resistance(&law, offset, speed);
             let slot = Slot::new(ABSENT, 1e-5).unwrap().resistance(&law, offset, speed);
-            assert_eq!((pad.force(), Resistance::normal(&pad)), (slot.force(), slot.normal()));
-            assert_eq!(pad.impedances(Some(1e-3)), slot.impedances(Some(1e-3)));
-            assert_eq!(pad.stiffnesses(), slot.stiffnesses());
+            assert_eq!((pad.force, pad.force), (slot.force(), slot.normal()));
+            let (impedance, stiffness) = (pad.impedance(Some(1e-3)), pad.stiffness());
+            assert_eq!(slot.impedances(Some(1e-3)), [impedance, -impedance]);
+            assert_eq!(slot.stiffnesses(), [stiffness, -stiffness]);
+            assert_eq!(Resistance::impedance(&slot, Some(1e-3)), impedance);
+            assert_eq!(Resistance::stiffness(&slot), stiffness);
             assert_eq!(pad.force > 0.0, offset > 1e-5);
         }
         assert!(Pad::new(f64::NAN).is_err() && Slot::new(0.0, -2.0f32).is_err());

@@ -26,7 +26,8 @@ pub trait Link<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usize> {
     /// Adds the generalised force (N, N·m) Λᵀφ of a `force` φ to `sum`, with Λ = ∂ẋ/∂V.
     fn add_force(&self, at: (&B, &B::Placed), view: &Self::View, force: &SVector<S, R>, sum: &mut SVector<S, D>);
 
-    /// Adds −∂(Λᵀφ)/∂V for the `response` of a law `W` and for velocities that also move the bodies over the time `a` (s).
+    /// Adds −∂(Λᵀφ)/∂V for the `response` of a law `W` and for velocities that also move the bodies over the time `a` (s). Where
+    /// [`Bodies::MATRIX_IS_LEAN`], the impedance of the response is told over that time and all there is to add.
     fn add_impedance<W: Law<S, R>>(
         &self,
         at: (&B, &B::Placed),

@@ -6,6 +6,10 @@
 //! generalised force is the sum of Λᵀφ, so that each force acts on both bodies, equal and opposite, at one point. Laws
 //! know nothing of bodies, links nothing of laws, and neither of integrators.
 //!
+//! Most bodies have elements add up by coordinates, and a link tells its gradient ([`GradientLink`]). One body among pins of the
+//! frame, like the slide, has them add up in axes of its own ([`Axes`]), where walls stand still: there a link says itself how its
+//! forces go by motion and place, in fewer operations.
+//!
 //! Elements compose by type, as tuples and arrays, so that what a mechanism does not have leaves no code.
 
 mod alike;

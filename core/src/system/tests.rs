@@ -1,7 +1,7 @@
 //! Derivatives against differences, for every link and law.
 
 use super::{
-    Axes, Bodies, Displacement, Element, Elements, Jacobian, OnAxis, System,
+    Axes, Bodies, Displacement, Element, Elements, Jacobian, Law, OnAxis, System,
     law::{Axis, Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Slot, Spring, Stopped, Wall},
     planar::{self, Coordinate, PlanarTree, Point},
     spatial::{self, FreeBodies, Port, Seat, Turned},
@@ -10,7 +10,7 @@ use crate::{
     SVector, Vector2, Vector3,
     drive::Drive,
     law::{self, Frictionless, Impact, Regularised, ThreeHalves},
-    mechanism::Mechanism,
+    mechanism::{Mechanism, Way},
 };
 
 type Touching = Contact<Impact<f64, ThreeHalves<f64>>, Regularised<f64>>;
@@ -206,6 +206,36 @@ fn a_floating_body_has_the_derivatives_of_its_forces() {
         law: Journal { clearance: 0.02, radius: 0.05, contact: smooth },
     };
     check(&System::new(body, hole), planar::PlanarPose::nominal(), 0.1, |force| force.norm() > 20.0);
+}
+
+/// That a law tells an impedance over a time as that of no time and the stiffness times it.
+fn folds<W: Law<f64, R>, const R: usize>(law: W, places: [f64; R], rates: [f64; R]) {
+    let (a, memory) = (0.01, W::fresh());
+    let told = |over| {
+        let way = Way { over, mass_rate: 0.0, tangent_share: 1.0 };
+        law.response(0.3, &places.into(), &rates.into(), &memory, way).0
+    };
+    let (apart, folded) = (told(None), told(Some(a)));
+    assert!(apart.stiffness.norm() > 1.0, "it touches");
+    let expected = apart.impedance + apart.stiffness * a;
+    assert!((folded.impedance - expected).norm() < 1e-12 * expected.norm(), "{} {expected}", folded.impedance);
+    assert_eq!((folded.force, folded.stiffness), (apart.force, apart.stiffness));
+}
+
+#[test]
+fn impedances_over_a_time_take_in_the_stiffness() {
+    let contact = contact();
+    let smooth = Contact { normal: contact.normal, friction: Frictionless };
+    folds(Spring { stiffness: 3.0, damping: 0.2, rest: 0.1 }, [0.5], [0.1]);
+    folds(Stopped { stop: law::Slot::new(0.01, 0.02).unwrap(), contact: contact.normal }, [0.05], [0.1]);
+    folds(Pad { gap: -0.1, contact }, [0.05, 0.0], [-0.1, 0.02]);
+    folds(Slot { gaps: [-0.01, 0.03], contact }, [0.05, 0.0], [0.1, 0.02]);
+    folds(Journal { clearance: 0.02, radius: 0.05, contact }, [0.03, 0.04, 0.0, 0.0], [0.1, 0.2, 0.3, -0.1]);
+    folds(Journal { clearance: 0.02, radius: 0.05, contact: smooth }, [0.03, 0.04, 0.0, 0.0], [0.1, 0.2, 0.3, -0.1]);
+    folds(Pin { gaps: [0.02, 0.03, 0.01, 0.05], contact }, [0.05, -0.06, 0.0], [0.1, 0.2, 0.3]);
+    folds(Wall { axis: Axis::Z, sign: -1.0, gap: 0.01, contact }, [0.0, 0.0, 0.05], [0.1, 0.2, 0.3]);
+    let along = [0.03, 0.04, 0.0, 0.0, 0.0, 0.0];
+    folds(Ring { clearance: 0.02, radius: 0.05, contact }, along, [0.1, 0.2, 0.3, 0.4, -0.2, 0.1]);
 }
 
 #[test]

@@ -24,7 +24,7 @@ use slipfit_core::{
     slide::{Body, CONTACTS, Slide, box_inertia},
 };
 
-/// The slide's type: progressive contact with exponent 3/2, smoothed friction.
+/// The slide's type: progressive contact with exponent 3/2, regularised friction.
 pub type CdRomSlide<S> = Slide<S, ThreeHalves<S>, Regularised<S>>;
 
 /// Table 2: mean and standard deviation (mm) of the left, right, rail and wall gap of the pins left back, right back,
@@ -100,7 +100,7 @@ pub fn slide<S: Scalar + PartialOrd>(n: S) -> CdRomSlide<S> {
 /// If the data is out of bounds, asks for another exponent or for another friction law.
 pub fn from_data<S: Scalar + PartialOrd>(data: &SlideData<S>) -> CdRomSlide<S> {
     let FrictionData::Regularised { coefficient, stick_band } = data.friction else {
-        panic!("the CD-ROM slide has smoothed friction")
+        panic!("the CD-ROM slide has regularised friction")
     };
     with_friction(data, built(Regularised::new(coefficient, stick_band)))
 }

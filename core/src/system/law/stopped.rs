@@ -36,8 +36,8 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>> Law<S, 1> for Stopped<C, Impact<S, E>
         way: Way<S>,
     ) -> (Response<S, 1>, ()) {
         let resistance = self.stop.resistance(&self.contact, -place.x, rate.x);
-        let ([impedance, _], [stiffness, _]) = (resistance.impedances(way.over), resistance.stiffnesses());
         let one = |x: S| SMatrix::<S, 1, 1>::new(x);
+        let (impedance, stiffness) = (resistance.impedance(way.over), resistance.stiffness());
         (steady(SVector::<S, 1>::new(resistance.force()), one(impedance), one(stiffness)), ())
     }
 

@@ -69,7 +69,7 @@ pub fn run(machine: &mut impl Machine, flash: &[u8]) -> bool {
 
     let regularised = Regularised::new(COEFFICIENT, STICK_BAND as f32).expect("the law is in bounds");
     let exact = Exact::new(COEFFICIENT).expect("the law is in bounds");
-    let law = "smoothed friction";
+    let law = "regularised friction";
     match table.ok().map(|table| (table.f32(), table.i16())) {
         Some((Some(table), _)) => all_levels(machine, law, regularised, Some(&table)),
         Some((_, Some(table))) => all_levels(machine, law, regularised, Some(&table)),

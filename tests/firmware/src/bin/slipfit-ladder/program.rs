@@ -104,9 +104,9 @@ fn ahead(machine: &mut impl Machine, slide: Unit<ThreeHalves<f32>, Regularised<f
 rungs! {
     slide_general_exponent: Unit<Power<f32>, Exact<f32>>, 6;
     slide_exact: Unit<ThreeHalves<f32>, Exact<f32>>, 6;
-    slide_smoothed: Unit<ThreeHalves<f32>, Regularised<f32>>, 6;
+    slide_regularised: Unit<ThreeHalves<f32>, Regularised<f32>>, 6;
     slide_frictionless: Unit<ThreeHalves<f32>, Frictionless>, 6;
-    planar_smoothed: Flat, 3;
+    planar_regularised: Flat, 3;
     planar_journal: Lever, 3;
     axis_slot_driven: Driven, 1;
     axis_pad_linear: Ball, 1;
@@ -115,7 +115,7 @@ rungs! {
 /// Runs 200 steps of 1 ms on every rung.
 pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     let exact = Exact::new(COEFFICIENT).expect("the law is in bounds");
-    let smoothed = Regularised::new(COEFFICIENT, STICK_BAND as f32).expect("the law is in bounds");
+    let regularised = Regularised::new(COEFFICIENT, STICK_BAND as f32).expect("the law is in bounds");
     let data = cd_rom::data(LEVEL);
     let law = data.contact;
     let power = Power::new(law.stiffness, law.exponent).expect("the law is in bounds");
@@ -124,8 +124,8 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     rung(machine, "slide_general_exponent", slide(power, exact), nominal, slide_general_exponent);
     rung(machine, "slide_exact", slide(three_halves, exact), nominal, slide_exact);
     full_pass(machine, slide(three_halves, exact));
-    rung(machine, "slide_smoothed", slide(three_halves, smoothed), nominal, slide_smoothed);
-    ahead(machine, slide(three_halves, smoothed));
+    rung(machine, "slide_regularised", slide(three_halves, regularised), nominal, slide_regularised);
+    ahead(machine, slide(three_halves, regularised));
     rung(machine, "slide_frictionless", slide(three_halves, Frictionless), nominal, slide_frictionless);
 
     let normal = impact(three_halves);
@@ -139,10 +139,16 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
         link: Pin { place: places[pin] },
         law: PlanarSlot {
             gaps: [data.body.gaps[4 * pin], data.body.gaps[4 * pin + 1]],
-            contact: Contact { normal, friction: smoothed },
+            contact: Contact { normal, friction: regularised },
         },
     });
-    rung(machine, "planar_smoothed", System::new(floating(0.0), (slots, pull)), PlanarPose::nominal(), planar_smoothed);
+    rung(
+        machine,
+        "planar_regularised",
+        System::new(floating(0.0), (slots, pull)),
+        PlanarPose::nominal(),
+        planar_regularised,
+    );
     let law = Journal { clearance: 1e-5, radius: 5e-3, contact: Contact { normal, friction: Frictionless } };
     let journal = Element { link: Hole { centre: places[0] }, law };
     let lever = System::new(floating(-9.81), (journal, pull));
