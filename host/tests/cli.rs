@@ -368,7 +368,7 @@ fn shipped_scenes_go_by_their_names() {
     assert!(product.contains("pressure angle") && product.contains("7.0184"), "{product}");
     for (arguments, parts) in [
         (["check", "no-such-scene"], ["shipped scenes are cd-rom-slide, ", "clutch"]),
-        (["simulate", "clutch"], ["the scene has no `slide`", "clutch.toml:1:1"]),
+        (["simulate", "clutch"], ["the scene has neither a slide", "clutch.toml:1:1"]),
     ] {
         let output = slipfit(folder.path(), &arguments);
         let error = String::from_utf8(output.stderr).unwrap();

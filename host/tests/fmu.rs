@@ -140,7 +140,7 @@ fn what_cannot_be_made_is_not_begun() {
     let run = |options: &[&str]| slipfit(folder.path(), &[&["fmu", "-o", "x.fmu"], options].concat());
     refused(&run(&["--scalar", "f64"]), 2, "controller.scalar is f64", &unit);
     refused(&run(&["--core", "nowhere"]), 2, "--core: nowhere is not slipfit-core's folder", &unit);
-    refused(&run(&["three-part-stack"]), 2, "the scene has no `slide`", &unit);
+    refused(&run(&["three-part-stack"]), 2, "the scene has neither a slide", &unit);
     refused(&run(&["--fmi", "1"]), 2, "--fmi", &unit);
     refused(&slipfit(folder.path(), &["fmu", "-o", "nowhere/x.fmu"]), 2, "cannot write", &unit);
     let mut without_cargo = Command::new(env!("CARGO_BIN_EXE_slipfit"));

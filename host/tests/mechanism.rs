@@ -211,7 +211,7 @@ fn schemes_of_a_mechanism_are_compared() {
     assert!((8.0..24.0).contains(&(coarse / fine)), "{coarse} {fine}");
     let [coarse, fine] = [100e-6, 25e-6].map(|step| error("implicit-euler", step));
     assert!((3.0..5.0).contains(&(coarse / fine)), "{coarse} {fine}");
-    assert!(error("error-controlled", 1e-8) < error("error-controlled", 1e-5));
+    assert!(error("desk", 1e-8) < error("desk", 1e-5));
     let output = slipfit(folder.path(), &["precision", "four-bar", "--stability"]);
     assert_eq!(output.status.code(), Some(2));
 }

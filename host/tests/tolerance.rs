@@ -266,7 +266,7 @@ fn no_output_replaces_an_input_or_another_output() {
         (&["tolerance", "clutch", "--out", "x", "--draws", "x.partial"], one),
         (&["tolerance", "clutch", "--plots", "x", "--csv", "x/histogram-1.svg"], one),
         (&["tolerance", "scene.toml", "--draws", "none/../scene.toml"], "it is the scene"),
-        (&["simulate", "scene.toml", "--csv", "scene.toml"], "no `slide`"),
+        (&["simulate", "scene.toml", "--csv", "scene.toml"], "neither a slide"),
         (&["precision", "--csv", "a", "--plot", "a"], one),
     ];
     for (arguments, said) in cases {

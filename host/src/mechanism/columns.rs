@@ -169,7 +169,20 @@ impl Mechanism {
         let of_body: &[&str] = if self.planar {
             &["x (m)", "y (m)", "angle (rad)", "vx (m/s)", "vy (m/s)", "spin (rad/s)"]
         } else {
-            &["x (m)", "y (m)", "z (m)", "ax (rad)", "ay (rad)", "az (rad)", "vx (m/s)", "vy (m/s)", "vz (m/s)"]
+            &[
+                "x (m)",
+                "y (m)",
+                "z (m)",
+                "ax (rad)",
+                "ay (rad)",
+                "az (rad)",
+                "vx (m/s)",
+                "vy (m/s)",
+                "vz (m/s)",
+                "wx (rad/s)",
+                "wy (rad/s)",
+                "wz (rad/s)",
+            ]
         };
         let bodies = self.bodies.iter().flat_map(|body| of_body.iter().map(|what| format!("{}.{what}", body.name)));
         std::iter::once("t (s)".to_owned()).chain(drives).chain(bodies).collect()
@@ -197,7 +210,8 @@ impl Mechanism {
                 let BodyMotion { displacement: d, turn, velocity: v, spin } = motion;
                 row.extend([d.x, d.y, turn.z, v.x, v.y, spin.z]);
             } else {
-                row.extend(motion.displacement.iter().chain(&motion.turn).chain(&motion.velocity));
+                let BodyMotion { displacement, turn, velocity, spin } = motion;
+                row.extend(displacement.iter().chain(turn).chain(velocity).chain(spin));
             }
         }
         row

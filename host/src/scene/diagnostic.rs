@@ -186,7 +186,7 @@ pub enum Problem {
     #[error("the mates form a loop: {0}")]
     Loop(String),
     /// A scene of tolerances alone where motion is asked for.
-    #[error("the scene has no `slide`: there is nothing to move")]
+    #[error("the scene has neither a slide on pins nor bodies and joints: there is nothing to move")]
     NoSlide,
     /// A mechanism of bodies and joints where a slide on pins is asked for.
     #[error("the scene is a mechanism of bodies and joints, and this command works on slides on pins")]

@@ -94,12 +94,17 @@ impl SceneFile {
     /// [`SceneError`] says that there is no slide.
     pub fn into_slide(self, file_name: &str, text: &str) -> Result<(Scene, Option<Product>), SceneError> {
         if self.mechanism.is_some() {
-            let instead = "check, simulate, sweep, run, table, kernel, fmu and, with a product, tolerance and allocate work on this one";
-            return Err(no_slide(file_name, text, Problem::NotASlide, instead));
+            let wanted = "a scene with [slide] and [[pin]]; check, simulate, sweep, run, table, kernel, fmu and, with a product, \
+                          tolerance and allocate work on this one";
+            return Err(no_slide(file_name, text, Problem::NotASlide, wanted));
         }
         match self.slide {
             Some(slide) => Ok((slide, self.product)),
-            None => Err(no_slide(file_name, text, Problem::NoSlide, "check, tolerance and allocate work on this one")),
+            None => {
+                let wanted = "a scene with [slide] and [[pin]], or with [[body]] and [[joint]]; check, tolerance and allocate \
+                              work on this one";
+                Err(no_slide(file_name, text, Problem::NoSlide, wanted))
+            }
         }
     }
 }
@@ -115,9 +120,8 @@ impl Scene {
     }
 }
 
-/// There is no slide in the scene; `instead` says what works on it.
-fn no_slide(file_name: &str, text: &str, problem: Problem, instead: &str) -> SceneError {
+/// There is no slide in the scene; `wanted` says what has one, and what works without.
+fn no_slide(file_name: &str, text: &str, problem: Problem, wanted: &str) -> SceneError {
     let first_line = 0..text.find('\n').unwrap_or(text.len());
-    let keys = "[slide], [contact], [friction], [drive], [run], [sweep] and [[pin]]";
-    SceneError::new(problem, format!("a scene with {keys}; {instead}"), file_name, text, first_line)
+    SceneError::new(problem, wanted.to_owned(), file_name, text, first_line)
 }

@@ -112,6 +112,8 @@ pub enum Shape {
     Ring,
     /// Filled triangle.
     Triangle,
+    /// Filled triangle on its corner.
+    Wedge,
     /// Oblique cross.
     Cross,
     /// Filled square.

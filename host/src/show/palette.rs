@@ -43,8 +43,8 @@ pub const POSITIVE: Colour = colour("positive", "#d55e00", "#f0803c");
 /// Text on the full colour of positive numbers.
 pub const ON_POSITIVE: Colour = colour("on-positive", "#000000", "#10141a");
 
-/// Kinds by their number (Okabe and Ito's and an indigo: told apart by every eye).
-pub const KINDS: [Colour; 8] = [
+/// Kinds by their number (Okabe and Ito's, an indigo and a dark red: told apart by every eye).
+pub const KINDS: [Colour; 9] = [
     colour("kind-0", "#0072b2", "#4aa3df"),
     colour("kind-1", "#d55e00", "#f0803c"),
     colour("kind-2", "#009e73", "#2bc79a"),
@@ -53,6 +53,7 @@ pub const KINDS: [Colour; 8] = [
     colour("kind-5", "#222222", "#e6e6e6"),
     colour("kind-6", "#56b4e9", "#8fd0f5"),
     colour("kind-7", "#332288", "#7766ee"),
+    colour("kind-8", "#b0002a", "#d03050"),
 ];
 
 /// Tolerance levels from low to high: viridis without the end that the paper swallows.

@@ -53,8 +53,17 @@ const LABEL: usize = 24;
 const INVISIBLE: f64 = 0.1;
 
 /// Shapes of the marks of kinds by their number.
-const SHAPES: [Shape; KINDS.len()] =
-    [Shape::Dot, Shape::Triangle, Shape::Square, Shape::Diamond, Shape::Cross, Shape::Ring, Shape::Plus, Shape::Star];
+const SHAPES: [Shape; KINDS.len()] = [
+    Shape::Dot,
+    Shape::Triangle,
+    Shape::Square,
+    Shape::Diamond,
+    Shape::Cross,
+    Shape::Ring,
+    Shape::Plus,
+    Shape::Star,
+    Shape::Wedge,
+];
 /// Lines of neighbouring levels differ in their dashes, as their colours are alike.
 const DASHES: [&str; 4] = ["", "9 4", "2 3", "11 3 2 3"];
 

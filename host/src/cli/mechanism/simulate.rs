@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units, warnings_of};
@@ -211,25 +212,25 @@ fn differing(mechanism: &Mechanism, one: &MechanismRun, finer: &MechanismRun) ->
 
 /// Which columns a plot shows: what drives do and how fast their bodies go; without drives how all bodies go.
 fn plotted(mechanism: &Mechanism) -> Vec<String> {
+    let along = |axis: [f64; 3]| {
+        let most = (0..3).max_by(|a, b| axis[*a].abs().total_cmp(&axis[*b].abs())).unwrap_or(2);
+        ["x", "y", "z"][most]
+    };
     let speed = |body: usize, action: Option<Action>| {
         let name = &mechanism.bodies[body].name;
         match action {
-            Some(Action::Turns { .. }) | None if mechanism.planar => Some(format!("{name}.spin (rad/s)")),
-            Some(Action::Pushes { axis }) => {
-                let most = (0..3).max_by(|a, b| axis[*a].abs().total_cmp(&axis[*b].abs())).unwrap_or(2);
-                Some(format!("{name}.v{} (m/s)", ["x", "y", "z"][most]))
-            }
-            None => Some(format!("{name}.vz (m/s)")),
-            // No column has an angular velocity in space.
-            Some(Action::Turns { .. }) => None,
+            Some(Action::Turns { .. }) | None if mechanism.planar => format!("{name}.spin (rad/s)"),
+            Some(Action::Turns { axis }) => format!("{name}.w{} (rad/s)", along(axis)),
+            Some(Action::Pushes { axis }) => format!("{name}.v{} (m/s)", along(axis)),
+            None => format!("{name}.vz (m/s)"),
         }
     };
     let all = mechanism.columns();
     if mechanism.drives.is_empty() {
-        return (0..mechanism.bodies.len()).filter_map(|body| speed(body, None)).collect();
+        return (0..mechanism.bodies.len()).map(|body| speed(body, None)).collect();
     }
     let forces = all.iter().skip(1).take(mechanism.drives.len()).cloned();
-    let speeds = mechanism.drives.iter().filter_map(|drive| speed(drive.body, Some(drive.action)));
+    let speeds = mechanism.drives.iter().map(|drive| speed(drive.body, Some(drive.action)));
     let mut columns: Vec<String> = Vec::new();
     for column in speeds.chain(forces) {
         if !columns.contains(&column) && all.contains(&column) {
@@ -300,17 +301,20 @@ fn described(mechanism: &Mechanism, label: &str, run: &MechanismRun) -> String {
     let heading: &[&str] = if mechanism.planar {
         &["at the end", "x, mm", "y, mm", "angle, °"]
     } else {
-        &["at the end", "x, mm", "y, mm", "z, mm"]
+        &["at the end", "x, mm", "y, mm", "z, mm", "turned by, °"]
     };
-    let each = if mechanism.planar { 6 } else { 9 };
+    let each = if mechanism.planar { 6 } else { 12 };
     let rows: Vec<_> = mechanism
         .bodies
         .iter()
         .enumerate()
         .map(|(i, body)| {
             let at = 1 + mechanism.drives.len() + i * each;
-            let third = if mechanism.planar { last[at + 2].to_degrees() } else { last[at + 2] * 1e3 };
-            vec![body.name.clone(), fixed(last[at] * 1e3, 3), fixed(last[at + 1] * 1e3, 3), fixed(third, 3)]
+            let places = if mechanism.planar { &last[at..at + 2] } else { &last[at..at + 3] };
+            let angle =
+                if mechanism.planar { last[at + 2] } else { Vector3::from_column_slice(&last[at + 3..at + 6]).norm() };
+            let places = places.iter().map(|place| fixed(place * 1e3, 3));
+            std::iter::once(body.name.clone()).chain(places).chain([fixed(angle.to_degrees(), 3)]).collect::<Vec<_>>()
         })
         .collect();
     let _ = writeln!(text, "{}", text_table(heading, &rows));

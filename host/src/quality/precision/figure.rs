@@ -68,7 +68,7 @@ fn panel(problem: &Problem, truth: &Truth, names: &[&str], points: &[&Point]) ->
     if let Some((first, last)) = ends {
         series.push(Series { label: String::new(), look: Look::Guide, points: vec![(first, floor), (last, floor)] });
     }
-    let note = if lost.is_empty() { String::new() } else { format!("lost: {}", lost.join(", ")) };
+    let note = if lost.is_empty() { String::new() } else { format!("off by more than {LOST} %: {}", lost.join(", ")) };
     Panel { y_label: format!("{}, max error (% of the peak force)", problem.name), note, series, ..Panel::default() }
 }
 

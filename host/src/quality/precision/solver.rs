@@ -103,7 +103,7 @@ pub fn solvers<'a>(scene: &'a Scene, gaps: &'a [f64; CONTACTS], problem: Problem
     };
     let able = |kind: &IntegratorKind| kind.is_implicit() || !exact;
     let error_controlled = Solver {
-        name: ERROR_CONTROLLED,
+        name: DESK,
         knob: Knob::ForceN,
         settings: TOLERANCES.to_vec(),
         scalars: &[ScalarKind::F64],
@@ -114,7 +114,8 @@ pub fn solvers<'a>(scene: &'a Scene, gaps: &'a [f64; CONTACTS], problem: Problem
     IntegratorKind::ALL.into_iter().filter(able).map(fixed).chain([error_controlled]).collect()
 }
 
-const ERROR_CONTROLLED: &str = "error-controlled";
+/// What the error-controlled solver is called beside the schemes of a controller.
+const DESK: &str = "desk";
 
 /// Every solver of a mechanism, for the unit with these `gaps` (m): the implicit schemes of its controller, and the desk's.
 pub fn solvers_of<'a>(driven: &'a ByDrive<'a>, gaps: &'a [f64]) -> Vec<Solver<'a>> {
@@ -133,7 +134,7 @@ pub fn solvers_of<'a>(driven: &'a ByDrive<'a>, gaps: &'a [f64]) -> Vec<Solver<'a
         }),
     };
     let error_controlled = Solver {
-        name: ERROR_CONTROLLED,
+        name: DESK,
         knob: Knob::Share,
         settings: SHARES.to_vec(),
         scalars: &[ScalarKind::F64],

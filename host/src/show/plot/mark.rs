@@ -38,6 +38,7 @@ fn path(shape: Shape, [x, y]: [f64; 2], r: f64) -> String {
         Shape::Dot => disc(r),
         Shape::Ring => disc(r - 0.5),
         Shape::Triangle => closed(&[[-1.0, 1.0], [0.0, -1.0], [1.0, 1.0]]),
+        Shape::Wedge => closed(&[[-1.0, -1.0], [0.0, 1.0], [1.0, -1.0]]),
         Shape::Square => closed(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]),
         Shape::Diamond => closed(&[[-1.25, 0.0], [0.0, -1.25], [1.25, 0.0], [0.0, 1.25]]),
         Shape::Cross => cross(),
