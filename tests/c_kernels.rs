@@ -181,6 +181,7 @@ fn library(folder: &Path, name: &str, target: Option<&str>) -> PathBuf {
 #[test]
 fn kernels_of_all_scenes_have_the_same_bits_from_c_on_host_and_target_and_from_rust() {
     cross::require_target();
+    cross::require_crates();
     cross::require_c_compiler();
     cross::require_emulator();
     let kernels = kernels();

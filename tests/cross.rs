@@ -54,6 +54,15 @@ pub fn require_target() {
     assert!(installed, "the target {TARGET} is not installed; to install it: rustup target add {TARGET}");
 }
 
+/// Has the crates downloaded that images for the target are made of. A workspace of a test's own cannot do that: it is built
+/// offline, so that it takes the versions of the repository's `Cargo.lock` and no newer ones.
+///
+/// # Panics
+/// If they are neither there nor to be had.
+pub fn require_crates() {
+    printed(cargo("").args(["fetch", "--locked", "--quiet", "--target", TARGET]));
+}
+
 /// Fails, saying what to install, where C programs for the target cannot be built.
 ///
 /// # Panics

@@ -102,6 +102,7 @@ fn steps(folder: &Path, level: &str, of_the_crate: &str) -> Steps {
 #[test]
 fn one_line_of_the_profile_keeps_a_step_fast() {
     cross::require_target();
+    cross::require_crates();
     cross::require_emulator();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("small-image");
     workspace(&folder, &Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).expect("the shipped scene"));
