@@ -112,11 +112,15 @@ fn one_line_of_the_profile_keeps_a_step_fast() {
         let found = steps(&folder, level.trim_matches('"'), of_the_crate);
         let Steps { least, most, ref force } = found;
         assert_eq!(*force, fast.force, "the same bits");
-        let _ =
-            writeln!(table, "{:5}  {:5}  {least} to {most}", level.trim_matches('"'), of_the_crate.trim_matches('"'));
-        if of_the_crate == "3" {
+        assert_eq!(least, most, "the same count every time");
+        // What is not inlined lies in an order that goes by the folders that the crates are in.
+        let count = if of_the_crate == "3" {
             assert!(f64::from(most) <= 1.02 * f64::from(fast.most), "{found:?} {fast:?}");
-        }
+            format!("{most}")
+        } else {
+            format!("about {}000", (most + 500) / 1000)
+        };
+        let _ = writeln!(table, "{:5}  {:5}  {count}", level.trim_matches('"'), of_the_crate.trim_matches('"'));
     }
     insta::assert_snapshot!("steps", table);
 }
