@@ -3,6 +3,7 @@
 mod common;
 
 use common::{json, slipfit, stdout};
+use nalgebra::{Rotation3, Vector3};
 use slipfit::{
     dynamics::driven::Driven,
     firmware::{
@@ -64,6 +65,28 @@ fn over_its_angle_a_hatch_takes_the_moment_of_its_weight() {
     }
     let far = position::make(&driven, &Wish { stroke: Some(3.0), ..wish }, || ()).unwrap_err().to_string();
     assert!(far.starts_with("no unit comes 171.8873385 ° far: in 1500 ms the farthest"), "{far}");
+}
+
+/// The turn from one sample to the next but one is that of the angular velocity between them, about the same axis of the frame.
+#[test]
+fn angular_velocities_in_space_are_how_fast_bodies_turn_in_the_frame() {
+    let mechanism = mechanism("hatch", &["run.duration=300"], "0:1:1");
+    let every = 2e-5;
+    let samples =
+        run(&mechanism, &mechanism.gaps_at(&vec![0.0; mechanism.gaps.len()]).unwrap(), every).unwrap().samples;
+    let vector = |row: &[f64], name: &str| {
+        let first = samples.columns.iter().position(|column| column.starts_with(&format!("hatch.{name}x "))).unwrap();
+        Vector3::from_column_slice(&row[first..first + 3])
+    };
+    let turn = |row: &[f64]| Rotation3::new(vector(row, "a"));
+    let most = samples.rows.iter().map(|row| vector(row, "w").norm()).fold(0.0, f64::max);
+    assert!(most > 0.5, "{most}");
+    let mut worst: f64 = 0.0;
+    for rows in samples.rows.windows(3).take(samples.rows.len() - 3) {
+        let turned = (turn(&rows[2]) * turn(&rows[0]).inverse()).scaled_axis() / (2.0 * every);
+        worst = worst.max((turned - vector(&rows[1], "w")).norm());
+    }
+    assert!(worst < 1e-3 * most, "{worst} of {most}");
 }
 
 #[test]

@@ -217,3 +217,25 @@ impl Mechanism {
         row
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Rotation3, Vector3};
+
+    use super::{State, spatial};
+
+    #[test]
+    fn an_angular_velocity_is_told_in_the_frame() {
+        let turned = Rotation3::new(Vector3::new(0.9, -1.3, 0.4));
+        let rotation_b = Vector3::new(0.2, 0.5, -0.7);
+        let six = |angular: Vector3<f64>| [0.0, 0.0, 0.0, angular.x, angular.y, angular.z];
+        let state = State { rates: six(rotation_b), places: six(turned.scaled_axis()), place_rates: [0.0; 6] };
+        // Around a constant axis any turn will do.
+        let h = 0.1;
+        let [before, after] = [-h, h].map(|t| turned * Rotation3::new(rotation_b * t));
+        let turning = (after * before.inverse()).scaled_axis() / (2.0 * h);
+        let [motion] = &spatial(&state)[..] else { panic!("one body") };
+        assert!((turning - motion.spin).norm() < 1e-9, "{turning} {}", motion.spin);
+        assert!((turning - rotation_b).norm() > 0.1);
+    }
+}
