@@ -304,3 +304,25 @@ fn the_library_takes_the_recorded_flash() {
     assert!(whole - step - ahead <= 16 * 1024, "{whole} bytes\n{library:#?}");
     insta::assert_snapshot!("flash", format!("{whole:6} bytes in all\n{}\n", lines.join("\n")));
 }
+
+/// Objects are opaque words, which the header counts.
+#[test]
+fn the_guide_has_the_sizes_of_objects() {
+    let read = |path: &str| fs::read_to_string(Path::new(ROOT).join(path)).expect("a file");
+    let (header, page) = (read("core/capi/include/slipfit.h"), read("host/guide/src/firmware.md"));
+    let mut objects = 0;
+    for text in header.split("typedef struct ").skip(1) {
+        let Some((name, fields)) = text.split_once(" {\n  uint") else { continue };
+        let Some((bits, count)) = fields.split_once("_t words[") else { continue };
+        let number =
+            |text: &str| text.split_once(']').map_or(text, |(number, _)| number).parse::<u32>().expect("a number");
+        let bytes = number(bits) / 8 * number(count);
+        let shown = if bytes < 1000 { bytes.to_string() } else { format!("{},{:03}", bytes / 1000, bytes % 1000) };
+        let row = page.lines().find(|line| line.starts_with("| `") && line.contains(&format!("`{name}`")));
+        let row = row.unwrap_or_else(|| panic!("{name}, {shown} bytes"));
+        let sizes = row.split('|').nth(2).expect("a second cell").trim();
+        assert!(sizes.split(", ").any(|size| size == shown), "{row}: {shown}");
+        objects += 1;
+    }
+    assert!(objects >= 5, "{objects}");
+}

@@ -22,6 +22,9 @@ const RUNGS: [&str; 8] = [
 /// Shipped mechanisms in a plane, each with the step of its scene, by implicit Euler. The step of one in space is no function by itself.
 const MECHANISMS: [&str; 4] = ["slider_crank", "slider_crank_guide", "four_bar", "woodpecker_toy"];
 
+/// Shipped mechanisms in space, by implicit Euler.
+const IN_SPACE: [&str; 3] = ["hatch", "linear_guide", "telescopic_drawer"];
+
 /// What the image printed.
 static ON_TARGET: LazyLock<String> = LazyLock::new(|| {
     cross::require_target();
@@ -70,17 +73,23 @@ struct Costs {
     parameters: u32,
 }
 
+/// The number that the image printed between `before` and `after`.
+fn number(before: &str, after: &str) -> u32 {
+    let mut found = ON_TARGET.lines().filter_map(|line| line.split_once(before)?.1.split_once(after)?.0.parse().ok());
+    found.next().unwrap_or_else(|| panic!("no number after {before}:\n{}", *ON_TARGET))
+}
+
+/// What a step of `rung` takes.
+fn instructions(rung: &str) -> u32 {
+    number(&format!("instructions of {rung}: "), ", the same every time")
+}
+
 fn costs(rung: &str) -> Costs {
-    let number = |before: &str, after: &str| -> u32 {
-        let mut found =
-            ON_TARGET.lines().filter_map(|line| line.split_once(before)?.1.split_once(after)?.0.parse().ok());
-        found.next().unwrap_or_else(|| panic!("no number after {before}:\n{}", *ON_TARGET))
-    };
     let address = |line: &str| u32::from_str_radix(line.split_once(':')?.0.trim(), 16).ok();
     let mut addresses = CODE[rung].lines().map(|line| address(line).expect("an address"));
     let (first, last) = (addresses.next().expect("code"), addresses.next_back().expect("code"));
     Costs {
-        instructions: number(&format!("instructions of {rung}: "), ", the same every time"),
+        instructions: instructions(rung),
         code: last + 4 - first,
         stack: number(&format!("stack of {rung}: "), " bytes"),
         state: {
@@ -109,6 +118,12 @@ fn mechanisms_cost_as_recorded() {
 }
 
 #[test]
+fn mechanisms_in_space_cost_as_recorded() {
+    let rows: String = IN_SPACE.iter().map(|rung| format!("{rung:24}{:12}\n", instructions(rung))).collect();
+    insta::assert_snapshot!("mechanisms_in_space", format!("scene type              instructions\n{rows}"));
+}
+
+#[test]
 fn each_rung_is_cheaper_than_the_one_above() {
     let table = table(&RUNGS);
     for pair in RUNGS.windows(2) {
@@ -127,12 +142,25 @@ fn the_guide_has_these_costs() {
         ..1000 => number.to_string(),
         _ => format!("{},{:03}", number / 1000, number % 1000),
     };
-    // The toy has no drive.
-    for rung in RUNGS.into_iter().chain(MECHANISMS).filter(|rung| *rung != "woodpecker_toy") {
+    let has = |row: String| assert!(page.contains(&row), "{row}");
+    for rung in RUNGS.into_iter().chain(MECHANISMS) {
         let Costs { instructions, code, stack, state, .. } = costs(rung);
-        let row = format!("| {} | {} | {stack} | {state} |", with_comma(instructions), with_comma(code));
-        assert!(page.contains(&row), "{rung}: {row}");
+        has(format!("| {} | {} | {stack} | {state} |", with_comma(instructions), with_comma(code)));
     }
+    for rung in IN_SPACE {
+        has(format!(" {}", with_comma((instructions(rung) + 500) / 1000 * 1000)));
+    }
+    // The kernel beside the prediction ahead of the clock.
+    let [kernel, ahead] = ["slide_regularised", "slide_ahead"].map(costs);
+    let both = |of: fn(&Costs) -> u32| [&kernel, &ahead].map(|costs| with_comma(of(costs)));
+    let [one, other] = both(|costs| costs.instructions);
+    has(format!("| instructions a period | 128 at most | {one} | {other} |"));
+    let [one, other] = both(|costs| costs.code);
+    has(format!("| {one} bytes of code | {other} bytes of code |"));
+    let [one, other] = both(|costs| costs.state + costs.parameters);
+    has(format!("| RAM of the object in Rust | not counted | {one} bytes | {other} bytes |"));
+    let Costs { stack, parameters, state, code, .. } = ahead;
+    has(format!("| {stack}; {parameters}; {}; {} bytes |", with_comma(state), with_comma(code)));
 }
 
 /// What a drive controller can spare at 1 kHz: about 14 % of 168 MHz at 1.48 cycles an instruction, and a stack of 512 bytes,
