@@ -159,6 +159,18 @@ impl AlongAxis for (&Vector3<f64>, &Vector3<f64>) {
     }
 }
 
+/// Place and angle of a body in a plane, and how fast they change.
+const IN_A_PLANE: [&str; 6] = ["x (m)", "y (m)", "angle (rad)", "vx (m/s)", "vy (m/s)", "spin (rad/s)"];
+
+/// Place and rotation vector of a body in space, its velocity, and its angular velocity in the frame.
+#[rustfmt::skip]
+const IN_SPACE: [&str; 12] = [
+    "x (m)", "y (m)", "z (m)",
+    "ax (rad)", "ay (rad)", "az (rad)",
+    "vx (m/s)", "vy (m/s)", "vz (m/s)",
+    "wx (rad/s)", "wy (rad/s)", "wz (rad/s)",
+];
+
 impl Mechanism {
     /// Names of the columns of [`row`](Self::row), with their units.
     pub fn columns(&self) -> Vec<String> {
@@ -166,26 +178,16 @@ impl Mechanism {
             Action::Pushes { .. } => format!("{}.force (N)", drive.name),
             Action::Turns { .. } => format!("{}.torque (N·m)", drive.name),
         });
-        let of_body: &[&str] = if self.planar {
-            &["x (m)", "y (m)", "angle (rad)", "vx (m/s)", "vy (m/s)", "spin (rad/s)"]
-        } else {
-            &[
-                "x (m)",
-                "y (m)",
-                "z (m)",
-                "ax (rad)",
-                "ay (rad)",
-                "az (rad)",
-                "vx (m/s)",
-                "vy (m/s)",
-                "vz (m/s)",
-                "wx (rad/s)",
-                "wy (rad/s)",
-                "wz (rad/s)",
-            ]
-        };
-        let bodies = self.bodies.iter().flat_map(|body| of_body.iter().map(|what| format!("{}.{what}", body.name)));
+        let bodies = self
+            .bodies
+            .iter()
+            .flat_map(|body| self.columns_of_body().iter().map(|what| format!("{}.{what}", body.name)));
         std::iter::once("t (s)".to_owned()).chain(drives).chain(bodies).collect()
+    }
+
+    /// What is told of each body, with its unit.
+    pub fn columns_of_body(&self) -> &'static [&'static str] {
+        if self.planar { &IN_A_PLANE } else { &IN_SPACE }
     }
 
     /// What each drive sees and does at time `t` (s): speed, force and travel along its axis, or angular velocity, torque

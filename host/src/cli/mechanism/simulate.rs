@@ -303,7 +303,7 @@ fn described(mechanism: &Mechanism, label: &str, run: &MechanismRun) -> String {
     } else {
         &["at the end", "x, mm", "y, mm", "z, mm", "turned by, °"]
     };
-    let each = if mechanism.planar { 6 } else { 12 };
+    let each = mechanism.columns_of_body().len();
     let rows: Vec<_> = mechanism
         .bodies
         .iter()
