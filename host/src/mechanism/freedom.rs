@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, SMatrix, SVector};
 use slipfit_core::{
     ParameterError,
-    system::{Bodies, GradientLink, planar::PlanarTree, spatial::FreeBodies},
+    system::{Bodies, Link, planar::PlanarTree, spatial::FreeBodies},
 };
 
 use super::{JointKind, Mechanism, Mounts, RunError, element::PlanarElement, element::SpatialElement, planar, spatial};
@@ -84,13 +84,20 @@ fn scaled<const R: usize, const D: usize>(gradient: &SMatrix<f64, R, D>, per_lev
     gradient.row_iter().map(|row| std::array::from_fn(|k| row[k] * per_lever[k])).collect()
 }
 
-/// How the numbers of `link` go by the velocities.
-fn gradient<B: Bodies<f64, D>, L: GradientLink<f64, B, D, R>, const R: usize, const D: usize>(
+/// How the numbers of `link` go by the velocities: row by row the generalised force of 1 N, or 1 N·m, along a number.
+fn gradient<B: Bodies<f64, D>, L: Link<f64, B, D, R>, const R: usize, const D: usize>(
     link: &L,
     bodies: &B,
     placed: &B::Placed,
 ) -> SMatrix<f64, R, D> {
-    link.gradient((bodies, placed), &link.view(bodies, placed))
+    let view = link.view(bodies, placed);
+    let mut gradient = SMatrix::zeros();
+    for (i, unit) in SMatrix::<f64, R, R>::identity().column_iter().enumerate() {
+        let mut row = SVector::zeros();
+        link.add_force((bodies, placed), &view, &unit.into_owned(), &mut row);
+        gradient.set_row(i, &row.transpose());
+    }
+    gradient
 }
 
 fn rank_of<const D: usize>(rows: &[[f64; D]]) -> usize {

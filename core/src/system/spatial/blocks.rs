@@ -1,8 +1,6 @@
 //! Blocks of vectors and matrices that belong to bodies.
 
-use nalgebra::Matrix3;
-
-use crate::{SMatrix, SVector, Scalar, Vector3};
+use crate::{SMatrix, SVector, Scalar, Vector3, linear::Blocks};
 
 /// Adds a force (N) and a torque (N·m) on a body to `sum`; those on one that is not there are left out.
 #[inline(always)]
@@ -17,64 +15,22 @@ pub(super) fn add_wrench<S: Scalar, const D: usize>(
     }
 }
 
-/// Does `change` to each entry of a block of `matrix` that begins `at` a row and a column, with that of `block`; what of it lies
-/// outside is left out.
+/// Adds the `blocks` of a force and a torque by a velocity and an angular velocity to `matrix`, those on body `of` by the motion of
+/// body `by`; of bodies that are not there they are left out.
 #[inline(always)]
-pub(super) fn change<S: Scalar, const R: usize, const D: usize, const H: usize, const W: usize>(
-    matrix: &mut SMatrix<S, R, D>,
-    at: (usize, usize),
-    block: &SMatrix<S, H, W>,
-    change: impl Fn(&mut S, S),
+pub(super) fn add_blocks<S: Scalar, const D: usize>(
+    matrix: &mut SMatrix<S, D, D>,
+    [of, by]: [usize; 2],
+    blocks: &Blocks<S>,
 ) {
-    for (column, from) in matrix.data.0.iter_mut().skip(at.1).zip(&block.data.0) {
-        for (entry, from) in column.iter_mut().skip(at.0).zip(from) {
-            change(entry, *from);
+    let Some(columns) = matrix.data.0.as_chunks_mut::<6>().0.get_mut(by) else { return };
+    let halves = [[&blocks.a, &blocks.c], [&blocks.b, &blocks.d]];
+    for (columns, [forces, torques]) in columns.as_chunks_mut::<3>().0.iter_mut().zip(halves) {
+        for ((column, force), torque) in columns.iter_mut().zip(&forces.data.0).zip(&torques.data.0) {
+            if let Some([x, y, z, a, b, c]) = column.as_chunks_mut::<6>().0.get_mut(of) {
+                (*x, *y, *z) = (*x + force[0], *y + force[1], *z + force[2]);
+                (*a, *b, *c) = (*a + torque[0], *b + torque[1], *c + torque[2]);
+            }
         }
     }
-}
-
-#[inline(always)]
-pub(super) fn put<S: Scalar, const R: usize, const D: usize>(
-    matrix: &mut SMatrix<S, R, D>,
-    at: (usize, usize),
-    block: &Matrix3<S>,
-) {
-    change(matrix, at, block, |entry, from| *entry = from);
-}
-
-#[inline(always)]
-pub(super) fn put_row<S: Scalar, const R: usize, const D: usize>(
-    matrix: &mut SMatrix<S, R, D>,
-    at: (usize, usize),
-    row: &Vector3<S>,
-) {
-    change(matrix, at, &row.transpose(), |entry, from| *entry = from);
-}
-
-#[inline(always)]
-pub(super) fn add<S: Scalar, const R: usize, const D: usize>(
-    matrix: &mut SMatrix<S, R, D>,
-    at: (usize, usize),
-    block: &Matrix3<S>,
-) {
-    change(matrix, at, block, |entry, from| *entry += from);
-}
-
-#[inline(always)]
-pub(super) fn sub<S: Scalar, const R: usize, const D: usize>(
-    matrix: &mut SMatrix<S, R, D>,
-    at: (usize, usize),
-    block: &Matrix3<S>,
-) {
-    change(matrix, at, block, |entry, from| *entry -= from);
-}
-
-/// Subtracts `rows` from those of `matrix` from `first` on.
-#[inline(always)]
-pub(super) fn sub_rows<S: Scalar, const R: usize, const D: usize>(
-    matrix: &mut SMatrix<S, R, D>,
-    first: usize,
-    rows: &SMatrix<S, 3, D>,
-) {
-    change(matrix, (first, 0), rows, |entry, from| *entry -= from);
 }

@@ -7,7 +7,7 @@ use crate::{
     error::bounded,
     linear::cross_matrix,
     pose::{Pose, turn_rate},
-    system::{Bodies, ByCoordinate},
+    system::Bodies,
 };
 
 /// A rigid body in space.
@@ -86,8 +86,6 @@ impl<S: Scalar, const N: usize, const D: usize> FreeBodies<S, N, D> {
         self.per_lever.get(6 * i + 3).map_or(S::one(), |per_lever| S::one() / *per_lever)
     }
 }
-
-impl<S, const N: usize, const D: usize> ByCoordinate for FreeBodies<S, N, D> {}
 
 /// The six numbers of each body: velocities and angular velocities, or displacements and turns.
 #[inline(always)]

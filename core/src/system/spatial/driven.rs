@@ -1,13 +1,16 @@
 //! What a drive sees of a body: a speed along an axis, or about one.
 
+use nalgebra::Matrix3;
+
 use super::{
     FreeBodies, Placed, PlacedBody,
-    blocks::{add_wrench, put_row, sub},
+    blocks::{add_blocks, add_wrench},
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
-    linear::cross_matrix,
-    system::{GradientLink, Seen},
+    linear::{Blocks, cross_matrix, twice_crossed},
+    product::{cross, dot, outer},
+    system::{Law, Link, Response, Seen},
 };
 
 /// A point of a body along an axis of the frame, and the body's centre of mass, whose speed along it counts.
@@ -30,150 +33,171 @@ pub struct About<S> {
     pub axis_w: Vector3<S>,
 }
 
-impl<S: Scalar> Along<S> {
-    /// How the speed at the point goes by the angular velocity of the body, which is `at` a pose.
+/// `R` speeds of one body, and how they go by its motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Speeds<S, const R: usize> {
+    rate: SVector<S, R>,
+    /// By the velocity of the centre of mass.
+    by_velocity: [Vector3<S>; R],
+    /// By the angular velocity.
+    by_turning: [Vector3<S>; R],
+    /// By a small turn of the body, its velocities held.
+    by_turn: [Vector3<S>; R],
+}
+
+impl<S: Scalar, const R: usize> Speeds<S, R> {
+    /// Those of a body `at` a pose and motion.
     #[inline(always)]
-    fn arm(&self, at: &PlacedBody<S>) -> Vector3<S> {
-        self.lever.cross(&at.in_body(&self.axis_w))
+    fn new(at: &PlacedBody<S>, [by_velocity, by_turning, by_turn]: [[Vector3<S>; R]; 3]) -> Self {
+        let mut rate = SVector::<S, R>::zeros();
+        for ((rate, by_velocity), by_turning) in rate.iter_mut().zip(&by_velocity).zip(&by_turning) {
+            *rate = dot(by_velocity, &at.velocity_w) + dot(by_turning, &at.rotation_b);
+        }
+        Self { rate, by_velocity, by_turning, by_turn }
+    }
+
+    /// How forces on the body go by its motion where they change with the speeds by `impedance`, and these with the motion by the
+    /// rows `by_velocity` and `by_turning`.
+    #[inline(always)]
+    fn blocks<W: Law<S, R>>(
+        &self,
+        impedance: &SMatrix<S, R, R>,
+        [by_velocity, by_turning]: [&[Vector3<S>; R]; 2],
+    ) -> Blocks<S> {
+        let mut blocks = Blocks::diagonal(Vector3::zeros(), Vector3::zeros());
+        for i in 0..R {
+            for j in 0..R {
+                if W::ANSWERS[i][j] {
+                    let by_velocity = by_velocity[j] * impedance[(i, j)];
+                    let by_turning = by_turning[j] * impedance[(i, j)];
+                    blocks.a += outer(&self.by_velocity[i], &by_velocity);
+                    blocks.b += outer(&self.by_velocity[i], &by_turning);
+                    blocks.c += outer(&self.by_turning[i], &by_velocity);
+                    blocks.d += outer(&self.by_turning[i], &by_turning);
+                }
+            }
+        }
+        blocks
     }
 }
 
-impl<S: Scalar, const N: usize, const D: usize> GradientLink<S, FreeBodies<S, N, D>, D, 2> for Along<S> {
-    type View = ();
+/// What sees speeds of one body and has no place.
+trait Sees<const R: usize> {
+    /// Of what it is made.
+    type Number: Scalar;
+
+    /// The body.
+    fn body(&self) -> usize;
+
+    /// What there is to see of it where it is `at` a pose and motion.
+    fn speeds(&self, at: &PlacedBody<Self::Number>) -> Speeds<Self::Number, R>;
+
+    /// How the torque of a `force` that is held, and keeps its direction in the frame, goes by a small turn of the body.
+    fn carried(&self, at: &PlacedBody<Self::Number>, force: &SVector<Self::Number, R>) -> Matrix3<Self::Number>;
+}
+
+impl<S: Scalar> Sees<2> for Along<S> {
+    type Number = S;
 
     #[inline(always)]
-    fn view(&self, _: &FreeBodies<S, N, D>, _: &Placed<S, N, D>) {}
-
-    #[inline(always)]
-    fn moves(&self, k: usize) -> bool {
-        self.body == k / 6
+    fn body(&self) -> usize {
+        self.body
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 2> {
-        let at = placed.body(self.body);
-        let along = self.axis_w.dot(&at.velocity_w);
-        let turning = self.arm(&at).dot(&at.rotation_b);
-        Seen { place: SVector::zeros(), rate: SVector::<S, 2>::new(along + turning, along) }
-    }
-
-    #[inline(always)]
-    fn gradient(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 2, D> {
-        let arm = self.arm(&placed.body(self.body));
-        let mut gradient = SMatrix::<S, 2, D>::zeros();
-        put_row(&mut gradient, (0, 6 * self.body), &self.axis_w);
-        put_row(&mut gradient, (1, 6 * self.body), &self.axis_w);
-        put_row(&mut gradient, (0, 6 * self.body + 3), &arm);
-        gradient
-    }
-
-    #[inline(always)]
-    fn add_force(
-        &self,
-        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
-        (): &(),
-        force: &SVector<S, 2>,
-        sum: &mut SVector<S, D>,
-    ) {
-        let torque_b = self.arm(&placed.body(self.body)) * force[0];
-        add_wrench(sum, self.body, [&(self.axis_w * (force[0] + force[1])), &torque_b]);
-    }
-
-    #[inline(always)]
-    fn add_carried(
-        &self,
-        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
-        (): &(),
-        _: &SMatrix<S, 2, D>,
-        force: &SVector<S, 2>,
-        stiffness: &mut SMatrix<S, D, D>,
-    ) {
-        let axis_b = placed.body(self.body).in_body(&self.axis_w) * force[0];
-        let at = 6 * self.body + 3;
-        sub(stiffness, (at, at), &(cross_matrix(&self.lever) * cross_matrix(&axis_b)));
-    }
-
-    #[inline(always)]
-    fn swept(
-        &self,
-        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
-        (): &(),
-        _: &SMatrix<S, 2, D>,
-    ) -> SMatrix<S, 2, D> {
-        let at = placed.body(self.body);
-        let axis_b = at.in_body(&self.axis_w);
+    fn speeds(&self, at: &PlacedBody<S>) -> Speeds<S, 2> {
+        let (axis_b, none) = (at.in_body(&self.axis_w), Vector3::zeros());
         // ω·(lever × axis), the axis turning against the body: ∂axis = axis × θ.
-        let by_turn = axis_b.cross(&self.lever.cross(&at.rotation_b));
-        let mut swept = SMatrix::<S, 2, D>::zeros();
-        put_row(&mut swept, (0, 6 * self.body + 3), &by_turn);
-        swept
+        let by_turn = cross(&axis_b, &cross(&self.lever, &at.rotation_b));
+        Speeds::new(at, [[self.axis_w; 2], [cross(&self.lever, &axis_b), none], [by_turn, none]])
+    }
+
+    #[inline(always)]
+    fn carried(&self, at: &PlacedBody<S>, force: &SVector<S, 2>) -> Matrix3<S> {
+        twice_crossed(&outer(&(at.in_body(&self.axis_w) * force[0]), &self.lever))
     }
 }
 
-impl<S: Scalar, const N: usize, const D: usize> GradientLink<S, FreeBodies<S, N, D>, D, 1> for About<S> {
-    type View = ();
+impl<S: Scalar> Sees<1> for About<S> {
+    type Number = S;
 
     #[inline(always)]
-    fn view(&self, _: &FreeBodies<S, N, D>, _: &Placed<S, N, D>) {}
-
-    #[inline(always)]
-    fn moves(&self, k: usize) -> bool {
-        self.body == k / 6
+    fn body(&self) -> usize {
+        self.body
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> Seen<S, 1> {
-        let at = placed.body(self.body);
-        let rate = at.in_body(&self.axis_w).dot(&at.rotation_b);
-        Seen { place: SVector::zeros(), rate: SVector::<S, 1>::new(rate) }
+    fn speeds(&self, at: &PlacedBody<S>) -> Speeds<S, 1> {
+        let axis_b = at.in_body(&self.axis_w);
+        // ω·axis with ∂axis = axis × θ.
+        Speeds::new(at, [[Vector3::zeros()], [axis_b], [cross(&at.rotation_b, &axis_b)]])
     }
 
     #[inline(always)]
-    fn gradient(&self, (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>), (): &()) -> SMatrix<S, 1, D> {
-        let axis_b = placed.body(self.body).in_body(&self.axis_w);
-        let mut gradient = SMatrix::<S, 1, D>::zeros();
-        put_row(&mut gradient, (0, 6 * self.body + 3), &axis_b);
-        gradient
+    fn carried(&self, at: &PlacedBody<S>, force: &SVector<S, 1>) -> Matrix3<S> {
+        cross_matrix(&(at.in_body(&self.axis_w) * force[0]))
+    }
+}
+
+impl<S, L, const N: usize, const D: usize, const R: usize> Link<S, FreeBodies<S, N, D>, D, R> for L
+where
+    S: Scalar,
+    L: Sees<R, Number = S>,
+{
+    type View = Speeds<S, R>;
+
+    #[inline(always)]
+    fn view(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Speeds<S, R> {
+        self.speeds(&placed.body(self.body()))
+    }
+
+    #[inline(always)]
+    fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &Speeds<S, R>) -> Seen<S, R> {
+        Seen { place: SVector::zeros(), rate: view.rate }
     }
 
     #[inline(always)]
     fn add_force(
         &self,
-        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
-        (): &(),
-        force: &SVector<S, 1>,
+        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        view: &Speeds<S, R>,
+        force: &SVector<S, R>,
         sum: &mut SVector<S, D>,
     ) {
-        let axis_b = placed.body(self.body).in_body(&self.axis_w);
-        add_wrench(sum, self.body, [&Vector3::zeros(), &(axis_b * force[0])]);
+        for ((by_velocity, by_turning), force) in view.by_velocity.iter().zip(&view.by_turning).zip(force.iter()) {
+            add_wrench(sum, self.body(), [&(by_velocity * *force), &(by_turning * *force)]);
+        }
     }
 
     #[inline(always)]
-    fn add_carried(
+    fn add_impedance<W: Law<S, R>>(
         &self,
         (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
-        (): &(),
-        _: &SMatrix<S, 1, D>,
-        force: &SVector<S, 1>,
+        view: &Speeds<S, R>,
+        response: &Response<S, R>,
+        a: S,
+        matrix: &mut SMatrix<S, D, D>,
+    ) {
+        let mut by_turning = view.by_turning;
+        by_turning.iter_mut().zip(&view.by_turn).for_each(|(sum, by_turn)| *sum += by_turn * a);
+        let mut blocks = view.blocks::<W>(&response.impedance, [&view.by_velocity, &by_turning]);
+        blocks.d -= self.carried(&placed.body(self.body()), &response.force) * a;
+        add_blocks(matrix, [self.body(); 2], &blocks);
+    }
+
+    #[inline(always)]
+    fn add_derivatives<W: Law<S, R>>(
+        &self,
+        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        view: &Speeds<S, R>,
+        response: &Response<S, R>,
+        damping: &mut SMatrix<S, D, D>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let axis_b = placed.body(self.body).in_body(&self.axis_w) * force[0];
-        let at = 6 * self.body + 3;
-        sub(stiffness, (at, at), &cross_matrix(&axis_b));
-    }
-
-    #[inline(always)]
-    fn swept(
-        &self,
-        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
-        (): &(),
-        _: &SMatrix<S, 1, D>,
-    ) -> SMatrix<S, 1, D> {
-        let at = placed.body(self.body);
-        // ω·axis with ∂axis = axis × θ.
-        let by_turn = at.rotation_b.cross(&at.in_body(&self.axis_w));
-        let mut swept = SMatrix::<S, 1, D>::zeros();
-        put_row(&mut swept, (0, 6 * self.body + 3), &by_turn);
-        swept
+        let by_motion = view.blocks::<W>(&response.impedance, [&view.by_velocity, &view.by_turning]);
+        add_blocks(damping, [self.body(); 2], &by_motion);
+        let mut by_place = view.blocks::<W>(&response.impedance, [&[Vector3::zeros(); R], &view.by_turn]);
+        by_place.d -= self.carried(&placed.body(self.body()), &response.force);
+        add_blocks(stiffness, [self.body(); 2], &by_place);
     }
 }

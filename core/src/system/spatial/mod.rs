@@ -7,6 +7,7 @@ mod blocks;
 mod bodies;
 mod driven;
 mod floating;
+mod pair;
 mod seat;
 mod turned;
 
@@ -14,5 +15,6 @@ pub use bodies::{FreeBodies, Placed, PlacedBody, Rigid};
 pub use driven::{About, Along};
 pub use floating::{Floating, PinOfFrame, Pull};
 pub(crate) use floating::{Placed as FloatingPlaced, split};
+pub use pair::Pair;
 pub use seat::{Port, Seat};
 pub use turned::Turned;

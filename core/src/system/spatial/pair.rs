@@ -1,0 +1,316 @@
+//! Two bodies as a link between them sees them: how a force between them acts, and how it changes as they move.
+//!
+//! All is told in the axes of the link, which stand still in the body that it looks from. There their motion has three parts: how
+//! fast the one centre of mass moves against the other, a; how fast the body that is looked at turns, b; and how fast the body that
+//! it is looked at from turns, c. With r and ℓ from either centre of mass to the point, the point moves by a + b × r − c × ℓ and
+//! its body turns by b − c. So a force f at the point and a moment m do work on the parts by f, r × f + m and −(ℓ × f + m).
+
+use nalgebra::Matrix3;
+
+use super::{
+    FreeBodies, Placed, PlacedBody, Seat,
+    blocks::{add_blocks, add_wrench},
+};
+use crate::{
+    SMatrix, SVector, Scalar, Vector3,
+    linear::{Blocks, cross_columns, cross_matrix, cross_rows, twice_crossed},
+    product::{cross, outer, product, times, transposed_times},
+    system::Response,
+};
+
+/// How forces, and where `H` is 2 moments too, change with rates or places at the point: rows, then columns.
+type AtPoint<S, const H: usize> = [[Matrix3<S>; H]; H];
+
+/// How they change by the three parts of motion.
+type Change<S, const H: usize> = [[Matrix3<S>; 3]; H];
+
+/// Two bodies as a link sees them.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<S> {
+    /// Which bodies: the one that is looked at, the one that it is looked at from.
+    bodies: [Option<usize>; 2],
+    /// From the frame into the axes of the link.
+    from_frame: Matrix3<S>,
+    /// From the axes of the body that is looked at.
+    across: Matrix3<S>,
+    /// From those of the body that it is looked at from; `None` where they are those of the link.
+    own: Option<Matrix3<S>>,
+    /// Of the point since the nominal poses (m).
+    pub(super) displacement: Vector3<S>,
+    /// From either centre of mass to the point, r and ℓ (m).
+    levers: [Vector3<S>; 2],
+    /// Of the centres of mass against each other, a (m/s).
+    velocity: Vector3<S>,
+    /// Angular velocities, b and c (rad/s).
+    turning: [Vector3<S>; 2],
+}
+
+/// The `H` vectors of a link's numbers in order.
+#[inline(always)]
+fn in_vectors<S: Scalar, const R: usize, const H: usize>(numbers: &SVector<S, R>) -> [Vector3<S>; H] {
+    let mut vectors = [Vector3::zeros(); H];
+    for (vector, three) in vectors.iter_mut().zip(numbers.data.0[0].as_chunks::<3>().0) {
+        *vector = Vector3::from(*three);
+    }
+    vectors
+}
+
+/// The 3 × 3 blocks of a link's entries in order, `H` by `H` of them.
+#[inline(always)]
+fn in_blocks<S: Scalar, const R: usize, const H: usize>(entries: &SMatrix<S, R, R>) -> AtPoint<S, H> {
+    let mut blocks = [[Matrix3::zeros(); H]; H];
+    for (i, row) in blocks.iter_mut().enumerate() {
+        for (block, columns) in row.iter_mut().zip(entries.data.0.as_chunks::<3>().0) {
+            for (to, from) in block.data.0.iter_mut().zip(columns) {
+                to.iter_mut().zip(from.iter().skip(3 * i)).for_each(|(to, from)| *to = *from);
+            }
+        }
+    }
+    blocks
+}
+
+impl<S: Scalar> Pair<S> {
+    /// The point of `seat` seen in the axes of the body that it is seen from.
+    #[inline(always)]
+    pub(super) fn new<const N: usize, const D: usize>(
+        seat: &Seat<S>,
+        bodies: &FreeBodies<S, N, D>,
+        placed: &Placed<S, N, D>,
+    ) -> Self {
+        let centre = |body: Option<usize>| {
+            body.and_then(|body| bodies.bodies().get(body)).map_or(Vector3::zeros(), |body| body.centre_w)
+        };
+        let lever = &seat.point.lever;
+        let nominal = centre(seat.point.body) + lever - centre(seat.from);
+        let of = seat.point.body.map_or(PlacedBody::still(), |body| placed.body(body));
+        let arm_w = times(&of.to_frame, lever);
+        let moved_w = of.displacement_w + (arm_w - lever);
+        let turning_w = times(&of.to_frame, &of.rotation_b);
+        let bodies = [seat.point.body, seat.from];
+        match seat.from {
+            Some(body) => {
+                let from = placed.body(body);
+                let from_frame = from.to_frame.transpose();
+                let seen = |of: &Vector3<S>| times(&from_frame, of);
+                let displacement = (seen(&nominal) - nominal) + seen(&(moved_w - from.displacement_w));
+                Self {
+                    bodies,
+                    from_frame,
+                    across: product(&from_frame, &of.to_frame),
+                    own: None,
+                    displacement,
+                    levers: [seen(&arm_w), nominal + displacement],
+                    velocity: seen(&(of.velocity_w - from.velocity_w)),
+                    turning: [seen(&turning_w), from.rotation_b],
+                }
+            }
+            None => Self {
+                bodies,
+                from_frame: Matrix3::identity(),
+                across: of.to_frame,
+                own: None,
+                displacement: moved_w,
+                levers: [arm_w, nominal + moved_w],
+                velocity: of.velocity_w,
+                turning: [turning_w, Vector3::zeros()],
+            },
+        }
+    }
+
+    /// The same in other `axes`, columns in those of now.
+    #[inline(always)]
+    pub(super) fn in_axes(&self, axes: &Matrix3<S>) -> Self {
+        let turned = |v: &Vector3<S>| transposed_times(axes, v);
+        let own = axes.transpose();
+        let [[r, l], [b, c]] = [&self.levers, &self.turning];
+        Self {
+            from_frame: if self.bodies[1].is_some() { product(&own, &self.from_frame) } else { own },
+            across: product(&own, &self.across),
+            own: Some(own),
+            displacement: turned(&self.displacement),
+            levers: [turned(r), turned(l)],
+            velocity: turned(&self.velocity),
+            turning: [turned(b), turned(c)],
+            ..*self
+        }
+    }
+
+    /// How fast the point moves (m/s).
+    #[inline(always)]
+    pub(super) fn rate(&self) -> Vector3<S> {
+        let [[r, l], [b, c]] = [&self.levers, &self.turning];
+        let rate = self.velocity + cross(b, r);
+        if self.bodies[1].is_some() { rate - cross(c, l) } else { rate }
+    }
+
+    /// How fast its body turns (rad/s).
+    #[inline(always)]
+    pub(super) fn turning(&self) -> Vector3<S> {
+        let [b, c] = &self.turning;
+        if self.bodies[1].is_some() { b - c } else { *b }
+    }
+
+    /// Adds the generalised force (N, N·m) of a `force` (N) at the point and, where `H` is 2, of a moment (N·m).
+    #[inline(always)]
+    pub(super) fn add_force<const H: usize, const R: usize, const D: usize>(
+        &self,
+        force: &SVector<S, R>,
+        sum: &mut SVector<S, D>,
+    ) {
+        let (push, moment) = force_and_moment(&in_vectors::<S, R, H>(force));
+        let [r, l] = &self.levers;
+        let push_w = transposed_times(&self.from_frame, &push);
+        let with_moment = |torque: Vector3<S>| moment.map_or(torque, |moment| torque + moment);
+        if let Some(i) = self.bodies[0] {
+            add_wrench(sum, i, [&push_w, &transposed_times(&self.across, &with_moment(cross(r, &push)))]);
+        }
+        if let Some(j) = self.bodies[1] {
+            let torque = with_moment(cross(l, &push));
+            let torque = self.own.map_or(torque, |own| transposed_times(&own, &torque));
+            add_wrench(sum, j, [&-push_w, &-torque]);
+        }
+    }
+
+    /// See [`Link::add_impedance`](crate::system::Link::add_impedance).
+    #[inline(always)]
+    pub(super) fn add_impedance<const H: usize, const R: usize, const D: usize>(
+        &self,
+        response: &Response<S, R>,
+        a: S,
+        matrix: &mut SMatrix<S, D, D>,
+    ) {
+        let (by_rate, by_place) = (in_blocks::<S, R, H>(&response.impedance), in_blocks(&response.stiffness));
+        let mut change = self.by_velocity(&by_rate);
+        for (row, by_place) in change.iter_mut().zip(self.by_place(&by_place, &by_rate)) {
+            row.iter_mut().zip(by_place).for_each(|(entry, by_place)| *entry += by_place * a);
+        }
+        self.add(&change, Some(&in_vectors(&(response.force * a))), matrix);
+    }
+
+    /// See [`Link::add_derivatives`](crate::system::Link::add_derivatives).
+    #[inline(always)]
+    pub(super) fn add_derivatives<const H: usize, const R: usize, const D: usize>(
+        &self,
+        response: &Response<S, R>,
+        damping: &mut SMatrix<S, D, D>,
+        stiffness: &mut SMatrix<S, D, D>,
+    ) {
+        let (by_rate, by_place) = (in_blocks::<S, R, H>(&response.impedance), in_blocks(&response.stiffness));
+        self.add(&self.by_velocity(&by_rate), None, damping);
+        self.add(&self.by_place(&by_place, &by_rate), Some(&in_vectors(&response.force)), stiffness);
+    }
+
+    /// How forces change by the parts of motion where `by` tells how by the rates at the point.
+    #[inline(always)]
+    fn by_velocity<const H: usize>(&self, by: &AtPoint<S, H>) -> Change<S, H> {
+        let [r, l] = &self.levers;
+        let mut change = [[Matrix3::zeros(); 3]; H];
+        for (change, row) in change.iter_mut().zip(by) {
+            let (by_move, by_turn) = force_and_moment(row);
+            let with_turn = |matrix: Matrix3<S>| by_turn.map_or(matrix, |by_turn| matrix + by_turn);
+            change[0] = by_move;
+            change[1] = with_turn(cross_rows(r, &by_move));
+            if self.bodies[1].is_some() {
+                change[2] = -with_turn(cross_rows(l, &by_move));
+            }
+        }
+        change
+    }
+
+    /// How forces change by small motions of the bodies, their velocities held, where `by_place` and `by_rate` tell how by place and
+    /// rate at the point. Places are told of lengths alone.
+    #[inline(always)]
+    fn by_place<const H: usize>(&self, by_place: &AtPoint<S, H>, by_rate: &AtPoint<S, H>) -> Change<S, H> {
+        let [[r, l], [b, c]] = [&self.levers, &self.turning];
+        let carried = cross(b, r);
+        let mut change = [[Matrix3::zeros(); 3]; H];
+        for ((change, by_place), by_rate) in change.iter_mut().zip(by_place).zip(by_rate) {
+            let ((by_place, _), (by_move, by_turn)) = (force_and_moment(by_place), force_and_moment(by_rate));
+            let turned = cross_rows(&carried, &by_move);
+            let turned = by_turn.map_or(turned, |by_turn| turned + cross_rows(b, &by_turn));
+            if self.bodies[1].is_some() {
+                let by_move_of = by_place + cross_rows(c, &by_move);
+                change[0] = by_move_of;
+                change[1] = cross_rows(r, &by_move_of) + turned;
+                change[2] = -(cross_rows(l, &by_move_of) + cross_rows(&self.velocity, &by_move) + turned);
+            } else {
+                change[0] = by_place;
+                change[1] = cross_rows(r, &by_place) + turned;
+            }
+        }
+        change
+    }
+
+    /// Adds the generalised forces of `change` to `matrix` and, as far as `carried` gives a force, less how those of a force that is
+    /// held change by small motions of the bodies.
+    #[inline(always)]
+    fn add<const H: usize, const D: usize>(
+        &self,
+        change: &Change<S, H>,
+        carried: Option<&[Vector3<S>; H]>,
+        matrix: &mut SMatrix<S, D, D>,
+    ) {
+        let [r, l] = &self.levers;
+        let (forces, moments) = force_and_moment(change);
+        let two = self.bodies[1].is_some();
+        let mut parts = [[Matrix3::zeros(); 3]; 3];
+        for k in 0..if two { 3 } else { 2 } {
+            let with_moment = |matrix: Matrix3<S>| moments.map_or(matrix, |moments| matrix + moments[k]);
+            parts[0][k] = forces[k];
+            parts[1][k] = with_moment(cross_columns(r, &forces[k]));
+            if two {
+                parts[2][k] = -with_moment(cross_columns(l, &forces[k]));
+            }
+        }
+        if let Some(force) = carried {
+            let (push, moment) = force_and_moment(force);
+            let arm = twice_crossed(&outer(&push, r));
+            let arm = moment.map_or(arm, |moment| arm + cross_matrix(&moment));
+            parts[1][1] -= arm;
+            if two {
+                let push_turned = cross_matrix(&push);
+                parts[0][2] += push_turned;
+                parts[1][2] += arm;
+                parts[2][0] -= push_turned;
+                parts[2][1] += twice_crossed(&outer(r, &push));
+                parts[2][2] -= twice_crossed(&outer(l, &push));
+            }
+        }
+        self.add_parts(&parts, matrix);
+    }
+
+    /// Adds what acts on the three parts of motion by these to the rows and columns of the bodies.
+    #[inline(always)]
+    fn add_parts<const D: usize>(&self, parts: &[[Matrix3<S>; 3]; 3], matrix: &mut SMatrix<S, D, D>) {
+        let [[aa, ab, ac], [ba, bb, bc], [ca, cb, cc]] = parts;
+        let (t, x) = (&self.from_frame, &self.across);
+        let (t_rows, x_rows) = (t.transpose(), x.transpose());
+        let turned = |rows: &Matrix3<S>, part: &Matrix3<S>, columns: &Matrix3<S>| product(rows, &product(part, columns));
+        let a = turned(&t_rows, aa, t);
+        let b = turned(&t_rows, ab, x);
+        let c = turned(&x_rows, ba, t);
+        if let Some(i) = self.bodies[0] {
+            add_blocks(matrix, [i, i], &Blocks { a, b, c, d: turned(&x_rows, bb, x) });
+        }
+        if let Some(j) = self.bodies[1] {
+            let into_own = |part: Matrix3<S>| self.own.map_or(part, |own| product(&part, &own));
+            let from_own = |part: Matrix3<S>| self.own.map_or(part, |own| product(&own.transpose(), &part));
+            let ac = into_own(product(&t_rows, ac));
+            let ca = from_own(product(ca, t));
+            if let Some(i) = self.bodies[0] {
+                let d = into_own(product(&x_rows, bc));
+                add_blocks(matrix, [i, j], &Blocks { a: -a, b: ac, c: -c, d });
+                let d = from_own(product(cb, x));
+                add_blocks(matrix, [j, i], &Blocks { a: -a, b: -b, c: ca, d });
+            }
+            add_blocks(matrix, [j, j], &Blocks { a, b: -ac, c: -ca, d: from_own(into_own(*cc)) });
+        }
+    }
+}
+
+/// What belongs to the force, and to the moment where `H` is 2.
+#[inline(always)]
+fn force_and_moment<T: Copy, const H: usize>(of: &[T; H]) -> (T, Option<T>) {
+    const { assert!(H == 1 || H == 2, "a force, or a force and a moment") }
+    (of[0], of.get(1).copied())
+}
