@@ -157,11 +157,10 @@ fn spatial_derivatives_are_those_of_the_forces() {
                 law: Wall { axis: Axis::Z, sign: -1.0, gap: 0.01, contact: contact() },
             },
             (
-                [Some(0), None].map(|from| Element::<_, _, 6> {
+                [(Some(0), true), (None, true), (Some(0), false), (None, false)].map(|(from, turns)| Element::<_, _, 6> {
                     link: Turned {
                         seat: Seat { point: port(Some(1), 0.1, 0.1, -0.1), from },
-                        axes: axes.to_body().matrix(),
-                        offset: Vector3::new(0.01, 0.0, 0.02),
+                        axes: turns.then(|| axes.to_body().matrix()),
                     },
                     law: Ring { clearance: 0.02, radius: 0.05, contact: contact() },
                 }),

@@ -1,5 +1,6 @@
 //! Elements chosen at run time: the laws and links are core's, and so are the bits.
 
+use nalgebra::Matrix3;
 use slipfit_core::{
     ParameterError,
     drive::Drive,
@@ -7,7 +8,7 @@ use slipfit_core::{
     mechanism::Way,
     menu::FrictionData,
     system::{
-        Assembly, Bodies, Element, Elements,
+        Assembly, Bodies, Element, Elements, Law, Link, Response,
         law::{Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
         planar::{self, PlanarTree},
         spatial::{self, FreeBodies},
@@ -41,6 +42,32 @@ pub fn contact(laws: &Laws, stick_band: f64) -> Result<AnyContact, ParameterErro
     Ok(Contact { normal, friction })
 }
 
+/// Takes what elements do but for those that do nothing, such as contacts that are open: a choice that steps of one length must not
+/// make. A zero less in a sum changes at most the sign of a zero.
+struct Acting<'a, A>(&'a mut A);
+
+impl<B: Bodies<f64, D>, A: Assembly<f64, B, D>, const D: usize> Assembly<f64, B, D> for Acting<'_, A> {
+    #[inline(always)]
+    fn add<L: Link<f64, B, D, R>, W: Law<f64, R>, const R: usize>(
+        &mut self,
+        link: &L,
+        at: (&B, &B::Placed),
+        view: &L::View,
+        response: &Response<f64, R>,
+    ) {
+        let Response { force, impedance, stiffness, per_time } = response;
+        let nothing = |mut numbers: std::slice::Iter<f64>| numbers.all(|x| *x == 0.0);
+        if nothing(force.as_slice().iter())
+            && nothing(impedance.as_slice().iter())
+            && nothing(stiffness.as_slice().iter())
+            && nothing(per_time.as_slice().iter())
+        {
+            return;
+        }
+        self.0.add::<L, W, R>(link, at, view, response);
+    }
+}
+
 /// An element in a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarElement<const D: usize> {
@@ -64,7 +91,7 @@ pub enum SpatialElement {
     /// A point before a wall.
     Wall(Element<spatial::Seat<f64>, Wall<f64, Normal, Sliding>, 3>),
     /// A ring around a rod.
-    Ring(Element<spatial::Turned<f64>, Ring<f64, Normal, Sliding>, 6>),
+    Ring(Element<spatial::Turned<f64, Option<Matrix3<f64>>>, Ring<f64, Normal, Sliding>, 6>),
     /// A torque.
     Motor(Element<spatial::About<f64>, Motor<Drive<f64>>, 1>),
     /// A force.
@@ -87,6 +114,7 @@ impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
         _: Option<&mut ()>,
         sum: &mut impl Assembly<f64, PlanarTree<f64, D>, D>,
     ) {
+        let sum = &mut Acting(sum);
         match self {
             Self::Journal(element) => element.act(way, at, &(), None, sum),
             Self::Pad(element) => element.act(way, at, &(), None, sum),
@@ -117,6 +145,7 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
         _: Option<&mut ()>,
         sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
     ) {
+        let sum = &mut Acting(sum);
         match self {
             Self::Pin(element) => element.act(way, at, &[(); 2], None, sum),
             Self::Wall(element) => element.act(way, at, &(), None, sum),

@@ -91,9 +91,9 @@ fn gradient<B: Bodies<f64, D>, L: Link<f64, B, D, R>, const R: usize, const D: u
     placed: &B::Placed,
 ) -> SMatrix<f64, R, D> {
     let view = link.view(bodies, placed);
-    let mut gradient = SMatrix::zeros();
+    let mut gradient = SMatrix::<f64, R, D>::zeros();
     for (i, unit) in SMatrix::<f64, R, R>::identity().column_iter().enumerate() {
-        let mut row = SVector::zeros();
+        let mut row = SVector::<f64, D>::zeros();
         link.add_force((bodies, placed), &view, &unit.into_owned(), &mut row);
         gradient.set_row(i, &row.transpose());
     }

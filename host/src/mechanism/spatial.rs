@@ -97,7 +97,7 @@ fn add(
             let axis = Vector3::from(axis);
             for end in [-0.5, 0.5] {
                 let centre = at + axis * (length * end);
-                let link = Turned { seat: seat(centre), axes: axes_with_third(&axis), offset: Vector3::zeros() };
+                let link = Turned { seat: seat(centre), axes: axes_with_third(&axis) };
                 let law = Ring { clearance: gaps[gap], radius, contact };
                 elements.push(SpatialElement::Ring(Element { link, law }));
             }
@@ -114,9 +114,9 @@ pub fn axis_of(normal: [f64; 3]) -> Option<(Axis, f64)> {
     is_alone.then(|| (axis, axis.of(normal)))
 }
 
-/// Axes of which the third is `axis`, of unit length; those of the frame where it is their third.
-fn axes_with_third(axis: &Vector3<f64>) -> Matrix3<f64> {
+/// Axes of which the third is `axis`, of unit length; `None` where those of the frame are such.
+fn axes_with_third(axis: &Vector3<f64>) -> Option<Matrix3<f64>> {
     let aside = if axis.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
     let first = (aside - axis * axis.dot(&aside)).normalize();
-    Matrix3::from_columns(&[first, axis.cross(&first), *axis])
+    (*axis != Vector3::z()).then(|| Matrix3::from_columns(&[first, axis.cross(&first), *axis]))
 }

@@ -7,6 +7,7 @@ use crate::{
     error::bounded,
     linear::cross_matrix,
     pose::{Pose, turn_rate},
+    product::times,
     system::Bodies,
 };
 
@@ -117,6 +118,8 @@ pub struct PlacedBody<S> {
     pub velocity_w: Vector3<S>,
     /// Angular velocity (rad/s).
     pub rotation_b: Vector3<S>,
+    /// The same in the frame.
+    pub rotation_w: Vector3<S>,
 }
 
 impl<S: Scalar> PlacedBody<S> {
@@ -128,6 +131,7 @@ impl<S: Scalar> PlacedBody<S> {
             displacement_w: Vector3::zeros(),
             velocity_w: Vector3::zeros(),
             rotation_b: Vector3::zeros(),
+            rotation_w: Vector3::zeros(),
         }
     }
 
@@ -221,7 +225,8 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
         let mut bodies = [PlacedBody::still(); N];
         for ((body, pose), (velocity_w, rotation_b)) in bodies.iter_mut().zip(pose).zip(each(velocity)) {
             let to_frame = pose.to_body().matrix().transpose();
-            *body = PlacedBody { to_frame, displacement_w: pose.displacement_w, velocity_w, rotation_b };
+            let rotation_w = times(&to_frame, &rotation_b);
+            *body = PlacedBody { to_frame, displacement_w: pose.displacement_w, velocity_w, rotation_b, rotation_w };
         }
         Placed { bodies, rates: *velocity }
     }

@@ -17,4 +17,4 @@ pub use floating::{Floating, PinOfFrame, Pull};
 pub(crate) use floating::{Placed as FloatingPlaced, split};
 pub use pair::Pair;
 pub use seat::{Port, Seat};
-pub use turned::Turned;
+pub use turned::{Parallel, Turned, TurnedAxes};

@@ -29,8 +29,8 @@ type Change<S, const H: usize> = [[Matrix3<S>; 3]; H];
 pub struct Pair<S> {
     /// Which bodies: the one that is looked at, the one that it is looked at from.
     bodies: [Option<usize>; 2],
-    /// From the frame into the axes of the link.
-    from_frame: Matrix3<S>,
+    /// From the frame into the axes of the link; `None` where they are those of the frame.
+    from_frame: Option<Matrix3<S>>,
     /// From the axes of the body that is looked at.
     across: Matrix3<S>,
     /// From those of the body that it is looked at from; `None` where they are those of the link.
@@ -85,7 +85,6 @@ impl<S: Scalar> Pair<S> {
         let of = seat.point.body.map_or(PlacedBody::still(), |body| placed.body(body));
         let arm_w = times(&of.to_frame, lever);
         let moved_w = of.displacement_w + (arm_w - lever);
-        let turning_w = times(&of.to_frame, &of.rotation_b);
         let bodies = [seat.point.body, seat.from];
         match seat.from {
             Some(body) => {
@@ -95,24 +94,24 @@ impl<S: Scalar> Pair<S> {
                 let displacement = (seen(&nominal) - nominal) + seen(&(moved_w - from.displacement_w));
                 Self {
                     bodies,
-                    from_frame,
+                    from_frame: Some(from_frame),
                     across: product(&from_frame, &of.to_frame),
                     own: None,
                     displacement,
                     levers: [seen(&arm_w), nominal + displacement],
                     velocity: seen(&(of.velocity_w - from.velocity_w)),
-                    turning: [seen(&turning_w), from.rotation_b],
+                    turning: [seen(&of.rotation_w), from.rotation_b],
                 }
             }
             None => Self {
                 bodies,
-                from_frame: Matrix3::identity(),
+                from_frame: None,
                 across: of.to_frame,
                 own: None,
                 displacement: moved_w,
                 levers: [arm_w, nominal + moved_w],
                 velocity: of.velocity_w,
-                turning: [turning_w, Vector3::zeros()],
+                turning: [of.rotation_w, Vector3::zeros()],
             },
         }
     }
@@ -124,7 +123,7 @@ impl<S: Scalar> Pair<S> {
         let own = axes.transpose();
         let [[r, l], [b, c]] = [&self.levers, &self.turning];
         Self {
-            from_frame: if self.bodies[1].is_some() { product(&own, &self.from_frame) } else { own },
+            from_frame: Some(self.from_frame.map_or(own, |from_frame| product(&own, &from_frame))),
             across: product(&own, &self.across),
             own: Some(own),
             displacement: turned(&self.displacement),
@@ -159,7 +158,7 @@ impl<S: Scalar> Pair<S> {
     ) {
         let (push, moment) = force_and_moment(&in_vectors::<S, R, H>(force));
         let [r, l] = &self.levers;
-        let push_w = transposed_times(&self.from_frame, &push);
+        let push_w = self.from_frame.map_or(push, |from_frame| transposed_times(&from_frame, &push));
         let with_moment = |torque: Vector3<S>| moment.map_or(torque, |moment| torque + moment);
         if let Some(i) = self.bodies[0] {
             add_wrench(sum, i, [&push_w, &transposed_times(&self.across, &with_moment(cross(r, &push)))]);
@@ -283,27 +282,26 @@ impl<S: Scalar> Pair<S> {
     #[inline(always)]
     fn add_parts<const D: usize>(&self, parts: &[[Matrix3<S>; 3]; 3], matrix: &mut SMatrix<S, D, D>) {
         let [[aa, ab, ac], [ba, bb, bc], [ca, cb, cc]] = parts;
-        let (t, x) = (&self.from_frame, &self.across);
-        let (t_rows, x_rows) = (t.transpose(), x.transpose());
-        let turned = |rows: &Matrix3<S>, part: &Matrix3<S>, columns: &Matrix3<S>| product(rows, &product(part, columns));
-        let a = turned(&t_rows, aa, t);
-        let b = turned(&t_rows, ab, x);
-        let c = turned(&x_rows, ba, t);
+        let (x, x_rows) = (&self.across, self.across.transpose());
+        // Columns by velocities, and by the angular velocity that is looked from, and forces and torques of these.
+        let by_frame = |part: &Matrix3<S>| self.from_frame.map_or(*part, |t| product(part, &t));
+        let to_frame = |part: &Matrix3<S>| self.from_frame.map_or(*part, |t| product(&t.transpose(), part));
+        let by_own = |part: &Matrix3<S>| self.own.map_or(*part, |own| product(part, &own));
+        let to_own = |part: &Matrix3<S>| self.own.map_or(*part, |own| product(&own.transpose(), part));
+        let a = to_frame(&by_frame(aa));
+        let b = to_frame(&product(ab, x));
+        let c = by_frame(&product(&x_rows, ba));
         if let Some(i) = self.bodies[0] {
-            add_blocks(matrix, [i, i], &Blocks { a, b, c, d: turned(&x_rows, bb, x) });
+            add_blocks(matrix, [i, i], &Blocks { a, b, c, d: product(&x_rows, &product(bb, x)) });
         }
         if let Some(j) = self.bodies[1] {
-            let into_own = |part: Matrix3<S>| self.own.map_or(part, |own| product(&part, &own));
-            let from_own = |part: Matrix3<S>| self.own.map_or(part, |own| product(&own.transpose(), &part));
-            let ac = into_own(product(&t_rows, ac));
-            let ca = from_own(product(ca, t));
+            let ac = by_own(&to_frame(ac));
+            let ca = to_own(&by_frame(ca));
             if let Some(i) = self.bodies[0] {
-                let d = into_own(product(&x_rows, bc));
-                add_blocks(matrix, [i, j], &Blocks { a: -a, b: ac, c: -c, d });
-                let d = from_own(product(cb, x));
-                add_blocks(matrix, [j, i], &Blocks { a: -a, b: -b, c: ca, d });
+                add_blocks(matrix, [i, j], &Blocks { a: -a, b: ac, c: -c, d: by_own(&product(&x_rows, bc)) });
+                add_blocks(matrix, [j, i], &Blocks { a: -a, b: -b, c: ca, d: to_own(&product(cb, x)) });
             }
-            add_blocks(matrix, [j, j], &Blocks { a, b: -ac, c: -ca, d: from_own(into_own(*cc)) });
+            add_blocks(matrix, [j, j], &Blocks { a, b: -ac, c: -ca, d: to_own(&by_own(cc)) });
         }
     }
 }

@@ -4,33 +4,64 @@ use nalgebra::Matrix3;
 
 use super::{FreeBodies, Pair, Placed, Seat};
 use crate::{
-    SMatrix, SVector, Scalar, Vector3,
+    SMatrix, SVector, Scalar,
     system::{Law, Link, Response, Seen},
 };
 
-/// A point of one body as seen from another, and the rotation of its body against that one, both in axes that are turned against
+/// A point of one body as seen from another, and the rotation of its body against that one, both in axes that may be turned against
 /// those of the latter: three lengths (m), then three angles (rad) of which the rates alone are told.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turned<S> {
+pub struct Turned<S, A = Parallel> {
     /// The point and where it is seen from.
     pub seat: Seat<S>,
-    /// The axes, columns in the body's axes.
-    pub axes: Matrix3<S>,
-    /// Place (m) of the point in these axes at the nominal poses.
-    pub offset: Vector3<S>,
+    /// How the axes are turned.
+    pub axes: A,
 }
 
-impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 6> for Turned<S> {
+/// Axes that are not turned: nothing is left of them at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parallel;
+
+/// How axes are turned against those of a body.
+pub trait TurnedAxes<S>: Copy {
+    /// The axes, columns in those of the body; `None` where they are the same.
+    fn columns(&self) -> Option<Matrix3<S>>;
+}
+
+impl<S> TurnedAxes<S> for Parallel {
+    #[inline(always)]
+    fn columns(&self) -> Option<Matrix3<S>> {
+        None
+    }
+}
+
+impl<S: Scalar> TurnedAxes<S> for Matrix3<S> {
+    #[inline(always)]
+    fn columns(&self) -> Option<Matrix3<S>> {
+        Some(*self)
+    }
+}
+
+/// Chosen at run time.
+impl<S: Scalar> TurnedAxes<S> for Option<Matrix3<S>> {
+    #[inline(always)]
+    fn columns(&self) -> Option<Matrix3<S>> {
+        *self
+    }
+}
+
+impl<S: Scalar, A: TurnedAxes<S>, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 6> for Turned<S, A> {
     type View = Pair<S>;
 
     #[inline(always)]
     fn view(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Pair<S> {
-        Pair::new(&self.seat, bodies, placed).in_axes(&self.axes)
+        let pair = Pair::new(&self.seat, bodies, placed);
+        self.axes.columns().map_or(pair, |axes| pair.in_axes(&axes))
     }
 
     #[inline(always)]
     fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &Pair<S>) -> Seen<S, 6> {
-        let (place, rate, turning, zero) = (view.displacement + self.offset, view.rate(), view.turning(), S::zero());
+        let (place, rate, turning, zero) = (view.displacement, view.rate(), view.turning(), S::zero());
         Seen {
             place: SVector::<S, 6>::from([place.x, place.y, place.z, zero, zero, zero]),
             rate: SVector::<S, 6>::from([rate.x, rate.y, rate.z, turning.x, turning.y, turning.z]),

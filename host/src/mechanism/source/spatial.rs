@@ -107,16 +107,19 @@ fn elements(
             SpatialElement::Ring(one) => {
                 names.extend(["Port", "Seat", "Turned"]);
                 laws.push("Ring");
-                let axes = numbers(one.link.axes.transpose().as_slice());
+                let (of, axes) = match one.link.axes {
+                    Some(axes) => {
+                        let of = "slipfit_core::SMatrix<S, 3, 3>";
+                        let values = numbers(axes.transpose().as_slice());
+                        (format!("Turned<S, {of}>"), format!("slipfit_core::SMatrix::<S, 3, 3>::new({values})"))
+                    }
+                    None => {
+                        names.push("Parallel");
+                        ("Turned<S>".to_owned(), "Parallel".to_owned())
+                    }
+                };
                 element(
-                    typed(
-                        "Turned<S>",
-                        format!(
-                            "Turned {{ seat: {}, axes: slipfit_core::SMatrix::<S, 3, 3>::new({axes}), offset: {} }}",
-                            seat(&one.link.seat),
-                            vector(one.link.offset.as_slice())
-                        ),
-                    ),
+                    typed(of, format!("Turned {{ seat: {}, axes: {axes} }}", seat(&one.link.seat))),
                     typed(
                         format!("Ring<S, {}>", contact.of),
                         format!(
