@@ -5,6 +5,9 @@ use crate::{SVector, Scalar};
 
 /// Takes what elements of bodies `B` do.
 pub trait Assembly<S: Scalar, B: Bodies<S, D>, const D: usize> {
+    /// Whether it takes derivatives, not the force alone.
+    const DIFFERENTIATES: bool = true;
+
     /// Adds the `response` of a law at `link`.
     fn add<L: Link<S, B, D, R>, W: Law<S, R>, const R: usize>(
         &mut self,
@@ -35,6 +38,8 @@ pub(crate) struct Derivatives<S, J, const D: usize> {
 }
 
 impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for Sum<S, D> {
+    const DIFFERENTIATES: bool = false;
+
     #[inline(always)]
     fn add<L: Link<S, B, D, R>, W: Law<S, R>, const R: usize>(
         &mut self,

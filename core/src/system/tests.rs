@@ -157,7 +157,11 @@ fn spatial_derivatives_are_those_of_the_forces() {
                 law: Wall { axis: Axis::Z, sign: -1.0, gap: 0.01, contact: contact() },
             },
             (
-                [(Some(0), true), (None, true), (Some(0), false), (None, false)].map(|(from, turns)| Element::<_, _, 6> {
+                [(Some(0), true), (None, true), (Some(0), false), (None, false)].map(|(from, turns)| Element::<
+                    _,
+                    _,
+                    6,
+                > {
                     link: Turned {
                         seat: Seat { point: port(Some(1), 0.1, 0.1, -0.1), from },
                         axes: turns.then(|| axes.to_body().matrix()),

@@ -10,12 +10,12 @@ use slipfit_core::{
 };
 
 use super::{
-    Action, JointKind, Mechanism, Mounts,
+    Action, Body, JointKind, Mechanism, Mounts,
     element::{PlanarElement, contact},
     mounts::flat,
 };
 
-/// The bodies of `mechanism` on their `mounts`. Bodies that are one by fixed joints are put together.
+/// The bodies of `mechanism` on their `mounts`.
 ///
 /// # Errors
 /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
@@ -23,28 +23,21 @@ pub fn bodies<const D: usize>(
     mechanism: &Mechanism,
     mounts: &Mounts,
 ) -> Result<PlanarTree<f64, D>, ParameterError<f64>> {
-    let mut rigid: Vec<(Vector2<f64>, usize, Rigid<f64, D>)> = Vec::new();
-    for (i, body) in mechanism.bodies.iter().enumerate() {
-        let drawn = flat(body.centre);
-        let centre = mounts.point::<D>(Some(i), drawn);
-        let inertia = body.inertia[2];
-        match rigid.iter_mut().find(|(_, _, one)| one.centre.carrier == centre.carrier) {
-            Some((place, first, one)) => {
-                let mass = one.mass + body.mass;
-                let apart = drawn - *place;
-                *place += apart * (body.mass / mass);
-                one.inertia += inertia + apart.dot(&apart) * one.mass * body.mass / mass;
-                *one = Rigid { mass, inertia: one.inertia, centre: mounts.point(Some(*first), *place) };
-            }
-            None => rigid.push((drawn, i, Rigid { mass: body.mass, inertia, centre })),
-        }
-    }
-    let rigid: Vec<_> = rigid.into_iter().map(|(_, _, body)| body).collect();
     let mut coordinates = [Coordinate::Turn; D];
     for (coordinate, owned) in coordinates.iter_mut().zip(mounts.coordinates()) {
         *coordinate = owned.coordinate;
     }
-    PlanarTree::new(coordinates, &rigid, flat(mechanism.gravity))
+    PlanarTree::new(coordinates, &rigid(mechanism, mounts), flat(mechanism.gravity))
+}
+
+/// Their masses, moments of inertia and centres of mass.
+pub fn rigid<const D: usize>(mechanism: &Mechanism, mounts: &Mounts) -> Vec<Rigid<f64, D>> {
+    let body = |(i, body): (usize, &Body)| Rigid {
+        mass: body.mass,
+        inertia: body.inertia[2],
+        centre: mounts.point(Some(i), flat(body.centre)),
+    };
+    mechanism.bodies.iter().enumerate().map(body).collect()
 }
 
 /// What acts on the bodies of `mechanism` with the given `gaps` (m); a stick band (m/s) stands for true stick.

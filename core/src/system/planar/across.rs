@@ -5,7 +5,6 @@ use nalgebra::Matrix2;
 use super::{
     Placed, PlanarTree, Point, left,
     pair::Pair,
-    rigid::Rigids,
     topology::{Carrier, Chain, Topology},
     tree::turned,
 };
@@ -38,13 +37,13 @@ impl<S: Scalar, const D: usize, P, Q: Carrier<D>> Across<S, D, P, Q> {
     }
 }
 
-impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>, const D: usize>
-    GradientLink<S, PlanarTree<S, D, J, R>, D, 2> for Across<S, D, P, Q>
+impl<S: Scalar, J: Topology<D>, P: Carrier<D>, Q: Carrier<D>, const D: usize> GradientLink<S, PlanarTree<S, D, J>, D, 2>
+    for Across<S, D, P, Q>
 {
     type View = Pair<S, D, P, Q>;
 
     #[inline(always)]
-    fn view(&self, tree: &PlanarTree<S, D, J, R>, placed: &Placed<S, D>) -> Self::View {
+    fn view(&self, tree: &PlanarTree<S, D, J>, placed: &Placed<S, D>) -> Self::View {
         Pair { point: tree.at(&self.point, placed), seat: tree.at(&self.seat, placed) }
     }
 
@@ -54,7 +53,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 2> {
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 2> {
         let axes = self.axes(placed);
         let apart = pair.point.place - pair.seat.place;
         let mut rate = pair.rate(&placed.rates);
@@ -65,7 +64,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>
     }
 
     #[inline(always)]
-    fn gradient(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 2, D> {
+    fn gradient(&self, (_, placed): (&PlanarTree<S, D, J>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 2, D> {
         let axes = self.axes(placed);
         let mut columns = pair.gradient();
         if let Some(turn) = self.seat.carrier.turn() {
@@ -77,7 +76,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>
     #[inline(always)]
     fn add_force(
         &self,
-        (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        (_, placed): (&PlanarTree<S, D, J>, &Placed<S, D>),
         pair: &Self::View,
         force: &SVector<S, 2>,
         sum: &mut SVector<S, D>,
@@ -92,7 +91,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>
     #[inline(always)]
     fn add_carried(
         &self,
-        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        (tree, placed): (&PlanarTree<S, D, J>, &Placed<S, D>),
         pair: &Self::View,
         _: &SMatrix<S, 2, D>,
         force: &SVector<S, 2>,
@@ -118,7 +117,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, P: Carrier<D>, Q: Carrier<D>
     #[inline(always)]
     fn swept(
         &self,
-        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        (tree, placed): (&PlanarTree<S, D, J>, &Placed<S, D>),
         pair: &Self::View,
         _: &SMatrix<S, 2, D>,
     ) -> SMatrix<S, 2, D> {

@@ -3,7 +3,6 @@
 use super::{
     Placed, PlanarTree, Point,
     point::At,
-    rigid::Rigids,
     topology::{Carrier, Chain, Topology},
 };
 use crate::{
@@ -32,13 +31,13 @@ impl<S: Scalar, const D: usize, C> Along<S, D, C> {
     }
 }
 
-impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usize>
-    GradientLink<S, PlanarTree<S, D, J, R>, D, 2> for Along<S, D, C>
+impl<S: Scalar, J: Topology<D>, C: Carrier<D>, const D: usize> GradientLink<S, PlanarTree<S, D, J>, D, 2>
+    for Along<S, D, C>
 {
     type View = [At<S, D, C>; 2];
 
     #[inline(always)]
-    fn view(&self, tree: &PlanarTree<S, D, J, R>, placed: &Placed<S, D>) -> Self::View {
+    fn view(&self, tree: &PlanarTree<S, D, J>, placed: &Placed<S, D>) -> Self::View {
         [tree.at(&self.point, placed), tree.at(&self.sensor, placed)]
     }
 
@@ -48,7 +47,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usiz
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), view: &Self::View) -> Seen<S, 2> {
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J>, &Placed<S, D>), view: &Self::View) -> Seen<S, 2> {
         let [point, sensor] = view;
         let along = |of: [&Vector2<S>; 2]| SVector::<S, 2>::new(self.axis.dot(of[0]), self.axis.dot(of[1]));
         let velocities = [point, sensor].map(|at| at.velocity(&placed.rates));
@@ -56,14 +55,14 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usiz
     }
 
     #[inline(always)]
-    fn gradient(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), view: &Self::View) -> SMatrix<S, 2, D> {
+    fn gradient(&self, _: (&PlanarTree<S, D, J>, &Placed<S, D>), view: &Self::View) -> SMatrix<S, 2, D> {
         self.along(view.each_ref().map(|at| &at.gradient))
     }
 
     #[inline(always)]
     fn add_force(
         &self,
-        _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        _: (&PlanarTree<S, D, J>, &Placed<S, D>),
         view: &Self::View,
         force: &SVector<S, 2>,
         sum: &mut SVector<S, D>,
@@ -76,7 +75,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usiz
     #[inline(always)]
     fn add_carried(
         &self,
-        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        (tree, placed): (&PlanarTree<S, D, J>, &Placed<S, D>),
         view: &Self::View,
         _: &SMatrix<S, 2, D>,
         force: &SVector<S, 2>,
@@ -90,7 +89,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, C: Carrier<D>, const D: usiz
     #[inline(always)]
     fn swept(
         &self,
-        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        (tree, placed): (&PlanarTree<S, D, J>, &Placed<S, D>),
         view: &Self::View,
         _: &SMatrix<S, 2, D>,
     ) -> SMatrix<S, 2, D> {

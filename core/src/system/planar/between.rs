@@ -3,7 +3,6 @@
 use super::{
     Placed, PlanarTree, Point,
     pair::Pair,
-    rigid::Rigids,
     topology::{Carrier, Chain, Topology},
 };
 use crate::{
@@ -28,13 +27,13 @@ fn above_zeros<S: Scalar, const D: usize>(columns: &[Vector2<S>; D]) -> SMatrix<
     SMatrix::<S, 4, D>::from_columns(&columns.map(|column| SVector::<S, 4>::new(column.x, column.y, zero, zero)))
 }
 
-impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>, const D: usize>
-    GradientLink<S, PlanarTree<S, D, J, R>, D, 4> for Between<S, D, H, P>
+impl<S: Scalar, J: Topology<D>, H: Carrier<D>, P: Carrier<D>, const D: usize> GradientLink<S, PlanarTree<S, D, J>, D, 4>
+    for Between<S, D, H, P>
 {
     type View = Pair<S, D, P, H>;
 
     #[inline(always)]
-    fn view(&self, tree: &PlanarTree<S, D, J, R>, placed: &Placed<S, D>) -> Self::View {
+    fn view(&self, tree: &PlanarTree<S, D, J>, placed: &Placed<S, D>) -> Self::View {
         Pair { point: tree.at(&self.pin, placed), seat: tree.at(&self.hole, placed) }
     }
 
@@ -53,7 +52,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 4> {
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 4> {
         let zero = S::zero();
         let apart = pair.point.place - pair.seat.place;
         let velocity = pair.rate(&placed.rates);
@@ -67,7 +66,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>
     }
 
     #[inline(always)]
-    fn gradient(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 4, D> {
+    fn gradient(&self, _: (&PlanarTree<S, D, J>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 4, D> {
         let mut gradient = above_zeros(&pair.gradient());
         for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
             if let Some(turn) = turn {
@@ -80,7 +79,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>
     #[inline(always)]
     fn add_force(
         &self,
-        _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        _: (&PlanarTree<S, D, J>, &Placed<S, D>),
         pair: &Self::View,
         force: &SVector<S, 4>,
         sum: &mut SVector<S, D>,
@@ -96,7 +95,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>
     #[inline(always)]
     fn add_carried(
         &self,
-        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        (tree, placed): (&PlanarTree<S, D, J>, &Placed<S, D>),
         pair: &Self::View,
         _: &SMatrix<S, 4, D>,
         force: &SVector<S, 4>,
@@ -108,7 +107,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, H: Carrier<D>, P: Carrier<D>
     #[inline(always)]
     fn swept(
         &self,
-        (tree, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        (tree, placed): (&PlanarTree<S, D, J>, &Placed<S, D>),
         pair: &Self::View,
         _: &SMatrix<S, 4, D>,
     ) -> SMatrix<S, 4, D> {

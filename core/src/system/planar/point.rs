@@ -146,63 +146,6 @@ impl<S: Scalar, const D: usize, C: Carrier<D>> At<S, D, C> {
         swept
     }
 
-    /// J̇·V (m/s²).
-    #[inline(always)]
-    pub fn resisted<J: Topology<D>>(&self, topology: &J, placed: &Placed<S, D>) -> Vector2<S> {
-        let rates = &placed.rates;
-        let mut resisted = Vector2::zeros();
-        for k in 0..D {
-            if self.carrier.moves(k) {
-                match topology.kind(k) {
-                    Kind::Turn => resisted -= self.arms[k] * (rates[k] * rates[k]),
-                    Kind::Slide { on: Some(on) } => {
-                        let twice = rates[on] * rates[k];
-                        resisted += left(&placed.axes[k]) * (twice + twice);
-                    }
-                    Kind::Slide { on: None } => {}
-                }
-            }
-        }
-        resisted
-    }
-
-    /// How J̇·V goes by the velocities V and by the place.
-    #[inline(always)]
-    pub fn swept_slopes<J: Topology<D>>(&self, topology: &J, placed: &Placed<S, D>) -> [[Vector2<S>; D]; 2] {
-        let two = S::one() + S::one();
-        let rates = &placed.rates;
-        let by_rate = self.swept(topology, placed, rates).map(|column| column * two);
-        let mut by_place = [Vector2::zeros(); D];
-        for k in 0..D {
-            if self.carrier.moves(k) {
-                match topology.kind(k) {
-                    Kind::Turn => by_place[k] -= left(&self.arms[k]) * (rates[k] * rates[k]),
-                    Kind::Slide { on: Some(on) } => {
-                        let axis = placed.axes[k];
-                        by_place[on] -= axis * (two * rates[on] * rates[k]);
-                        by_place[k] -= axis * (rates[on] * rates[on]);
-                    }
-                    Kind::Slide { on: None } => {}
-                }
-            }
-        }
-        [by_rate, by_place]
-    }
-
-    /// Adds Jᵀ·`columns` to `matrix`.
-    #[inline(always)]
-    pub fn add_product(&self, columns: &[Vector2<S>; D], matrix: &mut SMatrix<S, D, D>) {
-        for j in 0..D {
-            if self.carrier.moves(j) {
-                for i in 0..D {
-                    if self.carrier.moves(i) {
-                        matrix[(i, j)] += self.gradient[i].dot(&columns[j]);
-                    }
-                }
-            }
-        }
-    }
-
     /// Adds ∂(Jᵀ·`force`)/∂Q, the force (N) being held, to `matrix`.
     #[inline(always)]
     pub fn add_curvature<J: Topology<D>>(

@@ -2,8 +2,8 @@
 
 use super::{
     Point, half_turn, left,
+    masses::{Masses, Rigid},
     point::At,
-    rigid::{Many, Rigid, Rigids},
     topology::{Carrier, Kind, Topology},
 };
 use crate::{
@@ -26,18 +26,16 @@ pub enum Coordinate<S> {
     },
 }
 
-/// Bodies in a plane with `D` coordinates. The topology `J` and the bodies `R` may be types, so that what a coordinate does not move
-/// leaves no code.
+/// Bodies in a plane with `D` coordinates. The topology `J` may be a type, so that what a scene does not have leaves no code.
 ///
 /// Body by body the accelerations are J·V̇ + J̇·V; the mass matrix is Σ m·JᵀJ + inertia, exact at every pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanarTree<S, const D: usize, J = [Kind; D], R = Many<S, D>> {
+pub struct PlanarTree<S, const D: usize, J = [Kind; D]> {
     topology: J,
     /// Directions of sliding coordinates, see [`Coordinate`].
     axes: [Vector2<S>; D],
-    bodies: R,
+    masses: Masses<S, D>,
     gravity: Vector2<S>,
-    least_mass: S,
     per_lever: SVector<S, D>,
 }
 
@@ -45,8 +43,7 @@ impl<S: Scalar + PartialOrd, const D: usize> PlanarTree<S, D> {
     /// A tree of `coordinates` and `bodies` under `gravity` (m/s²).
     ///
     /// # Errors
-    /// [`ParameterError`] names the first parameter that is not finite or out of bounds, or that there are more bodies than
-    /// coordinates.
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
     pub fn new(
         coordinates: [Coordinate<S>; D],
         bodies: &[Rigid<S, D>],
@@ -60,30 +57,34 @@ impl<S: Scalar + PartialOrd, const D: usize> PlanarTree<S, D> {
             Coordinate::Turn => Kind::Turn,
             Coordinate::Slide { on, .. } => Kind::Slide { on },
         });
-        Self::of(kinds, axes, Many::new(bodies)?, gravity)
+        Self::of(kinds, axes, bodies, gravity)
     }
 }
 
-impl<S: Scalar + PartialOrd, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> PlanarTree<S, D, J, R> {
+impl<S: Scalar + PartialOrd, J: Topology<D>, const D: usize> PlanarTree<S, D, J> {
     /// A tree of `topology` and `bodies` under `gravity` (m/s²); sliding coordinates go along `axes`, of unit length.
     ///
     /// # Errors
     /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
-    pub fn of(topology: J, axes: [Vector2<S>; D], bodies: R, gravity: Vector2<S>) -> Result<Self, ParameterError<S>> {
+    pub fn of(
+        topology: J,
+        axes: [Vector2<S>; D],
+        bodies: &[Rigid<S, D>],
+        gravity: Vector2<S>,
+    ) -> Result<Self, ParameterError<S>> {
         for component in gravity.iter() {
             bounded("gravity", *component, [-1e4, 1e4])?;
         }
-        let (mut least_mass, mut levers) = (S::from_f64(1e6), [S::from_f64(1e-6); D]);
-        bodies.measure(&mut least_mass, &mut levers)?;
+        let masses = Masses::of(&topology, &axes, bodies)?;
         let mut per_lever = SVector::<S, D>::zeros();
-        for (k, (weight, lever)) in per_lever.iter_mut().zip(levers).enumerate() {
+        for (k, (weight, lever)) in per_lever.iter_mut().zip(masses.levers).enumerate() {
             *weight = if topology.kind(k) == Kind::Turn { S::one() / lever } else { S::one() };
         }
-        Ok(Self { topology, axes, bodies, gravity, least_mass, per_lever })
+        Ok(Self { topology, axes, masses, gravity, per_lever })
     }
 }
 
-impl<S: Scalar, J: Topology<D>, R, const D: usize> PlanarTree<S, D, J, R> {
+impl<S: Scalar, J: Topology<D>, const D: usize> PlanarTree<S, D, J> {
     /// Which coordinates there are.
     pub fn topology(&self) -> &J {
         &self.topology
@@ -92,11 +93,6 @@ impl<S: Scalar, J: Topology<D>, R, const D: usize> PlanarTree<S, D, J, R> {
     /// Directions of sliding coordinates; of no effect for turning ones.
     pub fn axes(&self) -> &[Vector2<S>; D] {
         &self.axes
-    }
-
-    /// The bodies.
-    pub fn rigid(&self) -> &R {
-        &self.bodies
     }
 
     /// Where a point is (m) and how fast it moves (m/s).
@@ -140,7 +136,7 @@ pub struct Placed<S, const D: usize> {
     pub rates: SVector<S, D>,
 }
 
-impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D> for PlanarTree<S, D, J, R> {
+impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D, J> {
     /// Of a turn cosine and sine of half the angle, near unit length; of a slide the displacement (m) and 0.
     type Pose = [[S; 2]; D];
     type Placed = Placed<S, D>;
@@ -255,23 +251,18 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
 
     #[inline(always)]
     fn mass(&self, placed: &Placed<S, D>) -> SMatrix<S, D, D> {
-        let mut mass = SMatrix::<S, D, D>::zeros();
-        self.bodies.add((&self.topology, placed), &self.gravity, Some(&mut mass), None);
-        mass
+        self.masses.at(&self.topology, placed).matrix(&self.topology)
     }
 
     #[inline(always)]
     fn own_force(&self, placed: &Placed<S, D>) -> SVector<S, D> {
-        let mut force = SVector::<S, D>::zeros();
-        self.bodies.add((&self.topology, placed), &self.gravity, None, Some(&mut force));
-        force
+        self.masses.at(&self.topology, placed).force(&self.topology, &self.gravity, &placed.rates)
     }
 
     #[inline(always)]
     fn mass_and_own_force(&self, placed: &Placed<S, D>) -> (SMatrix<S, D, D>, SVector<S, D>) {
-        let (mut mass, mut force) = (SMatrix::<S, D, D>::zeros(), SVector::<S, D>::zeros());
-        self.bodies.add((&self.topology, placed), &self.gravity, Some(&mut mass), Some(&mut force));
-        (mass, force)
+        let moments = self.masses.at(&self.topology, placed);
+        (moments.matrix(&self.topology), moments.force(&self.topology, &self.gravity, &placed.rates))
     }
 
     #[inline(always)]
@@ -282,12 +273,13 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
         damping: &mut SMatrix<S, D, D>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        self.bodies.add_slopes((&self.topology, placed), (&self.gravity, acceleration), damping, stiffness);
+        let moments = self.masses.at(&self.topology, placed);
+        moments.add_slopes(&self.topology, &placed.rates, (&self.gravity, acceleration), damping, stiffness);
     }
 
     #[inline(always)]
     fn least_mass(&self) -> S {
-        self.least_mass
+        self.masses.least
     }
 
     #[inline(always)]
@@ -296,7 +288,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, const D: usize> Bodies<S, D>
     }
 }
 
-impl<S, const D: usize, J, R> ByCoordinate for PlanarTree<S, D, J, R> {}
+impl<S, const D: usize, J> ByCoordinate for PlanarTree<S, D, J> {}
 
 /// `p` turned by the angle whose cosine and sine `by` holds.
 #[inline(always)]

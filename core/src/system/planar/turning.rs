@@ -2,7 +2,6 @@
 
 use super::{
     Placed, PlanarTree,
-    rigid::Rigids,
     topology::{Topology, Turns},
     tree::turned,
 };
@@ -20,13 +19,13 @@ pub struct Turning<A = Option<usize>, B = Option<usize>> {
     pub against: B,
 }
 
-impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D: usize>
-    GradientLink<S, PlanarTree<S, D, J, R>, D, 1> for Turning<A, B>
+impl<S: Scalar, J: Topology<D>, A: Turns, B: Turns, const D: usize> GradientLink<S, PlanarTree<S, D, J>, D, 1>
+    for Turning<A, B>
 {
     type View = ();
 
     #[inline(always)]
-    fn view(&self, _: &PlanarTree<S, D, J, R>, _: &Placed<S, D>) {}
+    fn view(&self, _: &PlanarTree<S, D, J>, _: &Placed<S, D>) {}
 
     #[inline(always)]
     fn moves(&self, k: usize) -> bool {
@@ -34,7 +33,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D:
     }
 
     #[inline(always)]
-    fn seen(&self, (_, placed): (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &()) -> Seen<S, 1> {
+    fn seen(&self, (_, placed): (&PlanarTree<S, D, J>, &Placed<S, D>), (): &()) -> Seen<S, 1> {
         let mut axis = Vector2::new(S::one(), S::zero());
         let mut rate = S::zero();
         if let Some(body) = self.body.turn() {
@@ -50,7 +49,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D:
     }
 
     #[inline(always)]
-    fn gradient(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &()) -> SMatrix<S, 1, D> {
+    fn gradient(&self, _: (&PlanarTree<S, D, J>, &Placed<S, D>), (): &()) -> SMatrix<S, 1, D> {
         let mut gradient = SMatrix::<S, 1, D>::zeros();
         if let Some(body) = self.body.turn() {
             gradient[(0, body)] = S::one();
@@ -64,7 +63,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D:
     #[inline(always)]
     fn add_force(
         &self,
-        _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        _: (&PlanarTree<S, D, J>, &Placed<S, D>),
         (): &(),
         force: &SVector<S, 1>,
         sum: &mut SVector<S, D>,
@@ -80,7 +79,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D:
     #[inline(always)]
     fn add_carried(
         &self,
-        _: (&PlanarTree<S, D, J, R>, &Placed<S, D>),
+        _: (&PlanarTree<S, D, J>, &Placed<S, D>),
         (): &(),
         _: &SMatrix<S, 1, D>,
         _: &SVector<S, 1>,
@@ -89,7 +88,7 @@ impl<S: Scalar, J: Topology<D>, R: Rigids<S, J, D>, A: Turns, B: Turns, const D:
     }
 
     #[inline(always)]
-    fn swept(&self, _: (&PlanarTree<S, D, J, R>, &Placed<S, D>), (): &(), _: &SMatrix<S, 1, D>) -> SMatrix<S, 1, D> {
+    fn swept(&self, _: (&PlanarTree<S, D, J>, &Placed<S, D>), (): &(), _: &SMatrix<S, 1, D>) -> SMatrix<S, 1, D> {
         SMatrix::zeros()
     }
 }

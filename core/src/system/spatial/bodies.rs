@@ -2,13 +2,14 @@
 
 use nalgebra::Matrix3;
 
+use super::blocks::{add_blocks, add_wrench};
 use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector3,
     error::bounded,
-    linear::cross_matrix,
+    linear::{Blocks, cross_columns, cross_matrix},
     pose::{Pose, turn_rate},
-    product::times,
-    system::Bodies,
+    product::{columns, cross, product, times, transposed_times},
+    system::{Axes, Bodies},
 };
 
 /// A rigid body in space.
@@ -101,12 +102,6 @@ fn each_mut<S: Scalar, const D: usize>(of: &mut SVector<S, D>) -> impl Iterator<
     of.data.0[0].as_chunks_mut::<6>().0.iter_mut()
 }
 
-/// The columns of each body in a matrix, six at a time.
-#[inline(always)]
-fn columns_mut<S: Scalar, const D: usize>(of: &mut SMatrix<S, D, D>) -> impl Iterator<Item = &mut [[S; D]; 6]> {
-    of.data.0.as_chunks_mut::<6>().0.iter_mut()
-}
-
 /// A body at a pose and motion.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedBody<S> {
@@ -135,14 +130,57 @@ impl<S: Scalar> PlacedBody<S> {
         }
     }
 
-    /// A `direction` of the frame in the body's axes.
+    /// Principal moments of inertia as a matrix in the axes of the frame (kg·m²).
     #[inline(always)]
-    pub(super) fn in_body(&self, direction: &Vector3<S>) -> Vector3<S> {
-        self.to_frame.tr_mul(direction)
+    fn in_frame(&self, inertia_b: &Vector3<S>) -> Matrix3<S> {
+        let [x, y, z] = columns(&self.to_frame);
+        let scaled = Matrix3::from_columns(&[x * inertia_b.x, y * inertia_b.y, z * inertia_b.z]);
+        product(&scaled, &self.to_frame.transpose())
     }
 }
 
-impl<S: Scalar, const N: usize, const D: usize> Placed<S, N, D> {
+/// Axes in which elements of free bodies add up: those of the frame, for torques too. It holds what leads from the axes of each body
+/// into those of the frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InFrame<S, const N: usize>([Matrix3<S>; N]);
+
+impl<S: Scalar, const N: usize> Default for InFrame<S, N> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self([Matrix3::identity(); N])
+    }
+}
+
+impl<S: Scalar, const N: usize> InFrame<S, N> {
+    /// `v` with the last three numbers of each body `turned`.
+    #[inline(always)]
+    fn turned<const D: usize>(
+        &self,
+        v: &SVector<S, D>,
+        turned: impl Fn(&Matrix3<S>, &Vector3<S>) -> Vector3<S>,
+    ) -> SVector<S, D> {
+        let mut result = *v;
+        for ([.., x, y, z], axes) in each_mut(&mut result).zip(&self.0) {
+            let turned = turned(axes, &Vector3::new(*x, *y, *z));
+            (*x, *y, *z) = (turned.x, turned.y, turned.z);
+        }
+        result
+    }
+}
+
+impl<S: Scalar, const N: usize, const D: usize> Axes<S, D> for InFrame<S, N> {
+    #[inline(always)]
+    fn to_own(&self, v: &SVector<S, D>) -> SVector<S, D> {
+        self.turned(v, times)
+    }
+
+    #[inline(always)]
+    fn to_frame(&self, v: &SVector<S, D>) -> SVector<S, D> {
+        self.turned(v, transposed_times)
+    }
+}
+
+impl<S: Scalar, const N: usize> Placed<S, N> {
     /// The body of this number; one that is not there stands still.
     #[inline(always)]
     pub(super) fn body(&self, number: usize) -> PlacedBody<S> {
@@ -152,18 +190,17 @@ impl<S: Scalar, const N: usize, const D: usize> Placed<S, N, D> {
 
 /// All bodies at a pose and motion.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed<S, const N: usize, const D: usize> {
+pub struct Placed<S, const N: usize> {
     /// Body by body.
     pub bodies: [PlacedBody<S>; N],
-    /// Generalised velocities.
-    pub rates: SVector<S, D>,
 }
 
 impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N, D> {
     type Pose = [Pose<S>; N];
-    type Placed = Placed<S, N, D>;
-    type Mass = ();
-    type Axes = ();
+    type Placed = Placed<S, N>;
+    /// Moments of inertia, in the axes of the frame (kg·m²).
+    type Mass = [Matrix3<S>; N];
+    type Axes = InFrame<S, N>;
     type Jacobian = SMatrix<S, D, D>;
 
     const MASS_IS_CONSTANT: bool = true;
@@ -228,35 +265,43 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
             let rotation_w = times(&to_frame, &rotation_b);
             *body = PlacedBody { to_frame, displacement_w: pose.displacement_w, velocity_w, rotation_b, rotation_w };
         }
-        Placed { bodies, rates: *velocity }
+        Placed { bodies }
     }
 
     #[inline(always)]
-    fn axes(&self, _: &Self::Placed) {}
+    fn axes(&self, placed: &Self::Placed) -> InFrame<S, N> {
+        InFrame(placed.bodies.each_ref().map(|at| at.to_frame))
+    }
 
     #[inline(always)]
-    fn mass(&self, _: &Self::Placed) {}
-
-    #[inline(always)]
-    fn inertia(&self, (): &(), rate: S) -> SMatrix<S, D, D> {
-        let mut inertia = SMatrix::<S, D, D>::zeros();
-        for ((k, column), moment) in inertia.data.0.iter_mut().enumerate().zip(self.moments()) {
-            if let Some(entry) = column.get_mut(k) {
-                *entry = moment * rate;
-            }
+    fn mass(&self, placed: &Self::Placed) -> [Matrix3<S>; N] {
+        let mut inertia = [Matrix3::zeros(); N];
+        for ((inertia, body), at) in inertia.iter_mut().zip(&self.bodies).zip(&placed.bodies) {
+            *inertia = at.in_frame(&body.inertia_b);
         }
         inertia
     }
 
     #[inline(always)]
-    fn momentum(&self, (): &(), velocity: &SVector<S, D>) -> SVector<S, D> {
+    fn inertia(&self, mass: &[Matrix3<S>; N], rate: S) -> SMatrix<S, D, D> {
+        let mut sum = SMatrix::<S, D, D>::zeros();
+        let zero = Matrix3::zeros();
+        for (i, (body, inertia)) in self.bodies.iter().zip(mass).enumerate() {
+            let a = Matrix3::from_diagonal_element(body.mass * rate);
+            add_blocks(&mut sum, [i; 2], &Blocks { a, b: zero, c: zero, d: inertia * rate });
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn momentum(&self, _: &[Matrix3<S>; N], velocity: &SVector<S, D>) -> SVector<S, D> {
         let mut momentum = *velocity;
         momentum.iter_mut().zip(self.moments()).for_each(|(x, moment)| *x *= moment);
         momentum
     }
 
     #[inline(always)]
-    fn velocity(&self, (): &(), momentum: &SVector<S, D>) -> SVector<S, D> {
+    fn velocity(&self, _: &[Matrix3<S>; N], momentum: &SVector<S, D>) -> SVector<S, D> {
         let mut velocity = *momentum;
         velocity.iter_mut().zip(self.moments()).for_each(|(x, moment)| *x /= moment);
         velocity
@@ -265,10 +310,9 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     #[inline(always)]
     fn own_force(&self, placed: &Self::Placed) -> SVector<S, D> {
         let mut force = SVector::<S, D>::zeros();
-        for ((body, at), force) in self.bodies.iter().zip(&placed.bodies).zip(each_mut(&mut force)) {
-            let momentum = at.rotation_b.component_mul(&body.inertia_b);
-            let (weight, torque) = (self.gravity_w * body.mass, momentum.cross(&at.rotation_b));
-            *force = [weight.x, weight.y, weight.z, torque.x, torque.y, torque.z];
+        for (i, (body, at)) in self.bodies.iter().zip(&placed.bodies).enumerate() {
+            let torque_b = cross(&at.rotation_b.component_mul(&body.inertia_b), &at.rotation_b);
+            add_wrench(&mut force, i, [&(self.gravity_w * body.mass), &times(&at.to_frame, &torque_b)]);
         }
         force
     }
@@ -281,14 +325,12 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
         damping: &mut SMatrix<S, D, D>,
         _: &mut SMatrix<S, D, D>,
     ) {
-        let bodies = self.bodies.iter().zip(&placed.bodies).zip(columns_mut(damping));
-        for (i, ((body, at), [.., x, y, z])) in bodies.enumerate() {
-            let momentum = at.rotation_b.component_mul(&body.inertia_b);
-            let gyroscopic =
-                cross_matrix(&at.rotation_b) * Matrix3::from_diagonal(&body.inertia_b) - cross_matrix(&momentum);
-            for (column, own) in [x, y, z].into_iter().zip(&gyroscopic.data.0) {
-                column.iter_mut().skip(6 * i + 3).zip(own).for_each(|(entry, own)| *entry += *own);
-            }
+        let zero = Matrix3::zeros();
+        for (i, (body, at)) in self.bodies.iter().zip(&placed.bodies).enumerate() {
+            let inertia = at.in_frame(&body.inertia_b);
+            let momentum = times(&inertia, &at.rotation_w);
+            let d = cross_columns(&at.rotation_w, &inertia) - cross_matrix(&momentum);
+            add_blocks(damping, [i; 2], &Blocks { a: zero, b: zero, c: zero, d });
         }
     }
 

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
     linear::{Blocks, cross_matrix, twice_crossed},
-    product::{cross, dot, outer},
+    product::{cross, dot, outer, times},
     system::{Law, Link, Response, Seen},
 };
 
@@ -51,7 +51,7 @@ impl<S: Scalar, const R: usize> Speeds<S, R> {
     fn new(at: &PlacedBody<S>, [by_velocity, by_turning, by_turn]: [[Vector3<S>; R]; 3]) -> Self {
         let mut rate = SVector::<S, R>::zeros();
         for ((rate, by_velocity), by_turning) in rate.iter_mut().zip(&by_velocity).zip(&by_turning) {
-            *rate = dot(by_velocity, &at.velocity_w) + dot(by_turning, &at.rotation_b);
+            *rate = dot(by_velocity, &at.velocity_w) + dot(by_turning, &at.rotation_w);
         }
         Self { rate, by_velocity, by_turning, by_turn }
     }
@@ -106,15 +106,15 @@ impl<S: Scalar> Sees<2> for Along<S> {
 
     #[inline(always)]
     fn speeds(&self, at: &PlacedBody<S>) -> Speeds<S, 2> {
-        let (axis_b, none) = (at.in_body(&self.axis_w), Vector3::zeros());
+        let (axis, lever, none) = (&self.axis_w, times(&at.to_frame, &self.lever), Vector3::zeros());
         // ω·(lever × axis), the axis turning against the body: ∂axis = axis × θ.
-        let by_turn = cross(&axis_b, &cross(&self.lever, &at.rotation_b));
-        Speeds::new(at, [[self.axis_w; 2], [cross(&self.lever, &axis_b), none], [by_turn, none]])
+        let by_turn = cross(axis, &cross(&lever, &at.rotation_w));
+        Speeds::new(at, [[*axis; 2], [cross(&lever, axis), none], [by_turn, none]])
     }
 
     #[inline(always)]
     fn carried(&self, at: &PlacedBody<S>, force: &SVector<S, 2>) -> Matrix3<S> {
-        twice_crossed(&outer(&(at.in_body(&self.axis_w) * force[0]), &self.lever))
+        twice_crossed(&outer(&(self.axis_w * force[0]), &times(&at.to_frame, &self.lever)))
     }
 }
 
@@ -128,14 +128,13 @@ impl<S: Scalar> Sees<1> for About<S> {
 
     #[inline(always)]
     fn speeds(&self, at: &PlacedBody<S>) -> Speeds<S, 1> {
-        let axis_b = at.in_body(&self.axis_w);
         // ω·axis with ∂axis = axis × θ.
-        Speeds::new(at, [[Vector3::zeros()], [axis_b], [cross(&at.rotation_b, &axis_b)]])
+        Speeds::new(at, [[Vector3::zeros()], [self.axis_w], [cross(&at.rotation_w, &self.axis_w)]])
     }
 
     #[inline(always)]
-    fn carried(&self, at: &PlacedBody<S>, force: &SVector<S, 1>) -> Matrix3<S> {
-        cross_matrix(&(at.in_body(&self.axis_w) * force[0]))
+    fn carried(&self, _: &PlacedBody<S>, force: &SVector<S, 1>) -> Matrix3<S> {
+        cross_matrix(&(self.axis_w * force[0]))
     }
 }
 
@@ -147,19 +146,19 @@ where
     type View = Speeds<S, R>;
 
     #[inline(always)]
-    fn view(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Speeds<S, R> {
+    fn view(&self, _: &FreeBodies<S, N, D>, placed: &Placed<S, N>) -> Speeds<S, R> {
         self.speeds(&placed.body(self.body()))
     }
 
     #[inline(always)]
-    fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &Speeds<S, R>) -> Seen<S, R> {
+    fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N>), view: &Speeds<S, R>) -> Seen<S, R> {
         Seen { place: SVector::zeros(), rate: view.rate }
     }
 
     #[inline(always)]
     fn add_force(
         &self,
-        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: (&FreeBodies<S, N, D>, &Placed<S, N>),
         view: &Speeds<S, R>,
         force: &SVector<S, R>,
         sum: &mut SVector<S, D>,
@@ -172,7 +171,7 @@ where
     #[inline(always)]
     fn add_impedance<W: Law<S, R>>(
         &self,
-        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N>),
         view: &Speeds<S, R>,
         response: &Response<S, R>,
         a: S,
@@ -188,7 +187,7 @@ where
     #[inline(always)]
     fn add_derivatives<W: Law<S, R>>(
         &self,
-        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        (_, placed): (&FreeBodies<S, N, D>, &Placed<S, N>),
         view: &Speeds<S, R>,
         response: &Response<S, R>,
         damping: &mut SMatrix<S, D, D>,

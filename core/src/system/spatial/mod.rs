@@ -11,7 +11,7 @@ mod pair;
 mod seat;
 mod turned;
 
-pub use bodies::{FreeBodies, Placed, PlacedBody, Rigid};
+pub use bodies::{FreeBodies, InFrame, Placed, PlacedBody, Rigid};
 pub use driven::{About, Along};
 pub use floating::{Floating, PinOfFrame, Pull};
 pub(crate) use floating::{Placed as FloatingPlaced, split};

@@ -1,14 +1,15 @@
 //! Two bodies as a link between them sees them: how a force between them acts, and how it changes as they move.
 //!
-//! All is told in the axes of the link, which stand still in the body that it looks from. There their motion has three parts: how
-//! fast the one centre of mass moves against the other, a; how fast the body that is looked at turns, b; and how fast the body that
-//! it is looked at from turns, c. With r and ℓ from either centre of mass to the point, the point moves by a + b × r − c × ℓ and
-//! its body turns by b − c. So a force f at the point and a moment m do work on the parts by f, r × f + m and −(ℓ × f + m).
+//! The axes of the link stand still in the body that it looks from; all but places and laws is told in those of the frame. The motion
+//! of the bodies has three parts: how fast the one centre of mass moves against the other, a; how fast the body that is looked at
+//! turns, b; and how fast the body that it is looked at from turns, c. With r and ℓ from either centre of mass to the point, the
+//! point moves by a + b × r − c × ℓ and its body turns by b − c. So a force f at the point and a moment m do work on the parts by f,
+//! r × f + m and −(ℓ × f + m).
 
 use nalgebra::Matrix3;
 
 use super::{
-    FreeBodies, Placed, PlacedBody, Seat,
+    FreeBodies, Placed, Seat,
     blocks::{add_blocks, add_wrench},
 };
 use crate::{
@@ -29,13 +30,9 @@ type Change<S, const H: usize> = [[Matrix3<S>; 3]; H];
 pub struct Pair<S> {
     /// Which bodies: the one that is looked at, the one that it is looked at from.
     bodies: [Option<usize>; 2],
-    /// From the frame into the axes of the link; `None` where they are those of the frame.
-    from_frame: Option<Matrix3<S>>,
-    /// From the axes of the body that is looked at.
-    across: Matrix3<S>,
-    /// From those of the body that it is looked at from; `None` where they are those of the link.
-    own: Option<Matrix3<S>>,
-    /// Of the point since the nominal poses (m).
+    /// From the axes of the frame into those of the link; `None` where these are the same.
+    axes: Option<Matrix3<S>>,
+    /// Of the point since the nominal poses, in the axes of the link (m).
     pub(super) displacement: Vector3<S>,
     /// From either centre of mass to the point, r and ℓ (m).
     levers: [Vector3<S>; 2],
@@ -45,108 +42,107 @@ pub struct Pair<S> {
     turning: [Vector3<S>; 2],
 }
 
-/// The `H` vectors of a link's numbers in order.
-#[inline(always)]
-fn in_vectors<S: Scalar, const R: usize, const H: usize>(numbers: &SVector<S, R>) -> [Vector3<S>; H] {
-    let mut vectors = [Vector3::zeros(); H];
-    for (vector, three) in vectors.iter_mut().zip(numbers.data.0[0].as_chunks::<3>().0) {
-        *vector = Vector3::from(*three);
-    }
-    vectors
-}
-
-/// The 3 × 3 blocks of a link's entries in order, `H` by `H` of them.
-#[inline(always)]
-fn in_blocks<S: Scalar, const R: usize, const H: usize>(entries: &SMatrix<S, R, R>) -> AtPoint<S, H> {
-    let mut blocks = [[Matrix3::zeros(); H]; H];
-    for (i, row) in blocks.iter_mut().enumerate() {
-        for (block, columns) in row.iter_mut().zip(entries.data.0.as_chunks::<3>().0) {
-            for (to, from) in block.data.0.iter_mut().zip(columns) {
-                to.iter_mut().zip(from.iter().skip(3 * i)).for_each(|(to, from)| *to = *from);
-            }
-        }
-    }
-    blocks
-}
-
 impl<S: Scalar> Pair<S> {
     /// The point of `seat` seen in the axes of the body that it is seen from.
     #[inline(always)]
     pub(super) fn new<const N: usize, const D: usize>(
         seat: &Seat<S>,
         bodies: &FreeBodies<S, N, D>,
-        placed: &Placed<S, N, D>,
+        placed: &Placed<S, N>,
     ) -> Self {
-        let centre = |body: Option<usize>| {
-            body.and_then(|body| bodies.bodies().get(body)).map_or(Vector3::zeros(), |body| body.centre_w)
-        };
-        let lever = &seat.point.lever;
-        let nominal = centre(seat.point.body) + lever - centre(seat.from);
-        let of = seat.point.body.map_or(PlacedBody::still(), |body| placed.body(body));
-        let arm_w = times(&of.to_frame, lever);
-        let moved_w = of.displacement_w + (arm_w - lever);
-        let bodies = [seat.point.body, seat.from];
-        match seat.from {
-            Some(body) => {
-                let from = placed.body(body);
-                let from_frame = from.to_frame.transpose();
-                let seen = |of: &Vector3<S>| times(&from_frame, of);
-                let displacement = (seen(&nominal) - nominal) + seen(&(moved_w - from.displacement_w));
-                Self {
-                    bodies,
-                    from_frame: Some(from_frame),
-                    across: product(&from_frame, &of.to_frame),
-                    own: None,
-                    displacement,
-                    levers: [seen(&arm_w), nominal + displacement],
-                    velocity: seen(&(of.velocity_w - from.velocity_w)),
-                    turning: [seen(&of.rotation_w), from.rotation_b],
-                }
-            }
-            None => Self {
+        let centre = |body: usize| bodies.bodies().get(body).map_or(Vector3::zeros(), |body| body.centre_w);
+        let (lever, none) = (seat.point.lever, Vector3::zeros());
+        let of = seat.point.body.and_then(|body| Some((body, placed.bodies.get(body)?)));
+        let (mut nominal, mut moved, mut arm, mut velocity, mut turns) = (lever, none, lever, none, none);
+        if let Some((i, of)) = of {
+            arm = times(&of.to_frame, &lever);
+            nominal += centre(i);
+            moved = of.displacement_w + (arm - lever);
+            (velocity, turns) = (of.velocity_w, of.rotation_w);
+        }
+        let Some((j, from)) = seat.from.and_then(|body| Some((body, placed.bodies.get(body)?))) else {
+            let bodies = [of.map(|(i, _)| i), None];
+            return Self {
                 bodies,
-                from_frame: None,
-                across: of.to_frame,
-                own: None,
-                displacement: moved_w,
-                levers: [arm_w, nominal + moved_w],
-                velocity: of.velocity_w,
-                turning: [of.rotation_w, Vector3::zeros()],
-            },
+                axes: None,
+                displacement: moved,
+                levers: [arm, nominal + moved],
+                velocity,
+                turning: [turns, none],
+            };
+        };
+        nominal -= centre(j);
+        moved -= from.displacement_w;
+        let axes = from.to_frame.transpose();
+        Self {
+            bodies: [of.map(|(i, _)| i), Some(j)],
+            axes: Some(axes),
+            // Differences of small numbers, so that f32 keeps its digits.
+            displacement: (times(&axes, &nominal) - nominal) + times(&axes, &moved),
+            levers: [arm, nominal + moved],
+            velocity: velocity - from.velocity_w,
+            turning: [turns, from.rotation_w],
         }
     }
 
     /// The same in other `axes`, columns in those of now.
     #[inline(always)]
-    pub(super) fn in_axes(&self, axes: &Matrix3<S>) -> Self {
-        let turned = |v: &Vector3<S>| transposed_times(axes, v);
-        let own = axes.transpose();
-        let [[r, l], [b, c]] = [&self.levers, &self.turning];
+    pub(super) fn in_axes(self, axes: &Matrix3<S>) -> Self {
+        let rows = axes.transpose();
         Self {
-            from_frame: Some(self.from_frame.map_or(own, |from_frame| product(&own, &from_frame))),
-            across: product(&own, &self.across),
-            own: Some(own),
-            displacement: turned(&self.displacement),
-            levers: [turned(r), turned(l)],
-            velocity: turned(&self.velocity),
-            turning: [turned(b), turned(c)],
-            ..*self
+            axes: Some(self.axes.map_or(rows, |now| product(&rows, &now))),
+            displacement: transposed_times(axes, &self.displacement),
+            ..self
         }
     }
 
-    /// How fast the point moves (m/s).
+    /// In the axes of the link, of what the frame has.
+    #[inline(always)]
+    fn seen(&self, vector: Vector3<S>) -> Vector3<S> {
+        self.axes.map_or(vector, |axes| times(&axes, &vector))
+    }
+
+    /// How fast the point moves, in the axes of the link (m/s).
     #[inline(always)]
     pub(super) fn rate(&self) -> Vector3<S> {
         let [[r, l], [b, c]] = [&self.levers, &self.turning];
         let rate = self.velocity + cross(b, r);
-        if self.bodies[1].is_some() { rate - cross(c, l) } else { rate }
+        self.seen(if self.bodies[1].is_some() { rate - cross(c, l) } else { rate })
     }
 
-    /// How fast its body turns (rad/s).
+    /// How fast its body turns, in the axes of the link (rad/s).
     #[inline(always)]
     pub(super) fn turning(&self) -> Vector3<S> {
         let [b, c] = &self.turning;
-        if self.bodies[1].is_some() { b - c } else { *b }
+        self.seen(if self.bodies[1].is_some() { b - c } else { *b })
+    }
+
+    /// The vectors of a link's `numbers`, in the axes of the frame.
+    #[inline(always)]
+    fn vectors<const R: usize, const H: usize>(&self, numbers: &SVector<S, R>) -> [Vector3<S>; H] {
+        let mut vectors = [Vector3::zeros(); H];
+        for (vector, three) in vectors.iter_mut().zip(numbers.data.0[0].as_chunks::<3>().0) {
+            let three = Vector3::from(*three);
+            *vector = self.axes.map_or(three, |axes| transposed_times(&axes, &three));
+        }
+        vectors
+    }
+
+    /// The 3 × 3 blocks of a link's `entries`, in the axes of the frame.
+    #[inline(always)]
+    fn blocks<const R: usize, const H: usize>(&self, entries: &SMatrix<S, R, R>) -> AtPoint<S, H> {
+        let mut blocks = [[Matrix3::zeros(); H]; H];
+        for (i, row) in blocks.iter_mut().enumerate() {
+            for (block, columns) in row.iter_mut().zip(entries.data.0.as_chunks::<3>().0) {
+                for (to, from) in block.data.0.iter_mut().zip(columns) {
+                    to.iter_mut().zip(from.iter().skip(3 * i)).for_each(|(to, from)| *to = *from);
+                }
+                if let Some(axes) = &self.axes {
+                    *block = product(&axes.transpose(), &product(block, axes));
+                }
+            }
+        }
+        blocks
     }
 
     /// Adds the generalised force (N, N·m) of a `force` (N) at the point and, where `H` is 2, of a moment (N·m).
@@ -156,17 +152,14 @@ impl<S: Scalar> Pair<S> {
         force: &SVector<S, R>,
         sum: &mut SVector<S, D>,
     ) {
-        let (push, moment) = force_and_moment(&in_vectors::<S, R, H>(force));
+        let (push, moment) = force_and_moment(&self.vectors::<R, H>(force));
         let [r, l] = &self.levers;
-        let push_w = self.from_frame.map_or(push, |from_frame| transposed_times(&from_frame, &push));
         let with_moment = |torque: Vector3<S>| moment.map_or(torque, |moment| torque + moment);
         if let Some(i) = self.bodies[0] {
-            add_wrench(sum, i, [&push_w, &transposed_times(&self.across, &with_moment(cross(r, &push)))]);
+            add_wrench(sum, i, [&push, &with_moment(cross(r, &push))]);
         }
         if let Some(j) = self.bodies[1] {
-            let torque = with_moment(cross(l, &push));
-            let torque = self.own.map_or(torque, |own| transposed_times(&own, &torque));
-            add_wrench(sum, j, [&-push_w, &-torque]);
+            add_wrench(sum, j, [&-push, &-with_moment(cross(l, &push))]);
         }
     }
 
@@ -178,12 +171,12 @@ impl<S: Scalar> Pair<S> {
         a: S,
         matrix: &mut SMatrix<S, D, D>,
     ) {
-        let (by_rate, by_place) = (in_blocks::<S, R, H>(&response.impedance), in_blocks(&response.stiffness));
+        let (by_rate, by_place) = (self.blocks::<R, H>(&response.impedance), self.blocks(&response.stiffness));
         let mut change = self.by_velocity(&by_rate);
         for (row, by_place) in change.iter_mut().zip(self.by_place(&by_place, &by_rate)) {
             row.iter_mut().zip(by_place).for_each(|(entry, by_place)| *entry += by_place * a);
         }
-        self.add(&change, Some(&in_vectors(&(response.force * a))), matrix);
+        self.add(&change, Some(&self.vectors(&(response.force * a))), matrix);
     }
 
     /// See [`Link::add_derivatives`](crate::system::Link::add_derivatives).
@@ -194,9 +187,9 @@ impl<S: Scalar> Pair<S> {
         damping: &mut SMatrix<S, D, D>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let (by_rate, by_place) = (in_blocks::<S, R, H>(&response.impedance), in_blocks(&response.stiffness));
+        let (by_rate, by_place) = (self.blocks::<R, H>(&response.impedance), self.blocks(&response.stiffness));
         self.add(&self.by_velocity(&by_rate), None, damping);
-        self.add(&self.by_place(&by_place, &by_rate), Some(&in_vectors(&response.force)), stiffness);
+        self.add(&self.by_place(&by_place, &by_rate), Some(&self.vectors(&response.force)), stiffness);
     }
 
     /// How forces change by the parts of motion where `by` tells how by the rates at the point.
@@ -275,33 +268,16 @@ impl<S: Scalar> Pair<S> {
                 parts[2][2] -= twice_crossed(&outer(l, &push));
             }
         }
-        self.add_parts(&parts, matrix);
-    }
-
-    /// Adds what acts on the three parts of motion by these to the rows and columns of the bodies.
-    #[inline(always)]
-    fn add_parts<const D: usize>(&self, parts: &[[Matrix3<S>; 3]; 3], matrix: &mut SMatrix<S, D, D>) {
-        let [[aa, ab, ac], [ba, bb, bc], [ca, cb, cc]] = parts;
-        let (x, x_rows) = (&self.across, self.across.transpose());
-        // Columns by velocities, and by the angular velocity that is looked from, and forces and torques of these.
-        let by_frame = |part: &Matrix3<S>| self.from_frame.map_or(*part, |t| product(part, &t));
-        let to_frame = |part: &Matrix3<S>| self.from_frame.map_or(*part, |t| product(&t.transpose(), part));
-        let by_own = |part: &Matrix3<S>| self.own.map_or(*part, |own| product(part, &own));
-        let to_own = |part: &Matrix3<S>| self.own.map_or(*part, |own| product(&own.transpose(), part));
-        let a = to_frame(&by_frame(aa));
-        let b = to_frame(&product(ab, x));
-        let c = by_frame(&product(&x_rows, ba));
+        let [[a, ab, ac], [ba, bb, bc], [ca, cb, cc]] = parts;
         if let Some(i) = self.bodies[0] {
-            add_blocks(matrix, [i, i], &Blocks { a, b, c, d: product(&x_rows, &product(bb, x)) });
+            add_blocks(matrix, [i, i], &Blocks { a, b: ab, c: ba, d: bb });
         }
         if let Some(j) = self.bodies[1] {
-            let ac = by_own(&to_frame(ac));
-            let ca = to_own(&by_frame(ca));
             if let Some(i) = self.bodies[0] {
-                add_blocks(matrix, [i, j], &Blocks { a: -a, b: ac, c: -c, d: by_own(&product(&x_rows, bc)) });
-                add_blocks(matrix, [j, i], &Blocks { a: -a, b: -b, c: ca, d: to_own(&product(cb, x)) });
+                add_blocks(matrix, [i, j], &Blocks { a: -a, b: ac, c: -ba, d: bc });
+                add_blocks(matrix, [j, i], &Blocks { a: -a, b: -ab, c: ca, d: cb });
             }
-            add_blocks(matrix, [j, j], &Blocks { a, b: -ac, c: -ca, d: to_own(&by_own(cc)) });
+            add_blocks(matrix, [j, j], &Blocks { a, b: -ac, c: -ca, d: cc });
         }
     }
 }

@@ -28,19 +28,19 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     type View = Pair<S>;
 
     #[inline(always)]
-    fn view(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Pair<S> {
+    fn view(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N>) -> Pair<S> {
         Pair::new(self, bodies, placed)
     }
 
     #[inline(always)]
-    fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &Pair<S>) -> Seen<S, 3> {
+    fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N>), view: &Pair<S>) -> Seen<S, 3> {
         Seen { place: view.displacement, rate: view.rate() }
     }
 
     #[inline(always)]
     fn add_force(
         &self,
-        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: (&FreeBodies<S, N, D>, &Placed<S, N>),
         view: &Pair<S>,
         force: &SVector<S, 3>,
         sum: &mut SVector<S, D>,
@@ -51,7 +51,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     #[inline(always)]
     fn add_impedance<W: Law<S, 3>>(
         &self,
-        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: (&FreeBodies<S, N, D>, &Placed<S, N>),
         view: &Pair<S>,
         response: &Response<S, 3>,
         a: S,
@@ -63,7 +63,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
     #[inline(always)]
     fn add_derivatives<W: Law<S, 3>>(
         &self,
-        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: (&FreeBodies<S, N, D>, &Placed<S, N>),
         view: &Pair<S>,
         response: &Response<S, 3>,
         damping: &mut SMatrix<S, D, D>,

@@ -54,13 +54,13 @@ impl<S: Scalar, A: TurnedAxes<S>, const N: usize, const D: usize> Link<S, FreeBo
     type View = Pair<S>;
 
     #[inline(always)]
-    fn view(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N, D>) -> Pair<S> {
+    fn view(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N>) -> Pair<S> {
         let pair = Pair::new(&self.seat, bodies, placed);
         self.axes.columns().map_or(pair, |axes| pair.in_axes(&axes))
     }
 
     #[inline(always)]
-    fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N, D>), view: &Pair<S>) -> Seen<S, 6> {
+    fn seen(&self, _: (&FreeBodies<S, N, D>, &Placed<S, N>), view: &Pair<S>) -> Seen<S, 6> {
         let (place, rate, turning, zero) = (view.displacement, view.rate(), view.turning(), S::zero());
         Seen {
             place: SVector::<S, 6>::from([place.x, place.y, place.z, zero, zero, zero]),
@@ -71,7 +71,7 @@ impl<S: Scalar, A: TurnedAxes<S>, const N: usize, const D: usize> Link<S, FreeBo
     #[inline(always)]
     fn add_force(
         &self,
-        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: (&FreeBodies<S, N, D>, &Placed<S, N>),
         view: &Pair<S>,
         force: &SVector<S, 6>,
         sum: &mut SVector<S, D>,
@@ -82,7 +82,7 @@ impl<S: Scalar, A: TurnedAxes<S>, const N: usize, const D: usize> Link<S, FreeBo
     #[inline(always)]
     fn add_impedance<W: Law<S, 6>>(
         &self,
-        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: (&FreeBodies<S, N, D>, &Placed<S, N>),
         view: &Pair<S>,
         response: &Response<S, 6>,
         a: S,
@@ -94,7 +94,7 @@ impl<S: Scalar, A: TurnedAxes<S>, const N: usize, const D: usize> Link<S, FreeBo
     #[inline(always)]
     fn add_derivatives<W: Law<S, 6>>(
         &self,
-        _: (&FreeBodies<S, N, D>, &Placed<S, N, D>),
+        _: (&FreeBodies<S, N, D>, &Placed<S, N>),
         view: &Pair<S>,
         response: &Response<S, 6>,
         damping: &mut SMatrix<S, D, D>,

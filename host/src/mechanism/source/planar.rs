@@ -33,17 +33,20 @@ fn carrier<const D: usize>(chain: &Chain<D>) -> String {
     }
 }
 
+/// A point whose carrier is a type.
 fn point<const D: usize>(point: &Point<f64, D>) -> String {
-    let arms: Vec<_> = point.arms.iter().map(|arm| vector(arm.as_slice())).collect();
-    format!("Point {{ carrier: Path, base: {}, arms: [{}] }}", vector(point.base.as_slice()), arms.join(", "))
+    carried(point, "Path")
 }
 
-fn rigid<const D: usize>(body: &Rigid<f64, D>) -> Typed {
+fn carried<const D: usize>(point: &Point<f64, D>, carrier: &str) -> String {
+    let arms: Vec<_> = point.arms.iter().map(|arm| vector(arm.as_slice())).collect();
+    format!("Point {{ carrier: {carrier}, base: {}, arms: [{}] }}", vector(point.base.as_slice()), arms.join(", "))
+}
+
+fn rigid<const D: usize>(body: &Rigid<f64, D>) -> String {
     let Rigid { mass, inertia, centre } = body;
-    Typed {
-        of: format!("Rigid<S, {D}, {}>", carrier(&centre.carrier)),
-        value: format!("Rigid {{ mass: s({mass:?}), inertia: s({inertia:?}), centre: {} }}", point(centre)),
-    }
+    let centre = carried(centre, &format!("{:?}", centre.carrier));
+    format!("Rigid {{ mass: s({mass:?}), inertia: s({inertia:?}), centre: {centre} }}")
 }
 
 fn of<const D: usize>(mechanism: &Mechanism, mounts: &Mounts, contacts: &mut Contacts) -> Result<Parts, RunError> {
@@ -62,23 +65,26 @@ fn of<const D: usize>(mechanism: &Mechanism, mounts: &Mounts, contacts: &mut Con
         }
         head.push_str("            _ => Kind::Turn,\n        }\n    }\n}\n\n");
     }
-    let rigid = nested(tree.rigid().iter().map(rigid).collect());
+    let rigid: Vec<_> = planar::rigid::<D>(mechanism, mounts).iter().map(rigid).collect();
     let axes: Vec<_> = tree.axes().iter().map(|axis| vector(axis.as_slice())).collect();
     let gravity = mechanism.gravity;
     let bodies = Typed {
-        of: format!("PlanarTree<S, {D}, Joints, {}>", rigid.of),
+        of: format!("PlanarTree<S, {D}, Joints>"),
         value: format!(
-            "PlanarTree::of(Joints, [{}], {}, {})?",
+            "PlanarTree::of(Joints, [{}], &[{}], {})?",
             axes.join(", "),
-            rigid.value,
+            rigid.join(", "),
             vector(&[gravity[0], gravity[1]])
         ),
     };
-    let mut names = vec!["Kind", "Path", "PlanarTree", "Point", "Rigid", "Topology"];
+    let mut names = vec!["Chain", "Kind", "PlanarTree", "Point", "Rigid", "Topology"];
     let mut laws = Vec::new();
     let elements = elements::<D>(mechanism, mounts, contacts, &mut laws, &mut names)?;
     let all = nested(grouped(&elements));
-    if all.of.contains("Frame") || bodies.of.contains("Frame") {
+    if all.value.contains("Path") {
+        names.push("Path");
+    }
+    if all.of.contains("Frame") {
         names.push("Frame");
     }
     let Rest { places, rates } = Rest::<D>::of(mechanism, mounts);

@@ -10,7 +10,7 @@ use slipfit_core::{
     system::{
         Driving, Element, System,
         law::{Contact, Journal, Motor},
-        planar::{Between, Frame, Kind, Path, PlanarTree, Point, Rigid, Topology, Turning},
+        planar::{Between, Chain, Frame, Kind, Path, PlanarTree, Point, Rigid, Topology, Turning},
     },
 };
 
@@ -41,7 +41,7 @@ impl Topology<3> for Joints {
 pub const SCENE_HASH: u64 = 0x746ae030bc1376a4;
 
 /// The bodies.
-pub type Bodies<S> = PlanarTree<S, 3, Joints, (Rigid<S, 3, Path<0b001, 0>>, (Rigid<S, 3, Path<0b011, 1>>, Rigid<S, 3, Path<0b100, 2>>))>;
+pub type Bodies<S> = PlanarTree<S, 3, Joints>;
 
 /// What acts on them.
 pub type Elements<S> = (Element<Between<S, 3, Path<0b011, 1>, Path<0b100, 2>>, Journal<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 4>, Element<Turning<Path<0b001, 0>, Frame>, Motor<Drive<S>>, 1>);
@@ -63,7 +63,7 @@ pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> 
     let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
     let gaps = [gap(GAPS[0], 0.0)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(100000000.0))?, s(200.0), s(1e-5))?, friction: Regularised::new(s(0.1), s(0.001))? };
-    let bodies = PlanarTree::of(Joints, [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))], (Rigid { mass: s(0.15), inertia: s(5e-5), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.021939564047259316), s(0.011985638465105076)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, (Rigid { mass: s(0.3), inertia: s(0.0008), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.04387912809451863), s(0.02397127693021015)), Vector2::new(s(0.07046777432475364), s(0.04753201848980949)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.2), inertia: s(0.0003), centre: Point { carrier: Path, base: Vector2::new(s(0.2), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(-0.007592661627987052), s(0.05951765695491459))] } })), Vector2::new(s(0.0), s(-9.81)))?;
+    let bodies = PlanarTree::of(Joints, [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))], &[Rigid { mass: s(0.15), inertia: s(5e-5), centre: Point { carrier: Chain { turn: Some(0), moves: [true, false, false] }, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.021939564047259316), s(0.011985638465105076)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.3), inertia: s(0.0008), centre: Point { carrier: Chain { turn: Some(1), moves: [true, true, false] }, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.04387912809451863), s(0.02397127693021015)), Vector2::new(s(0.07046777432475364), s(0.04753201848980949)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.2), inertia: s(0.0003), centre: Point { carrier: Chain { turn: Some(2), moves: [false, false, true] }, base: Vector2::new(s(0.2), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(-0.007592661627987052), s(0.05951765695491459))] } }], Vector2::new(s(0.0), s(-9.81)))?;
     let elements = (Element { link: Between { hole: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.04387912809451863), s(0.02397127693021015)), Vector2::new(s(0.14093554864950728), s(0.09506403697961899)), Vector2::new(s(0.0), s(0.0))] }, pin: Point { carrier: Path, base: Vector2::new(s(0.2), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(-0.015185323255974104), s(0.11903531390982915))] } }, law: Journal { clearance: gaps[0], radius: s(0.006), contact: contact_0 } }, Element { link: Turning { body: Path, against: Path }, law: Motor(Drive { gain: s(0.2), ramp_start: s(0.0), ramp_end: s(0.1), speed: s(30.0), point_b: Vector3::new(s(0.0), s(0.0), s(0.0)) }.checked()?) });
     Ok(System::new(bodies, elements))
 }

@@ -10,7 +10,7 @@ use slipfit_core::{
     system::{
         Driving, Element, System,
         law::{Contact, Motor, Pad},
-        planar::{Across, Frame, Kind, Path, PlanarTree, Point, Rigid, Topology, Turning},
+        planar::{Across, Chain, Frame, Kind, Path, PlanarTree, Point, Rigid, Topology, Turning},
     },
 };
 
@@ -41,7 +41,7 @@ impl Topology<3> for Joints {
 pub const SCENE_HASH: u64 = 0x06760324070446a0;
 
 /// The bodies.
-pub type Bodies<S> = PlanarTree<S, 3, Joints, (Rigid<S, 3, Path<0b001, 0>>, (Rigid<S, 3, Path<0b011, 1>>, Rigid<S, 3, Path<0b111, 2>>))>;
+pub type Bodies<S> = PlanarTree<S, 3, Joints>;
 
 /// What acts on them.
 pub type Elements<S> = ([Element<Across<S, 3, Path<0b111, 2>, Frame>, Pad<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 2>; 4], Element<Turning<Path<0b001, 0>, Frame>, Motor<Drive<S>>, 1>);
@@ -63,7 +63,7 @@ pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> 
     let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
     let gaps = [gap(GAPS[0], -0.1)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(10000000.0))?, s(300.0), s(5e-6))?, friction: Regularised::new(s(0.1), s(0.001))? };
-    let bodies = PlanarTree::of(Joints, [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))], (Rigid { mass: s(0.038), inertia: s(7.4e-5), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0765), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, (Rigid { mass: s(0.038), inertia: s(0.00059), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.076), inertia: s(7.9e-5), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.30600000000000005), s(0.0)), Vector2::new(s(0.0), s(0.0))] } })), Vector2::new(s(0.0), s(-9.81)))?;
+    let bodies = PlanarTree::of(Joints, [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))], &[Rigid { mass: s(0.038), inertia: s(7.4e-5), centre: Point { carrier: Chain { turn: Some(0), moves: [true, false, false] }, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0765), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.038), inertia: s(0.00059), centre: Point { carrier: Chain { turn: Some(1), moves: [true, true, false] }, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.076), inertia: s(7.9e-5), centre: Point { carrier: Chain { turn: Some(2), moves: [true, true, true] }, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.30600000000000005), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }], Vector2::new(s(0.0), s(-9.81)))?;
     let elements = ([
         Element { link: Across { point: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.30600000000000005), s(0.0)), Vector2::new(s(0.04999999999999999), s(0.025))] }, seat: Point { carrier: Path, base: Vector2::new(s(0.459), s(0.025)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] }, normal: Vector2::new(s(0.0), s(-1.0)) }, law: Pad { gap: gaps[0], contact: contact_0 } },
         Element { link: Across { point: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.153), s(0.0)), Vector2::new(s(0.30600000000000005), s(0.0)), Vector2::new(s(-0.04999999999999999), s(0.025))] }, seat: Point { carrier: Path, base: Vector2::new(s(0.459), s(0.025)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] }, normal: Vector2::new(s(0.0), s(-1.0)) }, law: Pad { gap: gaps[0], contact: contact_0 } },

@@ -9,7 +9,7 @@ use slipfit_core::{
     system::{
         Element, System,
         law::{Contact, Pad, Spring},
-        planar::{Across, Frame, Kind, Path, PlanarTree, Point, Rigid, Topology, Turning},
+        planar::{Across, Chain, Frame, Kind, Path, PlanarTree, Point, Rigid, Topology, Turning},
     },
 };
 
@@ -40,7 +40,7 @@ impl Topology<3> for Joints {
 }
 
 /// The bodies.
-pub type Bodies<S> = PlanarTree<S, 3, Joints, (Rigid<S, 3, Path<0b011, 1>>, Rigid<S, 3, Path<0b111, 2>>)>;
+pub type Bodies<S> = PlanarTree<S, 3, Joints>;
 
 /// What acts on them.
 pub type Elements<S> = (Element<Across<S, 3, Path<0b111, 2>, Frame>, Pad<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 2>, ([Element<Across<S, 3, Path<0b011, 1>, Frame>, Pad<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 2>; 2], Element<Turning<Path<0b011, 1>, Path<0b111, 2>>, Spring<S>, 1>));
@@ -65,7 +65,7 @@ pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> 
     let gaps = [gap(GAPS[0], -0.1)?, gap(GAPS[1], -0.1)?, gap(GAPS[2], -0.1)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(10000000.0))?, s(2.0), s(1e-6))?, friction: Regularised::new(s(0.3), s(0.0001))? };
     let contact_1 = Contact { normal: Impact::new(ThreeHalves::new(s(10000000.0))?, s(6.0), s(1e-6))?, friction: Regularised::new(s(0.3), s(0.0001))? };
-    let bodies = PlanarTree::of(Joints, [Vector2::new(s(0.0), s(1.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))], (Rigid { mass: s(0.0003), inertia: s(5e-9), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.0045), inertia: s(7e-7), centre: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.01), s(0.0)), Vector2::new(s(0.015000000000000001), s(0.0))] } }), Vector2::new(s(0.0), s(-9.81)))?;
+    let bodies = PlanarTree::of(Joints, [Vector2::new(s(0.0), s(1.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))], &[Rigid { mass: s(0.0003), inertia: s(5e-9), centre: Point { carrier: Chain { turn: Some(1), moves: [true, true, false] }, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.0045), inertia: s(7e-7), centre: Point { carrier: Chain { turn: Some(2), moves: [true, true, true] }, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.01), s(0.0)), Vector2::new(s(0.015000000000000001), s(0.0))] } }], Vector2::new(s(0.0), s(-9.81)))?;
     let elements = (Element { link: Across { point: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.01), s(0.0)), Vector2::new(s(-0.0050999999999999995), s(0.02))] }, seat: Point { carrier: Path, base: Vector2::new(s(0.004900000000000001), s(0.02)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] }, normal: Vector2::new(s(1.0), s(0.0)) }, law: Pad { gap: gaps[0], contact: contact_0 } }, ([
         Element { link: Across { point: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0031), s(-0.0058)), Vector2::new(s(0.0), s(0.0))] }, seat: Point { carrier: Path, base: Vector2::new(s(0.0031), s(-0.0058)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] }, normal: Vector2::new(s(1.0), s(0.0)) }, law: Pad { gap: gaps[1], contact: contact_1 } },
         Element { link: Across { point: Point { carrier: Path, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0031), s(0.0058)), Vector2::new(s(0.0), s(0.0))] }, seat: Point { carrier: Path, base: Vector2::new(s(0.0031), s(0.0058)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] }, normal: Vector2::new(s(1.0), s(0.0)) }, law: Pad { gap: gaps[2], contact: contact_1 } },
