@@ -3,7 +3,7 @@
 //! The rod is the third axis of the link. With ρ from the rod's axis to the ring's centre the gap is q − |ρ|; the rod pushes the
 //! ring's body along −ρ at the point of its surface on the far side of its axis, and there they rub, along the rod and around it.
 
-use super::{Contact, Law, Response, along, steady};
+use super::{Contact, Law, Response, steady};
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
     law::{Friction, Normal},
@@ -43,7 +43,6 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
         memory: &F::Memory,
         way: Way<S>,
     ) -> (Response<S, 6>, F::Memory) {
-        let one = S::one();
         let apart = Vector2::new(place[0], place[1]);
         let squared = apart.dot(&apart);
         let per_distance = squared.max_of(S::from_f64(1e-30)).rsqrt();
@@ -54,42 +53,65 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
         let (outward, aside) = (moving.dot(&normal), moving.dot(&tangent));
         let (about_normal, about_tangent) = (turning.dot(&normal), turning.dot(&tangent));
         let rim = distance + self.radius;
+        let sliding = [aside - rim * rate[5], rate[2] + rim * about_tangent];
+        let (pressed, traction, memory) = self.contact.meet(memory, way, [distance - self.clearance, outward], sliding);
+        let (force, [turn, rub]) = (pressed.force, traction.force);
+        let ([own, mixed, other], [by_turn, by_rub]) = (traction.impedance, traction.per_normal);
 
-        // By ρ along normal and tangent, then velocity and rotation along normal, tangent and rod. Along the tangent the
-        // axes turn by 1/|ρ|.
-        let by_turn = along::<S, 8>(1, per_distance);
-        let depth = (distance - self.clearance, along::<S, 8>(0, one));
-        let approach = (outward, along::<S, 8>(2, one) + by_turn * aside);
-        let around =
-            (aside - rim * rate[5], along::<S, 8>(3, one) - by_turn * outward - along(0, rate[5]) - along(7, rim));
-        let along_rod = (
-            rate[2] + rim * about_tangent,
-            along::<S, 8>(4, one) + along(0, about_tangent) + along(6, rim) - by_turn * (rim * about_normal),
-        );
-        let touch = self.contact.touch(memory, way, [depth, approach], [around, along_rod]);
-        let ([turn, rub], [turn_slope, rub_slope]) = (touch.traction, touch.traction_slopes);
-        let rows = [
-            -touch.force_slope - by_turn * turn,
-            turn_slope - by_turn * touch.force,
-            rub_slope,
-            by_turn * -(rim * rub),
-            rub_slope * rim + along(0, rub),
-            -(turn_slope * rim) - along(0, turn),
+        // How push and rub change, negated, with the velocity along normal and tangent, that along the rod, the turning about the
+        // tangent, and that about the rod.
+        let damping = pressed.impedance(None);
+        let row = |per_normal: S, [around, along]: [S; 2]| {
+            let (moves, turns) = (normal * (per_normal * damping) + tangent * around, tangent * (rim * along));
+            [moves.x, moves.y, along, turns.x, turns.y, -(rim * around)]
+        };
+        let (turn_row, rub_row) = (row(by_turn, [own, mixed]), row(by_rub, [mixed, other]));
+        let pushed = normal * damping;
+        let mut impedance = SMatrix::<S, 6, 6>::zeros();
+        for (j, (turn, rub)) in turn_row.into_iter().zip(rub_row).enumerate() {
+            let push = tangent * turn;
+            let moment = tangent * (rim * rub);
+            let column = [push.x, push.y, rub, moment.x, moment.y, -(rim * turn)];
+            impedance.data.0[j] = column;
+        }
+        for (j, by_move) in [pushed.x, pushed.y].into_iter().enumerate() {
+            impedance.data.0[j][0] += normal.x * by_move;
+            impedance.data.0[j][1] += normal.y * by_move;
+        }
+
+        // With the place along the normal and along the tangent; along the tangent the axes turn by 1/|ρ|.
+        let stiffness = pressed.stiffness();
+        let force_aside = damping * (per_distance * aside);
+        let (around, along) = (-(per_distance * outward), -(per_distance * rim * about_normal));
+        let turn_by = [
+            by_turn * stiffness - own * rate[5] + mixed * about_tangent,
+            by_turn * force_aside + own * around + mixed * along,
         ];
-        let push = tangent * turn - normal * touch.force;
+        let rub_by = [
+            by_rub * stiffness - mixed * rate[5] + other * about_tangent,
+            by_rub * force_aside + mixed * around + other * along,
+        ];
+        let column = |[push, turned]: [S; 2], rub: S, [about, moment]: [S; 2], twist: S| {
+            let (push, moment) = (normal * push + tangent * turned, normal * about + tangent * moment);
+            SVector::<S, 6>::from([push.x, push.y, rub, moment.x, moment.y, twist])
+        };
+        let by_normal =
+            column([stiffness, turn_by[0]], rub_by[0], [S::zero(), rim * rub_by[0] - rub], turn - rim * turn_by[0]);
+        let by_tangent = column(
+            [force_aside + per_distance * turn, turn_by[1] + per_distance * force],
+            rub_by[1],
+            [rim * (per_distance * rub), rim * rub_by[1]],
+            -(rim * turn_by[1]),
+        );
+        let mut by_place = SMatrix::<S, 6, 6>::zeros();
+        for (k, column) in by_place.data.0.iter_mut().enumerate().take(2) {
+            *column = (by_normal * normal[k] + by_tangent * tangent[k]).data.0[0];
+        }
+
+        let push = tangent * turn - normal * force;
         let moment = tangent * (rim * rub);
         let force = SVector::<S, 6>::new(push.x, push.y, rub, moment.x, moment.y, -(rim * turn));
-        let (mut by_place, mut by_rate) = (SMatrix::<S, 6, 6>::zeros(), SMatrix::<S, 6, 6>::zeros());
-        for (i, row) in rows.iter().enumerate() {
-            for j in 0..2 {
-                by_place[(i, j)] = -row[j];
-            }
-            for j in 0..6 {
-                by_rate[(i, j)] = -row[j + 2];
-            }
-        }
-        let axes = [normal, tangent];
-        (steady(force, in_link(&axes, by_rate), in_link(&axes, by_place)).moving(way.over, 2), touch.memory)
+        (steady(force, impedance, by_place).moving(way.over, 2), memory)
     }
 
     #[inline(always)]
@@ -101,23 +123,4 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
     fn or_old(new: &F::Memory, condition: S, old: &F::Memory) -> F::Memory {
         F::or_old(new, condition, old)
     }
-}
-
-/// A·`local`·Aᵀ, where A turns two triples from the axes normal, tangent and rod into those of the link. Written out, because most
-/// of A is zero.
-#[inline(always)]
-fn in_link<S: Scalar>([normal, tangent]: &[Vector2<S>; 2], mut local: SMatrix<S, 6, 6>) -> SMatrix<S, 6, 6> {
-    for first in [0, 3] {
-        for j in 0..6 {
-            let turned = normal * local[(first, j)] + tangent * local[(first + 1, j)];
-            (local[(first, j)], local[(first + 1, j)]) = (turned.x, turned.y);
-        }
-    }
-    for first in [0, 3] {
-        for i in 0..6 {
-            let turned = normal * local[(i, first)] + tangent * local[(i, first + 1)];
-            (local[(i, first)], local[(i, first + 1)]) = (turned.x, turned.y);
-        }
-    }
-    local
 }
