@@ -6,6 +6,7 @@ extern uint32_t _data_start, _data_end, _data_load, _bss_start, _bss_end, _stack
 
 int main(void);
 void put(const char *text);
+void leave(uint32_t code);
 void reset(void);
 
 static uint32_t semihosting(uint32_t operation, const void *argument) {
@@ -37,7 +38,8 @@ void put(const char *text) {
     semihosting(0x05, &written);
 }
 
-static void leave(uint32_t code) {
+/* Ends the emulation. */
+void leave(uint32_t code) {
     const uint32_t block[2] = {0x20026, code};
     semihosting(0x20, block);
     for (;;) {
@@ -49,6 +51,11 @@ static void fault(void) {
     put("fault\n");
     leave(1);
 }
+
+/* What an operating system defines, by CMSIS's names. */
+void SVC_Handler(void) __attribute__((weak, alias("fault")));
+void PendSV_Handler(void) __attribute__((weak, alias("fault")));
+void SysTick_Handler(void) __attribute__((weak, alias("fault")));
 
 /* The compiler may turn loops into calls of these. */
 void *memcpy(void *to, const void *from, size_t length) {
@@ -98,6 +105,14 @@ union vector {
 };
 
 __attribute__((section(".vectors"), used)) static const union vector vectors[16] = {
-    {.stack = &_stack_top}, {.handler = reset}, {.handler = fault}, {.handler = fault},
-    {.handler = fault},     {.handler = fault}, {.handler = fault},
+    {.stack = &_stack_top},
+    {.handler = reset},
+    {.handler = fault},
+    {.handler = fault},
+    {.handler = fault},
+    {.handler = fault},
+    {.handler = fault},
+    [11] = {.handler = SVC_Handler},
+    [14] = {.handler = PendSV_Handler},
+    [15] = {.handler = SysTick_Handler},
 };
