@@ -12,6 +12,8 @@ use cortex_m::{
 use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
 use heapless::spsc::{Producer, Queue};
+// Nothing is called by its name here, but the image needs its table of interrupts.
+use lm3s6965 as _;
 use recipe_common::{CLOCK, Controller, Forces, LEVEL, PERIODS};
 
 /// What belongs to the interrupt: the controller, and the end of the queue that forces go into.
