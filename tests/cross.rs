@@ -72,6 +72,17 @@ pub fn require_c_compiler() {
     assert!(found, "arm-none-eabi-gcc is not installed; to install it: apt-get install gcc-arm-none-eabi");
 }
 
+/// Fails, saying what to install, where C programs for the target find no headers of a C library.
+///
+/// # Panics
+/// As said.
+pub fn require_c_library() {
+    require_c_compiler();
+    let mut compiler = Command::new("arm-none-eabi-gcc");
+    let found = finished(compiler.args(["-E", "-include", "stdlib.h", "-x", "c", "/dev/null"])).status.success();
+    assert!(found, "stdlib.h is not installed for it; to install it: apt-get install libnewlib-arm-none-eabi");
+}
+
 /// Fails, saying what to install, where images cannot be run.
 ///
 /// # Panics

@@ -95,7 +95,7 @@ fn cmake(arguments: &[&str]) -> String {
 fn freertos_has_the_forces_of_the_pc() {
     cross::require_target();
     cross::require_crates();
-    cross::require_c_compiler();
+    cross::require_c_library();
     cross::require_emulator();
     let folder = Path::new(FOLDER).join("freertos");
     fs::create_dir_all(&folder).expect("the test's folder takes folders");

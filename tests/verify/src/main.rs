@@ -13,10 +13,14 @@ use std::{
 /// Targets that tests build for.
 const TARGETS: [&str; 1] = ["thumbv7em-none-eabihf"];
 
+/// The C library of the target, of which tests include headers.
+const NEWLIB: &str = "newlib";
+
 /// Programs that tests run, and the Debian packages that have them.
-const TOOLS: [(&str, &str); 8] = [
+const TOOLS: [(&str, &str); 9] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("arm-none-eabi-gcc", "gcc-arm-none-eabi"),
+    (NEWLIB, "libnewlib-arm-none-eabi"),
     ("chromium", "chromium"),
     ("c++", "g++"),
     ("cmake", "cmake"),
@@ -26,7 +30,7 @@ const TOOLS: [(&str, &str); 8] = [
 ];
 
 /// Packages of Python that tests import.
-const PYTHON_PACKAGES: [&str; 1] = ["fmpy"];
+const PYTHON_PACKAGES: [&str; 2] = ["fmpy", "kconfiglib"];
 
 /// The root of the repository.
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
@@ -109,8 +113,12 @@ fn has_package(package: &str) -> bool {
     quietly(Command::new("python3").args(["-c", &format!("import {package}")]))
 }
 
-/// Whether the program starts.
+/// Whether the program starts; of the C library whether the compiler finds it.
 fn has_program(program: &str) -> bool {
+    if program == NEWLIB {
+        let arguments = ["-E", "-include", "stdlib.h", "-x", "c", "/dev/null"];
+        return quietly(Command::new("arm-none-eabi-gcc").args(arguments));
+    }
     // Daemons lie where not every user's shell looks.
     [program.to_owned(), format!("/usr/sbin/{program}")].iter().any(|path| quietly(Command::new(path).arg("--version")))
 }

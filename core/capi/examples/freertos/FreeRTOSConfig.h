@@ -23,7 +23,7 @@
 #define configMINIMAL_STACK_SIZE 128
 #define configCHECK_FOR_STACK_OVERFLOW 2
 
-/* Interrupts that call FreeRTOS have at most the priority 5 of 0 to 15, 0 being the highest. The chip has the upper four bits. */
+/* Interrupts that call FreeRTOS have the priority 5 or a lower one; 0 is the highest, 15 the lowest, in the upper four bits. */
 #define configMAX_SYSCALL_INTERRUPT_PRIORITY (5 << 4)
 #define configKERNEL_INTERRUPT_PRIORITY (15 << 4)
 

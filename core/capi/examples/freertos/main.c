@@ -16,7 +16,7 @@ void leave(uint32_t code);
 #define PERIODS 200
 /* Forces that the queue has room for, while the task of low priority does other work. */
 #define ROOM 8
-/* Stacks, in words. A step of the predictor takes 484 bytes, and what it is called by some more. */
+/* Stacks, in words. A step of the predictor takes about 500 bytes, and what calls it some more. */
 #define CONTROL_STACK 512
 #define REPORT_STACK 256
 
