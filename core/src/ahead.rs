@@ -245,7 +245,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let error = (end.error * momentum).max_of(end.drift * place);
         let finiteness_probe = self.mechanism.finiteness_probe(&end.pose);
         let next = state.ring.next(end.pose, &end.change);
-        let error = error + next.velocity.iter().fold(finiteness_probe, |sum, v| sum + *v) * zero;
+        let error = error + next.velocity.data.0[0].iter().fold(finiteness_probe, |sum, v| sum + *v) * zero;
         let worst = S::from_f64(NOT_FINITE);
         let error = worst.select_gt(error, error, worst).max_of(S::from_f64(1e-9));
 

@@ -92,8 +92,10 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
         let zero = S::zero();
         let rates = next.velocity + next.acceleration;
         // Where every pass was taken back the motion is finite, but not a solution.
-        let finiteness_probe =
-            rates.iter().fold(self.mechanism.finiteness_probe(&next.pose) + residual * zero, |sum, v| sum + *v) * zero;
+        let finiteness_probe = rates.data.0[0]
+            .iter()
+            .fold(self.mechanism.finiteness_probe(&next.pose) + residual * zero, |sum, v| sum + *v)
+            * zero;
         let finite = S::one() + finiteness_probe;
         state.steps = state.steps.saturating_add(1);
         let motion = &mut state.motion;

@@ -43,7 +43,8 @@ pub(crate) fn cross_columns<S: Scalar>(a: &Vector3<S>, m: &Matrix3<S>) -> Matrix
 /// −`m`·[a]×: the cross products of a with the rows.
 #[inline(always)]
 pub(crate) fn cross_rows<S: Scalar>(a: &Vector3<S>, m: &Matrix3<S>) -> Matrix3<S> {
-    cross_columns(a, &m.transpose()).transpose()
+    let [x, y, z] = columns(m);
+    Matrix3::from_columns(&[z * a.y - y * a.z, x * a.z - z * a.x, y * a.x - x * a.y])
 }
 
 /// [b]×·[a]× of the `outer` product a·bᵀ, or a sum of such products: a·bᵀ − (a·b)·1.

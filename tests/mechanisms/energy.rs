@@ -131,19 +131,24 @@ fn every_shipped_mechanism_keeps_its_energy() {
         ("hatch", None, TILTED),
     ];
     for (scene, spin, gravity) in cases {
-        let mut own = conservative(scene, spin, gravity);
-        let error = own.run.error;
-        let (found, touches) = drift(&own);
-        let mut at = |error: f64| {
-            own.run.error = error;
-            drift(&own).0
-        };
-        let [coarser, finer] = [30.0, 1.0 / 30.0].map(|factor| at(factor * error));
+        let (mut worst, mut touches, mut coarser, mut finer) = (0.0f64, 0, 0.0, 0.0);
+        // A few touches make one run's error a matter of chance, so that three are summed.
+        for factor in [0.95, 1.0, 1.05] {
+            let mut own = conservative(scene, spin.map(|spin| spin * factor), gravity.map(|g| g * factor));
+            let error = own.run.error;
+            let mut at = |share: f64| {
+                own.run.error = share * error;
+                drift(&own)
+            };
+            let (found, touched) = at(1.0);
+            (worst, touches) = (worst.max(found), touches + touched);
+            (coarser, finer) = (coarser + at(30.0).0, finer + at(1.0 / 30.0).0);
+        }
         println!(
-            "{scene:20} {touches:3} touches, energy drifts by {found:.1e}; \
-             at 30 times the tolerance {coarser:.1e}, at a thirtieth {finer:.1e}"
+            "{scene:20} {touches:3} touches, energy drifts by {worst:.1e}; \
+             summed at 30 times the tolerance {coarser:.1e}, at a thirtieth {finer:.1e}"
         );
-        assert!(touches > 0 && found < 5e-6, "{scene}: {touches} {found:e}");
+        assert!(touches > 0 && worst < 5e-6, "{scene}: {touches} {worst:e}");
         // By 900 times, if it went by the tolerance alone.
         assert!(finer < coarser / 300.0, "{scene}: {coarser:e} {finer:e}");
     }

@@ -168,7 +168,7 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
             break (size, S::from_f64(WORSE) * least - size + size * zero);
         }
         let next = mechanism.solve(&linearisation, &imbalance);
-        let finiteness_probe = next.iter().fold(size, |sum, x| sum + *x) * zero;
+        let finiteness_probe = next.data.0[0].iter().fold(size, |sum, x| sum + *x) * zero;
         let better = S::from_f64(WORSE) * least - size + finiteness_probe;
         let shortened = better.select_gt(zero, S::one(), S::from_f64(SHORTER));
         // Weights, because a choice of vectors becomes a copy that takes longer for one than for the other.

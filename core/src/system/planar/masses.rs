@@ -23,6 +23,9 @@ pub struct Rigid<S, const D: usize> {
     pub centre: Point<S, D>,
 }
 
+/// For vectors that are constant in the axes of the frame: no coordinate.
+const FRAME: usize = usize::MAX;
+
 /// Moments of the masses of all bodies: sums over the bodies of mass times vectors w, of which there is one a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Masses<S, const D: usize> {
@@ -31,6 +34,8 @@ pub(super) struct Masses<S, const D: usize> {
     /// Σ m·(wᵢ·wⱼ), and Σ m·(wᵢ × wⱼ), each in the axes of its coordinate.
     dot: SMatrix<S, D, D>,
     cross: SMatrix<S, D, D>,
+    /// Whether a body is moved by both coordinates; where not, their products are zero.
+    meets: [[bool; D]; D],
     /// Moments of inertia (kg·m²) by the coordinate that turns the bodies.
     inertia: [S; D],
     /// The least mass of a body (kg).
@@ -54,6 +59,7 @@ impl<S: Scalar + PartialOrd, const D: usize> Masses<S, D> {
             first: [Vector2::zeros(); D],
             dot: SMatrix::zeros(),
             cross: SMatrix::zeros(),
+            meets: [[false; D]; D],
             inertia: [zero; D],
             least: S::from_f64(1e6),
             levers: [S::from_f64(1e-6); D],
@@ -76,6 +82,7 @@ impl<S: Scalar + PartialOrd, const D: usize> Masses<S, D> {
             for (i, one) in vectors.iter().enumerate() {
                 masses.first[i] += one * mass;
                 for (j, other) in vectors.iter().enumerate() {
+                    masses.meets[i][j] |= carrier.moves(i) && carrier.moves(j);
                     masses.dot[(i, j)] += one.dot(other) * mass;
                     masses.cross[(i, j)] += left(one).dot(other) * mass;
                 }
@@ -98,35 +105,40 @@ impl<S: Scalar, const D: usize> Masses<S, D> {
     /// The moments where and as fast as `placed` says.
     #[inline(always)]
     pub fn at<J: Topology<D>>(&self, topology: &J, placed: &Placed<S, D>) -> Moments<S, D> {
-        // Which coordinate turns the axes of a vector.
-        let turn = |k: usize| match topology.kind(k) {
-            Kind::Turn => Some(k),
-            Kind::Slide { on } => on,
-        };
+        // The coordinate that turns the axes of a vector.
+        let mut turns = [FRAME; D];
+        for (k, turn) in turns.iter_mut().enumerate() {
+            *turn = match topology.kind(k) {
+                Kind::Turn => k,
+                Kind::Slide { on } => on.unwrap_or(FRAME),
+            };
+        }
         let (mut dot, mut cross) = (SMatrix::<S, D, D>::zeros(), SMatrix::<S, D, D>::zeros());
         for i in 0..D {
             dot[(i, i)] = self.dot[(i, i)];
             for j in i + 1..D {
-                let (p, x) = (self.dot[(i, j)], self.cross[(i, j)]);
-                // Cosine and sine of the angle from the axes of j to those of i.
-                let turned = match (turn(i), turn(j)) {
-                    (one, other) if one == other => None,
-                    (Some(i), Some(j)) => {
-                        Some((placed.axes[i].dot(&placed.axes[j]), -left(&placed.axes[i]).dot(&placed.axes[j])))
-                    }
-                    (Some(i), None) => Some((placed.axes[i].x, placed.axes[i].y)),
-                    (None, Some(j)) => Some((placed.axes[j].x, -placed.axes[j].y)),
-                    (None, None) => None,
-                };
-                let (p, x) = turned.map_or((p, x), |(cos, sin)| (p * cos + x * sin, x * cos - p * sin));
+                if !self.meets[i][j] {
+                    continue;
+                }
+                let (mut p, mut x) = (self.dot[(i, j)], self.cross[(i, j)]);
+                if turns[i] != turns[j] {
+                    // Cosine and sine of the angle from the axes of j to those of i.
+                    let (cos, sin) = match (placed.axes.get(turns[i]), placed.axes.get(turns[j])) {
+                        (Some(i), Some(j)) => (i.dot(j), i.y * j.x - i.x * j.y),
+                        (Some(i), None) => (i.x, i.y),
+                        (None, Some(j)) => (j.x, -j.y),
+                        (None, None) => (S::one(), S::zero()),
+                    };
+                    (p, x) = (p * cos + x * sin, x * cos - p * sin);
+                }
                 (dot[(i, j)], dot[(j, i)]) = (p, p);
                 (cross[(i, j)], cross[(j, i)]) = (x, -x);
             }
         }
         let mut first = self.first;
         for (k, first) in first.iter_mut().enumerate() {
-            if let Some(turn) = turn(k) {
-                *first = turned(&placed.axes[turn], first);
+            if let Some(axes) = placed.axes.get(turns[k]) {
+                *first = turned(axes, first);
             }
         }
         // What slides on a turn lengthens its arm: its vector times its place, in rows and then in columns.

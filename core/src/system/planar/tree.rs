@@ -150,7 +150,7 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
     #[inline(always)]
     fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
         let mut next = self.moved(pose, velocity, dt);
-        for (k, (pose, rate)) in next.iter_mut().zip(velocity).enumerate() {
+        for (k, (pose, rate)) in next.iter_mut().zip(&velocity.data.0[0]).enumerate() {
             if self.topology.kind(k) == Kind::Turn {
                 *pose = half_turn::shortened(*pose, *rate * dt * S::from_f64(0.5));
             }
@@ -161,7 +161,7 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
     #[inline(always)]
     fn moved(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
         let mut next = *pose;
-        for (k, (pose, rate)) in next.iter_mut().zip(velocity).enumerate() {
+        for (k, (pose, rate)) in next.iter_mut().zip(&velocity.data.0[0]).enumerate() {
             let [w, v] = *pose;
             *pose = match self.topology.kind(k) {
                 Kind::Turn => half_turn::turned_on(*pose, *rate * dt * S::from_f64(0.5)),
@@ -206,7 +206,7 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         let mut rate = *velocity;
-        for (k, (rate, place)) in rate.iter_mut().zip(displacement).enumerate() {
+        for (k, (rate, place)) in rate.data.0[0].iter_mut().zip(&displacement.data.0[0]).enumerate() {
             if self.topology.kind(k) == Kind::Turn {
                 *rate = half_turn::angle_rate(*place, *rate);
             }

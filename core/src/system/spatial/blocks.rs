@@ -1,5 +1,7 @@
 //! Blocks of vectors and matrices that belong to bodies.
 
+use nalgebra::Matrix3;
+
 use crate::{SMatrix, SVector, Scalar, Vector3, linear::Blocks};
 
 /// Adds a force (N) and a torque (N·m) on a body to `sum`; those on one that is not there are left out.
@@ -15,22 +17,34 @@ pub(super) fn add_wrench<S: Scalar, const D: usize>(
     }
 }
 
-/// Adds the `blocks` of a force and a torque by a velocity and an angular velocity to `matrix`, those on body `of` by the motion of
-/// body `by`; of bodies that are not there they are left out.
+/// The first three numbers of a body: velocity or displacement, force.
+pub(super) const VELOCITY: usize = 0;
+
+/// The last three: angular velocity or turn, torque.
+pub(super) const TURNING: usize = 1;
+
+/// Adds `block` to the rows and columns of `matrix` that belong to a body, and to [`VELOCITY`] or [`TURNING`]; what belongs to a body
+/// that is not there is left out.
 #[inline(always)]
-pub(super) fn add_blocks<S: Scalar, const D: usize>(
+pub(super) fn add_block<S: Scalar, const D: usize>(
     matrix: &mut SMatrix<S, D, D>,
-    [of, by]: [usize; 2],
-    blocks: &Blocks<S>,
+    [rows, columns]: [[usize; 2]; 2],
+    block: &Matrix3<S>,
 ) {
-    let Some(columns) = matrix.data.0.as_chunks_mut::<6>().0.get_mut(by) else { return };
-    let halves = [[&blocks.a, &blocks.c], [&blocks.b, &blocks.d]];
-    for (columns, [forces, torques]) in columns.as_chunks_mut::<3>().0.iter_mut().zip(halves) {
-        for ((column, force), torque) in columns.iter_mut().zip(&forces.data.0).zip(&torques.data.0) {
-            if let Some([x, y, z, a, b, c]) = column.as_chunks_mut::<6>().0.get_mut(of) {
-                (*x, *y, *z) = (*x + force[0], *y + force[1], *z + force[2]);
-                (*a, *b, *c) = (*a + torque[0], *b + torque[1], *c + torque[2]);
-            }
+    let columns = matrix.data.0.as_chunks_mut::<3>().0.get_mut(2 * columns[0] + columns[1]);
+    for (column, from) in columns.into_iter().flatten().zip(&block.data.0) {
+        if let Some([x, y, z]) = column.as_chunks_mut::<3>().0.get_mut(2 * rows[0] + rows[1]) {
+            (*x, *y, *z) = (*x + from[0], *y + from[1], *z + from[2]);
         }
     }
+}
+
+/// Adds the `blocks` of a force and a torque on `body` by its own velocity and angular velocity to `matrix`.
+#[inline(always)]
+pub(super) fn add_blocks<S: Scalar, const D: usize>(matrix: &mut SMatrix<S, D, D>, body: usize, blocks: &Blocks<S>) {
+    let Blocks { a, b, c, d } = blocks;
+    add_block(matrix, [[body, VELOCITY], [body, VELOCITY]], a);
+    add_block(matrix, [[body, VELOCITY], [body, TURNING]], b);
+    add_block(matrix, [[body, TURNING], [body, VELOCITY]], c);
+    add_block(matrix, [[body, TURNING], [body, TURNING]], d);
 }

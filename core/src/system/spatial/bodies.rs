@@ -2,11 +2,11 @@
 
 use nalgebra::Matrix3;
 
-use super::blocks::{add_blocks, add_wrench};
+use super::blocks::{TURNING, VELOCITY, add_block, add_wrench};
 use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector3,
     error::bounded,
-    linear::{Blocks, cross_columns, cross_matrix},
+    linear::{cross_columns, cross_matrix},
     pose::{Pose, turn_rate},
     product::{columns, cross, product, times, transposed_times},
     system::{Axes, Bodies},
@@ -285,10 +285,9 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     #[inline(always)]
     fn inertia(&self, mass: &[Matrix3<S>; N], rate: S) -> SMatrix<S, D, D> {
         let mut sum = SMatrix::<S, D, D>::zeros();
-        let zero = Matrix3::zeros();
         for (i, (body, inertia)) in self.bodies.iter().zip(mass).enumerate() {
-            let a = Matrix3::from_diagonal_element(body.mass * rate);
-            add_blocks(&mut sum, [i; 2], &Blocks { a, b: zero, c: zero, d: inertia * rate });
+            add_block(&mut sum, [[i, VELOCITY]; 2], &Matrix3::from_diagonal_element(body.mass * rate));
+            add_block(&mut sum, [[i, TURNING]; 2], &(inertia * rate));
         }
         sum
     }
@@ -296,14 +295,14 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     #[inline(always)]
     fn momentum(&self, _: &[Matrix3<S>; N], velocity: &SVector<S, D>) -> SVector<S, D> {
         let mut momentum = *velocity;
-        momentum.iter_mut().zip(self.moments()).for_each(|(x, moment)| *x *= moment);
+        momentum.data.0[0].iter_mut().zip(self.moments()).for_each(|(x, moment)| *x *= moment);
         momentum
     }
 
     #[inline(always)]
     fn velocity(&self, _: &[Matrix3<S>; N], momentum: &SVector<S, D>) -> SVector<S, D> {
         let mut velocity = *momentum;
-        velocity.iter_mut().zip(self.moments()).for_each(|(x, moment)| *x /= moment);
+        velocity.data.0[0].iter_mut().zip(self.moments()).for_each(|(x, moment)| *x /= moment);
         velocity
     }
 
@@ -325,12 +324,11 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
         damping: &mut SMatrix<S, D, D>,
         _: &mut SMatrix<S, D, D>,
     ) {
-        let zero = Matrix3::zeros();
         for (i, (body, at)) in self.bodies.iter().zip(&placed.bodies).enumerate() {
             let inertia = at.in_frame(&body.inertia_b);
             let momentum = times(&inertia, &at.rotation_w);
-            let d = cross_columns(&at.rotation_w, &inertia) - cross_matrix(&momentum);
-            add_blocks(damping, [i; 2], &Blocks { a: zero, b: zero, c: zero, d });
+            let gyroscopic = cross_columns(&at.rotation_w, &inertia) - cross_matrix(&momentum);
+            add_block(damping, [[i, TURNING]; 2], &gyroscopic);
         }
     }
 

@@ -50,7 +50,7 @@ impl<S: Scalar, const R: usize> Speeds<S, R> {
     #[inline(always)]
     fn new(at: &PlacedBody<S>, [by_velocity, by_turning, by_turn]: [[Vector3<S>; R]; 3]) -> Self {
         let mut rate = SVector::<S, R>::zeros();
-        for ((rate, by_velocity), by_turning) in rate.iter_mut().zip(&by_velocity).zip(&by_turning) {
+        for ((rate, by_velocity), by_turning) in rate.data.0[0].iter_mut().zip(&by_velocity).zip(&by_turning) {
             *rate = dot(by_velocity, &at.velocity_w) + dot(by_turning, &at.rotation_w);
         }
         Self { rate, by_velocity, by_turning, by_turn }
@@ -163,7 +163,7 @@ where
         force: &SVector<S, R>,
         sum: &mut SVector<S, D>,
     ) {
-        for ((by_velocity, by_turning), force) in view.by_velocity.iter().zip(&view.by_turning).zip(force.iter()) {
+        for ((by_velocity, by_turning), force) in view.by_velocity.iter().zip(&view.by_turning).zip(&force.data.0[0]) {
             add_wrench(sum, self.body(), [&(by_velocity * *force), &(by_turning * *force)]);
         }
     }
@@ -181,7 +181,7 @@ where
         by_turning.iter_mut().zip(&view.by_turn).for_each(|(sum, by_turn)| *sum += by_turn * a);
         let mut blocks = view.blocks::<W>(&response.impedance, [&view.by_velocity, &by_turning]);
         blocks.d -= self.carried(&placed.body(self.body()), &response.force) * a;
-        add_blocks(matrix, [self.body(); 2], &blocks);
+        add_blocks(matrix, self.body(), &blocks);
     }
 
     #[inline(always)]
@@ -194,9 +194,9 @@ where
         stiffness: &mut SMatrix<S, D, D>,
     ) {
         let by_motion = view.blocks::<W>(&response.impedance, [&view.by_velocity, &view.by_turning]);
-        add_blocks(damping, [self.body(); 2], &by_motion);
+        add_blocks(damping, self.body(), &by_motion);
         let mut by_place = view.blocks::<W>(&response.impedance, [&[Vector3::zeros(); R], &view.by_turn]);
         by_place.d -= self.carried(&placed.body(self.body()), &response.force);
-        add_blocks(stiffness, [self.body(); 2], &by_place);
+        add_blocks(stiffness, self.body(), &by_place);
     }
 }

@@ -10,11 +10,11 @@ use nalgebra::Matrix3;
 
 use super::{
     FreeBodies, Placed, Seat,
-    blocks::{add_blocks, add_wrench},
+    blocks::{TURNING, VELOCITY, add_block, add_wrench},
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
-    linear::{Blocks, cross_columns, cross_matrix, cross_rows, twice_crossed},
+    linear::{cross_matrix, cross_rows, twice_crossed},
     product::{cross, outer, product, times, transposed_times},
     system::Response,
 };
@@ -176,7 +176,8 @@ impl<S: Scalar> Pair<S> {
         for (row, by_place) in change.iter_mut().zip(self.by_place(&by_place, &by_rate)) {
             row.iter_mut().zip(by_place).for_each(|(entry, by_place)| *entry += by_place * a);
         }
-        self.add(&change, Some(&self.vectors(&(response.force * a))), matrix);
+        self.add(&change, matrix);
+        self.carry::<H, D>(&self.vectors(&(response.force * a)), matrix);
     }
 
     /// See [`Link::add_derivatives`](crate::system::Link::add_derivatives).
@@ -188,8 +189,9 @@ impl<S: Scalar> Pair<S> {
         stiffness: &mut SMatrix<S, D, D>,
     ) {
         let (by_rate, by_place) = (self.blocks::<R, H>(&response.impedance), self.blocks(&response.stiffness));
-        self.add(&self.by_velocity(&by_rate), None, damping);
-        self.add(&self.by_place(&by_place, &by_rate), Some(&self.vectors(&response.force)), stiffness);
+        self.add(&self.by_velocity(&by_rate), damping);
+        self.add(&self.by_place(&by_place, &by_rate), stiffness);
+        self.carry::<H, D>(&self.vectors(&response.force), stiffness);
     }
 
     /// How forces change by the parts of motion where `by` tells how by the rates at the point.
@@ -233,51 +235,70 @@ impl<S: Scalar> Pair<S> {
         change
     }
 
-    /// Adds the generalised forces of `change` to `matrix` and, as far as `carried` gives a force, less how those of a force that is
-    /// held change by small motions of the bodies.
+    /// Adds the generalised forces of `change` to `matrix`.
     #[inline(always)]
-    fn add<const H: usize, const D: usize>(
+    fn add<const H: usize, const D: usize>(&self, change: &Change<S, H>, matrix: &mut SMatrix<S, D, D>) {
+        let (forces, moments) = force_and_moment(change);
+        let column = |part: usize| [forces[part], moments.map_or(Matrix3::zeros(), |moments| moments[part])];
+        if let Some(i) = self.bodies[0] {
+            self.add_columns::<H, D>([i, VELOCITY], column(0), matrix);
+            self.add_columns::<H, D>([i, TURNING], column(1), matrix);
+        }
+        if let Some(j) = self.bodies[1] {
+            self.add_columns::<H, D>([j, VELOCITY], column(0).map(|block| -block), matrix);
+            self.add_columns::<H, D>([j, TURNING], column(2), matrix);
+        }
+    }
+
+    /// Adds the generalised forces of forces at the point and, where `H` is 2, of moments that change by a part of motion.
+    #[inline(always)]
+    fn add_columns<const H: usize, const D: usize>(
         &self,
-        change: &Change<S, H>,
-        carried: Option<&[Vector3<S>; H]>,
+        by: [usize; 2],
+        [forces, moments]: [Matrix3<S>; 2],
         matrix: &mut SMatrix<S, D, D>,
     ) {
         let [r, l] = &self.levers;
-        let (forces, moments) = force_and_moment(change);
-        let two = self.bodies[1].is_some();
-        let mut parts = [[Matrix3::zeros(); 3]; 3];
-        for k in 0..if two { 3 } else { 2 } {
-            let with_moment = |matrix: Matrix3<S>| moments.map_or(matrix, |moments| matrix + moments[k]);
-            parts[0][k] = forces[k];
-            parts[1][k] = with_moment(cross_columns(r, &forces[k]));
-            if two {
-                parts[2][k] = -with_moment(cross_columns(l, &forces[k]));
+        let columns = matrix.data.0.as_chunks_mut::<3>().0.get_mut(2 * by[0] + by[1]);
+        for ((column, force), moment) in columns.into_iter().flatten().zip(&forces.data.0).zip(&moments.data.0) {
+            let (force, moment) = (Vector3::from(*force), Vector3::from(*moment));
+            let mut act = |body: usize, force: Vector3<S>, torque: Vector3<S>| {
+                if let Some([x, y, z, a, b, c]) = column.as_chunks_mut::<6>().0.get_mut(body) {
+                    (*x, *y, *z) = (*x + force.x, *y + force.y, *z + force.z);
+                    (*a, *b, *c) = (*a + torque.x, *b + torque.y, *c + torque.z);
+                }
+            };
+            let with_moment = |torque: Vector3<S>| if H == 2 { torque + moment } else { torque };
+            if let Some(i) = self.bodies[0] {
+                act(i, force, with_moment(cross(r, &force)));
+            }
+            if let Some(j) = self.bodies[1] {
+                act(j, -force, -with_moment(cross(l, &force)));
             }
         }
-        if let Some(force) = carried {
-            let (push, moment) = force_and_moment(force);
-            let arm = twice_crossed(&outer(&push, r));
-            let arm = moment.map_or(arm, |moment| arm + cross_matrix(&moment));
-            parts[1][1] -= arm;
-            if two {
-                let push_turned = cross_matrix(&push);
-                parts[0][2] += push_turned;
-                parts[1][2] += arm;
-                parts[2][0] -= push_turned;
-                parts[2][1] += twice_crossed(&outer(r, &push));
-                parts[2][2] -= twice_crossed(&outer(l, &push));
-            }
-        }
-        let [[a, ab, ac], [ba, bb, bc], [ca, cb, cc]] = parts;
+    }
+
+    /// Subtracts how the generalised forces of a `force` that is held change with small motions of the bodies.
+    #[inline(always)]
+    fn carry<const H: usize, const D: usize>(&self, force: &[Vector3<S>; H], matrix: &mut SMatrix<S, D, D>) {
+        let [r, l] = &self.levers;
+        let (push, moment) = force_and_moment(force);
+        let arm = twice_crossed(&outer(&push, r));
+        let arm = moment.map_or(arm, |moment| arm + cross_matrix(&moment));
         if let Some(i) = self.bodies[0] {
-            add_blocks(matrix, [i, i], &Blocks { a, b: ab, c: ba, d: bb });
+            add_block(matrix, [[i, TURNING], [i, TURNING]], &-arm);
         }
         if let Some(j) = self.bodies[1] {
+            let turned = cross_matrix(&push);
             if let Some(i) = self.bodies[0] {
-                add_blocks(matrix, [i, j], &Blocks { a: -a, b: ac, c: -ba, d: bc });
-                add_blocks(matrix, [j, i], &Blocks { a: -a, b: -ab, c: ca, d: cb });
+                add_block(matrix, [[i, VELOCITY], [j, TURNING]], &turned);
+                add_block(matrix, [[i, TURNING], [j, TURNING]], &arm);
+                add_block(matrix, [[j, TURNING], [i, VELOCITY]], &-turned);
+                add_block(matrix, [[j, TURNING], [i, TURNING]], &twice_crossed(&outer(r, &push)));
             }
-            add_blocks(matrix, [j, j], &Blocks { a, b: -ac, c: -ca, d: cc });
+            add_block(matrix, [[j, VELOCITY], [j, TURNING]], &-turned);
+            add_block(matrix, [[j, TURNING], [j, VELOCITY]], &turned);
+            add_block(matrix, [[j, TURNING], [j, TURNING]], &-twice_crossed(&outer(l, &push)));
         }
     }
 }
