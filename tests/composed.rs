@@ -28,8 +28,8 @@ type Start<P, const D: usize> = (P, SVector<f64, D>);
 fn same_bits<A, B, P, I, const D: usize>(one: A, other: B, (pose, velocity): Start<P, D>, step: f64, steps: u32)
 where
     P: Copy + PartialEq + std::fmt::Debug,
-    A: Mechanics<f64, D, Pose = P, Memory: PartialEq + std::fmt::Debug>,
-    B: Mechanics<f64, D, Pose = P, Memory: PartialEq + std::fmt::Debug>,
+    A: Mechanics<f64, D, Pose = P, Internal: PartialEq + std::fmt::Debug>,
+    B: Mechanics<f64, D, Pose = P, Internal: PartialEq + std::fmt::Debug>,
     I: Integrator,
 {
     let (one, other) = (Kernel::<f64, _, I>::new(one, step).unwrap(), Kernel::<f64, _, I>::new(other, step).unwrap());

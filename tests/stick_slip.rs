@@ -5,7 +5,7 @@ use slipfit_core::{
     integrator::{Extrapolated, Integrator, Sdirk2},
     kernel::Kernel,
     law::{Friction, StaticKinetic, friction::SlidingContact},
-    mechanism::{Differentiated, Linearised, Mechanism},
+    mechanism::{Balance, Differentiated, Mechanism},
 };
 
 /// A body of one degree of freedom on a spring and a belt; unit normal force, so that coefficients are forces.
@@ -24,15 +24,15 @@ impl OnBelt {
 
 impl Mechanism<f64, 1> for OnBelt {
     type Pose = f64;
-    type Memory = [f64; 2];
-    type Linearisation = f64;
-    type Slopes = f64;
+    type Internal = [f64; 2];
+    type IterationMatrix = f64;
+    type Jacobians = f64;
 
-    fn advanced(&self, pose: &f64, velocity: &SVector<f64, 1>, dt: f64) -> f64 {
+    fn implicit_update(&self, pose: &f64, velocity: &SVector<f64, 1>, dt: f64) -> f64 {
         pose + velocity.x * dt
     }
 
-    fn moved(&self, pose: &f64, velocity: &SVector<f64, 1>, dt: f64) -> f64 {
+    fn explicit_update(&self, pose: &f64, velocity: &SVector<f64, 1>, dt: f64) -> f64 {
         pose + velocity.x * dt
     }
 
@@ -40,7 +40,7 @@ impl Mechanism<f64, 1> for OnBelt {
         base + (to - from) * weight
     }
 
-    fn memory_shifted(&self, base: &[f64; 2], from: &[f64; 2], to: &[f64; 2], weight: f64) -> [f64; 2] {
+    fn internal_shifted(&self, base: &[f64; 2], from: &[f64; 2], to: &[f64; 2], weight: f64) -> [f64; 2] {
         StaticKinetic::shifted(base, from, to, weight)
     }
 
@@ -73,36 +73,36 @@ impl Mechanism<f64, 1> for OnBelt {
         &self,
         _: f64,
         pose: &f64,
-        memory: &[f64; 2],
+        internal: &[f64; 2],
         velocity: &SVector<f64, 1>,
         a: f64,
-        remembered: Option<&mut [f64; 2]>,
+        updated: Option<&mut [f64; 2]>,
     ) -> SVector<f64, 1> {
-        let (traction, memory) = self.friction.traction(memory, &self.sliding(velocity, self.mass / a, 1.0));
-        if let Some(remembered) = remembered {
-            *remembered = memory;
+        let (traction, internal) = self.friction.traction(internal, &self.sliding(velocity, self.mass / a, 1.0));
+        if let Some(updated) = updated {
+            *updated = internal;
         }
         SVector::<f64, 1>::new(traction.force[0] - self.stiffness * pose)
     }
 
-    fn linearised(
+    fn balance(
         &self,
         t: f64,
         pose: &f64,
-        memory: &[f64; 2],
+        internal: &[f64; 2],
         velocity: &SVector<f64, 1>,
         a: f64,
         tangent_share: f64,
-    ) -> Linearised<f64, f64, 1> {
+    ) -> Balance<f64, f64, 1> {
         let contact = self.sliding(velocity, self.mass / a, tangent_share);
-        Linearised {
-            force: self.forces(t, pose, memory, velocity, a, None),
-            linearisation: self.linearisation(&self.friction.traction(memory, &contact).0.impedance[0], a),
+        Balance {
+            force: self.forces(t, pose, internal, velocity, a, None),
+            iteration_matrix: self.iteration_matrix(&self.friction.traction(internal, &contact).0.impedance[0], a),
         }
     }
 
-    fn solve(&self, linearisation: &f64, residual: &SVector<f64, 1>) -> SVector<f64, 1> {
-        residual / *linearisation
+    fn solve(&self, iteration_matrix: &f64, residual: &SVector<f64, 1>) -> SVector<f64, 1> {
+        residual / *iteration_matrix
     }
 
     fn impulse(&self, imbalance: &SVector<f64, 1>) -> f64 {
@@ -113,18 +113,18 @@ impl Mechanism<f64, 1> for OnBelt {
         &self,
         t: f64,
         pose: &f64,
-        memory: &[f64; 2],
+        internal: &[f64; 2],
         velocity: &SVector<f64, 1>,
     ) -> Differentiated<f64, f64, 1> {
         let contact = self.sliding(velocity, 0.0, 1.0);
         Differentiated {
-            force: self.forces(t, pose, memory, velocity, 1.0, None),
+            force: self.forces(t, pose, internal, velocity, 1.0, None),
             per_time: SVector::zeros(),
-            slopes: self.friction.traction(memory, &contact).0.impedance[0],
+            jacobians: self.friction.traction(internal, &contact).0.impedance[0],
         }
     }
 
-    fn linearisation(&self, damping: &f64, a: f64) -> f64 {
+    fn iteration_matrix(&self, damping: &f64, a: f64) -> f64 {
         self.mass / a + damping + a * self.stiffness
     }
 

@@ -137,7 +137,7 @@ fn controlled(n: f64, milliseconds: u32) -> Vec<Entry> {
                 pose: Pose::nominal(),
                 velocity: SVector::zeros(),
                 acceleration: SVector::zeros(),
-                memory: slide.fresh(),
+                internal: slide.fresh(),
             };
             let duration = f64::from(milliseconds) * 1e-3;
             let mut knots = Vec::new();

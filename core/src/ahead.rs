@@ -236,8 +236,8 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
 
         let end = {
             let from = state.ring.newest();
-            let memory = self.mechanism.fresh();
-            let from = (&from.pose, &from.velocity, &memory);
+            let internal = self.mechanism.fresh();
+            let from = (&from.pose, &from.velocity, &internal);
             let (t, h) = (now + lead * self.tick, length * self.tick);
             Rodas3::attempt(&self.mechanism, t, h, from, Some(forced), &mut state.sums)
         };

@@ -23,12 +23,12 @@ pub struct Kernel<S, M, I> {
 pub struct State<S, P, R, const D: usize> {
     /// Steps taken; time is this count times the step, see [`Kernel::time`].
     pub steps: u32,
-    /// Pose, velocities and memory.
+    /// Pose, velocities and internal variables.
     pub motion: Motion<S, P, R, D>,
 }
 
 /// The state of mechanism `M`.
-pub type StateOf<S, M, const D: usize> = State<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Memory, D>;
+pub type StateOf<S, M, const D: usize> = State<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Internal, D>;
 
 /// What a step says about itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +76,7 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
                 pose,
                 velocity: SVector::zeros(),
                 acceleration: SVector::zeros(),
-                memory: self.mechanism.fresh(),
+                internal: self.mechanism.fresh(),
             },
         }
     }
@@ -99,7 +99,7 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
         let finite = S::one() + finiteness_probe;
         state.steps = state.steps.saturating_add(1);
         let motion = &mut state.motion;
-        self.mechanism.accept(finite, (&next.pose, &next.memory), (&mut motion.pose, &mut motion.memory));
+        self.mechanism.accept(finite, (&next.pose, &next.internal), (&mut motion.pose, &mut motion.internal));
         let either = |new: S, old| new.or_old(finite, old);
         motion.velocity = next.velocity.zip_map(&motion.velocity, either);
         motion.acceleration = next.acceleration.zip_map(&motion.acceleration, either);

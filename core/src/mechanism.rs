@@ -1,4 +1,4 @@
-//! What an integrator sees of a scene: generalised velocities, momenta, forces and their linearisation.
+//! What an integrator sees of a scene: generalised velocities, momenta, forces, iteration matrices and Jacobians.
 
 use crate::{SVector, Scalar, drive::Drive, law::friction::SlidingContact};
 
@@ -8,7 +8,7 @@ pub struct Way<S> {
     /// The time (s) over which a velocity also moves the bodies, where derivatives by the one take in those by the other; `None`
     /// where the two are told apart.
     pub over: Option<S>,
-    /// Mass over the implicit part that friction's memory yields over (kg/s).
+    /// Mass over the implicit part that friction's internal variables yield over (kg/s).
     pub mass_rate: S,
     /// See [`SlidingContact`].
     pub tangent_share: S,
@@ -22,14 +22,14 @@ impl<S: Scalar> Way<S> {
     }
 }
 
-/// Forces at one motion and their linearisation.
+/// Forces at one motion, and the iteration matrix there.
 #[derive(Clone, Copy, Debug)]
-pub struct Linearised<S, L, const D: usize> {
+pub struct Balance<S, L, const D: usize> {
     /// The generalised force (N, N·m).
     pub force: SVector<S, D>,
-    /// Linearisation of momentum/a − force with respect to the velocity. It may be approximate; it steers, the force
+    /// Iteration matrix of momentum/a − force with respect to the velocity. It may be approximate; it steers, the force
     /// decides.
-    pub linearisation: L,
+    pub iteration_matrix: L,
 }
 
 /// Forces at one motion and all their derivatives.
@@ -40,7 +40,7 @@ pub struct Differentiated<S, L, const D: usize> {
     /// ∂force/∂t (N/s, N·m/s).
     pub per_time: SVector<S, D>,
     /// Derivatives by velocity and displacement.
-    pub slopes: L,
+    pub jacobians: L,
 }
 
 /// Accelerations are rounded to the last place of this (m/s²): 9e-13 m/s² in f64, 5e-4 m/s² in f32.
@@ -72,34 +72,40 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     type Pose: Copy + PartialEq;
 
     /// What force laws remember from one step to the next, such as friction forces; `()` where nothing.
-    type Memory: Copy;
+    type Internal: Copy;
 
-    /// Whatever [`solve`](Self::solve) needs of a linearisation.
-    type Linearisation: Copy + Default;
+    /// Whatever [`solve`](Self::solve) needs of an iteration matrix.
+    type IterationMatrix: Copy + Default;
 
     /// Derivatives of the force by velocity and displacement.
-    type Slopes: Copy;
+    type Jacobians: Copy;
 
     /// The pose Q = `pose` + `dt`·Q̇(Q, `velocity`), implicit in Q.
-    fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
+    fn implicit_update(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
 
     /// The pose `pose` + `dt`·Q̇(`pose`, `velocity`), explicit.
-    fn moved(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
+    fn explicit_update(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
 
     /// `base + weight·(to − from)` in the coordinates in which poses are integrated.
     fn shifted(&self, base: &Self::Pose, from: &Self::Pose, to: &Self::Pose, weight: S) -> Self::Pose;
 
     /// `base + weight·(to − from)`.
-    fn memory_shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
+    fn internal_shifted(
+        &self,
+        base: &Self::Internal,
+        from: &Self::Internal,
+        to: &Self::Internal,
+        weight: S,
+    ) -> Self::Internal;
 
     /// The same pose with rounding's drift of its constraints taken out.
     fn normalised(&self, pose: &Self::Pose) -> Self::Pose;
 
-    /// The memory of laws that nothing has happened to yet.
-    fn fresh(&self) -> Self::Memory;
+    /// The internal variables of laws that nothing has happened to yet.
+    fn fresh(&self) -> Self::Internal;
 
     /// Makes `kept` `next`, number by number where it is finite and `condition` > 0. In place, since a copy would take stack.
-    fn accept(&self, condition: S, next: (&Self::Pose, &Self::Memory), kept: (&mut Self::Pose, &mut Self::Memory));
+    fn accept(&self, condition: S, next: (&Self::Pose, &Self::Internal), kept: (&mut Self::Pose, &mut Self::Internal));
 
     /// 0 if all coordinates of `pose` are finite, else NaN.
     fn finiteness_probe(&self, pose: &Self::Pose) -> S;
@@ -116,54 +122,54 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// M⁻¹·`momentum` at `pose`: generalised velocities (m/s, rad/s).
     fn velocity(&self, pose: &Self::Pose, momentum: &SVector<S, D>) -> SVector<S, D>;
 
-    /// M·`velocity` (N·s, N·m·s) at the motion whose `slopes` these are, at its `pose`.
+    /// M·`velocity` (N·s, N·m·s) at the motion whose `jacobians` these are, at its `pose`.
     #[inline(always)]
-    fn momentum_by(&self, _slopes: &Self::Slopes, pose: &Self::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
+    fn momentum_by(&self, _slopes: &Self::Jacobians, pose: &Self::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
         self.momentum(pose, velocity)
     }
 
-    /// What has at the motion whose `slopes` these are the effect (m/s², rad/s²) that the [`forces`](Self::forces) have at another
+    /// What has at the motion whose `jacobians` these are the effect (m/s², rad/s²) that the [`forces`](Self::forces) have at another
     /// one: the forces themselves where the mass matrix is the same everywhere.
     #[inline(always)]
     fn forces_by(
         &self,
-        _slopes: &Self::Slopes,
+        _slopes: &Self::Jacobians,
         t: S,
         pose: &Self::Pose,
-        memory: &Self::Memory,
+        internal: &Self::Internal,
         velocity: &SVector<S, D>,
         a: S,
     ) -> SVector<S, D> {
-        self.forces(t, pose, memory, velocity, a, None)
+        self.forces(t, pose, internal, velocity, a, None)
     }
 
-    /// Forces (N, N·m) at time `t` (s); `a` (s) is the implicit part of the step. Writes to `remembered` what the laws
+    /// Forces (N, N·m) at time `t` (s); `a` (s) is the implicit part of the step. Writes to `updated` what the laws
     /// remember if the motion is accepted.
     fn forces(
         &self,
         t: S,
         pose: &Self::Pose,
-        memory: &Self::Memory,
+        internal: &Self::Internal,
         velocity: &SVector<S, D>,
         a: S,
-        remembered: Option<&mut Self::Memory>,
+        updated: Option<&mut Self::Internal>,
     ) -> SVector<S, D>;
 
     /// Forces at time `t` (s), and how momentum/`a` − force changes with the velocity, through the pose too. Of the
-    /// friction's change along the sliding direction the linearisation takes `tangent_share` from the law's tangent, the
+    /// friction's change along the sliding direction the iteration matrix takes `tangent_share` from the law's tangent, the
     /// rest from its secant.
-    fn linearised(
+    fn balance(
         &self,
         t: S,
         pose: &Self::Pose,
-        memory: &Self::Memory,
+        internal: &Self::Internal,
         velocity: &SVector<S, D>,
         a: S,
         tangent_share: S,
-    ) -> Linearised<S, Self::Linearisation, D>;
+    ) -> Balance<S, Self::IterationMatrix, D>;
 
     /// The velocity change that brings the linearised balance of forces from `residual` (N, N·m) to zero, negated.
-    fn solve(&self, linearisation: &Self::Linearisation, residual: &SVector<S, D>) -> SVector<S, D>;
+    fn solve(&self, iteration_matrix: &Self::IterationMatrix, residual: &SVector<S, D>) -> SVector<S, D>;
 
     /// One number for an imbalance of momentum (N·s): angular components over a length of the mechanism.
     fn impulse(&self, imbalance: &SVector<S, D>) -> S;
@@ -175,29 +181,29 @@ pub trait Mechanism<S: Scalar, const D: usize> {
         self.impulse(&self.momentum(pose, change))
     }
 
-    /// Forces at time `t` (s) and their derivatives, for laws without memory.
+    /// Forces at time `t` (s) and their derivatives, for laws without internal variables.
     fn differentiated(
         &self,
         t: S,
         pose: &Self::Pose,
-        memory: &Self::Memory,
+        internal: &Self::Internal,
         velocity: &SVector<S, D>,
-    ) -> Differentiated<S, Self::Slopes, D>;
+    ) -> Differentiated<S, Self::Jacobians, D>;
 
-    /// Linearisation of momentum/`a` − force with respect to a velocity that also moves the pose over the time `a` (s).
-    fn linearisation(&self, slopes: &Self::Slopes, a: S) -> Self::Linearisation;
+    /// Iteration matrix of momentum/`a` − force with respect to a velocity that also moves the pose over the time `a` (s).
+    fn iteration_matrix(&self, jacobians: &Self::Jacobians, a: S) -> Self::IterationMatrix;
 
     /// How the force changes (N, N·m) with a small `displacement` (m, rad).
-    fn pushed(&self, slopes: &Self::Slopes, displacement: &SVector<S, D>) -> SVector<S, D>;
+    fn pushed(&self, jacobians: &Self::Jacobians, displacement: &SVector<S, D>) -> SVector<S, D>;
 
-    /// The rate (m/s, rad/s) of a `displacement` x from a pose, such that `moved(pose, x, 1)` is the pose, while the body
+    /// The rate (m/s, rad/s) of a `displacement` x from a pose, such that `explicit_update(pose, x, 1)` is the pose, while the body
     /// moves with `velocity`. It is the velocity at no displacement, and everywhere where coordinates are straight.
     fn rate(&self, _displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         *velocity
     }
 }
 
-/// A mechanism that a drive pushes and whose laws have no memory.
+/// A mechanism that a drive pushes and whose laws have no internal variables.
 pub trait Driven<S: Scalar, const D: usize>: Mechanism<S, D> {
     /// The drive.
     fn drive(&self) -> &Drive<S>;

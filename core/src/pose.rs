@@ -44,7 +44,7 @@ impl<S: Scalar> Pose<S> {
     ///
     /// For the quaternion, q̇ = ½ q∘ω, the equation is linear and solved exactly.
     #[inline(always)]
-    pub fn advanced(&self, velocity_w: Vector3<S>, angular_velocity_b: Vector3<S>, dt: S) -> Self {
+    pub fn implicit_update(&self, velocity_w: Vector3<S>, angular_velocity_b: Vector3<S>, dt: S) -> Self {
         let Orientation { w, v } = self.orientation;
         let turn = angular_velocity_b * (dt * S::from_f64(0.5));
         let scale = S::one() / (S::one() + dot(&turn, &turn));
@@ -56,7 +56,7 @@ impl<S: Scalar> Pose<S> {
 
     /// `self` + `dt`·Q̇(`self`): an explicit move with the velocities `velocity_w` (m/s) and `angular_velocity_b` (rad/s).
     #[inline(always)]
-    pub fn moved(&self, velocity_w: Vector3<S>, angular_velocity_b: Vector3<S>, dt: S) -> Self {
+    pub fn explicit_update(&self, velocity_w: Vector3<S>, angular_velocity_b: Vector3<S>, dt: S) -> Self {
         let Orientation { w, v } = self.orientation;
         let turn = angular_velocity_b * (dt * S::from_f64(0.5));
         Self {
@@ -183,7 +183,7 @@ mod tests {
         let mut pose = Pose::nominal();
         for _ in 0..10_000 {
             // The midpoint of two implicit half-moves is second order: a Cayley step.
-            let half = pose.advanced(Vector3::zeros(), rate, 0.5e-4);
+            let half = pose.implicit_update(Vector3::zeros(), rate, 0.5e-4);
             pose = pose.shifted(&pose, &half, 2.0).normalised();
         }
         let x_w = pose.to_body().apply_inverse(Vector3::x());
@@ -192,14 +192,14 @@ mod tests {
 
     #[test]
     fn body_and_frame_are_inverse_and_keep_length() {
-        let pose = Pose::nominal().advanced(Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.7, -0.4, 1.9), 1.0);
+        let pose = Pose::nominal().implicit_update(Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.7, -0.4, 1.9), 1.0);
         let r = pose.to_body();
         let a = Vector3::<f64>::new(0.3, -1.2, 0.5);
         assert!((r.apply_inverse(r.apply(a)) - a).norm_squared() < 1e-30);
         assert!(libm::fabs(r.apply(a).norm_squared() - a.norm_squared()) < 1e-14);
         assert!((r.apply(a) - a - r.change(a)).norm_squared() < 1e-30);
         // Rᵀ turns +x towards −y when the body turns about +z.
-        let quarter = Pose::nominal().advanced(Vector3::zeros(), Vector3::new(0.0, 0.0, 2.0), 1.0).to_body();
+        let quarter = Pose::nominal().implicit_update(Vector3::zeros(), Vector3::new(0.0, 0.0, 2.0), 1.0).to_body();
         assert!((quarter.apply(Vector3::x()) - Vector3::new(0.0, -1.0, 0.0)).norm_squared() < 1e-30);
     }
 }

@@ -63,11 +63,11 @@ pub type Pins<S, E, F> = Alike<Contact<Impact<S, E>, F>, PinOfFrame<S>, [S; 4], 
 /// A slide with its normal law `E`, friction law `F` and drive.
 pub type Slide<S, E, F> = System<Floating<S>, (Pins<S, E, F>, Element<Pull<S>, Pusher<Drive<S>>, 2>)>;
 
-/// What friction with the memory `M` of a contact remembers on a slide.
-pub type Memory<M> = ([[M; 2]; PINS], ());
+/// The internal variables of friction, `M` for a contact, on a slide.
+pub type Internal<M> = ([[M; 2]; PINS], ());
 
-/// The memory of laws that remember nothing.
-pub const NO_MEMORY: Memory<()> = ([[(); 2]; PINS], ());
+/// Of laws that have none.
+pub const NO_MEMORY: Internal<()> = ([[(); 2]; PINS], ());
 
 impl<S: Scalar + PartialOrd> Body<S> {
     /// The slide of this body with its laws and its drive, of parameters that can be stepped without failing.
@@ -122,7 +122,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     }
 }
 
-impl<S: Scalar, E: Elastic<S>, F: Friction<S, Memory = ()>> Driven<S, 6> for Slide<S, E, F> {
+impl<S: Scalar, E: Elastic<S>, F: Friction<S, Internal = ()>> Driven<S, 6> for Slide<S, E, F> {
     #[inline(always)]
     fn drive(&self) -> &Drive<S> {
         &self.elements().1.law.0

@@ -34,12 +34,12 @@ pub struct Motion<S, P, R, const D: usize> {
     /// Accelerations (m/s², rad/s²) that the last step ended with as far as its scheme knows, zero before the first: what
     /// the next step's change of force is told from.
     pub acceleration: SVector<S, D>,
-    /// Memory of the force laws.
-    pub memory: R,
+    /// Internal variables of the force laws.
+    pub internal: R,
 }
 
 /// A motion of mechanism `M`.
-pub type MotionOf<S, M, const D: usize> = Motion<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Memory, D>;
+pub type MotionOf<S, M, const D: usize> = Motion<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Internal, D>;
 
 /// What a step leads to, and how well.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +55,7 @@ pub struct Step<S, P, R, const D: usize> {
 }
 
 /// A step of mechanism `M`.
-pub type StepOf<S, M, const D: usize> = Step<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Memory, D>;
+pub type StepOf<S, M, const D: usize> = Step<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Internal, D>;
 
 /// A fixed-step scheme.
 pub trait Integrator: Copy {
@@ -97,12 +97,17 @@ struct Stage<S, P, R, L, const D: usize> {
     motion: Motion<S, P, R, D>,
     /// Imbalance of momentum (N·s) that the passes left.
     residual: S,
-    /// Linearisation of the last pass.
-    linearisation: L,
+    /// Iteration matrix of the last pass.
+    iteration_matrix: L,
 }
 
-type StageOf<S, M, const D: usize> =
-    Stage<S, <M as Mechanism<S, D>>::Pose, <M as Mechanism<S, D>>::Memory, <M as Mechanism<S, D>>::Linearisation, D>;
+type StageOf<S, M, const D: usize> = Stage<
+    S,
+    <M as Mechanism<S, D>>::Pose,
+    <M as Mechanism<S, D>>::Internal,
+    <M as Mechanism<S, D>>::IterationMatrix,
+    D,
+>;
 
 /// How much of friction's tangent a Newton pass takes; the rest is the secant.
 ///
@@ -128,7 +133,7 @@ const SHORTER: f64 = 0.25;
 const NO_CHORD: usize = usize::MAX;
 
 /// The motion Q = Q₀ + a·Q̇, V = V₀ + a·M⁻¹·force(t, Q, V) from `base` = (Q₀, V₀), after `PASSES` Newton passes that
-/// start at the velocity `guess`. The pass `CHORD`, not the first, takes the linearisation of the one before.
+/// start at the velocity `guess`. The pass `CHORD`, not the first, takes the iteration matrix of the one before.
 #[inline(always)]
 fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, const CHORD: usize>(
     mechanism: &M,
@@ -141,7 +146,7 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
     let mut velocity = guess;
     let (mut kept, mut update) = (SVector::zeros(), SVector::zeros());
     let mut least = S::one() / zero;
-    let (mut linearisation, mut memory) = (M::Linearisation::default(), base.memory);
+    let (mut iteration_matrix, mut internal) = (M::IterationMatrix::default(), base.internal);
     let mut full_passes = 0;
     let mut pass = 0;
     // Kept from the compiler, which would repeat the body of a small mechanism for every pass.
@@ -150,15 +155,15 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
         // So that parameters are read where they are used: before the loop they would all be copied to the stack. Those of a
         // body on one axis fit into registers.
         let (mechanism, base) = if D > 1 { core::hint::black_box((mechanism, base)) } else { (mechanism, base) };
-        let pose = mechanism.advanced(&base.pose, &velocity, a);
+        let pose = mechanism.implicit_update(&base.pose, &velocity, a);
         let force = if pass == CHORD || pass == passes {
-            // The memory of an iterate that is only worse holds as well, because the next step brings it back into the cone.
-            mechanism.forces(t, &pose, &base.memory, &velocity, a, Some(&mut memory))
+            // The internal variables of an iterate that is only worse hold as well, because the next step brings them back into the cone.
+            mechanism.forces(t, &pose, &base.internal, &velocity, a, Some(&mut internal))
         } else {
             let share = tangent_share(full_passes);
-            let at = mechanism.linearised(t, &pose, &base.memory, &velocity, a, share);
+            let at = mechanism.balance(t, &pose, &base.internal, &velocity, a, share);
             full_passes += 1;
-            linearisation = at.linearisation;
+            iteration_matrix = at.iteration_matrix;
             at.force
         };
         let change = velocity - base.velocity;
@@ -167,7 +172,7 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
         if pass == passes {
             break (size, S::from_f64(WORSE) * least - size + size * zero);
         }
-        let next = mechanism.solve(&linearisation, &imbalance);
+        let next = mechanism.solve(&iteration_matrix, &imbalance);
         let finiteness_probe = next.data.0[0].iter().fold(size, |sum, x| sum + *x) * zero;
         let better = S::from_f64(WORSE) * least - size + finiteness_probe;
         let shortened = better.select_gt(zero, S::one(), S::from_f64(SHORTER));
@@ -180,10 +185,10 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
         pass += 1;
     };
     let velocity = velocity.zip_map(&(base.velocity + kept), |new, old| better.select_gt(zero, new, old));
-    let pose = mechanism.advanced(&base.pose, &velocity, a);
+    let pose = mechanism.implicit_update(&base.pose, &velocity, a);
     let acceleration = (velocity - base.velocity) * rate;
     let residual = a * better.select_gt(zero, size, S::from_f64(WORSE) * least);
-    Stage { motion: Motion { pose, velocity, acceleration, memory }, residual, linearisation }
+    Stage { motion: Motion { pose, velocity, acceleration, internal }, residual, iteration_matrix }
 }
 
 /// `base + weight·(to − from)`.
@@ -199,6 +204,6 @@ fn shifted<S: Scalar, M: Mechanism<S, D>, const D: usize>(
         pose: mechanism.shifted(&base.pose, &from.pose, &to.pose, weight),
         velocity: base.velocity + (to.velocity - from.velocity) * weight,
         acceleration: base.acceleration + (to.acceleration - from.acceleration) * weight,
-        memory: mechanism.memory_shifted(&base.memory, &from.memory, &to.memory, weight),
+        internal: mechanism.internal_shifted(&base.internal, &from.internal, &to.internal, weight),
     }
 }

@@ -61,7 +61,7 @@ impl Integrator for Rodas3 {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        let from = (&motion.pose, &motion.velocity, &motion.memory);
+        let from = (&motion.pose, &motion.velocity, &motion.internal);
         Self::attempt(mechanism, t, h, from, None, &mut [Part::zero(); 2]).step(motion, h)
     }
 }

@@ -92,9 +92,9 @@ pub(super) struct Evaluation<S, const D: usize> {
     rate: SVector<S, D>,
 }
 
-/// Where a step starts: pose, velocity, memory.
+/// Where a step starts: pose, velocity, internal variables.
 pub(super) type From<'a, S, M, const D: usize> =
-    (&'a <M as Mechanism<S, D>>::Pose, &'a SVector<S, D>, &'a <M as Mechanism<S, D>>::Memory);
+    (&'a <M as Mechanism<S, D>>::Pose, &'a SVector<S, D>, &'a <M as Mechanism<S, D>>::Internal);
 
 /// A step at its start: what all of its stages share.
 pub(super) struct Start<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> {
@@ -106,8 +106,8 @@ pub(super) struct Start<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> {
     a: S,
     per_step: S,
     per_time: SVector<S, D>,
-    slopes: M::Slopes,
-    linearisation: M::Linearisation,
+    jacobians: M::Jacobians,
+    iteration_matrix: M::IterationMatrix,
 }
 
 /// Where a step ends, and how far the embedded method's end is from there.
@@ -125,22 +125,22 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
     /// The start of a step `h` (s) with the implicit part `gamma`·`h`, and the force there.
     #[inline(always)]
     pub fn new(mechanism: &'a M, t: S, h: S, from: From<'a, S, M, D>, gamma: f64) -> (Self, Evaluation<S, D>) {
-        let (pose, velocity, memory) = from;
-        let Differentiated { force, per_time, slopes } = mechanism.differentiated(t, pose, memory, velocity);
+        let (pose, velocity, internal) = from;
+        let Differentiated { force, per_time, jacobians } = mechanism.differentiated(t, pose, internal, velocity);
         let a = h * S::from_f64(gamma);
-        let linearisation = mechanism.linearisation(&slopes, a);
-        let start = Self { mechanism, from, t, h, a, per_step: S::one() / h, per_time, slopes, linearisation };
+        let iteration_matrix = mechanism.iteration_matrix(&jacobians, a);
+        let start = Self { mechanism, from, t, h, a, per_step: S::one() / h, per_time, jacobians, iteration_matrix };
         (start, Evaluation { force, rate: *velocity })
     }
 
     /// The force `at` a part of the step, at `time`, a share of it.
     #[inline(always)]
     pub fn evaluated(&self, at: &Part<S, D>, time: f64) -> Evaluation<S, D> {
-        let Self { mechanism, from: (start, velocity, memory), .. } = *self;
-        let pose = mechanism.moved(start, &at.place, S::one());
+        let Self { mechanism, from: (start, velocity, internal), .. } = *self;
+        let pose = mechanism.explicit_update(start, &at.place, S::one());
         let velocity = velocity + at.velocity;
         let t = self.t + S::from_f64(time) * self.h;
-        let force = mechanism.forces_by(&self.slopes, t, &pose, memory, &velocity, self.h);
+        let force = mechanism.forces_by(&self.jacobians, t, &pose, internal, &velocity, self.h);
         Evaluation { force, rate: mechanism.rate(&at.place, &velocity) }
     }
 
@@ -155,10 +155,11 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
         }
         if let Some(before) = before {
             rate += before.place * per_step;
-            force += mechanism.momentum_by(&self.slopes, self.from.0, &before.velocity) * per_step;
+            force += mechanism.momentum_by(&self.jacobians, self.from.0, &before.velocity) * per_step;
         }
         // The equation of the place is solved for first.
-        let velocity = mechanism.solve(&self.linearisation, &(force + mechanism.pushed(&self.slopes, &(rate * a))));
+        let velocity =
+            mechanism.solve(&self.iteration_matrix, &(force + mechanism.pushed(&self.jacobians, &(rate * a))));
         Part { place: (velocity + rate) * a, velocity }
     }
 
@@ -167,7 +168,7 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
     pub fn end(&self, whole: &Part<S, D>, last: &Part<S, D>) -> End<S, M::Pose, D> {
         let Self { mechanism, from: (start, ..), .. } = *self;
         End {
-            pose: mechanism.normalised(&mechanism.moved(start, &whole.place, S::one())),
+            pose: mechanism.normalised(&mechanism.explicit_update(start, &whole.place, S::one())),
             change: whole.velocity,
             error: mechanism.weighed(start, &last.velocity),
             drift: mechanism.weighed(start, &last.place),
@@ -184,7 +185,7 @@ impl<S: Scalar, P, const D: usize> End<S, P, D> {
                 pose: self.pose,
                 velocity: motion.velocity + self.change,
                 acceleration: self.change * (S::one() / h),
-                memory: motion.memory,
+                internal: motion.internal,
             },
             residual: S::zero(),
             error: self.error,
@@ -201,7 +202,7 @@ pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
     h: S,
     motion: &MotionOf<S, M, D>,
 ) -> (StepOf<S, M, D>, [SVector<S, D>; 2]) {
-    let from = (&motion.pose, &motion.velocity, &motion.memory);
+    let from = (&motion.pose, &motion.velocity, &motion.internal);
     let (start, mut here) = Start::new(mechanism, t, h, from, T::GAMMA);
     let mut parts = [Part::zero(); MOST_STAGES];
     let mut last = Part::zero();
@@ -217,6 +218,6 @@ pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
     }
     let whole = Part::weighted(&parts, T::RESULT);
     let [first, second] = T::BENDS.map(|weights| Part::weighted(&parts, weights).velocity);
-    let slopes = [whole.velocity + first, whole.velocity - first - second];
-    (start.end(&whole, &last).step(motion, h), slopes.map(|slope| slope * start.per_step))
+    let jacobians = [whole.velocity + first, whole.velocity - first - second];
+    (start.end(&whole, &last).step(motion, h), jacobians.map(|slope| slope * start.per_step))
 }

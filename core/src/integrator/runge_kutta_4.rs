@@ -22,21 +22,21 @@ impl Integrator for RungeKutta4 {
     ) -> StepOf<S, M, D> {
         let (half, third, sixth) = (S::from_f64(0.5), S::from_f64(1.0 / 3.0), S::from_f64(1.0 / 6.0));
         let acceleration = |t: S, pose: &M::Pose, velocity: &SVector<S, D>| {
-            mechanism.velocity(pose, &mechanism.forces(t, pose, &motion.memory, velocity, h, None))
+            mechanism.velocity(pose, &mechanism.forces(t, pose, &motion.internal, velocity, h, None))
         };
         let (q1, v1) = (motion.pose, motion.velocity);
         let a1 = acceleration(t, &q1, &v1);
         // Each slope of the pose is kept as the pair of a pose and where a whole step along the slope leads.
-        let p1 = mechanism.moved(&q1, &v1, h);
+        let p1 = mechanism.explicit_update(&q1, &v1, h);
         let (q2, v2) = (mechanism.shifted(&q1, &q1, &p1, half), v1 + a1 * (h * half));
         let a2 = acceleration(t + h * half, &q2, &v2);
-        let p2 = mechanism.moved(&q2, &v2, h);
+        let p2 = mechanism.explicit_update(&q2, &v2, h);
         let (q3, v3) = (mechanism.shifted(&q1, &q2, &p2, half), v1 + a2 * (h * half));
         let a3 = acceleration(t + h * half, &q3, &v3);
-        let p3 = mechanism.moved(&q3, &v3, h);
+        let p3 = mechanism.explicit_update(&q3, &v3, h);
         let (q4, v4) = (mechanism.shifted(&q1, &q3, &p3, S::one()), v1 + a3 * h);
         let a4 = acceleration(t + h, &q4, &v4);
-        let p4 = mechanism.moved(&q4, &v4, h);
+        let p4 = mechanism.explicit_update(&q4, &v4, h);
 
         let velocity = v1 + (a1 + a4) * (h * sixth) + (a2 + a3) * (h * third);
         let mut pose = mechanism.shifted(&q1, &q1, &p1, sixth);
@@ -46,7 +46,7 @@ impl Integrator for RungeKutta4 {
         let pose = mechanism.normalised(&pose);
         // The two slopes at the middle differ by a term of third order: an estimate on the safe side.
         let error = mechanism.weighed(&pose, &((a3 - a2) * (h * third)));
-        let motion = Motion { pose, velocity, acceleration: a4, memory: motion.memory };
+        let motion = Motion { pose, velocity, acceleration: a4, internal: motion.internal };
         Step { motion, residual: S::zero(), error, drift: error * h }
     }
 }

@@ -20,13 +20,14 @@ impl Integrator for SemiImplicitEuler {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        let start = mechanism.forces(t, &motion.pose, &motion.memory, &motion.velocity, h, None);
+        let start = mechanism.forces(t, &motion.pose, &motion.internal, &motion.velocity, h, None);
         let velocity = motion.velocity + mechanism.velocity(&motion.pose, &(start * h));
-        let pose = mechanism.normalised(&mechanism.advanced(&motion.pose, &velocity, h));
-        let end = mechanism.forces(t + h, &pose, &motion.memory, &velocity, h, None);
+        let pose = mechanism.normalised(&mechanism.implicit_update(&motion.pose, &velocity, h));
+        let end = mechanism.forces(t + h, &pose, &motion.internal, &velocity, h, None);
         // Half the change of the force over the step is what the first order leaves out.
         let error = mechanism.impulse(&((end - start) * (h * S::from_f64(0.5))));
-        let motion = Motion { pose, velocity, acceleration: mechanism.velocity(&pose, &end), memory: motion.memory };
+        let motion =
+            Motion { pose, velocity, acceleration: mechanism.velocity(&pose, &end), internal: motion.internal };
         Step { motion, residual: S::zero(), error, drift: error * h }
     }
 }

@@ -11,7 +11,7 @@ use crate::{
     menu::SlideData,
     pose::Pose,
     system::{
-        Assembly, Bodies, Derivatives, Elements, Jacobian, SlopesOf, Sum,
+        Assembly, Bodies, Derivatives, Elements, Jacobian, JacobiansOf, Sum,
         spatial::{Floating, FloatingPlaced as Placed},
     },
 };
@@ -64,7 +64,7 @@ pub fn abreast<S: Scalar, L: Lanes<S>>(slide: &SlideData<S>) -> SlideData<L> {
     lanes
 }
 
-impl<L, E: Elastic<L>, F: Friction<L, Memory = ()>> Abreast<L, E, F> {
+impl<L, E: Elastic<L>, F: Friction<L, Internal = ()>> Abreast<L, E, F> {
     /// From the slide whose parameters are those of [`abreast`].
     pub fn new(lanes: Slide<L, E, F>) -> Self {
         Self { lanes }
@@ -91,7 +91,7 @@ fn still<S: Scalar>() -> Way<S> {
 impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     /// [`Mechanism::forces`](crate::mechanism::Mechanism::forces) (N, N·m) at time `t` (s) with its `pins` side by side.
     #[inline(always)]
-    pub fn forces_abreast<L: Lanes<S>, EL: Elastic<L>, FL: Friction<L, Memory = ()>>(
+    pub fn forces_abreast<L: Lanes<S>, EL: Elastic<L>, FL: Friction<L, Internal = ()>>(
         &self,
         pins: &Abreast<L, EL, FL>,
         t: S,
@@ -108,13 +108,13 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
 
     /// [`Mechanism::differentiated`](crate::mechanism::Mechanism::differentiated) at time `t` (s) with its `pins` side by side.
     #[inline(always)]
-    pub fn differentiated_abreast<L: Lanes<S>, EL: Elastic<L>, FL: Friction<L, Memory = ()>>(
+    pub fn differentiated_abreast<L: Lanes<S>, EL: Elastic<L>, FL: Friction<L, Internal = ()>>(
         &self,
         pins: &Abreast<L, EL, FL>,
         t: S,
         pose: &Pose<S>,
         velocity: &SVector<S, 6>,
-    ) -> Differentiated<S, SlopesOf<S, Floating<S>, 6>, 6> {
+    ) -> Differentiated<S, JacobiansOf<S, Floating<S>, 6>, 6> {
         let at = self.bodies().placed(pose, velocity);
         let (zero, none) = (SVector::zeros(), Blocks::zero());
         let mut lanes = Derivatives { force: zero, per_time: zero, damping: none, stiffness: none };

@@ -43,7 +43,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         }
     }
 
-    /// The powers at `motion` and time `t` (s). Friction with a memory acts with the force remembered, as far as the
+    /// The powers at `motion` and time `t` (s). Friction with internal variables acts with the force that they hold, as far as the
     /// normal force of the motion carries it.
     pub fn power(&self, t: S, motion: &MotionOf<S, Self, 6>) -> Power<S> {
         let (v_w, w_b) = split(&motion.velocity);
@@ -54,11 +54,11 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
         let (mut damping, mut friction) = (zero, zero);
         let contact = self.contact();
         let pins = gaps.as_chunks::<4>().0.iter().zip(&self.elements().0.each);
-        for (([left, right, rail, wall], (pin, _)), memory) in pins.zip(&motion.memory.0) {
+        for (([left, right, rail, wall], (pin, _)), internal) in pins.zip(&motion.internal.0) {
             let lever = pin.place_w + to_body.change(pin.place_w) - to_body.apply(motion.pose.displacement_w);
             let u = v_b + w_b.cross(&lever);
             let slots = [([left, right], [u.x, u.y, u.z]), ([wall, rail], [u.y, u.x, u.z])];
-            for ((gaps, [along, sliding_0, sliding_1]), memory) in slots.into_iter().zip(memory) {
+            for ((gaps, [along, sliding_0, sliding_1]), internal) in slots.into_iter().zip(internal) {
                 // The gaps of this pose, so that the slot stands at offset 0.
                 let slot = contact.normal.slot(*gaps[0], *gaps[1], zero, along);
                 let touching = SlidingContact {
@@ -68,7 +68,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
                     mass_rate: zero,
                     tangent_share: zero,
                 };
-                let (traction, _) = contact.friction.traction(memory, &touching);
+                let (traction, _) = contact.friction.traction(internal, &touching);
                 friction -= traction.force[0] * sliding_0 + traction.force[1] * sliding_1;
                 damping += contact.normal.loss(-*gaps[0], along) + contact.normal.loss(-*gaps[1], -along);
             }

@@ -36,12 +36,12 @@ where
     L: Link<S, B, D, R> + Copy,
     G: Shape<C, Law: Law<S, R>>,
 {
-    type Memory = [<G::Law as Law<S, R>>::Memory; N];
+    type Internal = [<G::Law as Law<S, R>>::Internal; N];
 
     const STICKS: bool = G::Law::STICKS;
 
     #[inline(always)]
-    fn fresh(&self) -> Self::Memory {
+    fn fresh(&self) -> Self::Internal {
         [G::Law::fresh(); N]
     }
 
@@ -50,18 +50,18 @@ where
         &self,
         way: (S, Way<S>),
         at: (&B, &B::Placed),
-        memory: &Self::Memory,
-        remembered: Option<&mut Self::Memory>,
+        internal: &Self::Internal,
+        updated: Option<&mut Self::Internal>,
         sum: &mut impl Assembly<S, B, D>,
     ) {
-        let mut slots = remembered.into_iter().flatten();
-        for (element, memory) in self.iter().zip(memory) {
-            element.act(way, at, memory, slots.next(), sum);
+        let mut slots = updated.into_iter().flatten();
+        for (element, internal) in self.iter().zip(internal) {
+            element.act(way, at, internal, slots.next(), sum);
         }
     }
 
     #[inline(always)]
-    fn shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory {
+    fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal {
         let mut shifted = *base;
         for ((shifted, from), to) in shifted.iter_mut().zip(from).zip(to) {
             *shifted = G::Law::shifted(shifted, from, to, weight);
@@ -70,7 +70,7 @@ where
     }
 
     #[inline(always)]
-    fn accept(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory) {
+    fn accept(&self, condition: S, next: &Self::Internal, kept: &mut Self::Internal) {
         for (kept, next) in kept.iter_mut().zip(next) {
             *kept = G::Law::or_old(next, condition, kept);
         }

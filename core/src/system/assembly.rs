@@ -22,7 +22,7 @@ pub trait Assembly<S: Scalar, B: Bodies<S, D>, const D: usize> {
 pub(crate) struct Sum<S, const D: usize>(pub SVector<S, D>);
 
 /// The force, and how M·V/a − force goes by velocities that also move the bodies over the time a.
-pub(super) struct Balance<S, J, const D: usize> {
+pub(super) struct StageSum<S, J, const D: usize> {
     pub force: SVector<S, D>,
     pub matrix: J,
     pub a: S,
@@ -52,7 +52,7 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for Sum<S, D>
     }
 }
 
-impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for Balance<S, B::Jacobian, D> {
+impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for StageSum<S, B::Jacobian, D> {
     #[inline(always)]
     fn add<L: Link<S, B, D, R>, W: Law<S, R>, const R: usize>(
         &mut self,

@@ -93,12 +93,12 @@ impl<S: Scalar> Bodies<S, 1> for OnAxis<S> {
     const MATRIX_IS_LEAN: bool = true;
 
     #[inline(always)]
-    fn advanced(&self, pose: &S, velocity: &SVector<S, 1>, dt: S) -> S {
+    fn implicit_update(&self, pose: &S, velocity: &SVector<S, 1>, dt: S) -> S {
         *pose + velocity.x * dt
     }
 
     #[inline(always)]
-    fn moved(&self, pose: &S, velocity: &SVector<S, 1>, dt: S) -> S {
+    fn explicit_update(&self, pose: &S, velocity: &SVector<S, 1>, dt: S) -> S {
         *pose + velocity.x * dt
     }
 
@@ -159,7 +159,7 @@ impl<S: Scalar> Bodies<S, 1> for OnAxis<S> {
     }
 
     #[inline(always)]
-    fn own_slopes(&self, _: &[S; 2], _: &SVector<S, 1>, _: &mut Own<S, 1>, _: &mut Own<S, 1>) {}
+    fn own_jacobians(&self, _: &[S; 2], _: &SVector<S, 1>, _: &mut Own<S, 1>, _: &mut Own<S, 1>) {}
 
     #[inline(always)]
     fn least_mass(&self) -> S {

@@ -32,10 +32,10 @@ pub trait Bodies<S: Scalar, const D: usize> {
     const MATRIX_IS_LEAN: bool = false;
 
     /// `pose` + `dt`·Q̇(Q, `velocity`), implicit in Q.
-    fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
+    fn implicit_update(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
 
     /// `pose` + `dt`·Q̇(`pose`, `velocity`), explicit.
-    fn moved(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
+    fn explicit_update(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
 
     /// `base + weight·(to − from)`, number by number.
     fn shifted(&self, base: &Self::Pose, from: &Self::Pose, to: &Self::Pose, weight: S) -> Self::Pose;
@@ -88,7 +88,7 @@ pub trait Bodies<S: Scalar, const D: usize> {
 
     /// Adds how gravity and what turning resists, less M·`acceleration`, go by velocity and by place, negated; the acceleration
     /// is held, and not looked at where the mass matrix is constant.
-    fn own_slopes(
+    fn own_jacobians(
         &self,
         placed: &Self::Placed,
         acceleration: &SVector<S, D>,

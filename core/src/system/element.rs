@@ -36,7 +36,7 @@ impl<S: Scalar, const R: usize> Response<S, R> {
 /// A force law of `R` lengths and angles.
 pub trait Law<S: Scalar, const R: usize> {
     /// What it remembers from one step to the next; `()` where nothing.
-    type Memory: Copy + core::fmt::Debug + PartialEq;
+    type Internal: Copy + core::fmt::Debug + PartialEq;
 
     /// Whether it can hold bodies at rest.
     const STICKS: bool;
@@ -52,24 +52,24 @@ pub trait Law<S: Scalar, const R: usize> {
     /// Whether it changes with time where nothing moves; where not, [`Response::per_time`] is zero and not looked at.
     const TIMED: bool = false;
 
-    /// The memory of a law that nothing has happened to yet.
-    fn fresh() -> Self::Memory;
+    /// The internal variables of a law that nothing has happened to yet.
+    fn fresh() -> Self::Internal;
 
-    /// The forces at `place` and `rate` at time `t` (s), and the memory if the motion is accepted.
+    /// The forces at `place` and `rate` at time `t` (s), and the internal variables if the motion is accepted.
     fn response(
         &self,
         t: S,
         place: &SVector<S, R>,
         rate: &SVector<S, R>,
-        memory: &Self::Memory,
+        internal: &Self::Internal,
         way: Way<S>,
-    ) -> (Response<S, R>, Self::Memory);
+    ) -> (Response<S, R>, Self::Internal);
 
     /// `base + weight·(to − from)`.
-    fn shifted(base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
+    fn shifted(base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal;
 
     /// `new` where it is finite and `condition` > 0, else `old`, number by number.
-    fn or_old(new: &Self::Memory, condition: S, old: &Self::Memory) -> Self::Memory;
+    fn or_old(new: &Self::Internal, condition: S, old: &Self::Internal) -> Self::Internal;
 }
 
 /// A law at a link that measures `R` lengths and angles.
@@ -84,40 +84,40 @@ pub struct Element<L, W, const R: usize> {
 /// Elements that act on bodies `B`: one, an array, a slice, or a tuple of such.
 pub trait Elements<S: Scalar, B: Bodies<S, D>, const D: usize> {
     /// What their laws remember.
-    type Memory: Copy;
+    type Internal: Copy;
 
     /// Whether one of them can hold bodies at rest.
     const STICKS: bool;
 
-    /// The memory of laws that nothing has happened to yet.
-    fn fresh(&self) -> Self::Memory;
+    /// The internal variables of laws that nothing has happened to yet.
+    fn fresh(&self) -> Self::Internal;
 
     /// Adds the forces at time `t` (s) to `sum`, and writes what the laws remember if the motion is accepted.
     fn act(
         &self,
         way: (S, Way<S>),
         at: (&B, &B::Placed),
-        memory: &Self::Memory,
-        remembered: Option<&mut Self::Memory>,
+        internal: &Self::Internal,
+        updated: Option<&mut Self::Internal>,
         sum: &mut impl Assembly<S, B, D>,
     );
 
     /// `base + weight·(to − from)`.
-    fn shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
+    fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal;
 
     /// Makes `kept` `next`, number by number where it is finite and `condition` > 0.
-    fn accept(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory);
+    fn accept(&self, condition: S, next: &Self::Internal, kept: &mut Self::Internal);
 }
 
 impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usize, const R: usize> Elements<S, B, D>
     for Element<L, W, R>
 {
-    type Memory = W::Memory;
+    type Internal = W::Internal;
 
     const STICKS: bool = W::STICKS;
 
     #[inline(always)]
-    fn fresh(&self) -> W::Memory {
+    fn fresh(&self) -> W::Internal {
         W::fresh()
     }
 
@@ -126,32 +126,32 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
         &self,
         (t, way): (S, Way<S>),
         at: (&B, &B::Placed),
-        memory: &W::Memory,
-        remembered: Option<&mut W::Memory>,
+        internal: &W::Internal,
+        updated: Option<&mut W::Internal>,
         sum: &mut impl Assembly<S, B, D>,
     ) {
         let view = self.link.view(at.0, at.1);
         let seen = self.link.seen(at, &view);
-        let (response, next) = self.law.response(t, &seen.place, &seen.rate, memory, way);
-        if let Some(slot) = remembered {
+        let (response, next) = self.law.response(t, &seen.place, &seen.rate, internal, way);
+        if let Some(slot) = updated {
             *slot = next;
         }
         sum.add::<L, W, R>(&self.link, at, &view, &response);
     }
 
     #[inline(always)]
-    fn shifted(&self, base: &W::Memory, from: &W::Memory, to: &W::Memory, weight: S) -> W::Memory {
+    fn shifted(&self, base: &W::Internal, from: &W::Internal, to: &W::Internal, weight: S) -> W::Internal {
         W::shifted(base, from, to, weight)
     }
 
     #[inline(always)]
-    fn accept(&self, condition: S, next: &W::Memory, kept: &mut W::Memory) {
+    fn accept(&self, condition: S, next: &W::Internal, kept: &mut W::Internal) {
         *kept = W::or_old(next, condition, kept);
     }
 }
 
 impl<S: Scalar, B: Bodies<S, D>, const D: usize> Elements<S, B, D> for () {
-    type Memory = ();
+    type Internal = ();
 
     const STICKS: bool = false;
 
@@ -171,12 +171,12 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Elements<S, B, D> for () {
 impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, F: Elements<S, B, D>, const D: usize> Elements<S, B, D>
     for (E, F)
 {
-    type Memory = (E::Memory, F::Memory);
+    type Internal = (E::Internal, F::Internal);
 
     const STICKS: bool = E::STICKS || F::STICKS;
 
     #[inline(always)]
-    fn fresh(&self) -> Self::Memory {
+    fn fresh(&self) -> Self::Internal {
         (self.0.fresh(), self.1.fresh())
     }
 
@@ -185,37 +185,37 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, F: Elements<S, B, D>, con
         &self,
         way: (S, Way<S>),
         at: (&B, &B::Placed),
-        memory: &Self::Memory,
-        remembered: Option<&mut Self::Memory>,
+        internal: &Self::Internal,
+        updated: Option<&mut Self::Internal>,
         sum: &mut impl Assembly<S, B, D>,
     ) {
-        let (first, second) = match remembered {
+        let (first, second) = match updated {
             Some((first, second)) => (Some(first), Some(second)),
             None => (None, None),
         };
-        self.0.act(way, at, &memory.0, first, sum);
-        self.1.act(way, at, &memory.1, second, sum);
+        self.0.act(way, at, &internal.0, first, sum);
+        self.1.act(way, at, &internal.1, second, sum);
     }
 
     #[inline(always)]
-    fn shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory {
+    fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal {
         (self.0.shifted(&base.0, &from.0, &to.0, weight), self.1.shifted(&base.1, &from.1, &to.1, weight))
     }
 
     #[inline(always)]
-    fn accept(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory) {
+    fn accept(&self, condition: S, next: &Self::Internal, kept: &mut Self::Internal) {
         self.0.accept(condition, &next.0, &mut kept.0);
         self.1.accept(condition, &next.1, &mut kept.1);
     }
 }
 
 impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: usize> Elements<S, B, D> for [E; N] {
-    type Memory = [E::Memory; N];
+    type Internal = [E::Internal; N];
 
     const STICKS: bool = E::STICKS;
 
     #[inline(always)]
-    fn fresh(&self) -> Self::Memory {
+    fn fresh(&self) -> Self::Internal {
         self.each_ref().map(E::fresh)
     }
 
@@ -224,18 +224,18 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
         &self,
         way: (S, Way<S>),
         at: (&B, &B::Placed),
-        memory: &Self::Memory,
-        remembered: Option<&mut Self::Memory>,
+        internal: &Self::Internal,
+        updated: Option<&mut Self::Internal>,
         sum: &mut impl Assembly<S, B, D>,
     ) {
-        let mut slots = remembered.into_iter().flatten();
-        for (element, memory) in self.iter().zip(memory) {
-            element.act(way, at, memory, slots.next(), sum);
+        let mut slots = updated.into_iter().flatten();
+        for (element, internal) in self.iter().zip(internal) {
+            element.act(way, at, internal, slots.next(), sum);
         }
     }
 
     #[inline(always)]
-    fn shifted(&self, base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory {
+    fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal {
         let mut shifted = *base;
         for (((element, shifted), from), to) in self.iter().zip(&mut shifted).zip(from).zip(to) {
             *shifted = element.shifted(shifted, from, to, weight);
@@ -244,7 +244,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
     }
 
     #[inline(always)]
-    fn accept(&self, condition: S, next: &Self::Memory, kept: &mut Self::Memory) {
+    fn accept(&self, condition: S, next: &Self::Internal, kept: &mut Self::Internal) {
         for ((element, next), kept) in self.iter().zip(next).zip(kept) {
             element.accept(condition, next, kept);
         }
@@ -252,8 +252,8 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
 }
 
 /// Elements chosen at run time, whose laws remember nothing.
-impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Memory = ()>, const D: usize> Elements<S, B, D> for &[E] {
-    type Memory = ();
+impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Internal = ()>, const D: usize> Elements<S, B, D> for &[E] {
+    type Internal = ();
 
     const STICKS: bool = false;
 

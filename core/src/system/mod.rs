@@ -37,9 +37,9 @@ pub use lu::Lu;
 
 use crate::{
     SVector, Scalar,
-    mechanism::{Differentiated, Linearised, Mechanism, Way, settled, settling},
+    mechanism::{Balance, Differentiated, Mechanism, Way, settled, settling},
 };
-use assembly::Balance;
+use assembly::StageSum;
 pub(crate) use assembly::{Derivatives, Sum};
 use law::DriveLaw;
 
@@ -98,14 +98,14 @@ pub struct Driving<S> {
 
 /// The balance of forces linearised, and what leads to the axes in which it is.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Linearisation<F, A> {
+pub struct IterationMatrix<F, A> {
     factors: F,
     axes: A,
 }
 
 /// How the balance of forces goes by velocity and place, at one motion.
 #[derive(Clone, Copy, Debug)]
-pub struct Slopes<M, A, J> {
+pub struct Jacobians<M, A, J> {
     mass: M,
     axes: A,
     /// −∂force/∂V.
@@ -114,24 +114,24 @@ pub struct Slopes<M, A, J> {
     stiffness: J,
 }
 
-/// [`Slopes`] of bodies `B`.
-pub type SlopesOf<S, B, const D: usize> =
-    Slopes<<B as Bodies<S, D>>::Mass, <B as Bodies<S, D>>::Axes, <B as Bodies<S, D>>::Jacobian>;
+/// [`Jacobians`] of bodies `B`.
+pub type JacobiansOf<S, B, const D: usize> =
+    Jacobians<<B as Bodies<S, D>>::Mass, <B as Bodies<S, D>>::Axes, <B as Bodies<S, D>>::Jacobian>;
 
 impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism<S, D> for System<B, E> {
     type Pose = B::Pose;
-    type Memory = E::Memory;
-    type Linearisation = Linearisation<<B::Jacobian as Jacobian<S, D>>::Factors, B::Axes>;
-    type Slopes = SlopesOf<S, B, D>;
+    type Internal = E::Internal;
+    type IterationMatrix = IterationMatrix<<B::Jacobian as Jacobian<S, D>>::Factors, B::Axes>;
+    type Jacobians = JacobiansOf<S, B, D>;
 
     #[inline(always)]
-    fn advanced(&self, pose: &B::Pose, velocity: &SVector<S, D>, dt: S) -> B::Pose {
-        self.bodies.advanced(pose, velocity, dt)
+    fn implicit_update(&self, pose: &B::Pose, velocity: &SVector<S, D>, dt: S) -> B::Pose {
+        self.bodies.implicit_update(pose, velocity, dt)
     }
 
     #[inline(always)]
-    fn moved(&self, pose: &B::Pose, velocity: &SVector<S, D>, dt: S) -> B::Pose {
-        self.bodies.moved(pose, velocity, dt)
+    fn explicit_update(&self, pose: &B::Pose, velocity: &SVector<S, D>, dt: S) -> B::Pose {
+        self.bodies.explicit_update(pose, velocity, dt)
     }
 
     #[inline(always)]
@@ -140,7 +140,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     }
 
     #[inline(always)]
-    fn memory_shifted(&self, base: &E::Memory, from: &E::Memory, to: &E::Memory, weight: S) -> E::Memory {
+    fn internal_shifted(&self, base: &E::Internal, from: &E::Internal, to: &E::Internal, weight: S) -> E::Internal {
         self.elements.shifted(base, from, to, weight)
     }
 
@@ -150,12 +150,12 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     }
 
     #[inline(always)]
-    fn fresh(&self) -> E::Memory {
+    fn fresh(&self) -> E::Internal {
         self.elements.fresh()
     }
 
     #[inline(always)]
-    fn accept(&self, condition: S, next: (&B::Pose, &E::Memory), kept: (&mut B::Pose, &mut E::Memory)) {
+    fn accept(&self, condition: S, next: (&B::Pose, &E::Internal), kept: (&mut B::Pose, &mut E::Internal)) {
         self.bodies.accept(condition, next.0, kept.0);
         self.elements.accept(condition, next.1, kept.1);
     }
@@ -185,27 +185,27 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     }
 
     #[inline(always)]
-    fn momentum_by(&self, slopes: &Self::Slopes, _: &B::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
-        self.bodies.momentum(&slopes.mass, velocity)
+    fn momentum_by(&self, jacobians: &Self::Jacobians, _: &B::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
+        self.bodies.momentum(&jacobians.mass, velocity)
     }
 
     #[inline(always)]
     fn forces_by(
         &self,
-        slopes: &Self::Slopes,
+        jacobians: &Self::Jacobians,
         t: S,
         pose: &B::Pose,
-        memory: &E::Memory,
+        internal: &E::Internal,
         velocity: &SVector<S, D>,
         a: S,
     ) -> SVector<S, D> {
         let placed = self.bodies.placed(pose, velocity);
         if B::MASS_IS_CONSTANT {
-            return self.sum(t, &placed, self.bodies.own_force(&placed), memory, a, None);
+            return self.sum(t, &placed, self.bodies.own_force(&placed), internal, a, None);
         }
         let (mass, own) = self.bodies.mass_and_own_force(&placed);
-        let force = self.sum(t, &placed, own, memory, a, None);
-        self.bodies.momentum(&slopes.mass, &self.bodies.velocity(&mass, &force))
+        let force = self.sum(t, &placed, own, internal, a, None);
+        self.bodies.momentum(&jacobians.mass, &self.bodies.velocity(&mass, &force))
     }
 
     #[inline(always)]
@@ -213,41 +213,41 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         &self,
         t: S,
         pose: &B::Pose,
-        memory: &E::Memory,
+        internal: &E::Internal,
         velocity: &SVector<S, D>,
         a: S,
-        remembered: Option<&mut E::Memory>,
+        updated: Option<&mut E::Internal>,
     ) -> SVector<S, D> {
         let placed = self.bodies.placed(pose, velocity);
-        self.sum(t, &placed, self.bodies.own_force(&placed), memory, a, remembered)
+        self.sum(t, &placed, self.bodies.own_force(&placed), internal, a, updated)
     }
 
     #[inline(always)]
-    fn linearised(
+    fn balance(
         &self,
         t: S,
         pose: &B::Pose,
-        memory: &E::Memory,
+        internal: &E::Internal,
         velocity: &SVector<S, D>,
         a: S,
         tangent_share: S,
-    ) -> Linearised<S, Self::Linearisation, D> {
+    ) -> Balance<S, Self::IterationMatrix, D> {
         let placed = self.bodies.placed(pose, velocity);
         let rate = S::one() / a;
         let over = if B::MATRIX_IS_LEAN { Some(a) } else { None };
         let way = Way { over, mass_rate: self.bodies.least_mass() * rate, tangent_share };
         let (mass, force) = self.bodies.mass_and_own_force(&placed);
-        let mut sum = Balance { force, matrix: self.bodies.inertia(&mass, rate), a };
-        self.elements.act((t, way), (&self.bodies, &placed), memory, None, &mut sum);
-        Linearised {
+        let mut sum = StageSum { force, matrix: self.bodies.inertia(&mass, rate), a };
+        self.elements.act((t, way), (&self.bodies, &placed), internal, None, &mut sum);
+        Balance {
             force: self.bodies.total(&placed, &sum.force),
-            linearisation: Linearisation { factors: sum.matrix.factorised(), axes: self.bodies.axes(&placed) },
+            iteration_matrix: IterationMatrix { factors: sum.matrix.factorised(), axes: self.bodies.axes(&placed) },
         }
     }
 
     #[inline(always)]
-    fn solve(&self, linearisation: &Self::Linearisation, residual: &SVector<S, D>) -> SVector<S, D> {
-        let Linearisation { factors, axes } = linearisation;
+    fn solve(&self, iteration_matrix: &Self::IterationMatrix, residual: &SVector<S, D>) -> SVector<S, D> {
+        let IterationMatrix { factors, axes } = iteration_matrix;
         axes.to_frame(&B::Jacobian::solve(factors, &axes.to_own(residual)))
     }
 
@@ -266,28 +266,28 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
         &self,
         t: S,
         pose: &B::Pose,
-        memory: &E::Memory,
+        internal: &E::Internal,
         velocity: &SVector<S, D>,
-    ) -> Differentiated<S, Self::Slopes, D> {
+    ) -> Differentiated<S, Self::Jacobians, D> {
         let placed = self.bodies.placed(pose, velocity);
         let way = Way { over: None, mass_rate: S::zero(), tangent_share: S::one() };
         let (mass, force) = self.bodies.mass_and_own_force(&placed);
         let zero = B::Jacobian::zero();
         let mut sum = Derivatives { force, per_time: SVector::zeros(), damping: zero, stiffness: zero };
-        self.elements.act((t, way), (&self.bodies, &placed), memory, None, &mut sum);
+        self.elements.act((t, way), (&self.bodies, &placed), internal, None, &mut sum);
         self.completed(&placed, mass, sum)
     }
 
     #[inline(always)]
-    fn linearisation(&self, slopes: &Self::Slopes, a: S) -> Self::Linearisation {
-        let Slopes { mass, axes, damping, stiffness } = slopes;
+    fn iteration_matrix(&self, jacobians: &Self::Jacobians, a: S) -> Self::IterationMatrix {
+        let Jacobians { mass, axes, damping, stiffness } = jacobians;
         let matrix = self.bodies.inertia(mass, S::one() / a).plus(damping, S::one()).plus(stiffness, a);
-        Linearisation { factors: matrix.factorised(), axes: *axes }
+        IterationMatrix { factors: matrix.factorised(), axes: *axes }
     }
 
     #[inline(always)]
-    fn pushed(&self, slopes: &Self::Slopes, displacement: &SVector<S, D>) -> SVector<S, D> {
-        let Slopes { axes, stiffness, .. } = slopes;
+    fn pushed(&self, jacobians: &Self::Jacobians, displacement: &SVector<S, D>) -> SVector<S, D> {
+        let Jacobians { axes, stiffness, .. } = jacobians;
         -axes.to_frame(&stiffness.times(&axes.to_own(displacement)))
     }
 
@@ -306,9 +306,9 @@ impl<B, E> System<B, E> {
         t: S,
         placed: &B::Placed,
         own: SVector<S, D>,
-        memory: &E::Memory,
+        internal: &E::Internal,
         a: S,
-        remembered: Option<&mut E::Memory>,
+        updated: Option<&mut E::Internal>,
     ) -> SVector<S, D>
     where
         B: Bodies<S, D>,
@@ -316,7 +316,7 @@ impl<B, E> System<B, E> {
     {
         let way = Way { over: None, mass_rate: self.bodies.least_mass() / a, tangent_share: S::one() };
         let mut sum = Sum(own);
-        self.elements.act((t, way), (&self.bodies, placed), memory, remembered, &mut sum);
+        self.elements.act((t, way), (&self.bodies, placed), internal, updated, &mut sum);
         self.bodies.total(placed, &sum.0)
     }
 
@@ -327,17 +327,17 @@ impl<B, E> System<B, E> {
         placed: &B::Placed,
         mass: B::Mass,
         mut sum: Derivatives<S, B::Jacobian, D>,
-    ) -> Differentiated<S, SlopesOf<S, B, D>, D>
+    ) -> Differentiated<S, JacobiansOf<S, B, D>, D>
     where
         B: Bodies<S, D>,
     {
         let force = self.bodies.total(placed, &sum.force);
         let acceleration = if B::MASS_IS_CONSTANT { SVector::zeros() } else { self.bodies.velocity(&mass, &force) };
-        self.bodies.own_slopes(placed, &acceleration, &mut sum.damping, &mut sum.stiffness);
+        self.bodies.own_jacobians(placed, &acceleration, &mut sum.damping, &mut sum.stiffness);
         let axes = self.bodies.axes(placed);
         let Derivatives { per_time, damping, stiffness, .. } = sum;
-        let slopes = Slopes { mass, axes, damping, stiffness };
-        Differentiated { force, per_time: axes.to_frame(&per_time), slopes }
+        let jacobians = Jacobians { mass, axes, damping, stiffness };
+        Differentiated { force, per_time: axes.to_frame(&per_time), jacobians }
     }
 
     /// The mass matrix at a `pose`.

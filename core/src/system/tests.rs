@@ -43,18 +43,18 @@ fn check<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
     touches: impl Fn(&SVector<f64, D>) -> bool,
 ) {
     let mut next = numbers();
-    let (t, h, memory) = (0.3, 1e-6, system.fresh());
+    let (t, h, internal) = (0.3, 1e-6, system.fresh());
     let mut touched = 0;
     // An interpreter takes long.
     for _ in 0..if cfg!(miri) { 1 } else { 100 } {
         let at = SVector::<f64, D>::from_fn(|_, _| next() * scale);
         let v = SVector::<f64, D>::from_fn(|_, _| next());
-        let pose = system.normalised(&system.moved(&start, &at, 1.0));
-        let found = system.differentiated(t, &pose, &memory, &v);
+        let pose = system.normalised(&system.explicit_update(&start, &at, 1.0));
+        let found = system.differentiated(t, &pose, &internal, &v);
         let acceleration = system.velocity(&pose, &found.force);
         let residual = |t: f64, turn: &SVector<f64, D>, v: &SVector<f64, D>| {
-            let there = system.moved(&pose, turn, 1.0);
-            system.forces(t, &there, &memory, v, 1.0, None) - system.momentum(&there, &acceleration)
+            let there = system.explicit_update(&pose, turn, 1.0);
+            system.forces(t, &there, &internal, v, 1.0, None) - system.momentum(&there, &acceleration)
         };
         let zero = SVector::zeros();
         touched += u32::from(touches(&found.force));
@@ -67,10 +67,10 @@ fn check<B: Bodies<f64, D>, E: Elements<f64, B, D>, const D: usize>(
             let mut step = zero;
             step[k] = h;
             let by_place = (residual(t, &step, &v) - residual(t, &-step, &v)) / (2.0 * h);
-            close(system.pushed(&found.slopes, &step) / h, by_place, "place");
+            close(system.pushed(&found.jacobians, &step) / h, by_place, "place");
             let by_rate = (residual(t, &zero, &(v + step)) - residual(t, &zero, &(v - step))) / (2.0 * h);
-            let axes = &found.slopes.axes;
-            let damped = axes.to_frame(&found.slopes.damping.times(&axes.to_own(&step)));
+            let axes = &found.jacobians.axes;
+            let damped = axes.to_frame(&found.jacobians.damping.times(&axes.to_own(&step)));
             close(-damped / h, by_rate, "velocity");
         }
     }
@@ -135,7 +135,7 @@ fn spatial_derivatives_are_those_of_the_forces() {
     let bodies =
         FreeBodies::<f64, 2, 12>::new([body(0.5, 0.0), body(0.8, 0.3)], Vector3::new(0.0, -9.81, 0.0)).unwrap();
     let port = |body, x, y, z| Port { body, lever: Vector3::new(x, y, z) };
-    let axes = crate::pose::Pose::nominal().advanced(Vector3::zeros(), Vector3::new(0.4, 0.9, -0.7), 1.0);
+    let axes = crate::pose::Pose::nominal().implicit_update(Vector3::zeros(), Vector3::new(0.4, 0.9, -0.7), 1.0);
     let elements = (
         [
             Element::<_, _, 3> {
@@ -213,10 +213,10 @@ fn a_floating_body_has_the_derivatives_of_its_forces() {
 
 /// That a law tells an impedance over a time as that of no time and the stiffness times it.
 fn folds<W: Law<f64, R>, const R: usize>(law: W, places: [f64; R], rates: [f64; R]) {
-    let (a, memory) = (0.01, W::fresh());
+    let (a, internal) = (0.01, W::fresh());
     let told = |over| {
         let way = Way { over, mass_rate: 0.0, tangent_share: 1.0 };
-        law.response(0.3, &places.into(), &rates.into(), &memory, way).0
+        law.response(0.3, &places.into(), &rates.into(), &internal, way).0
     };
     let (apart, folded) = (told(None), told(Some(a)));
     assert!(apart.stiffness.norm() > 1.0, "it touches");

@@ -8,7 +8,7 @@ use slipfit_core::{
     mechanism::{Differentiated, Mechanism},
     menu::SlideData,
     pose::Pose,
-    slide::{Abreast, Memory, Slide, abreast},
+    slide::{Abreast, Internal, Slide, abreast},
 };
 
 use super::{laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
@@ -20,7 +20,7 @@ type Quad = Pack<V3, f64>;
 type Usual<S> = Slide<S, ThreeHalves<S>, Regularised<S>>;
 
 /// Derivatives of its forces.
-type Slopes = <Usual<f64> as Mechanism<f64, 6>>::Slopes;
+type Jacobians = <Usual<f64> as Mechanism<f64, 6>>::Jacobians;
 
 /// Pins side by side, and the proof that the machine has the instructions for them.
 pub struct SideBySide {
@@ -44,10 +44,10 @@ impl Contacts<f64, Usual<f64>, 6> for SideBySide {
     fn forces_by(
         &self,
         slide: &Usual<f64>,
-        _: &Slopes,
+        _: &Jacobians,
         t: f64,
         pose: &Pose<f64>,
-        _: &Memory<()>,
+        _: &Internal<()>,
         velocity: &SVector<f64, 6>,
         _: f64,
     ) -> SVector<f64, 6> {
@@ -59,9 +59,9 @@ impl Contacts<f64, Usual<f64>, 6> for SideBySide {
         slide: &Usual<f64>,
         t: f64,
         pose: &Pose<f64>,
-        _: &Memory<()>,
+        _: &Internal<()>,
         velocity: &SVector<f64, 6>,
-    ) -> Differentiated<f64, Slopes, 6> {
+    ) -> Differentiated<f64, Jacobians, 6> {
         self.instructions.vectorize(Derivatives(Call { slide, pins: self, t, pose, velocity }))
     }
 }
@@ -93,7 +93,7 @@ impl NullaryFnOnce for Forces<'_> {
 }
 
 impl NullaryFnOnce for Derivatives<'_> {
-    type Output = Differentiated<f64, Slopes, 6>;
+    type Output = Differentiated<f64, Jacobians, 6>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
@@ -111,7 +111,7 @@ mod tests {
         integrator::{Motion, Rodas4},
         mechanism::Mechanism,
         pose::Pose,
-        slide::{CONTACTS, Memory, NO_MEMORY, Slide},
+        slide::{CONTACTS, Internal, NO_MEMORY, Slide},
     };
 
     use super::SideBySide;
@@ -124,11 +124,11 @@ mod tests {
     /// The motion at the end of every step, as bits.
     fn steps<M, C>(slide: M, contacts: C) -> Vec<[u64; 7]>
     where
-        M: Mechanism<f64, 6, Pose = Pose<f64>, Memory = Memory<()>>,
+        M: Mechanism<f64, 6, Pose = Pose<f64>, Internal = Internal<()>>,
         C: Contacts<f64, M, 6>,
     {
         let zero = SVector::zeros();
-        let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, memory: NO_MEMORY };
+        let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, internal: NO_MEMORY };
         let sensitivity = Sensitivity { mass: 0.0818, gain: 40.0 };
         let error = |step: &_, length| sensitivity.error(Tolerance::of_force(1e-4), step, length);
         let mut steps = Vec::new();

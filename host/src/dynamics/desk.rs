@@ -145,7 +145,7 @@ impl Desk<'_> {
             pose: Pose::nominal(),
             velocity: SVector::zeros(),
             acceleration: SVector::zeros(),
-            memory: slide.fresh(),
+            internal: slide.fresh(),
         };
         let mut observer = Observer::new(scene.drive, settings.run);
         let mut tipping = Tipping::default();

@@ -126,7 +126,7 @@ pub enum AnySliding<S> {
 }
 
 impl<S: Scalar> Friction<S> for AnySliding<S> {
-    type Memory = ();
+    type Internal = ();
 
     const STICKS: bool = false;
 

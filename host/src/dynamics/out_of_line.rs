@@ -9,7 +9,7 @@ use std::cell::RefCell;
 
 use slipfit_core::{
     SVector, Scalar,
-    mechanism::{Differentiated, Linearised, Mechanism},
+    mechanism::{Balance, Differentiated, Mechanism},
 };
 
 /// How the forces of a mechanism `M` are computed where their derivatives are known, as methods with error control ask for
@@ -20,10 +20,10 @@ pub trait Contacts<S: Scalar, M: Mechanism<S, D>, const D: usize> {
     fn forces_by(
         &self,
         mechanism: &M,
-        slopes: &M::Slopes,
+        jacobians: &M::Jacobians,
         t: S,
         pose: &M::Pose,
-        memory: &M::Memory,
+        internal: &M::Internal,
         velocity: &SVector<S, D>,
         a: S,
     ) -> SVector<S, D>;
@@ -34,9 +34,9 @@ pub trait Contacts<S: Scalar, M: Mechanism<S, D>, const D: usize> {
         mechanism: &M,
         t: S,
         pose: &M::Pose,
-        memory: &M::Memory,
+        internal: &M::Internal,
         velocity: &SVector<S, D>,
-    ) -> Differentiated<S, M::Slopes, D>;
+    ) -> Differentiated<S, M::Jacobians, D>;
 }
 
 /// One contact after the other, as the mechanism does it.
@@ -48,14 +48,14 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Contacts<S, M, D> for InTurn
     fn forces_by(
         &self,
         mechanism: &M,
-        slopes: &M::Slopes,
+        jacobians: &M::Jacobians,
         t: S,
         pose: &M::Pose,
-        memory: &M::Memory,
+        internal: &M::Internal,
         velocity: &SVector<S, D>,
         a: S,
     ) -> SVector<S, D> {
-        mechanism.forces_by(slopes, t, pose, memory, velocity, a)
+        mechanism.forces_by(jacobians, t, pose, internal, velocity, a)
     }
 
     #[inline(always)]
@@ -64,10 +64,10 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Contacts<S, M, D> for InTurn
         mechanism: &M,
         t: S,
         pose: &M::Pose,
-        memory: &M::Memory,
+        internal: &M::Internal,
         velocity: &SVector<S, D>,
-    ) -> Differentiated<S, M::Slopes, D> {
-        mechanism.differentiated(t, pose, memory, velocity)
+    ) -> Differentiated<S, M::Jacobians, D> {
+        mechanism.differentiated(t, pose, internal, velocity)
     }
 }
 
@@ -83,7 +83,7 @@ struct Last<S: Scalar, M: Mechanism<S, D>, const D: usize> {
     t: S,
     pose: M::Pose,
     velocity: SVector<S, D>,
-    found: Differentiated<S, M::Slopes, D>,
+    found: Differentiated<S, M::Jacobians, D>,
 }
 
 impl<S: Scalar, M: Mechanism<S, D>, const D: usize> OutOfLine<S, M, D> {
@@ -107,35 +107,35 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> OutOfL
 
 impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechanism<S, D> for OutOfLine<S, M, D, C> {
     type Pose = M::Pose;
-    type Memory = M::Memory;
-    type Linearisation = M::Linearisation;
-    type Slopes = M::Slopes;
+    type Internal = M::Internal;
+    type IterationMatrix = M::IterationMatrix;
+    type Jacobians = M::Jacobians;
 
-    fn advanced(&self, pose: &M::Pose, velocity: &SVector<S, D>, dt: S) -> M::Pose {
-        self.mechanism.advanced(pose, velocity, dt)
+    fn implicit_update(&self, pose: &M::Pose, velocity: &SVector<S, D>, dt: S) -> M::Pose {
+        self.mechanism.implicit_update(pose, velocity, dt)
     }
 
-    fn moved(&self, pose: &M::Pose, velocity: &SVector<S, D>, dt: S) -> M::Pose {
-        self.mechanism.moved(pose, velocity, dt)
+    fn explicit_update(&self, pose: &M::Pose, velocity: &SVector<S, D>, dt: S) -> M::Pose {
+        self.mechanism.explicit_update(pose, velocity, dt)
     }
 
     fn shifted(&self, base: &M::Pose, from: &M::Pose, to: &M::Pose, weight: S) -> M::Pose {
         self.mechanism.shifted(base, from, to, weight)
     }
 
-    fn memory_shifted(&self, base: &M::Memory, from: &M::Memory, to: &M::Memory, weight: S) -> M::Memory {
-        self.mechanism.memory_shifted(base, from, to, weight)
+    fn internal_shifted(&self, base: &M::Internal, from: &M::Internal, to: &M::Internal, weight: S) -> M::Internal {
+        self.mechanism.internal_shifted(base, from, to, weight)
     }
 
     fn normalised(&self, pose: &M::Pose) -> M::Pose {
         self.mechanism.normalised(pose)
     }
 
-    fn fresh(&self) -> M::Memory {
+    fn fresh(&self) -> M::Internal {
         self.mechanism.fresh()
     }
 
-    fn accept(&self, condition: S, next: (&M::Pose, &M::Memory), kept: (&mut M::Pose, &mut M::Memory)) {
+    fn accept(&self, condition: S, next: (&M::Pose, &M::Internal), kept: (&mut M::Pose, &mut M::Internal)) {
         self.mechanism.accept(condition, next, kept);
     }
 
@@ -155,21 +155,21 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechan
         self.mechanism.velocity(pose, momentum)
     }
 
-    fn momentum_by(&self, slopes: &M::Slopes, pose: &M::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
-        self.mechanism.momentum_by(slopes, pose, velocity)
+    fn momentum_by(&self, jacobians: &M::Jacobians, pose: &M::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
+        self.mechanism.momentum_by(jacobians, pose, velocity)
     }
 
     #[inline(never)]
     fn forces_by(
         &self,
-        slopes: &M::Slopes,
+        jacobians: &M::Jacobians,
         t: S,
         pose: &M::Pose,
-        memory: &M::Memory,
+        internal: &M::Internal,
         velocity: &SVector<S, D>,
         a: S,
     ) -> SVector<S, D> {
-        self.contacts.forces_by(&self.mechanism, slopes, t, pose, memory, velocity, a)
+        self.contacts.forces_by(&self.mechanism, jacobians, t, pose, internal, velocity, a)
     }
 
     #[inline(never)]
@@ -177,30 +177,30 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechan
         &self,
         t: S,
         pose: &M::Pose,
-        memory: &M::Memory,
+        internal: &M::Internal,
         velocity: &SVector<S, D>,
         a: S,
-        remembered: Option<&mut M::Memory>,
+        updated: Option<&mut M::Internal>,
     ) -> SVector<S, D> {
-        self.mechanism.forces(t, pose, memory, velocity, a, remembered)
+        self.mechanism.forces(t, pose, internal, velocity, a, updated)
     }
 
     #[inline(never)]
-    fn linearised(
+    fn balance(
         &self,
         t: S,
         pose: &M::Pose,
-        memory: &M::Memory,
+        internal: &M::Internal,
         velocity: &SVector<S, D>,
         a: S,
         tangent_share: S,
-    ) -> Linearised<S, M::Linearisation, D> {
-        self.mechanism.linearised(t, pose, memory, velocity, a, tangent_share)
+    ) -> Balance<S, M::IterationMatrix, D> {
+        self.mechanism.balance(t, pose, internal, velocity, a, tangent_share)
     }
 
     #[inline(never)]
-    fn solve(&self, linearisation: &M::Linearisation, residual: &SVector<S, D>) -> SVector<S, D> {
-        self.mechanism.solve(linearisation, residual)
+    fn solve(&self, iteration_matrix: &M::IterationMatrix, residual: &SVector<S, D>) -> SVector<S, D> {
+        self.mechanism.solve(iteration_matrix, residual)
     }
 
     fn impulse(&self, imbalance: &SVector<S, D>) -> S {
@@ -216,27 +216,27 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechan
         &self,
         t: S,
         pose: &M::Pose,
-        memory: &M::Memory,
+        internal: &M::Internal,
         velocity: &SVector<S, D>,
-    ) -> Differentiated<S, M::Slopes, D> {
+    ) -> Differentiated<S, M::Jacobians, D> {
         let mut last = self.last.borrow_mut();
         if let Some(last) = last.as_ref()
             && (last.t, last.pose, last.velocity) == (t, *pose, *velocity)
         {
             return last.found;
         }
-        let found = self.contacts.differentiated(&self.mechanism, t, pose, memory, velocity);
+        let found = self.contacts.differentiated(&self.mechanism, t, pose, internal, velocity);
         *last = Some(Last { t, pose: *pose, velocity: *velocity, found });
         found
     }
 
     #[inline(never)]
-    fn linearisation(&self, slopes: &M::Slopes, a: S) -> M::Linearisation {
-        self.mechanism.linearisation(slopes, a)
+    fn iteration_matrix(&self, jacobians: &M::Jacobians, a: S) -> M::IterationMatrix {
+        self.mechanism.iteration_matrix(jacobians, a)
     }
 
-    fn pushed(&self, slopes: &M::Slopes, displacement: &SVector<S, D>) -> SVector<S, D> {
-        self.mechanism.pushed(slopes, displacement)
+    fn pushed(&self, jacobians: &M::Jacobians, displacement: &SVector<S, D>) -> SVector<S, D> {
+        self.mechanism.pushed(jacobians, displacement)
     }
 
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {

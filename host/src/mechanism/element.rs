@@ -96,7 +96,7 @@ pub enum SpatialElement {
 }
 
 impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
-    type Memory = ();
+    type Internal = ();
 
     const STICKS: bool = false;
 
@@ -127,7 +127,7 @@ impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
 }
 
 impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
-    type Memory = ();
+    type Internal = ();
 
     const STICKS: bool = false;
 

@@ -30,10 +30,10 @@ pub struct FixedSteps<M, P, R, F, const D: usize> {
     pub keep: F,
 }
 
-impl<M, F, const D: usize> IntegratorVisitor for FixedSteps<M, M::Pose, M::Memory, F, D>
+impl<M, F, const D: usize> IntegratorVisitor for FixedSteps<M, M::Pose, M::Internal, F, D>
 where
     M: slipfit_core::mechanism::Mechanism<f64, D>,
-    F: FnMut(f64, &Motion<f64, M::Pose, M::Memory, D>, Option<Accelerations<D>>) -> ControlFlow<()>,
+    F: FnMut(f64, &Motion<f64, M::Pose, M::Internal, D>, Option<Accelerations<D>>) -> ControlFlow<()>,
 {
     type Output = Result<Effort, RunError>;
 

@@ -265,7 +265,7 @@ fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize
     told: impl Fn(&State<D>) -> Vec<BodyMotion>,
 ) -> Result<MechanismRun, RunError> {
     let velocity = SVector::from(rates);
-    let start = Motion { pose, velocity, acceleration: SVector::zeros(), memory: system.fresh() };
+    let start = Motion { pose, velocity, acceleration: SVector::zeros(), internal: system.fresh() };
     let desk = OutOfLine::new(*system);
     let least_mass = system.bodies().least_mass();
     // The stroke is the first drive's.

@@ -11,7 +11,7 @@ use slipfit_core::{
     mechanism::Mechanism,
     menu::SlideData,
     pose::Pose,
-    slide::{CONTACTS, Memory, Slide},
+    slide::{CONTACTS, Internal, Slide},
 };
 
 use crate::dynamics::{
@@ -37,12 +37,12 @@ pub struct Course {
 }
 
 /// As many slides as a pack has lanes.
-pub trait Slides<V: Simd>: Mechanism<Pack<V>, 6, Pose = Pose<Pack<V>>, Memory = Memory<()>> {
+pub trait Slides<V: Simd>: Mechanism<Pack<V>, 6, Pose = Pose<Pack<V>>, Internal = Internal<()>> {
     /// The gaps (m) of each.
     fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS];
 }
 
-impl<V: Simd, E: Elastic<Pack<V>>, F: Friction<Pack<V>, Memory = ()>> Slides<V> for Slide<Pack<V>, E, F> {
+impl<V: Simd, E: Elastic<Pack<V>>, F: Friction<Pack<V>, Internal = ()>> Slides<V> for Slide<Pack<V>, E, F> {
     #[inline(always)]
     fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS] {
         self.gaps(pose)

@@ -6,18 +6,18 @@ use slipfit_core::{
     integrator::Motion,
     menu::{FrictionData, SlideData},
     pose::{Orientation, Pose},
-    slide::{Memory, NO_MEMORY},
+    slide::{Internal, NO_MEMORY},
 };
 
 use crate::dynamics::pack::Pack;
 
 /// The motions of as many slides as a pack has lanes.
-pub type Motions<V> = Motion<Pack<V>, Pose<Pack<V>>, Memory<()>, 6>;
+pub type Motions<V> = Motion<Pack<V>, Pose<Pack<V>>, Internal<()>, 6>;
 
 /// All slides at rest in their nominal poses.
 pub fn at_rest<V: Simd>() -> Motions<V> {
     let still = SVector::zeros();
-    Motion { pose: Pose::nominal(), velocity: still, acceleration: still, memory: NO_MEMORY }
+    Motion { pose: Pose::nominal(), velocity: still, acceleration: still, internal: NO_MEMORY }
 }
 
 /// Every number of where slides are and how they move.

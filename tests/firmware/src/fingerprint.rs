@@ -1,6 +1,6 @@
 //! One number for many bits.
 
-use slipfit_core::{integrator::Motion, pose::Pose, slide::Memory};
+use slipfit_core::{integrator::Motion, pose::Pose, slide::Internal};
 
 /// FNV-1a, 64 bits wide.
 #[derive(Clone, Copy, Debug)]
@@ -16,12 +16,12 @@ impl Fingerprint {
     }
 
     /// Adds every number of `motion`, the remembered friction forces too.
-    pub fn add_motion<R: Remembered>(&mut self, motion: &Motion<f32, Pose<f32>, Memory<R>, 6>) {
+    pub fn add_motion<R: Remembered>(&mut self, motion: &Motion<f32, Pose<f32>, Internal<R>, 6>) {
         let pose = &motion.pose;
         let orientation = &pose.orientation;
         let numbers = pose.displacement_w.iter().chain([&orientation.w]).chain(orientation.v.iter());
         numbers.chain(motion.velocity.iter()).for_each(|number| self.add(*number));
-        motion.memory.0.as_flattened().iter().flat_map(R::numbers).for_each(|number| self.add(*number));
+        motion.internal.0.as_flattened().iter().flat_map(R::numbers).for_each(|number| self.add(*number));
     }
 }
 

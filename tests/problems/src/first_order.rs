@@ -82,7 +82,7 @@ impl<const N: usize> Numbers for [Pose<f64>; N] {
 }
 
 /// Writes the `rates` of `state`, numbers of the pose and then velocities, at time `t` (s): Q̇ by the velocities, M·V̇ = force.
-/// For laws without memory.
+/// For laws without internal variables.
 ///
 /// # Panics
 /// If there are too few numbers.
@@ -99,7 +99,7 @@ pub fn rates_of<M: Mechanism<f64, D, Pose: Numbers>, const D: usize>(
     // So far along the slope that nothing of it is lost beside the pose itself.
     let far = 1024.0 * 1024.0 * 1024.0;
     let (place_rates, accelerations) = rates.split_at_mut(M::Pose::COUNT);
-    mechanism.moved(&pose, &velocity, far).write(place_rates);
+    mechanism.explicit_update(&pose, &velocity, far).write(place_rates);
     place_rates.iter_mut().zip(of_pose).for_each(|(rate, at)| *rate = (*rate - at) / far);
     accelerations.copy_from_slice(mechanism.velocity(&pose, &force).as_slice());
 }

@@ -11,7 +11,7 @@ use crate::{ParameterError, Scalar, error::bounded};
 
 /// κ: how many times stiffer than the body's inertia a stick is. At 1 the yield shows in the force; at 10 it is below the
 /// error of a 1 ms step; at 100 Newton starts to jump between sticks.
-const GRIP: f64 = 10.0;
+const PENALTY: f64 = 10.0;
 
 /// Coulomb friction with true stick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ impl<S: Scalar + PartialOrd> Exact<S> {
 
 impl<S: Scalar> Friction<S> for Exact<S> {
     /// The friction force on the body along the two tangents (N).
-    type Memory = [S; 2];
+    type Internal = [S; 2];
 
     const STICKS: bool = true;
 
@@ -41,8 +41,8 @@ impl<S: Scalar> Friction<S> for Exact<S> {
     }
 
     #[inline(always)]
-    fn traction(&self, memory: &[S; 2], contact: &SlidingContact<S>) -> (Traction<S>, [S; 2]) {
-        return_mapping(memory, contact, [self.coefficient; 2])
+    fn traction(&self, internal: &[S; 2], contact: &SlidingContact<S>) -> (Traction<S>, [S; 2]) {
+        return_mapping(internal, contact, [self.coefficient; 2])
     }
 
     #[inline(always)]
@@ -57,16 +57,16 @@ impl<S: Scalar> Friction<S> for Exact<S> {
 }
 
 /// Brings the trial force λ − ρu back into the cone: it holds up to `coefficients[0]` times the normal force and slides
-/// with `coefficients[1]` times it. The memory is the force (N).
+/// with `coefficients[1]` times it. The internal variables are the force (N).
 #[inline(always)]
 pub(super) fn return_mapping<S: Scalar>(
-    memory: &[S; 2],
+    internal: &[S; 2],
     contact: &SlidingContact<S>,
     [at_rest, sliding]: [S; 2],
 ) -> (Traction<S>, [S; 2]) {
     let SlidingContact { sliding: [x, y], normal, mass_rate, tangent_share } = *contact;
-    let grip = S::from_f64(GRIP) * mass_rate;
-    let trial = [memory[0] - grip * x, memory[1] - grip * y];
+    let penalty = S::from_f64(PENALTY) * mass_rate;
+    let trial = [internal[0] - penalty * x, internal[1] - penalty * y];
     let trial_squared = trial[0] * trial[0] + trial[1] * trial[1];
     let limit = at_rest * normal;
     let limit_squared = limit * limit;
@@ -80,7 +80,7 @@ pub(super) fn return_mapping<S: Scalar>(
     // Of the trial force where it slides, else zero.
     let scale = slides(inverse, S::zero());
     let direction = [trial[0] * scale, trial[1] * scale];
-    let along = grip * share;
+    let along = penalty * share;
     let turn = tangent_share * along;
     let turned = [turn * direction[0], turn * direction[1]];
     let traction = Traction {
@@ -95,16 +95,16 @@ pub(super) fn return_mapping<S: Scalar>(
 mod tests {
     use super::*;
 
-    fn traction(memory: [f64; 2], normal: f64, sliding: [f64; 2]) -> (Traction<f64>, [f64; 2]) {
+    fn traction(internal: [f64; 2], normal: f64, sliding: [f64; 2]) -> (Traction<f64>, [f64; 2]) {
         let contact = SlidingContact { sliding, normal, mass_rate: 80.0, tangent_share: 1.0 };
-        Exact::new(0.3).unwrap().traction(&memory, &contact)
+        Exact::new(0.3).unwrap().traction(&internal, &contact)
     }
 
     #[test]
     fn holds_a_load_without_motion() {
         for load in [[0.0, 0.0], [0.3, -0.2], [0.0, 0.599]] {
-            let (traction, memory) = traction(load, 2.0, [0.0; 2]);
-            assert_eq!(memory, load);
+            let (traction, internal) = traction(load, 2.0, [0.0; 2]);
+            assert_eq!(internal, load);
             assert_eq!(traction.force, load);
         }
     }
@@ -115,17 +115,17 @@ mod tests {
         assert!(libm::fabs(x + 0.36) < 1e-15 && libm::fabs(y - 0.48) < 1e-15);
         // Without load there is no friction, and nothing that is not finite.
         let idle = SlidingContact { sliding: [0.0; 2], normal: 0.0, mass_rate: 80.0f32, tangent_share: 1.0 };
-        let (traction, memory) = Exact::new(0.3f32).unwrap().traction(&[0.0; 2], &idle);
-        assert_eq!(memory, [0.0; 2]);
+        let (traction, internal) = Exact::new(0.3f32).unwrap().traction(&[0.0; 2], &idle);
+        assert_eq!(internal, [0.0; 2]);
         assert!(traction.impedance.iter().chain(&traction.per_normal).all(|x| x.is_finite()));
     }
 
     #[test]
     fn an_unloaded_contact_does_not_stick() {
         for sliding in [[0.0; 2], [1e-9, 0.0], [0.1, -0.2]] {
-            let (traction, memory) = traction([0.0; 2], 0.0, sliding);
+            let (traction, internal) = traction([0.0; 2], 0.0, sliding);
             assert_eq!((traction.force.map(f64::abs), traction.impedance.map(f64::abs)), ([0.0; 2], [0.0; 3]));
-            assert_eq!(memory.map(f64::abs), [0.0; 2]);
+            assert_eq!(internal.map(f64::abs), [0.0; 2]);
         }
         let (loaded, _) = traction([0.0; 2], 1.0, [0.0; 2]);
         assert_eq!(loaded.impedance, [800.0, 0.0, 800.0]);
@@ -134,9 +134,9 @@ mod tests {
     #[test]
     fn impedance_is_the_derivative() {
         let h = 1e-8;
-        for (memory, normal, sliding) in [([0.1, 0.2], 2.005, [3e-5, -2e-5]), ([0.0, 0.0], 2.0, [0.02, 0.01])] {
-            let at = traction(memory, normal, sliding).0;
-            let moved = |h: [f64; 3]| traction(memory, normal + h[0], [sliding[0] + h[1], sliding[1] + h[2]]).0.force;
+        for (internal, normal, sliding) in [([0.1, 0.2], 2.005, [3e-5, -2e-5]), ([0.0, 0.0], 2.0, [0.02, 0.01])] {
+            let at = traction(internal, normal, sliding).0;
+            let moved = |h: [f64; 3]| traction(internal, normal + h[0], [sliding[0] + h[1], sliding[1] + h[2]]).0.force;
             let slope = |row: usize, h: [f64; 3]| -(moved(h)[row] - moved(h.map(|h| -h))[row]);
             let [xx, xy, yy] = at.impedance;
             for (row, found) in [[at.per_normal[0], xx, xy], [at.per_normal[1], xy, yy]].into_iter().enumerate() {

@@ -37,7 +37,7 @@ pub struct SlidingContact<S> {
 /// A friction law.
 pub trait Friction<S>: Copy {
     /// What the law remembers of a contact from one step to the next.
-    type Memory: Copy + core::fmt::Debug + PartialEq;
+    type Internal: Copy + core::fmt::Debug + PartialEq;
 
     /// Whether there is any friction.
     const RUBS: bool = true;
@@ -45,17 +45,17 @@ pub trait Friction<S>: Copy {
     /// Whether the law can hold a body at rest.
     const STICKS: bool;
 
-    /// The memory of a contact that nothing has touched yet.
-    fn fresh() -> Self::Memory;
+    /// The internal variables of a contact that nothing has touched yet.
+    fn fresh() -> Self::Internal;
 
-    /// The traction, and the memory if the motion is accepted.
-    fn traction(&self, memory: &Self::Memory, contact: &SlidingContact<S>) -> (Traction<S>, Self::Memory);
+    /// The traction, and the internal variables if the motion is accepted.
+    fn traction(&self, internal: &Self::Internal, contact: &SlidingContact<S>) -> (Traction<S>, Self::Internal);
 
     /// `base + weight·(to − from)`.
-    fn shifted(base: &Self::Memory, from: &Self::Memory, to: &Self::Memory, weight: S) -> Self::Memory;
+    fn shifted(base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal;
 
     /// `new` where it is finite and `condition` > 0, else `old`, number by number.
-    fn or_old(new: &Self::Memory, condition: S, old: &Self::Memory) -> Self::Memory;
+    fn or_old(new: &Self::Internal, condition: S, old: &Self::Internal) -> Self::Internal;
 }
 
 /// No friction.
@@ -63,7 +63,7 @@ pub trait Friction<S>: Copy {
 pub struct Frictionless;
 
 impl<S: Scalar> Friction<S> for Frictionless {
-    type Memory = ();
+    type Internal = ();
 
     const RUBS: bool = false;
 

@@ -39,7 +39,7 @@ impl<S: Scalar> Regularised<S> {
 }
 
 impl<S: Scalar> Friction<S> for Regularised<S> {
-    type Memory = ();
+    type Internal = ();
 
     const STICKS: bool = false;
 

@@ -23,7 +23,7 @@ impl<S: Scalar + PartialOrd> StaticKinetic<S> {
 
 impl<S: Scalar> Friction<S> for StaticKinetic<S> {
     /// The friction force on the body along the two tangents (N).
-    type Memory = [S; 2];
+    type Internal = [S; 2];
 
     const STICKS: bool = true;
 
@@ -33,8 +33,8 @@ impl<S: Scalar> Friction<S> for StaticKinetic<S> {
     }
 
     #[inline(always)]
-    fn traction(&self, memory: &[S; 2], contact: &SlidingContact<S>) -> (Traction<S>, [S; 2]) {
-        return_mapping(memory, contact, [self.at_rest, self.sliding])
+    fn traction(&self, internal: &[S; 2], contact: &SlidingContact<S>) -> (Traction<S>, [S; 2]) {
+        return_mapping(internal, contact, [self.at_rest, self.sliding])
     }
 
     #[inline(always)]

@@ -45,7 +45,7 @@ impl<S: Scalar, P: Push<S>> DriveLaw<S, 1> for Motor<P> {
 }
 
 impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
-    type Memory = ();
+    type Internal = ();
 
     const STICKS: bool = false;
 
@@ -78,7 +78,7 @@ impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
 }
 
 impl<S: Scalar, P: Push<S>> Law<S, 1> for Motor<P> {
-    type Memory = ();
+    type Internal = ();
 
     const STICKS: bool = false;
 

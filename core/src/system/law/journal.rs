@@ -17,7 +17,7 @@ use crate::{
 /// The law of a journal, seen as displacement of the pin from the hole's centre along two axes and the rotations of the hole's and the
 /// pin's body.
 ///
-/// Friction's memory is the force along the tangent, and so goes round with the pin.
+/// Friction's internal variable is the force along the tangent, and so goes round with the pin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Journal<S, N, F> {
     /// Radial clearance q (m), by which the hole's radius exceeds the pin's.
@@ -29,14 +29,14 @@ pub struct Journal<S, N, F> {
 }
 
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
-    type Memory = F::Memory;
+    type Internal = F::Internal;
 
     const STICKS: bool = F::STICKS;
 
     const PLACES: usize = 2;
 
     #[inline(always)]
-    fn fresh() -> F::Memory {
+    fn fresh() -> F::Internal {
         F::fresh()
     }
 
@@ -46,9 +46,9 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
         _: S,
         place: &SVector<S, 4>,
         rate: &SVector<S, 4>,
-        memory: &F::Memory,
+        internal: &F::Internal,
         way: Way<S>,
-    ) -> (Response<S, 4>, F::Memory) {
+    ) -> (Response<S, 4>, F::Internal) {
         let zero = S::zero();
         let apart = Vector2::new(place[0], place[1]);
         let moving = Vector2::new(rate[0], rate[1]);
@@ -61,8 +61,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
         let (outward, aside) = (moving.dot(&normal), moving.dot(&tangent));
         let (rim, radius) = (distance + self.radius, self.radius);
         let sliding = rim * hole - aside - radius * pin;
-        let touch = self.contact.rub(memory, way, [distance - self.clearance, outward], sliding);
-        let Rub { force: push, stiffness, damping, traction, per_force, per_sliding, memory } = touch;
+        let touch = self.contact.rub(internal, way, [distance - self.clearance, outward], sliding);
+        let Rub { force: push, stiffness, damping, traction, per_force, per_sliding, internal } = touch;
         let force = -(normal * push + tangent * traction);
         let force = SVector::<S, 4>::new(force.x, force.y, rim * traction, -radius * traction);
 
@@ -86,7 +86,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
             let force = SVector::<S, 4>::new(-normal.x * push, -normal.y * push, zero, zero);
             return (
                 steady(force, among(block(by_rate[0], by_rate[1])), among(block(by_place[0], by_place[1]))),
-                memory,
+                internal,
             );
         }
         let by_place = [
@@ -116,16 +116,16 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
             rim_by_place.x, rim_by_place.y, zero, zero,
             -(radius * rub_by_place.x), -(radius * rub_by_place.y), zero, zero,
         );
-        (steady(force, impedance, stiffness), memory)
+        (steady(force, impedance, stiffness), internal)
     }
 
     #[inline(always)]
-    fn shifted(base: &F::Memory, from: &F::Memory, to: &F::Memory, weight: S) -> F::Memory {
+    fn shifted(base: &F::Internal, from: &F::Internal, to: &F::Internal, weight: S) -> F::Internal {
         F::shifted(base, from, to, weight)
     }
 
     #[inline(always)]
-    fn or_old(new: &F::Memory, condition: S, old: &F::Memory) -> F::Memory {
+    fn or_old(new: &F::Internal, condition: S, old: &F::Internal) -> F::Internal {
         F::or_old(new, condition, old)
     }
 }

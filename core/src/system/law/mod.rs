@@ -41,7 +41,7 @@ struct Touch<S, M, const K: usize> {
     /// Friction on the body that slides, along two tangents.
     traction: [S; 2],
     traction_slopes: [SVector<S, K>; 2],
-    memory: M,
+    internal: M,
 }
 
 /// A contact in the plane at one motion, with one tangent.
@@ -55,7 +55,7 @@ struct Rub<S, M> {
     /// −∂traction/∂force and −∂traction/∂sliding (N·s/m).
     per_force: S,
     per_sliding: S,
-    memory: M,
+    internal: M,
 }
 
 impl<N, F> Contact<N, F> {
@@ -63,37 +63,37 @@ impl<N, F> Contact<N, F> {
     #[inline(always)]
     fn meet<S: Scalar>(
         &self,
-        memory: &F::Memory,
+        internal: &F::Internal,
         way: Way<S>,
         [penetration, rate]: [S; 2],
         sliding: [S; 2],
-    ) -> (NormalResponse<S>, Traction<S>, F::Memory)
+    ) -> (NormalResponse<S>, Traction<S>, F::Internal)
     where
         N: Normal<S>,
         F: Friction<S>,
     {
         let pressed = self.normal.response(penetration, rate);
-        let (mut traction, memory) = self.friction.traction(memory, &way.sliding(sliding, pressed.force));
+        let (mut traction, internal) = self.friction.traction(internal, &way.sliding(sliding, pressed.force));
         // A law that sticks also does so without load, which counts for nothing.
         let zero = S::zero();
         traction.impedance = traction.impedance.map(|x| pressed.force.select_gt(zero, x, zero));
-        (pressed, traction, memory)
+        (pressed, traction, internal)
     }
 
     /// The forces at `penetration` and its `rate` and at the `sliding` velocity along the one tangent that there is in a plane.
     #[inline(always)]
     fn rub<S: Scalar>(
         &self,
-        memory: &F::Memory,
+        internal: &F::Internal,
         way: Way<S>,
         [penetration, rate]: [S; 2],
         sliding: S,
-    ) -> Rub<S, F::Memory>
+    ) -> Rub<S, F::Internal>
     where
         N: Normal<S>,
         F: Friction<S>,
     {
-        let (pressed, traction, memory) = self.meet(memory, way, [penetration, rate], [sliding, S::zero()]);
+        let (pressed, traction, internal) = self.meet(internal, way, [penetration, rate], [sliding, S::zero()]);
         Rub {
             force: pressed.force,
             stiffness: pressed.stiffness(),
@@ -101,7 +101,7 @@ impl<N, F> Contact<N, F> {
             traction: traction.force[0],
             per_force: traction.per_normal[0],
             per_sliding: traction.impedance[0],
-            memory,
+            internal,
         }
     }
 
@@ -109,16 +109,16 @@ impl<N, F> Contact<N, F> {
     #[inline(always)]
     fn touch<S: Scalar, const K: usize>(
         &self,
-        memory: &F::Memory,
+        internal: &F::Internal,
         way: Way<S>,
         [penetration, rate]: [(S, SVector<S, K>); 2],
         [first, second]: [(S, SVector<S, K>); 2],
-    ) -> Touch<S, F::Memory, K>
+    ) -> Touch<S, F::Internal, K>
     where
         N: Normal<S>,
         F: Friction<S>,
     {
-        let (pressed, traction, memory) = self.meet(memory, way, [penetration.0, rate.0], [first.0, second.0]);
+        let (pressed, traction, internal) = self.meet(internal, way, [penetration.0, rate.0], [first.0, second.0]);
         let force_slope = penetration.1 * pressed.stiffness() + rate.1 * pressed.impedance(None);
         let [own, mixed, other] = traction.impedance;
         let [by_first, by_second] = traction.per_normal;
@@ -126,7 +126,7 @@ impl<N, F> Contact<N, F> {
             -(force_slope * by_first + first.1 * own + second.1 * mixed),
             -(force_slope * by_second + first.1 * mixed + second.1 * other),
         ];
-        Touch { force: pressed.force, force_slope, traction: traction.force, traction_slopes, memory }
+        Touch { force: pressed.force, force_slope, traction: traction.force, traction_slopes, internal }
     }
 }
 

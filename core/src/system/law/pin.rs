@@ -36,7 +36,7 @@ struct Slotted<S, M> {
     tangential: [S; 3],
     /// The only column there is, that of the axis.
     stiffness: [S; 3],
-    memory: M,
+    internal: M,
 }
 
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Pin<S, N, F> {
@@ -45,14 +45,14 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Pin<S, N, F> {
     #[inline(always)]
     fn slot(
         &self,
-        memory: &F::Memory,
+        internal: &F::Internal,
         [low, high]: [S; 2],
         offset: S,
         [u, v, w]: [S; 3],
         way: Way<S>,
-    ) -> Slotted<S, F::Memory> {
+    ) -> Slotted<S, F::Internal> {
         let slot = self.contact.normal.slot(low, high, offset, u);
-        let (traction, memory) = self.contact.friction.traction(memory, &way.sliding([v, w], slot.normal()));
+        let (traction, internal) = self.contact.friction.traction(internal, &way.sliding([v, w], slot.normal()));
         let [first, second] = traction.per_normal;
         let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
         Slotted {
@@ -60,20 +60,20 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Pin<S, N, F> {
             impedance: column(slot.impedances(way.over)),
             tangential: traction.impedance,
             stiffness: column(slot.stiffnesses()),
-            memory,
+            internal,
         }
     }
 }
 
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
-    type Memory = [F::Memory; 2];
+    type Internal = [F::Internal; 2];
 
     const STICKS: bool = F::STICKS;
 
     const PLACES: usize = 2;
 
     #[inline(always)]
-    fn fresh() -> [F::Memory; 2] {
+    fn fresh() -> [F::Internal; 2] {
         [F::fresh(); 2]
     }
 
@@ -83,15 +83,15 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
         _: S,
         place: &SVector<S, 3>,
         rate: &SVector<S, 3>,
-        memory: &[F::Memory; 2],
+        internal: &[F::Internal; 2],
         way: Way<S>,
-    ) -> (Response<S, 3>, [F::Memory; 2]) {
+    ) -> (Response<S, 3>, [F::Internal; 2]) {
         let [left, right, rail, wall] = self.gaps;
         let [x, y, _] = place.data.0[0];
         // The walls' body moves against the pin the other way.
         let [u, v, w] = rate.data.0[0].map(|rate| -rate);
-        let across = self.slot(&memory[0], [left, right], x, [u, v, w], way);
-        let up = self.slot(&memory[1], [wall, rail], y, [v, u, w], way);
+        let across = self.slot(&internal[0], [left, right], x, [u, v, w], way);
+        let up = self.slot(&internal[1], [wall, rail], y, [v, u, w], way);
         let (f, g) = (across.force, up.force);
         let ([xx, yx, zx], [yy, xy, zy]) = (across.impedance, up.impedance);
         let ([a_yy, a_yz, a_zz], [u_xx, u_xz, u_zz]) = (across.tangential, up.tangential);
@@ -111,17 +111,17 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
             ),
         );
         let force = SVector::<S, 3>::new(-(f[0] + g[1]), -(f[1] + g[0]), -(f[2] + g[2]));
-        (steady(force, impedance, stiffness), [across.memory, up.memory])
+        (steady(force, impedance, stiffness), [across.internal, up.internal])
     }
 
     #[inline(always)]
-    fn shifted(base: &[F::Memory; 2], from: &[F::Memory; 2], to: &[F::Memory; 2], weight: S) -> [F::Memory; 2] {
+    fn shifted(base: &[F::Internal; 2], from: &[F::Internal; 2], to: &[F::Internal; 2], weight: S) -> [F::Internal; 2] {
         let at = |i: usize| F::shifted(&base[i], &from[i], &to[i], weight);
         [at(0), at(1)]
     }
 
     #[inline(always)]
-    fn or_old(new: &[F::Memory; 2], condition: S, old: &[F::Memory; 2]) -> [F::Memory; 2] {
+    fn or_old(new: &[F::Internal; 2], condition: S, old: &[F::Internal; 2]) -> [F::Internal; 2] {
         [F::or_old(&new[0], condition, &old[0]), F::or_old(&new[1], condition, &old[1])]
     }
 }

@@ -23,14 +23,14 @@ pub struct Ring<S, N, F> {
 }
 
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
-    type Memory = F::Memory;
+    type Internal = F::Internal;
 
     const STICKS: bool = F::STICKS;
 
     const PLACES: usize = 2;
 
     #[inline(always)]
-    fn fresh() -> F::Memory {
+    fn fresh() -> F::Internal {
         F::fresh()
     }
 
@@ -40,9 +40,9 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
         _: S,
         place: &SVector<S, 6>,
         rate: &SVector<S, 6>,
-        memory: &F::Memory,
+        internal: &F::Internal,
         way: Way<S>,
-    ) -> (Response<S, 6>, F::Memory) {
+    ) -> (Response<S, 6>, F::Internal) {
         let apart = Vector2::new(place[0], place[1]);
         let squared = apart.dot(&apart);
         let per_distance = squared.max_of(S::from_f64(1e-30)).rsqrt();
@@ -54,7 +54,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
         let (about_normal, about_tangent) = (turning.dot(&normal), turning.dot(&tangent));
         let rim = distance + self.radius;
         let sliding = [aside - rim * rate[5], rate[2] + rim * about_tangent];
-        let (pressed, traction, memory) = self.contact.meet(memory, way, [distance - self.clearance, outward], sliding);
+        let (pressed, traction, internal) =
+            self.contact.meet(internal, way, [distance - self.clearance, outward], sliding);
         let (force, [turn, rub]) = (pressed.force, traction.force);
         let ([own, mixed, other], [by_turn, by_rub]) = (traction.impedance, traction.per_normal);
 
@@ -111,16 +112,16 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
         let push = tangent * turn - normal * force;
         let moment = tangent * (rim * rub);
         let force = SVector::<S, 6>::new(push.x, push.y, rub, moment.x, moment.y, -(rim * turn));
-        (steady(force, impedance, by_place).moving(way.over, 2), memory)
+        (steady(force, impedance, by_place).moving(way.over, 2), internal)
     }
 
     #[inline(always)]
-    fn shifted(base: &F::Memory, from: &F::Memory, to: &F::Memory, weight: S) -> F::Memory {
+    fn shifted(base: &F::Internal, from: &F::Internal, to: &F::Internal, weight: S) -> F::Internal {
         F::shifted(base, from, to, weight)
     }
 
     #[inline(always)]
-    fn or_old(new: &F::Memory, condition: S, old: &F::Memory) -> F::Memory {
+    fn or_old(new: &F::Internal, condition: S, old: &F::Internal) -> F::Internal {
         F::or_old(new, condition, old)
     }
 }

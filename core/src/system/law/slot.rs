@@ -18,14 +18,14 @@ pub struct Slot<S, N, F> {
 }
 
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Slot<S, N, F> {
-    type Memory = F::Memory;
+    type Internal = F::Internal;
 
     const STICKS: bool = F::STICKS;
 
     const PLACES: usize = 1;
 
     #[inline(always)]
-    fn fresh() -> F::Memory {
+    fn fresh() -> F::Internal {
         F::fresh()
     }
 
@@ -35,14 +35,15 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Slot<S, N, F> {
         _: S,
         place: &SVector<S, 2>,
         rate: &SVector<S, 2>,
-        memory: &F::Memory,
+        internal: &F::Internal,
         way: Way<S>,
-    ) -> (Response<S, 2>, F::Memory) {
+    ) -> (Response<S, 2>, F::Internal) {
         let zero = S::zero();
         let [low, high] = self.gaps;
         // A slot is told where the point is and how fast its own material moves against it, and answers with the force on that.
         let slot = self.contact.normal.slot(low, high, place[0], -rate[0]);
-        let (traction, memory) = self.contact.friction.traction(memory, &way.sliding([rate[1], zero], slot.normal()));
+        let (traction, internal) =
+            self.contact.friction.traction(internal, &way.sliding([rate[1], zero], slot.normal()));
         let ([own, normal], [own_stiffness, normal_stiffness]) = (slot.impedances(way.over), slot.stiffnesses());
         let by_normal = traction.per_normal[0];
         let response = steady(
@@ -50,16 +51,16 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Slot<S, N, F> {
             SMatrix::<S, 2, 2>::new(own, zero, -(by_normal * normal), traction.impedance[0]),
             SMatrix::<S, 2, 2>::new(own_stiffness, zero, -(by_normal * normal_stiffness), zero),
         );
-        (response, memory)
+        (response, internal)
     }
 
     #[inline(always)]
-    fn shifted(base: &F::Memory, from: &F::Memory, to: &F::Memory, weight: S) -> F::Memory {
+    fn shifted(base: &F::Internal, from: &F::Internal, to: &F::Internal, weight: S) -> F::Internal {
         F::shifted(base, from, to, weight)
     }
 
     #[inline(always)]
-    fn or_old(new: &F::Memory, condition: S, old: &F::Memory) -> F::Memory {
+    fn or_old(new: &F::Internal, condition: S, old: &F::Internal) -> F::Internal {
         F::or_old(new, condition, old)
     }
 }

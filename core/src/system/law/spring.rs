@@ -15,7 +15,7 @@ pub struct Spring<S> {
 }
 
 impl<S: Scalar> Law<S, 1> for Spring<S> {
-    type Memory = ();
+    type Internal = ();
 
     const STICKS: bool = false;
 

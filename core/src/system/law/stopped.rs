@@ -17,7 +17,7 @@ pub struct Stopped<C, N> {
 }
 
 impl<S: Scalar, C: Stop<S>, E: Elastic<S>> Law<S, 1> for Stopped<C, Impact<S, E>> {
-    type Memory = ();
+    type Internal = ();
 
     const STICKS: bool = false;
 

@@ -70,14 +70,14 @@ pub struct Wall<S, N, F> {
 }
 
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
-    type Memory = F::Memory;
+    type Internal = F::Internal;
 
     const STICKS: bool = F::STICKS;
 
     const PLACES: usize = 1;
 
     #[inline(always)]
-    fn fresh() -> F::Memory {
+    fn fresh() -> F::Internal {
         F::fresh()
     }
 
@@ -87,40 +87,40 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
         _: S,
         place: &SVector<S, 2>,
         rate: &SVector<S, 2>,
-        memory: &F::Memory,
+        internal: &F::Internal,
         way: Way<S>,
-    ) -> (Response<S, 2>, F::Memory) {
+    ) -> (Response<S, 2>, F::Internal) {
         let zero = S::zero();
-        let Rub { force, stiffness, damping, traction, per_force, per_sliding, memory } =
-            self.contact.rub(memory, way, [-(self.gap + place[0]), -rate[0]], rate[1]);
+        let Rub { force, stiffness, damping, traction, per_force, per_sliding, internal } =
+            self.contact.rub(internal, way, [-(self.gap + place[0]), -rate[0]], rate[1]);
         let response = steady(
             SVector::<S, 2>::new(force, traction),
             SMatrix::<S, 2, 2>::new(damping, zero, -(per_force * damping), per_sliding),
             SMatrix::<S, 2, 2>::new(stiffness, zero, -(per_force * stiffness), zero),
         );
-        (response.moving(way.over, 1), memory)
+        (response.moving(way.over, 1), internal)
     }
 
     #[inline(always)]
-    fn shifted(base: &F::Memory, from: &F::Memory, to: &F::Memory, weight: S) -> F::Memory {
+    fn shifted(base: &F::Internal, from: &F::Internal, to: &F::Internal, weight: S) -> F::Internal {
         F::shifted(base, from, to, weight)
     }
 
     #[inline(always)]
-    fn or_old(new: &F::Memory, condition: S, old: &F::Memory) -> F::Memory {
+    fn or_old(new: &F::Internal, condition: S, old: &F::Internal) -> F::Internal {
         F::or_old(new, condition, old)
     }
 }
 
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
-    type Memory = F::Memory;
+    type Internal = F::Internal;
 
     const STICKS: bool = F::STICKS;
 
     const PLACES: usize = 3;
 
     #[inline(always)]
-    fn fresh() -> F::Memory {
+    fn fresh() -> F::Internal {
         F::fresh()
     }
 
@@ -130,16 +130,16 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
         _: S,
         place: &SVector<S, 3>,
         rate: &SVector<S, 3>,
-        memory: &F::Memory,
+        internal: &F::Internal,
         way: Way<S>,
-    ) -> (Response<S, 3>, F::Memory) {
+    ) -> (Response<S, 3>, F::Internal) {
         let (zero, one) = (S::zero(), S::one());
         let place = self.axis.of(place.data.0[0]);
         let [rate, first, second] = self.axis.first(rate.data.0[0]);
         let depth = (-(self.gap + self.sign * place), along::<S, 4>(0, -self.sign));
         let approach = (-self.sign * rate, along(1, -self.sign));
         let sliding = [(first, along(2, one)), (second, along(3, one))];
-        let touch = self.contact.touch(memory, way, [depth, approach], sliding);
+        let touch = self.contact.touch(internal, way, [depth, approach], sliding);
         let along_normal = touch.force_slope * self.sign;
         let [along_first, along_second] = touch.traction_slopes;
         // Columns by place along the normal, and by the rates along normal and tangents.
@@ -148,16 +148,16 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
         let force = self.axis.in_order([touch.force * self.sign, touch.traction[0], touch.traction[1]]);
         let impedance = matrix([column(1), column(2), column(3)]);
         let stiffness = matrix([column(0), [zero; 3], [zero; 3]]);
-        (steady(force.into(), impedance, stiffness).moving(way.over, 3), touch.memory)
+        (steady(force.into(), impedance, stiffness).moving(way.over, 3), touch.internal)
     }
 
     #[inline(always)]
-    fn shifted(base: &F::Memory, from: &F::Memory, to: &F::Memory, weight: S) -> F::Memory {
+    fn shifted(base: &F::Internal, from: &F::Internal, to: &F::Internal, weight: S) -> F::Internal {
         F::shifted(base, from, to, weight)
     }
 
     #[inline(always)]
-    fn or_old(new: &F::Memory, condition: S, old: &F::Memory) -> F::Memory {
+    fn or_old(new: &F::Internal, condition: S, old: &F::Internal) -> F::Internal {
         F::or_old(new, condition, old)
     }
 }

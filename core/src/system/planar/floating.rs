@@ -113,13 +113,13 @@ impl<S: Scalar> Bodies<S, 3> for Floating<S> {
     const MATRIX_IS_LEAN: bool = true;
 
     #[inline(always)]
-    fn advanced(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>, dt: S) -> PlanarPose<S> {
-        let PlanarPose { displacement, half_turn } = self.moved(pose, velocity, dt);
+    fn implicit_update(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>, dt: S) -> PlanarPose<S> {
+        let PlanarPose { displacement, half_turn } = self.explicit_update(pose, velocity, dt);
         PlanarPose { displacement, half_turn: half_turn::shortened(half_turn, velocity.z * dt * S::from_f64(0.5)) }
     }
 
     #[inline(always)]
-    fn moved(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>, dt: S) -> PlanarPose<S> {
+    fn explicit_update(&self, pose: &PlanarPose<S>, velocity: &SVector<S, 3>, dt: S) -> PlanarPose<S> {
         PlanarPose {
             displacement: pose.displacement + Vector2::new(velocity.x, velocity.y) * dt,
             half_turn: half_turn::turned_on(pose.half_turn, velocity.z * dt * S::from_f64(0.5)),
@@ -207,7 +207,7 @@ impl<S: Scalar> Bodies<S, 3> for Floating<S> {
     }
 
     #[inline(always)]
-    fn own_slopes(&self, _: &Placed<S>, _: &SVector<S, 3>, _: &mut Own<S, 3>, _: &mut Own<S, 3>) {}
+    fn own_jacobians(&self, _: &Placed<S>, _: &SVector<S, 3>, _: &mut Own<S, 3>, _: &mut Own<S, 3>) {}
 
     #[inline(always)]
     fn least_mass(&self) -> S {

@@ -223,7 +223,7 @@ impl<S: Scalar, const D: usize> Moments<S, D> {
 
     /// Adds how that force less M·`acceleration` goes by velocity and by place, negated.
     #[inline(always)]
-    pub fn add_slopes<J: Topology<D>>(
+    pub fn add_jacobians<J: Topology<D>>(
         &self,
         topology: &J,
         rates: &SVector<S, D>,
@@ -336,7 +336,8 @@ mod tests {
         let mut force = SVector::<f64, 5>::zeros();
         let h = 1e-5;
         for body in &bodies {
-            let velocity = |dt: f64| tree.motion_of(&body.centre, &tree.placed(&tree.moved(&pose, &v, dt), &v))[1];
+            let velocity =
+                |dt: f64| tree.motion_of(&body.centre, &tree.placed(&tree.explicit_update(&pose, &v, dt), &v))[1];
             let resists = (velocity(h) - velocity(-h)) / (2.0 * h);
             let gradient = tree.at(&body.centre, &tree.placed(&pose, &v)).gradient;
             for i in 0..5 {

@@ -148,8 +148,8 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
     const MASS_IS_CONSTANT: bool = false;
 
     #[inline(always)]
-    fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
-        let mut next = self.moved(pose, velocity, dt);
+    fn implicit_update(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
+        let mut next = self.explicit_update(pose, velocity, dt);
         for (k, (pose, rate)) in next.iter_mut().zip(&velocity.data.0[0]).enumerate() {
             if self.topology.kind(k) == Kind::Turn {
                 *pose = half_turn::shortened(*pose, *rate * dt * S::from_f64(0.5));
@@ -159,7 +159,7 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
     }
 
     #[inline(always)]
-    fn moved(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
+    fn explicit_update(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
         let mut next = *pose;
         for (k, (pose, rate)) in next.iter_mut().zip(&velocity.data.0[0]).enumerate() {
             let [w, v] = *pose;
@@ -266,7 +266,7 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
     }
 
     #[inline(always)]
-    fn own_slopes(
+    fn own_jacobians(
         &self,
         placed: &Placed<S, D>,
         acceleration: &SVector<S, D>,
@@ -274,7 +274,7 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
         stiffness: &mut SMatrix<S, D, D>,
     ) {
         let moments = self.masses.at(&self.topology, placed);
-        moments.add_slopes(&self.topology, &placed.rates, (&self.gravity, acceleration), damping, stiffness);
+        moments.add_jacobians(&self.topology, &placed.rates, (&self.gravity, acceleration), damping, stiffness);
     }
 
     #[inline(always)]

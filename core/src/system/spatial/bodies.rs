@@ -206,16 +206,16 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     const MASS_IS_CONSTANT: bool = true;
 
     #[inline(always)]
-    fn advanced(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
+    fn implicit_update(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
         let mut next = *pose;
-        next.iter_mut().zip(each(velocity)).for_each(|(pose, (v, w))| *pose = pose.advanced(v, w, dt));
+        next.iter_mut().zip(each(velocity)).for_each(|(pose, (v, w))| *pose = pose.implicit_update(v, w, dt));
         next
     }
 
     #[inline(always)]
-    fn moved(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
+    fn explicit_update(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose {
         let mut next = *pose;
-        next.iter_mut().zip(each(velocity)).for_each(|(pose, (v, w))| *pose = pose.moved(v, w, dt));
+        next.iter_mut().zip(each(velocity)).for_each(|(pose, (v, w))| *pose = pose.explicit_update(v, w, dt));
         next
     }
 
@@ -317,7 +317,7 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     }
 
     #[inline(always)]
-    fn own_slopes(
+    fn own_jacobians(
         &self,
         placed: &Self::Placed,
         _: &SVector<S, D>,

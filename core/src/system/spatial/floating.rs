@@ -193,15 +193,15 @@ impl<S: Scalar> Bodies<S, 6> for Floating<S> {
     const MATRIX_IS_LEAN: bool = true;
 
     #[inline(always)]
-    fn advanced(&self, pose: &Pose<S>, velocity: &SVector<S, 6>, dt: S) -> Pose<S> {
+    fn implicit_update(&self, pose: &Pose<S>, velocity: &SVector<S, 6>, dt: S) -> Pose<S> {
         let (v_w, w_b) = split(velocity);
-        pose.advanced(v_w, w_b, dt)
+        pose.implicit_update(v_w, w_b, dt)
     }
 
     #[inline(always)]
-    fn moved(&self, pose: &Pose<S>, velocity: &SVector<S, 6>, dt: S) -> Pose<S> {
+    fn explicit_update(&self, pose: &Pose<S>, velocity: &SVector<S, 6>, dt: S) -> Pose<S> {
         let (v_w, w_b) = split(velocity);
-        pose.moved(v_w, w_b, dt)
+        pose.explicit_update(v_w, w_b, dt)
     }
 
     #[inline(always)]
@@ -283,7 +283,7 @@ impl<S: Scalar> Bodies<S, 6> for Floating<S> {
 
     /// How the gyroscopic torque changes is left out.
     #[inline(always)]
-    fn own_slopes(&self, _: &Placed<S>, _: &SVector<S, 6>, _: &mut Blocks<S>, _: &mut Blocks<S>) {}
+    fn own_jacobians(&self, _: &Placed<S>, _: &SVector<S, 6>, _: &mut Blocks<S>, _: &mut Blocks<S>) {}
 
     #[inline(always)]
     fn least_mass(&self) -> S {

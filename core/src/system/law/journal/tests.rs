@@ -10,19 +10,19 @@ const WAY: Way<f64> = Way { over: None, mass_rate: 80.0, tangent_share: 1.0 };
 /// Where the pin is (m), how it moves against the hole (m/s), and how fast hole and pin turn (rad/s).
 type At = [f64; 6];
 
-fn response<F: Friction<f64>>(friction: F, memory: F::Memory, [x, y, u, v, hole, pin]: At) -> Response<f64, 4> {
+fn response<F: Friction<f64>>(friction: F, internal: F::Internal, [x, y, u, v, hole, pin]: At) -> Response<f64, 4> {
     let normal = Impact::new(ThreeHalves::new(3e6).unwrap(), 1000.0, 1e-4).unwrap();
     let journal = Journal { clearance: CLEARANCE, radius: RADIUS, contact: Contact { normal, friction } };
-    journal.response(0.0, &[x, y, 0.0, 0.0].into(), &[u, v, hole, pin].into(), &memory, WAY).0
+    journal.response(0.0, &[x, y, 0.0, 0.0].into(), &[u, v, hole, pin].into(), &internal, WAY).0
 }
 
-fn derivatives_are_those_of_the_force<F: Friction<f64>>(friction: F, memory: F::Memory, at: At) {
-    let found = response(friction, memory, at);
+fn derivatives_are_those_of_the_force<F: Friction<f64>>(friction: F, internal: F::Internal, at: At) {
+    let found = response(friction, internal, at);
     for (i, h) in [1e-11, 1e-11, 1e-9, 1e-9, 1e-7, 1e-7].into_iter().enumerate() {
         let moved = |by: f64| {
             let mut at = at;
             at[i] += by;
-            response(friction, memory, at).force
+            response(friction, internal, at).force
         };
         let by_difference = (moved(-h) - moved(h)) / (2.0 * h);
         let told = if i < 2 { found.stiffness.column(i) } else { found.impedance.column(i - 2) };

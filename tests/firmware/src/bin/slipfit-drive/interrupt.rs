@@ -48,8 +48,8 @@ fn SysTick() {
 
 impl Ticking for Board {
     fn motions(&mut self, start: impl FnOnce() -> Motions) -> &'static mut Motions {
-        let memory = cortex_m::singleton!(: MaybeUninit<Motions> = MaybeUninit::uninit());
-        memory.expect("it is asked for once").write(start())
+        let internal = cortex_m::singleton!(: MaybeUninit<Motions> = MaybeUninit::uninit());
+        internal.expect("it is asked for once").write(start())
     }
 
     fn ticks(&mut self, control: Control, mut show: impl FnMut(&mut Self, &Record)) -> Control {

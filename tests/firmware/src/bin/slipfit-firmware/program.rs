@@ -87,7 +87,7 @@ fn all_levels<F: Friction<f32>, V: Nodes>(
     friction: F,
     table: Option<&Table<'_, 2, V>>,
 ) where
-    F::Memory: Remembered,
+    F::Internal: Remembered,
 {
     print(machine, format_args!("\n== {law}"));
     let mut costs = Costs::default();
@@ -118,7 +118,7 @@ fn open<F: Friction<f32>, V: Nodes>(
     table: Option<&Table<'_, 2, V>>,
     costs: &mut Costs,
 ) where
-    F::Memory: Remembered,
+    F::Internal: Remembered,
 {
     let (kernel, mut state) = at_rest(n, friction);
     let (mut states, mut lookups) = (Fingerprint::default(), Fingerprint::default());

@@ -200,7 +200,7 @@ mechanisms! {
     telescopic_drawer;
 }
 
-/// Says what a Newton pass of the full slide takes, its linearisation and solution included: a step of two passes less one of
+/// Says what a Newton pass of the full slide takes, its iteration matrix and solution included: a step of two passes less one of
 /// a single pass.
 fn full_pass(machine: &mut impl Machine, slide: FullSlide) {
     let one = Kernel::<f32, _, ImplicitEuler<1>>::new(slide, STEP).expect("the step is in bounds");
