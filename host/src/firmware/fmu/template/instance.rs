@@ -249,7 +249,7 @@ pub fn serialised(situation: &Situation) -> Vec<u8> {
     state.motion.pose.each(&mut number);
     state.motion.velocity.each(&mut number);
     state.motion.acceleration.each(&mut number);
-    state.motion.memory.each(&mut number);
+    state.motion.internal.each(&mut number);
     bytes
 }
 
@@ -288,7 +288,7 @@ pub fn deserialised(bytes: &[u8]) -> Result<Situation, Trouble> {
     motion.pose.each(&mut number);
     motion.velocity.each(&mut number);
     motion.acceleration.each(&mut number);
-    motion.memory.each(&mut number);
+    motion.internal.each(&mut number);
     situation.report = Report { residual: report[0], error: report[1] };
     situation.model = None;
     Ok(situation)
