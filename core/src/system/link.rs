@@ -98,21 +98,25 @@ pub trait GradientLink<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usiz
         sum: &mut SMatrix<S, D, D>,
     ) {
         let mut moved = [false; D];
-        for (k, moved) in moved.iter_mut().enumerate() {
+        let mut depends = [[false; R]; D];
+        for (k, (moved, depends)) in moved.iter_mut().zip(&mut depends).enumerate() {
             *moved = self.moves(k);
+            for (i, depends) in depends.iter_mut().enumerate() {
+                *depends = *moved && self.depends(i, k);
+            }
         }
         for k in 0..D {
             if moved[k] {
                 let mut column = SVector::<S, R>::zeros();
                 for i in 0..R {
-                    if self.depends(i, k) {
+                    if depends[k][i] {
                         column += change(i, k);
                     }
                 }
                 for j in 0..D {
                     if moved[j] {
                         for i in 0..R {
-                            if self.depends(i, j) {
+                            if depends[j][i] {
                                 sum[(j, k)] += gradient[(i, j)] * column[i];
                             }
                         }
