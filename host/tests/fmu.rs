@@ -1,4 +1,4 @@
-//! `slipfit fmu` as other simulators meet it: FMPy validates and steps what is made, and has the kernel's bits.
+//! `slipfit fmu` as other simulators meet it: FMPy and the crate `fmi` read and step what is made, and have the kernel's bits.
 
 mod common;
 #[path = "common/fields.rs"]
@@ -7,15 +7,30 @@ mod fields;
 use std::{
     fs,
     io::Read,
-    path::Path,
+    path::{Path, PathBuf},
     process::{Command, Output},
+    sync::LazyLock,
 };
 
 use common::{json, slipfit, stdout};
 use fields::{check_object, guide};
 use serde_json::{Value, json};
 
-/// Has FMPy look at `unit` beside what is expected of it.
+/// The program that looks at a unit with the crate `fmi`. Its versions are those of its own lock file, and once they are
+/// downloaded it is built without a network.
+static FMI_RS: LazyLock<PathBuf> = LazyLock::new(|| {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmi-rs");
+    let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/fmi-rs/Cargo.toml");
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args(["build", "--locked", "--quiet", "--manifest-path", manifest, "--target-dir"]).arg(&folder);
+    let output = cargo.env_remove("CARGO_BUILD_TARGET").output().unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    let hint = "where libclang is what is missing, to install it: apt-get install clang";
+    assert!(output.status.success(), "{errors}\n{hint}");
+    folder.join("debug").join(format!("slipfit-fmi-rs{}", std::env::consts::EXE_SUFFIX))
+});
+
+/// Has FMPy and the crate `fmi` look at `unit` beside what is expected of it.
 #[track_caller]
 fn check(unit: &Path, expected: &Value) {
     let python = |arguments: &[&str]| Command::new("python3").args(arguments).output().unwrap();
@@ -25,6 +40,8 @@ fn check(unit: &Path, expected: &Value) {
     fs::write(&file, expected.to_string()).unwrap();
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fmu/check.py");
     let output = python(&[script, unit.to_str().unwrap(), file.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = Command::new(&*FMI_RS).args([unit, &file]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 

@@ -17,12 +17,14 @@ const TARGETS: [&str; 1] = ["thumbv7em-none-eabihf"];
 const NEWLIB: &str = "newlib";
 
 /// Programs that tests run, and the Debian packages that have them.
-const TOOLS: [(&str, &str); 9] = [
+const TOOLS: [(&str, &str); 10] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("arm-none-eabi-gcc", "gcc-arm-none-eabi"),
     (NEWLIB, "libnewlib-arm-none-eabi"),
     ("chromium", "chromium"),
     ("c++", "g++"),
+    // Its library reads the headers of the crate `fmi`.
+    ("clang", "clang"),
     ("cmake", "cmake"),
     ("pkg-config", "pkg-config"),
     ("slurmd", "slurm-wlm"),
