@@ -207,11 +207,6 @@ typedef struct slipfit_scrubber {
   uint64_t words[8];
 } slipfit_scrubber;
 
-// Memory of a monitor; opaque.
-typedef struct slipfit_monitor {
-  uint64_t words[48];
-} slipfit_monitor;
-
 // Where free ends, and when a jam is one.
 typedef struct slipfit_limits {
   // Time from one sample to the next (s).
@@ -231,6 +226,11 @@ typedef struct slipfit_limits {
   // How fast (N/s) the averaged force may rise away from the table's.
   float rise;
 } slipfit_limits;
+
+// Memory of a monitor; opaque.
+typedef struct slipfit_monitor {
+  uint64_t words[48];
+} slipfit_monitor;
 
 // What the drive measures once a period.
 typedef struct slipfit_sample {
@@ -258,11 +258,6 @@ typedef struct slipfit_report {
   float rise;
 } slipfit_report;
 
-// Memory of a bank; opaque.
-typedef struct slipfit_bank {
-  uint64_t words[240];
-} slipfit_bank;
-
 // A tolerance level and how well it is known.
 typedef struct slipfit_estimate {
   // The level that fits best.
@@ -276,6 +271,11 @@ typedef struct slipfit_estimate {
   // Standard deviation (N) of the force from the table's at that level.
   float residual;
 } slipfit_estimate;
+
+// Memory of a bank; opaque.
+typedef struct slipfit_bank {
+  uint64_t words[240];
+} slipfit_bank;
 
 // Done.
 #define SLIPFIT_OK 0
@@ -342,6 +342,10 @@ typedef struct slipfit_estimate {
 
 // Too few samples for an estimate.
 #define SLIPFIT_BANK_SAMPLES 33
+
+// The estimate is not on the table's axis, not within the band of the level that the monitor was made for, or less certain than
+// that band.
+#define SLIPFIT_MONITOR_BAND 34
 
 #ifdef __cplusplus
 extern "C" {
@@ -496,7 +500,19 @@ slipfit_status slipfit_scrubber_check(struct slipfit_scrubber *storage,
                                       uint32_t most,
                                       uint32_t *rounds);
 
-// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table over time. A motion starts with a fresh one.
+// Limits for samples a `period` (s) apart with white noise of standard deviation `noise` (N) on the force: averages over 20
+// periods, five standard deviations of what the average leaves of the noise, jams held for ten periods, a band of half a
+// level, no blind time and no force limit. SLIPFIT_PARAMETER if no monitor takes them: the period must be 1 µs to 0.5 s, the
+// noise not negative.
+//
+// # Safety
+// If `limits` is neither null nor misaligned, memory for them is there, and nobody else uses it meanwhile.
+slipfit_status slipfit_limits_for_noise(float period,
+                                        float noise,
+                                        struct slipfit_limits *limits);
+
+// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table over time. The first motion starts with
+// it, others with slipfit_monitor_restart.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; the table has been written before; nobody
@@ -513,6 +529,21 @@ slipfit_status slipfit_monitor_init(struct slipfit_monitor *storage,
 slipfit_status slipfit_monitor_step(struct slipfit_monitor *storage,
                                     const struct slipfit_sample *sample,
                                     struct slipfit_report *report);
+
+// Takes the unit for the level that `*estimate` says from now on. SLIPFIT_MONITOR_BAND, and the level stays, if the estimate is
+// not on the table's axis, further than the band of the limits from the `n` of slipfit_monitor_init, or its standard error
+// greater than that band. The band does not move along: a unit that leaves it, at once or motion by motion, is tight.
+//
+// # Safety
+// As for slipfit_monitor_init; the monitor has been written before.
+slipfit_status slipfit_monitor_adapt(struct slipfit_monitor *storage,
+                                     const struct slipfit_estimate *estimate);
+
+// Starts another motion: forgets all samples, and keeps the limits and the level that the unit is taken for.
+//
+// # Safety
+// As for slipfit_monitor_adapt.
+slipfit_status slipfit_monitor_restart(struct slipfit_monitor *storage);
 
 // Makes an empty bank in `*storage` for an open table over time, which it goes by until it is made anew.
 //

@@ -1,13 +1,13 @@
 //! The monitor, and the bank that estimates a unit's tolerance level.
 
 use slipfit_core::{
-    monitor::{BankError, LevelBank, Limits, Monitor, Sample, Verdict, Watch},
+    monitor::{BankError, Estimate, LevelBank, Limits, Monitor, Sample, Verdict, Watch},
     table::AnyNodes,
 };
 
 use crate::{
     border::{Storage, input, make, object, object_mut, output},
-    status::{Refusal, SLIPFIT_BANK_LEVELS, SLIPFIT_BANK_SAMPLES, slipfit_status, status},
+    status::{Refusal, SLIPFIT_BANK_LEVELS, SLIPFIT_BANK_SAMPLES, SLIPFIT_MONITOR_BAND, slipfit_status, status},
     table::slipfit_table,
 };
 
@@ -132,7 +132,31 @@ impl From<BankError> for Refusal {
     }
 }
 
-/// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table over time. A motion starts with a fresh one.
+/// Limits for samples a `period` (s) apart with white noise of standard deviation `noise` (N) on the force: averages over 20
+/// periods, five standard deviations of what the average leaves of the noise, jams held for ten periods, a band of half a
+/// level, no blind time and no force limit. SLIPFIT_PARAMETER if no monitor takes them: the period must be 1 µs to 0.5 s, the
+/// noise not negative.
+///
+/// # Safety
+/// If `limits` is neither null nor misaligned, memory for them is there, and nobody else uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_limits_for_noise(
+    period: f32,
+    noise: f32,
+    limits: *mut slipfit_limits,
+) -> slipfit_status {
+    // SAFETY: the caller's promise.
+    status(|| unsafe {
+        output(limits, || {
+            let Limits { period, blind, force_most, hold, smoothing, band, margin, rise } =
+                Limits::for_noise(period, noise).checked()?;
+            Ok(slipfit_limits { period, blind, force_most, hold, smoothing, band, margin, rise })
+        })
+    })
+}
+
+/// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table over time. The first motion starts with
+/// it, others with slipfit_monitor_restart.
 ///
 /// # Safety
 /// Pointers that are neither null nor misaligned point at what their types say; the table has been written before; nobody
@@ -186,6 +210,39 @@ pub unsafe extern "C" fn slipfit_monitor_step(
     })
 }
 
+/// Takes the unit for the level that `*estimate` says from now on. SLIPFIT_MONITOR_BAND, and the level stays, if the estimate is
+/// not on the table's axis, further than the band of the limits from the `n` of slipfit_monitor_init, or its standard error
+/// greater than that band. The band does not move along: a unit that leaves it, at once or motion by motion, is tight.
+///
+/// # Safety
+/// As for slipfit_monitor_init; the monitor has been written before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_monitor_adapt(
+    storage: *mut slipfit_monitor,
+    estimate: *const slipfit_estimate,
+) -> slipfit_status {
+    status(|| {
+        // SAFETY: the caller's promise.
+        let (watching, estimate) = unsafe { (object_mut(storage)?, input(estimate)?) };
+        let slipfit_estimate { level, deviation, low, high, residual } = *estimate;
+        let estimate = Estimate { level, deviation, interval: [low, high], residual };
+        if watching.monitor.adapt(&estimate) { Ok(()) } else { Err(Refusal(SLIPFIT_MONITOR_BAND)) }
+    })
+}
+
+/// Starts another motion: forgets all samples, and keeps the limits and the level that the unit is taken for.
+///
+/// # Safety
+/// As for slipfit_monitor_adapt.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_monitor_restart(storage: *mut slipfit_monitor) -> slipfit_status {
+    status(|| {
+        // SAFETY: the caller's promise.
+        unsafe { object_mut(storage)? }.watch = Watch::default();
+        Ok(())
+    })
+}
+
 /// Makes an empty bank in `*storage` for an open table over time, which it goes by until it is made anew.
 ///
 /// # Safety
@@ -223,7 +280,7 @@ pub unsafe extern "C" fn slipfit_bank_estimate(
         output(estimate, || {
             let found = object(storage)?.estimate().ok_or(Refusal(SLIPFIT_BANK_SAMPLES))?;
             let [low, high] = found.interval;
-            let slipfit_core::monitor::Estimate { level, deviation, residual, .. } = found;
+            let Estimate { level, deviation, residual, .. } = found;
             Ok(slipfit_estimate { level, deviation, low, high, residual })
         })
     })

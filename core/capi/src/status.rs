@@ -51,6 +51,9 @@ pub const SLIPFIT_TABLE_SLOT: slipfit_status = 25;
 pub const SLIPFIT_BANK_LEVELS: slipfit_status = 32;
 /// Too few samples for an estimate.
 pub const SLIPFIT_BANK_SAMPLES: slipfit_status = 33;
+/// The estimate is not on the table's axis, not within the band of the level that the monitor was made for, or less certain than
+/// that band.
+pub const SLIPFIT_MONITOR_BAND: slipfit_status = 34;
 
 /// The version of the library, 10000·major + 100·minor + patch.
 pub const SLIPFIT_VERSION: u32 = 100;
@@ -87,6 +90,7 @@ pub extern "C" fn slipfit_status_name(status: slipfit_status) -> *const c_char {
         SLIPFIT_TABLE_SLOT => c"SLIPFIT_TABLE_SLOT",
         SLIPFIT_BANK_LEVELS => c"SLIPFIT_BANK_LEVELS",
         SLIPFIT_BANK_SAMPLES => c"SLIPFIT_BANK_SAMPLES",
+        SLIPFIT_MONITOR_BAND => c"SLIPFIT_MONITOR_BAND",
         _ => c"unknown",
     };
     name.as_ptr()

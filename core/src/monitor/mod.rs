@@ -100,6 +100,23 @@ impl Limits {
             rise: margin / smoothing,
         }
     }
+
+    /// These limits, if a monitor takes them.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first that is out of bounds or not finite.
+    #[inline]
+    pub fn checked(self) -> Result<Self, ParameterError<f32>> {
+        bounded("monitor.period", self.period, [1e-6, 1.0])?;
+        bounded("monitor.blind", self.blind, [0.0, 1e6])?;
+        bounded("monitor.force_most", self.force_most, [1e-6, f64::from(FORCE_MOST)])?;
+        bounded("monitor.hold", self.hold, [0.0, 10.0])?;
+        bounded("monitor.smoothing", self.smoothing, [0.0, 10.0])?;
+        bounded("monitor.band", self.band, [0.0, 100.0])?;
+        bounded("monitor.margin", self.margin, [0.0, 1e9])?;
+        bounded("monitor.rise", self.rise, [0.0, 1e12])?;
+        Ok(self)
+    }
 }
 
 /// What a sample says about the drive.
@@ -183,15 +200,7 @@ impl<'a, V: Nodes> Monitor<'a, V> {
         let table = table.expect_axes([AxisKind::Level, AxisKind::Time]).map_err(MonitorError::Table)?;
         let [levels, _] = table.axes();
         bounded("monitor.level", level, [f64::from(levels.first()), f64::from(levels.last())])?;
-        bounded("monitor.period", limits.period, [1e-6, 1.0])?;
-        bounded("monitor.blind", limits.blind, [0.0, 1e6])?;
-        bounded("monitor.force_most", limits.force_most, [1e-6, f64::from(FORCE_MOST)])?;
-        bounded("monitor.hold", limits.hold, [0.0, 10.0])?;
-        bounded("monitor.smoothing", limits.smoothing, [0.0, 10.0])?;
-        bounded("monitor.band", limits.band, [0.0, 100.0])?;
-        bounded("monitor.margin", limits.margin, [0.0, 1e9])?;
-        bounded("monitor.rise", limits.rise, [0.0, 1e12])?;
-        Ok(Self { table, reference: level, level, limits })
+        Ok(Self { table, reference: level, level, limits: limits.checked()? })
     }
 
     /// The level the unit is taken for.

@@ -52,7 +52,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
     unsafe {
         for (call, x, y) in calls {
             let sample = slipfit_sample { time: x, force: y, speed: y, command: x };
-            let status = match call % 16 {
+            let status = match call % 19 {
                 0 => slipfit_predictor_init(&mut predictor, &scene, x),
                 1 => slipfit_predictor_step(&mut predictor),
                 2 => slipfit_predictor_read(&predictor, &mut said),
@@ -80,9 +80,12 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
                     SLIPFIT_OK
                 }
                 14 => slipfit_predictor_init(ptr::null_mut(), &scene, x),
+                15 => slipfit_limits_for_noise(x, y, &mut limits),
+                16 => slipfit_monitor_adapt(&mut monitor, &estimate),
+                17 => slipfit_monitor_restart(&mut monitor),
                 _ => slipfit_table_look_up(&table, x, y, ptr::null_mut()),
             };
-            assert!((SLIPFIT_OK..=SLIPFIT_BANK_SAMPLES).contains(&status));
+            assert!((SLIPFIT_OK..=SLIPFIT_MONITOR_BAND).contains(&status));
         }
     }
 });

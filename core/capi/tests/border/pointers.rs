@@ -13,12 +13,14 @@ fn null_and_misaligned_pointers_are_refused() {
     let (mut predictor, mut table) = (zeroed::<slipfit_predictor>(), zeroed::<slipfit_table>());
     let (mut monitor, mut bank) = (zeroed::<slipfit_monitor>(), zeroed::<slipfit_bank>());
     let (scene, limits, sample) = (scene(), zeroed::<slipfit_limits>(), zeroed::<slipfit_sample>());
+    let mut sound = limits;
     let (mut said, mut found, mut spare) =
         (zeroed::<slipfit_prediction>(), zeroed::<slipfit_lookup>(), zeroed::<slipfit_spare>());
     let (mut report, mut estimate) = (zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
     let (mut scrubber, mut rounds, record) = (zeroed::<slipfit_scrubber>(), 0, zeroed::<slipfit_record>());
     let both = slots(bytes, bytes, 8);
     let neither = slipfit_slots { first: ptr::null(), second: ptr::null(), ..both };
+    let mut other_monitor = zeroed::<slipfit_monitor>();
     let mut other_bank = zeroed::<slipfit_bank>();
     let (mut ahead, mut other_ahead) = (zeroed::<slipfit_ahead>(), zeroed::<slipfit_ahead>());
     let mut said_ahead = zeroed::<slipfit_ahead_prediction>();
@@ -28,6 +30,8 @@ fn null_and_misaligned_pointers_are_refused() {
         assert_eq!(slipfit_ahead_init(&mut ahead, &regularised(), 2.5, &LIMITS, 0), SLIPFIT_OK);
         assert_eq!(slipfit_table_open(&mut table, bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 7), SLIPFIT_OK);
         assert_eq!(slipfit_bank_init(&mut bank, &table), SLIPFIT_OK);
+        assert_eq!(slipfit_limits_for_noise(1e-3, 0.02, &mut sound), SLIPFIT_OK);
+        assert_eq!(slipfit_monitor_init(&mut other_monitor, &table, 1.0, &sound), SLIPFIT_OK);
         assert_eq!(slipfit_scrubber_init(&mut scrubber, &table), SLIPFIT_OK);
         // Each call with one bad pointer.
         for (code, shift) in [(SLIPFIT_NULL, None), (SLIPFIT_MISALIGNED, Some(1))] {
@@ -67,6 +71,10 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_monitor_step(bad!(monitor), &sample, &mut report),
                 slipfit_monitor_step(&mut monitor, bad!(sample), &mut report),
                 slipfit_monitor_step(&mut monitor, &sample, bad!(report)),
+                slipfit_limits_for_noise(1e-3, 0.02, bad!(limits)),
+                slipfit_monitor_adapt(bad!(other_monitor), &estimate),
+                slipfit_monitor_adapt(&mut other_monitor, bad!(estimate)),
+                slipfit_monitor_restart(bad!(other_monitor)),
                 slipfit_bank_init(bad!(bank), &table),
                 slipfit_bank_init(&mut other_bank, bad!(table)),
                 slipfit_bank_add(bad!(bank), 0.0, 0.0),

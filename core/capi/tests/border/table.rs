@@ -87,6 +87,8 @@ fn uses_of_a_table(bytes: &'static [u8], numbers: &[f32]) -> Result<slipfit_stat
             if slipfit_bank_estimate(&bank, &mut estimate) == SLIPFIT_OK {
                 let slipfit_estimate { low, level, high, .. } = estimate;
                 prop_assert!(low <= level && level <= high && low.is_finite() && high.is_finite(), "{estimate:?}");
+                let adapted = slipfit_monitor_adapt(&mut monitor, &estimate);
+                prop_assert!([SLIPFIT_OK, SLIPFIT_MONITOR_BAND, SLIPFIT_NOT_MADE].contains(&adapted), "{adapted}");
             }
         }
         Ok(opened)
