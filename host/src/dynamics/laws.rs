@@ -53,7 +53,7 @@ impl<S: Scalar> Elastic<S> for AnyElastic<S> {
         match self {
             Self::Linear(law) => law.force(depth),
             Self::ThreeHalves(law) => law.force(depth),
-            Self::Power(law) => law.force(depth),
+            Self::Power(law) => powered(law, depth),
         }
     }
 
@@ -64,6 +64,13 @@ impl<S: Scalar> Elastic<S> for AnyElastic<S> {
             Self::Power(law) => law.energy(depth),
         }
     }
+}
+
+/// The force of a general exponent and its slope, in a function of its own: it is long, seldom asked for, and would be compiled into
+/// every element of every mechanism.
+#[inline(never)]
+fn powered<S: Scalar>(law: &Power<S>, depth: S) -> (S, S) {
+    law.force(depth)
 }
 
 /// Any law along a contact's normal.

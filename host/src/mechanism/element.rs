@@ -80,6 +80,9 @@ pub enum PlanarElement<const D: usize> {
     Pusher(Element<planar::Along<f64, D>, Pusher<Drive<f64>>, 2>),
 }
 
+/// A point of one body as seen from another, in axes that are turned or not.
+type Turned = spatial::Turned<f64, Option<Matrix3<f64>>>;
+
 /// An element in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpatialElement {
@@ -88,7 +91,7 @@ pub enum SpatialElement {
     /// A point before a wall.
     Wall(Element<spatial::Seat<f64>, Wall<f64, Normal, Sliding>, 3>),
     /// A ring around a rod.
-    Ring(Element<spatial::Turned<f64, Option<Matrix3<f64>>>, Ring<f64, Normal, Sliding>, 6>),
+    Ring(Element<Turned, Ring<f64, Normal, Sliding>, 6>),
     /// A torque.
     Motor(Element<spatial::About<f64>, Motor<Drive<f64>>, 1>),
     /// A force.
