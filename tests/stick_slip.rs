@@ -28,6 +28,8 @@ impl Mechanism<f64, 1> for OnBelt {
     type IterationMatrix = f64;
     type Jacobians = f64;
 
+    const STICKS: bool = true;
+
     fn implicit_update(&self, pose: &f64, velocity: &SVector<f64, 1>, dt: f64) -> f64 {
         pose + velocity.x * dt
     }

@@ -82,11 +82,35 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
     }
 
     /// Moves `state` by one step. The count of steps stops at its greatest value, after which time stands still.
+    ///
+    /// Friction that sticks needs an implicit scheme; with another one this does not compile:
+    /// ```compile_fail
+    /// use slipfit_core::{integrator::SemiImplicitEuler, kernel::Kernel, law::Exact, pose::Pose, slide::Slide};
+    ///
+    /// fn slides<E: slipfit_core::law::Elastic<f32>>(slide: Slide<f32, E, Exact<f32>>) {
+    ///     let kernel = Kernel::<f32, _, SemiImplicitEuler>::new(slide, 1e-3).unwrap();
+    ///     kernel.step::<6>(&mut kernel.at_rest(Pose::nominal()));
+    /// }
+    /// # use slipfit_core::law::Linear;
+    /// # let _: fn(Slide<f32, Linear<f32>, Exact<f32>>) = slides;
+    /// ```
+    /// With implicit Euler it does:
+    /// ```
+    /// use slipfit_core::{integrator::ImplicitEuler, kernel::Kernel, law::Exact, pose::Pose, slide::Slide};
+    ///
+    /// fn slides<E: slipfit_core::law::Elastic<f32>>(slide: Slide<f32, E, Exact<f32>>) {
+    ///     let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(slide, 1e-3).unwrap();
+    ///     kernel.step::<6>(&mut kernel.at_rest(Pose::nominal()));
+    /// }
+    /// # use slipfit_core::law::Linear;
+    /// # let _: fn(Slide<f32, Linear<f32>, Exact<f32>>) = slides;
+    /// ```
     #[inline]
     pub fn step<const D: usize>(&self, state: &mut StateOf<S, M, D>) -> Report<S>
     where
         M: Mechanism<S, D>,
     {
+        const { assert!(I::IMPLICIT || !M::STICKS, "friction that sticks needs an implicit scheme") };
         let Step { motion: next, residual, error, .. } =
             I::step(&self.mechanism, self.time(state.steps), self.step, &state.motion);
         let zero = S::zero();

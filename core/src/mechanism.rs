@@ -80,6 +80,9 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// Derivatives of the force by velocity and displacement.
     type Jacobians: Copy;
 
+    /// Whether friction can hold it at rest. Only implicit schemes can follow that; a kernel of another one does not compile.
+    const STICKS: bool;
+
     /// The pose Q = `pose` + `dt`·Q̇(Q, `velocity`), implicit in Q.
     fn implicit_update(&self, pose: &Self::Pose, velocity: &SVector<S, D>, dt: S) -> Self::Pose;
 

@@ -124,6 +124,8 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     type IterationMatrix = IterationMatrix<<B::Jacobian as Jacobian<S, D>>::Factors, B::Axes>;
     type Jacobians = JacobiansOf<S, B, D>;
 
+    const STICKS: bool = E::STICKS;
+
     #[inline(always)]
     fn implicit_update(&self, pose: &B::Pose, velocity: &SVector<S, D>, dt: S) -> B::Pose {
         self.bodies.implicit_update(pose, velocity, dt)

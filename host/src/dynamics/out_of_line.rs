@@ -111,6 +111,8 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechan
     type IterationMatrix = M::IterationMatrix;
     type Jacobians = M::Jacobians;
 
+    const STICKS: bool = M::STICKS;
+
     fn implicit_update(&self, pose: &M::Pose, velocity: &SVector<S, D>, dt: S) -> M::Pose {
         self.mechanism.implicit_update(pose, velocity, dt)
     }
