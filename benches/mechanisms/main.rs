@@ -130,7 +130,7 @@ impl Case<'_> {
             let error = self.error(done.samples.rows.iter().map(|row| row[1]));
             (error, [done.integration.as_secs_f64(), whole])
         };
-        // Some thirty tolerances; the peer has 192 pairs and proportions.
+        // 33 tolerances from 1e-3 to 1e-7. The peer has more to choose from: 192 pairs of tolerances and their proportions.
         let errors = (0..33).map(|i| 1e-3 * libm::pow(10.0, -0.125 * f64::from(i)));
         let able = errors.map(|error| (error, desk(error))).filter(|(_, (error, _))| *error <= WITHIN);
         let (best, _) = able.min_by(|one, other| one.1.1[0].total_cmp(&other.1.1[0]))?;

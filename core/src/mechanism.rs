@@ -24,23 +24,23 @@ impl<S: Scalar> Way<S> {
 
 /// Forces at one motion, and the iteration matrix there.
 #[derive(Clone, Copy, Debug)]
-pub struct Balance<S, L, const D: usize> {
+pub struct Balance<S, M, const D: usize> {
     /// The generalised force (N, N·m).
     pub force: SVector<S, D>,
     /// Iteration matrix of momentum/a − force with respect to the velocity. It may be approximate; it steers, the force
     /// decides.
-    pub iteration_matrix: L,
+    pub iteration_matrix: M,
 }
 
 /// Forces at one motion and all their derivatives.
 #[derive(Clone, Copy, Debug)]
-pub struct Differentiated<S, L, const D: usize> {
+pub struct Differentiated<S, J, const D: usize> {
     /// The generalised force (N, N·m).
     pub force: SVector<S, D>,
     /// ∂force/∂t (N/s, N·m/s).
     pub per_time: SVector<S, D>,
     /// Derivatives by velocity and displacement.
-    pub jacobians: L,
+    pub jacobians: J,
 }
 
 /// Accelerations are rounded to the last place of this (m/s²): 9e-13 m/s² in f64, 5e-4 m/s² in f32.
@@ -65,13 +65,13 @@ pub(crate) fn settled<S: Scalar>(x: S, unit: S) -> S {
 
 /// A mechanism with `D` generalised velocities.
 ///
-/// Implicit schemes solve momentum(V) − momentum(V₀) = a·force(t, Q, V) with Q = advanced(Q₀, V, a) for V. `a` (s) is
+/// Implicit schemes solve momentum(V) − momentum(V₀) = a·force(t, Q, V) with Q = implicit_update(Q₀, V, a) for V. `a` (s) is
 /// the implicit part of the step.
 pub trait Mechanism<S: Scalar, const D: usize> {
     /// Where the bodies are.
     type Pose: Copy + PartialEq;
 
-    /// What force laws remember from one step to the next, such as friction forces; `()` where nothing.
+    /// Internal variables of force laws, kept from one step to the next, such as friction forces; `()` where there are none.
     type Internal: Copy;
 
     /// Whatever [`solve`](Self::solve) needs of an iteration matrix.
@@ -127,7 +127,7 @@ pub trait Mechanism<S: Scalar, const D: usize> {
 
     /// M·`velocity` (N·s, N·m·s) at the motion whose `jacobians` these are, at its `pose`.
     #[inline(always)]
-    fn momentum_by(&self, _slopes: &Self::Jacobians, pose: &Self::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
+    fn momentum_by(&self, _jacobians: &Self::Jacobians, pose: &Self::Pose, velocity: &SVector<S, D>) -> SVector<S, D> {
         self.momentum(pose, velocity)
     }
 
@@ -136,7 +136,7 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     #[inline(always)]
     fn forces_by(
         &self,
-        _slopes: &Self::Jacobians,
+        _jacobians: &Self::Jacobians,
         t: S,
         pose: &Self::Pose,
         internal: &Self::Internal,

@@ -163,7 +163,7 @@ impl<S: Scalar> ToBody<S> {
     }
 }
 
-/// How fast the turn θ (rad) of [`Pose::moved`] grows while the body turns with `angular_velocity_b` ω (rad/s): the orientation is
+/// How fast the turn θ (rad) of [`Pose::explicit_update`] grows while the body turns with `angular_velocity_b` ω (rad/s): the orientation is
 /// that of the quaternion (1, θ/2) after the pose's, so that θ̇ = ω + ½·θ×ω + ¼·θ(θ·ω).
 #[inline(always)]
 pub(crate) fn turn_rate<S: Scalar>(turn_b: &Vector3<S>, angular_velocity_b: &Vector3<S>) -> Vector3<S> {

@@ -66,8 +66,8 @@ pub type Slide<S, E, F> = System<Floating<S>, (Pins<S, E, F>, Element<Pull<S>, P
 /// The internal variables of friction, `M` for a contact, on a slide.
 pub type Internal<M> = ([[M; 2]; PINS], ());
 
-/// Of laws that have none.
-pub const NO_MEMORY: Internal<()> = ([[(); 2]; PINS], ());
+/// The internal variables of a slide whose friction has none.
+pub const NO_INTERNAL: Internal<()> = ([[(); 2]; PINS], ());
 
 impl<S: Scalar + PartialOrd> Body<S> {
     /// The slide of this body with its laws and its drive, of parameters that can be stepped without failing.

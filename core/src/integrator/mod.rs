@@ -24,7 +24,7 @@ pub use semi_implicit_euler::SemiImplicitEuler;
 
 use crate::{SVector, Scalar, mechanism::Mechanism};
 
-/// Where the bodies are, how fast they move, and what their force laws remember.
+/// Where the bodies are, how fast they move, and the internal variables of their force laws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<S, P, R, const D: usize> {
     /// Pose.
@@ -157,7 +157,8 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
         let (mechanism, base) = if D > 1 { core::hint::black_box((mechanism, base)) } else { (mechanism, base) };
         let pose = mechanism.implicit_update(&base.pose, &velocity, a);
         let force = if pass == CHORD || pass == passes {
-            // The internal variables of an iterate that is only worse hold as well, because the next step brings them back into the cone.
+            // Internal variables of an iterate that is only worse hold as well: the next step brings the friction force back into the
+            // cone.
             mechanism.forces(t, &pose, &base.internal, &velocity, a, Some(&mut internal))
         } else {
             let share = tangent_share(full_passes);

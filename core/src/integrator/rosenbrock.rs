@@ -218,6 +218,6 @@ pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
     }
     let whole = Part::weighted(&parts, T::RESULT);
     let [first, second] = T::BENDS.map(|weights| Part::weighted(&parts, weights).velocity);
-    let jacobians = [whole.velocity + first, whole.velocity - first - second];
-    (start.end(&whole, &last).step(motion, h), jacobians.map(|slope| slope * start.per_step))
+    let slopes = [whole.velocity + first, whole.velocity - first - second];
+    (start.end(&whole, &last).step(motion, h), slopes.map(|slope| slope * start.per_step))
 }

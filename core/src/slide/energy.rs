@@ -64,7 +64,7 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
                 let touching = SlidingContact {
                     sliding: [sliding_0, sliding_1],
                     normal: slot.normal(),
-                    // Without grip the remembered force stands.
+                    // With a penalty of zero the trial force is the internal one, so that this stands.
                     mass_rate: zero,
                     tangent_share: zero,
                 };

@@ -15,7 +15,8 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// Where they are and how they move, worked out for links.
     type Placed;
 
-    /// The mass matrix (kg, kg·m, kg·m²) at a pose; `()` where it is the same at every pose.
+    /// What [`inertia`](Self::inertia) is made of at a pose: the mass matrix (kg, kg·m, kg·m²), or what turning the axes makes of it;
+    /// `()` where it is the same at every pose in the axes of the sum.
     type Mass: Copy;
 
     /// The axes in which elements add up.
@@ -24,7 +25,7 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// What derivatives add up in.
     type Jacobian: Jacobian<S, D>;
 
-    /// Whether the mass matrix is the same at every pose.
+    /// Whether the mass matrix is the same at every pose in the axes of the velocities.
     const MASS_IS_CONSTANT: bool;
 
     /// Whether a stage's matrix takes from a law how its force goes by rates that also move places over the implicit part of the
@@ -58,10 +59,10 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// The axes in which elements add up.
     fn axes(&self, placed: &Self::Placed) -> Self::Axes;
 
-    /// The mass matrix M.
+    /// That of the bodies as they are placed.
     fn mass(&self, placed: &Self::Placed) -> Self::Mass;
 
-    /// M·`rate`.
+    /// M·`rate`, in the axes in which elements add up.
     fn inertia(&self, mass: &Self::Mass, rate: S) -> Self::Jacobian;
 
     /// M·`velocity` (N·s, N·m·s).
@@ -70,14 +71,14 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// M⁻¹·`momentum` (m/s, rad/s).
     fn velocity(&self, mass: &Self::Mass, momentum: &SVector<S, D>) -> SVector<S, D>;
 
-    /// What the sum over the elements begins with (N, N·m).
+    /// What the sum over the elements begins with (N, N·m), in the axes in which they add up.
     fn own_force(&self, placed: &Self::Placed) -> SVector<S, D>;
 
     /// The generalised force (N, N·m), force = M·V̇, where the elements have added up to `sum`: with gravity and what turning
     /// resists, where these are not in [`own_force`](Self::own_force), and in the axes of the frame.
     #[inline(always)]
     fn total(&self, placed: &Self::Placed, sum: &SVector<S, D>) -> SVector<S, D> {
-        self.axes(placed).to_frame(sum)
+        self.axes(placed).to_velocities(sum)
     }
 
     /// [`mass`](Self::mass) and [`own_force`](Self::own_force), for bodies that find both by the same way.
@@ -86,8 +87,8 @@ pub trait Bodies<S: Scalar, const D: usize> {
         (self.mass(placed), self.own_force(placed))
     }
 
-    /// Adds how gravity and what turning resists, less M·`acceleration`, go by velocity and by place, negated; the acceleration
-    /// is held, and not looked at where the mass matrix is constant.
+    /// Adds how gravity and what turning resists, less M·`acceleration`, go by velocity and by place, negated, in the axes in which
+    /// elements add up; the acceleration is held, and not looked at where the mass matrix is constant.
     fn own_jacobians(
         &self,
         placed: &Self::Placed,

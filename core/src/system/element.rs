@@ -35,7 +35,7 @@ impl<S: Scalar, const R: usize> Response<S, R> {
 
 /// A force law of `R` lengths and angles.
 pub trait Law<S: Scalar, const R: usize> {
-    /// What it remembers from one step to the next; `()` where nothing.
+    /// Its internal variables, kept from one step to the next; `()` where it has none.
     type Internal: Copy + core::fmt::Debug + PartialEq;
 
     /// Whether it can hold bodies at rest.
@@ -83,7 +83,7 @@ pub struct Element<L, W, const R: usize> {
 
 /// Elements that act on bodies `B`: one, an array, a slice, or a tuple of such.
 pub trait Elements<S: Scalar, B: Bodies<S, D>, const D: usize> {
-    /// What their laws remember.
+    /// The internal variables of their laws.
     type Internal: Copy;
 
     /// Whether one of them can hold bodies at rest.
@@ -92,7 +92,7 @@ pub trait Elements<S: Scalar, B: Bodies<S, D>, const D: usize> {
     /// The internal variables of laws that nothing has happened to yet.
     fn fresh(&self) -> Self::Internal;
 
-    /// Adds the forces at time `t` (s) to `sum`, and writes what the laws remember if the motion is accepted.
+    /// Adds the forces at time `t` (s) to `sum`, and writes the internal variables if the motion is accepted.
     fn act(
         &self,
         way: (S, Way<S>),
@@ -251,7 +251,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
     }
 }
 
-/// Elements chosen at run time, whose laws remember nothing.
+/// Elements chosen at run time, whose laws have no internal variables.
 impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Internal = ()>, const D: usize> Elements<S, B, D> for &[E] {
     type Internal = ();
 

@@ -6,9 +6,9 @@
 //! generalised force is the sum of Λᵀφ, so that each force acts on both bodies, equal and opposite, at one point. Laws
 //! know nothing of bodies, links nothing of laws, and neither of integrators.
 //!
-//! Most bodies have elements add up by coordinates, and a link tells its gradient ([`GradientLink`]). One body among pins of the
-//! frame, like the slide, has them add up in axes of its own ([`Axes`]), where walls stand still: there a link says itself how its
-//! forces go by motion and place, in fewer operations.
+//! Trees in a plane have elements add up by coordinates, and a link tells its gradient ([`GradientLink`]). Free bodies have them add
+//! up in the axes of the frame; one body among pins of the frame, like the slide, in its own, where walls stand still ([`Axes`]).
+//! There a link says itself how its forces go by motion and place, in fewer operations.
 //!
 //! Elements compose by type, as tuples and arrays, so that what a mechanism does not have leaves no code.
 
@@ -96,7 +96,7 @@ pub struct Driving<S> {
     pub effort: S,
 }
 
-/// The balance of forces linearised, and what leads to the axes in which it is.
+/// The iteration matrix M/a − ∂force/∂V − a·∂force/∂Q, factorised, and what leads to the axes in which it is.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct IterationMatrix<F, A> {
     factors: F,
@@ -108,9 +108,9 @@ pub struct IterationMatrix<F, A> {
 pub struct Jacobians<M, A, J> {
     mass: M,
     axes: A,
-    /// −∂force/∂V.
+    /// −∂force/∂V, in `axes`.
     damping: J,
-    /// −∂(force − M·V̇)/∂Q.
+    /// −∂(force − M·V̇)/∂Q, in `axes`.
     stiffness: J,
 }
 
@@ -250,7 +250,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     #[inline(always)]
     fn solve(&self, iteration_matrix: &Self::IterationMatrix, residual: &SVector<S, D>) -> SVector<S, D> {
         let IterationMatrix { factors, axes } = iteration_matrix;
-        axes.to_frame(&B::Jacobian::solve(factors, &axes.to_own(residual)))
+        axes.to_velocities(&B::Jacobian::solve(factors, &axes.to_sum(residual)))
     }
 
     #[inline(always)]
@@ -290,7 +290,7 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     #[inline(always)]
     fn pushed(&self, jacobians: &Self::Jacobians, displacement: &SVector<S, D>) -> SVector<S, D> {
         let Jacobians { axes, stiffness, .. } = jacobians;
-        -axes.to_frame(&stiffness.times(&axes.to_own(displacement)))
+        -axes.to_velocities(&stiffness.times(&axes.to_sum(displacement)))
     }
 
     #[inline(always)]
@@ -339,7 +339,7 @@ impl<B, E> System<B, E> {
         let axes = self.bodies.axes(placed);
         let Derivatives { per_time, damping, stiffness, .. } = sum;
         let jacobians = Jacobians { mass, axes, damping, stiffness };
-        Differentiated { force, per_time: axes.to_frame(&per_time), jacobians }
+        Differentiated { force, per_time: axes.to_velocities(&per_time), jacobians }
     }
 
     /// The mass matrix at a `pose`.

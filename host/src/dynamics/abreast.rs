@@ -111,7 +111,7 @@ mod tests {
         integrator::{Motion, Rodas4},
         mechanism::Mechanism,
         pose::Pose,
-        slide::{CONTACTS, Internal, NO_MEMORY, Slide},
+        slide::{CONTACTS, Internal, NO_INTERNAL, Slide},
     };
 
     use super::SideBySide;
@@ -128,7 +128,7 @@ mod tests {
         C: Contacts<f64, M, 6>,
     {
         let zero = SVector::zeros();
-        let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, internal: NO_MEMORY };
+        let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, internal: NO_INTERNAL };
         let sensitivity = Sensitivity { mass: 0.0818, gain: 40.0 };
         let error = |step: &_, length| sensitivity.error(Tolerance::of_force(1e-4), step, length);
         let mut steps = Vec::new();

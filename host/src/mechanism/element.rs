@@ -42,8 +42,8 @@ pub fn contact(laws: &Laws, stick_band: f64) -> Result<AnyContact, ParameterErro
     Ok(Contact { normal, friction })
 }
 
-/// Takes what elements do, but spares derivatives of those that do nothing, such as contacts that are open: a choice that steps of
-/// one length must not make. A zero less in a sum changes at most the sign of a zero.
+/// Takes what elements do, but spares adding derivatives of those that do nothing, such as contacts that are open. The kernel, whose
+/// steps all take the same number of instructions, must not choose so. A zero less in a sum changes at most the sign of a zero.
 struct Acting<'a, A>(&'a mut A);
 
 impl<B: Bodies<f64, D>, A: Assembly<f64, B, D>, const D: usize> Assembly<f64, B, D> for Acting<'_, A> {

@@ -30,7 +30,7 @@ pub fn bodies<const D: usize>(
     PlanarTree::new(coordinates, &rigid(mechanism, mounts), flat(mechanism.gravity))
 }
 
-/// Their masses, moments of inertia and centres of mass.
+/// The bodies of `mechanism` on their `mounts`: masses, moments of inertia and centres of mass.
 pub fn rigid<const D: usize>(mechanism: &Mechanism, mounts: &Mounts) -> Vec<Rigid<f64, D>> {
     let body = |(i, body): (usize, &Body)| Rigid {
         mass: body.mass,

@@ -6,7 +6,7 @@ use slipfit_core::{
     integrator::Motion,
     menu::{FrictionData, SlideData},
     pose::{Orientation, Pose},
-    slide::{Internal, NO_MEMORY},
+    slide::{Internal, NO_INTERNAL},
 };
 
 use crate::dynamics::pack::Pack;
@@ -17,7 +17,7 @@ pub type Motions<V> = Motion<Pack<V>, Pose<Pack<V>>, Internal<()>, 6>;
 /// All slides at rest in their nominal poses.
 pub fn at_rest<V: Simd>() -> Motions<V> {
     let still = SVector::zeros();
-    Motion { pose: Pose::nominal(), velocity: still, acceleration: still, internal: NO_MEMORY }
+    Motion { pose: Pose::nominal(), velocity: still, acceleration: still, internal: NO_INTERNAL }
 }
 
 /// Every number of where slides are and how they move.

@@ -59,8 +59,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
         let (force, [turn, rub]) = (pressed.force, traction.force);
         let ([own, mixed, other], [by_turn, by_rub]) = (traction.impedance, traction.per_normal);
 
-        // How push and rub change, negated, with the velocity along normal and tangent, that along the rod, the turning about the
-        // tangent, and that about the rod.
+        // How friction around the rod and along it changes, negated, with the six rates; the first two velocities and the first two
+        // turns enter through normal and tangent. Rows of `impedance` follow from them, columns are the rates.
         let damping = pressed.impedance(None);
         let row = |per_normal: S, [around, along]: [S; 2]| {
             let (moves, turns) = (normal * (per_normal * damping) + tangent * around, tangent * (rim * along));
@@ -80,7 +80,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 6> for Ring<S, N, F> {
             impedance.data.0[j][1] += normal.y * by_move;
         }
 
-        // With the place along the normal and along the tangent; along the tangent the axes turn by 1/|ρ|.
+        // With the place along the normal and along the tangent; along the tangent normal and tangent turn by 1/|ρ| (rad/m).
         let stiffness = pressed.stiffness();
         let force_aside = damping * (per_distance * aside);
         let (around, along) = (-(per_distance * outward), -(per_distance * rim * about_normal));

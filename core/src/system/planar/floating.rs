@@ -203,7 +203,7 @@ impl<S: Scalar> Bodies<S, 3> for Floating<S> {
     #[inline(always)]
     fn total(&self, placed: &Placed<S>, sum: &SVector<S, 3>) -> SVector<S, 3> {
         let weight = self.gravity * self.mass;
-        placed.turn.to_frame(sum) + SVector::<S, 3>::new(weight.x, weight.y, S::zero())
+        placed.turn.to_velocities(sum) + SVector::<S, 3>::new(weight.x, weight.y, S::zero())
     }
 
     #[inline(always)]

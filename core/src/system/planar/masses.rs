@@ -2,8 +2,9 @@
 //! are made at any pose, whatever the number of bodies.
 //!
 //! A body's centre of mass is a sum of vectors, each constant in the axes of one coordinate: the arm that a turn carries, the axis
-//! along which a slide moves it (zero where the coordinate does not move the body). All that resists is bilinear in them. So sums
-//! over the bodies of their products, in these axes, are all there is to know: the *augmented bodies* of the field.
+//! along which a slide moves it (zero where the coordinate does not move the body). Gravity is linear in them, kinetic energy and
+//! inertial forces are bilinear. So the sums over the bodies of m·w, of m·wᵢ·wⱼ and of m·wᵢ × wⱼ are all there is to know: the
+//! *augmented bodies* of the field.
 
 use super::{
     Placed, Point, left,
@@ -23,9 +24,6 @@ pub struct Rigid<S, const D: usize> {
     pub centre: Point<S, D>,
 }
 
-/// For vectors that are constant in the axes of the frame: no coordinate.
-const FRAME: usize = usize::MAX;
-
 /// Moments of the masses of all bodies: sums over the bodies of mass times vectors w, of which there is one a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Masses<S, const D: usize> {
@@ -38,7 +36,7 @@ pub(super) struct Masses<S, const D: usize> {
     meets: [[bool; D]; D],
     /// Moments of inertia (kg·m²) by the coordinate that turns the bodies.
     inertia: [S; D],
-    /// The least mass of a body (kg).
+    /// The least mass (kg) of bodies that move as one.
     pub least: S,
     /// How far bodies reach about each coordinate (m).
     pub levers: [S; D],
@@ -67,8 +65,11 @@ impl<S: Scalar + PartialOrd, const D: usize> Masses<S, D> {
         for body in bodies {
             let mass = bounded("mass", body.mass, [1e-9, 1e6])?;
             bounded("inertia", body.inertia, [0.0, 1e9])?;
-            masses.least = masses.least.select_gt(mass, mass, masses.least);
             let carrier = &body.centre.carrier;
+            // Bodies that move as one are one body to what it meets.
+            let as_one = bodies.iter().filter(|other| other.centre.carrier == *carrier);
+            let whole = as_one.fold(zero, |sum, other| sum + other.mass);
+            masses.least = masses.least.select_gt(whole, whole, masses.least);
             let mut vectors = body.centre.arms;
             for (k, (vector, axis)) in vectors.iter_mut().zip(axes).enumerate() {
                 let of_kind = if topology.kind(k) == Kind::Turn { *vector } else { *axis };
@@ -105,14 +106,12 @@ impl<S: Scalar, const D: usize> Masses<S, D> {
     /// The moments where and as fast as `placed` says.
     #[inline(always)]
     pub fn at<J: Topology<D>>(&self, topology: &J, placed: &Placed<S, D>) -> Moments<S, D> {
-        // The coordinate that turns the axes of a vector.
-        let mut turns = [FRAME; D];
-        for (k, turn) in turns.iter_mut().enumerate() {
-            *turn = match topology.kind(k) {
-                Kind::Turn => k,
-                Kind::Slide { on } => on.unwrap_or(FRAME),
-            };
-        }
+        // The coordinate that turns the axes of a vector, and these axes.
+        let turn = |k: usize| match topology.kind(k) {
+            Kind::Turn => Some(k),
+            Kind::Slide { on } => on,
+        };
+        let axes = |k: usize| turn(k).and_then(|turn| placed.axes.get(turn));
         let (mut dot, mut cross) = (SMatrix::<S, D, D>::zeros(), SMatrix::<S, D, D>::zeros());
         for i in 0..D {
             dot[(i, i)] = self.dot[(i, i)];
@@ -121,9 +120,9 @@ impl<S: Scalar, const D: usize> Masses<S, D> {
                     continue;
                 }
                 let (mut p, mut x) = (self.dot[(i, j)], self.cross[(i, j)]);
-                if turns[i] != turns[j] {
+                if turn(i) != turn(j) {
                     // Cosine and sine of the angle from the axes of j to those of i.
-                    let (cos, sin) = match (placed.axes.get(turns[i]), placed.axes.get(turns[j])) {
+                    let (cos, sin) = match (axes(i), axes(j)) {
                         (Some(i), Some(j)) => (i.dot(j), i.y * j.x - i.x * j.y),
                         (Some(i), None) => (i.x, i.y),
                         (None, Some(j)) => (j.x, -j.y),
@@ -137,7 +136,7 @@ impl<S: Scalar, const D: usize> Masses<S, D> {
         }
         let mut first = self.first;
         for (k, first) in first.iter_mut().enumerate() {
-            if let Some(axes) = placed.axes.get(turns[k]) {
+            if let Some(axes) = axes(k) {
                 *first = turned(axes, first);
             }
         }
@@ -306,43 +305,53 @@ mod tests {
         SMatrix, SVector, Vector2,
         system::{
             Bodies,
-            planar::{Coordinate, PlanarTree, Point, Rigid},
+            planar::{
+                Coordinate, PlanarTree,
+                example::{Linkage, linkage},
+            },
         },
     };
+
+    #[test]
+    fn refuses_what_makes_no_tree() {
+        let Linkage { mut coordinates, bodies, .. } = linkage();
+        let gravity = Vector2::new(0.0, -9.81);
+        assert_eq!(PlanarTree::new(coordinates, &[], gravity).unwrap_err().parameter, "bodies");
+        for on in [3, 6, usize::MAX] {
+            coordinates[2] = Coordinate::Slide { on: Some(on), axis: Vector2::new(1.0, 0.0) };
+            assert_eq!(PlanarTree::new(coordinates, &bodies, gravity).unwrap_err().parameter, "on", "{on}");
+        }
+    }
+
+    #[test]
+    fn bodies_that_move_as_one_are_one() {
+        let Linkage { coordinates, bodies, .. } = linkage();
+        let tree = PlanarTree::new(coordinates, &bodies, Vector2::new(0.0, -9.81)).unwrap();
+        // The slider is the lightest; the two of the lift are 0.4 kg together.
+        assert_eq!(tree.least_mass(), 0.2);
+        let lift = PlanarTree::new(coordinates, &bodies[4..], Vector2::new(0.0, -9.81)).unwrap();
+        assert_eq!(lift.least_mass(), 0.4);
+    }
 
     /// What a planar body's mass does, by its definition: m·gᵀg and m·g·(gravity − J̇·V), J̇·V by a difference along the motion.
     #[test]
     fn moments_add_up_to_what_body_by_body_does() {
-        let slide = |on, x: f64, y: f64| Coordinate::Slide { on, axis: Vector2::new(x, y) };
-        let coordinates =
-            [Coordinate::Turn, Coordinate::Turn, slide(Some(1), 0.6, 0.8), slide(None, 0.0, 1.0), Coordinate::Turn];
-        let on = |point: Point<f64, 5>, k: usize| point.on(k, &coordinates[k]);
-        let crank = on(Point::fixed(Vector2::new(0.1, 0.0)), 0);
-        let rod = on(crank.plus(Vector2::new(0.3, 0.1)), 1);
-        let slider = on(rod.plus(Vector2::new(0.2, 0.0)), 2);
-        let lift = on(on(Point::fixed(Vector2::new(0.5, 0.2)), 3), 4);
-        let body = |mass, centre| Rigid { mass, inertia: 0.02, centre };
-        let bodies = [
-            body(0.5, crank.plus(Vector2::new(0.1, 0.0))),
-            body(0.7, rod.plus(Vector2::new(0.1, 0.02))),
-            body(0.3, slider.plus(Vector2::new(0.0, 0.05))),
-            body(0.4, lift.plus(Vector2::new(0.03, 0.05))),
-        ];
+        let Linkage { coordinates, bodies, .. } = linkage();
         let gravity = Vector2::new(1.0, -9.81);
         let tree = PlanarTree::new(coordinates, &bodies, gravity).unwrap();
-        let pose = tree.pose([0.3, -0.4, 0.05, 0.02, 0.1], |x| [libm::cos(x / 2.0), libm::sin(x / 2.0)]);
-        let v = SVector::<f64, 5>::new(0.7, -1.1, 0.4, 0.3, 2.0);
-        let mut matrix = SMatrix::<f64, 5, 5>::zeros();
-        let mut force = SVector::<f64, 5>::zeros();
+        let pose = tree.pose([0.3, -0.4, 0.05, 0.02, 0.1, -0.04], |x| [libm::cos(x / 2.0), libm::sin(x / 2.0)]);
+        let v = SVector::<f64, 6>::new(0.7, -1.1, 0.4, 0.3, 2.0, -0.6);
+        let mut matrix = SMatrix::<f64, 6, 6>::zeros();
+        let mut force = SVector::<f64, 6>::zeros();
         let h = 1e-5;
         for body in &bodies {
             let velocity =
                 |dt: f64| tree.motion_of(&body.centre, &tree.placed(&tree.explicit_update(&pose, &v, dt), &v))[1];
             let resists = (velocity(h) - velocity(-h)) / (2.0 * h);
             let gradient = tree.at(&body.centre, &tree.placed(&pose, &v)).gradient;
-            for i in 0..5 {
+            for i in 0..6 {
                 force[i] += gradient[i].dot(&(gravity - resists)) * body.mass;
-                for j in 0..5 {
+                for j in 0..6 {
                     matrix[(i, j)] += gradient[i].dot(&gradient[j]) * body.mass;
                 }
             }

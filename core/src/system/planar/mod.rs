@@ -6,6 +6,8 @@
 mod across;
 mod along;
 mod between;
+#[cfg(test)]
+pub(crate) mod example;
 mod floating;
 mod half_turn;
 mod masses;

@@ -19,7 +19,7 @@ pub enum Coordinate<S> {
     Turn,
     /// A displacement along `axis`, of unit length, fixed in the axes of the turning coordinate `on`, or of the frame.
     Slide {
-        /// Which coordinate turns the axis.
+        /// Which coordinate, a turning one, turns the axis.
         on: Option<usize>,
         /// Direction.
         axis: Vector2<S>,
@@ -28,7 +28,8 @@ pub enum Coordinate<S> {
 
 /// Bodies in a plane with `D` coordinates. The topology `J` may be a type, so that what a scene does not have leaves no code.
 ///
-/// Body by body the accelerations are J·V̇ + J̇·V; the mass matrix is Σ m·JᵀJ + inertia, exact at every pose.
+/// Body by body the accelerations are J·V̇ + J̇·V; the mass matrix is Σ m·JᵀJ + inertia, exact at every pose. The sums over the bodies
+/// are made once, when the tree is. What moves along an axis of a turning body must be moved by that turn, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanarTree<S, const D: usize, J = [Kind; D]> {
     topology: J,
@@ -74,6 +75,17 @@ impl<S: Scalar + PartialOrd, J: Topology<D>, const D: usize> PlanarTree<S, D, J>
     ) -> Result<Self, ParameterError<S>> {
         for component in gravity.iter() {
             bounded("gravity", *component, [-1e4, 1e4])?;
+        }
+        bounded("bodies", S::from_count(bodies.len() as u32), [1.0, 1e6])?;
+        for k in 0..D {
+            if let Kind::Slide { on: Some(on) } = topology.kind(k) {
+                let (last, number) = (D as f64 - 1.0, u32::try_from(on).unwrap_or(u32::MAX));
+                let found = bounded("on", S::from_count(number), [0.0, last])?;
+                if topology.kind(on) != Kind::Turn {
+                    let [least, greatest] = [0.0, last].map(S::from_f64);
+                    return Err(ParameterError { parameter: "on", value: found, least, greatest });
+                }
+            }
         }
         let masses = Masses::of(&topology, &axes, bodies)?;
         let mut per_lever = SVector::<S, D>::zeros();

@@ -139,8 +139,9 @@ impl<S: Scalar> PlacedBody<S> {
     }
 }
 
-/// Axes in which elements of free bodies add up: those of the frame, for torques too. It holds what leads from the axes of each body
-/// into those of the frame.
+/// Axes in which elements of free bodies add up: those of the frame, for torques too. Velocities and turns of a body are in its own
+/// axes, so this holds what leads from these into the frame's. Derivatives are R·(∂τ_b/∂θ_b)·Rᵀ: of the torque *as the body sees
+/// it*, with the angular velocity held in the body, only written in the frame's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InFrame<S, const N: usize>([Matrix3<S>; N]);
 
@@ -157,11 +158,11 @@ impl<S: Scalar, const N: usize> InFrame<S, N> {
     fn turned<const D: usize>(
         &self,
         v: &SVector<S, D>,
-        turned: impl Fn(&Matrix3<S>, &Vector3<S>) -> Vector3<S>,
+        turn: impl Fn(&Matrix3<S>, &Vector3<S>) -> Vector3<S>,
     ) -> SVector<S, D> {
         let mut result = *v;
         for ([.., x, y, z], axes) in each_mut(&mut result).zip(&self.0) {
-            let turned = turned(axes, &Vector3::new(*x, *y, *z));
+            let turned = turn(axes, &Vector3::new(*x, *y, *z));
             (*x, *y, *z) = (turned.x, turned.y, turned.z);
         }
         result
@@ -170,12 +171,12 @@ impl<S: Scalar, const N: usize> InFrame<S, N> {
 
 impl<S: Scalar, const N: usize, const D: usize> Axes<S, D> for InFrame<S, N> {
     #[inline(always)]
-    fn to_own(&self, v: &SVector<S, D>) -> SVector<S, D> {
+    fn to_sum(&self, v: &SVector<S, D>) -> SVector<S, D> {
         self.turned(v, times)
     }
 
     #[inline(always)]
-    fn to_frame(&self, v: &SVector<S, D>) -> SVector<S, D> {
+    fn to_velocities(&self, v: &SVector<S, D>) -> SVector<S, D> {
         self.turned(v, transposed_times)
     }
 }

@@ -128,13 +128,13 @@ impl<S: Scalar> Default for ToBody<S> {
 
 impl<S: Scalar> Axes<S, 6> for ToBody<S> {
     #[inline(always)]
-    fn to_own(&self, v: &SVector<S, 6>) -> SVector<S, 6> {
+    fn to_sum(&self, v: &SVector<S, 6>) -> SVector<S, 6> {
         let (a, b) = split(v);
         join(self.apply(a), b)
     }
 
     #[inline(always)]
-    fn to_frame(&self, v: &SVector<S, 6>) -> SVector<S, 6> {
+    fn to_velocities(&self, v: &SVector<S, 6>) -> SVector<S, 6> {
         let (a, b) = split(v);
         join(self.apply_inverse(a), b)
     }

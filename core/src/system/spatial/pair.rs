@@ -22,7 +22,8 @@ use crate::{
 /// How forces, and where `H` is 2 moments too, change with rates or places at the point: rows, then columns.
 type AtPoint<S, const H: usize> = [[Matrix3<S>; H]; H];
 
-/// How they change by the three parts of motion.
+/// How they change, negated, by the three parts of motion; by place these are displacement of the centres against each other, and the
+/// turns of both.
 type Change<S, const H: usize> = [[Matrix3<S>; 3]; H];
 
 /// Two bodies as a link sees them.
@@ -77,7 +78,8 @@ impl<S: Scalar> Pair<S> {
         Self {
             bodies: [of.map(|(i, _)| i), Some(j)],
             axes: Some(axes),
-            // Differences of small numbers, so that f32 keeps its digits.
+            // Of displacements, not places, so that the distance from the frame's origin costs no digits; turns leave the rounding
+            // of the levers.
             displacement: (times(&axes, &nominal) - nominal) + times(&axes, &moved),
             levers: [arm, nominal + moved],
             velocity: velocity - from.velocity_w,
@@ -194,7 +196,7 @@ impl<S: Scalar> Pair<S> {
         self.carry::<H, D>(&self.vectors(&response.force), stiffness);
     }
 
-    /// How forces change by the parts of motion where `by` tells how by the rates at the point.
+    /// How forces change, negated, by the parts of motion where `by` tells how by the rates at the point.
     #[inline(always)]
     fn by_velocity<const H: usize>(&self, by: &AtPoint<S, H>) -> Change<S, H> {
         let [r, l] = &self.levers;
@@ -211,8 +213,9 @@ impl<S: Scalar> Pair<S> {
         change
     }
 
-    /// How forces change by small motions of the bodies, their velocities held, where `by_place` and `by_rate` tell how by place and
-    /// rate at the point. Places are told of lengths alone.
+    /// How forces change, negated, by small motions of the bodies, where `by_place` and `by_rate` tell how by place and rate at the
+    /// point. Held are the velocities of the centres in the frame, and the angular velocities each in its own body. Only the first
+    /// three places, lengths, count: laws see no angles.
     #[inline(always)]
     fn by_place<const H: usize>(&self, by_place: &AtPoint<S, H>, by_rate: &AtPoint<S, H>) -> Change<S, H> {
         let [[r, l], [b, c]] = [&self.levers, &self.turning];
@@ -278,7 +281,8 @@ impl<S: Scalar> Pair<S> {
         }
     }
 
-    /// Subtracts how the generalised forces of a `force` that is held change with small motions of the bodies.
+    /// Subtracts how the generalised forces of a `force` that the link's axes carry along change with small motions of the bodies;
+    /// torques as their bodies see them.
     #[inline(always)]
     fn carry<const H: usize, const D: usize>(&self, force: &[Vector3<S>; H], matrix: &mut SMatrix<S, D, D>) {
         let [r, l] = &self.levers;

@@ -44,13 +44,13 @@ impl<S: Scalar> Turn<S> {
 
 impl<S: Scalar> Axes<S, 3> for Turn<S> {
     #[inline(always)]
-    fn to_own(&self, v: &SVector<S, 3>) -> SVector<S, 3> {
+    fn to_sum(&self, v: &SVector<S, 3>) -> SVector<S, 3> {
         let turned = self.to_body(&Vector2::new(v.x, v.y));
         SVector::<S, 3>::new(turned.x, turned.y, v.z)
     }
 
     #[inline(always)]
-    fn to_frame(&self, v: &SVector<S, 3>) -> SVector<S, 3> {
-        Self { sine: -self.sine, ..*self }.to_own(v)
+    fn to_velocities(&self, v: &SVector<S, 3>) -> SVector<S, 3> {
+        Self { sine: -self.sine, ..*self }.to_sum(v)
     }
 }
