@@ -49,9 +49,17 @@ pub fn printed(command: &mut Command) -> String {
 /// # Panics
 /// As said.
 pub fn require_target() {
-    let folder = printed(Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]));
+    require_core_of(TARGET);
+}
+
+/// Fails, saying what to install, where images for `target` cannot be built.
+///
+/// # Panics
+/// As said.
+pub fn require_core_of(target: &str) {
+    let folder = printed(Command::new("rustc").args(["--print", "target-libdir", "--target", target]));
     let installed = Path::new(folder.trim()).is_dir();
-    assert!(installed, "the target {TARGET} is not installed; to install it: rustup target add {TARGET}");
+    assert!(installed, "the target {target} is not installed; to install it: rustup target add {target}");
 }
 
 /// Has the crates downloaded that images for the target are made of. A workspace of a test's own cannot do that: it is built
@@ -88,8 +96,17 @@ pub fn require_c_library() {
 /// # Panics
 /// As said.
 pub fn require_emulator() {
-    let found = Command::new("qemu-system-arm").arg("--version").output().is_ok();
-    assert!(found, "qemu-system-arm is not installed; to install it: apt-get install qemu-system-arm");
+    require_emulator_of("arm", "qemu-system-arm");
+}
+
+/// Fails, saying which `package` to install, where images for the `architecture` cannot be run.
+///
+/// # Panics
+/// As said.
+pub fn require_emulator_of(architecture: &str, package: &str) {
+    let emulator = format!("qemu-system-{architecture}");
+    let found = Command::new(&emulator).arg("--version").output().is_ok();
+    assert!(found, "{emulator} is not installed; to install it: apt-get install {package}");
 }
 
 /// An image of Rust, built and run before.

@@ -6,6 +6,14 @@ use std::{env, path::Path};
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    // The board of a core goes by its architecture, whose clock the board's counts need.
+    println!("cargo::rustc-check-cfg=cfg(armv6m, armv8m)");
+    let target = env::var("TARGET").expect("Cargo says what for");
+    for (start, name) in [("thumbv6m", "armv6m"), ("thumbv8m", "armv8m")] {
+        if target.starts_with(start) {
+            println!("cargo::rustc-cfg={name}");
+        }
+    }
     if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
         return;
     }

@@ -1,4 +1,4 @@
-//! A Cortex-M4F under a debugger as a program's machine. The one file of the images with unsafe code.
+//! A Cortex-M under a debugger as a program's machine. The one file of the images with unsafe code.
 #![allow(unsafe_code, reason = "linker symbols, the painted stack and the fault handler")]
 
 #[cfg(not(feature = "defmt"))]
@@ -7,10 +7,12 @@ use core::fmt::{Display, Write as _};
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::{panic::PanicInfo, slice};
 
+#[cfg(target_abi = "eabihf")]
+use cortex_m::register::fpscr;
 use cortex_m::{
     Peripherals,
     peripheral::{SYST, syst::SystClkSource},
-    register::{fpscr, msp},
+    register::msp,
 };
 use cortex_m_rt::{ExceptionFrame, exception};
 #[cfg(not(feature = "defmt"))]
@@ -22,18 +24,29 @@ use semihosting::{
 
 use crate::machine::Machine;
 
-/// Time of a tick of the system timer (ns): the board's processor clock of 25 MHz.
-pub const TICK: u32 = 40;
+/// The processor's clock (MHz), which the system timer counts: of a Cortex-M0 on a micro:bit, of a Cortex-M33 on an
+/// AN505, of all others on the boards of their kind.
+const CLOCK: u32 = if cfg!(armv6m) {
+    16
+} else if cfg!(armv8m) {
+    20
+} else {
+    25
+};
 
-/// Time of an instruction (ns): what the emulator is told by `-icount shift=7`. At more than twice a tick, the
-/// difference of two readings, right to less than a tick, gives the exact number of instructions.
-const INSTRUCTION: u32 = 128;
+/// Time of a tick of the system timer (ns), on the boards of 25 MHz.
+pub const TICK: u32 = 1000 / CLOCK;
+
+/// Time of 125 instructions (µs): what the emulator is told by `-icount shift=7`, 2^7 ns each. At more than twice a tick,
+/// the difference of two readings, right to less than a tick, gives the exact number of instructions.
+const INSTRUCTIONS_125: u32 = 16;
 
 /// What unused stack is filled with.
 const PAINT: u32 = 0x5a5a_5a5a;
 
 /// What a fresh Cortex-M has of FPSCR's AHP, DN, FZ and RMode: half precision as in IEEE 754, NaNs and denormals kept,
 /// rounding to nearest.
+#[cfg(target_abi = "eabihf")]
 const FPSCR_MODES: u32 = 0x07c0_0000;
 
 unsafe extern "C" {
@@ -134,7 +147,8 @@ fn instructions(work: impl FnOnce()) -> u32 {
     let start = SYST::get_current();
     work();
     let ticks = start.wrapping_sub(SYST::get_current()) & 0x00ff_ffff;
-    (ticks * TICK + INSTRUCTION / 2) / INSTRUCTION
+    let of_125 = CLOCK * INSTRUCTIONS_125;
+    (ticks * 125 + of_125 / 2) / of_125
 }
 
 /// The region of the flash table.
@@ -150,6 +164,7 @@ fn flash() -> &'static [u8] {
 /// If the processor rounds in another way than the host, or on a second call.
 pub fn boot(program: impl FnOnce(&mut Board, &'static [u8]) -> bool) -> ! {
     let peripherals = Peripherals::take().expect("nobody has taken them before");
+    #[cfg(target_abi = "eabihf")]
     assert_eq!(fpscr::read().bits() & FPSCR_MODES, 0, "FPSCR would give other bits than the host");
     let done = program(&mut Board::new(peripherals.SYST), flash());
     process::exit(i32::from(!done))

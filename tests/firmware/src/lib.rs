@@ -4,8 +4,9 @@
 pub mod count;
 pub mod fingerprint;
 pub mod machine;
+pub mod slide;
 
-#[cfg(target_os = "none")]
+#[cfg(all(target_os = "none", target_arch = "arm"))]
 pub mod board;
 #[cfg(not(target_os = "none"))]
 pub mod desk;

@@ -11,14 +11,22 @@ use std::{
 };
 
 /// Targets that tests build for.
-const TARGETS: [&str; 1] = ["thumbv7em-none-eabihf"];
+const TARGETS: [&str; 6] = [
+    "thumbv7em-none-eabihf",
+    "thumbv7em-none-eabi",
+    "thumbv7m-none-eabi",
+    "thumbv6m-none-eabi",
+    "thumbv8m.main-none-eabihf",
+    "riscv32imafc-unknown-none-elf",
+];
 
 /// The C library of the target, of which tests include headers.
 const NEWLIB: &str = "newlib";
 
 /// Programs that tests run, and the Debian packages that have them.
-const TOOLS: [(&str, &str); 10] = [
+const TOOLS: [(&str, &str); 11] = [
     ("qemu-system-arm", "qemu-system-arm"),
+    ("qemu-system-riscv32", "qemu-system-misc"),
     ("arm-none-eabi-gcc", "gcc-arm-none-eabi"),
     (NEWLIB, "libnewlib-arm-none-eabi"),
     ("chromium", "chromium"),
