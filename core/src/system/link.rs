@@ -91,6 +91,7 @@ pub trait GradientLink<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usiz
     /// Adds Λᵀ·C, as far as Λ is not zero. Column k of C is the sum over the numbers i of what forces change by with the number i
     /// where the coordinate k changes: `change(i, k)`.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "rows and columns of several matrices go by the same numbers")]
     fn add_product(
         &self,
         gradient: &SMatrix<S, R, D>,
