@@ -36,8 +36,9 @@ pub struct About<S> {
 /// `R` speeds of one body, and how they go by its motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Speeds<S, const R: usize> {
+    /// The speeds (m/s, rad/s).
     rate: SVector<S, R>,
-    /// By the velocity of the centre of mass.
+    /// By the velocity of the centre of mass, in the axes of the frame, as all below.
     by_velocity: [Vector3<S>; R],
     /// By the angular velocity.
     by_turning: [Vector3<S>; R],
