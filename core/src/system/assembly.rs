@@ -1,7 +1,7 @@
 //! What elements add up to: forces alone, with the balance of a stage, or with all derivatives.
 
-use super::{Bodies, Law, Link, Response};
-use crate::{SVector, Scalar};
+use super::{Bodies, Elements, Jacobian, Law, Link, Reduced, Response};
+use crate::{SVector, Scalar, mechanism::Way};
 
 /// Takes what elements of bodies `B` do.
 pub trait Assembly<S: Scalar, B: Bodies<S, D>, const D: usize> {
@@ -16,6 +16,17 @@ pub trait Assembly<S: Scalar, B: Bodies<S, D>, const D: usize> {
         view: &L::View,
         response: &Response<S, R>,
     );
+
+    /// Adds what `elements` of the bodies do, taken as free ones, whose joints reduce it.
+    fn add_through_joints<E: Elements<S, B::Free, W>, const W: usize>(
+        &mut self,
+        elements: &E,
+        way: (S, Way<S>),
+        at: (&B, &B::Placed),
+        internal: &E::Internal,
+        updated: Option<&mut E::Internal>,
+    ) where
+        B: Reduced<S, D, W>;
 }
 
 /// The generalised force (N, N·m).
@@ -50,6 +61,23 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for Sum<S, D>
     ) {
         link.add_force(at, view, &response.force, &mut self.0);
     }
+
+    #[inline(always)]
+    fn add_through_joints<E: Elements<S, B::Free, W>, const W: usize>(
+        &mut self,
+        elements: &E,
+        way: (S, Way<S>),
+        (bodies, placed): (&B, &B::Placed),
+        internal: &E::Internal,
+        updated: Option<&mut E::Internal>,
+    ) where
+        B: Reduced<S, D, W>,
+    {
+        let free = bodies.free(placed);
+        let mut sum = Sum(SVector::<S, W>::zeros());
+        elements.act(way, free, internal, updated, &mut sum);
+        self.0 += bodies.reduced_force(placed, &sum.0);
+    }
 }
 
 impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for StageSum<S, B::Jacobian, D> {
@@ -63,6 +91,25 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for StageSum<
     ) {
         link.add_force(at, view, &response.force, &mut self.force);
         link.add_impedance::<W>(at, view, response, self.a, &mut self.matrix);
+    }
+
+    #[inline(always)]
+    fn add_through_joints<E: Elements<S, B::Free, W>, const W: usize>(
+        &mut self,
+        elements: &E,
+        way: (S, Way<S>),
+        (bodies, placed): (&B, &B::Placed),
+        internal: &E::Internal,
+        updated: Option<&mut E::Internal>,
+    ) where
+        B: Reduced<S, D, W>,
+    {
+        let free = bodies.free(placed);
+        let matrix = <B::Free as Bodies<S, W>>::Jacobian::zero();
+        let mut sum = StageSum { force: SVector::<S, W>::zeros(), matrix, a: self.a };
+        elements.act(way, free, internal, updated, &mut sum);
+        self.force += bodies.reduced_force(placed, &sum.force);
+        bodies.add_reduced_impedance(placed, (&sum.force, &sum.matrix), self.a, &mut self.matrix);
     }
 }
 
@@ -80,5 +127,27 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for Derivativ
             link.add_force(at, view, &response.per_time, &mut self.per_time);
         }
         link.add_derivatives::<W>(at, view, response, &mut self.damping, &mut self.stiffness);
+    }
+
+    #[inline(always)]
+    fn add_through_joints<E: Elements<S, B::Free, W>, const W: usize>(
+        &mut self,
+        elements: &E,
+        way: (S, Way<S>),
+        (bodies, placed): (&B, &B::Placed),
+        internal: &E::Internal,
+        updated: Option<&mut E::Internal>,
+    ) where
+        B: Reduced<S, D, W>,
+    {
+        let free = bodies.free(placed);
+        let zero = <B::Free as Bodies<S, W>>::Jacobian::zero();
+        let (force, per_time) = (SVector::<S, W>::zeros(), SVector::zeros());
+        let mut sum = Derivatives { force, per_time, damping: zero, stiffness: zero };
+        elements.act(way, free, internal, updated, &mut sum);
+        self.force += bodies.reduced_force(placed, &sum.force);
+        self.per_time += bodies.reduced_force(placed, &sum.per_time);
+        let of_free = [&sum.damping, &sum.stiffness];
+        bodies.add_reduced_derivatives(placed, &sum.force, of_free, &mut self.damping, &mut self.stiffness);
     }
 }

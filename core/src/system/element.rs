@@ -1,6 +1,6 @@
 //! Elements: a link that measures and a law that answers.
 
-use super::{Bodies, Link, assembly::Assembly};
+use super::{Bodies, Link, assembly::Assembly, law::DriveLaw};
 use crate::{SMatrix, SVector, Scalar, mechanism::Way};
 
 /// What a law answers: forces along what it sees and how they change.
@@ -79,6 +79,29 @@ pub struct Element<L, W, const R: usize> {
     pub link: L,
     /// What it answers.
     pub law: W,
+}
+
+impl<L, W, const R: usize> Element<L, W, R> {
+    /// What it sees and gives at time `t` (s) as a drive of bodies that are placed.
+    #[inline(always)]
+    pub fn driving<S: Scalar, B: Bodies<S, D>, const D: usize>(&self, t: S, at: (&B, &B::Placed)) -> Driving<S>
+    where
+        L: Link<S, B, D, R>,
+        W: DriveLaw<S, R>,
+    {
+        let view = self.link.view(at.0, at.1);
+        let speed = self.law.speed(&self.link.seen(at, &view).rate);
+        Driving { speed, effort: self.law.effort(t, speed) }
+    }
+}
+
+/// What a drive sees and gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Driving<S> {
+    /// The speed that it goes by (m/s, or rad/s of one that turns).
+    pub speed: S,
+    /// Its force (N), or torque (N·m).
+    pub effort: S,
 }
 
 /// Elements that act on bodies `B`: one, an array, a slice, or a tuple of such.

@@ -18,11 +18,13 @@ mod axes;
 mod axis;
 mod bodies;
 mod element;
+mod half_turn;
 mod jacobian;
 pub mod law;
 mod link;
 mod lu;
 pub mod planar;
+mod reduced;
 pub mod spatial;
 
 pub use alike::{Alike, Shape};
@@ -30,10 +32,11 @@ pub use assembly::Assembly;
 pub use axes::Axes;
 pub use axis::{AxisBody, Displacement, OnAxis, on_axis};
 pub use bodies::{Bodies, ByCoordinate};
-pub use element::{Element, Elements, Law, Response};
+pub use element::{Driving, Element, Elements, Law, Response};
 pub use jacobian::Jacobian;
 pub use link::{GradientLink, Link, Seen};
 pub use lu::Lu;
+pub use reduced::{Reduced, ThroughJoints};
 
 use crate::{
     SVector, Scalar,
@@ -80,20 +83,8 @@ impl<B, E> System<B, E> {
         L: Link<S, B, D, R>,
         W: DriveLaw<S, R>,
     {
-        let placed = self.bodies.placed(pose, velocity);
-        let view = drive.link.view(&self.bodies, &placed);
-        let speed = drive.law.speed(&drive.link.seen((&self.bodies, &placed), &view).rate);
-        Driving { speed, effort: drive.law.effort(t, speed) }
+        drive.driving(t, (&self.bodies, &self.bodies.placed(pose, velocity)))
     }
-}
-
-/// What a drive sees and gives.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Driving<S> {
-    /// The speed that it goes by (m/s, or rad/s of one that turns).
-    pub speed: S,
-    /// Its force (N), or torque (N·m).
-    pub effort: S,
 }
 
 /// The iteration matrix M/a − ∂force/∂V − a·∂force/∂Q, factorised, and what leads to the axes in which it is.

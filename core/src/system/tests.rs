@@ -1,10 +1,13 @@
 //! Derivatives against differences, for every link and law.
 
 use super::{
-    Axes, Bodies, Displacement, Element, Elements, Jacobian, Law, OnAxis, System,
+    Axes, Bodies, Displacement, Element, Elements, Jacobian, Law, OnAxis, System, ThroughJoints,
     law::{Axis, Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Slot, Spring, Stopped, Wall},
     planar::{self, PlanarTree, example::Linkage},
-    spatial::{self, FreeBodies, Port, Seat, Turned},
+    spatial::{
+        self, FreeBodies, Port, Seat, Turned,
+        tree::{Joint, Mount, SpatialTree},
+    },
 };
 use crate::{
     SVector, Vector2, Vector3,
@@ -169,6 +172,74 @@ fn spatial_derivatives_are_those_of_the_forces() {
     );
     let start = bodies.nominal();
     check(&System::new(bodies, elements), start, 0.1, |force| force.norm() > 20.0);
+}
+
+/// Three bodies, with what acts on them.
+fn three_bodies() -> (FreeBodies<f64, 3, 18>, impl Elements<f64, FreeBodies<f64, 3, 18>, 18> + Copy) {
+    let body = |mass, x: f64| spatial::Rigid {
+        mass,
+        inertia_b: Vector3::new(0.02, 0.03, 0.04),
+        centre_w: Vector3::new(x, 0.1, -0.2),
+    };
+    let bodies = [body(0.5, 0.0), body(0.8, 0.3), body(0.3, -0.2)];
+    let port = |body, x, y, z| Port { body, lever: Vector3::new(x, y, z) };
+    let elements = (
+        Element::<_, _, 3> {
+            link: Seat { point: port(Some(2), 0.2, 0.1, -0.1), from: Some(0) },
+            law: Pin { gaps: [0.02, -0.01, 0.01, 0.05], contact: contact() },
+        },
+        (
+            Element::<_, _, 6> {
+                link: Turned {
+                    seat: Seat { point: port(Some(1), 0.1, 0.1, -0.1), from: None },
+                    axes: spatial::Parallel,
+                },
+                law: Ring { clearance: 0.02, radius: 0.05, contact: contact() },
+            },
+            (
+                Element::<_, _, 2> {
+                    link: spatial::Along { body: 2, lever: Vector3::new(0.1, -0.2, 0.3), axis_w: Vector3::z() },
+                    law: Pusher(drive()),
+                },
+                Element::<_, _, 1> {
+                    link: spatial::About { body: 1, axis_w: Vector3::new(0.6, 0.0, 0.8) },
+                    law: Motor(drive()),
+                },
+            ),
+        ),
+    );
+    (FreeBodies::new(bodies, Vector3::new(1.0, -9.81, 0.5)).unwrap(), elements)
+}
+
+#[test]
+fn bodies_on_joints_have_the_derivatives_of_their_forces() {
+    let at = Vector3::new(0.1, -0.05, 0.2);
+    let axis = Vector3::new(0.48, 0.6, 0.64);
+    let mount = |body, on, joint| Mount { body, on, joint };
+    let (free, elements) = three_bodies();
+    let elements = ThroughJoints::<_, 18>(elements);
+    let mounts = [
+        mount(1, None, Joint::Free),
+        mount(0, Some(1), Joint::Revolute { at, axis }),
+        mount(2, Some(0), Joint::Cylindrical { at: -at, axis: Vector3::y() }),
+    ];
+    let tree = SpatialTree::<f64, 3, 18, 9>::new(free, &mounts).unwrap();
+    check(&System::new(tree, elements), tree.nominal(), 0.3, |force| force.norm() > 20.0);
+    let mounts = [
+        mount(0, None, Joint::Spherical { at }),
+        mount(2, Some(0), Joint::Prismatic { axis }),
+        mount(1, Some(2), Joint::Fixed),
+    ];
+    // One coordinate more than there is use for.
+    let tree = SpatialTree::<f64, 3, 18, 5>::new(free, &mounts).unwrap();
+    check(&System::new(tree, elements), tree.nominal(), 0.25, |force| force.norm() > 20.0);
+    let mounts = [
+        mount(0, None, Joint::Cylindrical { at, axis }),
+        mount(1, Some(0), Joint::Revolute { at: -at, axis: Vector3::x() }),
+        mount(2, Some(0), Joint::Spherical { at: Vector3::zeros() }),
+    ];
+    let tree = SpatialTree::<f64, 3, 18, 6>::new(free, &mounts).unwrap();
+    check(&System::new(tree, elements), tree.nominal(), 0.3, |force| force.norm() > 20.0);
 }
 
 #[test]

@@ -11,7 +11,7 @@ mod turn;
 use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector2,
     error::bounded,
-    system::{Axes, Bodies, jacobian::Own},
+    system::{Axes, Bodies, half_turn, jacobian::Own},
 };
 
 pub use hole::Hole;
@@ -19,7 +19,7 @@ pub use pin::Pin;
 pub use pull::Pull;
 pub use turn::Turn;
 
-use super::{half_turn, left};
+use super::left;
 
 /// A body with its inertia and gravity.
 ///

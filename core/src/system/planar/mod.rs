@@ -9,7 +9,6 @@ mod between;
 #[cfg(test)]
 pub(crate) mod example;
 mod floating;
-mod half_turn;
 mod masses;
 mod pair;
 mod point;

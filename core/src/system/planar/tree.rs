@@ -1,7 +1,7 @@
 //! The tree: coordinates, bodies, and how they resist.
 
 use super::{
-    Point, half_turn, left,
+    Point, left,
     masses::{Masses, Rigid},
     point::At,
     topology::{Carrier, Kind, Topology},
@@ -9,7 +9,7 @@ use super::{
 use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector2,
     error::bounded,
-    system::{Bodies, ByCoordinate, Lu},
+    system::{Bodies, ByCoordinate, Lu, half_turn},
 };
 
 /// A generalised coordinate of ideal joints in the plane.

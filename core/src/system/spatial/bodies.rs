@@ -72,6 +72,11 @@ impl<S: Scalar, const N: usize, const D: usize> FreeBodies<S, N, D> {
         &self.bodies
     }
 
+    /// Gravity (m/s²).
+    pub fn gravity_w(&self) -> &Vector3<S> {
+        &self.gravity_w
+    }
+
     /// All bodies in their nominal poses.
     pub fn nominal(&self) -> [Pose<S>; N] {
         [Pose::nominal(); N]
@@ -132,7 +137,7 @@ impl<S: Scalar> PlacedBody<S> {
 
     /// Principal moments of inertia as a matrix in the axes of the frame (kg·m²).
     #[inline(always)]
-    fn in_frame(&self, inertia_b: &Vector3<S>) -> Matrix3<S> {
+    pub(super) fn in_frame(&self, inertia_b: &Vector3<S>) -> Matrix3<S> {
         let [x, y, z] = columns(&self.to_frame);
         let scaled = Matrix3::from_columns(&[x * inertia_b.x, y * inertia_b.y, z * inertia_b.z]);
         product(&scaled, &self.to_frame.transpose())

@@ -1,6 +1,6 @@
-//! Free bodies in space.
+//! Bodies in space: free ones, and such on ideal joints ([`tree`]).
 //!
-//! Generalised velocities are, body by body, the velocity of the centre of mass in the frame (m/s) and the angular
+//! Generalised velocities of free bodies are, body by body, the velocity of the centre of mass in the frame (m/s) and the angular
 //! velocity in the body (rad/s), so that the mass matrix is constant and free flight is exact.
 
 mod blocks;
@@ -9,6 +9,7 @@ mod driven;
 mod floating;
 mod pair;
 mod seat;
+pub mod tree;
 mod turned;
 
 pub use bodies::{FreeBodies, InFrame, Placed, PlacedBody, Rigid};

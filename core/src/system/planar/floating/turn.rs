@@ -2,7 +2,7 @@
 
 use crate::{
     SVector, Scalar, Vector2,
-    system::{Axes, planar::half_turn::less_and_sine},
+    system::{Axes, half_turn::less_and_sine},
 };
 
 /// Rᵀ − I by its diagonal and the sine: what carries a vector of the frame into the body, less the vector itself.
