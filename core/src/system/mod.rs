@@ -85,6 +85,23 @@ impl<B, E> System<B, E> {
     {
         drive.driving(t, (&self.bodies, &self.bodies.placed(pose, velocity)))
     }
+
+    /// The same of a `drive` that is one of the elements [through joints](ThroughJoints).
+    #[inline(always)]
+    pub fn driving_through_joints<S: Scalar, L, W, const R: usize, const D: usize, const F: usize>(
+        &self,
+        drive: &Element<L, W, R>,
+        t: S,
+        pose: &B::Pose,
+        velocity: &SVector<S, D>,
+    ) -> Driving<S>
+    where
+        B: Reduced<S, D, F>,
+        L: Link<S, B::Free, F, R>,
+        W: DriveLaw<S, R>,
+    {
+        drive.driving(t, self.bodies.free(&self.bodies.placed(pose, velocity)))
+    }
 }
 
 /// The iteration matrix M/a − ∂force/∂V − a·∂force/∂Q, factorised, and what leads to the axes in which it is.

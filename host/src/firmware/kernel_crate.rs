@@ -71,7 +71,10 @@ fn of_drive((function, drive): (String, &NamedDrive)) -> CDrive<'_> {
 /// If the mechanism has no run, see [`RunError`].
 pub fn mechanism_crate(mechanism: &Mechanism, name: &str, core: Option<&Path>) -> Result<CrateFiles, RunError> {
     let source = mechanism::rust_source(mechanism)?;
-    let coordinates = mechanism.bodies.len() * if mechanism.planar { 3 } else { 6 };
+    let free = mechanism.bodies.len() * if mechanism.planar { 3 } else { 6 };
+    // Bodies in space on ideal joints keep both their own data and those of the joints' coordinates.
+    let joints = if mechanism.has_ideal_joints_in_space() { 2 * mechanism::dimension(mechanism)? } else { 0 };
+    let coordinates = free + joints;
     let border = Border {
         name,
         title: &mechanism.title,

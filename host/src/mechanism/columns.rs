@@ -7,6 +7,10 @@ use slipfit_core::{
     system::{
         Bodies,
         planar::{Kind, PlanarTree, Point},
+        spatial::{
+            PlacedBody,
+            tree::{Kind as SpatialKind, SpatialTree},
+        },
     },
 };
 
@@ -30,7 +34,7 @@ impl<const D: usize> State<D> {
     pub fn planar(topology: &[Kind; D], pose: &[[f64; 2]; D], rates: [f64; D], last: &[f64; D]) -> Self {
         let places = std::array::from_fn(|k| {
             let [w, v] = pose[k];
-            if topology[k] == Kind::Turn { near(2.0 * libm::atan2(v, w), last[k]) } else { w }
+            if topology[k] == Kind::Turn { near(whole_angle([w, v]), last[k]) } else { w }
         });
         Self { rates, places, place_rates: rates }
     }
@@ -41,18 +45,35 @@ impl<const D: usize> State<D> {
         let all = places.as_chunks_mut::<6>().0.iter_mut().zip(place_rates.as_chunks_mut::<6>().0);
         for ((place, rate), pose) in all.zip(poses) {
             let length = pose.orientation.v.norm();
-            let angle = 2.0 * libm::atan2(length, pose.orientation.w);
+            let angle = whole_angle([pose.orientation.w, length]);
             let turn = pose.orientation.v * if length > 0.0 { angle / length } else { 0.0 };
             let r = pose.displacement_w;
             *place = [r.x, r.y, r.z, turn.x, turn.y, turn.z];
             let [.., x, y, z] = *rate;
-            let rotation = Vector3::new(x, y, z);
-            // How a rotation vector goes by the angular velocity in the body.
-            let half = 0.5 * angle;
-            let share = if angle > 1e-4 { (1.0 - half / libm::tan(half)) / (angle * angle) } else { 1.0 / 12.0 };
-            let across = turn.cross(&rotation);
-            let turning = rotation + across * 0.5 + turn.cross(&across) * share;
+            let turning = vector_rate(&turn, &Vector3::new(x, y, z));
             (rate[3], rate[4], rate[5]) = (turning.x, turning.y, turning.z);
+        }
+        Self { rates, places, place_rates }
+    }
+
+    /// The state of bodies on ideal joints in space, whose angles are next to those of the `last` places.
+    pub fn on_joints<const N: usize, const W: usize>(
+        tree: &SpatialTree<f64, N, W, D>,
+        pose: &[[f64; 2]; D],
+        rates: [f64; D],
+        last: &[f64; D],
+    ) -> Self {
+        let (mut places, mut place_rates) = (tree.places(pose, whole_angle), rates);
+        for k in 0..D {
+            match tree.coordinate(k).0 {
+                SpatialKind::Turn => places[k] = near(places[k], last[k]),
+                SpatialKind::Ball => {
+                    let three = |of: &[f64; D]| Vector3::new(of[k], of[k + 1], of[k + 2]);
+                    let turning = vector_rate(&three(&places), &three(&rates));
+                    place_rates[k..k + 3].copy_from_slice(turning.as_slice());
+                }
+                SpatialKind::Slide | SpatialKind::OfBall | SpatialKind::Still => {}
+            }
         }
         Self { rates, places, place_rates }
     }
@@ -61,6 +82,25 @@ impl<const D: usize> State<D> {
     pub fn slope(&self, accelerations: [f64; D]) -> Self {
         Self { rates: accelerations, places: self.place_rates, place_rates: [0.0; D] }
     }
+}
+
+/// Cosine and sine of half an `angle` (rad).
+pub fn half_angle(angle: f64) -> [f64; 2] {
+    [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]
+}
+
+/// The angle (rad) of half of which there are cosine and sine.
+fn whole_angle([cos, sin]: [f64; 2]) -> f64 {
+    2.0 * libm::atan2(sin, cos)
+}
+
+/// How fast a rotation vector `turn` (rad) goes by the angular velocity `rotation` (rad/s) in the body.
+fn vector_rate(turn: &Vector3<f64>, rotation: &Vector3<f64>) -> Vector3<f64> {
+    let angle = turn.norm();
+    let half = 0.5 * angle;
+    let share = if angle > 1e-4 { (1.0 - half / libm::tan(half)) / (angle * angle) } else { 1.0 / 12.0 };
+    let across = turn.cross(rotation);
+    rotation + across * 0.5 + turn.cross(&across) * share
 }
 
 /// `angle` (rad) by so many turns that it is next to `last`.
@@ -114,7 +154,7 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
 
     /// How they move.
     pub fn told(&self, state: &State<D>) -> Vec<BodyMotion> {
-        let pose = self.tree.pose(state.places, |angle| [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]);
+        let pose = self.tree.pose(state.places, half_angle);
         let placed = self.tree.placed(&pose, &SVector::from(state.rates));
         let body = |(centre, drawn, turn): &(Point<f64, D>, Vector2<f64>, Option<usize>)| {
             let [place, velocity] = self.tree.motion_of(centre, &placed);
@@ -128,6 +168,54 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
             }
         };
         self.bodies.iter().map(body).collect()
+    }
+}
+
+/// The bodies of a mechanism in space on ideal joints.
+pub struct JointedBodies<const N: usize, const W: usize, const D: usize> {
+    tree: SpatialTree<f64, N, W, D>,
+    /// Which coordinates turn each body about one axis, if all that turn it do.
+    turns: Vec<Option<(Vector3<f64>, Vec<usize>)>>,
+}
+
+impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
+    /// The first `count` bodies of `tree`.
+    pub fn new(count: usize, tree: SpatialTree<f64, N, W, D>) -> Self {
+        let turns = |body: usize| {
+            let of = |k: &usize| tree.is_moved(*k, body) && tree.coordinate(*k).0.turns();
+            let all: Vec<usize> = (0..D).filter(of).collect();
+            let axis = all.first().map_or(Vector3::zeros(), |k| tree.coordinate(*k).1);
+            let along = |k: &usize| {
+                let (kind, other) = tree.coordinate(*k);
+                kind == SpatialKind::Turn && axis.dot(&other).abs() > 1.0 - 1e-12
+            };
+            all.iter().all(along).then(|| (axis, all.clone()))
+        };
+        Self { tree, turns: (0..count).map(turns).collect() }
+    }
+
+    /// By which length (m) the angle of a body is compared with displacements; 0 where it does not turn.
+    pub fn lever(&self, body: usize) -> f64 {
+        let turns = |k: &usize| self.tree.is_moved(*k, body) && self.tree.coordinate(*k).0.turns();
+        (0..D).rfind(turns).map_or(0.0, |k| self.tree.lever(k))
+    }
+
+    /// How they move. Angles about one axis go on from turn to turn.
+    pub fn told(&self, state: &State<D>) -> Vec<BodyMotion> {
+        let pose = self.tree.pose(state.places, half_angle);
+        let placed = self.tree.placed(&pose, &SVector::from(state.rates));
+        let body = |(turns, at): (&Option<(Vector3<f64>, Vec<usize>)>, &PlacedBody<f64>)| BodyMotion {
+            displacement: at.displacement_w,
+            turn: match turns {
+                Some((axis, all)) => {
+                    axis * all.iter().map(|k| state.places[*k] * axis.dot(&self.tree.coordinate(*k).1)).sum::<f64>()
+                }
+                None => nalgebra::Rotation3::from_matrix_unchecked(at.to_frame).scaled_axis(),
+            },
+            velocity: at.velocity_w,
+            spin: at.rotation_w,
+        };
+        self.turns.iter().zip(&placed.free.bodies).map(body).collect()
     }
 }
 

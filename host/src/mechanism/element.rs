@@ -8,7 +8,7 @@ use slipfit_core::{
     mechanism::Way,
     menu::FrictionData,
     system::{
-        Assembly, Bodies, Element, Elements, Law, Link, Response,
+        Assembly, Bodies, Element, Elements, Law, Link, Reduced, Response,
         law::{Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
         planar::{self, PlanarTree},
         spatial::{self, FreeBodies},
@@ -62,6 +62,20 @@ impl<B: Bodies<f64, D>, A: Assembly<f64, B, D>, const D: usize> Assembly<f64, B,
         if !A::DIFFERENTIATES || acts.iter().any(|numbers| numbers.iter().any(|x| *x != 0.0)) {
             self.0.add::<L, W, R>(link, at, view, response);
         }
+    }
+
+    #[inline(always)]
+    fn add_through_joints<E: Elements<f64, B::Free, W>, const W: usize>(
+        &mut self,
+        elements: &E,
+        way: (f64, Way<f64>),
+        at: (&B, &B::Placed),
+        internal: &E::Internal,
+        updated: Option<&mut E::Internal>,
+    ) where
+        B: Reduced<f64, D, W>,
+    {
+        self.0.add_through_joints::<E, W>(elements, way, at, internal, updated);
     }
 }
 

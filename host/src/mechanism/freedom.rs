@@ -3,7 +3,11 @@
 use nalgebra::{DMatrix, SMatrix, SVector};
 use slipfit_core::{
     ParameterError,
-    system::{Bodies, Link, planar::PlanarTree, spatial::FreeBodies},
+    system::{
+        Bodies, Link, Reduced,
+        planar::PlanarTree,
+        spatial::{FreeBodies, tree::SpatialTree},
+    },
 };
 
 use super::{JointKind, Mechanism, Mounts, RunError, element::PlanarElement, element::SpatialElement, planar, spatial};
@@ -34,8 +38,9 @@ impl Freedom {
         for joint in &mechanism.joints {
             let removed = match joint.kind {
                 JointKind::Fixed => of_each,
-                JointKind::Revolute | JointKind::Prismatic { .. } => of_each - 1,
-                JointKind::PinSlot { .. } => of_each - 2,
+                JointKind::Revolute { .. } | JointKind::Prismatic { .. } => of_each - 1,
+                JointKind::PinSlot { .. } | JointKind::Cylindrical { .. } => of_each - 2,
+                JointKind::Spherical => of_each - 3,
                 _ => continue,
             };
             ideal[removed] += 1;
@@ -71,12 +76,20 @@ fn rank(mechanism: &Mechanism) -> Result<usize, RunError> {
             _ => in_plane::<6>(mechanism, &mounts, &open),
         }?);
     }
-    match mechanism.bodies.len() {
-        1 => Ok(in_space::<1, 6>(mechanism, &open)?),
-        2 => Ok(in_space::<2, 12>(mechanism, &open)?),
-        3 => Ok(in_space::<3, 18>(mechanism, &open)?),
-        other => Err(RunError::Bodies(other)),
+    if mechanism.bodies.len() > spatial::MOST {
+        return Err(RunError::Bodies(mechanism.bodies.len()));
     }
+    const N: usize = spatial::MOST;
+    let bodies: FreeBodies<f64, N, { 6 * N }> = spatial::bodies(mechanism)?;
+    let rows = in_space(mechanism, &bodies, &open)?;
+    let Some(mounts) = spatial::mounts(mechanism)? else {
+        return Ok(rank_of(&rows.iter().map(|row| row.component_mul(&bodies.per_lever()).into()).collect::<Vec<_>>()));
+    };
+    let tree: SpatialTree<f64, N, { 6 * N }, { spatial::MOST_COORDINATES }> = spatial::tree(mechanism, &mounts)?;
+    let placed = tree.placed(&tree.nominal(), &SVector::zeros());
+    let by_coordinate =
+        |row: &SVector<f64, { 6 * N }>| tree.reduced_force(&placed, row).component_mul(&tree.per_lever());
+    Ok(rank_of(&rows.iter().map(|row| by_coordinate(row).into()).collect::<Vec<_>>()))
 }
 
 /// The rows of `gradient`, angles by their levers.
@@ -139,25 +152,29 @@ fn in_plane<const D: usize>(
     Ok(rank_of(&rows))
 }
 
-fn in_space<const N: usize, const D: usize>(mechanism: &Mechanism, gaps: &[f64]) -> Result<usize, ParameterError<f64>> {
-    let bodies: FreeBodies<f64, N, D> = spatial::bodies(mechanism)?;
+/// What joints with play hold of the free `bodies`: row by row the generalised force of 1 N.
+fn in_space<const N: usize, const W: usize>(
+    mechanism: &Mechanism,
+    bodies: &FreeBodies<f64, N, W>,
+    gaps: &[f64],
+) -> Result<Vec<SVector<f64, W>>, ParameterError<f64>> {
     let placed = bodies.placed(&bodies.nominal(), &SVector::zeros());
     let mut rows = Vec::new();
     for element in spatial::elements(mechanism, gaps, 1.0)? {
         match element {
             SpatialElement::Pin(element) => {
-                let gradient = gradient(&element.link, &bodies, &placed);
+                let gradient = gradient(&element.link, bodies, &placed);
                 let [left, right, rail, wall] = element.law.gaps.map(|gap| gap < spatial::NONE);
                 let held = [left || right, rail || wall, false];
-                let all = scaled(&gradient, &bodies.per_lever());
-                rows.extend(all.into_iter().zip(held).filter(|(_, held)| *held).map(|(row, _)| row));
+                let all = gradient.row_iter().zip(held);
+                rows.extend(all.filter(|(_, held)| *held).map(|(row, _)| row.transpose()));
             }
             SpatialElement::Ring(element) => {
-                let gradient = gradient(&element.link, &bodies, &placed);
-                rows.extend(scaled(&gradient, &bodies.per_lever()).into_iter().take(2));
+                let gradient = gradient(&element.link, bodies, &placed);
+                rows.extend(gradient.row_iter().take(2).map(|row| row.transpose()));
             }
             _ => {}
         }
     }
-    Ok(rank_of(&rows))
+    Ok(rows)
 }

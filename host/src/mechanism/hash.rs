@@ -49,7 +49,9 @@ fn of_joint(digest: &mut Digest, Joint { between, at, kind, laws, .. }: &Joint) 
     digest.numbers(*at);
     match kind {
         JointKind::Fixed => digest.counts([0]),
-        JointKind::Revolute => digest.counts([1]),
+        // The normal of a plane is none to be told.
+        JointKind::Revolute { axis: [0.0, 0.0, 1.0] } => digest.counts([1]),
+        JointKind::Revolute { axis } => with(digest, [1], *axis),
         JointKind::Prismatic { axis } => with(digest, [2], *axis),
         JointKind::PinSlot { axis } => with(digest, [3], *axis),
         JointKind::Journal { gap, radius } => with(digest, [4, *gap], [*radius]),
@@ -62,6 +64,8 @@ fn of_joint(digest: &mut Digest, Joint { between, at, kind, laws, .. }: &Joint) 
             digest.counts(gaps.map(|gap| gap.map_or(0, |gap| gap + 1)));
         }
         JointKind::Stop { gap, normal } => with(digest, [8, *gap], *normal),
+        JointKind::Cylindrical { axis } => with(digest, [9], *axis),
+        JointKind::Spherical => digest.counts([10]),
     }
     if !kind.is_ideal() {
         of_laws(digest, laws);

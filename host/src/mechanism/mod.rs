@@ -11,6 +11,7 @@ pub mod element;
 mod fixed_steps;
 mod freedom;
 mod gaps;
+mod hanging;
 mod hash;
 mod laws;
 mod limits;
@@ -27,10 +28,11 @@ pub use columns::BodyMotion;
 pub use driven::{ByDrive, confirmed, finer};
 pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps, level_of};
+pub use hanging::MountError;
 pub use laws::{Laws, NormalData, Rebound};
-pub use mounts::{MountError, Mounts};
+pub use mounts::Mounts;
 pub use run::{MechanismRun, Moment, Rest, RunError, SCHEME, Samples, controller_run, film, run};
-pub use source::{drive_names, element_paths, rust_source};
+pub use source::{dimension, drive_names, element_paths, rust_source};
 pub use vary::{Parameter, Varied, rub_more, tilted_x, tilted_z};
 
 use slipfit_core::{clearance::GapStatistics, drive::Drive};
@@ -115,18 +117,28 @@ pub struct Joint {
 pub enum JointKind {
     /// The bodies are one.
     Fixed,
-    /// They turn about the place.
-    Revolute,
+    /// They turn about an axis through the place; in a plane that is its normal.
+    Revolute {
+        /// Direction.
+        axis: [f64; 3],
+    },
     /// They slide along an axis.
     Prismatic {
         /// Direction.
         axis: [f64; 3],
     },
-    /// They slide along an axis of the first body and turn about the place.
+    /// In a plane: they slide along an axis of the first body and turn about the place.
     PinSlot {
         /// Direction.
         axis: [f64; 3],
     },
+    /// In space: they slide along an axis through the place and turn about it.
+    Cylindrical {
+        /// Direction.
+        axis: [f64; 3],
+    },
+    /// In space: they turn about the place.
+    Spherical,
     /// A revolute joint with play, in a plane: a hole of the first body around a pin of the second.
     Journal {
         /// Its gap: the radial clearance.
@@ -172,17 +184,19 @@ pub enum JointKind {
 impl JointKind {
     /// Whether it leaves no play.
     pub fn is_ideal(&self) -> bool {
-        matches!(self, Self::Fixed | Self::Revolute | Self::Prismatic { .. } | Self::PinSlot { .. })
+        use JointKind::{Cylindrical, Fixed, PinSlot, Prismatic, Revolute, Spherical};
+        matches!(self, Fixed | Revolute { .. } | Prismatic { .. } | PinSlot { .. } | Cylindrical { .. } | Spherical)
     }
 
     /// What scene files call it.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Fixed => "fixed",
-            Self::Revolute | Self::Journal { .. } => "revolute",
+            Self::Revolute { .. } | Self::Journal { .. } => "revolute",
             Self::Prismatic { .. } | Self::Guide { .. } => "prismatic",
             Self::PinSlot { .. } => "pin-slot",
-            Self::Bearing { .. } => "cylindrical",
+            Self::Cylindrical { .. } | Self::Bearing { .. } => "cylindrical",
+            Self::Spherical => "spherical",
             Self::Track { .. } => "track",
             Self::Stop { .. } => "stop",
         }
@@ -242,6 +256,11 @@ pub struct Gap {
 }
 
 impl Mechanism {
+    /// Whether it is in space and has joints without play.
+    pub fn has_ideal_joints_in_space(&self) -> bool {
+        !self.planar && self.joints.iter().any(|joint| joint.kind.is_ideal())
+    }
+
     /// The name of a body or of the frame.
     pub fn name_of(&self, port: Port) -> &str {
         port.and_then(|body| self.bodies.get(body)).map_or("frame", |body| &body.name)

@@ -5,27 +5,13 @@ use slipfit_core::{
     system::planar::{Coordinate, Point},
 };
 
-use super::{Joint, JointKind, Mechanism, Port};
+use super::{
+    Joint, JointKind, Mechanism, MountError, Port,
+    hanging::{Hung, hanging},
+};
 
 /// Most coordinates of a mechanism in a plane.
 pub const MOST: usize = 6;
-
-/// What makes no tree.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MountError {
-    /// A joint that closes a loop of ideal joints.
-    #[error("the joint \"{joint}\" closes a loop of joints without play")]
-    Loop {
-        /// Its name.
-        joint: String,
-    },
-    /// More coordinates than there is room for.
-    #[error("the mechanism has {found} coordinates, allowed are {MOST}")]
-    Coordinates {
-        /// How many.
-        found: usize,
-    },
-}
 
 /// A coordinate and whose it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,32 +46,12 @@ impl Mounts {
     pub fn of(mechanism: &Mechanism) -> Result<Self, MountError> {
         let mut bodies: Vec<Option<Mount>> = vec![None; mechanism.bodies.len()];
         let mut coordinates = Vec::new();
-        let mut used = vec![false; mechanism.joints.len()];
-        let ideal = |i: usize| mechanism.joints[i].kind.is_ideal();
-        loop {
-            let known = |port: Port, bodies: &[Option<Mount>]| port.is_none_or(|body| bodies[body].is_some());
-            let next = (0..used.len()).find(|&i| {
-                !used[i] && ideal(i) && mechanism.joints[i].between.iter().any(|port| known(*port, &bodies))
+        for Hung { body, on, by } in hanging(mechanism)? {
+            let parent = on.and_then(|on| bodies[on].clone()).unwrap_or_else(frame);
+            bodies[body] = Some(match by {
+                Some(joint) => hung(&parent, &mechanism.joints[joint], body, &mut coordinates)?,
+                None => afloat(mechanism.bodies[body].centre, body, &mut coordinates)?,
             });
-            if let Some(i) = next {
-                used[i] = true;
-                let joint = &mechanism.joints[i];
-                let [first, second] = joint.between.map(|port| known(port, &bodies));
-                let ([parent, _], Some(child)) =
-                    (if first { (joint.between, joint.between[1]) } else { (flipped(joint), joint.between[0]) })
-                else {
-                    return Err(MountError::Loop { joint: joint.name.clone() });
-                };
-                if first && second {
-                    return Err(MountError::Loop { joint: joint.name.clone() });
-                }
-                let parent = parent.and_then(|body| bodies[body].clone()).unwrap_or_else(frame);
-                bodies[child] = Some(hung(&parent, joint, child, &mut coordinates)?);
-            } else if let Some(free) = bodies.iter().position(Option::is_none) {
-                bodies[free] = Some(afloat(mechanism.bodies[free].centre, free, &mut coordinates)?);
-            } else {
-                break;
-            }
         }
         Ok(Self { coordinates, bodies: bodies.into_iter().flatten().collect() })
     }
@@ -121,10 +87,6 @@ fn frame() -> Mount {
     Mount { point: Point::fixed(Vector2::zeros()), drawn: Vector2::zeros() }
 }
 
-fn flipped(joint: &Joint) -> [Port; 2] {
-    [joint.between[1], joint.between[0]]
-}
-
 /// In the plane.
 pub fn flat([x, y, _]: [f64; 3]) -> Vector2<f64> {
     Vector2::new(x, y)
@@ -136,7 +98,7 @@ fn hung(parent: &Mount, joint: &Joint, child: usize, coordinates: &mut Vec<Owned
     let mut point = parent.point.plus(at - parent.drawn);
     let slide = |axis: [f64; 3]| Coordinate::Slide { on: point.carrier.turn, axis: flat(axis) };
     let wanted: &[Coordinate<f64>] = match joint.kind {
-        JointKind::Revolute => &[Coordinate::Turn],
+        JointKind::Revolute { .. } => &[Coordinate::Turn],
         JointKind::Prismatic { axis } => &[slide(axis)],
         JointKind::PinSlot { axis } => &[slide(axis), Coordinate::Turn],
         _ => &[],
@@ -162,7 +124,7 @@ fn afloat(centre: [f64; 3], body: usize, coordinates: &mut Vec<Owned>) -> Result
 fn add(coordinates: &mut Vec<Owned>, coordinate: Coordinate<f64>, body: usize) -> Result<usize, MountError> {
     coordinates.push(Owned { coordinate, body });
     if coordinates.len() > MOST {
-        Err(MountError::Coordinates { found: coordinates.len() })
+        Err(MountError::Coordinates { found: coordinates.len(), most: MOST })
     } else {
         Ok(coordinates.len() - 1)
     }

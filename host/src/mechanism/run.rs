@@ -9,13 +9,17 @@ use slipfit_core::{
     ParameterError, SVector,
     integrator::{Integrator, Motion, Rodas4},
     mechanism::Mechanism as _,
-    system::{Bodies, Elements, System, planar::Coordinate},
+    system::{
+        Bodies, Elements, System, ThroughJoints,
+        planar::Coordinate,
+        spatial::tree::{Joint as IdealJoint, Mount},
+    },
 };
 use thiserror::Error;
 
 use super::{
     Mechanism, MountError, Mounts,
-    columns::{self, BodyMotion, PlanarBodies, State},
+    columns::{self, BodyMotion, JointedBodies, PlanarBodies, State},
     fixed_steps::FixedSteps,
     limits::Limits,
     planar, spatial,
@@ -175,6 +179,16 @@ fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, R
             5 => in_plane::<5>(mechanism, &mounts, gaps, by),
             _ => in_plane::<6>(mechanism, &mounts, gaps, by),
         }
+    } else if let Some(mounts) = spatial::mounts(mechanism)? {
+        if mechanism.bodies.len() > spatial::MOST {
+            return Err(RunError::Bodies(mechanism.bodies.len()));
+        }
+        // Not each number for itself: those beyond what the mounts leave stand still and change no bit.
+        match spatial::coordinates(&mounts) {
+            0..=2 => on_joints::<2>(mechanism, &mounts, gaps, by),
+            3..=8 => on_joints::<8>(mechanism, &mounts, gaps, by),
+            _ => on_joints::<{ spatial::MOST_COORDINATES }>(mechanism, &mounts, gaps, by),
+        }
     } else {
         match mechanism.bodies.len() {
             1 => in_space::<1, 6>(mechanism, gaps, by),
@@ -206,7 +220,7 @@ fn in_plane<const D: usize>(
     let limits = Limits::of(mechanism, |body| mounts.turn(Some(body)).map_or(0.0, |turn| tree.lever(turn)));
     let elements = planar::elements::<D>(mechanism, mounts, gaps, limits.stick_band())?;
     let Rest { places, rates } = Rest::of(mechanism, mounts);
-    let pose = tree.pose(places, |angle| [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]);
+    let pose = tree.pose(places, columns::half_angle);
     let topology = *tree.topology();
     let mut last = places;
     let state = move |pose: &[[f64; 2]; D], rates: [f64; D]| {
@@ -232,7 +246,29 @@ fn in_space<const N: usize, const D: usize>(
     solve(mechanism, &system, start, &limits, by, State::spatial::<N>, columns::spatial)
 }
 
-/// Where and how fast a mechanism in a plane starts.
+fn on_joints<const D: usize>(
+    mechanism: &Mechanism,
+    mounts: &[Mount<f64>],
+    gaps: &[f64],
+    by: By,
+) -> Result<MechanismRun, RunError> {
+    let tree = spatial::tree::<{ spatial::MOST }, { 6 * spatial::MOST }, D>(mechanism, mounts)?;
+    let bodies = JointedBodies::new(mechanism.bodies.len(), tree);
+    let limits = Limits::of(mechanism, |body| bodies.lever(body));
+    let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
+    let Rest { places, rates } = Rest::on_joints(mechanism, mounts);
+    let start = (tree.pose(places, columns::half_angle), rates);
+    let mut last = places;
+    let state = move |pose: &[[f64; 2]; D], rates: [f64; D]| {
+        let state = State::on_joints(&tree, pose, rates, &last);
+        last = state.places;
+        state
+    };
+    let system = System::new(tree, ThroughJoints(&elements[..]));
+    solve(mechanism, &system, start, &limits, by, state, |state: &State<D>| bodies.told(state))
+}
+
+/// Where and how fast a mechanism on ideal joints starts.
 pub struct Rest<const D: usize> {
     /// Coordinates (m, rad) from the drawn pose.
     pub places: [f64; D],
@@ -250,6 +286,27 @@ impl<const D: usize> Rest<D> {
                 Coordinate::Turn => (start.angle, start.spin),
                 Coordinate::Slide { .. } => (0.0, start.speed),
             };
+        }
+        Self { places, rates }
+    }
+
+    /// That of `mechanism` in space on its `mounts`.
+    pub fn on_joints(mechanism: &Mechanism, mounts: &[Mount<f64>]) -> Self {
+        let (mut places, mut rates) = ([0.0; D], [0.0; D]);
+        let mut k = 0;
+        for mount in mounts {
+            let start = mechanism.bodies[mount.body].start;
+            let [of_slide, of_turn] = [(0.0, start.speed), (start.angle, start.spin)];
+            let own: &[(f64, f64)] = match mount.joint {
+                IdealJoint::Revolute { .. } => &[of_turn],
+                IdealJoint::Prismatic { .. } => &[of_slide],
+                IdealJoint::Cylindrical { .. } => &[of_slide, of_turn],
+                IdealJoint::Fixed | IdealJoint::Spherical { .. } | IdealJoint::Free => &[],
+            };
+            for (j, (place, rate)) in own.iter().enumerate() {
+                (places[k + j], rates[k + j]) = (*place, *rate);
+            }
+            k += mount.joint.freedoms();
         }
         Self { places, rates }
     }

@@ -1,4 +1,4 @@
-//! A mechanism in space as core computes with it: free bodies on joints with play.
+//! A mechanism in space as core computes with it: free bodies on joints with play, or bodies on ideal joints.
 
 use nalgebra::Matrix3;
 use slipfit_core::{
@@ -6,13 +6,17 @@ use slipfit_core::{
     system::{
         Element,
         law::{Axis, Motor, Pin, Pusher, Ring, Wall},
-        spatial::{About, Along, FreeBodies, Port as PointOf, Rigid, Seat, Turned},
+        spatial::{
+            About, Along, FreeBodies, Port as PointOf, Rigid, Seat, Turned,
+            tree::{Joint as IdealJoint, Mount, SpatialTree},
+        },
     },
 };
 
 use super::{
-    Action, Joint, JointKind, Mechanism, Port,
+    Action, Joint, JointKind, Mechanism, MountError, Port,
     element::{AnyContact, SpatialElement, contact},
+    hanging::{Hung, hanging},
 };
 
 /// A gap (m) that never closes.
@@ -20,6 +24,9 @@ pub const NONE: f64 = slipfit_core::slide::ABSENT;
 
 /// Most bodies of a mechanism in space.
 pub const MOST: usize = 3;
+
+/// Most coordinates of one with ideal joints.
+pub const MOST_COORDINATES: usize = 14;
 
 /// The bodies of `mechanism`.
 ///
@@ -34,6 +41,53 @@ pub fn bodies<const N: usize, const D: usize>(
         *rigid = Rigid { mass: body.mass, inertia_b: body.inertia.into(), centre_w: body.centre.into() };
     }
     FreeBodies::new(bodies, mechanism.gravity.into())
+}
+
+/// How the bodies of `mechanism` hang on ideal joints; `None` where all of its joints have play.
+///
+/// # Errors
+/// See [`MountError`].
+pub fn mounts(mechanism: &Mechanism) -> Result<Option<Vec<Mount<f64>>>, MountError> {
+    if !mechanism.has_ideal_joints_in_space() {
+        return Ok(None);
+    }
+    let ideal = |joint: &Joint| {
+        let at = joint.at.into();
+        match joint.kind {
+            JointKind::Revolute { axis } => IdealJoint::Revolute { at, axis: axis.into() },
+            JointKind::Prismatic { axis } => IdealJoint::Prismatic { axis: axis.into() },
+            JointKind::Cylindrical { axis } => IdealJoint::Cylindrical { at, axis: axis.into() },
+            JointKind::Spherical => IdealJoint::Spherical { at },
+            _ => IdealJoint::Fixed,
+        }
+    };
+    let mount = |Hung { body, on, by }| Mount {
+        body,
+        on,
+        joint: by.map_or(IdealJoint::Free, |by: usize| ideal(&mechanism.joints[by])),
+    };
+    let mounts: Vec<_> = hanging(mechanism)?.into_iter().map(mount).collect();
+    let found = coordinates(&mounts);
+    if found > MOST_COORDINATES {
+        return Err(MountError::Coordinates { found, most: MOST_COORDINATES });
+    }
+    Ok(Some(mounts))
+}
+
+/// How many coordinates the `mounts` leave.
+pub fn coordinates(mounts: &[Mount<f64>]) -> usize {
+    mounts.iter().map(|mount| mount.joint.freedoms()).sum()
+}
+
+/// The bodies of `mechanism` on their `mounts`.
+///
+/// # Errors
+/// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+pub fn tree<const N: usize, const W: usize, const D: usize>(
+    mechanism: &Mechanism,
+    mounts: &[Mount<f64>],
+) -> Result<SpatialTree<f64, N, W, D>, ParameterError<f64>> {
+    SpatialTree::new(bodies(mechanism)?, mounts)
 }
 
 /// What acts on the bodies of `mechanism` with the given `gaps` (m); a stick band (m/s) stands for true stick.

@@ -164,11 +164,18 @@ fn read_drives(mechanism: &Mechanism, drives: &[(&str, &NamedDrive)], variables:
                 }
             }
         } else {
-            let place = format!("pose[{}]", drive.body);
+            let place = body(mechanism, drive.body);
             match drive.action {
                 Action::Turns { axis } => {
                     let [x, y, z] = axis.map(|component| format!("{component:?}f64 as f32"));
-                    format!("turn_about(&{place}, [{x}, {y}, {z}])")
+                    let turned = if mechanism.has_ideal_joints_in_space() {
+                        format!("quaternion(&{place}.to_frame)")
+                    } else {
+                        format!(
+                            "[{place}.orientation.w, {place}.orientation.v.x, {place}.orientation.v.y, {place}.orientation.v.z]"
+                        )
+                    };
+                    format!("turn_about({turned}, [{x}, {y}, {z}])")
                 }
                 Action::Pushes { axis } => {
                     let part = |(name, component): (&str, f64)| {
@@ -187,16 +194,26 @@ fn read_drives(mechanism: &Mechanism, drives: &[(&str, &NamedDrive)], variables:
     }
 }
 
-/// Where free bodies are.
+/// The body `i` of a mechanism in space, where it is.
+fn body(mechanism: &Mechanism, i: usize) -> String {
+    if mechanism.has_ideal_joints_in_space() {
+        format!("unit.bodies().placed(pose, velocity).free.bodies[{i}]")
+    } else {
+        format!("pose[{i}]")
+    }
+}
+
+/// Where bodies in space are.
 fn read_bodies(mechanism: &Mechanism, variables: &mut Variables, model: &mut Model) {
     if mechanism.planar {
         return;
     }
-    for (i, body) in mechanism.bodies.iter().enumerate() {
+    for (i, of) in mechanism.bodies.iter().enumerate() {
         for axis in ["x", "y", "z"] {
-            let what = format!("displacement of the centre of mass of {} along {axis}", body.name);
-            variables.output(format!("{axis}.{}", body.name), "m", what);
-            let _ = writeln!(model.outputs, "            f64::from(pose[{i}].displacement_w.{axis}),");
+            let what = format!("displacement of the centre of mass of {} along {axis}", of.name);
+            variables.output(format!("{axis}.{}", of.name), "m", what);
+            let place = body(mechanism, i);
+            let _ = writeln!(model.outputs, "            f64::from({place}.displacement_w.{axis}),");
         }
     }
 }
@@ -206,7 +223,8 @@ fn read_joints(mechanism: &Mechanism, joints: &[(&str, &Joint)], variables: &mut
     use JointKind::{Bearing, Guide, Journal, Stop, Track};
     for (k, (at, joint)) in joints.iter().enumerate() {
         let element = format!("unit.elements(){at}");
-        let seen = format!("let place = seen(unit.bodies(), pose, velocity, &{element});");
+        let seen = if mechanism.has_ideal_joints_in_space() { "seen_free" } else { "seen" };
+        let seen = format!("let place = {seen}(unit.bodies(), pose, velocity, &{element});");
         let mut output = |name: String, distance: String| {
             let what = format!("gap {name} now; negative where the parts penetrate");
             variables.output(format!("distance.{name}"), "m", what);
@@ -264,11 +282,41 @@ where
     element.link.seen((bodies, &placed), &view).place
 }
 
-/// How far a body has turned about an axis of unit length (rad).
+/// The same of bodies on joints.
 #[allow(dead_code)]
-fn turn_about(pose: &slipfit_core::pose::Pose<f32>, [x, y, z]: [f32; 3]) -> f32 {
-    let turn = pose.orientation;
-    2.0 * libm::atan2f(turn.v.x * x + turn.v.y * y + turn.v.z * z, turn.w)
+fn seen_free<B, L, W, const R: usize, const D: usize, const F: usize>(
+    bodies: &B,
+    pose: &B::Pose,
+    velocity: &SVector<f32, D>,
+    element: &Element<L, W, R>,
+) -> SVector<f32, R>
+where
+    B: Reduced<f32, D, F>,
+    L: Link<f32, B::Free, F, R>,
+{
+    let placed = bodies.placed(pose, velocity);
+    let free = bodies.free(&placed);
+    element.link.seen(free, &element.link.view(free.0, free.1)).place
+}
+
+/// The quaternion of a rotation, real part first.
+#[allow(dead_code)]
+fn quaternion(turn: &slipfit_core::SMatrix<f32, 3, 3>) -> [f32; 4] {
+    let part = |sum: f32| 0.5 * libm::sqrtf(if sum > 0.0 { sum } else { 0.0 });
+    let [x, y, z] = [turn[(0, 0)], turn[(1, 1)], turn[(2, 2)]];
+    let signed = |size: f32, sign: f32| libm::copysignf(size, sign);
+    [
+        part(1.0 + x + y + z),
+        signed(part(1.0 + x - y - z), turn[(2, 1)] - turn[(1, 2)]),
+        signed(part(1.0 - x + y - z), turn[(0, 2)] - turn[(2, 0)]),
+        signed(part(1.0 - x - y + z), turn[(1, 0)] - turn[(0, 1)]),
+    ]
+}
+
+/// How far a body has turned about an axis of unit length (rad), by its quaternion.
+#[allow(dead_code)]
+fn turn_about([w, a, b, c]: [f32; 4], [x, y, z]: [f32; 3]) -> f32 {
+    2.0 * libm::atan2f(a * x + b * y + c * z, w)
 }
 ";
 
@@ -280,7 +328,7 @@ fn source(token: &str, mechanism: &Mechanism, variables: &[super::Variable], mod
     let laws = if laws.is_empty() { String::new() } else { format!(", law::{{{}}}", laws.join(", ")) };
     let gap = if mechanism.gaps.is_empty() { "" } else { ", gap" };
     format!(
-        "{constants}use slipfit_core::{{SVector, kernel::{{Kernel, Report}}{laws}, system::{{Bodies, Element, Link, System}}}};\n\n\
+        "{constants}use slipfit_core::{{SVector, kernel::{{Kernel, Report}}{laws}, system::{{Bodies, Element, Link, Reduced, System}}}};\n\n\
          use crate::instance::{{Trouble{gap}}};\n\n\
          /// The kernel of some values.\n#[derive(Clone, Copy)]\npub struct Model(kernel::Parameters);\n\n\
          impl Model {{\n    pub fn new(values: &[f64; VALUES]) -> Result<Self, Trouble> {{\n        \

@@ -153,8 +153,12 @@ impl Mechanism {
 
     /// What a drive turns a body about: the middle of its joints with the frame, if there are any, else its centre of mass.
     fn pivot(&self, body: usize) -> [f64; 3] {
-        use JointKind::{Bearing, Journal, PinSlot, Revolute};
-        let turns = |joint: &&Joint| matches!(joint.kind, Revolute | PinSlot { .. } | Journal { .. } | Bearing { .. });
+        use JointKind::{Bearing, Cylindrical, Journal, PinSlot, Revolute, Spherical};
+        let turns = |joint: &&Joint| match joint.kind {
+            Revolute { .. } | PinSlot { .. } | Cylindrical { .. } | Spherical => true,
+            Journal { .. } | Bearing { .. } => true,
+            _ => false,
+        };
         let to_frame = |joint: &&Joint| joint.between.contains(&None) && joint.between.contains(&Some(body));
         let places: Vec<_> = self.joints.iter().filter(turns).filter(to_frame).map(|joint| joint.at).collect();
         if places.is_empty() {
@@ -173,7 +177,8 @@ impl JointKind {
             | Self::Bearing { gap, .. }
             | Self::Stop { gap, .. } => [Some(gap), None, None, None],
             Self::Track { gaps } => gaps,
-            Self::Fixed | Self::Revolute | Self::Prismatic { .. } | Self::PinSlot { .. } => [None; 4],
+            Self::Fixed | Self::Revolute { .. } | Self::Prismatic { .. } | Self::PinSlot { .. } => [None; 4],
+            Self::Cylindrical { .. } | Self::Spherical => [None; 4],
         };
         gaps.into_iter().flatten()
     }

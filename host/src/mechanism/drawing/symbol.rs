@@ -79,7 +79,10 @@ impl Pen<'_> {
         let fixed = joint.between.iter().position(Option::is_none);
         match &joint.kind {
             JointKind::Fixed => self.outline(&rectangle(at, [1.0, 0.0], [PIN, PIN]), second, first),
-            JointKind::Revolute => {
+            JointKind::Revolute { axis } if self.view.direction(*axis).is_some() => {
+                self.hinge(at, *axis, [first, second])
+            }
+            JointKind::Revolute { .. } => {
                 if fixed.is_some() {
                     let foot = [at, [at[0] - 9.0, at[1] + 16.0], [at[0] + 9.0, at[1] + 16.0]];
                     self.outline(&polygon(&foot), PAPER, colour(None));
@@ -93,6 +96,14 @@ impl Pen<'_> {
                     self.rails(at, direction, [2.0 * HALF, PIN + 1.0], first);
                 }
                 self.outline(&circle(at, PIN), PAPER, second);
+            }
+            JointKind::Cylindrical { axis } if self.view.direction(*axis).is_some() => {
+                self.slider(at, *axis, [first, second], 0.0);
+            }
+            JointKind::Cylindrical { .. } => self.outline(&circle(at, PIN), PAPER, second),
+            JointKind::Spherical => {
+                self.outline(&circle(at, PIN + 3.0), PAPER, first);
+                self.outline(&circle(at, PIN), second, second);
             }
             JointKind::Journal { .. } => self.journal(at, [first, second]),
             JointKind::Guide { axis, edges, .. } => {
@@ -123,6 +134,14 @@ impl Pen<'_> {
                 self.wall(at, normal.map(|x| -x), second, fixed == Some(1));
                 self.outline(&circle(at, 3.0), first, first);
             }
+        }
+    }
+
+    /// A hinge seen from the side: three barrels on its axis, the middle one of the second body.
+    fn hinge(&mut self, at: Place, axis: [f64; 3], [outer, middle]: [Colour; 2]) {
+        let Some(direction) = self.view.direction(axis) else { return };
+        for (along, of) in [(-12.0, outer), (0.0, middle), (12.0, outer)] {
+            self.outline(&rectangle(moved(at, direction, along, 0.0), direction, [6.0, 4.0]), PAPER, of);
         }
     }
 

@@ -41,6 +41,8 @@ struct Parts {
     bodies: Typed,
     /// Elements, in the order in which they act.
     elements: Vec<Typed>,
+    /// How many velocities the bodies have without their ideal joints, where elements act through these.
+    through_joints: Option<usize>,
     /// Names used from `slipfit_core::system::law`, and from the module `module` of `slipfit_core::system`.
     laws: Vec<&'static str>,
     module: &'static str,
@@ -63,7 +65,12 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     let parts = parts(mechanism, &mut contacts)?;
     let Parts { head, dimension, bodies, elements, module, pose, rates, .. } = &parts;
     let drives = write_drives(mechanism, &parts);
-    let elements = nested(grouped(elements));
+    let mut elements = nested(grouped(elements));
+    if let Some(width) = parts.through_joints {
+        elements =
+            typed(format!("ThroughJoints<{}, {width}>", elements.of), format!("ThroughJoints({})", elements.value));
+    }
+    let through = if parts.through_joints.is_some() { ", ThroughJoints" } else { "" };
     let title = mechanism.title.split_whitespace().collect::<Vec<_>>().join(" ");
     let (scheme, scheme_type) = crate::firmware::kernel_source::scheme(mechanism.controller.integrator);
     let list = |names: &[&'static str]| {
@@ -75,7 +82,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     let mut laws = parts.laws.clone();
     let clearance = if mechanism.gaps.is_empty() { "" } else { "    clearance::GapStatistics,\n" };
     let drive = if mechanism.drives.is_empty() { "" } else { "    drive::Drive,\n" };
-    let poses = if *module == "planar" { "" } else { "    pose::Pose,\n" };
+    let poses = if pose.of.contains("Pose") { "    pose::Pose,\n" } else { "" };
     let vectors = if *module == "planar" && mechanism.drives.is_empty() { "Vector2" } else { "Vector2, Vector3" };
     let vectors = if *module == "planar" { vectors } else { "Vector3" };
     let driving = if mechanism.drives.is_empty() { "" } else { "Driving, " };
@@ -87,7 +94,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     let mut text = format!(
         "// {title}: a mechanism for firmware, to be compiled against slipfit-core. SI units.\n\n\
          use slipfit_core::{{\n    ParameterError, SVector, Scalar, {vectors},\n{clearance}{drive}    \
-         integrator::{scheme},\n    kernel::{{Kernel, StateOf}},\n{core_laws}{poses}    system::{{\n        {driving}Element, System,\n        \
+         integrator::{scheme},\n    kernel::{{Kernel, StateOf}},\n{core_laws}{poses}    system::{{\n        {driving}Element, System{through},\n        \
          law::{{{}}},\n        {module}::{{{}}},\n    }},\n}};\n\n\
          /// Number of coordinates.\npub const DIMENSION: usize = {dimension};\n\n\
          /// Step (s).\npub const STEP: f32 = {:?};\n\n/// Steps of the scene's run.\npub const STEPS: u32 = {};\n\n/// The scheme.\npub type Scheme = {scheme_type};\n\n{head}",
@@ -163,7 +170,8 @@ fn write_hashes(text: &mut String, mechanism: &Mechanism) {
 /// A function for each drive that says what it gives. Drives are the last elements.
 fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
     let first = parts.elements.len() - mechanism.drives.len();
-    let paths = paths(&parts.elements);
+    let paths = parts.paths();
+    let driving = if parts.through_joints.is_some() { "driving_through_joints" } else { "driving" };
     let mut text = String::new();
     for ((at, drive), name) in paths[first..].iter().zip(&mechanism.drives).zip(drive_names(mechanism)) {
         let kind = drive.action.kind();
@@ -171,7 +179,7 @@ fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
             text,
             "\n/// Speed ({}) and {} ({}) of the drive {:?} at time `t` (s).\n\
              pub fn {name}<S: Scalar>(unit: &Unit<S>, t: S, pose: &{}, velocity: &SVector<S, DIMENSION>) -> Driving<S> {{\n    \
-             unit.driving(&unit.elements(){at}, t, pose, velocity)\n}}\n",
+             unit.{driving}(&unit.elements(){at}, t, pose, velocity)\n}}\n",
             kind.choose("m/s", "rad/s"),
             kind.effort(),
             kind.effort_unit(),
@@ -182,7 +190,15 @@ fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
     text
 }
 
-/// Where each of the `elements` is in the unit's `elements()`.
+impl Parts {
+    /// Where each of the elements is in the unit's `elements()`.
+    fn paths(&self) -> Vec<String> {
+        let inside = if self.through_joints.is_some() { ".0" } else { "" };
+        paths(&self.elements).iter().map(|at| format!("{inside}{at}")).collect()
+    }
+}
+
+/// Where each of the `elements` is among all.
 fn paths(elements: &[Typed]) -> Vec<String> {
     let groups: Vec<_> = elements.chunk_by(|one, next| one.of == next.of).collect();
     let of_group = |(i, group): (usize, &&[Typed])| {
@@ -200,7 +216,15 @@ fn paths(elements: &[Typed]) -> Vec<String> {
 /// If the mechanism has no run, see [`RunError`].
 pub fn element_paths(mechanism: &Mechanism) -> Result<Vec<(String, Option<&Joint>)>, RunError> {
     let parts = parts(mechanism, &mut Contacts::default())?;
-    Ok(paths(&parts.elements).into_iter().zip(joints_of_elements(mechanism)).collect())
+    Ok(parts.paths().into_iter().zip(joints_of_elements(mechanism)).collect())
+}
+
+/// How many coordinates a kernel of `mechanism` has.
+///
+/// # Errors
+/// If the mechanism has no run, see [`RunError`].
+pub fn dimension(mechanism: &Mechanism) -> Result<usize, RunError> {
+    Ok(parts(mechanism, &mut Contacts::default())?.dimension)
 }
 
 /// What the functions of the drives are called; those that would be called the same have their number.

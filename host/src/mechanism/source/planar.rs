@@ -8,7 +8,9 @@ use slipfit_core::{
 };
 
 use super::{Contacts, Parts, Typed, driven, element, grouped, joints_of_elements, nested, numbers, typed, vector};
-use crate::mechanism::{JointKind, Mechanism, Mounts, Rest, RunError, element::PlanarElement, planar};
+use crate::mechanism::{
+    JointKind, Mechanism, Mounts, Rest, RunError, columns::half_angle, element::PlanarElement, planar,
+};
 
 /// The parts of `mechanism`.
 pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {
@@ -88,10 +90,21 @@ fn of<const D: usize>(mechanism: &Mechanism, mounts: &Mounts, contacts: &mut Con
         names.push("Frame");
     }
     let Rest { places, rates } = Rest::<D>::of(mechanism, mounts);
-    let pose = tree.pose(places, |angle| [libm::cos(angle / 2.0), libm::sin(angle / 2.0)]);
+    let pose = tree.pose(places, half_angle);
     let pose: Vec<_> = pose.iter().map(|pair| format!("[{}]", numbers(pair))).collect();
     let pose = Typed { of: format!("[[S; 2]; {D}]"), value: format!("[{}]", pose.join(", ")) };
-    Ok(Parts { head, dimension: D, bodies, elements, laws, module: "planar", names, pose, rates: rates.into() })
+    Ok(Parts {
+        head,
+        dimension: D,
+        bodies,
+        elements,
+        through_joints: None,
+        laws,
+        module: "planar",
+        names,
+        pose,
+        rates: rates.into(),
+    })
 }
 
 fn elements<const D: usize>(

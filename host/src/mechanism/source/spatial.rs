@@ -1,18 +1,78 @@
 //! A mechanism in space as source text.
 
-use slipfit_core::system::spatial::{FreeBodies, Port, Rigid, Seat};
+use slipfit_core::system::spatial::{
+    FreeBodies, Port, Rigid, Seat,
+    tree::{Joint, Mount},
+};
 
 use super::{Contacts, Parts, Typed, driven, element, joints_of_elements, numbers, typed, vector};
-use crate::mechanism::{JointKind, Mechanism, RunError, element::SpatialElement, spatial};
+use crate::mechanism::{JointKind, Mechanism, Rest, RunError, columns::half_angle, element::SpatialElement, spatial};
 
 /// The parts of `mechanism`.
 pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {
-    match mechanism.bodies.len() {
-        1 => of::<1, 6>(mechanism, contacts),
-        2 => of::<2, 12>(mechanism, contacts),
-        3 => of::<3, 18>(mechanism, contacts),
-        other => Err(RunError::Bodies(other)),
+    let count = mechanism.bodies.len();
+    if !(1..=spatial::MOST).contains(&count) {
+        return Err(RunError::Bodies(count));
     }
+    let (mut laws, mut names) = (Vec::new(), vec!["FreeBodies", "Rigid"]);
+    let elements = elements(mechanism, contacts, &mut laws, &mut names)?;
+    let free = free(mechanism)?;
+    let width = 6 * count;
+    let parts = Parts {
+        head: String::new(),
+        dimension: width,
+        bodies: typed(format!("FreeBodies<S, {count}, {width}>"), free.clone()),
+        elements,
+        through_joints: None,
+        laws,
+        module: "spatial",
+        names,
+        pose: typed(format!("[Pose<S>; {count}]"), format!("[Pose::nominal(); {count}]")),
+        rates: vec![0.0; width],
+    };
+    let Some(mounts) = spatial::mounts(mechanism)? else { return Ok(parts) };
+    let dimension = spatial::coordinates(&mounts);
+    let mut names = parts.names;
+    names.push("tree::{Joint, Mount, SpatialTree}");
+    let hung: Vec<_> = mounts.iter().map(mount).collect();
+    let tree = spatial::tree::<{ spatial::MOST }, { 6 * spatial::MOST }, { spatial::MOST_COORDINATES }>;
+    let Rest { places, rates } = Rest::on_joints(mechanism, &mounts);
+    let pose = tree(mechanism, &mounts)?.pose(places, half_angle);
+    let pose: Vec<_> = pose[..dimension].iter().map(|pair| format!("[{}]", numbers(pair))).collect();
+    Ok(Parts {
+        dimension,
+        bodies: typed(
+            format!("SpatialTree<S, {count}, {width}, {dimension}>"),
+            format!("SpatialTree::new({free}, &[\n        {},\n    ])?", hung.join(",\n        ")),
+        ),
+        through_joints: Some(width),
+        names,
+        pose: typed(format!("[[S; 2]; {dimension}]"), format!("[{}]", pose.join(", "))),
+        rates: rates[..dimension].into(),
+        ..parts
+    })
+}
+
+/// The bodies, free.
+fn free(mechanism: &Mechanism) -> Result<String, RunError> {
+    let free: FreeBodies<f64, { spatial::MOST }, { 6 * spatial::MOST }> = spatial::bodies(mechanism)?;
+    let rigid: Vec<_> = free.bodies().iter().take(mechanism.bodies.len()).map(rigid).collect();
+    Ok(format!("FreeBodies::new([{}], {})?", rigid.join(", "), vector(&mechanism.gravity)))
+}
+
+fn mount(Mount { body, on, joint }: &Mount<f64>) -> String {
+    let vector = |of: &slipfit_core::Vector3<f64>| vector(of.as_slice());
+    let joint = match joint {
+        Joint::Fixed => "Joint::Fixed".to_owned(),
+        Joint::Revolute { at, axis } => format!("Joint::Revolute {{ at: {}, axis: {} }}", vector(at), vector(axis)),
+        Joint::Prismatic { axis } => format!("Joint::Prismatic {{ axis: {} }}", vector(axis)),
+        Joint::Cylindrical { at, axis } => {
+            format!("Joint::Cylindrical {{ at: {}, axis: {} }}", vector(at), vector(axis))
+        }
+        Joint::Spherical { at } => format!("Joint::Spherical {{ at: {} }}", vector(at)),
+        Joint::Free => "Joint::Free".to_owned(),
+    };
+    format!("Mount {{ body: {body}, on: {on:?}, joint: {joint} }}")
 }
 
 fn rigid(body: &Rigid<f64>) -> String {
@@ -27,30 +87,6 @@ fn rigid(body: &Rigid<f64>) -> String {
 fn seat(seat: &Seat<f64>) -> String {
     let Seat { point: Port { body, lever }, from } = seat;
     format!("Seat {{ point: Port {{ body: {body:?}, lever: {} }}, from: {from:?} }}", vector(lever.as_slice()))
-}
-
-fn of<const N: usize, const D: usize>(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {
-    let free: FreeBodies<f64, N, D> = spatial::bodies(mechanism)?;
-    let rigid: Vec<_> = free.bodies().iter().map(rigid).collect();
-    let bodies = Typed {
-        of: format!("FreeBodies<S, {N}, {D}>"),
-        value: format!("FreeBodies::new([{}], {})?", rigid.join(", "), vector(&mechanism.gravity)),
-    };
-    let mut names = vec!["FreeBodies", "Rigid"];
-    let mut laws = Vec::new();
-    let elements = elements(mechanism, contacts, &mut laws, &mut names)?;
-    let pose = Typed { of: format!("[Pose<S>; {N}]"), value: format!("[Pose::nominal(); {N}]") };
-    Ok(Parts {
-        head: String::new(),
-        dimension: D,
-        bodies,
-        elements,
-        laws,
-        module: "spatial",
-        names,
-        pose,
-        rates: vec![0.0; D],
-    })
 }
 
 fn elements(

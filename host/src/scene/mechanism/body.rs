@@ -1,10 +1,10 @@
 //! Bodies.
 
-use slipfit_core::system::planar::Coordinate;
+use slipfit_core::system::{planar::Coordinate, spatial::tree::Joint};
 
 use super::{Field, Problem, Quantity, SceneError, note, place, tables, unit};
 use crate::{
-    mechanism::{Body, Mechanism, Mounts, Start},
+    mechanism::{Body, Mechanism, Mounts, Start, spatial},
     scene::parse::POINT,
 };
 
@@ -36,11 +36,7 @@ fn body(name: String, table: &Field, planar: bool) -> Result<Body, SceneError> {
     let centre = table.require("centre", if planar { "a place [x, y] in mm" } else { "a place [x, y, z] in mm" })?;
     let centre = place(&centre, planar, &POINT)?;
     let start = |key: &str, quantity| -> Result<f64, SceneError> {
-        let Some(field) = table.get(key) else { return Ok(0.0) };
-        if !planar {
-            return Err(field.error(Problem::Unsupported { what: format!("`{key}` of a body in space") }, "rest"));
-        }
-        field.to_number(quantity)
+        table.get(key).map_or(Ok(0.0), |field| field.to_number(quantity))
     };
     let start = Start { angle: start("angle", &ANGLE)?, spin: start("spin", &SPIN)?, speed: start("speed", &SPEED)? };
     Ok(Body { name, mass, inertia, centre, start })
@@ -58,18 +54,36 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
         }
     }
     // A loop of joints is told elsewhere.
-    if let Some(mounts) = mechanism.planar.then(|| Mounts::of(mechanism).ok()).flatten() {
-        fields.iter().enumerate().for_each(|(i, table)| check_start(&mounts, i, table));
+    if mechanism.planar {
+        if let Ok(mounts) = Mounts::of(mechanism) {
+            let own =
+                |i| mounts.coordinates().iter().filter(move |owned| owned.body == i).map(|owned| &owned.coordinate);
+            fields.iter().enumerate().for_each(|(i, table)| {
+                let turns = own(i).any(|coordinate| matches!(coordinate, Coordinate::Turn));
+                let slides = own(i).filter(|coordinate| matches!(coordinate, Coordinate::Slide { .. })).count() == 1;
+                check_start([turns, slides], table);
+            });
+        }
+    } else if let Ok(mounts) = spatial::mounts(mechanism) {
+        fields.iter().enumerate().for_each(|(i, table)| {
+            let own = mounts.iter().flatten().find(|mount| mount.body == i).map(|mount| mount.joint);
+            check_start(
+                match own {
+                    Some(Joint::Revolute { .. }) => [true, false],
+                    Some(Joint::Prismatic { .. }) => [false, true],
+                    Some(Joint::Cylindrical { .. }) => [true, true],
+                    _ => [false, false],
+                },
+                table,
+            );
+        });
     }
     Ok(())
 }
 
-/// Whether body `i`, read from `table`, can start as it says: turned where it turns by itself, with a speed where its own joint lets it
-/// slide along one axis.
-fn check_start(mounts: &Mounts, i: usize, table: &Field) {
-    let own = || mounts.coordinates().iter().filter(|owned| owned.body == i).map(|owned| &owned.coordinate);
-    let turns = own().any(|coordinate| matches!(coordinate, Coordinate::Turn));
-    let slides = own().filter(|coordinate| matches!(coordinate, Coordinate::Slide { .. })).count() == 1;
+/// Whether a body that is read from `table` can start as it says: turned where it turns by itself, with a speed where its own joint lets
+/// it slide along one axis.
+fn check_start([turns, slides]: [bool; 2], table: &Field) {
     for (key, can) in [("angle", turns), ("spin", turns), ("speed", slides)] {
         if let Some(field) = table.get(key).filter(|_| !can) {
             let what = format!("`{key}` at the start of a body that no joint lets move so");

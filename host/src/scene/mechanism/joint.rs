@@ -62,7 +62,11 @@ const NO_LAWS: Laws = Laws {
 
 /// Reads what the joint called `name` is.
 fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<JointKind, SceneError> {
-    let allowed = if planar { "fixed, revolute, prismatic, pin-slot, stop" } else { "cylindrical, track, stop" };
+    let allowed = if planar {
+        "fixed, revolute, prismatic, pin-slot, stop"
+    } else {
+        "fixed, revolute, prismatic, cylindrical, spherical, track, stop"
+    };
     let field = table.require("kind", allowed)?;
     let clearance = table.get("clearance");
     let axis = || direction(table, "axis", planar);
@@ -70,9 +74,12 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
     let needed = || table.require("clearance", "[mean, standard deviation] in mm, or a measure");
     let text = field.to_text()?;
     Ok(match (text, planar, clearance) {
-        ("fixed", true, None) => JointKind::Fixed,
-        ("revolute", true, None) => JointKind::Revolute,
-        ("prismatic", true, None) => JointKind::Prismatic { axis: axis()? },
+        ("fixed", _, None) => JointKind::Fixed,
+        ("revolute", true, None) => JointKind::Revolute { axis: [0.0, 0.0, 1.0] },
+        ("revolute", false, None) => JointKind::Revolute { axis: axis()? },
+        ("prismatic", _, None) => JointKind::Prismatic { axis: axis()? },
+        ("cylindrical", false, None) => JointKind::Cylindrical { axis: axis()? },
+        ("spherical", false, None) => JointKind::Spherical,
         ("pin-slot", true, None) => JointKind::PinSlot { axis: axis()? },
         ("revolute", true, Some(clearance)) => {
             JointKind::Journal { gap: gaps.add(name.into(), &clearance)?, radius: length("radius", &LENGTH)? }
@@ -82,8 +89,8 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
             axis: axis()?,
             edges: [length("length", &EDGE)?, length("width", &EDGE)?],
         },
-        ("cylindrical", false, _) => JointKind::Bearing {
-            gap: gaps.add(name.into(), &needed()?)?,
+        ("cylindrical", false, Some(clearance)) => JointKind::Bearing {
+            gap: gaps.add(name.into(), &clearance)?,
             axis: axis()?,
             length: length("length", &EDGE)?,
             radius: length("radius", &LENGTH)?,
@@ -104,15 +111,20 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
             }
             JointKind::Stop { gap: gaps.add(name.into(), &needed()?)?, normal }
         }
-        ("fixed" | "pin-slot" | "track", _, Some(clearance)) => {
+        ("fixed" | "pin-slot" | "track" | "spherical", _, Some(clearance)) => {
             let what = format!("a clearance of a joint of kind \"{text}\"");
             return Err(clearance.error(Problem::Unsupported { what }, "a joint without it"));
         }
-        ("fixed" | "revolute" | "prismatic" | "pin-slot", false, _) => {
+        ("revolute" | "prismatic", false, Some(clearance)) => {
+            let what = format!("a clearance of a joint of kind \"{text}\" in space");
+            let instead = "a joint without it, or joints of the kinds \"cylindrical\", \"track\" and \"stop\"";
+            return Err(clearance.error(Problem::Unsupported { what }, instead));
+        }
+        ("pin-slot", false, _) => {
             let what = format!("a joint of kind \"{text}\" in space");
             return Err(field.error(Problem::Unsupported { what }, allowed));
         }
-        ("cylindrical" | "track", true, _) => {
+        ("cylindrical" | "track" | "spherical", true, _) => {
             let what = format!("a joint of kind \"{text}\" in a plane");
             return Err(field.error(Problem::Unsupported { what }, allowed));
         }

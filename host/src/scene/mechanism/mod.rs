@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     dynamics::driven::DriveKind,
-    mechanism::{Gap, Laws, Mechanism, MountError, Mounts, Port},
+    mechanism::{Gap, Laws, Mechanism, MountError, Mounts, Port, spatial},
     product::Product,
 };
 
@@ -83,9 +83,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
     if !found.any() {
         joint::check(&mechanism, &joint_fields)?;
         body::check(&mechanism, &fields)?;
-        if mechanism.planar {
-            check_tree(&mechanism, &joint_fields, root)?;
-        }
+        check_tree(&mechanism, &joint_fields, root)?;
         check_gaps(&mechanism, &joint_fields, root)?;
     }
     Ok(mechanism)
@@ -112,8 +110,9 @@ fn check_gaps(mechanism: &Mechanism, joints: &[Field], root: &Field) -> Result<(
 
 /// Whether ideal joints make a tree.
 fn check_tree(mechanism: &Mechanism, joints: &[Field], root: &Field) -> Result<(), SceneError> {
-    match Mounts::of(mechanism) {
-        Ok(_) => Ok(()),
+    let tree = if mechanism.planar { Mounts::of(mechanism).map(drop) } else { spatial::mounts(mechanism).map(drop) };
+    match tree {
+        Ok(()) => Ok(()),
         Err(MountError::Loop { joint }) => {
             let at = mechanism.joints.iter().position(|one| one.name == joint).unwrap_or_default();
             let allowed = "a clearance for one joint of the loop, which opens it";

@@ -147,7 +147,9 @@ pub fn joints(mechanism: &Mechanism, joint: &Joined, gaps: &[f64], moments: &[Mo
             limits[at_limit] = Some(-normal[along].signum() * limit);
             vec![Joint { limits, contacts: vec![Contact { side, name: "", force }], ..shown.bare(axes, &meeting) }]
         }
-        JointKind::Fixed | JointKind::Revolute | JointKind::Prismatic { .. } | JointKind::PinSlot { .. } => Vec::new(),
+        // Without play there is nothing to see.
+        JointKind::Fixed | JointKind::Revolute { .. } | JointKind::Prismatic { .. } => Vec::new(),
+        JointKind::PinSlot { .. } | JointKind::Cylindrical { .. } | JointKind::Spherical => Vec::new(),
     }
 }
 

@@ -48,7 +48,7 @@ pub struct Mount<S> {
 
 /// What a coordinate does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub enum Kind {
     /// It belongs to no joint and stands still.
     Still,
     /// A displacement along an axis.

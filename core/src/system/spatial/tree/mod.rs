@@ -20,10 +20,8 @@ use crate::{
     system::{Bodies, Lu, Reduced, spatial::Placed as PlacedBodies},
 };
 
-pub use joint::{Joint, Mount};
+pub use joint::{Joint, Kind, Mount};
 pub use motion::Placed;
-
-use joint::Kind;
 
 /// A coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,9 +156,14 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
         self.per_lever.get(k).map_or(S::one(), |per_lever| S::one() / *per_lever)
     }
 
+    /// What the coordinate `k` does, and along or about which axis of what its joint hangs on; of a ball, of the body.
+    pub fn coordinate(&self, k: usize) -> (Kind, Vector3<S>) {
+        self.coordinates.get(k).map_or((Kind::Still, Vector3::zeros()), |found| (found.kind, found.axis))
+    }
+
     /// Whether the coordinate `k` moves a body.
     #[inline(always)]
-    fn is_moved(&self, k: usize, body: usize) -> bool {
+    pub fn is_moved(&self, k: usize, body: usize) -> bool {
         self.moves.get(k).and_then(|moves| moves.get(body)).copied().unwrap_or(false)
     }
 

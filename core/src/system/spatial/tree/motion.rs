@@ -41,7 +41,7 @@ pub struct Placed<S, const N: usize, const W: usize, const D: usize> {
     /// The axis of each coordinate.
     pub(super) axes: [Vector3<S>; D],
     /// J: the velocities (m/s, rad/s) of the free bodies, body by body, by those of the coordinates; in the axes of the frame.
-    pub(super) transform: SMatrix<S, W, D>,
+    pub transform: SMatrix<S, W, D>,
 }
 
 impl<S: Scalar, const N: usize, const W: usize, const D: usize> Placed<S, N, W, D> {

@@ -35,6 +35,26 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
         pose
     }
 
+    /// The way back: displacements (m), angles (rad) and rotation vectors. `whole_angle` gives the angle, of half of which there are
+    /// cosine and sine.
+    pub fn places(&self, pose: &[[S; 2]; D], whole_angle: impl Fn([S; 2]) -> S) -> [S; D] {
+        let mut places = [S::zero(); D];
+        for (k, (coordinate, half)) in self.coordinates.iter().zip(pose).enumerate() {
+            match coordinate.kind {
+                Kind::Slide => put(&mut places, k, [half[0]]),
+                Kind::Turn => put(&mut places, k, [whole_angle(*half)]),
+                Kind::Ball => {
+                    let Orientation { w, v } = ball(pose, k).orientation;
+                    let length = v.dot(&v).sqrt();
+                    let share = whole_angle([w, length]) / length.max_of(S::from_f64(1e-30));
+                    put(&mut places, k, (v * share).data.0[0]);
+                }
+                Kind::OfBall | Kind::Still => {}
+            }
+        }
+        places
+    }
+
     /// `pose` + `dt`·Q̇ with the `velocity` held: implicit in the pose, or not.
     #[inline(always)]
     pub(super) fn updated(
@@ -97,9 +117,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
                 }
                 Kind::Ball => {
                     let turning = turn_rate(&three(displacement, k), &three(velocity, k));
-                    if let Some([x, y, z]) = rate.data.0[0].get_mut(k..).and_then(|rest| rest.first_chunk_mut::<3>()) {
-                        (*x, *y, *z) = (turning.x, turning.y, turning.z);
-                    }
+                    put(&mut rate.data.0[0], k, turning.data.0[0]);
                 }
                 Kind::Slide | Kind::OfBall | Kind::Still => {}
             }
@@ -121,6 +139,14 @@ pub(super) fn ball<S: Scalar, const D: usize>(pose: &[[S; 2]; D], k: usize) -> P
     let numbers = pose.get(k..).map(<[_]>::as_flattened).and_then(|rest| rest.first_chunk::<4>());
     let [w, x, y, z] = numbers.copied().unwrap_or([S::one(), S::zero(), S::zero(), S::zero()]);
     Pose { displacement_w: Vector3::zeros(), orientation: Orientation { w, v: Vector3::new(x, y, z) } }
+}
+
+/// Writes `values` from `k` on.
+#[inline(always)]
+fn put<S: Scalar, const M: usize>(numbers: &mut [S], k: usize, values: [S; M]) {
+    if let Some(places) = numbers.get_mut(k..).and_then(|rest| rest.first_chunk_mut::<M>()) {
+        *places = values;
+    }
 }
 
 #[inline(always)]
