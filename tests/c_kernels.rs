@@ -121,6 +121,7 @@ macro_rules! of_mechanisms {
 fn kernels() -> Vec<Kernel> {
     let mechanisms = of_mechanisms! {
         four_bar, "four-bar", drive_motor, 300;
+        ball_rod, "ball-rod", drive_motor, 300;
         hatch, "hatch", drive_motor, 300;
         linear_guide, "linear-guide", drive_motor, 300;
         slider_crank, "slider-crank", drive_motor, 300;

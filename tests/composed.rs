@@ -12,7 +12,7 @@ use slipfit_core::{
     integrator::{Extrapolated, Integrator},
     kernel::Kernel,
     mechanism::Mechanism as Mechanics,
-    system::System,
+    system::{System, ThroughJoints},
 };
 use slipfit_problems::mechanisms;
 use slipfit_tests::known_runs::mechanism_rows;
@@ -46,6 +46,7 @@ where
 #[test]
 fn what_is_written_is_current() {
     for name in [
+        "ball-rod",
         "four-bar",
         "hatch",
         "linear-guide",
@@ -113,6 +114,27 @@ in_space! {
     a_linear_guide_has_the_desks_bits: linear_guide, 1;
     a_hatch_has_the_desks_bits: hatch, 1;
     a_drawer_has_the_desks_bits: telescopic_drawer, 2;
+}
+
+/// The desk has room for more coordinates than the composed type has; those stand still and change no bit.
+#[test]
+fn a_ball_rod_has_the_desks_bits() {
+    use mechanisms::ball_rod::{DIMENSION, STEP, STEPS, Scheme, start, unit};
+    let mechanism = scene("ball-rod");
+    let gaps = mechanism.gaps_at(&[0.0]).unwrap();
+    let mounts = spatial::mounts(&mechanism).unwrap().expect("ideal joints");
+    let tree = spatial::tree::<3, 18, 8>(&mechanism, &mounts).unwrap();
+    let elements = spatial::elements(&mechanism, &gaps, NO_STICK).unwrap();
+    let chosen = System::new(tree, ThroughJoints(&elements[..]));
+    let one = Kernel::<f64, _, Scheme>::new(unit(0.0).unwrap(), f64::from(STEP)).unwrap();
+    let other = Kernel::<f64, _, Scheme>::new(chosen, f64::from(STEP)).unwrap();
+    let (mut a, mut b) = (one.at_rest::<DIMENSION>(start().0), other.at_rest::<8>(tree.nominal()));
+    for k in 0..STEPS {
+        assert_eq!(one.step(&mut a), other.step(&mut b), "step {k}");
+        let (pose, velocity) = (&b.motion.pose[..DIMENSION], &b.motion.velocity.as_slice()[..DIMENSION]);
+        assert_eq!((&a.motion.pose[..], a.motion.velocity.as_slice()), (pose, velocity), "step {k}");
+    }
+    assert!(a.motion.velocity.norm() > 1.0, "it moves");
 }
 
 /// The greatest error of the drive's `effort` by steps of one length (s), as a share of its peak in the reference run `file`, whose

@@ -23,7 +23,7 @@ const RUNGS: [&str; 8] = [
 const MECHANISMS: [&str; 4] = ["slider_crank", "slider_crank_guide", "four_bar", "woodpecker_toy"];
 
 /// Shipped mechanisms in space, by implicit Euler.
-const IN_SPACE: [&str; 3] = ["hatch", "linear_guide", "telescopic_drawer"];
+const IN_SPACE: [&str; 4] = ["hatch", "linear_guide", "telescopic_drawer", "ball_rod"];
 
 /// What the image printed.
 static ON_TARGET: LazyLock<String> = LazyLock::new(|| {

@@ -25,7 +25,7 @@ and change it. The word behind the command is the scene's name; its file is `hos
 - Dimensions that add up: `three-part-stack`, `clutch`, `clutch-processes`, `shaft-housing`, `linear-chain`, `worn-tool`.
 - Parts with geometric tolerances: `three-locators`, `lid-on-pins`, `cd-rom-slide-drawing`.
 - Mechanisms in a plane: `slider-crank`, `slider-crank-guide`, `four-bar`, `woodpecker-toy`.
-- Mechanisms in space: `linear-guide`, `telescopic-drawer`, `hatch`.
+- Mechanisms in space: `linear-guide`, `telescopic-drawer`, `hatch`, `ball-rod`.
 
 How to read the answers:
 

@@ -24,6 +24,7 @@ pub const SHIPPED: &[(&str, &str)] = &[
     ("linear-guide", include_str!("../../scenes/linear-guide.toml")),
     ("telescopic-drawer", include_str!("../../scenes/telescopic-drawer.toml")),
     ("hatch", include_str!("../../scenes/hatch.toml")),
+    ("ball-rod", include_str!("../../scenes/ball-rod.toml")),
 ];
 
 /// The text of the shipped scene of this name.

@@ -207,6 +207,6 @@ mod tests {
             }
             drawn += 1;
         }
-        assert!(drawn >= 7, "{drawn}");
+        assert!(drawn >= 8, "{drawn}");
     }
 }

@@ -18,6 +18,9 @@ pub mod slider_crank_guide;
 /// Telescopic drawer of two members.
 #[rustfmt::skip]
 pub mod telescopic_drawer;
+/// Crank, ball rod and slide.
+#[rustfmt::skip]
+pub mod ball_rod;
 /// Woodpecker toy.
 #[rustfmt::skip]
 pub mod woodpecker_toy;

@@ -131,14 +131,17 @@ pub const MECHANISM: &[(&str, &str)] = &[
         "Moments of inertia about the centre of mass. In space a list of three, about x, y and z; in a plane one number.",
     ),
     ("body.centre", "Centre of mass in the pose in which the mechanism is drawn."),
-    ("body.angle", "In a plane: rotation from the drawn pose at the start. Default: 0."),
-    ("body.spin", "In a plane: angular velocity at the start. Default: 0."),
-    ("body.speed", "In a plane: speed at the start along the axis of the body's joint. Default: 0."),
+    (
+        "body.angle",
+        "Rotation from the drawn pose at the start, in space about the axis of the body's ideal joint. Default: 0.",
+    ),
+    ("body.spin", "Angular velocity at the start, in space about the axis of the body's ideal joint. Default: 0."),
+    ("body.speed", "Speed at the start along the axis of the body's ideal joint. Default: 0."),
     ("joint.name", "Name of the joint."),
     (
         "joint.kind",
-        "What the joint is. In a plane: `fixed`, `revolute`, `prismatic`, `pin-slot`, `stop`. In space: `cylindrical`, \
-         `track`, `stop`. The column *takes* shows those in space.",
+        "What the joint is. In a plane: `fixed`, `revolute`, `prismatic`, `pin-slot`, `stop`. In space: `fixed`, \
+         `revolute`, `prismatic`, `cylindrical`, `spherical`, `track`, `stop`. The column *takes* shows those in space.",
     ),
     (
         "joint.between",
@@ -149,7 +152,8 @@ pub const MECHANISM: &[(&str, &str)] = &[
     ("joint.at", "Place of the joint in the drawn pose."),
     (
         "joint.axis",
-        "Direction of the sliding or of the bearing. Required by `prismatic`, `pin-slot` and `cylindrical`.",
+        "Direction of the sliding, or axis of the turning. Required by `prismatic`, `pin-slot` and `cylindrical`, in space also by \
+         `revolute`.",
     ),
     (
         "joint.normal",
@@ -159,11 +163,11 @@ pub const MECHANISM: &[(&str, &str)] = &[
     (
         "joint.clearance",
         "Gap: mean and standard deviation, or the name of a measure. Of `revolute` and `cylindrical` it is radial, of \
-         `prismatic` on either side, of `stop` the distance to the wall. Required by `cylindrical` and `stop`. `revolute` and \
-         `prismatic` without it are ideal, without play.",
+         `prismatic` on either side, of `stop` the distance to the wall. Required by `stop`. `revolute`, `prismatic` and \
+         `cylindrical` without it are ideal, without play; in space `revolute` and `prismatic` always are.",
     ),
-    ("joint.radius", "Radius of the pin or rod. Required by `cylindrical`, and by `revolute` with a clearance."),
-    ("joint.length", "Length along the axis. Required by `cylindrical`, and by `prismatic` with a clearance."),
+    ("joint.radius", "Radius of the pin or rod. Required by `cylindrical` and `revolute` with a clearance."),
+    ("joint.length", "Length along the axis. Required by `cylindrical` and `prismatic` with a clearance."),
     ("joint.width", "Width across the axis. Required by `prismatic` with a clearance."),
     (
         "joint.left",

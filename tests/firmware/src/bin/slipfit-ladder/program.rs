@@ -198,6 +198,7 @@ mechanisms! {
     hatch;
     linear_guide;
     telescopic_drawer;
+    ball_rod;
 }
 
 /// Says what a Newton pass of the full slide takes, its iteration matrix and solution included: a step of two passes less one of
