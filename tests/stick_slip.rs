@@ -99,7 +99,11 @@ impl Mechanism<f64, 1> for OnBelt {
         let contact = self.sliding(velocity, self.mass / a, tangent_share);
         Balance {
             force: self.forces(t, pose, internal, velocity, a, None),
-            iteration_matrix: self.iteration_matrix(&self.friction.traction(internal, &contact).0.impedance[0], a),
+            iteration_matrix: self.iteration_matrix(
+                &self.friction.traction(internal, &contact).0.impedance[0],
+                velocity,
+                a,
+            ),
         }
     }
 
@@ -126,7 +130,7 @@ impl Mechanism<f64, 1> for OnBelt {
         }
     }
 
-    fn iteration_matrix(&self, damping: &f64, a: f64) -> f64 {
+    fn iteration_matrix(&self, damping: &f64, _: &SVector<f64, 1>, a: f64) -> f64 {
         self.mass / a + damping + a * self.stiffness
     }
 

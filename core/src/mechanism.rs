@@ -193,11 +193,19 @@ pub trait Mechanism<S: Scalar, const D: usize> {
         velocity: &SVector<S, D>,
     ) -> Differentiated<S, Self::Jacobians, D>;
 
-    /// Iteration matrix of momentum/`a` − force with respect to a velocity that also moves the pose over the time `a` (s).
-    fn iteration_matrix(&self, jacobians: &Self::Jacobians, a: S) -> Self::IterationMatrix;
+    /// Iteration matrix of momentum/`a` − force with respect to a velocity that also moves the pose over the time `a` (s), by
+    /// [`displacement`](Self::displacement); these are the `jacobians` of a motion with this `velocity`.
+    fn iteration_matrix(&self, jacobians: &Self::Jacobians, velocity: &SVector<S, D>, a: S) -> Self::IterationMatrix;
 
     /// How the force changes (N, N·m) with a small `displacement` (m, rad).
     fn pushed(&self, jacobians: &Self::Jacobians, displacement: &SVector<S, D>) -> SVector<S, D>;
+
+    /// The displacement x (m, rad) that solves x = `a`·(`rate` + ∂R/∂x·x) over the time `a` (s), where R is the
+    /// [`rate`](Self::rate) at no displacement and with the `velocity`: `a`·`rate` where coordinates are straight.
+    #[inline(always)]
+    fn displacement(&self, _velocity: &SVector<S, D>, rate: &SVector<S, D>, a: S) -> SVector<S, D> {
+        rate * a
+    }
 
     /// The rate (m/s, rad/s) of a `displacement` x from a pose, such that `explicit_update(pose, x, 1)` is the pose, while the body
     /// moves with `velocity`. It is the velocity at no displacement, and everywhere where coordinates are straight.

@@ -171,9 +171,17 @@ pub(crate) fn turn_rate<S: Scalar>(turn_b: &Vector3<S>, angular_velocity_b: &Vec
     angular_velocity_b + cross(&half, angular_velocity_b) + half * dot(&half, angular_velocity_b)
 }
 
+/// The turn θ (rad) that solves θ = `a`·(`rate` + ½·θ × ω), see [`turn_rate`], over the time `a` (s) with the angular velocity ω (rad/s).
+#[inline(always)]
+pub(crate) fn turned_over<S: Scalar>(angular_velocity: &Vector3<S>, rate: &Vector3<S>, a: S) -> Vector3<S> {
+    let half = angular_velocity * (a * S::from_f64(0.5));
+    let turned = rate - cross(&half, rate) + half * dot(&half, rate);
+    turned * (a / (S::one() + dot(&half, &half)))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Pose;
+    use super::{Pose, turn_rate, turned_over};
     use crate::Vector3;
 
     #[test]
@@ -188,6 +196,17 @@ mod tests {
         }
         let x_w = pose.to_body().apply_inverse(Vector3::x());
         assert!((x_w - Vector3::x()).norm_squared() < 1e-14, "{x_w}");
+    }
+
+    #[test]
+    fn what_turns_over_a_time_solves_its_equation() {
+        let (omega, rate, a) = (Vector3::<f64>::new(3.0, -1.0, 2.0), Vector3::new(0.4, 0.5, -0.2), 0.3);
+        let turned = turned_over(&omega, &rate, a);
+        let half = turned * 0.5;
+        assert!((turned - (rate + half.cross(&omega)) * a).norm() < 1e-15);
+        // The cross product is what the rate changes by with a small turn.
+        let small = turned * 1e-7;
+        assert!(((turn_rate(&small, &omega) - omega) * 1e7 - half.cross(&omega)).norm() < 1e-6);
     }
 
     #[test]

@@ -128,7 +128,7 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
         let (pose, velocity, internal) = from;
         let Differentiated { force, per_time, jacobians } = mechanism.differentiated(t, pose, internal, velocity);
         let a = h * S::from_f64(gamma);
-        let iteration_matrix = mechanism.iteration_matrix(&jacobians, a);
+        let iteration_matrix = mechanism.iteration_matrix(&jacobians, velocity, a);
         let start = Self { mechanism, from, t, h, a, per_step: S::one() / h, per_time, jacobians, iteration_matrix };
         (start, Evaluation { force, rate: *velocity })
     }
@@ -158,9 +158,10 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
             force += mechanism.momentum_by(&self.jacobians, self.from.0, &before.velocity) * per_step;
         }
         // The equation of the place is solved for first.
+        let displaced = |rate: &SVector<S, D>| mechanism.displacement(self.from.1, rate, a);
         let velocity =
-            mechanism.solve(&self.iteration_matrix, &(force + mechanism.pushed(&self.jacobians, &(rate * a))));
-        Part { place: (velocity + rate) * a, velocity }
+            mechanism.solve(&self.iteration_matrix, &(force + mechanism.pushed(&self.jacobians, &displaced(&rate))));
+        Part { place: displaced(&(velocity + rate)), velocity }
     }
 
     /// The end of the step, which is the `whole` of its parts; `last` is the difference from the embedded method.

@@ -53,6 +53,25 @@ pub trait Bodies<S: Scalar, const D: usize> {
     /// See [`Mechanism::rate`](crate::mechanism::Mechanism::rate).
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D>;
 
+    /// See [`Mechanism::displacement`](crate::mechanism::Mechanism::displacement).
+    #[inline(always)]
+    fn displacement(&self, _velocity: &SVector<S, D>, rate: &SVector<S, D>, a: S) -> SVector<S, D> {
+        rate * a
+    }
+
+    /// `matrix` with the `stiffness` of what a rate displaces over the time `a` (s); both are in the `axes` in which elements add up,
+    /// the `velocity` is not.
+    #[inline(always)]
+    fn stiffened(
+        &self,
+        matrix: Self::Jacobian,
+        stiffness: &Self::Jacobian,
+        (_axes, _velocity): (&Self::Axes, &SVector<S, D>),
+        a: S,
+    ) -> Self::Jacobian {
+        matrix.plus(stiffness, a)
+    }
+
     /// The bodies at `pose`, moving with `velocity`.
     fn placed(&self, pose: &Self::Pose, velocity: &SVector<S, D>) -> Self::Placed;
 

@@ -289,9 +289,10 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     }
 
     #[inline(always)]
-    fn iteration_matrix(&self, jacobians: &Self::Jacobians, a: S) -> Self::IterationMatrix {
+    fn iteration_matrix(&self, jacobians: &Self::Jacobians, velocity: &SVector<S, D>, a: S) -> Self::IterationMatrix {
         let Jacobians { mass, axes, damping, stiffness } = jacobians;
-        let matrix = self.bodies.inertia(mass, S::one() / a).plus(damping, S::one()).plus(stiffness, a);
+        let matrix = self.bodies.inertia(mass, S::one() / a).plus(damping, S::one());
+        let matrix = self.bodies.stiffened(matrix, stiffness, (axes, velocity), a);
         IterationMatrix { factors: matrix.factorised(), axes: *axes }
     }
 
@@ -299,6 +300,11 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     fn pushed(&self, jacobians: &Self::Jacobians, displacement: &SVector<S, D>) -> SVector<S, D> {
         let Jacobians { axes, stiffness, .. } = jacobians;
         -axes.to_velocities(&stiffness.times(&axes.to_sum(displacement)))
+    }
+
+    #[inline(always)]
+    fn displacement(&self, velocity: &SVector<S, D>, rate: &SVector<S, D>, a: S) -> SVector<S, D> {
+        self.bodies.displacement(velocity, rate, a)
     }
 
     #[inline(always)]

@@ -233,12 +233,16 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechan
     }
 
     #[inline(never)]
-    fn iteration_matrix(&self, jacobians: &M::Jacobians, a: S) -> M::IterationMatrix {
-        self.mechanism.iteration_matrix(jacobians, a)
+    fn iteration_matrix(&self, jacobians: &M::Jacobians, velocity: &SVector<S, D>, a: S) -> M::IterationMatrix {
+        self.mechanism.iteration_matrix(jacobians, velocity, a)
     }
 
     fn pushed(&self, jacobians: &M::Jacobians, displacement: &SVector<S, D>) -> SVector<S, D> {
         self.mechanism.pushed(jacobians, displacement)
+    }
+
+    fn displacement(&self, velocity: &SVector<S, D>, rate: &SVector<S, D>, a: S) -> SVector<S, D> {
+        self.mechanism.displacement(velocity, rate, a)
     }
 
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {

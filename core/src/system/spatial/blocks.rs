@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::{SMatrix, SVector, Scalar, Vector3, linear::Blocks};
+use crate::{SMatrix, SVector, Scalar, Vector3, linear::Blocks, pose::turned_over};
 
 /// Adds a force (N) and a torque (N·m) on a body to `sum`; those on one that is not there are left out.
 #[inline(always)]
@@ -47,4 +47,37 @@ pub(super) fn add_blocks<S: Scalar, const D: usize>(matrix: &mut SMatrix<S, D, D
     add_block(matrix, [[body, VELOCITY], [body, TURNING]], b);
     add_block(matrix, [[body, TURNING], [body, VELOCITY]], c);
     add_block(matrix, [[body, TURNING], [body, TURNING]], d);
+}
+
+/// Adds the column `k` of `stiffness` times `a` to `matrix`.
+#[inline(always)]
+pub(super) fn add_column<S: Scalar, const D: usize>(
+    matrix: &mut SMatrix<S, D, D>,
+    stiffness: &SMatrix<S, D, D>,
+    k: usize,
+    a: S,
+) {
+    for (entry, by_place) in
+        matrix.data.0.iter_mut().zip(&stiffness.data.0).skip(k).take(1).flat_map(|(to, from)| to.iter_mut().zip(from))
+    {
+        *entry += *by_place * a;
+    }
+}
+
+/// Adds what three columns from `k` on of `stiffness`, for the turn of a body with the angular velocity `spin` (rad/s), make of an
+/// angular velocity over the time `a` (s).
+#[inline(always)]
+pub(super) fn add_turned<S: Scalar, const D: usize>(
+    matrix: &mut SMatrix<S, D, D>,
+    stiffness: &SMatrix<S, D, D>,
+    (k, spin): (usize, &Vector3<S>),
+    a: S,
+) {
+    let Some([x, y, z]) = stiffness.data.0.get(k..).and_then(|rest| rest.first_chunk::<3>()) else { return };
+    for (column, unit) in matrix.data.0.iter_mut().skip(k).zip([Vector3::x(), Vector3::y(), Vector3::z()]) {
+        let turned = turned_over(spin, &unit, a);
+        for (((entry, x), y), z) in column.iter_mut().zip(x).zip(y).zip(z) {
+            *entry += *x * turned.x + *y * turned.y + *z * turned.z;
+        }
+    }
 }

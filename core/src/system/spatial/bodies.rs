@@ -2,12 +2,12 @@
 
 use nalgebra::Matrix3;
 
-use super::blocks::{TURNING, VELOCITY, add_block, add_wrench};
+use super::blocks::{TURNING, VELOCITY, add_block, add_column, add_turned, add_wrench};
 use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector3,
     error::bounded,
     linear::{cross_columns, cross_matrix},
-    pose::{Pose, turn_rate},
+    pose::{Pose, turn_rate, turned_over},
     product::{columns, cross, product, times, transposed_times},
     system::{Axes, Bodies},
 };
@@ -261,6 +261,31 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
             (*x, *y, *z) = (turning.x, turning.y, turning.z);
         }
         rate
+    }
+
+    #[inline(always)]
+    fn displacement(&self, velocity: &SVector<S, D>, rate: &SVector<S, D>, a: S) -> SVector<S, D> {
+        let mut displaced = rate * a;
+        for (((_, spin), (_, rate)), [.., x, y, z]) in each(velocity).zip(each(rate)).zip(each_mut(&mut displaced)) {
+            let turned = turned_over(&spin, &rate, a);
+            (*x, *y, *z) = (turned.x, turned.y, turned.z);
+        }
+        displaced
+    }
+
+    #[inline(always)]
+    fn stiffened(
+        &self,
+        mut matrix: SMatrix<S, D, D>,
+        stiffness: &SMatrix<S, D, D>,
+        (axes, velocity): (&InFrame<S, N>, &SVector<S, D>),
+        a: S,
+    ) -> SMatrix<S, D, D> {
+        for (i, (_, spin)) in each(&axes.to_sum(velocity)).enumerate() {
+            (6 * i..6 * i + 3).for_each(|k| add_column(&mut matrix, stiffness, k, a));
+            add_turned(&mut matrix, stiffness, (6 * i + 3, &spin), a);
+        }
+        matrix
     }
 
     #[inline(always)]

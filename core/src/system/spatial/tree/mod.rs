@@ -12,7 +12,10 @@ mod pose;
 #[cfg(test)]
 mod tests;
 
-use super::{FreeBodies, Rigid};
+use super::{
+    FreeBodies, Rigid,
+    blocks::{add_column, add_turned},
+};
 use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector3,
     error::bounded,
@@ -224,6 +227,29 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> Bodies<S, D> for
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
         self.rate_at(displacement, velocity)
+    }
+
+    #[inline(always)]
+    fn displacement(&self, velocity: &SVector<S, D>, rate: &SVector<S, D>, a: S) -> SVector<S, D> {
+        self.displaced(velocity, rate, a)
+    }
+
+    #[inline(always)]
+    fn stiffened(
+        &self,
+        mut matrix: SMatrix<S, D, D>,
+        stiffness: &SMatrix<S, D, D>,
+        ((), velocity): (&(), &SVector<S, D>),
+        a: S,
+    ) -> SMatrix<S, D, D> {
+        for (k, coordinate) in self.coordinates.iter().enumerate() {
+            match coordinate.kind {
+                Kind::Slide | Kind::Turn => add_column(&mut matrix, stiffness, k, a),
+                Kind::Ball => add_turned(&mut matrix, stiffness, (k, &pose::three(velocity, k)), a),
+                Kind::OfBall | Kind::Still => {}
+            }
+        }
+        matrix
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use super::{SpatialTree, joint::Kind};
 use crate::{
     SVector, Scalar, Vector3,
-    pose::{Orientation, Pose, turn_rate},
+    pose::{Orientation, Pose, turn_rate, turned_over},
     system::half_turn,
 };
 
@@ -102,6 +102,17 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
             }
         }
         next
+    }
+
+    /// See [`Mechanism::displacement`](crate::mechanism::Mechanism::displacement).
+    #[inline(always)]
+    pub(super) fn displaced(&self, velocity: &SVector<S, D>, rate: &SVector<S, D>, a: S) -> SVector<S, D> {
+        let mut displaced = rate * a;
+        for (k, _) in self.coordinates.iter().enumerate().filter(|(_, coordinate)| coordinate.kind == Kind::Ball) {
+            let turned = turned_over(&three(velocity, k), &three(rate, k), a);
+            put(&mut displaced.data.0[0], k, turned.data.0[0]);
+        }
+        displaced
     }
 
     /// See [`Mechanism::rate`](crate::mechanism::Mechanism::rate).
