@@ -12,7 +12,7 @@
 
 use super::{
     SpatialTree,
-    motion::{Pairs, Placed, add_pair, pair, times, transposed},
+    motion::{Pairs, Placed, add_pair, pair, times},
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
@@ -89,7 +89,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
 
     /// Adds how gravity and inertia go by the velocities and by the places of the coordinates, negated, while their accelerations are
     /// held.
-    #[inline(always)]
+    #[inline(never)] // For size.
     pub(super) fn add_own_jacobians(
         &self,
         placed: &Placed<S, N, W, D>,
@@ -124,13 +124,13 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
                     + gyroscopic(&change.velocity[1]);
                 add_pair(&mut by_place.data.0[0], i, &[centre * body.mass, by_turn]);
             }
-            add_column(damping, k, &transposed(&placed.transform, &by_rate));
-            add_column(stiffness, k, &transposed(&placed.transform, &by_place));
+            add_column(damping, k, &self.reduced(placed, &by_rate));
+            add_column(stiffness, k, &self.reduced(placed, &by_place));
         }
     }
 
     /// Subtracts what J makes of a `wrench` on the bodies as it turns with the coordinates, times `weight`: ∂(Jᵀ)/∂Q·F.
-    #[inline(always)]
+    #[inline(never)] // For size.
     fn subtract_turned(
         &self,
         placed: &Placed<S, N, W, D>,
@@ -166,7 +166,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
 
     /// Adds Jᵀ·`matrix`·J, where the matrix tells how a `wrench` on the free bodies goes, negated, by velocities that also move them
     /// over the time `a` (s). How velocities change with J meanwhile is left out: it steers, the force decides.
-    #[inline(always)]
+    #[inline(never)] // For size.
     pub(super) fn add_impedance(
         &self,
         placed: &Placed<S, N, W, D>,
@@ -175,16 +175,16 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
         sum: &mut SMatrix<S, D, D>,
     ) {
         for k in 0..D {
-            let mut by_rate = times(matrix, &column(&placed.transform, k));
+            let mut by_rate = self.by_column(placed, matrix, k);
             self.add_seen(placed, k, &(wrench * a), &mut by_rate);
-            add_column(sum, k, &transposed(&placed.transform, &by_rate));
+            add_column(sum, k, &self.reduced(placed, &by_rate));
         }
         self.subtract_turned(placed, wrench, a, sum);
     }
 
     /// Adds to `damping` and `stiffness` how a `wrench` on the free bodies goes by the coordinates, where `by_rate` and `by_place`
     /// tell how it goes by the velocities and places of the bodies, all negated.
-    #[inline(always)]
+    #[inline(never)] // For size.
     pub(super) fn add_derivatives(
         &self,
         placed: &Placed<S, N, W, D>,
@@ -195,8 +195,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
     ) {
         let none = (SVector::zeros(), [[Vector3::zeros(); 2]; N]);
         for k in 0..D {
-            let moved = column(&placed.transform, k);
-            add_column(damping, k, &transposed(&placed.transform, &times(by_rate, &moved)));
+            add_column(damping, k, &self.reduced(placed, &self.by_column(placed, by_rate, k)));
             // Places of free bodies hold velocities in the frame, and angular ones in the body.
             let mut change = SVector::<S, W>::zeros();
             for (i, at) in placed.free.bodies.iter().enumerate() {
@@ -206,9 +205,9 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
                     add_pair(&mut change.data.0[0], i, &[centre, turning - cross(&axis, &at.rotation_w)]);
                 }
             }
-            let mut sum = times(by_place, &moved) + times(by_rate, &change);
+            let mut sum = self.by_column(placed, by_place, k) + times(by_rate, &change);
             self.add_seen(placed, k, wrench, &mut sum);
-            add_column(stiffness, k, &transposed(&placed.transform, &sum));
+            add_column(stiffness, k, &self.reduced(placed, &sum));
         }
         self.subtract_turned(placed, wrench, S::one(), stiffness);
     }
@@ -217,17 +216,11 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
     /// of torques as the bodies see them.
     #[inline(always)]
     fn add_seen(&self, placed: &Placed<S, N, W, D>, k: usize, wrench: &SVector<S, W>, sum: &mut SVector<S, W>) {
-        for body in 0..N {
+        for body in (0..N).filter(|body| self.is_moved(k, *body)) {
             let ([_, axis], [_, torque]) = (placed.column(k, body), pair(&wrench.data.0[0], body));
             add_pair(&mut sum.data.0[0], body, &[Vector3::zeros(), cross(&torque, &axis)]);
         }
     }
-}
-
-/// A column of `matrix`.
-#[inline(always)]
-fn column<S: Scalar, const R: usize, const C: usize>(matrix: &SMatrix<S, R, C>, k: usize) -> SVector<S, R> {
-    matrix.data.0.get(k).map_or(SVector::zeros(), |column| SVector::from(*column))
 }
 
 /// Adds `values` to a column of `matrix`.

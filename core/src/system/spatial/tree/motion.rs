@@ -10,7 +10,7 @@ use super::{
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
     linear::{cross_columns, cross_matrix},
-    product::{columns, cross, product, times as of_three, transposed_times},
+    product::{columns, cross, dot, product, times as of_three, transposed_times},
     system::{
         half_turn::less_and_sine,
         spatial::{Placed as PlacedBodies, PlacedBody},
@@ -54,7 +54,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> Placed<S, N, W, 
 
 impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N, W, D> {
     /// Where the bodies are in `pose`, and how fast they move by the `rates` of the coordinates.
-    #[inline(always)]
+    #[inline(never)] // For size, as below.
     pub(super) fn moving(&self, pose: &[[S; 2]; D], rates: &SVector<S, D>) -> Placed<S, N, W, D> {
         let zero = Vector3::zeros();
         let still = PlacedJoint { arms: [zero; 2], sliding: zero, turning: zero };
@@ -156,7 +156,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
     }
 
     /// Accelerations of the centres of mass (m/s²) and of turning (rad/s²), where those of the coordinates are `of_coordinates`.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn accelerations(&self, placed: &Placed<S, N, W, D>, of_coordinates: &SVector<S, D>) -> Pairs<S, N> {
         let mut found = [[Vector3::zeros(); 2]; N];
         for (mount, joint) in self.mounts.iter().zip(&placed.joints) {
@@ -199,7 +199,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
     }
 
     /// Gravity and what resists the `accelerations` of the bodies: force (N) and torque (N·m) of each.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn own_wrench(&self, placed: &Placed<S, N, W, D>, accelerations: &Pairs<S, N>) -> SVector<S, W> {
         let mut wrench = SVector::<S, W>::zeros();
         let bodies = self.free.bodies().iter().zip(&placed.free.bodies).zip(accelerations);
@@ -215,11 +215,39 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
     /// Jᵀ·`wrench`: what forces (N) and torques (N·m) on the bodies, in the axes of the frame, are by the coordinates.
     #[inline(always)]
     pub(super) fn reduced(&self, placed: &Placed<S, N, W, D>, wrench: &SVector<S, W>) -> SVector<S, D> {
-        transposed(&placed.transform, wrench)
+        let mut force = SVector::<S, D>::zeros();
+        for (k, (sum, column)) in force.data.0[0].iter_mut().zip(&placed.transform.data.0).enumerate() {
+            for body in 0..N {
+                if self.is_moved(k, body) {
+                    let [moved, turned] = pair(column, body);
+                    let [force, torque] = pair(&wrench.data.0[0], body);
+                    *sum += dot(&moved, &force) + dot(&turned, &torque);
+                }
+            }
+        }
+        force
+    }
+
+    /// What `matrix` makes of the velocities by the coordinate `k`.
+    #[inline(always)]
+    pub(super) fn by_column(&self, placed: &Placed<S, N, W, D>, matrix: &SMatrix<S, W, W>, k: usize) -> SVector<S, W> {
+        let mut product = SVector::<S, W>::zeros();
+        let Some(velocities) = placed.transform.data.0.get(k) else { return product };
+        let of_bodies = matrix.data.0.as_chunks::<6>().0.iter().zip(velocities.as_chunks::<6>().0);
+        for (body, (columns, velocities)) in of_bodies.enumerate() {
+            if self.is_moved(k, body) {
+                for (column, velocity) in columns.iter().zip(velocities) {
+                    for (sum, entry) in product.data.0[0].iter_mut().zip(column) {
+                        *sum += *entry * *velocity;
+                    }
+                }
+            }
+        }
+        product
     }
 
     /// Jᵀ·M·J; 1 on the diagonal of coordinates that no joint uses.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn reduced_mass(&self, placed: &Placed<S, N, W, D>) -> SMatrix<S, D, D> {
         let mut inertia = [Matrix3::zeros(); N];
         for ((inertia, body), at) in inertia.iter_mut().zip(self.free.bodies()).zip(&placed.free.bodies) {
@@ -229,10 +257,13 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
         for (k, (column, coordinate)) in mass.data.0.iter_mut().zip(&self.coordinates).enumerate() {
             let mut momentum = [S::zero(); W];
             for (i, (body, inertia)) in self.free.bodies().iter().zip(&inertia).enumerate() {
+                if !self.is_moved(k, i) {
+                    continue;
+                }
                 let [moved, turned] = placed.column(k, i);
                 add_pair(&mut momentum, i, &[moved * body.mass, of_three(inertia, &turned)]);
             }
-            *column = transposed(&placed.transform, &SVector::from(momentum)).data.0[0];
+            *column = self.reduced(placed, &SVector::from(momentum)).data.0[0];
             if let Some(own) = column.get_mut(k).filter(|_| coordinate.kind == Kind::Still) {
                 *own = S::one();
             }
@@ -275,21 +306,6 @@ pub(super) fn times<S: Scalar, const R: usize, const C: usize>(
     let mut result = SVector::<S, R>::zeros();
     for (column, x) in matrix.data.0.iter().zip(&v.data.0[0]) {
         for (sum, entry) in result.data.0[0].iter_mut().zip(column) {
-            *sum += *entry * *x;
-        }
-    }
-    result
-}
-
-/// `matrix`ᵀ·`v`, summed in order.
-#[inline(always)]
-pub(super) fn transposed<S: Scalar, const R: usize, const C: usize>(
-    matrix: &SMatrix<S, R, C>,
-    v: &SVector<S, R>,
-) -> SVector<S, C> {
-    let mut result = SVector::<S, C>::zeros();
-    for (sum, column) in result.data.0[0].iter_mut().zip(&matrix.data.0) {
-        for (entry, x) in column.iter().zip(&v.data.0[0]) {
             *sum += *entry * *x;
         }
     }
