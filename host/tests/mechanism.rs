@@ -110,7 +110,7 @@ fn the_main_job_of_a_mechanism_answers_and_writes_its_files() {
         assert!(out.join(file).exists(), "{file}");
     }
     let page = std::fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(page.contains("peak torque<br/>(N·m)") && page.contains("big end: revolute, gap 0.2 mm"), "{page}");
+    assert!(page.contains("peak torque<br>(N·m)") && page.contains("big end: revolute, gap 0.2 mm"), "{page}");
     let csv = std::fs::read_to_string(out.join("sweep.csv")).unwrap();
     assert!(csv.starts_with("n,breakaway_s,peak_torque_N_m,") && csv.lines().next().unwrap().ends_with(",big end"));
     let report = json(folder.path(), &[&run[..], &["--json"]].concat());

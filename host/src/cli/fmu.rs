@@ -1,12 +1,10 @@
 //! `slipfit fmu`: the scene's kernel as a co-simulation unit.
 
-use std::{
-    fmt::Write,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use maud::{DOCTYPE, Markup, html};
 use serde::Serialize;
 
 use super::{Failure, Moving, SceneArguments, kernel::core_folder, print, print_json, simulate::ControllerArguments};
@@ -16,7 +14,7 @@ use crate::{
         Causality, CompileError, Entry, Fmi, Sources, Unit, archive, compile, description, identifier, library_path,
         mechanism_unit, slide_unit,
     },
-    show::markup::{escape, printable},
+    show::xml::printable,
     system::{files, interrupt},
 };
 
@@ -128,7 +126,7 @@ impl Arguments {
             ("modelDescription.xml".into(), description(unit, fmi, &name).into_bytes()),
             (library_path(fmi, &name), library),
             (Path::new("resources").join("scene.toml"), (settings + &scene).into_bytes()),
-            (Path::new("documentation").join("index.html"), documentation(unit).into_bytes()),
+            (Path::new("documentation").join("index.html"), documentation(unit).into_string().into_bytes()),
         ])
     }
 
@@ -161,27 +159,35 @@ fn causality(of: Causality) -> &'static str {
 }
 
 /// A page that says what the unit is.
-fn documentation(unit: &Unit) -> String {
-    let title = escape(&unit.title);
-    let mut text = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{title}</title></head>\n<body>\n<h1>{title}</h1>\n\
-         <p>The controller's kernel, {}. It steps by {} s from the start of the simulation on. At a communication point its motion is \
-         that of its last instant at or before it, so that the trajectory does not depend on communication steps. Inputs count from \
-         the next of its steps on. Fixed parameters are set before initialization ends or after a reset, tunable ones at any \
-         communication point.</p>\n<table>\n<tr><th>name</th><th>what</th><th>unit</th><th>start</th><th>description</th></tr>\n",
-        escape(&unit.token),
-        unit.step
-    );
-    for one in &unit.variables {
-        let start = one.start.map(|start| format!("{start:?}")).unwrap_or_default();
-        let _ = writeln!(
-            text,
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{start}</td><td>{}</td></tr>",
-            escape(&one.name),
-            causality(one.causality),
-            one.unit,
-            escape(&one.description)
-        );
+fn documentation(unit: &Unit) -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                title { (unit.title) }
+            }
+            body {
+                h1 { (unit.title) }
+                p {
+                    "The controller's kernel, " (unit.token) ". It steps by " (unit.step) " s from the start of the simulation on. "
+                    "At a communication point its motion is that of its last instant at or before it, so that the trajectory does "
+                    "not depend on communication steps. Inputs count from the next of its steps on. Fixed parameters are set before "
+                    "initialization ends or after a reset, tunable ones at any communication point."
+                }
+                table {
+                    tr { @for heading in ["name", "what", "unit", "start", "description"] { th { (heading) } } }
+                    @for one in &unit.variables {
+                        tr {
+                            td { (one.name) }
+                            td { (causality(one.causality)) }
+                            td { (one.unit) }
+                            td { @if let Some(start) = one.start { (format_args!("{start:?}")) } }
+                            td { (one.description) }
+                        }
+                    }
+                }
+            }
+        }
     }
-    text + "</table>\n</body>\n</html>\n"
 }

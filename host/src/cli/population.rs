@@ -308,7 +308,7 @@ impl Arguments {
             let svg = picture::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;
             units.figures.push(Figure { caption: HYPOTHESIS.into(), svg });
             let words = self.summary(scene, &found);
-            files::write(path, units_page(&scene.title, &words, &units, &warnings).as_bytes())?;
+            files::write(path, units_page(&scene.title, &words, &units, &warnings).into_string().as_bytes())?;
         }
         if self.scene.json {
             let worst = UnitReport::worst(scene, &found.population.tally);

@@ -5,6 +5,7 @@ mod words;
 use std::path::PathBuf;
 
 use clap::Args;
+use maud::Markup;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
@@ -261,7 +262,8 @@ impl Arguments {
         let words = || self.describe(&scene, &run, controller.as_ref().map(Option::as_ref), &reports, shown);
         if let Some(path) = &self.page {
             let film = film(&scene, &scene.gaps_at(&n), MOMENTS)?;
-            files::write(path, self.page_of(&scene, &run, &film, (&words(), shown), &warnings)?.as_bytes())?;
+            let page = self.page_of(&scene, &run, &film, (&words(), shown), &warnings)?;
+            files::write(path, page.into_string().as_bytes())?;
         }
         if self.scene.json {
             let controller = controller.flatten().map(|run| ControllerReport {
@@ -298,7 +300,7 @@ impl Arguments {
         film: &Film,
         (words, n): (&str, &[f64]),
         remarks: &[String],
-    ) -> Result<String, Failure> {
+    ) -> Result<Markup, Failure> {
         let label = format!("{}: {}", self.of(n), word(run.outcome.verdict));
         let played = [player::of_slide(scene, label, film)];
         let player = player::figure(&played, "The desk's run, on its pins:").map_err(anyhow::Error::from)?;

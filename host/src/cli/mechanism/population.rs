@@ -121,7 +121,7 @@ pub fn conclude(
         let svg = hypothesis(driven.title(), &found.hypothesis);
         page.figures.push(Figure { caption: HYPOTHESIS.into(), svg: svg.map_err(anyhow::Error::from)? });
         let words = summary(driven, &found, limit);
-        files::write(path, units_page(&mechanism.title, &words, &page, &warnings).as_bytes())?;
+        files::write(path, units_page(&mechanism.title, &words, &page, &warnings).into_string().as_bytes())?;
     }
     if asked.scene.json {
         return print_json(&Report {

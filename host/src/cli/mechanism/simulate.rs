@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use maud::Markup;
 use nalgebra::Vector3;
 use serde::Serialize;
 
@@ -110,7 +111,7 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
     let computed = || computed(&desk, difference) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
     let words = || described(mechanism, label, one) + &computed();
     if let Some(path) = wanted.page {
-        files::write(path, page(mechanism, unit, one, &words())?.as_bytes())?;
+        files::write(path, page(mechanism, unit, one, &words())?.into_string().as_bytes())?;
     }
     if wanted.scene.json {
         let named = mechanism.drives.iter().zip(&one.outcomes);
@@ -144,7 +145,7 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
 }
 
 /// The page of `one` run of a unit, with the desk's for the player.
-fn page(mechanism: &Mechanism, unit: &OneUnit, one: &MechanismRun, words: &str) -> Result<String, Failure> {
+fn page(mechanism: &Mechanism, unit: &OneUnit, one: &MechanismRun, words: &str) -> Result<Markup, Failure> {
     let OneUnit { label, gaps, .. } = unit;
     let driven = ByDrive::new(mechanism, 0);
     let label = |run: &MechanismRun| match run.outcomes.first() {

@@ -1,5 +1,6 @@
 //! What units do, for a page: pictures, and a player of one unit of each kind.
 
+use maud::Markup;
 use rayon::prelude::*;
 
 use crate::{
@@ -109,7 +110,7 @@ fn played<G: Sync>(
     units: &[&Unit<G>],
     run: impl Fn(&Unit<G>) -> Result<player::Run, Failure> + Sync + Send,
     whereon: &str,
-) -> Result<Option<String>, Failure> {
+) -> Result<Option<Markup>, Failure> {
     let runs = units.par_iter().map(|unit| run(unit)).collect::<Result<Vec<_>, _>>()?;
     let words = format!(
         "A typical unit of each kind (that with the median of the greatest force among those that jam, crawl or run), {whereon}:"

@@ -122,7 +122,7 @@ impl Arguments {
             notes: &warnings,
         });
         let mut files: Vec<(String, Vec<u8>)> = vec![
-            (PAGE.into(), page.into_bytes()),
+            (PAGE.into(), page.into_string().into_bytes()),
             (TABLE.into(), table.bytes.clone()),
             (SWEEP.into(), sweep_csv(&sweep)?),
         ];

@@ -8,18 +8,18 @@ mod joints;
 mod mechanism;
 mod slide;
 
+use maud::{Markup, PreEscaped, html};
 use serde::{Serialize, Serializer};
 
-use super::markup::escape;
 use crate::dynamics::outcome::Outcome;
 
 pub use mechanism::run as of_mechanism;
 pub use slide::run as of_slide;
 
 /// The script, once a page.
-pub const SCRIPT: &str = include_str!("player.js");
+pub const SCRIPT: PreEscaped<&str> = PreEscaped(include_str!("player.js"));
 /// Its style.
-pub const STYLE: &str = include_str!("player.css");
+pub const STYLE: PreEscaped<&str> = PreEscaped(include_str!("player.css"));
 
 /// A run to be played.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -186,12 +186,14 @@ pub struct Event {
 ///
 /// # Errors
 /// If a number is not finite.
-pub fn figure(runs: &[Run], caption: &str) -> Result<String, serde_json::Error> {
+pub fn figure(runs: &[Run], caption: &str) -> Result<Markup, serde_json::Error> {
     // The end of a script's element must not stand in it.
     let data = serde_json::to_string(runs)?.replace("</", "<\\/");
-    Ok(format!(
-        "<p>{}</p>\n<figure class=\"player\">\n<script type=\"application/json\">{data}</script>\n\
-         <noscript>The player needs a script, which this page holds but the reader does not run.</noscript>\n</figure>\n",
-        escape(caption)
-    ))
+    Ok(html! {
+        p { (caption) }
+        figure.player {
+            script type="application/json" { (PreEscaped(data)) }
+            noscript { "The player needs a script, which this page holds but the reader does not run." }
+        }
+    })
 }

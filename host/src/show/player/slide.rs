@@ -149,7 +149,7 @@ mod tests {
         }
         // A quarter of the weight of 81.8 g, and more while what was compressed is let go.
         assert!(pressed > 0.1 && pressed < 20.0, "{pressed}");
-        let figure = figure(&[played], "Caption").unwrap();
+        let figure = figure(&[played], "Caption").unwrap().into_string();
         assert_eq!(figure.matches("</script>").count(), 1);
     }
 }

@@ -1,51 +1,67 @@
 //! Pieces of the page.
 
-use std::fmt::Write;
+use maud::{Markup, PreEscaped, Render, html};
 
 use crate::{
     dynamics::outcome::Verdict,
     show::{
         figure::word,
-        markup::escape,
         number::{fixed, level, typeset},
     },
 };
 
 /// An SVG document with its caption.
-pub fn figure(caption: &str, svg: &str) -> String {
-    format!("<figure>\n<div class=\"scroll\">{svg}</div>\n<figcaption>{}</figcaption>\n</figure>\n", escape(caption))
-}
-
-/// A table with a caption; `head` and `body` are rows.
-pub fn table(caption: &str, head: &str, body: &str) -> String {
-    format!(
-        "<div class=\"scroll\"><table>\n<caption>{caption}</caption>\n<thead>\n{head}</thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
-    )
-}
-
-/// A row with `name` as its heading, or with its first cell if there is no name.
-pub fn tr(name: &str, cells: &[String]) -> String {
-    let (name, cells) = match cells {
-        [first, rest @ ..] if name.is_empty() => (first.as_str(), rest),
-        _ => (name, cells),
-    };
-    let mut row = format!("<tr><th scope=\"row\">{name}</th>");
-    for cell in cells {
-        let _ = write!(row, "<td>{cell}</td>");
+pub fn figure(caption: &str, svg: &str) -> Markup {
+    html! {
+        figure {
+            div.scroll { (PreEscaped(svg)) }
+            figcaption { (caption) }
+        }
     }
-    row + "</tr>\n"
+}
+
+/// A table with a caption; `head` is one row or several.
+pub fn table(caption: &str, head: Markup, rows: impl IntoIterator<Item = Markup>) -> Markup {
+    html! {
+        div.scroll {
+            table {
+                caption { (caption) }
+                thead { (head) }
+                tbody { @for row in rows { (row) } }
+            }
+        }
+    }
+}
+
+/// Headings of columns.
+pub fn columns(names: &[&str]) -> Markup {
+    html! { @for name in names { th scope="col" { (name) } } }
+}
+
+/// The heading of a column beside groups of columns.
+pub fn tall(name: impl Render) -> Markup {
+    html! { th scope="col" rowspan="2" { (name) } }
+}
+
+/// The heading of `count` columns.
+pub fn group(name: &str, count: usize) -> Markup {
+    html! { th scope="colgroup" colspan=(count) { (name) } }
+}
+
+/// A row with `name` as its heading.
+pub fn row(name: &str, cells: impl IntoIterator<Item = impl Render>) -> Markup {
+    html! { tr { th scope="row" { (name) } @for cell in cells { td { (cell) } } } }
 }
 
 /// Sentences as a list.
-pub fn list(notes: &[String]) -> String {
-    let items: String = notes.iter().map(|note| format!("<li>{}</li>\n", escape(note))).collect();
-    if items.is_empty() { items } else { format!("<ul class=\"notes\">\n{items}</ul>\n") }
+pub fn list(notes: &[String]) -> Markup {
+    html! { @if !notes.is_empty() { ul.notes { @for note in notes { li { (note) } } } } }
 }
 
 /// A verdict in its colour.
-pub fn marked(verdict: Verdict) -> String {
+pub fn marked(verdict: Verdict) -> Markup {
     let word = word(verdict);
-    format!("<span class=\"{word}\">{word}</span>")
+    html! { span class=(word) { (word) } }
 }
 
 /// A tolerance level.

@@ -1,4 +1,4 @@
-//! Text that comes from outside, made safe for SVG and HTML.
+//! Text that comes from outside, made safe for XML.
 
 /// `text` with everything that XML forbids, such as control characters, replaced.
 pub fn printable(text: &str) -> String {
