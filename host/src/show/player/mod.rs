@@ -187,8 +187,8 @@ pub struct Event {
 /// # Errors
 /// If a number is not finite.
 pub fn figure(runs: &[Run], caption: &str) -> Result<Markup, serde_json::Error> {
-    // The end of a script's element must not stand in it.
-    let data = serde_json::to_string(runs)?.replace("</", "<\\/");
+    // Without this character the data can neither end the script's element nor open what hides its end.
+    let data = serde_json::to_string(runs)?.replace('<', "\\u003c");
     Ok(html! {
         p { (caption) }
         figure.player {

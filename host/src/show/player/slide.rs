@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn pins_stay_in_their_gaps_and_press_where_they_touch() {
         let mut scene = example::cd_rom();
-        scene.title = "</script> & co".into();
+        scene.title = "</script> & <!--<script>".into();
         let played = run(&scene, "n = +2.5".into(), &film(&scene, &scene.gaps_at(&[2.5; 16]), 60).unwrap());
         let mut pressed = 0.0f64;
         for joint in &played.joints {
@@ -150,6 +150,11 @@ mod tests {
         // A quarter of the weight of 81.8 g, and more while what was compressed is let go.
         assert!(pressed > 0.1 && pressed < 20.0, "{pressed}");
         let figure = figure(&[played], "Caption").unwrap().into_string();
-        assert_eq!(figure.matches("</script>").count(), 1);
+        let (_, data) = figure.split_once("json\">").unwrap();
+        let (data, rest) = data.split_once('<').unwrap();
+        // The data end where the script's element does, and say what they said.
+        assert!(rest.starts_with("/script>"));
+        let read: serde_json::Value = serde_json::from_str(data).unwrap();
+        assert_eq!(read[0]["title"], scene.title);
     }
 }
