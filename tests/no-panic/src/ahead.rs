@@ -1,4 +1,5 @@
-//! As the other image, for predicting the slide ahead of the clock: both together would not fit the flash.
+//! As the other image, for predicting the slide ahead of the clock and for bodies in space on ideal joints: all together would not fit
+//! the flash.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -19,11 +20,19 @@ mod uses {
         law::{Impact, Regularised, ThreeHalves},
         pose::Pose,
     };
-    use slipfit_problems::cd_rom;
+    use slipfit_problems::{cd_rom, mechanisms::ball_rod};
 
     /// All uses.
     pub fn all() {
         let _ = black_box(predict());
+        let _ = black_box(on_joints());
+    }
+
+    /// Makes and steps the shipped mechanism in space that has ideal joints.
+    fn on_joints() -> Result<(), ParameterError<f32>> {
+        let (kernel, mut state) = black_box(ball_rod::predictor(black_box(0.0))?);
+        black_box(kernel.step(&mut state));
+        Ok(())
     }
 
     fn predict() -> Result<(), ParameterError<f32>> {
