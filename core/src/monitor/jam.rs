@@ -5,7 +5,18 @@ use super::{Limits, Sample};
 /// The part of the command below which a slide stands.
 const STANDING: f32 = 0.1;
 
-/// What decides about a jam.
+/// What decides about a jam; it needs no table. A motion starts with a fresh one.
+///
+/// ```
+/// # use slipfit_core::{ParameterError, monitor::{JamWatch, Limits, Sample}};
+/// # fn interrupt() -> Result<(), ParameterError<f32>> {
+/// let limits = Limits { blind: 0.2, force_most: 3.5, ..Limits::for_noise(1e-3, 0.0) }.checked()?; // parameters
+/// let mut watch = JamWatch::default(); // state
+/// let is_jammed = watch.step(&limits, &Sample { time: 0.3, force: 0.25, speed: 0.01, command: 0.02 });
+/// assert!(!is_jammed);
+/// # Ok(()) }
+/// # interrupt().unwrap();
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JamWatch {
     /// The slide has moved with the command.
@@ -17,16 +28,17 @@ pub struct JamWatch {
 }
 
 impl JamWatch {
-    /// Whether there is a jam at `sample`: speed below a tenth of the command for [`Limits::hold`] after it was above, or
-    /// force beyond its limit for as long. Without a command a slide may stand. What is not measured neither counts nor
-    /// starts anew.
+    /// Whether there is a jam at `sample`: speed below a tenth of the command for [`Limits::hold`] after it was above, past
+    /// [`Limits::blind`], or force beyond [`Limits::force_most`] for as long. Without a command a slide may stand. What is
+    /// not measured (NaN) neither counts nor starts anew. Of the limits, which should be [`Limits::checked`], only these and
+    /// the period count.
     #[inline]
-    pub(super) fn step(&mut self, limits: &Limits, sample: &Sample, is_blind: bool) -> bool {
+    pub fn step(&mut self, limits: &Limits, sample: &Sample) -> bool {
         let least = STANDING * sample.command.abs();
         // Speed the wrong way is no motion with the command.
         let along = sample.along(sample.speed);
         if along.is_finite() && least.is_finite() {
-            self.has_moved |= !is_blind && least > 0.0 && along > least;
+            self.has_moved |= !limits.is_blind(sample) && least > 0.0 && along > least;
             let stands = self.has_moved && least > 0.0 && along < least;
             self.standing = if stands { self.standing + limits.period } else { 0.0 };
         }
@@ -42,7 +54,7 @@ mod tests {
     use super::{JamWatch, Limits, Sample};
 
     fn limits() -> Limits {
-        Limits { hold: 0.0095, force_most: 3.0, ..Limits::for_noise(1e-3, 0.0) }
+        Limits { blind: 1.0, hold: 0.0095, force_most: 3.0, ..Limits::for_noise(1e-3, 0.0) }
     }
 
     fn at(force: f32, speed: f32) -> Sample {
@@ -52,13 +64,13 @@ mod tests {
     /// A watch that has seen the slide move.
     fn moving() -> JamWatch {
         let mut watch = JamWatch::default();
-        assert!(!watch.step(&limits(), &at(1.0, 0.05), false));
+        assert!(!watch.step(&limits(), &at(1.0, 0.05)));
         watch
     }
 
     /// After how many of `samples` a jam is first reported.
     fn reported(mut watch: JamWatch, mut samples: impl Iterator<Item = Sample>) -> Option<usize> {
-        samples.position(|sample| watch.step(&limits(), &sample, false))
+        samples.position(|sample| watch.step(&limits(), &sample))
     }
 
     #[test]
@@ -67,13 +79,15 @@ mod tests {
         assert_eq!(reported(JamWatch::default(), [at(1.0, 0.0); 100].into_iter()), None);
         // Moved while blind does not count either.
         let mut watch = JamWatch::default();
-        assert!(!watch.step(&limits(), &at(1.0, 0.05), true) && !watch.step(&limits(), &at(1.0, 0.0), false));
+        for time in [0.9, f32::NAN, f32::INFINITY] {
+            assert!(!watch.step(&limits(), &Sample { time, ..at(1.0, 0.05) }));
+        }
         assert_eq!(reported(watch, [at(1.0, 0.0); 100].into_iter()), None);
         assert_eq!(reported(moving(), [at(1.0, 0.0); 12].into_iter()), Some(9));
         // Over as soon as it moves.
         let mut watch = moving();
-        assert!((0..12).map(|_| watch.step(&limits(), &at(1.0, 0.0), false)).last().unwrap());
-        assert!(!watch.step(&limits(), &at(1.0, 0.05), false));
+        assert!((0..12).map(|_| watch.step(&limits(), &at(1.0, 0.0))).last().unwrap());
+        assert!(!watch.step(&limits(), &at(1.0, 0.05)));
         assert_eq!(reported(watch, [at(-3.1, 0.05); 12].into_iter()), Some(9));
     }
 
@@ -93,7 +107,7 @@ mod tests {
             let (force, speed) = ((0..100).map(|i| at(gaps(i, 3.1), 0.05)), (0..100).map(|i| at(0.0, gaps(i, 0.0))));
             assert_eq!(reported(moving(), force.clone()), Some(10), "force {bad}");
             let mut watch = moving();
-            assert_eq!(force.filter(|sample| watch.step(&limits(), sample, false)).count(), 90, "force {bad}");
+            assert_eq!(force.filter(|sample| watch.step(&limits(), sample)).count(), 90, "force {bad}");
             // A speed is taken as it is, however great, if it is finite.
             if !bad.is_finite() {
                 assert_eq!(reported(moving(), speed), Some(10), "speed {bad}");

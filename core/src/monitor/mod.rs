@@ -1,7 +1,7 @@
 //! Watches a running drive by its flash table: free, tight or jammed, and which tolerance level the unit has.
 //!
-//! [`Monitor`] holds what does not change, [`Watch`] what does; [`LevelBank`] estimates n from a stroke. Work and memory
-//! of a sample are bounded, and no run is stored.
+//! [`Monitor`] holds what does not change, [`Watch`] what does; [`JamWatch`] watches for jams without a table;
+//! [`LevelBank`] estimates n from a stroke. Work and memory of a sample are bounded, and no run is stored.
 //!
 //! ```
 //! # use slipfit_core::{monitor::{Limits, Monitor, Sample, Watch, Verdict}, table::{Nodes, Table}};
@@ -101,7 +101,7 @@ impl Limits {
         }
     }
 
-    /// These limits, if a monitor takes them.
+    /// These limits, if a monitor or a jam watch takes them.
     ///
     /// # Errors
     /// [`ParameterError`] names the first that is out of bounds or not finite.
@@ -116,6 +116,11 @@ impl Limits {
         bounded("monitor.margin", self.margin, [0.0, 1e9])?;
         bounded("monitor.rise", self.rise, [0.0, 1e12])?;
         Ok(self)
+    }
+
+    /// Whether it is too early at `sample`, or not known how late, for anything but the force limit.
+    fn is_blind(&self, sample: &Sample) -> bool {
+        !sample.time.is_finite() || sample.time < self.blind
     }
 }
 
@@ -228,9 +233,8 @@ impl<'a, V: Nodes> Monitor<'a, V> {
     #[inline]
     pub fn step(&self, watch: &mut Watch, sample: &Sample) -> Report {
         let tightness = watch.tight.step(&self.table, self.level, &self.limits, sample);
-        let is_blind = !sample.time.is_finite() || sample.time < self.limits.blind;
-        let is_jammed = watch.jam.step(&self.limits, sample, is_blind);
-        let verdict = match (is_jammed, is_blind, tightness.is_tight()) {
+        let is_jammed = watch.jam.step(&self.limits, sample);
+        let verdict = match (is_jammed, self.limits.is_blind(sample), tightness.is_tight()) {
             (true, ..) => Verdict::Jam,
             (_, true, _) => Verdict::Blind,
             (.., true) => Verdict::Tight,

@@ -8,7 +8,7 @@ use slipfit_core::{
     kernel::Kernel,
     law::{Elastic, Exact, Friction, Impact, Slot, ThreeHalves},
     menu::SlideVisitor,
-    monitor::{LevelBank, Limits, Monitor, Sample, Watch},
+    monitor::{JamWatch, LevelBank, Limits, Monitor, Sample, Watch},
     pose::Pose,
     slide::Slide,
     system::{
@@ -114,10 +114,12 @@ fn look_up() -> Result<(), TableError> {
     Ok(())
 }
 
-/// Watches a drive by a table.
+/// Watches a drive, for jams alone and by a table.
 fn watch(table: &Table<'_>) {
-    if let Ok(monitor) = Monitor::new(*table, black_box(0.0), black_box(Limits::for_noise(1e-3, 0.0))) {
-        let sample = black_box(Sample { time: 0.0, force: 0.0, speed: 0.0, command: 0.0 });
+    let limits = black_box(Limits::for_noise(1e-3, 0.0));
+    let sample = black_box(Sample { time: 0.0, force: 0.0, speed: 0.0, command: 0.0 });
+    black_box(black_box(JamWatch::default()).step(&limits, &sample));
+    if let Ok(monitor) = Monitor::new(*table, black_box(0.0), limits) {
         black_box(monitor.step(&mut black_box(Watch::default()), &sample));
     }
     if let Ok(mut bank) = LevelBank::<_, 96>::new(*table) {
