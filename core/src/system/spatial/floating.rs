@@ -40,7 +40,6 @@ impl<S: Scalar + PartialOrd> Floating<S> {
     ///
     /// # Errors
     /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
-    #[inline(never)] // For size: unrolled, it takes half a kilobyte more.
     pub fn new(
         mass: S,
         inertia_b: Vector3<S>,
@@ -56,13 +55,19 @@ impl<S: Scalar + PartialOrd> Floating<S> {
         }
         let mut farthest = S::from_f64(1e-6);
         for pin in pins_w {
-            for component in pin.iter() {
-                bounded("pin.position", *component, [-1e3, 1e3])?;
-            }
-            farthest = farthest.max_of(pin.dot(pin).sqrt());
+            farthest = farthest.max_of(distance(pin)?);
         }
         Ok(Self { mass, inertia_b, gravity_w, per_lever: S::one() / farthest })
     }
+}
+
+/// How far a pin is from the centre of mass (m).
+#[inline(never)] // For size: the loop over pins is unrolled, and takes half a kilobyte more with this in it.
+fn distance<S: Scalar + PartialOrd>(pin: &Vector3<S>) -> Result<S, ParameterError<S>> {
+    for component in pin.iter() {
+        bounded("pin.position", *component, [-1e3, 1e3])?;
+    }
+    Ok(pin.dot(pin).sqrt())
 }
 
 impl<S> Floating<S> {
