@@ -17,7 +17,7 @@ use slipfit_core::{
     ahead::{self, Ahead, Prediction},
     integrator::ImplicitEuler,
     kernel::{Kernel, Report},
-    monitor::{LevelBank, Limits, Monitor, Sample, Verdict, Watch},
+    monitor::{JamWatch, LevelBank, Limits, Monitor, Sample, Verdict, Watch},
     pose::Pose,
     scene::SceneData,
     table::{Table, Word, layout},
@@ -220,10 +220,13 @@ fn in_rust() -> String {
         let found = table.lookup([2.25, time]);
         looked_up.extend([found.force, found.velocity, f32::from(u8::from(found.clamped) + 2 * u8::from(found.mixed))]);
         let command = speed + force / kernel_source::scene_data(&SCENE).drive_gain;
-        let report = monitor.step(&mut watch, &Sample { time, force, speed, command });
+        let sample = Sample { time, force, speed, command };
+        jams += u64::from(jam_watch.step(&weak, &sample));
+        let report = monitor.step(&mut watch, &sample);
         verdicts[match report.verdict {
             Verdict::Blind => 0,
             Verdict::Free => 1,
+    let (weak, mut jam_watch, mut jams) = (Limits { force_most: 0.9, ..limits }, JamWatch::default(), 0);
             Verdict::Tight => 2,
             Verdict::Jam => 3,
         }] += 1;
@@ -246,6 +249,8 @@ fn in_rust() -> String {
 }
 
 #[test]
+    assert!(jams > 0, "the weak drive jams");
+    line("jam of a weak drive", jams);
 fn a_program_links_only_without_panics() {
     // It links as it is: that is what IMAGE does.
     assert!(IMAGE.exists());

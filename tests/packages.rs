@@ -91,8 +91,18 @@ fn c_projects_find_the_library_by_cmake_and_by_pkg_config() {
     assert_eq!(printed(&mut Command::new(folder.join("by-pkg-config"))), expected);
 }
 
+/// The examples in C of the guide's page on firmware, each in a function of its own.
+fn examples() -> String {
+    let page = fs::read_to_string(Path::new(ROOT).join("host/guide/src/firmware.md")).expect("a page");
+    let blocks = page.split("```c\n").skip(1).map(|rest| rest.split("```").next().unwrap_or_default());
+    let examples: String =
+        blocks.enumerate().map(|(i, block)| format!("void example_{i}(void) {{\n{block}}}\n")).collect();
+    assert!(examples.contains("slipfit_jam_watch_step") && examples.contains("crank_step"), "{examples}");
+    examples
+}
+
 #[test]
-fn every_header_is_c_plus_plus_17() {
+fn every_header_and_the_examples_of_the_guide_are_c_11_and_c_plus_plus_17() {
     let folder = folder("c-plus-plus");
     let scene =
         Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[Override::set("run.duration=60")]).expect("it is shipped");
@@ -110,10 +120,14 @@ fn every_header_is_c_plus_plus_17() {
         }
     }
     let program = "#include \"slipfit.h\"\n#include \"scene.h\"\n#include \"table.h\"\n#include \"crank.h\"\n\
-                   int main() {\n    return slipfit_this_scene.mass > 0 && SLIPFIT_TABLE_SIZE > 0 && sizeof(crank) > 0 ? 0 : 1;\n}\n";
-    write(folder.join("program.cpp"), program);
-    let strict = ["-std=c++17", "-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "program.cpp"];
-    printed(Command::new("c++").current_dir(&folder).arg(format!("-I{ROOT}/core/capi/include")).args(strict));
+                   extern float time, force, speed, command;\n\
+                   int main(void) {\n    return slipfit_this_scene.mass > 0 && SLIPFIT_TABLE_SIZE > 0 && sizeof(crank) > 0 ? 0 : 1;\n}\n";
+    write(folder.join("program"), &format!("{program}{}", examples()));
+    let strict = ["-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-fsyntax-only", "program"];
+    for (compiler, language) in [("cc", ["-xc", "-std=c11"]), ("c++", ["-xc++", "-std=c++17"])] {
+        let mut compiler = Command::new(compiler);
+        printed(compiler.current_dir(&folder).arg(format!("-I{ROOT}/core/capi/include")).args(language).args(strict));
+    }
 }
 
 /// As they would be published: each builds from its own files alone.

@@ -17,6 +17,7 @@ static slipfit_ahead ahead;
 static slipfit_table table;
 static slipfit_scrubber scrubber;
 static slipfit_monitor monitor;
+static slipfit_jam_watch jam_watch;
 static slipfit_bank bank;
 
 static void put_hex(const char *name, uint64_t value) {
@@ -87,19 +88,24 @@ static void watch(void) {
         .period = 1e-3f, .blind = 0.2f, .force_most = 3.5f, .hold = 0.01f,
         .smoothing = 0.02f, .band = 0.5f, .margin = 0.01f, .rise = 0.5f,
     };
+    /* A limit that the force of a good unit exceeds. */
+    slipfit_limits weak = limits;
+    weak.force_most = 0.9f;
     uint64_t looked_up = EMPTY, watched = EMPTY;
     uint32_t verdicts[4] = {0, 0, 0, 0};
     uint32_t failed = (uint32_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_AXIS_TIME,
                                                    SLIPFIT_SCENE_HASH);
-    uint32_t rounds = 0;
+    uint32_t rounds = 0, jams = 0;
     failed |= (uint32_t)slipfit_scrubber_init(&scrubber, &table);
     failed |= (uint32_t)slipfit_predictor_init(&predictor, &slipfit_this_scene, 2.25f);
     failed |= (uint32_t)slipfit_monitor_init(&monitor, &table, 2.25f, &limits);
+    failed |= (uint32_t)slipfit_jam_watch_init(&jam_watch, &weak);
     failed |= (uint32_t)slipfit_bank_init(&bank, &table);
     for (uint32_t i = 0; i < STROKE; i++) {
         slipfit_prediction at;
         slipfit_lookup found;
         slipfit_report report;
+        uint32_t jam;
         failed |= (uint32_t)slipfit_predictor_step(&predictor);
         failed |= (uint32_t)slipfit_predictor_read(&predictor, &at);
         failed |= (uint32_t)slipfit_table_look_up(&table, 2.25f, at.time, &found);
@@ -108,6 +114,8 @@ static void watch(void) {
         failed |= (uint32_t)slipfit_monitor_step(&monitor, &sample, &report);
         verdicts[report.verdict & 3u]++;
         watched = add(add(watched, report.excess), report.band);
+        failed |= (uint32_t)slipfit_jam_watch_step(&jam_watch, &sample, &jam);
+        jams += jam;
         failed |= (uint32_t)slipfit_bank_add(&bank, at.time, at.force);
         failed |= (uint32_t)slipfit_scrubber_check(&scrubber, 64, &rounds);
     }
@@ -119,6 +127,7 @@ static void watch(void) {
     put_hex("free", verdicts[SLIPFIT_FREE]);
     put_hex("tight", verdicts[SLIPFIT_TIGHT]);
     put_hex("jam", verdicts[SLIPFIT_JAM]);
+    put_hex("jam of a weak drive", jams);
     put_hex("rounds", rounds);
     put_hex("estimate", add(add(add(EMPTY, estimate.level), estimate.low), estimate.high));
     put_hex("failed", failed);

@@ -278,6 +278,11 @@ typedef struct slipfit_bank {
 } slipfit_bank;
 
 // Done.
+// Memory of a jam watch; opaque.
+typedef struct slipfit_jam_watch {
+  uint64_t words[8];
+} slipfit_jam_watch;
+
 #define SLIPFIT_OK 0
 
 // A pointer is null.
@@ -564,6 +569,30 @@ slipfit_status slipfit_bank_add(struct slipfit_bank *storage, float t, float for
 slipfit_status slipfit_bank_estimate(const struct slipfit_bank *storage, struct slipfit_estimate *estimate);
 
 #ifdef __cplusplus
+// Makes a jam watch in `*storage`, which needs no table: of the limits it goes by `period`, `blind`, `force_most` and `hold`,
+// but all must be in bounds, as those of slipfit_limits_for_noise are. The first motion starts with it, others with
+// slipfit_jam_watch_restart.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*storage` meanwhile.
+slipfit_status slipfit_jam_watch_init(struct slipfit_jam_watch *storage,
+                                      const struct slipfit_limits *limits);
+
+// Sets `*jam` to 1 if there is a jam at `*sample`, after those before it, as a monitor would say SLIPFIT_JAM; to 0 if not. What
+// is not measured is NAN, and neither counts nor starts anew.
+//
+// # Safety
+// As for slipfit_jam_watch_init; the memory has been written before; nobody else uses `*jam` meanwhile.
+slipfit_status slipfit_jam_watch_step(struct slipfit_jam_watch *storage,
+                                      const struct slipfit_sample *sample,
+                                      uint32_t *jam);
+
+// Starts another motion: forgets all samples, and keeps the limits.
+//
+// # Safety
+// As for slipfit_jam_watch_init; the memory has been written before.
+slipfit_status slipfit_jam_watch_restart(struct slipfit_jam_watch *storage);
+
 }  // extern "C"
 #endif  // __cplusplus
 

@@ -19,6 +19,7 @@ pub extern "C" fn slipfit_panic(divisor: u32) -> u32 {
 
 mod ahead;
 mod border;
+mod jam_watch;
 mod monitor;
 mod predictor;
 mod scene;
@@ -28,6 +29,7 @@ mod status;
 mod table;
 
 pub use ahead::*;
+pub use jam_watch::*;
 pub use monitor::*;
 pub use predictor::*;
 pub use scene::*;

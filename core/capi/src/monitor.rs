@@ -123,6 +123,20 @@ unsafe impl Storage for slipfit_bank {
     const MARK: u32 = 0x534c_4231;
 }
 
+impl From<slipfit_limits> for Limits {
+    fn from(limits: slipfit_limits) -> Self {
+        let slipfit_limits { period, blind, force_most, hold, smoothing, band, margin, rise } = limits;
+        Self { period, blind, force_most, hold, smoothing, band, margin, rise }
+    }
+}
+
+impl From<slipfit_sample> for Sample {
+    fn from(sample: slipfit_sample) -> Self {
+        let slipfit_sample { time, force, speed, command } = sample;
+        Self { time, force, speed, command }
+    }
+}
+
 impl From<BankError> for Refusal {
     fn from(error: BankError) -> Self {
         match error {
@@ -171,8 +185,7 @@ pub unsafe extern "C" fn slipfit_monitor_init(
     // SAFETY: the caller's promise.
     status(|| unsafe {
         make(storage, || {
-            let slipfit_limits { period, blind, force_most, hold, smoothing, band, margin, rise } = *input(limits)?;
-            let limits = Limits { period, blind, force_most, hold, smoothing, band, margin, rise };
+            let limits = (*input(limits)?).into();
             Ok(Watching { monitor: Monitor::new(object(table)?.table, n, limits)?, watch: Watch::default() })
         })
     })
@@ -191,9 +204,9 @@ pub unsafe extern "C" fn slipfit_monitor_step(
     // SAFETY: the caller's promise.
     status(|| unsafe {
         output(report, || {
-            let slipfit_sample { time, force, speed, command } = *input(sample)?;
+            let sample = (*input(sample)?).into();
             let Watching { monitor, watch } = object_mut(storage)?;
-            let report = monitor.step(watch, &Sample { time, force, speed, command });
+            let report = monitor.step(watch, &sample);
             Ok(slipfit_report {
                 verdict: match report.verdict {
                     Verdict::Blind => SLIPFIT_BLIND,

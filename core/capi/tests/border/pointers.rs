@@ -21,6 +21,7 @@ fn null_and_misaligned_pointers_are_refused() {
     let both = slots(bytes, bytes, 8);
     let neither = slipfit_slots { first: ptr::null(), second: ptr::null(), ..both };
     let mut other_monitor = zeroed::<slipfit_monitor>();
+    let (mut jam_watch, mut other_watch, mut jam) = (zeroed::<slipfit_jam_watch>(), zeroed::<slipfit_jam_watch>(), 0);
     let mut other_bank = zeroed::<slipfit_bank>();
     let (mut ahead, mut other_ahead) = (zeroed::<slipfit_ahead>(), zeroed::<slipfit_ahead>());
     let mut said_ahead = zeroed::<slipfit_ahead_prediction>();
@@ -32,6 +33,7 @@ fn null_and_misaligned_pointers_are_refused() {
         assert_eq!(slipfit_bank_init(&mut bank, &table), SLIPFIT_OK);
         assert_eq!(slipfit_limits_for_noise(1e-3, 0.02, &mut sound), SLIPFIT_OK);
         assert_eq!(slipfit_monitor_init(&mut other_monitor, &table, 1.0, &sound), SLIPFIT_OK);
+        assert_eq!(slipfit_jam_watch_init(&mut jam_watch, &sound), SLIPFIT_OK);
         assert_eq!(slipfit_scrubber_init(&mut scrubber, &table), SLIPFIT_OK);
         // Each call with one bad pointer.
         for (code, shift) in [(SLIPFIT_NULL, None), (SLIPFIT_MISALIGNED, Some(1))] {
@@ -75,6 +77,12 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_monitor_adapt(bad!(other_monitor), &estimate),
                 slipfit_monitor_adapt(&mut other_monitor, bad!(estimate)),
                 slipfit_monitor_restart(bad!(other_monitor)),
+                slipfit_jam_watch_init(bad!(jam_watch), &sound),
+                slipfit_jam_watch_init(&mut other_watch, bad!(sound)),
+                slipfit_jam_watch_step(bad!(jam_watch), &sample, &mut jam),
+                slipfit_jam_watch_step(&mut jam_watch, bad!(sample), &mut jam),
+                slipfit_jam_watch_step(&mut jam_watch, &sample, bad!(jam)),
+                slipfit_jam_watch_restart(bad!(jam_watch)),
                 slipfit_bank_init(bad!(bank), &table),
                 slipfit_bank_init(&mut other_bank, bad!(table)),
                 slipfit_bank_add(bad!(bank), 0.0, 0.0),
