@@ -1,6 +1,9 @@
 //! The C library: one C program, compiled for the host and for the emulated Cortex-M4F, prints the same bits as Rust; it
 //! links only while no panic is reachable, and its image stays small and free of double precision.
 
+#[path = "capi/panics.rs"]
+mod panics;
+
 use std::{
     fmt::Write,
     fs,
@@ -23,7 +26,7 @@ use slipfit_core::{
     table::{Table, Word, layout},
 };
 use slipfit_problems::cd_rom::{self, CdRomSlide};
-use slipfit_tests::cross::{self, TARGET, cargo, finished, printed};
+use slipfit_tests::cross::{self, TARGET, cargo, printed};
 
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
@@ -53,13 +56,12 @@ static HEADERS: LazyLock<PathBuf> = LazyLock::new(|| {
     folder
 });
 
-/// The library, built with the arguments `build` of Cargo and kept as `name`: the builds share what they depend on, and each
-/// would overwrite the one before.
-fn library(name: &str, build: &[&str]) -> PathBuf {
+/// The library, built with these options of Cargo and kept as `name`: the builds share what they depend on, and each would
+/// overwrite the one before.
+fn library(name: &str, options: &[&str]) -> PathBuf {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _building = ONE_AT_A_TIME.lock();
-    let (command, options) = build.split_first().expect("a command");
-    printed(cargo(FOLDER).args([command, "--release", "-p", "slipfit-capi"]).args(options));
+    printed(cargo(FOLDER).args(["rustc", "--release", "-p", "slipfit-capi", "--crate-type=staticlib"]).args(options));
     let target = if options.contains(&TARGET) { TARGET } else { "" };
     let built = Path::new(FOLDER).join("cross").join(target).join("release/libslipfit_capi.a");
     let kept = Path::new(FOLDER).join(format!("libslipfit_capi-{name}.a"));
@@ -74,25 +76,34 @@ fn compiler(name: &str) -> Command {
     compiler
 }
 
-/// The compiler of an image for the target, up to its libraries.
-fn compiler_for_target(image: &Path) -> Command {
+/// The compiler of an image of the C `program` for the target, up to its libraries.
+fn compiler_for_target(program: &Path, image: &Path) -> Command {
     cross::require_c_compiler();
     let mut compiler = compiler("arm-none-eabi-gcc");
     compiler
         .args(["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16", "-ffreestanding", "-nostdlib"])
         .args(["-Wl,--gc-sections", "-Tcore/capi/examples/m4.ld", "-L."])
-        .args(["core/capi/examples/program.c", "core/capi/examples/m4.c"])
-        .arg("-o")
+        .arg(program)
+        .args(["core/capi/examples/m4.c", "-o"])
         .arg(image);
     compiler
+}
+
+/// The example that both platforms run.
+const EXAMPLE: &str = "core/capi/examples/program.c";
+
+/// What `image` prints on the emulated target.
+fn on_target(image: &Path) -> String {
+    cross::require_emulator();
+    printed(Command::new(Path::new(ROOT).join(".cargo/qemu")).arg(image))
 }
 
 /// The program's image for the target.
 static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
     cross::require_target();
     let image = Path::new(FOLDER).join("capi.elf");
-    let library = library("target", &["build", "--target", TARGET]);
-    printed(compiler_for_target(&image).arg(library).arg("-lgcc"));
+    let library = library("target", &["--target", TARGET]);
+    printed(compiler_for_target(Path::new(EXAMPLE), &image).arg(library).arg("-lgcc"));
     image
 });
 
@@ -100,20 +111,18 @@ static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
 fn on_host(name: &str, library: &Path) -> String {
     let program = Path::new(FOLDER).join(name);
     let mut compiler = compiler("cc");
-    compiler.args(["core/capi/examples/program.c", "core/capi/examples/desk.c", "-o"]).arg(&program);
+    compiler.args([EXAMPLE, "core/capi/examples/desk.c", "-o"]).arg(&program);
     printed(compiler.arg(library));
     printed(&mut Command::new(&program))
 }
 
 #[test]
 fn the_same_bits_from_c_on_host_and_target_and_from_rust() {
-    let on_host = on_host("capi-program", &library("host", &["build"]));
+    let on_host = on_host("capi-program", &library("host", &[]));
     let expected = in_rust();
     assert!(on_host.starts_with(&expected), "C on the left, Rust on the right:\n{on_host}\n{expected}");
 
-    cross::require_emulator();
-    let on_target = printed(Command::new(Path::new(ROOT).join(".cargo/qemu")).arg(&*IMAGE));
-    assert_eq!(on_host, on_target);
+    assert_eq!(on_host, on_target(&IMAGE));
 
     let refusals: Vec<_> = on_host.strip_prefix(&expected).unwrap_or_default().lines().collect();
     let codes =
@@ -125,18 +134,18 @@ fn the_same_bits_from_c_on_host_and_target_and_from_rust() {
 /// Neither what the compiler optimises nor what the processor offers, fused multiply-add for one, changes a bit.
 #[test]
 fn the_same_bits_at_every_optimisation_and_for_every_processor() {
-    let baseline = on_host("capi-program-baseline", &library("baseline", &["build"]));
+    let baseline = on_host("capi-program-baseline", &library("baseline", &[]));
     let level = |level: &str| {
         ["slipfit-capi", "slipfit-core"]
             .map(|package| format!("--config=profile.release.package.{package}.opt-level={level}"))
     };
     let (unoptimised, small) = (level("0"), level("\"s\""));
-    for (name, build) in [
-        ("unoptimised", &["build", &unoptimised[0], &unoptimised[1]][..]),
-        ("small", &["build", &small[0], &small[1]]),
-        ("native", &["rustc", "--crate-type=staticlib", "--", "-Ctarget-cpu=native"]),
+    for (name, options) in [
+        ("unoptimised", &[&*unoptimised[0], &unoptimised[1]][..]),
+        ("small", &[&small[0], &small[1]]),
+        ("native", &["--", "-Ctarget-cpu=native"]),
     ] {
-        assert_eq!(baseline, on_host(&format!("capi-program-{name}"), &library(name, build)), "{name}");
+        assert_eq!(baseline, on_host(&format!("capi-program-{name}"), &library(name, options)), "{name}");
     }
 }
 
@@ -215,6 +224,7 @@ fn in_rust() -> String {
     let monitor = Monitor::new(table, 2.25, limits).expect("the limits are in bounds");
     let mut bank = LevelBank::<_, 96>::new(table).expect("the table has few levels");
     let (mut watch, mut verdicts) = (Watch::default(), [0; 4]);
+    let (weak, mut jam_watch, mut jams) = (Limits { force_most: 0.9, ..limits }, JamWatch::default(), 0);
     let (mut looked_up, mut watched) = (Vec::new(), Vec::new());
     for [time, force, speed, _] in run(2.25, 1500) {
         let found = table.lookup([2.25, time]);
@@ -226,7 +236,6 @@ fn in_rust() -> String {
         verdicts[match report.verdict {
             Verdict::Blind => 0,
             Verdict::Free => 1,
-    let (weak, mut jam_watch, mut jams) = (Limits { force_most: 0.9, ..limits }, JamWatch::default(), 0);
             Verdict::Tight => 2,
             Verdict::Jam => 3,
         }] += 1;
@@ -240,27 +249,14 @@ fn in_rust() -> String {
     for (name, count) in ["blind", "free", "tight", "jam"].into_iter().zip(verdicts) {
         line(name, count);
     }
+    assert!(jams > 0, "the weak drive jams");
+    line("jam of a weak drive", jams);
     line("rounds", rounds as u64);
     let [low, high] = estimate.interval;
     line("estimate", hashed([estimate.level, low, high]));
     line("failed", 0);
     line("record", hashed_bytes(Word::of(16).expect("a power of two").record(7).bytes().iter().copied()));
     text
-}
-
-#[test]
-    assert!(jams > 0, "the weak drive jams");
-    line("jam of a weak drive", jams);
-fn a_program_links_only_without_panics() {
-    // It links as it is: that is what IMAGE does.
-    assert!(IMAGE.exists());
-    // The other way round: with one panic in reach it does not, and for this reason.
-    let library = library("panic", &["build", "--target", TARGET, "--features", "reachable-panic"]);
-    let image = Path::new(FOLDER).join("panics.elf");
-    let mut compiler = compiler_for_target(&image);
-    let output = finished(compiler.arg("-Wl,--undefined=slipfit_panic").arg(library).arg("-lgcc"));
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success() && errors.contains("slipfit_panic_is_reachable"), "{errors}");
 }
 
 /// Symbols of the image with their sizes (bytes), read-only and code.

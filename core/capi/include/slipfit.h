@@ -4,8 +4,9 @@
  * there is no global state. Calls that take an object by a const pointer only read it, so that an interrupt and a thread
  * may make them at once; any other call needs the object to itself. Whatever is made of a table keeps what it needs of it.
  *
- * Link with -Wl,--gc-sections, which leaves out what a program does not call. How the caller is compiled changes no bit of the
- * library, not -ffp-contract either. The header is C11 and C++17. */
+ * The archive needs no flags of the linker; -Wl,--gc-sections leaves out what a program does not call. It has no panic handler,
+ * so that another library of Rust links beside it. How the caller is compiled changes no bit of the library, not -ffp-contract
+ * either. The header is C11 and C++17. */
 
 #ifndef SLIPFIT_H
 #define SLIPFIT_H
@@ -277,12 +278,12 @@ typedef struct slipfit_bank {
   uint64_t words[240];
 } slipfit_bank;
 
-// Done.
 // Memory of a jam watch; opaque.
 typedef struct slipfit_jam_watch {
   uint64_t words[8];
 } slipfit_jam_watch;
 
+// Done.
 #define SLIPFIT_OK 0
 
 // A pointer is null.
@@ -568,7 +569,6 @@ slipfit_status slipfit_bank_add(struct slipfit_bank *storage, float t, float for
 // As for slipfit_bank_add; nobody else uses `*estimate` meanwhile.
 slipfit_status slipfit_bank_estimate(const struct slipfit_bank *storage, struct slipfit_estimate *estimate);
 
-#ifdef __cplusplus
 // Makes a jam watch in `*storage`, which needs no table: of the limits it goes by `period`, `blind`, `force_most` and `hold`,
 // but all must be in bounds, as those of slipfit_limits_for_noise are. The first motion starts with it, others with
 // slipfit_jam_watch_restart.
@@ -593,6 +593,7 @@ slipfit_status slipfit_jam_watch_step(struct slipfit_jam_watch *storage,
 // As for slipfit_jam_watch_init; the memory has been written before.
 slipfit_status slipfit_jam_watch_restart(struct slipfit_jam_watch *storage);
 
+#ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
 

@@ -38,8 +38,9 @@ pub use slots::*;
 pub use status::*;
 pub use table::*;
 
-/// A program links only while no panic is reachable: this calls what nobody defines.
-#[cfg(target_os = "none")]
+/// A program links only while no panic is reachable: this calls what nobody defines. Link-time optimisation drops it then, so
+/// that the archive goes together with others of Rust, which have handlers of their own.
+#[cfg(all(feature = "panic-handler", target_os = "none"))]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     unsafe extern "C" {
