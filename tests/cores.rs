@@ -1,9 +1,12 @@
 //! A step of the shipped slide on one emulated core after another: the bits of the PC on all of them, and what it takes.
 
-use std::{fmt::Write, fs, path::Path, process::Command, sync::LazyLock};
+use std::{fmt::Write, path::Path, process::Command, sync::LazyLock};
 
 use slipfit_firmware::{desk::Desk, slide::Steps};
-use slipfit_tests::cross::{self, cargo, printed};
+use slipfit_tests::{
+    cross::{self, printed},
+    guide::{self, with_comma},
+};
 
 /// Its own, so that other images need not wait for these.
 const FOLDER: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/cores");
@@ -41,13 +44,7 @@ struct Costs {
 
 impl Core {
     fn costs(&self) -> Costs {
-        cross::require_core_of(self.target);
-        let mut build = cargo(FOLDER);
-        // In place of the repository's flags, also where there are none.
-        build.env("CARGO_ENCODED_RUSTFLAGS", self.cpu.map(|cpu| format!("-Ctarget-cpu={cpu}")).unwrap_or_default());
-        build.args(["build", "--quiet", "--locked", "--offline", "--release", "--target", self.target]);
-        printed(build.args(["--manifest-path", "tests/cores/Cargo.toml"]));
-        let image = Path::new(FOLDER).join("cross").join(self.target).join("release/slipfit-cores");
+        let image = cross::image_for(FOLDER, self.target, self.cpu);
         let text = printed(self.emulator().arg("-kernel").arg(&image));
         let words: Vec<_> = text.split_whitespace().collect();
         let [least, greatest, stack, object, states] = words[..] else { panic!("{text}") };
@@ -89,7 +86,6 @@ fn code(image: &Path) -> u32 {
 static COSTS: LazyLock<Vec<Costs>> = LazyLock::new(|| {
     cross::require_emulator();
     cross::require_emulator_of("riscv32", "qemu-system-misc");
-    printed(cargo("").args(["fetch", "--locked", "--quiet", "--manifest-path", "tests/cores/Cargo.toml"]));
     CORES.iter().map(Core::costs).collect()
 });
 
@@ -122,11 +118,7 @@ fn every_core_has_the_bits_of_the_pc() {
 
 #[test]
 fn the_guide_has_these_costs() {
-    let page = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/host/guide/src/firmware.md")).expect("a page");
-    let with_comma = |number: u32| match number {
-        ..1000 => number.to_string(),
-        _ => format!("{},{:03}", number / 1000, number % 1000),
-    };
+    let page = guide::page("firmware");
     for (Core { name, target, cpu, .. }, costs) in CORES.iter().zip(&*COSTS) {
         let cpu = cpu.map_or("none".to_owned(), |cpu| format!("`{cpu}`"));
         let (count, code) = (costs.instructions(with_comma), with_comma(costs.code));

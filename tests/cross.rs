@@ -109,6 +109,33 @@ pub fn require_emulator_of(architecture: &str, package: &str) {
     assert!(found, "{emulator} is not installed; to install it: apt-get install {package}");
 }
 
+/// The image of Rust of that `name` with its release settings, built.
+///
+/// # Panics
+/// If it cannot be built.
+pub fn built(folder: &str, name: &str) -> PathBuf {
+    require_target();
+    let mut build = cargo(folder);
+    build.args(["build", "--quiet", "--release", "-p", "slipfit-firmware", "--bin", name, "--target", TARGET]);
+    printed(&mut build);
+    image(folder, name)
+}
+
+/// The image that steps the slide on one core after another, built for a `target` and its `cpu`, as in `-C target-cpu`, if that
+/// is not the target's own. One for another `cpu` takes its place.
+///
+/// # Panics
+/// If it cannot be built.
+pub fn image_for(folder: &str, target: &str, cpu: Option<&str>) -> PathBuf {
+    require_core_of(target);
+    let mut build = cargo(folder);
+    // In place of the repository's flags, also where there are none.
+    build.env("CARGO_ENCODED_RUSTFLAGS", cpu.map(|cpu| format!("-Ctarget-cpu={cpu}")).unwrap_or_default());
+    build.args(["build", "--quiet", "--locked", "--release", "--target", target]);
+    printed(build.args(["--manifest-path", "tests/cores/Cargo.toml"]));
+    Path::new(folder).join("cross").join(target).join("release/slipfit-cores")
+}
+
 /// An image of Rust, built and run before.
 pub fn image(folder: &str, name: &str) -> PathBuf {
     Path::new(folder).join("cross").join(TARGET).join("release").join(name)

@@ -8,24 +8,15 @@ use std::{
 };
 
 use defmt_decoder::{DecodeError, Table};
-use slipfit::{
-    firmware::{force_table, force_table::Demand},
-    scene::{CD_ROM_SLIDE, Override, Scene},
+use slipfit_tests::{
+    cross::{self, TARGET, cargo, printed},
+    drive_table,
 };
-use slipfit_tests::cross::{self, TARGET, cargo, printed};
 
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 
 /// The file of the table that the drive works with.
-static TABLE: LazyLock<PathBuf> = LazyLock::new(|| {
-    let mut set = ["friction.law=exact", "run.duration=1500"].map(Override::set).to_vec();
-    set.push(Override::option("", "sweep.n", "1:3:0.1"));
-    let scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &set).expect("the shipped scene");
-    let (table, _) = force_table::make(&scene, Demand::Full, || ()).expect("its table");
-    let file = Path::new(FOLDER).join("drive.bin");
-    fs::write(&file, table.bytes).expect("the test's folder takes files");
-    file
-});
+static TABLE: LazyLock<PathBuf> = LazyLock::new(|| drive_table::written(FOLDER));
 
 /// The drive with a table, its target folder in `folder`.
 fn drive(folder: &str, options: &[&str], table: &Path) -> Command {

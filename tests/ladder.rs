@@ -3,7 +3,10 @@
 
 use std::{collections::BTreeMap, fmt::Write, process::Command, sync::LazyLock};
 
-use slipfit_tests::cross::{self, TARGET, cargo, printed};
+use slipfit_tests::{
+    cross::{self, TARGET, cargo, printed},
+    guide::{self, with_comma},
+};
 
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 
@@ -136,12 +139,7 @@ fn each_rung_is_cheaper_than_the_one_above() {
 
 #[test]
 fn the_guide_has_these_costs() {
-    let page =
-        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/host/guide/src/firmware.md")).expect("a page");
-    let with_comma = |number: u32| match number {
-        ..1000 => number.to_string(),
-        _ => format!("{},{:03}", number / 1000, number % 1000),
-    };
+    let page = guide::page("firmware");
     let has = |row: String| assert!(page.contains(&row), "{row}");
     for rung in RUNGS.into_iter().chain(MECHANISMS) {
         let Costs { instructions, code, stack, state, .. } = costs(rung);
