@@ -161,8 +161,8 @@ fn the_guide_has_these_costs() {
     has(format!("| {stack}; {parameters}; {}; {} bytes |", with_comma(state), with_comma(code)));
 }
 
-/// What a drive controller can spare at 1 kHz: about 14 % of 168 MHz at 1.48 cycles an instruction, and a stack of 512 bytes,
-/// or 640 with exact friction, which remembers.
+/// What a drive controller can spare at 1 kHz: a seventh of 168 MHz, whose cycles `cycles.rs` counts, and a stack of 512 bytes, or
+/// 640 with exact friction, which remembers.
 #[test]
 fn the_full_slide_keeps_its_budget() {
     assert!(costs("slide_regularised").stack <= 512 && costs("slide_exact").stack <= 640);

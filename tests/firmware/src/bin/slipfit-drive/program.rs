@@ -22,12 +22,6 @@ pub const PERIODS: u32 = 1500;
 /// Periods from one printed line to the next.
 const PERIODS_A_LINE: u32 = 100;
 
-/// Clock of the drive that the load is given for (Hz).
-pub const CLOCK: f32 = 168e6;
-
-/// Cycles of an instruction on average, at zero wait states.
-pub const CYCLES: f32 = 1.48;
-
 /// 2 % of the peak force (N).
 const NOISE: f32 = 0.02;
 
@@ -83,9 +77,8 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
         motions = control.motions;
     }
     let instructions = costs.range().map(Range::ends);
-    let load = instructions.map(|(_, greatest)| greatest as f32 * CYCLES * 1e3 / CLOCK * 100.0);
     let (stack, control, motions) = (machine.deepest_stack(), size_of::<Control>(), size_of::<Motions>());
-    say::everything(machine, &Everything { instructions, load, stack, control, motions });
+    say::everything(machine, &Everything { instructions, stack, control, motions });
     true
 }
 
@@ -111,8 +104,6 @@ pub struct Stroke {
 pub struct Everything {
     /// The least and the greatest number of instructions of a period.
     pub instructions: Option<(u32, u32)>,
-    /// What that is of the drive's clock (%), at most.
-    pub load: Option<f32>,
     /// The deepest stack since the start (bytes).
     pub stack: Option<u32>,
     /// What of it the control takes (bytes).

@@ -7,7 +7,7 @@ use slipfit_firmware::machine::{Machine, print};
 
 use crate::{
     control::{Record, Rig},
-    program::{CLOCK, CYCLES, Everything, Stroke},
+    program::{Everything, Stroke},
 };
 
 /// When something happened first (ms), if it did.
@@ -58,14 +58,10 @@ pub fn stroke(machine: &mut impl Machine, stroke: &Stroke) {
 
 /// All strokes together.
 pub fn everything(machine: &mut impl Machine, everything: &Everything) {
-    let Everything { instructions, load, stack, control, motions } = everything;
+    let Everything { instructions, stack, control, motions } = everything;
     print(machine, format_args!(""));
     if let Some((least, greatest)) = instructions {
         print(machine, format_args!("instructions of a period: {least} to {greatest}"));
-    }
-    if let Some(load) = load {
-        let clock = CLOCK / 1e6;
-        print(machine, format_args!("instructions at 1 kHz, {CYCLES} cycles each: {load:.1} % of {clock} MHz"));
     }
     if let Some(bytes) = stack {
         print(machine, format_args!("stack of everything: {bytes} bytes, control of {control}; motions of {motions}"));
