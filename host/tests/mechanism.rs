@@ -67,6 +67,38 @@ fn over_its_angle_a_hatch_takes_the_moment_of_its_weight() {
     assert!(far.starts_with("no unit comes 171.8873385 ° far: in 1500 ms the farthest"), "{far}");
 }
 
+/// Joints without play hold exactly, and the slide is where the crank, the rod and the play of its ball let it be: with A the lower ball,
+/// the slide at s = A_y + √(l² − A_x² − A_z²) but for the play in each direction.
+#[test]
+fn a_ball_rod_keeps_its_joints_and_moves_its_slide() {
+    let mechanism = mechanism("ball-rod", &["run.duration=400"], "0:1:1");
+    let gaps = mechanism.gaps_at(&[0.0]).unwrap();
+    let samples = run(&mechanism, &gaps, 1e-3).unwrap().samples;
+    let column = |name: &str| samples.columns.iter().position(|column| column.starts_with(name)).unwrap();
+    let vector = |row: &[f64], name: &str| {
+        let first = column(name);
+        Vector3::from_column_slice(&row[first..first + 3])
+    };
+    let axis = Vector3::new(0.0, 0.6, 0.8);
+    let mut turned = 0.0;
+    for row in &samples.rows {
+        let [crank, rod, slide] = ["crank.ax", "rod.ax", "slide.ax"].map(|name| vector(row, name));
+        assert!((crank - axis * axis.dot(&crank)).norm() < 1e-9 && slide.norm() < 1e-9, "{crank} {slide}");
+        let moved = vector(row, "slide.x");
+        assert!(moved.xz().norm() < 1e-9, "{moved}");
+        let [lower, on_rod] = [(crank, [0.015, 0.0, 0.0]), (rod, [0.0, -0.03, 0.0])]
+            .map(|(turn, arm)| Rotation3::from_scaled_axis(turn) * Vector3::from(arm));
+        let centre = Vector3::new(0.015, 0.03, 0.0) + vector(row, "rod.x");
+        assert!((centre + on_rod - lower).norm() < 1e-9, "{lower}");
+        // The rod leans by up to 30°, so that play across it counts as well; walls yield by some micrometres.
+        let apart = [lower.x - 0.015, lower.z];
+        let closed = lower.y + libm::sqrt(0.06 * 0.06 - apart[0] * apart[0] - apart[1] * apart[1]);
+        assert!((0.06 + moved.y - closed).abs() < 0.12e-3, "{} {closed}", moved.y);
+        turned = axis.dot(&crank);
+    }
+    assert!(turned > 4.0 * std::f64::consts::PI, "it turns on and on: {turned}");
+}
+
 /// The turn from one sample to the next but one is that of the angular velocity between them, about the same axis of the frame.
 #[test]
 fn angular_velocities_in_space_are_how_fast_bodies_turn_in_the_frame() {

@@ -173,6 +173,34 @@ fn three_mistakes_are_told_at_once() {
 }
 
 #[test]
+fn ideal_joints_in_space_are_checked() {
+    let scene = shipped("ball-rod").unwrap();
+    let refused = |from: &str, to: &str, message: &str| {
+        assert!(scene.contains(from), "{from}");
+        let error = parse(&scene.replacen(from, to, 1), &[]).err().unwrap_or_else(|| panic!("{to} is accepted"));
+        assert!(error.contains(message), "{error}");
+    };
+    refused("axis = [0, 0.6, 0.8]\n", "", "`joint.axis` is missing");
+    refused("axis = [0, 1, 0]\n", "axis = [0, 0, 0]\n", "`joint.axis` is [0, 0, 0]");
+    refused(
+        "at = [15, 0, 0]\n",
+        "at = [15, 0, 0]\nclearance = [0.1, 0.01]\n",
+        "a clearance of a joint of kind \"spherical\"",
+    );
+    refused("axis = [0, 1, 0]\n", "axis = [0, 1, 0]\nclearance = [0.1, 0.01]\n", "of kind \"prismatic\" in space");
+    refused("kind = \"spherical\"", "kind = \"pin-slot\"", "a joint of kind \"pin-slot\" in space");
+    refused("mass = \"20 g\"", "mass = \"20 g\"\nspin = 1", "`spin` at the start of a body that no joint lets move so");
+    let ball =
+        "kind = \"track\"\nbetween = [\"rod\", \"slide\"]\nat = [15, 60, 0]\nleft = [0.05, 0.01]               # mm\n";
+    let loops = "kind = \"spherical\"\nbetween = [\"rod\", \"slide\"]\nat = [15, 60, 0]\n";
+    refused(ball, loops, "the joint \"upper ball\" closes a loop of joints without play");
+    // A crank on its shaft can start turned and turning, a slide in its guide moving.
+    let set = ["body.crank.angle=20", "body.crank.spin=3", "body.slide.speed=10"];
+    let start = |i: usize| parse(scene, &set).ok().unwrap().mechanism.unwrap().bodies[i].start;
+    assert!((start(0).angle - 20f64.to_radians()).abs() < 1e-15 && (start(0).spin, start(2).speed) == (3.0, 0.01));
+}
+
+#[test]
 fn every_shipped_mechanism_is_read() {
     let mechanisms = SHIPPED
         .iter()
