@@ -114,7 +114,7 @@ fn the_guide_has_these_cycles() {
     for work in &*LADDER {
         let Work { name, instructions: [instructions, _], .. } = work;
         let is_there = match name.as_str() {
-            "hatch" | "linear_guide" | "telescopic_drawer" => {
+            "hatch" | "linear_guide" | "telescopic_drawer" | "ball_rod" => {
                 let [low, high] = work.share().map(|percent| percent / 100.0);
                 firmware.contains(&format!("{low:.2} to {high:.2}"))
             }
