@@ -159,7 +159,7 @@ impl<S: Scalar> Bodies<S, 1> for OnAxis<S> {
     }
 
     #[inline(always)]
-    fn own_jacobians(&self, _: &[S; 2], _: &SVector<S, 1>, _: &mut Own<S, 1>, _: &mut Own<S, 1>) {}
+    fn own_jacobians(&self, _: &[S; 2], (): &(), _: &SVector<S, 1>, _: &mut Own<S, 1>, _: &mut Own<S, 1>) {}
 
     #[inline(always)]
     fn least_mass(&self) -> S {

@@ -111,6 +111,7 @@ pub trait Bodies<S: Scalar, const D: usize> {
     fn own_jacobians(
         &self,
         placed: &Self::Placed,
+        mass: &Self::Mass,
         acceleration: &SVector<S, D>,
         damping: &mut Self::Jacobian,
         stiffness: &mut Self::Jacobian,

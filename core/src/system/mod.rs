@@ -349,7 +349,7 @@ impl<B, E> System<B, E> {
     {
         let force = self.bodies.total(placed, &sum.force);
         let acceleration = if B::MASS_IS_CONSTANT { SVector::zeros() } else { self.bodies.velocity(&mass, &force) };
-        self.bodies.own_jacobians(placed, &acceleration, &mut sum.damping, &mut sum.stiffness);
+        self.bodies.own_jacobians(placed, &mass, &acceleration, &mut sum.damping, &mut sum.stiffness);
         let axes = self.bodies.axes(placed);
         let Derivatives { per_time, damping, stiffness, .. } = sum;
         let jacobians = Jacobians { mass, axes, damping, stiffness };

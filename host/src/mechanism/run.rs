@@ -185,8 +185,7 @@ fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, R
         }
         // Not each number for itself: those beyond what the mounts leave stand still and change no bit.
         match spatial::coordinates(&mounts) {
-            0..=2 => on_joints::<2>(mechanism, &mounts, gaps, by),
-            3..=8 => on_joints::<8>(mechanism, &mounts, gaps, by),
+            0..=8 => on_joints::<8>(mechanism, &mounts, gaps, by),
             _ => on_joints::<{ spatial::MOST_COORDINATES }>(mechanism, &mounts, gaps, by),
         }
     } else {

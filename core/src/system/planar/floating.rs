@@ -207,7 +207,7 @@ impl<S: Scalar> Bodies<S, 3> for Floating<S> {
     }
 
     #[inline(always)]
-    fn own_jacobians(&self, _: &Placed<S>, _: &SVector<S, 3>, _: &mut Own<S, 3>, _: &mut Own<S, 3>) {}
+    fn own_jacobians(&self, _: &Placed<S>, (): &(), _: &SVector<S, 3>, _: &mut Own<S, 3>, _: &mut Own<S, 3>) {}
 
     #[inline(always)]
     fn least_mass(&self) -> S {

@@ -281,6 +281,7 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
     fn own_jacobians(
         &self,
         placed: &Placed<S, D>,
+        _: &SMatrix<S, D, D>,
         acceleration: &SVector<S, D>,
         damping: &mut SMatrix<S, D, D>,
         stiffness: &mut SMatrix<S, D, D>,

@@ -351,14 +351,14 @@ impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N
     fn own_jacobians(
         &self,
         placed: &Self::Placed,
+        mass: &[Matrix3<S>; N],
         _: &SVector<S, D>,
         damping: &mut SMatrix<S, D, D>,
         _: &mut SMatrix<S, D, D>,
     ) {
-        for (i, (body, at)) in self.bodies.iter().zip(&placed.bodies).enumerate() {
-            let inertia = at.in_frame(&body.inertia_b);
-            let momentum = times(&inertia, &at.rotation_w);
-            let gyroscopic = cross_columns(&at.rotation_w, &inertia) - cross_matrix(&momentum);
+        for (i, (inertia, at)) in mass.iter().zip(&placed.bodies).enumerate() {
+            let momentum = times(inertia, &at.rotation_w);
+            let gyroscopic = cross_columns(&at.rotation_w, inertia) - cross_matrix(&momentum);
             add_block(damping, [[i, TURNING]; 2], &gyroscopic);
         }
     }

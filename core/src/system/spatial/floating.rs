@@ -288,7 +288,7 @@ impl<S: Scalar> Bodies<S, 6> for Floating<S> {
 
     /// How the gyroscopic torque changes is left out.
     #[inline(always)]
-    fn own_jacobians(&self, _: &Placed<S>, _: &SVector<S, 6>, _: &mut Blocks<S>, _: &mut Blocks<S>) {}
+    fn own_jacobians(&self, _: &Placed<S>, (): &(), _: &SVector<S, 6>, _: &mut Blocks<S>, _: &mut Blocks<S>) {}
 
     #[inline(always)]
     fn least_mass(&self) -> S {

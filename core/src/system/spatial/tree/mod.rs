@@ -289,6 +289,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> Bodies<S, D> for
     fn own_jacobians(
         &self,
         placed: &Self::Placed,
+        _: &SMatrix<S, D, D>,
         acceleration: &SVector<S, D>,
         damping: &mut SMatrix<S, D, D>,
         stiffness: &mut SMatrix<S, D, D>,
