@@ -96,7 +96,7 @@ fn a_ball_rod_keeps_its_joints_and_moves_its_slide() {
         assert!((0.06 + moved.y - closed).abs() < 0.12e-3, "{} {closed}", moved.y);
         turned = axis.dot(&crank);
     }
-    assert!(turned > 4.0 * std::f64::consts::PI, "it turns on and on: {turned}");
+    assert!(turned > 2.0 * std::f64::consts::PI, "angles go on from turn to turn: {turned}");
 }
 
 /// The turn from one sample to the next but one is that of the angular velocity between them, about the same axis of the frame.

@@ -202,8 +202,8 @@ mod tests {
                 assert!(texts.iter().any(|text| text.contains(named.as_str())), "{name}: {named}");
             }
             // Nothing lies outside the picture.
-            let size = |side| document.root_element().attribute(side).and_then(|size| size.parse().ok());
-            let greatest = f64::max(size("width").unwrap(), size("height").unwrap());
+            let size = |side| document.root_element().attribute(side).and_then(|size| size.parse::<f64>().ok());
+            let greatest = size("width").unwrap().max(size("height").unwrap()).ceil();
             for number in svg.split(['"', ' ', ',']).filter_map(|word| word.parse::<f64>().ok()) {
                 assert!((-greatest..=greatest).contains(&number), "{name}: {number}");
             }

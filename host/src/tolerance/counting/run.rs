@@ -195,6 +195,8 @@ pub fn run<W: Work>(
     let save =
         |part: &Part<W::Found>, path: &Path| -> Result<(), RunError> { Ok(files::write(path, &part.encode()?)?) };
     let mut saved = Instant::now();
+    // What is long enough to be stopped saves early for the first time.
+    let mut due = LOOK_UP_EVERY;
     let mut round = rayon::current_num_threads() as u64;
     while part.header.done < blocks.end - blocks.start {
         let begin = Instant::now();
@@ -210,9 +212,9 @@ pub fn run<W: Work>(
             round *= 2;
         }
         let stop = crate::system::interrupt::requested() && part.header.done < blocks.end - blocks.start;
-        if let Some(Keep { out, .. }) = keep.filter(|_| stop || (saved.elapsed() >= SAVE_EVERY && end < blocks.end)) {
+        if let Some(Keep { out, .. }) = keep.filter(|_| stop || (saved.elapsed() >= due && end < blocks.end)) {
             save(&part, &checkpoint(out))?;
-            saved = Instant::now();
+            (saved, due) = (Instant::now(), SAVE_EVERY);
         }
         if stop {
             return Err(RunError::Interrupted { saved: keep.map(|keep| checkpoint(keep.out)) });
