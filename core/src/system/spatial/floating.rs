@@ -229,6 +229,8 @@ impl<S: Scalar> Bodies<S, 6> for Floating<S> {
         pose.finiteness_probe()
     }
 
+    /// How it goes by the turn itself is left out of the derivatives, see [`Bodies::displacement`]: among its pins the body turns too
+    /// slowly for it to count, and a controller would pay for it.
     #[inline(always)]
     fn rate(&self, displacement: &SVector<S, 6>, velocity: &SVector<S, 6>) -> SVector<S, 6> {
         let ((_, turn_b), (v_w, w_b)) = (split(displacement), split(velocity));
