@@ -72,7 +72,7 @@ fn a_table_that_no_finer_levels_help_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let output = slipfit(folder.path(), &["table", "--over", "position", "--n", "1:3:0.1"]);
     let warnings = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(warnings.contains("the force changes faster than its positions follow each other"), "{warnings}");
+    assert!(warnings.contains("the force changes too fast for the positions of the table"), "{warnings}");
 }
 
 #[test]

@@ -110,7 +110,7 @@ fn main() {
     for (damaged, why) in [
         (&whole[..whole.len() / 2], "it is truncated or corrupted"),
         (&whole[..3], "it is truncated or corrupted"),
-        (&b"something else"[..], "it is not a study file"),
+        (&b"something else"[..], "it is not a study file of the same command and kind of scene"),
     ] {
         std::fs::write(at("shard2"), damaged).unwrap();
         assert!(refused(&[1, 2, 3]).ends_with(why));

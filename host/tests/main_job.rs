@@ -95,6 +95,6 @@ fn the_advice_follows_what_drives_failure() {
     let folder = tempfile::tempdir().unwrap();
     let text = stdout(&slipfit(folder.path(), &["run", "--n", "-3:5:0.5", "--set", "friction.coefficient=0.25"]));
     let line = |start: &str| text.lines().find(|line| line.starts_with(start)).unwrap().to_owned();
-    let strongest = line("Drives failure")[16..].split(" 1").next().unwrap().to_owned();
+    let strongest = line("Failure due to")[16..].split(" 1").next().unwrap().to_owned();
     assert!(line("What to change").contains(&format!("start with {strongest}; tight levels")), "{text}");
 }

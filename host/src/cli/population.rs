@@ -75,7 +75,7 @@ pub(super) struct Arguments {
     /// Correlation between any two gaps that the scene states by mean and standard deviation.
     #[arg(long, value_name = "RHO", default_value_t = 0.0, allow_hyphen_values = true)]
     correlation: f64,
-    /// Also estimates the probability of rare malfunctions, by subset simulation; takes minutes.
+    /// Also estimates the probability of rare malfunctions, by subset simulation; takes seconds to minutes.
     ///
     /// There is an estimate for each kind of malfunction (crawls, jams, over the force limit) on each side (tight units, loose units).
     #[arg(long)]

@@ -14,7 +14,7 @@ use crate::{
         },
         print, print_json, text_table, warn,
     },
-    dynamics::driven::Driven,
+    dynamics::driven::{DriveKind, Driven},
     mechanism::ByDrive,
     population::{
         Unit,
@@ -177,8 +177,8 @@ fn summary(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
         }
     }
     for (name, drivers) in [
-        (format!("Drives {effort}"), &found.population.of_force),
-        ("Drives failure".into(), &found.population.of_malfunction),
+        (if kind == DriveKind::Turns { "Torque due to" } else { "Force due to" }, &found.population.of_force),
+        ("Failure due to", &found.population.of_malfunction),
     ] {
         let _ = writeln!(text, "{name:16}{}", strongest(drivers, DRIVERS));
     }

@@ -75,7 +75,7 @@ impl Arguments {
                 );
             }
         }
-        for (name, drivers) in [("Drives force", of_force), ("Drives failure", of_malfunction)] {
+        for (name, drivers) in [("Force due to", of_force), ("Failure due to", of_malfunction)] {
             let _ = writeln!(text, "{name:16}{}", strongest(drivers, DRIVERS));
         }
         if scene.has_levels() {

@@ -31,7 +31,7 @@ impl Units<'_> {
             if undecided.units > 0 { format!("; {} come to no verdict", undecided.units) } else { String::new() };
         let mut text = format!("Production      {} of {units} units malfunction{unknown}\n", percent(malfunctions));
         if malfunctions.units > 0 {
-            let _ = writeln!(text, "Drives failure  {}", strongest(self.of_malfunction, 2));
+            let _ = writeln!(text, "Failure due to  {}", strongest(self.of_malfunction, 2));
         }
         text
     }

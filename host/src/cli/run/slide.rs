@@ -211,13 +211,12 @@ impl Arguments {
             let [drawn, together] = [sum.model.dpm, sum.eq9_ppm].map(|ppm| per_million(ppm) + " ppm");
             let _ = writeln!(
                 text,
-                "No play left    in {drawn} of the units by the drawing ({}); in {together} if its gaps moved together (eq. 9)",
+                "No play left    {drawn} of the units by the drawing ({}); {together} if its gaps moved together (eq. 9)",
                 sum.name
             );
         } else if let Some((n, _)) = closes {
             let together = per_million(1e6 * tail(n));
-            let _ =
-                writeln!(text, "No play left    in {together} ppm of the units, if all gaps moved together (eq. 9)");
+            let _ = writeln!(text, "No play left    {together} ppm of the units, if all gaps moved together (eq. 9)");
         }
         let _ = writeln!(text, "What to change  {}", advice(scene, simulated.judged(), units));
         let _ = writeln!(text, "Flash table     {}", table_line(scene, &simulated.table));

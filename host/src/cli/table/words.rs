@@ -27,11 +27,11 @@ pub fn coarse(driven: &dyn Driven, table: &ForceTable) -> Option<String> {
     let advice = if table.worst_at_levels > 0.5 * error {
         let over_time = table.axes.get(1).is_none_or(|axis| axis.kind == AxisKind::Time);
         let (nodes, apart) = if over_time {
-            ("instants", "take fewer levels or a shorter run, so that they are closer")
+            ("time steps", "take fewer levels or a shorter run, so that these are finer")
         } else {
             ("positions", "they cannot be closer, so never decide by a single sample")
         };
-        format!("the force changes faster than its {nodes} follow each other: {apart}")
+        format!("the {} changes too fast for the {nodes} of the table: {apart}", kind.effort())
     } else {
         let one_side = table.longest(MotionVerdict::Runs).filter(|_| !table.mixed().is_empty());
         let or = one_side.map_or_else(String::new, |ends| {

@@ -89,8 +89,8 @@ pub struct Part<F: Found = Vec<Tally>> {
 /// Why bytes are no part of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
-    /// Something else.
-    #[error("it is not a study file")]
+    /// Something else, such as a shard of another command.
+    #[error("it is not a study file of the same command and kind of scene")]
     Foreign,
     /// Made by another version.
     #[error("its format is version {0}, allowed is {VERSION}")]
