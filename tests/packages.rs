@@ -130,10 +130,20 @@ fn every_header_and_the_examples_of_the_guide_are_c_11_and_c_plus_plus_17() {
     }
 }
 
+/// Cargo unpacks a package of a version once: what an earlier run left would be taken for that of now.
+fn forget_unpacked(package: &str) {
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(std::env::home_dir()?.join(".cargo"))).expect("a home of Cargo's");
+    for registry in fs::read_dir(home.join("registry/src")).into_iter().flatten().flatten() {
+        let _ = fs::remove_dir_all(registry.path().join(package));
+    }
+}
+
 /// As they would be published: each builds from its own files alone.
 #[test]
 fn cargo_packages_core_and_the_c_library() {
     let folder = env!("CARGO_TARGET_TMPDIR");
+    forget_unpacked("slipfit-core-0.1.0");
     let mut package = cargo(folder);
     package.args(["package", "--offline", "--allow-dirty", "--quiet", "-p", "slipfit-core", "-p", "slipfit-capi"]);
     printed(&mut package);
