@@ -277,11 +277,12 @@
     const [[left, right], [low, high]] = common.bounds[which];
     const [wide, tall] = [right - left, high - low];
     const width = wide < tall ? 300 : 560;
-    const margin = 14;
-    const scale = (width - 2 * margin) / wide;
-    const height = Math.max(tall * scale + 2 * margin, 90);
-    const middle = (height - tall * scale) / 2;
-    const place = (point) => { const [u, v] = project(axes, point); return [(u - left) * scale + margin, (high - v) * scale + middle]; };
+    // The axes stand below what is drawn.
+    const [margin, below] = [14, 48];
+    const scale = Math.min((width - 2 * margin) / wide, (520 - margin - below) / tall);
+    const height = tall * scale + margin + below;
+    const across = (width - wide * scale) / 2;
+    const place = (point) => { const [u, v] = project(axes, point); return [(u - left) * scale + across, (high - v) * scale + margin]; };
     if (wide < tall) parent.classList.add("tall");
     const box = html(parent, "div", { class: "view" });
     const head = html(box, "p", { class: "head" });
@@ -322,7 +323,7 @@
     axes.forEach(({ letter, sign }, i) => {
       const [x, y] = i ? [0, -sign] : [sign, 0];
       svg(corner, "path", { d: `M0 0L${22 * x} ${22 * y}m${-5 * x - 3 * y} ${-5 * y - 3 * x}L${22 * x} ${22 * y}l${-5 * x + 3 * y} ${-5 * y + 3 * x}` });
-      svg(corner, "text", { x: x ? 28 * x : 9, y: y ? 22 * y + (y < 0 ? 4 : 6) : 4, "text-anchor": "middle" }, letter);
+      svg(corner, "text", { x: x ? 30 * x : 10, y: y ? 22 * y + (y < 0 ? 4 : 6) : 4, "text-anchor": "middle" }, letter);
     });
     return (frame) => {
       for (const { body, ghost, faces } of bodies) {
