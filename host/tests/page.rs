@@ -89,7 +89,8 @@ fn so_does_that_of_a_level_and_of_a_unit() {
         let command = ["simulate", "cd-rom-slide-drawing", "--stroke", "--page", "one.html"];
         stdout(&slipfit(folder.path(), &[&command[..], &options].concat()));
         let page = folder.path().join("one.html");
-        assert!(std::fs::read_to_string(&page).unwrap().contains(title), "{title}");
+        let text = std::fs::read_to_string(&page).unwrap();
+        assert!(text.contains(title) && text.contains("What this unit does"), "{title}");
         moves(&page, 1, 2);
     }
 }

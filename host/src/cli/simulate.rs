@@ -38,7 +38,7 @@ use crate::{
         export,
         figure::{unit_over_time, word},
         player,
-        report::{Figure, Units, units_page},
+        report::{Figure, unit_page},
     },
     system::files,
 };
@@ -305,8 +305,8 @@ impl Arguments {
         let played = [player::of_slide(scene, label, film)];
         let player = player::figure(&played, "The desk's run, on its pins:").map_err(anyhow::Error::from)?;
         let svg = unit_over_time(&run.trajectory, &scene.title, n).map_err(anyhow::Error::from)?;
-        let figures = vec![Figure { caption: "Velocity and force of the drive over time.".into(), svg }];
-        Ok(units_page(&scene.title, words, &Units { figures, player: Some(player) }, remarks))
+        let picture = Figure { caption: "Velocity and force of the drive over time.".into(), svg };
+        Ok(unit_page(&scene.title, words, player, picture, remarks))
     }
 
     /// The scene of unit `number` of the production, and the levels at which its gaps are those of the unit.

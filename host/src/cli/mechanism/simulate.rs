@@ -18,7 +18,7 @@ use crate::{
         figure::{columns_over_time, word},
         number::{fixed, level, or_dash, ten_digits},
         player,
-        report::{Figure, Units, units_page},
+        report::{Figure, unit_page},
     },
     system::files,
 };
@@ -157,8 +157,8 @@ fn page(mechanism: &Mechanism, unit: &OneUnit, one: &MechanismRun, words: &str) 
     let player = player::figure(&[played], "The desk's run, on its joints:").map_err(anyhow::Error::from)?;
     let svg = columns_over_time(&one.samples, &plotted(mechanism), &mechanism.title, &unit.label);
     let svg = svg.map_err(anyhow::Error::from)?;
-    let figures = vec![Figure { caption: "Over time, as CSV files have it.".into(), svg }];
-    Ok(units_page(&mechanism.title, words, &Units { figures, player: Some(player) }, &warnings_of(mechanism)?))
+    let picture = Figure { caption: "Over time, as CSV files have it.".into(), svg };
+    Ok(unit_page(&mechanism.title, words, player, picture, &warnings_of(mechanism)?))
 }
 
 /// What the controller of a mechanism does.

@@ -64,6 +64,16 @@ pub fn marked(verdict: Verdict) -> Markup {
     html! { span class=(word) { (word) } }
 }
 
+/// Plain text in which a hyphen between a blank and a digit becomes a minus sign.
+pub fn minus_signs(text: &str) -> String {
+    let mut parts = text.split(" -");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| {
+        let sign = if part.starts_with(|c: char| c.is_ascii_digit()) { " \u{2212}" } else { " -" };
+        text + sign + part
+    })
+}
+
 /// A tolerance level.
 pub fn typed(n: f64) -> String {
     typeset(&level(n))

@@ -9,7 +9,7 @@ mod sweep;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use self::html::{figure, list, real};
+use self::html::{figure, list, minus_signs, real};
 pub use self::production::Production;
 use super::{palette::style_sheet, player};
 use crate::{
@@ -102,9 +102,15 @@ pub fn report(input: &ReportInput) -> Markup {
     page(input.title, &sections, input.units)
 }
 
-/// A page of a population: what it comes to, as plain lines, then pictures and player.
+/// A page of a population: what it comes to, as plain lines, then player and pictures.
 pub fn units_page(title: &str, answer: &str, of: &Units, remarks: &[String]) -> Markup {
     page(title, &html! { (verdict(answer)) (notes(remarks)) (units(of)) }, Some(of))
+}
+
+/// The same of one unit, with one picture.
+pub fn unit_page(title: &str, answer: &str, player: Markup, picture: Figure, remarks: &[String]) -> Markup {
+    let of = Units { figures: vec![picture], player: Some(player) };
+    page(title, &html! { (verdict(answer)) (notes(remarks)) h2 { "What this unit does" } (moving(&of)) }, Some(&of))
 }
 
 /// A page with these sections, and with what moves the player of `units`.
@@ -131,9 +137,21 @@ fn page(title: &str, sections: &Markup, units: Option<&Units>) -> Markup {
     }
 }
 
-/// The answer, line by line, so that what follows of a long line is indented.
+/// The answer, line by line, so that what follows of a long line is indented as far as the texts behind their names.
 fn verdict(answer: &str) -> Markup {
-    html! { @if !answer.is_empty() { pre.answer { @for line in answer.lines() { span { (line) } } } } }
+    let unnamed = " ".repeat(16);
+    html! {
+        @if !answer.is_empty() {
+            pre.answer {
+                @for line in answer.lines().map(minus_signs) {
+                    @match line.strip_prefix(&unnamed) {
+                        Some(more) => span.more { (more) },
+                        None => span { (line) },
+                    }
+                }
+            }
+        }
+    }
 }
 
 fn notes(notes: &[String]) -> Markup {
@@ -144,9 +162,13 @@ fn figures(figures: &[Figure]) -> Markup {
     html! { @for Figure { caption, svg } in figures { (figure(caption, svg)) } }
 }
 
-fn units(Units { figures: pictures, player }: &Units) -> Markup {
+fn units(of: &Units) -> Markup {
+    html! { h2 { "What units do" } (moving(of)) }
+}
+
+/// Player and pictures.
+fn moving(Units { figures: pictures, player }: &Units) -> Markup {
     html! {
-        h2 { "What units do" }
         @if let Some(player) = player { (player) }
         (figures(pictures))
     }
