@@ -6,11 +6,14 @@
 mod symbol;
 mod view;
 
-use super::{Action, Joint, JointKind, Mechanism};
-use crate::show::{
-    number::ten_digits,
-    palette::{Colour, KINDS, SOFT},
-    svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, WIDTH},
+use super::{Action, Joint, JointKind, Mechanism, NamedDrive};
+use crate::{
+    scene::SURFACES,
+    show::{
+        number::ten_digits,
+        palette::{Colour, KINDS, PAPER, SOFT},
+        svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, WIDTH},
+    },
 };
 use symbol::Pen;
 use view::{Extent, View};
@@ -75,9 +78,14 @@ impl Mechanism {
     fn list(&self) -> Vec<(Mark, String)> {
         let bodies = self.bodies.iter().enumerate().map(|(i, body)| (Mark::Colour(colour(Some(i))), body.name.clone()));
         let joints = self.joints.iter().enumerate().map(|(i, joint)| {
-            let gaps: Vec<_> = joint.kind.gaps().map(|gap| ten_digits(self.gaps[gap].statistics.mean * 1e3)).collect();
-            let word = if gaps.len() == 1 { "gap" } else { "gaps" };
-            let play = if gaps.is_empty() { String::new() } else { format!(", {word} {} mm", gaps.join(", ")) };
+            let named = |name: &str, gap: usize| format!("{name} {}", ten_digits(self.gaps[gap].statistics.mean * 1e3));
+            let gaps: Vec<String> = match &joint.kind {
+                JointKind::Track { gaps } => {
+                    gaps.iter().zip(SURFACES).filter_map(|(gap, surface)| Some(named(surface, (*gap)?))).collect()
+                }
+                kind => kind.gaps().map(|gap| named("gap", gap)).collect(),
+            };
+            let play = if gaps.is_empty() { String::new() } else { format!(", {} mm", gaps.join(", ")) };
             (Mark::Number(i + 1), format!("{}: {}{play}", joint.name, joint.kind.name()))
         });
         let springs = self.springs.iter().map(|spring| {
@@ -109,11 +117,10 @@ impl Mechanism {
             pen.centre(body.centre, colour(Some(i)));
         }
         for drive in &self.drives {
-            let centre = self.bodies[drive.body].centre;
             match drive.action {
                 Action::Pushes { axis } => {
-                    let at = std::array::from_fn(|k| centre[k] + drive.drive.point_b[k]);
-                    pen.arrow(at, axis.map(|x| x * if drive.drive.speed < 0.0 { -1.0 } else { 1.0 }));
+                    let sense = if drive.drive.speed < 0.0 { -1.0 } else { 1.0 };
+                    pen.arrow(self.drive_point(drive), axis.map(|x| x * sense));
                 }
                 Action::Turns { axis } => pen.turn(self.pivot(drive.body), axis, drive.drive.speed),
             }
@@ -146,18 +153,26 @@ impl Mechanism {
                 [10.0, 42.0],
             ];
             let [dx, dy] = *places.iter().find(free).unwrap_or(&places[0]);
+            let [left, above, ..] = room([dx, dy]);
+            // So that a line does not strike the number through.
+            pen.svg.rectangle([left, above + 2.0, width, 12.0], PAPER, 0.8);
             taken.push(room([dx, dy]));
             pen.svg.text([x + dx, y + dy], &label, Font { bold: true, ..PLAIN });
         }
     }
 
+    /// Where the force of a drive acts (m), in the drawn pose.
+    fn drive_point(&self, drive: &NamedDrive) -> [f64; 3] {
+        let centre = self.bodies[drive.body].centre;
+        std::array::from_fn(|k| centre[k] + drive.drive.point_b[k])
+    }
+
     /// What a drive turns a body about: the middle of its joints with the frame, if there are any, else its centre of mass.
     fn pivot(&self, body: usize) -> [f64; 3] {
         use JointKind::{Bearing, Cylindrical, Journal, PinSlot, Revolute, Spherical};
-        let turns = |joint: &&Joint| match joint.kind {
-            Revolute { .. } | PinSlot { .. } | Cylindrical { .. } | Spherical => true,
-            Journal { .. } | Bearing { .. } => true,
-            _ => false,
+        let turns = |joint: &&Joint| {
+            let ideal = matches!(joint.kind, Revolute { .. } | PinSlot { .. } | Cylindrical { .. } | Spherical);
+            ideal || matches!(joint.kind, Journal { .. } | Bearing { .. })
         };
         let to_frame = |joint: &&Joint| joint.between.contains(&None) && joint.between.contains(&Some(body));
         let places: Vec<_> = self.joints.iter().filter(turns).filter(to_frame).map(|joint| joint.at).collect();
@@ -201,9 +216,16 @@ mod tests {
             for named in bodies.chain(mechanism.joints.iter().map(|joint| &joint.name)) {
                 assert!(texts.iter().any(|text| text.contains(named.as_str())), "{name}: {named}");
             }
-            // Nothing lies outside the picture.
-            let size = |side| document.root_element().attribute(side).and_then(|size| size.parse::<f64>().ok());
-            let greatest = size("width").unwrap().max(size("height").unwrap()).ceil();
+            // Nothing lies outside the picture, no line and no arrow.
+            let size =
+                |side| document.root_element().attribute(side).and_then(|size| size.parse::<f64>().ok()).unwrap();
+            for points in document.descendants().filter_map(|node| node.attribute("points")) {
+                for [x, y] in points.split(' ').map(|point| point.split_once(',').unwrap()).map(|(x, y)| [x, y]) {
+                    let within = |at: &str, side| (0.0..=size(side)).contains(&at.parse::<f64>().unwrap());
+                    assert!(within(x, "width") && within(y, "height"), "{name}: {x}, {y}");
+                }
+            }
+            let greatest = size("width").max(size("height")).ceil();
             for number in svg.split(['"', ' ', ',']).filter_map(|word| word.parse::<f64>().ok()) {
                 assert!((-greatest..=greatest).contains(&number), "{name}: {number}");
             }

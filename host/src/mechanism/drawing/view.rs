@@ -1,6 +1,6 @@
 //! From places (m) to places on the picture (px).
 
-use crate::mechanism::{JointKind, Mechanism};
+use crate::mechanism::{Action, JointKind, Mechanism};
 
 /// Room for symbols and labels around everything (px).
 const MARGIN: f64 = 56.0;
@@ -26,10 +26,12 @@ pub struct View {
 pub struct Extent([[f64; 2]; 3]);
 
 impl Extent {
-    /// Of all bodies and joints.
+    /// Of all bodies, joints and forces.
     pub fn of(mechanism: &Mechanism) -> Self {
         let centres = mechanism.bodies.iter().map(|body| body.centre);
-        let places: Vec<[f64; 3]> = centres.chain(mechanism.joints.iter().flat_map(ends)).collect();
+        let pushing = mechanism.drives.iter().filter(|drive| matches!(drive.action, Action::Pushes { .. }));
+        let forces = pushing.map(|drive| mechanism.drive_point(drive));
+        let places: Vec<[f64; 3]> = centres.chain(mechanism.joints.iter().flat_map(ends)).chain(forces).collect();
         Self(std::array::from_fn(|k| {
             let values = || places.iter().map(|place| place[k]);
             [values().fold(f64::MAX, f64::min), values().fold(f64::MIN, f64::max)]

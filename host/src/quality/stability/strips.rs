@@ -4,7 +4,7 @@
 use super::{FACTORS, Grade, Point, SCHEMES, tally};
 use crate::show::{
     number::typeset,
-    palette::{Colour, INK, PAPER},
+    palette::Colour,
     svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE, WIDTH},
 };
 
@@ -18,15 +18,23 @@ const GAP: f64 = 8.0;
 /// Least distance of labels from each other.
 const LABEL_PITCH: f64 = 46.0;
 
+/// A colour that is the same on white and on dark pages.
+const fn fixed(name: &'static str, shade: &'static str) -> Colour {
+    Colour { name, light: shade, dark: shade }
+}
+
+/// Letters, on light cells and on dark ones.
+const DARK: Colour = fixed("dark-letter", "#222222");
+const WHITE: Colour = fixed("white-letter", "#ffffff");
+
 /// Colour, letter and meaning.
 fn look(grade: Grade) -> (Colour, &'static str, &'static str) {
-    let colour = |name, shade| Colour { name, light: shade, dark: shade };
     match grade {
-        Grade::Sound => (colour("sound", "#9fd3f0"), "", "right, no warning"),
-        Grade::Cautious => (colour("cautious", "#f0e442"), "c", "right from 50 ms on, warns"),
-        Grade::Warned => (colour("warned", "#e69f00"), "w", "off by more than 5 %, warns"),
-        Grade::Stopped => (colour("stopped", "#999999"), "x", "stopped: not finite"),
-        Grade::Silent => (colour("silent", "#b02a00"), "S", "off by more than 5 %, silent"),
+        Grade::Sound => (fixed("sound", "#9fd3f0"), "", "right, no warning"),
+        Grade::Cautious => (fixed("cautious", "#f0e442"), "c", "right from 50 ms on, warns"),
+        Grade::Warned => (fixed("warned", "#e69f00"), "w", "off by more than 5 %, warns"),
+        Grade::Stopped => (fixed("stopped", "#999999"), "x", "stopped: not finite"),
+        Grade::Silent => (fixed("silent", "#b02a00"), "S", "off by more than 5 %, silent"),
     }
 }
 
@@ -94,7 +102,7 @@ fn cell(svg: &mut Svg, [x, y, width]: [f64; 3], grade: Grade) {
     let (colour, letter, _) = look(grade);
     svg.rectangle([x, y, width, ROW - 1.0], colour, 1.0);
     if !letter.is_empty() && width > 8.0 {
-        let colour = if grade == Grade::Silent { PAPER } else { INK };
+        let colour = if grade == Grade::Silent { WHITE } else { DARK };
         let font = Font { colour, anchor: Anchor::Middle, ..PLAIN };
         svg.text([x + width / 2.0, y + 0.5 * (ROW - 1.0)], letter, font);
     }

@@ -7,7 +7,7 @@ use crate::{
         bars::{Bar, Block, HEAD, bars, document, longest, sheets},
         chart::{Chart, Look, Panel, Series, outline},
         number::{fixed, typeset},
-        palette::{INK, NEGATIVE, ON_NEGATIVE, ON_POSITIVE, POSITIVE, SOFT},
+        palette::{Colour, INK, NEGATIVE, ON_NEGATIVE, ON_POSITIVE, POSITIVE, SOFT},
         plot::{PlotError, small_chart},
         svg::{Anchor, Font, PLAIN},
     },
@@ -17,8 +17,10 @@ use crate::{
     },
 };
 
-/// The share of a colour from which on text on it is not in the paper's ink.
-const FULL: f64 = 0.6;
+/// The share of a colour from which on text on it is dark on dark paper, too.
+const STRONG: f64 = 0.65;
+/// The share of the negative colour from which on text on it is white on white paper.
+const FULL: f64 = 0.92;
 /// Bins of a tally in a class of the histogram for each step of the number of units: about as many classes as its cube
 /// root.
 const CLASSES: [(u64, usize); 4] = [(1_000, 64), (20_000, 32), (500_000, 16), (u64::MAX, 8)];
@@ -52,7 +54,7 @@ pub fn file_names(measures: usize) -> impl Iterator<Item = String> {
     std::iter::once(CORRELATION.to_owned()).chain(of_measures)
 }
 
-/// All pictures: contributors, correlations, and a histogram for every measure.
+/// All pictures: contributors, correlations of several measures, and a histogram for every measure.
 ///
 /// # Errors
 /// [`PlotError`], if a number is not finite.
@@ -67,8 +69,9 @@ pub fn pictures(report: &Report, study: &Study, tallies: &[Tally]) -> Result<Vec
     let contributors = contributors_svgs(report).into_iter().enumerate();
     let contributors =
         contributors.map(|(i, svg)| picture(&contributors_file(i), "What the measures' variances come from.", svg));
-    let correlation = picture(CORRELATION, "Which measures vary together.", correlation_svg(report));
-    contributors.chain([correlation]).map(Ok).chain(report.measures.iter().enumerate().map(histogram)).collect()
+    let correlation = (report.measures.len() > 1)
+        .then(|| picture(CORRELATION, "Which measures vary together.", correlation_svg(report)));
+    contributors.chain(correlation).map(Ok).chain(report.measures.iter().enumerate().map(histogram)).collect()
 }
 
 /// The histogram of measure `i` with the normal of the same moments and its limits.
@@ -99,7 +102,17 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
     for limit in measure.limits.into_iter().flatten() {
         series.push(line("", Look::Guide, vec![(limit, 0.0), (limit, 1.05 * top)]));
     }
-    let unit = if measure.unit.is_empty() { String::new() } else { format!(" ({})", measure.unit) };
+    let unit = measure.unit;
+    let in_unit = |number: &str| match unit {
+        "" => number.to_owned(),
+        "°" => format!("{number}°"),
+        _ => format!("{number} {unit}"),
+    };
+    let (of_unit, per_unit) = match unit {
+        "" => (String::new(), String::new()),
+        _ if unit.contains(['/', '·']) => (format!(" ({unit})"), format!(" (1/({unit}))")),
+        _ => (format!(" ({unit})"), format!(" (1/{unit})")),
+    };
     let limits = if measure.limits == [None; 2] { "" } else { "; grey: limits" };
     let ppk = measure.ppk.map(|ppk| format!(", Ppk {}", fixed(ppk, 3))).unwrap_or_default();
     small_chart(&Chart {
@@ -107,12 +120,12 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
         subtitle: format!(
             "{}: mean {}, σ {}{ppk}; {} units{limits}",
             measure.name,
-            typeset(&fixed(measure.mean, 4)),
-            fixed(measure.sd, 4),
+            in_unit(&typeset(&fixed(measure.mean, 4))),
+            in_unit(&fixed(measure.sd, 4)),
             report.samples
         ),
-        x_label: format!("{}{unit}", measure.name),
-        panels: vec![Panel { y_label: "density".into(), series, ..Panel::default() }],
+        x_label: format!("{}{of_unit}", measure.name),
+        panels: vec![Panel { y_label: format!("density{per_unit}"), series, ..Panel::default() }],
         ..Chart::default()
     })
 }
@@ -152,14 +165,25 @@ fn correlation_svg(report: &Report) -> String {
         for (j, rho) in report.correlation[i].iter().enumerate() {
             let (x, y) = (left + j as f64 * CELL, top + i as f64 * CELL);
             let strength = rho.abs().min(1.0);
-            let (full, on_full) = if *rho < 0.0 { (NEGATIVE, ON_NEGATIVE) } else { (POSITIVE, ON_POSITIVE) };
+            let full = if *rho < 0.0 { NEGATIVE } else { POSITIVE };
             svg.rectangle([x, y, CELL - 1.0, CELL - 1.0], full, strength);
-            let colour = if strength < FULL { INK } else { on_full };
-            let number = typeset(&fixed(100.0 * rho, 0));
-            svg.text([x + (CELL - 1.0) / 2.0, y + CELL / 2.0], &number, Font { colour, size: 12.0, ..middle });
+            let font = Font { colour: ink_on(*rho), size: 12.0, ..middle };
+            svg.text([x + (CELL - 1.0) / 2.0, y + CELL / 2.0], &typeset(&fixed(100.0 * rho, 0)), font);
         }
     }
     svg.finish()
+}
+
+/// The colour of the number `rho` on its cell. That on positive cells is dark on either paper, as negative cells want it that
+/// are not yet full.
+fn ink_on(rho: f64) -> Colour {
+    if rho.abs() < STRONG {
+        INK
+    } else if rho < -FULL {
+        ON_NEGATIVE
+    } else {
+        ON_POSITIVE
+    }
 }
 
 #[cfg(test)]
@@ -183,6 +207,9 @@ mod tests {
         study.add(0..settings.blocks(), &mut tallies, |_| ());
         let report = report("<slide>", &model, &conclude(&study, &tallies).unwrap());
         let histogram = histogram_svg(&report, &study, &tallies, 0).unwrap();
+        assert!(
+            histogram.contains("density (1/mm)") && histogram.contains(&format!("σ {:.4} mm", report.measures[0].sd))
+        );
         for (name, svg) in [
             ("histogram", histogram),
             ("contributors", contributors_svgs(&report).swap_remove(0)),
