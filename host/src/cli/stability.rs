@@ -86,10 +86,18 @@ fn describe(title: &str, single: &[Point], random: &[Point]) -> String {
     let mut text = format!("{title}: stability\n\n{}", text_table(&heading, &rows));
     let silent = |points: &[Point]| -> Vec<String> {
         let silent = points.iter().filter(|point| point.grade() == Grade::Silent);
-        silent.map(|point| format!("{}, {} {:?}", point.integrator, point.factor, point.values)).collect()
+        silent.map(|point| format!("{}; {}", point.integrator, values(point))).collect()
     };
     for point in silent(single).iter().chain(&silent(random)) {
         let _ = writeln!(text, "wrong without a warning: {point}");
     }
     text
+}
+
+/// What was varied, name and value.
+fn values(point: &Point) -> String {
+    let varied = FACTORS.iter().filter(|factor| [factor.name, "random"].contains(&point.factor));
+    let pairs =
+        varied.zip(&point.values).map(|(factor, value)| format!("{} = {}", factor.name, (factor.label)(*value)));
+    pairs.collect::<Vec<_>>().join("; ")
 }

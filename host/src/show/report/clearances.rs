@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     mechanism::{
-        Gap, Mechanism,
+        Gap, JointKind, Mechanism,
         closing::{Pair, Pin, Table2, Toes, derived},
     },
     scene::{SURFACES, Scene},
@@ -46,9 +46,14 @@ fn of_joints(mechanism: &Mechanism) -> Markup {
         let GapStatistics { mean, deviation } = gap.statistics;
         row(&gap.name, [mm(Some(mean)), mm(Some(deviation)), optional(gap.closes_at(), 3)])
     };
-    let caption = "The gaps of every joint with play over the production (mm); n* is the level that closes it.";
+    // Only in a track do two gaps face each other.
+    let pairs = mechanism.joints.iter().any(|joint| matches!(joint.kind, JointKind::Track { .. }));
+    let of_pairs = if pairs { " alone; a pair closes when both are gone" } else { "" };
+    let caption = format!(
+        "The gaps of every joint with play over the production (mm); n* is the level that closes it{of_pairs}."
+    );
     let head = html! { tr { (columns(&["gap", "mean", "σ", "n*"])) } };
-    table(caption, head, mechanism.gaps.iter().map(of))
+    table(&caption, head, mechanism.gaps.iter().map(of))
 }
 
 /// The gaps as the dynamics use them; `computed` if they follow from a product.

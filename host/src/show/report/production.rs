@@ -47,7 +47,7 @@ fn measures(report: &Report) -> Markup {
             cells.extend([m.pp, m.ppk].map(|x| optional(x, 3)));
             cells.extend(m.dpm.map(|side| side.map_or_else(|| "–".to_owned(), |side| ppm(side.dpm))));
         }
-        row(&named(m), cells)
+        row(&named(&m.name, m.unit), cells)
     };
     let caption =
         format!("{} units drawn, seed {}: mean, standard deviation, points, capability.", report.samples, report.seed);
@@ -62,7 +62,7 @@ fn beside(report: &Report) -> Markup {
             m.rss.map_or_else(|| "–".to_owned(), |rss| format!("{} ± {}", real(rss.middle, 4), real(rss.tolerance, 4)));
         let second = m.second_order;
         let [mean, deviation] = [second.map(|s| s.mean), second.map(|s| s.sd)].map(|x| optional(x, 4));
-        row(&named(m), [format!("{low} … {high}"), rss, mean, deviation])
+        row(&named(&m.name, m.unit), [format!("{low} … {high}"), rss, mean, deviation])
     };
     let caption = "Without random numbers: worst case, root sum of squares, moments of second order.";
     table(caption, head(&names), report.measures.iter().map(of))
@@ -79,7 +79,7 @@ fn sums(report: &Report) -> Markup {
             ppm(sum.eq9_ppm),
             ppm(sum.independent_ppm),
         ];
-        row(&sum.name, cells)
+        row(&named(&sum.name, sum.unit), cells)
     };
     let caption = "Sums that must not close: defects per million with the model's own correlation, and as mean and σ alone \
                    would have it, both gaps moving together as in eq. 9, or independently.";
@@ -95,8 +95,7 @@ fn ppm(number: f64) -> String {
     typeset(&per_million(number))
 }
 
-/// A measure with its unit.
-fn named(measure: &MeasureReport) -> String {
-    let MeasureReport { name, unit, .. } = measure;
-    if unit.is_empty() { name.clone() } else { format!("{name}, {unit}") }
+/// The name of a measure or a sum with its unit.
+fn named(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name}, {unit}") }
 }
