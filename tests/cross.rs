@@ -122,12 +122,13 @@ pub fn built(folder: &str, name: &str) -> PathBuf {
 }
 
 /// The image that steps the slide on one core after another, built for a `target` and its `cpu`, as in `-C target-cpu`, if that
-/// is not the target's own. One for another `cpu` takes its place.
+/// is not the target's own. Each `cpu` has its part of `folder`: tests that run beside each other must not overwrite what the other runs.
 ///
 /// # Panics
 /// If it cannot be built.
 pub fn image_for(folder: &str, target: &str, cpu: Option<&str>) -> PathBuf {
     require_core_of(target);
+    let folder = &format!("{folder}/{}", cpu.unwrap_or("default"));
     let mut build = cargo(folder);
     // In place of the repository's flags, also where there are none.
     build.env("CARGO_ENCODED_RUSTFLAGS", cpu.map(|cpu| format!("-Ctarget-cpu={cpu}")).unwrap_or_default());

@@ -171,11 +171,13 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
     }
 }
 
+/// The one axis about which coordinates turn a body, and which they are; a body that others turn, too, has none.
+type Turns = (Vector3<f64>, Vec<usize>);
+
 /// The bodies of a mechanism in space on ideal joints.
 pub struct JointedBodies<const N: usize, const W: usize, const D: usize> {
     tree: SpatialTree<f64, N, W, D>,
-    /// Which coordinates turn each body about one axis, if all that turn it do.
-    turns: Vec<Option<(Vector3<f64>, Vec<usize>)>>,
+    turns: Vec<Option<Turns>>,
 }
 
 impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
@@ -204,7 +206,7 @@ impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
     pub fn told(&self, state: &State<D>) -> Vec<BodyMotion> {
         let pose = self.tree.pose(state.places, half_angle);
         let placed = self.tree.placed(&pose, &SVector::from(state.rates));
-        let body = |(turns, at): (&Option<(Vector3<f64>, Vec<usize>)>, &PlacedBody<f64>)| BodyMotion {
+        let body = |(turns, at): (&Option<Turns>, &PlacedBody<f64>)| BodyMotion {
             displacement: at.displacement_w,
             turn: match turns {
                 Some((axis, all)) => {
