@@ -26,7 +26,10 @@ use slipfit_core::{
     table::{Table, Word, layout},
 };
 use slipfit_problems::cd_rom::{self, CdRomSlide};
-use slipfit_tests::cross::{self, TARGET, cargo, printed};
+use slipfit_tests::{
+    cross::{self, TARGET, cargo, printed},
+    guide,
+};
 
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
@@ -129,6 +132,12 @@ fn the_same_bits_from_c_on_host_and_target_and_from_rust() {
         ["null", "misaligned", "not made", "scene", "position", "closed then", "truncated", "foreign"].into_iter();
     let codes = codes.zip([1, 2, 4, 23, 24, 4, 16, 17]).map(|(name, code)| format!("{name} {code:016x}"));
     assert_eq!(refusals, codes.collect::<Vec<_>>());
+
+    let first: String = on_host.split_inclusive('\n').take(5).collect();
+    assert!(
+        guide::page("firmware").contains(&format!("```text\n{first}```")),
+        "the guide has other lines than\n{first}"
+    );
 }
 
 /// Neither what the compiler optimises nor what the processor offers, fused multiply-add for one, changes a bit.
@@ -313,8 +322,8 @@ fn the_library_takes_the_recorded_flash() {
 /// Objects are opaque words, which the header counts.
 #[test]
 fn the_guide_has_the_sizes_of_objects() {
-    let read = |path: &str| fs::read_to_string(Path::new(ROOT).join(path)).expect("a file");
-    let (header, page) = (read("core/capi/include/slipfit.h"), read("host/guide/src/firmware.md"));
+    let header = fs::read_to_string(Path::new(ROOT).join("core/capi/include/slipfit.h")).expect("a file");
+    let page = guide::page("firmware");
     let mut objects = 0;
     for text in header.split("typedef struct ").skip(1) {
         let Some((name, fields)) = text.split_once(" {\n  uint") else { continue };
