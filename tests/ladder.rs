@@ -156,7 +156,7 @@ fn the_guide_has_these_costs() {
     let [one, other] = both(|costs| costs.code);
     has(format!("| {one} bytes of code | {other} bytes of code |"));
     let [one, other] = both(|costs| costs.state + costs.parameters);
-    has(format!("| RAM of the object in Rust | not counted | {one} bytes | {other} bytes |"));
+    has(format!("| RAM of parameters and state in Rust | not counted | {one} bytes | {other} bytes |"));
     let Costs { stack, parameters, state, code, .. } = ahead;
     has(format!("| {stack}; {parameters}; {}; {} bytes |", with_comma(state), with_comma(code)));
 }
