@@ -85,7 +85,7 @@ impl Mechanism {
                 }
                 kind => kind.gaps().map(|gap| named("gap", gap)).collect(),
             };
-            let play = if gaps.is_empty() { String::new() } else { format!(", {} mm", gaps.join(", ")) };
+            let play = if gaps.is_empty() { String::new() } else { format!(", {} mm", gaps.join(" ")) };
             (Mark::Number(i + 1), format!("{}: {}{play}", joint.name, joint.kind.name()))
         });
         let springs = self.springs.iter().map(|spring| {
