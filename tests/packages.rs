@@ -130,7 +130,7 @@ fn every_header_and_the_examples_of_the_guide_are_c_11_and_c_plus_plus_17() {
     }
 }
 
-/// Cargo unpacks a package of a version once: what an earlier run left would be taken for that of now.
+/// Cargo unpacks and builds a package of a version once: what an earlier run left would be taken for that of now.
 fn forget_unpacked(package: &str) {
     let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(std::env::home_dir()?.join(".cargo"))).expect("a home of Cargo's");
@@ -142,13 +142,13 @@ fn forget_unpacked(package: &str) {
 /// As they would be published: each builds from its own files alone.
 #[test]
 fn cargo_packages_core_and_the_c_library() {
-    let folder = env!("CARGO_TARGET_TMPDIR");
+    let folder = folder("packages");
     forget_unpacked("slipfit-core-0.1.0");
-    let mut package = cargo(folder);
+    let mut package = cargo(folder.to_str().expect("a folder's name"));
     package.args(["package", "--offline", "--allow-dirty", "--quiet", "-p", "slipfit-core", "-p", "slipfit-capi"]);
     printed(&mut package);
     for name in ["slipfit-core", "slipfit-capi"] {
-        let archive = Path::new(folder).join(format!("cross/package/{name}-0.1.0.crate"));
+        let archive = folder.join(format!("cross/package/{name}-0.1.0.crate"));
         let files = printed(Command::new("tar").arg("tzf").arg(archive));
         for file in ["README.md", "Cargo.toml", "src/lib.rs", "LICENSE-MIT", "LICENSE-APACHE"] {
             assert!(files.contains(&format!("{name}-0.1.0/{file}\n")), "{file} is missing in {files}");
