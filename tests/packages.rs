@@ -142,7 +142,7 @@ fn forget_unpacked(package: &str) {
 /// As they would be published: each builds from its own files alone.
 #[test]
 fn cargo_packages_core_and_the_c_library() {
-    let folder = folder("packages");
+    let folder = folder("cargo-packages");
     forget_unpacked("slipfit-core-0.1.0");
     let mut package = cargo(folder.to_str().expect("a folder's name"));
     package.args(["package", "--offline", "--allow-dirty", "--quiet", "-p", "slipfit-core", "-p", "slipfit-capi"]);
