@@ -1,4 +1,4 @@
-//! Turns in a plane by cosine and sine of half the angle. They are kept near unit length, and never assumed to have it exactly.
+//! Turns about an axis by cosine and sine of half the angle. They are kept near unit length, and never assumed to have it exactly.
 
 use crate::{Scalar, Vector2};
 
@@ -41,4 +41,33 @@ pub(super) fn whole<S: Scalar>(half: [S; 2]) -> Vector2<S> {
 #[inline(always)]
 pub(super) fn angle_rate<S: Scalar>(angle: S, rate: S) -> S {
     rate * (S::one() + angle * angle * S::from_f64(0.25))
+}
+
+/// `base + weight·(to − from)`, number by number, of coordinates that have two each.
+#[inline(always)]
+pub(super) fn shifted<S: Scalar, const D: usize>(
+    base: &[[S; 2]; D],
+    from: &[[S; 2]; D],
+    to: &[[S; 2]; D],
+    weight: S,
+) -> [[S; 2]; D] {
+    let mut shifted = *base;
+    for ((base, from), to) in shifted.iter_mut().zip(from).zip(to) {
+        *base = [base[0] + (to[0] - from[0]) * weight, base[1] + (to[1] - from[1]) * weight];
+    }
+    shifted
+}
+
+/// Makes `kept` `next`, number by number where it is finite and `condition` > 0.
+#[inline(always)]
+pub(super) fn accept<S: Scalar, const D: usize>(condition: S, next: &[[S; 2]; D], kept: &mut [[S; 2]; D]) {
+    for (kept, next) in kept.as_flattened_mut().iter_mut().zip(next.as_flattened()) {
+        *kept = next.or_old(condition, *kept);
+    }
+}
+
+/// 0 if all numbers are finite, else NaN.
+#[inline(always)]
+pub(super) fn finiteness_probe<S: Scalar, const D: usize>(pose: &[[S; 2]; D]) -> S {
+    pose.as_flattened().iter().fold(S::zero(), |sum, x| sum + *x * S::zero())
 }

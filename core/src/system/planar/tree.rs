@@ -185,11 +185,7 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
 
     #[inline(always)]
     fn shifted(&self, base: &Self::Pose, from: &Self::Pose, to: &Self::Pose, weight: S) -> Self::Pose {
-        let mut shifted = *base;
-        for ((base, from), to) in shifted.iter_mut().zip(from).zip(to) {
-            *base = [base[0] + (to[0] - from[0]) * weight, base[1] + (to[1] - from[1]) * weight];
-        }
-        shifted
+        half_turn::shifted(base, from, to, weight)
     }
 
     #[inline(always)]
@@ -205,14 +201,12 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
 
     #[inline(always)]
     fn accept(&self, condition: S, next: &Self::Pose, kept: &mut Self::Pose) {
-        for (kept, next) in kept.as_flattened_mut().iter_mut().zip(next.as_flattened()) {
-            *kept = next.or_old(condition, *kept);
-        }
+        half_turn::accept(condition, next, kept);
     }
 
     #[inline(always)]
     fn finiteness_probe(&self, pose: &Self::Pose) -> S {
-        pose.as_flattened().iter().fold(S::zero(), |sum, x| sum + *x * S::zero())
+        half_turn::finiteness_probe(pose)
     }
 
     #[inline(always)]

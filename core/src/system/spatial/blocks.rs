@@ -6,14 +6,16 @@ use crate::{SMatrix, SVector, Scalar, Vector3, linear::Blocks, pose::turned_over
 
 /// Adds a force (N) and a torque (N·m) on a body to `sum`; those on one that is not there are left out.
 #[inline(always)]
-pub(super) fn add_wrench<S: Scalar, const D: usize>(
-    sum: &mut SVector<S, D>,
-    body: usize,
-    [force, torque]: [&Vector3<S>; 2],
-) {
-    if let Some([x, y, z, a, b, c]) = sum.data.0[0].as_chunks_mut::<6>().0.get_mut(body) {
-        (*x, *y, *z) = (*x + force.x, *y + force.y, *z + force.z);
-        (*a, *b, *c) = (*a + torque.x, *b + torque.y, *c + torque.z);
+pub(super) fn add_wrench<S: Scalar, const D: usize>(sum: &mut SVector<S, D>, body: usize, wrench: [&Vector3<S>; 2]) {
+    add_pair(&mut sum.data.0[0], body, wrench);
+}
+
+/// Adds the two vectors of a body to numbers in sixes; those of one that is not there are left out.
+#[inline(always)]
+pub(super) fn add_pair<S: Scalar>(numbers: &mut [S], body: usize, [first, second]: [&Vector3<S>; 2]) {
+    if let Some([x, y, z, a, b, c]) = numbers.as_chunks_mut::<6>().0.get_mut(body) {
+        (*x, *y, *z) = (*x + first.x, *y + first.y, *z + first.z);
+        (*a, *b, *c) = (*a + second.x, *b + second.y, *c + second.z);
     }
 }
 

@@ -12,12 +12,12 @@
 
 use super::{
     SpatialTree,
-    motion::{Pairs, Placed, add_pair, pair, times},
+    motion::{Pairs, Placed, pair, times},
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
     product::{cross, dot, times as of_three},
-    system::spatial::PlacedBody,
+    system::spatial::{PlacedBody, blocks::add_pair},
 };
 
 /// How the motion of a body changes by one coordinate: its centre of mass, and its turning.
@@ -116,13 +116,13 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
                     |v: &Vector3<S>| cross(&axis, &of_three(&inertia, v)) - of_three(&inertia, &cross(&axis, v));
                 let [centre_rate, turning_rate] = [0, 1].map(|part| change.velocity[part] + change.column_rate[part]);
                 let by_turning = of_three(&inertia, &turning_rate) + gyroscopic(&axis);
-                add_pair(&mut by_rate.data.0[0], i, &[centre_rate * body.mass, by_turning]);
+                add_pair(&mut by_rate.data.0[0], i, [&(centre_rate * body.mass), &by_turning]);
                 let [centre, turning_change] = change.acceleration;
                 let by_turn = of_three(&inertia, &turning_change)
                     + turned(turning)
                     + cross(spin, &turned(spin))
                     + gyroscopic(&change.velocity[1]);
-                add_pair(&mut by_place.data.0[0], i, &[centre * body.mass, by_turn]);
+                add_pair(&mut by_place.data.0[0], i, [&(centre * body.mass), &by_turn]);
             }
             add_column(damping, k, &self.reduced(placed, &by_rate));
             add_column(stiffness, k, &self.reduced(placed, &by_place));
@@ -202,7 +202,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
                 if self.is_moved(k, i) {
                     let [_, axis] = placed.column(k, i);
                     let [centre, turning] = self.change(placed, [k, i], &none.0, &none.1).velocity;
-                    add_pair(&mut change.data.0[0], i, &[centre, turning - cross(&axis, &at.rotation_w)]);
+                    add_pair(&mut change.data.0[0], i, [&centre, &(turning - cross(&axis, &at.rotation_w))]);
                 }
             }
             let mut sum = self.by_column(placed, by_place, k) + times(by_rate, &change);
@@ -218,7 +218,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
     fn add_seen(&self, placed: &Placed<S, N, W, D>, k: usize, wrench: &SVector<S, W>, sum: &mut SVector<S, W>) {
         for body in (0..N).filter(|body| self.is_moved(k, *body)) {
             let ([_, axis], [_, torque]) = (placed.column(k, body), pair(&wrench.data.0[0], body));
-            add_pair(&mut sum.data.0[0], body, &[Vector3::zeros(), cross(&torque, &axis)]);
+            add_pair(&mut sum.data.0[0], body, [&Vector3::zeros(), &cross(&torque, &axis)]);
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector3,
     error::bounded,
     product::cross,
-    system::{Bodies, Lu, Reduced, spatial::Placed as PlacedBodies},
+    system::{Bodies, Lu, Reduced, half_turn, spatial::Placed as PlacedBodies},
 };
 
 pub use joint::{Joint, Kind, Mount};
@@ -200,11 +200,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> Bodies<S, D> for
 
     #[inline(always)]
     fn shifted(&self, base: &Self::Pose, from: &Self::Pose, to: &Self::Pose, weight: S) -> Self::Pose {
-        let mut shifted = *base;
-        for ((base, from), to) in shifted.iter_mut().zip(from).zip(to) {
-            *base = [base[0] + (to[0] - from[0]) * weight, base[1] + (to[1] - from[1]) * weight];
-        }
-        shifted
+        half_turn::shifted(base, from, to, weight)
     }
 
     #[inline(always)]
@@ -214,14 +210,12 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> Bodies<S, D> for
 
     #[inline(always)]
     fn accept(&self, condition: S, next: &Self::Pose, kept: &mut Self::Pose) {
-        for (kept, next) in kept.as_flattened_mut().iter_mut().zip(next.as_flattened()) {
-            *kept = next.or_old(condition, *kept);
-        }
+        half_turn::accept(condition, next, kept);
     }
 
     #[inline(always)]
     fn finiteness_probe(&self, pose: &Self::Pose) -> S {
-        pose.as_flattened().iter().fold(S::zero(), |sum, x| sum + *x * S::zero())
+        half_turn::finiteness_probe(pose)
     }
 
     #[inline(always)]

@@ -13,7 +13,7 @@ use crate::{
     product::{columns, cross, dot, product, times as of_three, transposed_times},
     system::{
         half_turn::less_and_sine,
-        spatial::{Placed as PlacedBodies, PlacedBody},
+        spatial::{Placed as PlacedBodies, PlacedBody, blocks::add_pair},
     },
 };
 
@@ -131,7 +131,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
                     } else {
                         [axis, Vector3::zeros()]
                     };
-                    add_pair(column, body, &moved);
+                    add_pair(column, body, moved.each_ref());
                 }
             }
         }
@@ -207,7 +207,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
             let inertia = at.in_frame(&body.inertia_b);
             let gyroscopic = cross(&at.rotation_w, &of_three(&inertia, &at.rotation_w));
             let force = (self.free.gravity_w() - centre) * body.mass;
-            add_pair(&mut wrench.data.0[0], i, &[force, -(of_three(&inertia, turning) + gyroscopic)]);
+            add_pair(&mut wrench.data.0[0], i, [&force, &-(of_three(&inertia, turning) + gyroscopic)]);
         }
         wrench
     }
@@ -261,7 +261,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
                     continue;
                 }
                 let [moved, turned] = placed.column(k, i);
-                add_pair(&mut momentum, i, &[moved * body.mass, of_three(inertia, &turned)]);
+                add_pair(&mut momentum, i, [&(moved * body.mass), &of_three(inertia, &turned)]);
             }
             *column = self.reduced(placed, &SVector::from(momentum)).data.0[0];
             if let Some(own) = column.get_mut(k).filter(|_| coordinate.kind == Kind::Still) {
@@ -288,15 +288,6 @@ pub(super) fn pair<S: Scalar>(numbers: &[S], body: usize) -> [Vector3<S>; 2] {
     [Vector3::new(x, y, z), Vector3::new(a, b, c)]
 }
 
-/// Adds the two vectors of a body to numbers in sixes.
-#[inline(always)]
-pub(super) fn add_pair<S: Scalar>(numbers: &mut [S], body: usize, [first, second]: &[Vector3<S>; 2]) {
-    if let Some([x, y, z, a, b, c]) = numbers.as_chunks_mut::<6>().0.get_mut(body) {
-        (*x, *y, *z) = (*x + first.x, *y + first.y, *z + first.z);
-        (*a, *b, *c) = (*a + second.x, *b + second.y, *c + second.z);
-    }
-}
-
 /// `matrix`·`v`, summed in order.
 #[inline(always)]
 pub(super) fn times<S: Scalar, const R: usize, const C: usize>(
@@ -320,7 +311,7 @@ pub(super) fn length<S: Scalar, const D: usize>(v: &SVector<S, D>) -> S {
 
 /// Writes `value` to its place in `all`.
 #[inline(always)]
-fn set<T>(all: &mut [T], i: usize, value: T) {
+pub(super) fn set<T>(all: &mut [T], i: usize, value: T) {
     if let Some(place) = all.get_mut(i) {
         *place = value;
     }

@@ -1,6 +1,6 @@
 //! Where joints are: how their coordinates are written, and how they go on.
 
-use super::{SpatialTree, joint::Kind};
+use super::{SpatialTree, joint::Kind, motion::set};
 use crate::{
     SVector, Scalar, Vector3,
     pose::{Orientation, Pose, turn_rate, turned_over},
@@ -157,13 +157,6 @@ pub(super) fn ball<S: Scalar, const D: usize>(pose: &[[S; 2]; D], k: usize) -> P
 fn put<S: Scalar, const M: usize>(numbers: &mut [S], k: usize, values: [S; M]) {
     if let Some(places) = numbers.get_mut(k..).and_then(|rest| rest.first_chunk_mut::<M>()) {
         *places = values;
-    }
-}
-
-#[inline(always)]
-fn set<S: Scalar, const D: usize>(pose: &mut [[S; 2]; D], k: usize, value: [S; 2]) {
-    if let Some(place) = pose.get_mut(k) {
-        *place = value;
     }
 }
 
