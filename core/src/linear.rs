@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 
 use crate::{
-    Scalar, Vector3,
+    Scalar, Vector2, Vector3,
     product::{columns, cross, dot, mapped_entries, product, times},
 };
 
@@ -24,6 +24,14 @@ pub(crate) fn inverse<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
     let (c0, c1, c2) = (cross(&r1, &r2), cross(&r2, &r0), cross(&r0, &r1));
     let scale = S::one() / dot(&r0, &c0);
     Matrix3::from_columns(&[c0 * scale, c1 * scale, c2 * scale])
+}
+
+/// The length (m) of `apart` and its reciprocal (1/m), which stays finite where there is no length.
+#[inline(always)]
+pub(crate) fn length<S: Scalar>(apart: &Vector2<S>) -> [S; 2] {
+    let squared = apart.dot(apart);
+    let reciprocal = squared.max_of(S::from_f64(1e-30)).rsqrt();
+    [squared * reciprocal, reciprocal]
 }
 
 /// [a]×, the matrix with [a]×·b = a × b.

@@ -22,7 +22,10 @@ pub use runge_kutta_4::RungeKutta4;
 pub use sdirk2::Sdirk2;
 pub use semi_implicit_euler::SemiImplicitEuler;
 
-use crate::{SVector, Scalar, mechanism::Mechanism};
+use crate::{
+    SVector, Scalar,
+    mechanism::{Differentiated, Mechanism},
+};
 
 /// Where the bodies are, how fast they move, and the internal variables of their force laws.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +83,8 @@ pub trait Integrator: Copy {
 /// A scheme that is also known within its steps.
 pub trait Dense: Integrator {
     /// [`Integrator::step`], with the accelerations (m/s², rad/s²) at its start and at its end. Velocities within the step are
-    /// cubics with these slopes; on smooth motion their error falls with `h`⁴.
+    /// cubics with these slopes; on smooth motion their error falls with `h`⁴. The forces and derivatives at `motion` are given,
+    /// so that a step that is refused and tried again with another length does not take them anew.
     ///
     /// They are no accelerations of the motion itself, which turn a velocity's last digits into large numbers where a contact is
     /// stiff: vibrations that the step damps are damped in them.
@@ -89,6 +93,7 @@ pub trait Dense: Integrator {
         t: S,
         h: S,
         motion: &MotionOf<S, M, D>,
+        differentiated: &Differentiated<S, M::Jacobians, D>,
     ) -> (StepOf<S, M, D>, [SVector<S, D>; 2]);
 }
 

@@ -7,7 +7,10 @@ use super::{
     Dense, Integrator, MotionOf, StepOf,
     rosenbrock::{StageOf, Tableau, step},
 };
-use crate::{SVector, Scalar, mechanism::Mechanism};
+use crate::{
+    SVector, Scalar,
+    mechanism::{Differentiated, Mechanism},
+};
 
 /// Fourth order, linearly implicit, L-stable.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +77,8 @@ impl Integrator for Rodas4 {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
-        step::<Self, S, M, D>(mechanism, t, h, motion).0
+        let differentiated = mechanism.differentiated(t, &motion.pose, &motion.internal, &motion.velocity);
+        step::<Self, S, M, D>(mechanism, [t, h], motion, differentiated).0
     }
 }
 
@@ -85,8 +89,9 @@ impl Dense for Rodas4 {
         t: S,
         h: S,
         motion: &MotionOf<S, M, D>,
+        differentiated: &Differentiated<S, M::Jacobians, D>,
     ) -> (StepOf<S, M, D>, [SVector<S, D>; 2]) {
-        step::<Self, S, M, D>(mechanism, t, h, motion)
+        step::<Self, S, M, D>(mechanism, [t, h], motion, *differentiated)
     }
 }
 
@@ -97,6 +102,7 @@ mod tests {
         integrator::{Dense, Integrator, Rodas3},
         kernel::Kernel,
         law::{Impact, Linear, Slot},
+        mechanism::Mechanism as _,
         system::on_axis,
     };
 
@@ -122,7 +128,8 @@ mod tests {
         let held = Slot::new(-1.0, -1.0).unwrap();
         let body = on_axis(mass, -9.81, held, law, ()).unwrap();
         let rest = Kernel::<f64, _, Rodas4>::new(body, h).unwrap().at_rest(0.0).motion;
-        let (step, [from, to]) = Rodas4::dense_step(&body, 0.0, h, &rest);
+        let differentiated = body.differentiated(0.0, &rest.pose, &rest.internal, &rest.velocity);
+        let (step, [from, to]) = Rodas4::dense_step(&body, 0.0, h, &rest, &differentiated);
         // The cubic with these slopes, in its middle.
         let middle = 0.5 * step.motion.velocity[0] + 0.125 * h * (from[0] - to[0]);
         let frequency = libm::sqrt(stiffness / mass);

@@ -126,7 +126,20 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
     #[inline(always)]
     pub fn new(mechanism: &'a M, t: S, h: S, from: From<'a, S, M, D>, gamma: f64) -> (Self, Evaluation<S, D>) {
         let (pose, velocity, internal) = from;
-        let Differentiated { force, per_time, jacobians } = mechanism.differentiated(t, pose, internal, velocity);
+        Self::of(mechanism, [t, h], from, gamma, mechanism.differentiated(t, pose, internal, velocity))
+    }
+
+    /// [`new`](Self::new) with the forces and derivatives there given.
+    #[inline(always)]
+    pub fn of(
+        mechanism: &'a M,
+        [t, h]: [S; 2],
+        from: From<'a, S, M, D>,
+        gamma: f64,
+        differentiated: Differentiated<S, M::Jacobians, D>,
+    ) -> (Self, Evaluation<S, D>) {
+        let (_, velocity, _) = from;
+        let Differentiated { force, per_time, jacobians } = differentiated;
         let a = h * S::from_f64(gamma);
         let iteration_matrix = mechanism.iteration_matrix(&jacobians, velocity, a);
         let start = Self { mechanism, from, t, h, a, per_step: S::one() / h, per_time, jacobians, iteration_matrix };
@@ -199,12 +212,12 @@ impl<S: Scalar, P, const D: usize> End<S, P, D> {
 #[inline(always)]
 pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
     mechanism: &M,
-    t: S,
-    h: S,
+    [t, h]: [S; 2],
     motion: &MotionOf<S, M, D>,
+    differentiated: Differentiated<S, M::Jacobians, D>,
 ) -> (StepOf<S, M, D>, [SVector<S, D>; 2]) {
     let from = (&motion.pose, &motion.velocity, &motion.internal);
-    let (start, mut here) = Start::new(mechanism, t, h, from, T::GAMMA);
+    let (start, mut here) = Start::of(mechanism, [t, h], from, T::GAMMA, differentiated);
     let mut parts = [Part::zero(); MOST_STAGES];
     let mut last = Part::zero();
     for (i, stage) in T::STAGES.iter().enumerate() {

@@ -55,6 +55,13 @@ pub trait Law<S: Scalar, const R: usize> {
     /// The internal variables of a law that nothing has happened to yet.
     fn fresh() -> Self::Internal;
 
+    /// The least distance (m) at `place` of what may touch, negative where it penetrates. Where it is positive the law exerts nothing,
+    /// at any rate. Zero of a law whose bodies always act on each other.
+    #[inline(always)]
+    fn gap(&self, _place: &SVector<S, R>) -> S {
+        S::zero()
+    }
+
     /// The forces at `place` and `rate` at time `t` (s), and the internal variables if the motion is accepted.
     fn response(
         &self,

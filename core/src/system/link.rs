@@ -60,12 +60,6 @@ pub trait GradientLink<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usiz
     /// not looked at.
     fn moves(&self, k: usize) -> bool;
 
-    /// Whether it moves the number `i`, where it moves any.
-    #[inline(always)]
-    fn depends(&self, _i: usize, _k: usize) -> bool {
-        true
-    }
-
     /// See [`Link::seen`].
     fn seen(&self, at: (&B, &B::Placed), view: &Self::View) -> Seen<S, R>;
 
@@ -91,35 +85,22 @@ pub trait GradientLink<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usiz
     /// Adds Λᵀ·C, as far as Λ is not zero. Column k of C is the sum over the numbers i of what forces change by with the number i
     /// where the coordinate k changes: `change(i, k)`.
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "rows and columns of several matrices go by the same numbers")]
     fn add_product(
         &self,
         gradient: &SMatrix<S, R, D>,
         change: impl Fn(usize, usize) -> SVector<S, R>,
         sum: &mut SMatrix<S, D, D>,
     ) {
-        let mut moved = [false; D];
-        let mut depends = [[false; R]; D];
-        for (k, (moved, depends)) in moved.iter_mut().zip(&mut depends).enumerate() {
-            *moved = self.moves(k);
-            for (i, depends) in depends.iter_mut().enumerate() {
-                *depends = *moved && self.depends(i, k);
-            }
-        }
         for k in 0..D {
-            if moved[k] {
+            if self.moves(k) {
                 let mut column = SVector::<S, R>::zeros();
                 for i in 0..R {
-                    if depends[k][i] {
-                        column += change(i, k);
-                    }
+                    column += change(i, k);
                 }
                 for j in 0..D {
-                    if moved[j] {
+                    if self.moves(j) {
                         for i in 0..R {
-                            if depends[j][i] {
-                                sum[(j, k)] += gradient[(i, j)] * column[i];
-                            }
+                            sum[(j, k)] += gradient[(i, j)] * column[i];
                         }
                     }
                 }

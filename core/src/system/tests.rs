@@ -5,7 +5,7 @@ use super::{
     law::{Axis, Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Slot, Spring, Stopped, Wall},
     planar::{self, PlanarTree, example::Linkage},
     spatial::{
-        self, FreeBodies, Port, Seat, Turned,
+        self, FreeBodies, Port, Rim, Seat,
         tree::{Joint, Mount, SpatialTree},
     },
 };
@@ -149,13 +149,14 @@ fn spatial_derivatives_are_those_of_the_forces() {
                 [(Some(0), true), (None, true), (Some(0), false), (None, false)].map(|(from, turns)| Element::<
                     _,
                     _,
-                    6,
+                    3,
                 > {
-                    link: Turned {
+                    link: Rim {
                         seat: Seat { point: port(Some(1), 0.1, 0.1, -0.1), from },
                         axes: turns.then(|| axes.to_body().matrix()),
+                        radius: 0.05,
                     },
-                    law: Ring { clearance: 0.02, radius: 0.05, contact: contact() },
+                    law: Ring { clearance: 0.02, contact: contact() },
                 }),
                 (
                     Element::<_, _, 2> {
@@ -189,12 +190,13 @@ fn three_bodies() -> (FreeBodies<f64, 3, 18>, impl Elements<f64, FreeBodies<f64,
             law: Pin { gaps: [0.02, -0.01, 0.01, 0.05], contact: contact() },
         },
         (
-            Element::<_, _, 6> {
-                link: Turned {
+            Element::<_, _, 3> {
+                link: Rim {
                     seat: Seat { point: port(Some(1), 0.1, 0.1, -0.1), from: None },
                     axes: spatial::Parallel,
+                    radius: 0.05,
                 },
-                law: Ring { clearance: 0.02, radius: 0.05, contact: contact() },
+                law: Ring { clearance: 0.02, contact: contact() },
             },
             (
                 Element::<_, _, 2> {
@@ -294,8 +296,7 @@ fn impedances_over_a_time_take_in_the_stiffness() {
     folds(Journal { clearance: 0.02, radius: 0.05, contact: smooth }, [0.03, 0.04, 0.0, 0.0], [0.1, 0.2, 0.3, -0.1]);
     folds(Pin { gaps: [0.02, 0.03, 0.01, 0.05], contact }, [0.05, -0.06, 0.0], [0.1, 0.2, 0.3]);
     folds(Wall { axis: Axis::Z, sign: -1.0, gap: 0.01, contact }, [0.0, 0.0, 0.05], [0.1, 0.2, 0.3]);
-    let along = [0.03, 0.04, 0.0, 0.0, 0.0, 0.0];
-    folds(Ring { clearance: 0.02, radius: 0.05, contact }, along, [0.1, 0.2, 0.3, 0.4, -0.2, 0.1]);
+    folds(Ring { clearance: 0.02, contact }, [0.03, 0.04, 0.0], [0.1, 0.2, 0.3]);
 }
 
 #[test]

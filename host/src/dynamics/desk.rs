@@ -136,7 +136,7 @@ struct Desk<'a> {
 impl Desk<'_> {
     fn run<E: Elastic<f64>, F: Friction<f64>, C: Contacts<f64, Slide<f64, E, F>, 6>>(
         self,
-        driven: &OutOfLine<f64, Slide<f64, E, F>, 6, C>,
+        driven: &OutOfLine<Slide<f64, E, F>, C>,
     ) -> Result<Run, Stopped> {
         let slide = driven.mechanism();
         let Self { scene, settings, tolerance, mut solved, mut see } = self;

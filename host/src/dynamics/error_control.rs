@@ -145,6 +145,10 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
 ) -> Result<Effort, Stopped> {
     let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
     let mut flow = accept(t, &motion, None);
+    let differentiated = |t: f64, motion: &MotionOf<f64, M, D>| {
+        mechanism.differentiated(t, &motion.pose, &motion.internal, &motion.velocity)
+    };
+    let mut at_start = differentiated(t, &motion);
     while t < duration && flow.is_continue() {
         let tried = effort.accepted + effort.refused;
         if tried.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
@@ -152,7 +156,7 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
         }
         // A last step that would leave a splinter takes it along.
         let length = if t + 1.01 * h >= duration { duration - t } else { h };
-        let (step, accelerations) = I::dense_step(mechanism, t, length, &motion);
+        let (step, accelerations) = I::dense_step(mechanism, t, length, &motion, &at_start);
         // A step whose estimate is not a number is the worst of all.
         let error = Some(error(&step, length)).filter(|error| error.is_finite()).unwrap_or(1e12);
         let factor = (SAFETY / root(error.max(1e-12), I::ORDER)).clamp(CHANGES[0], CHANGES[1]);
@@ -167,6 +171,7 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
         effort.accepted += 1;
         t = if length == duration - t { duration } else { t + length };
         motion = step.motion;
+        at_start = differentiated(t, &motion);
         flow = accept(t, &motion, Some(accelerations));
     }
     Ok(effort)

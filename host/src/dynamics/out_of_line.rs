@@ -2,10 +2,6 @@
 //!
 //! Firmware wants the forces inlined into its one step. At the desk every scheme steps every kind of mechanism; calls cost
 //! nothing beside what they do, and building takes a fraction of the time. The bits are the same.
-//!
-//! The derivatives at the last motion asked for are kept: a step that is refused begins again where it began.
-
-use std::cell::RefCell;
 
 use slipfit_core::{
     SVector, Scalar,
@@ -72,31 +68,22 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize> Contacts<S, M, D> for InTurn
 }
 
 /// The mechanism `M`, its forces out of line.
-pub struct OutOfLine<S: Scalar, M: Mechanism<S, D>, const D: usize, C = InTurn> {
+pub struct OutOfLine<M, C = InTurn> {
     mechanism: M,
     contacts: C,
-    last: RefCell<Option<Last<S, M, D>>>,
 }
 
-/// Derivatives, and the motion that they hold for.
-struct Last<S: Scalar, M: Mechanism<S, D>, const D: usize> {
-    t: S,
-    pose: M::Pose,
-    velocity: SVector<S, D>,
-    found: Differentiated<S, M::Jacobians, D>,
-}
-
-impl<S: Scalar, M: Mechanism<S, D>, const D: usize> OutOfLine<S, M, D> {
+impl<M> OutOfLine<M> {
     /// `mechanism`, its laws without internal variables where it is differentiated.
     pub fn new(mechanism: M) -> Self {
         Self::by(mechanism, InTurn)
     }
 }
 
-impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> OutOfLine<S, M, D, C> {
+impl<M, C> OutOfLine<M, C> {
     /// The same, with what computes its contacts.
     pub fn by(mechanism: M, contacts: C) -> Self {
-        Self { mechanism, contacts, last: RefCell::new(None) }
+        Self { mechanism, contacts }
     }
 
     /// The mechanism.
@@ -105,7 +92,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> OutOfL
     }
 }
 
-impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechanism<S, D> for OutOfLine<S, M, D, C> {
+impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechanism<S, D> for OutOfLine<M, C> {
     type Pose = M::Pose;
     type Internal = M::Internal;
     type IterationMatrix = M::IterationMatrix;
@@ -221,15 +208,7 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechan
         internal: &M::Internal,
         velocity: &SVector<S, D>,
     ) -> Differentiated<S, M::Jacobians, D> {
-        let mut last = self.last.borrow_mut();
-        if let Some(last) = last.as_ref()
-            && (last.t, last.pose, last.velocity) == (t, *pose, *velocity)
-        {
-            return last.found;
-        }
-        let found = self.contacts.differentiated(&self.mechanism, t, pose, internal, velocity);
-        *last = Some(Last { t, pose: *pose, velocity: *velocity, found });
-        found
+        self.contacts.differentiated(&self.mechanism, t, pose, internal, velocity)
     }
 
     #[inline(never)]

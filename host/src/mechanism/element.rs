@@ -8,7 +8,7 @@ use slipfit_core::{
     mechanism::Way,
     menu::FrictionData,
     system::{
-        Assembly, Bodies, Element, Elements, Law, Link, Reduced, Response,
+        Assembly, Bodies, Element, Elements, Law, Link,
         law::{Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
         planar::{self, PlanarTree},
         spatial::{self, FreeBodies},
@@ -42,41 +42,23 @@ pub fn contact(laws: &Laws, stick_band: f64) -> Result<AnyContact, ParameterErro
     Ok(Contact { normal, friction })
 }
 
-/// Takes what elements do, but spares adding derivatives of those that do nothing, such as contacts that are open. The kernel, whose
-/// steps all take the same number of instructions, must not choose so. A zero less in a sum changes at most the sign of a zero.
-struct Acting<'a, A>(&'a mut A);
-
-impl<B: Bodies<f64, D>, A: Assembly<f64, B, D>, const D: usize> Assembly<f64, B, D> for Acting<'_, A> {
-    const DIFFERENTIATES: bool = A::DIFFERENTIATES;
-
-    #[inline(always)]
-    fn add<L: Link<f64, B, D, R>, W: Law<f64, R>, const R: usize>(
-        &mut self,
-        link: &L,
-        at: (&B, &B::Placed),
-        view: &L::View,
-        response: &Response<f64, R>,
-    ) {
-        let Response { force, impedance, stiffness, per_time } = response;
-        let acts = [force.as_slice(), impedance.as_slice(), stiffness.as_slice(), per_time.as_slice()];
-        if !A::DIFFERENTIATES || acts.iter().any(|numbers| numbers.iter().any(|x| *x != 0.0)) {
-            self.0.add::<L, W, R>(link, at, view, response);
-        }
+/// What an `element` without internal variables does, without a look at laws and derivatives of contacts that are open. The kernel,
+/// whose steps all take the same number of instructions, must not choose so. A zero less in a sum changes at most the sign of a zero.
+#[inline(always)]
+fn act<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
+    element: &Element<L, W, R>,
+    (t, way): (f64, Way<f64>),
+    at: (&B, &B::Placed),
+    sum: &mut impl Assembly<f64, B, D>,
+) {
+    let Element { link, law } = element;
+    let view = link.view(at.0, at.1);
+    let seen = link.seen(at, &view);
+    if law.gap(&seen.place) > 0.0 {
+        return;
     }
-
-    #[inline(always)]
-    fn add_through_joints<E: Elements<f64, B::Free, W>, const W: usize>(
-        &mut self,
-        elements: &E,
-        way: (f64, Way<f64>),
-        at: (&B, &B::Placed),
-        internal: &E::Internal,
-        updated: Option<&mut E::Internal>,
-    ) where
-        B: Reduced<f64, D, W>,
-    {
-        self.0.add_through_joints::<E, W>(elements, way, at, internal, updated);
-    }
+    let (response, _) = law.response(t, &seen.place, &seen.rate, &W::fresh(), way);
+    sum.add::<L, W, R>(link, at, &view, &response);
 }
 
 /// An element in a plane.
@@ -94,8 +76,8 @@ pub enum PlanarElement<const D: usize> {
     Pusher(Element<planar::Along<f64, D>, Pusher<Drive<f64>>, 2>),
 }
 
-/// A point of one body as seen from another, in axes that are turned or not.
-type Turned = spatial::Turned<f64, Option<Matrix3<f64>>>;
+/// A ring around a rod whose axes are turned or not.
+type Rim = spatial::Rim<f64, Option<Matrix3<f64>>>;
 
 /// An element in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +87,7 @@ pub enum SpatialElement {
     /// A point before a wall.
     Wall(Element<spatial::Seat<f64>, Wall<f64, Normal, Sliding>, 3>),
     /// A ring around a rod.
-    Ring(Element<Turned, Ring<f64, Normal, Sliding>, 6>),
+    Ring(Element<Rim, Ring<f64, Normal, Sliding>, 3>),
     /// A torque.
     Motor(Element<spatial::About<f64>, Motor<Drive<f64>>, 1>),
     /// A force.
@@ -128,13 +110,12 @@ impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
         _: Option<&mut ()>,
         sum: &mut impl Assembly<f64, PlanarTree<f64, D>, D>,
     ) {
-        let sum = &mut Acting(sum);
         match self {
-            Self::Journal(element) => element.act(way, at, &(), None, sum),
-            Self::Pad(element) => element.act(way, at, &(), None, sum),
-            Self::Spring(element) => element.act(way, at, &(), None, sum),
-            Self::Motor(element) => element.act(way, at, &(), None, sum),
-            Self::Pusher(element) => element.act(way, at, &(), None, sum),
+            Self::Journal(element) => act(element, way, at, sum),
+            Self::Pad(element) => act(element, way, at, sum),
+            Self::Spring(element) => act(element, way, at, sum),
+            Self::Motor(element) => act(element, way, at, sum),
+            Self::Pusher(element) => act(element, way, at, sum),
         }
     }
 
@@ -159,13 +140,12 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
         _: Option<&mut ()>,
         sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
     ) {
-        let sum = &mut Acting(sum);
         match self {
-            Self::Pin(element) => element.act(way, at, &[(); 2], None, sum),
-            Self::Wall(element) => element.act(way, at, &(), None, sum),
-            Self::Ring(element) => element.act(way, at, &(), None, sum),
-            Self::Motor(element) => element.act(way, at, &(), None, sum),
-            Self::Pusher(element) => element.act(way, at, &(), None, sum),
+            Self::Pin(element) => act(element, way, at, sum),
+            Self::Wall(element) => act(element, way, at, sum),
+            Self::Ring(element) => act(element, way, at, sum),
+            Self::Motor(element) => act(element, way, at, sum),
+            Self::Pusher(element) => act(element, way, at, sum),
         }
     }
 

@@ -7,7 +7,7 @@ use slipfit_core::{
         Element,
         law::{Axis, Motor, Pin, Pusher, Ring, Wall},
         spatial::{
-            About, Along, FreeBodies, Port as PointOf, Rigid, Seat, Turned,
+            About, Along, FreeBodies, Port as PointOf, Rigid, Rim, Seat,
             tree::{Joint as IdealJoint, Mount, SpatialTree},
         },
     },
@@ -151,8 +151,8 @@ fn add(
             let axis = Vector3::from(axis);
             for end in [-0.5, 0.5] {
                 let centre = at + axis * (length * end);
-                let link = Turned { seat: seat(centre), axes: axes_with_third(&axis) };
-                let law = Ring { clearance: gaps[gap], radius, contact };
+                let link = Rim { seat: seat(centre), axes: axes_with_third(&axis), radius };
+                let law = Ring { clearance: gaps[gap], contact };
                 elements.push(SpatialElement::Ring(Element { link, law }));
             }
         }

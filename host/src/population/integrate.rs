@@ -49,7 +49,7 @@ impl<V: Simd, E: Elastic<Pack<V>>, F: Friction<Pack<V>, Internal = ()>> Slides<V
     }
 }
 
-impl<V: Simd, M: Slides<V>> Slides<V> for OutOfLine<Pack<V>, M, 6> {
+impl<V: Simd, M: Slides<V>> Slides<V> for OutOfLine<M> {
     fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS] {
         self.mechanism().gaps(pose)
     }

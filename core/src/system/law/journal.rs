@@ -10,6 +10,7 @@ use super::{Contact, Law, Response, Rub, steady};
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
     law::{Friction, Normal},
+    linear::length,
     mechanism::Way,
     system::planar::left,
 };
@@ -41,6 +42,12 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
     }
 
     #[inline(always)]
+    fn gap(&self, place: &SVector<S, 4>) -> S {
+        let [distance, _] = length(&Vector2::new(place[0], place[1]));
+        self.clearance - distance
+    }
+
+    #[inline(always)]
     fn response(
         &self,
         _: S,
@@ -53,9 +60,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
         let apart = Vector2::new(place[0], place[1]);
         let moving = Vector2::new(rate[0], rate[1]);
         let [hole, pin] = [rate[2], rate[3]];
-        let squared = apart.dot(&apart);
-        let per_distance = squared.max_of(S::from_f64(1e-30)).rsqrt();
-        let distance = squared * per_distance;
+        let [distance, per_distance] = length(&apart);
         let normal = apart * per_distance;
         let tangent = left(&normal);
         let (outward, aside) = (moving.dot(&normal), moving.dot(&tangent));

@@ -78,6 +78,14 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
     }
 
     #[inline(always)]
+    fn gap(&self, place: &SVector<S, 3>) -> S {
+        let [left, right, rail, wall] = self.gaps;
+        let [x, y, _] = place.data.0[0];
+        let deepest = (-(left + x)).max_of(x - right).max_of(-(wall + y)).max_of(y - rail);
+        -deepest
+    }
+
+    #[inline(always)]
     fn response(
         &self,
         _: S,

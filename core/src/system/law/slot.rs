@@ -30,6 +30,12 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Slot<S, N, F> {
     }
 
     #[inline(always)]
+    fn gap(&self, place: &SVector<S, 2>) -> S {
+        let [low, high] = self.gaps;
+        -(-(low + place[0])).max_of(place[0] - high)
+    }
+
+    #[inline(always)]
     fn response(
         &self,
         _: S,

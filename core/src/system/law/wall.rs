@@ -82,6 +82,11 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
     }
 
     #[inline(always)]
+    fn gap(&self, place: &SVector<S, 2>) -> S {
+        self.gap + place[0]
+    }
+
+    #[inline(always)]
     fn response(
         &self,
         _: S,
@@ -92,7 +97,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
     ) -> (Response<S, 2>, F::Internal) {
         let zero = S::zero();
         let Rub { force, stiffness, damping, traction, per_force, per_sliding, internal } =
-            self.contact.rub(internal, way, [-(self.gap + place[0]), -rate[0]], rate[1]);
+            self.contact.rub(internal, way, [-self.gap(place), -rate[0]], rate[1]);
         let response = steady(
             SVector::<S, 2>::new(force, traction),
             SMatrix::<S, 2, 2>::new(damping, zero, -(per_force * damping), per_sliding),
@@ -125,6 +130,11 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
     }
 
     #[inline(always)]
+    fn gap(&self, place: &SVector<S, 3>) -> S {
+        self.gap + self.sign * self.axis.of(place.data.0[0])
+    }
+
+    #[inline(always)]
     fn response(
         &self,
         _: S,
@@ -134,9 +144,8 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
         way: Way<S>,
     ) -> (Response<S, 3>, F::Internal) {
         let (zero, one) = (S::zero(), S::one());
-        let place = self.axis.of(place.data.0[0]);
         let [rate, first, second] = self.axis.first(rate.data.0[0]);
-        let depth = (-(self.gap + self.sign * place), along::<S, 4>(0, -self.sign));
+        let depth = (-self.gap(place), along::<S, 4>(0, -self.sign));
         let approach = (-self.sign * rate, along(1, -self.sign));
         let sliding = [(first, along(2, one)), (second, along(3, one))];
         let touch = self.contact.touch(internal, way, [depth, approach], sliding);

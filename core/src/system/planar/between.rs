@@ -3,7 +3,7 @@
 use super::{
     Placed, PlanarTree, Point,
     pair::Pair,
-    topology::{Carrier, Chain, Topology},
+    topology::{Carrier, Chain, Topology, Turns},
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
@@ -18,6 +18,14 @@ pub struct Between<S, const D: usize, H = Chain<D>, P = Chain<D>> {
     pub hole: Point<S, D, H>,
     /// Centre of the pin.
     pub pin: Point<S, D, P>,
+}
+
+impl<S, const D: usize, H: Turns, P: Turns> Between<S, D, H, P> {
+    /// The coordinates that turn the hole's and the pin's body, each after the number whose rate it is.
+    #[inline(always)]
+    fn turns(&self) -> [(usize, Option<usize>); 2] {
+        [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())]
+    }
 }
 
 /// `columns` above rows of zeros.
@@ -43,21 +51,12 @@ impl<S: Scalar, J: Topology<D>, H: Carrier<D>, P: Carrier<D>, const D: usize> Gr
     }
 
     #[inline(always)]
-    fn depends(&self, i: usize, k: usize) -> bool {
-        match i {
-            2 => self.hole.carrier.turn() == Some(k),
-            3 => self.pin.carrier.turn() == Some(k),
-            _ => true,
-        }
-    }
-
-    #[inline(always)]
     fn seen(&self, (_, placed): (&PlanarTree<S, D, J>, &Placed<S, D>), pair: &Self::View) -> Seen<S, 4> {
         let zero = S::zero();
         let apart = pair.point.place - pair.seat.place;
         let velocity = pair.rate(&placed.rates);
         let mut rate = SVector::<S, 4>::new(velocity.x, velocity.y, zero, zero);
-        for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
+        for (i, turn) in self.turns() {
             if let Some(turn) = turn {
                 rate[i] = placed.rates[turn];
             }
@@ -68,7 +67,7 @@ impl<S: Scalar, J: Topology<D>, H: Carrier<D>, P: Carrier<D>, const D: usize> Gr
     #[inline(always)]
     fn gradient(&self, _: (&PlanarTree<S, D, J>, &Placed<S, D>), pair: &Self::View) -> SMatrix<S, 4, D> {
         let mut gradient = above_zeros(&pair.gradient());
-        for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
+        for (i, turn) in self.turns() {
             if let Some(turn) = turn {
                 gradient[(i, turn)] = S::one();
             }
@@ -85,7 +84,7 @@ impl<S: Scalar, J: Topology<D>, H: Carrier<D>, P: Carrier<D>, const D: usize> Gr
         sum: &mut SVector<S, D>,
     ) {
         pair.add_force(&Vector2::new(force[0], force[1]), sum);
-        for (i, turn) in [(2, self.hole.carrier.turn()), (3, self.pin.carrier.turn())] {
+        for (i, turn) in self.turns() {
             if let Some(turn) = turn {
                 sum[turn] += force[i];
             }
@@ -102,6 +101,38 @@ impl<S: Scalar, J: Topology<D>, H: Carrier<D>, P: Carrier<D>, const D: usize> Gr
         stiffness: &mut SMatrix<S, D, D>,
     ) {
         pair.add_carried(tree.topology(), placed, &Vector2::new(force[0], force[1]), stiffness);
+    }
+
+    /// The turns' rates go by one coordinate each, and by that as they are.
+    #[inline(always)]
+    fn add_product(
+        &self,
+        gradient: &SMatrix<S, 4, D>,
+        change: impl Fn(usize, usize) -> SVector<S, 4>,
+        sum: &mut SMatrix<S, D, D>,
+    ) {
+        let moves = |k: usize| self.hole.carrier.moves(k) || self.pin.carrier.moves(k);
+        for k in 0..D {
+            if moves(k) {
+                let mut column = change(0, k) + change(1, k);
+                for (i, turn) in self.turns() {
+                    if turn == Some(k) {
+                        column += change(i, k);
+                    }
+                }
+                for j in 0..D {
+                    if moves(j) {
+                        sum[(j, k)] += gradient[(0, j)] * column[0];
+                        sum[(j, k)] += gradient[(1, j)] * column[1];
+                    }
+                }
+                for (i, turn) in self.turns() {
+                    if let Some(turn) = turn {
+                        sum[(turn, k)] += column[i];
+                    }
+                }
+            }
+        }
     }
 
     #[inline(always)]

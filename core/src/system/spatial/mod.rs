@@ -8,14 +8,14 @@ mod bodies;
 mod driven;
 mod floating;
 mod pair;
+mod rim;
 mod seat;
 pub mod tree;
-mod turned;
 
 pub use bodies::{FreeBodies, InFrame, Placed, PlacedBody, Rigid};
 pub use driven::{About, Along};
 pub use floating::{Floating, PinOfFrame, Pull};
 pub(crate) use floating::{Placed as FloatingPlaced, split};
 pub use pair::Pair;
+pub use rim::{Parallel, Rim, TurnedAxes};
 pub use seat::{Port, Seat};
-pub use turned::{Parallel, Turned, TurnedAxes};

@@ -2,9 +2,9 @@
 //!
 //! The axes of the link stand still in the body that it looks from; all but places and laws is told in those of the frame. The motion
 //! of the bodies has three parts: how fast the one centre of mass moves against the other, a; how fast the body that is looked at
-//! turns, b; and how fast the body that it is looked at from turns, c. With r and ℓ from either centre of mass to the point, the
-//! point moves by a + b × r − c × ℓ and its body turns by b − c. So a force f at the point and a moment m do work on the parts by f,
-//! r × f + m and −(ℓ × f + m).
+//! turns, b; and how fast the body that it is looked at from turns, c. With r and ℓ from either centre of mass to the point that is
+//! seen, and s from there to the one where forces act, the bodies move there by a + b × (r + s) − c × (ℓ + s) against each other, and
+//! a force f does work on the parts by f, (r + s) × f and −(ℓ + s) × f. The axes of the link carry s along.
 
 use nalgebra::Matrix3;
 
@@ -14,17 +14,14 @@ use super::{
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
-    linear::{cross_matrix, cross_rows, twice_crossed},
+    linear::{cross_columns, cross_matrix, cross_rows, twice_crossed},
     product::{cross, outer, product, times, transposed_times},
     system::Response,
 };
 
-/// How forces, and where `H` is 2 moments too, change with rates or places at the point: rows, then columns.
-type AtPoint<S, const H: usize> = [[Matrix3<S>; H]; H];
-
-/// How they change, negated, by the three parts of motion; by place these are displacement of the centres against each other, and the
-/// turns of both.
-type Change<S, const H: usize> = [[Matrix3<S>; 3]; H];
+/// How forces or moments change, negated, by the three parts of motion; by place these are displacement of the centres against each
+/// other, and the turns of both.
+type Change<S> = [Matrix3<S>; 3];
 
 /// Two bodies as a link sees them.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +34,8 @@ pub struct Pair<S> {
     pub(super) displacement: Vector3<S>,
     /// From either centre of mass to the point, r and ℓ (m).
     levers: [Vector3<S>; 2],
+    /// From the point to where forces act, s (m); `None` where that is there.
+    reach: Option<Vector3<S>>,
     /// Of the centres of mass against each other, a (m/s).
     velocity: Vector3<S>,
     /// Angular velocities, b and c (rad/s).
@@ -68,6 +67,7 @@ impl<S: Scalar> Pair<S> {
                 axes: None,
                 displacement: moved,
                 levers: [arm, nominal + moved],
+                reach: None,
                 velocity,
                 turning: [turns, none],
             };
@@ -82,6 +82,7 @@ impl<S: Scalar> Pair<S> {
             // of the levers.
             displacement: (times(&axes, &nominal) - nominal) + times(&axes, &moved),
             levers: [arm, nominal + moved],
+            reach: None,
             velocity: velocity - from.velocity_w,
             turning: [turns, from.rotation_w],
         }
@@ -98,218 +99,185 @@ impl<S: Scalar> Pair<S> {
         }
     }
 
+    /// The same with forces that act `reach` (m) away from the point, in the axes of the link.
+    #[inline(always)]
+    pub(super) fn reaching(self, reach: &Vector3<S>) -> Self {
+        Self { reach: Some(self.in_frame(reach)), ..self }
+    }
+
     /// In the axes of the link, of what the frame has.
     #[inline(always)]
     fn seen(&self, vector: Vector3<S>) -> Vector3<S> {
         self.axes.map_or(vector, |axes| times(&axes, &vector))
     }
 
-    /// How fast the point moves, in the axes of the link (m/s).
+    /// In the axes of the frame, of what the link has.
+    #[inline(always)]
+    fn in_frame(&self, vector: &Vector3<S>) -> Vector3<S> {
+        self.axes.map_or(*vector, |axes| transposed_times(&axes, vector))
+    }
+
+    /// In the axes of the frame, of what goes by vectors of the link.
+    #[inline(always)]
+    fn block(&self, entries: &Matrix3<S>) -> Matrix3<S> {
+        self.axes.map_or(*entries, |axes| product(&axes.transpose(), &product(entries, &axes)))
+    }
+
+    /// From either centre of mass to where forces act (m).
+    #[inline(always)]
+    fn arms(&self) -> [Vector3<S>; 2] {
+        self.levers.map(|lever| self.reach.map_or(lever, |reach| lever + reach))
+    }
+
+    /// How fast the bodies move against each other where forces act, in the axes of the link (m/s).
     #[inline(always)]
     pub(super) fn rate(&self) -> Vector3<S> {
-        let [[r, l], [b, c]] = [&self.levers, &self.turning];
+        let ([r, l], [b, c]) = (&self.arms(), &self.turning);
         let rate = self.velocity + cross(b, r);
         self.seen(if self.bodies[1].is_some() { rate - cross(c, l) } else { rate })
     }
 
-    /// How fast its body turns, in the axes of the link (rad/s).
+    /// How fast the body that is looked at turns against the other, in the axes of the link (rad/s).
     #[inline(always)]
     pub(super) fn turning(&self) -> Vector3<S> {
         let [b, c] = &self.turning;
         self.seen(if self.bodies[1].is_some() { b - c } else { *b })
     }
 
-    /// The vectors of a link's `numbers`, in the axes of the frame.
+    /// Adds the generalised force (N, N·m) of a `force` (N).
     #[inline(always)]
-    fn vectors<const R: usize, const H: usize>(&self, numbers: &SVector<S, R>) -> [Vector3<S>; H] {
-        let mut vectors = [Vector3::zeros(); H];
-        for (vector, three) in vectors.iter_mut().zip(numbers.data.0[0].as_chunks::<3>().0) {
-            let three = Vector3::from(*three);
-            *vector = self.axes.map_or(three, |axes| transposed_times(&axes, &three));
-        }
-        vectors
-    }
-
-    /// The 3 × 3 blocks of a link's `entries`, in the axes of the frame.
-    #[inline(always)]
-    fn blocks<const R: usize, const H: usize>(&self, entries: &SMatrix<S, R, R>) -> AtPoint<S, H> {
-        let mut blocks = [[Matrix3::zeros(); H]; H];
-        for (i, row) in blocks.iter_mut().enumerate() {
-            for (block, columns) in row.iter_mut().zip(entries.data.0.as_chunks::<3>().0) {
-                for (to, from) in block.data.0.iter_mut().zip(columns) {
-                    to.iter_mut().zip(from.iter().skip(3 * i)).for_each(|(to, from)| *to = *from);
-                }
-                if let Some(axes) = &self.axes {
-                    *block = product(&axes.transpose(), &product(block, axes));
-                }
-            }
-        }
-        blocks
-    }
-
-    /// Adds the generalised force (N, N·m) of a `force` (N) at the point and, where `H` is 2, of a moment (N·m).
-    #[inline(always)]
-    pub(super) fn add_force<const H: usize, const R: usize, const D: usize>(
-        &self,
-        force: &SVector<S, R>,
-        sum: &mut SVector<S, D>,
-    ) {
-        let (push, moment) = force_and_moment(&self.vectors::<R, H>(force));
-        let [r, l] = &self.levers;
-        let with_moment = |torque: Vector3<S>| moment.map_or(torque, |moment| torque + moment);
+    pub(super) fn add_force<const D: usize>(&self, force: &Vector3<S>, sum: &mut SVector<S, D>) {
+        let push = self.in_frame(force);
+        let [r, l] = &self.arms();
         if let Some(i) = self.bodies[0] {
-            add_wrench(sum, i, [&push, &with_moment(cross(r, &push))]);
+            add_wrench(sum, i, [&push, &cross(r, &push)]);
         }
         if let Some(j) = self.bodies[1] {
-            add_wrench(sum, j, [&-push, &-with_moment(cross(l, &push))]);
+            add_wrench(sum, j, [&-push, &-cross(l, &push)]);
         }
     }
 
-    /// See [`Link::add_impedance`](crate::system::Link::add_impedance).
+    /// See [`Link::add_impedance`](crate::system::Link::add_impedance). Where the reach goes by the place, `moment` tells how that
+    /// changes s × f, negated (N).
     #[inline(always)]
-    pub(super) fn add_impedance<const H: usize, const R: usize, const D: usize>(
+    pub(super) fn add_impedance<const D: usize>(
         &self,
-        response: &Response<S, R>,
+        response: &Response<S, 3>,
+        moment: Option<&Matrix3<S>>,
         a: S,
         matrix: &mut SMatrix<S, D, D>,
     ) {
-        let (by_rate, by_place) = (self.blocks::<R, H>(&response.impedance), self.blocks(&response.stiffness));
+        let [by_rate, by_place] = [&response.impedance, &response.stiffness].map(|entries| self.block(entries));
         let mut change = self.by_velocity(&by_rate);
-        for (row, by_place) in change.iter_mut().zip(self.by_place(&by_place, &by_rate)) {
-            row.iter_mut().zip(by_place).for_each(|(entry, by_place)| *entry += by_place * a);
+        for (entry, by_place) in change.iter_mut().zip(self.by_place(&by_place, &by_rate)) {
+            *entry += by_place * a;
         }
-        self.add(&change, matrix);
-        self.carry::<H, D>(&self.vectors(&(response.force * a)), matrix);
+        self.add(&change, moment.map(|moment| self.by_displacement(&(self.block(moment) * a))), matrix);
+        self.carry(&self.in_frame(&(response.force * a)), matrix);
     }
 
-    /// See [`Link::add_derivatives`](crate::system::Link::add_derivatives).
+    /// See [`Link::add_derivatives`](crate::system::Link::add_derivatives); `moment` as for [`add_impedance`](Self::add_impedance).
     #[inline(always)]
-    pub(super) fn add_derivatives<const H: usize, const R: usize, const D: usize>(
+    pub(super) fn add_derivatives<const D: usize>(
         &self,
-        response: &Response<S, R>,
+        response: &Response<S, 3>,
+        moment: Option<&Matrix3<S>>,
         damping: &mut SMatrix<S, D, D>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let (by_rate, by_place) = (self.blocks::<R, H>(&response.impedance), self.blocks(&response.stiffness));
-        self.add(&self.by_velocity(&by_rate), damping);
-        self.add(&self.by_place(&by_place, &by_rate), stiffness);
-        self.carry::<H, D>(&self.vectors(&response.force), stiffness);
+        let [by_rate, by_place] = [&response.impedance, &response.stiffness].map(|entries| self.block(entries));
+        self.add(&self.by_velocity(&by_rate), None, damping);
+        let moment = moment.map(|moment| self.by_displacement(&self.block(moment)));
+        self.add(&self.by_place(&by_place, &by_rate), moment, stiffness);
+        self.carry(&self.in_frame(&response.force), stiffness);
     }
 
-    /// How forces change, negated, by the parts of motion where `by` tells how by the rates at the point.
+    /// How forces change, negated, by the parts of motion where `by_move` tells how by the rate.
     #[inline(always)]
-    fn by_velocity<const H: usize>(&self, by: &AtPoint<S, H>) -> Change<S, H> {
+    fn by_velocity(&self, by_move: &Matrix3<S>) -> Change<S> {
+        let [r, l] = &self.arms();
+        let of_other = if self.bodies[1].is_some() { -cross_rows(l, by_move) } else { Matrix3::zeros() };
+        [*by_move, cross_rows(r, by_move), of_other]
+    }
+
+    /// How forces or moments change, negated, by small motions of the bodies where `by_place` tells how by the place alone.
+    #[inline(always)]
+    fn by_displacement(&self, by_place: &Matrix3<S>) -> Change<S> {
         let [r, l] = &self.levers;
-        let mut change = [[Matrix3::zeros(); 3]; H];
-        for (change, row) in change.iter_mut().zip(by) {
-            let (by_move, by_turn) = force_and_moment(row);
-            let with_turn = |matrix: Matrix3<S>| by_turn.map_or(matrix, |by_turn| matrix + by_turn);
-            change[0] = by_move;
-            change[1] = with_turn(cross_rows(r, &by_move));
-            if self.bodies[1].is_some() {
-                change[2] = -with_turn(cross_rows(l, &by_move));
-            }
-        }
-        change
+        let of_other = if self.bodies[1].is_some() { -cross_rows(l, by_place) } else { Matrix3::zeros() };
+        [*by_place, cross_rows(r, by_place), of_other]
     }
 
-    /// How forces change, negated, by small motions of the bodies, where `by_place` and `by_rate` tell how by place and rate at the
-    /// point. Held are the velocities of the centres in the frame, and the angular velocities each in its own body. Only the first
-    /// three places, lengths, count: laws see no angles.
+    /// How forces change, negated, by small motions of the bodies, where `by_place` and `by_move` tell how by place and rate. Held are
+    /// the velocities of the centres in the frame, and the angular velocities each in its own body.
     #[inline(always)]
-    fn by_place<const H: usize>(&self, by_place: &AtPoint<S, H>, by_rate: &AtPoint<S, H>) -> Change<S, H> {
-        let [[r, l], [b, c]] = [&self.levers, &self.turning];
-        let carried = cross(b, r);
-        let mut change = [[Matrix3::zeros(); 3]; H];
-        for ((change, by_place), by_rate) in change.iter_mut().zip(by_place).zip(by_rate) {
-            let ((by_place, _), (by_move, by_turn)) = (force_and_moment(by_place), force_and_moment(by_rate));
-            let turned = cross_rows(&carried, &by_move);
-            let turned = by_turn.map_or(turned, |by_turn| turned + cross_rows(b, &by_turn));
-            if self.bodies[1].is_some() {
-                let by_move_of = by_place + cross_rows(c, &by_move);
-                change[0] = by_move_of;
-                change[1] = cross_rows(r, &by_move_of) + turned;
-                change[2] = -(cross_rows(l, &by_move_of) + cross_rows(&self.velocity, &by_move) + turned);
-            } else {
-                change[0] = by_place;
-                change[1] = cross_rows(r, &by_place) + turned;
-            }
-        }
-        change
+    fn by_place(&self, by_place: &Matrix3<S>, by_move: &Matrix3<S>) -> Change<S> {
+        let [[r, _], [b, c]] = [&self.levers, &self.turning];
+        let turned = cross_rows(&cross(b, r), by_move);
+        let turned = self.reach.map_or(turned, |reach| turned + cross_rows(b, &cross_rows(&reach, by_move)));
+        let by_place = if self.bodies[1].is_some() { by_place + cross_rows(c, by_move) } else { *by_place };
+        let [by_move_of, of_one, of_other] = self.by_displacement(&by_place);
+        let of_other =
+            if self.bodies[1].is_some() { of_other - (cross_rows(&self.velocity, by_move) + turned) } else { of_other };
+        [by_move_of, of_one + turned, of_other]
     }
 
-    /// Adds the generalised forces of `change` to `matrix`.
+    /// Adds the generalised forces of forces, and of moments besides if there are any, that change by the parts of motion.
     #[inline(always)]
-    fn add<const H: usize, const D: usize>(&self, change: &Change<S, H>, matrix: &mut SMatrix<S, D, D>) {
-        let (forces, moments) = force_and_moment(change);
-        let column = |part: usize| [forces[part], moments.map_or(Matrix3::zeros(), |moments| moments[part])];
+    fn add<const D: usize>(&self, forces: &Change<S>, moments: Option<Change<S>>, matrix: &mut SMatrix<S, D, D>) {
+        let column = |part: usize| (forces[part], moments.map(|moments| moments[part]));
         if let Some(i) = self.bodies[0] {
-            self.add_columns::<H, D>([i, VELOCITY], column(0), matrix);
-            self.add_columns::<H, D>([i, TURNING], column(1), matrix);
+            self.add_columns([i, VELOCITY], column(0), matrix);
+            self.add_columns([i, TURNING], column(1), matrix);
         }
         if let Some(j) = self.bodies[1] {
-            self.add_columns::<H, D>([j, VELOCITY], column(0).map(|block| -block), matrix);
-            self.add_columns::<H, D>([j, TURNING], column(2), matrix);
+            let (forces, moments) = column(0);
+            self.add_columns([j, VELOCITY], (-forces, moments.map(|moments| -moments)), matrix);
+            self.add_columns([j, TURNING], column(2), matrix);
         }
     }
 
-    /// Adds the generalised forces of forces at the point and, where `H` is 2, of moments that change by a part of motion.
+    /// Adds the generalised forces of forces, and of moments besides, that change by one part of motion.
     #[inline(always)]
-    fn add_columns<const H: usize, const D: usize>(
+    fn add_columns<const D: usize>(
         &self,
         by: [usize; 2],
-        [forces, moments]: [Matrix3<S>; 2],
+        (forces, moments): (Matrix3<S>, Option<Matrix3<S>>),
         matrix: &mut SMatrix<S, D, D>,
     ) {
-        let [r, l] = &self.levers;
-        let columns = matrix.data.0.as_chunks_mut::<3>().0.get_mut(2 * by[0] + by[1]);
-        for ((column, force), moment) in columns.into_iter().flatten().zip(&forces.data.0).zip(&moments.data.0) {
-            let (force, moment) = (Vector3::from(*force), Vector3::from(*moment));
-            let mut act = |body: usize, force: Vector3<S>, torque: Vector3<S>| {
-                if let Some([x, y, z, a, b, c]) = column.as_chunks_mut::<6>().0.get_mut(body) {
-                    (*x, *y, *z) = (*x + force.x, *y + force.y, *z + force.z);
-                    (*a, *b, *c) = (*a + torque.x, *b + torque.y, *c + torque.z);
-                }
-            };
-            let with_moment = |torque: Vector3<S>| if H == 2 { torque + moment } else { torque };
-            if let Some(i) = self.bodies[0] {
-                act(i, force, with_moment(cross(r, &force)));
-            }
-            if let Some(j) = self.bodies[1] {
-                act(j, -force, -with_moment(cross(l, &force)));
-            }
+        let [r, l] = &self.arms();
+        let with_moments = |torques: Matrix3<S>| moments.map_or(torques, |moments| torques + moments);
+        if let Some(i) = self.bodies[0] {
+            add_block(matrix, [[i, VELOCITY], by], &forces);
+            add_block(matrix, [[i, TURNING], by], &with_moments(cross_columns(r, &forces)));
+        }
+        if let Some(j) = self.bodies[1] {
+            add_block(matrix, [[j, VELOCITY], by], &-forces);
+            add_block(matrix, [[j, TURNING], by], &-with_moments(cross_columns(l, &forces)));
         }
     }
 
     /// Subtracts how the generalised forces of a `force` that the link's axes carry along change with small motions of the bodies;
     /// torques as their bodies see them.
     #[inline(always)]
-    fn carry<const H: usize, const D: usize>(&self, force: &[Vector3<S>; H], matrix: &mut SMatrix<S, D, D>) {
+    fn carry<const D: usize>(&self, push: &Vector3<S>, matrix: &mut SMatrix<S, D, D>) {
         let [r, l] = &self.levers;
-        let (push, moment) = force_and_moment(force);
-        let arm = twice_crossed(&outer(&push, r));
-        let arm = moment.map_or(arm, |moment| arm + cross_matrix(&moment));
+        let arm = twice_crossed(&outer(push, r));
+        let arm = self.reach.map_or(arm, |reach| arm + cross_matrix(&cross(&reach, push)));
         if let Some(i) = self.bodies[0] {
             add_block(matrix, [[i, TURNING], [i, TURNING]], &-arm);
         }
         if let Some(j) = self.bodies[1] {
-            let turned = cross_matrix(&push);
+            let turned = cross_matrix(push);
             if let Some(i) = self.bodies[0] {
                 add_block(matrix, [[i, VELOCITY], [j, TURNING]], &turned);
                 add_block(matrix, [[i, TURNING], [j, TURNING]], &arm);
                 add_block(matrix, [[j, TURNING], [i, VELOCITY]], &-turned);
-                add_block(matrix, [[j, TURNING], [i, TURNING]], &twice_crossed(&outer(r, &push)));
+                add_block(matrix, [[j, TURNING], [i, TURNING]], &twice_crossed(&outer(r, push)));
             }
             add_block(matrix, [[j, VELOCITY], [j, TURNING]], &-turned);
             add_block(matrix, [[j, TURNING], [j, VELOCITY]], &turned);
-            add_block(matrix, [[j, TURNING], [j, TURNING]], &-twice_crossed(&outer(l, &push)));
+            add_block(matrix, [[j, TURNING], [j, TURNING]], &-twice_crossed(&outer(l, push)));
         }
     }
-}
-
-/// What belongs to the force, and to the moment where `H` is 2.
-#[inline(always)]
-fn force_and_moment<T: Copy, const H: usize>(of: &[T; H]) -> (T, Option<T>) {
-    const { assert!(H == 1 || H == 2, "a force, or a force and a moment") }
-    (of[0], of.get(1).copied())
 }

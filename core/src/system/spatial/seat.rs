@@ -45,7 +45,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         force: &SVector<S, 3>,
         sum: &mut SVector<S, D>,
     ) {
-        view.add_force::<1, 3, D>(force, sum);
+        view.add_force(force, sum);
     }
 
     #[inline(always)]
@@ -57,7 +57,7 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         a: S,
         matrix: &mut SMatrix<S, D, D>,
     ) {
-        view.add_impedance::<1, 3, D>(response, a, matrix);
+        view.add_impedance(response, None, a, matrix);
     }
 
     #[inline(always)]
@@ -69,6 +69,6 @@ impl<S: Scalar, const N: usize, const D: usize> Link<S, FreeBodies<S, N, D>, D, 
         damping: &mut SMatrix<S, D, D>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        view.add_derivatives::<1, 3, D>(response, damping, stiffness);
+        view.add_derivatives(response, None, damping, stiffness);
     }
 }

@@ -141,29 +141,27 @@ fn elements(
                 )
             }
             SpatialElement::Ring(one) => {
-                names.extend(["Port", "Seat", "Turned"]);
+                names.extend(["Port", "Rim", "Seat"]);
                 laws.push("Ring");
                 let (of, axes) = match one.link.axes {
                     Some(axes) => {
                         let of = "slipfit_core::SMatrix<S, 3, 3>";
                         let values = numbers(axes.transpose().as_slice());
-                        (format!("Turned<S, {of}>"), format!("slipfit_core::SMatrix::<S, 3, 3>::new({values})"))
+                        (format!("Rim<S, {of}>"), format!("slipfit_core::SMatrix::<S, 3, 3>::new({values})"))
                     }
                     None => {
                         names.push("Parallel");
-                        ("Turned<S>".to_owned(), "Parallel".to_owned())
+                        ("Rim<S>".to_owned(), "Parallel".to_owned())
                     }
                 };
+                let (seat, radius) = (seat(&one.link.seat), one.link.radius);
                 element(
-                    typed(of, format!("Turned {{ seat: {}, axes: {axes} }}", seat(&one.link.seat))),
+                    typed(of, format!("Rim {{ seat: {seat}, axes: {axes}, radius: s({radius:?}) }}")),
                     typed(
                         format!("Ring<S, {}>", contact.of),
-                        format!(
-                            "Ring {{ clearance: gaps[{gap}], radius: s({:?}), contact: {} }}",
-                            one.law.radius, contact.value
-                        ),
+                        format!("Ring {{ clearance: gaps[{gap}], contact: {} }}", contact.value),
                     ),
-                    6,
+                    3,
                 )
             }
             SpatialElement::Motor(one) => {

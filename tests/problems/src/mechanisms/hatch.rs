@@ -11,7 +11,7 @@ use slipfit_core::{
     system::{
         Driving, Element, System,
         law::{Axis, Contact, Motor, Ring, Wall},
-        spatial::{About, FreeBodies, Port, Rigid, Seat, Turned},
+        spatial::{About, FreeBodies, Port, Rigid, Rim, Seat},
     },
 };
 
@@ -34,7 +34,7 @@ pub const SCENE_HASH: u64 = 0xb3c96a5a41e38ac7;
 pub type Bodies<S> = FreeBodies<S, 1, 6>;
 
 /// What acts on them.
-pub type Elements<S> = ([Element<Turned<S, slipfit_core::SMatrix<S, 3, 3>>, Ring<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 6>; 2], (Element<Seat<S>, Wall<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 3>, ([Element<Turned<S, slipfit_core::SMatrix<S, 3, 3>>, Ring<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 6>; 2], (Element<Seat<S>, Wall<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 3>, Element<About<S>, Motor<Drive<S>>, 1>))));
+pub type Elements<S> = ([Element<Rim<S, slipfit_core::SMatrix<S, 3, 3>>, Ring<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 3>; 2], (Element<Seat<S>, Wall<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 3>, ([Element<Rim<S, slipfit_core::SMatrix<S, 3, 3>>, Ring<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 3>; 2], (Element<Seat<S>, Wall<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 3>, Element<About<S>, Motor<Drive<S>>, 1>))));
 
 /// A unit's type: what the mechanism does not have leaves no code.
 pub type Unit<S> = System<Bodies<S>, Elements<S>>;
@@ -58,11 +58,11 @@ pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> 
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(100000000.0))?, s(300.0), s(1e-5))?, friction: Regularised::new(s(0.15), s(0.001))? };
     let bodies = FreeBodies::new([Rigid { mass: s(2.0), inertia_b: Vector3::new(s(0.015), s(0.042), s(0.027)), centre_w: Vector3::new(s(0.0), s(0.0), s(0.15)) }], Vector3::new(s(0.0), s(-9.81), s(0.0)))?;
     let elements = ([
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.16499999999999998), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)) }, law: Ring { clearance: gaps[0], radius: s(0.004), contact: contact_0 } },
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.135), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)) }, law: Ring { clearance: gaps[0], radius: s(0.004), contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.16499999999999998), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)), radius: s(0.004) }, law: Ring { clearance: gaps[0], contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.135), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)), radius: s(0.004) }, law: Ring { clearance: gaps[0], contact: contact_0 } },
     ], (Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.165), s(0.0), s(-0.15)) }, from: None }, law: Wall { axis: Axis::X, sign: s(1.0), gap: gaps[1], contact: contact_0 } }, ([
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.135), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)) }, law: Ring { clearance: gaps[2], radius: s(0.004), contact: contact_0 } },
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.16499999999999998), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)) }, law: Ring { clearance: gaps[2], radius: s(0.004), contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.135), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)), radius: s(0.004) }, law: Ring { clearance: gaps[2], contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.16499999999999998), s(0.0), s(-0.15)) }, from: None }, axes: slipfit_core::SMatrix::<S, 3, 3>::new(s(0.0), s(0.0), s(1.0), s(1.0), s(0.0), s(0.0), s(0.0), s(1.0), s(0.0)), radius: s(0.004) }, law: Ring { clearance: gaps[2], contact: contact_0 } },
     ], (Element { link: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.165), s(0.0), s(-0.15)) }, from: None }, law: Wall { axis: Axis::X, sign: s(-1.0), gap: gaps[3], contact: contact_0 } }, Element { link: About { body: 0, axis_w: Vector3::new(s(-1.0), s(0.0), s(0.0)) }, law: Motor(Drive { gain: s(20.0), ramp_start: s(0.05), ramp_end: s(0.3), speed: s(1.0), point_b: Vector3::new(s(0.0), s(0.0), s(0.0)) }.checked()?) }))));
     Ok(System::new(bodies, elements))
 }

@@ -11,7 +11,7 @@ use slipfit_core::{
     system::{
         Driving, Element, System,
         law::{Contact, Pusher, Ring},
-        spatial::{Along, FreeBodies, Parallel, Port, Rigid, Seat, Turned},
+        spatial::{Along, FreeBodies, Parallel, Port, Rigid, Rim, Seat},
     },
 };
 
@@ -34,7 +34,7 @@ pub const SCENE_HASH: u64 = 0xd7b5bad5d28cd28d;
 pub type Bodies<S> = FreeBodies<S, 1, 6>;
 
 /// What acts on them.
-pub type Elements<S> = ([Element<Turned<S>, Ring<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 6>; 8], Element<Along<S>, Pusher<Drive<S>>, 2>);
+pub type Elements<S> = ([Element<Rim<S>, Ring<S, Impact<S, ThreeHalves<S>>, Regularised<S>>, 3>; 8], Element<Along<S>, Pusher<Drive<S>>, 2>);
 
 /// A unit's type: what the mechanism does not have leaves no code.
 pub type Unit<S> = System<Bodies<S>, Elements<S>>;
@@ -58,14 +58,14 @@ pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> 
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(100000000.0))?, s(300.0), s(1e-5))?, friction: Regularised::new(s(0.3), s(0.001))? };
     let bodies = FreeBodies::new([Rigid { mass: s(0.6), inertia_b: Vector3::new(s(0.0008), s(0.002), s(0.0014)), centre_w: Vector3::new(s(0.0), s(0.0), s(0.0)) }], Vector3::new(s(0.0), s(-9.81), s(0.0)))?;
     let elements = ([
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(-0.04)) }, from: None }, axes: Parallel }, law: Ring { clearance: gaps[0], radius: s(0.006), contact: contact_0 } },
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(-0.019999999999999997)) }, from: None }, axes: Parallel }, law: Ring { clearance: gaps[0], radius: s(0.006), contact: contact_0 } },
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(-0.04)) }, from: None }, axes: Parallel }, law: Ring { clearance: gaps[1], radius: s(0.006), contact: contact_0 } },
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(-0.019999999999999997)) }, from: None }, axes: Parallel }, law: Ring { clearance: gaps[1], radius: s(0.006), contact: contact_0 } },
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(0.019999999999999997)) }, from: None }, axes: Parallel }, law: Ring { clearance: gaps[2], radius: s(0.006), contact: contact_0 } },
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(0.04)) }, from: None }, axes: Parallel }, law: Ring { clearance: gaps[2], radius: s(0.006), contact: contact_0 } },
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(0.019999999999999997)) }, from: None }, axes: Parallel }, law: Ring { clearance: gaps[3], radius: s(0.006), contact: contact_0 } },
-        Element { link: Turned { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(0.04)) }, from: None }, axes: Parallel }, law: Ring { clearance: gaps[3], radius: s(0.006), contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(-0.04)) }, from: None }, axes: Parallel, radius: s(0.006) }, law: Ring { clearance: gaps[0], contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(-0.019999999999999997)) }, from: None }, axes: Parallel, radius: s(0.006) }, law: Ring { clearance: gaps[0], contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(-0.04)) }, from: None }, axes: Parallel, radius: s(0.006) }, law: Ring { clearance: gaps[1], contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(-0.019999999999999997)) }, from: None }, axes: Parallel, radius: s(0.006) }, law: Ring { clearance: gaps[1], contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(0.019999999999999997)) }, from: None }, axes: Parallel, radius: s(0.006) }, law: Ring { clearance: gaps[2], contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(-0.06), s(-0.01), s(0.04)) }, from: None }, axes: Parallel, radius: s(0.006) }, law: Ring { clearance: gaps[2], contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(0.019999999999999997)) }, from: None }, axes: Parallel, radius: s(0.006) }, law: Ring { clearance: gaps[3], contact: contact_0 } },
+        Element { link: Rim { seat: Seat { point: Port { body: Some(0), lever: Vector3::new(s(0.06), s(-0.01), s(0.04)) }, from: None }, axes: Parallel, radius: s(0.006) }, law: Ring { clearance: gaps[3], contact: contact_0 } },
     ], Element { link: Along { body: 0, lever: Vector3::new(s(0.01), s(0.0), s(0.0)), axis_w: Vector3::new(s(0.0), s(0.0), s(1.0)) }, law: Pusher(Drive { gain: s(200.0), ramp_start: s(0.05), ramp_end: s(0.25), speed: s(0.1), point_b: Vector3::new(s(0.01), s(0.0), s(0.0)) }.checked()?) });
     Ok(System::new(bodies, elements))
 }
