@@ -24,3 +24,4 @@ pub mod sweep;
 pub mod tipping;
 pub mod trajectory;
 pub mod trust;
+pub mod wide;

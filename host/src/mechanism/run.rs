@@ -29,11 +29,12 @@ use crate::{
         error_control::{Accelerations, Effort, Knot, Stopped, integrate, sampled},
         film::chosen,
         looks::{end, looks, samples},
-        out_of_line::OutOfLine,
+        out_of_line::{Contacts, OutOfLine},
         outcome::{Observer, Outcome},
         scheme::ScalarKind,
         simulate::{SimulateError, Solved},
         trajectory::Trajectory,
+        wide::Wide,
     },
     scene::{ControllerSpec, RunSpec},
 };
@@ -229,7 +230,8 @@ fn in_plane<const D: usize>(
     };
     let bodies = PlanarBodies::of(mechanism, mounts, &tree);
     let system = System::new(tree, &elements[..]);
-    solve(mechanism, &system, (pose, rates), &limits, by, state, |state: &State<D>| bodies.told(state))
+    let desk = OutOfLine::by(system, Wide::new());
+    solve(mechanism, desk, (pose, rates), &limits, by, state, |state: &State<D>| bodies.told(state))
 }
 
 fn in_space<const N: usize, const D: usize>(
@@ -242,7 +244,8 @@ fn in_space<const N: usize, const D: usize>(
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let start = (bodies.nominal(), [0.0; D]);
     let system = System::new(bodies, &elements[..]);
-    solve(mechanism, &system, start, &limits, by, State::spatial::<N>, columns::spatial)
+    let desk = OutOfLine::by(system, Wide::new());
+    solve(mechanism, desk, start, &limits, by, State::spatial::<N>, columns::spatial)
 }
 
 fn on_joints<const D: usize>(
@@ -264,7 +267,8 @@ fn on_joints<const D: usize>(
         state
     };
     let system = System::new(tree, ThroughJoints(&elements[..]));
-    solve(mechanism, &system, start, &limits, by, state, |state: &State<D>| bodies.told(state))
+    let desk = OutOfLine::by(system, Wide::new());
+    solve(mechanism, desk, start, &limits, by, state, |state: &State<D>| bodies.told(state))
 }
 
 /// Where and how fast a mechanism on ideal joints starts.
@@ -311,19 +315,23 @@ impl<const D: usize> Rest<D> {
     }
 }
 
-fn solve<B: Bodies<f64, D> + Copy, E: Elements<f64, B, D> + Copy, const D: usize>(
+fn solve<B, E, C, const D: usize>(
     mechanism: &Mechanism,
-    system: &System<B, E>,
+    desk: OutOfLine<System<B, E>, C>,
     (pose, rates): (B::Pose, [f64; D]),
     limits: &Limits,
     by: By,
     mut state: impl FnMut(&B::Pose, [f64; D]) -> State<D>,
     told: impl Fn(&State<D>) -> Vec<BodyMotion>,
-) -> Result<MechanismRun, RunError> {
+) -> Result<MechanismRun, RunError>
+where
+    B: Bodies<f64, D> + Copy,
+    E: Elements<f64, B, D> + Copy,
+    C: Contacts<f64, System<B, E>, D>,
+{
     let velocity = SVector::from(rates);
-    let start = Motion { pose, velocity, acceleration: SVector::zeros(), internal: system.fresh() };
-    let desk = OutOfLine::new(*system);
-    let least_mass = system.bodies().least_mass();
+    let start = Motion { pose, velocity, acceleration: SVector::zeros(), internal: desk.fresh() };
+    let least_mass = desk.mechanism().bodies().least_mass();
     // The stroke is the first drive's.
     let of_drive = |k: usize| if k == 0 { mechanism.run } else { RunSpec { stroke: None, ..mechanism.run } };
     let named = mechanism.drives.iter().enumerate();
