@@ -33,6 +33,8 @@ left = [0.01, 0.05]
 On the command line `--set KEY=VALUE` sets a key: `--set \"slide.mass=0.09 kg\"`. The tables of a list are told apart by their names:
 `--set \"pin.left front.left=[0.01, 0.05]\"`.
 
+A text has no tabs and no other control characters. Only the expression of a measure may go over several lines.
+
 A key is required in its table unless its meaning names a default, calls it optional, or says for what it is required.
 
 The column *takes* quotes the program's error message about a wrong value. Some keys take a length in one scene, and an angle, a force

@@ -90,6 +90,14 @@ pub enum Problem {
         /// The value.
         written: String,
     },
+    /// A text with a character that is not printed, but steers what prints it.
+    #[error("`{key}` is {written:?}, which has a control character")]
+    ControlCharacter {
+        /// The key.
+        key: String,
+        /// The value.
+        written: String,
+    },
     /// A number outside its range.
     #[error("`{key}` is {written}")]
     OutOfRange {
@@ -357,7 +365,9 @@ impl SceneError {
 
     /// The message for a terminal, in colour if `color`.
     pub fn render(&self, color: bool) -> String {
-        self.0.iter().map(|report| report.render(color)).collect::<Vec<_>>().join("\n\n")
+        let text = self.0.iter().map(|report| report.render(color)).collect::<Vec<_>>().join("\n\n");
+        // The renderer shows the control characters of ASCII; those above it would steer a terminal too.
+        text.replace(|letter| matches!(letter, '\u{80}'..='\u{9f}'), "\u{fffd}")
     }
 }
 

@@ -39,7 +39,7 @@ impl SceneFile {
         for change in overrides {
             tree.set(change)?;
         }
-        keys::note_unknown(&tree);
+        keys::note_unfit(&tree);
         found.conclude(Self::read(&tree, file_name))
     }
 

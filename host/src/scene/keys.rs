@@ -5,6 +5,7 @@ use crate::product::feature::Shape;
 use super::{
     Problem, drawing,
     tree::{Node, Value},
+    value::Field,
 };
 
 /// A key, and the keys of the table (or the tables of the list) that it may hold.
@@ -253,12 +254,20 @@ pub(super) const ROOT: &[Key] = &[
     ),
 ];
 
-/// Notes every key below the root `node` that no scene has.
-pub fn note_unknown(node: &Node<'_>) {
+/// Notes every key below the root `node` that no scene has, and every text that is not fit to be printed.
+pub fn note_unfit(node: &Node<'_>) {
     note(node, "", ROOT);
 }
 
-/// Notes every key below `node`, itself at the key `path`, that is not one of `keys`.
+/// An expression may go over several lines; it is not printed.
+const EXPRESSION: &str = "measure.is";
+
+/// Whether `letter` of the text at the key `path` would steer a terminal or a page.
+fn is_unfit(path: &str, letter: char) -> bool {
+    letter.is_control() && !(path == EXPRESSION && matches!(letter, '\n' | '\r' | '\t'))
+}
+
+/// Notes every key below `node`, itself at the key `path`, that is not one of `keys`, and every unfit text.
 fn note(node: &Node<'_>, path: &str, keys: &[Key]) {
     let found = node.place.found();
     match &node.value {
@@ -283,6 +292,11 @@ fn note(node: &Node<'_>, path: &str, keys: &[Key]) {
             }
         }),
         Value::List(nodes) => nodes.iter().for_each(|node| note(node, path, keys)),
+        Value::Text(text) if text.chars().any(|letter| is_unfit(path, letter)) => {
+            let field = Field { key: path.into(), node };
+            let problem = Problem::ControlCharacter { key: path.into(), written: field.written("") };
+            found.note(field.error(problem, "a text of one line, without tabs and other control characters"));
+        }
         // Reading the value says that it is no table.
         _ => {}
     }

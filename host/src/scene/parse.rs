@@ -106,10 +106,12 @@ pub fn parse_every(text: &str) -> Result<f64, SceneError> {
 }
 
 pub(super) fn title(root: &Field, file_name: &str) -> Result<String, SceneError> {
+    if let Some(title) = root.get("title") {
+        return title.to_text().map(str::to_owned);
+    }
     let stem = Path::new(file_name).file_stem().unwrap_or_default().to_string_lossy();
-    let title = root.get("title").map(|title| title.to_text()).transpose()?.unwrap_or(&stem);
-    // A title is printed as it is; control characters would steer the terminal.
-    Ok(title.chars().map(|c| if c.is_control() { ' ' } else { c }).collect())
+    // It is printed as it is; control characters would steer the terminal.
+    Ok(stem.chars().map(|c| if c.is_control() { ' ' } else { c }).collect())
 }
 
 fn slide(table: &Field) -> Result<SlideSpec, SceneError> {

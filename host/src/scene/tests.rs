@@ -6,7 +6,9 @@ use slipfit_problems::cd_rom;
 
 use crate::dynamics::scheme::{IntegratorKind, ScalarKind};
 
-use super::{CD_ROM_SLIDE, ControllerSpec, LevelRange, Override, RunSpec, Scene, SceneError};
+use super::{
+    CD_ROM_SLIDE, ControllerSpec, LevelRange, Override, Problem, RunSpec, Scene, SceneError, SceneFile, shipped,
+};
 
 const FAST: &str = include_str!("../../scenes/cd-rom-slide-fast.toml");
 
@@ -283,6 +285,69 @@ fn errors_in_overrides_point_into_them() {
     }
     let error = parse(CD_ROM_SLIDE, &["friction.law=none", "friction.coefficient=-1"]).unwrap_err().to_string();
     assert!(error.contains("`friction.coefficient` is -1"), "{error}");
+}
+
+/// An escape sequence at the start of each text of every kind of scene in turn.
+#[test]
+fn texts_with_control_characters_are_refused_where_they_stand() {
+    let shown = "\\u{1b}[31m";
+    for name in ["cd-rom-slide", "cd-rom-slide-drawing", "clutch-processes", "slider-crank-guide", "ball-rod"] {
+        let (text, mut start, mut texts) = (shipped(name).unwrap(), 0, 0);
+        for (row, line) in text.split_inclusive('\n').enumerate() {
+            let values = line.split('#').next().unwrap_or_default();
+            for (quote, _) in values.match_indices('"').step_by(2) {
+                let (before, after) = text.split_at(start + quote + 1);
+                let spoilt = format!("{before}\\u001b[31m{after}");
+                let error = SceneFile::parse("x.toml", &spoilt, &[]).err().unwrap_or_else(|| panic!("{line}"));
+                let of_text = |problem: &&Problem| matches!(problem, Problem::ControlCharacter { .. });
+                let [Problem::ControlCharacter { key, .. }] = error.problems().filter(of_text).collect::<Vec<_>>()[..]
+                else {
+                    panic!("{line}: {error}")
+                };
+                let last = key.rsplit('.').next().unwrap_or_default();
+                assert!(line.contains(last), "{line}: {error}");
+                let column = values[..quote].chars().count() + 1;
+                let said = error.to_string();
+                for part in [
+                    format!("`{key}` is \"{shown}"),
+                    format!("x.toml:{}:{column}", row + 1),
+                    "= allowed: a text of one line, without tabs and other control characters".to_owned(),
+                ] {
+                    assert!(said.contains(&part), "{line}: {part}: {said}");
+                }
+                assert!(!said.contains('\u{1b}'), "{line}: {said}");
+                texts += 1;
+            }
+            start += line.len();
+        }
+        assert!(texts > 5, "{name}: {texts}");
+    }
+}
+
+#[test]
+fn so_are_settings_on_the_command_line() {
+    for (set, key, shown) in [
+        ("title=a\u{1b}[31m", "title", "a\\u{1b}[31m"),
+        ("title=\"a\\u001b[31m\"", "title", "a\\u{1b}[31m"),
+        ("pin.left front.name=one\nother", "pin.name", "one\\nother"),
+        ("friction.law=no\u{9b}ne", "friction.law", "no\\u{9b}ne"),
+    ] {
+        let error = parse(CD_ROM_SLIDE, &[set]).unwrap_err().to_string();
+        let told = format!("`{key}` is \"{shown}\", which has a control character");
+        assert!(error.contains(&told) && error.contains("command line:1:"), "{error}");
+        assert!(!error.contains(['\u{1b}', '\u{9b}']), "{error:?}");
+    }
+}
+
+/// Nobody prints an expression.
+#[test]
+fn an_expression_may_go_over_several_lines() {
+    let text = "[[dimension]]\nname = \"a\"\nvalue = 30\ntolerance = 0.1\n\
+                [[measure]]\nname = \"m\"\nis = \"\"\"a\n\t+ 2 * a\"\"\"\n";
+    let file = SceneFile::parse("x.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    assert!((file.product.unwrap().nominal_measures()[0] - 0.09).abs() < 1e-15);
+    let error = SceneFile::parse("x.toml", &text.replace("\n\t+", "\\u001b+"), &[]).err().unwrap().to_string();
+    assert!(error.contains("`measure.is` is \"a\\u{1b}+ 2 * a\""), "{error}");
 }
 
 #[test]

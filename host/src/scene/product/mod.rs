@@ -322,7 +322,7 @@ fn name<'t, 's>(table: &Field<'t, 's>) -> Result<(&'t str, Field<'t, 's>), Scene
     const ALLOWED: &str = "a text in quotes, without single quotes in it";
     let field = table.require("name", ALLOWED)?;
     let name = field.to_text()?;
-    if name.trim().is_empty() || name.chars().any(|c| c == '\'' || c.is_control()) {
+    if name.trim().is_empty() || name.contains('\'') {
         return Err(field.error(Problem::Choice { key: field.key.clone(), written: field.written("") }, ALLOWED));
     }
     Ok((name, field))
