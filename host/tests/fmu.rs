@@ -142,6 +142,35 @@ fn a_mechanism_has_its_kernels_bits_in_version_2_too() {
     check(&folder.path().join("crank.fmu"), &expected);
 }
 
+/// Bodies on ideal joints in space.
+#[test]
+fn a_mechanism_on_joints_in_space_has_its_kernels_bits() {
+    use slipfit_core::system::Bodies;
+    use slipfit_problems::mechanisms::ball_rod::{STEP, drive_motor, predictor};
+    let folder = tempfile::tempdir().unwrap();
+    stdout(&slipfit(folder.path(), &["fmu", "ball-rod", "-o", "rod.fmu"]));
+    let (kernel, mut state) = predictor(1.5).unwrap();
+    let mut rows = Vec::new();
+    for _ in 0..=1000 {
+        let (unit, motion) = (kernel.mechanism(), &state.motion);
+        let now = drive_motor(unit, kernel.time(state.steps), &motion.pose, &motion.velocity);
+        let [_, rod, slide] = unit.bodies().placed(&motion.pose, &motion.velocity).free.bodies;
+        rows.push([now.effort, now.speed, rod.displacement_w.z, slide.displacement_w.y].map(f64::from));
+        kernel.step(&mut state);
+    }
+    assert!(rows[1000].iter().all(|number| number.abs() > 1e-4), "it moves: {:?}", rows[1000]);
+    assert_eq!(STEP, 1e-4);
+    let expected = json!({
+        "step": 1e-4,
+        "set": { "n": 1.5 },
+        "columns": ["torque.motor", "speed.motor", "z.rod", "y.slide"],
+        "rows": rows,
+        "first": { "distance.upper ball left": 5e-5 - 1.5 * 1e-5, "distance.front": 5e-5 - 1.5 * 1e-5, "angle.motor": 0.0 },
+        "refused": [["gap.front", 1e-4], ["command.motor", 1e9], ["gain.motor", -1.0]],
+    });
+    check(&folder.path().join("rod.fmu"), &expected);
+}
+
 #[track_caller]
 fn refused(output: &Output, code: i32, why: &str, unit: &Path) {
     let errors = String::from_utf8_lossy(&output.stderr);
