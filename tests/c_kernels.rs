@@ -169,14 +169,22 @@ fn workspace(kernels: &[Kernel]) -> PathBuf {
     folder
 }
 
-/// The library of a kernel in the workspace `folder`, for a `target` or the PC.
-fn library(folder: &Path, name: &str, target: Option<&str>) -> PathBuf {
-    // By the default profile, as a user would: even so no panic is reachable.
+/// For the PC, by the default profile.
+const HOST: &[&str] = &[];
+
+/// For the target, as the header says, by link-time optimisation.
+const ALONE: &[&str] = &["--target", TARGET, "--config", "profile.release.lto=true"];
+
+/// For the target, by the default profile: even so no panic is reachable.
+const PLAIN: &[&str] = &["--target", TARGET];
+
+/// The library of a kernel in the workspace `folder`, built with these `options`.
+fn library(folder: &Path, name: &str, options: &[&str]) -> PathBuf {
     let mut build = cargo(&folder.to_string_lossy());
     build.current_dir(folder).args(["rustc", "--offline", "--release", "-p", name, "--features", "c"]);
-    build.args(["--crate-type", "staticlib"]).args(target.iter().flat_map(|target| ["--target", target]));
-    printed(&mut build);
-    folder.join("cross").join(target.unwrap_or_default()).join(format!("release/lib{}.a", name.replace('-', "_")))
+    printed(build.args(["--crate-type", "staticlib"]).args(options));
+    let target = if options.contains(&TARGET) { TARGET } else { "" };
+    folder.join("cross").join(target).join(format!("release/lib{}.a", name.replace('-', "_")))
 }
 
 #[test]
@@ -197,31 +205,28 @@ fn kernels_of_all_scenes_have_the_same_bits_from_c_on_host_and_target_and_from_r
             (command, image)
         };
         let (mut compiler, image) = compiled("cc", "-host");
-        printed(compiler.arg("core/capi/examples/desk.c").arg(library(&folder, name, None)));
+        printed(compiler.arg("core/capi/examples/desk.c").arg(library(&folder, name, HOST)));
         assert_eq!(printed(&mut Command::new(image)), *expected, "{name} on the PC");
 
         let (mut compiler, image) = compiled("arm-none-eabi-gcc", ".elf");
-        compiler
-            .args(M4)
-            .args(BARE)
-            .arg("core/capi/examples/m4.c")
-            .arg(library(&folder, name, Some(TARGET)))
-            .arg("-lgcc");
+        compiler.args(M4).args(BARE).arg("core/capi/examples/m4.c").arg(library(&folder, name, ALONE)).arg("-lgcc");
         printed(&mut compiler);
         let on_target = printed(Command::new(Path::new(ROOT).join(".cargo/qemu")).arg(image));
         assert_eq!(on_target, *expected, "{name} on the target");
     }
     let [one, other] = &kernels[..2] else { panic!("there are two") };
     let both = [one, other].map(|kernel| kernel.expected.as_str()).concat();
-    assert_eq!(together(&folder, [one, other], strict), both);
+    let libraries = [one, other].map(|kernel| library(&folder, kernel.name, ALONE));
+    assert_eq!(together(&folder, [one, other], strict, &libraries), both, "two libraries");
+    let library = library(&folder, BOTH, PLAIN);
+    assert_eq!(together(&folder, [one, other], strict, &[library]), both, "one library of both");
 }
 
 const M4: [&str; 5] = ["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16", "-ffreestanding"];
 const BARE: [&str; 4] = ["-nostdlib", "-Wl,--gc-sections", "-Tcore/capi/examples/m4.ld", "-L."];
 
-/// What the programs of two kernels print, one after the other as one program on the target, with one library for both.
-fn together(folder: &Path, kernels: [&Kernel; 2], strict: [&str; 7]) -> String {
-    let library = library(folder, BOTH, Some(TARGET));
+/// What the programs of two kernels print, one after the other as one program on the target, linked with `libraries`.
+fn together(folder: &Path, kernels: [&Kernel; 2], strict: [&str; 7], libraries: &[PathBuf]) -> String {
     let mut compiler = Command::new("arm-none-eabi-gcc");
     let image = folder.join("both.elf");
     compiler.current_dir(ROOT).args(strict).args(M4).args(BARE).arg("-o").arg(&image);
@@ -239,7 +244,7 @@ fn together(folder: &Path, kernels: [&Kernel; 2], strict: [&str; 7]) -> String {
         compiler.arg(object);
     }
     let program = folder.join(BOTH).join("program.c");
-    printed(compiler.arg(program).arg("core/capi/examples/m4.c").arg(library).arg("-lgcc"));
+    printed(compiler.arg(program).arg("core/capi/examples/m4.c").args(libraries).arg("-lgcc"));
     printed(Command::new(Path::new(ROOT).join(".cargo/qemu")).arg(image))
 }
 

@@ -1,6 +1,6 @@
 //! The C side of a crate for firmware: functions that C calls, and the header that declares them.
 //!
-//! A kernel of any scene, with a name of its own, one in a program. The C library `slipfit-capi` has slides alone,
+//! A kernel of any scene, with a name of its own. The C library `slipfit-capi` has slides alone,
 //! and tables, monitor and prediction ahead of the clock.
 
 use std::fmt::Write;
@@ -115,8 +115,10 @@ impl Border<'_> {
         let mut text = format!(
             "/* {title}: the kernel of a scene, written by slipfit. SI units.\n *\n \
              * In the crate's folder, for a Cortex-M4F:\n \
-             *   cargo rustc --release --features c --crate-type staticlib --target thumbv7em-none-eabihf\n \
-             * makes target/thumbv7em-none-eabihf/release/lib{prefix}.a. Link with -Wl,--gc-sections.\n \
+             *   cargo rustc --release --config profile.release.lto=true --features c --crate-type staticlib \\\n \
+             *     --target thumbv7em-none-eabihf\n \
+             * makes target/thumbv7em-none-eabihf/release/lib{prefix}.a. Link with -Wl,--gc-sections. Link-time optimisation\n \
+             * drops the panic handler, so that it goes together with other libraries of Rust.\n \
              * Functions have no state of their own: calls for different units may interrupt each other. */\n\
              #ifndef {upper}_H\n#define {upper}_H\n\n#include <stdint.h>\n\n\
              #ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
