@@ -1,4 +1,5 @@
-//! What C and C++ projects take the library by: CMake, pkg-config, headers that are C++17, too; and Cargo's packages.
+//! What C and C++ projects take the library by: CMake, pkg-config, headers that are C++17, too; and Cargo's packages. The guide's
+//! examples in C and Rust compile.
 
 use std::{
     fs,
@@ -8,9 +9,13 @@ use std::{
 
 use slipfit::{
     firmware::{flash::export, force_table, force_table::Demand, kernel_crate::mechanism_crate, kernel_source},
+    mechanism::rust_source,
     scene::{CD_ROM_SLIDE, Override, Scene, SceneFile, shipped},
 };
-use slipfit_tests::cross::{cargo, printed};
+use slipfit_tests::{
+    cross::{cargo, printed, require_crates},
+    guide,
+};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
@@ -93,12 +98,17 @@ fn c_projects_find_the_library_by_cmake_and_by_pkg_config() {
 
 /// The examples in C of the guide's page on firmware, each in a function of its own.
 fn examples() -> String {
-    let page = fs::read_to_string(Path::new(ROOT).join("host/guide/src/firmware.md")).expect("a page");
-    let blocks = page.split("```c\n").skip(1).map(|rest| rest.split("```").next().unwrap_or_default());
     let examples: String =
-        blocks.enumerate().map(|(i, block)| format!("void example_{i}(void) {{\n{block}}}\n")).collect();
+        blocks("c").iter().enumerate().map(|(i, block)| format!("void example_{i}(void) {{\n{block}}}\n")).collect();
     assert!(examples.contains("slipfit_jam_watch_step") && examples.contains("crank_step"), "{examples}");
     examples
+}
+
+/// Code of the firmware engineer's page in this `language`.
+fn blocks(language: &str) -> Vec<String> {
+    let page = guide::page("firmware");
+    let rest = page.split(&format!("```{language}\n")).skip(1);
+    rest.map(|rest| rest.split("```").next().unwrap_or_default().to_owned()).collect()
 }
 
 #[test]
@@ -120,7 +130,7 @@ fn every_header_and_the_examples_of_the_guide_are_c_11_and_c_plus_plus_17() {
         }
     }
     let program = "#include \"slipfit.h\"\n#include \"scene.h\"\n#include \"table.h\"\n#include \"crank.h\"\n\
-                   extern float time, force, speed, command;\n\
+                   extern float time, force, speed, command;\nextern slipfit_table table;\n\
                    int main(void) {\n    return slipfit_this_scene.mass > 0 && SLIPFIT_TABLE_SIZE > 0 && sizeof(crank) > 0 ? 0 : 1;\n}\n";
     write(folder.join("program"), &format!("{program}{}", examples()));
     let strict = ["-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-fsyntax-only", "program"];
@@ -128,6 +138,62 @@ fn every_header_and_the_examples_of_the_guide_are_c_11_and_c_plus_plus_17() {
         let mut compiler = Command::new(compiler);
         printed(compiler.current_dir(&folder).arg(format!("-I{ROOT}/core/capi/include")).args(language).args(strict));
     }
+}
+
+/// What the examples in Rust of the guide's page on firmware find around them.
+const GIVEN: &str = "
+use std::error::Error;
+
+use embedded_storage::nor_flash::NorFlash;
+use slipfit_core::table::Table;
+
+mod crank;
+mod scene;
+
+pub struct Given<F> {
+    bytes: &'static [u8],
+    table: Table<'static, 2>,
+    slots: [&'static [u8]; 2],
+    spare: usize,
+    number: u32,
+    flash: F,
+    pieces: Vec<Vec<u8>>,
+    measured: [f32; 4],
+}
+";
+
+/// The example number `i` as a function of its own.
+fn in_function((i, block): (usize, &String)) -> String {
+    format!(
+        "\npub fn example_{i}<F: NorFlash>(given: Given<F>) -> Result<(), Box<dyn Error>>\nwhere\n    F::Error: 'static,\n{{\n\
+         let Given {{ bytes, table, slots: [first, second], spare, number, mut flash, pieces, measured }} = given;\n\
+         let pieces = pieces.iter().map(Vec::as_slice);\nlet [time, force, speed, command] = measured;\n{block}Ok(())\n}}\n"
+    )
+}
+
+#[test]
+fn the_examples_of_the_guide_are_rust() {
+    require_crates();
+    let folder = folder("guide-rust");
+    fs::create_dir(folder.join("src")).expect("the test's folder takes folders");
+    let manifest = format!(
+        "[package]\nname = \"examples\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\n\
+         embedded-storage = \"0.3\"\nslipfit-core = {{ path = \"{ROOT}/core\", features = [\"embedded-storage\"] }}\n"
+    );
+    write(folder.join("Cargo.toml"), &manifest);
+    fs::copy(Path::new(ROOT).join("Cargo.lock"), folder.join("Cargo.lock")).expect("the repository's versions");
+    let slide = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).expect("it is shipped");
+    write(folder.join("src/scene.rs"), &kernel_source::rust_source(&slide));
+    let crank =
+        SceneFile::parse("slider-crank", shipped("slider-crank").expect("it is shipped"), &[]).expect("it is sound");
+    let crank = rust_source(&crank.mechanism.expect("a mechanism")).expect("it runs");
+    write(folder.join("src/crank.rs"), &crank);
+    // A whole library has no function around it.
+    let blocks: Vec<_> = blocks("rust").into_iter().filter(|block| !block.starts_with("#![no_std]")).collect();
+    let examples: String = blocks.iter().enumerate().map(in_function).collect();
+    assert!(examples.contains("JamWatch::default") && examples.contains("crank::predictor"), "{examples}");
+    write(folder.join("src/lib.rs"), &format!("#![allow(dead_code, unused)]\n{GIVEN}{examples}"));
+    printed(cargo(&folder.to_string_lossy()).current_dir(&folder).args(["check", "--quiet", "--offline"]));
 }
 
 /// Cargo unpacks and builds a package of a version once: what an earlier run left would be taken for that of now.

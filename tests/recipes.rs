@@ -13,7 +13,10 @@ use slipfit::{
     scene::{CD_ROM_SLIDE, Scene},
 };
 use slipfit_core::pose::Pose;
-use slipfit_tests::cross::{self, TARGET, cargo, printed};
+use slipfit_tests::{
+    cross::{self, TARGET, cargo, printed},
+    guide,
+};
 
 #[rustfmt::skip]
 #[path = "../core/examples/scene.rs"]
@@ -54,6 +57,12 @@ fn the_committed_scene_is_current() {
     }
     let committed = fs::read_to_string(&path).expect("a file of the repository");
     assert!(committed == found, "to write it: SLIPFIT_WRITE_SCENE=1 cargo test --test recipes");
+}
+
+#[test]
+fn the_guide_has_the_hash() {
+    let shown = format!("```text\n{}```", expected());
+    assert!(guide::page("firmware").contains(&shown), "{shown}");
 }
 
 #[test]
