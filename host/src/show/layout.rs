@@ -73,7 +73,23 @@ fn needed(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
     points.iter().zip(keep).filter_map(|(point, keep)| keep.then_some(*point)).collect()
 }
 
-/// `wanted`, ascending, moved as little as possible (least squares) to be `pitch` apart, all within `range` if there is
+/// The order from top to bottom in which the labels of lines that end at these `rows` stand. Ends closer than `near` cannot be
+/// told apart, so that their labels keep the order of the lines: the last on top, unless it ends below the first.
+pub fn stacked(rows: &[f64], near: f64) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by(|i, j| rows[*i].total_cmp(&rows[*j]));
+    for together in order.chunk_by_mut(|i, j| rows[*j] - rows[*i] < near) {
+        together.sort_unstable();
+        if let [first, .., last] = *together
+            && rows[last] < rows[first] + 0.5 * near
+        {
+            together.reverse();
+        }
+    }
+    order
+}
+
+/// `wanted`, from top to bottom, moved as little as possible (least squares) to be `pitch` apart, all within `range` if there is
 /// room.
 pub fn apart(wanted: &[f64], pitch: f64, range: Range<f64>) -> Vec<f64> {
     // Without the pitch this is a regression that must not descend: pool what does.
@@ -106,7 +122,7 @@ pub fn chosen(levels: &[f64], most: usize) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Ticks, apart, chosen, thinned};
+    use super::{Ticks, apart, chosen, stacked, thinned};
 
     #[test]
     fn ticks_are_round() {
@@ -138,6 +154,15 @@ mod tests {
         assert_eq!(apart(&[20.0, 22.0, 50.0], 10.0, 0.0..60.0), [16.0, 26.0, 50.0]);
         assert_eq!(apart(&[0.0, 1.0, 50.0], 10.0, 0.0..60.0), [0.0, 10.0, 50.0]);
         assert_eq!(apart(&[58.0, 59.0, 60.0], 10.0, 0.0..60.0), [40.0, 50.0, 60.0]);
+    }
+
+    #[test]
+    fn labels_of_lines_that_coincide_keep_their_order() {
+        assert_eq!(stacked(&[30.0, 10.0, 20.0], 4.0), [1, 2, 0]);
+        // Two groups: what differs by a hair does not count, what falls from line to line does.
+        assert_eq!(stacked(&[50.0, 50.1, 49.9, 10.0, 12.0, 14.0], 4.0), [3, 4, 5, 2, 1, 0]);
+        assert_eq!(stacked(&[5.0; 4], 4.0), [3, 2, 1, 0]);
+        assert_eq!(apart(&[50.2, 50.0, 49.9], 10.0, 0.0..100.0).windows(2).filter(|two| two[0] < two[1]).count(), 2);
     }
 
     #[test]

@@ -6,7 +6,7 @@ mod mark;
 use axis::Axis;
 
 use super::{
-    layout::{apart, chosen, thinned},
+    layout::{apart, chosen, stacked, thinned},
     palette::{GRID, GUIDE, KINDS, LEVELS, MARK, SHADE, SOFT},
     svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, WIDTH, wrapped},
 };
@@ -29,9 +29,9 @@ pub const LABELLED: usize = LEVELS.len();
 /// The most points of a line.
 pub const POINTS: usize = 600;
 
-/// Width and height (px) of a chart, and of one of several side by side.
-const LARGE: [f64; 2] = [WIDTH, 440.0];
-const SMALL: [f64; 2] = [456.0, 340.0];
+/// Height (px) of a chart, and of one of several side by side.
+const LARGE: f64 = 440.0;
+const SMALL: f64 = 340.0;
 /// Height of a logarithmic chart's panel.
 const LOG_PANEL: f64 = 360.0;
 /// Heading of the chart with one line below the title, one more such line, heading of a panel, axis below, axis to the left.
@@ -43,10 +43,13 @@ const LEFT: f64 = 62.0;
 /// Right of the axes without labels at the ends of lines, and with them before their first character.
 const BLANK: f64 = 24.0;
 const LEADER: f64 = 37.0;
+/// Least width of the axes: beside long labels the chart is wider than usual.
+const ACROSS: f64 = 290.0;
 /// About how wide a character is, of labels, of the subtitle, of the title.
 const CHARACTER: [f64; 3] = [7.4, 6.7, 10.2];
-/// Distance of labels from each other.
+/// Distance of labels from each other, and of the ends of lines below which these are as good as one.
 const LABEL_PITCH: f64 = 16.0;
+const NEAR: f64 = 4.0;
 /// The most characters of a label.
 const LABEL: usize = 24;
 /// Deviation of a thinned line (pixels).
@@ -75,7 +78,7 @@ pub fn line_chart(chart: &Chart) -> Result<String, PlotError> {
     drawn(chart, LARGE)
 }
 
-/// The chart somewhat smaller, for several side by side.
+/// The chart somewhat lower, for several side by side.
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to plot or a value is not finite.
@@ -83,16 +86,18 @@ pub fn small_chart(chart: &Chart) -> Result<String, PlotError> {
     drawn(chart, SMALL)
 }
 
-fn drawn(chart: &Chart, [width, height]: [f64; 2]) -> Result<String, PlotError> {
+fn drawn(chart: &Chart, height: f64) -> Result<String, PlotError> {
     let place = |value: f64| chart.scale.place(value);
     let up = |value: f64| chart.scale.upwards().place(value);
     let finite = |panel: &Panel| panel.points().all(|(x, y)| place(x).is_finite() && up(y).is_finite());
     if let Some(panel) = chart.panels.iter().find(|panel| !finite(panel)) {
         return Err(PlotError::NotFinite(panel.y_label.clone()));
     }
+    let room = chart.panels.iter().flat_map(|panel| &panel.series).map(label_room).fold(BLANK, f64::max);
+    let width = (LEFT + ACROSS + room).ceil().max(WIDTH);
+    let right = width - room;
     let x_axis = Axis::abscissa(chart, (width / 80.0).floor())?;
     let y_axes = chart.panels.iter().map(|panel| Axis::ordinate(chart, panel)).collect::<Result<Vec<_>, _>>()?;
-    let right = width - chart.panels.iter().flat_map(|panel| &panel.series).map(label_room).fold(BLANK, f64::max);
     let characters = |width: f64, of: usize| (width / CHARACTER[of]) as usize;
     let below = wrapped(&chart.subtitle, characters(width - 32.0, 1));
     let heading = HEADING + LINE * below.len().saturating_sub(1) as f64;
@@ -109,8 +114,10 @@ fn drawn(chart: &Chart, [width, height]: [f64; 2]) -> Result<String, PlotError> 
         svg.text([16.0, 48.0 + LINE * i as f64], line, SUBTITLE);
     }
     let most = characters(right - LEFT, 1);
-    let middle = Font { anchor: Anchor::Middle, most, ..PLAIN };
-    svg.text([(LEFT + right) / 2.0, height - 14.0], &chart.x_label, middle);
+    // Below the middle of the axes, as far as the nearer edge of the picture.
+    let middle = (LEFT + right) / 2.0;
+    let label = Font { anchor: Anchor::Middle, most: characters(2.0 * middle.min(width - middle) - 32.0, 1), ..PLAIN };
+    svg.text([middle, height - 14.0], &chart.x_label, label);
     for (i, (panel, y)) in chart.panels.iter().zip(y_axes).enumerate() {
         let top = heading + pitch * i as f64;
         svg.text([16.0, top + 14.0], &panel.y_label, Font { most, ..PLAIN });
@@ -244,29 +251,38 @@ impl Plot<'_> {
     }
 
     fn marks(&self, svg: &mut Svg, series: &Series, number: usize, radius: f64) {
-        let kind = number % KINDS.len();
-        mark::draw(svg, SHAPES[kind], &self.at(&series.points), radius, KINDS[kind]);
+        marks_of_kind(svg, number, &self.at(&series.points), radius);
     }
 
     /// Labels beside the ends of lines, in their order and moved apart where they would touch.
     fn labels(&self, svg: &mut Svg, ends: &[(&Series, Stroke)]) {
-        let mut ends: Vec<([f64; 2], &Series, Stroke)> = ends
+        let ends: Vec<([f64; 2], &Series, Stroke)> = ends
             .iter()
             .filter(|(series, _)| !series.label.is_empty())
             .filter_map(|(series, stroke)| Some((self.at(&[*series.points.last()?])[0], *series, *stroke)))
             .collect();
-        ends.sort_by(|([_, one], ..), ([_, other], ..)| one.total_cmp(other));
-        let wanted: Vec<f64> = ends.iter().map(|([_, y], ..)| *y).collect();
+        let order = stacked(&ends.iter().map(|([_, y], ..)| *y).collect::<Vec<_>>(), NEAR);
+        let wanted: Vec<f64> = order.iter().map(|i| ends[*i].0[1]).collect();
         let [top, bottom] = self.rows;
         let right = self.columns[1];
-        for (([x, y], series, stroke), row) in ends.into_iter().zip(apart(&wanted, LABEL_PITCH, top..bottom)) {
+        for (i, row) in order.into_iter().zip(apart(&wanted, LABEL_PITCH, top..bottom)) {
+            let ([x, y], series, stroke) = ends[i];
             // The line may end far from the edge: what leads from there is not part of it.
             svg.line(&[[x, y], [right + 4.0, y]], Stroke { opacity: 0.4, dash: "1 4", width: 1.0, ..stroke });
             svg.line(&[[right + 4.0, y], [right + 10.0, row]], Stroke { dash: "", width: 1.0, ..stroke });
             svg.line(&[[right + 10.0, row], [right + 26.0, row]], stroke);
+            if let Look::Kind(number) = series.look {
+                marks_of_kind(svg, number, &[[right + 18.0, row]], 4.0);
+            }
             svg.text([right + 29.0, row], &series.label, Font { most: LABEL, ..PLAIN });
         }
     }
+}
+
+/// Marks of the kind of that `number`.
+fn marks_of_kind(svg: &mut Svg, number: usize, points: &[[f64; 2]], radius: f64) {
+    let kind = number % KINDS.len();
+    mark::draw(svg, SHAPES[kind], points, radius, KINDS[kind]);
 }
 
 /// The legend of `markers` on one line from `x` on: beside the axis, where a phone that shows a part of the chart has it, too.

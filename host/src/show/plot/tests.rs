@@ -54,6 +54,30 @@ fn labels_axes_and_ends() {
 }
 
 #[test]
+fn labels_stand_in_the_order_of_their_levels_where_lines_coincide() {
+    let labels = |value: &dyn Fn(f64, f64) -> f64| {
+        let texts = texts(&chart(&[-2.0, -1.0, 0.0, 1.0, 2.0], value));
+        texts.into_iter().filter_map(|text| Some(text.strip_prefix("n = ")?.to_owned())).collect::<Vec<_>>()
+    };
+    assert_eq!(labels(&|_, n| 1.0 + 1e-6 * libm::sin(9.0 * n)), ["2", "1", "0", "-1", "-2"]);
+    assert_eq!(labels(&|_, n| 3.0 - n), ["-2", "-1", "0", "1", "2"]);
+    // Of one height, but not the same: the two loosest lie on each other.
+    assert_eq!(labels(&|_, n| if n < -0.5 { 0.0 } else { 3.0 - n }), ["0", "1", "2", "-1", "-2"]);
+}
+
+#[test]
+fn labels_of_kinds_have_their_marks() {
+    let mut kinds = chart(&[], |_, _| 0.0);
+    let points = vec![(0.0, 1.0), (1.0, 2.0)];
+    kinds.panels[0].series = vec![Series { label: "one".into(), look: Look::Kind(2), points }];
+    let svg = line_chart(&kinds).unwrap();
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let squares =
+        document.descendants().filter(|node| node.has_tag_name("path")).filter_map(|node| node.attribute("d"));
+    assert_eq!(squares.map(|path| path.matches('M').count()).sum::<usize>(), 3);
+}
+
+#[test]
 fn constant_single_and_many() {
     texts(&chart(&[0.0], |_, _| 0.0));
     texts(&chart(&[1.0, 2.0], |_, _| 3.0));
