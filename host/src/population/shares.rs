@@ -21,12 +21,18 @@ use crate::{
     },
 };
 
-/// Classes of the histogram.
-const CLASSES: usize = 48;
+/// The fewest and the most classes of a histogram.
+const CLASSES: [usize; 2] = [5, 48];
 /// The most bars of a block.
 const MOST: usize = 8;
 /// Least share (%) that is shown.
 const LEAST: f64 = 0.1;
+
+/// How many classes a histogram of so many units has: the square root of their number.
+fn classes(units: u64) -> usize {
+    let [fewest, most] = CLASSES;
+    (units.isqrt() as usize).clamp(fewest, most)
+}
 
 /// How the greatest force spreads over all units of a `tally` and over those that malfunction, beside a motor's greatest force.
 ///
@@ -36,12 +42,13 @@ pub fn histogram<G>(title: &str, kind: DriveKind, tally: &Tally<G>, limit: Optio
     let Tally { counts: Counts { units, over_limit, .. }, figures, .. } = tally;
     let [low, high] = figures.force.ends().ok_or(PlotError::Empty)?;
     let all = (*units).max(1);
+    let classes = classes(figures.force.units());
     // Units that all need the same have a class of their own.
-    let step = f64::max((high - low) / CLASSES as f64, 1e-6 * high.abs());
+    let step = f64::max((high - low) / classes as f64, 1e-6 * high.abs());
     let shares = |forces: &Ranked| {
-        let mut counts = [0u64; CLASSES];
+        let mut counts = vec![0u64; classes];
         for (force, units) in forces.values() {
-            counts[(((force - low) / step) as usize).min(CLASSES - 1)] += units;
+            counts[(((force - low) / step) as usize).min(classes - 1)] += units;
         }
         let share = |count: &u64| 100.0 * *count as f64 / all as f64;
         outline(counts.iter().enumerate().map(|(k, count)| (low + step * k as f64, share(count))), step)
@@ -136,7 +143,7 @@ fn bar(name: &str, some: u64, all: u64) -> Bar {
 
 #[cfg(test)]
 mod tests {
-    use super::{histogram, ranking, sides};
+    use super::{classes, histogram, ranking, sides};
     use crate::{
         dynamics::{
             driven::{DriveKind, Driven},
@@ -149,6 +156,11 @@ mod tests {
         },
         show::plot::PlotError,
     };
+
+    #[test]
+    fn few_units_make_few_classes() {
+        assert_eq!([0, 1, 24, 128, 256, 2_000, 1_000_000].map(classes), [5, 5, 5, 11, 16, 44, 48]);
+    }
 
     #[test]
     fn pictures_count_what_the_population_does() {
