@@ -37,6 +37,9 @@
 
   const LEVELS = 6;             // colours of forces
   const BODY_COLOURS = [0, 2, 7, 6, 3];
+  // Lines in a square of 8 px that is repeated: they tell bodies apart without colour.
+  const [RISING, FALLING] = ["M-1 9L9 -1M-1 1L1 -1M7 9L9 7", "M-1 -1L9 9M-1 7L1 9M7 -1L9 1"];
+  const HATCHES = [[], [RISING], [FALLING], [RISING, FALLING]];
   const SIDES = ["left", "right", "low", "high"];
 
   // Elements -------------------------------------------------------------------------------------------------------------
@@ -188,6 +191,19 @@
     return { play, thresholds, greatest, level, ranges, bounds: bounds(play) };
   };
 
+  // The looks of a body: its class, and what it is filled with, drawn into `picture`.
+  let hatched = 0;
+  const looks = (picture, i) => {
+    const kind = `kind-${BODY_COLOURS[i % BODY_COLOURS.length]}`;
+    const own = HATCHES[i % HATCHES.length];
+    if (!own.length) return { class: `body ${kind}` };
+    const id = `hatch-${hatched++}`;
+    const pattern = svg(picture, "pattern", { id, width: 8, height: 8, patternUnits: "userSpaceOnUse" });
+    svg(pattern, "rect", { class: `ground ${kind}`, width: 8, height: 8 });
+    for (const lines of own) svg(pattern, "path", { class: `hatch ${kind}`, d: lines });
+    return { class: `body ${kind}`, style: `fill: url(#${id}); fill-opacity: 1` };
+  };
+
   // A pin in its gap ------------------------------------------------------------------------------------------------------
 
   // The pin's place as it is drawn: a contact gives way under its force, but here its surfaces stay where they are.
@@ -293,14 +309,14 @@
     const depth = (point) => seenTurn(axes, point);
     const mean = (points) => points.reduce((sum, point) => sum + depth(point), 0) / points.length;
     const bodies = run.bodies.map((body, i) => {
-      const colour = `body kind-${BODY_COLOURS[i % BODY_COLOURS.length]}`;
+      const own = looks(picture, i);
       const ghost = sways(body) ? svg(picture, "path", { class: "ghost" }) : null;
       // Faces that are farther from the reader are drawn first, and fainter.
       const depths = body.outline.map(mean);
       const [far, near] = [extreme(depths, Math.min), extreme(depths, Math.max)];
       const faces = body.outline.map((polygon, i) => ({ polygon, nearness: near > far ? (depths[i] - far) / (near - far) : 1 }))
         .sort((a, b) => a.nearness - b.nearness)
-        .map(({ polygon, nearness }) => ({ polygon, path: svg(picture, "path", { class: colour, opacity: px(0.4 + 0.6 * nearness) }) }));
+        .map(({ polygon, nearness }) => ({ polygon, path: svg(picture, "path", { ...own, opacity: px(0.4 + 0.6 * nearness) }) }));
       return { body, ghost, faces };
     });
     const nearest = extreme(run.joints.map((joint) => depth(joint.at)), Math.max);
@@ -344,7 +360,8 @@
 
   // Every joint's gap at large, all at one scale if that is legible.
   const insetPictures = (parent, run, common) => {
-    const [width, height, roomX, roomY, radius] = [240, 150, 128, 84, 8];
+    // Numbers stand on either side of a gap, the scale below.
+    const [width, height, below, room, radius] = [240, 146, 20, 76, 8];
     const spans = run.joints.map((joint) => [0, 1].map((axis) => {
       const limits = limitsOf(joint, axis).filter((limit) => limit !== null);
       const open = limits.length < 2 ? every(joint.pin[axis]) : [];
@@ -352,9 +369,9 @@
     }));
     const views = run.joints.map((joint) => run.views.find((view) => view.axes.map(parseAxis).every(({ letter }) => joint.axes.includes(letter))));
     const axesOf = run.joints.map((joint, i) => (views[i] ? views[i].axes : joint.axes).map(parseAxis));
-    const fits = run.joints.map((joint, i) => Math.min(...axesOf[i].map(({ letter }, axis) => {
+    const fits = run.joints.map((joint, i) => Math.min(...axesOf[i].map(({ letter }) => {
       const [low, high] = spans[i][joint.axes.indexOf(letter)];
-      return [roomX, roomY][axis] / Math.max(high - low, 1e-6);
+      return room / Math.max(high - low, 1e-6);
     })));
     const planes = run.joints.map((joint, i) => (views[i] ? views[i].name : joint.axes.join("–")));
     const single = planes.every((plane) => plane === planes[0]);
@@ -369,7 +386,7 @@
       const head = html(cell, "p", { class: "head" });
       html(head, "b", {}, joint.name);
       if (!single) html(head, "span", {}, planes[i]);
-      const picture = svg(cell, "svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `gap of ${joint.name}` });
+      const picture = svg(cell, "svg", { viewBox: `0 0 ${width} ${height + below}`, role: "img", "aria-label": `gap of ${joint.name}` });
       const trail = svg(picture, "polyline", { class: "trail" });
       const update = gapPicture(picture, joint, axes, { scale, radius, reach: 60, level: common.level, words: true });
       // The middle of the gap stands in the middle of the picture.
@@ -378,8 +395,8 @@
       const path = run.t.map((_, frame) => placeOnPage(joint, axes, frame));
       set(trail, { points: path.map(([right, up]) => `${px(origin[0] + scale * right)},${px(origin[1] - scale * up)}`).join(" ") });
       const bar = round125(48 / scale);
-      svg(picture, "path", { class: "bar", d: `M8 ${height - 12}v4h${px(bar * scale)}v-4` });
-      svg(picture, "text", { class: "note", x: 8, y: height - 14 }, `${shown(bar)} mm`);
+      svg(picture, "path", { class: "bar", d: `M4 ${height + 9}v4h${px(bar * scale)}v-4` });
+      svg(picture, "text", { class: "note", x: px(10 + bar * scale), y: height + 16 }, `${shown(bar)} mm`);
       return (frame) => update(frame, origin, 0, true);
     });
     return (frame) => pictures.forEach((draw) => draw(frame));
@@ -570,8 +587,8 @@
         const names = html(main, "div", { class: "legend" });
         run.bodies.forEach(({ name }, i) => {
           const key = html(names, "span", { class: "key" });
-          svg(svg(key, "svg", { viewBox: "0 0 12 12", width: 12, height: 12 }), "rect",
-            { width: 12, height: 12, class: `body kind-${BODY_COLOURS[i % BODY_COLOURS.length]}` });
+          const picture = svg(key, "svg", { viewBox: "0 0 20 12", width: 20, height: 12 });
+          svg(picture, "rect", { width: 20, height: 12, ...looks(picture, i) });
           key.append(` ${name}`);
         });
       }
