@@ -1,7 +1,7 @@
 //! A mechanism as a picture: bodies, joints and drives in the drawn pose, clearances not to scale.
 //!
-//! A mechanism in a plane is shown as it lies, one in space from two sides. Joints are numbered; the list below says what they
-//! are and how much play they have.
+//! A mechanism in a plane is shown as it lies, one in space from two sides. Bodies have letters beside their centres, so that
+//! grey prints tell them apart, and joints numbers; the list below says what they are and how much play they have.
 
 mod symbol;
 mod view;
@@ -24,6 +24,9 @@ const NOTE: f64 = 20.0;
 /// Height of a line of the list (px).
 const LINE: f64 = 20.0;
 
+/// Half of the square (px) that a symbol fills.
+const SYMBOL: f64 = 13.0;
+
 /// Whether two rectangles (left, top, width, height) share anything.
 fn overlap(one: [f64; 4], other: [f64; 4]) -> bool {
     (0..2).all(|k| one[k] < other[k] + other[k + 2] && other[k] < one[k] + one[k + 2])
@@ -33,6 +36,12 @@ fn overlap(one: [f64; 4], other: [f64; 4]) -> bool {
 enum Mark {
     Colour(Colour),
     Number(usize),
+}
+
+/// The letter of body `i`: A to Z, then A2 and so on.
+fn letter(i: usize) -> String {
+    let letter = char::from(b'A' + (i % 26) as u8);
+    if i < 26 { letter.to_string() } else { format!("{letter}{}", i / 26 + 1) }
 }
 
 /// The colour of a body, and of the frame.
@@ -54,7 +63,7 @@ impl Mechanism {
         let list_top = HEADING + heights.iter().sum::<f64>() + 12.0;
         let below = "as drawn; clearances are not to scale";
         let mut svg = Svg::new([WIDTH, list_top + LINE * list.len() as f64], &format!("{}: {below}", self.title));
-        svg.text([16.0, 26.0], &self.title, Font { most: 50, ..TITLE });
+        svg.text([16.0, 26.0], &self.title, Font { most: 44, ..TITLE });
         svg.text([16.0, 48.0], below, SUBTITLE);
         let mut top = HEADING;
         for ((axes, name), height) in views.iter().zip(heights) {
@@ -64,19 +73,20 @@ impl Mechanism {
             top += height;
         }
         for (row, (mark, text)) in list.iter().enumerate() {
-            let (x, y) = (24.0, list_top + LINE * row as f64);
+            let (x, y) = (16.0, list_top + LINE * row as f64);
             match mark {
                 Mark::Colour(colour) => svg.rectangle([x + 2.0, y - 5.0, 10.0, 10.0], *colour, 1.0),
                 Mark::Number(number) => svg.text([x, y], &number.to_string(), Font { bold: true, ..PLAIN }),
             }
-            svg.text([x + 26.0, y], text, Font { most: 68, ..PLAIN });
+            svg.text([x + 24.0, y], text, Font { most: 68, ..PLAIN });
         }
         svg.finish()
     }
 
     /// The list below: bodies, then joints by number, then drives.
     fn list(&self) -> Vec<(Mark, String)> {
-        let bodies = self.bodies.iter().enumerate().map(|(i, body)| (Mark::Colour(colour(Some(i))), body.name.clone()));
+        let bodies = self.bodies.iter().enumerate();
+        let bodies = bodies.map(|(i, body)| (Mark::Colour(colour(Some(i))), format!("{}: {}", letter(i), body.name)));
         let joints = self.joints.iter().enumerate().map(|(i, joint)| {
             let named = |name: &str, gap: usize| format!("{name} {}", ten_digits(self.gaps[gap].statistics.mean * 1e3));
             let gaps: Vec<String> = match &joint.kind {
@@ -125,30 +135,36 @@ impl Mechanism {
                 Action::Turns { axis } => pen.turn(self.pivot(drive.body), axis, drive.drive.speed),
             }
         }
-        // Where several joints lie behind each other they share a label.
+        let joints = self.joints.iter().enumerate().map(|(i, joint)| (view.at(joint.at), (i + 1).to_string()));
+        let bodies = self.bodies.iter().enumerate().map(|(i, body)| (view.at(body.centre), letter(i)));
+        let named: Vec<([f64; 2], String)> = joints.chain(bodies).collect();
+        // Where several lie behind each other they share a label.
         let mut labels: Vec<([f64; 2], String)> = Vec::new();
-        for (i, joint) in self.joints.iter().enumerate() {
-            let at = view.at(joint.at);
+        for (at, own) in &named {
             match labels.iter_mut().find(|(other, _)| (other[0] - at[0]).hypot(other[1] - at[1]) < 24.0) {
-                Some((_, label)) => *label = format!("{label}, {}", i + 1),
-                None => labels.push((at, (i + 1).to_string())),
+                Some((_, label)) => *label = format!("{label}, {own}"),
+                None => labels.push((*at, own.clone())),
             }
         }
         let turns = self.drives.iter().filter(|drive| matches!(drive.action, Action::Turns { .. }));
         let arcs: Vec<[f64; 2]> = turns.map(|drive| view.at(self.pivot(drive.body))).collect();
-        let mut taken: Vec<[f64; 4]> = Vec::new();
+        // What no label may hide: the symbols, then the other labels.
+        let symbol = |([x, y], _): &([f64; 2], String)| [x - SYMBOL, y - SYMBOL, 2.0 * SYMBOL, 2.0 * SYMBOL];
+        let mut taken: Vec<[f64; 4]> = named.iter().map(symbol).collect();
         for ([x, y], label) in labels {
             let width = 8.0 * label.chars().count() as f64;
             // Beyond the arc of a drive that turns.
             let out = if arcs.iter().any(|arc| (arc[0] - x).hypot(arc[1] - y) < 24.0) { 7.0 } else { 0.0 };
             let room = |[dx, dy]: [f64; 2]| [x + dx, y + dy - 8.0, width, 16.0];
-            // The first place beside the joint that no other label has.
+            // The first place beside the joint that is free.
             let free = |offset: &&[f64; 2]| !taken.iter().any(|other| overlap(*other, room(**offset)));
             let places = [
                 [10.0 + out, -22.0 - out],
                 [10.0 + out, 24.0 + out],
                 [-10.0 - out - width, -22.0 - out],
                 [-10.0 - out - width, 24.0 + out],
+                [17.0, 0.0],
+                [-17.0 - width, 0.0],
                 [10.0, -40.0],
                 [10.0, 42.0],
             ];
