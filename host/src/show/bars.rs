@@ -13,9 +13,11 @@ const LINE: f64 = 17.0;
 /// About how wide (px) a character of the subtitle is.
 const CHARACTER: f64 = 7.8;
 /// The most characters of a name.
-pub const NAME: usize = 36;
+pub const NAME: usize = 34;
 const ROW: f64 = 20.0;
-const BARS: f64 = 186.0;
+/// Width (px) of the longest bar, and of the number behind it.
+const BARS: f64 = 130.0;
+const NUMBER: f64 = 64.0;
 /// A picture of several blocks is no taller than this (px), so that a sheet of paper holds it in a size that can be read.
 const TALL: f64 = 520.0;
 
@@ -69,7 +71,7 @@ pub fn bars(title: &str, subtitle: &str, blocks: &[Block]) -> String {
     let low = all().map(|bar| bar.percent).fold(0.0, f64::min);
     let high = all().map(|bar| bar.percent + bar.error.unwrap_or(0.0)).fold(100.0, f64::max);
     let scale = BARS / (high - low);
-    let width = left + BARS + 80.0;
+    let width = left + BARS + NUMBER;
     let head = head(width, subtitle);
     let height: f64 = head + blocks.iter().map(Block::height).sum::<f64>();
     let mut svg = document([width, height], title, subtitle);

@@ -9,8 +9,8 @@ use super::{
 
 const FONTS: &str = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif";
 
-/// Width (px) of a picture: a phone of 400 px shows its texts at two thirds of their size.
-pub const WIDTH: f64 = 560.0;
+/// Width (px) of a picture: a phone of 400 px shows its texts of 13 px in 10 px.
+pub const WIDTH: f64 = 456.0;
 
 /// A picture under way.
 pub struct Svg {
@@ -195,6 +195,12 @@ impl Svg {
     }
 }
 
+/// The width (px) that a document of [`Svg`] states.
+pub fn width(document: &str) -> Option<f64> {
+    let (_, rest) = document.split_once(" width=\"")?;
+    rest.split_once('"')?.0.parse().ok()
+}
+
 /// `words` with at most `most` characters, the middle left out: names differ at their ends.
 pub fn shortened(words: &str, most: usize) -> String {
     let count = words.chars().count();
@@ -243,7 +249,7 @@ pub fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Font, PLAIN, Svg, shortened, wrapped};
+    use super::{Font, PLAIN, Svg, shortened, width, wrapped};
 
     #[test]
     fn long_texts_keep_their_ends_and_their_full_form() {
@@ -252,6 +258,7 @@ mod tests {
         let mut svg = Svg::new([100.0, 50.0], "a <picture>");
         svg.text([1.0, 2.0], "left & right", Font { most: 7, ..PLAIN });
         let svg = svg.finish();
+        assert_eq!(width(&svg), Some(100.0));
         let document = roxmltree::Document::parse(&svg).unwrap();
         let text = document.descendants().find(|node| node.has_tag_name("text")).unwrap();
         let title = text.children().find(|node| node.has_tag_name("title")).unwrap();

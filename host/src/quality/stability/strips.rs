@@ -5,9 +5,11 @@ use super::{FACTORS, Grade, Point, SCHEMES, tally};
 use crate::show::{
     number::typeset,
     palette::Colour,
-    svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE, WIDTH},
+    svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE},
 };
 
+/// Width (px) of the map: a strip has up to forty cells.
+const WIDTH: f64 = 560.0;
 /// Left end of the cells.
 const LEFT: f64 = 112.0;
 const ROW: f64 = 16.0;

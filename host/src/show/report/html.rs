@@ -7,14 +7,19 @@ use crate::{
     show::{
         figure::word,
         number::{fixed, level, typeset},
+        svg::width,
     },
 };
 
+/// The widest picture (px) that a phone shows without scrolling.
+const NARROW: f64 = 490.0;
+
 /// An SVG document with its caption.
 pub fn figure(caption: &str, svg: &str) -> Markup {
+    let wide = width(svg).is_some_and(|width| width > NARROW);
     html! {
         figure {
-            div.scroll { (PreEscaped(svg)) }
+            div.scroll.wide[wide] { (PreEscaped(svg)) }
             figcaption { (caption) }
         }
     }

@@ -137,16 +137,21 @@ fn page(title: &str, sections: &Markup, units: Option<&Units>) -> Markup {
     }
 }
 
-/// The answer, line by line, so that what follows of a long line is indented as far as the texts behind their names.
+/// The answer, line by line, so that what follows of a long line is indented as far as the texts behind their names. Its tables,
+/// which cannot be broken, are parts of their own.
 fn verdict(answer: &str) -> Markup {
     let unnamed = " ".repeat(16);
     html! {
         @if !answer.is_empty() {
-            pre.answer {
-                @for line in answer.lines().map(minus_signs) {
-                    @match line.strip_prefix(&unnamed) {
-                        Some(more) => span.more { (more) },
-                        None => span { (line) },
+            div.answer {
+                @for part in answer.split("\n\n") {
+                    pre.table[part.contains('─')] {
+                        @for line in part.lines().map(minus_signs) {
+                            @match line.strip_prefix(&unnamed) {
+                                Some(more) => span.more { (more) },
+                                None => span { (line) },
+                            }
+                        }
                     }
                 }
             }
@@ -182,7 +187,7 @@ fn flash(kind: DriveKind, flash: &Flash) -> Markup {
             dd { (flash.bytes) " bytes" }
             dt { "Worst interpolation error" }
             dd {
-                (real(flash.worst_force_error * 1e3, 3)) " m" (kind.effort_unit()) " in " (kind.effort()) ", "
+                (real(flash.worst_force_error, 6)) " " (kind.effort_unit()) " in " (kind.effort()) ", "
                 (real(kind.speed(flash.worst_velocity_error), 4)) " " (kind.speed_unit()) " in velocity"
             }
         }

@@ -68,7 +68,7 @@ fn is_well_formed_and_complete() {
     for expected in ["0.0000", "\u{2212}0.2363", "3.430", "0.0084"] {
         assert!(cells.contains(&expected), "{expected}");
     }
-    assert!(html.contains("34816 bytes") && html.contains("1.230 mN"));
+    assert!(html.contains("34816 bytes") && html.contains("0.001230 N in force"));
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn fits_phones_dark_rooms_and_paper() {
     for query in ["(max-width: 640px)", "screen and (prefers-color-scheme: dark)", "print"] {
         assert!(html.contains(&format!("@media {query} {{")), "{query}");
     }
-    for rule in ["figure { margin: 1.4rem 0; break-inside: avoid; }", "min-width: max(calc(.62 * var(--width)), "] {
+    for rule in ["figure { margin: 1.4rem 0; break-inside: avoid; }", "min-width: calc(.75 * var(--width));"] {
         assert!(html.contains(rule), "{rule}");
     }
     // No table may be kept on one sheet: longer ones would leave a blank one before them.
