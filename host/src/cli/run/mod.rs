@@ -131,11 +131,11 @@ fn answer(sweep: &Sweep) -> String {
 fn table_line(driven: &dyn Driven, table: &force_table::ForceTable) -> String {
     let kind = driven.kind();
     format!(
-        "{} bytes, {} ms, {} within {} m{} from the ramp's start on",
+        "{} bytes, {} ms, {} within {} {} from the ramp's start on",
         table.bytes.len(),
         fixed(driven.run().duration * 1e3, 0),
         kind.effort(),
-        fixed(table.worst_error_in_use[0] * 1e3, 2),
+        fixed(table.worst_error_in_use[0], 5),
         kind.effort_unit()
     )
 }

@@ -61,8 +61,8 @@ pub fn describe(kind: DriveKind, table: &ForceTable) -> String {
         format!("{} {what}", axis.count)
     };
     let errors = |[force, velocity]: [f64; 2]| {
-        let [effort, speed] = [fixed(force * 1e3, 3), fixed(kind.speed(velocity), 4)];
-        format!("{} {effort} m{}, velocity {speed} {}", kind.effort(), kind.effort_unit(), kind.speed_unit())
+        let [effort, speed] = [fixed(force, 6), fixed(kind.speed(velocity), 4)];
+        format!("{} {effort} {}, velocity {speed} {}", kind.effort(), kind.effort_unit(), kind.speed_unit())
     };
     let [in_use, rms, whole] = if table.axes.iter().any(|axis| axis.kind == AxisKind::Time) {
         [
