@@ -157,8 +157,31 @@ fn page(mechanism: &Mechanism, unit: &OneUnit, one: &MechanismRun, words: &str) 
     let player = player::figure(&[played], "The desk's run, on its joints:").map_err(anyhow::Error::from)?;
     let svg = columns_over_time(&one.samples, &plotted(mechanism), &mechanism.title, &unit.label);
     let svg = svg.map_err(anyhow::Error::from)?;
-    let picture = Figure { caption: "Over time, as CSV files have it.".into(), svg };
+    let picture = Figure { caption: over_time(mechanism, one), svg };
     Ok(unit_page(&mechanism.title, words, player, picture, &warnings_of(mechanism)?))
+}
+
+/// What the picture of `one` run shows, and which of its maxima are no peak.
+fn over_time(mechanism: &Mechanism, one: &MechanismRun) -> String {
+    let mut caption = "Over time, as CSV files have it.".to_owned();
+    for (i, (drive, outcome)) in mechanism.drives.iter().zip(&one.outcomes).enumerate() {
+        let ramp = drive.drive.ramp_start;
+        let before =
+            one.samples.rows.iter().filter(|row| row[0] < ramp).map(|row| row[1 + i].abs()).fold(0.0, f64::max);
+        if let Some(peak) = outcome.peak_force.filter(|peak| before > *peak) {
+            let unit = drive.action.kind().effort_unit();
+            let _ = write!(
+                caption,
+                " The peak of \"{}\", {} {unit}, counts from the ramp's start at {} ms on. Before it the bodies settle in their \
+                 gaps, which takes up to {} {unit}. The player has fewer moments, so that it can miss so short a rise.",
+                drive.name,
+                fixed(peak, 4),
+                ten_digits(ramp * 1e3),
+                fixed(before, 4),
+            );
+        }
+    }
+    caption
 }
 
 /// What the controller of a mechanism does.

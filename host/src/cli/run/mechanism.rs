@@ -39,7 +39,7 @@ use crate::{
     show::{
         export::sweep_csv,
         figure::{forces, velocities, verdicts},
-        number::{fixed, per_million},
+        number::{fixed, per_million, ten_digits},
         report::{Clearances, Figure, Flash, Production, ReportInput, report},
     },
     tolerance::{distribution::normal, report::Report as Measures},
@@ -195,10 +195,15 @@ fn figures(driven: &ByDrive, sweep: &Sweep) -> Result<Vec<(&'static str, Figure)
     }
     let caption = format!("How fast \"{name}\" moves what it drives, over time.");
     figures.push((FIGURES[1], captioned(&caption, velocities(sweep, title))?));
-    let caption = format!("The {} of \"{name}\" over time, which the flash table holds.", kind.effort());
+    let effort = kind.effort();
+    let caption = format!(
+        "The {effort} of \"{name}\" over time, which the flash table holds. Peaks count from the ramp's start at {} ms on; before \
+         it the bodies settle in their gaps.",
+        ten_digits(driven.drive().ramp_start * 1e3)
+    );
     figures.push((kind.choose(FIGURES[2], FIGURES[3]), captioned(&caption, forces(sweep, title))?));
-    let caption = "Bodies, joints and drives in the drawn pose, joints by their numbers; a hole around a pin, or walls beside \
-                   one, are joints with play.";
+    let caption = "Bodies, joints and drives in the drawn pose, bodies by their letters and joints by their numbers; a hole around \
+                   a pin, or walls beside one, are joints with play.";
     figures.push((FIGURES[4], captioned(caption, Ok(driven.mechanism().drawing()))?));
     Ok(figures)
 }
