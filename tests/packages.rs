@@ -107,7 +107,8 @@ fn examples() -> String {
 /// Code of the firmware engineer's page in this `language`.
 fn blocks(language: &str) -> Vec<String> {
     let page = guide::page("firmware");
-    let rest = page.split(&format!("```{language}\n")).skip(1);
+    let fence = format!("```{language}\n");
+    let rest = page.split(&fence).skip(1);
     rest.map(|rest| rest.split("```").next().unwrap_or_default().to_owned()).collect()
 }
 
