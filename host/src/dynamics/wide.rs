@@ -22,7 +22,7 @@ pub struct Wide(Option<Instructions>);
 
 impl Wide {
     /// With what the machine has.
-    pub fn new() -> Self {
+    pub fn of_machine() -> Self {
         #[cfg(target_arch = "x86_64")]
         return Self(Instructions::try_new());
         #[cfg(not(target_arch = "x86_64"))]

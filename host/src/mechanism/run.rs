@@ -230,7 +230,7 @@ fn in_plane<const D: usize>(
     };
     let bodies = PlanarBodies::of(mechanism, mounts, &tree);
     let system = System::new(tree, &elements[..]);
-    let desk = OutOfLine::by(system, Wide::new());
+    let desk = OutOfLine::by(system, Wide::of_machine());
     solve(mechanism, desk, (pose, rates), &limits, by, state, |state: &State<D>| bodies.told(state))
 }
 
@@ -244,7 +244,7 @@ fn in_space<const N: usize, const D: usize>(
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let start = (bodies.nominal(), [0.0; D]);
     let system = System::new(bodies, &elements[..]);
-    let desk = OutOfLine::by(system, Wide::new());
+    let desk = OutOfLine::by(system, Wide::of_machine());
     solve(mechanism, desk, start, &limits, by, State::spatial::<N>, columns::spatial)
 }
 
@@ -267,7 +267,7 @@ fn on_joints<const D: usize>(
         state
     };
     let system = System::new(tree, ThroughJoints(&elements[..]));
-    let desk = OutOfLine::by(system, Wide::new());
+    let desk = OutOfLine::by(system, Wide::of_machine());
     solve(mechanism, desk, start, &limits, by, state, |state: &State<D>| bodies.told(state))
 }
 
