@@ -15,8 +15,7 @@ const WATCH: &str = "<script>window.wrong = []; addEventListener('error', event 
 const TRY: &str = "<script>addEventListener('load', () => {
 const figure = document.querySelector('figure.player');
 const runs = JSON.parse(figure.querySelector('script').textContent).length;
-// Patterns have names of their own each time they are drawn.
-const seen = () => [...figure.querySelectorAll('svg')].map(svg => svg.outerHTML.replaceAll(/hatch-[0-9]+/g, '')).join();
+const seen = () => [...figure.querySelectorAll('svg')].map(svg => svg.outerHTML).join();
 const pictures = new Set();
 for (let frame = 0; frame < 60; frame += 5) { figure.player.show(frame); pictures.add(seen()); }
 figure.player.choose(0); figure.player.show(30); const first = seen();

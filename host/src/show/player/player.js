@@ -191,13 +191,12 @@
     return { play, thresholds, greatest, level, ranges, bounds: bounds(play) };
   };
 
-  // The looks of a body: its class, and what it is filled with, drawn into `picture`.
-  let hatched = 0;
-  const looks = (picture, i) => {
+  // The looks of body `i`: its class, and what it is filled with, drawn into `picture`. Patterns of a page need names of their own.
+  const looks = (picture, i, common) => {
     const kind = `kind-${BODY_COLOURS[i % BODY_COLOURS.length]}`;
     const own = HATCHES[i % HATCHES.length];
     if (!own.length) return { class: `body ${kind}` };
-    const id = `hatch-${hatched++}`;
+    const id = `player-${common.number}-hatch-${common.hatched++}`;
     const pattern = svg(picture, "pattern", { id, width: 8, height: 8, patternUnits: "userSpaceOnUse" });
     svg(pattern, "rect", { class: `ground ${kind}`, width: 8, height: 8 });
     for (const lines of own) svg(pattern, "path", { class: `hatch ${kind}`, d: lines });
@@ -309,7 +308,7 @@
     const depth = (point) => seenTurn(axes, point);
     const mean = (points) => points.reduce((sum, point) => sum + depth(point), 0) / points.length;
     const bodies = run.bodies.map((body, i) => {
-      const own = looks(picture, i);
+      const own = looks(picture, i, common);
       const ghost = sways(body) ? svg(picture, "path", { class: "ghost" }) : null;
       // Faces that are farther from the reader are drawn first, and fainter.
       const depths = body.outline.map(mean);
@@ -510,7 +509,7 @@
       broken = error.message;
     }
     if (broken) return void html(figure, "p", { role: "alert" }, `The motion cannot be shown: ${broken}.`);
-    const common = survey(runs);
+    const common = { ...survey(runs), number };
     const restFrame = (run) => {
       const force = run.plots.length ? run.plots[0].values : run.t.map((_, frame) =>
         extreme(run.joints.flatMap(({ contacts }) => contacts.map((contact) => at(contact.force, frame))).concat(0), Math.max));
@@ -580,6 +579,7 @@
       heading.textContent = runs.length === 1 && run.label ? `${run.title}, ${run.label}` : run.title;
       figure.dataset.run = chosen;
       body.replaceChildren();
+      common.hatched = 0;
       const stage = html(body, "div", { class: "stage" });
       const main = html(stage, "div", { class: "main" });
       const pictures = [viewPicture(main, run, 0, common)];
@@ -588,7 +588,7 @@
         run.bodies.forEach(({ name }, i) => {
           const key = html(names, "span", { class: "key" });
           const picture = svg(key, "svg", { viewBox: "0 0 20 12", width: 20, height: 12 });
-          svg(picture, "rect", { width: 20, height: 12, ...looks(picture, i) });
+          svg(picture, "rect", { width: 20, height: 12, ...looks(picture, i, common) });
           key.append(` ${name}`);
         });
       }
