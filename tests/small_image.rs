@@ -87,6 +87,9 @@ fn steps(folder: &Path, level: &str, of_the_crate: &str) -> Steps {
     build
         .current_dir(folder)
         .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", level)
+        // The flags of the target, also where the target folder lies outside of the repository.
+        .arg("--config")
+        .arg(Path::new(ROOT).join(".cargo/config.toml"))
         .args(["build", "--offline", "--release", "-p", "image", "--target", TARGET, "--config"])
         .arg(format!("profile.release.package.slide.opt-level={of_the_crate}"));
     let built = finished(&mut build);
