@@ -2,14 +2,34 @@
 //!
 //! `libm::pow` leaves early for many arguments, so that its run time depends on them, and cannot be vectorised.
 
-/// 1/√`x` for x > 0 from a guess whose bits halve and negate the exponent: a Newton step, which leaves 0.18 % at most, and a
-/// step of third order, whose error is below the rounding.
+/// 1/√`x` for x > 0.
 #[inline(always)]
 pub fn rsqrt_f32(x: f32) -> f32 {
-    let guess = f32::from_bits(0x5f37_5a86u32.wrapping_sub(x.to_bits() >> 1));
-    let near = guess * (1.5 - 0.5 * x * guess * guess);
-    let miss = 1.0 - x * near * near;
-    near + near * miss * (0.5 + 0.375 * miss)
+    let near = near_rsqrt_f32(x);
+    near + near * what_is_missing(x * near * near)
+}
+
+/// √`x` for x ≥ 0, exactly 0 at 0.
+#[inline(always)]
+pub fn sqrt_f32(x: f32) -> f32 {
+    let near = near_rsqrt_f32(x);
+    let root = x * near;
+    root + root * what_is_missing(root * near)
+}
+
+/// 1/√`x` to 0.09 %: one Newton step from a guess whose bits halve and negate the exponent. Guess and step are scaled so that the
+/// step's cubic term has no factor.
+#[inline(always)]
+fn near_rsqrt_f32(x: f32) -> f32 {
+    let guess = f32::from_bits(0x5f0b_3880u32.wrapping_sub(x.to_bits() >> 1));
+    guess * (1.890_99 - x * guess * guess)
+}
+
+/// 1/√`s` − 1 for an s near 1, by its series up to the second order: the error is below the rounding.
+#[inline(always)]
+fn what_is_missing(s: f32) -> f32 {
+    let miss = 1.0 - s;
+    miss * (0.5 + 0.375 * miss)
 }
 
 /// `x` to the power of `y` for x ≥ 0, y > 0. Relative error ≤ 2e-6 for results inside 2^±126; 0 at 0.

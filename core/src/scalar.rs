@@ -67,6 +67,12 @@ pub trait Scalar:
         self.select_gt(other, self, other)
     }
 
+    /// `self`, or `low` where `self` is below it.
+    #[inline(always)]
+    fn at_least(self, low: Self) -> Self {
+        low.select_gt(self, low, self)
+    }
+
     /// `self`, or `high` where `self` is above it.
     #[inline(always)]
     fn at_most(self, high: Self) -> Self {
@@ -119,7 +125,7 @@ impl Scalar for f32 {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        self * self.rsqrt()
+        power::sqrt_f32(self)
     }
 
     #[inline(always)]

@@ -37,12 +37,12 @@ impl<S: Scalar, E: Elastic<S>> Impact<S, E> {
     pub fn response(&self, penetration: S, rate: S) -> NormalResponse<S> {
         let zero = S::zero();
         // At depth 0 spring, damper and their slopes all vanish, so that no second test is needed outside contact.
-        let depth = penetration.max_of(zero);
+        let depth = penetration.at_least(zero);
         let (spring, spring_slope) = self.elastic.force(depth);
         let (fade, rest) = risen(depth * self.per_depth);
         let damper = self.damping * fade;
         let force = spring + damper * rate;
-        let stiffness = spring_slope + self.fade_in * rest * rate;
+        let stiffness = spring_slope + rest * (self.fade_in * rate);
         NormalResponse::new(force, stiffness, damper)
     }
 

@@ -27,6 +27,8 @@ pub trait Normal<S: Scalar>: Copy {
 pub struct NormalResponse<S> {
     /// Force (N), ≥ 0: surfaces push, they never pull.
     pub force: S,
+    /// The force (N) of a law that could pull.
+    either_way: S,
     /// ∂F/∂δ (N/m) where they push.
     pushing_stiffness: S,
     /// ∂F/∂δ̇ (N·s/m) where they push.
@@ -38,7 +40,12 @@ impl<S: Scalar> NormalResponse<S> {
     /// there; zero elsewhere.
     #[inline(always)]
     pub fn new(force: S, stiffness: S, damping: S) -> Self {
-        Self { force: force.max_of(S::zero()), pushing_stiffness: stiffness, pushing_damping: damping }
+        Self {
+            force: force.at_least(S::zero()),
+            either_way: force,
+            pushing_stiffness: stiffness,
+            pushing_damping: damping,
+        }
     }
 
     /// ∂F/∂δ (N/m).
@@ -58,6 +65,6 @@ impl<S: Scalar> NormalResponse<S> {
 
     #[inline(always)]
     fn if_pushing(&self, slope: S) -> S {
-        self.force.select_gt(S::zero(), slope, S::zero())
+        S::zero().select_gt(self.either_way, S::zero(), slope)
     }
 }

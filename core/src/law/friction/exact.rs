@@ -70,8 +70,8 @@ pub(super) fn return_mapping<S: Scalar>(
     let trial_squared = trial[0] * trial[0] + trial[1] * trial[1];
     let limit = at_rest * normal;
     let limit_squared = limit * limit;
-    // The least square keeps the root finite where there is neither load nor trial.
-    let inverse = trial_squared.max_of(limit_squared).max_of(S::from_f64(1e-30)).rsqrt();
+    // What is added keeps the root finite where there is neither load nor trial.
+    let inverse = trial_squared.max_of(limit_squared + S::from_f64(1e-30)).rsqrt();
     // Without a load it slides, with no force, and nothing is stiff.
     let slides = |yes: S, no: S| limit_squared.select_gt(trial_squared, no, yes);
     let share = slides(sliding * normal * inverse, S::one());
