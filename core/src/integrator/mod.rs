@@ -149,7 +149,7 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
 ) -> StageOf<S, M, D> {
     let (rate, zero) = (S::one() / a, S::zero());
     let mut velocity = guess;
-    let (mut kept, mut update) = (SVector::zeros(), SVector::zeros());
+    let (mut kept, mut update) = (base.velocity, SVector::zeros());
     let mut least = S::one() / zero;
     let (mut iteration_matrix, mut internal) = (M::IterationMatrix::default(), base.internal);
     let mut full_passes = 0;
@@ -184,13 +184,13 @@ fn stage<S: Scalar, M: Mechanism<S, D>, const D: usize, const PASSES: usize, con
         let shortened = better.select_gt(zero, S::one(), S::from_f64(SHORTER));
         // Weights, because a choice of vectors becomes a copy that takes longer for one than for the other.
         let taken = better.select_gt(zero, S::one(), zero);
-        kept = change * taken + kept * (S::one() - taken);
+        kept = velocity * taken + kept * (S::one() - taken);
         update = next.zip_map(&update, |new, old| better.select_gt(zero, new, old)) * shortened;
         least = better.select_gt(zero, least.select_gt(size, size, least), least);
-        velocity = mechanism.settled(&(base.velocity + (kept - update)), a);
+        velocity = mechanism.settled(&(kept - update), a);
         pass += 1;
     };
-    let velocity = velocity.zip_map(&(base.velocity + kept), |new, old| better.select_gt(zero, new, old));
+    let velocity = velocity.zip_map(&kept, |new, old| better.select_gt(zero, new, old));
     let pose = mechanism.implicit_update(&base.pose, &velocity, a);
     let acceleration = (velocity - base.velocity) * rate;
     let residual = a * better.select_gt(zero, size, S::from_f64(WORSE) * least);
