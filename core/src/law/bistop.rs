@@ -2,7 +2,7 @@
 //!
 //! Two opposing pads of one pin are a slot: they share the offset and the sliding velocity.
 
-use super::NormalResponse;
+use super::{NormalResponse, fit::SlotForce};
 use crate::Scalar;
 
 /// What a slot does to its pin's partner, along the slot's axis.
@@ -20,37 +20,34 @@ impl<S: Scalar> SlotResponse<S> {
     pub fn new(low: NormalResponse<S>, high: NormalResponse<S>) -> Self {
         Self { low, high }
     }
+}
 
-    /// Force on the body that carries the slot, along the axis (N).
+impl<S: Scalar> SlotForce<S> for SlotResponse<S> {
     #[inline(always)]
-    pub fn force(&self) -> S {
+    fn force(&self) -> S {
         self.high.force - self.low.force
     }
 
-    /// Sum of the two normal forces (N), which friction acts upon.
     #[inline(always)]
-    pub fn normal(&self) -> S {
+    fn normal(&self) -> S {
         self.high.force + self.low.force
     }
 
-    /// −∂force/∂u and ∂normal/∂u (N·s/m), for a body velocity u along the axis that also moves the offset, by −u times
-    /// the time `over` which it does (s), if one is given.
     #[inline(always)]
-    pub fn impedances(&self, over: Option<S>) -> [S; 2] {
+    fn impedances(&self, over: Option<S>) -> [S; 2] {
         let (low, high) = (self.low.impedance(over), self.high.impedance(over));
         [high + low, low - high]
     }
 
-    /// −∂force/∂x and ∂normal/∂x (N/m), for a displacement x of the body along the axis, which moves the offset by −x.
     #[inline(always)]
-    pub fn stiffnesses(&self) -> [S; 2] {
+    fn stiffnesses(&self) -> [S; 2] {
         [self.high.stiffness() + self.low.stiffness(), self.low.stiffness() - self.high.stiffness()]
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::law::{Impact, Normal, ThreeHalves};
+    use crate::law::{Impact, Normal, ThreeHalves, fit::SlotForce};
 
     #[test]
     fn both_ends_are_the_one_sided_law_and_slopes_are_derivatives() {

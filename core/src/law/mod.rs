@@ -2,6 +2,7 @@
 
 pub mod bistop;
 pub mod elastic;
+pub mod fit;
 pub mod friction;
 pub mod hunt_crossley;
 pub mod impact;
@@ -11,6 +12,7 @@ pub mod step;
 pub mod stop;
 
 pub use elastic::{Elastic, Linear, Power, ThreeHalves};
+pub use fit::{ClearanceFit, Fit};
 pub use friction::{Exact, Friction, Frictionless, Regularised, StaticKinetic};
 pub use hunt_crossley::HuntCrossley;
 pub use impact::Impact;

@@ -1,7 +1,7 @@
 //! What stands in the way along one axis, as a menu of types: a pad on one side or a slot, so that a pad pays for no
 //! other end.
 
-use super::{Elastic, Impact, Normal, NormalResponse, bistop::SlotResponse};
+use super::{Elastic, Impact, Normal, NormalResponse, bistop::SlotResponse, fit::SlotForce};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// Bounds of a gap (m).
@@ -100,7 +100,7 @@ impl<S: Scalar> Stop<S> for Slot<S> {
 impl<S: Scalar> Resistance<S> for SlotResponse<S> {
     #[inline(always)]
     fn force(&self) -> S {
-        self.force()
+        SlotForce::force(self)
     }
 
     #[inline(always)]
@@ -120,7 +120,7 @@ impl<S: Scalar> Resistance<S> for SlotResponse<S> {
 mod tests {
     use super::{Pad, Resistance, Slot, Stop};
     use crate::{
-        law::{Impact, ThreeHalves},
+        law::{Impact, ThreeHalves, fit::SlotForce},
         slide::ABSENT,
     };
 
@@ -130,7 +130,7 @@ mod tests {
         for (offset, speed) in [(2e-5, 0.001), (3e-5, -0.02), (0.5e-5, 0.1)] {
             let pad = Pad::new(1e-5).unwrap().resistance(&law, offset, speed);
             let slot = Slot::new(ABSENT, 1e-5).unwrap().resistance(&law, offset, speed);
-            assert_eq!((pad.force, pad.force), (slot.force(), slot.normal()));
+            assert_eq!((pad.force, pad.force), (SlotForce::force(&slot), slot.normal()));
             let (impedance, stiffness) = (pad.impedance(Some(1e-3)), pad.stiffness());
             assert_eq!(slot.impedances(Some(1e-3)), [impedance, -impedance]);
             assert_eq!(slot.stiffnesses(), [stiffness, -stiffness]);

@@ -4,7 +4,11 @@ use super::Slide;
 use crate::{
     Scalar,
     integrator::MotionOf,
-    law::{Elastic, Friction, Normal, friction::SlidingContact},
+    law::{
+        Elastic, Friction, Normal,
+        fit::{Fit, SlotForce},
+        friction::SlidingContact,
+    },
     mechanism::Mechanism,
     system::{Bodies, spatial::split},
 };
@@ -31,7 +35,7 @@ pub struct Power<S> {
     pub friction: S,
 }
 
-impl<S: Scalar, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
+impl<S: Scalar, E: Elastic<S>, F: Friction<S>, G: Fit<Number = S>> Slide<S, E, F, G> {
     /// The energy at `motion`.
     pub fn energy(&self, motion: &MotionOf<S, Self, 6>) -> Energy<S> {
         let momentum = self.momentum(&motion.pose, &motion.velocity);

@@ -11,7 +11,7 @@ mod wall;
 
 pub use drive::{DriveLaw, Motor, Pusher};
 pub use journal::Journal;
-pub use pin::Pin;
+pub use pin::{Fitted, Pin};
 pub use ring::Ring;
 pub use slot::Slot;
 pub use spring::Spring;

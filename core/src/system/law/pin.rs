@@ -3,27 +3,30 @@
 use super::{Contact, Law, Response, steady};
 use crate::{
     SMatrix, SVector, Scalar,
-    law::{Friction, Normal},
+    law::{Fit, Friction, Normal, fit::SlotForce},
     mechanism::Way,
     system::Shape,
 };
 
 /// A pin between two walls across (the x axis of the walls' body) and two walls up and down (its y axis); it slides along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pin<S, N, F> {
-    /// Gaps (m) at the nominal poses: left, right, rail, wall.
-    pub gaps: [S; 4],
+pub struct Fitted<G, N, F> {
+    /// Gaps (m) at the nominal poses, left, right, rail and wall, and how they [fit](Fit).
+    pub gaps: G,
     /// Their laws.
     pub contact: Contact<N, F>,
 }
 
+/// A pin that fits with clearance or interference.
+pub type Pin<S, N, F> = Fitted<[S; 4], N, F>;
+
 /// The gaps of a pin.
-impl<S: Scalar, N: Normal<S>, F: Friction<S>> Shape<Contact<N, F>> for [S; 4] {
-    type Law = Pin<S, N, F>;
+impl<G: Fit, N: Normal<G::Number>, F: Friction<G::Number>> Shape<Contact<N, F>> for G {
+    type Law = Fitted<G, N, F>;
 
     #[inline(always)]
-    fn with(&self, contact: &Contact<N, F>) -> Pin<S, N, F> {
-        Pin { gaps: *self, contact: *contact }
+    fn with(&self, contact: &Contact<N, F>) -> Fitted<G, N, F> {
+        Fitted { gaps: *self, contact: *contact }
     }
 }
 
@@ -39,19 +42,19 @@ struct Slotted<S, M> {
     internal: M,
 }
 
-impl<S: Scalar, N: Normal<S>, F: Friction<S>> Pin<S, N, F> {
+impl<S: Scalar, G: Fit<Number = S>, N: Normal<S>, F: Friction<S>> Fitted<G, N, F> {
     /// A slot whose pin is off by `offset` while the walls' body moves against it with `u` along its axis, `v` and `w` along its
     /// tangents.
     #[inline(always)]
     fn slot(
         &self,
         internal: &F::Internal,
-        [low, high]: [S; 2],
+        gaps: [S; 2],
         offset: S,
         [u, v, w]: [S; 3],
         way: Way<S>,
     ) -> Slotted<S, F::Internal> {
-        let slot = self.contact.normal.slot(low, high, offset, u);
+        let slot = G::slot(&self.contact.normal, gaps, offset, u);
         let (traction, internal) = self.contact.friction.traction(internal, &way.sliding([v, w], slot.normal()));
         let [first, second] = traction.per_normal;
         let column = |[own, normal]: [S; 2]| [own, first * normal, second * normal];
@@ -65,7 +68,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Pin<S, N, F> {
     }
 }
 
-impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
+impl<S: Scalar, G: Fit<Number = S>, N: Normal<S>, F: Friction<S>> Law<S, 3> for Fitted<G, N, F> {
     type Internal = [F::Internal; 2];
 
     const STICKS: bool = F::STICKS;
@@ -94,12 +97,12 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Pin<S, N, F> {
         internal: &[F::Internal; 2],
         way: Way<S>,
     ) -> (Response<S, 3>, [F::Internal; 2]) {
-        let [left, right, rail, wall] = self.gaps;
+        let [left, right, rail, wall] = self.gaps.gaps();
         let [x, y, _] = place.data.0[0];
         // The walls' body moves against the pin the other way.
         let [u, v, w] = rate.data.0[0].map(|rate| -rate);
-        let across = self.slot(&internal[0], [left, right], x, [u, v, w], way);
         let up = self.slot(&internal[1], [wall, rail], y, [v, u, w], way);
+        let across = self.slot(&internal[0], [left, right], x, [u, v, w], way);
         let (f, g) = (across.force, up.force);
         let ([xx, yx, zx], [yy, xy, zy]) = (across.impedance, up.impedance);
         let ([a_yy, a_yz, a_zz], [u_xx, u_xz, u_zz]) = (across.tangential, up.tangential);

@@ -3,7 +3,7 @@
 use super::{Contact, Law, Response, steady};
 use crate::{
     SMatrix, SVector, Scalar,
-    law::{Friction, Normal},
+    law::{Friction, Normal, fit::SlotForce},
     mechanism::Way,
 };
 
