@@ -8,7 +8,10 @@ use slipfit_core::{
     drive::Drive,
     integrator::{ImplicitEuler, Integrator},
     kernel::{Kernel, Report, StateOf},
-    law::{Elastic, Exact, Friction, Frictionless, Impact, Linear, Pad, Power, Regularised, Slot, ThreeHalves},
+    law::{
+        ClearanceFit, Elastic, Exact, Friction, Frictionless, Impact, Linear, Pad, Power, Regularised, Slot,
+        ThreeHalves,
+    },
     mechanism::Mechanism,
     menu::SlideData,
     pose::Pose,
@@ -49,7 +52,7 @@ const LEVEL: f32 = 2.5;
 const EARLY: u32 = 70;
 
 type Unit<E, F> = Slide<f32, E, F>;
-type FullSlide = Unit<ThreeHalves<f32>, Exact<f32>>;
+type WithClearance<F> = Slide<f32, ThreeHalves<f32>, F, ClearanceFit<f32>>;
 type Normal = Impact<f32, ThreeHalves<f32>>;
 type Pulled = Element<Pull<f32>, Pusher<Drive<f32>>, 2>;
 type Slotted = Element<Pin<f32>, PlanarSlot<f32, Normal, Regularised<f32>>, 2>;
@@ -106,6 +109,8 @@ rungs! {
     slide_exact: Unit<ThreeHalves<f32>, Exact<f32>>, 6;
     slide_regularised: Unit<ThreeHalves<f32>, Regularised<f32>>, 6;
     slide_frictionless: Unit<ThreeHalves<f32>, Frictionless>, 6;
+    slide_exact_with_clearance: WithClearance<Exact<f32>>, 6;
+    slide_regularised_with_clearance: WithClearance<Regularised<f32>>, 6;
     planar_regularised: Flat, 3;
     planar_journal: Lever, 3;
     axis_slot_driven: Driven, 1;
@@ -123,10 +128,11 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     let (nominal, drive) = (Pose::nominal(), data.drive);
     rung(machine, "slide_general_exponent", slide(power, exact), nominal, slide_general_exponent);
     rung(machine, "slide_exact", slide(three_halves, exact), nominal, slide_exact);
-    full_pass(machine, slide(three_halves, exact));
+    full_pass(machine, "", slide(three_halves, exact), one_pass, two_passes);
     rung(machine, "slide_regularised", slide(three_halves, regularised), nominal, slide_regularised);
     ahead(machine, slide(three_halves, regularised));
     rung(machine, "slide_frictionless", slide(three_halves, Frictionless), nominal, slide_frictionless);
+    with_clearance(machine, exact, regularised);
 
     let normal = impact(three_halves);
     let places = data.body.pins_w.map(|pin| Vector2::new(pin.x, pin.z));
@@ -166,6 +172,18 @@ pub fn run(machine: &mut impl Machine, _: &[u8]) -> bool {
     true
 }
 
+/// The slide with either friction, whose pins fit with clearance.
+fn with_clearance(machine: &mut impl Machine, exact: Exact<f32>, regularised: Regularised<f32>) {
+    let law = cd_rom::data(LEVEL).contact;
+    let three_halves = ThreeHalves::new(law.stiffness).expect("the law is in bounds");
+    let nominal = Pose::nominal();
+    let unit = slide(three_halves, exact).with_clearance().expect("its slots are wider than their pins");
+    rung(machine, "slide_exact_with_clearance", unit, nominal, slide_exact_with_clearance);
+    full_pass(machine, " with clearance", unit, one_pass_with_clearance, two_passes_with_clearance);
+    let unit = slide(three_halves, regularised).with_clearance().expect("its slots are wider than their pins");
+    rung(machine, "slide_regularised_with_clearance", unit, nominal, slide_regularised_with_clearance);
+}
+
 /// The step of a shipped mechanism, as a function of its own, and the run of its unit.
 macro_rules! mechanisms {
     ($($name:ident;)*) => {
@@ -201,30 +219,43 @@ mechanisms! {
     ball_rod;
 }
 
-/// Says what a Newton pass of the full slide takes, its iteration matrix and solution included: a step of two passes less one of
-/// a single pass.
-fn full_pass(machine: &mut impl Machine, slide: FullSlide) {
+/// Says what a Newton pass of a slide with exact friction takes, its iteration matrix and solution included: a step of two passes less
+/// one of a single pass.
+fn full_pass<M: Mechanism<f32, 6, Pose = Pose<f32>> + Copy>(
+    machine: &mut impl Machine,
+    which: &str,
+    slide: M,
+    one_pass: StepFn<M, ImplicitEuler<1>, 6>,
+    two_passes: StepFn<M, ImplicitEuler<2>, 6>,
+) {
     let one = Kernel::<f32, _, ImplicitEuler<1>>::new(slide, STEP).expect("the step is in bounds");
     let two = Kernel::<f32, _, ImplicitEuler<2>>::new(slide, STEP).expect("the step is in bounds");
     let (mut state, mut other) = (one.at_rest(Pose::nominal()), two.at_rest(Pose::nominal()));
     let one = counted(machine, black_box(&one), &mut state, one_pass);
     let two = counted(machine, black_box(&two), &mut other, two_passes);
     if let (Some(one), Some(two)) = (one, two) {
-        print(machine, format_args!("instructions of a pass: {}", two - one));
+        print(machine, format_args!("instructions of a pass{which}: {}", two - one));
     }
 }
 
-#[inline(never)]
-fn one_pass(kernel: &Kernel<f32, FullSlide, ImplicitEuler<1>>, state: &mut StateOf<f32, FullSlide, 6>) -> Report<f32> {
-    kernel.step(state)
+/// Steps of one pass and of two, as functions of their own.
+macro_rules! passes {
+    ($($name:ident: $mechanism:ty, $passes:literal;)*) => {$(
+        #[inline(never)]
+        fn $name(
+            kernel: &Kernel<f32, $mechanism, ImplicitEuler<$passes>>,
+            state: &mut StateOf<f32, $mechanism, 6>,
+        ) -> Report<f32> {
+            kernel.step(state)
+        }
+    )*};
 }
 
-#[inline(never)]
-fn two_passes(
-    kernel: &Kernel<f32, FullSlide, ImplicitEuler<2>>,
-    state: &mut StateOf<f32, FullSlide, 6>,
-) -> Report<f32> {
-    kernel.step(state)
+passes! {
+    one_pass: Unit<ThreeHalves<f32>, Exact<f32>>, 1;
+    two_passes: Unit<ThreeHalves<f32>, Exact<f32>>, 2;
+    one_pass_with_clearance: WithClearance<Exact<f32>>, 1;
+    two_passes_with_clearance: WithClearance<Exact<f32>>, 2;
 }
 
 fn impact<E: Elastic<f32>>(elastic: E) -> Impact<f32, E> {
