@@ -4,7 +4,7 @@ use slipfit_core::{
     SVector, Scalar, Vector2,
     integrator::{Extrapolated, ImplicitEuler, Integrator, Rodas4, Sdirk2},
     kernel::Kernel,
-    law::{self, Frictionless, HuntCrossley, Impact, LankaraniNikravesh, Linear, Normal, ThreeHalves},
+    law::{self, Frictionless, HuntCrossley, Impact, LankaraniNikravesh, Linear, Normal, ThreeHalves, fit::SlotForce},
     pose::Pose,
     system::{
         Element, System,

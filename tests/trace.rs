@@ -33,6 +33,7 @@ pub struct Trace {
     /// What the image printed.
     pub text: String,
     counts: BTreeMap<String, Count>,
+    executed: BTreeMap<String, BTreeMap<u32, u32>>,
 }
 
 impl Trace {
@@ -58,7 +59,7 @@ impl Trace {
         running.stdout.take().expect("what it prints").read_to_string(&mut text).expect("text");
         let status = running.wait().expect("it has ended");
         assert!(status.success(), "{emulator:?}: {status}\n{text}");
-        Self { text, counts: way.counts }
+        Self { text, counts: way.counts, executed: way.executed }
     }
 
     /// What a `work` took: all that calls this function first between two readings of the timer.
@@ -69,6 +70,14 @@ impl Trace {
         let count = self.counts.get(work).unwrap_or_else(|| panic!("no {work} between two readings of the timer"));
         assert_eq!(count.untimed, None, "an instruction of {work} has no timing");
         *count
+    }
+
+    /// How often a `work` executed the instruction at each address, when it was done for the first time.
+    ///
+    /// # Panics
+    /// If it never was.
+    pub fn executed(&self, work: &str) -> &BTreeMap<u32, u32> {
+        self.executed.get(work).unwrap_or_else(|| panic!("no {work} between two readings of the timer"))
     }
 }
 
@@ -102,6 +111,8 @@ struct Span {
     instructions: u32,
     cycles: Cycles,
     untimed: Option<u32>,
+    /// How often each address was executed.
+    executed: HashMap<u32, u32>,
 }
 
 /// The processor's way through the code.
@@ -116,12 +127,13 @@ struct Way<'a> {
     previous: Option<Instruction>,
     span: Span,
     counts: BTreeMap<String, Count>,
+    executed: BTreeMap<String, BTreeMap<u32, u32>>,
 }
 
 impl<'a> Way<'a> {
     fn through(code: &'a Code) -> Self {
-        let (blocks, span, counts) = Default::default();
-        Self { code, listed: None, blocks, block: None, previous: None, span, counts }
+        let (blocks, span, counts, executed) = Default::default();
+        Self { code, listed: None, blocks, block: None, previous: None, span, counts, executed }
     }
 
     /// Follows a line of the emulator's log.
@@ -164,6 +176,7 @@ impl<'a> Way<'a> {
                 self.span.untimed = Some(address);
                 return;
             };
+            *self.span.executed.entry(address).or_default() += 1;
             address += instruction.length;
             let diverts = address == end && end != next;
             self.span.cycles += instruction.cycles(self.previous.as_ref(), diverts);
@@ -176,8 +189,9 @@ impl<'a> Way<'a> {
     }
 
     fn end_span(&mut self) {
-        let Span { called, instructions, cycles, untimed } = mem::take(&mut self.span);
+        let Span { called, instructions, cycles, untimed, executed } = mem::take(&mut self.span);
         let Some(name) = called.and_then(|function| self.code.functions.get(&function)) else { return };
+        self.executed.entry(name.clone()).or_insert_with(|| executed.into_iter().collect());
         let first = Count { instructions: [instructions; 2], cycles, untimed };
         let count = self.counts.entry(name.clone()).or_insert(first);
         let [least, greatest] = count.instructions;
