@@ -77,13 +77,14 @@ impl Work {
 
 /// Of `works`, a line each.
 fn table<'a>(works: impl IntoIterator<Item = &'a Work>) -> String {
-    let mut table = String::from("                            instructions            cycles  % of 1 ms at 168 MHz\n");
+    let mut table =
+        String::from("                                    instructions            cycles  % of 1 ms at 168 MHz\n");
     for work in works {
         let Work { name, instructions: [fewest, most], cycles: Cycles { least, greatest } } = work;
         let instructions = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
         let [low, high] = work.share();
         let cycles = format!("{least} to {greatest}");
-        let _ = writeln!(table, "{name:24}{instructions:>16}{cycles:>18}{:>22}", format!("{low:.1} to {high:.1}"));
+        let _ = writeln!(table, "{name:32}{instructions:>16}{cycles:>18}{:>22}", format!("{low:.1} to {high:.1}"));
     }
     table
 }

@@ -9,7 +9,8 @@ use slipfit_tests::{
 
 const FOLDER: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/lines");
 
-/// What a pass does, and what tells it: a part of the name or of the file of one of the functions that were inlined into each other.
+/// What a pass does, and what tells it: the beginning of the name, or a part of the file, of one of the functions that were inlined into
+/// each other.
 const PURPOSES: [(&str, &[&str]); 11] = [
     ("roots", &["src/power.rs"]),
     ("friction", &["law/friction/"]),
@@ -18,13 +19,13 @@ const PURPOSES: [(&str, &[&str]); 11] = [
         &["law/impact.rs", "law/elastic.rs", "law/step.rs", "law/normal.rs", "law/bistop.rs", "law/fit.rs"],
     ),
     ("slots added up to pins", &["system/law/pin.rs"]),
-    ("pins added up to the matrix", &["::add_at", "linear::cross_columns", "linear::cross_rows"]),
+    ("pins added up to the matrix", &["\nadd_at<", "\ncross_columns<", "\ncross_rows<"]),
     ("the drive", &["floating/pull.rs", "law/drive.rs", "src/drive.rs"]),
     ("where pins are, their forces", &["floating/pin.rs", "system/alike.rs", "system/element.rs"]),
-    ("factors of the matrix", &["::factorised"]),
-    ("the solution", &["::solve"]),
-    ("the pose and its axes", &["src/pose.rs", "::placed"]),
-    ("an empty matrix", &["::inertia"]),
+    ("factors of the matrix", &["\nfactorised<"]),
+    ("the solution", &["\nsolve<"]),
+    ("the pose and its axes", &["src/pose.rs", "\nplaced<"]),
+    ("an empty matrix", &["\ninertia<"]),
 ];
 
 /// What is left: gravity, imbalance, what is kept of a pass.
@@ -70,6 +71,7 @@ fn purposes(image: &Path, addresses: impl Iterator<Item = u32>) -> BTreeMap<u32,
     let mut purposes = BTreeMap::new();
     for of_one in text.split("\n0x") {
         let (address, calls) = of_one.trim_start_matches("0x").split_once('\n').expect("an address");
+        let calls = format!("\n{calls}");
         let has = |parts: &[&str]| parts.iter().any(|part| calls.contains(part));
         let purpose = PURPOSES.iter().position(|(_, parts)| has(parts)).unwrap_or(PURPOSES.len());
         purposes.insert(u32::from_str_radix(address, 16).expect("an address"), purpose);
