@@ -82,7 +82,7 @@ impl<S: Scalar, G: Fit<Number = S>, N: Normal<S>, F: Friction<S>> Law<S, 3> for 
 
     #[inline(always)]
     fn gap(&self, place: &SVector<S, 3>) -> S {
-        let [left, right, rail, wall] = self.gaps;
+        let [left, right, rail, wall] = self.gaps.gaps();
         let [x, y, _] = place.data.0[0];
         let deepest = (-(left + x)).max_of(x - right).max_of(-(wall + y)).max_of(y - rail);
         -deepest
