@@ -255,5 +255,5 @@ fn forced_steps_are_counted_and_stay_bounded() {
         periods += 200 + EARLY;
     }
     println!("{forced} of {periods} steps are forced; after the ramp's start the error is at most {worst:.1} %");
-    assert!(forced > periods / 4 && worst < 75.0, "{forced} of {periods}, {worst} %");
+    assert!(forced > periods / 4 && worst < 80.0, "{forced} of {periods}, {worst} %");
 }
