@@ -67,6 +67,53 @@ fn over_its_angle_a_hatch_takes_the_moment_of_its_weight() {
     assert!(far.starts_with("no unit comes 171.8873385 ° far: in 1500 ms the farthest"), "{far}");
 }
 
+/// A lever of 0.1 kg·m² about an ideal joint, driven upwards at 0.5 rad/s, if `set` says nothing else.
+fn lever(set: &[&str]) -> Mechanism {
+    let scene = r#"
+        title = "Lever"
+        mechanism = { space = "plane", gravity = [0, -9.81] }
+        run = { duration = 1000, stroke = 20 }
+        [[body]]
+        name = "lever"
+        mass = 1000
+        inertia = "0.09 kg·m²"
+        centre = [100, 0]
+        [[joint]]
+        name = "shaft"
+        kind = "revolute"
+        between = ["lever", "frame"]
+        at = [0, 0]
+        [[drive]]
+        name = "motor"
+        turns = "lever"
+        gain = 100
+        ramp_start = 0
+        ramp_end = 0.01
+        speed = 0.5
+    "#;
+    let set: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
+    SceneFile::parse("lever.toml", scene, &set).unwrap_or_else(|error| panic!("{error}")).mechanism.unwrap()
+}
+
+/// The stroke counts from where the lever starts, in the direction of its drive, also where it starts beyond its end. The moment that
+/// holds the weight against the fall counts like one that lifts it: m·g·l·cos φ and what the ramp takes.
+#[test]
+fn travel_counts_from_the_start_and_braking_is_effort() {
+    for (angle, speed) in [(0.0, 0.5), (40.0, 0.5), (-30.0, 0.5), (80.0, -0.5), (20.0, -0.5)] {
+        let set = [format!("body.lever.angle={angle}"), format!("drive.motor.speed={speed}")];
+        let mechanism = lever(&set.each_ref().map(String::as_str));
+        let run = run(&mechanism, &[], 1e-3).unwrap();
+        let outcome = run.outcomes[0];
+        assert_eq!(outcome.stroke_reached, Some(true), "{angle}: {outcome:?}");
+        assert!((outcome.end.z - 20f64.to_radians()).abs() < 1e-9, "{angle}: {outcome:?}");
+        let [first, last] = [&run.samples.rows[0], run.samples.rows.last().unwrap()];
+        assert!((first[4] - f64::to_radians(angle)).abs() < 1e-12, "columns count from the drawn pose: {first:?}");
+        assert!(((last[4] - first[4]) * f64::signum(speed) - 20f64.to_radians()).abs() < 2e-3, "{last:?}");
+        let greatest = run.samples.rows.iter().fold(0.0f64, |most, row| most.max(row[1].abs()));
+        assert!((outcome.peak_force.unwrap() / greatest - 1.0).abs() < 0.02, "{outcome:?} {greatest}");
+    }
+}
+
 /// Joints without play hold exactly, and the slide is where the crank, the rod and the play of its ball let it be: with A the lower ball,
 /// the slide at s = A_y + √(l² − A_x² − A_z²) but for the play in each direction.
 #[test]

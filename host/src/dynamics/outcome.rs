@@ -87,7 +87,7 @@ pub struct Moment {
 pub struct Outcome {
     /// Breakaway time (s): the last upward crossing of 0.2 mm/s after the ramp's start; `None` if there is none.
     pub breakaway: Option<f64>,
-    /// Greatest force from the ramp's start on (N); `None` if the run ends before.
+    /// Magnitude of the greatest force, driving or braking, from the ramp's start on (N); `None` if the run ends before.
     pub peak_force: Option<f64>,
     /// Mean force over the last 20 ms (N), if it varies by less than 1 %.
     pub settled_force: Option<f64>,
@@ -186,7 +186,7 @@ impl Observer {
             {
                 self.breakaway = Some(before.t + (t - before.t) * (BREAKAWAY_SPEED - before.vz) / (vz - before.vz));
             }
-            self.peak = Some(self.peak.map_or(force, |peak| peak.max(force)));
+            self.peak = Some(self.peak.map_or(force.abs(), |peak| peak.max(force.abs())));
             let command = self.drive.command(t) * along;
             for (below, share) in self.below.iter_mut().zip([RUNS, JAMMED]) {
                 // A release burst is no motion.

@@ -61,6 +61,15 @@ fn act<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
     sum.add::<L, W, R>(link, at, &view, &response);
 }
 
+/// The gap (m) of a contact, which is negative where it is pressed together.
+fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
+    element: &Element<L, W, R>,
+    at: (&B, &B::Placed),
+) -> Option<f64> {
+    let view = element.link.view(at.0, at.1);
+    Some(element.law.gap(&element.link.seen(at, &view).place))
+}
+
 /// An element in a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarElement<const D: usize> {
@@ -92,6 +101,32 @@ pub enum SpatialElement {
     Motor(Element<spatial::About<f64>, Motor<Drive<f64>>, 1>),
     /// A force.
     Pusher(Element<spatial::Along<f64>, Pusher<Drive<f64>>, 2>),
+}
+
+impl<const D: usize> PlanarElement<D> {
+    /// The gap (m) of the contact that it is, if it is one.
+    pub fn gap(&self, at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed)) -> Option<f64> {
+        match self {
+            Self::Journal(element) => gap(element, at),
+            Self::Pad(element) => gap(element, at),
+            Self::Spring(_) | Self::Motor(_) | Self::Pusher(_) => None,
+        }
+    }
+}
+
+impl SpatialElement {
+    /// The gap (m) of the contact that it is, if it is one.
+    pub fn gap<const N: usize, const D: usize>(
+        &self,
+        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
+    ) -> Option<f64> {
+        match self {
+            Self::Pin(element) => gap(element, at),
+            Self::Wall(element) => gap(element, at),
+            Self::Ring(element) => gap(element, at),
+            Self::Motor(_) | Self::Pusher(_) => None,
+        }
+    }
 }
 
 impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {

@@ -22,6 +22,7 @@ mod run;
 pub mod self_locking;
 mod source;
 pub mod spatial;
+mod start;
 mod vary;
 
 pub use columns::BodyMotion;
@@ -31,8 +32,9 @@ pub use gaps::{GapError, Gaps, level_of};
 pub use hanging::MountError;
 pub use laws::{Laws, NormalData, Rebound};
 pub use mounts::Mounts;
-pub use run::{MechanismRun, Moment, Rest, RunError, SCHEME, Samples, controller_run, film, run};
+pub use run::{MechanismRun, Moment, RunError, SCHEME, Samples, controller_run, film, run};
 pub use source::{dimension, drive_names, element_paths, rust_source};
+pub use start::{Rest, Torn, torn};
 pub use vary::{Parameter, Varied, rub_more, tilted_x, tilted_z};
 
 use slipfit_core::{clearance::GapStatistics, drive::Drive};

@@ -9,16 +9,12 @@ use slipfit_core::{
     ParameterError, SVector,
     integrator::{Integrator, Motion, Rodas4},
     mechanism::Mechanism as _,
-    system::{
-        Bodies, Elements, System, ThroughJoints,
-        planar::Coordinate,
-        spatial::tree::{Joint as IdealJoint, Mount},
-    },
+    system::{Bodies, Elements, System, ThroughJoints, spatial::tree::Mount},
 };
 use thiserror::Error;
 
 use super::{
-    Mechanism, MountError, Mounts,
+    Mechanism, MountError, Mounts, Rest,
     columns::{self, BodyMotion, JointedBodies, PlanarBodies, State},
     fixed_steps::FixedSteps,
     limits::Limits,
@@ -30,7 +26,7 @@ use crate::{
         film::chosen,
         looks::{end, looks, samples},
         out_of_line::{Contacts, OutOfLine},
-        outcome::{Observer, Outcome},
+        outcome::{Instant as Looked, Observer, Outcome},
         scheme::ScalarKind,
         simulate::{SimulateError, Solved},
         trajectory::Trajectory,
@@ -271,50 +267,6 @@ fn on_joints<const D: usize>(
     solve(mechanism, desk, start, &limits, by, state, |state: &State<D>| bodies.told(state))
 }
 
-/// Where and how fast a mechanism on ideal joints starts.
-pub struct Rest<const D: usize> {
-    /// Coordinates (m, rad) from the drawn pose.
-    pub places: [f64; D],
-    /// Their rates (m/s, rad/s).
-    pub rates: [f64; D],
-}
-
-impl<const D: usize> Rest<D> {
-    /// That of `mechanism`.
-    pub fn of(mechanism: &Mechanism, mounts: &Mounts) -> Self {
-        let (mut places, mut rates) = ([0.0; D], [0.0; D]);
-        for (k, owned) in mounts.coordinates().iter().enumerate() {
-            let start = mechanism.bodies[owned.body].start;
-            (places[k], rates[k]) = match owned.coordinate {
-                Coordinate::Turn => (start.angle, start.spin),
-                Coordinate::Slide { .. } => (0.0, start.speed),
-            };
-        }
-        Self { places, rates }
-    }
-
-    /// That of `mechanism` in space on its `mounts`.
-    pub fn on_joints(mechanism: &Mechanism, mounts: &[Mount<f64>]) -> Self {
-        let (mut places, mut rates) = ([0.0; D], [0.0; D]);
-        let mut k = 0;
-        for mount in mounts {
-            let start = mechanism.bodies[mount.body].start;
-            let [of_slide, of_turn] = [(0.0, start.speed), (start.angle, start.spin)];
-            let own: &[(f64, f64)] = match mount.joint {
-                IdealJoint::Revolute { .. } => &[of_turn],
-                IdealJoint::Prismatic { .. } => &[of_slide],
-                IdealJoint::Cylindrical { .. } => &[of_slide, of_turn],
-                IdealJoint::Fixed | IdealJoint::Spherical { .. } | IdealJoint::Free => &[],
-            };
-            for (j, (place, rate)) in own.iter().enumerate() {
-                (places[k + j], rates[k + j]) = (*place, *rate);
-            }
-            k += mount.joint.freedoms();
-        }
-        Self { places, rates }
-    }
-}
-
 fn solve<B, E, C, const D: usize>(
     mechanism: &Mechanism,
     desk: OutOfLine<System<B, E>, C>,
@@ -334,11 +286,18 @@ where
     let least_mass = desk.mechanism().bodies().least_mass();
     // The stroke is the first drive's.
     let of_drive = |k: usize| if k == 0 { mechanism.run } else { RunSpec { stroke: None, ..mechanism.run } };
+    // Travel counts from the start, which need not be the drawn pose.
+    let at_start = told(&state(&start.pose, rates));
+    let origins: Vec<f64> = mechanism.drives_at(0.0, &at_start).map(|at| at.z).collect();
+    let drives_at = |t: f64, motions: &[BodyMotion]| -> Vec<Looked> {
+        let from = |(at, origin): (Looked, &f64)| Looked { z: at.z - origin, ..at };
+        mechanism.drives_at(t, motions).zip(&origins).map(from).collect()
+    };
     let named = mechanism.drives.iter().enumerate();
     let mut observers: Vec<_> = named.map(|(k, named)| Observer::new(named.drive, of_drive(k))).collect();
     let ends = |observers: &[Observer], state: &State<D>| {
         let (Some(first), Some(_)) = (observers.first(), mechanism.run.stroke) else { return false };
-        mechanism.drives_at(0.0, &told(state)).next().is_some_and(|at| first.is_at_end(at.z))
+        drives_at(0.0, &told(state)).first().is_some_and(|at| first.is_at_end(at.z))
     };
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
@@ -361,7 +320,7 @@ where
     let end = end(&knots, |state| ends(&observers, state));
     looks(&knots, end, |t, state| {
         let motions = told(&state);
-        for (observer, at) in observers.iter_mut().zip(mechanism.drives_at(t, &motions)) {
+        for (observer, at) in observers.iter_mut().zip(drives_at(t, &motions)) {
             observer.observe(at);
         }
     });
@@ -371,9 +330,7 @@ where
     for (t, state) in times.clone().zip(sampled(&knots, times)) {
         let motions = told(&state);
         rows.push(mechanism.row(t, &motions));
-        for ((trajectory, named), at) in
-            trajectories.iter_mut().zip(&mechanism.drives).zip(mechanism.drives_at(t, &motions))
-        {
+        for ((trajectory, named), at) in trajectories.iter_mut().zip(&mechanism.drives).zip(drives_at(t, &motions)) {
             let place = motions[named.body].displacement;
             trajectory.push(t, [at.vz, place.x, place.y, at.z], at.force);
         }

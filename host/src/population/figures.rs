@@ -13,7 +13,7 @@ use crate::dynamics::{
 pub struct Figures {
     /// When the slide breaks away (s): the last upward crossing of 0.2 mm/s after the ramp's start; NaN if there is none.
     pub breakaway: f32,
-    /// Greatest force from the ramp's start on (N).
+    /// Magnitude of the greatest force, driving or braking, from the ramp's start on (N).
     pub peak_force: f32,
     /// Mean force over the last 20 ms (N), if it varies by less than 1 %; else NaN.
     pub settled_force: f32,
@@ -144,15 +144,16 @@ impl<V: Simd> Watch<V> {
         self.breakaway = ends.or_old(ends.since_ramp(start, crosses, self.breakaway), self.breakaway);
 
         // The top of the parabola through three ends, where the middle one is the highest.
-        let rise = (self.force - self.force_before) / self.length_before;
-        let fall = (force - self.force) / length;
+        let [before, middle, last] = [self.force_before, self.force, force].map(|force| force.max_of(-force));
+        let rise = (middle - before) / self.length_before;
+        let fall = (last - middle) / length;
         let bend = (rise - fall) / (self.length_before + length);
         let slope = (rise * length + fall * self.length_before) / (self.length_before + length);
-        let top = self.force + slope * slope / (bend * Pack::splat(4.0));
+        let top = middle + slope * slope / (bend * Pack::splat(4.0));
         let is_top = rise.select_gt(zero, zero.select_gt(fall, top, self.peak), self.peak);
         // Only what begins after the ramp's start counts; NaN keeps the old.
         let between = ends.since_ramp(start, self.peak.max_of(is_top), self.peak);
-        let peak = between.max_of(ends.since_ramp(end, force, self.peak));
+        let peak = between.max_of(ends.since_ramp(end, last, self.peak));
         self.peak = ends.or_old(peak, self.peak);
 
         for (depth, gap) in self.depths.iter_mut().zip(gaps) {

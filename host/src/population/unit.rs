@@ -36,7 +36,7 @@ pub struct UnitOutcome {
     pub verdict: Verdict,
     /// Breakaway time (s), if the unit breaks away.
     pub breakaway: Option<f64>,
-    /// Greatest force from the ramp's start on (N); none if the run ends before.
+    /// Magnitude of the greatest force, driving or braking, from the ramp's start on (N); none if the run ends before.
     pub peak_force: Option<f64>,
     /// Mean force over the last 20 ms (N), if it varies by less than 1 %.
     pub settled_force: Option<f64>,
@@ -134,7 +134,7 @@ fn outcome(scene: &Scene, slide: &SlideData<f64>, figures: &Figures) -> UnitOutc
 pub struct Decisive {
     /// Speed at the end as a share of the command; none where no verdict follows from it.
     pub speed: Option<f64>,
-    /// Greatest force (N) from the ramp's start on.
+    /// Magnitude of the greatest force (N), driving or braking, from the ramp's start on.
     pub force: Option<f64>,
 }
 

@@ -320,7 +320,7 @@ fn driven(law: &str, by: &slipfit_core::drive::Drive<f64>) -> Typed {
 }
 
 /// The joint that each element stands for, in the order of elements; none for those that are no joint's, which come last.
-fn joints_of_elements(mechanism: &Mechanism) -> impl Iterator<Item = Option<&Joint>> {
+pub(super) fn joints_of_elements(mechanism: &Mechanism) -> impl Iterator<Item = Option<&Joint>> {
     let joints = mechanism.joints.iter().flat_map(|joint| std::iter::repeat_n(joint, elements_of(joint)));
     joints.map(Some).chain(std::iter::repeat(None))
 }

@@ -4,7 +4,7 @@ use slipfit_core::system::{planar::Coordinate, spatial::tree::Joint};
 
 use super::{Field, Problem, Quantity, SceneError, note, place, tables, unit};
 use crate::{
-    mechanism::{Body, Mechanism, Mounts, Start, spatial},
+    mechanism::{Body, Mechanism, Mounts, Start, Torn, spatial, torn},
     scene::parse::POINT,
 };
 
@@ -61,13 +61,13 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
             fields.iter().enumerate().for_each(|(i, table)| {
                 let turns = own(i).any(|coordinate| matches!(coordinate, Coordinate::Turn));
                 let slides = own(i).filter(|coordinate| matches!(coordinate, Coordinate::Slide { .. })).count() == 1;
-                check_start([turns, slides], table);
+                check_freedoms([turns, slides], table);
             });
         }
     } else if let Ok(mounts) = spatial::mounts(mechanism) {
         fields.iter().enumerate().for_each(|(i, table)| {
             let own = mounts.iter().flatten().find(|mount| mount.body == i).map(|mount| mount.joint);
-            check_start(
+            check_freedoms(
                 match own {
                     Some(Joint::Revolute { .. }) => [true, false],
                     Some(Joint::Prismatic { .. }) => [false, true],
@@ -83,11 +83,26 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
 
 /// Whether a body that is read from `table` can start as it says: turned where it turns by itself, with a speed where its own joint lets
 /// it slide along one axis.
-fn check_start([turns, slides]: [bool; 2], table: &Field) {
+fn check_freedoms([turns, slides]: [bool; 2], table: &Field) {
     for (key, can) in [("angle", turns), ("spin", turns), ("speed", slides)] {
         if let Some(field) = table.get(key).filter(|_| !can) {
             let what = format!("`{key}` at the start of a body that no joint lets move so");
             note(table.found(), Err(field.error(Problem::Unsupported { what }, "to leave it out")));
         }
     }
+}
+
+/// Whether the angles at which bodies start leave the joints of the mean unit together.
+pub(super) fn check_start(mechanism: &Mechanism, fields: &[Field]) -> Result<(), SceneError> {
+    let gaps = mechanism.stated_gaps_at(&[0.0]);
+    // What has no run is told elsewhere.
+    let Ok(Some(Torn { joint, depth })) = torn(mechanism, &gaps) else { return Ok(()) };
+    let of_joint = joint.between.iter().flatten().find_map(|body| fields[*body].get("angle"));
+    let Some(field) = of_joint.or_else(|| fields.iter().find_map(|body| body.get("angle"))) else {
+        return Ok(());
+    };
+    let problem =
+        format!("this start tears `{}` open: the parts of this joint overlap by {:.4} mm", joint.name, 1e3 * depth);
+    let allowed = "angles that fit each other, or parts that are drawn where they start";
+    Err(field.error(Problem::Mechanism(problem), allowed))
 }

@@ -85,6 +85,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         body::check(&mechanism, &fields)?;
         check_tree(&mechanism, &joint_fields, root)?;
         check_gaps(&mechanism, &joint_fields, root)?;
+        body::check_start(&mechanism, &fields)?;
     }
     Ok(mechanism)
 }

@@ -195,9 +195,12 @@ fn ideal_joints_in_space_are_checked() {
     let loops = "kind = \"spherical\"\nbetween = [\"rod\", \"slide\"]\nat = [15, 60, 0]\n";
     refused(ball, loops, "the joint \"upper ball\" closes a loop of joints without play");
     // A crank on its shaft can start turned and turning, a slide in its guide moving.
-    let set = ["body.crank.angle=20", "body.crank.spin=3", "body.slide.speed=10"];
+    let set = ["body.crank.angle=0.2", "body.crank.spin=3", "body.slide.speed=10"];
     let start = |i: usize| parse(scene, &set).ok().unwrap().mechanism.unwrap().bodies[i].start;
-    assert!((start(0).angle - 20f64.to_radians()).abs() < 1e-15 && (start(0).spin, start(2).speed) == (3.0, 0.01));
+    assert!((start(0).angle - 0.2f64.to_radians()).abs() < 1e-15 && (start(0).spin, start(2).speed) == (3.0, 0.01));
+    // But not so far that its rod's ball leaves the slide.
+    let torn = parse(scene, &["body.crank.angle=20"]).err().unwrap();
+    assert!(torn.contains("this start tears `upper ball` open") && torn.contains("body.crank.angle=20"), "{torn}");
 }
 
 #[test]

@@ -1,0 +1,126 @@
+//! How a mechanism starts: at rest as it is drawn, or turned and moving as its bodies say.
+
+use slipfit_core::{
+    SVector,
+    system::{
+        Bodies, Reduced,
+        planar::Coordinate,
+        spatial::tree::{Joint as IdealJoint, Mount},
+    },
+};
+
+use super::{
+    Joint, JointKind, Mechanism, Mounts, RunError, columns::half_angle, planar, source::joints_of_elements, spatial,
+};
+
+/// Where and how fast a mechanism on ideal joints starts.
+pub struct Rest<const D: usize> {
+    /// Coordinates (m, rad) from the drawn pose.
+    pub places: [f64; D],
+    /// Their rates (m/s, rad/s).
+    pub rates: [f64; D],
+}
+
+impl<const D: usize> Rest<D> {
+    /// That of `mechanism`.
+    pub fn of(mechanism: &Mechanism, mounts: &Mounts) -> Self {
+        let (mut places, mut rates) = ([0.0; D], [0.0; D]);
+        for (k, owned) in mounts.coordinates().iter().enumerate() {
+            let start = mechanism.bodies[owned.body].start;
+            (places[k], rates[k]) = match owned.coordinate {
+                Coordinate::Turn => (start.angle, start.spin),
+                Coordinate::Slide { .. } => (0.0, start.speed),
+            };
+        }
+        Self { places, rates }
+    }
+
+    /// That of `mechanism` in space on its `mounts`.
+    pub fn on_joints(mechanism: &Mechanism, mounts: &[Mount<f64>]) -> Self {
+        let (mut places, mut rates) = ([0.0; D], [0.0; D]);
+        let mut k = 0;
+        for mount in mounts {
+            let start = mechanism.bodies[mount.body].start;
+            let [of_slide, of_turn] = [(0.0, start.speed), (start.angle, start.spin)];
+            let own: &[(f64, f64)] = match mount.joint {
+                IdealJoint::Revolute { .. } => &[of_turn],
+                IdealJoint::Prismatic { .. } => &[of_slide],
+                IdealJoint::Cylindrical { .. } => &[of_slide, of_turn],
+                IdealJoint::Fixed | IdealJoint::Spherical { .. } | IdealJoint::Free => &[],
+            };
+            for (j, (place, rate)) in own.iter().enumerate() {
+                (places[k + j], rates[k + j]) = (*place, *rate);
+            }
+            k += mount.joint.freedoms();
+        }
+        Self { places, rates }
+    }
+}
+
+/// How far (m) a joint may be pressed together at the start beyond its play: numbers in scenes are rounded.
+const ROUNDING: f64 = 1e-6;
+
+/// A joint that the start tears open: its contact is deeper in than its play is wide.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Torn<'a> {
+    /// Which.
+    pub joint: &'a Joint,
+    /// How deep (m).
+    pub depth: f64,
+}
+
+/// The joint of `mechanism` that is torn most at the start of the unit with these `gaps` (m); `None` if none is.
+///
+/// # Errors
+/// If the mechanism has no run, see [`RunError`].
+pub fn torn<'a>(mechanism: &'a Mechanism, gaps: &[f64]) -> Result<Option<Torn<'a>>, RunError> {
+    let found = if mechanism.planar {
+        let mounts = Mounts::of(mechanism)?;
+        match mounts.coordinates().len() {
+            1 => in_plane::<1>(mechanism, &mounts, gaps)?,
+            2 => in_plane::<2>(mechanism, &mounts, gaps)?,
+            3 => in_plane::<3>(mechanism, &mounts, gaps)?,
+            4 => in_plane::<4>(mechanism, &mounts, gaps)?,
+            5 => in_plane::<5>(mechanism, &mounts, gaps)?,
+            _ => in_plane::<6>(mechanism, &mounts, gaps)?,
+        }
+    } else if let Some(mounts) = spatial::mounts(mechanism)? {
+        on_joints(mechanism, &mounts, gaps)?
+    } else {
+        // Free bodies in space start as they are drawn.
+        return Ok(None);
+    };
+    let torn = found.into_iter().zip(joints_of_elements(mechanism)).filter_map(|(gap, joint)| {
+        let (joint, depth) = (joint?, -gap?);
+        let play = match joint.kind {
+            JointKind::Stop { .. } => 0.0,
+            _ => joint.kind.gaps().map(|gap| gaps[gap]).fold(0.0, f64::max),
+        };
+        (depth > play + ROUNDING).then_some(Torn { joint, depth })
+    });
+    Ok(torn.max_by(|one, other| one.depth.total_cmp(&other.depth)))
+}
+
+/// The gaps (m) at the start of the elements in a plane that are contacts.
+fn in_plane<const D: usize>(
+    mechanism: &Mechanism,
+    mounts: &Mounts,
+    gaps: &[f64],
+) -> Result<Vec<Option<f64>>, RunError> {
+    let tree = planar::bodies::<D>(mechanism, mounts)?;
+    let Rest { places, rates } = Rest::of(mechanism, mounts);
+    let placed = tree.placed(&tree.pose(places, half_angle), &SVector::from(rates));
+    // No gap goes by the stick band.
+    let elements = planar::elements::<D>(mechanism, mounts, gaps, 1.0)?;
+    Ok(elements.iter().map(|element| element.gap((&tree, &placed))).collect())
+}
+
+/// The same in space.
+fn on_joints(mechanism: &Mechanism, mounts: &[Mount<f64>], gaps: &[f64]) -> Result<Vec<Option<f64>>, RunError> {
+    const D: usize = spatial::MOST_COORDINATES;
+    let tree = spatial::tree::<{ spatial::MOST }, { 6 * spatial::MOST }, D>(mechanism, mounts)?;
+    let Rest { places, rates } = Rest::on_joints(mechanism, mounts);
+    let placed = tree.placed(&tree.pose(places, half_angle), &SVector::from(rates));
+    let elements = spatial::elements(mechanism, gaps, 1.0)?;
+    Ok(elements.iter().map(|element| element.gap(tree.free(&placed))).collect())
+}
