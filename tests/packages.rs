@@ -72,10 +72,9 @@ fn c_projects_find_the_library_by_cmake_and_by_pkg_config() {
         printed(Command::new(program).current_dir(&folder).env_remove("CARGO_TARGET_DIR").args(arguments))
     };
     let source = format!("{ROOT}/core/capi");
-    let install = format!("-DCMAKE_INSTALL_PREFIX={}", prefix.display());
-    run("cmake", &["-S", &source, "-B", "library", &install, "-DCMAKE_INSTALL_LIBDIR=lib"]);
+    run("cmake", &["-S", &source, "-B", "library", "-DCMAKE_INSTALL_LIBDIR=lib"]);
     run("cmake", &["--build", "library"]);
-    run("cmake", &["--install", "library"]);
+    run("cmake", &["--install", "library", "--prefix", &prefix.display().to_string()]);
 
     write(folder.join("program.c"), PROGRAM);
     write(

@@ -77,7 +77,7 @@ const SPOILT: &[Spoilt] = &[
         "lid-on-pins",
         ["datum = \"box.bottom\" } },\n  { name = \"front", "datum = \"box.base\" } },\n  { name = \"front"],
         "\"box.base\"",
-        "no feature above `box.base`",
+        "no feature `box.base`",
     ),
     spoilt(
         "lid-on-pins",

@@ -57,8 +57,9 @@ impl<const D: usize> Rest<D> {
     }
 }
 
-/// How far (m) a joint may be pressed together at the start beyond its play: numbers in scenes are rounded.
-const ROUNDING: f64 = 1e-6;
+/// How far (m) a joint may be pressed together at the start beyond its play. Contacts give way by less, and angles are rounded; what a
+/// start tears open overlaps by millimetres.
+const PRESSED: f64 = 1e-4;
 
 /// A joint that the start tears open: its contact is deeper in than its play is wide.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +97,7 @@ pub fn torn<'a>(mechanism: &'a Mechanism, gaps: &[f64]) -> Result<Option<Torn<'a
             JointKind::Stop { .. } => 0.0,
             _ => joint.kind.gaps().map(|gap| gaps[gap]).fold(0.0, f64::max),
         };
-        (depth > play + ROUNDING).then_some(Torn { joint, depth })
+        (depth > play + PRESSED).then_some(Torn { joint, depth })
     });
     Ok(torn.max_by(|one, other| one.depth.total_cmp(&other.depth)))
 }

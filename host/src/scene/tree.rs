@@ -203,9 +203,12 @@ impl<'s> Node<'s> {
         }
         let mut node = self;
         let mut rest = Some(key.trim());
+        // What the names of a list are of: its own key.
+        let mut list = "";
         while let Some(path) = rest {
             let part = node.first_part(path);
-            node = node.child(part.trim(), &place)?;
+            node = node.child(part.trim(), list, &place)?;
+            list = part.trim();
             rest = path[part.len()..].strip_prefix('.');
         }
         *node = value;
@@ -220,12 +223,12 @@ impl<'s> Node<'s> {
             names.filter(|name| path.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.')));
         match named.map(str::len).max() {
             Some(length) => &path[..length],
-            None => path.rsplit_once('.').map_or(path, |(first, _)| first),
+            None => path.split('.').next().unwrap_or(path),
         }
     }
 
-    /// The entry `key` of a table, made if it is not there, or the table of that name in a list.
-    fn child(&mut self, key: &'s str, place: &Place<'s>) -> Result<&mut Self, SceneError> {
+    /// The entry `key` of a table, made if it is not there, or the table of that name in a list called `list`.
+    fn child(&mut self, key: &'s str, list: &str, place: &Place<'s>) -> Result<&mut Self, SceneError> {
         let unknown = Problem::UnknownKey { key: place.text().into(), similar: None };
         match &mut self.value {
             Value::Table(entries) => {
@@ -239,7 +242,6 @@ impl<'s> Node<'s> {
             Value::List(nodes) => {
                 let names: Vec<_> = nodes.iter().filter_map(Self::name).collect();
                 let Some(at) = nodes.iter().position(|node| node.name() == Some(key)) else {
-                    let list = place.text().split('.').next().unwrap_or_default().trim();
                     let problem = Problem::UnknownName { of: list.into(), name: key.into() };
                     return Err(place.error(problem, names.join(", ")));
                 };

@@ -48,7 +48,11 @@ pub fn failed<'a>(path: &'a Path) -> impl FnOnce(std::io::Error) -> WriteError +
 
 /// The system's own error, without the temporary name that it may be wrapped with.
 fn plain(error: std::io::Error) -> std::io::Error {
-    if error.get_ref().is_some() { error.kind().into() } else { error }
+    match error.kind() {
+        std::io::ErrorKind::NotFound => std::io::Error::other("its folder does not exist"),
+        kind if error.get_ref().is_some() => kind.into(),
+        _ => error,
+    }
 }
 
 fn temporary_beside(path: &Path) -> Result<tempfile::NamedTempFile, WriteError> {
@@ -295,5 +299,7 @@ mod tests {
         assert!(prepare_folder(&inside).unwrap_err().to_string().contains("deeper"));
         assert!(check_writable(folder.path()).is_err());
         assert!(write(&inside, b"x").is_err());
+        let nowhere = check_writable(&folder.path().join("missing/file")).unwrap_err().to_string();
+        assert!(nowhere.ends_with("missing/file: its folder does not exist"), "{nowhere}");
     }
 }

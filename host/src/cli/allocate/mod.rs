@@ -211,8 +211,15 @@ impl Arguments {
             }
         };
         if requirements.is_empty() {
-            let message = "nothing is required: a measure with limits needs require = \"rss\", [allocate] yield or malfunction, \
-                           or give --require";
+            let message = match self.require {
+                None => {
+                    "nothing is required: a measure with limits needs require = \"rss\", [allocate] yield or malfunction, or \
+                     give --require"
+                }
+                Some(_) => {
+                    "nothing is required: --require is for measures with limits, and none has `lower` or `upper`"
+                }
+            };
             return Err(Failure::Input(message.into()));
         }
         Ok(requirements)

@@ -252,7 +252,7 @@ fn bad_parts_are_shown_with_their_place_and_what_is_allowed() {
         (
             "\"table.top\" } }",
             "\"table.topp\" } }",
-            ["datum = |\"table.topp", "no feature above `table.topp`", "such as table.top"],
+            ["datum = |\"table.topp", "no feature `table.topp`", "such as table.top"],
         ),
         (bottom, "flatness = 0 }", ["flatness = |0 }", "flatness` is 0 mm", "more than 0"]),
         (bottom, "flatness = -0.1 }", ["flatness = |-0.1", "is -0.1 mm", "0 to"]),

@@ -185,8 +185,8 @@ impl Draft {
         self.feature_names.iter().position(|known| known == name).ok_or_else(|| {
             let near = self.feature_names.iter().map(|known| (strsim::osa_distance(known, name), known)).min();
             let hint = near.map(|(_, known)| format!(", such as {known}")).unwrap_or_default();
-            let problem = Problem::UnknownName { of: "feature above".into(), name: name.into() };
-            field.error(problem, format!("PART.FEATURE{hint}"))
+            let problem = Problem::UnknownName { of: "feature".into(), name: name.into() };
+            field.error(problem, format!("PART.FEATURE of a part that stands further up{hint}"))
         })
     }
 

@@ -54,6 +54,11 @@ fn bad_input_is_shown_with_its_place_and_what_is_allowed() {
             ["value = |0.2", "class m has no tolerance of a size for 0.2 mm", "from 0.5 up to 4000"],
         ),
         ("value = 20", "value = 4001", ["value = |4001", "for 4001 mm", "from 0.5 up to 4000 mm"]),
+        (
+            "tolerance = 0.1",
+            "tolerance = 0.1\nsigma = 0.3",
+            ["sigma = |0.3", "`dimension.sigma` is 0.3", "not the standard deviation itself"],
+        ),
         ("tolerance = 0.1", "tolerance = 0", ["tolerance = |0", "`dimension.tolerance` is 0 mm", "\"constant\""]),
         ("tolerance = 0.1", "tolerance = [0.3, -0.1]", ["tolerance = |[0.3", "lower limit is above", "[-0.1, 0.3]"]),
         ("tolerance = 0.1", "tolerance = \"K9\"", ["tolerance = |\"K9", "no class K9 for 10 mm", "H7 or g6"]),

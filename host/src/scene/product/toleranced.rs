@@ -291,10 +291,24 @@ pub(super) fn band(field: &Field, error: BandError) -> SceneError {
     field.error(Problem::Band { key: field.key.clone(), error }, format!("from {least}{upper}, or a stated tolerance"))
 }
 
+/// A normal distribution. Below 1 a third of the units would be outside: then someone has `stated` the standard deviation itself.
+fn normal(sigma: f64, stated: Option<&Field>) -> Result<Shape, SceneError> {
+    match stated.filter(|_| sigma < 1.0) {
+        None => Ok(Shape::Normal { sigma }),
+        Some(field) => {
+            let problem = Problem::OutOfRange { key: field.key.clone(), written: field.written("") };
+            let allowed =
+                "1 to 100: how many standard deviations half the tolerance is, not the standard deviation itself";
+            Err(field.error(problem, allowed))
+        }
+    }
+}
+
 /// The keys `sigma` and `distribution`.
 fn shape(table: &Field, quantity: &Quantity, sigma: f64) -> Result<Shape, SceneError> {
-    let sigma = table.get("sigma").map_or(Ok(sigma), |field| field.to_number(&SIGMA))?;
-    let Some(field) = table.get("distribution") else { return Ok(Shape::Normal { sigma }) };
+    let stated = table.get("sigma");
+    let sigma = stated.as_ref().map_or(Ok(sigma), |field| field.to_number(&SIGMA))?;
+    let Some(field) = table.get("distribution") else { return normal(sigma, stated.as_ref()) };
     let kind = match &field.node.value {
         Value::Table(_) => field.require("kind", SHAPES)?,
         _ => field.clone(),
@@ -306,7 +320,7 @@ fn shape(table: &Field, quantity: &Quantity, sigma: f64) -> Result<Shape, SceneE
     };
     Ok(match kind.to_text()? {
         "constant" => Shape::Constant,
-        "normal" => Shape::Normal { sigma },
+        "normal" => normal(sigma, stated.as_ref())?,
         "truncated-normal" => Shape::TruncatedNormal { sigma },
         "uniform" => Shape::Uniform,
         "triangular" => Shape::Triangular { mode: deviation("mode")? },
