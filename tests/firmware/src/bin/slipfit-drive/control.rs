@@ -1,31 +1,23 @@
-//! What the interrupt does once a millisecond: measure, predict, watch.
+//! What a controller does once a millisecond: predict, watch, estimate, check its table. Take it over into an image of your own.
 
 use slipfit_core::{
     ParameterError,
     ahead::{self, Ahead},
-    kernel::{Kernel, StateOf},
-    law::{Exact, Friction, Impact, Regularised, ThreeHalves},
+    law::{Friction, Impact, Regularised, ThreeHalves},
     menu::ContactData,
     monitor::{LevelBank, Limits, Monitor, Sample, Verdict, Watch},
     pose::Pose,
-    sampling::{
-        normal::score,
-        stream::{Rng, Xoshiro256PlusPlus, unit_stream},
-    },
     slide::Slide,
     table::{F32Nodes, Scrubber, Table},
 };
 
-use crate::scene::{Predictor, SCENE, STEP, Unit};
+use crate::scene::{SCENE, STEP};
 
 /// The flash table and the region it lies in.
 pub type Flashed = (Table<'static>, &'static [u8]);
 
 /// Bytes of the table that are checked in a period: once round in a second.
 const SCRUBBED: usize = 256;
-
-/// Steps in which the unit itself moves through a period, finer than the predictor's.
-const PLANT_STEPS: u32 = 4;
 
 /// Periods before the motion's start in which the prediction takes its lead.
 const EARLY: u32 = 70;
@@ -39,23 +31,7 @@ pub type Prediction = Ahead<f32, Slide<f32, ThreeHalves<f32>, Regularised<f32>>>
 /// What it keeps: too much for the stack, so that there is one, in its place.
 pub type Motions = ahead::State<f32, Pose<f32>, 6, 128>;
 
-/// A unit on its rig.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Rig {
-    /// Its tolerance level.
-    pub level: f32,
-    /// Its friction coefficient over the scene's.
-    pub friction: f32,
-    /// The tolerance level it is taken for.
-    pub taken_for: f32,
-    /// Standard deviation of the noise of its force sensor (N).
-    pub noise: f32,
-    /// Seed of the noise.
-    pub seed: u64,
-}
-
-/// A function of its own, as is the plant's step, so that their stacks do not add up.
+/// A function of its own, so that its stack does not add up with that of the rest.
 #[inline(never)]
 fn step(prediction: &Prediction, motions: &mut Motions) -> ahead::Prediction<f32> {
     prediction.step(motions)
@@ -81,12 +57,8 @@ pub struct Record {
     pub cost: u32,
 }
 
-/// The plant and all that watches it.
+/// All that watches a unit.
 pub struct Control {
-    plant: Predictor,
-    plant_state: StateOf<f32, Unit, 6>,
-    random: Xoshiro256PlusPlus,
-    noise: f32,
     periods: u32,
     prediction: Prediction,
     /// Given to the next control.
@@ -102,7 +74,10 @@ pub struct Control {
 }
 
 /// A unit of `level`, with the friction that `law` makes of the scene's coefficient.
-fn unit<F: Friction<f32>>(
+///
+/// # Errors
+/// If the level is out of bounds.
+pub fn unit<F: Friction<f32>>(
     level: f32,
     law: impl FnOnce(f32) -> Result<F, ParameterError<f32>>,
 ) -> Result<Slide<f32, ThreeHalves<f32>, F>, ParameterError<f32>> {
@@ -110,11 +85,6 @@ fn unit<F: Friction<f32>>(
     let ContactData { stiffness, damping, depth, .. } = unit.contact;
     let contact = Impact::new(ThreeHalves::new(stiffness)?, damping, depth)?;
     unit.body.slide(contact, law(unit.friction.coefficient())?, unit.drive)
-}
-
-/// The kernel of a unit whose friction is `factor` times the scene's.
-fn plant(level: f32, factor: f32) -> Result<Predictor, ParameterError<f32>> {
-    Kernel::new(unit(level, |coefficient| Exact::new(coefficient * factor))?, STEP / PLANT_STEPS as f32)
 }
 
 /// The prediction of a unit of `level`.
@@ -128,26 +98,22 @@ pub fn prediction(level: f32) -> Prediction {
 }
 
 impl Control {
-    /// At rest at the motion's start.
+    /// For a unit that is `taken_for` this tolerance level, at the motion's start. The `noise` (N) is the standard deviation of a good
+    /// unit's force from the table's.
     ///
     /// # Panics
-    /// If the rig is out of bounds or the table is not one in f32 over few levels and time.
-    pub fn new(rig: &Rig, (flashed, region): Flashed, motions: &'static mut Motions) -> Self {
-        let plant = plant(rig.level, rig.friction).expect("the unit is in bounds");
-        let prediction = prediction(rig.taken_for);
+    /// If the level is out of bounds or the table is not one in f32 over few levels and time.
+    pub fn new(taken_for: f32, noise: f32, (flashed, region): Flashed, motions: &'static mut Motions) -> Self {
+        let prediction = prediction(taken_for);
         prediction.put_at_rest(motions, Pose::nominal(), EARLY);
         (0..EARLY).for_each(|_| _ = step(&prediction, motions));
         let table = flashed.f32().expect("the table's values are f32");
-        let limits = Limits { blind: 0.2, force_most: 3.5, ..Limits::for_noise(STEP, rig.noise) };
+        let limits = Limits { blind: 0.2, force_most: 3.5, ..Limits::for_noise(STEP, noise) };
         Self {
-            plant_state: plant.at_rest(Pose::nominal()),
-            plant,
-            random: unit_stream(rig.seed, 0),
-            noise: rig.noise,
             periods: 0,
             prediction,
             motions,
-            monitor: Monitor::new(table, rig.taken_for, limits).expect("the limits are in bounds"),
+            monitor: Monitor::new(table, taken_for, limits).expect("the limits are in bounds"),
             watch: Watch::default(),
             bank: LevelBank::new(table).expect("the table is over few levels and time"),
             scrubber: Scrubber::new(&flashed),
@@ -156,27 +122,24 @@ impl Control {
         }
     }
 
-    /// One period. `clock` counts; what simulates the unit and its sensor is not counted.
-    pub fn tick(&mut self, clock: impl Fn() -> u32) -> Record {
-        for _ in 0..PLANT_STEPS {
-            self.plant.step(&mut self.plant_state);
-        }
-        let drive = self.plant.mechanism().drive();
+    /// When the next period ends (s), from the motion's start.
+    pub fn time(&self) -> f32 {
+        self.periods.saturating_add(1) as f32 * STEP
+    }
+
+    /// One period, at whose end the drive measures `sample`. `clock` counts.
+    pub fn tick(&mut self, sample: &Sample, clock: impl Fn() -> u32) -> Record {
         self.periods = self.periods.saturating_add(1);
-        let time = self.periods as f32 * STEP;
-        let speed = self.plant_state.motion.velocity.z;
-        let measured = drive.force(time, speed) + self.noise * score::<f32>(self.random.next_u64());
-        let sample = Sample { time, force: measured, speed, command: drive.command(time) };
 
         let start = clock();
         let ahead::Prediction { force: predicted, lead, .. } = step(&self.prediction, self.motions);
-        let report = self.monitor.step(&mut self.watch, &sample);
-        self.bank.add(time, measured);
+        let report = self.monitor.step(&mut self.watch, sample);
+        self.bank.add(sample.time, sample.force);
         if self.scrubber.check(self.region, SCRUBBED).is_err() {
             self.damaged = self.damaged.saturating_add(1);
         }
         let cost = clock().wrapping_sub(start);
         let (periods, expected) = (self.periods, report.tightness.expected);
-        Record { periods, measured, predicted, lead, expected, verdict: report.verdict, cost }
+        Record { periods, measured: sample.force, predicted, lead, expected, verdict: report.verdict, cost }
     }
 }

@@ -8,8 +8,9 @@ use slipfit_core::table::TableError;
 use slipfit_firmware::machine::Machine;
 
 use crate::{
-    control::{Record, Rig},
+    control::Record,
     program::{Everything, Stroke},
+    rig::Rig,
 };
 
 /// That there is no table to work with.

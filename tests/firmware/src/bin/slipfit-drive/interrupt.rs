@@ -9,8 +9,9 @@ use heapless::Deque;
 use slipfit_firmware::board::{Board, TICK};
 
 use crate::{
-    control::{Control, Motions, Record},
+    control::{Motions, Record},
     program::{PERIODS, Ticking},
+    rig::OnRig,
 };
 
 /// Time of an instruction (ns): what this image's emulator is told by `-icount shift=3`, fast enough for 1 kHz.
@@ -21,7 +22,7 @@ const PERIOD: u32 = 1_000_000 / TICK;
 
 /// What the interrupt works on, and what it has to say.
 struct Shared {
-    control: Option<Control>,
+    rig: Option<OnRig>,
     left: u32,
     records: Deque<Record, 4>,
     /// Records that the main loop was too slow for.
@@ -29,7 +30,7 @@ struct Shared {
 }
 
 static SHARED: Mutex<RefCell<Shared>> =
-    Mutex::new(RefCell::new(Shared { control: None, left: 0, records: Deque::new(), lost: 0 }));
+    Mutex::new(RefCell::new(Shared { rig: None, left: 0, records: Deque::new(), lost: 0 }));
 
 fn with<T>(work: impl FnOnce(&mut Shared) -> T) -> T {
     critical_section::with(|section| work(&mut SHARED.borrow_ref_mut(section)))
@@ -38,9 +39,9 @@ fn with<T>(work: impl FnOnce(&mut Shared) -> T) -> T {
 #[exception]
 fn SysTick() {
     with(|shared| {
-        let Some(control) = shared.control.as_mut().filter(|_| shared.left > 0) else { return };
+        let Some(rig) = shared.rig.as_mut().filter(|_| shared.left > 0) else { return };
         // The timer counts down, once a period.
-        let record = control.tick(|| PERIOD - SYST::get_current());
+        let record = rig.tick(|| PERIOD - SYST::get_current());
         shared.left -= 1;
         shared.lost += u32::from(shared.records.push_back(record).is_err());
     });
@@ -52,9 +53,9 @@ impl Ticking for Board {
         internal.expect("it is asked for once").write(start())
     }
 
-    fn ticks(&mut self, control: Control, mut show: impl FnMut(&mut Self, &Record)) -> Control {
+    fn ticks(&mut self, rig: OnRig, mut show: impl FnMut(&mut Self, &Record)) -> OnRig {
         with(|shared| {
-            shared.control = Some(control);
+            shared.rig = Some(rig);
             shared.left = PERIODS;
         });
         self.tick_every(PERIOD);
@@ -69,7 +70,7 @@ impl Ticking for Board {
         self.tick_no_more();
         with(|shared| {
             assert_eq!(shared.lost, 0, "the main loop was too slow");
-            shared.control.take().expect("it was put there above")
+            shared.rig.take().expect("it was put there above")
         })
     }
 

@@ -6,6 +6,7 @@
 
 mod control;
 mod program;
+mod rig;
 #[rustfmt::skip]
 #[allow(dead_code, reason = "its predictor is not the one that this image has")]
 #[path = "../../../../reference/scene.rs"]
@@ -39,16 +40,12 @@ impl program::Ticking for slipfit_firmware::desk::Desk {
         Box::leak(Box::new(start()))
     }
 
-    fn ticks(
-        &mut self,
-        mut control: control::Control,
-        mut show: impl FnMut(&mut Self, &control::Record),
-    ) -> control::Control {
+    fn ticks(&mut self, mut rig: rig::OnRig, mut show: impl FnMut(&mut Self, &control::Record)) -> rig::OnRig {
         for _ in 0..program::PERIODS {
-            let record = control.tick(|| 0);
+            let record = rig.tick(|| 0);
             show(self, &record);
         }
-        control
+        rig
     }
 
     /// The desk's clock stands still.

@@ -11,7 +11,8 @@ use slipfit_firmware::{
 };
 
 use crate::{
-    control::{Control, Motions, Record, Rig, prediction},
+    control::{Motions, Record, prediction},
+    rig::{OnRig, Rig},
     say,
     scene::SCENE_HASH,
 };
@@ -31,14 +32,13 @@ const RIGS: [(&str, Rig); 3] = [
     ("jams", Rig { level: 5.0, friction: 1.2, taken_for: 2.0, noise: NOISE, seed: 3 }),
 ];
 
-/// A machine that calls a control once a millisecond.
+/// A machine that calls a rig once a millisecond.
 pub trait Ticking: Machine {
     /// Memory for the motions of a prediction, as they are at its `start`.
     fn motions(&mut self, start: impl FnOnce() -> Motions) -> &'static mut Motions;
 
-    /// Runs `control` for [`PERIODS`] from the interrupt, shows every record from the main loop, and gives the control
-    /// back.
-    fn ticks(&mut self, control: Control, show: impl FnMut(&mut Self, &Record)) -> Control;
+    /// Runs `rig` for [`PERIODS`] from the interrupt, shows every record from the main loop, and gives the rig back.
+    fn ticks(&mut self, rig: OnRig, show: impl FnMut(&mut Self, &Record)) -> OnRig;
 
     /// Instructions of a record's cost.
     fn cost(&self, record: &Record) -> Option<u32>;
@@ -63,7 +63,7 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
     for (name, rig) in RIGS {
         say::rig(machine, name, &rig);
         let (mut firsts, mut least_lead) = (Firsts::default(), f32::INFINITY);
-        let mut control = machine.ticks(Control::new(&rig, (table, flash), motions), |machine, record| {
+        let mut on_rig = machine.ticks(OnRig::new(&rig, (table, flash), motions), |machine, record| {
             costs.add(machine.cost(record));
             firsts.see(record);
             least_lead = least_lead.min(record.lead);
@@ -71,13 +71,13 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
                 say::record(machine, record);
             }
         });
-        let (estimate, damaged) = (control.bank.estimate(), control.damaged);
-        let stack = machine.stack(|| _ = control.tick(|| 0));
+        let (estimate, damaged) = (on_rig.control.bank.estimate(), on_rig.control.damaged);
+        let stack = machine.stack(|| _ = on_rig.tick(|| 0));
         say::stroke(machine, &Stroke { firsts, least_lead, estimate, damaged, stack });
-        motions = control.motions;
+        motions = on_rig.control.motions;
     }
     let instructions = costs.range().map(Range::ends);
-    let (stack, control, motions) = (machine.deepest_stack(), size_of::<Control>(), size_of::<Motions>());
+    let (stack, control, motions) = (machine.deepest_stack(), size_of::<OnRig>(), size_of::<Motions>());
     say::everything(machine, &Everything { instructions, stack, control, motions });
     true
 }
@@ -106,7 +106,7 @@ pub struct Everything {
     pub instructions: Option<(u32, u32)>,
     /// The deepest stack since the start (bytes).
     pub stack: Option<u32>,
-    /// What of it the control takes (bytes).
+    /// What of it the rig takes, the controller's objects and the unit (bytes).
     pub control: usize,
     /// What the prediction keeps, elsewhere (bytes).
     pub motions: usize,

@@ -6,8 +6,9 @@ use slipfit_core::table::TableError;
 use slipfit_firmware::machine::{Machine, print};
 
 use crate::{
-    control::{Record, Rig},
+    control::Record,
     program::{Everything, Stroke},
+    rig::Rig,
 };
 
 /// When something happened first (ms), if it did.
