@@ -58,9 +58,9 @@ pub(crate) fn cross_rows<S: Scalar>(a: &Vector3<S>, m: &Matrix3<S>) -> Matrix3<S
 /// [b]×·[a]× of the `outer` product a·bᵀ, or a sum of such products: a·bᵀ − (a·b)·1.
 #[inline(always)]
 pub(crate) fn twice_crossed<S: Scalar>(outer: &Matrix3<S>) -> Matrix3<S> {
-    let [[xx, ..], [_, yy, _], [.., zz]]: [[S; 3]; 3] = outer.data.0;
+    let [[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]]: [[S; 3]; 3] = outer.data.0;
     let trace = xx + yy + zz;
-    outer - Matrix3::from_diagonal(&Vector3::new(trace, trace, trace))
+    Matrix3::new(xx - trace, xy, xz, yx, yy - trace, yz, zx, zy, zz - trace)
 }
 
 impl<S: Scalar> Blocks<S> {

@@ -1,4 +1,4 @@
-//! Products of vectors and matrices of three, always inlined.
+//! Sums of matrices of three, and products of them and of vectors, always inlined.
 //!
 //! The library's own are calls wherever the compiler's budget for inlining is used up. A call takes a controller longer than the
 //! product, and lanes, whose instructions the library does not know of, many times as long. The sums have the library's order,
@@ -13,6 +13,26 @@ use crate::{Scalar, Vector3};
 pub(crate) fn columns<S: Scalar>(m: &Matrix3<S>) -> [Vector3<S>; 3] {
     let [x, y, z]: [[S; 3]; 3] = m.data.0;
     [Vector3::from(x), Vector3::from(y), Vector3::from(z)]
+}
+
+/// `a` + `b`.
+#[inline(always)]
+pub(crate) fn sum<S: Scalar>(a: &Matrix3<S>, b: &Matrix3<S>) -> Matrix3<S> {
+    let ([a, b, c], [d, e, f]) = (columns(a), columns(b));
+    Matrix3::from_columns(&[a + d, b + e, c + f])
+}
+
+/// `a` − `b`.
+#[inline(always)]
+pub(crate) fn difference<S: Scalar>(a: &Matrix3<S>, b: &Matrix3<S>) -> Matrix3<S> {
+    let ([a, b, c], [d, e, f]) = (columns(a), columns(b));
+    Matrix3::from_columns(&[a - d, b - e, c - f])
+}
+
+/// −`m`.
+#[inline(always)]
+pub(crate) fn opposite<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
+    mapped_entries(m, |entry| -entry)
 }
 
 /// `a` × `b`.

@@ -12,6 +12,7 @@
 //!
 //! Elements compose by type, as tuples and arrays, so that what a mechanism does not have leaves no code.
 
+mod abreast;
 mod alike;
 mod assembly;
 mod axes;
@@ -27,6 +28,7 @@ pub mod planar;
 mod reduced;
 pub mod spatial;
 
+pub use abreast::{AbreastBodies, LANES, Lanes, everywhere};
 pub use alike::{Alike, Shape};
 pub use assembly::Assembly;
 pub use axes::Axes;

@@ -8,7 +8,7 @@ use slipfit_core::{
     mechanism::{Differentiated, Mechanism},
     menu::SlideData,
     pose::Pose,
-    slide::{Abreast, Internal, Slide, abreast},
+    slide::{AbreastPins, Internal, Slide, abreast, abreast_pins},
 };
 
 use super::{laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
@@ -25,7 +25,7 @@ type Jacobians = <Usual<f64> as Mechanism<f64, 6>>::Jacobians;
 /// Pins side by side, and the proof that the machine has the instructions for them.
 pub struct SideBySide {
     instructions: V3,
-    pins: Abreast<Quad, ThreeHalves<Quad>, Regularised<Quad>>,
+    pins: AbreastPins<Quad, ThreeHalves<Quad>, Regularised<Quad>>,
 }
 
 impl SideBySide {
@@ -34,7 +34,7 @@ impl SideBySide {
     pub fn new(data: &SlideData<f64>, stick_band: f64) -> Option<Self> {
         let instructions = V3::try_new()?;
         match SlidingSlide::new(&abreast(data), Quad::splat(stick_band)) {
-            Ok(SlidingSlide::Usual(lanes)) => Some(Self { instructions, pins: Abreast::new(lanes) }),
+            Ok(SlidingSlide::Usual(lanes)) => Some(Self { instructions, pins: abreast_pins(&lanes) }),
             _ => None,
         }
     }
@@ -88,7 +88,7 @@ impl NullaryFnOnce for Forces<'_> {
     #[inline(always)]
     fn call(self) -> Self::Output {
         let Call { slide, pins, t, pose, velocity } = self.0;
-        slide.forces_abreast(&pins.pins, t, pose, velocity)
+        slide.forces_abreast(&pins.pins, &slide.elements().1, t, pose, velocity)
     }
 }
 
@@ -98,7 +98,7 @@ impl NullaryFnOnce for Derivatives<'_> {
     #[inline(always)]
     fn call(self) -> Self::Output {
         let Call { slide, pins, t, pose, velocity } = self.0;
-        slide.differentiated_abreast(&pins.pins, t, pose, velocity)
+        slide.differentiated_abreast(&pins.pins, &slide.elements().1, t, pose, velocity)
     }
 }
 

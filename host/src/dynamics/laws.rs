@@ -84,21 +84,22 @@ pub enum AnyNormal<S> {
     LankaraniNikravesh(LankaraniNikravesh<S, AnyElastic<S>>),
 }
 
-impl AnyNormal<f64> {
+impl<S: Scalar + PartialOrd> AnyNormal<S> {
     /// The law of `data`.
     ///
     /// # Errors
     /// [`ParameterError`] names the parameter that is not finite or out of bounds.
-    pub fn new(data: &NormalData) -> Result<Self, ParameterError<f64>> {
-        let [stiffness, exponent] = data.spring();
+    pub fn new(data: &NormalData) -> Result<Self, ParameterError<S>> {
+        let number = S::from_f64;
+        let [stiffness, exponent] = data.spring().map(number);
         let spring = AnyElastic::of(stiffness, exponent)?;
         Ok(match *data {
-            NormalData::Impact(data) => Self::Impact(Impact::new(spring, data.damping, data.depth)?),
+            NormalData::Impact(data) => Self::Impact(Impact::new(spring, number(data.damping), number(data.depth))?),
             NormalData::HuntCrossley(Rebound { restitution, speed, .. }) => {
-                Self::HuntCrossley(HuntCrossley::new(spring, restitution, speed)?)
+                Self::HuntCrossley(HuntCrossley::new(spring, number(restitution), number(speed))?)
             }
             NormalData::LankaraniNikravesh(Rebound { restitution, speed, .. }) => {
-                Self::LankaraniNikravesh(LankaraniNikravesh::new(spring, restitution, speed)?)
+                Self::LankaraniNikravesh(LankaraniNikravesh::new(spring, number(restitution), number(speed))?)
             }
         })
     }

@@ -13,9 +13,7 @@ use std::{
 
 use num_traits::{One, Zero};
 use pulp::{Simd, bytemuck};
-use slipfit_core::Scalar;
-#[cfg(target_arch = "x86_64")]
-use slipfit_core::slide::Lanes;
+use slipfit_core::{Scalar, system::Lanes};
 
 pub use number::Number;
 
@@ -36,11 +34,11 @@ fn instructions<V: Simd>() -> V {
     unsafe { NonNull::<V>::dangling().read() }
 }
 
-/// The four pins of a slide.
-#[cfg(target_arch = "x86_64")]
-impl Lanes<f64> for Pack<pulp::x86::V3, f64> {
+/// Four elements side by side.
+impl<V: Simd> Lanes<f64> for Pack<V, f64> {
     #[inline(always)]
     fn of(numbers: [f64; 4]) -> Self {
+        const { assert!(Self::LANES == 4, "a register holds four numbers") };
         Self::new(bytemuck::cast(numbers))
     }
 

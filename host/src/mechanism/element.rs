@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 use slipfit_core::{
-    ParameterError,
+    ParameterError, Scalar,
     drive::Drive,
     law::Regularised,
     mechanism::Way,
@@ -11,29 +11,24 @@ use slipfit_core::{
         Assembly, Bodies, Element, Elements, Law, Link,
         law::{Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
         planar::{self, PlanarTree},
-        spatial::{self, FreeBodies},
+        spatial::{About, Along, FreeBodies, Rim, Seat},
     },
 };
 
 use super::Laws;
 use crate::dynamics::laws::{AnyNormal, AnySliding};
 
-/// Any law along a contact's normal.
-type Normal = AnyNormal<f64>;
-
-/// Any friction law without internal variables.
-type Sliding = AnySliding<f64>;
-
 /// Any contact without internal variables.
-pub type AnyContact = Contact<Normal, Sliding>;
+pub type AnyContact<S = f64> = Contact<AnyNormal<S>, AnySliding<S>>;
 
 /// The contact of `laws`; true stick is stood for by the `stick_band` (m/s).
 ///
 /// # Errors
 /// [`ParameterError`] names the parameter that is not finite or out of bounds.
-pub fn contact(laws: &Laws, stick_band: f64) -> Result<AnyContact, ParameterError<f64>> {
+pub fn contact<S: Scalar + PartialOrd>(laws: &Laws, stick_band: f64) -> Result<AnyContact<S>, ParameterError<S>> {
     let normal = AnyNormal::new(&laws.contact)?;
-    let regularised = |coefficient, band| Ok(AnySliding::Regularised(Regularised::new(coefficient, band)?));
+    let regularised =
+        |coefficient, band| Ok(AnySliding::Regularised(Regularised::new(S::from_f64(coefficient), S::from_f64(band))?));
     let friction = match laws.friction {
         FrictionData::None => AnySliding::Frictionless,
         FrictionData::Regularised { coefficient, stick_band } => regularised(coefficient, stick_band)?,
@@ -45,16 +40,21 @@ pub fn contact(laws: &Laws, stick_band: f64) -> Result<AnyContact, ParameterErro
 /// What an `element` without internal variables does, without a look at laws and derivatives of contacts that are open. The kernel,
 /// whose steps all take the same number of instructions, must not choose so. A zero less in a sum changes at most the sign of a zero.
 #[inline(always)]
-fn act<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
+fn act<S, B, L, W, const D: usize, const R: usize>(
     element: &Element<L, W, R>,
-    (t, way): (f64, Way<f64>),
+    (t, way): (S, Way<S>),
     at: (&B, &B::Placed),
-    sum: &mut impl Assembly<f64, B, D>,
-) {
+    sum: &mut impl Assembly<S, B, D>,
+) where
+    S: Scalar + PartialOrd,
+    B: Bodies<S, D>,
+    L: Link<S, B, D, R>,
+    W: Law<S, R>,
+{
     let Element { link, law } = element;
     let view = link.view(at.0, at.1);
     let seen = link.seen(at, &view);
-    if law.gap(&seen.place) > 0.0 {
+    if law.gap(&seen.place) > S::zero() {
         return;
     }
     let (response, _) = law.response(t, &seen.place, &seen.rate, &W::fresh(), way);
@@ -74,9 +74,9 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarElement<const D: usize> {
     /// A hole around a pin.
-    Journal(Element<planar::Between<f64, D>, Journal<f64, Normal, Sliding>, 4>),
+    Journal(Element<planar::Between<f64, D>, Journal<f64, AnyNormal<f64>, AnySliding<f64>>, 4>),
     /// A point before a line.
-    Pad(Element<planar::Across<f64, D>, Pad<f64, Normal, Sliding>, 2>),
+    Pad(Element<planar::Across<f64, D>, Pad<f64, AnyNormal<f64>, AnySliding<f64>>, 2>),
     /// A torsion spring.
     Spring(Element<planar::Turning, Spring<f64>, 1>),
     /// A torque.
@@ -85,22 +85,19 @@ pub enum PlanarElement<const D: usize> {
     Pusher(Element<planar::Along<f64, D>, Pusher<Drive<f64>>, 2>),
 }
 
-/// A ring around a rod whose axes are turned or not.
-type Rim = spatial::Rim<f64, Option<Matrix3<f64>>>;
-
 /// An element in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SpatialElement {
+pub enum SpatialElement<S = f64> {
     /// A pin between walls.
-    Pin(Element<spatial::Seat<f64>, Pin<f64, Normal, Sliding>, 3>),
+    Pin(Element<Seat<S>, Pin<S, AnyNormal<S>, AnySliding<S>>, 3>),
     /// A point before a wall.
-    Wall(Element<spatial::Seat<f64>, Wall<f64, Normal, Sliding>, 3>),
-    /// A ring around a rod.
-    Ring(Element<Rim, Ring<f64, Normal, Sliding>, 3>),
+    Wall(Element<Seat<S>, Wall<S, AnyNormal<S>, AnySliding<S>>, 3>),
+    /// A ring around a rod whose axes are turned or not.
+    Ring(Element<Rim<S, Option<Matrix3<S>>>, Ring<S, AnyNormal<S>, AnySliding<S>>, 3>),
     /// A torque.
-    Motor(Element<spatial::About<f64>, Motor<Drive<f64>>, 1>),
+    Motor(Element<About<S>, Motor<Drive<S>>, 1>),
     /// A force.
-    Pusher(Element<spatial::Along<f64>, Pusher<Drive<f64>>, 2>),
+    Pusher(Element<Along<S>, Pusher<Drive<S>>, 2>),
 }
 
 impl<const D: usize> PlanarElement<D> {
@@ -159,7 +156,7 @@ impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
     fn accept(&self, _: f64, (): &(), (): &mut ()) {}
 }
 
-impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
+impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialElement<S> {
     type Internal = ();
 
     const STICKS: bool = false;
@@ -169,11 +166,11 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
     #[inline(always)]
     fn act(
         &self,
-        way: (f64, Way<f64>),
-        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
+        way: (S, Way<S>),
+        at: (&FreeBodies<S, N, D>, &<FreeBodies<S, N, D> as Bodies<S, D>>::Placed),
         (): &(),
         _: Option<&mut ()>,
-        sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
+        sum: &mut impl Assembly<S, FreeBodies<S, N, D>, D>,
     ) {
         match self {
             Self::Pin(element) => act(element, way, at, sum),
@@ -184,7 +181,7 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
         }
     }
 
-    fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
+    fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
 
-    fn accept(&self, _: f64, (): &(), (): &mut ()) {}
+    fn accept(&self, _: S, (): &(), (): &mut ()) {}
 }

@@ -15,6 +15,7 @@ use thiserror::Error;
 
 use super::{
     Mechanism, MountError, Mounts, Rest,
+    abreast::SideBySide,
     columns::{self, BodyMotion, JointedBodies, PlanarBodies, State},
     fixed_steps::FixedSteps,
     limits::Limits,
@@ -240,7 +241,7 @@ fn in_space<const N: usize, const D: usize>(
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let start = (bodies.nominal(), [0.0; D]);
     let system = System::new(bodies, &elements[..]);
-    let desk = OutOfLine::by(system, Wide::of_machine());
+    let desk = OutOfLine::by(system, SideBySide::new(mechanism, &bodies, &elements, limits.stick_band()));
     solve(mechanism, desk, start, &limits, by, State::spatial::<N>, columns::spatial)
 }
 

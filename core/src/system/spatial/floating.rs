@@ -14,7 +14,7 @@ use crate::{
     linear::{Blocks, Factors},
     pose::{Pose, ToBody, turn_rate},
     product::{cross, dot, mapped},
-    system::{Axes, Bodies, Jacobian},
+    system::{AbreastBodies, Axes, Bodies, Jacobian, Lanes, everywhere},
 };
 
 pub use pin::PinOfFrame;
@@ -95,7 +95,7 @@ pub struct Placed<S> {
 impl<S: Scalar> Placed<S> {
     /// The same in numbers of another type.
     #[inline(always)]
-    pub(crate) fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> Placed<T> {
+    fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> Placed<T> {
         Placed {
             to_body: self.to_body.cast(&number),
             displacement_b: mapped(&self.displacement_b, &number),
@@ -103,6 +103,20 @@ impl<S: Scalar> Placed<S> {
             velocity_z: number(self.velocity_z),
             rotation_b: mapped(&self.rotation_b, &number),
         }
+    }
+}
+
+impl<S: Scalar, L: Lanes<S>> AbreastBodies<S, L, 6> for Floating<S> {
+    type Lanes = Floating<L>;
+
+    #[inline(always)]
+    fn everywhere(placed: &Placed<S>) -> Placed<L> {
+        placed.cast(everywhere)
+    }
+
+    #[inline(always)]
+    fn summed(jacobian: &Blocks<L>) -> Blocks<S> {
+        jacobian.cast(L::sum)
     }
 }
 

@@ -14,8 +14,8 @@ pub mod tree;
 
 pub use bodies::{FreeBodies, InFrame, Placed, PlacedBody, Rigid};
 pub use driven::{About, Along};
+pub(crate) use floating::split;
 pub use floating::{Floating, PinOfFrame, Pull};
-pub(crate) use floating::{Placed as FloatingPlaced, split};
 pub use pair::Pair;
 pub use rim::{Parallel, Rim, TurnedAxes};
 pub use seat::{Port, Seat};

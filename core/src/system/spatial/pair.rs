@@ -15,7 +15,7 @@ use super::{
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
     linear::{cross_columns, cross_matrix, cross_rows, twice_crossed},
-    product::{cross, outer, product, times, transposed_times},
+    product::{cross, difference, opposite, outer, product, sum, times, transposed_times},
     system::Response,
 };
 
@@ -196,7 +196,7 @@ impl<S: Scalar> Pair<S> {
     #[inline(always)]
     fn by_velocity(&self, by_move: &Matrix3<S>) -> Change<S> {
         let [r, l] = &self.arms();
-        let of_other = if self.bodies[1].is_some() { -cross_rows(l, by_move) } else { Matrix3::zeros() };
+        let of_other = if self.bodies[1].is_some() { opposite(&cross_rows(l, by_move)) } else { Matrix3::zeros() };
         [*by_move, cross_rows(r, by_move), of_other]
     }
 
@@ -204,7 +204,7 @@ impl<S: Scalar> Pair<S> {
     #[inline(always)]
     fn by_displacement(&self, by_place: &Matrix3<S>) -> Change<S> {
         let [r, l] = &self.levers;
-        let of_other = if self.bodies[1].is_some() { -cross_rows(l, by_place) } else { Matrix3::zeros() };
+        let of_other = if self.bodies[1].is_some() { opposite(&cross_rows(l, by_place)) } else { Matrix3::zeros() };
         [*by_place, cross_rows(r, by_place), of_other]
     }
 
@@ -214,12 +214,15 @@ impl<S: Scalar> Pair<S> {
     fn by_place(&self, by_place: &Matrix3<S>, by_move: &Matrix3<S>) -> Change<S> {
         let [[r, _], [b, c]] = [&self.levers, &self.turning];
         let turned = cross_rows(&cross(b, r), by_move);
-        let turned = self.reach.map_or(turned, |reach| turned + cross_rows(b, &cross_rows(&reach, by_move)));
-        let by_place = if self.bodies[1].is_some() { by_place + cross_rows(c, by_move) } else { *by_place };
+        let turned = self.reach.map_or(turned, |reach| sum(&turned, &cross_rows(b, &cross_rows(&reach, by_move))));
+        let by_place = if self.bodies[1].is_some() { sum(by_place, &cross_rows(c, by_move)) } else { *by_place };
         let [by_move_of, of_one, of_other] = self.by_displacement(&by_place);
-        let of_other =
-            if self.bodies[1].is_some() { of_other - (cross_rows(&self.velocity, by_move) + turned) } else { of_other };
-        [by_move_of, of_one + turned, of_other]
+        let of_other = if self.bodies[1].is_some() {
+            difference(&of_other, &sum(&cross_rows(&self.velocity, by_move), &turned))
+        } else {
+            of_other
+        };
+        [by_move_of, sum(&of_one, &turned), of_other]
     }
 
     /// Adds the generalised forces of forces, and of moments besides if there are any, that change by the parts of motion.
@@ -232,7 +235,7 @@ impl<S: Scalar> Pair<S> {
         }
         if let Some(j) = self.bodies[1] {
             let (forces, moments) = column(0);
-            self.add_columns([j, VELOCITY], (-forces, moments.map(|moments| -moments)), matrix);
+            self.add_columns([j, VELOCITY], (opposite(&forces), moments.map(|moments| opposite(&moments))), matrix);
             self.add_columns([j, TURNING], column(2), matrix);
         }
     }
@@ -246,14 +249,14 @@ impl<S: Scalar> Pair<S> {
         matrix: &mut SMatrix<S, D, D>,
     ) {
         let [r, l] = &self.arms();
-        let with_moments = |torques: Matrix3<S>| moments.map_or(torques, |moments| torques + moments);
+        let with_moments = |torques: Matrix3<S>| moments.map_or(torques, |moments| sum(&torques, &moments));
         if let Some(i) = self.bodies[0] {
             add_block(matrix, [[i, VELOCITY], by], &forces);
             add_block(matrix, [[i, TURNING], by], &with_moments(cross_columns(r, &forces)));
         }
         if let Some(j) = self.bodies[1] {
-            add_block(matrix, [[j, VELOCITY], by], &-forces);
-            add_block(matrix, [[j, TURNING], by], &-with_moments(cross_columns(l, &forces)));
+            add_block(matrix, [[j, VELOCITY], by], &opposite(&forces));
+            add_block(matrix, [[j, TURNING], by], &opposite(&with_moments(cross_columns(l, &forces))));
         }
     }
 
@@ -263,21 +266,21 @@ impl<S: Scalar> Pair<S> {
     fn carry<const D: usize>(&self, push: &Vector3<S>, matrix: &mut SMatrix<S, D, D>) {
         let [r, l] = &self.levers;
         let arm = twice_crossed(&outer(push, r));
-        let arm = self.reach.map_or(arm, |reach| arm + cross_matrix(&cross(&reach, push)));
+        let arm = self.reach.map_or(arm, |reach| sum(&arm, &cross_matrix(&cross(&reach, push))));
         if let Some(i) = self.bodies[0] {
-            add_block(matrix, [[i, TURNING], [i, TURNING]], &-arm);
+            add_block(matrix, [[i, TURNING], [i, TURNING]], &opposite(&arm));
         }
         if let Some(j) = self.bodies[1] {
             let turned = cross_matrix(push);
             if let Some(i) = self.bodies[0] {
                 add_block(matrix, [[i, VELOCITY], [j, TURNING]], &turned);
                 add_block(matrix, [[i, TURNING], [j, TURNING]], &arm);
-                add_block(matrix, [[j, TURNING], [i, VELOCITY]], &-turned);
+                add_block(matrix, [[j, TURNING], [i, VELOCITY]], &opposite(&turned));
                 add_block(matrix, [[j, TURNING], [i, TURNING]], &twice_crossed(&outer(r, push)));
             }
-            add_block(matrix, [[j, VELOCITY], [j, TURNING]], &-turned);
+            add_block(matrix, [[j, VELOCITY], [j, TURNING]], &opposite(&turned));
             add_block(matrix, [[j, TURNING], [j, VELOCITY]], &turned);
-            add_block(matrix, [[j, TURNING], [j, TURNING]], &-twice_crossed(&outer(l, push)));
+            add_block(matrix, [[j, TURNING], [j, TURNING]], &opposite(&twice_crossed(&outer(l, push))));
         }
     }
 }

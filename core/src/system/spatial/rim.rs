@@ -6,7 +6,7 @@ use super::{FreeBodies, Pair, Placed, Seat};
 use crate::{
     SMatrix, SVector, Scalar, Vector2, Vector3,
     linear::length,
-    product::cross,
+    product::{cross, times},
     system::{Law, Link, Response, Seen, planar::left},
 };
 
@@ -70,7 +70,7 @@ impl<S: Scalar> View<S> {
         let (mut response, mut moment) = (*response, Matrix3::zeros());
         let (turning, force) = (self.pair.turning(), response.force);
         for (k, reach) in self.reach_by_place.iter().enumerate() {
-            let rate = response.impedance * cross(&turning, reach);
+            let rate = times(&response.impedance, &cross(&turning, reach));
             response.stiffness.data.0[k][0] += rate.x;
             response.stiffness.data.0[k][1] += rate.y;
             response.stiffness.data.0[k][2] += rate.z;

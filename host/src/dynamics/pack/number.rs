@@ -1,6 +1,8 @@
 //! The numbers of which a pack holds several, and what the instructions of a machine do with registers of them.
 
-use pulp::{Simd, bytemuck::Pod};
+use std::any::TypeId;
+
+use pulp::{Scalar256b, Simd, bytemuck::Pod};
 use slipfit_core::Scalar;
 
 /// Aligned as the registers of AVX2.
@@ -47,6 +49,13 @@ pub trait Number: Scalar + PartialOrd + Pod {
     fn root<V: Simd>(instructions: V, x: Self::Register<V>) -> Self::Register<V>;
 }
 
+/// Whether the library stands for instructions: its maximum is another than that of registers, which is the one that is meant, where a
+/// number is none.
+#[inline(always)]
+fn is_library<V: Simd>() -> bool {
+    V::IS_SCALAR || TypeId::of::<V>() == TypeId::of::<Scalar256b>()
+}
+
 impl Number for f32 {
     type Register<V: Simd> = V::f32s;
     type Aligned = Of64Bytes;
@@ -88,13 +97,12 @@ impl Number for f32 {
 
     #[inline(always)]
     fn larger<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
-        // Registers have the maximum that is meant; the library's of single numbers is another where one is not a number.
-        if V::IS_SCALAR { Self::chosen(v, x, y, [x, y]) } else { v.max_f32s(x, y) }
+        if is_library::<V>() { Self::chosen(v, x, y, [x, y]) } else { v.max_f32s(x, y) }
     }
 
     #[inline(always)]
     fn smaller<V: Simd>(v: V, x: V::f32s, y: V::f32s) -> V::f32s {
-        if V::IS_SCALAR { Self::chosen(v, y, x, [x, y]) } else { v.min_f32s(x, y) }
+        if is_library::<V>() { Self::chosen(v, y, x, [x, y]) } else { v.min_f32s(x, y) }
     }
 
     #[inline(always)]
@@ -145,13 +153,12 @@ impl Number for f64 {
 
     #[inline(always)]
     fn larger<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
-        // Registers have the maximum that is meant; the library's of single numbers is another where one is not a number.
-        if V::IS_SCALAR { Self::chosen(v, x, y, [x, y]) } else { v.max_f64s(x, y) }
+        if is_library::<V>() { Self::chosen(v, x, y, [x, y]) } else { v.max_f64s(x, y) }
     }
 
     #[inline(always)]
     fn smaller<V: Simd>(v: V, x: V::f64s, y: V::f64s) -> V::f64s {
-        if V::IS_SCALAR { Self::chosen(v, y, x, [x, y]) } else { v.min_f64s(x, y) }
+        if is_library::<V>() { Self::chosen(v, y, x, [x, y]) } else { v.min_f64s(x, y) }
     }
 
     #[inline(always)]

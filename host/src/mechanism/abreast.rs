@@ -1,0 +1,261 @@
+//! Contacts of bodies in space, four of a kind in the lanes of a register, where the desk spends most of its time.
+
+use std::array;
+
+use nalgebra::Matrix3;
+use pulp::{Scalar256b, Simd, WithSimd};
+use slipfit_core::{
+    SVector, Vector3,
+    mechanism::Differentiated,
+    pose::Pose,
+    system::{
+        Element, JacobiansOf, LANES, Lanes, System, everywhere,
+        law::{Axis, Pin, Ring, Wall},
+        spatial::{FreeBodies, Port, Rim, Seat},
+    },
+};
+
+use super::{
+    Laws, Mechanism,
+    element::{SpatialElement, contact},
+    source::joints_of_elements,
+};
+use crate::dynamics::{out_of_line::Contacts, pack::Pack};
+
+/// Four numbers.
+type Quad<V> = Pack<V, f64>;
+
+/// The bodies of a mechanism with what acts on them.
+type Free<'a, const N: usize, const D: usize> = System<FreeBodies<f64, N, D>, &'a [SpatialElement]>;
+
+/// Derivatives of its forces.
+type Jacobians<const N: usize, const D: usize> = JacobiansOf<f64, FreeBodies<f64, N, D>, D>;
+
+/// Contacts side by side by the widest instructions of the machine, or by what stands for them where it has none. The bits are the
+/// same.
+pub enum SideBySide<const N: usize, const D: usize> {
+    /// By AVX2.
+    #[cfg(target_arch = "x86_64")]
+    Wide(Quads<pulp::x86::V3, N, D>),
+    /// By those that every machine has.
+    Plain(Quads<Scalar256b, N, D>),
+}
+
+/// Contacts side by side, and the proof that the machine has the instructions `V` for them.
+pub struct Quads<V: Simd, const N: usize, const D: usize> {
+    instructions: V,
+    bodies: FreeBodies<Quad<V>, N, D>,
+    quads: Vec<SpatialElement<Quad<V>>>,
+    /// Those that do not make four.
+    rest: Vec<SpatialElement>,
+}
+
+/// What contacts that stand side by side have in common.
+#[derive(Clone, Copy, PartialEq)]
+struct Kind {
+    bodies: [Option<usize>; 2],
+    shape: Shape,
+    laws: Laws,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Shape {
+    Pin,
+    Wall(Axis),
+    Ring { is_turned: bool },
+}
+
+impl Kind {
+    /// That of an `element` with these `laws`; `None` unless it is a contact.
+    fn of(element: &SpatialElement, laws: Laws) -> Option<Self> {
+        let (seat, shape) = match element {
+            SpatialElement::Pin(one) => (one.link, Shape::Pin),
+            SpatialElement::Wall(one) => (one.link, Shape::Wall(one.law.axis)),
+            SpatialElement::Ring(one) => (one.link.seat, Shape::Ring { is_turned: one.link.axes.is_some() }),
+            SpatialElement::Motor(_) | SpatialElement::Pusher(_) => return None,
+        };
+        Some(Self { bodies: [seat.point.body, seat.from], shape, laws })
+    }
+
+    /// `four` elements of this kind as one. A `stick_band` (m/s) stands for true stick.
+    fn together<V: Simd>(&self, four: &[SpatialElement; LANES], stick_band: f64) -> Option<SpatialElement<Quad<V>>> {
+        let contact = contact::<Quad<V>>(&self.laws, stick_band).ok()?;
+        let [body, from] = self.bodies;
+        Some(match self.shape {
+            Shape::Pin => {
+                let pins =
+                    each(four, |element| if let SpatialElement::Pin(one) = element { Some(*one) } else { None })?;
+                let point = Port { body, lever: vector(&pins.map(|one| one.link.point.lever)) };
+                let gaps = array::from_fn(|k| Quad::<V>::of(pins.map(|one| one.law.gaps[k])));
+                SpatialElement::Pin(Element { link: Seat { point, from }, law: Pin { gaps, contact } })
+            }
+            Shape::Wall(axis) => {
+                let walls =
+                    each(four, |element| if let SpatialElement::Wall(one) = element { Some(*one) } else { None })?;
+                let point = Port { body, lever: vector(&walls.map(|one| one.link.point.lever)) };
+                let [sign, gap] = [walls.map(|one| one.law.sign), walls.map(|one| one.law.gap)].map(Quad::<V>::of);
+                SpatialElement::Wall(Element { link: Seat { point, from }, law: Wall { axis, sign, gap, contact } })
+            }
+            Shape::Ring { is_turned } => {
+                let rings =
+                    each(four, |element| if let SpatialElement::Ring(one) = element { Some(*one) } else { None })?;
+                let point = Port { body, lever: vector(&rings.map(|one| one.link.seat.point.lever)) };
+                let axes = is_turned.then(|| {
+                    let axes = rings.map(|one| one.link.axes.unwrap_or_default());
+                    Matrix3::from_fn(|i, j| Quad::<V>::of(axes.map(|axes| axes[(i, j)])))
+                });
+                let radius = Quad::<V>::of(rings.map(|one| one.link.radius));
+                let clearance = Quad::<V>::of(rings.map(|one| one.law.clearance));
+                let link = Rim { seat: Seat { point, from }, axes, radius };
+                SpatialElement::Ring(Element { link, law: Ring { clearance, contact } })
+            }
+        })
+    }
+}
+
+/// What `of` makes of each of `four` elements; `None` where it makes nothing of one.
+fn each<T>(four: &[SpatialElement; LANES], of: impl Fn(&SpatialElement) -> Option<T>) -> Option<[T; LANES]> {
+    let found: Vec<T> = four.iter().filter_map(of).collect();
+    found.try_into().ok()
+}
+
+/// Four vectors, each in its lane.
+fn vector<V: Simd>(four: &[Vector3<f64>; LANES]) -> Vector3<Quad<V>> {
+    Vector3::from_fn(|k, _| Quad::<V>::of(four.map(|vector| vector[k])))
+}
+
+impl<const N: usize, const D: usize> SideBySide<N, D> {
+    /// The `elements` of `mechanism` on its `bodies`; a `stick_band` (m/s) stands for true stick.
+    pub fn new(
+        mechanism: &Mechanism,
+        bodies: &FreeBodies<f64, N, D>,
+        elements: &[SpatialElement],
+        stick_band: f64,
+    ) -> Self {
+        let groups = Groups::of(mechanism, elements);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(instructions) = pulp::x86::V3::try_new() {
+            return Self::Wide(Quads::new(instructions, bodies, groups, stick_band));
+        }
+        Self::Plain(Quads::new(Scalar256b, bodies, groups, stick_band))
+    }
+}
+
+/// Elements by their kinds, and those that are no contacts.
+#[derive(Default)]
+struct Groups {
+    alike: Vec<(Kind, Vec<SpatialElement>)>,
+    others: Vec<SpatialElement>,
+}
+
+impl Groups {
+    /// The `elements` of `mechanism`.
+    fn of(mechanism: &Mechanism, elements: &[SpatialElement]) -> Self {
+        let mut groups = Self::default();
+        for (element, joint) in elements.iter().zip(joints_of_elements(mechanism)) {
+            match joint.and_then(|joint| Kind::of(element, joint.laws)) {
+                Some(kind) => match groups.alike.iter_mut().find(|(of, _)| *of == kind) {
+                    Some((_, alike)) => alike.push(*element),
+                    None => groups.alike.push((kind, vec![*element])),
+                },
+                None => groups.others.push(*element),
+            }
+        }
+        groups
+    }
+}
+
+impl<V: Simd, const N: usize, const D: usize> Quads<V, N, D> {
+    /// The elements of `groups` on the `bodies`.
+    fn new(instructions: V, bodies: &FreeBodies<f64, N, D>, groups: Groups, stick_band: f64) -> Self {
+        let (mut quads, mut rest) = (Vec::new(), groups.others);
+        for (kind, alike) in groups.alike {
+            let (fours, left) = alike.as_chunks::<LANES>();
+            for four in fours {
+                match kind.together(four, stick_band) {
+                    Some(quad) => quads.push(quad),
+                    None => rest.extend(four),
+                }
+            }
+            rest.extend(left);
+        }
+        Self { instructions, bodies: bodies.cast(everywhere), quads, rest }
+    }
+}
+
+impl<const N: usize, const D: usize> Contacts<f64, Free<'_, N, D>, D> for SideBySide<N, D> {
+    fn forces_by(
+        &self,
+        system: &Free<'_, N, D>,
+        _: &Jacobians<N, D>,
+        t: f64,
+        pose: &[Pose<f64>; N],
+        (): &(),
+        velocity: &SVector<f64, D>,
+        _: f64,
+    ) -> SVector<f64, D> {
+        let at = At { system, t, pose, velocity };
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Wide(quads) => Simd::vectorize(quads.instructions, Forces { quads, at }),
+            Self::Plain(quads) => Simd::vectorize(quads.instructions, Forces { quads, at }),
+        }
+    }
+
+    fn differentiated(
+        &self,
+        system: &Free<'_, N, D>,
+        t: f64,
+        pose: &[Pose<f64>; N],
+        (): &(),
+        velocity: &SVector<f64, D>,
+    ) -> Differentiated<f64, Jacobians<N, D>, D> {
+        let at = At { system, t, pose, velocity };
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Wide(quads) => Simd::vectorize(quads.instructions, Derivatives { quads, at }),
+            Self::Plain(quads) => Simd::vectorize(quads.instructions, Derivatives { quads, at }),
+        }
+    }
+}
+
+/// A motion at a time (s).
+struct At<'a, const N: usize, const D: usize> {
+    system: &'a Free<'a, N, D>,
+    t: f64,
+    pose: &'a [Pose<f64>; N],
+    velocity: &'a SVector<f64, D>,
+}
+
+/// Forces, to be computed with wide instructions. A type of its own, not a closure: that is not inlined here, and each number
+/// would be a call.
+struct Forces<'a, V: Simd, const N: usize, const D: usize> {
+    quads: &'a Quads<V, N, D>,
+    at: At<'a, N, D>,
+}
+
+/// Forces and their derivatives, likewise.
+struct Derivatives<'a, V: Simd, const N: usize, const D: usize> {
+    quads: &'a Quads<V, N, D>,
+    at: At<'a, N, D>,
+}
+
+impl<V: Simd, const N: usize, const D: usize> WithSimd for Forces<'_, V, N, D> {
+    type Output = SVector<f64, D>;
+
+    #[inline(always)]
+    fn with_simd<W: Simd>(self, _: W) -> Self::Output {
+        let (Quads { bodies, quads, rest, .. }, At { system, t, pose, velocity }) = (self.quads, self.at);
+        system.forces_abreast(&System::new(*bodies, &quads[..]), &&rest[..], t, pose, velocity)
+    }
+}
+
+impl<V: Simd, const N: usize, const D: usize> WithSimd for Derivatives<'_, V, N, D> {
+    type Output = Differentiated<f64, Jacobians<N, D>, D>;
+
+    #[inline(always)]
+    fn with_simd<W: Simd>(self, _: W) -> Self::Output {
+        let (Quads { bodies, quads, rest, .. }, At { system, t, pose, velocity }) = (self.quads, self.at);
+        system.differentiated_abreast(&System::new(*bodies, &quads[..]), &&rest[..], t, pose, velocity)
+    }
+}
