@@ -113,5 +113,9 @@ impl<B, E> System<B, E> {
 /// The sum over the lanes, number by number.
 #[inline(always)]
 fn summed<S: Scalar, L: Lanes<S>, const D: usize>(lanes: &SVector<L, D>) -> SVector<S, D> {
-    lanes.map(L::sum)
+    let mut sums = SVector::<S, D>::zeros();
+    for (sum, lanes) in sums.iter_mut().zip(lanes) {
+        *sum = lanes.sum();
+    }
+    sums
 }

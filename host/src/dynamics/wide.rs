@@ -137,9 +137,14 @@ impl<I: Dense> Dense for InWide<I> {
         differentiated: &Differentiated<S, M::Jacobians, D>,
     ) -> (StepOf<S, M, D>, [SVector<S, D>; 2]) {
         match Wide::of_machine().0 {
-            Some(instructions) => {
-                instructions.vectorize(DenseStep::<I, S, M, D> { mechanism, t, h, motion, differentiated, scheme: PhantomData })
-            }
+            Some(instructions) => instructions.vectorize(DenseStep::<I, S, M, D> {
+                mechanism,
+                t,
+                h,
+                motion,
+                differentiated,
+                scheme: PhantomData,
+            }),
             None => I::dense_step(mechanism, t, h, motion, differentiated),
         }
     }

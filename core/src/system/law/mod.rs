@@ -76,7 +76,12 @@ impl<N, F> Contact<N, F> {
         let (mut traction, internal) = self.friction.traction(internal, &way.sliding(sliding, pressed.force));
         // A law that sticks also does so without load, which counts for nothing.
         let zero = S::zero();
-        traction.impedance = traction.impedance.map(|x| pressed.force.select_gt(zero, x, zero));
+        let [own, mixed, other] = traction.impedance;
+        traction.impedance = [
+            pressed.force.select_gt(zero, own, zero),
+            pressed.force.select_gt(zero, mixed, zero),
+            pressed.force.select_gt(zero, other, zero),
+        ];
         (pressed, traction, internal)
     }
 

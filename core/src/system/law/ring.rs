@@ -22,6 +22,29 @@ pub struct Ring<S, N, F> {
     pub contact: Contact<N, F>,
 }
 
+/// Directions about a rod, across it.
+struct Around<S> {
+    normal: Vector2<S>,
+    tangent: Vector2<S>,
+}
+
+impl<S: Scalar> Around<S> {
+    /// Of numbers along the normal, around the rod and along it.
+    #[inline(always)]
+    fn vector(&self, outward: S, around: S, along: S) -> Vector3<S> {
+        let across = self.normal * outward + self.tangent * around;
+        Vector3::new(across.x, across.y, along)
+    }
+
+    /// Of what goes by motions along the normal, around the rod and along it.
+    #[inline(always)]
+    fn matrix(&self, outward: Vector3<S>, around: Vector3<S>, along: Vector3<S>) -> SMatrix<S, 3, 3> {
+        let x = outward * self.normal.x + around * self.tangent.x;
+        let y = outward * self.normal.y + around * self.tangent.y;
+        SMatrix::<S, 3, 3>::from_columns(&[x, y, along])
+    }
+}
+
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Ring<S, N, F> {
     type Internal = F::Internal;
 
@@ -60,23 +83,23 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Ring<S, N, F> {
             self.contact.meet(internal, way, [distance - self.clearance, outward], [around, rate[2]]);
         let (push, [turn, rub]) = (pressed.force, traction.force);
         let ([own, mixed, other], [by_turn, by_rub]) = (traction.impedance, traction.per_normal);
-        // Of numbers along the normal, around the rod and along it.
-        let vector = |outward: S, around: S, along: S| {
-            let across = normal * outward + tangent * around;
-            Vector3::new(across.x, across.y, along)
-        };
-        let matrix = |outward: Vector3<S>, around: Vector3<S>, along: Vector3<S>| {
-            let column = |k: usize| outward * normal[k] + around * tangent[k];
-            SMatrix::<S, 3, 3>::from_columns(&[column(0), column(1), along])
-        };
-        let pushed = |more: S| vector(more, by_turn * more, by_rub * more);
+        let rod = Around { normal, tangent };
         let damping = pressed.impedance(None);
-        let impedance = matrix(pushed(damping), vector(zero, own, mixed), vector(zero, mixed, other));
+        let impedance = rod.matrix(
+            rod.vector(damping, by_turn * damping, by_rub * damping),
+            rod.vector(zero, own, mixed),
+            rod.vector(zero, mixed, other),
+        );
         // Where the ring's centre moves aside, normal and tangent turn by 1/|ρ| (rad/m).
         let (faster, slower) = (per_distance * around, per_distance * outward);
-        let aside = vector(per_distance * turn, per_distance * push - own * slower, -(mixed * slower));
-        let stiffness = matrix(pushed(pressed.stiffness()), pushed(damping * faster) + aside, Vector3::zeros());
-        (steady(vector(-push, turn, rub), impedance, stiffness).moving(way.over, 2), internal)
+        let aside = rod.vector(per_distance * turn, per_distance * push - own * slower, -(mixed * slower));
+        let (more, faster) = (pressed.stiffness(), damping * faster);
+        let stiffness = rod.matrix(
+            rod.vector(more, by_turn * more, by_rub * more),
+            rod.vector(faster, by_turn * faster, by_rub * faster) + aside,
+            Vector3::zeros(),
+        );
+        (steady(rod.vector(-push, turn, rub), impedance, stiffness).moving(way.over, 2), internal)
     }
 
     #[inline(always)]

@@ -153,13 +153,12 @@ impl<S: Scalar> PlacedBody<S> {
     /// The same in numbers of another type.
     #[inline(always)]
     fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> PlacedBody<T> {
-        let vector = |v| mapped(v, &number);
         PlacedBody {
             to_frame: mapped_entries(&self.to_frame, &number),
-            displacement_w: vector(&self.displacement_w),
-            velocity_w: vector(&self.velocity_w),
-            rotation_b: vector(&self.rotation_b),
-            rotation_w: vector(&self.rotation_w),
+            displacement_w: mapped(&self.displacement_w, &number),
+            velocity_w: mapped(&self.velocity_w, &number),
+            rotation_b: mapped(&self.rotation_b, &number),
+            rotation_w: mapped(&self.rotation_w, &number),
         }
     }
 
@@ -239,7 +238,11 @@ impl<S: Scalar, L: Lanes<S>, const N: usize, const D: usize> AbreastBodies<S, L,
 
     #[inline(always)]
     fn summed(jacobian: &SMatrix<L, D, D>) -> SMatrix<S, D, D> {
-        jacobian.map(L::sum)
+        let mut sums = SMatrix::<S, D, D>::zeros();
+        for (sum, lanes) in sums.iter_mut().zip(jacobian) {
+            *sum = lanes.sum();
+        }
+        sums
     }
 }
 

@@ -5,6 +5,8 @@
 //! turns, b; and how fast the body that it is looked at from turns, c. With r and ℓ from either centre of mass to the point that is
 //! seen, and s from there to the one where forces act, the bodies move there by a + b × (r + s) − c × (ℓ + s) against each other, and
 //! a force f does work on the parts by f, (r + s) × f and −(ℓ + s) × f. The axes of the link carry s along.
+//!
+//! No closures here: they are not always inlined, and in lanes every number in one that is not would be a call.
 
 use nalgebra::Matrix3;
 
@@ -22,6 +24,24 @@ use crate::{
 /// How forces or moments change, negated, by the three parts of motion; by place these are displacement of the centres against each
 /// other, and the turns of both.
 type Change<S> = [Matrix3<S>; 3];
+
+/// The centre of mass of body `i` in the nominal pose (m).
+#[inline(always)]
+fn centre<S: Scalar, const N: usize, const D: usize>(bodies: &FreeBodies<S, N, D>, i: usize) -> Vector3<S> {
+    match bodies.bodies().get(i) {
+        Some(body) => body.centre_w,
+        None => Vector3::zeros(),
+    }
+}
+
+/// `torques` and `moments`, if there are any.
+#[inline(always)]
+fn with_moments<S: Scalar>(torques: Matrix3<S>, moments: Option<&Matrix3<S>>) -> Matrix3<S> {
+    match moments {
+        Some(moments) => sum(&torques, moments),
+        None => torques,
+    }
+}
 
 /// Two bodies as a link sees them.
 #[derive(Clone, Copy, Debug)]
@@ -50,13 +70,12 @@ impl<S: Scalar> Pair<S> {
         bodies: &FreeBodies<S, N, D>,
         placed: &Placed<S, N>,
     ) -> Self {
-        let centre = |body: usize| bodies.bodies().get(body).map_or(Vector3::zeros(), |body| body.centre_w);
         let (lever, none) = (seat.point.lever, Vector3::zeros());
         let of = seat.point.body.and_then(|body| Some((body, placed.bodies.get(body)?)));
         let (mut nominal, mut moved, mut arm, mut velocity, mut turns) = (lever, none, lever, none, none);
         if let Some((i, of)) = of {
             arm = times(&of.to_frame, &lever);
-            nominal += centre(i);
+            nominal += centre(bodies, i);
             moved = of.displacement_w + (arm - lever);
             (velocity, turns) = (of.velocity_w, of.rotation_w);
         }
@@ -72,7 +91,7 @@ impl<S: Scalar> Pair<S> {
                 turning: [turns, none],
             };
         };
-        nominal -= centre(j);
+        nominal -= centre(bodies, j);
         moved -= from.displacement_w;
         let axes = from.to_frame.transpose();
         Self {
@@ -93,7 +112,10 @@ impl<S: Scalar> Pair<S> {
     pub(super) fn in_axes(self, axes: &Matrix3<S>) -> Self {
         let rows = axes.transpose();
         Self {
-            axes: Some(self.axes.map_or(rows, |now| product(&rows, &now))),
+            axes: Some(match &self.axes {
+                Some(now) => product(&rows, now),
+                None => rows,
+            }),
             displacement: transposed_times(axes, &self.displacement),
             ..self
         }
@@ -108,25 +130,37 @@ impl<S: Scalar> Pair<S> {
     /// In the axes of the link, of what the frame has.
     #[inline(always)]
     fn seen(&self, vector: Vector3<S>) -> Vector3<S> {
-        self.axes.map_or(vector, |axes| times(&axes, &vector))
+        match &self.axes {
+            Some(axes) => times(axes, &vector),
+            None => vector,
+        }
     }
 
     /// In the axes of the frame, of what the link has.
     #[inline(always)]
     fn in_frame(&self, vector: &Vector3<S>) -> Vector3<S> {
-        self.axes.map_or(*vector, |axes| transposed_times(&axes, vector))
+        match &self.axes {
+            Some(axes) => transposed_times(axes, vector),
+            None => *vector,
+        }
     }
 
     /// In the axes of the frame, of what goes by vectors of the link.
     #[inline(always)]
     fn block(&self, entries: &Matrix3<S>) -> Matrix3<S> {
-        self.axes.map_or(*entries, |axes| product(&axes.transpose(), &product(entries, &axes)))
+        match &self.axes {
+            Some(axes) => product(&axes.transpose(), &product(entries, axes)),
+            None => *entries,
+        }
     }
 
     /// From either centre of mass to where forces act (m).
     #[inline(always)]
     fn arms(&self) -> [Vector3<S>; 2] {
-        self.levers.map(|lever| self.reach.map_or(lever, |reach| lever + reach))
+        match &self.reach {
+            Some(reach) => [self.levers[0] + reach, self.levers[1] + reach],
+            None => self.levers,
+        }
     }
 
     /// How fast the bodies move against each other where forces act, in the axes of the link (m/s).
@@ -167,12 +201,16 @@ impl<S: Scalar> Pair<S> {
         a: S,
         matrix: &mut SMatrix<S, D, D>,
     ) {
-        let [by_rate, by_place] = [&response.impedance, &response.stiffness].map(|entries| self.block(entries));
+        let [by_rate, by_place] = [self.block(&response.impedance), self.block(&response.stiffness)];
         let mut change = self.by_velocity(&by_rate);
         for (entry, by_place) in change.iter_mut().zip(self.by_place(&by_place, &by_rate)) {
             *entry += by_place * a;
         }
-        self.add(&change, moment.map(|moment| self.by_displacement(&(self.block(moment) * a))), matrix);
+        let moment = match moment {
+            Some(moment) => Some(self.by_displacement(&(self.block(moment) * a))),
+            None => None,
+        };
+        self.add(&change, moment, matrix);
         self.carry(&self.in_frame(&(response.force * a)), matrix);
     }
 
@@ -185,9 +223,12 @@ impl<S: Scalar> Pair<S> {
         damping: &mut SMatrix<S, D, D>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let [by_rate, by_place] = [&response.impedance, &response.stiffness].map(|entries| self.block(entries));
+        let [by_rate, by_place] = [self.block(&response.impedance), self.block(&response.stiffness)];
         self.add(&self.by_velocity(&by_rate), None, damping);
-        let moment = moment.map(|moment| self.by_displacement(&self.block(moment)));
+        let moment = match moment {
+            Some(moment) => Some(self.by_displacement(&self.block(moment))),
+            None => None,
+        };
         self.add(&self.by_place(&by_place, &by_rate), moment, stiffness);
         self.carry(&self.in_frame(&response.force), stiffness);
     }
@@ -214,7 +255,10 @@ impl<S: Scalar> Pair<S> {
     fn by_place(&self, by_place: &Matrix3<S>, by_move: &Matrix3<S>) -> Change<S> {
         let [[r, _], [b, c]] = [&self.levers, &self.turning];
         let turned = cross_rows(&cross(b, r), by_move);
-        let turned = self.reach.map_or(turned, |reach| sum(&turned, &cross_rows(b, &cross_rows(&reach, by_move))));
+        let turned = match &self.reach {
+            Some(reach) => sum(&turned, &cross_rows(b, &cross_rows(reach, by_move))),
+            None => turned,
+        };
         let by_place = if self.bodies[1].is_some() { sum(by_place, &cross_rows(c, by_move)) } else { *by_place };
         let [by_move_of, of_one, of_other] = self.by_displacement(&by_place);
         let of_other = if self.bodies[1].is_some() {
@@ -228,15 +272,22 @@ impl<S: Scalar> Pair<S> {
     /// Adds the generalised forces of forces, and of moments besides if there are any, that change by the parts of motion.
     #[inline(always)]
     fn add<const D: usize>(&self, forces: &Change<S>, moments: Option<Change<S>>, matrix: &mut SMatrix<S, D, D>) {
-        let column = |part: usize| (forces[part], moments.map(|moments| moments[part]));
+        let [by_move, of_one, of_other] = forces;
+        let [by_move_m, of_one_m, of_other_m] = match moments {
+            Some([a, b, c]) => [Some(a), Some(b), Some(c)],
+            None => [None; 3],
+        };
         if let Some(i) = self.bodies[0] {
-            self.add_columns([i, VELOCITY], column(0), matrix);
-            self.add_columns([i, TURNING], column(1), matrix);
+            self.add_columns([i, VELOCITY], by_move, by_move_m.as_ref(), matrix);
+            self.add_columns([i, TURNING], of_one, of_one_m.as_ref(), matrix);
         }
         if let Some(j) = self.bodies[1] {
-            let (forces, moments) = column(0);
-            self.add_columns([j, VELOCITY], (opposite(&forces), moments.map(|moments| opposite(&moments))), matrix);
-            self.add_columns([j, TURNING], column(2), matrix);
+            let by_move_m = match &by_move_m {
+                Some(moments) => Some(opposite(moments)),
+                None => None,
+            };
+            self.add_columns([j, VELOCITY], &opposite(by_move), by_move_m.as_ref(), matrix);
+            self.add_columns([j, TURNING], of_other, of_other_m.as_ref(), matrix);
         }
     }
 
@@ -245,18 +296,18 @@ impl<S: Scalar> Pair<S> {
     fn add_columns<const D: usize>(
         &self,
         by: [usize; 2],
-        (forces, moments): (Matrix3<S>, Option<Matrix3<S>>),
+        forces: &Matrix3<S>,
+        moments: Option<&Matrix3<S>>,
         matrix: &mut SMatrix<S, D, D>,
     ) {
         let [r, l] = &self.arms();
-        let with_moments = |torques: Matrix3<S>| moments.map_or(torques, |moments| sum(&torques, &moments));
         if let Some(i) = self.bodies[0] {
-            add_block(matrix, [[i, VELOCITY], by], &forces);
-            add_block(matrix, [[i, TURNING], by], &with_moments(cross_columns(r, &forces)));
+            add_block(matrix, [[i, VELOCITY], by], forces);
+            add_block(matrix, [[i, TURNING], by], &with_moments(cross_columns(r, forces), moments));
         }
         if let Some(j) = self.bodies[1] {
-            add_block(matrix, [[j, VELOCITY], by], &opposite(&forces));
-            add_block(matrix, [[j, TURNING], by], &opposite(&with_moments(cross_columns(l, &forces))));
+            add_block(matrix, [[j, VELOCITY], by], &opposite(forces));
+            add_block(matrix, [[j, TURNING], by], &opposite(&with_moments(cross_columns(l, forces), moments)));
         }
     }
 
@@ -266,7 +317,10 @@ impl<S: Scalar> Pair<S> {
     fn carry<const D: usize>(&self, push: &Vector3<S>, matrix: &mut SMatrix<S, D, D>) {
         let [r, l] = &self.levers;
         let arm = twice_crossed(&outer(push, r));
-        let arm = self.reach.map_or(arm, |reach| sum(&arm, &cross_matrix(&cross(&reach, push))));
+        let arm = match &self.reach {
+            Some(reach) => sum(&arm, &cross_matrix(&cross(reach, push))),
+            None => arm,
+        };
         if let Some(i) = self.bodies[0] {
             add_block(matrix, [[i, TURNING], [i, TURNING]], &opposite(&arm));
         }

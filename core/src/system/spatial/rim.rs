@@ -86,7 +86,10 @@ impl<S: Scalar, A: TurnedAxes<S>, const N: usize, const D: usize> Link<S, FreeBo
     #[inline(always)]
     fn view(&self, bodies: &FreeBodies<S, N, D>, placed: &Placed<S, N>) -> View<S> {
         let pair = Pair::new(&self.seat, bodies, placed);
-        let pair = self.axes.columns().map_or(pair, |axes| pair.in_axes(&axes));
+        let pair = match self.axes.columns() {
+            Some(axes) => pair.in_axes(&axes),
+            None => pair,
+        };
         let zero = S::zero();
         let apart = Vector2::new(pair.displacement.x, pair.displacement.y);
         let [distance, per_distance] = length(&apart);
