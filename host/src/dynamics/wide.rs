@@ -1,11 +1,8 @@
 //! A mechanism's own forces by wide instructions, where the machine has them. The bits are the same.
 
-use std::marker::PhantomData;
-
 use pulp::NullaryFnOnce;
 use slipfit_core::{
-    SVector, Scalar,
-    integrator::{Dense, Integrator, MotionOf, StepOf},
+    SVector,
     mechanism::{Differentiated, Mechanism},
 };
 
@@ -104,68 +101,5 @@ impl<M: Mechanism<f64, D>, const D: usize> NullaryFnOnce for Derivatives<'_, M, 
     fn call(self) -> Self::Output {
         let Self { mechanism, t, pose, internal, velocity } = self;
         mechanism.differentiated(t, pose, internal, velocity)
-    }
-}
-
-/// The scheme `I`, whose own sums and solutions take wide instructions where the machine has them.
-#[derive(Clone, Copy, Debug)]
-pub struct InWide<I>(I);
-
-impl<I: Integrator> Integrator for InWide<I> {
-    const NAME: &'static str = I::NAME;
-    const ORDER: u32 = I::ORDER;
-    const IMPLICIT: bool = I::IMPLICIT;
-
-    #[inline(always)]
-    fn step<S: Scalar, M: Mechanism<S, D>, const D: usize>(
-        mechanism: &M,
-        t: S,
-        h: S,
-        motion: &MotionOf<S, M, D>,
-    ) -> StepOf<S, M, D> {
-        I::step(mechanism, t, h, motion)
-    }
-}
-
-impl<I: Dense> Dense for InWide<I> {
-    #[inline(always)]
-    fn dense_step<S: Scalar, M: Mechanism<S, D>, const D: usize>(
-        mechanism: &M,
-        t: S,
-        h: S,
-        motion: &MotionOf<S, M, D>,
-        differentiated: &Differentiated<S, M::Jacobians, D>,
-    ) -> (StepOf<S, M, D>, [SVector<S, D>; 2]) {
-        match Wide::of_machine().0 {
-            Some(instructions) => instructions.vectorize(DenseStep::<I, S, M, D> {
-                mechanism,
-                t,
-                h,
-                motion,
-                differentiated,
-                scheme: PhantomData,
-            }),
-            None => I::dense_step(mechanism, t, h, motion, differentiated),
-        }
-    }
-}
-
-/// A step, likewise.
-struct DenseStep<'a, I, S: Scalar, M: Mechanism<S, D>, const D: usize> {
-    mechanism: &'a M,
-    t: S,
-    h: S,
-    motion: &'a MotionOf<S, M, D>,
-    differentiated: &'a Differentiated<S, M::Jacobians, D>,
-    scheme: PhantomData<I>,
-}
-
-impl<I: Dense, S: Scalar, M: Mechanism<S, D>, const D: usize> NullaryFnOnce for DenseStep<'_, I, S, M, D> {
-    type Output = (StepOf<S, M, D>, [SVector<S, D>; 2]);
-
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        let Self { mechanism, t, h, motion, differentiated, .. } = self;
-        I::dense_step(mechanism, t, h, motion, differentiated)
     }
 }

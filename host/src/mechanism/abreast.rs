@@ -259,3 +259,74 @@ impl<V: Simd, const N: usize, const D: usize> WithSimd for Derivatives<'_, V, N,
         system.differentiated_abreast(&System::new(*bodies, &quads[..]), &&rest[..], t, pose, velocity)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use pulp::Scalar256b;
+    use slipfit_core::{
+        SVector,
+        integrator::{Motion, Rodas4},
+        system::{Bodies, System},
+    };
+
+    use super::{Free, Groups, Quads, SideBySide};
+    use crate::{
+        dynamics::{
+            error_control::integrate,
+            out_of_line::{Contacts, OutOfLine},
+            wide::Wide,
+        },
+        mechanism::{Mechanism, limits::Limits, spatial},
+        scene::{SceneFile, shipped},
+    };
+
+    /// Times (s) and velocities at the ends of the steps of `mechanism`, its contacts computed as `contacts` does.
+    fn steps<C, const N: usize, const D: usize>(mechanism: &Mechanism, contacts: C) -> Vec<(f64, SVector<f64, D>)>
+    where
+        C: for<'a> Contacts<f64, Free<'a, N, D>, D>,
+    {
+        let bodies = spatial::bodies::<N, D>(mechanism).unwrap();
+        let limits = Limits::of(mechanism, |body| bodies.lever(body));
+        let elements = spatial::elements(mechanism, &mechanism.gaps_at(&[0.5]).unwrap(), limits.stick_band()).unwrap();
+        let zero = SVector::zeros();
+        let start = Motion { pose: bodies.nominal(), velocity: zero, acceleration: zero, internal: () };
+        let least_mass = bodies.least_mass();
+        let desk = OutOfLine::by(System::new(bodies, &elements[..]), contacts);
+        let mut steps = Vec::new();
+        let error = |step: &_, length| limits.error(step, length, least_mass);
+        integrate::<Rodas4, _, D>(&desk, start, 0.2, error, |t, motion, _| {
+            steps.push((t, motion.velocity));
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+        steps
+    }
+
+    /// The contacts that stand side by side, `quads` times four, move the bodies as those in turn do, but for the order of sums; and
+    /// what stands for a machine's instructions has their bits.
+    fn compare<const N: usize, const D: usize>(name: &str, quads: usize) {
+        let mechanism = SceneFile::parse(name, shipped(name).unwrap(), &[]).unwrap().mechanism.unwrap();
+        let bodies = spatial::bodies::<N, D>(&mechanism).unwrap();
+        let band = Limits::of(&mechanism, |body| bodies.lever(body)).stick_band();
+        let elements = spatial::elements(&mechanism, &mechanism.gaps_at(&[0.5]).unwrap(), band).unwrap();
+        let plain = Quads::new(Scalar256b, &bodies, Groups::of(&mechanism, &elements), band);
+        assert_eq!(plain.quads.len(), quads, "{name}");
+        assert_eq!(plain.rest.len() + 4 * quads, elements.len(), "{name}");
+        let plain = steps::<_, N, D>(&mechanism, SideBySide::Plain(plain));
+        let wide = steps::<_, N, D>(&mechanism, SideBySide::new(&mechanism, &bodies, &elements, band));
+        assert!(plain == wide, "{name}: {} and {} steps", plain.len(), wide.len());
+        let in_turn = steps::<_, N, D>(&mechanism, Wide::of_machine());
+        let most = in_turn.iter().fold(0.0f64, |most, (_, velocity)| most.max(velocity.amax()));
+        let ends = [&plain, &in_turn].map(|steps| steps.last().unwrap().1);
+        assert!((ends[0] - ends[1]).amax() < 1e-5 * most, "{name}: {} {}", ends[0], ends[1]);
+    }
+
+    #[test]
+    fn contacts_side_by_side_are_those_in_turn() {
+        compare::<1, 6>("linear-guide", 1);
+        compare::<1, 6>("hatch", 0);
+        compare::<2, 12>("telescopic-drawer", 4);
+    }
+}

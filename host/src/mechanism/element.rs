@@ -85,6 +85,9 @@ pub enum PlanarElement<const D: usize> {
     Pusher(Element<planar::Along<f64, D>, Pusher<Drive<f64>>, 2>),
 }
 
+/// A ring around a rod whose axes are turned or not.
+type AnyRing<S> = Element<Rim<S, Option<Matrix3<S>>>, Ring<S, AnyNormal<S>, AnySliding<S>>, 3>;
+
 /// An element in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpatialElement<S = f64> {
@@ -93,7 +96,7 @@ pub enum SpatialElement<S = f64> {
     /// A point before a wall.
     Wall(Element<Seat<S>, Wall<S, AnyNormal<S>, AnySliding<S>>, 3>),
     /// A ring around a rod whose axes are turned or not.
-    Ring(Element<Rim<S, Option<Matrix3<S>>>, Ring<S, AnyNormal<S>, AnySliding<S>>, 3>),
+    Ring(AnyRing<S>),
     /// A torque.
     Motor(Element<About<S>, Motor<Drive<S>>, 1>),
     /// A force.
