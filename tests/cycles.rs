@@ -117,7 +117,7 @@ fn the_guide_has_these_cycles() {
         let is_there = match name.as_str() {
             "hatch" | "linear_guide" | "telescopic_drawer" | "ball_rod" => {
                 let [low, high] = work.share().map(|percent| percent / 100.0);
-                firmware.contains(&format!("{low:.2} to {high:.2}"))
+                guide::prose("firmware").contains(&format!("{low:.2} to {high:.2}"))
             }
             "slide_ahead" => {
                 let fixed = of("slide_regularised").cycles();

@@ -170,7 +170,8 @@ fn the_guide_has_these_costs() {
         has(format!("| {} | {} | {stack} | {state} |", with_comma(instructions), with_comma(code)));
     }
     for rung in IN_SPACE {
-        has(format!(" {}", with_comma((instructions(rung) + 500) / 1000 * 1000)));
+        let thousands = with_comma((instructions(rung) + 500) / 1000 * 1000);
+        assert!(guide::prose("firmware").contains(&format!(" {thousands}")), "{rung}: {thousands}");
     }
     // The kernel beside the prediction ahead of the clock.
     let [kernel, ahead] = ["slide_regularised", "slide_ahead"].map(costs);
