@@ -1,5 +1,7 @@
 //! Free rigid bodies: poses, inertia and gravity.
 
+mod lanes;
+
 use nalgebra::Matrix3;
 
 use super::blocks::{TURNING, VELOCITY, add_block, add_column, add_turned, add_wrench};
@@ -8,8 +10,8 @@ use crate::{
     error::bounded,
     linear::{cross_columns, cross_matrix},
     pose::{Pose, turn_rate, turned_over},
-    product::{columns, cross, mapped, mapped_entries, product, times, transposed_times},
-    system::{AbreastBodies, Axes, Bodies, Lanes, everywhere},
+    product::{columns, cross, product, times, transposed_times},
+    system::{Axes, Bodies},
 };
 
 /// A rigid body in space.
@@ -88,21 +90,6 @@ impl<S: Scalar, const N: usize, const D: usize> FreeBodies<S, N, D> {
         self.bodies.iter().flat_map(|Rigid { mass, inertia_b: j, .. }| [*mass, *mass, *mass, j.x, j.y, j.z])
     }
 
-    /// The same in numbers of another type.
-    pub fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> FreeBodies<T, N, D> {
-        let body = |Rigid { mass, inertia_b, centre_w }: &Rigid<S>| Rigid {
-            mass: number(*mass),
-            inertia_b: mapped(inertia_b, &number),
-            centre_w: mapped(centre_w, &number),
-        };
-        FreeBodies {
-            bodies: self.bodies.each_ref().map(body),
-            gravity_w: mapped(&self.gravity_w, &number),
-            per_lever: self.per_lever.map(&number),
-            least_mass: number(self.least_mass),
-        }
-    }
-
     /// By which length (m) angles of body `i` are compared with displacements.
     pub fn lever(&self, i: usize) -> S {
         self.per_lever.get(6 * i + 3).map_or(S::one(), |per_lever| S::one() / *per_lever)
@@ -147,18 +134,6 @@ impl<S: Scalar> PlacedBody<S> {
             velocity_w: Vector3::zeros(),
             rotation_b: Vector3::zeros(),
             rotation_w: Vector3::zeros(),
-        }
-    }
-
-    /// The same in numbers of another type.
-    #[inline(always)]
-    fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> PlacedBody<T> {
-        PlacedBody {
-            to_frame: mapped_entries(&self.to_frame, &number),
-            displacement_w: mapped(&self.displacement_w, &number),
-            velocity_w: mapped(&self.velocity_w, &number),
-            rotation_b: mapped(&self.rotation_b, &number),
-            rotation_w: mapped(&self.rotation_w, &number),
         }
     }
 
@@ -226,24 +201,6 @@ impl<S: Scalar, const N: usize> Placed<S, N> {
 pub struct Placed<S, const N: usize> {
     /// Body by body.
     pub bodies: [PlacedBody<S>; N],
-}
-
-impl<S: Scalar, L: Lanes<S>, const N: usize, const D: usize> AbreastBodies<S, L, D> for FreeBodies<S, N, D> {
-    type Lanes = FreeBodies<L, N, D>;
-
-    #[inline(always)]
-    fn everywhere(placed: &Placed<S, N>) -> Placed<L, N> {
-        Placed { bodies: placed.bodies.each_ref().map(|body| body.cast(everywhere)) }
-    }
-
-    #[inline(always)]
-    fn summed(jacobian: &SMatrix<L, D, D>) -> SMatrix<S, D, D> {
-        let mut sums = SMatrix::<S, D, D>::zeros();
-        for (sum, lanes) in sums.iter_mut().zip(jacobian) {
-            *sum = lanes.sum();
-        }
-        sums
-    }
 }
 
 impl<S: Scalar, const N: usize, const D: usize> Bodies<S, D> for FreeBodies<S, N, D> {
