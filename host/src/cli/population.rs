@@ -69,7 +69,7 @@ pub(super) struct Arguments {
     /// Runs the opening (run.duration) instead of the whole stroke.
     #[arg(long)]
     opening: bool,
-    /// Greatest force (N) of the motor, or torque (N·m); units that need more from the ramp's start on count as malfunctioning.
+    /// Greatest force (N) of the motor, or torque (N·m), driving or braking; units that need more count as malfunctioning.
     #[arg(long, value_name = "N")]
     pub force_limit: Option<f64>,
     /// Correlation between any two gaps that the scene states by mean and standard deviation.

@@ -76,8 +76,8 @@ pub const SLIDE: &[(&str, &str)] = &[
     ),
     (
         "run.stroke",
-        "Travel at which a run ends. Of a mechanism it is the travel of the first drive's body, an angle in ° where that \
-         drive turns. Default: no limit; `--stroke` and the stroke's part of `slipfit run` need it.",
+        "Travel from the start at which a run ends. Of a mechanism it is the travel of the first drive's body, an angle in ° \
+         where that drive turns. Default: no limit; `--stroke` and the stroke's part of `slipfit run` need it.",
     ),
     (
         "run.error",
