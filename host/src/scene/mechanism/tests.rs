@@ -210,3 +210,12 @@ fn every_shipped_mechanism_is_read() {
         .filter(|(name, text)| parse(text, &[]).ok().unwrap_or_else(|| panic!("{name}")).mechanism.is_some());
     assert_eq!(mechanisms.count(), 8);
 }
+
+/// A guide that presses its slide in the drawn pose is not torn open by a body that starts turned.
+#[test]
+fn a_preload_is_no_torn_joint() {
+    let scene = shipped("slider-crank-guide").unwrap();
+    assert!(scene.contains("angle = "));
+    let preloaded = parse(scene, &["joint.guide.clearance=[-0.3, 0]"]);
+    assert!(preloaded.is_ok(), "{:?}", preloaded.err());
+}
