@@ -13,7 +13,7 @@ use slipfit_core::{
 };
 use slipfit_desk::{
     out_of_line::OutOfLine,
-    plant::{FreePlant, JointedPlant, PlanarPlant, Plant},
+    plant::{Allowed, FreePlant, JointedPlant, PlanarPlant, Plant, Reported},
     side_by_side::SideBySide,
     wide::Wide,
 };
@@ -326,7 +326,10 @@ fn solve<P: Plant<D>, const D: usize>(
     };
     let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
     let effort = match by.controller {
-        None => desk.by_desk(start, duration, &|step, length| limits.error(&step, length, least_mass), &mut keep)?,
+        None => {
+            let error = |step: Reported, length: f64| limits.error(&step, length, least_mass);
+            desk.by_desk(start, duration, Allowed { error: &error, depth: limits.place() }, &mut keep)?
+        }
         Some(ControllerSpec { step, integrator, .. }) => {
             desk.by_controller(start, duration, (integrator, step), &mut keep)?
         }
