@@ -29,7 +29,8 @@ use super::{
 };
 use crate::{
     dynamics::{
-        error_control::{Accelerations, Effort, Knot, Stopped, sampled},
+        effort::Effort,
+        error_control::{self, Accelerations, Knot, Stopped, sampled},
         film::chosen,
         looks::{end, looks, samples},
         outcome::{Instant as Looked, Observer, Outcome},
@@ -130,7 +131,7 @@ pub struct MechanismRun {
     /// Error of speed (m/s) that a step was allowed.
     pub tolerance: f64,
     /// Steps.
-    pub effort: Effort,
+    pub effort: error_control::Effort,
     /// Time that the integration alone took.
     pub integration: Duration,
 }
@@ -336,9 +337,21 @@ fn solve<P: Plant<D>, const D: usize>(
     };
     let integration = clock.elapsed();
     let end = end(&knots, |state| ends(&observers, state));
+    let times: Vec<f64> = knots.iter().map(|knot| knot.t).collect();
+    let at_knots: Vec<_> = knots.iter().map(|knot| drives_at(knot.t, &told(&knot.values))).collect();
+    let efforts = mechanism.drives.iter().enumerate().map(|(k, named)| {
+        let values = at_knots.iter().map(|drives| drives[k].force).collect();
+        Effort::new(times.clone(), values, mechanism.least_inertia(named) / named.drive.gain)
+    });
+    let efforts: Vec<_> = efforts.collect();
+    let told_at = |t: f64, motions: &[BodyMotion]| {
+        let mut drives = drives_at(t, motions);
+        drives.iter_mut().zip(&efforts).for_each(|(at, effort)| at.force = effort.at(t, at.force));
+        drives
+    };
     looks(&knots, end, |t, state| {
         let motions = told(&state);
-        for (observer, at) in observers.iter_mut().zip(drives_at(t, &motions)) {
+        for (observer, at) in observers.iter_mut().zip(told_at(t, &motions)) {
             observer.observe(at);
         }
     });
@@ -347,8 +360,9 @@ fn solve<P: Plant<D>, const D: usize>(
     let times = samples(end, by.every);
     for (t, state) in times.clone().zip(sampled(&knots, times)) {
         let motions = told(&state);
-        rows.push(mechanism.row(t, &motions));
-        for ((trajectory, named), at) in trajectories.iter_mut().zip(&mechanism.drives).zip(drives_at(t, &motions)) {
+        let drives = told_at(t, &motions);
+        rows.push(mechanism.row(t, &drives, &motions));
+        for ((trajectory, named), at) in trajectories.iter_mut().zip(&mechanism.drives).zip(drives) {
             let place = motions[named.body].displacement;
             trajectory.push(t, [at.vz, place.x, place.y, at.z], at.force);
         }
