@@ -5,6 +5,7 @@ use slipfit_core::drive::Drive;
 use super::{Action, Mechanism, MechanismRun, RunError, hash::hash, run};
 use crate::{
     dynamics::{
+        confirm::figures_agree,
         driven::{DriveKind, Driven, Motion},
         outcome::Verdict,
         simulate::SimulateError,
@@ -26,14 +27,14 @@ pub fn finer(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<Mechanis
     run(&Mechanism { run: spec, ..mechanism.clone() }, gaps, every)
 }
 
-/// The run of that unit, its verdicts undecided where the [`finer`] one says otherwise, and that one.
+/// The run of that unit, its verdicts undecided where the [`finer`] one differs in verdict or figures, and that one.
 ///
 /// # Errors
 /// See [`RunError`].
 pub fn confirmed(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<[MechanismRun; 2], RunError> {
     let (mut one, finer) = (run(mechanism, gaps, every)?, finer(mechanism, gaps, every)?);
-    for (outcome, better) in one.outcomes.iter_mut().zip(&finer.outcomes) {
-        if outcome.verdict != better.verdict {
+    for ((outcome, better), named) in one.outcomes.iter_mut().zip(&finer.outcomes).zip(&mechanism.drives) {
+        if !figures_agree(outcome, better, named.drive.command(better.end.t)) {
             outcome.verdict = Verdict::Undecided;
         }
     }
