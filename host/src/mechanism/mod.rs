@@ -8,12 +8,16 @@ pub mod closing;
 pub mod columns;
 mod drawing;
 mod driven;
+mod energy;
+pub mod feedback;
 mod freedom;
 mod gaps;
 mod hanging;
 mod hash;
 mod limits;
 pub mod mobility;
+#[cfg(test)]
+mod motion_tests;
 mod mounts;
 pub mod planar;
 mod run;
