@@ -166,7 +166,7 @@ pub struct Watched<F> {
 }
 
 /// Integrates `mechanism` from `start` at time 0 over `duration` (s) or until `accept` breaks, which sees the start and the
-/// motion at the end of each accepted step, with the step's accelerations. A step is accepted if `error`, which also sees its
+/// motion at the end of each accepted step, with the step's accelerations, and the contacts there. A step is accepted if `error`, which also sees its
 /// length (s), is at most 1, and if no contact that is open at its ends closes in between.
 ///
 /// # Errors
@@ -177,16 +177,16 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
     duration: f64,
     error: impl Fn(&StepOf<f64, M, D>, f64) -> f64,
     watched: Watched<impl Fn(&MotionOf<f64, M, D>, &mut Gaps)>,
-    mut accept: impl FnMut(f64, &MotionOf<f64, M, D>, Option<Accelerations<D>>) -> ControlFlow<()>,
+    mut accept: impl FnMut(f64, &MotionOf<f64, M, D>, Option<Accelerations<D>>, &Gaps) -> ControlFlow<()>,
 ) -> Result<Effort, Stopped> {
     let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
-    let mut flow = accept(t, &motion, None);
     let differentiated = |t: f64, motion: &MotionOf<f64, M, D>| {
         mechanism.differentiated(t, &motion.pose, &motion.internal, &motion.velocity)
     };
     let mut at_start = differentiated(t, &motion);
     let [mut before, mut after] = [Gaps::default(), Gaps::default()];
     (watched.gaps)(&motion, &mut before);
+    let mut flow = accept(t, &motion, None, &before);
     while t < duration && flow.is_continue() {
         let tried = effort.accepted + effort.refused;
         if tried.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
@@ -221,7 +221,7 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
         t = if length == duration - t { duration } else { t + length };
         motion = step.motion;
         at_start = differentiated(t, &motion);
-        flow = accept(t, &motion, Some(accelerations));
+        flow = accept(t, &motion, Some(accelerations), &before);
     }
     Ok(effort)
 }

@@ -184,7 +184,7 @@ macro_rules! plants {
                         },
                         depth: allowed.depth,
                     },
-                    see,
+                    |t, motion, accelerations, _| see(t, motion, accelerations),
                 )
             }
 

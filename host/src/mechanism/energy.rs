@@ -51,8 +51,13 @@ impl<'a> Energies<'a> {
             let speed = match named.action {
                 Action::Turns { .. } => at.vz,
                 Action::Pushes { axis } => {
-                    let lever = Rotation3::from_scaled_axis(motion.turn) * named.drive.point_b;
-                    (motion.velocity + motion.spin.cross(&lever)).dot(&Vector3::from(axis))
+                    let point = named.drive.point_b;
+                    let turned = if point == Vector3::zeros() {
+                        point
+                    } else {
+                        Rotation3::from_scaled_axis(motion.turn) * point
+                    };
+                    (motion.velocity + motion.spin.cross(&turned)).dot(&Vector3::from(axis))
                 }
             };
             let power = at.force * speed;
@@ -82,7 +87,11 @@ impl Mechanism {
     fn energy(&self, motions: &[BodyMotion]) -> f64 {
         let gravity = Vector3::from(self.gravity);
         let each = self.bodies.iter().zip(motions).map(|(body, motion)| {
-            let spin_b = Rotation3::from_scaled_axis(motion.turn).inverse() * motion.spin;
+            // In a plane axes of body and frame share the one that counts.
+            let spin_b = match self.planar {
+                true => motion.spin,
+                false => Rotation3::from_scaled_axis(motion.turn).inverse() * motion.spin,
+            };
             let turning: f64 = spin_b.iter().zip(body.inertia).map(|(spin, inertia)| inertia * spin * spin).sum();
             0.5 * (body.mass * motion.velocity.norm_squared() + turning) - body.mass * gravity.dot(&motion.displacement)
         });

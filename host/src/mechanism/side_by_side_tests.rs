@@ -42,7 +42,7 @@ where
         limits.error(&reported, length, least_mass)
     };
     let unwatched = Watched { gaps: |_: &_, _: &mut _| (), depth: 0.0 };
-    integrate::<Rodas4, _, D>(&desk, start, 0.2, error, unwatched, |t, motion, _| {
+    integrate::<Rodas4, _, D>(&desk, start, 0.2, error, unwatched, |t, motion, _, _| {
         steps.push((t, motion.velocity));
         ControlFlow::Continue(())
     })

@@ -5,7 +5,7 @@
 pub mod abreast;
 mod fixed_steps;
 
-use std::ops::ControlFlow;
+use std::{array, ops::ControlFlow};
 
 use slipfit_core::{
     SVector,
@@ -81,8 +81,9 @@ impl Run {
         let error = |step: &_, length| self.sensitivity.error(self.tolerance, step, length);
         let gaps = |motion: &SlideMotion, gaps: &mut Gaps| watch(slide, self.lever, motion, gaps);
         let watched = Watched { gaps, depth: self.tolerance.position };
-        integrate::<Rodas4, _, 6>(driven, rest, self.duration, error, watched, |t, motion, accelerations| {
-            see(t, motion, &slide.gaps(&motion.pose), accelerations)
+        integrate::<Rodas4, _, 6>(driven, rest, self.duration, error, watched, |t, motion, accelerations, gaps| {
+            let gaps = array::from_fn(|k| gaps.approaches.get(k).map_or(ABSENT, |approach| approach.gap));
+            see(t, motion, &gaps, accelerations)
         })
     }
 }
