@@ -97,7 +97,7 @@ fn slide_of() -> Kernel {
     let mut state = kernel.at_rest(Pose::nominal());
     let steps = 300;
     let seen = (0..steps).map(|_| {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
         let speed = state.motion.velocity.z;
         [kernel.mechanism().drive().force(kernel.time(state.steps), speed), speed]
     });
@@ -108,7 +108,7 @@ macro_rules! of_mechanisms {
     ($($module:ident, $name:literal, $drive:ident, $steps:literal;)*) => {[$({
         let (kernel, mut state) = mechanisms::$module::predictor(LEVEL).expect("the level is in bounds");
         let seen = (0..$steps).map(|_| {
-            kernel.step(&mut state);
+            let _ = kernel.step(&mut state);
             let (time, motion) = (kernel.time(state.steps), &state.motion);
             let found = mechanisms::$module::$drive(kernel.mechanism(), time, &motion.pose, &motion.velocity);
             [found.effort, found.speed]

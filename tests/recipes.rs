@@ -35,7 +35,7 @@ fn expected() -> String {
     let kernel = scene::predictor(2.5).expect("the level is in bounds");
     let mut state = kernel.at_rest(Pose::nominal());
     let hash = (0..200).fold(0xcbf2_9ce4_8422_2325, |hash: u64, _| {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
         let force = kernel.mechanism().drive().force(kernel.time(state.steps), state.motion.velocity.z);
         let add = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         force.to_bits().to_le_bytes().into_iter().fold(hash, add)
