@@ -108,7 +108,8 @@ fn freertos_has_the_forces_of_the_pc() {
     cross::require_emulator();
     let folder = Path::new(FOLDER).join("freertos");
     fs::create_dir_all(&folder).expect("the test's folder takes folders");
-    fs::write(folder.join("scene.h"), c_header(&described()).expect("an exponent of 1.5")).expect("it takes files");
+    fs::write(folder.join("scene.h"), c_header(&described(), "scene").expect("an exponent of 1.5"))
+        .expect("it takes files");
     let build = folder.join("build").display().to_string();
     let kernel = format!("-DFREERTOS_KERNEL={}", freertos().display());
     let scene = format!("-DSCENE={}", folder.display());

@@ -184,7 +184,8 @@ fn what_cannot_be_made_is_not_begun() {
     let folder = tempfile::tempdir().unwrap();
     let unit = folder.path().join("x.fmu");
     let run = |options: &[&str]| slipfit(folder.path(), &[&["fmu", "-o", "x.fmu"], options].concat());
-    refused(&run(&["--scalar", "f64"]), 2, "controller.scalar is f64", &unit);
+    refused(&run(&["--set", "controller.scalar=f64"]), 2, "controller.scalar is f64", &unit);
+    refused(&run(&["--scalar", "f32"]), 2, "unexpected argument '--scalar'", &unit);
     refused(&run(&["--core", "nowhere"]), 2, "--core: nowhere is not slipfit-core's folder", &unit);
     refused(&run(&["three-part-stack"]), 2, "the scene has neither a slide", &unit);
     refused(&run(&["--fmi", "1"]), 2, "--fmi", &unit);

@@ -154,7 +154,9 @@ mod tests {
                     // Over with the first whole sample, and a sample in ten is enough.
                     assert_eq!(watch.step(&limits(), &good), Verdict::Free);
                     let one_in_nine = (0..99).map(|i| if i % 9 == 8 { good } else { sample });
-                    assert!(one_in_nine.map(|sample| watch.step(&limits(), &sample)).all(|found| found != Verdict::NoData));
+                    assert!(
+                        one_in_nine.map(|sample| watch.step(&limits(), &sample)).all(|found| found != Verdict::NoData)
+                    );
                 }
                 // Too early to say, dead all the same.
                 let early = Sample { time: if sample.time.is_finite() { 0.1 } else { dead }, ..sample };

@@ -174,7 +174,10 @@ impl core::fmt::Display for MonitorError {
             Self::Table(error) => write!(f, "no table over tolerance level and time: {error}"),
             Self::Parameter(error) => error.fmt(f),
             Self::Mixed { level, between: [low, high] } => {
-                write!(f, "monitor.level is {level}, the table has no unit between its levels {low} and {high}, which end differently")
+                write!(
+                    f,
+                    "monitor.level is {level}, the table has no unit between its levels {low} and {high}, which end differently"
+                )
             }
         }
     }

@@ -68,8 +68,8 @@ pub(crate) use axis::Place;
 pub use axis::{Axis, AxisKind};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
-pub use nodes::{AnyNodes, ChannelKind, Encoding, F32Nodes, I16Nodes, Nodes, Values};
 use nodes::Range;
+pub use nodes::{AnyNodes, ChannelKind, Encoding, F32Nodes, I16Nodes, Nodes, Values};
 pub use scrubber::Scrubber;
 pub use slots::{RECORD_SIZE, Record, Slots, WORD_MOST, Word};
 #[cfg(feature = "embedded-storage")]

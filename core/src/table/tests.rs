@@ -2,9 +2,7 @@
 
 use std::vec::Vec;
 
-use super::{
-    AnyNodes, AxisKind, Encoding, Lookup, MotionVerdict, Table, TableError, example, layout, verdict_bytes,
-};
+use super::{AnyNodes, AxisKind, Encoding, Lookup, MotionVerdict, Table, TableError, example, layout, verdict_bytes};
 
 const PLANE: [(AxisKind, u32, f32); 2] = [(AxisKind::Level, 3, 1.0), (AxisKind::Time, 4, 0.5)];
 const SPACE: [(AxisKind, u32, f32); 3] =
