@@ -21,7 +21,9 @@ pub enum NameError {
     #[error("a crate is not named {0:?}; allowed are a lower-case letter, then such letters, digits, - and _")]
     Characters(String),
     /// A keyword of Rust, a crate that it depends on, or a name that Windows reserves.
-    #[error("a crate is not named {0:?}, which is a keyword of Rust, a crate that it depends on or a file name of Windows")]
+    #[error(
+        "a crate is not named {0:?}, which is a keyword of Rust, a crate that it depends on or a file name of Windows"
+    )]
     Taken(String),
 }
 
