@@ -147,7 +147,7 @@ fn period<I: Integrator>(body: OnBelt, h: f64, duration: f64) -> f64 {
     state.motion.velocity.x = belt;
     let (mut before, mut turns) = (belt, Vec::new());
     while kernel.time(state.steps) < duration {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
         let v = state.motion.velocity.x;
         // The body turns back once a period, while it slides: a crossing that is smooth in time.
         if before > 0.0 && v <= 0.0 {

@@ -6,7 +6,7 @@
 //! must choose the steps: where a contact closes or opens within a step it is worth little. Laws with internal
 //! variables, such as exact friction, have no derivative that these methods could use.
 
-use super::{Motion, MotionOf, Step, StepOf};
+use super::{Motion, MotionOf, Step, StepOf, refuse_sticking};
 use crate::{
     SVector, Scalar,
     mechanism::{Differentiated, Mechanism},
@@ -70,6 +70,13 @@ impl<S: Scalar, const D: usize> Part<S, D> {
     pub fn plus(&self, other: &Self, weight: S) -> Self {
         let Self { place, velocity } = other;
         Self { place: self.place + place * weight, velocity: self.velocity + velocity * weight }
+    }
+
+    /// `self` where `condition` > 0, else nothing, even if `self` is not finite: a weight of 0 would make that NaN.
+    #[inline(always)]
+    pub fn only_if(&self, condition: S) -> Self {
+        let or_zero = |x: S| condition.select_gt(S::zero(), x, S::zero());
+        Self { place: self.place.map(or_zero), velocity: self.velocity.map(or_zero) }
     }
 
     /// The sum of `parts` weighted by `weights`, of which zeros cost nothing.
@@ -138,6 +145,7 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
         gamma: f64,
         differentiated: Differentiated<S, M::Jacobians, D>,
     ) -> (Self, Evaluation<S, D>) {
+        refuse_sticking::<S, M, D>();
         let (_, velocity, _) = from;
         let Differentiated { force, per_time, jacobians } = differentiated;
         let a = h * S::from_f64(gamma);
