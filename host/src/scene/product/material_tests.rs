@@ -16,8 +16,7 @@ fn theory_of(product: &Product) -> Theory {
 
 /// Lowest and highest (mm).
 fn worst(theory: &Theory, measure: usize) -> [f64; 2] {
-    let found = theory.worst_cases[measure];
-    found.searched.unwrap_or(found.linear).map(|x| x * 1e3)
+    theory.worst_cases[measure].range.map(|x| x * 1e3)
 }
 
 fn check_worst(theory: &Theory, measure: usize, expected: [f64; 2]) {

@@ -102,7 +102,7 @@ pub const PRODUCT: &[(&str, &str)] = &[
     (
         "*.cost.reciprocal",
         "B of the cost `fixed` + B·(`at`/t)^`power`. t is half the distance of the limits, or the width of a zone. Each \
-         process has either `reciprocal` or `exponential`.",
+         process has `reciprocal`, `exponential`, or `fixed` alone: a price for any tolerance that it holds.",
     ),
     ("*.cost.exponential", "B of the cost `fixed` + B·exp(−t/`at`), with t as for `reciprocal`."),
     (
