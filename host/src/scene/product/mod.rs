@@ -61,6 +61,8 @@ mod dimension_tests;
 mod fit;
 #[cfg(test)]
 mod geometry_tests;
+#[cfg(test)]
+mod judgement_tests;
 mod mate;
 mod material;
 #[cfg(test)]
