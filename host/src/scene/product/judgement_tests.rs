@@ -215,7 +215,7 @@ fn a_small_lot_far_away_is_where_it_is() {
 }
 
 /// E min(k·x², A) of a normal x, by Simpson's rule.
-fn capped(mean: f64, deviation: f64, coefficient: f64, cap: f64) -> f64 {
+pub(super) fn capped(mean: f64, deviation: f64, coefficient: f64, cap: f64) -> f64 {
     const STEPS: usize = 20_000;
     let step = 20.0 / STEPS as f64;
     let at = |i: usize| {
@@ -229,10 +229,11 @@ fn capped(mean: f64, deviation: f64, coefficient: f64, cap: f64) -> f64 {
 
 #[test]
 fn no_unit_costs_more_than_its_repair() {
-    for (repair, mean) in [(2.0, 0.1), (4.0, 0.0), (8.0, -0.2), (1000.0, 0.1)] {
+    for (repair, mean) in [(2.0, 0.1), (4.0, 0.0), (8.0, -0.2), (1000.0, 0.1), (f64::INFINITY, 0.1)] {
+        let limited = if repair.is_finite() { format!(", repair = {repair}") } else { String::new() };
         let text = scene(
             &[("d", &format!("{}", 10.0 + mean), "0.3")],
-            &[&format!("is = \"d\"\nlower = 9.6\nupper = 10.4\nloss = {{ cost = 50, repair = {repair} }}")],
+            &[&format!("is = \"d\"\nlower = 9.6\nupper = 10.4\nloss = {{ cost = 50{limited} }}")],
         );
         let (_, measures) = analysed(&text, 200_000);
         let loss = measures[0].loss.unwrap();

@@ -169,7 +169,9 @@ impl Local {
             return;
         }
         let cost = |loosened: &[usize]| -> f64 {
-            let scaled = (0..self.rows.len()).map(|row| {
+            // What is loosened comes last, so that of rows that are alike those that still bind have the price.
+            let held = (0..self.rows.len()).filter(|row| !loosened.contains(row));
+            let scaled = held.chain(loosened.iter().copied()).map(|row| {
                 let more = if loosened.contains(&row) { PRICED * reliefs[row] } else { 0.0 };
                 // A figure that binds is taken to be 1.
                 let usage = self.rows[row].usage(&found.solution.tolerances);
