@@ -1,6 +1,6 @@
 //! Worst cases, contributors, undefined measures and far lots of scenes against closed forms.
 
-use super::tests::{close, product_of};
+use super::tests::{close, parse, product_of};
 use crate::tolerance::{
     analysis::{Analysis, analyse, theory},
     counting::study::{Settings, StudyError},
@@ -241,5 +241,26 @@ fn no_unit_costs_more_than_its_repair() {
         let error = loss.mean.error.unwrap();
         assert!((loss.mean.value - expected).abs() < 4.0 * error, "{repair}: {loss:?} {expected}");
         assert!(error < 0.02 * expected && loss.mean.value <= repair);
+    }
+}
+
+/// Half the tolerance of a normal distribution is one standard deviation or more, wherever that is said.
+#[test]
+fn sigma_has_the_bounds_that_are_documented() {
+    let text = |of_all: &str, own: &str| {
+        format!(
+            "[tolerance]\nsigma = {of_all}\n[[dimension]]\nname = \"d\"\nvalue = 1\ntolerance = 0.1\n{own}[[measure]]\nname = \"m\"\nis = \"d\"\n"
+        )
+    };
+    for (of_all, own, allowed) in [
+        ("3", "sigma = 0.9\n", false),
+        ("3", "sigma = 1\n", true),
+        ("3", "sigma = 100\n", true),
+        ("3", "sigma = 101\n", false),
+        ("3", "sigma = 0.1\ndistribution = \"truncated-normal\"\n", true),
+        ("0.9", "", false),
+        ("1", "", true),
+    ] {
+        assert_eq!(parse(&text(of_all, own), &[]).is_ok(), allowed, "{of_all} {own}");
     }
 }

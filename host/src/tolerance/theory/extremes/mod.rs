@@ -12,10 +12,7 @@ use rayon::prelude::*;
 
 use self::{climb::Climb, field::Field};
 use super::derivative::evaluate;
-use crate::tolerance::model::{
-    Model, Variation,
-    lanes::{LANES, Lanes},
-};
+use crate::tolerance::model::{Model, Variation, lanes::Lanes};
 
 /// Places on a line that are looked at: of a scalar, of a zone, of all contributors together.
 const OF_SCALAR: [f64; 6] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0, 1.0];
@@ -115,7 +112,7 @@ impl Room {
         Self { variables: vec![Lanes::ZERO; model.variables()], measures: vec![Lanes::ZERO; model.measures.len()] }
     }
 
-    /// Calls `each` with lane and measures of every change of `base`, up to [`LANES`] of them.
+    /// Calls `each` with lane and measures of every change of `base`, up to one a lane.
     fn evaluate(&mut self, model: &Model, base: &[f64], changes: &[Change], mut each: impl FnMut(usize, &[Lanes])) {
         self.variables.iter_mut().zip(base).for_each(|(variable, value)| *variable = Lanes::splat(*value));
         for (lane, change) in changes.iter().enumerate() {
