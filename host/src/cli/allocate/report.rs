@@ -41,6 +41,8 @@ pub struct Report {
     pub tolerances: Vec<Chosen>,
     /// What was required.
     pub requirements: Vec<Required>,
+    /// What the cost falls by if all requirements that bind are loosened at once, where several do.
+    pub price_together: Option<f64>,
     /// What the full model says of every measure with limits.
     pub check: Vec<Measured>,
     /// Units that were drawn for it.
@@ -188,6 +190,7 @@ impl Report {
             cost_before: product.costed.iter().map(before).sum(),
             tolerances: chosen.collect(),
             requirements: required.collect(),
+            price_together: found.together,
             check: checked.measures.iter().map(|of| Measured::new(&product.model, of, checked.units)).collect(),
             samples: checked.units,
             good: checked.good.map(|good| good.value),

@@ -3,7 +3,7 @@
 use super::report::{Measured, Report, Required};
 use crate::{
     cli::text_table,
-    show::number::{fixed, or_dash, per_million, three_digits},
+    show::number::{fixed, or_dash, per_million, percent, three_digits},
     tolerance::{
         allocate::{requirement::Row, search::MET},
         model::Model,
@@ -37,11 +37,14 @@ pub fn tables(report: &Report) -> String {
     let rows: Vec<_> = report.requirements.iter().map(requirement).collect();
     text += "\n";
     text += &text_table(&["requirement", "found", "allowed", "price", "of"], &rows);
-    text += "price: what the cost falls by\n\n";
+    text += "price: what the cost falls by\n";
+    if let Some(price) = report.price_together {
+        text += &format!("all that bind, loosened together: {}\n", three_digits(price));
+    }
+    text += "\n";
     let rows: Vec<_> = report.check.iter().map(measure).collect();
     if let Some(share) = &report.malfunctions {
-        let [found, least, most] =
-            [share.share, share.interval[0], share.interval[1]].map(|share| fixed(100.0 * share, 2));
+        let [found, least, most] = [share.share, share.interval[0], share.interval[1]].map(|share| percent(share, 2));
         text += &format!("Check by other simulated units: {found} % malfunction ({least} to {most} %)\n");
     }
     if !rows.is_empty() {

@@ -14,7 +14,7 @@ use crate::{
         subject::Subject,
     },
     scene::Scene,
-    show::number::{fixed, level, or_dash},
+    show::number::{self, fixed, level, or_dash},
 };
 
 /// Drivers that are listed.
@@ -146,8 +146,8 @@ pub fn strongest(drivers: &[Driver], most: usize) -> String {
 
 /// A share with its interval.
 pub fn percent(share: &Share) -> String {
-    let [low, high] = share.interval.map(|end| fixed(end * 100.0, 2));
-    format!("{} %  ({low} to {high} %)", fixed(share.share * 100.0, 2))
+    let [low, high] = share.interval.map(|end| number::percent(end, 2));
+    format!("{} %  ({low} to {high} %)", number::percent(share.share, 2))
 }
 
 /// Which levels do what, as ranges.

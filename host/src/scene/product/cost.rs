@@ -19,7 +19,7 @@
 //! malfunction = 0.01           # share of units that crawl, jam, or need more than force_limit (N)
 //! ```
 //!
-//! A tolerance t costs fixed + reciprocal · (at/t)^power, or fixed + exponential · exp(−t/at). `at` is 1 mm (or 1°) and `power`
+//! A tolerance t costs fixed, fixed + reciprocal · (at/t)^power, or fixed + exponential · exp(−t/at). `at` is 1 mm (or 1°) and `power`
 //! 1 unless they are stated. `range` has the tightest and the widest tolerance that the process holds; with `step` only every
 //! so often between, with `grades` the standard tolerances of ISO 286 instead.
 
@@ -180,7 +180,7 @@ fn stated(
 
 /// Reads a process; `size` (m) is what grades are for.
 fn process(table: &Field, quantity: &Quantity, size: Option<f64>) -> Result<Process, SceneError> {
-    const ALLOWED: &str = "reciprocal = B: B·(at/t)^power, or exponential = B: B·exp(−t/at)";
+    const ALLOWED: &str = "fixed = A alone, reciprocal = B: B·(at/t)^power, or exponential = B: B·exp(−t/at)";
     table.expect_table()?;
     let number =
         |key: &str, quantity, otherwise| table.get(key).map_or(Ok(otherwise), |f: Field| f.to_number(quantity));
@@ -193,6 +193,10 @@ fn process(table: &Field, quantity: &Quantity, size: Option<f64>) -> Result<Proc
         (None, Some(factor)) => Law::Exponential { fixed, factor: factor.to_number(&MONEY)?, unit },
         (Some(_), Some(second)) => {
             return Err(second.error(Problem::Unsupported { what: "a cost by two laws".into() }, ALLOWED));
+        }
+        // A fixed price, whatever the tolerance.
+        (None, None) if table.get("fixed").is_some() && ["at", "power"].iter().all(|key| table.get(key).is_none()) => {
+            Law::Reciprocal { fixed, factor: 0.0, unit, power: 1.0 }
         }
         (None, None) => {
             return Err(table.error(Problem::Missing(format!("{}.reciprocal", table.key)), ALLOWED));

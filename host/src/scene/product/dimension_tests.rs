@@ -126,7 +126,7 @@ fn dimensions_are_numbers_and_forces_too() {
     let [drag, twice, _] = &report.measures[..] else { panic!("three measures") };
     assert_eq!([drag.unit, twice.unit], ["N", "N/mm"]);
     close(drag.nominal.unwrap(), 1.575, 1e-12);
-    close(drag.worst_case_vertices.unwrap()[1], 0.18 * (2.2 * 5.5 + 0.55), 1e-12);
+    close(drag.worst_case[1], 0.18 * (2.2 * 5.5 + 0.55), 1e-12);
     close(twice.rss.unwrap().tolerance, 0.4, 1e-9);
     // The middle of every tolerance is its nominal value: ∂drag/∂spring is friction · travel.
     let slopes =

@@ -61,6 +61,8 @@ mod dimension_tests;
 mod fit;
 #[cfg(test)]
 mod geometry_tests;
+#[cfg(test)]
+mod judgement_tests;
 mod mate;
 mod material;
 #[cfg(test)]
@@ -289,7 +291,8 @@ fn defaults(root: &Field) -> Result<Defaults, SceneError> {
         defaults.rule = rule(&field)?;
     }
     if let Some(field) = table.get("sigma") {
-        defaults.sigma = field.to_number(&SIGMA)?;
+        // Below 1 a third of the units of a normal distribution would be outside.
+        defaults.sigma = field.to_number(&Quantity { range: [1.0, SIGMA.range[1]], ..SIGMA })?;
     }
     Ok(defaults)
 }

@@ -97,7 +97,7 @@ impl<'a> LimitState<'a> {
         let inside = self.draw.is_inside(scores).0;
         std::array::from_fn(|lane| match margins[lane] {
             _ if !inside[lane] => f64::INFINITY,
-            margin if margin.is_nan() => undefined,
+            margin if !margin.is_finite() => undefined,
             margin => margin,
         })
     }

@@ -7,7 +7,10 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use super::ZoneRule;
+use super::{
+    ZoneRule,
+    extent::{along, steepest},
+};
 use crate::tolerance::{
     distribution::normal::tail,
     theory::quadrature::{Node, SIGMA_DISC, SIGMA_ZONE, piece},
@@ -32,9 +35,6 @@ pub struct Nested {
     /// ρ, more than 0 and up to 1.
     pub tilts: f64,
 }
-
-/// Points on the rim of a disc that stand for all.
-const RIM: usize = 24;
 
 impl Nested {
     /// How many variables it has.
@@ -95,9 +95,24 @@ impl Nested {
         (width * place).max((width - tilted) * place + tilted * tilts)
     }
 
-    /// Corners of the zone, or points on its rims.
-    pub fn corners(&self) -> Vec<Vec<f64>> {
-        let angles = || (0..RIM).map(|k| TAU * k as f64 / RIM as f64);
+    /// The point at which slopes · variables is greatest.
+    pub fn farthest(&self, slopes: &[f64]) -> Vec<f64> {
+        let (place, tilts) = slopes.split_at(self.places());
+        let tilts = match self.of {
+            Nest::Face => steepest(tilts),
+            Nest::Axis => along(tilts),
+        };
+        let joined = |part: f64| -> Vec<f64> {
+            along(place).iter().map(|x| x * (1.0 - part)).chain(tilts.iter().map(|x| x * part)).collect()
+        };
+        let value = |point: &Vec<f64>| slopes.iter().zip(point).map(|(slope, x)| slope * x).sum::<f64>();
+        let [flat, tilted] = [joined(0.0), joined(self.tilts)];
+        if value(&tilted) > value(&flat) { tilted } else { flat }
+    }
+
+    /// Corners of the zone, or `count` points on its rims.
+    pub fn corners(&self, count: usize) -> Vec<Vec<f64>> {
+        let angles = || (0..count).map(|k| TAU * k as f64 / count as f64);
         let rim = || angles().map(|angle| [libm::cos(angle), libm::sin(angle)]);
         let places: Vec<Vec<f64>> = match self.of {
             Nest::Face => vec![vec![1.0], vec![-1.0]],
@@ -224,7 +239,7 @@ mod tests {
     fn corners_are_the_farthest_points() {
         for (of, tilts) in ALL {
             let zone = Nested { of, rule: ZoneRule::SigmaZone, tilts };
-            let corners = zone.corners();
+            let corners = zone.corners(24);
             assert!(corners.iter().all(|corner| (zone.reach(corner) - 1.0).abs() < 1e-12), "{zone:?}");
             for slopes in [[1.0, 0.5, 2.0, 0.0], [0.1, 3.0, 0.0, 0.4], [2.0, 0.0, 0.1, 0.1]] {
                 let slopes = &slopes[..zone.variables()];

@@ -39,8 +39,14 @@ pub const PRODUCT: &[(&str, &str)] = &[
         "Limits around the nominal size, as ± or as [lower, upper] deviations. Beside a `value` also a class: f, m, c, v of \
          ISO 2768-1, or of ISO 286, such as \"H7\". Default, where there is a `value`: the class in `tolerance.general`.",
     ),
-    ("dimension.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`."),
-    ("part.*.offset.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`."),
+    (
+        "dimension.sigma",
+        "How many standard deviations half the tolerance is; 1 or more of a normal distribution. Default: `tolerance.sigma`.",
+    ),
+    (
+        "part.*.offset.sigma",
+        "How many standard deviations half the tolerance is; 1 or more of a normal distribution. Default: `tolerance.sigma`.",
+    ),
     (
         "dimension.distribution",
         "How the number varies: a name, or a table with the name as its `kind`. Default: `normal`.",
@@ -91,7 +97,10 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ("*.distribution.of", "Of `mixture`: its components, such as two machines that make the same part."),
     ("*.distribution.of.weight", "Share of the component, relative to the weights of the others. Default: 1."),
     ("*.distribution.of.tolerance", "Limits of the component's deviation."),
-    ("*.distribution.of.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`."),
+    (
+        "*.distribution.of.sigma",
+        "How many standard deviations half the tolerance is; 1 or more of a normal distribution. Default: `tolerance.sigma`.",
+    ),
     (
         "*.distribution.of.distribution",
         "How the component varies: a name, or a table with the name as its `kind`. Default: `normal`.",
@@ -102,7 +111,7 @@ pub const PRODUCT: &[(&str, &str)] = &[
     (
         "*.cost.reciprocal",
         "B of the cost `fixed` + B·(`at`/t)^`power`. t is half the distance of the limits, or the width of a zone. Each \
-         process has either `reciprocal` or `exponential`.",
+         process has `reciprocal`, `exponential`, or `fixed` alone: a price for any tolerance that it holds.",
     ),
     ("*.cost.exponential", "B of the cost `fixed` + B·exp(−t/`at`), with t as for `reciprocal`."),
     (
@@ -215,7 +224,8 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ("part.*.vectorial.*.*.tolerance", "Limits of the deviation from the nominal value, in its unit."),
     (
         "part.*.vectorial.*.*.sigma",
-        "How many standard deviations half the tolerance is. Default: `tolerance.sigma`; in `[vary]` 3.",
+        "How many standard deviations half the tolerance is; 1 or more of a normal distribution. Default: `tolerance.sigma`; \
+         in `[vary]` 3.",
     ),
     (
         "part.*.vectorial.*.*.distribution",
