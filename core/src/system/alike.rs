@@ -61,6 +61,15 @@ where
     }
 
     #[inline(always)]
+    fn remembered(&self, at: (&B, &B::Placed), internal: &Self::Internal) -> Self::Internal {
+        let mut remembered = *internal;
+        for (element, internal) in self.iter().zip(&mut remembered) {
+            *internal = element.remembered(at, internal);
+        }
+        remembered
+    }
+
+    #[inline(always)]
     fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal {
         let mut shifted = *base;
         for ((shifted, from), to) in shifted.iter_mut().zip(from).zip(to) {

@@ -72,6 +72,13 @@ pub trait Law<S: Scalar, const R: usize> {
         way: Way<S>,
     ) -> (Response<S, R>, Self::Internal);
 
+    /// The internal variables after a step that led to `place`, of a scheme that takes no response there: for laws that remember places
+    /// alone.
+    #[inline(always)]
+    fn remembered(_place: &SVector<S, R>, internal: &Self::Internal) -> Self::Internal {
+        *internal
+    }
+
     /// `base + weight·(to − from)`.
     fn shifted(base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal;
 
@@ -132,6 +139,12 @@ pub trait Elements<S: Scalar, B: Bodies<S, D>, const D: usize> {
         sum: &mut impl Assembly<S, B, D>,
     );
 
+    /// The internal variables after a step that led to where the bodies are placed, see [`Law::remembered`].
+    #[inline(always)]
+    fn remembered(&self, _at: (&B, &B::Placed), internal: &Self::Internal) -> Self::Internal {
+        *internal
+    }
+
     /// `base + weight·(to − from)`.
     fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal;
 
@@ -167,6 +180,11 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
             *slot = next;
         }
         sum.add::<L, W, R>(&self.link, at, &view, &response);
+    }
+
+    #[inline(always)]
+    fn remembered(&self, at: (&B, &B::Placed), internal: &W::Internal) -> W::Internal {
+        W::remembered(&self.link.seen(at, &self.link.view(at.0, at.1)).place, internal)
     }
 
     #[inline(always)]
@@ -228,6 +246,11 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, F: Elements<S, B, D>, con
     }
 
     #[inline(always)]
+    fn remembered(&self, at: (&B, &B::Placed), internal: &Self::Internal) -> Self::Internal {
+        (self.0.remembered(at, &internal.0), self.1.remembered(at, &internal.1))
+    }
+
+    #[inline(always)]
     fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal {
         (self.0.shifted(&base.0, &from.0, &to.0, weight), self.1.shifted(&base.1, &from.1, &to.1, weight))
     }
@@ -262,6 +285,15 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
         for (element, internal) in self.iter().zip(internal) {
             element.act(way, at, internal, slots.next(), sum);
         }
+    }
+
+    #[inline(always)]
+    fn remembered(&self, at: (&B, &B::Placed), internal: &Self::Internal) -> Self::Internal {
+        let mut remembered = *internal;
+        for (element, internal) in self.iter().zip(&mut remembered) {
+            *internal = element.remembered(at, internal);
+        }
+        remembered
     }
 
     #[inline(always)]
