@@ -9,6 +9,7 @@ use slipfit_core::{
     ParameterError, SVector,
     integrator::{Integrator, Motion, Rodas4},
     mechanism::Mechanism as _,
+    pose::Pose,
     system::{Bodies, Elements, System, ThroughJoints, spatial::tree::Mount},
 };
 use thiserror::Error;
@@ -242,7 +243,12 @@ fn in_space<const N: usize, const D: usize>(
     let start = (bodies.nominal(), [0.0; D]);
     let system = System::new(bodies, &elements[..]);
     let desk = OutOfLine::by(system, SideBySide::new(mechanism, &bodies, &elements, limits.stick_band()));
-    solve(mechanism, desk, start, &limits, by, State::spatial::<N>, columns::spatial)
+    let mut last = State::at_rest([0.0; D]);
+    let state = move |poses: &[Pose<f64>; N], rates: [f64; D]| {
+        last = State::spatial(poses, rates, &last);
+        last
+    };
+    solve(mechanism, desk, start, &limits, by, state, columns::spatial)
 }
 
 fn on_joints<const D: usize>(
@@ -257,11 +263,10 @@ fn on_joints<const D: usize>(
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let Rest { places, rates } = Rest::on_joints(mechanism, mounts);
     let start = (tree.pose(places, columns::half_angle), rates);
-    let mut last = places;
+    let mut last = State::at_rest(places);
     let state = move |pose: &[[f64; 2]; D], rates: [f64; D]| {
-        let state = State::on_joints(&tree, pose, rates, &last);
-        last = state.places;
-        state
+        last = State::on_joints(&tree, pose, rates, &last);
+        last
     };
     let system = System::new(tree, ThroughJoints(&elements[..]));
     let desk = OutOfLine::by(system, Wide::of_machine());
