@@ -42,7 +42,7 @@ where
 
     #[inline(always)]
     fn fresh(&self) -> Self::Internal {
-        [G::Law::fresh(); N]
+        self.each.each_ref().map(|(_, shape)| shape.with(&self.contact).fresh())
     }
 
     #[inline(always)]

@@ -53,7 +53,7 @@ pub trait Law<S: Scalar, const R: usize> {
     const TIMED: bool = false;
 
     /// The internal variables of a law that nothing has happened to yet.
-    fn fresh() -> Self::Internal;
+    fn fresh(&self) -> Self::Internal;
 
     /// The least distance (m) at `place` of what may touch, negative where it penetrates. Where it is positive the law exerts nothing,
     /// at any rate. Zero of a law whose bodies always act on each other.
@@ -161,7 +161,7 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
 
     #[inline(always)]
     fn fresh(&self) -> W::Internal {
-        W::fresh()
+        self.law.fresh()
     }
 
     #[inline(always)]
@@ -313,31 +313,47 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
     }
 }
 
-/// Elements chosen at run time, whose laws have no internal variables.
-impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Internal = ()>, const D: usize> Elements<S, B, D> for &[E] {
-    type Internal = ();
+/// Elements chosen at run time. They share their internal variables, of which each keeps its own, and remember places alone.
+impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Internal: Default>, const D: usize> Elements<S, B, D> for &[E] {
+    type Internal = E::Internal;
 
     const STICKS: bool = false;
 
-    fn fresh(&self) {}
+    fn fresh(&self) -> E::Internal {
+        E::Internal::default()
+    }
 
     #[inline(always)]
     fn act(
         &self,
         way: (S, Way<S>),
         at: (&B, &B::Placed),
-        (): &(),
-        _: Option<&mut ()>,
+        internal: &E::Internal,
+        updated: Option<&mut E::Internal>,
         sum: &mut impl Assembly<S, B, D>,
     ) {
         for element in *self {
-            element.act(way, at, &(), None, sum);
+            element.act(way, at, internal, None, sum);
+        }
+        if let Some(slot) = updated {
+            *slot = self.remembered(at, internal);
         }
     }
 
     #[inline(always)]
-    fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
+    fn remembered(&self, at: (&B, &B::Placed), internal: &E::Internal) -> E::Internal {
+        self.iter().fold(*internal, |internal, element| element.remembered(at, &internal))
+    }
 
     #[inline(always)]
-    fn accept(&self, _: S, (): &(), (): &mut ()) {}
+    fn shifted(&self, base: &E::Internal, from: &E::Internal, to: &E::Internal, weight: S) -> E::Internal {
+        self.first().map_or(*base, |element| element.shifted(base, from, to, weight))
+    }
+
+    #[inline(always)]
+    fn accept(&self, condition: S, next: &E::Internal, kept: &mut E::Internal) {
+        if let Some(element) = self.first() {
+            element.accept(condition, next, kept);
+        }
+    }
 }

@@ -14,6 +14,8 @@ use slipfit_core::{
     },
 };
 
+use slipfit_desk::element::next_to;
+
 use super::{Action, Mechanism, Mounts, mounts::flat};
 use crate::dynamics::outcome::Instant;
 
@@ -45,7 +47,7 @@ impl<const D: usize> State<D> {
     pub fn planar(topology: &[Kind; D], pose: &[[f64; 2]; D], rates: [f64; D], last: &[f64; D]) -> Self {
         let places = std::array::from_fn(|k| {
             let [w, v] = pose[k];
-            if topology[k] == Kind::Turn { near(whole_angle([w, v]), last[k]) } else { w }
+            if topology[k] == Kind::Turn { next_to(whole_angle([w, v]), last[k]) } else { w }
         });
         Self { rates, place_rates: rates, ..Self::at_rest(places) }
     }
@@ -70,7 +72,7 @@ impl<const D: usize> State<D> {
         let mut state = Self { rates, place_rates: rates, ..Self::at_rest(tree.places(pose, whole_angle)) };
         for k in 0..D {
             match tree.coordinate(k).0 {
-                SpatialKind::Turn => state.places[k] = near(state.places[k], last.places[k]),
+                SpatialKind::Turn => state.places[k] = next_to(state.places[k], last.places[k]),
                 SpatialKind::Ball => {
                     let [[w, x], [y, z]] = [pose[k], pose[k + 1]];
                     state.turn_about_point(k, &Orientation { w, v: Vector3::new(x, y, z) }, last);
@@ -133,13 +135,7 @@ fn rotation_vector(orientation: &UnitQuaternion<f64>, turned: &Vector3<f64>) -> 
         (true, false) => return Vector3::zeros(),
         (false, _) => turned / about,
     };
-    direction * near(whole_angle([orientation.w, orientation.imag().dot(&direction)]), turned.dot(&direction))
-}
-
-/// `angle` (rad) by so many turns that it is next to `last`.
-fn near(angle: f64, last: f64) -> f64 {
-    let turn = 2.0 * std::f64::consts::PI;
-    angle + turn * ((last - angle) / turn).round()
+    direction * next_to(whole_angle([orientation.w, orientation.imag().dot(&direction)]), turned.dot(&direction))
 }
 
 impl<const D: usize> crate::dynamics::error_control::Values for State<D> {

@@ -6,7 +6,7 @@ use crate::{SMatrix, SVector, Scalar, mechanism::Way};
 /// φ = −stiffness·(x − rest) − damping·ẋ.
 ///
 /// The link measures the angle up to whole turns. The spring counts them: it keeps the angle that it had, and the new one is the next to
-/// it, less than half a turn away. It starts within half a turn of zero; whole turns by which it is wound at the start are in `rest`.
+/// it, less than half a turn away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring<S> {
     /// N·m/rad.
@@ -15,6 +15,8 @@ pub struct Spring<S> {
     pub damping: S,
     /// The angle (rad) at which it is relaxed.
     pub rest: S,
+    /// The angle (rad) at which it starts, to within less than half a turn.
+    pub start: S,
 }
 
 /// The angle (rad) that is a whole number of turns from `measured` and less than half a turn from `last`; of up to a million turns.
@@ -37,8 +39,8 @@ impl<S: Scalar> Law<S, 1> for Spring<S> {
     const PLACES: usize = 1;
 
     #[inline(always)]
-    fn fresh() -> S {
-        S::zero()
+    fn fresh(&self) -> S {
+        self.start
     }
 
     #[inline(always)]
@@ -90,6 +92,11 @@ mod tests {
     /// How far the greatest and the last twist and their sum over time of two discs err, as a share of the greatest twist: the first disc is
     /// thrown so fast that the spring between them is wound by three and a half turns, while both go around.
     fn error<S: Scalar + PartialOrd, I: Integrator>(step: f64) -> f64 {
+        [0.0, 0.5, 1.0, -2.5].map(|turns| error_from::<S, I>(step, turns)).into_iter().fold(0.0, f64::max)
+    }
+
+    /// The same where the first disc starts turned by so many `turns`, and the spring is relaxed there.
+    fn error_from<S: Scalar + PartialOrd, I: Integrator>(step: f64, turns: f64) -> f64 {
         let s = S::from_f64;
         let disc = |k: usize| Rigid {
             mass: s(1.0),
@@ -99,10 +106,10 @@ mod tests {
         let tree = PlanarTree::new([Coordinate::Turn; 2], &[disc(0), disc(1)], Vector2::zeros()).unwrap();
         let spring = Element::<_, _, 1> {
             link: Turning { body: Some(0), against: Some(1) },
-            law: Spring { stiffness: s(0.03), damping: s(0.0), rest: s(0.0) },
+            law: Spring { stiffness: s(0.03), damping: s(0.0), rest: s(turns * TAU), start: s(turns * TAU) },
         };
         let kernel = Kernel::<S, _, I>::new(System::new(tree, spring), s(step)).unwrap();
-        let mut state = kernel.at_rest::<2>([[s(1.0), s(0.0)]; 2]);
+        let mut state = kernel.at_rest::<2>([[libm::cos(turns * PI), libm::sin(turns * PI)].map(s), [s(1.0), s(0.0)]]);
         let (twist, reduced) = (3.5 * TAU, 1e-3 * 3e-3 / 4e-3);
         let rate = libm::sqrt(0.03 / reduced);
         state.motion.velocity[0] = s(twist * rate);
@@ -114,7 +121,7 @@ mod tests {
             let momentum = 1e-3 * first + 3e-3 * second;
             worst = worst.max(libm::fabs(momentum / (1e-3 * twist * rate) - 1.0));
             worst = worst.max(libm::fabs((first - second) / (twist * rate) - libm::cos(rate * t)));
-            worst = worst.max(libm::fabs(state.motion.internal.to_f64() / twist - libm::sin(rate * t)));
+            worst = worst.max(libm::fabs((state.motion.internal.to_f64() - turns * TAU) / twist - libm::sin(rate * t)));
         }
         worst
     }
