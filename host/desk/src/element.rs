@@ -227,7 +227,7 @@ impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBod
         sum: &mut impl Assembly<S, FreeBodies<S, N, D>, D>,
     ) {
         match self {
-            Self::Pin(element) => act(element, way, at, &(), sum),
+            Self::Pin(element) => act(element, way, at, &[(); 2], sum),
             Self::Wall(element) => act(element, way, at, &(), sum),
             Self::Ring(element) => act(element, way, at, &(), sum),
             Self::Motor(element) => act(element, way, at, &(), sum),
