@@ -77,7 +77,7 @@ fn momenta(mechanism: &Mechanism, run: &MechanismRun) -> Vec<[Vector3<f64>; 2]> 
         let spins = vectors(&name, if planar { ["", "", "spin"] } else { ["wx", "wy", "wz"] });
         for (i, sum) in sums.iter_mut().enumerate() {
             let rotation = Rotation3::new(turns[i]);
-            let inertia = rotation * Matrix3::from_diagonal(&body.inertia.into()) * rotation.inverse();
+            let inertia = rotation * Matrix3::from_diagonal(&Vector3::from(body.inertia)) * rotation.inverse();
             let linear = velocities[i] * mass;
             sum[0] += linear;
             sum[1] += (Vector3::from(body.centre) + places[i]).cross(&linear) + inertia * spins[i];
@@ -206,7 +206,7 @@ fn ideal_joints_do_not_care_which_body_carries_the_other() {
 /// The same of joints with play, whose first and second body are not alike, so that only the listing may change; with friction.
 #[test]
 fn joints_with_play_do_not_care_which_body_is_listed_first() {
-    let every = 1e-4;
+    let every = 2e-5;
     let laws = "
 [contact]
 stiffness = \"1e6 N/m^1.5\"
@@ -371,6 +371,8 @@ fn bodies_in_space_go_on_beyond_a_full_turn() {
         ),
     ] {
         for (between, speed) in [("\"rotor\", \"frame\"", 40), ("\"frame\", \"rotor\"", -40)] {
+            // What has no play has no contacts.
+            let laws = if joint.contains("clearance") { laws } else { "" };
             let mechanism = parsed(&format!(
                 "title = \"Rotor\"\n[mechanism]\nspace = \"space\"\n[run]\nduration = 1000\nstroke = 1000\nerror = 1e-6\n{laws}\
                  [[body]]\nname = \"rotor\"\nmass = 100\ninertia = [1e5, 1.1e5, 1.5e5]\ncentre = [0, 0, 0]\n\
