@@ -42,6 +42,10 @@ impl Mechanism<f64, 1> for OnBelt {
         base + (to - from) * weight
     }
 
+    fn remembered(&self, _: &f64, internal: &[f64; 2]) -> [f64; 2] {
+        *internal
+    }
+
     fn internal_shifted(&self, base: &[f64; 2], from: &[f64; 2], to: &[f64; 2], weight: f64) -> [f64; 2] {
         StaticKinetic::shifted(base, from, to, weight)
     }

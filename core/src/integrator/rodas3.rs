@@ -62,7 +62,7 @@ impl Integrator for Rodas3 {
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
         let from = (&motion.pose, &motion.velocity, &motion.internal);
-        Self::attempt(mechanism, t, h, from, None, &mut [Part::zero(); 2]).step(motion, h)
+        Self::attempt(mechanism, t, h, from, None, &mut [Part::zero(); 2]).step(mechanism, motion, h)
     }
 }
 

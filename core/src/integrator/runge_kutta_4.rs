@@ -47,7 +47,8 @@ impl Integrator for RungeKutta4 {
         let pose = mechanism.normalised(&pose);
         // The two slopes at the middle differ by a term of third order: an estimate on the safe side.
         let error = mechanism.weighed(&pose, &((a3 - a2) * (h * third)));
-        let motion = Motion { pose, velocity, acceleration: a4, internal: motion.internal };
+        let internal = mechanism.remembered(&pose, &motion.internal);
+        let motion = Motion { pose, velocity, acceleration: a4, internal };
         Step { motion, residual: S::zero(), error, drift: error * h }
     }
 }

@@ -27,8 +27,8 @@ impl Integrator for SemiImplicitEuler {
         let end = mechanism.forces(t + h, &pose, &motion.internal, &velocity, h, None);
         // Half the change of the force over the step is what the first order leaves out.
         let error = mechanism.impulse(&((end - start) * (h * S::from_f64(0.5))));
-        let motion =
-            Motion { pose, velocity, acceleration: mechanism.velocity(&pose, &end), internal: motion.internal };
+        let internal = mechanism.remembered(&pose, &motion.internal);
+        let motion = Motion { pose, velocity, acceleration: mechanism.velocity(&pose, &end), internal };
         Step { motion, residual: S::zero(), error, drift: error * h }
     }
 }
