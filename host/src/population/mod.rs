@@ -4,10 +4,12 @@
 //! from the product's joint model or from means and deviations, and parameters that vary, and runs by itself.
 
 pub mod drivers;
+mod explained;
 mod figures;
 pub mod finding;
 pub mod hypothesis;
 mod integrate;
+pub mod kept;
 mod lane;
 pub mod limit_state;
 pub mod mechanism;

@@ -1,6 +1,7 @@
 //! A population as a whole: what its units did together, and what from.
 
 use super::{
+    drivers,
     drivers::Driver,
     production::Production,
     simulate_units,
@@ -55,19 +56,18 @@ impl<G: UnitGaps> Population<G> {
         duty: Duty,
         done: impl Fn(u64) + Sync,
     ) -> Result<Self, SimulateError> {
-        let counter = Counter::new(subject, production, duty);
+        let counter = Counter::new(subject, duty);
         let mut tally = counter.nothing();
-        simulate_units(subject, production, 0..count, done, |drawn, units| counter.add(&mut tally, drawn, units))?;
+        simulate_units(subject, production, 0..count, done, |_, units| counter.add(&mut tally, units))?;
         Ok(Self::of(production, tally, duty))
     }
 
     /// Of the `tally` of a `production` with this `duty`.
     pub fn of(production: &Production<G>, tally: Tally<G>, duty: Duty) -> Self {
-        let contributors = production.contributors();
         Self {
             statistics: Statistics::new(&tally, duty),
-            of_force: tally.sums.of_force(&contributors),
-            of_malfunction: tally.sums.of_malfunction(&contributors),
+            of_force: drivers::of_force(production, &tally.outcomes, tally.counts.units),
+            of_malfunction: drivers::of_malfunction(production, &tally.outcomes, tally.counts.units),
             tally,
         }
     }
