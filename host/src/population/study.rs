@@ -5,11 +5,11 @@ use super::{
     drivers::Driver,
     production::Production,
     simulate_units,
-    statistics::{Share, Statistics, malfunctions},
+    statistics::{Statistics, malfunctions},
     subject::{Subject, UnitGaps},
     tally::{Counter, Duty, Tally},
 };
-use crate::dynamics::simulate::SimulateError;
+use crate::dynamics::{outcome::Verdict, simulate::SimulateError};
 use slipfit_core::slide::CONTACTS;
 
 /// A population.
@@ -25,22 +25,38 @@ pub struct Population<G = [f64; CONTACTS]> {
     pub of_malfunction: Vec<Driver>,
 }
 
-/// The share of the first `count` units of a `production` of `subject` that malfunction; see [`Population::study`].
+/// What units do, as far as requirements look at it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Judgement {
+    /// Units that malfunction.
+    pub failed: u64,
+    /// Others that come to no verdict.
+    pub undecided: u64,
+    /// All.
+    pub units: u64,
+}
+
+/// How many of the first `count` units of a `production` of `subject` malfunction, and how many come to no verdict; see
+/// [`Population::study`].
 ///
 /// # Errors
 /// See [`simulate_units`].
-pub fn share_of_malfunctions<S: Subject>(
+pub fn judge<S: Subject>(
     subject: &S,
     production: &Production<S::Gaps>,
     count: u64,
     limit: Option<f64>,
     done: impl Fn(u64) + Sync,
-) -> Result<Share, SimulateError> {
-    let mut failed = 0;
+) -> Result<Judgement, SimulateError> {
+    let mut found = Judgement { units: count, ..Judgement::default() };
     simulate_units(subject, production, 0..count, done, |_, units| {
-        failed += units.iter().filter(|unit| malfunctions(unit, limit)).count() as u64;
+        for unit in units {
+            let fails = malfunctions(unit, limit);
+            found.failed += u64::from(fails);
+            found.undecided += u64::from(!fails && unit.outcome.verdict == Verdict::Undecided);
+        }
     })?;
-    Ok(Share::new(failed, count))
+    Ok(found)
 }
 
 impl<G: UnitGaps> Population<G> {
