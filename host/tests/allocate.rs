@@ -186,7 +186,8 @@ fn few_enough_units_malfunction_with_tolerances_that_are_found() {
     assert_eq!(tolerances.len(), 2);
     // The units that the search has seen are those of the population.
     let counted = |scene: &str, units: &str, options: &[&str]| {
-        let population = json(folder.path(), &[&["population", scene, "--units", units, "--json"][..], options].concat());
+        let population =
+            json(folder.path(), &[&["population", scene, "--units", units, "--json"][..], options].concat());
         population["statistics"]["malfunctions"]["share"].as_f64().unwrap()
     };
     let again = counted("new.toml", "400", &[]);
@@ -214,12 +215,16 @@ fn few_enough_units_malfunction_with_tolerances_that_are_found() {
 fn a_requirement_on_units_without_a_verdict_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let scene = two_to_choose();
-    let without: String = scene.lines().filter(|line| !line.starts_with("stroke")).map(|line| format!("{line}\n")).collect();
+    let without: String =
+        scene.lines().filter(|line| !line.starts_with("stroke")).map(|line| format!("{line}\n")).collect();
     assert!(without.len() < scene.len());
     std::fs::write(folder.path().join("short.toml"), without).unwrap();
     let short = ["allocate", "short.toml", "--units", "100", "--set", "run.duration=60", "--json"];
     let errors = refused(folder.path(), &short, 2);
-    assert!(errors.contains("100 of 100 units come to no verdict") && errors.contains("the run ends at 60 ms"), "{errors}");
+    assert!(
+        errors.contains("100 of 100 units come to no verdict") && errors.contains("the run ends at 60 ms"),
+        "{errors}"
+    );
 }
 
 #[test]

@@ -187,10 +187,8 @@ fn the_only_cause_of_failure_has_all_of_it() {
     std::fs::write(folder.path().join("lift.toml"), lifted()).unwrap();
     for (mass, share) in [(0.2 + 0.023_263, 0.01), (0.2 - 0.004_677, 0.68)] {
         let limit = lifting(mass).to_string();
-        let found = json(
-            folder.path(),
-            &["population", "lift.toml", "--json", "--units", "5000", "--force-limit", &limit],
-        );
+        let found =
+            json(folder.path(), &["population", "lift.toml", "--json", "--units", "5000", "--force-limit", &limit]);
         let failing = found["statistics"]["malfunctions"]["share"].as_f64().unwrap();
         assert!((failing - share).abs() < 4.0 * libm::sqrt(share * (1.0 - share) / 5000.0), "{failing} {share}");
         is_the_only_cause(&found, "slider.mass");

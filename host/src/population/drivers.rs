@@ -246,7 +246,9 @@ mod tests {
         let gaps = gaps(&scene);
         let production = Production::new(&scene, None, 0.0, 9).unwrap();
         let name = production.contributors()[3].0.to_owned();
-        for (units, p, both) in [(20_000, 0.68, false), (20_000, 0.01, false), (20_000, 0.01, true), (1 << 21, 1e-5, false)] {
+        for (units, p, both) in
+            [(20_000, 0.68, false), (20_000, 0.01, false), (20_000, 0.01, true), (1 << 21, 1e-5, false)]
+        {
             let limit = -quantile(if both { 0.5 * p } else { p });
             let fails = |x: Variables| {
                 let z = (x(3) - gaps[3][0]) / gaps[3][1];

@@ -95,9 +95,8 @@ pub fn explained(units: u64, marked: &[Marked], variables: usize) -> Option<Expl
         let others = n / count as f64 - 1.0;
         (libm::sqrt(4.0 * sure * fourth / others) + sure * 2.0 / (3.0 * others) * greatest) / scale
     };
-    let fourth = |classes: &[Class]| {
-        classes.iter().map(|class| class.units * class.variance() * class.variance()).sum::<f64>()
-    };
+    let fourth =
+        |classes: &[Class]| classes.iter().map(|class| class.units * class.variance() * class.variance()).sum::<f64>();
     let (mut count, mut chosen) = (FEWEST, classes(units, marked, FEWEST));
     let mut finer = 2 * FEWEST;
     while 2 * finer <= units {
@@ -179,7 +178,8 @@ mod tests {
             let count = (0..units).filter(|i| fails(*i)).count();
             // The rarer outcome is marked.
             let marks = |i: &usize| fails(*i) == (2 * count <= units);
-            let marked: Vec<Marked> = (0..units).filter(marks).map(|i| Marked { place: i as u64, value: 1.0 }).collect();
+            let marked: Vec<Marked> =
+                (0..units).filter(marks).map(|i| Marked { place: i as u64, value: 1.0 }).collect();
             let found = explained(units as u64, &marked, 20).unwrap();
             println!("{name}: {found:?}");
             assert!((found.share - 1.0).abs() <= 2.0 * found.error, "{name}: {found:?}");

@@ -266,11 +266,10 @@ mod tests {
         assert!((sum.probability / 2e-5 - 1.0).abs() < 1e-12 && (sum.standard_error / 1.41421e-6 - 1.0).abs() < 1e-5);
         let width = core::f64::consts::SQRT_2 * (found.interval[1] - found.probability) + 1e-9;
         assert!((sum.interval[1] - sum.probability - width).abs() < 1e-15, "{sum:?}");
-        assert_eq!(Finding::sum([&none, &none].into_iter()), Finding::Rarer {
-            rarer_than: 1e-4,
-            searched_to: 2e-9,
-            searches: 8
-        });
+        assert_eq!(
+            Finding::sum([&none, &none].into_iter()),
+            Finding::Rarer { rarer_than: 1e-4, searched_to: 2e-9, searches: 8 }
+        );
         assert_eq!(Finding::sum([&known, &Reason::Flat.into()].into_iter()), Reason::Part.into());
     }
 }

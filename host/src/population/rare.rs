@@ -90,8 +90,7 @@ impl<S: Subject> Question<'_, S> {
     ) -> Result<Rare, SimulateError> {
         let Self { subject, production, limit, .. } = *self;
         let part = |(number, (kind, side)): (usize, (Kind, Side))| {
-            let state =
-                || LimitState { subject, production, kind, side, limit, log: Log::default(), weight: 0.0 };
+            let state = || LimitState { subject, production, kind, side, limit, log: Log::default(), weight: 0.0 };
             let seed = derived(self.seed, STREAM + number as u64);
             let factor = production.factor();
             let (finding, states) = probability(&state, factor, seed, &done);

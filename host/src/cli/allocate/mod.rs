@@ -164,7 +164,7 @@ impl Arguments {
         };
         let malfunctions = |tolerances: &[f64], _: Option<f64>| {
             let Counted { failed, units } = counted(tolerances, self.units, self.seed)?;
-            Ok(failed as f64 / units as f64)
+            Ok::<f64, AllocateError>(failed as f64 / units as f64)
         };
         let processes: Vec<&[Process]> = product.costed.iter().map(|costed| costed.processes.as_slice()).collect();
         let start: Vec<f64> = product.costed.iter().map(|costed| costed.stated).collect();
@@ -178,7 +178,7 @@ impl Arguments {
                 None => search(&processes, &start, &figures).map(|found| (found, None)),
                 Some(Limits { allowed, .. }) => {
                     let search = |target: f64, before: Option<&Found>| {
-                        let start = before.map_or(start.as_slice(), |found| &found.solution.tolerances);
+                        let start = before.map_or(start.as_slice(), |found| found.solution.tolerances.as_slice());
                         search(&processes, start, &figures_of(&aimed_at(&requirements, target))?)
                     };
                     let units = (FRESH * self.units).max(least_units(allowed));

@@ -131,7 +131,9 @@ fn worst_units(scene: &Scene, units: &[Unit]) -> String {
 /// The strongest of `drivers`, at most `most`, as far as chance does not explain them.
 pub fn strongest(drivers: &[Driver], most: usize) -> String {
     if drivers.is_empty() {
-        return format!("not known: that takes {LEAST_UNITS} units, and for failure {LEAST_OUTCOMES} each that do and do not fail");
+        return format!(
+            "not known: that takes {LEAST_UNITS} units, and for failure {LEAST_OUTCOMES} each that do and do not fail"
+        );
     }
     let shown = drivers.iter().filter(|driver| driver.is_significant()).take(most);
     let shown: Vec<String> = shown

@@ -91,7 +91,8 @@ pub fn confirmed<F>(
         target *= (aim(allowed, counted.units, risk(round + 1)) / share).clamp(least, most);
         before = Some((found, counted, at_most));
     }
-    let (counted, at_most) = before.map_or((Counted { failed: 0, units: 0 }, 1.0), |(_, counted, most)| (counted, most));
+    let (counted, at_most) =
+        before.map_or((Counted { failed: 0, units: 0 }, 1.0), |(_, counted, most)| (counted, most));
     Err(AllocateError::NotConfirmed { allowed, counted, at_most })
 }
 
