@@ -38,6 +38,9 @@ pub trait Margins {
 
     /// Margins at `points`.
     fn at(&mut self, points: &[Vec<f64>]) -> Vec<f64>;
+
+    /// From now on so many `points` are drawn in a subset of this `probability`.
+    fn enter(&mut self, _probability: f64, _points: usize) {}
 }
 
 /// A failure: the sum of some measures is below (or above) a limit.
