@@ -63,6 +63,21 @@ impl Nested {
         }
     }
 
+    /// Levels ± of a variable of the place and of a tilt, so that all corners of a factorial design lie on the border. Tilts that
+    /// are not narrowed have the room that each variable of the place has.
+    pub fn factorial(&self) -> [f64; 2] {
+        match self.of {
+            Nest::Face => {
+                let tilts = self.tilts.min(2.0 / 3.0);
+                [1.0 - tilts, 0.5 * tilts]
+            }
+            Nest::Axis => {
+                let tilts = self.tilts.min(0.5);
+                [1.0 - tilts, tilts].map(|radius| radius * FRAC_1_SQRT_2)
+            }
+        }
+    }
+
     /// Whether its variables are independent normals: by the rules of sigma-zone and translation.
     pub fn is_normal(&self) -> bool {
         matches!(self.rule, ZoneRule::SigmaZone | ZoneRule::Translation)
