@@ -183,7 +183,8 @@ impl Contacts {
             }
         }
         if self.joined.iter().any(|joined| matches!(joined.own, Own::Perfect(_))) {
-            self.free = freedoms.rest().iter().map(|m| [[m[0], m[1], m[2]].map(|x| x * scale), [m[3], m[4], m[5]]]).collect();
+            self.free =
+                freedoms.rest().iter().map(|m| [[m[0], m[1], m[2]].map(|x| x * scale), [m[3], m[4], m[5]]]).collect();
             freedoms.hold_the_rest();
         }
         let Some(inverse) = freedoms.inverse() else {
@@ -332,7 +333,10 @@ impl Joined {
         let some = |places: bool| {
             let mut some = *rows;
             let count = self.contact.places();
-            some.row_iter_mut().enumerate().filter(|(i, _)| (*i < count) != places).for_each(|(_, mut row)| row.fill(0.0));
+            some.row_iter_mut()
+                .enumerate()
+                .filter(|(i, _)| (*i < count) != places)
+                .for_each(|(_, mut row)| row.fill(0.0));
             Some(some)
         };
         match self.order {

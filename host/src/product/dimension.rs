@@ -358,7 +358,8 @@ mod tests {
         }
         assert_eq!(Toleranced::new(1.0, [-0.9, 2.0], &lognormal).unwrap().limits, [1.0 - 0.9, 3.0]);
         let part = |weight, deviations, shape| Component { weight, deviations, shape };
-        let lots = vec![part(3.0, [-0.2, 0.1], Shape::Uniform), part(1.0, [0.0, 0.3], Shape::Normal(Spread::sigmas(3.0)))];
+        let lots =
+            vec![part(3.0, [-0.2, 0.1], Shape::Uniform), part(1.0, [0.0, 0.3], Shape::Normal(Spread::sigmas(3.0)))];
         let mixed = Toleranced::new(1.0, [0.0; 2], &Shape::Mixture(lots)).unwrap();
         assert_eq!(mixed.limits, [0.8, 1.3]);
         assert!((mixed.mean() - (0.75 * 0.95 + 0.25 * 1.15)).abs() < 1e-14);
@@ -372,7 +373,10 @@ mod tests {
         assert_eq!(error([-1e-20, 1e-20], Shape::Uniform), ShapeError::Width);
         assert_eq!(error([-0.1, 0.1], Shape::Triangular { mode: Some(0.2) }), ShapeError::Mode);
         assert_eq!(error([-0.1, 0.1], Shape::Trapezoidal { shoulders: [0.05, -0.05] }), ShapeError::Shoulders);
-        assert_eq!(error([-0.1, 0.1], Shape::Skewed { spread: Spread::sigmas(3.0), skewness: 0.0 }), ShapeError::Skewness);
+        assert_eq!(
+            error([-0.1, 0.1], Shape::Skewed { spread: Spread::sigmas(3.0), skewness: 0.0 }),
+            ShapeError::Skewness
+        );
         let lognormal = Shape::Lognormal { mean: 0.1, deviation: 0.5, location: 0.1 };
         assert_eq!(error([0.0, 0.0], lognormal), ShapeError::Location);
         assert_eq!(error([0.1, 0.1], Shape::Gumbel { mode: 0.0, scale: 1.0 }), ShapeError::Width);

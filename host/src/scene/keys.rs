@@ -66,8 +66,7 @@ const COST: Key = table(
         key("grades"),
     ],
 );
-const TOLERANCED: &[Key] =
-    &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("edge"), COST];
+const TOLERANCED: &[Key] = &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("edge"), COST];
 const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];

@@ -217,10 +217,10 @@ fn warn_of_frames(index: usize, location: Option<&Callout>, orientation: Option<
     let name = &draft.feature_names[index];
     let shape = draft.assembly.features[index].shape;
     let datums = |callout: Option<&Callout>| callout.is_some_and(|callout| !callout.datums.is_empty());
-    let needs = |callout: &&Callout| {
-        callout.name == "position" || (callout.limits == Limits::Orientation && !datums(location))
-    };
-    for callout in [location, orientation].into_iter().flatten().filter(needs).filter(|callout| callout.datums.is_empty())
+    let needs =
+        |callout: &&Callout| callout.name == "position" || (callout.limits == Limits::Orientation && !datums(location));
+    for callout in
+        [location, orientation].into_iter().flatten().filter(needs).filter(|callout| callout.datums.is_empty())
     {
         callout.field.warn(&format!(
             "the {} of {name} has no datum: its zone lies where the drawing has it in the frame of the part",

@@ -134,7 +134,10 @@ fn refuse_shapes(table: &Field) -> Result<(), SceneError> {
         return Ok(());
     }
     let problem = Problem::Unsupported { what: "a cost beside a distribution with lengths of its own".into() };
-    Err(field.error(problem, "normal, truncated-normal, uniform, triangular, beta, skewed, without a mode, mean, shift or deviation"))
+    Err(field.error(
+        problem,
+        "normal, truncated-normal, uniform, triangular, beta, skewed, without a mode, mean, shift or deviation",
+    ))
 }
 
 /// The tolerance that the scene has, and how it is written.

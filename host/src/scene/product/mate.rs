@@ -255,7 +255,7 @@ pub(super) fn floating(
     draft: &mut Draft,
 ) -> Float {
     let variation = rule.map(|rule| match tilt > 0.0 {
-        true => Variation::Nested(Nested { of: Nest::Axis, rule, tilts: 1.0 }),
+        true => Variation::Nested(Nested { of: Nest::Ends, rule, tilts: 1.0 }),
         false => Variation::Disc(rule),
     });
     let first = variation.map(|variation| {

@@ -58,7 +58,11 @@ mod callout;
 mod cost;
 mod datum;
 #[cfg(test)]
+mod datum_tests;
+#[cfg(test)]
 mod dimension_tests;
+#[cfg(test)]
+mod doubtful_tests;
 mod fit;
 #[cfg(test)]
 mod geometry_tests;
@@ -79,6 +83,8 @@ mod symmetric_tests;
 mod tests;
 mod toleranced;
 mod zone;
+#[cfg(test)]
+mod zone_tests;
 
 #[cfg(test)]
 pub(super) use toleranced::SHAPES;

@@ -47,7 +47,14 @@ pub(super) fn located(
     });
     let nested =
         nested.or((made.feature.shape == Shape::Axis && location.holds_tilts()).then_some((location.rule, 1.0)));
-    let of = if made.feature.shape == Shape::Axis { Nest::Axis } else { Nest::Face };
+    // An orientation that is as wide narrows nothing.
+    let bonus = location.bonus.or(orientation.and_then(|orientation| orientation.bonus));
+    let narrows = |orientation: &Callout| orientation.width < width || bonus.is_some();
+    let of = match made.feature.shape {
+        Shape::Axis if orientation.is_some_and(narrows) => Nest::Axis,
+        Shape::Axis => Nest::Ends,
+        _ => Nest::Face,
+    };
     if let Some(orientation) = orientation {
         bonus_of_both(made, location, orientation)?;
     }
@@ -76,7 +83,7 @@ pub(super) fn located(
             made.feature.shift(first, direction, width / 2.0);
             first + 1..first + count
         }
-        Nest::Axis => {
+        Nest::Ends | Nest::Axis => {
             for (variable, side) in (first..).zip(made.sides) {
                 made.feature.shift(variable, side, width / 2.0);
             }

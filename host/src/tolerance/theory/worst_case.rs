@@ -92,7 +92,7 @@ pub fn worst_case(model: &Model, around: &Expansion) -> Vec<WorstCase> {
 fn by_vertices(model: &Model) -> Option<Vec<[f64; 2]>> {
     let is_round = |variation: &Variation| match variation {
         Variation::Disc(_) => true,
-        Variation::Nested(zone) => zone.of == Nest::Axis,
+        Variation::Nested(zone) => zone.of != Nest::Face,
         _ => false,
     };
     if model.contributors.iter().any(|contributor| is_round(&contributor.variation)) {
