@@ -82,7 +82,7 @@ fn the_tertiary_datum_turns_the_frame_by_its_location_alone() {
     // The face is 0.5 mm further out: the middle of the frame's own face, 50 mm from the bore, comes to lie on it.
     for off in [0.5, -0.5] {
         let angle = libm::atan2(30.0, 40.0) - libm::asin((30.0 + off) / 50.0);
-        check(points(&iso, &[("plate.C offset", off * 1e-3)]), turned(angle), 1e-9);
+        check(points(&iso, &[("plate.C offset", off * 1e-3)]), turned(angle), 1e-7);
     }
     // A lean about its middle turns nothing.
     check(points(&iso, &[("plate.C orientation x", 0.02)]), turned(0.0), 1e-9);
@@ -90,8 +90,7 @@ fn the_tertiary_datum_turns_the_frame_by_its_location_alone() {
     let fit = plate("least-squares", datums);
     let weight = 30.0 * 30.0 / (30.0 * 30.0 + 40.0 * 40.0);
     for lean in [1e-4, -1e-4] {
-        let angle = -weight * -lean;
-        check(points(&fit, &[("plate.C orientation x", lean)]), turned(angle), 2e-5);
+        check(points(&fit, &[("plate.C orientation x", lean)]), turned(weight * lean), 2e-5);
     }
     let angle = -40.0 * 0.01 / (30.0 * 30.0 + 40.0 * 40.0);
     check(points(&fit, &[("plate.C offset", 0.01e-3)]), turned(angle), 2e-5);
@@ -105,7 +104,7 @@ fn the_secondary_datum_turns_the_frame_by_its_orientation() {
     check(points(&iso, &[("plate.C offset", 0.5e-3)]), turned(0.0), 1e-9);
     for lean in [0.01, -0.01] {
         // The normal (lean, −1) leans by atan(lean) about z.
-        check(points(&iso, &[("plate.C orientation x", lean)]), turned(libm::atan(lean)), 1e-9);
+        check(points(&iso, &[("plate.C orientation x", lean)]), turned(libm::atan(lean)), 1e-7);
     }
     let fit = plate("least-squares", datums);
     assert!(points(&fit, &[("plate.C offset", 0.5e-3)])[1].abs() > 0.1);

@@ -1,9 +1,30 @@
 //! What is accepted and still hardly meant: warnings at their line. And keys that would do nothing: errors.
 
 use super::tests::{check_all, parse};
+use crate::scene::shipped;
 
 fn warnings(text: &str) -> Vec<String> {
     parse(text, &[]).unwrap_or_else(|error| panic!("{error}")).product.unwrap().warnings
+}
+
+/// What varies of a slide and of a mechanism has the same warnings and refusals.
+#[test]
+fn what_varies_over_a_production_is_looked_at_alike() {
+    let vary = "\n[vary.friction]\ncoefficient = { tolerance = 0.01, distribution = { kind = \"normal\", deviation = 0.02 } }\n";
+    let said = "62 % of the units are outside of the tolerance";
+    let slide = shipped("cd-rom-slide").unwrap().to_owned() + vary;
+    let told = parse(&slide, &[]).unwrap().slide.unwrap().warnings;
+    let line = slide.lines().count();
+    assert!(
+        told.len() == 1 && told[0].starts_with(&format!("scene.toml:{line}:")) && told[0].contains(said),
+        "{told:?}"
+    );
+    let mechanism = shipped("hatch").unwrap().to_owned() + vary;
+    let told = parse(&mechanism, &[]).unwrap().mechanism.unwrap().warnings;
+    assert!(told.len() == 1 && told[0].contains(said), "{told:?}");
+    let ignored = vary.replace("\"normal\", deviation", "\"uniform\", deviation");
+    let error = parse(&(shipped("hatch").unwrap().to_owned() + &ignored), &[]).err().unwrap().to_string();
+    assert!(error.contains("`vary.friction.coefficient.distribution.deviation` has no effect"), "{error}");
 }
 
 /// A dimension of 5 mm with further `keys` from its fourth line on.
