@@ -190,6 +190,7 @@ fn kernel(scene: &Scene) -> (&'static str, &'static str, String) {
 pub(super) fn warnings_of(scene: &Scene) -> Vec<String> {
     let mut warnings = warnings(rank_of_normals(&contacts(scene)), guide(scene, 0.0).as_ref());
     warnings.extend(clearance_note(scene));
+    warnings.extend(scene.warnings.iter().cloned());
     warnings
 }
 

@@ -75,6 +75,8 @@ pub struct Mechanism {
     pub controller: ControllerSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
+    /// What the user should know of what varies.
+    pub warnings: Vec<String>,
 }
 
 /// A rigid body.

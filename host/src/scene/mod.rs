@@ -75,6 +75,8 @@ pub struct Scene {
     pub vary: Vec<Varied>,
     /// Which measure of the product each gap is, pin by pin; `None` where the scene gives its statistics.
     pub gap_measures: GapMeasures,
+    /// What the user should know of what varies.
+    pub warnings: Vec<String>,
 }
 
 /// Which measure of the product each gap of each pin is, in the order of [`SURFACES`].

@@ -83,6 +83,7 @@ pub(super) fn scene(
         sweep: levels,
         vary: found.recover(vary(root), Vec::new()),
         gap_measures,
+        warnings: found.take_warnings(),
     };
     for i in [0, scene.sweep.count - 1] {
         scene.check_gaps(&[scene.sweep.level(i); CONTACTS]).map_err(|error| {

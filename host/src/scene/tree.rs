@@ -144,6 +144,18 @@ impl<'s> Place<'s> {
         Self { source: self.source, span: start + within.start..start + within.end }
     }
 
+    /// File, line and column, as `scene.toml:3:9`; for a setting of the command line its text.
+    pub fn position(&self) -> String {
+        let Source { name, text, .. } = self.source;
+        if name == COMMAND_LINE {
+            return text.to_owned();
+        }
+        let before = text.get(..self.span.start).unwrap_or_default();
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
+        format!("{name}:{line}:{column}")
+    }
+
     /// A `problem` at this place, and what is `allowed`.
     pub fn error(&self, problem: Problem, allowed: impl Into<String>) -> SceneError {
         SceneError::new(problem, allowed.into(), self.source.name, self.source.text, self.span.clone())

@@ -144,6 +144,16 @@ impl<'t, 's> Field<'t, 's> {
         }
     }
 
+    /// Takes note of a warning about this value, with its place.
+    pub fn warn(&self, warning: &str) {
+        self.found().warn(format!("{}: {warning}", self.node.place.position()));
+    }
+
+    /// This value changes nothing `place`.
+    pub fn no_effect(&self, place: impl Into<String>, allowed: impl Into<String>) -> SceneError {
+        self.error(Problem::NoEffect { key: self.key.clone(), place: place.into() }, allowed)
+    }
+
     /// A `problem` with this value.
     pub fn error(&self, problem: Problem, allowed: impl Into<String>) -> SceneError {
         self.node.place.error(problem, allowed)

@@ -81,8 +81,10 @@ pub fn warnings_of(mechanism: &Mechanism) -> Result<Vec<String>, Failure> {
 fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
     let driven = mechanism.drives.len() as i64;
     let free = freedom.degrees_of_freedom;
+    let mut warnings = mechanism.warnings.clone();
     if free < driven {
-        return vec![format!("{free} degrees of freedom are left for {driven} drives: the joints hold the mechanism")];
+        warnings.push(format!("{free} degrees of freedom are left for {driven} drives: the joints hold the mechanism"));
+        return warnings;
     }
     let word = |locked: &Locked| {
         let meaning = format!("no force of {} moves it", locked.drive);
@@ -99,5 +101,7 @@ fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
              of {pivot}, and the drive runs away from its command"
         )
     };
-    locked(mechanism).iter().map(word).chain(reversals(mechanism).iter().map(reversed)).collect()
+    warnings.extend(locked(mechanism).iter().map(word));
+    warnings.extend(reversals(mechanism).iter().map(reversed));
+    warnings
 }

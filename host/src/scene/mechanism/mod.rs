@@ -78,6 +78,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         run,
         controller: parse::controller(root, &laws.map_or(FrictionData::None, |laws| laws.friction))?,
         sweep,
+        warnings: found.take_warnings(),
     };
     // With values that stand for wrong ones there is nothing to look at.
     if !found.any() {

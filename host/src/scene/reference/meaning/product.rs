@@ -16,6 +16,12 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ),
     ("tolerance.sigma", "How many standard deviations half the tolerance of a size is. Default: 3."),
     (
+        "tolerance.datums",
+        "How a frame of several datums turns where a secondary or tertiary datum does not fit it in place and direction. \
+         `least-squares`: by a fit of both. `iso-5459`: the secondary datum by its orientation, the tertiary one by its \
+         location alone. Default: `least-squares`.",
+    ),
+    (
         "tolerance.correlation",
         "Whether the coefficients of `[[correlation]]` are of values or of ranks. Default: `pearson`.",
     ),
@@ -41,11 +47,13 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ),
     (
         "dimension.sigma",
-        "How many standard deviations half the tolerance is; 1 or more of a normal distribution. Default: `tolerance.sigma`.",
+        "How many standard deviations half the tolerance is, with `normal`, `truncated-normal` or `skewed`. Default: \
+         `tolerance.sigma`.",
     ),
     (
         "part.*.offset.sigma",
-        "How many standard deviations half the tolerance is; 1 or more of a normal distribution. Default: `tolerance.sigma`.",
+        "How many standard deviations half the tolerance is, with `normal`, `truncated-normal` or `skewed`. Default: \
+         `tolerance.sigma`.",
     ),
     (
         "dimension.distribution",
@@ -57,16 +65,15 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ),
     (
         "dimension.side",
-        "Of an angle: length of its shorter side, by which ISO 2768-1 tolerates it. Required where a class of ISO 2768-1 tolerates an angle.",
+        "Of an angle: length of its shorter side, by which ISO 2768-1 tolerates it. Required where a class of ISO 2768-1 tolerates an angle, else an error.",
     ),
-    ("part.*.offset.side", "Of no use here: only angles have it."),
     (
         "dimension.edge",
-        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Default: an ordinary length.",
+        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Only where a class of ISO 2768-1 tolerates a length. Default: an ordinary length.",
     ),
     (
         "part.*.offset.edge",
-        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Default: an ordinary length.",
+        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Only where a class of ISO 2768-1 tolerates a length. Default: an ordinary length.",
     ),
     (
         "dimension.cost",
@@ -92,8 +99,26 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ),
     ("*.distribution.scale", "Of `weibull` and the two Gumbel distributions: scale parameter."),
     ("*.distribution.location", "Of `lognormal` and `weibull`: least deviation from `value`. Default: 0."),
-    ("*.distribution.mean", "Of `lognormal`: mean deviation from `value`."),
-    ("*.distribution.deviation", "Of `lognormal`: standard deviation."),
+    (
+        "*.distribution.mean",
+        "Of `normal`, `truncated-normal`, `skewed` and `lognormal`: deviation of the mean from `value`. Required by \
+         `lognormal`. Default: the middle of the limits.",
+    ),
+    (
+        "*.distribution.shift",
+        "Of `normal`, `truncated-normal` and `skewed`, instead of `mean`: deviation of the mean from the middle of the \
+         limits. Default: 0.",
+    ),
+    (
+        "*.distribution.deviation",
+        "Of `normal`, `truncated-normal`, `skewed` and `lognormal`: standard deviation. Required by `lognormal`. Default: what \
+         `sigma` says.",
+    ),
+    (
+        "*.distribution.cpk",
+        "Of `normal`, `truncated-normal` and `skewed`, instead of `deviation`: Cpk of the process, the distance of the mean \
+         from the nearer limit over three standard deviations. Default: what `sigma` says.",
+    ),
     ("*.distribution.of", "Of `mixture`: its components, such as two machines that make the same part."),
     ("*.distribution.of.weight", "Share of the component, relative to the weights of the others. Default: 1."),
     ("*.distribution.of.tolerance", "Limits of the component's deviation."),
