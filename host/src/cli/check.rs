@@ -99,13 +99,13 @@ impl Arguments {
             return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
         }
         let file = self.scene.load_file(&[])?;
+        let of_product = file.product.as_ref().map(|product| product.warnings.clone()).unwrap_or_default();
         if let Some(found) = &file.mechanism {
-            return mechanism::check(found, self.n, &self.scene, self.plot.as_deref());
+            return mechanism::check(found, self.n, of_product, &self.scene, self.plot.as_deref());
         }
         if self.plot.is_some() {
             return Err(Failure::Input("--plot draws mechanisms of bodies and joints, and this scene has none".into()));
         }
-        let of_product = file.product.as_ref().map(|product| product.warnings.clone()).unwrap_or_default();
         if let Some(slide) = &file.slide {
             slide.check_gaps(&[self.n; CONTACTS]).map_err(|error| Failure::Input(format!("--n: {error}")))?;
             let mut findings = find(slide, self.n);
@@ -188,7 +188,8 @@ fn kernel(scene: &Scene) -> (&'static str, &'static str, String) {
 
 /// What a designer should know of `scene` before trusting a run.
 pub(super) fn warnings_of(scene: &Scene) -> Vec<String> {
-    let mut warnings = warnings(rank_of_normals(&contacts(scene)), guide(scene, 0.0).as_ref());
+    let mut warnings = scene.warnings.clone();
+    warnings.extend(self::warnings(rank_of_normals(&contacts(scene)), guide(scene, 0.0).as_ref()));
     warnings.extend(clearance_note(scene));
     warnings
 }

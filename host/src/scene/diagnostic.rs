@@ -117,6 +117,14 @@ pub enum Problem {
     /// Exact friction with a scheme that does not solve for forces.
     #[error("`controller.integrator` is \"{0}\", which cannot do exact friction")]
     ExplicitFriction(String),
+    /// A key that is known and changes nothing in this scene.
+    #[error("`{key}` has no effect: {why}")]
+    NoEffect {
+        /// The key.
+        key: String,
+        /// Why not.
+        why: String,
+    },
     /// A name that is taken.
     #[error("`{key}` is \"{name}\" again")]
     Duplicate {
@@ -266,9 +274,13 @@ impl Problem {
     }
 }
 
-/// What has been found wrong with a scene so far. Reading goes on behind a wrong value, so that all of them are told at once.
+/// What has been found in a scene so far: mistakes, and values that are possible but implausible. Reading goes on behind a wrong
+/// value, so that all of them are reported at once.
 #[derive(Debug, Default)]
-pub struct Found(RefCell<Vec<SceneError>>);
+pub struct Found {
+    errors: RefCell<Vec<SceneError>>,
+    warnings: RefCell<Vec<String>>,
+}
 
 impl Found {
     /// What `result` holds, or `instead` after its error is noted.
@@ -281,17 +293,30 @@ impl Found {
 
     /// Takes note of an error.
     pub fn note(&self, error: SceneError) {
-        self.0.borrow_mut().push(error);
+        self.errors.borrow_mut().push(error);
     }
 
     /// Whether something is wrong.
     pub fn any(&self) -> bool {
-        !self.0.borrow().is_empty()
+        !self.errors.borrow().is_empty()
+    }
+
+    /// Takes note of a warning, once.
+    pub fn warn(&self, warning: String) {
+        let mut warnings = self.warnings.borrow_mut();
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
+    }
+
+    /// The warnings noted so far, which are no longer noted then.
+    pub fn take_warnings(&self) -> Vec<String> {
+        self.warnings.take()
     }
 
     /// `result`, unless something was noted: then all of that, with the error of `result` where it would stand without it.
     pub fn conclude<T>(&self, result: Result<T, SceneError>) -> Result<T, SceneError> {
-        let mut all: Vec<SceneError> = self.0.take();
+        let mut all: Vec<SceneError> = self.errors.take();
         match result {
             Ok(value) if all.is_empty() => return Ok(value),
             Err(error) if all.is_empty() || error.problem().stands_alone() => all.push(error),

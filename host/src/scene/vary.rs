@@ -1,5 +1,7 @@
 //! Parameters of a slide that vary over the production, beside its gaps.
 
+use slipfit_core::menu::FrictionData;
+
 use super::{
     Problem, Scene, SceneError,
     product::{SIGMA_DEFAULT, deviation},
@@ -18,6 +20,22 @@ pub(super) const MASS: Quantity = Quantity { units: unit::MASS, range: [-1e7, 1e
 pub(super) const RAMP_END: Quantity = Quantity { units: unit::SECONDS, range: [-1000.0, 1000.0] };
 /// A rotation of gravity.
 pub(super) const TILT: Quantity = Quantity { units: unit::ANGLE, range: [-180.0, 180.0] };
+
+/// Why friction that varies changes nothing.
+pub(super) const FRICTIONLESS: &str = "the law of friction is \"none\"";
+/// Why a tilt of gravity changes nothing.
+pub(super) const UNTILTED: &str = "gravity is zero, or along the axis of the tilt";
+
+/// Notes that the deviation `field` has no effect.
+pub(super) fn refuse(field: &Field, why: &str) {
+    let problem = Problem::NoEffect { key: field.key.clone(), why: why.into() };
+    field.found().note(field.error(problem, "to leave it out"));
+}
+
+/// The greatest component (m/s²) of `gravity` across the frame's axis of this index, about which a tilt turns it.
+pub(super) fn across(gravity: [f64; 3], axis: usize) -> f64 {
+    (0..3).filter(|i| *i != axis).map(|i| gravity[i].abs()).fold(0.0, f64::max)
+}
 
 /// A parameter of a slide that varies, and by how much from the scene's value.
 pub type Varied = mechanism::Varied<Parameter>;
@@ -81,6 +99,16 @@ impl Parameter {
         }
     }
 
+    /// Why a deviation of this parameter changes nothing in `scene`; `None` where it does.
+    fn no_effect(self, scene: &Scene) -> Option<&'static str> {
+        match self {
+            Self::Friction => (scene.friction == FrictionData::None).then_some(FRICTIONLESS),
+            Self::TiltX => (across(scene.slide.gravity, 0) == 0.0).then_some(UNTILTED),
+            Self::TiltZ => (across(scene.slide.gravity, 2) == 0.0).then_some(UNTILTED),
+            Self::Stiffness | Self::Damping | Self::Mass | Self::Gain | Self::RampEnd => None,
+        }
+    }
+
     /// Moves the parameter of `scene` by a `deviation` (SI).
     pub fn apply(self, scene: &mut Scene, deviation: f64) {
         match self {
@@ -96,8 +124,8 @@ impl Parameter {
     }
 }
 
-/// Reads the optional table `[vary]`.
-pub(super) fn vary(root: &Field) -> Result<Vec<Varied>, SceneError> {
+/// Reads the optional table `[vary]` of a `scene`.
+pub(super) fn vary(root: &Field, scene: &Scene) -> Result<Vec<Varied>, SceneError> {
     let Some(table) = root.get("vary") else { return Ok(Vec::new()) };
     table.expect_table()?;
     for of_mechanism in ["body", "mechanism"] {
@@ -114,6 +142,9 @@ pub(super) fn vary(root: &Field) -> Result<Vec<Varied>, SceneError> {
         let Some(of_group) = table.get(group) else { continue };
         of_group.expect_table()?;
         let Some(field) = of_group.get(key) else { continue };
+        if let Some(why) = parameter.no_effect(scene) {
+            refuse(&field, why);
+        }
         let spread = deviation(&field, parameter.quantity(), SIGMA_DEFAULT)?;
         varied.push(Varied { parameter, deviation: spread.contributor(format!("{group}.{key}")) });
     }

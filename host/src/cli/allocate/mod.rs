@@ -11,7 +11,7 @@ use clap::Args;
 use slipfit_core::sampling::stream::derived;
 
 use self::{function::Function, report::Report};
-use super::{Failure, SceneArguments, ThreadArguments, given, print, print_json, progress, warn};
+use super::{Failure, SceneArguments, ThreadArguments, check, given, print, print_json, progress, warn};
 use crate::{
     product::{Product, costed::Costed},
     scene::{Override, SceneFile, with_tolerances},
@@ -19,7 +19,7 @@ use crate::{
     tolerance::{
         allocate::{
             AllocateError,
-            check::check,
+            check::check as checked_units,
             cost::Process,
             curve::{LEVELS, curve as cost_against_defects},
             requirement::{Kind, OfMeasures, Requirement},
@@ -165,7 +165,7 @@ impl Arguments {
                 other => other?,
             };
             let tolerances = found.solution.tolerances.clone();
-            let checked = check(&model(&tolerances)?, self.samples, self.seed)?;
+            let checked = checked_units(&model(&tolerances)?, self.samples, self.seed)?;
             // Units that the search has not seen: those that it has are better than others by chance.
             let other = derived(self.seed, OTHER_UNITS);
             let malfunctions = function::limit(&requirements).map(|limit| function.share(&tolerances, limit, other));
@@ -182,7 +182,9 @@ impl Arguments {
             let checked = report::Checks { measures: checked, malfunctions };
             Ok((Report::new(&file.title, &product, figures.rows(), &found, &checked, points), tolerances))
         };
-        let (report, tolerances) = self.threads.install(work)??;
+        let (mut report, tolerances) = self.threads.install(work)??;
+        let simulated = file.slide.iter().filter(|_| function::limit(&requirements).is_some());
+        report.warnings.extend(simulated.flat_map(check::warnings_of));
         let csv = self.csv.as_ref().map(|path| Ok::<_, anyhow::Error>((path, curve::csv(&report)?))).transpose()?;
         let svg = self.plot.as_ref().map(|path| curve::svg(&report).map(|svg| (path, svg.into_bytes()))).transpose();
         for (path, bytes) in csv.into_iter().chain(svg.map_err(anyhow::Error::from)?) {

@@ -24,14 +24,21 @@ struct CheckReport<'a> {
     warnings: &'a [String],
 }
 
-/// `check`.
-pub fn check(mechanism: &Mechanism, n: f64, scene: &SceneArguments, plot: Option<&Path>) -> Result<(), Failure> {
+/// `check`; `of_product` are the warnings about the product that the mechanism belongs to.
+pub fn check(
+    mechanism: &Mechanism,
+    n: f64,
+    of_product: Vec<String>,
+    scene: &SceneArguments,
+    plot: Option<&Path>,
+) -> Result<(), Failure> {
     if let Some(path) = plot {
         scene.check_outputs(&[("--plot", path)])?;
     }
     let gaps = mechanism.gaps_at(&[n])?;
     let freedom = Freedom::of(mechanism)?;
-    let warnings = warnings(mechanism, &freedom);
+    let mut warnings = warnings(mechanism, &freedom);
+    warnings.extend(of_product);
     if let Some(path) = plot {
         files::write(path, mechanism.drawing().as_bytes())?;
     }
@@ -78,14 +85,17 @@ pub fn warnings_of(mechanism: &Mechanism) -> Result<Vec<String>, Failure> {
 }
 
 fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
+    let mut warnings = mechanism.warnings.clone();
     let driven = mechanism.drives.len() as i64;
     let free = freedom.degrees_of_freedom;
     if free < driven {
-        return vec![format!("{free} degrees of freedom are left for {driven} drives: the joints hold the mechanism")];
+        warnings.push(format!("{free} degrees of freedom are left for {driven} drives: the joints hold the mechanism"));
+        return warnings;
     }
     let word = |locked: &Locked| {
         let meaning = format!("no force of {} moves it", locked.drive);
         self_locking(locked.friction, locked.critical_friction, [locked.length, locked.distance], &meaning)
     };
-    locked(mechanism).iter().map(word).collect()
+    warnings.extend(locked(mechanism).iter().map(word));
+    warnings
 }
