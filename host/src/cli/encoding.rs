@@ -44,7 +44,9 @@ mod tests {
         let four: Vec<u8> = "\u{feff}a".chars().flat_map(|c| u32::from(c).to_le_bytes()).collect();
         assert!(text_of(four).unwrap_err().contains("UTF-32"));
         let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
-        assert!(text_of(latin).unwrap_err().starts_with("line 1 has the byte 0xe4, which is not UTF-8, but may be Latin-1"));
+        assert!(
+            text_of(latin).unwrap_err().starts_with("line 1 has the byte 0xe4, which is not UTF-8, but may be Latin-1")
+        );
         assert_eq!(text_of(text.as_bytes().to_vec()).unwrap(), text);
         assert_eq!(text_of(format!("\u{feff}{text}").into_bytes()).unwrap(), text);
         assert_eq!(text_of(Vec::new()).unwrap(), "");

@@ -7,7 +7,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use maud::{DOCTYPE, Markup, html};
 use serde::Serialize;
 
-use super::{Failure, Moving, SceneArguments, endings, kernel::core_folder, print, print_json, simulate::ControllerArguments};
+use super::{
+    Failure, Moving, SceneArguments, endings, kernel::core_folder, print, print_json, simulate::ControllerArguments,
+};
 use crate::{
     dynamics::scheme::ScalarKind,
     firmware::fmu::{

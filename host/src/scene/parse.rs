@@ -8,10 +8,14 @@ use slipfit_core::{
     slide::{CONTACTS, PINS, box_inertia},
 };
 
-use crate::dynamics::scheme::{IntegratorKind, ScalarKind};
+use crate::{
+    dynamics::scheme::{IntegratorKind, ScalarKind},
+    mechanism::mobility::SURFACE_NORMALS,
+};
 
 use super::{
-    ControllerSpec, GapMeasures, LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError, SlideSpec,
+    ControllerSpec, GapMeasures, LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError,
+    SlideSpec,
     contact::impact,
     diagnostic::{COMMAND_LINE, Found},
     parse_levels, plausible,
@@ -109,7 +113,8 @@ fn doubt(root: &Field, scene: &Scene) {
     let widest = gaps().map(|gap| gap.mean.abs() + 3.0 * gap.deviation).fold(0.0, f64::max);
     // The pins on which the slide lies: gravity points out of the surface that meets them.
     let carry = |normal: [f64; 3]| normal.iter().zip(scene.slide.gravity).map(|(n, g)| n * g).sum::<f64>() > 0.0;
-    let carries = |pin: &&PinSpec| NORMALS.iter().zip(pin.gaps).any(|(normal, gap)| gap.is_some() && carry(*normal));
+    let carries =
+        |pin: &&PinSpec| SURFACE_NORMALS.iter().zip(pin.gaps).any(|(normal, gap)| gap.is_some() && carry(*normal));
     let contacts = scene.pins.iter().filter(carries).count();
     let law = [scene.contact.stiffness, scene.contact.exponent];
     if let Some(field) = root.get("contact").and_then(|contact| contact.get("stiffness")) {
@@ -126,9 +131,6 @@ fn doubt(root: &Field, scene: &Scene) {
         }
     }
 }
-
-/// Outward normals of the slide's surfaces, in the order of [`SURFACES`].
-const NORMALS: [[f64; 3]; 4] = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
 
 /// Reads the interval (s) between samples from what follows `--every`: a number in ms or with its unit.
 ///

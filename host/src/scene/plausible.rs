@@ -130,8 +130,7 @@ pub(super) fn sink_depth(stiffness: f64, exponent: f64, load: f64) -> f64 {
 /// Warns about a `stiffness` (N/m^e), stated by `field`, to which the weight, or where there is none the drive's force, presses the parts
 /// deeper than their `widest` gap (m), shared evenly by a number of contacts.
 pub(super) fn stiffness(field: &Field, [stiffness, exponent]: [f64; 2], loads: Loads, contacts: usize, widest: f64) {
-    let (load, whose) =
-        if loads.weight > 0.0 { (loads.weight, "weight") } else { (loads.drives, "drive's force") };
+    let (load, whose) = if loads.weight > 0.0 { (loads.weight, "weight") } else { (loads.drives, "drive's force") };
     let share = load / contacts.max(1) as f64;
     let depth = |stiffness: f64| sink_depth(stiffness, exponent, share);
     let deep = depth(stiffness);
@@ -156,7 +155,14 @@ pub(super) fn stiffness(field: &Field, [stiffness, exponent]: [f64; 2], loads: L
 }
 
 /// Warns about a `gap` (m), stated by `field`, that presses a joint called `name` at the start far harder than weight and drives.
-pub(super) fn pressed(field: &Field, name: &str, is_stop: bool, gap: f64, [stiffness, exponent]: [f64; 2], loads: Loads) {
+pub(super) fn pressed(
+    field: &Field,
+    name: &str,
+    is_stop: bool,
+    gap: f64,
+    [stiffness, exponent]: [f64; 2],
+    loads: Loads,
+) {
     let load = loads.weight + loads.drives;
     if gap >= 0.0 || load == 0.0 {
         return;

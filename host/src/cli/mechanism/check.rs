@@ -9,7 +9,7 @@ use crate::{
     cli::{Failure, SceneArguments, check::self_locking, print, print_json, text_table, warn},
     mechanism::{
         Freedom, Mechanism, Spring,
-        self_locking::{Locked, locked},
+        self_locking::{DriveSide, Locked, locked},
     },
     show::number::{fixed, level, or_dash, ten_digits},
     system::files,
@@ -93,8 +93,15 @@ fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
         return warnings;
     }
     let word = |locked: &Locked| {
-        let meaning = format!("no force of {} moves it", locked.drive);
-        self_locking(locked.friction, locked.critical_friction, [locked.length, locked.distance], &meaning)
+        let meaning = match locked.side {
+            DriveSide::Edge => format!(
+                "\"{}\" passes on the line of the other resistances, so that the least offset outwards locks \"{}\" on \"{}\"",
+                locked.drive, locked.body, locked.on
+            ),
+            _ => format!("no force of \"{}\" moves \"{}\" on \"{}\"", locked.drive, locked.body, locked.on),
+        };
+        let levers: Vec<_> = locked.levers.iter().map(|lever| ([lever.length, lever.distance], "beside")).collect();
+        self_locking(locked.friction, locked.critical_friction, &levers, &meaning)
     };
     warnings.extend(locked(mechanism).iter().map(word));
     warnings

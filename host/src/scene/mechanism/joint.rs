@@ -100,7 +100,8 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
         ("track", false, None) => {
             let mut indices = [None; 4];
             for (index, surface) in indices.iter_mut().zip(SURFACES) {
-                let gap = table.get(surface).map(|field| gaps.add(format!("{name} {surface}"), &field, &MEAN)).transpose()?;
+                let gap =
+                    table.get(surface).map(|field| gaps.add(format!("{name} {surface}"), &field, &MEAN)).transpose()?;
                 *index = gap;
             }
             JointKind::Track { gaps: indices }

@@ -213,11 +213,8 @@ impl Names {
         let name = field.to_text()?;
         self.find(name).ok_or_else(|| {
             let (key, of, name) = (field.key.clone(), "body".into(), name.into());
-            let problem = if name == FRAME {
-                Problem::Choice { key, written: name }
-            } else {
-                Problem::UnknownName { of, name }
-            };
+            let problem =
+                if name == FRAME { Problem::Choice { key, written: name } } else { Problem::UnknownName { of, name } };
             field.error(problem, format!("a body that moves: {}", self.names.join(", ")))
         })
     }
@@ -276,7 +273,9 @@ fn laws(table: &Field, otherwise: Option<Laws>) -> Result<Option<Laws>, SceneErr
     let found = table.found();
     let contact = match table.get("contact") {
         None => otherwise.map(|laws| laws.contact),
-        Some(_) => Some(found.recover(table.table("contact").and_then(|table| contact::normal(&table)), joint::NO_CONTACT)),
+        Some(_) => {
+            Some(found.recover(table.table("contact").and_then(|table| contact::normal(&table)), joint::NO_CONTACT))
+        }
     };
     let friction = match table.get("friction") {
         None => otherwise.map_or(FrictionData::None, |laws| laws.friction),

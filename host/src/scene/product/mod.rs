@@ -388,8 +388,13 @@ fn correlations(root: &Field, contributors: &[Contributor]) -> Result<Vec<(usize
         let scores = match of {
             [Some(one), Some(other)] => copula::of_scores(one, other, kind, stated).map_err(|[least, greatest]| {
                 if !(least.is_finite() && greatest.is_finite()) {
-                    let what = "a correlation of values of which one does not vary, or has no finite standard deviation".into();
-                    return field.error(Problem::Unsupported { what }, "correlation = \"spearman\" under [tolerance], of ranks");
+                    let what =
+                        "a correlation of values of which one does not vary, or has no finite standard deviation"
+                            .into();
+                    return field.error(
+                        Problem::Unsupported { what },
+                        "correlation = \"spearman\" under [tolerance], of ranks",
+                    );
                 }
                 let [least, greatest] = [least, greatest].map(|end| fixed(end, 3));
                 field.out_of_range("", format!("between {least} and {greatest} for these two distributions"))
