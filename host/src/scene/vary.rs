@@ -136,13 +136,15 @@ pub(super) fn vary(root: &Field, scene: &Scene) -> Result<Vec<Varied>, SceneErro
             );
         }
     }
+    // A value that stands for a wrong one may leave a parameter without effect.
+    let sound = !root.found().any();
     let mut varied = Vec::new();
     for parameter in Parameter::ALL {
         let [group, key] = parameter.key();
         let Some(of_group) = table.get(group) else { continue };
         of_group.expect_table()?;
         let Some(field) = of_group.get(key) else { continue };
-        if let Some(why) = parameter.no_effect(scene) {
+        if let Some(why) = parameter.no_effect(scene).filter(|_| sound) {
             refuse(&field, why);
         }
         let spread = deviation(&field, parameter.quantity(), SIGMA_DEFAULT)?;

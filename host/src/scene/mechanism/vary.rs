@@ -41,10 +41,12 @@ pub(super) fn vary(root: &Field, names: &Names, mechanism: &Mechanism) -> Result
         let what = "`vary.slide` in a mechanism".into();
         return Err(field.error(Problem::Unsupported { what }, "[[vary.body]] with a name, vary.mechanism.tilt_z"));
     }
+    // A value that stands for a wrong one may leave a parameter without effect.
+    let sound = !root.found().any();
     let mut varied = Vec::new();
     let mut read = |of: &Field, key: &str, named: &str, parameter: Parameter, quantity: &Quantity| {
         let Some(field) = of.get(key) else { return Ok(()) };
-        if let Some(why) = no_effect(parameter, mechanism) {
+        if let Some(why) = no_effect(parameter, mechanism).filter(|_| sound) {
             refuse(&field, why);
         }
         let spread = deviation(&field, quantity, SIGMA_DEFAULT)?;
