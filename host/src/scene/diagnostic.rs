@@ -114,17 +114,17 @@ pub enum Problem {
         /// The value.
         written: String,
     },
-    /// Exact friction with a scheme that does not solve for forces.
-    #[error("`controller.integrator` is \"{0}\", which cannot do exact friction")]
-    ExplicitFriction(String),
-    /// A key that is known and changes nothing in this scene.
-    #[error("`{key}` has no effect: {why}")]
+    /// A key that changes nothing where it is written.
+    #[error("`{key}` has no effect {place}")]
     NoEffect {
         /// The key.
         key: String,
-        /// Why not.
-        why: String,
+        /// Where, such as "with a uniform distribution".
+        place: String,
     },
+    /// Exact friction with a scheme that does not solve for forces.
+    #[error("`controller.integrator` is \"{0}\", which cannot do exact friction")]
+    ExplicitFriction(String),
     /// A name that is taken.
     #[error("`{key}` is \"{name}\" again")]
     Duplicate {
@@ -274,8 +274,7 @@ impl Problem {
     }
 }
 
-/// What has been found in a scene so far: mistakes, and values that are possible but implausible. Reading goes on behind a wrong
-/// value, so that all of them are reported at once.
+/// What has been found wrong with a scene so far. Reading goes on behind a wrong value, so that all of them are told at once.
 #[derive(Debug, Default)]
 pub struct Found {
     errors: RefCell<Vec<SceneError>>,
@@ -296,11 +295,6 @@ impl Found {
         self.errors.borrow_mut().push(error);
     }
 
-    /// Whether something is wrong.
-    pub fn any(&self) -> bool {
-        !self.errors.borrow().is_empty()
-    }
-
     /// Takes note of a warning, once.
     pub fn warn(&self, warning: String) {
         let mut warnings = self.warnings.borrow_mut();
@@ -309,9 +303,14 @@ impl Found {
         }
     }
 
-    /// The warnings noted so far, which are no longer noted then.
+    /// The warnings so far, in the order in which they were noted.
     pub fn take_warnings(&self) -> Vec<String> {
         self.warnings.take()
+    }
+
+    /// Whether something is wrong.
+    pub fn any(&self) -> bool {
+        !self.errors.borrow().is_empty()
     }
 
     /// `result`, unless something was noted: then all of that, with the error of `result` where it would stand without it.

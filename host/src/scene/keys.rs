@@ -290,7 +290,7 @@ fn unread(entry: &Entry<'_>, path: &str, entries: &[Entry<'_>]) {
     if !entry.read.get() {
         let read: Vec<_> = entries.iter().filter(|other| other.read.get()).map(|other| &*other.key).collect();
         let allowed = format!("to leave it out; what counts here: {}", read.join(", "));
-        let problem = Problem::NoEffect { key: name, why: "nothing in this scene depends on it".into() };
+        let problem = Problem::NoEffect { key: name, place: "here: nothing in this scene depends on it".into() };
         return entry.place.found().note(entry.place.error(problem, allowed));
     }
     let below = |node: &Node<'_>| {

@@ -146,16 +146,16 @@ impl<'s> Place<'s> {
         Self { source: self.source, span: start + within.start..start + within.end }
     }
 
-    /// A warning about this place on one line: file, line and column, or the option that set it, and the `text`.
-    pub fn warning(&self, text: &str) -> String {
-        let Source { name, text: whole, .. } = self.source;
+    /// File, line and column, as `scene.toml:3:9`; for a setting of the command line its text.
+    pub fn position(&self) -> String {
+        let Source { name, text, .. } = self.source;
         if name == COMMAND_LINE {
-            return format!("{whole}: {text}");
+            return text.to_owned();
         }
-        let before = whole.get(..self.span.start).unwrap_or_default();
+        let before = text.get(..self.span.start).unwrap_or_default();
         let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
-        format!("{name}:{line}:{column}: {text}")
+        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
+        format!("{name}:{line}:{column}")
     }
 
     /// A `problem` at this place, and what is `allowed`.

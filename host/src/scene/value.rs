@@ -146,9 +146,14 @@ impl<'t, 's> Field<'t, 's> {
         }
     }
 
-    /// Notes a warning about this value.
-    pub fn warn(&self, text: &str) {
-        self.found().warn(self.node.place.warning(text));
+    /// Takes note of a warning about this value, with its place.
+    pub fn warn(&self, warning: &str) {
+        self.found().warn(format!("{}: {warning}", self.node.place.position()));
+    }
+
+    /// This value changes nothing `place`.
+    pub fn no_effect(&self, place: impl Into<String>, allowed: impl Into<String>) -> SceneError {
+        self.error(Problem::NoEffect { key: self.key.clone(), place: place.into() }, allowed)
     }
 
     /// A `problem` with this value.

@@ -21,16 +21,10 @@ pub(super) const RAMP_END: Quantity = Quantity { units: unit::SECONDS, range: [-
 /// A rotation of gravity.
 pub(super) const TILT: Quantity = Quantity { units: unit::ANGLE, range: [-180.0, 180.0] };
 
-/// Why friction that varies changes nothing.
-pub(super) const FRICTIONLESS: &str = "the law of friction is \"none\"";
-/// Why a tilt of gravity changes nothing.
-pub(super) const UNTILTED: &str = "gravity is zero, or along the axis of the tilt";
-
-/// Notes that the deviation `field` has no effect.
-pub(super) fn refuse(field: &Field, why: &str) {
-    let problem = Problem::NoEffect { key: field.key.clone(), why: why.into() };
-    field.found().note(field.error(problem, "to leave it out"));
-}
+/// Where friction that varies changes nothing.
+pub(super) const FRICTIONLESS: &str = "where the law of friction is \"none\"";
+/// Where a tilt of gravity changes nothing.
+pub(super) const UNTILTED: &str = "where gravity is zero, or along the axis of the tilt";
 
 /// The greatest component (m/s²) of `gravity` across the frame's axis of this index, about which a tilt turns it.
 pub(super) fn across(gravity: [f64; 3], axis: usize) -> f64 {
@@ -99,7 +93,7 @@ impl Parameter {
         }
     }
 
-    /// Why a deviation of this parameter changes nothing in `scene`; `None` where it does.
+    /// Where a deviation of this parameter changes nothing, if it does so in `scene`.
     fn no_effect(self, scene: &Scene) -> Option<&'static str> {
         match self {
             Self::Friction => (scene.friction == FrictionData::None).then_some(FRICTIONLESS),
@@ -145,7 +139,7 @@ pub(super) fn vary(root: &Field, scene: &Scene) -> Result<Vec<Varied>, SceneErro
         of_group.expect_table()?;
         let Some(field) = of_group.get(key) else { continue };
         if let Some(why) = parameter.no_effect(scene).filter(|_| sound) {
-            refuse(&field, why);
+            field.found().note(field.no_effect(why, "to leave it out"));
         }
         let spread = deviation(&field, parameter.quantity(), SIGMA_DEFAULT)?;
         varied.push(Varied { parameter, deviation: spread.contributor(format!("{group}.{key}")) });

@@ -8,23 +8,23 @@ use crate::{
     scene::{
         product::{SIGMA_DEFAULT, deviation},
         unit::{self, Quantity},
-        vary::{DAMPING, FRICTIONLESS, MASS, RAMP_END, SHARE, TILT, UNTILTED, across, refuse},
+        vary::{DAMPING, FRICTIONLESS, MASS, RAMP_END, SHARE, TILT, UNTILTED, across},
     },
 };
 
 /// Gain of a drive that turns.
 const TORQUE_GAIN: Quantity = Quantity { units: unit::TORQUE_GAIN, range: [-1e6, 1e6] };
 
-/// Why a deviation of this `parameter` changes nothing in the `mechanism`; `None` where it does.
+/// Where a deviation of this parameter changes nothing, if it does so in the `mechanism`.
 fn no_effect(parameter: Parameter, mechanism: &Mechanism) -> Option<&'static str> {
     let mut laws = mechanism.joints.iter().filter(|joint| !joint.kind.is_ideal()).map(|joint| joint.laws);
     let untilted = |axis| (across(mechanism.gravity, axis) == 0.0).then_some(UNTILTED);
     match parameter {
         Parameter::Friction => laws.all(|laws| laws.friction == FrictionData::None).then_some(FRICTIONLESS),
-        Parameter::Stiffness => laws.next().is_none().then_some("no joint has play, so that there is no contact"),
+        Parameter::Stiffness => laws.next().is_none().then_some("where no joint has play, so that there is no contact"),
         Parameter::Damping => {
             let undamped = laws.all(|laws| !matches!(laws.contact, NormalData::Impact(_)));
-            undamped.then_some("no contact has the law \"impact\"; the others state their losses as restitution")
+            undamped.then_some("where no contact has the law \"impact\"; the others state their losses as restitution")
         }
         Parameter::TiltX => untilted(0),
         Parameter::TiltZ => untilted(2),
@@ -47,7 +47,7 @@ pub(super) fn vary(root: &Field, names: &Names, mechanism: &Mechanism) -> Result
     let mut read = |of: &Field, key: &str, named: &str, parameter: Parameter, quantity: &Quantity| {
         let Some(field) = of.get(key) else { return Ok(()) };
         if let Some(why) = no_effect(parameter, mechanism).filter(|_| sound) {
-            refuse(&field, why);
+            field.found().note(field.no_effect(why, "to leave it out"));
         }
         let spread = deviation(&field, quantity, SIGMA_DEFAULT)?;
         varied.push(Varied { parameter, deviation: spread.contributor(format!("{named}.{key}")) });
