@@ -153,10 +153,9 @@ fn locking(levers: [Option<Lever>; 2], round: bool) -> (DriveSide, Option<f64>) 
     let sum: f64 = levers().map(Lever::ratio).sum();
     let ratio = if round { libm::sqrt(levers().map(|lever| lever.ratio().max(0.0)).map(|r| r * r).sum()) } else { sum };
     let edge = levers().any(|lever| lever.on_edge && lever.ratio() > 0.0);
-    let off_edge = levers().any(|lever| !lever.on_edge && lever.ratio() > 0.0);
     let side = match () {
         () if sum <= 0.0 && ratio <= 0.0 => DriveSide::Short,
-        () if edge && !off_edge => DriveSide::Edge,
+        () if edge => DriveSide::Edge,
         () => DriveSide::Beyond,
     };
     let size = if ratio == 0.0 { sum } else { ratio };

@@ -73,7 +73,7 @@ impl SceneFile {
             return Ok(Self { title, product, slide: None, mechanism: None });
         }
         if mechanism::is_mechanism(&root) {
-            mechanism::refuse_slide(&root);
+            mechanism::refuse_slide(&root)?;
             let mechanism = mechanism::mechanism(&root, title.clone(), product.as_ref())?;
             return Ok(Self { title, product, slide: None, mechanism: Some(mechanism) });
         }

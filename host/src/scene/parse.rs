@@ -97,8 +97,11 @@ pub(super) fn scene(
             table.get("n").unwrap_or(table).error(Problem::Gap(error), "")
         })?;
     }
-    // With values that stand for wrong ones there is nothing to judge.
-    if !found.any() {
+    // With values that stand for wrong ones, or a weight that is doubtful itself, there is nothing to judge.
+    let SlideSpec { mass, inertia_box, gravity } = scene.slide;
+    let weighs =
+        plausible::is_gravity(gravity) && plausible::is_body(mass, false, box_inertia(mass, inertia_box).into());
+    if weighs && !found.any() {
         doubt(root, &scene);
     }
     Ok(scene)
@@ -106,9 +109,7 @@ pub(super) fn scene(
 
 /// Warns about what is implausible in a `scene` as a whole, which was read from `root`.
 fn doubt(root: &Field, scene: &Scene) {
-    let length = |of: [f64; 3]| libm::sqrt(of.iter().map(|x| x * x).sum());
-    let weight = scene.slide.mass * length(scene.slide.gravity);
-    let loads = Loads { weight, drives: (scene.drive.gain * scene.drive.speed).abs() };
+    let loads = Loads::new(scene.slide.mass, scene.slide.gravity, (scene.drive.gain * scene.drive.speed).abs());
     let gaps = || scene.pins.iter().flat_map(|pin| pin.gaps).flatten();
     let widest = gaps().map(|gap| gap.mean.abs() + 3.0 * gap.deviation).fold(0.0, f64::max);
     // The pins on which the slide lies: gravity points out of the surface that meets them.

@@ -25,11 +25,22 @@ const NEEDLE: f64 = 5.0;
 /// How many times greater than weight and drive force together the force of a joint pressed at the start may be.
 const PRESSED: f64 = 10.0;
 
+/// Length of a vector.
+fn length(of: [f64; 3]) -> f64 {
+    libm::sqrt(of.iter().map(|x| x * x).sum())
+}
+
+/// Whether a planet has this `gravity` (m/s²), or there is none.
+pub(super) fn is_gravity(gravity: [f64; 3]) -> bool {
+    let length = length(gravity);
+    length == 0.0 || (GRAVITY[0]..=GRAVITY[1]).contains(&length)
+}
+
 /// Warns about a `gravity` (m/s²) that is stated by `field` and that no planet has.
 pub(super) fn gravity(field: &Field, gravity: [f64; 3]) {
-    let length = libm::sqrt(gravity.iter().map(|g| g * g).sum());
+    let length = length(gravity);
     let is_usual = |length: f64| (GRAVITY[0]..=GRAVITY[1]).contains(&length);
-    if length == 0.0 || is_usual(length) {
+    if is_gravity(gravity) {
         return;
     }
     let units = [("mm/s²", length / 1e3), ("m/s²", length * 1e3)];
@@ -120,6 +131,13 @@ pub(super) struct Loads {
     pub weight: f64,
     /// The greatest force of all drives that push (N).
     pub drives: f64,
+}
+
+impl Loads {
+    /// Those of a `mass` (kg) in `gravity` (m/s²) and of `drives` (N).
+    pub(super) fn new(mass: f64, gravity: [f64; 3], drives: f64) -> Self {
+        Self { weight: mass * length(gravity), drives }
+    }
 }
 
 /// How deep (m) a contact of a `stiffness` (N/m^e) yields to a `load` (N).

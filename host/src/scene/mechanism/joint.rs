@@ -140,6 +140,7 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
 
 /// Whether each joint is somewhere near its bodies, which are read from `bodies`.
 pub(super) fn check(mechanism: &Mechanism, fields: &[Field], bodies: &[Field]) -> Result<(), SceneError> {
+    let mut blamed = Vec::new();
     for (joint, field) in mechanism.joints.iter().zip(fields) {
         // How far it is from a body, and how far it may be.
         let distances = joint.between.iter().flatten().map(|index| {
@@ -150,12 +151,17 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field], bodies: &[Field]) -
         });
         let nearest = distances.min_by(|(_, one), (_, other)| (one[0] / one[1]).total_cmp(&(other[0] / other[1])));
         let Some((index, [away, most])) = nearest.filter(|(_, [away, most])| away > most) else { continue };
+        if blamed.contains(&index) {
+            continue;
+        }
         let body = &mechanism.bodies[index];
         // Where no body has such moments of inertia, they are wrong, not the joint.
         let stated = bodies[index].get("inertia");
         let stated = stated.filter(|_| !plausible::is_body(body.mass, mechanism.planar, body.inertia));
         let error = match stated {
-            Some(inertia) => inertia.error(
+            Some(inertia) => {
+                blamed.push(index);
+                inertia.error(
                 Problem::Mechanism(format!(
                     "`{}` is {}, which with the mass of \"{}\" is a radius of gyration of {} mm, but its joint \"{}\" is {} mm away",
                     inertia.key,
@@ -169,7 +175,8 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field], bodies: &[Field]) -
                     "moments of inertia of a body of that size{}",
                     plausible::inertia_meant(&inertia, body.mass, mechanism.planar, body.inertia)
                 ),
-            ),
+                )
+            }
             None => {
                 let at = field.get("at").unwrap_or_else(|| field.clone());
                 let problem = Problem::Far { joint: joint.name.clone(), away: away * 1e3 };

@@ -41,17 +41,18 @@ pub(super) fn is_mechanism(root: &Field) -> bool {
     ["mechanism", "body", "joint"].iter().any(|key| root.get(key).is_some())
 }
 
-/// Notes the tables of a slide beside those of a mechanism, which would have no effect.
-pub(super) fn refuse_slide(root: &Field) {
+/// Refuses the tables of a slide beside those of a mechanism, which would have no effect.
+pub(super) fn refuse_slide(root: &Field) -> Result<(), SceneError> {
     let has = |key: &&str| root.get(key).is_some();
-    let Some(own) = ["mechanism", "body", "joint"].iter().find(|key| has(key)) else { return };
+    let Some(own) = ["mechanism", "body", "joint"].iter().find(|key| has(key)) else { return Ok(()) };
     for key in ["slide", "pin", "drawing"] {
         if let Some(field) = root.get(key) {
             let what = format!("`{key}` beside `{own}`");
             let allowed = "a slide, [slide] and [[pin]], or bodies and joints, [mechanism], [[body]] and [[joint]]";
-            note(field.found(), Err(field.error(Problem::Unsupported { what }, allowed)));
+            return Err(field.error(Problem::Unsupported { what }, allowed));
         }
     }
+    Ok(())
 }
 
 /// Reads the mechanism of the scene `root`, whose gaps may be measures of `product`.
@@ -109,7 +110,10 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         check_tree(&mechanism, &joint_fields, root)?;
         check_gaps(&mechanism, &joint_fields, root)?;
         body::check_start(&mechanism, &fields)?;
-        doubt(&mechanism, &joint_fields, root);
+        // A weight that is doubtful itself is no measure of the others.
+        if plausible::is_gravity(gravity) {
+            doubt(&mechanism, &joint_fields, root);
+        }
     }
     Ok(mechanism)
 }
@@ -117,12 +121,9 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
 /// Warns about stiffnesses and gaps that are implausible for the loads of the `mechanism`.
 fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
     let mass: f64 = mechanism.bodies.iter().map(|body| body.mass).sum();
-    let gravity = libm::sqrt(mechanism.gravity.iter().map(|g| g * g).sum());
     let pushes = mechanism.drives.iter().filter(|drive| drive.action.kind() == DriveKind::Pushes);
-    let loads = Loads {
-        weight: mass * gravity,
-        drives: pushes.map(|named| (named.drive.gain * named.drive.speed).abs()).sum(),
-    };
+    let drives = pushes.map(|named| (named.drive.gain * named.drive.speed).abs()).sum();
+    let loads = Loads::new(mass, mechanism.gravity, drives);
     let is_stop = |joint: &Joint| matches!(joint.kind, JointKind::Stop { .. });
     let with_play = || mechanism.joints.iter().filter(|joint| !joint.kind.is_ideal());
     let gap = |gap: usize| mechanism.gaps[gap].statistics;
