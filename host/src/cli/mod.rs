@@ -144,16 +144,14 @@ impl SceneArguments {
         Ok(SceneFile::parse(&name, &text, &self.overrides(options))?)
     }
 
-    /// Reads what moves in the scene, with `options` as further settings, and prints the warnings about it: for commands whose
-    /// result has no place for them.
+    /// Reads what moves in the scene, with `options` as further settings, and warns about what is implausible in it: for commands
+    /// whose result has no place for warnings.
     fn load_moving(&self, options: &[Override]) -> Result<Moving, Failure> {
-        let (moving, product) = self.load_moving_with_product(options)?;
-        let mut warnings = match &moving {
-            Moving::Slide(scene) => check::warnings_of(scene),
-            Moving::Mechanism(found) => mechanism::warnings_of(found)?,
-        };
-        warnings.extend(product.into_iter().flat_map(|product| product.warnings));
-        warn(&warnings);
+        let (moving, _) = self.load_moving_with_product(options)?;
+        warn(match &moving {
+            Moving::Slide(scene) => &scene.warnings,
+            Moving::Mechanism(found) => &found.warnings,
+        });
         Ok(moving)
     }
 
