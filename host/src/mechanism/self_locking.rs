@@ -358,7 +358,7 @@ fn sideways(planar: bool, axis: Vector3<f64>) -> Vec<Vector3<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::locked;
+    use super::{Lever, locked};
     use crate::scene::{Override, SceneFile, shipped};
 
     /// The carriage on two rods guides itself over 80 mm: with friction 0.3 it locks from 80/(2·0.3) mm beside its middle on,
@@ -370,8 +370,9 @@ mod tests {
             let file = SceneFile::parse("linear-guide", shipped("linear-guide").unwrap(), &[point]).unwrap();
             let found = file.mechanism.as_ref().map(locked).unwrap();
             assert_eq!(found.len(), usize::from(locks), "{x}");
+            let length_is = |length: f64| move |lever: &Lever| (lever.length - length).abs() < 1e-12;
             assert!(
-                found.iter().all(|locked| (locked.length - 0.08).abs() < 1e-12 && locked.friction == 0.3),
+                found.iter().all(|locked| locked.levers.iter().all(length_is(0.08)) && locked.friction == 0.3),
                 "{found:?}"
             );
         }
