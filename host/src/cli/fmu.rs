@@ -7,7 +7,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use maud::{DOCTYPE, Markup, html};
 use serde::Serialize;
 
-use super::{Failure, Moving, SceneArguments, kernel::core_folder, print, print_json, simulate::StepArguments};
+use super::{
+    Failure, Moving, SceneArguments, endings, kernel::core_folder, print, print_json, simulate::StepArguments,
+};
 use crate::{
     dynamics::scheme::ScalarKind,
     firmware::fmu::{
@@ -75,6 +77,7 @@ impl From<CompileError> for Failure {
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
+        endings::check_one("--output", &self.output, &["fmu"])?;
         let moving = self.scene.load_moving(&self.steps.overrides())?;
         let controller = match &moving {
             Moving::Slide(scene) => scene.controller,

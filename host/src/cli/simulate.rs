@@ -223,7 +223,8 @@ impl Arguments {
                 }
                 let by_controller = self.controller.given();
                 let Self { scene, csv, plot, page, .. } = self;
-                let wanted = Wanted { scene, csv, plot, page, by_controller };
+                let of_product = product.iter().flat_map(|product| product.warnings.clone()).collect();
+                let wanted = Wanted { scene, csv, plot, page, by_controller, of_product };
                 let (mechanism, unit) = match self.unit {
                     Some(number) => {
                         let production =

@@ -152,7 +152,9 @@ impl Arguments {
             }
             Moving::Mechanism(mechanism) => {
                 let driven = self.drive.of(&mechanism)?;
-                self.make(&driven, mechanism::warnings_of(&mechanism)?)
+                let mut warnings = mechanism::warnings_of(&mechanism)?;
+                warnings.extend(product.into_iter().flat_map(|product| product.warnings));
+                self.make(&driven, warnings)
             }
         }
     }

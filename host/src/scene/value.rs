@@ -30,7 +30,9 @@ impl<'t, 's> Field<'t, 's> {
     /// The value of `key` in the table `self`, if it is there.
     pub fn get(&self, key: &str) -> Option<Field<'t, 's>> {
         let name = if self.key.is_empty() { key.into() } else { format!("{}.{key}", self.key) };
-        self.node.get(key).map(|node| Field { key: name, node })
+        let entry = self.node.entry(key)?;
+        entry.read.set(true);
+        Some(Field { key: name, node: &entry.node })
     }
 
     /// The value of `key` in the table `self`; `allowed` says what it could be if it is missing.

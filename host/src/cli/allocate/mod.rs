@@ -14,7 +14,7 @@ use self::{
     function::{Function, Limits},
     report::{Confirmation, Report},
 };
-use super::{Failure, SceneArguments, ThreadArguments, given, print, print_json, progress, warn};
+use super::{Failure, SceneArguments, ThreadArguments, check, given, print, print_json, progress, warn};
 use crate::{
     product::{Product, costed::Costed},
     scene::{Override, SceneFile, with_tolerances},
@@ -22,7 +22,7 @@ use crate::{
     tolerance::{
         allocate::{
             AllocateError,
-            check::check,
+            check::check as checked_units,
             confirm::{Counted, confirmed, least_units},
             cost::Process,
             curve::{LEVELS, curve as cost_against_defects},
@@ -206,7 +206,7 @@ impl Arguments {
                 function.finish();
             }
             let tolerances = found.solution.tolerances.clone();
-            let checked = check(&model(&tolerances)?, self.samples, self.seed)?;
+            let checked = checked_units(&model(&tolerances)?, self.samples, self.seed)?;
             let points = if self.csv.is_some() || self.plot.is_some() {
                 let bar = progress("cost against defects", LEVELS.len());
                 let points = cost_against_defects(&processes, &tolerances, &model, self.seed, || bar.inc(1))?;
@@ -218,7 +218,9 @@ impl Arguments {
             let checked = report::Checks { measures: checked, confirmation };
             Ok((Report::new(&file.title, &product, figures.rows(), &found, &checked, points), tolerances))
         };
-        let (report, tolerances) = self.threads.install(work)??;
+        let (mut report, tolerances) = self.threads.install(work)??;
+        let simulated = file.slide.iter().filter(|_| limits.is_some());
+        report.warnings.extend(simulated.flat_map(check::warnings_of));
         let csv = self.csv.as_ref().map(|path| Ok::<_, anyhow::Error>((path, curve::csv(&report)?))).transpose()?;
         let svg = self.plot.as_ref().map(|path| curve::svg(&report).map(|svg| (path, svg.into_bytes()))).transpose();
         for (path, bytes) in csv.into_iter().chain(svg.map_err(anyhow::Error::from)?) {

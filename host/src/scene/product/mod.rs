@@ -105,7 +105,7 @@ use crate::{
     },
     show::number::fixed,
     tolerance::{
-        model::{Contributor, Model, Quantity as Measured, Variation, ZoneRule, widening::Widening},
+        model::{Contributor, Distribution, Model, Quantity as Measured, Variation, ZoneRule, widening::Widening},
         sampling::{copula, copula::Coefficient},
     },
 };
@@ -417,6 +417,14 @@ fn correlations(root: &Field, contributors: &[Contributor]) -> Result<Vec<(usize
             let problem = Problem::Duplicate { key: of.key.clone(), name: contributors[column].name.clone() };
             return Err(of.error(problem, "two different contributors, every pair once"));
         }
+        let fixed_at = |i: &&usize| {
+            matches!(contributors[**i].variation, Variation::Scalar { distribution: Distribution::Constant(_), .. })
+        };
+        if let Some(fixed) = [row, column].iter().find(fixed_at) {
+            let written = format!("{}, of which \"{}\" is constant", of.written(""), contributors[*fixed].name);
+            let problem = Problem::OutOfRange { key: of.key.clone(), written };
+            return Err(of.error(problem, "two contributors that vary"));
+        }
         let field = table.require("coefficient", "a number from -1 to 1")?;
         let stated = field.to_number(&COEFFICIENT)?;
         let of = [row, column].map(|i| match &contributors[i].variation {
@@ -425,6 +433,15 @@ fn correlations(root: &Field, contributors: &[Contributor]) -> Result<Vec<(usize
         });
         let scores = match of {
             [Some(one), Some(other)] => copula::of_scores(one, other, kind, stated).map_err(|[least, greatest]| {
+                if !(least.is_finite() && greatest.is_finite()) {
+                    let what =
+                        "a correlation of values of which one does not vary, or has no finite standard deviation"
+                            .into();
+                    return field.error(
+                        Problem::Unsupported { what },
+                        "correlation = \"spearman\" under [tolerance], of ranks",
+                    );
+                }
                 let [least, greatest] = [least, greatest].map(|end| fixed(end, 3));
                 field.out_of_range("", format!("between {least} and {greatest} for these two distributions"))
             })?,

@@ -28,16 +28,13 @@ impl From<ParameterError<f32>> for Trouble {
     }
 }
 
-/// The greatest gap (m).
-const GAP_MOST: f64 = 0.1;
-
-/// The gap of that `name` at the level `n`, where it is `mean` at level 0 (m).
-pub fn gap(name: &str, mean: f64, deviation: f32, n: f64, least: f64) -> Result<f32, Trouble> {
+/// The gap of that `name` at the level `n`, where it is `mean` at level 0 (m), from the least to the greatest that is allowed.
+pub fn gap(name: &str, mean: f64, deviation: f32, n: f64, [least, greatest]: [f64; 2]) -> Result<f32, Trouble> {
     let gap = GapStatistics { mean: mean as f32, deviation }.at(n as f32);
-    if (least..=GAP_MOST).contains(&f64::from(gap)) {
+    if (least..=greatest).contains(&f64::from(gap)) {
         Ok(gap)
     } else {
-        Err(format!("at n = {n} the gap {name} is {gap} m, allowed is {least} to {GAP_MOST} m").into())
+        Err(format!("at n = {n} the gap {name} is {gap} m, allowed is {least} to {greatest} m").into())
     }
 }
 
