@@ -1,0 +1,175 @@
+//! What the comparison of one scene finds.
+
+use slipfit::{mechanism::run, scene::SceneFile};
+
+use super::{
+    forces::Forces,
+    integration::integrate,
+    motion::{Column, Row, differences, worst},
+    scene::Scene,
+    transform::{self, Transform},
+};
+
+/// What the desk may err by in a step, as a share of the mechanism's own speed: its default.
+pub const ERROR: f64 = 3e-7;
+/// Time (s) between two rows.
+const EVERY: f64 = 1e-3;
+/// What a column may differ by, as a share of its peak.
+const ALLOWED: f64 = 5e-3;
+/// Tolerance of the independent integration, and the finer one that shows its error.
+const TOLERANCE: [f64; 2] = [1e-9, 1e-11];
+/// Changes of the start, as a share of 10 mm, 1 rad, 0.1 m/s and 1 rad/s.
+const NUDGES: [f64; 3] = [1e-9, 1e-6, -1e-6];
+/// From where the independent integration, nudged, differs by this share of a peak, a motion counts as too sensitive to compare.
+const SENSITIVE: f64 = 1e-3;
+/// What the energy of a mechanism without a drive may grow by, as a share of its greatest kinetic energy.
+const ENERGY: f64 = 1e-3;
+
+/// What the comparison of a scene found.
+pub struct Verdict {
+    pub seed: u64,
+    /// Share of the time before the motion gets too sensitive to its start.
+    pub compared: f64,
+    /// Worst differences, as shares of the peaks.
+    pub differences: Vec<(Column, f64)>,
+    /// What is wrong.
+    pub failure: Option<String>,
+}
+
+/// Compares slipfit's motion of the scene of a `seed`, and of another description of it, with the independent integration.
+pub fn compared(scene: &Scene, seed: u64) -> Verdict {
+    let mut verdict = Verdict { seed, compared: 1.0, differences: Vec::new(), failure: None };
+    verdict.failure = found(scene, &Forces::of(scene), &mut verdict).err();
+    verdict
+}
+
+fn found(scene: &Scene, forces: &Forces, verdict: &mut Verdict) -> Result<(), String> {
+    let Some(expected) = integrate(scene, EVERY, TOLERANCE[0], 0.0) else {
+        return Err("the independent integration takes too many steps".into());
+    };
+    let expected = expected.rows;
+    let mut sensitive = Horizon { scene, expected: &expected, rows: None };
+    let own = slipfit(scene, EVERY)?;
+    verdict.differences = sensitive.differences(scene, &expected, &own, "slipfit")?;
+
+    let transform = transform::ALL[verdict.seed as usize % transform::ALL.len()];
+    let (other, order) = transform.scene(scene, verdict.seed);
+    let name = format!("{transform:?}");
+    let moved = slipfit(&other, transform.interval(EVERY)).map_err(|error| format!("{name}: {error}"))?;
+    if transform == Transform::Renamed && format!("{moved:?}") != format!("{own:?}") {
+        return Err("other names change bits".into());
+    }
+    sensitive.differences(&other, &transform.rows(scene, &expected, &order), &moved, &name)?;
+    verdict.compared = sensitive.rows.map_or(1.0, |rows| rows as f64 / expected.len() as f64);
+    if scene.drives.is_empty() {
+        energy(scene, forces, &own)?;
+    }
+    momentum(scene, &own)
+}
+
+/// slipfit's motion of `scene`.
+fn slipfit(scene: &Scene, every: f64) -> Result<Vec<Row>, String> {
+    let text = scene.toml(ERROR);
+    let file = SceneFile::parse("random.toml", &text, &[]).map_err(|error| format!("refused: {error}"))?;
+    let mechanism = file.mechanism.ok_or("no mechanism")?;
+    let gaps = mechanism.gaps_at(&[0.0]).map_err(|error| error.to_string())?;
+    let run = run(&mechanism, &gaps, every).map_err(|error| error.to_string())?;
+    let rows: Vec<Row> = run.samples.rows.iter().map(|numbers| Row::of(scene, numbers)).collect();
+    match rows.iter().find(|row| !row.is_finite()) {
+        Some(row) => Err(format!("not finite at {} s", row.t)),
+        None => Ok(rows),
+    }
+}
+
+/// Up to which row a motion can be compared: looked for only where a difference asks for it.
+struct Horizon<'a> {
+    scene: &'a Scene,
+    expected: &'a [Row],
+    rows: Option<usize>,
+}
+
+impl Horizon<'_> {
+    /// The differences of `found` from `expected`, up to the horizon where they are too large beyond.
+    fn differences(
+        &mut self,
+        scene: &Scene,
+        expected: &[Row],
+        found: &[Row],
+        name: &str,
+    ) -> Result<Vec<(Column, f64)>, String> {
+        if expected.len() != found.len() {
+            return Err(format!("{name}: {} rows for {}", found.len(), expected.len()));
+        }
+        let upto = |rows: usize| differences(scene, &expected[..rows], &found[..rows]);
+        let all = upto(self.rows.unwrap_or(expected.len()));
+        if worst(&all).1 <= ALLOWED {
+            return Ok(all);
+        }
+        let rows = *self.rows.get_or_insert_with(|| horizon(self.scene, self.expected));
+        let before = upto(rows);
+        let ((column, of), share) = worst(&before);
+        if share <= ALLOWED {
+            return Ok(before);
+        }
+        let from = (1..=rows).find(|rows| worst(&upto(*rows)).1 > ALLOWED).unwrap_or(rows);
+        Err(format!(
+            "{name}: {column} of {of} differs by {:.3} % of its peak, from {} s on, of {} s that can be compared",
+            100.0 * share,
+            expected[from - 1].t,
+            expected[rows - 1].t,
+        ))
+    }
+}
+
+/// How many rows of the independent integration depend little enough on its start and its tolerance.
+fn horizon(scene: &Scene, expected: &[Row]) -> usize {
+    let finer = integrate(scene, EVERY, TOLERANCE[1], 0.0);
+    let nudged = NUDGES.map(|nudge| integrate(scene, EVERY, TOLERANCE[0], nudge));
+    let others: Vec<_> = std::iter::once(finer).chain(nudged).flatten().map(|motion| motion.rows).collect();
+    let differs = |rows: usize| {
+        others.iter().any(|other| worst(&differences(scene, &expected[..rows], &other[..rows])).1 > SENSITIVE)
+    };
+    (2..=expected.len()).find(|rows| differs(*rows)).map_or(expected.len(), |rows| rows - 1)
+}
+
+/// Whether the energy of slipfit's motion falls only.
+fn energy(scene: &Scene, forces: &Forces, rows: &[Row]) -> Result<(), String> {
+    let energies: Vec<[f64; 2]> = rows.iter().map(|row| row.energies(scene, forces)).collect();
+    let kinetic = energies.iter().map(|energies| energies[0]).fold(0.0, f64::max);
+    let mut least = f64::INFINITY;
+    for (row, [kinetic_now, stored]) in rows.iter().zip(&energies) {
+        let now = kinetic_now + stored;
+        if now > least + ENERGY * kinetic {
+            return Err(format!(
+                "the energy grows by {:.2e} of the kinetic one at {} s",
+                (now - least) / kinetic,
+                row.t
+            ));
+        }
+        least = least.min(now);
+    }
+    Ok(())
+}
+
+/// Whether slipfit's motion keeps the momentum where nothing is joined to the frame.
+fn momentum(scene: &Scene, rows: &[Row]) -> Result<(), String> {
+    let held = scene.joints.iter().map(|joint| joint.between).chain(scene.springs.iter().map(|spring| spring.between));
+    if !scene.drives.is_empty() || held.into_iter().any(|between| between.contains(&None)) {
+        return Ok(());
+    }
+    let momenta: Vec<_> = rows.iter().map(|row| row.momenta(scene)).collect();
+    for k in 0..2 {
+        let part = |row: &Row| {
+            let of = |(body, moved): (&super::scene::Body, &super::motion::Moved)| {
+                [body.mass * moved.velocity.norm(), body.inertia.max() * moved.spin.norm()][k]
+            };
+            scene.bodies.iter().zip(&row.bodies).map(of).fold(0.0, f64::max)
+        };
+        let peak = rows.iter().map(part).fold(0.0, f64::max);
+        let drift = momenta.iter().map(|momentum| (momentum[k] - momenta[0][k]).norm()).fold(0.0, f64::max);
+        if drift > ENERGY * peak {
+            return Err(format!("{} drifts by {:.2e} of its parts", ["momentum", "angular momentum"][k], drift / peak));
+        }
+    }
+    Ok(())
+}
