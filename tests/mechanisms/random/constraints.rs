@@ -114,9 +114,7 @@ fn multipliers(rows: &[Row], inverse: &[(f64, Matrix3<f64>)], right: Vec<f64>) -
                     }
                 }
             }
-            for k in 0..j {
-                sum -= factor[i][k] * factor[j][k];
-            }
+            sum -= factor[i].iter().zip(&factor[j]).take(j).map(|(one, other)| one * other).sum::<f64>();
             factor[i][j] = if i == j { libm::sqrt(sum) } else { sum / factor[j][j] };
         }
     }

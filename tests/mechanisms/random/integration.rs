@@ -164,7 +164,7 @@ impl<'a> Integration<'a> {
             }
             for k in 0..error.len() {
                 let share = error[k].abs() / (tolerance * (scale[k] + from[i][k].abs()));
-                if !(share <= worst) {
+                if share > worst || share.is_nan() {
                     worst = share;
                 }
             }

@@ -14,6 +14,7 @@ mod forces;
 mod integration;
 mod motion;
 mod planar;
+mod references;
 mod scene;
 mod spatial;
 mod start;
@@ -60,7 +61,9 @@ fn family(name: &str, generate: fn(u64) -> Scene) {
     let short = verdicts.iter().filter(|verdict| verdict.compared < 1.0).count();
     let share = verdicts.iter().map(|verdict| verdict.compared).sum::<f64>() / count as f64;
     let columns: Vec<_> = columns.iter().map(|(column, share)| format!("{column} {share:.1e}")).collect();
-    println!("{name}: {count} scenes from seed {first}; {short} grow too sensitive to their start,");
+    let closed: usize = verdicts.iter().map(|verdict| verdict.closed).sum();
+    println!("{name}: {count} scenes from seed {first}, contacts close {closed} times;");
+    println!("  {short} scenes grow too sensitive to their start,");
     println!(
         "  so that {:.1} % of the time is compared; worst shares of a peak: {}",
         100.0 * share,
@@ -72,6 +75,7 @@ fn family(name: &str, generate: fn(u64) -> Scene) {
     }
     let first =
         failures.first().map(|verdict| assembled(generate, verdict.seed).toml(verdict::ERROR)).unwrap_or_default();
+    assert!(closed as u64 > count, "{name}: contacts close {closed} times in {count} scenes");
     assert!(failures.is_empty(), "{name}: {} of {count} scenes fail, the first is\n{first}", failures.len());
 }
 

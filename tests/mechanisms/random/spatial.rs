@@ -165,12 +165,9 @@ fn add_box(scene: &mut Scene, dice: &mut Dice, between: [Port; 2]) {
     let centre = near(scene, between);
     for axis in [Vec3::x(), Vec3::y(), Vec3::z()] {
         for normal in [axis, -axis] {
-            let points = 1 + dice.below(2);
-            for _ in 0..points {
-                let at = centre + dice.vector(0.03, false);
-                let gap = if dice.chance(0.15) { -dice.log(5e-7, 1e-5) } else { dice.log(2e-5, 3e-3) };
-                add(scene, dice, between, at, Kind::Stop { gap, normal });
-            }
+            let at = centre + dice.vector(0.03, false);
+            let gap = if dice.chance(0.15) { -dice.log(5e-7, 1e-5) } else { dice.log(5e-5, 5e-3) };
+            add(scene, dice, between, at, Kind::Stop { gap, normal });
         }
     }
 }
