@@ -62,6 +62,12 @@ pub trait Law<S: Scalar, const R: usize> {
         S::zero()
     }
 
+    /// Shows `see` the distance (m) of each pair of surfaces that may touch, of which [`gap`](Self::gap) is the least.
+    #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, R>, mut see: impl FnMut(S)) {
+        see(self.gap(place));
+    }
+
     /// The forces at `place` and `rate` at time `t` (s), and the internal variables if the motion is accepted.
     fn response(
         &self,

@@ -16,6 +16,7 @@ use slipfit_core::{
 };
 
 use crate::{
+    closing::Approach,
     contact::Laws,
     laws::{AnyNormal, AnySliding},
 };
@@ -72,6 +73,26 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
     Some(element.law.gap(&element.link.seen(at, &view).place))
 }
 
+/// The time (s) over which the rate of a gap is the quotient of differences: short enough for a pin in a round hole, and long enough for
+/// the digits of a gap.
+const DIFFERENCE: f64 = 1e-6;
+
+/// Adds the contacts of an `element` to `all`.
+fn approach<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
+    Element { link, law }: &Element<L, W, R>,
+    at: (&B, &B::Placed),
+    all: &mut Vec<Approach>,
+) {
+    let seen = link.seen(at, &link.view(at.0, at.1));
+    let (first, speed) = (all.len(), seen.rate.norm());
+    law.each_gap(&seen.place, |gap| all.push(Approach { gap, rate: 0.0, speed }));
+    let mut k = first;
+    law.each_gap(&(seen.place + seen.rate * DIFFERENCE), |gap| {
+        all[k].rate = (gap - all[k].gap) / DIFFERENCE;
+        k += 1;
+    });
+}
+
 /// An element in a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarElement<const D: usize> {
@@ -114,6 +135,19 @@ impl<const D: usize> PlanarElement<D> {
             Self::Spring(_) | Self::Motor(_) | Self::Pusher(_) => None,
         }
     }
+
+    /// Adds the contacts that it is to `all`.
+    pub fn approach(
+        &self,
+        at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed),
+        all: &mut Vec<Approach>,
+    ) {
+        match self {
+            Self::Journal(element) => approach(element, at, all),
+            Self::Pad(element) => approach(element, at, all),
+            Self::Spring(_) | Self::Motor(_) | Self::Pusher(_) => {}
+        }
+    }
 }
 
 impl SpatialElement {
@@ -127,6 +161,20 @@ impl SpatialElement {
             Self::Wall(element) => gap(element, at),
             Self::Ring(element) => gap(element, at),
             Self::Motor(_) | Self::Pusher(_) => None,
+        }
+    }
+
+    /// Adds the contacts that it is to `all`.
+    pub fn approach<const N: usize, const D: usize>(
+        &self,
+        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
+        all: &mut Vec<Approach>,
+    ) {
+        match self {
+            Self::Pin(element) => approach(element, at, all),
+            Self::Wall(element) => approach(element, at, all),
+            Self::Ring(element) => approach(element, at, all),
+            Self::Motor(_) | Self::Pusher(_) => {}
         }
     }
 }

@@ -9,16 +9,18 @@ use slipfit_core::{
     integrator::{Integrator, Motion, Rodas4},
     kernel::{Kernel, State},
     mechanism::Mechanism,
+    pose::Pose,
     system::{
-        Bodies, System, ThroughJoints,
-        planar::PlanarTree,
+        Bodies, Reduced, System, ThroughJoints,
+        planar::{Kind, PlanarTree},
         spatial::{FreeBodies, tree::SpatialTree},
     },
 };
 
 use crate::{
+    closing::Gaps,
     element::{PlanarElement, SpatialElement},
-    error_control::{Accelerations, Effort, Stopped, integrate},
+    error_control::{Accelerations, Effort, Stopped, Watched, integrate},
     interrupt,
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},
@@ -48,8 +50,14 @@ pub type JointedPlant<'a, const D: usize> =
 pub type See<'a, P, const D: usize> =
     &'a mut dyn FnMut(f64, &Motion<f64, P, (), D>, Option<Accelerations<D>>) -> ControlFlow<()>;
 
-/// The error that a step makes, of which 1 is allowed; given what the step reports (see [`Reported`]) and its length (s).
-pub type Allowed<'a> = &'a dyn Fn(Reported, f64) -> f64;
+/// What a step may err by.
+#[derive(Clone, Copy)]
+pub struct Allowed<'a> {
+    /// The error that a step makes, of which 1 is allowed; given what the step reports and its length (s).
+    pub error: &'a dyn Fn(Reported, f64) -> f64,
+    /// How deep (m) a contact may be that a step passes over.
+    pub depth: f64,
+}
 
 /// What a step says about itself.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +86,7 @@ pub trait Plant<const D: usize> {
         &self,
         start: (Self::Pose, SVector<f64, D>),
         duration: f64,
-        error: Allowed,
+        allowed: Allowed,
         see: See<Self::Pose, D>,
     ) -> Result<Effort, Stopped>;
 
@@ -101,6 +109,51 @@ fn motion<P, const D: usize>((pose, velocity): (P, SVector<f64, D>)) -> Motion<f
     Motion { pose, velocity, acceleration: SVector::zeros(), internal: () }
 }
 
+/// What [`integrate`] has to know of contacts.
+trait Watch<P, const D: usize> {
+    /// Fills in the contacts at a `motion`.
+    fn watch(&self, motion: &Motion<f64, P, (), D>, gaps: &mut Gaps);
+}
+
+impl<const D: usize> Watch<[[f64; 2]; D], D> for PlanarPlant<'_, D> {
+    fn watch(&self, motion: &Motion<f64, [[f64; 2]; D], (), D>, gaps: &mut Gaps) {
+        let bodies = self.mechanism().bodies();
+        let placed = bodies.placed(&motion.pose, &motion.velocity);
+        let turning = bodies.topology().iter().zip(&motion.velocity).filter(|(kind, _)| **kind == Kind::Turn);
+        gaps.spin = turning.fold(0.0, |most, (_, rate)| most.max(rate.abs()));
+        gaps.approaches.clear();
+        self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), &mut gaps.approaches));
+    }
+}
+
+impl<const N: usize, const D: usize> Watch<[Pose<f64>; N], D> for FreePlant<'_, N, D> {
+    fn watch(&self, motion: &Motion<f64, [Pose<f64>; N], (), D>, gaps: &mut Gaps) {
+        let bodies = self.mechanism().bodies();
+        watch_free(bodies, &bodies.placed(&motion.pose, &motion.velocity), self.mechanism().elements(), gaps);
+    }
+}
+
+impl<const D: usize> Watch<[[f64; 2]; D], D> for JointedPlant<'_, D> {
+    fn watch(&self, motion: &Motion<f64, [[f64; 2]; D], (), D>, gaps: &mut Gaps) {
+        let bodies = self.mechanism().bodies();
+        let placed = bodies.placed(&motion.pose, &motion.velocity);
+        let (free, placed) = bodies.free(&placed);
+        watch_free(free, placed, self.mechanism().elements().0, gaps);
+    }
+}
+
+/// Fills in the contacts of free bodies that are `placed`.
+fn watch_free<const N: usize, const D: usize>(
+    bodies: &FreeBodies<f64, N, D>,
+    placed: &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed,
+    elements: &[SpatialElement],
+    gaps: &mut Gaps,
+) {
+    gaps.spin = placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm()));
+    gaps.approaches.clear();
+    elements.iter().for_each(|one| one.approach((bodies, placed), &mut gaps.approaches));
+}
+
 macro_rules! plants {
     ($($plant:ty, $dimension:literal;)*) => { $(
         impl Plant<$dimension> for $plant {
@@ -114,7 +167,7 @@ macro_rules! plants {
                 &self,
                 start: (Self::Pose, SVector<f64, $dimension>),
                 duration: f64,
-                error: Allowed,
+                allowed: Allowed,
                 see: See<Self::Pose, $dimension>,
             ) -> Result<Effort, Stopped> {
                 integrate::<Rodas4, Self, $dimension>(
@@ -123,9 +176,15 @@ macro_rules! plants {
                     duration,
                     |step, length| {
                         let reported = Reported { residual: step.residual, error: step.error, drift: step.drift };
-                        error(reported, length)
+                        (allowed.error)(reported, length)
                     },
-                    see,
+                    Watched {
+                        gaps: |motion: &Motion<f64, Self::Pose, (), $dimension>, gaps: &mut Gaps| {
+                            self.watch(motion, gaps);
+                        },
+                        depth: allowed.depth,
+                    },
+                    |t, motion, accelerations, _| see(t, motion, accelerations),
                 )
             }
 

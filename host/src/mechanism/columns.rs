@@ -14,7 +14,7 @@ use slipfit_core::{
     },
 };
 
-use super::{Action, Mechanism, Mounts, mounts::flat};
+use super::{Action, Mechanism, Mounts, NamedDrive, mounts::flat};
 use crate::dynamics::outcome::Instant;
 
 /// Coordinates and their rates at one time.
@@ -293,10 +293,19 @@ impl Mechanism {
         })
     }
 
-    /// What is told of the motion at time `t` (s), in the order of [`columns`](Self::columns).
-    pub fn row(&self, t: f64, motions: &[BodyMotion]) -> Vec<f64> {
+    /// The least inertia (kg, kg·m²) that a drive may find: that of its body alone.
+    pub fn least_inertia(&self, NamedDrive { action, body, .. }: &NamedDrive) -> f64 {
+        let body = &self.bodies[*body];
+        match action {
+            Action::Pushes { .. } => body.mass,
+            Action::Turns { axis } => body.inertia.iter().zip(axis).map(|(inertia, axis)| inertia * axis * axis).sum(),
+        }
+    }
+
+    /// A sample at time `t` (s), in the order of [`columns`](Self::columns).
+    pub fn row(&self, t: f64, drives: &[Instant], motions: &[BodyMotion]) -> Vec<f64> {
         let mut row = vec![t];
-        row.extend(self.drives_at(t, motions).map(|at| at.force));
+        row.extend(drives.iter().map(|at| at.force));
         for motion in motions {
             if self.planar {
                 let BodyMotion { displacement: d, turn, velocity: v, spin } = motion;

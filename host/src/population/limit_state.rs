@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{Unit, production::Production, statistics::is_over, subject::Subject, unit::Decisive};
 use crate::{
     dynamics::{
-        outcome::{JAMMED, RUNS, Verdict},
+        outcome::{JAMMED, OVERRUNS, RUNS, Verdict},
         simulate::SimulateError,
     },
     system::interrupt,
@@ -20,6 +20,8 @@ pub enum Kind {
     Crawls,
     /// It jams.
     Jams,
+    /// It overruns its command.
+    Overruns,
     /// It does its job, but with more than the motor's force.
     OverLimit,
 }
@@ -30,6 +32,7 @@ impl Kind {
         match unit.outcome.verdict {
             Verdict::Crawls => Some(Self::Crawls),
             Verdict::Jammed => Some(Self::Jams),
+            Verdict::Overruns => Some(Self::Overruns),
             Verdict::Runs | Verdict::Undecided => is_over(unit, limit).then_some(Self::OverLimit),
         }
     }
@@ -39,9 +42,10 @@ impl Kind {
         match self {
             Self::Crawls => figures.speed.map(|speed| (speed - RUNS).max(JAMMED - speed)),
             Self::Jams => figures.speed.map(|speed| speed - JAMMED),
+            Self::Overruns => figures.speed.map(|speed| (OVERRUNS - speed).min(speed + RUNS)),
             Self::OverLimit => {
                 let left = 1.0 - figures.force? / limit?;
-                Some(figures.speed.map_or(left, |speed| left.max(RUNS - speed)))
+                Some(figures.speed.map_or(left, |speed| left.max(RUNS - speed).max(speed - OVERRUNS)))
             }
         }
     }

@@ -37,7 +37,7 @@ pub trait StoredGaps: UnitGaps {
 
 /// All sixteen.
 impl StoredGaps for [f64; CONTACTS] {
-    const MAGIC: &'static [u8; 8] = b"SLIPSTAL";
+    const MAGIC: &'static [u8; 8] = b"SLIPSTA2";
 
     fn encode(&self, out: &mut Vec<u8>) {
         self.iter().for_each(|gap| out.extend(gap.to_le_bytes()));
@@ -54,7 +54,7 @@ impl StoredGaps for [f64; CONTACTS] {
 
 /// How many there are, then all.
 impl StoredGaps for Vec<f64> {
-    const MAGIC: &'static [u8; 8] = b"SLIPMTAL";
+    const MAGIC: &'static [u8; 8] = b"SLIPMTA2";
 
     fn encode(&self, out: &mut Vec<u8>) {
         integer(out, self.len() as u64);

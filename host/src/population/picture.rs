@@ -71,6 +71,7 @@ pub fn forces<S: Subject>(subject: &S, tally: &Tally<S::Gaps>, limit: Option<f64
                     marked(Verdict::Runs, "runs", Shape::Ring),
                     marked(Verdict::Crawls, "crawls", Shape::Triangle),
                     marked(Verdict::Jammed, "jammed", Shape::Cross),
+                    marked(Verdict::Overruns, "overruns", Shape::Dot),
                 ],
                 ..Panel::default()
             }),

@@ -66,7 +66,7 @@ pub struct Question<'a, S: Subject> {
 impl<S: Subject> Question<'_, S> {
     /// Kinds and sides.
     fn cells(&self) -> Vec<(Kind, Side)> {
-        let kinds = [Kind::Crawls, Kind::Jams, Kind::OverLimit];
+        let kinds = [Kind::Crawls, Kind::Jams, Kind::Overruns, Kind::OverLimit];
         let kinds = kinds.into_iter().filter(|kind| *kind != Kind::OverLimit || self.limit.is_some());
         kinds.flat_map(|kind| Side::all(self.subject).iter().map(move |side| (kind, *side))).collect()
     }

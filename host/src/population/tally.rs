@@ -22,9 +22,10 @@ pub const WORST: usize = 5;
 /// First units of each verdict, which are kept.
 const FIRST: usize = 1024;
 /// Verdicts, in the order in which units are counted by them.
-pub const VERDICTS: [Verdict; 4] = [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Undecided];
+pub const VERDICTS: [Verdict; 5] =
+    [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Overruns, Verdict::Undecided];
 /// Kinds of malfunction, in the order in which units are counted by them.
-pub const KINDS: [Kind; 3] = [Kind::Crawls, Kind::Jams, Kind::OverLimit];
+pub const KINDS: [Kind; 4] = [Kind::Crawls, Kind::Jams, Kind::Overruns, Kind::OverLimit];
 
 /// What units have to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,7 +42,7 @@ pub struct Counts {
     /// All.
     pub units: u64,
     /// By verdict, as in [`VERDICTS`].
-    pub verdicts: [u64; 4],
+    pub verdicts: [u64; 5],
     /// Those that run, but have not come to the end of the stroke when the run is over.
     pub short: u64,
     /// Those that need more than the limit.
@@ -53,7 +54,7 @@ pub struct Counts {
     /// Those that cannot be assembled.
     pub misfits: u64,
     /// Those that malfunction, by kind as in [`KINDS`]: tight ones and loose ones.
-    pub kinds: [[u64; 2]; 3],
+    pub kinds: [[u64; 2]; 4],
     /// Those that malfunction, by the contact that is pressed in deepest.
     pub pressed: [u64; CONTACTS],
 }
@@ -117,7 +118,7 @@ pub struct Tally<G> {
     /// The worst, at most [`WORST`]: of those that malfunction the ones that come least far, then those that need most force.
     pub worst: Vec<Unit<G>>,
     /// The first of each verdict, as in [`VERDICTS`], in order.
-    pub first: [Vec<Unit<G>>; 4],
+    pub first: [Vec<Unit<G>>; VERDICTS.len()],
 }
 
 /// The worse first. Of equal ones the first of the production.
@@ -152,7 +153,7 @@ impl<G: Clone> Tally<G> {
             figures: Figures::default(),
             sums: Sums::new(variables),
             worst: Vec::new(),
-            first: [const { Vec::new() }; 4],
+            first: [const { Vec::new() }; VERDICTS.len()],
         }
     }
 

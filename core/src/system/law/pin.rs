@@ -89,6 +89,13 @@ impl<S: Scalar, G: Fit<Number = S>, N: Normal<S>, F: Friction<S>> Law<S, 3> for 
     }
 
     #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, 3>, see: impl FnMut(S)) {
+        let [left, right, rail, wall] = self.gaps.gaps();
+        let [x, y, _] = place.data.0[0];
+        [left + x, right - x, wall + y, rail - y].into_iter().for_each(see);
+    }
+
+    #[inline(always)]
     fn response(
         &self,
         _: S,

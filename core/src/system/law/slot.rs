@@ -36,6 +36,12 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Slot<S, N, F> {
     }
 
     #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, 2>, see: impl FnMut(S)) {
+        let [low, high] = self.gaps;
+        [low + place[0], high - place[0]].into_iter().for_each(see);
+    }
+
+    #[inline(always)]
     fn response(
         &self,
         _: S,

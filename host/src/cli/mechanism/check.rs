@@ -9,6 +9,7 @@ use crate::{
     cli::{Failure, SceneArguments, check::self_locking, print, print_json, text_table, warn},
     mechanism::{
         Freedom, Mechanism, Spring,
+        feedback::{Reversal, reversals},
         self_locking::{Locked, locked},
     },
     show::number::{fixed, level, or_dash, ten_digits},
@@ -87,5 +88,16 @@ fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
         let meaning = format!("no force of {} moves it", locked.drive);
         self_locking(locked.friction, locked.critical_friction, [locked.length, locked.distance], &meaning)
     };
-    locked(mechanism).iter().map(word).collect()
+    let reversed = |found: &Reversal| {
+        let Reversal { drive, body, pivot, angle } = found;
+        let when = match *angle > 0.0 {
+            true => format!("once {body} has turned by {}°", fixed(angle.to_degrees(), 1)),
+            false => "from the start".into(),
+        };
+        format!(
+            "{drive} pushes {body} at a point away from its centre of mass, whose speed it controls: {when} the two are on different sides \
+             of {pivot}, and the drive runs away from its command"
+        )
+    };
+    locked(mechanism).iter().map(word).chain(reversals(mechanism).iter().map(reversed)).collect()
 }

@@ -14,6 +14,7 @@ pub fn describe(rare: &Rare) -> String {
     for Part { kind, side, finding: found } in &rare.parts {
         let kind = match kind {
             Kind::Crawls => "crawls",
+            Kind::Overruns => "overruns",
             Kind::Jams => "jams",
             Kind::OverLimit => "over limit",
         };

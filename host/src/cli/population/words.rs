@@ -88,7 +88,7 @@ impl Arguments {
 
 /// How many units have which verdict, in lines; those without any are left out.
 pub(in crate::cli) fn verdicts(statistics: &Statistics) -> String {
-    let Statistics { runs, short, crawls, jammed, undecided, .. } = *statistics;
+    let Statistics { runs, short, crawls, jammed, overruns, undecided, .. } = *statistics;
     let mut text = String::new();
     let mut line = |name: &str, share: Share, note: &str| {
         if share.units > 0 {
@@ -101,6 +101,7 @@ pub(in crate::cli) fn verdicts(statistics: &Statistics) -> String {
     }
     line("crawls", crawls, "");
     line("jammed", jammed, "");
+    line("overruns", overruns, "");
     line("undecided", undecided, "");
     text
 }
