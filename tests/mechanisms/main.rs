@@ -2,6 +2,7 @@
 //! this project, which a second formulation with its own contact geometry agrees with to 6e-7 of the peaks.
 
 mod energy;
+mod random;
 
 use slipfit::{
     mechanism::{Mechanism, MechanismRun, run},
