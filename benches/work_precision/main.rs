@@ -150,9 +150,9 @@ fn controlled(n: f64, milliseconds: u32) -> Vec<Entry> {
                 ControlFlow::Continue(())
             };
             #[cfg(target_arch = "x86_64")]
-            let side_by_side = slipfit::dynamics::abreast::SideBySide::new(&cd_rom::data(n), cd_rom::STICK_BAND);
+            let side_by_side = slipfit_desk::slide::abreast::SideBySide::new(&cd_rom::data(n), cd_rom::STICK_BAND);
             #[cfg(not(target_arch = "x86_64"))]
-            let side_by_side: Option<slipfit::dynamics::out_of_line::InTurn> = None;
+            let side_by_side: Option<slipfit_desk::out_of_line::InTurn> = None;
             match side_by_side {
                 Some(pins) => integrate::<Rodas4, _, 6>(&OutOfLine::by(slide, pins), rest, duration, error, see),
                 None => integrate::<Rodas4, _, 6>(&OutOfLine::new(slide), rest, duration, error, see),

@@ -99,6 +99,66 @@ impl<B, E> System<B, E> {
         self.completed(&placed, mass, sum)
     }
 
+    /// [`forces_abreast`](Self::forces_abreast) where the machine has no lanes: the elements of each lane one after the other. The same
+    /// bits, except for signs of zeros.
+    pub fn forces_by_lane<S: Scalar, R, const D: usize>(
+        &self,
+        lanes: &[R; LANES],
+        rest: &R,
+        t: S,
+        pose: &B::Pose,
+        velocity: &SVector<S, D>,
+    ) -> SVector<S, D>
+    where
+        B: Bodies<S, D>,
+        R: Elements<S, B, D>,
+    {
+        let placed = self.bodies.placed(pose, velocity);
+        let [first, second, third, fourth] = lanes.each_ref().map(|lane| {
+            let mut sum = Sum(SVector::zeros());
+            lane.act((S::zero(), still()), (&self.bodies, &placed), &lane.fresh(), None, &mut sum);
+            sum.0
+        });
+        let mut sum = Sum(self.bodies.own_force(&placed) + (first + second + third + fourth));
+        rest.act((t, still()), (&self.bodies, &placed), &rest.fresh(), None, &mut sum);
+        self.bodies.total(&placed, &sum.0)
+    }
+
+    /// [`differentiated_abreast`](Self::differentiated_abreast), likewise.
+    pub fn differentiated_by_lane<S: Scalar, R, const D: usize>(
+        &self,
+        lanes: &[R; LANES],
+        rest: &R,
+        t: S,
+        pose: &B::Pose,
+        velocity: &SVector<S, D>,
+    ) -> Differentiated<S, JacobiansOf<S, B, D>, D>
+    where
+        B: Bodies<S, D>,
+        R: Elements<S, B, D>,
+    {
+        let placed = self.bodies.placed(pose, velocity);
+        let (zero, none) = (SVector::zeros(), B::Jacobian::zero());
+        let [first, second, third, fourth] = lanes.each_ref().map(|lane| {
+            let mut sum = Derivatives { force: zero, per_time: zero, damping: none, stiffness: none };
+            lane.act((S::zero(), still()), (&self.bodies, &placed), &lane.fresh(), None, &mut sum);
+            sum
+        });
+        let (mass, own) = self.bodies.mass_and_own_force(&placed);
+        let mut sum = Derivatives {
+            force: own + (first.force + second.force + third.force + fourth.force),
+            per_time: zero,
+            damping: [second.damping, third.damping, fourth.damping]
+                .iter()
+                .fold(first.damping, |sum, one| sum.plus(one, S::one())),
+            stiffness: [second.stiffness, third.stiffness, fourth.stiffness]
+                .iter()
+                .fold(first.stiffness, |sum, one| sum.plus(one, S::one())),
+        };
+        rest.act((t, still()), (&self.bodies, &placed), &rest.fresh(), None, &mut sum);
+        self.completed(&placed, mass, sum)
+    }
+
     /// Adds what the elements do to bodies that are `placed`, of which none is a drive.
     #[inline(always)]
     fn add_still<L: Scalar, const D: usize>(&self, placed: &B::Placed, sum: &mut impl Assembly<L, B, D>)

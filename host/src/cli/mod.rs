@@ -26,7 +26,10 @@ use std::{
     process::ExitCode,
 };
 
-use clap::{Args, CommandFactory, Parser, Subcommand};
+use clap::{
+    Args, CommandFactory, Parser, Subcommand,
+    builder::{PossibleValuesParser, TypedValueParser},
+};
 
 use self::{
     failure::{Failure, refused},
@@ -38,6 +41,16 @@ use crate::{
     scene::{Override, SHIPPED, Scene, SceneFile, shipped},
     system::{files, interrupt},
 };
+
+/// A parser of the names of `all`.
+fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(all.map(name)).try_map(move |given| {
+        all.into_iter().find(|one| name(*one) == given).ok_or_else(|| format!("{given} is none of them"))
+    })
+}
 
 /// From a drawing's tolerances to a flashed force table.
 ///

@@ -14,7 +14,7 @@ use super::{
     check::{self, GapReport, gap_reports},
     given,
     mechanism::{self, Wanted},
-    print, print_json, warn,
+    one_of, print, print_json, warn,
 };
 use crate::{
     dynamics::{
@@ -144,10 +144,10 @@ pub(super) struct ControllerArguments {
     #[arg(long, allow_hyphen_values = true)]
     step: Option<String>,
     /// Integration scheme of the controller.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = one_of(IntegratorKind::ALL, IntegratorKind::name))]
     integrator: Option<IntegratorKind>,
     /// Number type of the controller.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = one_of(ScalarKind::ALL, ScalarKind::name))]
     scalar: Option<ScalarKind>,
 }
 

@@ -6,10 +6,7 @@
 //! nothing: neither friction law has a spring.
 
 use serde::Serialize;
-use slipfit_core::{
-    Scalar,
-    slide::{Energy, Power},
-};
+use slipfit_core::slide::{Energy, Power};
 
 /// The energy account of a run (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -77,13 +74,8 @@ impl Auditor {
     }
 
     /// Takes note of the energy and the powers at the next instant, from time 0 on.
-    pub fn observe<S: Scalar>(&mut self, energy: Energy<S>, power: Power<S>) {
-        let energy = Energy {
-            kinetic: energy.kinetic.to_f64(),
-            gravity: energy.gravity.to_f64(),
-            elastic: energy.elastic.to_f64(),
-        };
-        let now = [power.drive, power.damping, power.friction].map(Scalar::to_f64);
+    pub fn observe(&mut self, energy: Energy<f64>, power: Power<f64>) {
+        let now = [power.drive, power.damping, power.friction];
         let start = *self.start.get_or_insert(energy);
         let gains = [self.gain(now, 0), self.gain(now, 1), self.gain(now, 2)];
         self.before = [Some(now), self.before[0]];

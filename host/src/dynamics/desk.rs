@@ -10,22 +10,17 @@ use std::{ops::ControlFlow, time::Instant as Clock};
 
 use slipfit_core::{
     SVector,
-    integrator::{Integrator, Motion, Rodas4},
-    law::{Elastic, Friction},
-    mechanism::Mechanism,
+    integrator::{Integrator, Rodas4},
     menu::FrictionData,
     pose::Pose,
-    slide::{CONTACTS, Slide},
+    slide::CONTACTS,
 };
+use slipfit_desk::slide::by_desk;
 
-#[cfg(target_arch = "x86_64")]
-use super::abreast::SideBySide;
 use super::{
     driven::Driven,
-    error_control::{Knot, Sensitivity, Stopped, Tolerance, integrate, sampled},
-    laws::SlidingSlide,
+    error_control::{Knot, Tolerance, sampled},
     looks::{end, looks, samples},
-    out_of_line::{Contacts, OutOfLine},
     outcome::{Instant, Observer},
     scheme::ScalarKind,
     simulate::{Run, Settings, SimulateError, Solved},
@@ -90,15 +85,46 @@ pub fn run(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, tolerance
 ///
 /// # Errors
 /// See [`SimulateError`].
-pub fn seen<'a>(
-    scene: &'a Scene,
+pub fn seen(
+    scene: &Scene,
     gaps: &[f64; CONTACTS],
-    settings: &'a Settings,
+    settings: &Settings,
     tolerance: f64,
-    see: Option<See<'a>>,
+    mut see: Option<See>,
 ) -> Result<Run, SimulateError> {
-    let data = scene.slide_data::<f64>(gaps);
     let stick_band = stick_band(scene, tolerance);
+    let mut observer = Observer::new(scene.drive, settings.run);
+    let mut tipping = Tipping::default();
+    let mut knots: Vec<Knot<[f64; 4]>> = Vec::new();
+    let mut before = SVector::zeros();
+    let slope = |velocity: &SVector<f64, 6>, by: &SVector<f64, 6>| [by.z, velocity.x, velocity.y, velocity.z];
+    let start = Clock::now();
+    let (data, band) = (scene.slide_data::<f64>(gaps), stick_band.unwrap_or(STICK_BAND[1]));
+    let (duration, allowed) = (settings.run.duration, Tolerance::of_force(tolerance));
+    let effort = by_desk(&data, band, duration, allowed, &mut |t, motion, gaps, accelerations| {
+        let (r, after) = (motion.pose.displacement_w, motion.velocity);
+        let slopes = accelerations.map(|[from, to]| [slope(&before, &from), slope(&after, &to)]);
+        before = after;
+        knots.push(Knot { t, values: [after.z, r.x, r.y, r.z], slopes });
+        if let Some(see) = &mut see {
+            see(t, after.z, &motion.pose, gaps);
+        }
+        if t >= scene.drive.ramp_start && tipping.begins(gaps) {
+            observer.tips(t, r.z);
+        }
+        if observer.is_at_end(r.z) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    let integration = start.elapsed();
+
+    let end = end(&knots, |values| observer.is_at_end(values[3]));
+    looks(&knots, end, |t, [vz, _, _, z]| {
+        observer.observe(Instant { t, vz, force: scene.drive.force(t, vz), z });
+    });
+    let mut trajectory = Trajectory::default();
+    let times = samples(end, settings.every);
+    for (t, values) in times.clone().zip(sampled(&knots, times)) {
+        trajectory.push(t, values, scene.drive.force(t, values[0]));
+    }
     let solved = Solved {
         by: "desk",
         integrator: Rodas4::NAME,
@@ -107,83 +133,11 @@ pub fn seen<'a>(
         tolerance_n: Some(tolerance),
         tolerance_m_per_s: None,
         stick_band_m_per_s: stick_band,
-        effort: Default::default(),
+        effort,
         worst_residual: 0.0,
     };
-    let desk = Desk { scene, settings, tolerance: Tolerance::of_force(tolerance), solved, see };
-    let band = stick_band.unwrap_or(STICK_BAND[1]);
-    Ok(match SlidingSlide::new(&data, band)? {
-        SlidingSlide::Usual(slide) => {
-            #[cfg(target_arch = "x86_64")]
-            if let Some(pins) = SideBySide::new(&data, band) {
-                return Ok(desk.run(&OutOfLine::by(slide, pins))?);
-            }
-            desk.run(&OutOfLine::new(slide))
-        }
-        SlidingSlide::Chosen(slide) => desk.run(&OutOfLine::new(slide)),
-    }?)
-}
-
-/// A run whose slide's type is to be known.
-struct Desk<'a> {
-    scene: &'a Scene,
-    settings: &'a Settings,
-    tolerance: Tolerance,
-    solved: Solved,
-    see: Option<See<'a>>,
-}
-
-impl Desk<'_> {
-    fn run<E: Elastic<f64>, F: Friction<f64>, C: Contacts<f64, Slide<f64, E, F>, 6>>(
-        self,
-        driven: &OutOfLine<Slide<f64, E, F>, C>,
-    ) -> Result<Run, Stopped> {
-        let slide = driven.mechanism();
-        let Self { scene, settings, tolerance, mut solved, mut see } = self;
-        let sensitivity = Sensitivity { mass: scene.slide.mass, gain: scene.drive.gain };
-        let rest = Motion {
-            pose: Pose::nominal(),
-            velocity: SVector::zeros(),
-            acceleration: SVector::zeros(),
-            internal: slide.fresh(),
-        };
-        let mut observer = Observer::new(scene.drive, settings.run);
-        let mut tipping = Tipping::default();
-        let mut knots: Vec<Knot<[f64; 4]>> = Vec::new();
-        let mut before = rest.velocity;
-        let slope = |velocity: &SVector<f64, 6>, by: &SVector<f64, 6>| [by.z, velocity.x, velocity.y, velocity.z];
-        let start = Clock::now();
-        let duration = settings.run.duration;
-        let error = |step: &_, length| sensitivity.error(tolerance, step, length);
-        let effort = integrate::<Rodas4, _, 6>(driven, rest, duration, error, |t, motion, accelerations| {
-            let r = motion.pose.displacement_w;
-            let after = motion.velocity;
-            let slopes = accelerations.map(|[from, to]| [slope(&before, &from), slope(&after, &to)]);
-            before = after;
-            knots.push(Knot { t, values: [after.z, r.x, r.y, r.z], slopes });
-            if let Some(see) = &mut see {
-                see(t, motion.velocity.z, &motion.pose, &slide.gaps(&motion.pose));
-            }
-            if t >= scene.drive.ramp_start && tipping.begins(&slide.gaps(&motion.pose)) {
-                observer.tips(t, r.z);
-            }
-            if observer.is_at_end(r.z) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        })?;
-        let integration = start.elapsed();
-        solved.effort = effort;
-
-        let end = end(&knots, |values| observer.is_at_end(values[3]));
-        looks(&knots, end, |t, [vz, _, _, z]| {
-            observer.observe(Instant { t, vz, force: scene.drive.force(t, vz), z });
-        });
-        let mut trajectory = Trajectory::default();
-        let times = samples(end, settings.every);
-        for (t, values) in times.clone().zip(sampled(&knots, times)) {
-            trajectory.push(t, values, scene.drive.force(t, values[0]));
-        }
-        let outcome = observer.outcome();
-        Ok(Run { trajectory, outcome, solved, trust: Trust::default(), audit: None, integration })
-    }
+    let outcome = observer.outcome();
+    Ok(Run { trajectory, outcome, solved, trust: Trust::default(), audit: None, integration })
 }
 
 #[cfg(test)]

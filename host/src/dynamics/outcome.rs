@@ -2,14 +2,9 @@
 
 use serde::Serialize;
 use slipfit_core::{drive::Drive, table::MotionVerdict};
+pub use slipfit_desk::settled::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled};
 
 use crate::scene::RunSpec;
-
-/// Speed (m/s) whose last upward crossing is the breakaway. Bursts of released compression stay below it.
-pub const BREAKAWAY_SPEED: f64 = 0.2e-3;
-
-/// Length (s) of the end of a run over which a force must be steady to count as settled.
-pub const SETTLED_WINDOW: f64 = 0.020;
 
 /// Share of the commanded speed from which a unit runs.
 pub const RUNS: f64 = 0.5;
@@ -241,17 +236,6 @@ impl Observer {
 /// Whether a limit between two verdicts lies between the least and the greatest of these speeds, as shares of the command.
 pub fn between_verdicts([least, greatest]: [f64; 2]) -> bool {
     [RUNS, JAMMED].iter().any(|limit| least < *limit && *limit <= greatest)
-}
-
-/// The mean force (N) over ascending times (s), each with its force, if it varies by less than 1 %.
-pub fn settled(window: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
-    let forces = || window.clone().map(|(_, force)| force);
-    let (least, greatest) = (forces().reduce(f64::min)?, forces().reduce(f64::max)?);
-    let pairs = || window.clone().zip(window.clone().skip(1));
-    let duration: f64 = pairs().map(|(one, next)| next.0 - one.0).sum();
-    let sum: f64 = pairs().map(|(one, next)| (next.0 - one.0) * (one.1 + next.1) / 2.0).sum();
-    let mean = if duration > 0.0 { sum / duration } else { least };
-    (greatest - least < 0.01 * mean.abs()).then_some(mean)
 }
 
 #[cfg(test)]

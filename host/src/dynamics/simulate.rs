@@ -196,7 +196,9 @@ impl<S: std::fmt::Display> From<ParameterError<S>> for SimulateError {
 impl From<Stopped> for SimulateError {
     fn from(stopped: Stopped) -> Self {
         match stopped {
+            Stopped::Parameter(what) => Self::Parameter(what),
             Stopped::Unsolved(time) => Self::Unsolved { time },
+            Stopped::NotFinite { time, step } => Self::NotFinite { time, step },
             Stopped::Interrupted => Self::Interrupted,
         }
     }

@@ -1,6 +1,6 @@
 //! What a step of the desk may err by.
 
-use slipfit_core::integrator::Step;
+use slipfit_desk::plant::Reported;
 
 use super::{Action, Mechanism};
 
@@ -44,7 +44,7 @@ impl Limits {
     }
 
     /// The error of a `step` of `length` (s) that moves at least the mass `least_mass` (kg); 1 is allowed.
-    pub fn error<P, R, const D: usize>(&self, step: &Step<f64, P, R, D>, length: f64, least_mass: f64) -> f64 {
+    pub fn error(&self, step: &Reported, length: f64, least_mass: f64) -> f64 {
         let speed = step.error.max(step.residual) / (least_mass * self.speed);
         let place = step.drift.max(step.residual * length) / (least_mass * self.speed * LASTING);
         speed.max(place)

@@ -3,24 +3,22 @@
 //! Everything is described in one drawn pose, in which all axes are those of the frame. In a mechanism that lies in a plane
 //! x and y span the plane and angles turn from x to y; the others are in space.
 
-mod abreast;
 pub mod closing;
 pub mod columns;
 mod drawing;
 mod driven;
-pub mod element;
-mod fixed_steps;
 mod freedom;
 mod gaps;
 mod hanging;
 mod hash;
-mod laws;
 mod limits;
 pub mod mobility;
 mod mounts;
 pub mod planar;
 mod run;
 pub mod self_locking;
+#[cfg(test)]
+mod side_by_side_tests;
 mod source;
 pub mod spatial;
 mod start;
@@ -31,7 +29,6 @@ pub use driven::{ByDrive, confirmed, finer};
 pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps, level_of};
 pub use hanging::MountError;
-pub use laws::{Laws, NormalData, Rebound};
 pub use mounts::Mounts;
 pub use run::{MechanismRun, Moment, RunError, SCHEME, Samples, controller_run, film, run};
 pub use source::{dimension, drive_names, element_paths, rust_source};
@@ -39,6 +36,10 @@ pub use start::{Rest, Torn, torn};
 pub use vary::{Parameter, Varied, rub_more, tilted_x, tilted_z};
 
 use slipfit_core::{clearance::GapStatistics, drive::Drive};
+pub use slipfit_desk::{
+    contact::{Laws, NormalData, Rebound},
+    element,
+};
 
 use crate::scene::{ControllerSpec, LevelRange, RunSpec};
 

@@ -8,30 +8,34 @@ use std::{
 use slipfit_core::{
     ParameterError, SVector,
     integrator::{Integrator, Motion, Rodas4},
-    mechanism::Mechanism as _,
-    system::{Bodies, Elements, System, ThroughJoints, spatial::tree::Mount},
+    pose::Pose,
+    system::{System, ThroughJoints, spatial::tree::Mount},
+};
+use slipfit_desk::{
+    out_of_line::OutOfLine,
+    plant::{FreePlant, JointedPlant, PlanarPlant, Plant},
+    side_by_side::SideBySide,
+    wide::Wide,
 };
 use thiserror::Error;
 
 use super::{
     Mechanism, MountError, Mounts, Rest,
-    abreast::SideBySide,
     columns::{self, BodyMotion, JointedBodies, PlanarBodies, State},
-    fixed_steps::FixedSteps,
     limits::Limits,
-    planar, spatial,
+    planar,
+    source::joints_of_elements,
+    spatial,
 };
 use crate::{
     dynamics::{
-        error_control::{Accelerations, Effort, Knot, Stopped, integrate, sampled},
+        error_control::{Accelerations, Effort, Knot, Stopped, sampled},
         film::chosen,
         looks::{end, looks, samples},
-        out_of_line::{Contacts, OutOfLine},
         outcome::{Instant as Looked, Observer, Outcome},
         scheme::ScalarKind,
         simulate::{SimulateError, Solved},
         trajectory::Trajectory,
-        wide::Wide,
     },
     scene::{ControllerSpec, RunSpec},
 };
@@ -46,8 +50,8 @@ pub enum RunError {
     #[error("a mechanism in space has {0} bodies, allowed are 1 to {most}", most = spatial::MOST)]
     Bodies(usize),
     /// A parameter that core refuses.
-    #[error(transparent)]
-    Parameter(#[from] ParameterError<f64>),
+    #[error("{0}")]
+    Parameter(String),
     /// No step from this time (s) on meets the tolerance.
     #[error(
         "from t = {0} s on no step meets the tolerance, however short: the contacts may be too stiff for their masses"
@@ -77,10 +81,18 @@ impl From<RunError> for SimulateError {
     }
 }
 
+impl From<ParameterError<f64>> for RunError {
+    fn from(error: ParameterError<f64>) -> Self {
+        Self::Parameter(error.to_string())
+    }
+}
+
 impl From<Stopped> for RunError {
     fn from(stopped: Stopped) -> Self {
         match stopped {
+            Stopped::Parameter(what) => Self::Parameter(what),
             Stopped::Unsolved(t) => Self::Unsolved(t),
+            Stopped::NotFinite { time, step } => Self::NotFinite { time, step },
             Stopped::Interrupted => Self::Interrupted,
         }
     }
@@ -212,7 +224,10 @@ fn in_plane<const D: usize>(
     mounts: &Mounts,
     gaps: &[f64],
     by: By,
-) -> Result<MechanismRun, RunError> {
+) -> Result<MechanismRun, RunError>
+where
+    for<'a> PlanarPlant<'a, D>: Plant<D, Pose = [[f64; 2]; D]>,
+{
     let tree = planar::bodies::<D>(mechanism, mounts)?;
     let limits = Limits::of(mechanism, |body| mounts.turn(Some(body)).map_or(0.0, |turn| tree.lever(turn)));
     let elements = planar::elements::<D>(mechanism, mounts, gaps, limits.stick_band())?;
@@ -235,13 +250,17 @@ fn in_space<const N: usize, const D: usize>(
     mechanism: &Mechanism,
     gaps: &[f64],
     by: By,
-) -> Result<MechanismRun, RunError> {
+) -> Result<MechanismRun, RunError>
+where
+    for<'a> FreePlant<'a, N, D>: Plant<D, Pose = [Pose<f64>; N]>,
+{
     let bodies = spatial::bodies::<N, D>(mechanism)?;
     let limits = Limits::of(mechanism, |body| bodies.lever(body));
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let start = (bodies.nominal(), [0.0; D]);
+    let laws = joints_of_elements(mechanism).map(|joint| joint.map(|joint| joint.laws));
     let system = System::new(bodies, &elements[..]);
-    let desk = OutOfLine::by(system, SideBySide::new(mechanism, &bodies, &elements, limits.stick_band()));
+    let desk = OutOfLine::by(system, SideBySide::new(&bodies, &elements, laws, limits.stick_band()));
     solve(mechanism, desk, start, &limits, by, State::spatial::<N>, columns::spatial)
 }
 
@@ -250,7 +269,10 @@ fn on_joints<const D: usize>(
     mounts: &[Mount<f64>],
     gaps: &[f64],
     by: By,
-) -> Result<MechanismRun, RunError> {
+) -> Result<MechanismRun, RunError>
+where
+    for<'a> JointedPlant<'a, D>: Plant<D, Pose = [[f64; 2]; D]>,
+{
     let tree = spatial::tree::<{ spatial::MOST }, { 6 * spatial::MOST }, D>(mechanism, mounts)?;
     let bodies = JointedBodies::new(mechanism.bodies.len(), tree);
     let limits = Limits::of(mechanism, |body| bodies.lever(body));
@@ -268,27 +290,20 @@ fn on_joints<const D: usize>(
     solve(mechanism, desk, start, &limits, by, state, |state: &State<D>| bodies.told(state))
 }
 
-fn solve<B, E, C, const D: usize>(
+fn solve<P: Plant<D>, const D: usize>(
     mechanism: &Mechanism,
-    desk: OutOfLine<System<B, E>, C>,
-    (pose, rates): (B::Pose, [f64; D]),
+    desk: P,
+    (pose, rates): (P::Pose, [f64; D]),
     limits: &Limits,
     by: By,
-    mut state: impl FnMut(&B::Pose, [f64; D]) -> State<D>,
+    mut state: impl FnMut(&P::Pose, [f64; D]) -> State<D>,
     told: impl Fn(&State<D>) -> Vec<BodyMotion>,
-) -> Result<MechanismRun, RunError>
-where
-    B: Bodies<f64, D> + Copy,
-    E: Elements<f64, B, D> + Copy,
-    C: Contacts<f64, System<B, E>, D>,
-{
-    let velocity = SVector::from(rates);
-    let start = Motion { pose, velocity, acceleration: SVector::zeros(), internal: desk.fresh() };
-    let least_mass = desk.mechanism().bodies().least_mass();
+) -> Result<MechanismRun, RunError> {
+    let least_mass = desk.least_mass();
     // The stroke is the first drive's.
     let of_drive = |k: usize| if k == 0 { mechanism.run } else { RunSpec { stroke: None, ..mechanism.run } };
     // Travel counts from the start, which need not be the drawn pose.
-    let at_start = told(&state(&start.pose, rates));
+    let at_start = told(&state(&pose, rates));
     let origins: Vec<f64> = mechanism.drives_at(0.0, &at_start).map(|at| at.z).collect();
     let drives_at = |t: f64, motions: &[BodyMotion]| -> Vec<Looked> {
         let from = |(at, origin): (Looked, &f64)| Looked { z: at.z - origin, ..at };
@@ -302,19 +317,18 @@ where
     };
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
-    let error = |step: &_, length| limits.error(step, length, least_mass);
-    let keep = |t: f64, motion: &Motion<f64, B::Pose, _, D>, accelerations: Option<Accelerations<D>>| {
+    let mut keep = |t: f64, motion: &Motion<f64, P::Pose, (), D>, accelerations: Option<Accelerations<D>>| {
         let values = state(&motion.pose, motion.velocity.into());
         let before = knots.last().map_or(values, |knot| knot.values);
         let slopes = accelerations.map(|[from, to]| [before.slope(from.into()), values.slope(to.into())]);
         knots.push(Knot { t, values, slopes });
         if ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let duration = mechanism.run.duration;
+    let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
     let effort = match by.controller {
-        None => integrate::<Rodas4, _, D>(&desk, start, duration, error, keep)?,
+        None => desk.by_desk(start, duration, &|step, length| limits.error(&step, length, least_mass), &mut keep)?,
         Some(ControllerSpec { step, integrator, .. }) => {
-            integrator.visit_implicit(FixedSteps { desk, start, duration, step, keep })?
+            desk.by_controller(start, duration, (integrator, step), &mut keep)?
         }
     };
     let integration = clock.elapsed();

@@ -23,7 +23,7 @@ use super::{
 pub const NONE: f64 = slipfit_core::slide::ABSENT;
 
 /// Most bodies of a mechanism in space.
-pub const MOST: usize = 3;
+pub const MOST: usize = slipfit_desk::plant::MOST_BODIES;
 
 /// Most coordinates of one with ideal joints.
 pub const MOST_COORDINATES: usize = 14;

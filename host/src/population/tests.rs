@@ -1,12 +1,11 @@
 //! Populations against the desk, and their laws.
 
-use pulp::Simd;
 use slipfit_core::{
     menu::{FrictionData, SlideData},
     slide::CONTACTS,
 };
 
-use super::{Course, Work, one_by_one, production::Production, simulate, simulate_units, unit};
+use super::{Course, production::Production, simulate, simulate_in, simulate_units, unit};
 use crate::{
     dynamics::{
         desk,
@@ -46,10 +45,8 @@ fn figures_have_the_same_bits(scene: &Scene) {
     let slides = slides(scene, 40);
     let course = unit::course(scene);
     let expected = format!("{:?}", simulate(course, &slides));
-    assert_eq!(format!("{:?}", one_by_one(course, &slides)), expected);
-    #[cfg(target_arch = "x86_64")]
-    if let Some(avx2) = pulp::x86::V3::try_new() {
-        assert_eq!(format!("{:?}", Simd::vectorize(avx2, Work { course, slides: &slides })), expected);
+    for lanes in [1, 8] {
+        assert_eq!(format!("{:?}", simulate_in(lanes, course, &slides)), expected, "{lanes}");
     }
     // In another order, and alone.
     let reversed: Vec<_> = slides.iter().rev().copied().collect();

@@ -15,8 +15,10 @@ use slipfit_core::{
     },
 };
 
-use super::Laws;
-use crate::dynamics::laws::{AnyNormal, AnySliding};
+use crate::{
+    contact::Laws,
+    laws::{AnyNormal, AnySliding},
+};
 
 /// Any contact without internal variables.
 pub type AnyContact<S = f64> = Contact<AnyNormal<S>, AnySliding<S>>;

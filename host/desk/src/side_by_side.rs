@@ -3,7 +3,7 @@
 use std::array;
 
 use nalgebra::Matrix3;
-use pulp::{Scalar256b, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 use slipfit_core::{
     SVector, Vector3,
     mechanism::Differentiated,
@@ -15,12 +15,12 @@ use slipfit_core::{
     },
 };
 
-use super::{
-    Laws, Mechanism,
+use crate::{
+    contact::Laws,
     element::{SpatialElement, contact},
-    source::joints_of_elements,
+    out_of_line::Contacts,
+    pack::Pack,
 };
-use crate::dynamics::{out_of_line::Contacts, pack::Pack};
 
 /// Four numbers.
 type Quad<V> = Pack<V, f64>;
@@ -31,14 +31,19 @@ type Free<'a, const N: usize, const D: usize> = System<FreeBodies<f64, N, D>, &'
 /// Derivatives of its forces.
 type Jacobians<const N: usize, const D: usize> = JacobiansOf<f64, FreeBodies<f64, N, D>, D>;
 
-/// Contacts side by side by the widest instructions of the machine, or by what stands for them where it has none. The bits are the
-/// same.
+/// Contacts side by side in the registers of the machine, or lane by lane where it has none. The bits are the same.
 pub enum SideBySide<const N: usize, const D: usize> {
     /// By AVX2.
     #[cfg(target_arch = "x86_64")]
     Wide(Quads<pulp::x86::V3, N, D>),
-    /// By those that every machine has.
-    Plain(Quads<Scalar256b, N, D>),
+    /// By instructions that every machine has.
+    ByLane(ByLane),
+}
+
+/// The elements of each lane, and those that do not make four.
+pub struct ByLane {
+    lanes: [Vec<SpatialElement>; LANES],
+    rest: Vec<SpatialElement>,
 }
 
 /// Contacts side by side, and the proof that the machine has the instructions `V` for them.
@@ -125,19 +130,33 @@ fn vector<V: Simd>(four: &[Vector3<f64>; LANES]) -> Vector3<Quad<V>> {
 }
 
 impl<const N: usize, const D: usize> SideBySide<N, D> {
-    /// The `elements` of `mechanism` on its `bodies`; a `stick_band` (m/s) stands for true stick.
+    /// The `elements` on the `bodies`, with the laws of each that is a contact; a `stick_band` (m/s) is used in place of true stick.
     pub fn new(
-        mechanism: &Mechanism,
         bodies: &FreeBodies<f64, N, D>,
         elements: &[SpatialElement],
+        laws: impl Iterator<Item = Option<Laws>>,
         stick_band: f64,
     ) -> Self {
-        let groups = Groups::of(mechanism, elements);
+        let groups = Groups::of(elements, laws);
         #[cfg(target_arch = "x86_64")]
         if let Some(instructions) = pulp::x86::V3::try_new() {
             return Self::Wide(Quads::new(instructions, bodies, groups, stick_band));
         }
-        Self::Plain(Quads::new(Scalar256b, bodies, groups, stick_band))
+        Self::ByLane(ByLane::new(groups))
+    }
+
+    /// The same without wide instructions.
+    pub fn by_lane(elements: &[SpatialElement], laws: impl Iterator<Item = Option<Laws>>) -> Self {
+        Self::ByLane(ByLane::new(Groups::of(elements, laws)))
+    }
+
+    /// How many times four contacts are side by side, and how many elements are not.
+    pub fn counts(&self) -> (usize, usize) {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Wide(quads) => (quads.quads.len(), quads.rest.len()),
+            Self::ByLane(ByLane { lanes: [lane, ..], rest }) => (lane.len(), rest.len()),
+        }
     }
 }
 
@@ -149,11 +168,11 @@ struct Groups {
 }
 
 impl Groups {
-    /// The `elements` of `mechanism`.
-    fn of(mechanism: &Mechanism, elements: &[SpatialElement]) -> Self {
+    /// The `elements` with the laws of each that is a contact.
+    fn of(elements: &[SpatialElement], laws: impl Iterator<Item = Option<Laws>>) -> Self {
         let mut groups = Self::default();
-        for (element, joint) in elements.iter().zip(joints_of_elements(mechanism)) {
-            match joint.and_then(|joint| Kind::of(element, joint.laws)) {
+        for (element, laws) in elements.iter().zip(laws) {
+            match laws.and_then(|laws| Kind::of(element, laws)) {
                 Some(kind) => match groups.alike.iter_mut().find(|(of, _)| *of == kind) {
                     Some((_, alike)) => alike.push(*element),
                     None => groups.alike.push((kind, vec![*element])),
@@ -163,22 +182,41 @@ impl Groups {
         }
         groups
     }
+
+    /// Shows `four` each four of a kind; what it does not take, and what does not make four, is returned with the others.
+    fn fours(self, mut four: impl FnMut(&Kind, &[SpatialElement; LANES]) -> bool) -> Vec<SpatialElement> {
+        let mut rest = self.others;
+        for (kind, alike) in self.alike {
+            let (fours, left) = alike.as_chunks::<LANES>();
+            rest.extend(fours.iter().filter(|elements| !four(&kind, elements)).flatten());
+            rest.extend(left);
+        }
+        rest
+    }
+}
+
+impl ByLane {
+    fn new(groups: Groups) -> Self {
+        let mut lanes = array::from_fn(|_| Vec::new());
+        let rest = groups.fours(|_, four| {
+            lanes.iter_mut().zip(four).for_each(|(lane, element): (&mut Vec<_>, _)| lane.push(*element));
+            true
+        });
+        Self { lanes, rest }
+    }
 }
 
 impl<V: Simd, const N: usize, const D: usize> Quads<V, N, D> {
     /// The elements of `groups` on the `bodies`.
     fn new(instructions: V, bodies: &FreeBodies<f64, N, D>, groups: Groups, stick_band: f64) -> Self {
-        let (mut quads, mut rest) = (Vec::new(), groups.others);
-        for (kind, alike) in groups.alike {
-            let (fours, left) = alike.as_chunks::<LANES>();
-            for four in fours {
-                match kind.together(four, stick_band) {
-                    Some(quad) => quads.push(quad),
-                    None => rest.extend(four),
-                }
+        let mut quads = Vec::new();
+        let rest = groups.fours(|kind, four| match kind.together(four, stick_band) {
+            Some(quad) => {
+                quads.push(quad);
+                true
             }
-            rest.extend(left);
-        }
+            None => false,
+        });
         Self { instructions, bodies: bodies.cast(everywhere), quads, rest }
     }
 }
@@ -198,7 +236,10 @@ impl<const N: usize, const D: usize> Contacts<f64, Free<'_, N, D>, D> for SideBy
         match self {
             #[cfg(target_arch = "x86_64")]
             Self::Wide(quads) => Simd::vectorize(quads.instructions, Forces { quads, at }),
-            Self::Plain(quads) => Simd::vectorize(quads.instructions, Forces { quads, at }),
+            Self::ByLane(ByLane { lanes, rest }) => {
+                let At { system, t, pose, velocity } = at;
+                system.forces_by_lane(&lanes.each_ref().map(|lane| &lane[..]), &&rest[..], t, pose, velocity)
+            }
         }
     }
 
@@ -214,7 +255,10 @@ impl<const N: usize, const D: usize> Contacts<f64, Free<'_, N, D>, D> for SideBy
         match self {
             #[cfg(target_arch = "x86_64")]
             Self::Wide(quads) => Simd::vectorize(quads.instructions, Derivatives { quads, at }),
-            Self::Plain(quads) => Simd::vectorize(quads.instructions, Derivatives { quads, at }),
+            Self::ByLane(ByLane { lanes, rest }) => {
+                let At { system, t, pose, velocity } = at;
+                system.differentiated_by_lane(&lanes.each_ref().map(|lane| &lane[..]), &&rest[..], t, pose, velocity)
+            }
         }
     }
 }
@@ -257,76 +301,5 @@ impl<V: Simd, const N: usize, const D: usize> WithSimd for Derivatives<'_, V, N,
     fn with_simd<W: Simd>(self, _: W) -> Self::Output {
         let (Quads { bodies, quads, rest, .. }, At { system, t, pose, velocity }) = (self.quads, self.at);
         system.differentiated_abreast(&System::new(*bodies, &quads[..]), &&rest[..], t, pose, velocity)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::ops::ControlFlow;
-
-    use pulp::Scalar256b;
-    use slipfit_core::{
-        SVector,
-        integrator::{Motion, Rodas4},
-        system::{Bodies, System},
-    };
-
-    use super::{Free, Groups, Quads, SideBySide};
-    use crate::{
-        dynamics::{
-            error_control::integrate,
-            out_of_line::{Contacts, OutOfLine},
-            wide::Wide,
-        },
-        mechanism::{Mechanism, limits::Limits, spatial},
-        scene::{SceneFile, shipped},
-    };
-
-    /// Times (s) and velocities at the ends of the steps of `mechanism`, its contacts computed as `contacts` does.
-    fn steps<C, const N: usize, const D: usize>(mechanism: &Mechanism, contacts: C) -> Vec<(f64, SVector<f64, D>)>
-    where
-        C: for<'a> Contacts<f64, Free<'a, N, D>, D>,
-    {
-        let bodies = spatial::bodies::<N, D>(mechanism).unwrap();
-        let limits = Limits::of(mechanism, |body| bodies.lever(body));
-        let elements = spatial::elements(mechanism, &mechanism.gaps_at(&[0.5]).unwrap(), limits.stick_band()).unwrap();
-        let zero = SVector::zeros();
-        let start = Motion { pose: bodies.nominal(), velocity: zero, acceleration: zero, internal: () };
-        let least_mass = bodies.least_mass();
-        let desk = OutOfLine::by(System::new(bodies, &elements[..]), contacts);
-        let mut steps = Vec::new();
-        let error = |step: &_, length| limits.error(step, length, least_mass);
-        integrate::<Rodas4, _, D>(&desk, start, 0.2, error, |t, motion, _| {
-            steps.push((t, motion.velocity));
-            ControlFlow::Continue(())
-        })
-        .unwrap();
-        steps
-    }
-
-    /// The contacts that stand side by side, `quads` times four, move the bodies as those in turn do, but for the order of sums; and
-    /// what stands for a machine's instructions has their bits.
-    fn compare<const N: usize, const D: usize>(name: &str, quads: usize) {
-        let mechanism = SceneFile::parse(name, shipped(name).unwrap(), &[]).unwrap().mechanism.unwrap();
-        let bodies = spatial::bodies::<N, D>(&mechanism).unwrap();
-        let band = Limits::of(&mechanism, |body| bodies.lever(body)).stick_band();
-        let elements = spatial::elements(&mechanism, &mechanism.gaps_at(&[0.5]).unwrap(), band).unwrap();
-        let plain = Quads::new(Scalar256b, &bodies, Groups::of(&mechanism, &elements), band);
-        assert_eq!(plain.quads.len(), quads, "{name}");
-        assert_eq!(plain.rest.len() + 4 * quads, elements.len(), "{name}");
-        let plain = steps::<_, N, D>(&mechanism, SideBySide::Plain(plain));
-        let wide = steps::<_, N, D>(&mechanism, SideBySide::new(&mechanism, &bodies, &elements, band));
-        assert!(plain == wide, "{name}: {} and {} steps", plain.len(), wide.len());
-        let in_turn = steps::<_, N, D>(&mechanism, Wide::of_machine());
-        let most = in_turn.iter().fold(0.0f64, |most, (_, velocity)| most.max(velocity.amax()));
-        let ends = [&plain, &in_turn].map(|steps| steps.last().unwrap().1);
-        assert!((ends[0] - ends[1]).amax() < 1e-5 * most, "{name}: {} {}", ends[0], ends[1]);
-    }
-
-    #[test]
-    fn contacts_side_by_side_are_those_in_turn() {
-        compare::<1, 6>("linear-guide", 2);
-        compare::<1, 6>("hatch", 1);
-        compare::<2, 12>("telescopic-drawer", 2);
     }
 }

@@ -1,12 +1,11 @@
 //! What a controller can compute with: fixed-step schemes with their numbers of passes, and number types.
 
-use clap::{ValueEnum, builder::PossibleValue};
 use slipfit_core::integrator::{
     Extrapolated, ImplicitEuler, Integrator, Rodas3, Rodas4, RungeKutta4, Sdirk2, SemiImplicitEuler,
 };
 
 /// The number type of a fixed-step run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ScalarKind {
     /// Single precision, as on a controller.
@@ -118,15 +117,5 @@ impl IntegratorKind {
             }
         }
         self.visit(Implicit)
-    }
-}
-
-impl ValueEnum for IntegratorKind {
-    fn value_variants<'a>() -> &'a [Self] {
-        &Self::ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(self.name().into())
     }
 }

@@ -6,7 +6,7 @@ use slipfit_core::{
     mechanism::{Differentiated, Mechanism},
 };
 
-use super::out_of_line::Contacts;
+use crate::out_of_line::Contacts;
 
 /// Instructions for four numbers of double precision at a time.
 #[cfg(target_arch = "x86_64")]

@@ -7,12 +7,12 @@
 use std::ops::ControlFlow;
 
 use slipfit_core::{
-    SVector,
+    ParameterError, SVector,
     integrator::{Dense, MotionOf, Step, StepOf},
     mechanism::Mechanism,
 };
 
-use crate::system::interrupt;
+use crate::interrupt;
 
 /// How well each step has to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,12 +94,31 @@ pub struct Effort {
 }
 
 /// Why an integration did not come to its end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Stopped {
+    /// A parameter that core refuses: which, its value, and what is allowed.
+    #[error("{0}")]
+    Parameter(String),
     /// No step from this time (s) on meets the tolerance, however short.
+    #[error("from t = {0} s on no step meets the tolerance, however short")]
     Unsolved(f64),
+    /// The motion left the finite range.
+    #[error("the motion left the finite range at t = {time} s: take a smaller step than {step} s")]
+    NotFinite {
+        /// When (s).
+        time: f64,
+        /// Step (s).
+        step: f64,
+    },
     /// Stopped from outside.
+    #[error("interrupted")]
     Interrupted,
+}
+
+impl<S: std::fmt::Display> From<ParameterError<S>> for Stopped {
+    fn from(error: ParameterError<S>) -> Self {
+        Self::Parameter(error.to_string())
+    }
 }
 
 /// Error of place (m) allowed with 1 N of error of force: 3 nm for each 0.1 mN. Errors of place last, and between tight contacts

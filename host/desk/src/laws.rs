@@ -12,7 +12,7 @@ use slipfit_core::{
     slide::Slide,
 };
 
-use crate::mechanism::{NormalData, Rebound};
+use crate::contact::{NormalData, Rebound};
 
 /// Any elastic law of the menu.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,9 +3,9 @@
 use pulp::Simd;
 use slipfit_core::{Scalar, slide::CONTACTS};
 
-use crate::dynamics::{
-    outcome::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled},
+use crate::{
     pack::Pack,
+    settled::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled},
 };
 
 /// Figures of one unit, in SI units. Speeds, forces and travel count along the commanded direction.

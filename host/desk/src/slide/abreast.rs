@@ -11,7 +11,7 @@ use slipfit_core::{
     slide::{AbreastPins, Internal, Slide, abreast, abreast_pins},
 };
 
-use super::{laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
+use crate::{laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
 
 /// A number for each pin.
 type Quad = Pack<V3, f64>;
@@ -111,13 +111,13 @@ mod tests {
         integrator::{Motion, Rodas4},
         mechanism::Mechanism,
         pose::Pose,
-        slide::{CONTACTS, Internal, NO_INTERNAL, Slide},
+        slide::{Internal, NO_INTERNAL, Slide},
     };
 
     use super::SideBySide;
-    use crate::dynamics::{
+    use crate::{
         error_control::{Sensitivity, Tolerance, integrate},
-        example, laws,
+        laws,
         out_of_line::{Contacts, InTurn, OutOfLine},
     };
 
@@ -144,9 +144,8 @@ mod tests {
     /// Loose, tipping and jammed units.
     #[test]
     fn side_by_side_the_bits_are_those_of_one_after_the_other() {
-        let scene = example::cd_rom();
         for n in [-2.0, 0.0, 2.5, 4.0] {
-            let data = scene.slide_data::<f64>(&scene.gaps_at(&[n; CONTACTS]));
+            let data = slipfit_problems::cd_rom::data(n);
             let slide: Slide<f64, _, _> = laws::usual(&data).expect("the paper's laws");
             let in_turn = steps(slide, InTurn);
             assert!(in_turn.len() > 50);

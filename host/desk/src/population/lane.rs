@@ -9,7 +9,7 @@ use slipfit_core::{
     slide::{Internal, NO_INTERNAL},
 };
 
-use crate::dynamics::pack::Pack;
+use crate::pack::Pack;
 
 /// The motions of as many slides as a pack has lanes.
 pub type Motions<V> = Motion<Pack<V>, Pose<Pack<V>>, Internal<()>, 6>;

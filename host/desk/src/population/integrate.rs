@@ -14,7 +14,7 @@ use slipfit_core::{
     slide::{CONTACTS, Internal, Slide},
 };
 
-use crate::dynamics::{
+use crate::{
     error_control::{CHANGES, FIRST_STEP, GREATEST_STEP, PLACE, SAFETY},
     out_of_line::OutOfLine,
     pack::Pack,

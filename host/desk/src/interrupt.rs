@@ -1,0 +1,15 @@
+//! A request to stop: long work looks at it now and then, so that nothing is left half written.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static REQUESTED: AtomicBool = AtomicBool::new(false);
+
+/// Asks all work of this process to stop. Whether that had been asked before.
+pub fn request() -> bool {
+    REQUESTED.swap(true, Ordering::Relaxed)
+}
+
+/// Whether somebody asked to stop.
+pub fn requested() -> bool {
+    REQUESTED.load(Ordering::Relaxed)
+}

@@ -1,0 +1,79 @@
+//! One body on four pins of the frame at the desk, by its fast types: error-controlled steps, or those of a controller in any of
+//! its schemes and numbers.
+
+#[cfg(target_arch = "x86_64")]
+pub mod abreast;
+mod fixed_steps;
+
+use std::ops::ControlFlow;
+
+use slipfit_core::{
+    SVector,
+    integrator::{Motion, Rodas4},
+    law::{Elastic, Friction},
+    menu::SlideData,
+    pose::Pose,
+    slide::{CONTACTS, Internal, NO_INTERNAL, Slide},
+};
+
+pub use fixed_steps::{At, Controller, Report, Witness, by_controller};
+
+use crate::{
+    error_control::{Accelerations, Effort, Sensitivity, Stopped, Tolerance, integrate},
+    laws::SlidingSlide,
+    out_of_line::{Contacts, OutOfLine},
+};
+
+/// Where the slide is and how it moves, with the gaps (m) of its contacts.
+pub type SlideMotion = Motion<f64, Pose<f64>, Internal<()>, 6>;
+
+/// Sees the time (s), the motion and the gaps (m) at the start and at the end of every step, with the step's accelerations, and says
+/// whether to go on.
+pub type See<'a> = &'a mut dyn FnMut(f64, &SlideMotion, &[f64; CONTACTS], Option<Accelerations<6>>) -> ControlFlow<()>;
+
+/// Moves the slide that `data` describes from rest over `duration` (s), each step held to `tolerance`; a `stick_band` (m/s) is used
+/// in place of true stick.
+///
+/// # Errors
+/// See [`Stopped`].
+pub fn by_desk(
+    data: &SlideData<f64>,
+    stick_band: f64,
+    duration: f64,
+    tolerance: Tolerance,
+    see: See,
+) -> Result<Effort, Stopped> {
+    let run = Run { sensitivity: Sensitivity { mass: data.body.mass, gain: data.drive.gain }, duration, tolerance };
+    match SlidingSlide::new(data, stick_band)? {
+        SlidingSlide::Usual(slide) => {
+            #[cfg(target_arch = "x86_64")]
+            if let Some(pins) = abreast::SideBySide::new(data, stick_band) {
+                return run.of(&OutOfLine::by(slide, pins), see);
+            }
+            run.of(&OutOfLine::new(slide), see)
+        }
+        SlidingSlide::Chosen(slide) => run.of(&OutOfLine::new(slide), see),
+    }
+}
+
+/// A run whose slide's type is to be known.
+struct Run {
+    sensitivity: Sensitivity,
+    duration: f64,
+    tolerance: Tolerance,
+}
+
+impl Run {
+    fn of<E: Elastic<f64>, F: Friction<f64, Internal = ()>, C: Contacts<f64, Slide<f64, E, F>, 6>>(
+        self,
+        driven: &OutOfLine<Slide<f64, E, F>, C>,
+        see: See,
+    ) -> Result<Effort, Stopped> {
+        let zero = SVector::zeros();
+        let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, internal: NO_INTERNAL };
+        let error = |step: &_, length| self.sensitivity.error(self.tolerance, step, length);
+        integrate::<Rodas4, _, 6>(driven, rest, self.duration, error, |t, motion, accelerations| {
+            see(t, motion, &driven.mechanism().gaps(&motion.pose), accelerations)
+        })
+    }
+}
