@@ -154,8 +154,9 @@ pub fn total_indices(stack: &Stack, measure: usize, count: usize, chance: &mut C
             let change = value(&mixed) - value_a;
             0.5 * change * change
         });
-        let [sum, square] = squares.fold([0.0; 2], |[sum, square], x| [sum + x, square + x * x]);
-        let n = count as f64;
+        // Pairs of units of which one is undefined do not count.
+        let defined = squares.filter(|x| x.is_finite());
+        let [n, sum, square] = defined.fold([0.0; 3], |[n, sum, square], x| [n + 1.0, sum + x, square + x * x]);
         let mean = sum / n;
         [mean, libm::sqrt((square / n - mean * mean).max(0.0) / n)]
     };

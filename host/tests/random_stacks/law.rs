@@ -6,19 +6,79 @@ use super::chance::{Chance, decimal};
 #[derive(Clone, Debug)]
 pub enum Law {
     Constant,
-    Normal { sigma: f64 },
-    Truncated { sigma: f64 },
+    Normal(Spread),
+    Truncated(Spread),
     Uniform,
     Triangular { mode: Option<f64> },
     Trapezoidal { shoulders: [f64; 2] },
     Beta { shapes: [f64; 2] },
-    Skewed { sigma: f64, skewness: f64 },
+    Skewed(Spread, f64),
     Weibull { shape: f64, scale: f64, location: f64 },
     Gumbel { mode: f64, scale: f64, smallest: bool },
     Lognormal { mean: f64, deviation: f64, location: f64 },
     Table(Vec<f64>),
     /// Weights, limits and laws.
     Mixture(Vec<(f64, [f64; 2], Law)>),
+}
+
+/// Mean and standard deviation.
+#[derive(Clone, Copy, Debug)]
+pub struct Spread {
+    pub mean: Mean,
+    pub width: Width,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Mean {
+    /// In the middle of the limits.
+    Middle,
+    /// At this deviation from the value.
+    Stated(f64),
+    /// At this distance from the middle.
+    Shifted(f64),
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Width {
+    /// Half of the tolerance over this.
+    Sigma(f64),
+    Deviation(f64),
+    /// The nearer limit is three times this many standard deviations from the mean.
+    Cpk(f64),
+}
+
+impl Spread {
+    fn random(chance: &mut Chance, [low, high]: [f64; 2]) -> Self {
+        let half = 0.5 * (high - low);
+        let off = decimal(chance.between(-0.5, 0.5) * half, 6);
+        let mean = match chance.below(6) {
+            0 => Mean::Stated(decimal(0.5 * (low + high) + off, 6)),
+            1 => Mean::Shifted(off),
+            _ => Mean::Middle,
+        };
+        let width = match chance.below(6) {
+            0 => Width::Deviation(decimal(half * chance.between(0.15, 0.6), 6)),
+            1 => Width::Cpk(chance.one_of(&[0.5, 0.8, 1.0, 1.33, 2.0])),
+            _ => Width::Sigma(chance.one_of(&[3.0, 3.0, 2.0, 4.5, 1.5, 6.0])),
+        };
+        Self { mean, width }
+    }
+
+    /// Mean and standard deviation of the deviations.
+    fn moments(&self, [low, high]: [f64; 2]) -> [f64; 2] {
+        let middle = 0.5 * (low + high);
+        let mean = match self.mean {
+            Mean::Middle => middle,
+            Mean::Stated(mean) => mean,
+            Mean::Shifted(shift) => middle + shift,
+        };
+        let deviation = match self.width {
+            Width::Sigma(sigma) => 0.5 * (high - low) / sigma,
+            Width::Deviation(deviation) => deviation,
+            Width::Cpk(cpk) => (high - mean).min(mean - low) / (3.0 * cpk),
+        };
+        [mean, deviation]
+    }
 }
 
 /// A standard normal's distribution function.
@@ -49,18 +109,19 @@ impl Law {
     pub fn random(chance: &mut Chance, [low, high]: [f64; 2], plain: bool) -> Self {
         let half = 0.5 * (high - low);
         let within = |chance: &mut Chance| decimal(chance.between(low, high), 6).clamp(low, high);
-        let sigma = |chance: &mut Chance| chance.one_of(&[3.0, 3.0, 2.0, 4.5, 1.5, 6.0]);
+        let spread = |chance: &mut Chance| Spread::random(chance, [low, high]);
         match chance.below(if plain { 12 } else { 14 }) {
-            0 | 1 => Self::Normal { sigma: sigma(chance) },
-            2 => Self::Truncated { sigma: sigma(chance) },
+            0 | 1 => Self::Normal(spread(chance)),
+            2 => Self::Truncated(spread(chance)),
             3 => Self::Uniform,
             4 => Self::Triangular { mode: chance.happens(0.6).then(|| chance.one_of(&[low, high, 0.0])).filter(|mode| (low..=high).contains(mode)).or_else(|| chance.happens(0.5).then(|| within(chance))) },
             5 => {
                 let (a, b) = (within(chance), within(chance));
                 Self::Trapezoidal { shoulders: [a.min(b), a.max(b)] }
             }
-            6 => Self::Beta { shapes: [0, 1].map(|_| chance.one_of(&[0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 12.0])) },
-            7 => Self::Skewed { sigma: sigma(chance), skewness: chance.one_of(&[-2.0, -0.7, 0.1, 0.5, 1.0, 2.0]) },
+            // slipfit takes microseconds for one of its values.
+            6 if !plain && chance.happens(0.5) => Self::Beta { shapes: [0, 1].map(|_| chance.one_of(&[0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 12.0])) },
+            6 | 7 => Self::Skewed(spread(chance), chance.one_of(&[-2.0, -0.7, 0.1, 0.5, 1.0, 2.0])),
             8 => Self::Weibull {
                 shape: chance.one_of(&[0.8, 1.0, 1.5, 2.0, 3.5, 8.0]),
                 scale: decimal(half, 6),
@@ -82,16 +143,16 @@ impl Law {
                 let part = |chance: &mut Chance| {
                     let (a, b) = (within(chance), within(chance));
                     let limits = if (a - b).abs() < 0.05 * half { [low, high] } else { [a.min(b), a.max(b)] };
-                    let law = loop {
-                        let law = Self::random(chance, limits, true);
-                        // A component has a tolerance or a whole distribution of its own.
-                        if !matches!(law, Self::Triangular { .. } | Self::Trapezoidal { .. } | Self::Table(_)) || !law.stands_alone() {
-                            break law;
-                        }
-                    };
-                    (chance.one_of(&[1.0, 1.0, 2.0, 0.1, 7.0]), limits, law)
+                    let law = Self::random(chance, limits, true);
+                    (chance.one_of(&[1.0, 1.0, 2.0, 0.1, 7.0]), if law.is_scaled() { limits } else { [0.0; 2] }, law)
                 };
-                Self::Mixture((0..2 + chance.below(2)).map(|_| part(chance)).collect())
+                let mut parts: Vec<_> = (0..2 + chance.below(2)).map(|_| part(chance)).collect();
+                if chance.happens(0.15) {
+                    // A small lot far away.
+                    let at = decimal(chance.between(5.0, 40.0) * half, 3);
+                    parts.push((0.02, [at, decimal(at + half, 4)], Self::Uniform));
+                }
+                Self::Mixture(parts)
             }
         }
     }
@@ -108,17 +169,24 @@ impl Law {
 
     /// Whether a tolerance beside it gives limits alone.
     pub fn has_width(&self) -> bool {
-        matches!(self, Self::Weibull { .. } | Self::Gumbel { .. } | Self::Lognormal { .. } | Self::Mixture(_))
+        match self {
+            Self::Normal(spread) | Self::Skewed(spread, _) => matches!(spread.width, Width::Deviation(_)),
+            Self::Weibull { .. } | Self::Gumbel { .. } | Self::Lognormal { .. } | Self::Mixture(_) => true,
+            _ => false,
+        }
     }
 
     /// A deviation drawn by a method of its own; `limits` are those of the tolerance.
     pub fn draw(&self, limits: [f64; 2], chance: &mut Chance) -> f64 {
         let [low, high] = limits;
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         match self {
-            Self::Normal { sigma } => middle + half / sigma * chance.normal(),
-            Self::Truncated { sigma } => loop {
-                let x = middle + half / sigma * chance.normal();
+            Self::Normal(spread) => {
+                let [mean, deviation] = spread.moments(limits);
+                mean + deviation * chance.normal()
+            }
+            Self::Truncated(spread) => loop {
+                let [mean, deviation] = spread.moments(limits);
+                let x = mean + deviation * chance.normal();
                 if (low..=high).contains(&x) {
                     return x;
                 }
@@ -136,7 +204,7 @@ impl Law {
                 let (x, y) = (chance.gamma(*a), chance.gamma(*b));
                 low + (high - low) * x / (x + y)
             }
-            Self::Skewed { sigma, skewness } => shifted_lognormal(middle, half / sigma, *skewness, chance.normal()),
+            Self::Skewed(spread, skewness) => shifted_lognormal(spread.moments(limits), *skewness, chance.normal()),
             Self::Lognormal { mean, deviation, location } => {
                 let square = libm::log1p(deviation * deviation / ((mean - location) * (mean - location)));
                 location + (mean - location) * libm::exp(libm::sqrt(square) * chance.normal() - 0.5 * square)
@@ -166,14 +234,17 @@ impl Law {
     /// The deviation below which this share of all lies, 0 < share < 1.
     pub fn point(&self, limits: [f64; 2], share: f64) -> f64 {
         let [low, high] = limits;
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         match self {
             Self::Constant => 0.0,
             Self::Uniform => low + (high - low) * share,
-            Self::Normal { sigma } => middle + half / sigma * normal_point(share),
-            Self::Truncated { sigma } => {
-                let below = normal_share(-sigma);
-                middle + half / sigma * normal_point(below + share * (1.0 - 2.0 * below)).clamp(-sigma, *sigma)
+            Self::Normal(spread) => {
+                let [mean, deviation] = spread.moments(limits);
+                mean + deviation * normal_point(share)
+            }
+            Self::Truncated(spread) => {
+                let [mean, deviation] = spread.moments(limits);
+                let [below, up_to] = limits.map(|limit| normal_share((limit - mean) / deviation));
+                (mean + deviation * normal_point(below + share * (up_to - below))).clamp(low, high)
             }
             Self::Triangular { .. } | Self::Trapezoidal { .. } => {
                 let [left, right] = self.shoulders(limits);
@@ -187,7 +258,10 @@ impl Law {
                     left + (share - rise) * area
                 }
             }
-            Self::Skewed { sigma, skewness } => shifted_lognormal(middle, half / sigma, *skewness, if *skewness < 0.0 { -normal_point(share) } else { normal_point(share) }),
+            Self::Skewed(spread, skewness) => {
+                let score = if *skewness < 0.0 { -normal_point(share) } else { normal_point(share) };
+                shifted_lognormal(spread.moments(limits), *skewness, score)
+            }
             Self::Weibull { shape, scale, location } => location + scale * libm::pow(-libm::log1p(-share), 1.0 / shape),
             Self::Gumbel { mode, scale, smallest: false } => mode - scale * libm::log(-libm::log(share)),
             Self::Gumbel { mode, scale, smallest: true } => mode + scale * libm::log(-libm::log1p(-share)),
@@ -237,7 +311,7 @@ impl Law {
 }
 
 /// Of these moments, at a standard normal score; its mirror image for a negative skewness.
-fn shifted_lognormal(mean: f64, deviation: f64, skewness: f64, score: f64) -> f64 {
+fn shifted_lognormal([mean, deviation]: [f64; 2], skewness: f64, score: f64) -> f64 {
     // (w + 2)·√(w − 1) is the skewness of a log-normal with w = e^(s²); it grows with w.
     let (mut low, mut high) = (0.0f64, 100.0);
     for _ in 0..200 {

@@ -4,8 +4,9 @@ use std::fmt::Write;
 
 use super::{
     chance::Chance,
-    expression::{Kind, Material, Range, Tree},
-    law::Law,
+    expected::value_correlation,
+    expression::{Kind, Material, One, Range, Tree, Two},
+    law::{Law, Mean, Spread, Width},
 };
 
 /// A dimension, in mm, ° or 1.
@@ -61,7 +62,7 @@ impl Writing {
         Self { length: ("", 1.0), angle: ("", 1.0), order, measures_first: false }
     }
 
-    fn number(&self, x: f64, kind: Kind) -> String {
+    pub fn number(&self, x: f64, kind: Kind) -> String {
         let of = |(unit, per): (&str, f64), own: &str| match unit {
             "" if own.is_empty() => format!("{x}"),
             "" => format!("\"{x} {own}\""),
@@ -91,29 +92,42 @@ impl Writing {
     }
 
     /// The keys `sigma` and `distribution` of a law, with what separates them from others.
-    fn law(&self, law: &Law, kind: Kind, end: &str) -> String {
+    pub fn law(&self, law: &Law, kind: Kind, end: &str) -> String {
         let number = |x: &f64| self.number(*x, kind);
         let numbers = |of: &[f64]| format!("[{}]", of.iter().map(number).collect::<Vec<_>>().join(", "));
         let mut sigma = None;
+        // What of a mean and a standard deviation is stated in the distribution's own table.
+        let spread = |spread: &Spread| {
+            let mean = match spread.mean {
+                Mean::Middle => String::new(),
+                Mean::Stated(mean) => format!(", mean = {}", self.number(mean, kind)),
+                Mean::Shifted(shift) => format!(", shift = {}", self.number(shift, kind)),
+            };
+            match spread.width {
+                Width::Sigma(_) => mean,
+                Width::Deviation(deviation) => format!("{mean}, deviation = {}", self.number(deviation, kind)),
+                Width::Cpk(cpk) => format!("{mean}, cpk = {cpk}"),
+            }
+        };
+        if let Law::Normal(of) | Law::Truncated(of) | Law::Skewed(of, _) = law
+            && let Width::Sigma(of) = of.width
+        {
+            sigma = Some(of);
+        }
+        let named = |name: &str, keys: String| match keys.as_str() {
+            "" => format!("\"{name}\""),
+            keys => format!("{{ kind = \"{name}\"{keys} }}"),
+        };
         let shape = match law {
             Law::Constant => "\"constant\"".into(),
-            Law::Normal { sigma: of } => {
-                sigma = Some(*of);
-                "\"normal\"".into()
-            }
-            Law::Truncated { sigma: of } => {
-                sigma = Some(*of);
-                "\"truncated-normal\"".into()
-            }
+            Law::Normal(of) => named("normal", spread(of)),
+            Law::Truncated(of) => named("truncated-normal", spread(of)),
             Law::Uniform => "\"uniform\"".into(),
             Law::Triangular { mode: None } => "\"triangular\"".into(),
             Law::Triangular { mode: Some(mode) } => format!("{{ kind = \"triangular\", mode = {} }}", number(mode)),
             Law::Trapezoidal { shoulders } => format!("{{ kind = \"trapezoidal\", shoulders = {} }}", numbers(shoulders)),
             Law::Beta { shapes: [a, b] } => format!("{{ kind = \"beta\", shapes = [{a}, {b}] }}"),
-            Law::Skewed { sigma: of, skewness } => {
-                sigma = Some(*of);
-                format!("{{ kind = \"skewed\", skewness = {skewness} }}")
-            }
+            Law::Skewed(of, skewness) => named("skewed", format!(", skewness = {skewness}{}", spread(of))),
             Law::Weibull { shape, scale, location } => {
                 let (scale, location) = (number(scale), number(location));
                 format!("{{ kind = \"weibull\", shape = {shape}, scale = {scale}, location = {location} }}")
@@ -261,6 +275,9 @@ impl Stack {
             known.push((kind, range));
             measures.push(Measure { name: format!("measure {number}"), kind, tree, limits: [None; 2] });
         }
+        if chance.happens(0.1) {
+            measures.extend(Self::undefined(&dimensions, chance));
+        }
         let mut made = Self { dimensions, correlations: Vec::new(), ranks: chance.happens(0.3), measures, sums: Vec::new() };
         if chance.happens(0.3) {
             made.correlate(chance);
@@ -273,6 +290,31 @@ impl Stack {
         made
     }
 
+    /// A measure that some units do not have, if there are dimensions for one: it is defined at the nominal values.
+    fn undefined(dimensions: &[Dimension], chance: &mut Chance) -> Option<Measure> {
+        let input = |i: usize| Box::new(Tree::Input(i));
+        let lengths: Vec<_> = (0..dimensions.len()).filter(|i| dimensions[*i].kind == Kind::Length).collect();
+        let pairs = lengths.iter().flat_map(|a| lengths.iter().map(|b| (*a, *b)));
+        let pairs: Vec<_> = pairs.filter(|(a, b)| a != b && dimensions[*a].value == dimensions[*b].value).collect();
+        let zeros: Vec<_> = lengths.iter().copied().filter(|i| dimensions[*i].value == 0.0).collect();
+        let root = |x| {
+            let unit = Box::new(Tree::Constant(1.0, Kind::Length));
+            Tree::One(One::Root, Box::new(Tree::Two(Two::Multiply, x, unit)))
+        };
+        let (kind, tree) = match chance.below(3) {
+            0 if !zeros.is_empty() => (Kind::Length, root(input(chance.one_of(&zeros)))),
+            1 if !pairs.is_empty() => {
+                let (a, b) = chance.one_of(&pairs);
+                (Kind::Length, root(Box::new(Tree::Two(Two::Subtract, input(a), input(b)))))
+            }
+            _ => {
+                let (a, b) = chance.one_of(pairs.iter().filter(|(a, _)| dimensions[*a].value > 1.0).copied().collect::<Vec<_>>().as_slice().get(..1)?);
+                (Kind::Angle, Tree::One(One::ArcCosine, Box::new(Tree::Two(Two::Divide, input(a), input(b)))))
+            }
+        };
+        Some(Measure { name: "sometimes".into(), kind, tree, limits: [None; 2] })
+    }
+
     /// Correlates pairs of neighbours whose distributions have points in closed form.
     fn correlate(&mut self, chance: &mut Chance) {
         let able: Vec<_> = (0..self.dimensions.len()).filter(|i| self.dimensions[*i].law.has_points()).collect();
@@ -280,10 +322,26 @@ impl Stack {
             if let [a, b] = *pair
                 && chance.happens(0.7)
             {
-                // Less than what any two of the laws can have.
-                let coefficient = chance.one_of(&[0.2, 0.5, -0.3, 0.6, -0.5]);
-                self.correlations.push((a, b, coefficient));
+                // Two laws of different shapes cannot have every coefficient.
+                let ends = [-1.0, 1.0].map(|r| if self.ranks { r } else { value_correlation(&self.dimensions[a], &self.dimensions[b], r) });
+                let coefficient = super::chance::decimal(0.9 * chance.between(ends[0], ends[1]), 2);
+                if coefficient != 0.0 {
+                    self.correlations.push((a, b, coefficient));
+                }
             }
+        }
+    }
+
+    /// The correlation of the values of two dimensions.
+    pub fn value_correlation(&self, a: usize, b: usize) -> f64 {
+        let pair = |(one, other, _): &&(usize, usize, f64)| [*one, *other] == [a, b];
+        match self.correlations.iter().find(pair) {
+            Some((.., coefficient)) if self.ranks => {
+                let scores = 2.0 * libm::sin(std::f64::consts::PI / 6.0 * coefficient);
+                value_correlation(&self.dimensions[a], &self.dimensions[b], scores)
+            }
+            Some((.., coefficient)) => *coefficient,
+            None => 0.0,
         }
     }
 
