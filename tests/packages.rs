@@ -133,7 +133,7 @@ fn every_header_and_the_examples_of_the_guide_are_c_11_and_c_plus_plus_17() {
     }
     let program = "#include \"slipfit.h\"\n#include \"scene.h\"\n#include \"table.h\"\n#include \"crank.h\"\n\
                    extern float time, force, speed, command;\nextern slipfit_table table;\n\
-                   int main(void) {\n    return slipfit_this_scene.mass > 0 && SLIPFIT_TABLE_SIZE > 0 && sizeof(crank) > 0 ? 0 : 1;\n}\n";
+                   int main(void) {\n    return slipfit_this_scene.mass > 0 && SLIPFIT_TABLE_SIZE > 0 && sizeof(crank_unit) > 0 ? 0 : 1;\n}\n";
     write(folder.join("program"), &format!("{program}{}", examples()));
     let strict = ["-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-fsyntax-only", "program"];
     for (compiler, language) in [("cc", ["-xc", "-std=c11"]), ("c++", ["-xc++", "-std=c++17"])] {

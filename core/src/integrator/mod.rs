@@ -72,39 +72,40 @@ pub trait Integrator: Copy {
     /// Whether forces are solved for at the end of a step. Friction that sticks needs that: with another scheme it does not compile,
     /// neither by a kernel nor by the scheme's own functions.
     /// ```compile_fail
-    /// use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    /// use slipfit_core::{integrator::*, law::{Exact, Linear}, slide::Slide};
     ///
     /// type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
-    /// let step = <Rodas4 as Integrator>::step::<f64, Sticks, 6>;
+    /// let _: fn(&_, _, _, &_) -> _ = <Rodas4 as Integrator>::step::<f64, Sticks, 6>;
     /// ```
     /// ```compile_fail
-    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, slide::Slide};
     /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
-    /// let step = <Rodas4 as Dense>::dense_step::<f64, Sticks, 6>;
+    /// let _: fn(&_, _, _, &_, &_) -> _ = <Rodas4 as Dense>::dense_step::<f64, Sticks, 6>;
     /// ```
     /// ```compile_fail
-    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, slide::Slide};
     /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
-    /// let step = <Rodas3 as Integrator>::step::<f64, Sticks, 6>;
+    /// let _: fn(&_, _, _, &_) -> _ = <Rodas3 as Integrator>::step::<f64, Sticks, 6>;
     /// ```
     /// ```compile_fail
-    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, slide::Slide};
     /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
-    /// let step = <RungeKutta4 as Integrator>::step::<f64, Sticks, 6>;
+    /// let _: fn(&_, _, _, &_) -> _ = <RungeKutta4 as Integrator>::step::<f64, Sticks, 6>;
     /// ```
     /// ```compile_fail
-    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, slide::Slide};
     /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
-    /// let step = <SemiImplicitEuler as Integrator>::step::<f64, Sticks, 6>;
+    /// let _: fn(&_, _, _, &_) -> _ = <SemiImplicitEuler as Integrator>::step::<f64, Sticks, 6>;
     /// ```
     /// These do:
     /// ```
-    /// # use slipfit_core::{integrator::*, law::{Exact, Linear, Regularised}, mechanism::Mechanism, slide::Slide};
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear, Regularised}, slide::Slide};
     /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
     /// type Slides = Slide<f64, Linear<f64>, Regularised<f64>>;
-    /// let step = <ImplicitEuler<4> as Integrator>::step::<f64, Sticks, 6>;
-    /// let step = <Rodas4 as Dense>::dense_step::<f64, Slides, 6>;
-    /// let steps = [<Rodas3 as Integrator>::step::<f64, Slides, 6>, <SemiImplicitEuler as Integrator>::step::<f64, Slides, 6>];
+    /// let _: fn(&_, _, _, &_) -> _ = <ImplicitEuler<4> as Integrator>::step::<f64, Sticks, 6>;
+    /// let _: fn(&_, _, _, &_, &_) -> _ = <Rodas4 as Dense>::dense_step::<f64, Slides, 6>;
+    /// let _: fn(&_, _, _, &_) -> _ = <Rodas3 as Integrator>::step::<f64, Slides, 6>;
+    /// let _: fn(&_, _, _, &_) -> _ = <SemiImplicitEuler as Integrator>::step::<f64, Slides, 6>;
     /// ```
     const IMPLICIT: bool;
 
