@@ -99,13 +99,13 @@ impl Arguments {
             return Err(Failure::Input(format!("--n is {}, allowed is any finite number", self.n)));
         }
         let file = self.scene.load_file(&[])?;
+        let of_product = file.product.as_ref().map(|product| product.warnings.clone()).unwrap_or_default();
         if let Some(found) = &file.mechanism {
-            return mechanism::check(found, self.n, &self.scene, self.plot.as_deref());
+            return mechanism::check(found, self.n, of_product, &self.scene, self.plot.as_deref());
         }
         if self.plot.is_some() {
             return Err(Failure::Input("--plot draws mechanisms of bodies and joints, and this scene has none".into()));
         }
-        let of_product = file.product.as_ref().map(|product| product.warnings.clone()).unwrap_or_default();
         if let Some(slide) = &file.slide {
             slide.check_gaps(&[self.n; CONTACTS]).map_err(|error| Failure::Input(format!("--n: {error}")))?;
             let mut findings = find(slide, self.n);
@@ -188,8 +188,10 @@ fn kernel(scene: &Scene) -> (&'static str, &'static str, String) {
 
 /// What a designer should know of `scene` before trusting a run.
 pub(super) fn warnings_of(scene: &Scene) -> Vec<String> {
-    let mut warnings = warnings(rank_of_normals(&contacts(scene)), guide(scene, 0.0).as_ref());
+    let mut warnings = scene.warnings.clone();
+    warnings.extend(self::warnings(rank_of_normals(&contacts(scene)), guide(scene, 0.0).as_ref()));
     warnings.extend(clearance_note(scene));
+    warnings.extend(scene.warnings.iter().cloned());
     warnings
 }
 
@@ -210,18 +212,24 @@ fn warnings(n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
             DriveSide::Beyond => "no force moves the slide",
             _ => "the drive passes on the line of the other resistances, so that the least offset outwards locks it",
         };
-        warnings.push(self_locking(guide.friction, critical, [guide.length, guide.drive_distance], meaning));
+        let across = (guide.drive_distance > 1e-9).then_some(([guide.length, guide.drive_distance], "beside"));
+        let height = guide.height.map(|lever| ([lever.length, lever.distance], "above or below"));
+        let levers: Vec<_> = across.into_iter().chain(height).collect();
+        warnings.push(self_locking(guide.friction, critical, &levers, meaning));
     }
     warnings
 }
 
-/// The warning of a guide of a length and driven at a distance (m) that locks.
-pub(super) fn self_locking(friction: f64, critical: f64, [length, distance]: [f64; 2], meaning: &str) -> String {
+/// The warning of a guide that locks, with the `levers` of its drive: length of the guide and distance of the drive (m), and where it is.
+pub(super) fn self_locking(friction: f64, critical: f64, levers: &[([f64; 2], &str)], meaning: &str) -> String {
+    let lever = |([length, distance], whence): &([f64; 2], &str)| {
+        let [length, distance] = [length, distance].map(|x| fixed(x.abs() * 1e3, 1));
+        format!("a guide {length} mm long, driven {distance} mm {whence} it")
+    };
+    let levers = levers.iter().map(lever).collect::<Vec<_>>().join(", and ");
     format!(
-        "self-locking: friction {friction} is not below the critical {critical:.4} of a guide {} mm long, driven {} mm \
-         beside it: {meaning}. Drive nearer to the guide, lengthen the guide, or lower the friction",
-        fixed(length * 1e3, 1),
-        fixed(distance * 1e3, 1)
+        "self-locking: friction {friction} is not below the critical {critical:.4} of {levers}: {meaning}. Drive nearer to the \
+         guide, lengthen the guide, or lower the friction"
     )
 }
 
@@ -252,14 +260,15 @@ fn locking(guide: &Guide) -> String {
         return "Self-locking: no, the drive passes through the guide line.".into();
     };
     let [critical, locks] = [fixed(critical, 4), if guide.warn { "yes" } else { "no" }.to_owned()];
+    let reaches = if guide.height.is_some() { "1/(2·Σ b/L)" } else { "L/(2b)" };
     match guide.side {
         DriveSide::Beyond => format!(
-            "Self-locking: {locks}, the drive passes beyond the other resistances and locks where friction reaches L/(2b) = \
-             {critical}; here it is {friction}."
+            "Self-locking: {locks}, the drive passes beyond the other resistances and locks where friction reaches \
+             {reaches} = {critical}; here it is {friction}."
         ),
         DriveSide::Edge => format!(
             "Self-locking: on the edge, the drive passes on the line of the other resistances; any offset outwards locks \
-             it where friction reaches L/(2b) = {critical}; here it is {friction}."
+             it where friction reaches {reaches} = {critical}; here it is {friction}."
         ),
         DriveSide::Short => "Self-locking: no, the drive passes short of the other resistances and never locks.".into(),
     }
@@ -284,10 +293,15 @@ fn describe(findings: &Findings) -> String {
     if let Some(guide) = &findings.guide {
         let _ = writeln!(
             text,
-            "Guide line at x = {} mm, {} mm long, driven {} mm beside it.\n{}",
+            "Guide line at x = {} mm, {} mm long, driven {} mm beside it{}.\n{}",
             fixed(guide.line_x * 1e3, 1),
             fixed(guide.length * 1e3, 1),
             fixed(guide.drive_distance * 1e3, 1),
+            guide.height.map_or_else(String::new, |lever| format!(
+                " and {} mm above or below guides {} mm long",
+                fixed(lever.distance.abs() * 1e3, 1),
+                fixed(lever.length * 1e3, 1)
+            )),
             locking(guide)
         );
     }

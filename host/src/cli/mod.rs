@@ -2,6 +2,8 @@
 
 mod allocate;
 mod check;
+mod encoding;
+mod endings;
 mod failure;
 mod fmu;
 mod kernel;
@@ -21,7 +23,7 @@ mod tolerance;
 
 use std::{
     borrow::Cow,
-    io::{IsTerminal, Read, Write},
+    io::{IsTerminal, Read},
     path::{Path, PathBuf},
     process::ExitCode,
 };
@@ -33,7 +35,7 @@ use clap::{
 
 use self::{
     failure::{Failure, refused},
-    terminal::{counter, given, print, print_json, progress, text_table, warn},
+    terminal::{counter, given, print, print_json, progress, tell, text_table, warn, write_out},
 };
 use crate::{
     mechanism::{ByDrive, Mechanism},
@@ -131,6 +133,7 @@ const SCENE_MOST: u64 = 1 << 20;
 impl SceneArguments {
     /// Whether all `outputs`, each with the option that asks for it, can be written, and none is the scene or another.
     fn check_outputs(&self, outputs: &[(&str, &Path)]) -> Result<(), Failure> {
+        endings::check(outputs)?;
         files::check_distinct(&[("the scene", &self.scene)], outputs)?;
         outputs.iter().try_for_each(|(_, path)| files::check_writable(path).map_err(refused))
     }
@@ -141,9 +144,15 @@ impl SceneArguments {
         Ok(SceneFile::parse(&name, &text, &self.overrides(options))?)
     }
 
-    /// Reads what moves in the scene, with `options` as further settings.
+    /// Reads what moves in the scene, with `options` as further settings, and warns about what is implausible in it: for commands
+    /// whose result has no place for warnings.
     fn load_moving(&self, options: &[Override]) -> Result<Moving, Failure> {
-        Ok(self.load_moving_with_product(options)?.0)
+        let (moving, _) = self.load_moving_with_product(options)?;
+        warn(match &moving {
+            Moving::Slide(scene) => &scene.warnings,
+            Moving::Mechanism(found) => &found.warnings,
+        });
+        Ok(moving)
     }
 
     /// Reads what moves in the scene and the product it belongs to, if there is one, with `options` as further settings.
@@ -195,7 +204,7 @@ impl SceneArguments {
         if bytes.len() as u64 > SCENE_MOST {
             return Err(unreadable(&format!("it is longer than {SCENE_MOST} bytes")));
         }
-        let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
+        let text = encoding::text_of(bytes).map_err(|error| unreadable(&error))?;
         Ok((path.display().to_string(), text.into()))
     }
 }
@@ -259,15 +268,14 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         // Help and version are asked for; a full disk must not pass unnoticed.
         Err(asked) if !asked.use_stderr() => {
-            let mut out = std::io::stdout();
-            let text = if out.is_terminal() { asked.render().ansi().to_string() } else { asked.render().to_string() };
-            let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-            return ExitCode::from(u8::from(written.is_err()));
+            let text = asked.render();
+            let text = if std::io::stdout().is_terminal() { text.ansi().to_string() } else { text.to_string() };
+            return ExitCode::from(u8::from(write_out(&[&text]).is_err()));
         }
         Err(wrong) => wrong.exit(),
     };
     if let Err(error) = interrupt::install() {
-        eprintln!("error: {error}");
+        tell(&format!("error: {error}"));
         return ExitCode::from(1);
     }
     let result = match cli.command {
@@ -289,8 +297,8 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             match &failure {
-                Failure::Scene(error) => eprintln!("{}", error.render(std::io::stderr().is_terminal())),
-                other => eprintln!("error: {other}"),
+                Failure::Scene(error) => tell(&error.render(std::io::stderr().is_terminal())),
+                other => tell(&format!("error: {other}")),
             }
             ExitCode::from(if matches!(failure, Failure::Work(_)) { 1 } else { 2 })
         }

@@ -110,8 +110,9 @@ impl Arguments {
                                a mechanism runs for run.duration, or to run.stroke";
                     return Err(Failure::Input(why.into()));
                 }
-                let wanted =
-                    Wanted { scene: &self.scene, csv: &self.csv, plot: &self.plot, page: &None, by_controller: false };
+                let of_product = product.iter().flat_map(|product| product.warnings.clone()).collect();
+                let Self { scene, csv, plot, .. } = self;
+                let wanted = Wanted { scene, csv, plot, page: &None, by_controller: false, of_product };
                 return mechanism::sweep(&mechanism, &wanted, &self.threads);
             }
         };

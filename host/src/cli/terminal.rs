@@ -1,7 +1,7 @@
 //! What is shown on the terminal: texts, tables, JSON, warnings, progress.
 
 use std::{
-    io::Write,
+    io::{ErrorKind, Write},
     path::{Path, PathBuf},
 };
 
@@ -39,10 +39,20 @@ pub fn counter(what: &'static str) -> ProgressBar {
 
 /// Prints a finished text.
 pub fn print(text: &str) -> Result<(), Failure> {
+    let end = if text.ends_with('\n') { "" } else { "\n" };
+    write_out(&[text, end]).map_err(|error| anyhow::Error::from(error).context("standard output").into())
+}
+
+/// Writes `texts` to standard output. A reader that has closed its pipe, like `head`, has read what it wants: that is no error.
+pub fn write_out(texts: &[&str]) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
-    let written =
-        out.write_all(text.as_bytes()).and_then(|()| if text.ends_with('\n') { Ok(()) } else { out.write_all(b"\n") });
-    written.and_then(|()| out.flush()).map_err(|error| anyhow::Error::from(error).context("standard output").into())
+    let written = texts.iter().try_for_each(|text| out.write_all(text.as_bytes())).and_then(|()| out.flush());
+    written.or_else(|error| if error.kind() == ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
+}
+
+/// Writes a line to standard error. Where nobody reads it there is nobody to tell that.
+pub fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// The version of what `--json` prints: raised when a field is renamed, removed or means something else.
@@ -51,7 +61,7 @@ const JSON_VERSION: u32 = 1;
 /// Tells a person of `warnings`, on standard error whatever the command.
 pub fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("warning: {warning}");
+        tell(&format!("warning: {warning}"));
     }
 }
 

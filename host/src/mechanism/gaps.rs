@@ -8,12 +8,21 @@ use crate::{
     show::number::{level, ten_digits},
 };
 
+/// How far (m) a stop may be.
+pub const STOP_MOST: f64 = 10.0;
+
 /// All gaps (m) of one unit, in the mechanism's order.
 pub type Gaps = Vec<f64>;
 
 /// A tolerance level at which a gap is out of bounds.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("at n = {} the gap \"{name}\" is {} mm, allowed is {} to {} mm", level(*n), ten_digits(gap * 1e3), least * 1e3, GAP_MOST * 1e3)]
+#[error(
+    "at n = {} the gap \"{name}\" is {} mm, allowed is {} to {} mm",
+    level(*n),
+    ten_digits(gap * 1e3),
+    allowed[0] * 1e3,
+    allowed[1] * 1e3
+)]
 pub struct GapError {
     /// Tolerance level.
     pub n: f64,
@@ -21,8 +30,8 @@ pub struct GapError {
     pub name: String,
     /// The gap (m).
     pub gap: f64,
-    /// The least that its joint allows (m): none is negative where a pin would have to be wider than its hole.
-    pub least: f64,
+    /// The least and the greatest that its joint allows (m): none is negative where a pin would have to be wider than its hole.
+    pub allowed: [f64; 2],
 }
 
 impl Gap {
@@ -67,8 +76,8 @@ impl Mechanism {
         match self.misfit(&gaps) {
             None => Ok(gaps),
             Some(i) => {
-                let (name, least) = (self.gaps[i].name.clone(), self.least_gap(i));
-                Err(GapError { n: level_of(n, i), name, gap: gaps[i], least })
+                let (name, allowed) = (self.gaps[i].name.clone(), self.allowed_gap(i));
+                Err(GapError { n: level_of(n, i), name, gap: gaps[i], allowed })
             }
         }
     }
@@ -80,7 +89,10 @@ impl Mechanism {
 
     /// The first of a unit's `gaps` (m) that its joint does not allow: such a unit cannot be assembled.
     pub fn misfit(&self, gaps: &[f64]) -> Option<usize> {
-        (0..gaps.len()).find(|i| !(self.least_gap(*i)..=GAP_MOST).contains(&gaps[*i]))
+        (0..gaps.len()).find(|i| {
+            let [least, greatest] = self.allowed_gap(*i);
+            !(least..=greatest).contains(&gaps[*i])
+        })
     }
 
     /// The tolerance levels at which the gaps are `gaps` (m); `None` for one that does not vary.
@@ -89,11 +101,14 @@ impl Mechanism {
         self.gaps.iter().zip(gaps).map(level).collect()
     }
 
-    /// The least value (m) of gap `i`: 0 for a pin in a hole.
-    pub(super) fn least_gap(&self, i: usize) -> f64 {
-        use super::JointKind::{Bearing, Journal};
-        let round = |kind: &_| matches!(kind, Journal { gap, .. } | Bearing { gap, .. } if *gap == i);
-        if self.joints.iter().any(|joint| round(&joint.kind)) { 0.0 } else { -GAP_MOST }
+    /// The least and the greatest value (m) of gap `i`: a pin in a hole has at least 0, a stop may be as far as a stroke is long.
+    pub fn allowed_gap(&self, i: usize) -> [f64; 2] {
+        use super::JointKind::{Bearing, Journal, Stop};
+        match self.joints.iter().map(|joint| &joint.kind).find(|kind| kind.gaps().any(|gap| gap == i)) {
+            Some(Journal { .. } | Bearing { .. }) => [0.0, GAP_MOST],
+            Some(Stop { .. }) => [-STOP_MOST, STOP_MOST],
+            _ => [-GAP_MOST, GAP_MOST],
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use crate::scene::Scene;
+use crate::scene::{PinSpec, Scene};
 
 /// n = 6(N − 1) − Σ i·c_i − n_cl: the degrees of freedom of `parts` N parts with ideal joints that remove
 /// `removed[k]` degrees of freedom each, and clearance joints that remove `by_clearance` n_cl together.
@@ -26,23 +26,26 @@ pub fn rank_of_normals(contacts: &[(Vector3<f64>, Vector3<f64>)]) -> u32 {
     gram.rank(1e-9) as u32
 }
 
+/// Outward normals of the walls around a pin, in the order of [`SURFACES`](crate::scene::SURFACES): left, right, rail and wall.
+pub const SURFACE_NORMALS: [[f64; 3]; 4] = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+
 /// The scene's contacts at the nominal pose: point (m, from the centre of mass) and outward normal of the slide.
 pub fn contacts(scene: &Scene) -> Vec<(Vector3<f64>, Vector3<f64>)> {
-    let normals = [Vector3::x(), -Vector3::x(), -Vector3::y(), Vector3::y()];
-    let pins = scene.pins.iter().flat_map(|pin| pin.gaps.iter().zip(normals).map(|(gap, n)| (pin.position, *gap, n)));
-    pins.filter_map(|(point, gap, normal)| gap.map(|_| (Vector3::from(point), normal))).collect()
+    let of_pin = |pin: &'_ PinSpec| {
+        pin.gaps.into_iter().zip(SURFACE_NORMALS).map(|(gap, n)| (pin.position, gap, n)).collect::<Vec<_>>()
+    };
+    let pins = scene.pins.iter().flat_map(of_pin);
+    pins.filter_map(|(point, gap, normal)| gap.map(|_| (Vector3::from(point), normal.into()))).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const NORMALS: [[f64; 3]; 4] = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
-
     fn rank(pins: &[[f64; 3]], normals: &[usize]) -> u32 {
         let contacts: Vec<_> = pins
             .iter()
-            .flat_map(|&pin| normals.iter().map(move |&k| (Vector3::from(pin), Vector3::from(NORMALS[k]))))
+            .flat_map(|&pin| normals.iter().map(move |&k| (Vector3::from(pin), Vector3::from(SURFACE_NORMALS[k]))))
             .collect();
         rank_of_normals(&contacts)
     }

@@ -32,7 +32,7 @@ mod vary;
 pub use columns::BodyMotion;
 pub use driven::{ByDrive, confirmed, finer};
 pub use freedom::Freedom;
-pub use gaps::{GapError, Gaps, level_of};
+pub use gaps::{GapError, Gaps, STOP_MOST, level_of};
 pub use hanging::MountError;
 pub use mounts::Mounts;
 pub use run::{MechanismRun, Moment, RunError, SCHEME, Samples, controller_run, film, run};
@@ -75,6 +75,8 @@ pub struct Mechanism {
     pub controller: ControllerSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
+    /// What is possible but implausible in the scene file, each with its place.
+    pub warnings: Vec<String>,
 }
 
 /// A rigid body.

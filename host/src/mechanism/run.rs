@@ -269,7 +269,12 @@ where
     let laws = joints_of_elements(mechanism).map(|joint| joint.map(|joint| joint.laws));
     let system = System::new(bodies, &elements[..]);
     let desk = OutOfLine::by(system, SideBySide::new(&bodies, &elements, laws, limits.stick_band()));
-    solve(mechanism, desk, start, (&limits, pressed), by, State::spatial::<N>, columns::spatial)
+    let mut last = State::at_rest([0.0; D]);
+    let state = move |poses: &[Pose<f64>; N], rates: [f64; D]| {
+        last = State::spatial(poses, rates, &last);
+        last
+    };
+    solve(mechanism, desk, start, (&limits, pressed), by, state, columns::spatial)
 }
 
 fn on_joints<const D: usize>(
@@ -289,11 +294,10 @@ where
     let start = (tree.pose(places, columns::half_angle), rates);
     let placed = tree.placed(&start.0, &SVector::from(rates));
     let pressed = elements.iter().map(|element| element.gap(tree.free(&placed))).collect();
-    let mut last = places;
+    let mut last = State::at_rest(places);
     let state = move |pose: &[[f64; 2]; D], rates: [f64; D]| {
-        let state = State::on_joints(&tree, pose, rates, &last);
-        last = state.places;
-        state
+        last = State::on_joints(&tree, pose, rates, &last);
+        last
     };
     let system = System::new(tree, ThroughJoints(&elements[..]));
     let desk = OutOfLine::by(system, Wide::of_machine());

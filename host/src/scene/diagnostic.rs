@@ -114,6 +114,14 @@ pub enum Problem {
         /// The value.
         written: String,
     },
+    /// A key that changes nothing where it is written.
+    #[error("`{key}` has no effect {place}")]
+    NoEffect {
+        /// The key.
+        key: String,
+        /// Where, such as "with a uniform distribution".
+        place: String,
+    },
     /// Exact friction with a scheme that does not solve for forces.
     #[error("`controller.integrator` is \"{0}\", which cannot do exact friction")]
     ExplicitFriction(String),
@@ -268,7 +276,10 @@ impl Problem {
 
 /// What has been found wrong with a scene so far. Reading goes on behind a wrong value, so that all of them are told at once.
 #[derive(Debug, Default)]
-pub struct Found(RefCell<Vec<SceneError>>);
+pub struct Found {
+    errors: RefCell<Vec<SceneError>>,
+    warnings: RefCell<Vec<String>>,
+}
 
 impl Found {
     /// What `result` holds, or `instead` after its error is noted.
@@ -281,17 +292,30 @@ impl Found {
 
     /// Takes note of an error.
     pub fn note(&self, error: SceneError) {
-        self.0.borrow_mut().push(error);
+        self.errors.borrow_mut().push(error);
+    }
+
+    /// Takes note of a warning, once.
+    pub fn warn(&self, warning: String) {
+        let mut warnings = self.warnings.borrow_mut();
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
+    }
+
+    /// The warnings so far, in the order in which they were noted.
+    pub fn take_warnings(&self) -> Vec<String> {
+        self.warnings.take()
     }
 
     /// Whether something is wrong.
     pub fn any(&self) -> bool {
-        !self.0.borrow().is_empty()
+        !self.errors.borrow().is_empty()
     }
 
     /// `result`, unless something was noted: then all of that, with the error of `result` where it would stand without it.
     pub fn conclude<T>(&self, result: Result<T, SceneError>) -> Result<T, SceneError> {
-        let mut all: Vec<SceneError> = self.0.take();
+        let mut all: Vec<SceneError> = self.errors.take();
         match result {
             Ok(value) if all.is_empty() => return Ok(value),
             Err(error) if all.is_empty() || error.problem().stands_alone() => all.push(error),

@@ -40,7 +40,23 @@ impl SceneFile {
             tree.set(change)?;
         }
         keys::note_unfit(&tree);
-        found.conclude(Self::read(&tree, file_name))
+        let mut read = Self::read(&tree, file_name);
+        if let Ok(file) = &mut read {
+            if !found.any() {
+                keys::note_unread(&tree);
+            }
+            file.warn(found.take_warnings());
+        }
+        found.conclude(read)
+    }
+
+    /// Gives `warnings` to what moves, else to the product.
+    fn warn(&mut self, warnings: Vec<String>) {
+        let slide = self.slide.as_mut().map(|slide| &mut slide.warnings);
+        let moving = slide.or(self.mechanism.as_mut().map(|mechanism| &mut mechanism.warnings));
+        if let Some(all) = moving.or(self.product.as_mut().map(|product| &mut product.warnings)) {
+            all.extend(warnings);
+        }
     }
 
     /// Reads the scene from its `tree`. What is wrong with single values is noted there.
@@ -57,6 +73,7 @@ impl SceneFile {
             return Ok(Self { title, product, slide: None, mechanism: None });
         }
         if mechanism::is_mechanism(&root) {
+            mechanism::refuse_slide(&root)?;
             let mechanism = mechanism::mechanism(&root, title.clone(), product.as_ref())?;
             return Ok(Self { title, product, slide: None, mechanism: Some(mechanism) });
         }

@@ -4,7 +4,7 @@ use crate::product::feature::Shape;
 
 use super::{
     Problem, drawing,
-    tree::{Node, Value},
+    tree::{Entry, Node, Value},
     value::Field,
 };
 
@@ -24,7 +24,7 @@ const fn table(name: &'static str, below: &'static [Key]) -> Key {
 }
 
 /// Keys of a distribution alone.
-const SHAPE: [Key; 11] = [
+const SHAPE: [Key; 13] = [
     key("kind"),
     key("mode"),
     key("shoulders"),
@@ -35,7 +35,9 @@ const SHAPE: [Key; 11] = [
     key("scale"),
     key("location"),
     key("mean"),
+    key("shift"),
     key("deviation"),
+    key("cpk"),
 ];
 /// The same, and the parts of a mixture.
 const MIXTURE: [Key; SHAPE.len() + 1] = {
@@ -64,8 +66,7 @@ const COST: Key = table(
         key("grades"),
     ],
 );
-const TOLERANCED: &[Key] =
-    &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge"), COST];
+const TOLERANCED: &[Key] = &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("edge"), COST];
 const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
@@ -196,7 +197,7 @@ pub(super) const ROOT: &[Key] = &[
     table("sweep", &[key("n")]),
     table("drawing", &[key("clearance")]),
     table("pin", &[key("name"), key("position"), key("left"), key("right"), key("rail"), key("wall")]),
-    table("tolerance", &[key("general"), key("rule"), key("sigma"), key("correlation")]),
+    table("tolerance", &[key("general"), key("rule"), key("sigma"), key("datums"), key("correlation")]),
     table(
         "dimension",
         &[
@@ -257,6 +258,51 @@ pub(super) const ROOT: &[Key] = &[
 /// Notes every key below the root `node` that no scene has, and every text that is not fit to be printed.
 pub fn note_unfit(node: &Node<'_>) {
     note(node, "", ROOT);
+}
+
+/// Tables of what moves and of its run. Which of their keys count depends on the scene: on the kind of a joint, the law of a contact,
+/// whether it is a slide or a mechanism.
+const OF_MOTION: [&str; 14] = [
+    "slide",
+    "contact",
+    "friction",
+    "drive",
+    "mechanism",
+    "body",
+    "joint",
+    "spring",
+    "run",
+    "controller",
+    "sweep",
+    "drawing",
+    "pin",
+    "vary",
+];
+
+/// Notes every key of the tables of motion below the `root` that nothing has read: it has no effect.
+pub fn note_unread(root: &Node<'_>) {
+    let Value::Table(entries) = &root.value else { return };
+    entries.iter().filter(|entry| OF_MOTION.contains(&&*entry.key)).for_each(|entry| unread(entry, "", entries));
+}
+
+/// Notes the `entry` of a table at the key `path` with these `entries` if nothing has read it, else what is below it.
+fn unread(entry: &Entry<'_>, path: &str, entries: &[Entry<'_>]) {
+    let name = join(path, &entry.key);
+    if !entry.read.get() {
+        let read: Vec<_> = entries.iter().filter(|other| other.read.get()).map(|other| &*other.key).collect();
+        let allowed = format!("to leave it out; what counts here: {}", read.join(", "));
+        let problem = Problem::NoEffect { key: name, place: "here: nothing in this scene depends on it".into() };
+        return entry.place.found().note(entry.place.error(problem, allowed));
+    }
+    let below = |node: &Node<'_>| {
+        if let Value::Table(entries) = &node.value {
+            entries.iter().for_each(|entry| unread(entry, &name, entries));
+        }
+    };
+    match &entry.node.value {
+        Value::List(nodes) => nodes.iter().for_each(below),
+        _ => below(&entry.node),
+    }
 }
 
 /// An expression may go over several lines; it is not printed.

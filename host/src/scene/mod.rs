@@ -12,6 +12,7 @@ mod levels;
 mod mechanism;
 mod parse;
 mod pins;
+mod plausible;
 mod product;
 #[cfg(test)]
 pub(crate) mod reference;
@@ -75,6 +76,8 @@ pub struct Scene {
     pub vary: Vec<Varied>,
     /// Which measure of the product each gap is, pin by pin; `None` where the scene gives its statistics.
     pub gap_measures: GapMeasures,
+    /// What is possible but implausible in the scene file, each with its place.
+    pub warnings: Vec<String>,
 }
 
 /// Which measure of the product each gap of each pin is, in the order of [`SURFACES`].

@@ -8,13 +8,18 @@ use slipfit_core::{
     slide::{CONTACTS, PINS, box_inertia},
 };
 
-use crate::dynamics::scheme::{IntegratorKind, ScalarKind};
+use crate::{
+    dynamics::scheme::{IntegratorKind, ScalarKind},
+    mechanism::mobility::SURFACE_NORMALS,
+};
 
 use super::{
-    ControllerSpec, GapMeasures, LevelRange, Override, PinSpec, Problem, RunSpec, Scene, SceneError, SlideSpec,
+    ControllerSpec, GapMeasures, LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError,
+    SlideSpec,
     contact::impact,
     diagnostic::{COMMAND_LINE, Found},
-    parse_levels,
+    parse_levels, plausible,
+    plausible::Loads,
     tree::{Source, Value},
     unit::{self, Quantity},
     value::Field,
@@ -81,16 +86,51 @@ pub(super) fn scene(
         run,
         controller,
         sweep: levels,
-        vary: found.recover(vary(root), Vec::new()),
+        vary: Vec::new(),
         gap_measures,
+        warnings: Vec::new(),
     };
+    let scene = Scene { vary: found.recover(vary(root, &scene), Vec::new()), ..scene };
     for i in [0, scene.sweep.count - 1] {
         scene.check_gaps(&[scene.sweep.level(i); CONTACTS]).map_err(|error| {
             let table = root.get("sweep").unwrap_or(root.clone());
             table.get("n").unwrap_or(table).error(Problem::Gap(error), "")
         })?;
     }
+    // With values that stand for wrong ones, or a weight that is doubtful itself, there is nothing to judge.
+    let SlideSpec { mass, inertia_box, gravity } = scene.slide;
+    let weighs =
+        plausible::is_gravity(gravity) && plausible::is_body(mass, false, box_inertia(mass, inertia_box).into());
+    if weighs && !found.any() {
+        doubt(root, &scene);
+    }
     Ok(scene)
+}
+
+/// Warns about what is implausible in a `scene` as a whole, which was read from `root`.
+fn doubt(root: &Field, scene: &Scene) {
+    let loads = Loads::new(scene.slide.mass, scene.slide.gravity, (scene.drive.gain * scene.drive.speed).abs());
+    let gaps = || scene.pins.iter().flat_map(|pin| pin.gaps).flatten();
+    let widest = gaps().map(|gap| gap.mean.abs() + 3.0 * gap.deviation).fold(0.0, f64::max);
+    // The pins on which the slide lies: gravity points out of the surface that meets them.
+    let carry = |normal: [f64; 3]| normal.iter().zip(scene.slide.gravity).map(|(n, g)| n * g).sum::<f64>() > 0.0;
+    let carries =
+        |pin: &&PinSpec| SURFACE_NORMALS.iter().zip(pin.gaps).any(|(normal, gap)| gap.is_some() && carry(*normal));
+    let contacts = scene.pins.iter().filter(carries).count();
+    let law = [scene.contact.stiffness, scene.contact.exponent];
+    if let Some(field) = root.get("contact").and_then(|contact| contact.get("stiffness")) {
+        plausible::stiffness(&field, law, loads, contacts, widest);
+    }
+    let Some(Value::List(nodes)) = root.get("pin").map(|pins| &pins.node.value) else { return };
+    for (node, pin) in nodes.iter().zip(&scene.pins) {
+        let table = Field { key: "pin".into(), node };
+        for (surface, gap) in SURFACES.into_iter().zip(pin.gaps) {
+            if let Some((field, gap)) = table.get(surface).zip(gap) {
+                let name = format!("{} {surface}", pin.name);
+                plausible::pressed(&field, &name, false, gap.mean, law, loads);
+            }
+        }
+    }
 }
 
 /// Reads the interval (s) between samples from what follows `--every`: a number in ms or with its unit.
@@ -118,19 +158,32 @@ fn slide(table: &Field) -> Result<SlideSpec, SceneError> {
     let mass = table.number("mass", &MASS)?;
     let edges = table.require("inertia_box", "a list of 3 lengths in mm")?;
     let inertia_box = edges.to_numbers(&EDGE)?;
-    if box_inertia(mass, inertia_box).min() < LEAST_MOMENT {
+    let moments = box_inertia(mass, inertia_box);
+    if moments.min() < LEAST_MOMENT {
         return Err(edges.out_of_range("mm", format!("moments of inertia of at least {LEAST_MOMENT:e} kg·m²")));
     }
-    Ok(SlideSpec { mass, inertia_box, gravity: table.numbers("gravity", &GRAVITY)? })
+    let gravity = table.numbers("gravity", &GRAVITY)?;
+    if let Some((of_mass, of_gravity)) = table.get("mass").zip(table.get("gravity")) {
+        plausible::gravity(&of_gravity, gravity);
+        plausible::slide(&of_mass, mass, moments.into());
+    }
+    Ok(SlideSpec { mass, inertia_box, gravity })
 }
 
 pub(super) fn friction(table: &Field) -> Result<FrictionData<f64>, SceneError> {
     const LAWS: &str = "regularised, exact, none";
     let law = table.require("law", LAWS)?;
     let (key, written) = (law.key.clone(), law.written(""));
+    let coefficient = || -> Result<f64, SceneError> {
+        let coefficient = table.number("coefficient", &COEFFICIENT)?;
+        if let Some(field) = table.get("coefficient") {
+            plausible::friction(&field, coefficient);
+        }
+        Ok(coefficient)
+    };
     match law.to_text()? {
         "regularised" => Ok(FrictionData::Regularised {
-            coefficient: table.number("coefficient", &COEFFICIENT)?,
+            coefficient: coefficient()?,
             stick_band: table.number("stick_band", &STICK_BAND)?,
         }),
         "none" => {
@@ -141,7 +194,7 @@ pub(super) fn friction(table: &Field) -> Result<FrictionData<f64>, SceneError> {
         }
         "exact" => {
             table.get("stick_band").map(|field| field.to_number(&STICK_BAND)).transpose()?;
-            Ok(FrictionData::Exact { coefficient: table.number("coefficient", &COEFFICIENT)? })
+            Ok(FrictionData::Exact { coefficient: coefficient()? })
         }
         _ => Err(law.error(Problem::Choice { key, written }, LAWS)),
     }

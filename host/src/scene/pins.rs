@@ -12,7 +12,8 @@ use super::{
     value::Field,
 };
 
-const MEAN: Quantity = Quantity { units: unit::LENGTH, range: [-100.0, 100.0] };
+/// The mean of a gap.
+pub(super) const MEAN: Quantity = Quantity { units: unit::LENGTH, range: [-100.0, 100.0] };
 const DEVIATION: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
 
 /// Gives the gaps that are measures the measures' `statistics`.
@@ -78,7 +79,7 @@ fn pin(table: &Field, model: Option<&Model>) -> Result<(PinSpec, [Option<usize>;
     for ((gap, measure), surface) in gaps.iter_mut().zip(&mut measures).zip(SURFACES) {
         match table.get(surface) {
             Some(field) if matches!(field.node.value, Value::Text(_)) => *measure = Some(length(&field, model)?),
-            Some(field) => *gap = Some(statistics(&field)?),
+            Some(field) => *gap = Some(statistics(&field, &MEAN)?),
             None => {}
         }
     }
@@ -102,12 +103,13 @@ pub(super) fn length(field: &Field, model: Option<&Model>) -> Result<usize, Scen
     })
 }
 
-pub(super) fn statistics(field: &Field) -> Result<GapStatistics<f64>, SceneError> {
+/// Reads mean, a `quantity`, and standard deviation of a gap.
+pub(super) fn statistics(field: &Field, quantity: &Quantity) -> Result<GapStatistics<f64>, SceneError> {
     const ALLOWED: &str = "[mean, standard deviation] in mm";
     let Value::List(nodes) = &field.node.value else { return Err(field.wrong_type(ALLOWED)) };
     let [mean, deviation] = &nodes[..] else {
         return Err(field.error(Problem::Length { key: field.key.clone(), found: nodes.len() }, ALLOWED));
     };
     let number = |node, quantity| Field { key: field.key.clone(), node }.to_number(quantity);
-    Ok(GapStatistics { mean: number(mean, &MEAN)?, deviation: number(deviation, &DEVIATION)? })
+    Ok(GapStatistics { mean: number(mean, quantity)?, deviation: number(deviation, &DEVIATION)? })
 }

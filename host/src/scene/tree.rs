@@ -1,6 +1,6 @@
 //! A TOML document in which every value knows the text that it came from: the file, or an override.
 
-use std::{borrow::Cow, ops::Range};
+use std::{borrow::Cow, cell::Cell, ops::Range};
 
 use toml::{
     Spanned,
@@ -60,6 +60,8 @@ pub struct Entry<'s> {
     pub place: Place<'s>,
     /// The value.
     pub node: Node<'s>,
+    /// Whether the value has been read.
+    pub read: Cell<bool>,
 }
 
 impl<'s> Source<'s> {
@@ -96,7 +98,7 @@ impl<'s> Source<'s> {
             DeValue::Table(table) => {
                 let entry = |(key, value): (Spanned<_>, _)| {
                     let place = place(key.span());
-                    Entry { place, key: key.into_inner(), node: self.node(value, offset) }
+                    Entry { place, key: key.into_inner(), node: self.node(value, offset), read: Cell::new(false) }
                 };
                 let mut entries: Vec<_> = table.into_iter().map(entry).collect();
                 entries.sort_by_key(|entry| entry.place.span.start);
@@ -144,6 +146,18 @@ impl<'s> Place<'s> {
         Self { source: self.source, span: start + within.start..start + within.end }
     }
 
+    /// File, line and column, as `scene.toml:3:9`; for a setting of the command line its text.
+    pub fn position(&self) -> String {
+        let Source { name, text, .. } = self.source;
+        if name == COMMAND_LINE {
+            return text.to_owned();
+        }
+        let before = text.get(..self.span.start).unwrap_or_default();
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
+        format!("{name}:{line}:{column}")
+    }
+
     /// A `problem` at this place, and what is `allowed`.
     pub fn error(&self, problem: Problem, allowed: impl Into<String>) -> SceneError {
         SceneError::new(problem, allowed.into(), self.source.name, self.source.text, self.span.clone())
@@ -167,8 +181,13 @@ impl<'s> Node<'s> {
 
     /// The value of a key, if this is a table that has it.
     pub fn get(&self, key: &str) -> Option<&Self> {
+        self.entry(key).map(|entry| &entry.node)
+    }
+
+    /// The entry of a key, if this is a table that has it.
+    pub fn entry(&self, key: &str) -> Option<&Entry<'s>> {
         let Value::Table(entries) = &self.value else { return None };
-        entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
+        entries.iter().find(|entry| entry.key == key)
     }
 
     /// Replaces or adds the key that `change` names. The value is TOML, else a bare text.
@@ -235,7 +254,7 @@ impl<'s> Node<'s> {
                 let at = entries.iter().position(|entry| entry.key == key).unwrap_or(entries.len());
                 if at == entries.len() {
                     let node = Node { place: place.clone(), value: Value::Table(Vec::new()) };
-                    entries.push(Entry { key: key.into(), place: place.clone(), node });
+                    entries.push(Entry { key: key.into(), place: place.clone(), node, read: Cell::new(false) });
                 }
                 Ok(&mut entries[at].node)
             }

@@ -30,7 +30,9 @@ impl<'t, 's> Field<'t, 's> {
     /// The value of `key` in the table `self`, if it is there.
     pub fn get(&self, key: &str) -> Option<Field<'t, 's>> {
         let name = if self.key.is_empty() { key.into() } else { format!("{}.{key}", self.key) };
-        self.node.get(key).map(|node| Field { key: name, node })
+        let entry = self.node.entry(key)?;
+        entry.read.set(true);
+        Some(Field { key: name, node: &entry.node })
     }
 
     /// The value of `key` in the table `self`; `allowed` says what it could be if it is missing.
@@ -142,6 +144,16 @@ impl<'t, 's> Field<'t, 's> {
             Some((end, _)) => format!("{}…", &text[..end]),
             None => text,
         }
+    }
+
+    /// Takes note of a warning about this value, with its place.
+    pub fn warn(&self, warning: &str) {
+        self.found().warn(format!("{}: {warning}", self.node.place.position()));
+    }
+
+    /// This value changes nothing `place`.
+    pub fn no_effect(&self, place: impl Into<String>, allowed: impl Into<String>) -> SceneError {
+        self.error(Problem::NoEffect { key: self.key.clone(), place: place.into() }, allowed)
     }
 
     /// A `problem` with this value.

@@ -1,5 +1,7 @@
 //! Parameters of a slide that vary over the production, beside its gaps.
 
+use slipfit_core::menu::FrictionData;
+
 use super::{
     Problem, Scene, SceneError,
     product::{SIGMA_DEFAULT, deviation},
@@ -18,6 +20,16 @@ pub(super) const MASS: Quantity = Quantity { units: unit::MASS, range: [-1e7, 1e
 pub(super) const RAMP_END: Quantity = Quantity { units: unit::SECONDS, range: [-1000.0, 1000.0] };
 /// A rotation of gravity.
 pub(super) const TILT: Quantity = Quantity { units: unit::ANGLE, range: [-180.0, 180.0] };
+
+/// Where friction that varies changes nothing.
+pub(super) const FRICTIONLESS: &str = "where the law of friction is \"none\"";
+/// Where a tilt of gravity changes nothing.
+pub(super) const UNTILTED: &str = "where gravity is zero, or along the axis of the tilt";
+
+/// The greatest component (m/s²) of `gravity` across the frame's axis of this index, about which a tilt turns it.
+pub(super) fn across(gravity: [f64; 3], axis: usize) -> f64 {
+    (0..3).filter(|i| *i != axis).map(|i| gravity[i].abs()).fold(0.0, f64::max)
+}
 
 /// A parameter of a slide that varies, and by how much from the scene's value.
 pub type Varied = mechanism::Varied<Parameter>;
@@ -81,6 +93,16 @@ impl Parameter {
         }
     }
 
+    /// Where a deviation of this parameter changes nothing, if it does so in `scene`.
+    fn no_effect(self, scene: &Scene) -> Option<&'static str> {
+        match self {
+            Self::Friction => (scene.friction == FrictionData::None).then_some(FRICTIONLESS),
+            Self::TiltX => (across(scene.slide.gravity, 0) == 0.0).then_some(UNTILTED),
+            Self::TiltZ => (across(scene.slide.gravity, 2) == 0.0).then_some(UNTILTED),
+            Self::Stiffness | Self::Damping | Self::Mass | Self::Gain | Self::RampEnd => None,
+        }
+    }
+
     /// Moves the parameter of `scene` by a `deviation` (SI).
     pub fn apply(self, scene: &mut Scene, deviation: f64) {
         match self {
@@ -96,8 +118,8 @@ impl Parameter {
     }
 }
 
-/// Reads the optional table `[vary]`.
-pub(super) fn vary(root: &Field) -> Result<Vec<Varied>, SceneError> {
+/// Reads the optional table `[vary]` of a `scene`.
+pub(super) fn vary(root: &Field, scene: &Scene) -> Result<Vec<Varied>, SceneError> {
     let Some(table) = root.get("vary") else { return Ok(Vec::new()) };
     table.expect_table()?;
     for of_mechanism in ["body", "mechanism"] {
@@ -108,12 +130,17 @@ pub(super) fn vary(root: &Field) -> Result<Vec<Varied>, SceneError> {
             );
         }
     }
+    // A value that stands for a wrong one may leave a parameter without effect.
+    let sound = !root.found().any();
     let mut varied = Vec::new();
     for parameter in Parameter::ALL {
         let [group, key] = parameter.key();
         let Some(of_group) = table.get(group) else { continue };
         of_group.expect_table()?;
         let Some(field) = of_group.get(key) else { continue };
+        if let Some(why) = parameter.no_effect(scene).filter(|_| sound) {
+            field.found().note(field.no_effect(why, "to leave it out"));
+        }
         let spread = deviation(&field, parameter.quantity(), SIGMA_DEFAULT)?;
         varied.push(Varied { parameter, deviation: spread.contributor(format!("{group}.{key}")) });
     }

@@ -193,7 +193,11 @@ impl Writing {
 impl Write for Writing {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         match self {
-            Self::Stream(stream) => stream.write(bytes),
+            // Who closes a pipe has read what it wants.
+            Self::Stream(stream) => match stream.write(bytes) {
+                Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+                written => written,
+            },
             Self::File { file, .. } => file.write(bytes),
         }
     }

@@ -76,7 +76,7 @@ impl<S: Scalar, G: Fit<Number = S>, N: Normal<S>, F: Friction<S>> Law<S, 3> for 
     const PLACES: usize = 2;
 
     #[inline(always)]
-    fn fresh() -> [F::Internal; 2] {
+    fn fresh(&self) -> [F::Internal; 2] {
         [F::fresh(); 2]
     }
 

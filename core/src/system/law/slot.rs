@@ -25,7 +25,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Slot<S, N, F> {
     const PLACES: usize = 1;
 
     #[inline(always)]
-    fn fresh() -> F::Internal {
+    fn fresh(&self) -> F::Internal {
         F::fresh()
     }
 

@@ -10,7 +10,7 @@ use crate::{
     mechanism::{
         Freedom, Mechanism, Spring,
         feedback::{Reversal, reversals},
-        self_locking::{Locked, locked},
+        self_locking::{DriveSide, Locked, locked},
     },
     show::number::{fixed, level, or_dash, ten_digits},
     system::files,
@@ -25,14 +25,21 @@ struct CheckReport<'a> {
     warnings: &'a [String],
 }
 
-/// `check`.
-pub fn check(mechanism: &Mechanism, n: f64, scene: &SceneArguments, plot: Option<&Path>) -> Result<(), Failure> {
+/// `check`; `of_product` are the warnings about the product that the mechanism belongs to.
+pub fn check(
+    mechanism: &Mechanism,
+    n: f64,
+    of_product: Vec<String>,
+    scene: &SceneArguments,
+    plot: Option<&Path>,
+) -> Result<(), Failure> {
     if let Some(path) = plot {
         scene.check_outputs(&[("--plot", path)])?;
     }
     let gaps = mechanism.gaps_at(&[n])?;
     let freedom = Freedom::of(mechanism)?;
-    let warnings = warnings(mechanism, &freedom);
+    let mut warnings = warnings(mechanism, &freedom);
+    warnings.extend(of_product);
     if let Some(path) = plot {
         files::write(path, mechanism.drawing().as_bytes())?;
     }
@@ -79,14 +86,23 @@ pub fn warnings_of(mechanism: &Mechanism) -> Result<Vec<String>, Failure> {
 }
 
 fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
+    let mut warnings = mechanism.warnings.clone();
     let driven = mechanism.drives.len() as i64;
     let free = freedom.degrees_of_freedom;
     if free < driven {
-        return vec![format!("{free} degrees of freedom are left for {driven} drives: the joints hold the mechanism")];
+        warnings.push(format!("{free} degrees of freedom are left for {driven} drives: the joints hold the mechanism"));
+        return warnings;
     }
     let word = |locked: &Locked| {
-        let meaning = format!("no force of {} moves it", locked.drive);
-        self_locking(locked.friction, locked.critical_friction, [locked.length, locked.distance], &meaning)
+        let meaning = match locked.side {
+            DriveSide::Edge => format!(
+                "\"{}\" passes on the line of the other resistances, so that the least offset outwards locks \"{}\" on \"{}\"",
+                locked.drive, locked.body, locked.on
+            ),
+            _ => format!("no force of \"{}\" moves \"{}\" on \"{}\"", locked.drive, locked.body, locked.on),
+        };
+        let levers: Vec<_> = locked.levers.iter().map(|lever| ([lever.length, lever.distance], "beside")).collect();
+        self_locking(locked.friction, locked.critical_friction, &levers, &meaning)
     };
     let reversed = |found: &Reversal| {
         let Reversal { drive, body, pivot, angle } = found;
@@ -99,5 +115,7 @@ fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
              of {pivot}, and the drive runs away from its command"
         )
     };
-    locked(mechanism).iter().map(word).chain(reversals(mechanism).iter().map(reversed)).collect()
+    warnings.extend(locked(mechanism).iter().map(word));
+    warnings.extend(reversals(mechanism).iter().map(reversed));
+    warnings
 }

@@ -42,9 +42,18 @@ pub(super) struct Wanted<'a> {
     pub page: &'a Option<PathBuf>,
     /// Whether the controller's run is shown, not the desk's.
     pub by_controller: bool,
+    /// Warnings about the product that the mechanism belongs to.
+    pub of_product: Vec<String>,
 }
 
 impl Wanted<'_> {
+    /// What a designer should know of the `mechanism` and its product before trusting a run.
+    fn warnings(&self, mechanism: &Mechanism) -> Result<Vec<String>, Failure> {
+        let mut warnings = warnings_of(mechanism)?;
+        warnings.extend(self.of_product.iter().cloned());
+        Ok(warnings)
+    }
+
     fn check_outputs(&self) -> Result<(), Failure> {
         self.scene.check_outputs(&given([("--csv", self.csv), ("--plot", self.plot), ("--page", self.page)]))
     }

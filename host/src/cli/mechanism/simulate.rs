@@ -6,7 +6,7 @@ use maud::Markup;
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units, warnings_of};
+use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{Failure, print, print_json, simulate::MOMENTS, text_table, warn},
     dynamics::{
@@ -46,6 +46,7 @@ struct SimulateReport<'a> {
     controller: Option<ControllerReport>,
     drives: Vec<DriveReport<'a>>,
     gaps: Vec<GapReport<'a>>,
+    warnings: &'a [String],
     columns: &'a [String],
     samples: &'a [Vec<f64>],
 }
@@ -119,8 +120,9 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
     }
     let computed = || computed(&desk, &agreement) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
     let words = || described(mechanism, label, one) + &computed();
+    let warnings = wanted.warnings(mechanism)?;
     if let Some(path) = wanted.page {
-        files::write(path, page(mechanism, unit, one, &words())?.into_string().as_bytes())?;
+        files::write(path, page(mechanism, unit, one, &words(), &warnings)?.into_string().as_bytes())?;
     }
     if wanted.scene.json {
         let named = mechanism.drives.iter().zip(&one.outcomes);
@@ -147,15 +149,24 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
             }),
             drives: drives.collect(),
             gaps: gap_reports(mechanism, gaps),
+            warnings: &warnings,
             columns: &one.samples.columns,
             samples: &one.samples.rows,
         });
     }
-    print(&words())
+    print(&words())?;
+    warn(&warnings);
+    Ok(())
 }
 
 /// The page of `one` run of a unit, with the desk's for the player.
-fn page(mechanism: &Mechanism, unit: &OneUnit, one: &MechanismRun, words: &str) -> Result<Markup, Failure> {
+fn page(
+    mechanism: &Mechanism,
+    unit: &OneUnit,
+    one: &MechanismRun,
+    words: &str,
+    warnings: &[String],
+) -> Result<Markup, Failure> {
     let OneUnit { label, gaps, .. } = unit;
     let driven = ByDrive::new(mechanism, 0);
     let label = |run: &MechanismRun| match run.outcomes.first() {
@@ -168,7 +179,7 @@ fn page(mechanism: &Mechanism, unit: &OneUnit, one: &MechanismRun, words: &str) 
     let svg = columns_over_time(&one.samples, &plotted(mechanism), &mechanism.title, &unit.label);
     let svg = svg.map_err(anyhow::Error::from)?;
     let picture = Figure { caption: over_time(mechanism, one), svg };
-    Ok(unit_page(&mechanism.title, words, player, picture, &warnings_of(mechanism)?))
+    Ok(unit_page(&mechanism.title, words, player, picture, warnings))
 }
 
 /// What the picture of `one` run shows, and which of its maxima are no peak.

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{DriveReport, Wanted, shown, units};
 use crate::{
-    cli::{Failure, ThreadArguments, print, print_json, progress, text_table},
+    cli::{Failure, ThreadArguments, print, print_json, progress, text_table, warn},
     dynamics::{answer::ranges_of, outcome::Outcome},
     mechanism::{Action, Mechanism, RunError, confirmed},
     show::{
@@ -22,6 +22,7 @@ use crate::{
 struct SweepReport<'a> {
     title: &'a str,
     levels: Vec<LevelReport<'a>>,
+    warnings: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -59,6 +60,7 @@ pub fn sweep(mechanism: &Mechanism, wanted: &Wanted, threads: &ThreadArguments) 
         let svg = drives_over_n(&drives, &mechanism.title).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
     }
+    let warnings = wanted.warnings(mechanism)?;
     if wanted.scene.json {
         let level = |(n, outcomes): &(f64, Vec<Outcome>)| {
             let drives = mechanism.drives.iter().zip(outcomes).map(|(drive, outcome)| DriveReport {
@@ -69,7 +71,7 @@ pub fn sweep(mechanism: &Mechanism, wanted: &Wanted, threads: &ThreadArguments) 
             LevelReport { n: *n, drives: drives.collect() }
         };
         let levels = levels.iter().map(level).collect();
-        return print_json(&SweepReport { title: &mechanism.title, levels });
+        return print_json(&SweepReport { title: &mechanism.title, levels, warnings });
     }
     let mut text = format!("{}\n", mechanism.title);
     for (k, drive) in mechanism.drives.iter().enumerate() {
@@ -93,7 +95,9 @@ pub fn sweep(mechanism: &Mechanism, wanted: &Wanted, threads: &ThreadArguments) 
             ["n", &format!("peak, {force}"), &format!("settled, {force}"), &format!("final, {speed}"), "verdict"];
         text += &text_table(&heading, &rows);
     }
-    print(&text)
+    print(&text)?;
+    warn(&warnings);
+    Ok(())
 }
 
 /// The figures of all drives over n.

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{gaps::Columns, tables::tables};
 use crate::{
-    cli::{Failure, print, print_json, refused},
+    cli::{Failure, endings, print, print_json, refused},
     mechanism::closing::closing_level,
     scene::Scene,
     system::files,
@@ -60,6 +60,7 @@ impl OutputArguments {
         let pictures: Vec<_> =
             folder.map_or_else(Vec::new, |dir| file_names(measures).map(|name| dir.join(name)).collect());
         let plots = folder.into_iter().chain(pictures.iter().map(PathBuf::as_path)).map(|path| ("--plots", path));
+        endings::check(&files)?;
         files::check_distinct(inputs, &files.iter().copied().chain(plots).collect::<Vec<_>>())?;
         files.iter().try_for_each(|(_, path)| files::check_writable(path).map_err(refused))?;
         let Some(folder) = folder else { return Ok(()) };

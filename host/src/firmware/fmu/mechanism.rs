@@ -12,7 +12,6 @@ use crate::{
     dynamics::driven::Driven,
     firmware::kernel_crate::mechanism_crate,
     mechanism::{Action, ByDrive, Joint, JointKind, Mechanism, NamedDrive, RunError, drive_names, element_paths},
-    scene::GAP_MOST,
 };
 
 /// The parts of the model's source that go by what there is.
@@ -43,12 +42,7 @@ pub fn mechanism_unit(mechanism: &Mechanism, core: &Path) -> Result<Unit, RunErr
         let what = format!("gap {name} at level 0 as drawn");
         let mean = variables.set(Fixed, format!("gap.{name}"), "m", gap.statistics.mean, what);
         let deviation = format!("kernel::GAPS[{i}][1] as f32");
-        let is_round = |joint: &Joint| {
-            use JointKind::{Bearing, Journal};
-            matches!(joint.kind, Journal { gap, .. } | Bearing { gap, .. } if gap == i)
-        };
-        let least = if mechanism.joints.iter().any(is_round) { 0.0 } else { -GAP_MOST };
-        gaps.push(model::gap(name, &mean, &deviation, least));
+        gaps.push(model::gap(name, &mean, &deviation, mechanism.allowed_gap(i)));
     }
     let elements = element_paths(mechanism)?;
     let joints: Vec<_> = elements.iter().filter_map(|(at, joint)| Some((at.as_str(), (*joint)?))).collect();

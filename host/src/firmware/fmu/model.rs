@@ -28,9 +28,10 @@ pub(super) fn constants(token: &str, step: f64, variables: &[Variable]) -> Strin
     text
 }
 
-/// A gap's expression at the level that is set: `mean` is what it is at level 0, `deviation` an expression.
-pub(super) fn gap(name: &str, mean: &str, deviation: &str, least: f64) -> String {
-    format!("gap({name:?}, {mean}, {deviation}, values[0], {least:?})?")
+/// A gap's expression at the level that is set: `mean` is what it is at level 0, `deviation` an expression; from the least to the greatest that
+/// is `allowed` (m).
+pub(super) fn gap(name: &str, mean: &str, deviation: &str, allowed: [f64; 2]) -> String {
+    format!("gap({name:?}, {mean}, {deviation}, values[0], {allowed:?})?")
 }
 
 /// The friction law's name in core and its value for an expression of its coefficient.

@@ -14,7 +14,7 @@ use crate::{
         kernel_crate::slide_crate,
         kernel_source::{elastic, scene_data},
     },
-    scene::Scene,
+    scene::{GAP_MOST, Scene},
 };
 
 /// The unit of `scene`; `core` is where slipfit-core lies.
@@ -32,8 +32,8 @@ pub fn slide_unit(scene: &Scene, core: &Path) -> Unit {
         let what = format!("gap {name} at level 0 in the nominal pose; negative is preload");
         let mean = variables.set(Fixed, format!("gap.{name}"), "m", gap.mean, what);
         let deviation = format!("SCENE.gap_deviations[{i}]");
-        let least = -crate::scene::GAP_MOST;
-        let _ = writeln!(body, "        unit.body.gaps[{i}] = {};", model::gap(name, &mean, &deviation, least));
+        let allowed = [-GAP_MOST, GAP_MOST];
+        let _ = writeln!(body, "        unit.body.gaps[{i}] = {};", model::gap(name, &mean, &deviation, allowed));
     }
     let has_friction = scene.friction.friction_type() != FrictionType::Frictionless;
     let coefficient = has_friction.then(|| {

@@ -245,7 +245,7 @@ fn gaps_at_level(mechanism: &Mechanism) -> String {
     if mechanism.gaps.is_empty() {
         return String::new();
     }
-    let gap = |i| format!("gap(GAPS[{i}], {:?})?", mechanism.least_gap(i));
+    let gap = |i| format!("gap(GAPS[{i}], {:?})?", mechanism.allowed_gap(i)[0]);
     format!(
         "    let gap = |[mean, deviation]: [f64; 2], least| GapStatistics {{ mean: s(mean), deviation: s(deviation) }}.checked_at(n, least);\n    \
          let gaps = [{}];\n",

@@ -1,11 +1,11 @@
 //! Bodies.
 
-use slipfit_core::system::{planar::Coordinate, spatial::tree::Joint};
+use slipfit_core::system::{planar::Coordinate, spatial::tree::Joint as IdealJoint};
 
 use super::{Field, Problem, Quantity, SceneError, note, place, tables, unit};
 use crate::{
-    mechanism::{Body, Mechanism, Mounts, Start, Torn, spatial, torn},
-    scene::parse::POINT,
+    mechanism::{Body, Joint, JointKind, Mechanism, Mounts, Start, Torn, spatial, torn},
+    scene::{parse::POINT, plausible},
 };
 
 const MASS: Quantity = Quantity { units: unit::MASS, range: [1e-6, 1e7] };
@@ -33,6 +33,10 @@ fn body(name: String, table: &Field, planar: bool) -> Result<Body, SceneError> {
     let mass = table.number("mass", &MASS)?;
     let inertia =
         if planar { [0.0, 0.0, table.number("inertia", &INERTIA)?] } else { table.numbers("inertia", &INERTIA)? };
+    if let Some(field) = table.get("inertia").filter(|_| !planar && !plausible::are_moments(inertia)) {
+        let allowed = "principal moments of inertia, of which none is greater than the other two together";
+        note(table.found(), Err(field.out_of_range("g·mm²", allowed)));
+    }
     let centre = table.require("centre", if planar { "a place [x, y] in mm" } else { "a place [x, y, z] in mm" })?;
     let centre = place(&centre, planar, &POINT)?;
     let start = |key: &str, quantity| -> Result<f64, SceneError> {
@@ -52,6 +56,12 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
             let error = name.error(Problem::Floating { body: body.name.clone() }, "a [[joint]] that joins it");
             note(fields[i].found(), Err(error));
         }
+        // What only slides on the frame never turns.
+        let slides = |joint: &Joint| matches!(joint.kind, JointKind::Prismatic { .. }) && joint.between.contains(&None);
+        let turns = !mechanism.joints.iter().any(|joint| joint.between.contains(&Some(i)) && slides(joint));
+        if let Some(inertia) = fields[i].get("inertia").filter(|_| turns) {
+            plausible::inertia(&inertia, body.mass, mechanism.planar, body.inertia);
+        }
     }
     // A loop of joints is told elsewhere.
     if mechanism.planar {
@@ -69,9 +79,9 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
             let own = mounts.iter().flatten().find(|mount| mount.body == i).map(|mount| mount.joint);
             check_freedoms(
                 match own {
-                    Some(Joint::Revolute { .. }) => [true, false],
-                    Some(Joint::Prismatic { .. }) => [false, true],
-                    Some(Joint::Cylindrical { .. }) => [true, true],
+                    Some(IdealJoint::Revolute { .. }) => [true, false],
+                    Some(IdealJoint::Prismatic { .. }) => [false, true],
+                    Some(IdealJoint::Cylindrical { .. }) => [true, true],
                     _ => [false, false],
                 },
                 table,

@@ -43,7 +43,12 @@ fn drive(name: String, table: &Field, planar: bool, names: &Names) -> Result<Nam
             return Err(field.error(problem, "one of pushes and turns"));
         }
     };
-    let point = table.get("point").map(|point| place(&point, planar, &POINT)).transpose()?.unwrap_or_default();
+    // A torque has no point.
+    let point = match action {
+        Action::Pushes { .. } => table.get("point").map(|point| place(&point, planar, &POINT)).transpose()?,
+        Action::Turns { .. } => None,
+    };
+    let point = point.unwrap_or_default();
     Ok(NamedDrive { name, body, drive: Drive { gain, ramp_start, ramp_end, speed, point_b: point.into() }, action })
 }
 

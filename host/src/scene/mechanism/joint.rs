@@ -4,13 +4,16 @@ use slipfit_core::menu::{ContactData, FrictionData};
 
 use super::{Field, Gaps, Laws, Names, Problem, Quantity, SceneError, direction, laws, note, place, tables, unit};
 use crate::{
-    mechanism::{Joint, JointKind, Mechanism, NormalData},
-    scene::{SURFACES, parse::POINT},
-    show::number::ten_digits,
+    mechanism::{Joint, JointKind, Mechanism, NormalData, STOP_MOST},
+    scene::{SURFACES, parse::POINT, pins::MEAN, plausible},
+    show::number::three_digits,
 };
 
 const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 1e5] };
 const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
+
+/// The mean of the distance to a stop.
+const DISTANCE: Quantity = Quantity { units: unit::LENGTH, range: [-STOP_MOST * 1e3, STOP_MOST * 1e3] };
 
 /// How many radii of gyration a joint may be from both of its bodies.
 const FAR: f64 = 100.0;
@@ -54,11 +57,10 @@ fn joint(
     Ok(Joint { name, between, at, kind, laws })
 }
 
-/// The laws of a joint without contacts.
-const NO_LAWS: Laws = Laws {
-    contact: NormalData::Impact(ContactData { stiffness: 0.0, exponent: 1.0, damping: 0.0, depth: 1.0 }),
-    friction: FrictionData::None,
-};
+/// The law of a joint without contacts.
+pub(super) const NO_CONTACT: NormalData =
+    NormalData::Impact(ContactData { stiffness: 0.0, exponent: 1.0, damping: 0.0, depth: 1.0 });
+const NO_LAWS: Laws = Laws { contact: NO_CONTACT, friction: FrictionData::None };
 
 /// Reads what the joint called `name` is.
 fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<JointKind, SceneError> {
@@ -82,15 +84,15 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
         ("spherical", false, None) => JointKind::Spherical,
         ("pin-slot", true, None) => JointKind::PinSlot { axis: axis()? },
         ("revolute", true, Some(clearance)) => {
-            JointKind::Journal { gap: gaps.add(name.into(), &clearance)?, radius: length("radius", &LENGTH)? }
+            JointKind::Journal { gap: gaps.add(name.into(), &clearance, &MEAN)?, radius: length("radius", &LENGTH)? }
         }
         ("prismatic", true, Some(clearance)) => JointKind::Guide {
-            gap: gaps.add(name.into(), &clearance)?,
+            gap: gaps.add(name.into(), &clearance, &MEAN)?,
             axis: axis()?,
             edges: [length("length", &EDGE)?, length("width", &EDGE)?],
         },
         ("cylindrical", false, Some(clearance)) => JointKind::Bearing {
-            gap: gaps.add(name.into(), &clearance)?,
+            gap: gaps.add(name.into(), &clearance, &MEAN)?,
             axis: axis()?,
             length: length("length", &EDGE)?,
             radius: length("radius", &LENGTH)?,
@@ -98,7 +100,8 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
         ("track", false, None) => {
             let mut indices = [None; 4];
             for (index, surface) in indices.iter_mut().zip(SURFACES) {
-                let gap = table.get(surface).map(|field| gaps.add(format!("{name} {surface}"), &field)).transpose()?;
+                let gap =
+                    table.get(surface).map(|field| gaps.add(format!("{name} {surface}"), &field, &MEAN)).transpose()?;
                 *index = gap;
             }
             JointKind::Track { gaps: indices }
@@ -109,7 +112,7 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
                 let field = table.require("normal", "")?;
                 return Err(field.out_of_range("", "in space along one of the axes, such as [0, 0, -1]"));
             }
-            JointKind::Stop { gap: gaps.add(name.into(), &needed()?)?, normal }
+            JointKind::Stop { gap: gaps.add(name.into(), &needed()?, &DISTANCE)?, normal }
         }
         ("fixed" | "pin-slot" | "track" | "spherical", _, Some(clearance)) => {
             let what = format!("a clearance of a joint of kind \"{text}\"");
@@ -135,23 +138,52 @@ fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<Join
     })
 }
 
-/// Whether each joint is somewhere near its bodies.
-pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), SceneError> {
+/// Whether each joint is somewhere near its bodies, which are read from `bodies`.
+pub(super) fn check(mechanism: &Mechanism, fields: &[Field], bodies: &[Field]) -> Result<(), SceneError> {
+    let mut blamed = Vec::new();
     for (joint, field) in mechanism.joints.iter().zip(fields) {
         // How far it is from a body, and how far it may be.
-        let distances = joint.between.iter().flatten().map(|body| {
-            let body = &mechanism.bodies[*body];
+        let distances = joint.between.iter().flatten().map(|index| {
+            let body = &mechanism.bodies[*index];
             let apart: f64 = joint.at.iter().zip(body.centre).map(|(a, b)| (a - b) * (a - b)).sum();
             let gyration = body.inertia.iter().fold(0.0, |most: f64, i| most.max(*i)) / body.mass;
-            [libm::sqrt(apart), FAR * libm::sqrt(gyration).max(1e-9)]
+            (*index, [libm::sqrt(apart), FAR * libm::sqrt(gyration).max(1e-9)])
         });
-        let nearest = distances.min_by(|one, other| (one[0] / one[1]).total_cmp(&(other[0] / other[1])));
-        if let Some([away, most]) = nearest.filter(|[away, most]| away > most) {
-            let at = field.get("at").unwrap_or_else(|| field.clone());
-            let problem = Problem::Far { joint: joint.name.clone(), away: away * 1e3 };
-            let allowed = format!("{} mm at most, {FAR} of its radii of gyration", ten_digits((most * 1e3).round()));
-            note(field.found(), Err(at.error(problem, allowed)));
+        let nearest = distances.min_by(|(_, one), (_, other)| (one[0] / one[1]).total_cmp(&(other[0] / other[1])));
+        let Some((index, [away, most])) = nearest.filter(|(_, [away, most])| away > most) else { continue };
+        if blamed.contains(&index) {
+            continue;
         }
+        let body = &mechanism.bodies[index];
+        // Where no body has such moments of inertia, they are wrong, not the joint.
+        let stated = bodies[index].get("inertia");
+        let stated = stated.filter(|_| !plausible::is_body(body.mass, mechanism.planar, body.inertia));
+        let error = match stated {
+            Some(inertia) => {
+                blamed.push(index);
+                inertia.error(
+                Problem::Mechanism(format!(
+                    "`{}` is {}, which with the mass of \"{}\" is a radius of gyration of {} mm, but its joint \"{}\" is {} mm away",
+                    inertia.key,
+                    inertia.written(unit::INERTIA[0].symbol),
+                    body.name,
+                    three_digits(most * 1e3 / FAR),
+                    joint.name,
+                    three_digits(away * 1e3),
+                )),
+                format!(
+                    "moments of inertia of a body of that size{}",
+                    plausible::inertia_meant(&inertia, body.mass, mechanism.planar, body.inertia)
+                ),
+                )
+            }
+            None => {
+                let at = field.get("at").unwrap_or_else(|| field.clone());
+                let problem = Problem::Far { joint: joint.name.clone(), away: away * 1e3 };
+                at.error(problem, format!("{} mm at most, {FAR} of its radii of gyration", three_digits(most * 1e3)))
+            }
+        };
+        note(field.found(), Err(error));
     }
     Ok(())
 }

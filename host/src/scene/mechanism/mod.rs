@@ -12,15 +12,17 @@ use slipfit_core::{clearance::GapStatistics, menu::FrictionData};
 use super::{
     LevelRange, Problem, SceneError, contact,
     diagnostic::Found,
-    parse,
+    parse, plausible,
+    plausible::Loads,
     tree::Value,
     unit::{self, Quantity},
     value::Field,
 };
 use crate::{
     dynamics::driven::DriveKind,
-    mechanism::{Gap, Laws, Mechanism, MountError, Mounts, Port, spatial},
+    mechanism::{Gap, Joint, JointKind, Laws, Mechanism, MountError, Mounts, NormalData, Port, spatial},
     product::Product,
+    scene::SURFACES,
 };
 
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
@@ -39,6 +41,20 @@ pub(super) fn is_mechanism(root: &Field) -> bool {
     ["mechanism", "body", "joint"].iter().any(|key| root.get(key).is_some())
 }
 
+/// Refuses the tables of a slide beside those of a mechanism, which would have no effect.
+pub(super) fn refuse_slide(root: &Field) -> Result<(), SceneError> {
+    let has = |key: &&str| root.get(key).is_some();
+    let Some(own) = ["mechanism", "body", "joint"].iter().find(|key| has(key)) else { return Ok(()) };
+    for key in ["slide", "pin", "drawing"] {
+        if let Some(field) = root.get(key) {
+            let what = format!("`{key}` beside `{own}`");
+            let allowed = "a slide, [slide] and [[pin]], or bodies and joints, [mechanism], [[body]] and [[joint]]";
+            return Err(field.error(Problem::Unsupported { what }, allowed));
+        }
+    }
+    Ok(())
+}
+
 /// Reads the mechanism of the scene `root`, whose gaps may be measures of `product`.
 pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) -> Result<Mechanism, SceneError> {
     let found = root.found();
@@ -54,20 +70,26 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
             }
         },
     };
-    let gravity = table.get("gravity").map(|field| place(&field, planar, &GRAVITY)).transpose()?.unwrap_or_default();
+    let gravity = match table.get("gravity") {
+        None => [0.0; 3],
+        Some(field) => {
+            let gravity = place(&field, planar, &GRAVITY)?;
+            plausible::gravity(&field, gravity);
+            gravity
+        }
+    };
     let (bodies, fields) = body::bodies(root, planar)?;
     let names = Names { names: bodies.iter().map(|body| body.name.clone()).collect() };
-    let laws = found.recover(laws(root, None), None);
+    let laws = laws(root, None)?;
     let mut gaps = Gaps { gaps: Vec::new(), product };
     let (joints, joint_fields) = joint::joints(root, planar, &names, laws, &mut gaps)?;
     let sweep = root.get("sweep").map(|_| parse::sweep(&root.table("sweep")?)).transpose()?.unwrap_or(LEVELS);
     let drives = drive::drives(root, planar, &names)?;
     let turns = drives.first().is_some_and(|first| first.action.kind() == DriveKind::Turns);
     let run = parse::run(&root.table("run")?, turns)?;
-    let vary = vary::vary(root, planar, &names, &drives)?;
     let mechanism = Mechanism {
         title,
-        vary,
+        vary: Vec::new(),
         planar,
         gravity,
         springs: drive::springs(root, planar, &names)?,
@@ -78,16 +100,60 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         run,
         controller: parse::controller(root, &laws.map_or(FrictionData::None, |laws| laws.friction))?,
         sweep,
+        warnings: Vec::new(),
     };
+    let mechanism = Mechanism { vary: vary::vary(root, &names, &mechanism)?, ..mechanism };
     // With values that stand for wrong ones there is nothing to look at.
     if !found.any() {
-        joint::check(&mechanism, &joint_fields)?;
+        joint::check(&mechanism, &joint_fields, &fields)?;
         body::check(&mechanism, &fields)?;
         check_tree(&mechanism, &joint_fields, root)?;
         check_gaps(&mechanism, &joint_fields, root)?;
         body::check_start(&mechanism, &fields)?;
+        // A weight that is doubtful itself is no measure of the others.
+        if plausible::is_gravity(gravity) {
+            doubt(&mechanism, &joint_fields, root);
+        }
     }
     Ok(mechanism)
+}
+
+/// Warns about stiffnesses and gaps that are implausible for the loads of the `mechanism`.
+fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
+    let mass: f64 = mechanism.bodies.iter().map(|body| body.mass).sum();
+    let pushes = mechanism.drives.iter().filter(|drive| drive.action.kind() == DriveKind::Pushes);
+    let drives = pushes.map(|named| (named.drive.gain * named.drive.speed).abs()).sum();
+    let loads = Loads::new(mass, mechanism.gravity, drives);
+    let is_stop = |joint: &Joint| matches!(joint.kind, JointKind::Stop { .. });
+    let with_play = || mechanism.joints.iter().filter(|joint| !joint.kind.is_ideal());
+    let gap = |gap: usize| mechanism.gaps[gap].statistics;
+    // The distance to a stop is no play, unless there is nothing else.
+    let all_stop = with_play().all(is_stop);
+    let widest = with_play().filter(|joint| all_stop || !is_stop(joint)).flat_map(|joint| joint.kind.gaps());
+    let widest = widest.map(|of| gap(of).mean.abs() + 3.0 * gap(of).deviation).fold(0.0, f64::max);
+    // A bearing and a guide have two ends.
+    let ends = |joint: &Joint| match joint.kind {
+        JointKind::Bearing { .. } | JointKind::Guide { .. } => 2,
+        _ => 1,
+    };
+    let contacts = with_play().filter(|joint| all_stop || !is_stop(joint)).map(ends).sum();
+    for (joint, field) in mechanism.joints.iter().zip(joints).filter(|(joint, _)| !joint.kind.is_ideal()) {
+        let law = match joint.laws.contact {
+            NormalData::Impact(data) => [data.stiffness, data.exponent],
+            NormalData::HuntCrossley(data) | NormalData::LankaraniNikravesh(data) => [data.stiffness, data.exponent],
+        };
+        let stiffness = [field, root].iter().find_map(|table| table.get("contact"));
+        if let Some(stiffness) = stiffness.and_then(|contact| contact.get("stiffness")) {
+            plausible::stiffness(&stiffness, law, loads, contacts, widest);
+        }
+        for of in joint.kind.gaps() {
+            let name = &mechanism.gaps[of].name;
+            let key = SURFACES.into_iter().find(|surface| *name == format!("{} {surface}", joint.name));
+            if let Some(stated) = field.get(key.unwrap_or("clearance")) {
+                plausible::pressed(&stated, name, is_stop(joint), gap(of).mean, law, loads);
+            }
+        }
+    }
 }
 
 /// Whether the gaps of the mean unit and of all levels are possible.
@@ -134,16 +200,28 @@ impl Names {
     /// The body that `field` names, or the frame.
     fn port(&self, field: &Field) -> Result<Port, SceneError> {
         let name = field.to_text()?;
-        if name == FRAME { Ok(None) } else { self.body(field).map(Some) }
-    }
-
-    /// The body that `field` names.
-    fn body(&self, field: &Field) -> Result<usize, SceneError> {
-        let name = field.to_text()?;
-        self.names.iter().position(|one| one == name).ok_or_else(|| {
+        if name == FRAME {
+            return Ok(None);
+        }
+        self.find(name).map(Some).ok_or_else(|| {
             let problem = Problem::UnknownName { of: "body".into(), name: name.into() };
             field.error(problem, format!("{FRAME}, {}", self.names.join(", ")))
         })
+    }
+
+    /// The moving body that `field` names.
+    fn body(&self, field: &Field) -> Result<usize, SceneError> {
+        let name = field.to_text()?;
+        self.find(name).ok_or_else(|| {
+            let (key, of, name) = (field.key.clone(), "body".into(), name.into());
+            let problem =
+                if name == FRAME { Problem::Choice { key, written: name } } else { Problem::UnknownName { of, name } };
+            field.error(problem, format!("a body that moves: {}", self.names.join(", ")))
+        })
+    }
+
+    fn find(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|one| one == name)
     }
 
     /// The two bodies of a joint or spring.
@@ -171,11 +249,11 @@ struct Gaps<'p> {
 }
 
 impl Gaps<'_> {
-    /// The index of a new gap with the statistics that `field` gives, by itself or as a measure of the product.
-    fn add(&mut self, name: String, field: &Field) -> Result<usize, SceneError> {
+    /// The index of a new gap with the statistics that `field` gives, by itself or as a measure of the product; its mean is a `quantity`.
+    fn add(&mut self, name: String, field: &Field, quantity: &Quantity) -> Result<usize, SceneError> {
         let (statistics, measure) = match field.node.value {
             Value::Text(_) => self.measured(field)?,
-            _ => (super::pins::statistics(field)?, None),
+            _ => (super::pins::statistics(field, quantity)?, None),
         };
         self.gaps.push(Gap { name, statistics, measure });
         Ok(self.gaps.len() - 1)
@@ -190,12 +268,20 @@ impl Gaps<'_> {
     }
 }
 
-/// Reads the laws of `table`, where it states none of its own `otherwise`; the friction law alone may be missing.
+/// Reads the laws of `table`, where it states none of its own `otherwise`; the friction law alone may be missing. A mistake in one law is
+/// noted, and another law stands for it.
 fn laws(table: &Field, otherwise: Option<Laws>) -> Result<Option<Laws>, SceneError> {
-    let contact = table.get("contact").map(|_| contact::normal(&table.table("contact")?)).transpose()?;
-    let friction = table.get("friction").map(|_| parse::friction(&table.table("friction")?)).transpose()?;
-    let contact = contact.or(otherwise.map(|laws| laws.contact));
-    let friction = friction.or(otherwise.map(|laws| laws.friction)).unwrap_or(FrictionData::None);
+    let found = table.found();
+    let contact = match table.get("contact") {
+        None => otherwise.map(|laws| laws.contact),
+        Some(_) => {
+            Some(found.recover(table.table("contact").and_then(|table| contact::normal(&table)), joint::NO_CONTACT))
+        }
+    };
+    let friction = match table.get("friction") {
+        None => otherwise.map_or(FrictionData::None, |laws| laws.friction),
+        Some(_) => found.recover(table.table("friction").and_then(|table| parse::friction(&table)), FrictionData::None),
+    };
     Ok(contact.map(|contact| Laws { contact, friction }))
 }
 
@@ -210,9 +296,13 @@ fn tables<'t, 's>(root: &Field<'t, 's>, key: &str) -> Result<Vec<(String, Field<
         table.expect_table()?;
         let field = table.require("name", "a text in quotes")?;
         let name = field.to_text()?;
-        if name == FRAME || named.iter().any(|(other, _)| other == name) {
+        if name == FRAME {
+            let problem = Problem::Choice { key: field.key.clone(), written: name.into() };
+            return Err(field.error(problem, "another name: this is what the frame is called, which does not move"));
+        }
+        if named.iter().any(|(other, _)| other == name) {
             let problem = Problem::Duplicate { key: field.key.clone(), name: name.into() };
-            return Err(field.error(problem, format!("a name of its own for each; \"{FRAME}\" is taken")));
+            return Err(field.error(problem, "a name of its own for each"));
         }
         named.push((name.into(), table));
     }

@@ -1,5 +1,7 @@
 //! Asks the reader what a key takes.
 
+use std::cell::Cell;
+
 use crate::scene::{
     Problem, SceneError, SceneFile,
     diagnostic::Found,
@@ -87,7 +89,7 @@ fn put<'s>(node: &mut Node<'s>, path: &[&str], left: &mut usize, value: &mut Opt
             None => {
                 let mut node = Node { place: place.clone(), value: Value::Table(Vec::new()) };
                 put(&mut node, rest, left, value);
-                entries.push(Entry { key: (*key).to_owned().into(), place, node });
+                entries.push(Entry { key: (*key).to_owned().into(), place, node, read: Cell::new(false) });
             }
         },
         // A short form, such as a bare tolerance, for which the table can stand.

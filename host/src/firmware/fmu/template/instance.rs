@@ -5,7 +5,7 @@ use crate::{
     model::{FIXED, Model, NAMES, OUTPUTS, START, STEP, State, TOKEN, VALUES},
     numbers::Numbers,
 };
-use slipfit_core::{ParameterError, clearance::GapStatistics, kernel::Report};
+use slipfit_core::{ParameterError, clearance::GapStatistics, kernel::Report, table::layout::checksum};
 
 /// Why a call is refused, in words for the importer's log.
 pub struct Trouble(pub String);
@@ -28,16 +28,13 @@ impl From<ParameterError<f32>> for Trouble {
     }
 }
 
-/// The greatest gap (m).
-const GAP_MOST: f64 = 0.1;
-
-/// The gap of that `name` at the level `n`, where it is `mean` at level 0 (m).
-pub fn gap(name: &str, mean: f64, deviation: f32, n: f64, least: f64) -> Result<f32, Trouble> {
+/// The gap of that `name` at the level `n`, where it is `mean` at level 0 (m), from the least to the greatest that is allowed.
+pub fn gap(name: &str, mean: f64, deviation: f32, n: f64, [least, greatest]: [f64; 2]) -> Result<f32, Trouble> {
     let gap = GapStatistics { mean: mean as f32, deviation }.at(n as f32);
-    if (least..=GAP_MOST).contains(&f64::from(gap)) {
+    if (least..=greatest).contains(&f64::from(gap)) {
         Ok(gap)
     } else {
-        Err(format!("at n = {n} the gap {name} is {gap} m, allowed is {least} to {GAP_MOST} m").into())
+        Err(format!("at n = {n} the gap {name} is {gap} m, allowed is {least} to {greatest} m").into())
     }
 }
 
@@ -231,7 +228,7 @@ impl Situation {
     }
 }
 
-/// The situation as bytes, in little-endian order whatever the machine.
+/// The situation as bytes, in little-endian order whatever the machine, and their checksum, CRC-32/ISO-HDLC.
 pub fn serialised(situation: &Situation) -> Vec<u8> {
     let Situation { mode, start, time, steps, values, state, report, .. } = situation;
     let mut bytes = Vec::new();
@@ -250,6 +247,7 @@ pub fn serialised(situation: &Situation) -> Vec<u8> {
     state.motion.velocity.each(&mut number);
     state.motion.acceleration.each(&mut number);
     state.motion.internal.each(&mut number);
+    bytes.extend(checksum(&bytes).to_le_bytes());
     bytes
 }
 
@@ -259,7 +257,10 @@ pub fn deserialised(bytes: &[u8]) -> Result<Situation, Trouble> {
     if bytes.len() != serialised(&situation).len() {
         return Err(format!("a state of {} bytes is not one of this unit", bytes.len()).into());
     }
-    let mut rest = bytes;
+    let body = bytes.split_last_chunk().filter(|(body, found)| checksum(body).to_le_bytes() == **found);
+    let Some((mut rest, _)) = body else {
+        return Err("the state is damaged: its checksum does not match".into());
+    };
     let mut word = |count: usize| {
         let (word, after) = rest.split_at(count);
         rest = after;
