@@ -107,7 +107,7 @@ const LEAST_PEAK: f64 = 1e-4;
 /// What differs: the quantity, and of which drive or body.
 pub type Column = (&'static str, usize);
 
-/// The greatest difference of each column, as a share of its peak in `expected`. In a plane each number is a column, in space each vector
+/// The greatest difference of each column over the rows of `found`, as a share of its peak in all of `expected`. In a plane each number is a column, in space each vector
 /// counts against its greatest component; orientations by the angle between them.
 pub fn differences(scene: &Scene, expected: &[Row], found: &[Row]) -> Vec<(Column, f64)> {
     let mut all = Vec::new();

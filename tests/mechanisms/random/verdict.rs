@@ -105,14 +105,14 @@ impl Horizon<'_> {
         if expected.len() != found.len() {
             return Err(format!("{name}: {} rows for {}", found.len(), expected.len()));
         }
-        let upto = |rows: usize| differences(scene, &expected[..rows], &found[..rows]);
+        let upto = |rows: usize| differences(scene, expected, &found[..rows]);
         let all_rows = self.rows.unwrap_or(expected.len());
         let all = upto(all_rows);
         if worst(&all).1 <= ALLOWED {
             return Ok(all);
         }
         let from = (1..=all_rows).find(|rows| worst(&upto(*rows)).1 > ALLOWED).unwrap_or(all_rows);
-        let rows = horizon(self.scene, &self.expected[..from]);
+        let rows = horizon(self.scene, self.expected, from);
         self.rows = Some(rows);
         let before = upto(rows);
         let ((column, of), share) = worst(&before);
@@ -124,17 +124,15 @@ impl Horizon<'_> {
     }
 }
 
-/// How many of the rows of the independent integration depend little enough on its start and its tolerance.
-fn horizon(scene: &Scene, expected: &[Row]) -> usize {
+/// How many of the first `rows` of the independent integration depend little enough on its start and its tolerance.
+fn horizon(scene: &Scene, expected: &[Row], mut rows: usize) -> usize {
     let mut scene = scene.clone();
-    scene.duration = expected.last().map_or(0.0, |row| row.t);
+    scene.duration = EVERY * (rows - 1) as f64;
     let finer = std::iter::once((TOLERANCE[1], 0.0));
     let nudged = NUDGES.into_iter().map(|nudge| (TOLERANCE[0], nudge));
-    let mut rows = expected.len();
     for (tolerance, nudge) in finer.chain(nudged) {
         let Some(other) = integrate(&scene, EVERY, tolerance, nudge) else { continue };
-        let differs =
-            |rows: &usize| worst(&differences(&scene, &expected[..*rows], &other.rows[..*rows])).1 > SENSITIVE;
+        let differs = |rows: &usize| worst(&differences(&scene, expected, &other.rows[..*rows])).1 > SENSITIVE;
         rows = (1..=rows).find(differs).map_or(rows, |first| first - 1);
         scene.duration = EVERY * rows.saturating_sub(1) as f64;
     }
