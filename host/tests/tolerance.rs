@@ -1,5 +1,7 @@
 //! Tolerance analysis as a user meets it: bad input, and the same bytes however the work is split.
 
+mod random_stacks;
+
 use std::{
     path::Path,
     process::{Command, Output, Stdio},

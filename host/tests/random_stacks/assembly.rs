@@ -36,9 +36,9 @@ impl Rule {
         match self {
             Self::SigmaZone => normal(chance),
             Self::Truncated => std::iter::repeat_with(|| normal(chance)).find(|point| inside(*point)).unwrap(),
-            Self::UniformInZone => {
-                std::iter::repeat_with(|| [0, 1, 2].map(|_| chance.between(-1.0, 1.0))).find(|point| inside(*point)).unwrap()
-            }
+            Self::UniformInZone => std::iter::repeat_with(|| [0, 1, 2].map(|_| chance.between(-1.0, 1.0)))
+                .find(|point| inside(*point))
+                .unwrap(),
             Self::Translation => [chance.normal() / 3.0, 0.0, 0.0],
         }
     }
@@ -50,9 +50,9 @@ impl Rule {
         match self {
             Self::SigmaZone | Self::Translation => normal(chance),
             Self::Truncated => std::iter::repeat_with(|| normal(chance)).find(|point| inside(*point)).unwrap(),
-            Self::UniformInZone => {
-                std::iter::repeat_with(|| [0, 1].map(|_| chance.between(-1.0, 1.0))).find(|point| inside(*point)).unwrap()
-            }
+            Self::UniformInZone => std::iter::repeat_with(|| [0, 1].map(|_| chance.between(-1.0, 1.0)))
+                .find(|point| inside(*point))
+                .unwrap(),
         }
     }
 
@@ -153,7 +153,8 @@ impl Product {
             add("back", Shape::Plane, [0.0, 0.5 * depth, wall], times(y, -own), x, walls, chance);
             add("stop", Shape::Plane, [-0.5 * length, 0.0, wall], times(x, own), y, [depth, walls[1]], chance);
             if part > 0 {
-                let inside = |chance: &mut Chance| [chance.decimal(-0.4, 0.4, 2) * length, chance.decimal(-0.4, 0.4, 2) * depth];
+                let inside =
+                    |chance: &mut Chance| [chance.decimal(-0.4, 0.4, 2) * length, chance.decimal(-0.4, 0.4, 2) * depth];
                 let top = add("top", Shape::Plane, [0.0, 0.0, next], z, x, [length, depth], chance);
                 let [px, py] = inside(chance);
                 let tip = add("tip", Shape::Point, [px, py, next], z, x, [1.0; 2], chance);
@@ -170,10 +171,14 @@ impl Product {
                     ("bore from own stop", Between::FromPlane(bores[1], top - 1)),
                     ("bore leans", Between::Angle(bores[1], top - 3)),
                 ];
-                made.measures.extend(of.into_iter().filter(|_| chance.happens(0.5)).map(|(name, of)| (format!("{name} {part}"), of)));
+                made.measures.extend(
+                    of.into_iter().filter(|_| chance.happens(0.5)).map(|(name, of)| (format!("{name} {part}"), of)),
+                );
                 if part == blocks {
                     made.measures.push(("tip".into(), Between::FromPlane(tip, 0)));
-                    if let Some(below) = made.features.iter().position(|feature| feature.shape == Shape::Point && feature.part < part) {
+                    if let Some(below) =
+                        made.features.iter().position(|feature| feature.shape == Shape::Point && feature.part < part)
+                    {
                         made.measures.push(("tips".into(), Between::Points(tip, below)));
                     }
                 }
@@ -185,7 +190,50 @@ impl Product {
 
     /// Measures of a unit (mm, °).
     pub fn draw(&self, chance: &mut Chance) -> Vec<f64> {
-        let mut located: Vec<Located> = self.features.iter().map(|feature| feature.made(chance)).collect();
+        let deviations = |feature: &Feature| {
+            feature.tolerances.iter().map(|tolerance| tolerance.draw(feature.shape, chance)).collect()
+        };
+        let deviations: Vec<_> = self.features.iter().map(deviations).collect();
+        self.measured(&deviations)
+    }
+
+    /// The least and the greatest value of a measure within all zones and limits: each tolerance in turn goes to the best of its
+    /// corners, until nothing changes.
+    pub fn extremes(&self, measure: usize, chance: &mut Chance) -> [f64; 2] {
+        let mut climbed = |sign: f64, random: bool| {
+            let mut start = |tolerance: &Tolerance, shape| {
+                let middle = tolerance.middle(shape);
+                if random { chance.one_of(&tolerance.corners(shape, &middle)) } else { middle }
+            };
+            let mut start = |feature: &Feature| {
+                feature.tolerances.iter().map(|tolerance| start(tolerance, feature.shape)).collect()
+            };
+            let mut deviations: Vec<Vec<Vec<f64>>> = self.features.iter().map(&mut start).collect();
+            let mut best = sign * self.measured(&deviations)[measure];
+            for _ in 0..3 {
+                let before = best;
+                for (i, feature) in self.features.iter().enumerate() {
+                    for (k, tolerance) in feature.tolerances.iter().enumerate() {
+                        for corner in tolerance.corners(feature.shape, &deviations[i][k]) {
+                            let before = std::mem::replace(&mut deviations[i][k], corner);
+                            let value = sign * self.measured(&deviations)[measure];
+                            if value > best { best = value } else { deviations[i][k] = before }
+                        }
+                    }
+                }
+                if best == before {
+                    break;
+                }
+            }
+            best
+        };
+        [-1.0, 1.0].map(|sign| sign * (0..4).map(|start| climbed(sign, start > 0)).fold(f64::NEG_INFINITY, f64::max))
+    }
+
+    /// Measures (mm, °) of a unit with these deviations of every tolerance of every feature.
+    fn measured(&self, deviations: &[Vec<Vec<f64>>]) -> Vec<f64> {
+        let made = |(feature, deviations): (&Feature, &Vec<Vec<f64>>)| feature.made(deviations);
+        let mut located: Vec<Located> = self.features.iter().zip(deviations).map(made).collect();
         for part in 0..self.origins.len() {
             let own: Vec<usize> = (0..self.features.len()).filter(|i| self.features[*i].part == part).collect();
             let [bottom, back, stop] = [own[0], own[1], own[2]];
@@ -202,8 +250,13 @@ impl Product {
             }
             if part > 0 {
                 // The top of the block below, and back and stop of the first part.
-                let below = self.features.iter().position(|feature| feature.part == part - 1 && feature.name.ends_with(".top")).unwrap();
-                let motion = onto([[located[bottom], located[below]], [located[back], located[1]], [located[stop], located[2]]]);
+                let below = self
+                    .features
+                    .iter()
+                    .position(|feature| feature.part == part - 1 && feature.name.ends_with(".top"))
+                    .unwrap();
+                let motion =
+                    onto([[located[bottom], located[below]], [located[back], located[1]], [located[stop], located[2]]]);
                 own.iter().for_each(|i| located[*i] = motion.moved(located[*i]));
             }
         }
@@ -211,7 +264,10 @@ impl Product {
     }
 
     pub fn kinds(&self) -> Vec<Kind> {
-        self.measures.iter().map(|(_, between)| if matches!(between, Between::Angle(..)) { Kind::Angle } else { Kind::Length }).collect()
+        self.measures
+            .iter()
+            .map(|(_, between)| if matches!(between, Between::Angle(..)) { Kind::Angle } else { Kind::Length })
+            .collect()
     }
 
     /// The scene, the whole product turned by these Euler angles (°) and shifted (mm).
@@ -229,12 +285,16 @@ impl Product {
         }
         for part in 1..self.origins.len() {
             let (own, below) = (part_name(part), part_name(part - 1));
-            let contacts = format!("[\"{own}.bottom\", \"{below}.top\"], [\"{own}.back\", \"base.back\"], [\"{own}.stop\", \"base.stop\"]");
+            let contacts = format!(
+                "[\"{own}.bottom\", \"{below}.top\"], [\"{own}.back\", \"base.back\"], [\"{own}.stop\", \"base.stop\"]"
+            );
             let _ = writeln!(text, "[[mate]]\npart = \"{own}\"\ncontacts = [{contacts}]");
         }
         for (name, between) in &self.measures {
             let (key, one, two) = match between {
-                Between::FromPlane(one, two) | Between::Points(one, two) | Between::FromAxis(one, two) => ("distance", one, two),
+                Between::FromPlane(one, two) | Between::Points(one, two) | Between::FromAxis(one, two) => {
+                    ("distance", one, two)
+                }
                 Between::Angle(one, two) => ("angle", one, two),
             };
             let [one, two] = [one, two].map(|i| &self.features[*i].name);
@@ -249,15 +309,19 @@ fn part_name(part: usize) -> String {
 }
 
 fn tolerances(feature: &Feature, name: &str, chance: &mut Chance) -> Vec<Tolerance> {
-    let rule = chance.one_of(&[Rule::SigmaZone, Rule::SigmaZone, Rule::Truncated, Rule::UniformInZone, Rule::Translation]);
+    let rule =
+        chance.one_of(&[Rule::SigmaZone, Rule::SigmaZone, Rule::Truncated, Rule::UniformInZone, Rule::Translation]);
     let width = chance.decimal(0.02, 0.4, 3);
     let limits = [-chance.decimal(0.05, 0.3, 3), chance.decimal(0.01, 0.3, 3)];
-    let offset = Tolerance::Offset(limits, loop {
-        let law = Law::random(chance, limits, true);
-        if law.is_scaled() {
-            break law;
-        }
-    });
+    let offset = Tolerance::Offset(
+        limits,
+        loop {
+            let law = Law::random(chance, limits, true);
+            if law.is_scaled() {
+                break law;
+            }
+        },
+    );
     match (feature.shape, chance.below(5)) {
         (Shape::Axis, 0) => Vec::new(),
         (Shape::Axis, _) => vec![Tolerance::ToAll(width, rule)],
@@ -269,33 +333,88 @@ fn tolerances(feature: &Feature, name: &str, chance: &mut Chance) -> Vec<Toleran
     }
 }
 
+impl Tolerance {
+    /// A deviation: of an offset in mm, of a face the height of its middle and of two edges over half of the zone, of an axis both
+    /// of its ends over the radius of the zone.
+    fn draw(&self, shape: Shape, chance: &mut Chance) -> Vec<f64> {
+        match (self, shape) {
+            (Self::Offset(limits, law), _) => vec![law.draw(*limits, chance)],
+            (Self::Zone(_, rule) | Self::ToBottom(_, rule) | Self::ToAll(_, rule), shape) => match shape {
+                Shape::Point => vec![rule.of_point(chance)],
+                Shape::Plane => rule.of_face(chance).to_vec(),
+                Shape::Axis => {
+                    let [one, two] = [0, 1].map(|_| rule.of_circle(chance));
+                    [one, if *rule == Rule::Translation { one } else { two }].concat()
+                }
+            },
+        }
+    }
+
+    fn middle(&self, shape: Shape) -> Vec<f64> {
+        match (self, shape) {
+            (Self::Offset([low, high], _), _) => vec![0.5 * (low + high)],
+            (_, Shape::Point) => vec![0.0],
+            (_, Shape::Plane) => vec![0.0; 3],
+            (_, Shape::Axis) => vec![0.0; 4],
+        }
+    }
+
+    /// Corners of its zone; of an axis places of one end on the rim, the other end as in `now`.
+    fn corners(&self, shape: Shape, now: &[f64]) -> Vec<Vec<f64>> {
+        let (rule, now) = match self {
+            Self::Offset(limits, _) => return limits.iter().map(|limit| vec![*limit]).collect(),
+            Self::Zone(_, rule) | Self::ToBottom(_, rule) | Self::ToAll(_, rule) => (*rule, now.to_vec()),
+        };
+        let signs = [-1.0, 1.0];
+        match shape {
+            Shape::Point => signs.map(|sign| vec![sign]).into(),
+            Shape::Plane if rule == Rule::Translation => signs.map(|sign| vec![sign, 0.0, 0.0]).into(),
+            Shape::Plane => (0..3)
+                .flat_map(|k| signs.map(|sign| (0..3).map(|j| if j == k { sign } else { 0.0 }).collect()))
+                .collect(),
+            Shape::Axis => {
+                let rim =
+                    (0..32).map(|k| std::f64::consts::TAU * f64::from(k) / 32.0).map(|a| [libm::cos(a), libm::sin(a)]);
+                let with = |end: [f64; 2]| {
+                    let (one, two) = (now[..2].to_vec(), now[2..].to_vec());
+                    let end = end.to_vec();
+                    let both = [end.clone(), end.clone()].concat();
+                    if rule == Rule::Translation {
+                        vec![both]
+                    } else {
+                        vec![[end.clone(), two].concat(), [one, end].concat(), both]
+                    }
+                };
+                rim.flat_map(with).collect()
+            }
+        }
+    }
+}
+
 impl Feature {
-    /// As it was made, before its datums move it.
-    fn made(&self, chance: &mut Chance) -> Located {
+    /// As it was made with these deviations, one a tolerance, before its datums move it.
+    fn made(&self, deviations: &[Vec<f64>]) -> Located {
         let mut located = self.nominal;
         let other = cross(self.nominal.direction, self.along);
-        for tolerance in &self.tolerances {
-            let (width, rule) = match tolerance {
-                Tolerance::Offset(limits, law) => {
-                    let by = law.draw(*limits, chance);
-                    located.place = plus(located.place, times(self.nominal.direction, by));
+        for (tolerance, deviation) in self.tolerances.iter().zip(deviations) {
+            let width = match tolerance {
+                Tolerance::Offset(..) => {
+                    located.place = plus(located.place, times(self.nominal.direction, deviation[0]));
                     continue;
                 }
-                Tolerance::Zone(width, rule) | Tolerance::ToBottom(width, rule) | Tolerance::ToAll(width, rule) => (*width, *rule),
+                Tolerance::Zone(width, _) | Tolerance::ToBottom(width, _) | Tolerance::ToAll(width, _) => *width,
             };
             let half = 0.5 * width;
             match self.shape {
-                Shape::Point => located.place = plus(located.place, times(self.nominal.direction, half * rule.of_point(chance))),
+                Shape::Point => located.place = plus(located.place, times(self.nominal.direction, half * deviation[0])),
                 Shape::Plane => {
-                    let [middle, a, b] = rule.of_face(chance);
-                    located.place = plus(located.place, times(self.nominal.direction, half * middle));
-                    let tilt = plus(times(self.along, a * width / self.extents[0]), times(other, b * width / self.extents[1]));
-                    located.direction = minus(located.direction, tilt);
+                    located.place = plus(located.place, times(self.nominal.direction, half * deviation[0]));
+                    let [a, b] = [0, 1].map(|k| deviation[k + 1] * width / self.extents[k]);
+                    located.direction = minus(located.direction, plus(times(self.along, a), times(other, b)));
                 }
                 Shape::Axis => {
-                    let ends = [0, 1].map(|_| rule.of_circle(chance));
-                    let ends = if rule == Rule::Translation { [ends[0]; 2] } else { ends };
-                    let [one, two] = ends.map(|[a, b]| plus(times(self.along, a * half), times(other, b * half)));
+                    let [one, two] = [0, 2]
+                        .map(|k| plus(times(self.along, deviation[k] * half), times(other, deviation[k + 1] * half)));
                     located.place = plus(located.place, times(plus(one, two), 0.5));
                     located.direction = plus(located.direction, times(minus(two, one), 1.0 / self.extents[0]));
                 }
@@ -310,7 +429,9 @@ impl Feature {
         let direction = self.nominal.direction;
         let mut text = format!("name = \"{name}\"\nat = {at:?}\n");
         let _ = match self.shape {
-            Shape::Plane => writeln!(text, "normal = {direction:?}\nalong = {:?}\nextents = {:?}", self.along, self.extents),
+            Shape::Plane => {
+                writeln!(text, "normal = {direction:?}\nalong = {:?}\nextents = {:?}", self.along, self.extents)
+            }
             Shape::Point => writeln!(text, "normal = {direction:?}"),
             Shape::Axis => writeln!(text, "along = {direction:?}\nlength = {:?}", self.extents[0]),
         };
@@ -318,14 +439,24 @@ impl Feature {
         for tolerance in &self.tolerances {
             let _ = match tolerance {
                 Tolerance::Offset(limits, law) => {
-                    writeln!(text, "offset = {{ tolerance = [{}, {}]{} }}", limits[0], limits[1], writing.law(law, Kind::Length, ""))
+                    writeln!(
+                        text,
+                        "offset = {{ tolerance = [{}, {}]{} }}",
+                        limits[0],
+                        limits[1],
+                        writing.law(law, Kind::Length, "")
+                    )
                 }
                 Tolerance::Zone(width, rule) => {
                     let key = if self.shape == Shape::Point { "profile" } else { "flatness" };
                     writeln!(text, "{key} = {{ zone = {width}, rule = \"{}\" }}", rule.text())
                 }
                 Tolerance::ToBottom(width, rule) => {
-                    writeln!(text, "profile = {{ zone = {width}, rule = \"{}\", datum = \"{part}.bottom\" }}", rule.text())
+                    writeln!(
+                        text,
+                        "profile = {{ zone = {width}, rule = \"{}\", datum = \"{part}.bottom\" }}",
+                        rule.text()
+                    )
                 }
                 Tolerance::ToAll(width, rule) => {
                     let datums = format!("\"{part}.bottom\", \"{part}.back\", \"{part}.stop\"");
@@ -371,7 +502,8 @@ impl Between {
 
 /// A vector turned by Euler's angles z-x-z (°): first the third about z, then the second about x, then the first about z.
 pub fn euler([alpha, beta, gamma]: Vector, v: Vector) -> Vector {
-    let about = |axis: Vector, angle: f64, v| Motion { turn: times(axis, angle.to_radians()), shift: [0.0; 3] }.turned(v);
+    let about =
+        |axis: Vector, angle: f64, v| Motion { turn: times(axis, angle.to_radians()), shift: [0.0; 3] }.turned(v);
     let (x, z) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
     about(z, alpha, about(x, beta, about(z, gamma, v)))
 }

@@ -11,6 +11,7 @@ use slipfit::{
 };
 
 use super::{
+    assembly::Product,
     chance::Chance,
     expected::{Units, apart, extremes, moments, total_indices},
     expression::Kind,
@@ -20,6 +21,8 @@ use super::{
 /// How many standard errors two results may differ by. A normal is beyond with a probability of 8e-11, so that not one of the
 /// hundred million comparisons of a day is expected to be.
 pub const ERRORS: f64 = 6.5;
+/// What the passes of a solver may leave of 0 (mm, °).
+const ROUNDING: f64 = 1e-6;
 /// Units that slipfit draws, and that are drawn without it.
 pub const UNITS: usize = 8192;
 
@@ -80,7 +83,13 @@ pub fn analysed(text: &str, kinds: &[Kind], settings: Settings) -> Result<Analys
 }
 
 /// Compares all of slipfit's results of a stack.
-pub fn compare(stack: &Stack, text: &str, method: Method, chance: &mut Chance, wrong: &mut Deviations) -> Option<Analysed> {
+pub fn compare(
+    stack: &Stack,
+    text: &str,
+    method: Method,
+    chance: &mut Chance,
+    wrong: &mut Deviations,
+) -> Option<Analysed> {
     let kinds: Vec<Kind> = stack.measures.iter().map(|measure| measure.kind).collect();
     let replicates = if method == Method::PseudoRandom { 1 } else { 8 };
     let settings = Settings { method, samples: UNITS as u64, replicates, seed: chance.below(1 << 30) as u64 };
@@ -121,13 +130,43 @@ pub fn compare(stack: &Stack, text: &str, method: Method, chance: &mut Chance, w
     Some(found)
 }
 
+/// Compares slipfit's results of an assembly.
+pub fn compare_assembly(product: &Product, text: &str, method: Method, chance: &mut Chance, wrong: &mut Deviations) {
+    let replicates = if method == Method::PseudoRandom { 1 } else { 8 };
+    let settings = Settings { method, samples: UNITS as u64, replicates, seed: chance.below(1 << 30) as u64 };
+    let found = match analysed(text, &product.kinds(), settings) {
+        Ok(found) => found,
+        Err(error) => return wrong.all.push(error),
+    };
+    let mut drawn = vec![Vec::with_capacity(UNITS); product.measures.len()];
+    for _ in 0..UNITS / 2 {
+        drawn.iter_mut().zip(product.draw(chance)).for_each(|(all, value)| all.push(value));
+    }
+    for (i, own) in drawn.iter().enumerate() {
+        let of = &found.report.measures[i];
+        let scale = scales(product.kinds()[i])[1];
+        let sample: Vec<f64> = found.units[i].iter().map(|x| x * scale).collect();
+        counted(of, &sample, [None; 2], wrong);
+        distributed(of, &sample, own, method, wrong);
+        let [low, high] = product.extremes(i, chance);
+        let width = high - low;
+        let found = of.worst_case;
+        let bounds = found[0] <= low + 1e-3 * width + ROUNDING && found[1] >= high - 1e-3 * width - ROUNDING;
+        wrong.that(bounds, || format!("{}: worst case {found:?} does not hold [{low}, {high}]", of.name));
+        // A tilt with a lever that another tolerance gives it is not found from every start.
+        let near = found[1] - found[0] <= 1.5 * width + 1e-6;
+        wrong.that(near, || format!("{}: worst case {found:?} is far wider than [{low}, {high}]", of.name));
+    }
+}
+
 /// Every unit's measures follow from its dimensions.
 fn expressions(stack: &Stack, found: &Analysed, wrong: &mut Deviations) {
     for unit in (0..UNITS).step_by(7) {
         let inputs: Vec<f64> = (0..stack.dimensions.len()).map(|i| found.units[i][unit]).collect();
         for (i, expected) in stack.values(&inputs).into_iter().enumerate() {
             let value = found.units[i][unit];
-            let same = (value.is_nan() && expected.is_nan()) || (value - expected).abs() <= 1e-8 * (1.0 + expected.abs());
+            let same =
+                (value.is_nan() && expected.is_nan()) || (value - expected).abs() <= 1e-8 * (1.0 + expected.abs());
             if !same {
                 wrong.all.push(format!("{} of unit {unit}: {value}, not {expected}", stack.measures[i].name));
                 return;
@@ -154,19 +193,31 @@ fn counted(of: &MeasureReport, sample: &[f64], limits: [Option<f64>; 2], wrong: 
     wrong.near(&format!("{name}: max"), of.max, defined[defined.len() - 1], 1e-12 * size);
     if sd > 1e-9 * size {
         wrong.near(&format!("{name}: skew of its units"), of.skew.unwrap_or(f64::NAN), skew, 1e-5 * (1.0 + skew.abs()));
-        wrong.near(&format!("{name}: kurtosis of its units"), of.kurtosis.unwrap_or(f64::NAN), kurtosis, 1e-5 * kurtosis);
+        wrong.near(
+            &format!("{name}: kurtosis of its units"),
+            of.kurtosis.unwrap_or(f64::NAN),
+            kurtosis,
+            1e-5 * kurtosis,
+        );
     }
     // A point is good to a bin: somewhere within one of it the share is the stated one, but for a unit.
     let bin = sd / 64.0 + 1e-9 * size;
-    for (what, point, share) in [("0.135 % point", of.q00135, 0.001_35), ("median", of.median, 0.5), ("99.865 % point", of.q99865, 0.998_65)] {
+    for (what, point, share) in
+        [("0.135 % point", of.q00135, 0.001_35), ("median", of.median, 0.5), ("99.865 % point", of.q99865, 0.998_65)]
+    {
         let below = |x: f64| defined.partition_point(|value| *value < x) as f64;
         let up_to = |x: f64| defined.partition_point(|value| *value <= x) as f64;
         let rank = share * n;
         let holds = below(point - bin) <= rank + 1.0 && up_to(point + bin) >= rank - 1.0;
         wrong.that(holds, || format!("{name}: {what} {point}: {} of {n} units lie below", below(point)));
     }
-    let sides = [limits[0].map(|limit| defined.iter().filter(|x| **x < limit).count()), limits[1].map(|limit| defined.iter().filter(|x| **x > limit).count())];
-    for ((side, estimate), what) in sides.iter().zip([of.estimates.dpm_below, of.estimates.dpm_above]).zip(["below", "above"]) {
+    let sides = [
+        limits[0].map(|limit| defined.iter().filter(|x| **x < limit).count()),
+        limits[1].map(|limit| defined.iter().filter(|x| **x > limit).count()),
+    ];
+    for ((side, estimate), what) in
+        sides.iter().zip([of.estimates.dpm_below, of.estimates.dpm_above]).zip(["below", "above"])
+    {
         let share = side.map(|count| count as f64 / sample.len() as f64 * 1e6);
         wrong.that(share.is_some() == estimate.is_some(), || format!("{name}: defects {what} missing"));
         if let (Some(share), Some(estimate)) = (share, estimate) {
@@ -188,7 +239,12 @@ fn counted(of: &MeasureReport, sample: &[f64], limits: [Option<f64>; 2], wrong: 
     if low.is_some() || high.is_some() {
         let outside: usize = sides.iter().flatten().sum();
         let good = (defined.len() - outside) as f64 / sample.len() as f64;
-        wrong.near(&format!("{name}: counted yield"), of.estimates.good.map_or(f64::NAN, |good| good.value), good, 1e-9);
+        wrong.near(
+            &format!("{name}: counted yield"),
+            of.estimates.good.map_or(f64::NAN, |good| good.value),
+            good,
+            1e-9,
+        );
     }
 }
 
@@ -202,20 +258,38 @@ fn distributed(of: &MeasureReport, sample: &[f64], own: &[f64], method: Method, 
     };
     let share = |values: &[f64]| values.iter().filter(|x| !x.is_finite()).count() as f64 / values.len() as f64;
     let (a, b) = (share(sample), share(own));
-    let n = sample.len() as f64;
-    wrong.near(&format!("{name}: share that is undefined"), a, b, ERRORS * libm::sqrt(2.0 * (b * (1.0 - b) + 1.0 / n) / n));
+    let n = sample.len().min(own.len()) as f64;
+    wrong.near(
+        &format!("{name}: share that is undefined"),
+        a,
+        b,
+        ERRORS * libm::sqrt(2.0 * (b * (1.0 - b) + 1.0 / n) / n),
+    );
     let (sample, own) = (sorted(sample), sorted(own));
     if sample.len() < 100 || own.len() < 100 {
+        return;
+    }
+    let size = own[0].abs().max(own[own.len() - 1].abs());
+    if own[own.len() - 1] - own[0] <= 1e-9 * size + ROUNDING {
+        // It does not vary.
+        wrong.near(&format!("{name}: least of a constant"), sample[0], own[0], 1e-8 * size + ROUNDING);
+        wrong.near(
+            &format!("{name}: greatest of a constant"),
+            sample[sample.len() - 1],
+            own[0],
+            1e-8 * size + ROUNDING,
+        );
         return;
     }
     // Dvoretzky, Kiefer, Wolfowitz, Massart: beyond with a probability of 2·e^(−2nd²), here 1e-10, for either sample.
     let bound = |n: usize| libm::sqrt(libm::log(2e10) / (2.0 * n as f64));
     let distance = apart(&sample, &own);
-    wrong.that(distance <= bound(sample.len()) + bound(own.len()), || format!("{name}: distribution functions are {distance} apart"));
+    wrong.that(distance <= bound(sample.len()) + bound(own.len()), || {
+        format!("{name}: distribution functions are {distance} apart")
+    });
     let ([mean, sd, ..], [own_mean, own_sd, _, own_kurtosis]) = (moments(&sample), moments(&own));
-    let size = own[0].abs().max(own[own.len() - 1].abs());
     // With heavier tails a mean of so many is not normal.
-    if own_sd <= 1e-9 * size || own_kurtosis > 30.0 {
+    if own_kurtosis > 30.0 {
         return;
     }
     let n = own.len() as f64;
@@ -223,7 +297,10 @@ fn distributed(of: &MeasureReport, sample: &[f64], own: &[f64], method: Method, 
     let both = if method == Method::PseudoRandom { std::f64::consts::SQRT_2 } else { 1.3 };
     wrong.near(&format!("{name}: mean"), mean, own_mean, ERRORS * both * of_mean);
     wrong.near(&format!("{name}: sd"), sd, own_sd, ERRORS * both * of_sd);
-    let formulas = [of.quadrature.map(|q| ("by quadrature", q.mean, q.sd)), of.second_order.map(|s| ("of second order", s.mean, s.sd))];
+    let formulas = [
+        of.quadrature.map(|q| ("by quadrature", q.mean, q.sd)),
+        of.second_order.map(|s| ("of second order", s.mean, s.sd)),
+    ];
     for (what, mean, sd) in formulas.into_iter().flatten() {
         // The second order is an approximation: where it describes the measure, within a twentieth of its spread.
         let more = if what == "by quadrature" { 0.0 } else { 0.05 * own_sd };
@@ -239,7 +316,8 @@ fn distributed(of: &MeasureReport, sample: &[f64], own: &[f64], method: Method, 
         let expected = side.dpm / 1e6;
         // Counted in both samples; the rule of succession keeps the error of few hits from being 0.
         let least = (p * n + 1.0) / (n + 2.0);
-        let bound = ERRORS * libm::sqrt(least * (1.0 - least) / n + error * error) + 20.0 / n * f64::from(u8::from(p * n < 20.0));
+        let bound = ERRORS * libm::sqrt(least * (1.0 - least) / n + error * error)
+            + 20.0 / n * f64::from(u8::from(p * n < 20.0));
         wrong.near(&format!("{name}: defects {what} ({:?})", side.source), expected, p, bound);
     }
 }
@@ -253,7 +331,13 @@ fn worst(of: &MeasureReport, [low, high]: [f64; 2], wrong: &mut Deviations) {
 }
 
 /// Slopes at the middle of the limits (Richardson's extrapolation), and RSS by them.
-fn linearised(stack: &Stack, of: &MeasureReport, function: &dyn Fn(&[f64]) -> f64, limits: &[[f64; 2]], wrong: &mut Deviations) {
+fn linearised(
+    stack: &Stack,
+    of: &MeasureReport,
+    function: &dyn Fn(&[f64]) -> f64,
+    limits: &[[f64; 2]],
+    wrong: &mut Deviations,
+) {
     let Some(rss) = of.rss else { return };
     let middle: Vec<f64> = limits.iter().map(|[low, high]| 0.5 * (low + high)).collect();
     let part = |(k, [low, high]): (usize, &[f64; 2])| {
@@ -269,7 +353,8 @@ fn linearised(stack: &Stack, of: &MeasureReport, function: &dyn Fn(&[f64]) -> f6
         (4.0 * slope(0.005) - slope(0.01)) / 3.0
     };
     let parts: Vec<f64> = limits.iter().enumerate().map(part).collect();
-    let correlated = stack.correlations.iter().map(|(a, b, _)| 2.0 * stack.value_correlation(*a, *b) * parts[*a] * parts[*b]);
+    let correlated =
+        stack.correlations.iter().map(|(a, b, _)| 2.0 * stack.value_correlation(*a, *b) * parts[*a] * parts[*b]);
     let square = parts.iter().map(|part| part * part).sum::<f64>() + correlated.sum::<f64>();
     let size = function(&middle).abs();
     let expected = libm::sqrt(square.max(0.0));
@@ -291,7 +376,12 @@ fn contributors(stack: &Stack, of: &MeasureReport, i: usize, scale: f64, chance:
         let found = of.contributors.iter().find(|share| share.name == dimension.name).and_then(|share| share.percent);
         // Both have an error; slipfit's 4096 units are spread evenly. Products of few large numbers converge slowly.
         let bound = 100.0 * (ERRORS * 1.5 * error / sum) + 2.0;
-        wrong.near(&format!("{}: share of {}", of.name, dimension.name), found.unwrap_or(f64::NAN), 100.0 * total / sum, bound);
+        wrong.near(
+            &format!("{}: share of {}", of.name, dimension.name),
+            found.unwrap_or(f64::NAN),
+            100.0 * total / sum,
+            bound,
+        );
     }
 }
 
@@ -305,7 +395,10 @@ fn joint(stack: &Stack, found: &Analysed, wrong: &mut Deviations) {
     };
     for i in 0..stack.measures.len() {
         for j in 0..i {
-            if [i, j].iter().all(|k| found.units[*k].iter().all(|x| x.is_finite()) && report.measures[*k].sd > 1e-9 * report.measures[*k].max.abs()) {
+            if [i, j].iter().all(|k| {
+                found.units[*k].iter().all(|x| x.is_finite())
+                    && report.measures[*k].sd > 1e-9 * report.measures[*k].max.abs()
+            }) {
                 let what = format!("correlation of {} and {}", report.measures[i].name, report.measures[j].name);
                 wrong.near(&what, report.correlation[i][j], correlation(i, j), 1e-6);
             }
@@ -325,7 +418,12 @@ fn joint(stack: &Stack, found: &Analysed, wrong: &mut Deviations) {
         let products: Vec<f64> =
             samples[0].iter().zip(&samples[1]).map(|(x, y)| (x - mean_a) * (y - mean_b) / (sd_a * sd_b)).collect();
         let [mean, spread, ..] = moments(&products);
-        wrong.near(&format!("coefficient of dimensions {a} and {b}"), mean, *coefficient, ERRORS * 1.5 * spread / libm::sqrt(n));
+        wrong.near(
+            &format!("coefficient of dimensions {a} and {b}"),
+            mean,
+            *coefficient,
+            ERRORS * 1.5 * spread / libm::sqrt(n),
+        );
     }
     if let Some(good) = report.yield_of_all {
         let is_good = |unit: &usize| {

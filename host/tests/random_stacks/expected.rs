@@ -10,7 +10,9 @@ use super::{
 /// Nodes of scores (from −8 to 8) and their weights.
 fn scores() -> impl Iterator<Item = (f64, f64)> {
     const STEP: f64 = 0.1;
-    (-80..=80).map(|k| f64::from(k) * STEP).map(|z| (z, STEP * libm::exp(-0.5 * z * z) / libm::sqrt(std::f64::consts::TAU)))
+    (-80..=80)
+        .map(|k| f64::from(k) * STEP)
+        .map(|z| (z, STEP * libm::exp(-0.5 * z * z) / libm::sqrt(std::f64::consts::TAU)))
 }
 
 /// The value of a dimension at a score.
@@ -37,7 +39,8 @@ pub fn value_correlation(one: &Dimension, other: &Dimension, r: f64) -> f64 {
     let rest = libm::sqrt(1.0 - r * r);
     let mut sum = 0.0;
     for (z, weight, x) in &of_one {
-        sum += scores().map(|(own, w)| w * weight * (x - mean) * (of_other(r * z + rest * own) - other_mean)).sum::<f64>();
+        sum +=
+            scores().map(|(own, w)| w * weight * (x - mean) * (of_other(r * z + rest * own) - other_mean)).sum::<f64>();
     }
     sum / (deviation * other_deviation)
 }
@@ -102,7 +105,9 @@ pub fn extremes(function: &dyn Fn(&[f64]) -> f64, ranges: &[Range], reads: &[usi
     let mut valued: Vec<_> = valued.collect();
     valued.sort_by(|a, b| a.0.total_cmp(&b.0));
     let climb = |sign: f64, starts: &mut dyn Iterator<Item = &(f64, Vec<f64>)>, chance: &mut Chance| {
-        starts.map(|(_, place)| climbed(&|x| sign * function(x), ranges, reads, place.clone(), chance)).fold(f64::NEG_INFINITY, f64::max)
+        starts
+            .map(|(_, place)| climbed(&|x| sign * function(x), ranges, reads, place.clone(), chance))
+            .fold(f64::NEG_INFINITY, f64::max)
     };
     // The best corners lie side by side: some of the starts are at random.
     let few = |at: usize| at < 3 || at % (valued.len() / 3 + 1) == 1;
@@ -112,14 +117,22 @@ pub fn extremes(function: &dyn Fn(&[f64]) -> f64, ranges: &[Range], reads: &[usi
 }
 
 /// The greatest value on a way up from `place`, along the axes and along random lines, by steps that shrink.
-fn climbed(function: &dyn Fn(&[f64]) -> f64, ranges: &[Range], reads: &[usize], mut place: Vec<f64>, chance: &mut Chance) -> f64 {
+fn climbed(
+    function: &dyn Fn(&[f64]) -> f64,
+    ranges: &[Range],
+    reads: &[usize],
+    mut place: Vec<f64>,
+    chance: &mut Chance,
+) -> f64 {
     let mut best = function(&place);
     let mut size = 0.5;
     while size > 1e-7 {
         let mut better = false;
         let lines = (0..2 * reads.len()).map(|k| {
             let random: Vec<f64> = reads.iter().map(|_| chance.normal()).collect();
-            (0..reads.len()).map(|j| if k < reads.len() { f64::from(u8::from(j == k)) } else { random[j] }).collect::<Vec<f64>>()
+            (0..reads.len())
+                .map(|j| if k < reads.len() { f64::from(u8::from(j == k)) } else { random[j] })
+                .collect::<Vec<f64>>()
         });
         for line in lines.collect::<Vec<_>>() {
             for sign in [-1.0, 1.0] {

@@ -176,7 +176,8 @@ impl Tree {
     /// As a scene has it, with these names of inputs and measures; `constant` writes a constant.
     pub fn text(&self, names: [&[String]; 2], constant: &dyn Fn(f64, Kind) -> String) -> String {
         let quoted = |name: &String| {
-            let plain = name.chars().all(|c| c.is_alphanumeric() || c == '_') && !name.starts_with(|c: char| c.is_ascii_digit());
+            let plain = name.chars().all(|c| c.is_alphanumeric() || c == '_')
+                && !name.starts_with(|c: char| c.is_ascii_digit());
             if plain && name != "pi" { name.clone() } else { format!("'{name}'") }
         };
         match self {

@@ -9,13 +9,31 @@ pub enum Law {
     Normal(Spread),
     Truncated(Spread),
     Uniform,
-    Triangular { mode: Option<f64> },
-    Trapezoidal { shoulders: [f64; 2] },
-    Beta { shapes: [f64; 2] },
+    Triangular {
+        mode: Option<f64>,
+    },
+    Trapezoidal {
+        shoulders: [f64; 2],
+    },
+    Beta {
+        shapes: [f64; 2],
+    },
     Skewed(Spread, f64),
-    Weibull { shape: f64, scale: f64, location: f64 },
-    Gumbel { mode: f64, scale: f64, smallest: bool },
-    Lognormal { mean: f64, deviation: f64, location: f64 },
+    Weibull {
+        shape: f64,
+        scale: f64,
+        location: f64,
+    },
+    Gumbel {
+        mode: f64,
+        scale: f64,
+        smallest: bool,
+    },
+    Lognormal {
+        mean: f64,
+        deviation: f64,
+        location: f64,
+    },
     Table(Vec<f64>),
     /// Weights, limits and laws.
     Mixture(Vec<(f64, [f64; 2], Law)>),
@@ -114,20 +132,32 @@ impl Law {
             0 | 1 => Self::Normal(spread(chance)),
             2 => Self::Truncated(spread(chance)),
             3 => Self::Uniform,
-            4 => Self::Triangular { mode: chance.happens(0.6).then(|| chance.one_of(&[low, high, 0.0])).filter(|mode| (low..=high).contains(mode)).or_else(|| chance.happens(0.5).then(|| within(chance))) },
+            4 => Self::Triangular {
+                mode: chance
+                    .happens(0.6)
+                    .then(|| chance.one_of(&[low, high, 0.0]))
+                    .filter(|mode| (low..=high).contains(mode))
+                    .or_else(|| chance.happens(0.5).then(|| within(chance))),
+            },
             5 => {
                 let (a, b) = (within(chance), within(chance));
                 Self::Trapezoidal { shoulders: [a.min(b), a.max(b)] }
             }
             // slipfit takes microseconds for one of its values.
-            6 if !plain && chance.happens(0.5) => Self::Beta { shapes: [0, 1].map(|_| chance.one_of(&[0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 12.0])) },
+            6 if !plain && chance.happens(0.5) => {
+                Self::Beta { shapes: [0, 1].map(|_| chance.one_of(&[0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 12.0])) }
+            }
             6 | 7 => Self::Skewed(spread(chance), chance.one_of(&[-2.0, -0.7, 0.1, 0.5, 1.0, 2.0])),
             8 => Self::Weibull {
                 shape: chance.one_of(&[0.8, 1.0, 1.5, 2.0, 3.5, 8.0]),
                 scale: decimal(half, 6),
                 location: chance.one_of(&[0.0, low]),
             },
-            9 => Self::Gumbel { mode: chance.one_of(&[0.0, low]), scale: decimal(0.3 * half, 6), smallest: chance.happens(0.5) },
+            9 => Self::Gumbel {
+                mode: chance.one_of(&[0.0, low]),
+                scale: decimal(0.3 * half, 6),
+                smallest: chance.happens(0.5),
+            },
             10 => {
                 let location = chance.one_of(&[0.0, low]);
                 let mean = decimal(location + half, 6);
@@ -195,7 +225,13 @@ impl Law {
             Self::Triangular { .. } | Self::Trapezoidal { .. } => loop {
                 let (x, y) = (chance.between(low, high), chance.unit());
                 let [left, right] = self.shoulders(limits);
-                let density = if x < left { (x - low) / (left - low) } else if x > right { (high - x) / (high - right) } else { 1.0 };
+                let density = if x < left {
+                    (x - low) / (left - low)
+                } else if x > right {
+                    (high - x) / (high - right)
+                } else {
+                    1.0
+                };
                 if y < density {
                     return x;
                 }

@@ -75,21 +75,25 @@ pub fn onto(planes: [[Located; 2]; 3]) -> Motion {
         [off(a), dot(tilt(a), across[0]), dot(tilt(a), across[1]), off(b), dot(tilt(b), first.direction), off(c)]
     };
     let mut x = [0.0; 6];
-    for _ in 0..8 {
+    let mut rows = [[0.0; 7]; 6];
+    for k in 0..6 {
+        const STEP: f64 = 1e-6;
+        let [up, down] = [STEP, -STEP].map(|step| {
+            let mut moved = x;
+            moved[k] = step;
+            residual(&moved)
+        });
+        (0..6).for_each(|i| rows[i][k] = (up[i] - down[i]) / (2.0 * STEP));
+    }
+    // With the slopes of the start each pass gains a factor of the size of the turn.
+    for _ in 0..12 {
         let at = residual(&x);
-        let mut rows = [[0.0; 7]; 6];
-        for k in 0..6 {
-            const STEP: f64 = 1e-6;
-            let [up, down] = [STEP, -STEP].map(|step| {
-                let mut moved = x;
-                moved[k] += step;
-                residual(&moved)
-            });
-            (0..6).for_each(|i| rows[i][k] = (up[i] - down[i]) / (2.0 * STEP));
-        }
         (0..6).for_each(|i| rows[i][6] = at[i]);
         let change = solved(rows);
         (0..6).for_each(|k| x[k] -= change[k]);
+        if change.iter().all(|change| change.abs() < 1e-13) {
+            break;
+        }
     }
     Motion { turn: [x[0], x[1], x[2]], shift: [x[3], x[4], x[5]] }
 }

@@ -57,8 +57,8 @@ pub struct Writing {
 
 impl Writing {
     /// In the units of the scene format and in order.
-    pub fn plain(stack: &Stack) -> Self {
-        let order = (0..stack.dimensions.len()).collect();
+    pub fn plain(dimensions: &[Dimension]) -> Self {
+        let order = (0..dimensions.len()).collect();
         Self { length: ("", 1.0), angle: ("", 1.0), order, measures_first: false }
     }
 
@@ -88,7 +88,11 @@ impl Writing {
     }
 
     fn pair(&self, [a, b]: [f64; 2], kind: Kind) -> String {
-        if a == -b && b > 0.0 { self.number(b, kind) } else { format!("[{}, {}]", self.number(a, kind), self.number(b, kind)) }
+        if a == -b && b > 0.0 {
+            self.number(b, kind)
+        } else {
+            format!("[{}, {}]", self.number(a, kind), self.number(b, kind))
+        }
     }
 
     /// The keys `sigma` and `distribution` of a law, with what separates them from others.
@@ -125,7 +129,9 @@ impl Writing {
             Law::Uniform => "\"uniform\"".into(),
             Law::Triangular { mode: None } => "\"triangular\"".into(),
             Law::Triangular { mode: Some(mode) } => format!("{{ kind = \"triangular\", mode = {} }}", number(mode)),
-            Law::Trapezoidal { shoulders } => format!("{{ kind = \"trapezoidal\", shoulders = {} }}", numbers(shoulders)),
+            Law::Trapezoidal { shoulders } => {
+                format!("{{ kind = \"trapezoidal\", shoulders = {} }}", numbers(shoulders))
+            }
             Law::Beta { shapes: [a, b] } => format!("{{ kind = \"beta\", shapes = [{a}, {b}] }}"),
             Law::Skewed(of, skewness) => named("skewed", format!(", skewness = {skewness}{}", spread(of))),
             Law::Weibull { shape, scale, location } => {
@@ -143,7 +149,11 @@ impl Writing {
             Law::Table(values) => format!("{{ kind = \"table\", deviations = {} }}", numbers(values)),
             Law::Mixture(parts) => {
                 let part = |(weight, limits, law): &(f64, [f64; 2], Law)| {
-                    let tolerance = if law.is_scaled() { format!(", tolerance = {}", self.pair(*limits, kind)) } else { String::new() };
+                    let tolerance = if law.is_scaled() {
+                        format!(", tolerance = {}", self.pair(*limits, kind))
+                    } else {
+                        String::new()
+                    };
                     format!("{{ weight = {weight}{tolerance}{} }}", self.law(law, kind, ""))
                 };
                 format!("{{ kind = \"mixture\", of = [{}] }}", parts.iter().map(part).collect::<Vec<_>>().join(", "))
@@ -168,11 +178,18 @@ impl Writing {
 
     /// The scene.
     pub fn text(&self, stack: &Stack) -> String {
-        let names = [stack.dimensions.iter().map(|d| d.name.clone()).collect(), stack.measures.iter().map(|m| m.name.clone()).collect::<Vec<_>>()];
+        let names = [
+            stack.dimensions.iter().map(|d| d.name.clone()).collect(),
+            stack.measures.iter().map(|m| m.name.clone()).collect::<Vec<_>>(),
+        ];
         let dimensions: String = self.order.iter().map(|i| self.dimension(&stack.dimensions[*i])).collect();
         let mut rest = String::new();
         for (a, b, coefficient) in &stack.correlations {
-            let _ = writeln!(rest, "[[correlation]]\nof = [\"{}\", \"{}\"]\ncoefficient = {coefficient}", names[0][*a], names[0][*b]);
+            let _ = writeln!(
+                rest,
+                "[[correlation]]\nof = [\"{}\", \"{}\"]\ncoefficient = {coefficient}",
+                names[0][*a], names[0][*b]
+            );
         }
         for Measure { name, kind, tree, limits } in &stack.measures {
             let is = tree.text([&names[0], &names[1]], &|x, kind| self.constant(x, kind));
@@ -223,7 +240,9 @@ impl Dimension {
 
     /// A value (mm, rad, 1) drawn without slipfit.
     pub fn draw(&self, chance: &mut Chance) -> f64 {
-        self.inside(self.value + if matches!(self.law, Law::Constant) { 0.0 } else { self.law.draw(self.scale(), chance) })
+        self.inside(
+            self.value + if matches!(self.law, Law::Constant) { 0.0 } else { self.law.draw(self.scale(), chance) },
+        )
     }
 
     /// The value (mm, rad, 1) below which this share lies.
@@ -238,7 +257,8 @@ impl Dimension {
 
     /// A range (mm, rad, 1) that holds limits, units and the value on the drawing.
     pub fn support(&self) -> Range {
-        let ends = [self.law.support(self.scale()).map(|x| self.inside(self.value + x)), self.limits(), [self.nominal(); 2]];
+        let ends =
+            [self.law.support(self.scale()).map(|x| self.inside(self.value + x)), self.limits(), [self.nominal(); 2]];
         ends.into_iter().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap()
     }
 
@@ -258,7 +278,12 @@ impl Stack {
         let count = 1 + chance.below(12);
         let dimensions: Vec<_> = (0..count).map(|number| Dimension::random(number, chance)).collect();
         let inputs: Vec<_> = dimensions.iter().map(|d| (d.kind, d.support())).collect();
-        let own = |(i, d): (usize, &Dimension)| Measure { name: format!("own {i}"), kind: d.kind, tree: Tree::Input(i), limits: [None; 2] };
+        let own = |(i, d): (usize, &Dimension)| Measure {
+            name: format!("own {i}"),
+            kind: d.kind,
+            tree: Tree::Input(i),
+            limits: [None; 2],
+        };
         let mut measures: Vec<Measure> = dimensions.iter().enumerate().map(own).collect();
         let mut known: Vec<(Kind, Range)> = inputs.clone();
         for number in 0..1 + chance.below(3) {
@@ -270,7 +295,8 @@ impl Stack {
                 let depth = 1 + chance.below(4);
                 material.random(kind, depth, chance)
             };
-            let ranges: Vec<_> = [&inputs, &known].map(|all| all.iter().map(|(_, range)| *range).collect::<Vec<_>>()).into();
+            let ranges: Vec<_> =
+                [&inputs, &known].map(|all| all.iter().map(|(_, range)| *range).collect::<Vec<_>>()).into();
             let Some(range) = tree.range(&ranges[0], &ranges[1]) else { continue };
             known.push((kind, range));
             measures.push(Measure { name: format!("measure {number}"), kind, tree, limits: [None; 2] });
@@ -278,7 +304,8 @@ impl Stack {
         if chance.happens(0.1) {
             measures.extend(Self::undefined(&dimensions, chance));
         }
-        let mut made = Self { dimensions, correlations: Vec::new(), ranks: chance.happens(0.3), measures, sums: Vec::new() };
+        let mut made =
+            Self { dimensions, correlations: Vec::new(), ranks: chance.happens(0.3), measures, sums: Vec::new() };
         if chance.happens(0.3) {
             made.correlate(chance);
         }
@@ -308,7 +335,15 @@ impl Stack {
                 (Kind::Length, root(Box::new(Tree::Two(Two::Subtract, input(a), input(b)))))
             }
             _ => {
-                let (a, b) = chance.one_of(pairs.iter().filter(|(a, _)| dimensions[*a].value > 1.0).copied().collect::<Vec<_>>().as_slice().get(..1)?);
+                let (a, b) = chance.one_of(
+                    pairs
+                        .iter()
+                        .filter(|(a, _)| dimensions[*a].value > 1.0)
+                        .copied()
+                        .collect::<Vec<_>>()
+                        .as_slice()
+                        .get(..1)?,
+                );
                 (Kind::Angle, Tree::One(One::ArcCosine, Box::new(Tree::Two(Two::Divide, input(a), input(b)))))
             }
         };
@@ -323,7 +358,9 @@ impl Stack {
                 && chance.happens(0.7)
             {
                 // Two laws of different shapes cannot have every coefficient.
-                let ends = [-1.0, 1.0].map(|r| if self.ranks { r } else { value_correlation(&self.dimensions[a], &self.dimensions[b], r) });
+                let ends = [-1.0, 1.0].map(|r| {
+                    if self.ranks { r } else { value_correlation(&self.dimensions[a], &self.dimensions[b], r) }
+                });
                 let coefficient = super::chance::decimal(0.9 * chance.between(ends[0], ends[1]), 2);
                 if coefficient != 0.0 {
                     self.correlations.push((a, b, coefficient));
@@ -362,15 +399,5 @@ impl Stack {
             values.push(value);
         }
         values
-    }
-
-    /// Ranges that hold all measures, by interval arithmetic over ranges of the dimensions.
-    pub fn ranges(&self, inputs: &[Range]) -> Option<Vec<Range>> {
-        let mut ranges = Vec::new();
-        for measure in &self.measures {
-            let range = measure.tree.range(inputs, &ranges)?;
-            ranges.push(range);
-        }
-        Some(ranges)
     }
 }

@@ -4,11 +4,14 @@
 const MOST_STEPS: usize = 200;
 
 /// Where `function`, which rises from a value of 0 or less at `low` to one of 0 or more at `high`, has its zero, or jumps over
-/// it: to the last digits. Inverse quadratic interpolation where it is safe, halves of the bracket elsewhere (Chandrupatla,
+/// it: to the last digits; not a number where an end is not finite. Inverse quadratic interpolation where it is safe, halves of the bracket elsewhere (Chandrupatla,
 /// "A new hybrid quadratic/bisection algorithm", Advances in Engineering Software 28, 1997).
 pub fn zero(low: f64, high: f64, function: impl Fn(f64) -> f64) -> f64 {
     // The newest point, one on the other side of the zero, and the one before.
     let [mut a, mut b] = [high, low];
+    if !(a.is_finite() && b.is_finite()) {
+        return f64::NAN;
+    }
     let [mut fa, mut fb] = [function(a), function(b)];
     if fa <= 0.0 {
         return high;
@@ -55,6 +58,13 @@ mod tests {
     use std::cell::Cell;
 
     use super::zero;
+
+    #[test]
+    fn without_finite_ends_there_is_no_zero() {
+        for [low, high] in [[f64::NAN, 1.0], [0.0, f64::INFINITY], [f64::INFINITY, f64::NEG_INFINITY]] {
+            assert!(zero(low, high, |x| x - 0.5).is_nan(), "{low} {high}");
+        }
+    }
 
     #[test]
     fn zeros_are_found_to_the_last_digits() {
