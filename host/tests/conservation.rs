@@ -318,7 +318,8 @@ fn slots_between_two_moving_bodies_keep_momentum_and_energy() {
             assert!((momentum - momentum_0).abs() < 1e-6 * 4e-3, "{between} {i}: {momentum} {momentum_0}");
             assert!((energy / energy_0 - 1.0).abs() < 1e-6, "{between} {i}: {energy} {energy_0}");
         }
-        let twist = column(&run, "block.angle").iter().zip(column(&run, "crank.angle")).map(|(a, b)| (a - b).abs());
+        let [block, crank] = ["block.angle", "crank.angle"].map(|name| column(&run, name));
+        let twist = block.iter().zip(&crank).map(|(block, crank)| (block - crank).abs());
         assert!(twist.fold(0.0, f64::max) > 0.5);
     }
 }
