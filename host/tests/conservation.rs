@@ -319,7 +319,7 @@ fn slots_between_two_moving_bodies_keep_momentum_and_energy() {
             assert!((energy / energy_0 - 1.0).abs() < 1e-6, "{between} {i}: {energy} {energy_0}");
         }
         let [block, crank] = ["block.angle", "crank.angle"].map(|name| column(&run, name));
-        let twist = block.iter().zip(&crank).map(|(a, b)| (a - b).abs());
+        let twist = block.iter().zip(&crank).map(|(block, crank)| (block - crank).abs());
         assert!(twist.fold(0.0, f64::max) > 0.5);
     }
 }
