@@ -9,6 +9,7 @@ use crate::{
         iso2768::{self, GeometryClass},
     },
     scene::{Problem, SceneError, keys, tree::Value, unit as units, unit::Quantity, value::Field},
+    show::number::ten_digits,
     tolerance::model::ZoneRule,
 };
 
@@ -130,6 +131,15 @@ pub(super) fn read<'t, 's>(
     if let Some(field) = made.table.get("offset").filter(|field| !none(field)) {
         let size = toleranced::offset(&field, draft)?;
         let normal = made.feature.nominal[1];
+        let along = made.coordinates[0];
+        if size.nominal * along < 0.0 {
+            let [along, offset] = [along, size.nominal].map(|x| ten_digits((x * 1e12).round() / 1e9));
+            made.table.get("normal").unwrap_or(field).warn(&format!(
+                "{} lies {along} mm along its normal from the origin of its part, and its offset is {offset} mm: the normal \
+                 points into the material, or the offset has the wrong sign",
+                made.name
+            ));
+        }
         made.feature.nominal[0] = [0, 1, 2].map(|i| made.feature.nominal[0][i] - size.nominal * normal[i]);
         shift(&mut made, "offset", &size, normal, draft);
     }
