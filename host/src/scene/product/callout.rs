@@ -15,7 +15,7 @@ use crate::{
 
 use super::{
     Draft,
-    datum::{Datum, Limited, carry, datums, left_free},
+    datum::{Datum, carry, datums, left_free},
     material::{self, Material},
     part::FeatureDraft,
     pattern::{self, Pattern},
@@ -222,7 +222,8 @@ pub(super) fn read<'t, 's>(
     Ok(())
 }
 
-/// Warns of datums that are missing, or do not hold what they are for.
+/// Warns of datums that are missing, or do not hold the place that they are for. An orientation to a face leaves the turn about
+/// the face's normal free by its nature.
 fn warn_of_frames(index: usize, location: Option<&Callout>, orientation: Option<&Callout>, draft: &Draft) {
     let name = &draft.feature_names[index];
     let shape = draft.assembly.features[index].shape;
@@ -237,24 +238,18 @@ fn warn_of_frames(index: usize, location: Option<&Callout>, orientation: Option<
             callout.name
         ));
     }
+    let Some(location) = location.filter(|location| !location.datums.is_empty()) else { return };
+    let along = (location.name == "symmetry" && shape == Shape::Axis)
+        .then(|| draft.assembly.features[location.datums[0].feature].nominal[1]);
     // An orientation with datums of its own holds the tilts.
-    let tilts = |callout: &Callout| shape == Shape::Plane || (shape == Shape::Axis && callout.holds_tilts());
-    let of_location = |callout: &Callout| Limited { place: true, tilts: !datums(orientation) && tilts(callout) };
-    let limited = [
-        location.map(|callout| (callout, of_location(callout))),
-        orientation.map(|callout| (callout, Limited { place: false, tilts: true })),
-    ];
-    for (callout, limited) in limited.into_iter().flatten().filter(|(callout, _)| !callout.datums.is_empty()) {
-        let along = (callout.name == "symmetry" && shape == Shape::Axis)
-            .then(|| draft.assembly.features[callout.datums[0].feature].nominal[1]);
-        let limited = Limited { tilts: limited.tilts && along.is_none(), ..limited };
-        if let Some(motion) = left_free(index, &callout.datums, limited, along, draft) {
-            callout.field.warn(&format!(
-                "the datums of the {} of {name} are an incomplete frame: they leave it free to {motion}, where the zone lies as \
-                 drawn",
-                callout.name
-            ));
-        }
+    let tilts = !datums(orientation)
+        && along.is_none()
+        && (shape == Shape::Plane || (shape == Shape::Axis && location.holds_tilts()));
+    if let Some(motion) = left_free(index, &location.datums, tilts, along, draft) {
+        location.field.warn(&format!(
+            "the datums of the {} of {name} are an incomplete frame: they leave it free to {motion}, where the zone lies as drawn",
+            location.name
+        ));
     }
 }
 

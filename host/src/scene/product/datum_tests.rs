@@ -219,7 +219,6 @@ fn incomplete_frames_are_warned_of_at_their_line() {
         ("lid", "position = { zone = 0.1, datum = \"box.B\" }", "incomplete frame"),
         ("lid", "profile = { zone = 0.1, datum = \"box.D\" }", "move along (0.00, 0.00, 1.00)"),
         ("tip", "position = { zone = 0.1, datum = \"box.B\" }", "incomplete frame"),
-        ("lid", "perpendicularity = { zone = 0.1, datum = \"box.B\" }", "turn about"),
     ] {
         let warnings = warned(callout, of);
         assert!(warnings.len() == 1 && warnings[0].contains(said), "{callout}: {warnings:?}");
@@ -236,6 +235,7 @@ fn incomplete_frames_are_warned_of_at_their_line() {
         ("lid", "position = { zone = 0.1, datum = \"box.A\" }"),
         ("lid", "run_out = { zone = 0.1, datum = \"box.D\" }"),
         ("tip", "profile = { zone = 0.1, datum = \"box.A\" }"),
+        ("lid", "perpendicularity = { zone = 0.1, datum = \"box.B\" }"),
         ("lid", "profile = 0.1"),
     ] {
         let warnings = warned(callout, of);
