@@ -9,12 +9,13 @@ use crate::{
         iso2768::{self, GeometryClass},
     },
     scene::{Problem, SceneError, keys, tree::Value, unit as units, unit::Quantity, value::Field},
+    show::number::ten_digits,
     tolerance::model::ZoneRule,
 };
 
 use super::{
     Draft,
-    datum::{Datum, Limited, carry, datums, left_free},
+    datum::{Datum, carry, datums, left_free},
     material::{self, Material},
     part::FeatureDraft,
     pattern::{self, Pattern},
@@ -130,6 +131,15 @@ pub(super) fn read<'t, 's>(
     if let Some(field) = made.table.get("offset").filter(|field| !none(field)) {
         let size = toleranced::offset(&field, draft)?;
         let normal = made.feature.nominal[1];
+        let along = made.coordinates[0];
+        if size.nominal * along < 0.0 {
+            let [along, offset] = [along, size.nominal].map(|x| ten_digits((x * 1e12).round() / 1e9));
+            made.table.get("normal").unwrap_or(field).warn(&format!(
+                "{} lies {along} mm along its normal from the origin of its part, and its offset is {offset} mm: the normal \
+                 points into the material, or the offset has the wrong sign",
+                made.name
+            ));
+        }
         made.feature.nominal[0] = [0, 1, 2].map(|i| made.feature.nominal[0][i] - size.nominal * normal[i]);
         shift(&mut made, "offset", &size, normal, draft);
     }
@@ -212,7 +222,8 @@ pub(super) fn read<'t, 's>(
     Ok(())
 }
 
-/// Warns of datums that are missing, or do not hold what they are for.
+/// Warns of datums that are missing, or do not hold the place that they are for. An orientation to a face leaves the turn about
+/// the face's normal free by its nature.
 fn warn_of_frames(index: usize, location: Option<&Callout>, orientation: Option<&Callout>, draft: &Draft) {
     let name = &draft.feature_names[index];
     let shape = draft.assembly.features[index].shape;
@@ -227,24 +238,18 @@ fn warn_of_frames(index: usize, location: Option<&Callout>, orientation: Option<
             callout.name
         ));
     }
+    let Some(location) = location.filter(|location| !location.datums.is_empty()) else { return };
+    let along = (location.name == "symmetry" && shape == Shape::Axis)
+        .then(|| draft.assembly.features[location.datums[0].feature].nominal[1]);
     // An orientation with datums of its own holds the tilts.
-    let tilts = |callout: &Callout| shape == Shape::Plane || (shape == Shape::Axis && callout.holds_tilts());
-    let of_location = |callout: &Callout| Limited { place: true, tilts: !datums(orientation) && tilts(callout) };
-    let limited = [
-        location.map(|callout| (callout, of_location(callout))),
-        orientation.map(|callout| (callout, Limited { place: false, tilts: true })),
-    ];
-    for (callout, limited) in limited.into_iter().flatten().filter(|(callout, _)| !callout.datums.is_empty()) {
-        let along = (callout.name == "symmetry" && shape == Shape::Axis)
-            .then(|| draft.assembly.features[callout.datums[0].feature].nominal[1]);
-        let limited = Limited { tilts: limited.tilts && along.is_none(), ..limited };
-        if let Some(motion) = left_free(index, &callout.datums, limited, along, draft) {
-            callout.field.warn(&format!(
-                "the datums of the {} of {name} are an incomplete frame: they leave it free to {motion}, where the zone lies as \
-                 drawn",
-                callout.name
-            ));
-        }
+    let tilts = !datums(orientation)
+        && along.is_none()
+        && (shape == Shape::Plane || (shape == Shape::Axis && location.holds_tilts()));
+    if let Some(motion) = left_free(index, &location.datums, tilts, along, draft) {
+        location.field.warn(&format!(
+            "the datums of the {} of {name} are an incomplete frame: they leave it free to {motion}, where the zone lies as drawn",
+            location.name
+        ));
     }
 }
 

@@ -127,19 +127,12 @@ impl Frames {
     }
 }
 
-/// What of a feature a tolerance limits: its place, its tilts.
-#[derive(Clone, Copy)]
-pub(super) struct Limited {
-    pub place: bool,
-    pub tilts: bool,
-}
-
 /// A motion in words that the `datums` leave a frame and that moves the feature `index` in its zone; `None` where there is none.
-/// Where `along` is given its place is limited in this direction alone.
+/// Its tilts count if `tilts`, and of its place only the shift `along` a direction where that is given.
 pub(super) fn left_free(
     index: usize,
     datums: &[Datum],
-    limited: Limited,
+    tilts: bool,
     along: Option<[f64; 3]>,
     draft: &Draft,
 ) -> Option<String> {
@@ -159,7 +152,7 @@ pub(super) fn left_free(
             (None, _) => dot(shift, direction).abs(),
         };
         let tilted = norm(cross(*turn, direction)) * feature.reach;
-        limited.place && off > NEGLIGIBLE * size || limited.tilts && tilted > NEGLIGIBLE * size
+        off > NEGLIGIBLE * size || tilts && tilted > NEGLIGIBLE * size
     };
     motions.iter().find(|motion| moves(motion)).map(|motion| describe(motion.as_flattened()))
 }

@@ -1,10 +1,23 @@
 //! What is accepted and still hardly meant: warnings at their line. And keys that would do nothing: errors.
 
 use super::tests::{check_all, parse};
-use crate::scene::shipped;
+use crate::scene::{SHIPPED, shipped};
 
 fn warnings(text: &str) -> Vec<String> {
     parse(text, &[]).unwrap_or_else(|error| panic!("{error}")).product.unwrap().warnings
+}
+
+/// Of the shipped scenes only the lid has something to warn of: its holes are positioned to one face alone.
+#[test]
+fn shipped_scenes_are_hardly_doubtful() {
+    for (name, text) in SHIPPED {
+        let file = parse(text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let own = file.slide.map(|slide| slide.warnings).or(file.mechanism.map(|mechanism| mechanism.warnings));
+        let all = file.product.map(|product| product.warnings).into_iter().chain(own).flatten();
+        let told: Vec<_> = all.filter(|warning| warning.starts_with("scene.toml:")).collect();
+        let frames = told.iter().filter(|warning| warning.contains("an incomplete frame")).count();
+        assert_eq!((told.len(), frames), if *name == "lid-on-pins" { (2, 2) } else { (0, 0) }, "{name}: {told:#?}");
+    }
 }
 
 /// What varies of a slide and of a mechanism has the same warnings and refusals.
@@ -194,6 +207,27 @@ fn a_normal_into_the_material_is_warned_of() {
     let point = block("[0, 0, 0]", "-x").replace("[\"block.stop\", \"frame.stop\"]", "[\"block.end\", \"frame.stop\"]");
     let point = point.replace("at = [100, 0, 5], normal = \"+x\"", "at = [0, 0, 5], normal = \"+x\"");
     assert!(warnings(&point).iter().any(|told| told.starts_with("scene.toml:22:4: the normals of block.end and")));
+}
+
+#[test]
+fn a_normal_against_an_offset_is_warned_of() {
+    let cover = |normal: &str, offset: &str| {
+        warnings(&format!(
+            "[[part]]\nname = \"box\"\nplane = [\n  {{ name = \"top\", at = [0, 0, 20], normal = \"{normal}\", along = \"+x\", \
+             extents = [9, 9], offset = {{ value = {offset}, tolerance = 0.1 }} }},\n]\n\
+             point = [{{ name = \"tip\", at = [0, 0, 0], normal = \"-z\", offset = 0.1 }}]\n\
+             [[measure]]\nname = \"m\"\ndistance = [\"box.tip\", \"box.top\"]\n"
+        ))
+    };
+    for (normal, offset, along) in [("-z", "20", "-20"), ("+z", "-20", "20")] {
+        let found = cover(normal, offset);
+        let said =
+            format!("scene.toml:4:45: box.top lies {along} mm along its normal from the origin of its part, and");
+        assert!(found.len() == 1 && found[0].starts_with(&said), "{found:?}");
+    }
+    for (normal, offset) in [("+z", "20"), ("-z", "-20"), ("+z", "3"), ("-z", "0")] {
+        assert!(cover(normal, offset).is_empty());
+    }
 }
 
 #[test]

@@ -79,7 +79,7 @@ pub(super) fn of_callout<'t, 's>(
                 let what = format!("{} other than the first datums of the zone", list.key);
                 return Err(list.error(Problem::Unsupported { what }, "the first of its datums, in their order"));
             }
-            // The primary datum alone holds tilts of the axes, which a position does not have.
+            // The primary datum alone holds tilts of the pattern, which has none.
             held.len() < 2
         }
     };

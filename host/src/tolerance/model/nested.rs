@@ -27,7 +27,7 @@ pub enum Nest {
     Face,
     /// The axis of a pin or hole in a cylinder that limits both of its ends: x, y and two tilts, ρ = 1.
     Ends,
-    /// The same with narrowed tilts.
+    /// The same with narrowed tilts; a pattern of axes, whose turn is a tilt.
     Axis,
 }
 
@@ -365,6 +365,17 @@ mod tests {
                 "{place} {tilts}"
             );
         }
+    }
+
+    #[test]
+    fn both_ends_of_an_axis_are_inside_independently() {
+        let inside = crate::tolerance::sampling::draw::INSIDE_DISC;
+        let zone = Nested { of: Nest::Ends, rule: ZoneRule::Truncated, tilts: 1.0 };
+        assert!((zone.inside() - inside * inside).abs() < 1e-8, "{}", zone.inside());
+        // Shifted to one side and leaning to another, an axis may have √½ of each.
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        assert!((zone.reach(&[half, 0.0, 0.0, half]) - 1.0).abs() < 1e-15);
+        assert!((zone.most(&[1.0, 0.0, 0.0, 1.0], [1.0; 2]) - 2.0 * half).abs() < 1e-15);
     }
 
     #[test]
