@@ -42,7 +42,7 @@ fn slide(gaps: Gaps, point: [f64; 3], coefficient: f64) -> Scene {
     for (i, ([x, z], gaps)) in PLACES.into_iter().zip(gaps).enumerate() {
         let _ = writeln!(text, "[[pin]]\nname = \"{i}\"\nposition = [{x:?}, 0, {z:?}]");
         for (surface, gap) in SURFACES.into_iter().zip(gaps) {
-            gap.into_iter().for_each(|gap| drop(writeln!(text, "{surface} = [{gap:?}, 0]")));
+            text += &gap.map_or_else(String::new, |gap| format!("{surface} = [{gap:?}, 0]\n"));
         }
     }
     Scene::parse("slide.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"))
@@ -61,7 +61,7 @@ fn tracks(gaps: Gaps, point: [f64; 3], coefficient: f64, pins_of_frame: bool) ->
         // What is a wall of the body to the left of a pin of the frame, is a wall of the frame to the right of a pin of the body.
         let order = if pins_of_frame { [0, 1, 2, 3] } else { [1, 0, 3, 2] };
         for (k, surface) in order.into_iter().zip(SURFACES) {
-            gaps[k].into_iter().for_each(|gap| drop(writeln!(text, "{surface} = [{gap:?}, 0]")));
+            text += &gaps[k].map_or_else(String::new, |gap| format!("{surface} = [{gap:?}, 0]\n"));
         }
     }
     let _ = writeln!(
