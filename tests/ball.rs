@@ -18,7 +18,7 @@ fn run<I: Integrator>(duration: f64, h: f64) -> (f64, f64) {
     let mut state = kernel.at_rest(BALL.height - BALL.radius);
     state.motion.velocity = SVector::<f64, 1>::new(BALL.velocity);
     for _ in 0..(duration / h).round() as u32 {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
     }
     let height = BALL.radius + state.motion.pose;
     let energy = BALL.energy(height, state.motion.velocity.x);

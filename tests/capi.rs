@@ -52,9 +52,9 @@ static TABLE: LazyLock<Vec<u8>> =
 static HEADERS: LazyLock<PathBuf> = LazyLock::new(|| {
     let folder = Path::new(FOLDER).join("capi");
     fs::create_dir_all(&folder).expect("a folder of the test's own");
-    let table = export::render("h", &TABLE, 0).expect("a header");
+    let table = export::render("table", "h", &TABLE, 0).expect("a header");
     fs::write(folder.join("table.h"), table).expect("the folder takes files");
-    fs::write(folder.join("scene.h"), kernel_source::c_header(&SCENE).expect("an exponent of 1.5"))
+    fs::write(folder.join("scene.h"), kernel_source::c_header(&SCENE, "scene").expect("an exponent of 1.5"))
         .expect("the folder takes files");
     folder
 });
@@ -232,7 +232,7 @@ fn in_rust() -> String {
     };
     let monitor = Monitor::new(table, 2.25, limits).expect("the limits are in bounds");
     let mut bank = LevelBank::<_, 96>::new(table).expect("the table has few levels");
-    let (mut watch, mut verdicts) = (Watch::default(), [0; 4]);
+    let (mut watch, mut verdicts) = (Watch::default(), [0; 5]);
     let (weak, mut jam_watch, mut jams) = (Limits { force_most: 0.9, ..limits }, JamWatch::default(), 0);
     let (mut looked_up, mut watched) = (Vec::new(), Vec::new());
     for [time, force, speed, _] in run(2.25, 1500) {
@@ -240,13 +240,14 @@ fn in_rust() -> String {
         looked_up.extend([found.force, found.velocity, f32::from(u8::from(found.clamped) + 2 * u8::from(found.mixed))]);
         let command = speed + force / kernel_source::scene_data(&SCENE).drive_gain;
         let sample = Sample { time, force, speed, command };
-        jams += u64::from(jam_watch.step(&weak, &sample));
+        jams += u64::from(jam_watch.step(&weak, &sample) == Verdict::Jam);
         let report = monitor.step(&mut watch, &sample);
         verdicts[match report.verdict {
             Verdict::Blind => 0,
             Verdict::Free => 1,
             Verdict::Tight => 2,
             Verdict::Jam => 3,
+            Verdict::NoData => 4,
         }] += 1;
         watched.extend([report.tightness.excess, report.tightness.band]);
         bank.add(time, force);
@@ -255,7 +256,7 @@ fn in_rust() -> String {
     let estimate = bank.estimate().expect("a stroke of samples");
     line("looked up", hashed(looked_up));
     line("watched", hashed(watched));
-    for (name, count) in ["blind", "free", "tight", "jam"].into_iter().zip(verdicts) {
+    for (name, count) in ["blind", "free", "tight", "jam", "no data"].into_iter().zip(verdicts) {
         line(name, count);
     }
     assert!(jams > 0, "the weak drive jams");

@@ -156,7 +156,7 @@ where
     let (mut worst, mut peak) = (0.0f64, 0.0f64);
     for row in &rows[1..] {
         for _ in 0..per_row {
-            kernel.step(&mut state);
+            let _ = kernel.step(&mut state);
         }
         let motion = &state.motion;
         let found = effort(kernel.mechanism(), kernel.time(state.steps), &motion.pose, &motion.velocity);
@@ -204,7 +204,7 @@ fn the_woodpecker_errs_by_less_than_a_hundredth_of_its_motion_in_steps_of_a_micr
     let (mut worst, mut peak) = ([0.0f64; 3], [0.0f64; 3]);
     for row in &mechanism_rows("S3-ticks")[1..] {
         for _ in 0..1000 {
-            kernel.step(&mut state);
+            let _ = kernel.step(&mut state);
         }
         let [[y, _], sleeve, bird] = state.motion.pose;
         let angle = |[w, v]: [f64; 2]| 2.0 * libm::atan2(v, w);

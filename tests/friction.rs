@@ -40,7 +40,7 @@ fn settled<I: Integrator, F: Friction<f64>>(
     let mut changed = 0;
     for _ in 0..(duration / step).round() as u32 {
         let before = state.motion;
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
         if before != state.motion {
             changed = state.steps;
         }
@@ -86,7 +86,7 @@ fn exact_friction_does_not_freeze_at_short_steps() {
             let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(slide, step).unwrap();
             let mut state = kernel.at_rest(Pose::nominal());
             for _ in 0..100 {
-                kernel.step(&mut state);
+                let _ = kernel.step(&mut state);
             }
             // Its rails carry nothing yet.
             let velocity = state.motion.velocity;

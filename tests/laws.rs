@@ -94,7 +94,7 @@ fn bounce<I: Integrator>(speed: f64, h: f64, duration: f64) -> Bounce {
     state.motion.velocity = SVector::<f64, 1>::new(-speed);
     let (mut peak_penetration, mut peak_force, mut contact_time) = (0.0f64, 0.0f64, 0.0);
     for _ in 0..(duration / h) as u32 {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
         let (x, v) = (state.motion.pose, state.motion.velocity.x);
         peak_penetration = peak_penetration.max(-x);
         peak_force = peak_force.max(kernel.mechanism().stop_force(x, v));
@@ -157,7 +157,7 @@ fn rebound<N: Normal<f64>>(law: N, speed: f64, h: f64) -> f64 {
     let mut state = kernel.at_rest(pose);
     state.motion.velocity.x = -speed;
     while state.motion.velocity.x < 0.0 || state.motion.pose[0][0] < 0.0 {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
     }
     state.motion.velocity.x / speed
 }

@@ -116,11 +116,13 @@ fn every_header_and_the_examples_of_the_guide_are_c_11_and_c_plus_plus_17() {
     let folder = folder("c-plus-plus");
     let scene =
         Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[Override::set("run.duration=60")]).expect("it is shipped");
-    write(folder.join("scene.h"), &kernel_source::c_header(&scene).expect("an exponent of 1.5"));
+    write(folder.join("scene.h"), &kernel_source::c_header(&scene, "scene").expect("an exponent of 1.5"));
     let table = force_table::make(&scene, Demand::Full, || ()).expect("its table").0.bytes;
     write(
         folder.join("table.h"),
-        &export::render("h", &table, 0).map(|text| String::from_utf8_lossy(&text).into_owned()).expect("a header"),
+        &export::render("table", "h", &table, 0)
+            .map(|text| String::from_utf8_lossy(&text).into_owned())
+            .expect("a header"),
     );
     let crank =
         SceneFile::parse("slider-crank", shipped("slider-crank").expect("it is shipped"), &[]).expect("it is sound");

@@ -35,7 +35,7 @@ fn expected() -> String {
     let kernel = scene::predictor(2.5).expect("the level is in bounds");
     let mut state = kernel.at_rest(Pose::nominal());
     let hash = (0..200).fold(0xcbf2_9ce4_8422_2325, |hash: u64, _| {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
         let force = kernel.mechanism().drive().force(kernel.time(state.steps), state.motion.velocity.z);
         let add = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         force.to_bits().to_le_bytes().into_iter().fold(hash, add)
@@ -108,7 +108,8 @@ fn freertos_has_the_forces_of_the_pc() {
     cross::require_emulator();
     let folder = Path::new(FOLDER).join("freertos");
     fs::create_dir_all(&folder).expect("the test's folder takes folders");
-    fs::write(folder.join("scene.h"), c_header(&described()).expect("an exponent of 1.5")).expect("it takes files");
+    fs::write(folder.join("scene.h"), c_header(&described(), "scene").expect("an exponent of 1.5"))
+        .expect("it takes files");
     let build = folder.join("build").display().to_string();
     let kernel = format!("-DFREERTOS_KERNEL={}", freertos().display());
     let scene = format!("-DSCENE={}", folder.display());

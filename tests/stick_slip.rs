@@ -42,6 +42,10 @@ impl Mechanism<f64, 1> for OnBelt {
         base + (to - from) * weight
     }
 
+    fn remembered(&self, _: &f64, internal: &[f64; 2]) -> [f64; 2] {
+        *internal
+    }
+
     fn internal_shifted(&self, base: &[f64; 2], from: &[f64; 2], to: &[f64; 2], weight: f64) -> [f64; 2] {
         StaticKinetic::shifted(base, from, to, weight)
     }
@@ -147,7 +151,7 @@ fn period<I: Integrator>(body: OnBelt, h: f64, duration: f64) -> f64 {
     state.motion.velocity.x = belt;
     let (mut before, mut turns) = (belt, Vec::new());
     while kernel.time(state.steps) < duration {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
         let v = state.motion.velocity.x;
         // The body turns back once a period, while it slides: a crossing that is smooth in time.
         if before > 0.0 && v <= 0.0 {

@@ -19,17 +19,11 @@ use std::{
 use cvode_peer::Cvode;
 use entry::{Achieved, Entry};
 use slipfit::dynamics::{
-    error_control::{Accelerations, Knot, Sensitivity, Tolerance, integrate, sampled},
-    out_of_line::OutOfLine,
+    error_control::{Knot, Tolerance, sampled},
     scheme::{IntegratorKind, IntegratorVisitor},
 };
-use slipfit_core::{
-    SVector,
-    integrator::{Integrator, Motion, MotionOf, Rodas4},
-    kernel::Kernel,
-    mechanism::Mechanism,
-    pose::Pose,
-};
+use slipfit_core::{integrator::Integrator, kernel::Kernel, pose::Pose};
+use slipfit_desk::slide::by_desk;
 use slipfit_problems::cd_rom::{self, CdRomSlide};
 use slipfit_tests::known_runs::{Reference, references};
 
@@ -130,33 +124,21 @@ fn kernels(slide: &CdRomSlide<f64>, milliseconds: u32) -> Vec<Entry> {
 fn controlled(n: f64, milliseconds: u32) -> Vec<Entry> {
     let entry = |force: f64| {
         let work = move || {
-            let slide = cd_rom::slide(n);
-            let body = cd_rom::data::<f64>(0.0).body;
-            let sensitivity = Sensitivity { mass: body.mass, gain: slide.drive().gain };
-            let rest = Motion {
-                pose: Pose::nominal(),
-                velocity: SVector::zeros(),
-                acceleration: SVector::zeros(),
-                internal: slide.fresh(),
-            };
+            let (slide, data) = (cd_rom::slide(n), cd_rom::data::<f64>(n));
             let duration = f64::from(milliseconds) * 1e-3;
             let mut knots = Vec::new();
             let start = Instant::now();
-            let tolerance = Tolerance::of_force(force);
-            let error = |step: &_, length| sensitivity.error(tolerance, step, length);
-            let see = |t: f64, motion: &MotionOf<f64, CdRomSlide<f64>, 6>, accelerations: Option<Accelerations<6>>| {
-                let slopes = accelerations.map(|both| both.map(|acceleration| [acceleration.z]));
-                knots.push(Knot { t, values: [motion.velocity.z], slopes });
-                ControlFlow::Continue(())
-            };
-            #[cfg(target_arch = "x86_64")]
-            let side_by_side = slipfit_desk::slide::abreast::SideBySide::new(&cd_rom::data(n), cd_rom::STICK_BAND);
-            #[cfg(not(target_arch = "x86_64"))]
-            let side_by_side: Option<slipfit_desk::out_of_line::InTurn> = None;
-            match side_by_side {
-                Some(pins) => integrate::<Rodas4, _, 6>(&OutOfLine::by(slide, pins), rest, duration, error, see),
-                None => integrate::<Rodas4, _, 6>(&OutOfLine::new(slide), rest, duration, error, see),
-            }
+            by_desk(
+                &data,
+                cd_rom::STICK_BAND,
+                duration,
+                Tolerance::of_force(force),
+                &mut |t, motion, _, accelerations| {
+                    let slopes = accelerations.map(|both| both.map(|acceleration| [acceleration.z]));
+                    knots.push(Knot { t, values: [motion.velocity.z], slopes });
+                    ControlFlow::Continue(())
+                },
+            )
             .ok()?;
             let times = (0..=milliseconds).map(|k| f64::from(k) * 1e-3);
             let values = sampled(&knots, times.clone());

@@ -60,7 +60,8 @@ pub struct State<S, P, const D: usize, const N: usize> {
     periods: u32,
     /// Calls before time 0.
     early: u32,
-    /// The present instant, in ticks.
+    /// The present instant among the motions, in ticks: without the periods for which the last motion was held, over which it stops.
+    /// So the motions stay within half the range of ticks of each other.
     clock: u32,
     /// Length of the next attempt, in ticks.
     length: S,
@@ -76,6 +77,7 @@ pub struct State<S, P, const D: usize, const N: usize> {
 /// What a prediction says after a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[must_use = "its values may be older than the present instant"]
 pub struct Prediction<S> {
     /// The time (s) that the values hold for: the clock's, or the last one known where the prediction is behind.
     pub time: S,
@@ -136,7 +138,7 @@ const BY_LEAD: [[f64; 2]; 4] = [[0.1, 2.0], [0.05, 2.0], [0.01, 1.5], [0.0, 2.0]
 /// Further factors, where the lead is below these shares of the greatest lag.
 const BY_LAG: [[f64; 2]; 3] = [[-0.25, 4.0], [-0.5, 4.0], [-0.75, 4.0]];
 
-/// Error, as a multiple of the tolerance, of an attempt that left the finite range.
+/// Error, as a multiple of the tolerance, of an attempt whose error is not known.
 const NOT_FINITE: f64 = 1e12;
 
 impl<S: Scalar + PartialOrd, M> Ahead<S, M> {
@@ -245,16 +247,20 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let error = (end.error * momentum).max_of(end.drift * place);
         let finiteness_probe = self.mechanism.finiteness_probe(&end.pose);
         let next = state.ring.next(end.pose, &end.change);
-        let error = error + next.velocity.data.0[0].iter().fold(finiteness_probe, |sum, v| sum + *v) * zero;
+        let finiteness_probe = next.velocity.data.0[0].iter().fold(finiteness_probe, |sum, v| sum + *v) * zero;
+        let error = error + finiteness_probe;
         let worst = S::from_f64(NOT_FINITE);
         let error = worst.select_gt(error, error, worst).max_of(S::from_f64(1e-9));
 
-        let finite = S::from_f64(0.5 * NOT_FINITE).select_gt(error, one, zero);
+        // A forced step may be finite where its error is not: that is of stages which it does not take.
+        let finite = (one + finiteness_probe).select_gt(zero, one, zero);
         let good = error.select_gt(given_way, zero, one);
         let accepted = has_room * forced.select_gt(zero, finite, good);
+        state.ring.extend(accepted.as_(), (accepted * advance).as_());
         // Where not even a forced step is finite, the last motion is held for a period.
         let held = forced * (one - accepted);
-        state.ring.extend(accepted.as_(), (accepted * advance + held * period).as_());
+        state.clock = clock.wrapping_sub((held * period).as_());
+        let clock = state.clock;
         let relative = error / given_way;
         let factor = S::from_f64(SAFETY) / relative.pow(S::from_f64(1.0 / 3.0));
         let next =

@@ -2,6 +2,17 @@
 
 use crate::{ParameterError, Scalar, error::bounded};
 
+/// The greatest tolerance level of a unit, either sign: far beyond what any production makes, and soon a gap far from the drawing's.
+pub const LEVEL_MOST: f64 = 20.0;
+
+/// `n` if it is a unit's tolerance level, at most [`LEVEL_MOST`] either sign.
+///
+/// # Errors
+/// If it is not, or NaN.
+pub fn checked_level<S: Scalar + PartialOrd>(n: S) -> Result<S, ParameterError<S>> {
+    bounded("n", n, [-LEVEL_MOST, LEVEL_MOST])
+}
+
 /// A gap over the production: mean and standard deviation (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GapStatistics<S> {
@@ -15,9 +26,9 @@ impl<S: Scalar + PartialOrd> GapStatistics<S> {
     /// The gap [`at`](Self::at) level `n`, if it is not below `least` (m).
     ///
     /// # Errors
-    /// If it is, or above 1 km, or not finite.
+    /// If it is, or above 1 km, or not finite, or the level exceeds [`LEVEL_MOST`].
     pub fn checked_at(&self, n: S, least: f64) -> Result<S, ParameterError<S>> {
-        bounded("gap", self.at(n), [least, 1e3])
+        bounded("gap", self.at(checked_level(n)?), [least, 1e3])
     }
 }
 
@@ -74,7 +85,7 @@ impl core::fmt::Display for GapClass {
 
 #[cfg(test)]
 mod tests {
-    use super::{GapClass, GapStatistics};
+    use super::{GapClass, GapStatistics, LEVEL_MOST};
 
     #[test]
     fn refuses_what_a_joint_does_not_allow() {
@@ -84,6 +95,11 @@ mod tests {
             assert!(gap.checked_at(n, 0.0).is_err(), "{n}");
         }
         assert!(gap.checked_at(2.5, -0.1).is_ok());
+        for n in [-1000.0, -50.0, -20.001, 20.001, 50.0] {
+            let error = gap.checked_at(n, -0.1).unwrap_err();
+            assert_eq!((error.parameter, error.value, f64::from(error.greatest)), ("n", n, LEVEL_MOST));
+        }
+        assert!(gap.checked_at(-20.0, -0.1).is_ok() && gap.checked_at(20.0, -0.1).is_ok());
     }
 
     #[test]

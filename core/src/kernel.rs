@@ -33,6 +33,7 @@ pub type StateOf<S, M, const D: usize> = State<S, <M as Mechanism<S, D>>::Pose, 
 /// What a step says about itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[must_use = "it says whether the motion was moved or held"]
 pub struct Report<S> {
     /// Imbalance of momentum (N·s) that the Newton passes left in the worst stage.
     /// Infinite if it, or the motion, left the finite range, never NaN; then, and only then, the motion was held as it was.
@@ -89,7 +90,7 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
     ///
     /// fn slides<E: slipfit_core::law::Elastic<f32>>(slide: Slide<f32, E, Exact<f32>>) {
     ///     let kernel = Kernel::<f32, _, SemiImplicitEuler>::new(slide, 1e-3).unwrap();
-    ///     kernel.step::<6>(&mut kernel.at_rest(Pose::nominal()));
+    ///     let report = kernel.step::<6>(&mut kernel.at_rest(Pose::nominal()));
     /// }
     /// # use slipfit_core::law::Linear;
     /// # let _: fn(Slide<f32, Linear<f32>, Exact<f32>>) = slides;
@@ -100,7 +101,8 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
     ///
     /// fn slides<E: slipfit_core::law::Elastic<f32>>(slide: Slide<f32, E, Exact<f32>>) {
     ///     let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(slide, 1e-3).unwrap();
-    ///     kernel.step::<6>(&mut kernel.at_rest(Pose::nominal()));
+    ///     let report = kernel.step::<6>(&mut kernel.at_rest(Pose::nominal()));
+    ///     assert!(report.residual.is_finite());
     /// }
     /// # use slipfit_core::law::Linear;
     /// # let _: fn(Slide<f32, Linear<f32>, Exact<f32>>) = slides;

@@ -107,6 +107,9 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     /// The internal variables of laws that nothing has happened to yet.
     fn fresh(&self) -> Self::Internal;
 
+    /// The internal variables after a step that led to `pose`, of a scheme that takes no forces there: for laws that remember places alone.
+    fn remembered(&self, pose: &Self::Pose, internal: &Self::Internal) -> Self::Internal;
+
     /// Makes `kept` `next`, number by number where it is finite and `condition` > 0. In place, since a copy would take stack.
     fn accept(&self, condition: S, next: (&Self::Pose, &Self::Internal), kept: (&mut Self::Pose, &mut Self::Internal));
 

@@ -91,11 +91,12 @@ impl<S: Scalar> Pose<S> {
         }
     }
 
-    /// The same pose with its quaternion one Newton step nearer to unit length.
+    /// The same pose with its quaternion nearer to unit length: by a Newton step where it is near already, and within a factor of two or
+    /// three at any length.
     #[inline(always)]
     pub fn normalised(&self) -> Self {
         let Orientation { w, v } = self.orientation;
-        let scale = S::from_f64(0.5) * (S::from_f64(3.0) - (w * w + dot(&v, &v)));
+        let scale = towards_unit_length(w * w + dot(&v, &v));
         Self { displacement_w: self.displacement_w, orientation: Orientation { w: w * scale, v: v * scale } }
     }
 
@@ -163,6 +164,16 @@ impl<S: Scalar> ToBody<S> {
     }
 }
 
+/// What brings nearer to unit length what has this `square` of a length, never negative nor zero.
+///
+/// Newton's step ½(3 − `square`) does so near 1. It alone would turn a length beyond √3 around, and one that a step makes shorter by more
+/// than a factor of 1.5 would vanish step by step: an implicit step of 2.24 rad does. Below 0.5 and above 2.5 it is therefore
+/// 0.625/`square`, which is the greater one there and the smaller one between.
+#[inline(always)]
+pub(crate) fn towards_unit_length<S: Scalar>(square: S) -> S {
+    (S::from_f64(0.625) / square).max_of(S::from_f64(0.5) * (S::from_f64(3.0) - square))
+}
+
 /// How fast the turn θ (rad) of [`Pose::explicit_update`] grows while the body turns with `angular_velocity_b` ω (rad/s): the orientation is
 /// that of the quaternion (1, θ/2) after the pose's, so that θ̇ = ω + ½·θ×ω + ¼·θ(θ·ω).
 #[inline(always)]
@@ -181,7 +192,7 @@ pub(crate) fn turned_over<S: Scalar>(angular_velocity: &Vector3<S>, rate: &Vecto
 
 #[cfg(test)]
 mod tests {
-    use super::{Pose, turn_rate, turned_over};
+    use super::{Pose, towards_unit_length, turn_rate, turned_over};
     use crate::Vector3;
 
     #[test]
@@ -196,6 +207,46 @@ mod tests {
         }
         let x_w = pose.to_body().apply_inverse(Vector3::x());
         assert!((x_w - Vector3::x()).norm_squared() < 1e-14, "{x_w}");
+    }
+
+    /// About a fixed axis, so that the angle is known: each step turns by twice the arctangent of half of what it is to turn by.
+    #[test]
+    fn however_far_a_step_turns_the_length_stays_and_the_angle_is_right() {
+        let axis = Vector3::new(2.0, -1.0, 2.0) / 3.0;
+        for by in [0.1, 1.7, 2.0, 2.2, 2.24, 3.0, 3.5, 5.0, 20.0, 1e3, 1e6] {
+            for is_implicit in [true, false] {
+                let (mut pose, mut angle) = (Pose::<f64>::nominal(), 0.0);
+                for step in 0..1000 {
+                    let none = Vector3::zeros();
+                    let next = if is_implicit {
+                        pose.implicit_update(none, axis, by)
+                    } else {
+                        pose.explicit_update(none, axis, by)
+                    };
+                    pose = next.normalised();
+                    angle += 2.0 * libm::atan(by / 2.0);
+                    let q = pose.orientation;
+                    let length = libm::sqrt(q.w * q.w + q.v.norm_squared());
+                    assert!(
+                        (0.01 / by.max(1.0)..=by.max(2.0)).contains(&length),
+                        "{by} {is_implicit} {step}: {length:e}"
+                    );
+                    let [w, v] = [q.w / length, axis.dot(&q.v) / length];
+                    let [cos, sin] = [libm::cos(angle / 2.0), libm::sin(angle / 2.0)];
+                    assert!(libm::hypot(w - cos, v - sin) < 1e-10, "{by} {is_implicit} {step}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn near_unit_length_it_is_newtons_step_to_the_last_digit() {
+        for k in 501..2500 {
+            let square = f64::from(k) / 1000.0;
+            assert_eq!(towards_unit_length(square), 0.5 * (3.0 - square), "{square}");
+            assert_eq!(towards_unit_length(square as f32), 0.5 * (3.0 - square as f32), "{square}");
+        }
+        assert!(towards_unit_length(f64::NAN).is_nan());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::{
     ParameterError, Scalar, Vector3,
-    clearance::GapStatistics,
+    clearance::{GapStatistics, checked_level},
     drive::Drive,
     error::bounded,
     menu::{ContactData, FrictionData, SlideData},
@@ -45,8 +45,10 @@ impl<S: Scalar + PartialOrd> SceneData<S> {
     /// The unit of tolerance level `n`: its gaps are x − n·σ (eq. 9), computed in `S`.
     ///
     /// # Errors
-    /// [`ParameterError`] if a deviation is negative, above 1 m or not finite. All else is validated where a slide is made.
+    /// [`ParameterError`] if the level exceeds [`LEVEL_MOST`](crate::clearance::LEVEL_MOST), or a deviation is negative, above
+    /// 1 m or not finite. All else is validated where a slide is made.
     pub fn at(&self, n: S) -> Result<SlideData<S>, ParameterError<S>> {
+        let n = checked_level(n)?;
         let mut gaps = self.gap_means;
         for ((gap, mean), deviation) in gaps.iter_mut().zip(self.gap_means).zip(self.gap_deviations) {
             *gap = GapStatistics { mean, deviation: bounded("gap.deviation", deviation, [0.0, 1.0])? }.at(n);
@@ -97,6 +99,10 @@ mod tests {
         for bad in [-1e-9, -1.0, 1.1, f32::NAN, f32::INFINITY] {
             assert_eq!(scene(bad).at(0.0).unwrap_err().parameter, "gap.deviation", "{bad}");
         }
+        for level in [-1000.0, -50.0, -20.1, 20.1, 50.0, f32::NAN, f32::INFINITY] {
+            assert_eq!(scene(1e-5).at(level).unwrap_err().parameter, "n", "{level}");
+        }
+        assert!(scene(1e-5).at(-20.0).is_ok() && scene(1e-5).at(20.0).is_ok());
         assert!(scene(0.0).at(3.0).is_ok() && scene(-0.0).at(3.0).is_ok() && scene(1e-5).at(3.0).is_ok());
     }
 }

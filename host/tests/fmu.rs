@@ -128,7 +128,7 @@ fn a_mechanism_has_its_kernels_bits_in_version_2_too() {
         let motion = &state.motion;
         let now = drive_motor(kernel.mechanism(), kernel.time(state.steps), &motion.pose, &motion.velocity);
         rows.push([now.effort, now.speed].map(f64::from));
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
     }
     assert_eq!(STEP, 1e-4);
     let expected = json!({
@@ -156,7 +156,7 @@ fn a_mechanism_on_joints_in_space_has_its_kernels_bits() {
         let now = drive_motor(unit, kernel.time(state.steps), &motion.pose, &motion.velocity);
         let [_, rod, slide] = unit.bodies().placed(&motion.pose, &motion.velocity).free.bodies;
         rows.push([now.effort, now.speed, rod.displacement_w.z, slide.displacement_w.y].map(f64::from));
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
     }
     assert!(rows[1000].iter().all(|number| number.abs() > 1e-4), "it moves: {:?}", rows[1000]);
     assert_eq!(STEP, 1e-4);
@@ -184,7 +184,8 @@ fn what_cannot_be_made_is_not_begun() {
     let folder = tempfile::tempdir().unwrap();
     let unit = folder.path().join("x.fmu");
     let run = |options: &[&str]| slipfit(folder.path(), &[&["fmu", "-o", "x.fmu"], options].concat());
-    refused(&run(&["--scalar", "f64"]), 2, "controller.scalar is f64", &unit);
+    refused(&run(&["--set", "controller.scalar=f64"]), 2, "controller.scalar is f64", &unit);
+    refused(&run(&["--scalar", "f32"]), 2, "unexpected argument '--scalar'", &unit);
     refused(&run(&["--core", "nowhere"]), 2, "--core: nowhere is not slipfit-core's folder", &unit);
     refused(&run(&["three-part-stack"]), 2, "the scene has neither a slide", &unit);
     refused(&run(&["--fmi", "1"]), 2, "--fmi", &unit);

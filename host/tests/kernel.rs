@@ -40,7 +40,9 @@ fn what_c_cannot_do_is_refused_at_the_desk() {
     let folder = tempfile::tempdir().unwrap();
     for (line, why) in [
         ("kernel --set contact.exponent=2 -o x.h", "contact.exponent is 2, the C library is built for 1.5"),
-        ("kernel --scalar f64 -o x.h", "controller.scalar is f64"),
+        ("kernel --set controller.scalar=f64 -o x.h", "controller.scalar is f64"),
+        ("kernel --set controller.scalar=f64 --crate x", "controller.scalar is f64"),
+        ("kernel --scalar f32 -o x.h", "unexpected argument '--scalar'"),
         ("kernel --integrator sdirk2 -o x.h", "controller.integrator is sdirk2, the C library steps by implicit-euler"),
     ] {
         let output = slipfit(folder.path(), line);
@@ -72,4 +74,95 @@ fn a_crate_is_written_whole_or_not_at_all() {
         assert_eq!(output.status.code(), Some(2), "{line}");
     }
     assert!(!folder.path().join("Slide").exists() && !folder.path().join("slide").exists());
+}
+
+/// Only what slipfit wrote, or nothing, makes room for a crate.
+#[test]
+fn a_folder_is_not_overwritten_unasked() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::create_dir_all(path("own/src")).unwrap();
+    std::fs::write(path("own/Cargo.toml"), "[package]\nname = \"own\"\n").unwrap();
+    std::fs::write(path("own/src/lib.rs"), "// mine\n").unwrap();
+    std::fs::create_dir(path("notes")).unwrap();
+    std::fs::write(path("notes/today.txt"), "mine").unwrap();
+    for (scene, name, file) in
+        [("", "own", "Cargo.toml"), (" slider-crank", "own", "Cargo.toml"), ("", "notes", "today.txt")]
+    {
+        let output = slipfit(folder.path(), &format!("kernel{scene} --crate {name}"));
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{name}: {errors}");
+        assert!(errors.contains(&format!("{name}/{file} was not written by slipfit")), "{errors}");
+    }
+    assert_eq!(std::fs::read_to_string(path("own/src/lib.rs")).unwrap(), "// mine\n");
+    assert_eq!(std::fs::read_dir(path("notes")).unwrap().count(), 1);
+    // Of one's own crate the scene can change, unless one of its files is somebody else's.
+    std::fs::create_dir(path("empty")).unwrap();
+    for name in ["slide", "empty"] {
+        json(folder.path(), &format!("kernel --crate {name}"));
+        std::fs::write(path(name).join("Cargo.lock"), "").unwrap();
+        json(folder.path(), &format!("kernel --set slide.mass=90 --crate {name}"));
+        assert!(std::fs::read_to_string(path(name).join("src/lib.rs")).unwrap().contains("mass: 0.09,"));
+        std::fs::write(path(name).join("src/lib.rs"), "// mine\n").unwrap();
+        assert_eq!(slipfit(folder.path(), &format!("kernel --crate {name}")).status.code(), Some(2));
+        assert_eq!(std::fs::read_to_string(path(name).join("src/lib.rs")).unwrap(), "// mine\n");
+    }
+}
+
+/// What a C compiler makes of `text` in the `folder`: what the program prints, or nothing if it does not compile.
+fn compiled(folder: &Path, text: &str) -> Option<String> {
+    std::fs::write(folder.join("main.c"), text).unwrap();
+    let strict = ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I"];
+    let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/capi/include");
+    let mut compiler = Command::new("cc");
+    let built = compiler.current_dir(folder).args(strict).arg(library).args(["main.c", "-o", "main"]).output().unwrap();
+    let run = || Command::new(folder.join("main")).output().unwrap().stdout;
+    built.status.success().then(|| String::from_utf8(run()).unwrap())
+}
+
+#[test]
+fn a_program_includes_two_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("b")).unwrap();
+    json(folder.path(), "kernel -o scene.h");
+    json(folder.path(), "kernel --set slide.mass=90 -o Heavy-2.h");
+    json(folder.path(), "kernel --set slide.mass=90 -o b/scene.h");
+    let program = |headers: &str, values: &str| {
+        format!(
+            "#include \"slipfit.h\"\n{headers}\n#include <stdio.h>\nint main(void) {{ printf({values}); return 0; }}\n"
+        )
+    };
+    let both = program(
+        "#include \"scene.h\"\n#include \"Heavy-2.h\"\n#include \"scene.h\"\n",
+        "\"%g %g %d\", slipfit_this_scene.mass, slipfit_this_heavy_2.mass, SLIPFIT_SCENE_HASH != SLIPFIT_HEAVY_2_HASH",
+    );
+    assert_eq!(compiled(folder.path(), &both).as_deref(), Some("0.0818 0.09 1"));
+    // Of one name in two folders: the second one is not dropped but refused.
+    let same = program("#include \"scene.h\"\n#include \"b/scene.h\"", "\"%g\", slipfit_this_scene.mass");
+    assert_eq!(compiled(folder.path(), &same), None);
+}
+
+#[test]
+fn headers_of_crates_compile_whatever_they_are_called() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["int", "class", "exit", "main", "float", "errno"] {
+        json(folder.path(), &format!("kernel hatch --crate {name}"));
+        let (header, upper) = (format!("{name}/{name}.h"), name.to_uppercase());
+        let program = format!(
+            "#include \"{header}\"\n#include <errno.h>\n#include <stdio.h>\n#include <stdlib.h>\n\
+             {name}_unit unit;\nint main(void) {{ printf(\"%d\", {upper}_NOT_MADE); return 0; }}\n"
+        );
+        assert_eq!(compiled(folder.path(), &program).as_deref(), Some("5"), "{name}");
+        let syntax = ["-std=c++17", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-x", "c++"];
+        assert!(Command::new("c++").args(syntax).arg(folder.path().join(header)).status().unwrap().success(), "{name}");
+    }
+    for name in ["fn", "self", "std", "core", "slipfit-core", "con"] {
+        let output = slipfit(folder.path(), &format!("kernel hatch --crate {name}"));
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            output.status.code() == Some(2) && errors.contains("--crate: a crate is not named"),
+            "{name}: {errors}"
+        );
+        assert!(!folder.path().join(name).exists(), "{name}");
+    }
 }

@@ -43,6 +43,31 @@ fn nodes_over_time_are_what_a_run_gives() {
     }
 }
 
+/// A drawer is at its stroke's end before the table ends: from there on the table holds what it does under a drive that goes on, not what it
+/// came there with; its verdict is that of the stroke.
+#[test]
+fn over_time_a_table_goes_on_beyond_the_stroke() {
+    let mechanism = mechanism("telescopic-drawer", &[], "0:1:1");
+    let driven = ByDrive::new(&mechanism, 0).unwrap();
+    let (made, sweep) = force_table::make(&driven, Demand::Full, || ()).unwrap();
+    let table = Table::<2>::open(&made.bytes).unwrap().expect_axes([AxisKind::Level, AxisKind::Time]).unwrap();
+    assert_eq!(made.verdicts, [MotionVerdict::Runs; 2]);
+    let on = Mechanism { run: slipfit::scene::RunSpec { stroke: None, ..mechanism.run }, ..mechanism.clone() };
+    let step = f64::from(table.axes()[1].step());
+    let mut apart: f64 = 0.0;
+    for level in &sweep.levels {
+        let (end, last) = (level.outcome.end, *level.trajectory.force.last().unwrap());
+        assert!((end.z - 0.065).abs() < 1e-9 && end.t < mechanism.run.duration - 0.1, "{end:?}");
+        let run = run(&on, &mechanism.gaps_at(&[level.n]).unwrap(), step).unwrap();
+        for row in run.samples.rows.iter().filter(|row| row[0] > end.t) {
+            let found = f64::from(table.lookup([level.n as f32, row[0] as f32]).force);
+            assert!((found - row[1]).abs() < 1e-3 * driven.greatest_force(), "{} {row:?} {found}", level.n);
+            apart = apart.max((row[1] - last).abs());
+        }
+    }
+    assert!(apart > 5.0, "what it came there with is {apart} N off");
+}
+
 /// Turned slowly and without friction a hatch takes the moment of its weight, m·g·l·cos φ, wherever its pins are in their holes:
 /// these move its centre by 0.1 mm of 150.
 #[test]

@@ -59,6 +59,17 @@ n = "-2:2:1"
     slider("Slider before a stop", "[0, 0]", 20, 245, stop)
 }
 
+/// Failure has this cause, and no other: its true share is 100 %.
+#[track_caller]
+fn is_the_only_cause(found: &serde_json::Value, name: &str) {
+    let drivers = found["malfunction_drivers"].as_array().unwrap();
+    let of = |i: usize, key: &str| drivers[i][key].as_f64().unwrap();
+    let (share, error) = (of(0, "share"), of(0, "error"));
+    println!("{name}: {share} ± {error}");
+    assert!(drivers[0]["name"] == name && (share - 1.0).abs() <= 2.0 * error && error < 0.06, "{drivers:?}");
+    assert!(of(0, "share") > of(0, "chance"), "{drivers:?}");
+}
+
 /// Units whose stop is nearer than that malfunction: Φ(1) of them.
 #[test]
 fn units_of_a_mechanism_fail_as_often_as_their_gap_says() {
@@ -68,7 +79,7 @@ fn units_of_a_mechanism_fail_as_often_as_their_gap_says() {
     let share = &found["statistics"]["malfunctions"];
     let (least, most) = (share["interval"][0].as_f64().unwrap(), share["interval"][1].as_f64().unwrap());
     assert!(least < 0.841_345 && 0.841_345 < most && most - least < 0.03, "{share}");
-    assert_eq!(found["malfunction_drivers"][0]["name"], "stop gap");
+    is_the_only_cause(&found, "stop gap");
     // `run` draws the same units.
     let run = json(folder.path(), &["run", "stop.toml", "--units", "500", "--json"]);
     let few = json(folder.path(), &["population", "stop.toml", "--units", "500", "--json"]);
@@ -167,6 +178,21 @@ fn a_motor_is_too_weak_as_often_as_the_mass_says() {
     let interval = &rare["malfunction"]["interval"];
     let [low, high] = [0, 1].map(|i| interval[i].as_f64().unwrap());
     assert!(low < 3.167e-5 && 3.167e-5 < high && high < 2.0 * low, "{rare}");
+}
+
+/// The mass alone decides: at 1 % and at 68 % of failing units it is found to have all of the failures.
+#[test]
+fn the_only_cause_of_failure_has_all_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("lift.toml"), lifted()).unwrap();
+    for (mass, share) in [(0.2 + 0.023_263, 0.01), (0.2 - 0.004_677, 0.68)] {
+        let limit = lifting(mass).to_string();
+        let found =
+            json(folder.path(), &["population", "lift.toml", "--json", "--units", "5000", "--force-limit", &limit]);
+        let failing = found["statistics"]["malfunctions"]["share"].as_f64().unwrap();
+        assert!((failing - share).abs() < 4.0 * libm::sqrt(share * (1.0 - share) / 5000.0), "{failing} {share}");
+        is_the_only_cause(&found, "slider.mass");
+    }
 }
 
 #[test]

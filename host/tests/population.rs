@@ -193,10 +193,10 @@ fn a_rare_malfunction_is_as_probable_as_it_is() {
     let found = of(&["--force-limit", &limit, "--rare"])["rare"].clone();
     let parts = found["parts"].as_array().unwrap();
     let kinds: Vec<&str> = parts.iter().map(|part| part["kind"].as_str().unwrap()).collect();
-    assert_eq!(kinds, ["crawls", "jams", "over-limit"]);
+    assert_eq!(kinds, ["crawls", "jams", "overruns", "over-limit"]);
     assert!(parts.iter().all(|part| part["side"] == "any"));
     let [probability, error] =
-        ["probability", "standard_error"].map(|name| parts[2][name].as_f64().unwrap_or(f64::NAN));
+        ["probability", "standard_error"].map(|name| parts[3][name].as_f64().unwrap_or(f64::NAN));
     assert!((probability - 1e-3).abs() < 4.0 * error && error < 3e-4, "{found}");
 }
 

@@ -61,12 +61,12 @@ static slipfit_jam_watch watch;
 int main(void) {
     const slipfit_sample rest = {0.0f, 0.0f, 0.0f, 0.0f};
     slipfit_limits limits;
-    uint32_t jam = 1;
+    uint32_t verdict = 9;
     if (slipfit_limits_for_noise(1e-3f, 0.0f, &limits) == SLIPFIT_OK && slipfit_jam_watch_init(&watch, &limits) == SLIPFIT_OK &&
-        slipfit_jam_watch_step(&watch, &rest, &jam) == SLIPFIT_OK) {
+        slipfit_jam_watch_step(&watch, &rest, &verdict) == SLIPFIT_OK) {
         put("watched\n");
     }
-    return (int)other_divide(1, jam);
+    return (int)other_divide(1, verdict == SLIPFIT_JAM);
 }
 "#;
 

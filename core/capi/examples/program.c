@@ -92,7 +92,7 @@ static void watch(void) {
     slipfit_limits weak = limits;
     weak.force_most = 0.9f;
     uint64_t looked_up = EMPTY, watched = EMPTY;
-    uint32_t verdicts[4] = {0, 0, 0, 0};
+    uint32_t verdicts[5] = {0, 0, 0, 0, 0};
     uint32_t failed = (uint32_t)slipfit_table_open(&table, slipfit_table_bytes, SLIPFIT_TABLE_SIZE, SLIPFIT_AXIS_TIME,
                                                    SLIPFIT_SCENE_HASH);
     uint32_t rounds = 0, jams = 0;
@@ -112,10 +112,10 @@ static void watch(void) {
         looked_up = add(add(add(looked_up, found.force), found.velocity), (float)(found.clamped + 2 * found.mixed));
         const slipfit_sample sample = {at.time, at.force, at.velocity, at.velocity + at.force / slipfit_this_scene.drive_gain};
         failed |= (uint32_t)slipfit_monitor_step(&monitor, &sample, &report);
-        verdicts[report.verdict & 3u]++;
+        verdicts[report.verdict]++;
         watched = add(add(watched, report.excess), report.band);
         failed |= (uint32_t)slipfit_jam_watch_step(&jam_watch, &sample, &jam);
-        jams += jam;
+        jams += jam == SLIPFIT_JAM;
         failed |= (uint32_t)slipfit_bank_add(&bank, at.time, at.force);
         failed |= (uint32_t)slipfit_scrubber_check(&scrubber, 64, &rounds);
     }
@@ -127,6 +127,7 @@ static void watch(void) {
     put_hex("free", verdicts[SLIPFIT_FREE]);
     put_hex("tight", verdicts[SLIPFIT_TIGHT]);
     put_hex("jam", verdicts[SLIPFIT_JAM]);
+    put_hex("no data", verdicts[SLIPFIT_NO_DATA]);
     put_hex("jam of a weak drive", jams);
     put_hex("rounds", rounds);
     put_hex("estimate", add(add(add(EMPTY, estimate.level), estimate.low), estimate.high));

@@ -52,6 +52,10 @@
 // Standing still against the command, or at the limit of force.
 #define SLIPFIT_JAM 3
 
+// For the time `hold` of the limits no sample was of use: a number was missing, as of a dead sensor, or the table has no force
+// then.
+#define SLIPFIT_NO_DATA 4
+
 // 0 if a function did what it says, or why it did nothing.
 typedef int32_t slipfit_status;
 
@@ -216,11 +220,12 @@ typedef struct slipfit_limits {
   float blind;
   // A force (N) beyond which it is a jam, either sign.
   float force_most;
-  // How long (s) a jam's sign has to last before it is reported.
+  // How long (s) a jam's sign has to last before it is reported, and how long no sample has to be of use before there is no data.
   float hold;
   // Time constant (s) over which force is averaged.
   float smoothing;
-  // By how many levels a unit may be tighter than it is taken for.
+  // By how many levels a unit may be tighter than it is taken for. By fewer where the table ends, or where its units end
+// differently from this one.
   float band;
   // What the averaged force (N) may differ from the table's beyond that band.
   float margin;
@@ -233,7 +238,8 @@ typedef struct slipfit_monitor {
   uint64_t words[48];
 } slipfit_monitor;
 
-// What the drive measures once a period.
+// What the drive measures once a period. Of what it cannot measure, a force is given as 0 and a speed as the command, which say
+// nothing. What it fails to measure is NAN.
 typedef struct slipfit_sample {
   // Time since the motion's start (s).
   float time;
@@ -247,7 +253,7 @@ typedef struct slipfit_sample {
 
 // What a monitor says of a sample.
 typedef struct slipfit_report {
-  // SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_TIGHT or SLIPFIT_JAM.
+  // SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_TIGHT, SLIPFIT_JAM or SLIPFIT_NO_DATA.
   uint32_t verdict;
   // The force (N) that the table has for this unit now.
   float expected;
@@ -328,7 +334,7 @@ typedef struct slipfit_jam_watch {
 // A field of the table's header is out of bounds.
 #define SLIPFIT_TABLE_HEADER 20
 
-// A value of the table is out of bounds.
+// A value of the table is out of bounds; of an open table: it has changed since.
 #define SLIPFIT_TABLE_VALUE 21
 
 // The table is over another number of axes.
@@ -349,9 +355,12 @@ typedef struct slipfit_jam_watch {
 // Too few samples for an estimate.
 #define SLIPFIT_BANK_SAMPLES 33
 
-// The estimate is not on the table's axis, not within the band of the level that the monitor was made for, or less certain than
+// The estimate is of no unit of the table, not within the band of the level that the monitor was made for, or less certain than
 // that band.
 #define SLIPFIT_MONITOR_BAND 34
+
+// The table has no unit of the level: those on either side end differently, one runs and one jams, say.
+#define SLIPFIT_MONITOR_MIXED 35
 
 #ifdef __cplusplus
 extern "C" {
@@ -363,9 +372,10 @@ uint32_t slipfit_version(void);
 // What a status is called, such as `SLIPFIT_OK`; `unknown` for what no function returns. Ends with a zero, and stays.
 const char *slipfit_status_name(slipfit_status status);
 
-// Makes a predictor in `*predictor` for a unit of tolerance level `n` of `*scene`, at rest at time 0. It is tried over its
-// first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a
-// tenth of the greatest, gain times speed plus the weight, or the motion cannot be moved.
+// Makes a predictor in `*predictor` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest at time 0. It is tried over
+// its first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a
+// tenth of the greatest, gain times speed plus the weight, or the motion cannot be moved. A step above 1 ms is halved down to
+// that, and each of the halves tried so.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*predictor` meanwhile.
@@ -385,7 +395,7 @@ slipfit_status slipfit_predictor_step(struct slipfit_predictor *storage);
 // As for slipfit_predictor_step; nobody else uses `*prediction` meanwhile.
 slipfit_status slipfit_predictor_read(const struct slipfit_predictor *storage, struct slipfit_prediction *prediction);
 
-// Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` of `*scene`, at rest until its release at
+// Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest until its release at
 // time 0. Its clock starts `early` periods before, SLIPFIT_AHEAD_EARLY_MOST at most, in which it takes a lead. The scene's scheme
 // and step do not matter. Its friction must be regularised, also in a library that is built for exact friction: instead of
 // that take a stick band of 10 to 30 µm/s, or SLIPFIT_LAW is the answer.
@@ -445,6 +455,8 @@ slipfit_status slipfit_table3_open(struct slipfit_table3 *storage,
                                    uint64_t scene_hash);
 
 // Force and velocity of a unit of tolerance level `n` at `at`, the time (s) or position (m) since the motion's start.
+// SLIPFIT_TABLE_VALUE if one of them lay outside the range of the table's own values, so that the table has changed since it was
+// opened; then `*lookup` has the end of that range. What changes within it, a slipfit_scrubber alone finds.
 //
 // # Safety
 // As for slipfit_table_open; the memory has been written before; nobody else uses `*lookup` meanwhile.
@@ -453,7 +465,8 @@ slipfit_status slipfit_table_look_up(const struct slipfit_table *storage,
                                      float at,
                                      struct slipfit_lookup *lookup);
 
-// Force and velocity of a unit of tolerance level `n` at the position `z` (m), commanded to `speed` (m/s).
+// Force and velocity of a unit of tolerance level `n` at the position `z` (m), commanded to `speed` (m/s). As
+// slipfit_table_look_up.
 //
 // # Safety
 // As for slipfit_table_look_up.
@@ -518,7 +531,7 @@ slipfit_status slipfit_limits_for_noise(float period,
                                         struct slipfit_limits *limits);
 
 // Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table over time. The first motion starts with
-// it, others with slipfit_monitor_restart.
+// it, others with slipfit_monitor_restart. SLIPFIT_MONITOR_MIXED if a lookup at that level would be mixed.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; the table has been written before; nobody
@@ -537,8 +550,8 @@ slipfit_status slipfit_monitor_step(struct slipfit_monitor *storage,
                                     struct slipfit_report *report);
 
 // Takes the unit for the level that `*estimate` says from now on. SLIPFIT_MONITOR_BAND, and the level stays, if the estimate is
-// not on the table's axis, further than the band of the limits from the `n` of slipfit_monitor_init, or its standard error
-// greater than that band. The band does not move along: a unit that leaves it, at once or motion by motion, is tight.
+// of no unit of the table, further than the band of the limits from the `n` of slipfit_monitor_init, or its standard error
+// negative or greater than that band. The band does not move along: a unit that leaves it, at once or motion by motion, is tight.
 //
 // # Safety
 // As for slipfit_monitor_init; the monitor has been written before.
@@ -578,14 +591,14 @@ slipfit_status slipfit_bank_estimate(const struct slipfit_bank *storage, struct 
 slipfit_status slipfit_jam_watch_init(struct slipfit_jam_watch *storage,
                                       const struct slipfit_limits *limits);
 
-// Sets `*jam` to 1 if there is a jam at `*sample`, after those before it, as a monitor would say SLIPFIT_JAM; to 0 if not. What
-// is not measured is NAN, and neither counts nor starts anew.
+// Sets `*verdict` to what a sample says, after those before it, as a monitor would: SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_JAM or
+// SLIPFIT_NO_DATA, never SLIPFIT_TIGHT. What is NAN neither counts nor starts anew.
 //
 // # Safety
-// As for slipfit_jam_watch_init; the memory has been written before; nobody else uses `*jam` meanwhile.
+// As for slipfit_jam_watch_init; the memory has been written before; nobody else uses `*verdict` meanwhile.
 slipfit_status slipfit_jam_watch_step(struct slipfit_jam_watch *storage,
                                       const struct slipfit_sample *sample,
-                                      uint32_t *jam);
+                                      uint32_t *verdict);
 
 // Starts another motion: forgets all samples, and keeps the limits.
 //

@@ -104,7 +104,7 @@ impl Predicted {
     }
 }
 
-/// Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` of `*scene`, at rest until its release at
+/// Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest until its release at
 /// time 0. Its clock starts `early` periods before, SLIPFIT_AHEAD_EARLY_MOST at most, in which it takes a lead. The scene's scheme
 /// and step do not matter. Its friction must be regularised, also in a library that is built for exact friction: instead of
 /// that take a stick band of 10 to 30 µm/s, or SLIPFIT_LAW is the answer.

@@ -4,7 +4,7 @@ use slipfit_core::monitor::{JamWatch, Limits};
 
 use crate::{
     border::{Storage, input, make, object_mut, output},
-    monitor::{slipfit_limits, slipfit_sample},
+    monitor::{code, slipfit_limits, slipfit_sample},
     status::{slipfit_status, status},
 };
 
@@ -44,23 +44,23 @@ pub unsafe extern "C" fn slipfit_jam_watch_init(
     })
 }
 
-/// Sets `*jam` to 1 if there is a jam at `*sample`, after those before it, as a monitor would say SLIPFIT_JAM; to 0 if not. What
-/// is not measured is NAN, and neither counts nor starts anew.
+/// Sets `*verdict` to what a sample says, after those before it, as a monitor would: SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_JAM or
+/// SLIPFIT_NO_DATA, never SLIPFIT_TIGHT. What is NAN neither counts nor starts anew.
 ///
 /// # Safety
-/// As for slipfit_jam_watch_init; the memory has been written before; nobody else uses `*jam` meanwhile.
+/// As for slipfit_jam_watch_init; the memory has been written before; nobody else uses `*verdict` meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn slipfit_jam_watch_step(
     storage: *mut slipfit_jam_watch,
     sample: *const slipfit_sample,
-    jam: *mut u32,
+    verdict: *mut u32,
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
     status(|| unsafe {
-        output(jam, || {
+        output(verdict, || {
             let sample = (*input(sample)?).into();
             let Watching { limits, watch } = object_mut(storage)?;
-            Ok(watch.step(limits, &sample).into())
+            Ok(code(watch.step(limits, &sample)))
         })
     })
 }

@@ -22,6 +22,20 @@ pub const SLIPFIT_FREE: u32 = 1;
 pub const SLIPFIT_TIGHT: u32 = 2;
 /// Standing still against the command, or at the limit of force.
 pub const SLIPFIT_JAM: u32 = 3;
+/// For the time `hold` of the limits no sample was of use: a number was missing, as of a dead sensor, or the table has no force
+/// then.
+pub const SLIPFIT_NO_DATA: u32 = 4;
+
+/// As C has it.
+pub(crate) fn code(verdict: Verdict) -> u32 {
+    match verdict {
+        Verdict::Blind => SLIPFIT_BLIND,
+        Verdict::Free => SLIPFIT_FREE,
+        Verdict::Tight => SLIPFIT_TIGHT,
+        Verdict::Jam => SLIPFIT_JAM,
+        Verdict::NoData => SLIPFIT_NO_DATA,
+    }
+}
 
 /// Where free ends, and when a jam is one.
 #[repr(C)]
@@ -33,11 +47,12 @@ pub struct slipfit_limits {
     pub blind: f32,
     /// A force (N) beyond which it is a jam, either sign.
     pub force_most: f32,
-    /// How long (s) a jam's sign has to last before it is reported.
+    /// How long (s) a jam's sign has to last before it is reported, and how long no sample has to be of use before there is no data.
     pub hold: f32,
     /// Time constant (s) over which force is averaged.
     pub smoothing: f32,
-    /// By how many levels a unit may be tighter than it is taken for.
+    /// By how many levels a unit may be tighter than it is taken for. By fewer where the table ends, or where its units end
+    /// differently from this one.
     pub band: f32,
     /// What the averaged force (N) may differ from the table's beyond that band.
     pub margin: f32,
@@ -45,7 +60,8 @@ pub struct slipfit_limits {
     pub rise: f32,
 }
 
-/// What the drive measures once a period.
+/// What the drive measures once a period. Of what it cannot measure, a force is given as 0 and a speed as the command, which say
+/// nothing. What it fails to measure is NAN.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct slipfit_sample {
@@ -63,7 +79,7 @@ pub struct slipfit_sample {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct slipfit_report {
-    /// SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_TIGHT or SLIPFIT_JAM.
+    /// SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_TIGHT, SLIPFIT_JAM or SLIPFIT_NO_DATA.
     pub verdict: u32,
     /// The force (N) that the table has for this unit now.
     pub expected: f32,
@@ -170,7 +186,7 @@ pub unsafe extern "C" fn slipfit_limits_for_noise(
 }
 
 /// Makes a monitor in `*storage` of a unit of tolerance level `n`, by an open table over time. The first motion starts with
-/// it, others with slipfit_monitor_restart.
+/// it, others with slipfit_monitor_restart. SLIPFIT_MONITOR_MIXED if a lookup at that level would be mixed.
 ///
 /// # Safety
 /// Pointers that are neither null nor misaligned point at what their types say; the table has been written before; nobody
@@ -208,12 +224,7 @@ pub unsafe extern "C" fn slipfit_monitor_step(
             let Watching { monitor, watch } = object_mut(storage)?;
             let report = monitor.step(watch, &sample);
             Ok(slipfit_report {
-                verdict: match report.verdict {
-                    Verdict::Blind => SLIPFIT_BLIND,
-                    Verdict::Free => SLIPFIT_FREE,
-                    Verdict::Tight => SLIPFIT_TIGHT,
-                    Verdict::Jam => SLIPFIT_JAM,
-                },
+                verdict: code(report.verdict),
                 expected: report.tightness.expected,
                 band: report.tightness.band,
                 excess: report.tightness.excess,
@@ -224,8 +235,8 @@ pub unsafe extern "C" fn slipfit_monitor_step(
 }
 
 /// Takes the unit for the level that `*estimate` says from now on. SLIPFIT_MONITOR_BAND, and the level stays, if the estimate is
-/// not on the table's axis, further than the band of the limits from the `n` of slipfit_monitor_init, or its standard error
-/// greater than that band. The band does not move along: a unit that leaves it, at once or motion by motion, is tight.
+/// of no unit of the table, further than the band of the limits from the `n` of slipfit_monitor_init, or its standard error
+/// negative or greater than that band. The band does not move along: a unit that leaves it, at once or motion by motion, is tight.
 ///
 /// # Safety
 /// As for slipfit_monitor_init; the monitor has been written before.

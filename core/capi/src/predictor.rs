@@ -62,9 +62,12 @@ fn friction(data: FrictionData<f32>) -> Result<Friction, Refusal> {
     }
 }
 
-/// Periods of the scene's step over which a predictor is tried before it is made: as long as the release of stored compression
-/// takes in steps of 1 ms.
+/// Steps over which a predictor is tried before it is made: as long as the release of stored compression takes in steps of 1 ms.
 const TRIAL: u32 = 50;
+
+/// The greatest step (s) that is compared with half of it alone. Greater ones may agree with each other because either misses all of
+/// the release, so that their halves are tried too, down to this.
+const TRIAL_STEP: f32 = 1e-3;
 
 /// By how much of the greatest force half the step may change the drive's force in the trial.
 const TRIAL_ERROR: f32 = 0.1;
@@ -103,17 +106,32 @@ fn predictor(scene: &slipfit_scene, n: f32) -> Result<Predictor, Refusal> {
         return Err(Refusal(SLIPFIT_LAW));
     }
     let slide = scene.slide(n, friction)?;
-    let made = Predictor::new(slide, scene.step)?;
-    let fine = Predictor::new(slide, 0.5 * scene.step)?;
+    // A step out of bounds is refused before its halves are tried, of which there are ten at most.
+    Kernel::<f32, _, ImplicitEuler<4>>::new(slide, scene.step)?;
     // What the drive can push with, and the weight.
     let [x, y, z] = scene.gravity.map(|part| part * scene.mass);
     let greatest = (scene.drive_gain * scene.drive_speed).abs() + x.abs() + y.abs() + z.abs();
-    if made.holds(fine, greatest) { Ok(made) } else { Err(Refusal(SLIPFIT_STEP)) }
+    let mut step = scene.step;
+    while step > TRIAL_STEP {
+        step *= 0.5;
+    }
+    // Powers of two are exact, so that the last step is the scene's.
+    loop {
+        let made = Predictor::new(slide, step)?;
+        if !made.holds(Predictor::new(slide, 0.5 * step)?, greatest) {
+            return Err(Refusal(SLIPFIT_STEP));
+        }
+        if step >= scene.step {
+            return Ok(made);
+        }
+        step *= 2.0;
+    }
 }
 
-/// Makes a predictor in `*predictor` for a unit of tolerance level `n` of `*scene`, at rest at time 0. It is tried over its
-/// first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a
-/// tenth of the greatest, gain times speed plus the weight, or the motion cannot be moved.
+/// Makes a predictor in `*predictor` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest at time 0. It is tried over
+/// its first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a
+/// tenth of the greatest, gain times speed plus the weight, or the motion cannot be moved. A step above 1 ms is halved down to
+/// that, and each of the halves tried so.
 ///
 /// # Safety
 /// Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*predictor` meanwhile.

@@ -37,7 +37,7 @@ pub const SLIPFIT_TABLE_VERSION: slipfit_status = 18;
 pub const SLIPFIT_TABLE_CHECKSUM: slipfit_status = 19;
 /// A field of the table's header is out of bounds.
 pub const SLIPFIT_TABLE_HEADER: slipfit_status = 20;
-/// A value of the table is out of bounds.
+/// A value of the table is out of bounds; of an open table: it has changed since.
 pub const SLIPFIT_TABLE_VALUE: slipfit_status = 21;
 /// The table is over another number of axes.
 pub const SLIPFIT_TABLE_AXES: slipfit_status = 22;
@@ -51,9 +51,11 @@ pub const SLIPFIT_TABLE_SLOT: slipfit_status = 25;
 pub const SLIPFIT_BANK_LEVELS: slipfit_status = 32;
 /// Too few samples for an estimate.
 pub const SLIPFIT_BANK_SAMPLES: slipfit_status = 33;
-/// The estimate is not on the table's axis, not within the band of the level that the monitor was made for, or less certain than
+/// The estimate is of no unit of the table, not within the band of the level that the monitor was made for, or less certain than
 /// that band.
 pub const SLIPFIT_MONITOR_BAND: slipfit_status = 34;
+/// The table has no unit of the level: those on either side end differently, one runs and one jams, say.
+pub const SLIPFIT_MONITOR_MIXED: slipfit_status = 35;
 
 /// The version of the library, 10000·major + 100·minor + patch.
 pub const SLIPFIT_VERSION: u32 = 100;
@@ -91,6 +93,7 @@ pub extern "C" fn slipfit_status_name(status: slipfit_status) -> *const c_char {
         SLIPFIT_BANK_LEVELS => c"SLIPFIT_BANK_LEVELS",
         SLIPFIT_BANK_SAMPLES => c"SLIPFIT_BANK_SAMPLES",
         SLIPFIT_MONITOR_BAND => c"SLIPFIT_MONITOR_BAND",
+        SLIPFIT_MONITOR_MIXED => c"SLIPFIT_MONITOR_MIXED",
         _ => c"unknown",
     };
     name.as_ptr()
@@ -129,6 +132,7 @@ impl From<MonitorError> for Refusal {
         match error {
             MonitorError::Table(error) => error.into(),
             MonitorError::Parameter(error) => error.into(),
+            MonitorError::Mixed { .. } => Self(SLIPFIT_MONITOR_MIXED),
         }
     }
 }

@@ -4,7 +4,7 @@ use slipfit_core::table::{AxisKind, Lookup, Table};
 
 use crate::{
     border::{Storage, bytes, make, object, output},
-    status::{Refusal, SLIPFIT_PARAMETER, slipfit_status, status},
+    status::{Refusal, SLIPFIT_PARAMETER, SLIPFIT_TABLE_VALUE, slipfit_status, status},
 };
 
 /// The second axis of a table is time (s).
@@ -59,11 +59,25 @@ unsafe impl Storage for slipfit_table3 {
     const MARK: u32 = 0x534c_5433;
 }
 
-impl<const N: usize> Opened<N> {
-    fn look_up(&self, at: [f32; N]) -> slipfit_lookup {
-        let Lookup { force, velocity, clamped, mixed } = self.table.lookup(at);
-        slipfit_lookup { force, velocity, clamped: clamped.into(), mixed: mixed.into() }
+/// Writes what the open table in `storage` has `at` a point to `lookup`.
+///
+/// # Safety
+/// As for slipfit_table_look_up.
+unsafe fn look_up<S: Storage<Object = Opened<N>>, const N: usize>(
+    storage: *const S,
+    at: [f32; N],
+    lookup: *mut slipfit_lookup,
+) -> Result<(), Refusal> {
+    let mut is_damaged = false;
+    // SAFETY: the caller's promise.
+    unsafe {
+        output(lookup, || {
+            let Lookup { force, velocity, clamped, mixed, damaged } = object(storage)?.table.lookup(at);
+            is_damaged = damaged;
+            Ok(slipfit_lookup { force, velocity, clamped: clamped.into(), mixed: mixed.into() })
+        })?;
     }
+    if is_damaged { Err(Refusal(SLIPFIT_TABLE_VALUE)) } else { Ok(()) }
 }
 
 /// The axes of a table whose second one is `over`.
@@ -120,6 +134,8 @@ pub unsafe extern "C" fn slipfit_table3_open(
 }
 
 /// Force and velocity of a unit of tolerance level `n` at `at`, the time (s) or position (m) since the motion's start.
+/// SLIPFIT_TABLE_VALUE if one of them lay outside the range of the table's own values, so that the table has changed since it was
+/// opened; then `*lookup` has the end of that range. What changes within it, a slipfit_scrubber alone finds.
 ///
 /// # Safety
 /// As for slipfit_table_open; the memory has been written before; nobody else uses `*lookup` meanwhile.
@@ -131,10 +147,11 @@ pub unsafe extern "C" fn slipfit_table_look_up(
     lookup: *mut slipfit_lookup,
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
-    status(|| unsafe { output(lookup, || Ok(object(storage)?.look_up([n, at]))) })
+    status(|| unsafe { look_up(storage, [n, at], lookup) })
 }
 
-/// Force and velocity of a unit of tolerance level `n` at the position `z` (m), commanded to `speed` (m/s).
+/// Force and velocity of a unit of tolerance level `n` at the position `z` (m), commanded to `speed` (m/s). As
+/// slipfit_table_look_up.
 ///
 /// # Safety
 /// As for slipfit_table_look_up.
@@ -147,5 +164,5 @@ pub unsafe extern "C" fn slipfit_table3_look_up(
     lookup: *mut slipfit_lookup,
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
-    status(|| unsafe { output(lookup, || Ok(object(storage)?.look_up([n, z, speed]))) })
+    status(|| unsafe { look_up(storage, [n, z, speed], lookup) })
 }

@@ -1,8 +1,9 @@
 use super::{Ahead, Limits, State, Status};
 use crate::{
-    Vector3,
-    drive::Drive,
+    ParameterError, SVector, Vector3,
+    drive::{Drive, Push},
     law::{Impact, Pad, ThreeHalves},
+    mechanism::Driven as _,
     system::{AxisBody, on_axis},
 };
 
@@ -83,5 +84,80 @@ fn a_full_ring_waits() {
             assert!(libm::fabs(prediction.speed - speed) < 1e-4, "{period}: {} {speed}", prediction.speed);
         }
         assert!(prediction.lead < 0.02);
+    }
+}
+
+/// A drive whose force is not finite in an interval of time (s).
+#[derive(Clone, Copy, Debug)]
+struct Breaks {
+    drive: Drive<f64>,
+    during: [f64; 2],
+}
+
+impl Push<f64> for Breaks {
+    fn checked(self) -> Result<Self, ParameterError<f64>> {
+        Ok(self)
+    }
+
+    fn force(&self, t: f64, v: f64) -> f64 {
+        let [from, to] = self.during;
+        if t >= from && t < to { f64::NAN } else { self.drive.force(t, v) }
+    }
+
+    fn force_rate(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn gain(&self) -> f64 {
+        self.drive.gain
+    }
+}
+
+type Breaking = AxisBody<f64, ThreeHalves<f64>, Pad<f64>, Breaks>;
+
+impl crate::mechanism::Driven<f64, 1> for Breaking {
+    fn drive(&self) -> &Drive<f64> {
+        &self.elements().1.law.0.drive
+    }
+
+    fn mass(&self) -> f64 {
+        MASS
+    }
+
+    fn speed(&self, velocity: &SVector<f64, 1>) -> f64 {
+        velocity.x
+    }
+}
+
+#[test]
+#[cfg_attr(miri, ignore = "an interpreter has no time for so many steps")]
+fn a_motion_held_for_however_long_stays_the_last_one() {
+    let contact = Impact::new(ThreeHalves::new(3e6).unwrap(), 1000.0, 1e-4).unwrap();
+    // Half of the wrap of the ticks' differences are 2,048 periods.
+    for held in [100, 2040, 2100, 4200, 9000] {
+        let during = [0.1, 0.1 + 1e-3 * f64::from(held)];
+        let push = Breaks { drive: *body(0.1).drive(), during };
+        let body: Breaking = on_axis(MASS, 0.0, Pad::new(1e-3).unwrap(), contact, push).unwrap();
+        let ahead = Ahead::new(body, LIMITS).unwrap();
+        let early = 10;
+        let mut state: State<_, _, 1, 256> = ahead.at_rest(1.0, early);
+        let at = |t: f64| 0.1 * (1.0 - libm::exp(-t * 2.0 / MASS));
+        let mut last = 0.0;
+        for period in 1..400 + held {
+            let t = 1e-3 * f64::from(period - early as i32);
+            let prediction = ahead.step(&mut state);
+            assert!(prediction.lead > -0.102 && prediction.speed >= last - 1e-12, "{held} {period}: {prediction:?}");
+            last = prediction.speed;
+            if t < 0.0 {
+                assert_eq!(prediction.speed, 0.0);
+            } else if t < 0.099 {
+                assert!(libm::fabs(prediction.speed - at(t)) < 1e-4, "{held} {period}: {prediction:?}");
+            } else if t < during[1] + 0.099 {
+                // Known until the force broke, a forced step included.
+                assert!((at(0.099)..at(0.102)).contains(&prediction.speed), "{held} {period}: {prediction:?}");
+            }
+        }
+        // Goes on when it can, from where it was held.
+        assert!(matches!(ahead.step(&mut state).status(), Status::Ahead(_)) && last > at(0.3), "{held}: {last}");
     }
 }

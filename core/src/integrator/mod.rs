@@ -46,6 +46,7 @@ pub type MotionOf<S, M, const D: usize> = Motion<S, <M as Mechanism<S, D>>::Pose
 
 /// What a step leads to, and how well.
 #[derive(Clone, Copy, Debug)]
+#[must_use = "the motion at the step's end is in it"]
 pub struct Step<S, P, R, const D: usize> {
     /// The motion at the step's end.
     pub motion: Motion<S, P, R, D>,
@@ -68,7 +69,43 @@ pub trait Integrator: Copy {
     /// Order of convergence on smooth motion.
     const ORDER: u32;
 
-    /// Whether forces are solved for at the end of a step; exact friction needs that.
+    /// Whether forces are solved for at the end of a step. Friction that sticks needs that: with another scheme it does not compile,
+    /// neither by a kernel nor by the scheme's own functions.
+    /// ```compile_fail
+    /// use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    ///
+    /// type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
+    /// let step = <Rodas4 as Integrator>::step::<f64, Sticks, 6>;
+    /// ```
+    /// ```compile_fail
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
+    /// let step = <Rodas4 as Dense>::dense_step::<f64, Sticks, 6>;
+    /// ```
+    /// ```compile_fail
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
+    /// let step = <Rodas3 as Integrator>::step::<f64, Sticks, 6>;
+    /// ```
+    /// ```compile_fail
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
+    /// let step = <RungeKutta4 as Integrator>::step::<f64, Sticks, 6>;
+    /// ```
+    /// ```compile_fail
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear}, mechanism::Mechanism, slide::Slide};
+    /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
+    /// let step = <SemiImplicitEuler as Integrator>::step::<f64, Sticks, 6>;
+    /// ```
+    /// These do:
+    /// ```
+    /// # use slipfit_core::{integrator::*, law::{Exact, Linear, Regularised}, mechanism::Mechanism, slide::Slide};
+    /// # type Sticks = Slide<f64, Linear<f64>, Exact<f64>>;
+    /// type Slides = Slide<f64, Linear<f64>, Regularised<f64>>;
+    /// let step = <ImplicitEuler<4> as Integrator>::step::<f64, Sticks, 6>;
+    /// let step = <Rodas4 as Dense>::dense_step::<f64, Slides, 6>;
+    /// let steps = [<Rodas3 as Integrator>::step::<f64, Slides, 6>, <SemiImplicitEuler as Integrator>::step::<f64, Slides, 6>];
+    /// ```
     const IMPLICIT: bool;
 
     /// The motion a step `h` (s) after `motion`, which holds at time `t` (s).
@@ -78,6 +115,12 @@ pub trait Integrator: Copy {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D>;
+}
+
+/// Refuses, at compile time, mechanisms that stick: for schemes that are not [`Integrator::IMPLICIT`].
+#[inline(always)]
+fn refuse_sticking<S: Scalar, M: Mechanism<S, D>, const D: usize>() {
+    const { assert!(!M::STICKS, "friction that sticks needs an implicit scheme") }
 }
 
 /// A scheme that is also known within its steps.

@@ -3,10 +3,10 @@
 //! Each stage is a linear solve with the same iteration matrix, so that nothing is iterated. The form is that of Hairer
 //! and Wanner, *Solving Ordinary Differential Equations II* (IV.7), which needs no product with the Jacobian but the one that
 //! eliminates the displacement. Derivatives at the start stand for those of the whole step, so that the error estimate
-//! must choose the steps: where a contact closes or opens within a step it is worth little. Laws with internal
-//! variables, such as exact friction, have no derivative that these methods could use.
+//! must choose the steps: where a contact closes or opens within a step it is worth little. Laws whose forces change their
+//! internal variables, such as exact friction, have no derivative that these methods could use.
 
-use super::{Motion, MotionOf, Step, StepOf};
+use super::{Motion, MotionOf, Step, StepOf, refuse_sticking};
 use crate::{
     SVector, Scalar,
     mechanism::{Differentiated, Mechanism},
@@ -70,6 +70,13 @@ impl<S: Scalar, const D: usize> Part<S, D> {
     pub fn plus(&self, other: &Self, weight: S) -> Self {
         let Self { place, velocity } = other;
         Self { place: self.place + place * weight, velocity: self.velocity + velocity * weight }
+    }
+
+    /// `self` where `condition` > 0, else nothing, even if `self` is not finite: a weight of 0 would make that NaN.
+    #[inline(always)]
+    pub fn only_if(&self, condition: S) -> Self {
+        let or_zero = |x: S| condition.select_gt(S::zero(), x, S::zero());
+        Self { place: self.place.map(or_zero), velocity: self.velocity.map(or_zero) }
     }
 
     /// The sum of `parts` weighted by `weights`, of which zeros cost nothing.
@@ -138,6 +145,7 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
         gamma: f64,
         differentiated: Differentiated<S, M::Jacobians, D>,
     ) -> (Self, Evaluation<S, D>) {
+        refuse_sticking::<S, M, D>();
         let (_, velocity, _) = from;
         let Differentiated { force, per_time, jacobians } = differentiated;
         let a = h * S::from_f64(gamma);
@@ -191,15 +199,20 @@ impl<'a, S: Scalar, M: Mechanism<S, D>, const D: usize> Start<'a, S, M, D> {
 }
 
 impl<S: Scalar, P, const D: usize> End<S, P, D> {
-    /// The step `h` (s) that led here from `motion`.
+    /// The step `h` (s) of `mechanism` that led here from `motion`.
     #[inline(always)]
-    pub fn step<R: Copy>(self, motion: &Motion<S, P, R, D>, h: S) -> Step<S, P, R, D> {
+    pub fn step<M: Mechanism<S, D, Pose = P>>(
+        self,
+        mechanism: &M,
+        motion: &MotionOf<S, M, D>,
+        h: S,
+    ) -> StepOf<S, M, D> {
         Step {
             motion: Motion {
-                pose: self.pose,
                 velocity: motion.velocity + self.change,
                 acceleration: self.change * (S::one() / h),
-                internal: motion.internal,
+                internal: mechanism.remembered(&self.pose, &motion.internal),
+                pose: self.pose,
             },
             residual: S::zero(),
             error: self.error,
@@ -233,5 +246,5 @@ pub(super) fn step<T: Tableau, S: Scalar, M: Mechanism<S, D>, const D: usize>(
     let whole = Part::weighted(&parts, T::RESULT);
     let [first, second] = T::BENDS.map(|weights| Part::weighted(&parts, weights).velocity);
     let slopes = [whole.velocity + first, whole.velocity - first - second];
-    (start.end(&whole, &last).step(motion, h), slopes.map(|slope| slope * start.per_step))
+    (start.end(&whole, &last).step(mechanism, motion, h), slopes.map(|slope| slope * start.per_step))
 }

@@ -1,7 +1,7 @@
 //! The classical Runge–Kutta scheme: fourth order, explicit. A baseline: accurate on smooth motion, stable only while the
 //! step resolves every contact and the stick band.
 
-use super::{Integrator, Motion, MotionOf, Step, StepOf};
+use super::{Integrator, Motion, MotionOf, Step, StepOf, refuse_sticking};
 use crate::{SVector, Scalar, mechanism::Mechanism};
 
 /// RK4.
@@ -20,6 +20,7 @@ impl Integrator for RungeKutta4 {
         h: S,
         motion: &MotionOf<S, M, D>,
     ) -> StepOf<S, M, D> {
+        refuse_sticking::<S, M, D>();
         let (half, third, sixth) = (S::from_f64(0.5), S::from_f64(1.0 / 3.0), S::from_f64(1.0 / 6.0));
         let acceleration = |t: S, pose: &M::Pose, velocity: &SVector<S, D>| {
             mechanism.velocity(pose, &mechanism.forces(t, pose, &motion.internal, velocity, h, None))
@@ -46,7 +47,8 @@ impl Integrator for RungeKutta4 {
         let pose = mechanism.normalised(&pose);
         // The two slopes at the middle differ by a term of third order: an estimate on the safe side.
         let error = mechanism.weighed(&pose, &((a3 - a2) * (h * third)));
-        let motion = Motion { pose, velocity, acceleration: a4, internal: motion.internal };
+        let internal = mechanism.remembered(&pose, &motion.internal);
+        let motion = Motion { pose, velocity, acceleration: a4, internal };
         Step { motion, residual: S::zero(), error, drift: error * h }
     }
 }

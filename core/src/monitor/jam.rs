@@ -1,6 +1,6 @@
 //! A jam, by force and speed alone: a table at a jamming level holds the jam and would call it expected.
 
-use super::{Limits, Sample};
+use super::{Limits, Sample, Verdict};
 
 /// The part of the command below which a slide stands.
 const STANDING: f32 = 0.1;
@@ -8,12 +8,12 @@ const STANDING: f32 = 0.1;
 /// What decides about a jam; it needs no table. A motion starts with a fresh one.
 ///
 /// ```
-/// # use slipfit_core::{ParameterError, monitor::{JamWatch, Limits, Sample}};
+/// # use slipfit_core::{ParameterError, monitor::{JamWatch, Limits, Sample, Verdict}};
 /// # fn interrupt() -> Result<(), ParameterError<f32>> {
 /// let limits = Limits { blind: 0.2, force_most: 3.5, ..Limits::for_noise(1e-3, 0.0) }.checked()?; // parameters
 /// let mut watch = JamWatch::default(); // state
-/// let is_jammed = watch.step(&limits, &Sample { time: 0.3, force: 0.25, speed: 0.01, command: 0.02 });
-/// assert!(!is_jammed);
+/// let verdict = watch.step(&limits, &Sample { time: 0.3, force: 0.25, speed: 0.01, command: 0.02 });
+/// assert_eq!(verdict, Verdict::Free);
 /// # Ok(()) }
 /// # interrupt().unwrap();
 /// ```
@@ -25,15 +25,21 @@ pub struct JamWatch {
     standing: f32,
     /// How long the force has been beyond its limit (s).
     pushing: f32,
+    /// For how long samples have not been whole (s).
+    missing: f32,
 }
 
 impl JamWatch {
-    /// Whether there is a jam at `sample`: speed below a tenth of the command for [`Limits::hold`] after it was above, past
-    /// [`Limits::blind`], or force beyond [`Limits::force_most`] for as long. Without a command a slide may stand. What is
-    /// not measured (NaN) neither counts nor starts anew. Of the limits, which should be [`Limits::checked`], only these and
-    /// the period count.
+    /// What `sample` says, after those before it; never [`Verdict::Tight`].
+    ///
+    /// It is a jam where the speed is below a tenth of the command for [`Limits::hold`] after it was above, past
+    /// [`Limits::blind`], or the force beyond [`Limits::force_most`] for as long. Without a command a slide may stand. A number
+    /// that is not valid neither counts nor starts anew. Where for as long no sample has been [`Sample::is_valid`],
+    /// nothing watches the drive: [`Verdict::NoData`], unless it was jammed before. Of the limits, which should be
+    /// [`Limits::checked`], only these and the period count.
     #[inline]
-    pub fn step(&mut self, limits: &Limits, sample: &Sample) -> bool {
+    #[must_use]
+    pub fn step(&mut self, limits: &Limits, sample: &Sample) -> Verdict {
         let least = STANDING * sample.command.abs();
         // Speed the wrong way is no motion with the command.
         let along = sample.along(sample.speed);
@@ -45,13 +51,22 @@ impl JamWatch {
         if let Some(force) = sample.measured_force() {
             self.pushing = if force.abs() > limits.force_most { self.pushing + limits.period } else { 0.0 };
         }
-        self.standing > limits.hold || self.pushing > limits.hold
+        self.missing = if sample.is_valid() { 0.0 } else { self.missing + limits.period };
+        let is_jammed = self.standing > limits.hold || self.pushing > limits.hold;
+        match (is_jammed, self.missing > limits.hold, limits.is_blind(sample)) {
+            (true, ..) => Verdict::Jam,
+            (_, true, _) => Verdict::NoData,
+            (.., true) => Verdict::Blind,
+            _ => Verdict::Free,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{JamWatch, Limits, Sample};
+    use std::vec::Vec;
+
+    use super::{JamWatch, Limits, Sample, Verdict};
 
     fn limits() -> Limits {
         Limits { blind: 1.0, hold: 0.0095, force_most: 3.0, ..Limits::for_noise(1e-3, 0.0) }
@@ -64,13 +79,13 @@ mod tests {
     /// A watch that has seen the slide move.
     fn moving() -> JamWatch {
         let mut watch = JamWatch::default();
-        assert!(!watch.step(&limits(), &at(1.0, 0.05)));
+        assert_eq!(watch.step(&limits(), &at(1.0, 0.05)), Verdict::Free);
         watch
     }
 
     /// After how many of `samples` a jam is first reported.
     fn reported(mut watch: JamWatch, mut samples: impl Iterator<Item = Sample>) -> Option<usize> {
-        samples.position(|sample| watch.step(&limits(), &sample))
+        samples.position(|sample| watch.step(&limits(), &sample) == Verdict::Jam)
     }
 
     #[test]
@@ -80,14 +95,14 @@ mod tests {
         // Moved while blind does not count either.
         let mut watch = JamWatch::default();
         for time in [0.9, f32::NAN, f32::INFINITY] {
-            assert!(!watch.step(&limits(), &Sample { time, ..at(1.0, 0.05) }));
+            assert_eq!(watch.step(&limits(), &Sample { time, ..at(1.0, 0.05) }), Verdict::Blind);
         }
         assert_eq!(reported(watch, [at(1.0, 0.0); 100].into_iter()), None);
         assert_eq!(reported(moving(), [at(1.0, 0.0); 12].into_iter()), Some(9));
         // Over as soon as it moves.
         let mut watch = moving();
-        assert!((0..12).map(|_| watch.step(&limits(), &at(1.0, 0.0))).last().unwrap());
-        assert!(!watch.step(&limits(), &at(1.0, 0.05)));
+        assert_eq!((0..12).map(|_| watch.step(&limits(), &at(1.0, 0.0))).last(), Some(Verdict::Jam));
+        assert_eq!(watch.step(&limits(), &at(1.0, 0.05)), Verdict::Free);
         assert_eq!(reported(watch, [at(-3.1, 0.05); 12].into_iter()), Some(9));
     }
 
@@ -107,7 +122,7 @@ mod tests {
             let (force, speed) = ((0..100).map(|i| at(gaps(i, 3.1), 0.05)), (0..100).map(|i| at(0.0, gaps(i, 0.0))));
             assert_eq!(reported(moving(), force.clone()), Some(10), "force {bad}");
             let mut watch = moving();
-            assert_eq!(force.filter(|sample| watch.step(&limits(), sample)).count(), 90, "force {bad}");
+            assert_eq!(force.filter(|sample| watch.step(&limits(), sample) == Verdict::Jam).count(), 90, "force {bad}");
             // A speed is taken as it is, however great, if it is finite.
             if !bad.is_finite() {
                 assert_eq!(reported(moving(), speed), Some(10), "speed {bad}");
@@ -116,6 +131,43 @@ mod tests {
             assert_eq!(reported(moving(), [at(bad, 0.05); 100].into_iter()), None, "force {bad}");
             let gap = Sample { command: bad, ..at(0.0, f32::NAN) };
             assert_eq!(reported(moving(), [gap; 100].into_iter()), None, "command {bad}");
+        }
+    }
+
+    #[test]
+    fn dead_sensors_are_no_data_unless_there_was_a_jam() {
+        let (good, jammed) = (at(1.0, 0.05), at(3.1, 0.0));
+        for dead in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let without: [fn(f32, Sample) -> Sample; 5] = [
+                |dead, sample| Sample { time: dead, ..sample },
+                |dead, sample| Sample { force: dead, ..sample },
+                |dead, sample| Sample { speed: dead, ..sample },
+                |dead, sample| Sample { command: dead, ..sample },
+                |dead, _| Sample { time: dead, force: dead, speed: dead, command: dead },
+            ];
+            for without in without {
+                let sample = without(dead, good);
+                for mut watch in [JamWatch::default(), moving()] {
+                    let verdicts: Vec<_> = (0..1099).map(|_| watch.step(&limits(), &sample)).collect();
+                    assert!(verdicts[..9].iter().all(|verdict| *verdict != Verdict::NoData), "{sample:?}");
+                    assert!(verdicts[9..].iter().all(|verdict| *verdict == Verdict::NoData), "{sample:?}");
+                    // Over with the first whole sample, and a sample in ten is enough.
+                    assert_eq!(watch.step(&limits(), &good), Verdict::Free);
+                    let one_in_nine = (0..99).map(|i| if i % 9 == 8 { good } else { sample });
+                    assert!(
+                        one_in_nine.map(|sample| watch.step(&limits(), &sample)).all(|found| found != Verdict::NoData)
+                    );
+                }
+                // Too early to say, dead all the same.
+                let early = Sample { time: if sample.time.is_finite() { 0.1 } else { dead }, ..sample };
+                let mut watch = JamWatch::default();
+                assert_eq!((0..100).map(|_| watch.step(&limits(), &early)).last(), Some(Verdict::NoData));
+                // A jam stays one.
+                let mut watch = moving();
+                assert_eq!((0..12).map(|_| watch.step(&limits(), &jammed)).last(), Some(Verdict::Jam));
+                let sample = without(dead, jammed);
+                assert_eq!((0..100).map(|_| watch.step(&limits(), &sample)).last(), Some(Verdict::Jam), "{sample:?}");
+            }
         }
     }
 }

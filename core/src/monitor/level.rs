@@ -2,10 +2,11 @@
 //!
 //! Between two levels the table is linear in n, so that the sum of squared residuals is a parabola there, known from
 //! three sums: of the squares at either level and of the products. Kept for every level of the table, they give the best
-//! level whatever it is, without a first guess and without the samples. Noise of unknown strength is estimated from what
+//! level whatever it is, without a first guess and without the samples. Between two levels whose units end differently there
+//! is no unit, so that only the levels themselves count there. Noise of unknown strength is estimated from what
 //! the best level leaves, and widened if neighbouring residuals are correlated: then the model errs, not the sensor.
 
-use crate::table::{AxisKind, Nodes, Table, TableError};
+use crate::table::{AxisKind, Nodes, Place, Table, TableError};
 
 /// χ² of one degree of freedom that 95 % stay below.
 const CHI_SQUARED: f32 = 3.841_459;
@@ -121,9 +122,10 @@ impl<'a, V: Nodes, const LEVELS: usize> LevelBank<'a, V, LEVELS> {
         let [levels, _] = self.table.axes();
         let cells = || {
             let sums = self.sums.get(..self.count).unwrap_or_default();
-            sums.windows(2).zip(0u32..).filter_map(|(pair, i)| {
+            sums.windows(2).zip(0usize..).filter_map(|(pair, i)| {
                 let [lower, upper] = pair else { return None };
-                Some((Parabola::of(lower, upper), levels.first() + levels.step() * i as f32, lower, upper))
+                let parabola = Parabola::of(lower, upper, self.table.is_mixed(&[Place::after(i), Place::default()]));
+                Some((parabola, levels.node(i), lower, upper))
             })
         };
         if self.samples < 10 {
@@ -168,13 +170,15 @@ struct Parabola {
     a: f32,
     b: f32,
     c: f32,
+    /// Only the ends count, see [`Lookup::mixed`](crate::table::Lookup::mixed).
+    is_mixed: bool,
 }
 
 impl Parabola {
-    fn of(lower: &Sums, upper: &Sums) -> Self {
+    fn of(lower: &Sums, upper: &Sums, is_mixed: bool) -> Self {
         let a = lower.squares - 2.0 * lower.products + upper.squares;
         // A sum of squares, but for rounding.
-        Self { a: if a > 0.0 { a } else { 0.0 }, b: lower.squares - lower.products, c: lower.squares }
+        Self { a: if a > 0.0 { a } else { 0.0 }, b: lower.squares - lower.products, c: lower.squares, is_mixed }
     }
 
     fn value(&self, x: f32) -> f32 {
@@ -184,7 +188,10 @@ impl Parabola {
 
     /// Where it is least, within the cell.
     fn lowest(&self) -> f32 {
-        if self.b <= 0.0 {
+        if self.is_mixed {
+            // The upper end is 2·b − a lower than the other.
+            if self.a < 2.0 * self.b { 1.0 } else { 0.0 }
+        } else if self.b <= 0.0 {
             0.0
         } else if self.b < self.a {
             self.b / self.a
@@ -207,6 +214,9 @@ impl Parabola {
     fn crossing(&self, mut inside: f32, end: f32, limit: f32) -> f32 {
         if self.value(end) <= limit {
             return end;
+        }
+        if self.is_mixed {
+            return inside;
         }
         let mut outside = end;
         for _ in 0..20 {

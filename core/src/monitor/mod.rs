@@ -1,4 +1,4 @@
-//! Watches a running drive by its flash table: free, tight or jammed, and which tolerance level the unit has.
+//! Watches a running drive by its flash table: free, tight, jammed or without data, and which tolerance level the unit has.
 //!
 //! [`Monitor`] holds what does not change, [`Watch`] what does; [`JamWatch`] watches for jams without a table;
 //! [`LevelBank`] estimates n from a stroke. Work and memory of a sample are bounded, and no run is stored.
@@ -27,9 +27,11 @@ use crate::{
 
 pub use jam::JamWatch;
 pub use level::{BankError, Estimate, LevelBank};
+use tight::Band;
 pub use tight::{TightWatch, Tightness};
 
-/// What the drive measures once a period.
+/// What the drive measures once a period. Of what it cannot measure, a force is given as 0 and a speed as the command, which say
+/// nothing. What it fails to measure is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sample {
@@ -52,6 +54,12 @@ impl Sample {
         (self.force.abs() <= FORCE_MOST).then_some(self.force)
     }
 
+    /// Whether all of it was measured: every number is finite, and the force at most 10⁹ N.
+    pub fn is_valid(&self) -> bool {
+        let rest = self.time.is_finite() && self.speed.is_finite() && self.command.is_finite();
+        rest && self.measured_force().is_some()
+    }
+
     /// What is `x` along the axis, in the direction of the command.
     pub(crate) fn along(&self, x: f32) -> f32 {
         if self.command < 0.0 { -x } else { x }
@@ -69,11 +77,13 @@ pub struct Limits {
     pub blind: f32,
     /// A force (N) beyond which it is a jam, either sign.
     pub force_most: f32,
-    /// How long (s) a jam's sign has to last before it is reported; noise on a single sample is none.
+    /// How long (s) a jam's sign has to last before it is reported; noise on a single sample is none. And how long no sample
+    /// has to be of use before there is [`Verdict::NoData`].
     pub hold: f32,
     /// Time constant (s) over which force is averaged before it is compared with the table's.
     pub smoothing: f32,
-    /// By how many levels a unit may be tighter than it is taken for, and off the level that the monitor was made for.
+    /// By how many levels a unit may be tighter than it is taken for, and off the level that the monitor was made for. By fewer
+    /// where the table ends, or where its units end differently from this one.
     pub band: f32,
     /// What the averaged force (N) may differ from the table's beyond that band, for noise.
     pub margin: f32,
@@ -137,6 +147,8 @@ pub enum Verdict {
     Tight,
     /// Standing still against the command, or at the limit of force.
     Jam,
+    /// For [`Limits::hold`] no sample was of use: a number was missing, as of a dead sensor, or the table has no force then.
+    NoData,
 }
 
 /// Why there is no monitor.
@@ -147,6 +159,13 @@ pub enum MonitorError {
     Table(TableError),
     /// The level or a limit is out of bounds.
     Parameter(ParameterError<f32>),
+    /// The table has no unit of that level, see [`Lookup::mixed`](crate::table::Lookup::mixed).
+    Mixed {
+        /// The level.
+        level: f32,
+        /// Levels of the table on either side, of units of which one runs and the other jams, say.
+        between: [f32; 2],
+    },
 }
 
 impl core::fmt::Display for MonitorError {
@@ -154,6 +173,12 @@ impl core::fmt::Display for MonitorError {
         match self {
             Self::Table(error) => write!(f, "no table over tolerance level and time: {error}"),
             Self::Parameter(error) => error.fmt(f),
+            Self::Mixed { level, between: [low, high] } => {
+                write!(
+                    f,
+                    "monitor.level is {level}, the table has no unit between its levels {low} and {high}, which end differently"
+                )
+            }
         }
     }
 }
@@ -169,6 +194,7 @@ impl From<ParameterError<f32>> for MonitorError {
 /// A monitor's answer to a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[must_use = "the verdict has to be acted on"]
 pub struct Report {
     /// The verdict.
     pub verdict: Verdict,
@@ -183,6 +209,7 @@ pub struct Monitor<'a, V> {
     /// The level the unit was taken for at first: its band is about that.
     reference: f32,
     level: f32,
+    band: Band,
     limits: Limits,
 }
 
@@ -205,7 +232,9 @@ impl<'a, V: Nodes> Monitor<'a, V> {
         let table = table.expect_axes([AxisKind::Level, AxisKind::Time]).map_err(MonitorError::Table)?;
         let [levels, _] = table.axes();
         bounded("monitor.level", level, [f64::from(levels.first()), f64::from(levels.last())])?;
-        Ok(Self { table, reference: level, level, limits: limits.checked()? })
+        let limits = limits.checked()?;
+        let band = Band::of(&table, level, limits.band)?;
+        Ok(Self { table, reference: level, level, band, limits })
     }
 
     /// The level the unit is taken for.
@@ -213,33 +242,36 @@ impl<'a, V: Nodes> Monitor<'a, V> {
         self.level
     }
 
-    /// Takes the unit for what `estimate` says from now on, if that is on the table's axis and within the band of the level
-    /// that the monitor was made for; says whether it was. The band does not move along: a unit that leaves it, at once or
+    /// Takes the unit for what `estimate` says from now on, if the table has such a unit, within the band of the level
+    /// that the monitor was made for, and its deviation is 0 to that band; says whether it was. The band does not move along: a unit that leaves it, at once or
     /// motion by motion, is tight, not to be got used to.
+    #[must_use = "the level may not have been taken"]
     pub fn adapt(&mut self, estimate: &Estimate) -> bool {
         let [levels, _] = self.table.axes();
         let within = (estimate.level - self.reference).abs() <= self.limits.band
-            && estimate.deviation <= self.limits.band
+            && (0.0..=self.limits.band).contains(&estimate.deviation)
             && estimate.level >= levels.first()
             && estimate.level <= levels.last();
-        if within {
-            self.level = estimate.level;
+        let band = Band::of(&self.table, estimate.level, self.limits.band).ok().filter(|_| within);
+        if let Some(band) = band {
+            (self.level, self.band) = (estimate.level, band);
         }
-        within
+        band.is_some()
     }
 
-    /// What `sample` says, after those that `watch` has seen. A number that is not finite, and a force beyond 10⁹ N, is
-    /// passed over: what goes by it stays as it was.
+    /// What `sample` says, after those that `watch` has seen. A number that is not finite, a force beyond 10⁹ N, and a time at
+    /// which the table has no force are passed over: what depends on them stays as it was.
     #[inline]
     pub fn step(&self, watch: &mut Watch, sample: &Sample) -> Report {
-        let tightness = watch.tight.step(&self.table, self.level, &self.limits, sample);
-        let is_jammed = watch.jam.step(&self.limits, sample);
-        let verdict = match (is_jammed, self.limits.is_blind(sample), tightness.is_tight()) {
-            (true, ..) => Verdict::Jam,
-            (_, true, _) => Verdict::Blind,
-            (.., true) => Verdict::Tight,
-            _ => Verdict::Free,
+        let tightness = watch.tight.step(&self.table, &self.band, &self.limits, sample);
+        let verdict = match watch.jam.step(&self.limits, sample) {
+            Verdict::Free if watch.tight.is_without(&self.limits) => Verdict::NoData,
+            Verdict::Free if tightness.is_tight() => Verdict::Tight,
+            verdict => verdict,
         };
         Report { verdict, tightness }
     }
 }
+
+#[cfg(test)]
+mod tests;

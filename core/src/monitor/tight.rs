@@ -1,7 +1,36 @@
 //! Tight, by the table's band for this unit's level.
 
-use super::{Limits, Sample};
-use crate::table::{Nodes, Table};
+use super::{Limits, MonitorError, Sample};
+use crate::table::{Nodes, Place, Table};
+
+/// Where on a table's axis of levels a unit is, and the tightest that it may be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Band {
+    level: Place,
+    tightest: Place,
+}
+
+impl Band {
+    /// The unit of `level`, and one that is tighter by `band`: by less where the axis ends before, or where a unit comes that
+    /// ends differently from the ones before it. Forces beyond those are of no unit.
+    pub fn of<V: Nodes>(table: &Table<'_, 2, V>, level: f32, band: f32) -> Result<Self, MonitorError> {
+        let [levels, _] = table.axes();
+        let is_mixed = |place| table.is_mixed(&[place, Place::default()]);
+        let place = levels.locate(level);
+        if is_mixed(place) {
+            let between = [levels.node(place.node), levels.node(place.node + 1)];
+            return Err(MonitorError::Mixed { level, between });
+        }
+        let highest = levels.locate(level + band);
+        let changes = (place.node..highest.node).find(|node| is_mixed(Place::after(*node)));
+        let tightest = match changes {
+            Some(node) => Place::at(node),
+            None if is_mixed(highest) => Place::at(highest.node),
+            None => Place { outside: 0, ..highest },
+        };
+        Ok(Self { level: place, tightest })
+    }
+}
 
 /// Averages of the force beyond the table's (N), along the axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -11,6 +40,10 @@ pub struct TightWatch {
     slower: f32,
     /// Whether the last command that was not zero leads backwards.
     is_backwards: bool,
+    /// How long no sample has been compared (s).
+    idle: f32,
+    /// What the table's force at the last sample made of it.
+    last: Tightness,
 }
 
 /// Force against the table's band.
@@ -37,25 +70,38 @@ impl Tightness {
 }
 
 impl TightWatch {
-    /// Compares `sample` with what `table` has for `level`. Passes over a force that is not finite.
+    /// Whether no sample has been compared for longer than [`Limits::hold`].
+    pub(super) fn is_without(&self, limits: &Limits) -> bool {
+        self.idle > limits.hold
+    }
+
+    /// Compares `sample` with what `table` has for the `band`. Passes over a force that is not finite, and a time at which the
+    /// table has none.
     #[inline]
     pub(super) fn step<V: Nodes>(
         &mut self,
         table: &Table<'_, 2, V>,
-        level: f32,
+        band: &Band,
         limits: &Limits,
         sample: &Sample,
     ) -> Tightness {
-        let expected = table.lookup([level, sample.time]).force;
-        let tighter = table.lookup([level + limits.band, sample.time]).force;
-        let apart = (tighter - expected).abs();
+        let [_, times] = table.axes();
+        let time = times.locate(sample.time);
+        let [unit, tightest] = [band.level, band.tightest].map(|level| table.lookup_at(&[level, time]));
+        self.idle += limits.period;
+        if unit.is_unusable() || tightest.is_unusable() {
+            return self.last;
+        }
+        let expected = unit.force;
+        let apart = (tightest.force - expected).abs();
         let band = apart + limits.margin;
         if sample.command != 0.0 && sample.command.is_finite() {
             self.is_backwards = sample.command < 0.0;
         }
         let per_step = 1.0 / (limits.smoothing + limits.period);
         let weight = limits.period * per_step;
-        if let Some(force) = sample.measured_force().filter(|_| sample.time.is_finite()) {
+        if let Some(force) = sample.measured_force() {
+            self.idle = 0.0;
             self.beyond += weight * (force - expected - self.beyond);
             self.slower += weight * (self.beyond - self.slower);
         }
@@ -63,13 +109,14 @@ impl TightWatch {
         let (excess, rise) = if self.is_backwards { (-self.beyond, -rise) } else { (self.beyond, rise) };
         // What the band itself allows within its time is no alarm.
         let is_fast = rise > limits.rise + apart * per_step;
-        Tightness { expected, band, excess, rise, is_fast }
+        self.last = Tightness { expected, band, excess, rise, is_fast };
+        self.last
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Limits, Sample, TightWatch, Tightness};
+    use super::{Band, Limits, Sample, TightWatch, Tightness};
     use crate::table::{AxisKind, Table, example};
 
     /// 1 N at level 0 and 2 N at level 1, times `factor`, for all of a second.
@@ -79,7 +126,8 @@ mod tests {
         let table = Table::<2>::open(&bytes).unwrap();
         let limits = Limits { margin: 0.1, rise: 1e6, ..Limits::for_noise(1e-3, 0.0) };
         let mut watch = TightWatch::default();
-        samples.map(|sample| watch.step(&table, 0.0, &limits, &sample)).last().unwrap()
+        let band = Band::of(&table, 0.0, limits.band).unwrap();
+        samples.map(|sample| watch.step(&table, &band, &limits, &sample)).last().unwrap()
     }
 
     #[test]

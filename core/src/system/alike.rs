@@ -42,7 +42,7 @@ where
 
     #[inline(always)]
     fn fresh(&self) -> Self::Internal {
-        [G::Law::fresh(); N]
+        self.each.each_ref().map(|(_, shape)| shape.with(&self.contact).fresh())
     }
 
     #[inline(always)]
@@ -58,6 +58,15 @@ where
         for (element, internal) in self.iter().zip(internal) {
             element.act(way, at, internal, slots.next(), sum);
         }
+    }
+
+    #[inline(always)]
+    fn remembered(&self, at: (&B, &B::Placed), internal: &Self::Internal) -> Self::Internal {
+        let mut remembered = *internal;
+        for (element, internal) in self.iter().zip(&mut remembered) {
+            *internal = element.remembered(at, internal);
+        }
+        remembered
     }
 
     #[inline(always)]

@@ -53,13 +53,19 @@ pub trait Law<S: Scalar, const R: usize> {
     const TIMED: bool = false;
 
     /// The internal variables of a law that nothing has happened to yet.
-    fn fresh() -> Self::Internal;
+    fn fresh(&self) -> Self::Internal;
 
     /// The least distance (m) at `place` of what may touch, negative where it penetrates. Where it is positive the law exerts nothing,
     /// at any rate. Zero of a law whose bodies always act on each other.
     #[inline(always)]
     fn gap(&self, _place: &SVector<S, R>) -> S {
         S::zero()
+    }
+
+    /// Shows `see` the distance (m) of each pair of surfaces that may touch, of which [`gap`](Self::gap) is the least.
+    #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, R>, mut see: impl FnMut(S)) {
+        see(self.gap(place));
     }
 
     /// The forces at `place` and `rate` at time `t` (s), and the internal variables if the motion is accepted.
@@ -71,6 +77,13 @@ pub trait Law<S: Scalar, const R: usize> {
         internal: &Self::Internal,
         way: Way<S>,
     ) -> (Response<S, R>, Self::Internal);
+
+    /// The internal variables after a step that led to `place`, of a scheme that takes no response there: for laws that remember places
+    /// alone.
+    #[inline(always)]
+    fn remembered(_place: &SVector<S, R>, internal: &Self::Internal) -> Self::Internal {
+        *internal
+    }
 
     /// `base + weight·(to − from)`.
     fn shifted(base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal;
@@ -132,6 +145,12 @@ pub trait Elements<S: Scalar, B: Bodies<S, D>, const D: usize> {
         sum: &mut impl Assembly<S, B, D>,
     );
 
+    /// The internal variables after a step that led to where the bodies are placed, see [`Law::remembered`].
+    #[inline(always)]
+    fn remembered(&self, _at: (&B, &B::Placed), internal: &Self::Internal) -> Self::Internal {
+        *internal
+    }
+
     /// `base + weight·(to − from)`.
     fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal;
 
@@ -148,7 +167,7 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
 
     #[inline(always)]
     fn fresh(&self) -> W::Internal {
-        W::fresh()
+        self.law.fresh()
     }
 
     #[inline(always)]
@@ -167,6 +186,11 @@ impl<S: Scalar, B: Bodies<S, D>, L: Link<S, B, D, R>, W: Law<S, R>, const D: usi
             *slot = next;
         }
         sum.add::<L, W, R>(&self.link, at, &view, &response);
+    }
+
+    #[inline(always)]
+    fn remembered(&self, at: (&B, &B::Placed), internal: &W::Internal) -> W::Internal {
+        W::remembered(&self.link.seen(at, &self.link.view(at.0, at.1)).place, internal)
     }
 
     #[inline(always)]
@@ -228,6 +252,11 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, F: Elements<S, B, D>, con
     }
 
     #[inline(always)]
+    fn remembered(&self, at: (&B, &B::Placed), internal: &Self::Internal) -> Self::Internal {
+        (self.0.remembered(at, &internal.0), self.1.remembered(at, &internal.1))
+    }
+
+    #[inline(always)]
     fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal {
         (self.0.shifted(&base.0, &from.0, &to.0, weight), self.1.shifted(&base.1, &from.1, &to.1, weight))
     }
@@ -265,6 +294,15 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
     }
 
     #[inline(always)]
+    fn remembered(&self, at: (&B, &B::Placed), internal: &Self::Internal) -> Self::Internal {
+        let mut remembered = *internal;
+        for (element, internal) in self.iter().zip(&mut remembered) {
+            *internal = element.remembered(at, internal);
+        }
+        remembered
+    }
+
+    #[inline(always)]
     fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal {
         let mut shifted = *base;
         for (((element, shifted), from), to) in self.iter().zip(&mut shifted).zip(from).zip(to) {
@@ -281,31 +319,47 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize, const N: 
     }
 }
 
-/// Elements chosen at run time, whose laws have no internal variables.
-impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Internal = ()>, const D: usize> Elements<S, B, D> for &[E] {
-    type Internal = ();
+/// Elements chosen at run time. They share their internal variables, of which each keeps its own, and remember places alone.
+impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D, Internal: Default>, const D: usize> Elements<S, B, D> for &[E] {
+    type Internal = E::Internal;
 
     const STICKS: bool = false;
 
-    fn fresh(&self) {}
+    fn fresh(&self) -> E::Internal {
+        E::Internal::default()
+    }
 
     #[inline(always)]
     fn act(
         &self,
         way: (S, Way<S>),
         at: (&B, &B::Placed),
-        (): &(),
-        _: Option<&mut ()>,
+        internal: &E::Internal,
+        updated: Option<&mut E::Internal>,
         sum: &mut impl Assembly<S, B, D>,
     ) {
         for element in *self {
-            element.act(way, at, &(), None, sum);
+            element.act(way, at, internal, None, sum);
+        }
+        if let Some(slot) = updated {
+            *slot = self.remembered(at, internal);
         }
     }
 
     #[inline(always)]
-    fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
+    fn remembered(&self, at: (&B, &B::Placed), internal: &E::Internal) -> E::Internal {
+        self.iter().fold(*internal, |internal, element| element.remembered(at, &internal))
+    }
 
     #[inline(always)]
-    fn accept(&self, _: S, (): &(), (): &mut ()) {}
+    fn shifted(&self, base: &E::Internal, from: &E::Internal, to: &E::Internal, weight: S) -> E::Internal {
+        self.first().map_or(*base, |element| element.shifted(base, from, to, weight))
+    }
+
+    #[inline(always)]
+    fn accept(&self, condition: S, next: &E::Internal, kept: &mut E::Internal) {
+        if let Some(element) = self.first() {
+            element.accept(condition, next, kept);
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Turns about an axis by cosine and sine of half the angle. They are kept near unit length, and never assumed to have it exactly.
 
-use crate::{Scalar, Vector2};
+use crate::{Scalar, Vector2, pose::towards_unit_length};
 
 /// `half` after a turn whose half angle has the tangent `by`; its length grows.
 #[inline(always)]
@@ -15,10 +15,10 @@ pub(super) fn shortened<S: Scalar>(half: [S; 2], by: S) -> [S; 2] {
     half.map(|x| x * scale)
 }
 
-/// One Newton step nearer to unit length.
+/// Nearer to unit length, see [`towards_unit_length`].
 #[inline(always)]
 pub(super) fn normalised<S: Scalar>([w, v]: [S; 2]) -> [S; 2] {
-    let scale = S::from_f64(0.5) * (S::from_f64(3.0) - (w * w + v * v));
+    let scale = towards_unit_length(w * w + v * v);
     [w * scale, v * scale]
 }
 

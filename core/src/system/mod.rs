@@ -167,6 +167,14 @@ impl<S: Scalar, B: Bodies<S, D>, E: Elements<S, B, D>, const D: usize> Mechanism
     }
 
     #[inline(always)]
+    fn remembered(&self, pose: &B::Pose, internal: &E::Internal) -> E::Internal {
+        if size_of::<E::Internal>() == 0 {
+            return *internal;
+        }
+        self.elements.remembered((&self.bodies, &self.bodies.placed(pose, &SVector::zeros())), internal)
+    }
+
+    #[inline(always)]
     fn accept(&self, condition: S, next: (&B::Pose, &E::Internal), kept: (&mut B::Pose, &mut E::Internal)) {
         self.bodies.accept(condition, next.0, kept.0);
         self.elements.accept(condition, next.1, kept.1);

@@ -67,6 +67,11 @@ where
     }
 
     #[inline(always)]
+    fn remembered(&self, (bodies, placed): (&B, &B::Placed), internal: &E::Internal) -> E::Internal {
+        self.0.remembered(bodies.free(placed), internal)
+    }
+
+    #[inline(always)]
     fn shifted(&self, base: &E::Internal, from: &E::Internal, to: &E::Internal, weight: S) -> E::Internal {
         self.0.shifted(base, from, to, weight)
     }

@@ -100,7 +100,7 @@ fn planar_derivatives_are_those_of_the_forces() {
         (
             Element::<_, _, 1> {
                 link: planar::Turning { body: Some(1), against: Some(0) },
-                law: Spring { stiffness: 3.0, damping: 0.2, rest: 0.1 },
+                law: Spring { stiffness: 3.0, damping: 0.2, rest: 0.1, start: 0.0 },
             },
             (
                 Element::<_, _, 2> {
@@ -272,7 +272,7 @@ fn a_floating_body_has_the_derivatives_of_its_forces() {
 
 /// That a law tells an impedance over a time as that of no time and the stiffness times it.
 fn folds<W: Law<f64, R>, const R: usize>(law: W, places: [f64; R], rates: [f64; R]) {
-    let (a, internal) = (0.01, W::fresh());
+    let (a, internal) = (0.01, law.fresh());
     let told = |over| {
         let way = Way { over, mass_rate: 0.0, tangent_share: 1.0 };
         law.response(0.3, &places.into(), &rates.into(), &internal, way).0
@@ -288,7 +288,7 @@ fn folds<W: Law<f64, R>, const R: usize>(law: W, places: [f64; R], rates: [f64; 
 fn impedances_over_a_time_take_in_the_stiffness() {
     let contact = contact();
     let smooth = Contact { normal: contact.normal, friction: Frictionless };
-    folds(Spring { stiffness: 3.0, damping: 0.2, rest: 0.1 }, [0.5], [0.1]);
+    folds(Spring { stiffness: 3.0, damping: 0.2, rest: 0.1, start: 0.0 }, [0.5], [0.1]);
     folds(Stopped { stop: law::Slot::new(0.01, 0.02).unwrap(), contact: contact.normal }, [0.05], [0.1]);
     folds(Pad { gap: -0.1, contact }, [0.05, 0.0], [-0.1, 0.02]);
     folds(Slot { gaps: [-0.01, 0.03], contact }, [0.05, 0.0], [0.1, 0.02]);

@@ -65,16 +65,26 @@ pub struct Axis {
 
 /// Where a coordinate lies: `fraction` of the way from `node` to the next one, 0 to below 1, and 0 at the last node.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Place {
-    pub(super) node: usize,
-    pub(super) fraction: f32,
+pub(crate) struct Place {
+    pub(crate) node: usize,
+    pub(crate) fraction: f32,
     /// Whether another node follows.
-    pub(super) has_next: bool,
+    pub(crate) has_next: bool,
     /// Not 0 if the coordinate lies outside the axis.
-    pub(super) outside: u32,
+    pub(crate) outside: u32,
 }
 
 impl Place {
+    /// At `node`.
+    pub(crate) fn at(node: usize) -> Self {
+        Self { node, ..Self::default() }
+    }
+
+    /// In the middle between `node` and the next one.
+    pub(crate) fn after(node: usize) -> Self {
+        Self { node, fraction: 0.5, has_next: true, outside: 0 }
+    }
+
     /// The nodes that count: the one below and the one above, the same one twice at a node.
     #[inline(always)]
     pub(super) fn ends(&self) -> [usize; 2] {
@@ -149,7 +159,7 @@ impl Axis {
     ///
     /// As integers the bits of numbers from 0 on are in the numbers' order, and those of negative ones are negative.
     #[inline(always)]
-    pub(super) fn locate(&self, x: f32) -> Place {
+    pub(crate) fn locate(&self, x: f32) -> Place {
         let bits = ((x - self.origin) * self.per_step).to_bits().cast_signed();
         let raised = if bits > 0 { bits } else { 0 };
         let has_next = raised < self.top;

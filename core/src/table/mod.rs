@@ -64,10 +64,11 @@ mod verdict;
 
 use layout::{CHANNELS, CHECKSUM_SIZE, HEADER_SIZE};
 
-use axis::Place;
+pub(crate) use axis::Place;
 pub use axis::{Axis, AxisKind};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
+use nodes::Range;
 pub use nodes::{AnyNodes, ChannelKind, Encoding, F32Nodes, I16Nodes, Nodes, Values};
 pub use scrubber::Scrubber;
 pub use slots::{RECORD_SIZE, Record, Slots, WORD_MOST, Word};
@@ -86,6 +87,8 @@ pub struct Table<'a, const N: usize = 2, V = AnyNodes<'a>> {
     scene_hash: u64,
     axes: [Axis; N],
     records: [ChannelRecord; CHANNELS],
+    /// Of the values when the table was opened.
+    ranges: [Range; CHANNELS],
     nodes: V,
     /// A [`MotionVerdict`] each.
     verdicts: &'a [u8],
@@ -104,6 +107,16 @@ pub struct Lookup {
     /// The point lies between motions whose verdicts differ, such as a unit that runs and one that jams: these are values
     /// of no unit.
     pub mixed: bool,
+    /// A value lay outside the range of the channel's nodes, as they were when the table was opened: the flash has changed
+    /// since. It is held to that range. A change that stays within the range is found by [`Scrubber`] alone.
+    pub damaged: bool,
+}
+
+impl Lookup {
+    /// Whether its values must not be used: it is clamped, mixed or damaged.
+    pub fn is_unusable(&self) -> bool {
+        self.clamped || self.mixed || self.damaged
+    }
 }
 
 impl<'a, const N: usize> Table<'a, N> {
@@ -128,10 +141,10 @@ impl<'a, const N: usize> Table<'a, N> {
         let data = bytes.get(HEADER_SIZE..header.length.saturating_sub(CHECKSUM_SIZE)).ok_or(TableError::Truncated)?;
         let size = count.checked_add(1).and_then(|count| count.checked_mul(CHANNELS * header.encoding.size()));
         let (nodes, rest) = size.and_then(|size| data.split_at_checked(size)).ok_or(TableError::Header("length"))?;
-        let nodes = AnyNodes::new(header.encoding, &header.channels, nodes)?;
+        let (nodes, ranges) = AnyNodes::new(header.encoding, &header.channels, nodes)?;
         let speeds = axes.get(2).map_or(1, Axis::count);
         let verdicts = verdict::checked(rest, axes[0].count().saturating_mul(speeds), speeds)?;
-        Ok(Self { bytes, scene_hash: header.scene_hash, axes, records: header.channels, nodes, verdicts })
+        Ok(Self { bytes, scene_hash: header.scene_hash, axes, records: header.channels, ranges, nodes, verdicts })
     }
 
     /// This table, if its values are f32.
@@ -151,8 +164,8 @@ impl<'a, const N: usize> Table<'a, N> {
     }
 
     fn with<V>(self, nodes: V) -> Table<'a, N, V> {
-        let Self { bytes, scene_hash, axes, records, verdicts, .. } = self;
-        Table { bytes, scene_hash, axes, records, nodes, verdicts }
+        let Self { bytes, scene_hash, axes, records, ranges, verdicts, .. } = self;
+        Table { bytes, scene_hash, axes, records, ranges, nodes, verdicts }
     }
 
     /// How values are stored.
@@ -190,28 +203,44 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
     /// Force and velocity at the point `at`, one coordinate an axis, in the axes' order and units.
     ///
     /// Multilinear between the nodes. Outside the grid the nearest point of the grid counts, for NaN either end of the
-    /// axis. Never fails and is never NaN. Exact at a node whose distance from the first one, in steps, comes out whole
+    /// axis. Never fails and is never NaN, whatever became of the flash since. Exact at a node whose distance from the first one, in steps, comes out whole
     /// in f32; elsewhere rounding stays within (6·r + 16)·2⁻²⁴ of the channel's greatest
     /// magnitude, where r adds up, over all axes, the number of nodes and how many steps the end farther from 0 is away
     /// from it.
     #[inline]
     pub fn lookup(&self, at: [f32; N]) -> Lookup {
-        let (mut first, mut places, mut outside) = (0, [Place::default(); N], 0);
+        let mut places = [Place::default(); N];
         for ((axis, x), place) in self.axes.iter().zip(at).zip(&mut places) {
             *place = axis.locate(x);
+        }
+        self.lookup_at(&places)
+    }
+
+    /// [`lookup`](Self::lookup) at `places`, one an axis.
+    #[inline(always)]
+    pub(crate) fn lookup_at(&self, places: &[Place; N]) -> Lookup {
+        let (mut first, mut outside) = (0, 0);
+        for (axis, place) in self.axes.iter().zip(places) {
             first = first * axis.count() + place.node;
             outside |= place.outside;
         }
         let (mut strides, mut stride) = ([0; N], 1);
-        for ((axis, place), next) in self.axes.iter().zip(&places).zip(&mut strides).rev() {
+        for ((axis, place), next) in self.axes.iter().zip(places).zip(&mut strides).rev() {
             *next = if place.has_next { stride } else { 0 };
             stride *= axis.count();
         }
         let fractions = places.map(|place| place.fraction);
-        let mixed = verdict::differ(self.verdicts, &self.axes, &places);
-        let flags = Lookup { clamped: outside != 0, mixed, ..Lookup::default() };
-        let Some([force, velocity]) = self.nodes.within(first, &strides, &fractions) else { return flags };
-        Lookup { force, velocity, ..flags }
+        let flags = Lookup { clamped: outside != 0, mixed: self.is_mixed(places), ..Lookup::default() };
+        let Some(values) = self.nodes.within(first, &strides, &fractions) else { return flags };
+        let [force, velocity] = [self.ranges[0].held(values[0]), self.ranges[1].held(values[1])];
+        let changes = (force.to_bits() ^ values[0].to_bits()) | (velocity.to_bits() ^ values[1].to_bits());
+        Lookup { force, velocity, damaged: changes != 0, ..flags }
+    }
+
+    /// Whether `places` lie between motions whose verdicts differ.
+    #[inline(always)]
+    pub(crate) fn is_mixed(&self, places: &[Place; N]) -> bool {
+        verdict::differ(self.verdicts, &self.axes, places)
     }
 
     /// The axes, slowest first.
@@ -246,16 +275,18 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
 }
 
 impl<V: Nodes> Table<'_, 2, V> {
-    /// The force (N) at every node of the first axis, at `x` on the second; none outside of it.
+    /// The force (N) at every node of the first axis, at `x` on the second. None outside of it, or if one of them lies outside of
+    /// the range of all, see [`Lookup::damaged`].
     #[inline]
     pub fn forces(&self, x: f32) -> Option<impl Iterator<Item = f32>> {
         let [nodes, axis] = &self.axes;
         let place = axis.locate(x);
-        let firsts = (0..nodes.count()).map(move |i| place.node + i * axis.count());
-        let force = move |first| {
-            let [force, _] = self.nodes.between(first, place.fraction);
-            force
+        let forces = || {
+            let firsts = (0..nodes.count()).map(move |i| place.node + i * axis.count());
+            firsts.map(move |first| self.nodes.between(first, place.fraction)[0])
         };
-        (place.outside == 0).then(|| firsts.map(force))
+        // All are looked at, so that the work is the same whichever is bad.
+        let good = forces().fold(place.outside == 0, |good, force| good & self.ranges[0].contains(force));
+        good.then(forces)
     }
 }

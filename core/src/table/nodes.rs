@@ -68,6 +68,49 @@ impl Encoding {
 /// Force (N) and velocity (m/s).
 pub type Values = [f32; CHANNELS];
 
+/// The values that a channel (N or m/s) has between its nodes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Range {
+    low: f32,
+    high: f32,
+}
+
+impl Range {
+    /// From the least to the greatest value of nodes.
+    ///
+    /// Rounding may lead interpolation past its ends by some units in the last place of the greatest magnitude, 2⁻²⁴ of it each.
+    fn of(low: f32, high: f32) -> Self {
+        let greatest = if -low > high { -low } else { high };
+        let slack = greatest * (1.0 / 1_048_576.0);
+        Self { low: low - slack, high: high + slack }
+    }
+
+    /// `value`, or the end of the range that it is beyond; the lower one for NaN.
+    #[inline(always)]
+    pub fn held(&self, value: f32) -> f32 {
+        let value = if value >= self.low { value } else { self.low };
+        if value <= self.high { value } else { self.high }
+    }
+
+    /// Whether `value` is within it.
+    #[inline(always)]
+    pub fn contains(&self, value: f32) -> bool {
+        (value >= self.low) & (value <= self.high)
+    }
+}
+
+/// The ranges of all `nodes`, of which there is at least one.
+fn ranges(nodes: impl Iterator<Item = Values>) -> [Range; CHANNELS] {
+    let mut ends = [[f32::INFINITY, f32::NEG_INFINITY]; CHANNELS];
+    for values in nodes {
+        for ([low, high], value) in ends.iter_mut().zip(values) {
+            *low = if value < *low { value } else { *low };
+            *high = if value > *high { value } else { *high };
+        }
+    }
+    ends.map(|[low, high]| Range::of(low, high))
+}
+
 /// Every node of a table where it lies, however it is stored.
 pub trait Nodes: Copy {
     /// Force and velocity (N, m/s) at the `fractions` of the cell whose lowest node is `first`; `strides` says how far the
@@ -102,7 +145,7 @@ pub enum AnyNodes<'a> {
 }
 
 impl<'a> AnyNodes<'a> {
-    /// The nodes that `data` consists of, and one that is read but does not count.
+    /// The nodes that `data` consists of and one more that is read but does not count, and the ranges of their values.
     ///
     /// # Errors
     /// If a value is out of bounds.
@@ -110,25 +153,39 @@ impl<'a> AnyNodes<'a> {
         encoding: Encoding,
         records: &[ChannelRecord; CHANNELS],
         data: &'a [u8],
-    ) -> Result<Self, TableError> {
+    ) -> Result<(Self, [Range; CHANNELS]), TableError> {
+        let made = Self::unchecked(encoding, records, data);
         // The scale bounds integers.
-        Ok(match encoding {
-            Encoding::F32 => {
-                let nodes = data.as_chunks().0;
-                for node in nodes {
-                    for (value, channel) in floats(node).into_iter().zip(ChannelKind::ALL) {
-                        if value.is_nan() || value.abs() > VALUE_MOST {
-                            return Err(TableError::Value(channel.name()));
-                        }
+        if let Self::F32(F32Nodes(nodes)) = made {
+            for node in nodes {
+                for (value, channel) in floats(node).into_iter().zip(ChannelKind::ALL) {
+                    if value.is_nan() || value.abs() > VALUE_MOST {
+                        return Err(TableError::Value(channel.name()));
                     }
                 }
-                Self::F32(F32Nodes(nodes))
             }
+        }
+        let ranges = match &made {
+            Self::F32(F32Nodes(nodes)) => ranges(counted(nodes).map(floats)),
+            Self::I16(nodes) => ranges(counted(nodes.nodes).map(|node| nodes.scaled(integers(node)))),
+        };
+        Ok((made, ranges))
+    }
+
+    /// The nodes that `data` consists of, whatever their values.
+    pub(super) fn unchecked(encoding: Encoding, records: &[ChannelRecord; CHANNELS], data: &'a [u8]) -> Self {
+        match encoding {
+            Encoding::F32 => Self::F32(F32Nodes(data.as_chunks().0)),
             Encoding::I16 => {
                 Self::I16(I16Nodes { nodes: data.as_chunks().0, scales: records.map(|record| record.scale) })
             }
-        })
+        }
     }
+}
+
+/// All `nodes` but the last one, which weighs nothing.
+fn counted<T>(nodes: &[T]) -> impl Iterator<Item = &T> {
+    nodes.split_last().map_or(nodes, |(_, counted)| counted).iter()
 }
 
 impl Nodes for AnyNodes<'_> {

@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use super::{AxisKind, Encoding, Lookup, MotionVerdict, Table, TableError, example, layout, verdict_bytes};
+use super::{AnyNodes, AxisKind, Encoding, Lookup, MotionVerdict, Table, TableError, example, layout, verdict_bytes};
 
 const PLANE: [(AxisKind, u32, f32); 2] = [(AxisKind::Level, 3, 1.0), (AxisKind::Time, 4, 0.5)];
 const SPACE: [(AxisKind, u32, f32); 3] =
@@ -108,5 +108,59 @@ fn refuses_verdicts_that_there_are_not() {
     for stored in [[8, 8, 8, 0], [3, 2, 2, 0], [2, 6, 6, 0], [2, 2, 3, 0], [2, 2, 2, 2]] {
         let bytes = judged(table(), &stored);
         assert_eq!(Table::<2>::open(&bytes).unwrap_err(), TableError::Value("verdicts"), "{stored:?}");
+    }
+}
+
+/// The open `table`, whose nodes are read from `bytes` instead: what flash has become since.
+fn flipped<'a>(table: &Table<'a>, bytes: &'a [u8]) -> Table<'a> {
+    let data = bytes[layout::HEADER_SIZE..].split_at(13 * layout::CHANNELS * table.encoding().size()).0;
+    Table { nodes: AnyNodes::unchecked(table.encoding(), table.channels(), data), ..*table }
+}
+
+#[test]
+fn no_flip_since_it_was_opened_leads_out_of_the_tables_own_range() {
+    let singles = example::table(&PLANE, |node| node as f32 - 3.0);
+    let integers = example::table_of_integers(&PLANE, |node| 1000 * node as i16 - 3000);
+    for bytes in [singles, integers] {
+        let table = Table::<2>::open(&bytes).unwrap();
+        let points = || (0..9).flat_map(|n| (0..13).map(move |t| [0.25 * n as f32, 0.125 * t as f32]));
+        assert!(points().all(|at| !table.lookup(at).damaged));
+        let data = layout::HEADER_SIZE..bytes.len() - layout::CHECKSUM_SIZE;
+        let mut found = 0;
+        for bit in (8 * data.start..8 * data.end).step_by(if cfg!(miri) { 61 } else { 1 }) {
+            let mut changed = bytes.clone();
+            changed[bit / 8] ^= 1 << (bit % 8);
+            let other = flipped(&table, &changed);
+            for at in points() {
+                let (good, bad) = (table.lookup(at), other.lookup(at));
+                assert!((-3.000_02..=8.000_02).contains(&bad.force), "{bit} {at:?} {bad:?}");
+                assert!((-0.300_002..=0.800_002).contains(&bad.velocity), "{bit} {at:?} {bad:?}");
+                // What is held is flagged; what is flagged differs.
+                assert!(!bad.damaged || bad != Lookup { damaged: true, ..good }, "{bit} {at:?}");
+                found += u32::from(bad.damaged);
+            }
+            let forces = other.forces(0.7).map(Vec::from_iter);
+            assert!(forces.is_none_or(|forces| forces.iter().all(|force| (-3.000_02..=8.000_02).contains(force))));
+        }
+        assert!(found > 1000, "{found}");
+    }
+}
+
+#[test]
+fn no_rounding_leads_out_of_the_tables_own_range() {
+    // Greatest and least values, equal ones, and those that no f32 sum of two of them holds.
+    for scale in [1.0, -1.0, 5e29, -5e29, 1e-38, 3.3e-3, 0.0] {
+        let odd = |node: u32| (1.0 + (node.wrapping_mul(2_654_435_761) >> 9) as f32 / 8_388_608.0) * scale;
+        for force in [&odd as &dyn Fn(u32) -> f32, &|_| scale] {
+            let (plane, space) = (example::table(&PLANE, force), example::table(&SPACE, force));
+            let (plane, space) = (Table::<2>::open(&plane).unwrap(), Table::<3>::open(&space).unwrap());
+            for i in 0..if cfg!(miri) { 20 } else { 5000 } {
+                let [n, t, speed] = [0.37, 0.229, 0.0131].map(|step| step * i as f32);
+                let at = [n % 2.0, t % 1.5, speed % 0.25];
+                assert!(!plane.lookup([at[0], at[1]]).damaged, "{scale} {at:?}");
+                assert!(plane.forces(at[1]).is_some(), "{scale} {at:?}");
+                assert!(!space.lookup(at).damaged, "{scale} {at:?}");
+            }
+        }
     }
 }

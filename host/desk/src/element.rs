@@ -1,5 +1,7 @@
 //! Elements chosen at run time: the laws and links are core's, and so are the bits.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Matrix3;
 use slipfit_core::{
     ParameterError, Scalar,
@@ -16,6 +18,7 @@ use slipfit_core::{
 };
 
 use crate::{
+    closing::Approach,
     contact::Laws,
     laws::{AnyNormal, AnySliding},
 };
@@ -39,13 +42,14 @@ pub fn contact<S: Scalar + PartialOrd>(laws: &Laws, stick_band: f64) -> Result<A
     Ok(Contact { normal, friction })
 }
 
-/// What an `element` without internal variables does, without a look at laws and derivatives of contacts that are open. The kernel,
+/// What an `element` with the given `internal` variables does, without a look at laws and derivatives of contacts that are open. The kernel,
 /// whose steps all take the same number of instructions, must not choose so. A zero less in a sum changes at most the sign of a zero.
 #[inline(always)]
 fn act<S, B, L, W, const D: usize, const R: usize>(
     element: &Element<L, W, R>,
     (t, way): (S, Way<S>),
     at: (&B, &B::Placed),
+    internal: &W::Internal,
     sum: &mut impl Assembly<S, B, D>,
 ) where
     S: Scalar + PartialOrd,
@@ -59,7 +63,7 @@ fn act<S, B, L, W, const D: usize, const R: usize>(
     if law.gap(&seen.place) > S::zero() {
         return;
     }
-    let (response, _) = law.response(t, &seen.place, &seen.rate, &W::fresh(), way);
+    let (response, _) = law.response(t, &seen.place, &seen.rate, internal, way);
     sum.add::<L, W, R>(link, at, &view, &response);
 }
 
@@ -72,6 +76,26 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
     Some(element.law.gap(&element.link.seen(at, &view).place))
 }
 
+/// The time (s) over which the rate of a gap is the quotient of differences: short enough for a pin in a round hole, and long enough for
+/// the digits of a gap.
+const DIFFERENCE: f64 = 1e-6;
+
+/// Adds the contacts of an `element` to `all`.
+fn approach<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
+    Element { link, law }: &Element<L, W, R>,
+    at: (&B, &B::Placed),
+    all: &mut Vec<Approach>,
+) {
+    let seen = link.seen(at, &link.view(at.0, at.1));
+    let (first, speed) = (all.len(), seen.rate.norm());
+    law.each_gap(&seen.place, |gap| all.push(Approach { gap, rate: 0.0, speed }));
+    let mut k = first;
+    law.each_gap(&(seen.place + seen.rate * DIFFERENCE), |gap| {
+        all[k].rate = (gap - all[k].gap) / DIFFERENCE;
+        k += 1;
+    });
+}
+
 /// An element in a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarElement<const D: usize> {
@@ -79,8 +103,8 @@ pub enum PlanarElement<const D: usize> {
     Journal(Element<planar::Between<f64, D>, Journal<f64, AnyNormal<f64>, AnySliding<f64>>, 4>),
     /// A point before a line.
     Pad(Element<planar::Across<f64, D>, Pad<f64, AnyNormal<f64>, AnySliding<f64>>, 2>),
-    /// A torsion spring.
-    Spring(Element<planar::Turning, Spring<f64>, 1>),
+    /// A torsion spring, and the angles (rad) at which its two bodies start.
+    Spring(Element<planar::Turning, Spring<f64>, 1>, [f64; 2]),
     /// A torque.
     Motor(Element<planar::Turning, Motor<Drive<f64>>, 1>),
     /// A force.
@@ -111,7 +135,20 @@ impl<const D: usize> PlanarElement<D> {
         match self {
             Self::Journal(element) => gap(element, at),
             Self::Pad(element) => gap(element, at),
-            Self::Spring(_) | Self::Motor(_) | Self::Pusher(_) => None,
+            Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) => None,
+        }
+    }
+
+    /// Adds the contacts that it is to `all`.
+    pub fn approach(
+        &self,
+        at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed),
+        all: &mut Vec<Approach>,
+    ) {
+        match self {
+            Self::Journal(element) => approach(element, at, all),
+            Self::Pad(element) => approach(element, at, all),
+            Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) => {}
         }
     }
 }
@@ -129,36 +166,96 @@ impl SpatialElement {
             Self::Motor(_) | Self::Pusher(_) => None,
         }
     }
+
+    /// Adds the contacts that it is to `all`.
+    pub fn approach<const N: usize, const D: usize>(
+        &self,
+        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
+        all: &mut Vec<Approach>,
+    ) {
+        match self {
+            Self::Pin(element) => approach(element, at, all),
+            Self::Wall(element) => approach(element, at, all),
+            Self::Ring(element) => approach(element, at, all),
+            Self::Motor(_) | Self::Pusher(_) => {}
+        }
+    }
+}
+
+/// How far (rad) turning coordinates have turned since the start, with their whole turns, as far as springs look at them; 0 of others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Angles<const D: usize>([f64; D]);
+
+impl<const D: usize> Default for Angles<D> {
+    fn default() -> Self {
+        Self([0.0; D])
+    }
+}
+
+impl<const D: usize> Angles<D> {
+    /// How far a coordinate has; 0 for the frame.
+    fn of(&self, turn: Option<usize>) -> f64 {
+        turn.map_or(0.0, |k| self.0[k])
+    }
 }
 
 impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
-    type Internal = ();
+    type Internal = Angles<D>;
 
     const STICKS: bool = false;
 
-    fn fresh(&self) {}
+    fn fresh(&self) -> Angles<D> {
+        Angles::default()
+    }
 
     #[inline(always)]
     fn act(
         &self,
         way: (f64, Way<f64>),
         at: (&PlanarTree<f64, D>, &planar::Placed<f64, D>),
-        (): &(),
-        _: Option<&mut ()>,
+        angles: &Angles<D>,
+        _: Option<&mut Angles<D>>,
         sum: &mut impl Assembly<f64, PlanarTree<f64, D>, D>,
     ) {
         match self {
-            Self::Journal(element) => act(element, way, at, sum),
-            Self::Pad(element) => act(element, way, at, sum),
-            Self::Spring(element) => act(element, way, at, sum),
-            Self::Motor(element) => act(element, way, at, sum),
-            Self::Pusher(element) => act(element, way, at, sum),
+            Self::Journal(element) => act(element, way, at, &(), sum),
+            Self::Pad(element) => act(element, way, at, &(), sum),
+            Self::Spring(element, _) => {
+                let planar::Turning { body, against } = element.link;
+                act(element, way, at, &(element.law.start + angles.of(body) - angles.of(against)), sum);
+            }
+            Self::Motor(element) => act(element, way, at, &(), sum),
+            Self::Pusher(element) => act(element, way, at, &(), sum),
         }
     }
 
-    fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
+    fn remembered(&self, (_, placed): (&PlanarTree<f64, D>, &planar::Placed<f64, D>), angles: &Angles<D>) -> Angles<D> {
+        let mut next = *angles;
+        if let Self::Spring(Element { link: planar::Turning { body, against }, .. }, starts) = self {
+            for (turn, start) in [body, against].into_iter().zip(starts) {
+                if let Some(k) = *turn {
+                    let angle = libm::atan2(placed.axes[k].y, placed.axes[k].x);
+                    next.0[k] = next_to(angle, start + angles.0[k]) - start;
+                }
+            }
+        }
+        next
+    }
 
-    fn accept(&self, _: f64, (): &(), (): &mut ()) {}
+    fn shifted(&self, base: &Angles<D>, from: &Angles<D>, to: &Angles<D>, weight: f64) -> Angles<D> {
+        Angles(std::array::from_fn(|k| base.0[k] + (to.0[k] - from.0[k]) * weight))
+    }
+
+    fn accept(&self, condition: f64, next: &Angles<D>, kept: &mut Angles<D>) {
+        for (kept, next) in kept.0.iter_mut().zip(next.0) {
+            *kept = next.or_old(condition, *kept);
+        }
+    }
+}
+
+/// `angle` (rad) by so many turns that it is next to `last`.
+pub fn next_to(angle: f64, last: f64) -> f64 {
+    angle + TAU * ((last - angle) / TAU).round()
 }
 
 impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialElement<S> {
@@ -178,11 +275,11 @@ impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBod
         sum: &mut impl Assembly<S, FreeBodies<S, N, D>, D>,
     ) {
         match self {
-            Self::Pin(element) => act(element, way, at, sum),
-            Self::Wall(element) => act(element, way, at, sum),
-            Self::Ring(element) => act(element, way, at, sum),
-            Self::Motor(element) => act(element, way, at, sum),
-            Self::Pusher(element) => act(element, way, at, sum),
+            Self::Pin(element) => act(element, way, at, &[(); 2], sum),
+            Self::Wall(element) => act(element, way, at, &(), sum),
+            Self::Ring(element) => act(element, way, at, &(), sum),
+            Self::Motor(element) => act(element, way, at, &(), sum),
+            Self::Pusher(element) => act(element, way, at, &(), sum),
         }
     }
 

@@ -12,7 +12,10 @@ use slipfit_core::{
     mechanism::Mechanism,
 };
 
-use crate::interrupt;
+use crate::{
+    closing::{self, Between, Gaps},
+    interrupt,
+};
 
 /// How well each step has to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,10 +81,15 @@ impl Sensitivity {
     /// The error of a `step` of `length` (s), of which `tolerance` allows 1.
     pub fn error<P, R, const D: usize>(&self, tolerance: Tolerance, step: &Step<f64, P, R, D>, length: f64) -> f64 {
         // What Newton left counts like an error of the scheme: without it, a stage that has not converged would pass.
-        let velocity_error = step.error.max(step.residual) / self.mass;
-        let place_error = step.drift.max(step.residual * length) / self.mass;
-        (self.gain * velocity_error / tolerance.force).max(place_error / tolerance.position)
+        let velocity_error = greater(step.error, step.residual) / self.mass;
+        let place_error = greater(step.drift, step.residual * length) / self.mass;
+        greater(self.gain * velocity_error / tolerance.force, place_error / tolerance.position)
     }
+}
+
+/// The greater of two, NaN if one of them is: what is not a number must not pass as a small error.
+pub fn greater(one: f64, other: f64) -> f64 {
+    if one > other || one.is_nan() { one } else { other }
 }
 
 /// What an integration took.
@@ -149,9 +157,17 @@ const STEPS_PER_LOOK: u32 = 256;
 /// The accelerations (m/s², rad/s²) at the start and the end of a step; see [`Dense`].
 pub type Accelerations<const D: usize> = [SVector<f64, D>; 2];
 
+/// How the contacts of a mechanism are watched, so that no step passes one over.
+pub struct Watched<F> {
+    /// Fills in the contacts at a motion, always in the same order.
+    pub gaps: F,
+    /// How deep (m) a contact may be that a step passes over.
+    pub depth: f64,
+}
+
 /// Integrates `mechanism` from `start` at time 0 over `duration` (s) or until `accept` breaks, which sees the start and the
-/// motion at the end of each accepted step, with the step's accelerations. A step is accepted if `error`, which also sees its
-/// length (s), is at most 1.
+/// motion at the end of each accepted step, with the step's accelerations, and the contacts there. A step is accepted if `error`, which also sees its
+/// length (s), is at most 1, and if no contact that is open at its ends closes in between.
 ///
 /// # Errors
 /// See [`Stopped`].
@@ -160,14 +176,17 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
     start: MotionOf<f64, M, D>,
     duration: f64,
     error: impl Fn(&StepOf<f64, M, D>, f64) -> f64,
-    mut accept: impl FnMut(f64, &MotionOf<f64, M, D>, Option<Accelerations<D>>) -> ControlFlow<()>,
+    watched: Watched<impl Fn(&MotionOf<f64, M, D>, &mut Gaps)>,
+    mut accept: impl FnMut(f64, &MotionOf<f64, M, D>, Option<Accelerations<D>>, &Gaps) -> ControlFlow<()>,
 ) -> Result<Effort, Stopped> {
     let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
-    let mut flow = accept(t, &motion, None);
     let differentiated = |t: f64, motion: &MotionOf<f64, M, D>| {
         mechanism.differentiated(t, &motion.pose, &motion.internal, &motion.velocity)
     };
     let mut at_start = differentiated(t, &motion);
+    let [mut before, mut after] = [Gaps::default(), Gaps::default()];
+    (watched.gaps)(&motion, &mut before);
+    let mut flow = accept(t, &motion, None, &before);
     while t < duration && flow.is_continue() {
         let tried = effort.accepted + effort.refused;
         if tried.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
@@ -176,8 +195,10 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
         // A last step that would leave a splinter takes it along.
         let length = if t + 1.01 * h >= duration { duration - t } else { h };
         let (step, accelerations) = I::dense_step(mechanism, t, length, &motion, &at_start);
-        // A step whose estimate is not a number is the worst of all.
-        let error = Some(error(&step, length)).filter(|error| error.is_finite()).unwrap_or(1e12);
+        // A step that leaves the finite range is the worst of all: stages deep in a contact that the derivatives at the step's start do
+        // not know overflow.
+        let probe = mechanism.finiteness_probe(&step.motion.pose) + step.motion.velocity.sum() * 0.0;
+        let error = Some(error(&step, length) + probe).filter(|error| error.is_finite()).unwrap_or(1e12);
         let factor = (SAFETY / root(error.max(1e-12), I::ORDER)).clamp(CHANGES[0], CHANGES[1]);
         h = (length * factor).clamp(LEAST_STEP, GREATEST_STEP);
         if tried >= STEPS_MOST || (error > 1.0 && length <= LEAST_STEP) {
@@ -187,11 +208,20 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
             effort.refused += 1;
             continue;
         }
+        (watched.gaps)(&step.motion, &mut after);
+        if let Between::Closes(share) = closing::between(&before, &after, length, watched.depth)
+            && length > LEAST_STEP
+        {
+            h = (length * share).max(LEAST_STEP);
+            effort.refused += 1;
+            continue;
+        }
+        std::mem::swap(&mut before, &mut after);
         effort.accepted += 1;
         t = if length == duration - t { duration } else { t + length };
         motion = step.motion;
         at_start = differentiated(t, &motion);
-        flow = accept(t, &motion, Some(accelerations));
+        flow = accept(t, &motion, Some(accelerations), &before);
     }
     Ok(effort)
 }

@@ -5,6 +5,7 @@
 //! types, [`population`] thousands of such slides on the lanes of a register.
 #![deny(unsafe_code)]
 
+pub mod closing;
 pub mod contact;
 pub mod element;
 pub mod error_control;

@@ -124,6 +124,10 @@ impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechan
         self.mechanism.fresh()
     }
 
+    fn remembered(&self, pose: &M::Pose, internal: &M::Internal) -> M::Internal {
+        self.mechanism.remembered(pose, internal)
+    }
+
     fn accept(&self, condition: S, next: (&M::Pose, &M::Internal), kept: (&mut M::Pose, &mut M::Internal)) {
         self.mechanism.accept(condition, next, kept);
     }

@@ -6,19 +6,21 @@ use std::ops::ControlFlow;
 
 use slipfit_core::{
     SVector,
-    integrator::{Integrator, Motion, Rodas4},
+    integrator::{Integrator, Motion, MotionOf, Rodas4},
     kernel::{Kernel, State},
     mechanism::Mechanism,
+    pose::Pose,
     system::{
-        Bodies, System, ThroughJoints,
-        planar::PlanarTree,
+        Bodies, Reduced, System, ThroughJoints,
+        planar::{Kind, PlanarTree},
         spatial::{FreeBodies, tree::SpatialTree},
     },
 };
 
 use crate::{
+    closing::Gaps,
     element::{PlanarElement, SpatialElement},
-    error_control::{Accelerations, Effort, Stopped, integrate},
+    error_control::{Accelerations, Effort, Stopped, Watched, integrate},
     interrupt,
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},
@@ -48,8 +50,14 @@ pub type JointedPlant<'a, const D: usize> =
 pub type See<'a, P, const D: usize> =
     &'a mut dyn FnMut(f64, &Motion<f64, P, (), D>, Option<Accelerations<D>>) -> ControlFlow<()>;
 
-/// The error that a step makes, of which 1 is allowed; given what the step reports (see [`Reported`]) and its length (s).
-pub type Allowed<'a> = &'a dyn Fn(Reported, f64) -> f64;
+/// What a step may err by.
+#[derive(Clone, Copy)]
+pub struct Allowed<'a> {
+    /// The error that a step makes, of which 1 is allowed; given what the step reports and its length (s).
+    pub error: &'a dyn Fn(Reported, f64) -> f64,
+    /// How deep (m) a contact may be that a step passes over.
+    pub depth: f64,
+}
 
 /// What a step says about itself.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +86,7 @@ pub trait Plant<const D: usize> {
         &self,
         start: (Self::Pose, SVector<f64, D>),
         duration: f64,
-        error: Allowed,
+        allowed: Allowed,
         see: See<Self::Pose, D>,
     ) -> Result<Effort, Stopped>;
 
@@ -96,9 +104,63 @@ pub trait Plant<const D: usize> {
     ) -> Result<Effort, Stopped>;
 }
 
-/// At the start of a run.
-fn motion<P, const D: usize>((pose, velocity): (P, SVector<f64, D>)) -> Motion<f64, P, (), D> {
-    Motion { pose, velocity, acceleration: SVector::zeros(), internal: () }
+/// At the start of a run of `plant`.
+fn motion<M: Mechanism<f64, D>, const D: usize>(
+    plant: &M,
+    (pose, velocity): (M::Pose, SVector<f64, D>),
+) -> MotionOf<f64, M, D> {
+    Motion { pose, velocity, acceleration: SVector::zeros(), internal: plant.fresh() }
+}
+
+/// A motion without what laws remember.
+fn visible<P: Copy, R, const D: usize>(motion: &Motion<f64, P, R, D>) -> Motion<f64, P, (), D> {
+    let Motion { pose, velocity, acceleration, .. } = *motion;
+    Motion { pose, velocity, acceleration, internal: () }
+}
+
+/// What [`integrate`] has to know of contacts.
+trait Watch<P, const D: usize> {
+    /// Fills in the contacts at a `pose` and a `velocity`.
+    fn watch(&self, pose: &P, velocity: &SVector<f64, D>, gaps: &mut Gaps);
+}
+
+impl<const D: usize> Watch<[[f64; 2]; D], D> for PlanarPlant<'_, D> {
+    fn watch(&self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>, gaps: &mut Gaps) {
+        let bodies = self.mechanism().bodies();
+        let placed = bodies.placed(pose, velocity);
+        let turning = bodies.topology().iter().zip(velocity).filter(|(kind, _)| **kind == Kind::Turn);
+        gaps.spin = turning.fold(0.0, |most, (_, rate)| most.max(rate.abs()));
+        gaps.approaches.clear();
+        self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), &mut gaps.approaches));
+    }
+}
+
+impl<const N: usize, const D: usize> Watch<[Pose<f64>; N], D> for FreePlant<'_, N, D> {
+    fn watch(&self, pose: &[Pose<f64>; N], velocity: &SVector<f64, D>, gaps: &mut Gaps) {
+        let bodies = self.mechanism().bodies();
+        watch_free(bodies, &bodies.placed(pose, velocity), self.mechanism().elements(), gaps);
+    }
+}
+
+impl<const D: usize> Watch<[[f64; 2]; D], D> for JointedPlant<'_, D> {
+    fn watch(&self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>, gaps: &mut Gaps) {
+        let bodies = self.mechanism().bodies();
+        let placed = bodies.placed(pose, velocity);
+        let (free, placed) = bodies.free(&placed);
+        watch_free(free, placed, self.mechanism().elements().0, gaps);
+    }
+}
+
+/// Fills in the contacts of free bodies that are `placed`.
+fn watch_free<const N: usize, const D: usize>(
+    bodies: &FreeBodies<f64, N, D>,
+    placed: &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed,
+    elements: &[SpatialElement],
+    gaps: &mut Gaps,
+) {
+    gaps.spin = placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm()));
+    gaps.approaches.clear();
+    elements.iter().for_each(|one| one.approach((bodies, placed), &mut gaps.approaches));
 }
 
 macro_rules! plants {
@@ -114,18 +176,24 @@ macro_rules! plants {
                 &self,
                 start: (Self::Pose, SVector<f64, $dimension>),
                 duration: f64,
-                error: Allowed,
+                allowed: Allowed,
                 see: See<Self::Pose, $dimension>,
             ) -> Result<Effort, Stopped> {
                 integrate::<Rodas4, Self, $dimension>(
                     self,
-                    motion(start),
+                    motion(self, start),
                     duration,
                     |step, length| {
                         let reported = Reported { residual: step.residual, error: step.error, drift: step.drift };
-                        error(reported, length)
+                        (allowed.error)(reported, length)
                     },
-                    see,
+                    Watched {
+                        gaps: |motion: &MotionOf<f64, Self, $dimension>, gaps: &mut Gaps| {
+                            self.watch(&motion.pose, &motion.velocity, gaps);
+                        },
+                        depth: allowed.depth,
+                    },
+                    |t, motion, accelerations, _| see(t, &visible(motion), accelerations),
                 )
             }
 
@@ -136,7 +204,8 @@ macro_rules! plants {
                 (scheme, step): (IntegratorKind, f64),
                 see: See<Self::Pose, $dimension>,
             ) -> Result<Effort, Stopped> {
-                scheme.visit_implicit(FixedSteps { plant: self, start: motion(start), duration, step, see })
+                let start = motion(&self, start);
+                scheme.visit_implicit(FixedSteps { plant: self, start, duration, step, see })
             }
         }
     )* };
@@ -157,25 +226,22 @@ plants! {
 }
 
 /// Steps of one length.
-struct FixedSteps<'a, M, P, const D: usize> {
+struct FixedSteps<'a, M: Mechanism<f64, D>, const D: usize> {
     plant: M,
-    start: Motion<f64, P, (), D>,
+    start: MotionOf<f64, M, D>,
     duration: f64,
     step: f64,
-    see: See<'a, P, D>,
+    see: See<'a, M::Pose, D>,
 }
 
-impl<M, const D: usize> IntegratorVisitor for FixedSteps<'_, M, M::Pose, D>
-where
-    M: Mechanism<f64, D, Internal = ()>,
-{
+impl<M: Mechanism<f64, D>, const D: usize> IntegratorVisitor for FixedSteps<'_, M, D> {
     type Output = Result<Effort, Stopped>;
 
     fn visit<I: Integrator>(self) -> Self::Output {
         let Self { plant, start, duration, step, see } = self;
         let kernel = Kernel::<f64, M, I>::new(plant, step)?;
         let mut state = State { steps: 0, motion: start };
-        let _ = see(0.0, &state.motion, None);
+        let _ = see(0.0, &visible(&state.motion), None);
         let mut accepted = 0;
         while kernel.time(state.steps) < duration * (1.0 - 1e-12) {
             let report = kernel.step(&mut state);
@@ -187,7 +253,7 @@ where
                 return Err(Stopped::Interrupted);
             }
             accepted += 1;
-            if see(time, &state.motion, None).is_break() {
+            if see(time, &visible(&state.motion), None).is_break() {
                 break;
             }
         }

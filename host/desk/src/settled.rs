@@ -6,6 +6,9 @@ pub const BREAKAWAY_SPEED: f64 = 0.2e-3;
 /// Length (s) of the end of a run over which a force must be steady to count as settled.
 pub const SETTLED_WINDOW: f64 = 0.020;
 
+/// Share of its mean by which a force may vary over that time and count as settled.
+pub const SETTLED_SHARE: f64 = 0.01;
+
 /// The mean force (N) over ascending times (s), each with its force, if it varies by less than 1 %.
 pub fn settled(window: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let forces = || window.clone().map(|(_, force)| force);
@@ -14,5 +17,5 @@ pub fn settled(window: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> 
     let duration: f64 = pairs().map(|(one, next)| next.0 - one.0).sum();
     let sum: f64 = pairs().map(|(one, next)| (next.0 - one.0) * (one.1 + next.1) / 2.0).sum();
     let mean = if duration > 0.0 { sum / duration } else { least };
-    (greatest - least < 0.01 * mean.abs()).then_some(mean)
+    (greatest - least < SETTLED_SHARE * mean.abs()).then_some(mean)
 }

@@ -8,7 +8,7 @@ use maud::{DOCTYPE, Markup, html};
 use serde::Serialize;
 
 use super::{
-    Failure, Moving, SceneArguments, endings, kernel::core_folder, print, print_json, simulate::ControllerArguments,
+    Failure, Moving, SceneArguments, endings, kernel::core_folder, print, print_json, simulate::StepArguments,
 };
 use crate::{
     dynamics::scheme::ScalarKind,
@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR")]
     core: Option<PathBuf>,
     #[command(flatten)]
-    controller: ControllerArguments,
+    steps: StepArguments,
 }
 
 /// A version of the standard as it is typed.
@@ -78,14 +78,14 @@ impl From<CompileError> for Failure {
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         endings::check_one("--output", &self.output, &["fmu"])?;
-        let moving = self.scene.load_moving(&self.controller.overrides())?;
+        let moving = self.scene.load_moving(&self.steps.overrides())?;
         let controller = match &moving {
             Moving::Slide(scene) => scene.controller,
             Moving::Mechanism(mechanism) => mechanism.controller,
         };
         if controller.scalar != ScalarKind::F32 {
             return Err(Failure::Input(
-                "controller.scalar is f64, a unit computes what the controller does, in f32".into(),
+                "controller.scalar is f64, a unit computes what the controller does, in f32: --set controller.scalar=f32".into(),
             ));
         }
         let sources = self.sources()?;
@@ -122,7 +122,7 @@ impl Arguments {
         let name = identifier(&self.output.file_stem().unwrap_or_default().to_string_lossy());
         let (_, scene) = self.scene.text()?;
         // The settings belong to the scene as it was compiled.
-        let settings = self.scene.overrides(&self.controller.overrides());
+        let settings = self.scene.overrides(&self.steps.overrides());
         let settings: String =
             settings.iter().map(|setting| format!("# {}\n", printable(&setting.to_string()))).collect();
         Ok(vec![

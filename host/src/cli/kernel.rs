@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, Moving, SceneArguments, print, print_json, simulate::ControllerArguments, terminal::warn};
+use super::{Failure, Moving, SceneArguments, print, print_json, simulate::StepArguments, terminal::warn};
 use crate::{
     dynamics::{
         driven::Driven,
         scheme::{IntegratorKind, ScalarKind},
     },
     firmware::{
-        kernel_crate::{CrateFiles, crate_name, mechanism_crate, slide_crate},
+        kernel_crate::{CrateFiles, crate_name, is_written, mechanism_crate, slide_crate},
         kernel_source::{EXTENSIONS, c_header, rust_source},
     },
     mechanism,
@@ -29,9 +29,13 @@ pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// File to write: .rs for slipfit-core, .h for the C library (slides only; `--crate` is for any scene).
+    ///
+    /// Names in a header follow the file's: `slipfit_this_left` in left.h.
     #[arg(short, long, value_name = "FILE", default_value = "scene.rs")]
     output: PathBuf,
     /// Writes a crate into this folder, with the folder's name, instead of a file; with functions and a header for C.
+    ///
+    /// The folder is new or empty, or one that `--crate` has written, which is overwritten.
     ///
     /// The step is compiled in that crate alone. So a line in the workspace's Cargo profile, which the crate's Cargo.toml shows, keeps
     /// the step fast in a firmware image that is built for size.
@@ -43,7 +47,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", requires = "folder", conflicts_with = "output")]
     core: Option<PathBuf>,
     #[command(flatten)]
-    controller: ControllerArguments,
+    steps: StepArguments,
 }
 
 #[derive(Serialize)]
@@ -74,15 +78,34 @@ pub(super) fn core_folder(folder: &Path) -> Result<PathBuf, Failure> {
     Ok(absolute)
 }
 
+/// Refuses a `folder` for a crate of these `files` that has anything in it which slipfit did not write.
+fn check_folder(folder: &Path, files: &[&Path]) -> Result<(), Failure> {
+    let is_foreign = |path: &Path| path.exists() && !std::fs::read(path).is_ok_and(|text| is_written(&text));
+    let foreign = files.iter().find(|path| is_foreign(path)).map(|path| path.to_path_buf());
+    let manifest = folder.join("Cargo.toml");
+    // Without a manifest it is no crate of slipfit's, which may have other files beside.
+    let first = || std::fs::read_dir(folder).ok()?.next()?.ok().map(|entry| entry.path());
+    match foreign.or_else(|| if manifest.exists() { None } else { first() }) {
+        Some(path) => Err(Failure::Input(format!(
+            "--crate: {} was not written by slipfit and is not overwritten; name a folder that is new or empty, or one that \
+             --crate has written",
+            path.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        let moving = self.scene.load_moving(&self.controller.overrides())?;
+        let moving = self.scene.load_moving(&self.steps.overrides())?;
         let ControllerSpec { integrator, scalar, .. } = match &moving {
             Moving::Slide(scene) => scene.controller,
             Moving::Mechanism(mechanism) => mechanism.controller,
         };
         if scalar != ScalarKind::F32 {
-            return Err(Failure::Input("controller.scalar is f64, kernels for firmware compute in f32".into()));
+            return Err(Failure::Input(
+                "controller.scalar is f64, kernels for firmware compute in f32: --set controller.scalar=f32".into(),
+            ));
         }
         let scene = match moving {
             Moving::Slide(scene) => scene,
@@ -102,7 +125,10 @@ impl Arguments {
                     "controller.integrator is {asked}, the C library steps by {known}; --integrator {known} takes that"
                 )));
             }
-            "h" => c_header(&scene).map_err(|error| Failure::Input(error.to_string()))?,
+            "h" => {
+                let stem = self.output.file_stem().unwrap_or_default().to_string_lossy();
+                c_header(&scene, &stem).map_err(|error| Failure::Input(error.to_string()))?
+            }
             _ => {
                 let allowed = EXTENSIONS.join(", .");
                 return Err(Failure::Input(format!(
@@ -159,6 +185,7 @@ impl Arguments {
     ) -> Result<(), Failure> {
         let name = crate_name(folder).map_err(|error| Failure::Input(format!("--crate: {error}")))?;
         let files = files(&name)?.map(|(path, text)| (folder.join(path), text));
+        check_folder(folder, &files.each_ref().map(|(path, _)| path.as_path()))?;
         let sources = folder.join("src");
         files::prepare_folder(&sources)?;
         self.scene.check_outputs(&files.each_ref().map(|(path, _)| ("--crate", path.as_path())))?;

@@ -217,7 +217,7 @@ impl Arguments {
         let bar = progress("simulating", (numbers.end - numbers.start.min(numbers.end)) as usize);
         let mut rows = self.csv.as_deref().map(|path| Rows::begin(path, subject)).transpose()?;
         let listener = rows.as_mut().map(|rows| Listener::new(Box::new(|units| rows.add(units))));
-        let counter = Counter::new(subject, production, duty);
+        let counter = Counter::new(subject, duty);
         let simulation = Simulation { subject, production, settings, counter, listener };
         let tally = self.threads.install(|| {
             let tally = run(&simulation, &source, shard, keep.as_ref(), |units| bar.inc(units))?;

@@ -137,15 +137,31 @@ impl LengthArguments {
     }
 }
 
-/// How the controller computes, where it differs from the scene.
+/// How the controller steps, where it differs from the scene.
 #[derive(Args)]
-pub(super) struct ControllerArguments {
+pub(super) struct StepArguments {
     /// Length of the controller's steps, such as 1ms; a bare number is in µs.
     #[arg(long, allow_hyphen_values = true)]
     step: Option<String>,
     /// Integration scheme of the controller.
     #[arg(long, value_parser = one_of(IntegratorKind::ALL, IntegratorKind::name))]
     integrator: Option<IntegratorKind>,
+}
+
+impl StepArguments {
+    /// The options as settings of the scene.
+    pub fn overrides(&self) -> Vec<Override> {
+        let step = self.step.as_ref().map(|step| Override::option("--step", "controller.step", step));
+        let name = |kind: IntegratorKind| Override::option("--integrator", "controller.integrator", kind.name());
+        step.into_iter().chain(self.integrator.map(name)).collect()
+    }
+}
+
+/// How the controller computes, where it differs from the scene.
+#[derive(Args)]
+pub(super) struct ControllerArguments {
+    #[command(flatten)]
+    steps: StepArguments,
     /// Number type of the controller.
     #[arg(long, value_parser = one_of(ScalarKind::ALL, ScalarKind::name))]
     scalar: Option<ScalarKind>,
@@ -154,15 +170,13 @@ pub(super) struct ControllerArguments {
 impl ControllerArguments {
     /// Whether any of them was given.
     pub fn given(&self) -> bool {
-        self.step.is_some() || self.integrator.is_some() || self.scalar.is_some()
+        !self.overrides().is_empty()
     }
 
     /// The options as settings of the scene.
     pub fn overrides(&self) -> Vec<Override> {
-        let step = self.step.as_ref().map(|step| Override::option("--step", "controller.step", step));
-        let name = |kind: IntegratorKind| Override::option("--integrator", "controller.integrator", kind.name());
         let scalar = self.scalar.map(|kind| Override::option("--scalar", "controller.scalar", kind.name()));
-        step.into_iter().chain(self.integrator.map(name)).chain(scalar).collect()
+        self.steps.overrides().into_iter().chain(scalar).collect()
     }
 }
 

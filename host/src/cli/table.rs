@@ -42,6 +42,8 @@ pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// File to write; its extension gives the format: .bin, .hex, .h (C header) or .rs (Rust).
+    ///
+    /// Names in a header follow the file's: `slipfit_left_bytes` in left.h.
     #[arg(short, long, value_name = "FILE", default_value = "table.bin")]
     output: PathBuf,
     #[command(flatten)]
@@ -189,7 +191,8 @@ impl Arguments {
         };
         warnings.extend(doubt);
         warnings.extend(coarse(driven, &table));
-        let file = render(&extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
+        let stem = self.output.file_stem().unwrap_or_default().to_string_lossy();
+        let file = render(&stem, &extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
         files::write(&self.output, &file)?;
         if let Some(path) = &self.plot {
             let svg = force_table::picture(kind, &table, driven.title()).map_err(anyhow::Error::from)?;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{
     driven::DriveKind,
-    outcome::{Moment, Outcome, Verdict},
+    outcome::{BREAKAWAY_SPEED, JAMMED, Moment, Outcome, Verdict},
     sweep::{Level, Sweep},
 };
 use crate::show::number::{fixed, level};
@@ -95,6 +95,22 @@ impl Range {
     }
 }
 
+/// The mean speed (m/s, rad/s) up to which a unit that jams has not moved.
+const STILL: f64 = BREAKAWAY_SPEED;
+
+/// Where a unit is that was never faster than a jammed one since the ramp's start: where it started, behind that, or where it came to
+/// before the ramp or at a creep.
+fn never_faster(kind: DriveKind, end: Moment) -> String {
+    let [far, unit] = [fixed(kind.travel(end.z.abs()), 1), kind.travel_unit().to_owned()];
+    if end.z.abs() <= STILL * end.t {
+        "never moves".into()
+    } else if end.z < 0.0 {
+        format!("is pushed back by {far} {unit}")
+    } else {
+        format!("comes {far} {unit} far, but never at {} % of the command", fixed(100.0 * JAMMED, 0))
+    }
+}
+
 /// Where on its way a unit tips, slows or stops, or that it never was faster, and between which speeds it swings at the end, in
 /// words; empty where it runs all the way.
 pub fn on_the_way(kind: DriveKind, outcome: &Outcome) -> String {
@@ -103,7 +119,7 @@ pub fn on_the_way(kind: DriveKind, outcome: &Outcome) -> String {
     };
     let slows = match (outcome.verdict, outcome.slows, outcome.stops) {
         (_, _, Some(_)) => at("stops", outcome.stops),
-        (Verdict::Jammed, ..) => Some("never moves".into()),
+        (Verdict::Jammed, ..) => Some(never_faster(kind, outcome.end)),
         (_, Some(_), _) => at("slows", outcome.slows),
         (Verdict::Crawls, ..) => Some("slow from the start".into()),
         _ => None,
@@ -164,7 +180,15 @@ mod tests {
         outcome.stops = moment(0.05);
         assert_eq!(on_the_way(kind, &outcome), "tips at 31.2 mm, stops at 50.0 mm");
         (outcome.tips, outcome.slows, outcome.stops) = (None, None, None);
-        assert_eq!(on_the_way(kind, &outcome), "never moves");
+        for (z, told) in [
+            (1e-4, "never moves"),
+            (-1e-4, "never moves"),
+            (-0.287, "is pushed back by 287.0 mm"),
+            (0.287, "comes 287.0 mm far, but never at 1 % of the command"),
+        ] {
+            outcome.end = Moment { t: 1.0, z };
+            assert_eq!(on_the_way(kind, &outcome), told);
+        }
         outcome.verdict = Verdict::Crawls;
         assert_eq!(on_the_way(kind, &outcome), "slow from the start");
     }

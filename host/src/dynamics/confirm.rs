@@ -4,7 +4,7 @@ use slipfit_core::slide::CONTACTS;
 
 use super::{
     desk,
-    outcome::Verdict,
+    outcome::{Outcome, Verdict},
     simulate::{Run, Settings, SimulateError, Solver, simulate},
     trust::Trust,
 };
@@ -60,7 +60,12 @@ pub fn with_step_tried(scene: &Scene, n: &[f64; CONTACTS], trust: Trust) -> Resu
 
 /// `run`, made by `settings`, held against the `better` one, which is sampled at the same times.
 pub fn against(better: &Run, scene: &Scene, settings: &Settings, mut run: Run) -> Run {
-    if better.outcome.verdict != run.outcome.verdict {
+    let agrees = match settings.solver {
+        Solver::Desk { .. } => figures_agree(&run.outcome, &better.outcome, scene.drive.command(better.outcome.end.t)),
+        // How far its figures are off is said beside its verdict.
+        Solver::Controller(_) => run.outcome.verdict == better.outcome.verdict,
+    };
+    if !agrees {
         run.outcome.verdict = Verdict::Undecided;
     }
     let difference = run.trajectory.greatest_difference(&better.trajectory, scene.drive.ramp_start);
@@ -71,6 +76,28 @@ pub fn against(better: &Run, scene: &Scene, settings: &Settings, mut run: Run) -
     run.trust = run.trust.compared(difference, step);
     run
 }
+
+/// A difference of figures, as a share, from which a verdict is in doubt.
+const DOUBTFUL: f64 = 0.01;
+
+/// Whether two runs agree in verdict and figures: in peak, final speed and travel, each to 1 %. A final speed counts by the `command`
+/// (m/s, rad/s) at the end where that is greater.
+pub fn figures_agree(one: &Outcome, better: &Outcome, command: f64) -> bool {
+    let within = |one: f64, better: f64, whole: f64| (one - better).abs() <= DOUBTFUL * whole.abs();
+    let peaks = match (one.peak_force, better.peak_force) {
+        (Some(one), Some(better)) => within(one, better, better),
+        (one, better) => one.is_none() && better.is_none(),
+    };
+    let speed = command.abs().max(better.final_velocity.abs());
+    let [travel, better_travel] = [one.end.z, better.end.z];
+    one.verdict == better.verdict
+        && peaks
+        && within(one.final_velocity, better.final_velocity, speed)
+        && within(travel, better_travel, better_travel.abs().max(LEAST_TRAVEL))
+}
+
+/// Travel (m, rad) that counts as some.
+const LEAST_TRAVEL: f64 = 1e-5;
 
 #[cfg(test)]
 mod tests {

@@ -19,6 +19,7 @@ use slipfit_desk::slide::by_desk;
 
 use super::{
     driven::Driven,
+    effort::Effort,
     error_control::{Knot, Tolerance, sampled},
     looks::{end, looks, samples},
     outcome::{Instant, Observer},
@@ -117,13 +118,17 @@ pub fn seen(
     let integration = start.elapsed();
 
     let end = end(&knots, |values| observer.is_at_end(values[3]));
+    let times = knots.iter().map(|knot| knot.t).collect();
+    let at_knots = knots.iter().map(|knot| scene.drive.force(knot.t, knot.values[0])).collect();
+    let given = Effort::new(times, at_knots, scene.slide.mass / scene.drive.gain);
+    let force = |t: f64, vz: f64| given.at(t, scene.drive.force(t, vz));
     looks(&knots, end, |t, [vz, _, _, z]| {
-        observer.observe(Instant { t, vz, force: scene.drive.force(t, vz), z });
+        observer.observe(Instant { t, vz, force: force(t, vz), z });
     });
     let mut trajectory = Trajectory::default();
     let times = samples(end, settings.every);
     for (t, values) in times.clone().zip(sampled(&knots, times)) {
-        trajectory.push(t, values, scene.drive.force(t, values[0]));
+        trajectory.push(t, values, force(t, values[0]));
     }
     let solved = Solved {
         by: "desk",

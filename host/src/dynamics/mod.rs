@@ -7,6 +7,7 @@ pub mod controller;
 pub mod desk;
 pub mod deviation;
 pub mod driven;
+pub mod effort;
 #[cfg(test)]
 pub(crate) mod example;
 pub mod film;

@@ -12,16 +12,21 @@ pub const RUNS: f64 = 0.5;
 /// Share of the commanded speed below which it is jammed.
 pub const JAMMED: f64 = 0.01;
 
+/// Share of the commanded speed beyond which a unit overruns it.
+pub const OVERRUNS: f64 = 1.5;
+
 /// Whether the unit does its job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// At least half of the commanded speed at the end.
+    /// 50 % to 150 % of the commanded speed at the end.
     Runs,
     /// 1 % to 50 %.
     Crawls,
     /// Below 1 %.
     Jammed,
+    /// Above 150 %, or against the command at more than half of its speed.
+    Overruns,
     /// The run ends before the ramp does, nothing is commanded, or a finer run says otherwise.
     Undecided,
 }
@@ -32,6 +37,7 @@ impl std::fmt::Display for Verdict {
             Self::Runs => "runs",
             Self::Crawls => "crawls",
             Self::Jammed => "jammed",
+            Self::Overruns => "overruns",
             Self::Undecided => "undecided",
         })
     }
@@ -40,13 +46,15 @@ impl std::fmt::Display for Verdict {
 impl Verdict {
     /// Whether the unit does not do its job. Without a verdict nobody knows.
     pub fn is_malfunction(self) -> bool {
-        matches!(self, Self::Crawls | Self::Jammed)
+        matches!(self, Self::Crawls | Self::Jammed | Self::Overruns)
     }
 
     /// Of a unit that moves with `share` of its command at the end; none if it had no command, or it was not `over`.
     pub fn of(share: f64, over: bool) -> Self {
         if !over || share.is_nan() {
             Self::Undecided
+        } else if !(-RUNS..=OVERRUNS).contains(&share) {
+            Self::Overruns
         } else if share >= RUNS {
             Self::Runs
         } else if share >= JAMMED {
@@ -63,7 +71,8 @@ impl From<Verdict> for MotionVerdict {
             Verdict::Runs => Self::Runs,
             Verdict::Crawls => Self::Crawls,
             Verdict::Jammed => Self::Jammed,
-            Verdict::Undecided => Self::Undecided,
+            // A table has no motion to offer for it.
+            Verdict::Overruns | Verdict::Undecided => Self::Undecided,
         }
     }
 }
@@ -235,7 +244,7 @@ impl Observer {
 
 /// Whether a limit between two verdicts lies between the least and the greatest of these speeds, as shares of the command.
 pub fn between_verdicts([least, greatest]: [f64; 2]) -> bool {
-    [RUNS, JAMMED].iter().any(|limit| least < *limit && *limit <= greatest)
+    [OVERRUNS, RUNS, JAMMED, -RUNS].iter().any(|limit| least < *limit && *limit <= greatest)
 }
 
 #[cfg(test)]
@@ -277,8 +286,24 @@ mod tests {
 
     #[test]
     fn verdicts_follow_the_share_of_the_commanded_speed() {
-        for (v, verdict) in [(0.05, Verdict::Runs), (0.049, Verdict::Crawls), (0.001, Verdict::Crawls)] {
-            assert_eq!(observe(|_| v, 1.5, 1e-4).verdict, verdict);
+        let all = [
+            (0.15, Verdict::Runs),
+            (0.05, Verdict::Runs),
+            (0.049, Verdict::Crawls),
+            (0.001, Verdict::Crawls),
+            (-0.049, Verdict::Jammed),
+            (-0.051, Verdict::Overruns),
+            (0.151, Verdict::Overruns),
+            (-2468.0, Verdict::Overruns),
+            (f64::INFINITY, Verdict::Overruns),
+        ];
+        for (v, verdict) in all {
+            let found = Verdict::of(v / 0.1, true);
+            assert_eq!(found, verdict, "{v}");
+            assert_eq!(found.is_malfunction(), verdict != Verdict::Runs);
+            if v.is_finite() {
+                assert_eq!(observe(|_| v, 1.5, 1e-4).verdict, verdict);
+            }
         }
         assert_eq!(observe(|_| 0.000_99, 1.0, 1e-4).verdict, Verdict::Jammed);
         assert_eq!(observe(|_| 0.1, 0.999, 1e-4).verdict, Verdict::Undecided);

@@ -14,21 +14,55 @@ use crate::{
     scene::Scene,
 };
 
-/// A crate's name that Cargo does not take.
+/// A crate's name that Cargo or the compiler does not take.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a crate is not named {0:?}; allowed are a lower-case letter, then such letters, digits, - and _")]
-pub struct NameError(pub String);
+pub enum NameError {
+    /// Other characters than a crate's name has.
+    #[error("a crate is not named {0:?}; allowed are a lower-case letter, then such letters, digits, - and _")]
+    Characters(String),
+    /// A keyword of Rust, a crate that it depends on, or a name that Windows reserves.
+    #[error(
+        "a crate is not named {0:?}, which is a keyword of Rust, a crate that it depends on or a file name of Windows"
+    )]
+    Taken(String),
+}
+
+/// Names that no crate of a kernel can have: keywords of Rust, also reserved ones; crates that it depends on, or that its names in C
+/// would collide with; names of files that Windows reserves.
+#[rustfmt::skip]
+const TAKEN: [&str; 71] = [
+    "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn", "else", "enum",
+    "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut",
+    "override", "priv", "pub", "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+    "alloc", "core", "proc_macro", "std", "test", "nalgebra", "libm", "slipfit", "slipfit_core", "slipfit_capi",
+    "aux", "con", "nul", "prn", "com1", "com2", "com3", "lpt1", "lpt2", "lpt3",
+];
 
 /// The name of the crate in `folder`: the folder's own.
 ///
 /// # Errors
-/// [`NameError`] if Cargo would not take it.
+/// [`NameError`] if no crate of that name compiles.
 pub fn crate_name(folder: &Path) -> Result<String, NameError> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let is_letter = |letter: char| letter.is_ascii_lowercase();
     let is_good = name.starts_with(is_letter)
         && name.chars().all(|letter| is_letter(letter) || letter.is_ascii_digit() || ['-', '_'].contains(&letter));
-    if is_good { Ok(name) } else { Err(NameError(name)) }
+    if !is_good {
+        Err(NameError::Characters(name))
+    } else if TAKEN.contains(&name.replace('-', "_").as_str()) {
+        Err(NameError::Taken(name))
+    } else {
+        Ok(name)
+    }
+}
+
+/// What every file of a crate has that slipfit wrote.
+const WRITTEN: &str = "ritten by slipfit";
+
+/// Whether `text` is that of a file of a crate which slipfit wrote.
+pub fn is_written(text: &[u8]) -> bool {
+    text.windows(WRITTEN.len()).take(4096).any(|window| window == WRITTEN.as_bytes())
 }
 
 /// Files, each with its path in the crate's folder.
@@ -173,7 +207,7 @@ fn library(source: &str, functions: &str, name: &str) -> String {
     let (title, module) = source.split_once('\n').unwrap_or((source, ""));
     let title = title.trim_start_matches("// ");
     format!(
-        "//! {title}\n//!\n\
+        "//! {title} Written by slipfit.\n//!\n\
          //! The step is compiled in this crate alone, by what the profile says of it. In an image that\n\
          //! is built for size, or in a dev build, these lines in the workspace's Cargo.toml keep it fast:\n//!\n\
          //! ```toml\n//! [profile.release.package.{name}]\n//! opt-level = 3\n//!\n\
@@ -193,9 +227,15 @@ mod tests {
     #[test]
     fn a_crate_is_named_like_its_folder() {
         assert_eq!(crate_name(Path::new("firmware/cd-rom_2")).as_deref(), Ok("cd-rom_2"));
-        for bad in ["..", "/", "Slide", "2nd", "-a", "a b", "ä"] {
+        for bad in
+            ["..", "/", "Slide", "2nd", "-a", "a b", "ä", "fn", "self", "core", "std", "slipfit-core", "slipfit_core"]
+        {
             let error = crate_name(Path::new(bad)).unwrap_err().to_string();
             assert!(error.starts_with("a crate is not named"), "{bad}: {error}");
+        }
+        // Keywords of C and its library's names are good: no name in the header is that alone.
+        for good in ["int", "float", "class", "exit", "main", "errno"] {
+            assert_eq!(crate_name(Path::new(good)).as_deref(), Ok(good));
         }
     }
 
@@ -210,7 +250,7 @@ mod tests {
         assert!(files[..2].iter().all(|(_, text)| text.contains("[profile.release.package.slide]")));
         let header = &files[3];
         assert!(
-            header.0 == Path::new("slide.h") && header.1.contains("int32_t slide_step(slide *unit);"),
+            header.0 == Path::new("slide.h") && header.1.contains("int32_t slide_step(slide_unit *unit);"),
             "{header:?}"
         );
     }

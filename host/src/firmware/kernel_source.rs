@@ -8,6 +8,7 @@ use slipfit_core::{
     slide::{ABSENT, CONTACTS},
 };
 
+use super::guard::{c_name, guarded};
 use crate::{
     dynamics::{driven::Driven, scheme::IntegratorKind},
     scene::Scene,
@@ -130,12 +131,12 @@ pub(crate) fn elastic(normal: NormalType) -> [&'static str; 3] {
     }
 }
 
-/// A C header with the scene as `slipfit_this_scene`, to be included after `slipfit.h`. Its scheme is the C library's,
-/// implicit Euler, whichever `scene` names.
+/// A C header with the scene, to be included after `slipfit.h`. Its names follow the `stem` of its file's name: in `scene.h` the scene
+/// is `slipfit_this_scene` and its hash `SLIPFIT_SCENE_HASH`. Its scheme is the C library's, implicit Euler, whichever `scene` names.
 ///
 /// # Errors
 /// [`CError`] names what the library cannot do.
-pub fn c_header(scene: &Scene) -> Result<String, CError> {
+pub fn c_header(scene: &Scene, stem: &str) -> Result<String, CError> {
     let data = scene_data(scene);
     if data.contact.normal_type() != NormalType::ThreeHalves {
         return Err(CError::Exponent { found: data.contact.exponent });
@@ -152,10 +153,12 @@ pub fn c_header(scene: &Scene) -> Result<String, CError> {
         }
         FrictionData::Exact { coefficient } => ("SLIPFIT_FRICTION_EXACT", coefficient, 0.0),
     };
+    let name = c_name(stem);
+    let upper = name.to_uppercase();
     let mut text = format!(
-        "/* {}: a scene for firmware, to be included after slipfit.h. SI units. */\n#ifndef SLIPFIT_SCENE_H\n\
-         #define SLIPFIT_SCENE_H\n\n/* What a flash table of this scene is stamped with. */\n\
-         #define SLIPFIT_SCENE_HASH {:#018x}ull\n\nstatic const slipfit_scene slipfit_this_scene = {{\n",
+        "/* {}: a scene for firmware, to be included after slipfit.h. SI units. */\n\
+         /* What a flash table of this scene is stamped with. */\n\
+         #define SLIPFIT_{upper}_HASH {:#018x}ull\n\nstatic const slipfit_scene slipfit_this_{name} = {{\n",
         title(scene),
         scene.hash()
     );
@@ -183,7 +186,7 @@ pub fn c_header(scene: &Scene) -> Result<String, CError> {
     field("drive_ramp", &list(&data.drive_ramp));
     field("drive_speed", &number(data.drive_speed));
     field("drive_point", &list(&data.drive_point_b));
-    Ok(text + "};\n\n#endif\n")
+    Ok(guarded(&format!("SLIPFIT_{upper}_H"), &(text + "};\n")))
 }
 
 /// Name and type of a scheme in core.
@@ -238,7 +241,7 @@ mod tests {
             assert!(text.contains(&format!("pub type Unit = {unit};")), "{text}");
             assert_eq!(text, rust_source(&scene(&[setting])));
         }
-        assert!(c_header(&scene(&[])).unwrap().contains("    0.0818f, /* mass */\n"));
+        assert!(c_header(&scene(&[]), "scene").unwrap().contains("    0.0818f, /* mass */\n"));
     }
 
     #[test]
@@ -246,13 +249,13 @@ mod tests {
         for (exponent, setting) in
             [(2.0, "contact.exponent=2"), (1.0, "contact.exponent=1"), (1.7, "contact.exponent=1.7")]
         {
-            assert_eq!(c_header(&scene(&[setting])), Err(CError::Exponent { found: exponent }));
+            assert_eq!(c_header(&scene(&[setting]), "scene"), Err(CError::Exponent { found: exponent }));
         }
-        let text = c_header(&scene(&[])).unwrap();
+        let text = c_header(&scene(&[]), "scene").unwrap();
         assert!(text.contains("    SLIPFIT_SCHEME_IMPLICIT_EULER, /* scheme */\n"));
         assert!(text.contains(&format!("#define SLIPFIT_SCENE_HASH {:#018x}ull\n", scene(&[]).hash())));
         for law in ["exact", "regularised", "none"] {
-            assert!(c_header(&scene(&[&format!("friction.law={law}")])).is_ok());
+            assert!(c_header(&scene(&[&format!("friction.law={law}")]), "scene").is_ok());
         }
     }
 }

@@ -4,5 +4,6 @@ mod c_border;
 pub mod flash;
 pub mod fmu;
 pub mod force_table;
+mod guard;
 pub mod kernel_crate;
 pub mod kernel_source;

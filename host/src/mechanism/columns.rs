@@ -1,9 +1,9 @@
 //! What is told of a motion: drives and bodies, column by column.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector2, Vector3};
 use slipfit_core::{
     SVector,
-    pose::Pose,
+    pose::{Orientation, Pose},
     system::{
         Bodies,
         planar::{Kind, PlanarTree, Point},
@@ -14,7 +14,9 @@ use slipfit_core::{
     },
 };
 
-use super::{Action, Mechanism, Mounts, mounts::flat};
+use slipfit_desk::element::next_to;
+
+use super::{Action, Mechanism, Mounts, NamedDrive, mounts::flat};
 use crate::dynamics::outcome::Instant;
 
 /// Coordinates and their rates at one time.
@@ -22,65 +24,93 @@ use crate::dynamics::outcome::Instant;
 pub struct State<const D: usize> {
     /// Generalised velocities (m/s, rad/s).
     pub rates: [f64; D],
-    /// Displacements (m) and angles (rad) from the drawn pose; in space rotation vectors.
+    /// Displacements (m) and angles (rad) from the drawn pose. The three of what turns about a point are the integral of its angular
+    /// velocity about the axes of what it turns on: unlike a rotation vector they go on smoothly beyond a full turn.
     pub places: [f64; D],
     /// How fast these change (m/s, rad/s).
     pub place_rates: [f64; D],
+    /// The unit quaternion of what turns about a point, real part first, in the first two rows of its three; of no effect in others.
+    pub quaternions: [[f64; 2]; D],
+    /// How fast these change (1/s).
+    pub quaternion_rates: [[f64; 2]; D],
 }
 
 impl<const D: usize> State<D> {
+    /// At rest at these `places`, with nothing turned about a point.
+    pub fn at_rest(places: [f64; D]) -> Self {
+        let (none, no_rows) = ([0.0; D], [[0.0; 2]; D]);
+        Self { rates: none, places, place_rates: none, quaternions: no_rows, quaternion_rates: no_rows }
+    }
+
     /// The state at a `pose` and `rates` in a plane, whose angles are next to those of the `last` places: a turn goes on where its
     /// direction begins anew.
     pub fn planar(topology: &[Kind; D], pose: &[[f64; 2]; D], rates: [f64; D], last: &[f64; D]) -> Self {
         let places = std::array::from_fn(|k| {
             let [w, v] = pose[k];
-            if topology[k] == Kind::Turn { near(whole_angle([w, v]), last[k]) } else { w }
+            if topology[k] == Kind::Turn { next_to(whole_angle([w, v]), last[k]) } else { w }
         });
-        Self { rates, places, place_rates: rates }
+        Self { rates, place_rates: rates, ..Self::at_rest(places) }
     }
 
-    /// The state of free bodies at their `poses` and `rates`.
-    pub fn spatial<const N: usize>(poses: &[Pose<f64>; N], rates: [f64; D]) -> Self {
-        let (mut places, mut place_rates) = ([0.0; D], rates);
-        let all = places.as_chunks_mut::<6>().0.iter_mut().zip(place_rates.as_chunks_mut::<6>().0);
-        for ((place, rate), pose) in all.zip(poses) {
-            let length = pose.orientation.v.norm();
-            let angle = whole_angle([pose.orientation.w, length]);
-            let turn = pose.orientation.v * if length > 0.0 { angle / length } else { 0.0 };
-            let r = pose.displacement_w;
-            *place = [r.x, r.y, r.z, turn.x, turn.y, turn.z];
-            let [.., x, y, z] = *rate;
-            let turning = vector_rate(&turn, &Vector3::new(x, y, z));
-            (rate[3], rate[4], rate[5]) = (turning.x, turning.y, turning.z);
+    /// The state of free bodies at their `poses` and `rates` after the `last` one, from which they have turned by less than half a turn.
+    pub fn spatial<const N: usize>(poses: &[Pose<f64>; N], rates: [f64; D], last: &Self) -> Self {
+        let mut state = Self { rates, place_rates: rates, ..Self::at_rest([0.0; D]) };
+        for (i, Pose { displacement_w, orientation }) in poses.iter().enumerate() {
+            state.places[6 * i..6 * i + 3].copy_from_slice(displacement_w.as_slice());
+            state.turn_about_point(6 * i + 3, orientation, last);
         }
-        Self { rates, places, place_rates }
+        state
     }
 
-    /// The state of bodies on ideal joints in space, whose angles are next to those of the `last` places.
+    /// The state of bodies on ideal joints in space after the `last` one, next to whose angles its own are.
     pub fn on_joints<const N: usize, const W: usize>(
         tree: &SpatialTree<f64, N, W, D>,
         pose: &[[f64; 2]; D],
         rates: [f64; D],
-        last: &[f64; D],
+        last: &Self,
     ) -> Self {
-        let (mut places, mut place_rates) = (tree.places(pose, whole_angle), rates);
+        let mut state = Self { rates, place_rates: rates, ..Self::at_rest(tree.places(pose, whole_angle)) };
         for k in 0..D {
             match tree.coordinate(k).0 {
-                SpatialKind::Turn => places[k] = near(places[k], last[k]),
+                SpatialKind::Turn => state.places[k] = next_to(state.places[k], last.places[k]),
                 SpatialKind::Ball => {
-                    let three = |of: &[f64; D]| Vector3::new(of[k], of[k + 1], of[k + 2]);
-                    let turning = vector_rate(&three(&places), &three(&rates));
-                    place_rates[k..k + 3].copy_from_slice(turning.as_slice());
+                    let [[w, x], [y, z]] = [pose[k], pose[k + 1]];
+                    state.turn_about_point(k, &Orientation { w, v: Vector3::new(x, y, z) }, last);
                 }
                 SpatialKind::Slide | SpatialKind::OfBall | SpatialKind::Still => {}
             }
         }
-        Self { rates, places, place_rates }
+        state
+    }
+
+    /// Makes `orientation` that of what turns about a point by the coordinates from `k` on.
+    fn turn_about_point(&mut self, k: usize, orientation: &Orientation<f64>, last: &Self) {
+        let Orientation { w, v } = orientation;
+        let mut now = UnitQuaternion::new_normalize(Quaternion::from_parts(*w, *v));
+        let before = last.quaternion(k);
+        // Both signs are the same orientation.
+        if now.coords.dot(&before.coords) < 0.0 {
+            now = UnitQuaternion::new_unchecked(-now.into_inner());
+        }
+        let spin = now * Vector3::from_column_slice(&self.rates[k..k + 3]);
+        let rows = |q: Quaternion<f64>| [[q.w, q.i], [q.j, q.k]];
+        self.quaternions[k..k + 2].copy_from_slice(&rows(now.into_inner()));
+        self.quaternion_rates[k..k + 2].copy_from_slice(&rows(Quaternion::from_imag(spin * 0.5) * now.into_inner()));
+        let turned = Vector3::from_column_slice(&last.places[k..k + 3]) + (now * before.inverse()).scaled_axis();
+        self.places[k..k + 3].copy_from_slice(turned.as_slice());
+        self.place_rates[k..k + 3].copy_from_slice(spin.as_slice());
+    }
+
+    /// The orientation of what turns about a point by the coordinates from `k` on.
+    fn quaternion(&self, k: usize) -> UnitQuaternion<f64> {
+        let [[w, x], [y, z]] = [self.quaternions[k], self.quaternions[k + 1]];
+        UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 0.0).unwrap_or_default()
     }
 
     /// How fast these numbers change, where the velocities do by `accelerations` (m/s², rad/s²).
     pub fn slope(&self, accelerations: [f64; D]) -> Self {
-        Self { rates: accelerations, places: self.place_rates, place_rates: [0.0; D] }
+        let at_rest = Self::at_rest(self.place_rates);
+        Self { rates: accelerations, quaternions: self.quaternion_rates, ..at_rest }
     }
 }
 
@@ -94,32 +124,37 @@ fn whole_angle([cos, sin]: [f64; 2]) -> f64 {
     2.0 * libm::atan2(sin, cos)
 }
 
-/// How fast a rotation vector `turn` (rad) goes by the angular velocity `rotation` (rad/s) in the body.
-fn vector_rate(turn: &Vector3<f64>, rotation: &Vector3<f64>) -> Vector3<f64> {
-    let angle = turn.norm();
-    let half = 0.5 * angle;
-    let share = if angle > 1e-4 { (1.0 - half / libm::tan(half)) / (angle * angle) } else { 1.0 / 12.0 };
-    let across = turn.cross(rotation);
-    rotation + across * 0.5 + turn.cross(&across) * share
-}
-
-/// `angle` (rad) by so many turns that it is next to `last`.
-fn near(angle: f64, last: f64) -> f64 {
-    let turn = 2.0 * std::f64::consts::PI;
-    angle + turn * ((last - angle) / turn).round()
+/// The rotation vector (rad) of `orientation` whose length is next to that of what has `turned` (rad) about its direction.
+///
+/// It is smooth about a fixed axis. No rotation vector is where a tilted body comes by a full turn: there its direction swings around.
+fn rotation_vector(orientation: &UnitQuaternion<f64>, turned: &Vector3<f64>) -> Vector3<f64> {
+    let (sine, about) = (orientation.imag().norm(), turned.norm());
+    // At a full turn the direction is lost.
+    let direction = match (sine > 1e-9 || about < 1.0, sine > 0.0) {
+        (true, true) => orientation.imag() / sine,
+        (true, false) => return Vector3::zeros(),
+        (false, _) => turned / about,
+    };
+    direction * next_to(whole_angle([orientation.w, orientation.imag().dot(&direction)]), turned.dot(&direction))
 }
 
 impl<const D: usize> crate::dynamics::error_control::Values for State<D> {
     fn get(&self, k: usize) -> f64 {
-        *self.rates.iter().chain(&self.places).nth(k).unwrap_or(&0.0)
+        *self.rates.iter().chain(&self.places).chain(self.quaternions.as_flattened()).nth(k).unwrap_or(&0.0)
     }
 
     fn rate(&self, k: usize) -> Option<f64> {
-        k.checked_sub(D).and_then(|k| self.place_rates[..].get(k)).copied()
+        let rates = self.place_rates.iter().chain(self.quaternion_rates.as_flattened());
+        k.checked_sub(D).and_then(|k| rates.copied().nth(k))
     }
 
     fn with(&self, value: impl Fn(usize) -> f64) -> Self {
-        Self { rates: std::array::from_fn(&value), places: std::array::from_fn(|k| value(D + k)), ..*self }
+        Self {
+            rates: std::array::from_fn(&value),
+            places: std::array::from_fn(|k| value(D + k)),
+            quaternions: std::array::from_fn(|k| [value(2 * D + 2 * k), value(2 * D + 2 * k + 1)]),
+            ..*self
+        }
     }
 }
 
@@ -130,6 +165,9 @@ pub struct BodyMotion {
     pub displacement: Vector3<f64>,
     /// Rotation vector from the drawn pose (rad); in a plane its third part is the angle.
     pub turn: Vector3<f64>,
+    /// How much it has turned about the axes of the frame (rad): the integral of `spin` of a body that one axis or one point holds, or
+    /// nothing; of other bodies the rotation vector.
+    pub turned: Vector3<f64>,
     /// Velocity of the centre of mass (m/s).
     pub velocity: Vector3<f64>,
     /// Angular velocity in the frame (rad/s).
@@ -163,6 +201,7 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
             BodyMotion {
                 displacement: Vector3::new(moved.x, moved.y, 0.0),
                 turn: about(&state.places),
+                turned: about(&state.places),
                 velocity: Vector3::new(velocity.x, velocity.y, 0.0),
                 spin: about(&state.rates),
             }
@@ -171,27 +210,41 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
     }
 }
 
-/// The one axis about which coordinates turn a body, and which they are; a body that others turn, too, has none.
-type Turns = (Vector3<f64>, Vec<usize>);
+/// What turns a body: the coordinates that do, each with its axis in the drawn pose.
+struct Turns {
+    all: Vec<(usize, SpatialKind, Vector3<f64>)>,
+    /// Whether they do so about one axis.
+    is_axial: bool,
+}
+
+impl Turns {
+    /// How much (rad) they have turned the body by their `places`, drawn axis by drawn axis.
+    fn sum(&self, places: &[f64]) -> Vector3<f64> {
+        let one = |(k, kind, axis): &(usize, SpatialKind, Vector3<f64>)| match kind {
+            SpatialKind::Ball => Vector3::from_column_slice(&places[*k..*k + 3]),
+            _ => axis * places[*k],
+        };
+        self.all.iter().map(one).sum()
+    }
+}
 
 /// The bodies of a mechanism in space on ideal joints.
 pub struct JointedBodies<const N: usize, const W: usize, const D: usize> {
     tree: SpatialTree<f64, N, W, D>,
-    turns: Vec<Option<Turns>>,
+    turns: Vec<Turns>,
 }
 
 impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
     /// The first `count` bodies of `tree`.
     pub fn new(count: usize, tree: SpatialTree<f64, N, W, D>) -> Self {
         let turns = |body: usize| {
-            let of = |k: &usize| tree.is_moved(*k, body) && tree.coordinate(*k).0.turns();
-            let all: Vec<usize> = (0..D).filter(of).collect();
-            let axis = all.first().map_or(Vector3::zeros(), |k| tree.coordinate(*k).1);
-            let along = |k: &usize| {
-                let (kind, other) = tree.coordinate(*k);
-                kind == SpatialKind::Turn && axis.dot(&other).abs() > 1.0 - 1e-12
-            };
-            all.iter().all(along).then(|| (axis, all.clone()))
+            let coordinates = (0..D).filter(|k| tree.is_moved(*k, body)).map(|k| (k, tree.coordinate(k)));
+            let turning = coordinates.filter(|(_, (kind, _))| matches!(kind, SpatialKind::Turn | SpatialKind::Ball));
+            let all: Vec<_> = turning.map(|(k, (kind, axis))| (k, kind, axis)).collect();
+            let first = all.first().map_or(Vector3::zeros(), |(.., axis)| *axis);
+            let is_along = |kind, axis: &Vector3<f64>| kind == SpatialKind::Turn && first.dot(axis).abs() > 1.0 - 1e-12;
+            let is_axial = all.iter().all(|(_, kind, axis)| is_along(*kind, axis));
+            Turns { all, is_axial }
         };
         Self { tree, turns: (0..count).map(turns).collect() }
     }
@@ -202,20 +255,27 @@ impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
         (0..D).rfind(turns).map_or(0.0, |k| self.tree.lever(k))
     }
 
-    /// How they move. Angles about one axis go on from turn to turn.
+    /// How they move. Angles go on from turn to turn.
     pub fn told(&self, state: &State<D>) -> Vec<BodyMotion> {
-        let pose = self.tree.pose(state.places, half_angle);
+        let mut pose = self.tree.pose(state.places, half_angle);
+        for k in (0..D).filter(|k| self.tree.coordinate(*k).0 == SpatialKind::Ball) {
+            pose[k..k + 2].copy_from_slice(&state.quaternions[k..k + 2]);
+        }
         let placed = self.tree.placed(&pose, &SVector::from(state.rates));
-        let body = |(turns, at): (&Option<Turns>, &PlacedBody<f64>)| BodyMotion {
-            displacement: at.displacement_w,
-            turn: match turns {
-                Some((axis, all)) => {
-                    axis * all.iter().map(|k| state.places[*k] * axis.dot(&self.tree.coordinate(*k).1)).sum::<f64>()
-                }
-                None => nalgebra::Rotation3::from_matrix_unchecked(at.to_frame).scaled_axis(),
-            },
-            velocity: at.velocity_w,
-            spin: at.rotation_w,
+        let body = |(turns, at): (&Turns, &PlacedBody<f64>)| {
+            let sum = turns.sum(&state.places);
+            let orientation = || {
+                let rotation = nalgebra::Rotation3::from_matrix_unchecked(at.to_frame);
+                UnitQuaternion::from_rotation_matrix(&rotation)
+            };
+            let turn = if turns.is_axial { sum } else { rotation_vector(&orientation(), &sum) };
+            BodyMotion {
+                displacement: at.displacement_w,
+                turn,
+                turned: if turns.all.len() == 1 { sum } else { turn },
+                velocity: at.velocity_w,
+                spin: at.rotation_w,
+            }
         };
         self.turns.iter().zip(&placed.free.bodies).map(body).collect()
     }
@@ -224,17 +284,17 @@ impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
 /// The free bodies of a mechanism in space.
 pub fn spatial<const D: usize>(state: &State<D>) -> Vec<BodyMotion> {
     let vector = |values: &[f64]| Vector3::new(values[0], values[1], values[2]);
-    let bodies = state.rates.as_chunks::<6>().0.iter().zip(state.places.as_chunks::<6>().0);
-    let body = |(rates, places): (&[f64; 6], &[f64; 6])| {
-        let turn = vector(&places[3..]);
+    let body = |k: usize| {
+        let (orientation, turned) = (state.quaternion(k + 3), vector(&state.places[k + 3..]));
         BodyMotion {
-            displacement: vector(places),
-            turn,
-            velocity: vector(rates),
-            spin: nalgebra::Rotation3::from_scaled_axis(turn) * vector(&rates[3..]),
+            displacement: vector(&state.places[k..]),
+            turn: rotation_vector(&orientation, &turned),
+            turned,
+            velocity: vector(&state.rates[k..]),
+            spin: orientation * vector(&state.rates[k + 3..]),
         }
     };
-    bodies.map(body).collect()
+    (0..D).step_by(6).map(body).collect()
 }
 
 /// Two vectors along an axis.
@@ -287,22 +347,31 @@ impl Mechanism {
             let motion = &motions[named.body];
             let (vz, z) = match named.action {
                 Action::Pushes { axis } => (&motion.velocity, &motion.displacement).along(axis),
-                Action::Turns { axis } => (&motion.spin, &motion.turn).along(axis),
+                Action::Turns { axis } => (&motion.spin, &motion.turned).along(axis),
             };
             Instant { t, vz, force: named.drive.force(t, vz), z }
         })
     }
 
-    /// What is told of the motion at time `t` (s), in the order of [`columns`](Self::columns).
-    pub fn row(&self, t: f64, motions: &[BodyMotion]) -> Vec<f64> {
+    /// The least inertia (kg, kg·m²) that a drive may find: that of its body alone.
+    pub fn least_inertia(&self, NamedDrive { action, body, .. }: &NamedDrive) -> f64 {
+        let body = &self.bodies[*body];
+        match action {
+            Action::Pushes { .. } => body.mass,
+            Action::Turns { axis } => body.inertia.iter().zip(axis).map(|(inertia, axis)| inertia * axis * axis).sum(),
+        }
+    }
+
+    /// A sample at time `t` (s), in the order of [`columns`](Self::columns).
+    pub fn row(&self, t: f64, drives: &[Instant], motions: &[BodyMotion]) -> Vec<f64> {
         let mut row = vec![t];
-        row.extend(self.drives_at(t, motions).map(|at| at.force));
+        row.extend(drives.iter().map(|at| at.force));
         for motion in motions {
             if self.planar {
-                let BodyMotion { displacement: d, turn, velocity: v, spin } = motion;
+                let BodyMotion { displacement: d, turn, velocity: v, spin, .. } = motion;
                 row.extend([d.x, d.y, turn.z, v.x, v.y, spin.z]);
             } else {
-                let BodyMotion { displacement, turn, velocity, spin } = motion;
+                let BodyMotion { displacement, turn, velocity, spin, .. } = motion;
                 row.extend(displacement.iter().chain(turn).chain(velocity).chain(spin));
             }
         }
@@ -312,22 +381,73 @@ impl Mechanism {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Rotation3, Vector3};
+    use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+    use slipfit_core::pose::{Orientation, Pose};
 
-    use super::{State, spatial};
+    use super::{BodyMotion, State, spatial};
+    use crate::dynamics::error_control::{Knot, between};
+
+    /// The pose of a body that is turned by `rotation`, in either sign of its quaternion.
+    fn pose(rotation: &UnitQuaternion<f64>, sign: f64) -> [Pose<f64>; 1] {
+        let orientation = Orientation { w: sign * rotation.w, v: rotation.imag() * sign };
+        [Pose { displacement_w: Vector3::zeros(), orientation }]
+    }
+
+    fn six(angular: Vector3<f64>) -> [f64; 6] {
+        [0.0, 0.0, 0.0, angular.x, angular.y, angular.z]
+    }
+
+    fn only(state: &State<6>) -> BodyMotion {
+        let [motion] = spatial(state)[..] else { panic!("one body") };
+        motion
+    }
 
     #[test]
     fn an_angular_velocity_is_told_in_the_frame() {
-        let turned = Rotation3::new(Vector3::new(0.9, -1.3, 0.4));
+        let turned = UnitQuaternion::new(Vector3::new(0.9, -1.3, 0.4));
         let rotation_b = Vector3::new(0.2, 0.5, -0.7);
-        let six = |angular: Vector3<f64>| [0.0, 0.0, 0.0, angular.x, angular.y, angular.z];
-        let state = State { rates: six(rotation_b), places: six(turned.scaled_axis()), place_rates: [0.0; 6] };
+        let state = State::spatial(&pose(&turned, 1.0), six(rotation_b), &State::at_rest([0.0; 6]));
         // Around a constant axis any turn will do.
         let h = 0.1;
-        let [before, after] = [-h, h].map(|t| turned * Rotation3::new(rotation_b * t));
+        let [before, after] = [-h, h].map(|t| turned.to_rotation_matrix() * Rotation3::new(rotation_b * t));
         let turning = (after * before.inverse()).scaled_axis() / (2.0 * h);
-        let [motion] = &spatial(&state)[..] else { panic!("one body") };
+        let motion = only(&state);
         assert!((turning - motion.spin).norm() < 1e-9, "{turning} {}", motion.spin);
         assert!((turning - rotation_b).norm() > 0.1);
+        assert!((motion.turn - Vector3::new(0.9, -1.3, 0.4)).norm() < 1e-14, "{}", motion.turn);
+    }
+
+    /// A body that spins about an axis of its own, the axis tilted, is where it is to be between the ends of steps, at each of many turns
+    /// and whatever the sign of its quaternion.
+    #[test]
+    fn turns_go_on_beyond_a_full_one() {
+        let step = 0.05;
+        for axis in [Vector3::z(), -Vector3::x(), Vector3::new(2.0, -1.0, 2.0) / 3.0] {
+            for tilt in [Vector3::zeros(), Vector3::new(0.3, 0.2, -0.1), Vector3::new(1e-3, 0.0, 2e-3)] {
+                let tilt = UnitQuaternion::new(tilt);
+                let at = |t: f64| UnitQuaternion::new(axis * (10.0 * t)) * tilt;
+                let rates = six(tilt.inverse() * axis * 10.0);
+                let mut last = State::at_rest([0.0; 6]);
+                let mut knots: Vec<Knot<State<6>>> = Vec::new();
+                for k in 0..100 {
+                    let t = step * f64::from(k);
+                    let values = State::spatial(&pose(&at(t), if k % 3 == 0 { -1.0 } else { 1.0 }), rates, &last);
+                    let slopes = (k > 0).then(|| [last.slope([0.0; 6]), values.slope([0.0; 6])]);
+                    knots.push(Knot { t, values, slopes });
+                    last = values;
+                }
+                for i in 0..99 {
+                    let t = step * (f64::from(i as u32) + 0.37);
+                    let BodyMotion { turn, turned, spin, .. } = only(&between(&knots, i, t));
+                    let apart = (UnitQuaternion::new(turn).inverse() * at(t)).angle();
+                    assert!(apart < 1e-4, "{t}: {apart:e}");
+                    assert!((spin - axis * 10.0).norm() < 1e-2, "{t}: {spin}");
+                    assert!((turned - axis * (10.0 * t) - tilt.scaled_axis()).norm() < 1e-9, "{t}: {turned}");
+                    if tilt.angle() == 0.0 {
+                        assert!((turn - axis * (10.0 * t)).norm() < 1e-4, "{t}: {turn}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -5,6 +5,7 @@ use slipfit_core::drive::Drive;
 use super::{Action, Mechanism, MechanismRun, RunError, hash::hash, run};
 use crate::{
     dynamics::{
+        confirm::figures_agree,
         driven::{DriveKind, Driven, Motion},
         outcome::Verdict,
         simulate::SimulateError,
@@ -26,14 +27,19 @@ pub fn finer(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<Mechanis
     run(&Mechanism { run: spec, ..mechanism.clone() }, gaps, every)
 }
 
-/// The run of that unit, its verdicts undecided where the [`finer`] one says otherwise, and that one.
+/// The energy, as a share of the greatest one, that a run may have beyond what was supplied.
+pub const ENERGY: f64 = 0.01;
+
+/// The run of that unit, its verdicts undecided where the [`finer`] one differs in verdict or figures, or where it has energy
+/// that nothing supplied; and the finer one.
 ///
 /// # Errors
 /// See [`RunError`].
 pub fn confirmed(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<[MechanismRun; 2], RunError> {
     let (mut one, finer) = (run(mechanism, gaps, every)?, finer(mechanism, gaps, every)?);
-    for (outcome, better) in one.outcomes.iter_mut().zip(&finer.outcomes) {
-        if outcome.verdict != better.verdict {
+    let excess = one.energy_excess;
+    for ((outcome, better), named) in one.outcomes.iter_mut().zip(&finer.outcomes).zip(&mechanism.drives) {
+        if excess > ENERGY || !figures_agree(outcome, better, named.drive.command(better.end.t)) {
             outcome.verdict = Verdict::Undecided;
         }
     }

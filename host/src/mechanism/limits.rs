@@ -1,6 +1,6 @@
 //! What a step of the desk may err by.
 
-use slipfit_desk::plant::Reported;
+use slipfit_desk::{error_control::greater, plant::Reported};
 
 use super::{Action, Mechanism};
 
@@ -38,6 +38,11 @@ impl Limits {
         Self { speed: mechanism.run.error * own }
     }
 
+    /// The error of place (m) that a step may make.
+    pub fn place(&self) -> f64 {
+        self.speed * LASTING
+    }
+
     /// The stick band (m/s) that stands for true stick.
     pub fn stick_band(&self) -> f64 {
         (STICK_BANDS * self.speed).clamp(1e-9, 1e-4)
@@ -45,8 +50,8 @@ impl Limits {
 
     /// The error of a `step` of `length` (s) that moves at least the mass `least_mass` (kg); 1 is allowed.
     pub fn error(&self, step: &Reported, length: f64, least_mass: f64) -> f64 {
-        let speed = step.error.max(step.residual) / (least_mass * self.speed);
-        let place = step.drift.max(step.residual * length) / (least_mass * self.speed * LASTING);
-        speed.max(place)
+        let speed = greater(step.error, step.residual) / (least_mass * self.speed);
+        let place = greater(step.drift, step.residual * length) / (least_mass * self.place());
+        greater(speed, place)
     }
 }

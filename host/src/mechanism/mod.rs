@@ -3,16 +3,21 @@
 //! Everything is described in one drawn pose, in which all axes are those of the frame. In a mechanism that lies in a plane
 //! x and y span the plane and angles turn from x to y; the others are in space.
 
+pub mod agreement;
 pub mod closing;
 pub mod columns;
 mod drawing;
 mod driven;
+mod energy;
+pub mod feedback;
 mod freedom;
 mod gaps;
 mod hanging;
 mod hash;
 mod limits;
 pub mod mobility;
+#[cfg(test)]
+mod motion_tests;
 mod mounts;
 pub mod planar;
 mod run;
@@ -70,7 +75,7 @@ pub struct Mechanism {
     pub controller: ControllerSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
-    /// What is possible but implausible in the scene file, each with its place.
+    /// What the user should know of the scene file: what is possible but implausible, each with its place.
     pub warnings: Vec<String>,
 }
 

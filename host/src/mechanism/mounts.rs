@@ -96,15 +96,30 @@ pub fn flat([x, y, _]: [f64; 3]) -> Vector2<f64> {
 fn hung(parent: &Mount, joint: &Joint, child: usize, coordinates: &mut Vec<Owned>) -> Result<Mount, MountError> {
     let at = flat(joint.at);
     let mut point = parent.point.plus(at - parent.drawn);
-    let slide = |axis: [f64; 3]| Coordinate::Slide { on: point.carrier.turn, axis: flat(axis) };
-    let wanted: &[Coordinate<f64>] = match joint.kind {
-        JointKind::Revolute { .. } => &[Coordinate::Turn],
-        JointKind::Prismatic { axis } => &[slide(axis)],
-        JointKind::PinSlot { axis } => &[slide(axis), Coordinate::Turn],
-        _ => &[],
+    let slide =
+        |point: &Point<f64, MOST>, axis: [f64; 3]| Coordinate::Slide { on: point.carrier.turn, axis: flat(axis) };
+    let mut move_by = |point: &mut Point<f64, MOST>, coordinate: Coordinate<f64>| {
+        *point = point.on(add(coordinates, coordinate, child)?, &coordinate);
+        Ok(())
     };
-    for coordinate in wanted {
-        point = point.on(add(coordinates, *coordinate, child)?, coordinate);
+    match joint.kind {
+        JointKind::Revolute { .. } => move_by(&mut point, Coordinate::Turn)?,
+        JointKind::Prismatic { axis } => {
+            let slide = slide(&point, axis);
+            move_by(&mut point, slide)?;
+        }
+        // The slot belongs to the first body. Where that is the child, its own turn turns the axis along which it slides.
+        JointKind::PinSlot { axis } if joint.between[0] == Some(child) => {
+            move_by(&mut point, Coordinate::Turn)?;
+            let slide = slide(&point, axis);
+            move_by(&mut point, slide)?;
+        }
+        JointKind::PinSlot { axis } => {
+            let slide = slide(&point, axis);
+            move_by(&mut point, slide)?;
+            move_by(&mut point, Coordinate::Turn)?;
+        }
+        _ => {}
     }
     Ok(Mount { point, drawn: at })
 }

@@ -10,7 +10,7 @@ use slipfit_core::{
 };
 
 use super::{
-    Action, Body, JointKind, Mechanism, Mounts,
+    Action, Body, JointKind, Mechanism, Mounts, Rest,
     element::{PlanarElement, contact},
     mounts::flat,
 };
@@ -81,10 +81,13 @@ pub fn elements<const D: usize>(
             _ => {}
         }
     }
+    let Rest { places, .. } = Rest::<D>::of(mechanism, mounts);
     for spring in &mechanism.springs {
         let [body, against] = spring.between.map(|port| mounts.turn(port));
-        let law = Spring { stiffness: spring.stiffness, damping: spring.damping, rest: 0.0 };
-        elements.push(PlanarElement::Spring(Element { link: Turning { body, against }, law }));
+        let starts = [body, against].map(|turn| turn.map_or(0.0, |k| places[k]));
+        let (stiffness, damping) = (spring.stiffness, spring.damping);
+        let law = Spring { stiffness, damping, rest: 0.0, start: starts[0] - starts[1] };
+        elements.push(PlanarElement::Spring(Element { link: Turning { body, against }, law }, starts));
     }
     for named in &mechanism.drives {
         let drive = named.drive.checked()?;

@@ -9,11 +9,11 @@ use slipfit_core::{
     ParameterError, SVector,
     integrator::{Integrator, Motion, Rodas4},
     pose::Pose,
-    system::{System, ThroughJoints, spatial::tree::Mount},
+    system::{Bodies, Reduced, System, ThroughJoints, spatial::tree::Mount},
 };
 use slipfit_desk::{
     out_of_line::OutOfLine,
-    plant::{FreePlant, JointedPlant, PlanarPlant, Plant},
+    plant::{Allowed, FreePlant, JointedPlant, PlanarPlant, Plant, Reported},
     side_by_side::SideBySide,
     wide::Wide,
 };
@@ -22,6 +22,7 @@ use thiserror::Error;
 use super::{
     Mechanism, MountError, Mounts, Rest,
     columns::{self, BodyMotion, JointedBodies, PlanarBodies, State},
+    energy::Energies,
     limits::Limits,
     planar,
     source::joints_of_elements,
@@ -29,7 +30,8 @@ use super::{
 };
 use crate::{
     dynamics::{
-        error_control::{Accelerations, Effort, Knot, Stopped, sampled},
+        effort::Effort,
+        error_control::{self, Accelerations, Knot, Stopped, sampled},
         film::chosen,
         looks::{end, looks, samples},
         outcome::{Instant as Looked, Observer, Outcome},
@@ -127,10 +129,12 @@ pub struct MechanismRun {
     pub trajectories: Vec<Trajectory>,
     /// Moments that show the motion, from rest to the end; none unless [`film`] asks for them.
     pub film: Vec<Moment>,
+    /// Energy that neither the start, nor gravity, nor a drive supplied, as a share of the greatest energy: an error of the computation.
+    pub energy_excess: f64,
     /// Error of speed (m/s) that a step was allowed.
     pub tolerance: f64,
     /// Steps.
-    pub effort: Effort,
+    pub effort: error_control::Effort,
     /// Time that the integration alone took.
     pub integration: Duration,
 }
@@ -233,6 +237,8 @@ where
     let elements = planar::elements::<D>(mechanism, mounts, gaps, limits.stick_band())?;
     let Rest { places, rates } = Rest::of(mechanism, mounts);
     let pose = tree.pose(places, columns::half_angle);
+    let placed = tree.placed(&pose, &SVector::from(rates));
+    let pressed = elements.iter().map(|element| element.gap((&tree, &placed))).collect();
     let topology = *tree.topology();
     let mut last = places;
     let state = move |pose: &[[f64; 2]; D], rates: [f64; D]| {
@@ -243,7 +249,7 @@ where
     let bodies = PlanarBodies::of(mechanism, mounts, &tree);
     let system = System::new(tree, &elements[..]);
     let desk = OutOfLine::by(system, Wide::of_machine());
-    solve(mechanism, desk, (pose, rates), &limits, by, state, |state: &State<D>| bodies.told(state))
+    solve(mechanism, desk, (pose, rates), (&limits, pressed), by, state, |state: &State<D>| bodies.told(state))
 }
 
 fn in_space<const N: usize, const D: usize>(
@@ -258,10 +264,17 @@ where
     let limits = Limits::of(mechanism, |body| bodies.lever(body));
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let start = (bodies.nominal(), [0.0; D]);
+    let placed = bodies.placed(&start.0, &SVector::zeros());
+    let pressed = elements.iter().map(|element| element.gap((&bodies, &placed))).collect();
     let laws = joints_of_elements(mechanism).map(|joint| joint.map(|joint| joint.laws));
     let system = System::new(bodies, &elements[..]);
     let desk = OutOfLine::by(system, SideBySide::new(&bodies, &elements, laws, limits.stick_band()));
-    solve(mechanism, desk, start, &limits, by, State::spatial::<N>, columns::spatial)
+    let mut last = State::at_rest([0.0; D]);
+    let state = move |poses: &[Pose<f64>; N], rates: [f64; D]| {
+        last = State::spatial(poses, rates, &last);
+        last
+    };
+    solve(mechanism, desk, start, (&limits, pressed), by, state, columns::spatial)
 }
 
 fn on_joints<const D: usize>(
@@ -279,22 +292,23 @@ where
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let Rest { places, rates } = Rest::on_joints(mechanism, mounts);
     let start = (tree.pose(places, columns::half_angle), rates);
-    let mut last = places;
+    let placed = tree.placed(&start.0, &SVector::from(rates));
+    let pressed = elements.iter().map(|element| element.gap(tree.free(&placed))).collect();
+    let mut last = State::at_rest(places);
     let state = move |pose: &[[f64; 2]; D], rates: [f64; D]| {
-        let state = State::on_joints(&tree, pose, rates, &last);
-        last = state.places;
-        state
+        last = State::on_joints(&tree, pose, rates, &last);
+        last
     };
     let system = System::new(tree, ThroughJoints(&elements[..]));
     let desk = OutOfLine::by(system, Wide::of_machine());
-    solve(mechanism, desk, start, &limits, by, state, |state: &State<D>| bodies.told(state))
+    solve(mechanism, desk, start, (&limits, pressed), by, state, |state: &State<D>| bodies.told(state))
 }
 
 fn solve<P: Plant<D>, const D: usize>(
     mechanism: &Mechanism,
     desk: P,
     (pose, rates): (P::Pose, [f64; D]),
-    limits: &Limits,
+    (limits, pressed): (&Limits, Vec<Option<f64>>),
     by: By,
     mut state: impl FnMut(&P::Pose, [f64; D]) -> State<D>,
     told: impl Fn(&State<D>) -> Vec<BodyMotion>,
@@ -304,6 +318,7 @@ fn solve<P: Plant<D>, const D: usize>(
     let of_drive = |k: usize| if k == 0 { mechanism.run } else { RunSpec { stroke: None, ..mechanism.run } };
     // Travel counts from the start, which need not be the drawn pose.
     let at_start = told(&state(&pose, rates));
+    let mut energies = Energies::new(mechanism, &at_start, pressed.into_iter());
     let origins: Vec<f64> = mechanism.drives_at(0.0, &at_start).map(|at| at.z).collect();
     let drives_at = |t: f64, motions: &[BodyMotion]| -> Vec<Looked> {
         let from = |(at, origin): (Looked, &f64)| Looked { z: at.z - origin, ..at };
@@ -326,26 +341,42 @@ fn solve<P: Plant<D>, const D: usize>(
     };
     let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
     let effort = match by.controller {
-        None => desk.by_desk(start, duration, &|step, length| limits.error(&step, length, least_mass), &mut keep)?,
+        None => {
+            let error = |step: Reported, length: f64| limits.error(&step, length, least_mass);
+            desk.by_desk(start, duration, Allowed { error: &error, depth: limits.place() }, &mut keep)?
+        }
         Some(ControllerSpec { step, integrator, .. }) => {
             desk.by_controller(start, duration, (integrator, step), &mut keep)?
         }
     };
     let integration = clock.elapsed();
     let end = end(&knots, |state| ends(&observers, state));
+    let times: Vec<f64> = knots.iter().map(|knot| knot.t).collect();
+    let at_knots: Vec<_> = knots.iter().map(|knot| drives_at(knot.t, &told(&knot.values))).collect();
+    let efforts = mechanism.drives.iter().enumerate().map(|(k, named)| {
+        let values = at_knots.iter().map(|drives| drives[k].force).collect();
+        Effort::new(times.clone(), values, mechanism.least_inertia(named) / named.drive.gain)
+    });
+    let efforts: Vec<_> = efforts.collect();
+    let told_at = |t: f64, motions: &[BodyMotion]| {
+        let mut drives = drives_at(t, motions);
+        drives.iter_mut().zip(&efforts).for_each(|(at, effort)| at.force = effort.at(t, at.force));
+        drives
+    };
     looks(&knots, end, |t, state| {
         let motions = told(&state);
-        for (observer, at) in observers.iter_mut().zip(drives_at(t, &motions)) {
-            observer.observe(at);
-        }
+        let drives = told_at(t, &motions);
+        energies.observe(t, &motions, &drives);
+        observers.iter_mut().zip(drives).for_each(|(observer, at)| observer.observe(at));
     });
     let mut trajectories = vec![Trajectory::default(); mechanism.drives.len()];
     let mut rows = Vec::new();
     let times = samples(end, by.every);
     for (t, state) in times.clone().zip(sampled(&knots, times)) {
         let motions = told(&state);
-        rows.push(mechanism.row(t, &motions));
-        for ((trajectory, named), at) in trajectories.iter_mut().zip(&mechanism.drives).zip(drives_at(t, &motions)) {
+        let drives = told_at(t, &motions);
+        rows.push(mechanism.row(t, &drives, &motions));
+        for ((trajectory, named), at) in trajectories.iter_mut().zip(&mechanism.drives).zip(drives) {
             let place = motions[named.body].displacement;
             trajectory.push(t, [at.vz, place.x, place.y, at.z], at.force);
         }
@@ -356,7 +387,17 @@ fn solve<P: Plant<D>, const D: usize>(
     let film = shown.into_iter().map(moment).collect();
     let outcomes = observers.iter().map(Observer::outcome).collect();
     let samples = Samples { columns: mechanism.columns(), rows };
-    Ok(MechanismRun { samples, outcomes, trajectories, film, tolerance: limits.speed, effort, integration })
+    let energy_excess = energies.excess();
+    Ok(MechanismRun {
+        samples,
+        outcomes,
+        trajectories,
+        film,
+        energy_excess,
+        tolerance: limits.speed,
+        effort,
+        integration,
+    })
 }
 
 /// The scheme by which the desk integrates.

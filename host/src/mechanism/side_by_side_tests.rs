@@ -10,7 +10,7 @@ use slipfit_core::{
 };
 use slipfit_desk::{
     element::SpatialElement,
-    error_control::integrate,
+    error_control::{Watched, integrate},
     out_of_line::{Contacts, OutOfLine},
     plant::Reported,
     side_by_side::SideBySide,
@@ -41,7 +41,8 @@ where
         let reported = Reported { residual: step.residual, error: step.error, drift: step.drift };
         limits.error(&reported, length, least_mass)
     };
-    integrate::<Rodas4, _, D>(&desk, start, 0.2, error, |t, motion, _| {
+    let unwatched = Watched { gaps: |_: &_, _: &mut _| (), depth: 0.0 };
+    integrate::<Rodas4, _, D>(&desk, start, 0.2, error, unwatched, |t, motion, _, _| {
         steps.push((t, motion.velocity));
         ControlFlow::Continue(())
     })

@@ -1,27 +1,31 @@
-//! What drives force and malfunction: correlation ratios.
+//! What drives force and malfunction: the share of the variance that each contributor explains alone.
 //!
-//! The correlation ratio η² = Var(E[y|x])/Var(y) (Pearson 1905), the first-order Sobol' index of independent contributors,
-//! needs no runs of its own: the units are sorted into classes of x, as many as units allow, and the variance between the
-//! classes' means is held against that within (ω², which is free of the bias that η² has for few units). A contributor with
-//! several variables, such as a plane in its zone, has the sum over these. Errors come from leaving out a sixteenth of the
-//! units at a time (jackknife).
+//! The shares need no runs of their own. Units whose outcome is known are drawn again, which takes far less time than to simulate them,
+//! and put into order by each variable ([`explained`]). A contributor with several variables, such as a plane in its zone, explains
+//! what each of them does alone, or what their most telling linear combination does, whichever is more.
 
+use std::{collections::BTreeMap, ops::Range};
+
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{
-    production::{Drawn, Production},
+    explained::{Explained, Marked, explained},
+    kept::{Judged, Kept, Outcomes},
+    production::Production,
     subject::UnitGaps,
 };
-use crate::tolerance::counting::file::{FormatError, Reader, integer};
 
-/// Units that find the classes.
+/// Units from which on contributors are ranked.
+pub const LEAST_UNITS: u64 = 120;
+/// Units of the rarer outcome from which on they are.
+pub const LEAST_OUTCOMES: usize = 3;
+/// Marked units that a weight of a linear combination takes.
+const UNITS_A_WEIGHT: usize = 10;
+/// Units that are drawn at a time.
+const PIECE: u64 = 4096;
+/// Units that means and variances of variables are found from.
 const PILOT: u64 = 1024;
-/// Classes of a variable, equally probable.
-const CLASSES: usize = 12;
-/// Units from which on contributors are told: ten in a class.
-pub const LEAST_UNITS: usize = 10 * CLASSES;
-/// Parts of the population of which one at a time is left out.
-const PARTS: usize = 16;
 
 /// Share of a contributor in the variance of a figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -32,251 +36,278 @@ pub struct Driver {
     pub share: f64,
     /// Its standard error.
     pub error: f64,
+    /// What the greatest share of as many contributors without effect exceeds with a chance of at most 5 %.
+    pub chance: f64,
 }
 
-/// Sums over the units of one class in one part. They are of integers, so that parts of a population join in any order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Cell {
-    count: u64,
-    sum: i64,
-    square: u128,
-}
-
-impl Cell {
-    fn add(&mut self, figure: i64) {
-        self.join(Self { count: 1, sum: figure, square: u128::from(figure.unsigned_abs()).pow(2) });
-    }
-
-    fn join(&mut self, other: Self) {
-        let Self { count, sum, square } = *self;
-        *self = Self {
-            count: count + other.count,
-            sum: sum.saturating_add(other.sum),
-            square: square.saturating_add(other.square),
-        };
+impl Driver {
+    /// Whether the share is more than chance explains.
+    pub fn is_significant(&self) -> bool {
+        self.share > self.chance
     }
 }
 
-/// The classes of one variable in every part.
-type Cells = [[Cell; CLASSES]; PARTS];
-
-/// What figures vary with, summed up: by variable.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sums {
-    of_force: Vec<Cells>,
-    of_malfunction: Vec<Cells>,
+/// What malfunction varies with, the strongest first, in a `production` of whose first `units` the `outcomes` are known. Empty if fewer
+/// than [`LEAST_UNITS`] are, or fewer than [`LEAST_OUTCOMES`] do or do not malfunction: the luckiest of many contributors would
+/// explain all.
+pub fn of_malfunction<G: UnitGaps>(production: &Production<G>, outcomes: &Outcomes, units: u64) -> Vec<Driver> {
+    let Judged { units, marked } = outcomes.judged(units);
+    let marked: Vec<(u64, f64)> = marked.into_iter().map(|number| (number, 1.0)).collect();
+    let enough = marked.len() >= LEAST_OUTCOMES && units - marked.len() as u64 >= LEAST_OUTCOMES as u64;
+    if enough && units >= LEAST_UNITS { ranked(production, units, &marked) } else { Vec::new() }
 }
 
-impl Sums {
-    /// Of no units, with so many `variables` each.
-    pub fn new(variables: usize) -> Self {
-        let nothing = vec![[[Cell::default(); CLASSES]; PARTS]; variables];
-        Self { of_force: nothing.clone(), of_malfunction: nothing }
-    }
-
-    /// How many variables there are.
-    pub fn variables(&self) -> usize {
-        self.of_force.len()
-    }
-
-    fn each(&mut self) -> impl Iterator<Item = &mut Cell> {
-        let Self { of_force, of_malfunction } = self;
-        of_force.iter_mut().chain(of_malfunction).flat_map(|cells| cells.as_flattened_mut())
-    }
-
-    /// Adds those of as many variables.
-    pub fn join(&mut self, other: &mut Self) {
-        self.each().zip(other.each()).for_each(|(own, other)| own.join(*other));
-    }
-
-    /// Adds their bytes.
-    pub fn encode(&self, out: &mut Vec<u8>) {
-        integer(out, self.variables() as u64);
-        for cell in self.of_force.iter().chain(&self.of_malfunction).flat_map(|cells| cells.as_flattened()) {
-            let Cell { count, sum, square } = *cell;
-            // The sign goes into the lowest bit, so that small sums are short.
-            let zigzag = (sum << 1 ^ sum >> 63) as u64;
-            [count, zigzag, square as u64, (square >> 64) as u64].into_iter().for_each(|part| integer(out, part));
-        }
-    }
-
-    /// Reads them.
-    ///
-    /// # Errors
-    /// [`FormatError::Damaged`].
-    pub fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
-        let variables = reader.count()?;
-        // Variable by variable, so that nothing is allocated of which no bytes are there.
-        let mut all = || {
-            let mut read = Vec::new();
-            for _ in 0..variables {
-                let mut cells = [[Cell::default(); CLASSES]; PARTS];
-                for cell in cells.as_flattened_mut() {
-                    let (count, zigzag) = (reader.integer()?, reader.integer()?);
-                    let square = u128::from(reader.integer()?) | u128::from(reader.integer()?) << 64;
-                    *cell = Cell { count, sum: (zigzag >> 1) as i64 ^ -((zigzag & 1) as i64), square };
-                }
-                read.push(cells);
-            }
-            Ok(read)
-        };
-        Ok(Self { of_force: all()?, of_malfunction: all()? })
-    }
-}
-
-/// Steps in which forces are summed up, in the drive's greatest force: less than single precision knows.
-const STEPS: f64 = (1u64 << 30) as f64;
-/// Greater forces (in the drive's greatest) count as this: sums of 100 million of them are integers still.
-const GREATEST: f64 = 32.0;
-
-/// Sorts units into classes of every variable.
-pub struct Classes {
-    /// Limits between classes of every variable.
-    limits: Vec<[f64; CLASSES - 1]>,
-    /// Force (N, N·m) in whose steps forces are summed up.
-    scale: f64,
-}
-
-impl Classes {
-    /// Of the variables of a `production`, for forces that compare with `greatest` (N, N·m).
-    pub fn new<G: UnitGaps>(production: &Production<G>, greatest: f64) -> Self {
-        Self::by(&production.draw(0..PILOT).variables, greatest)
-    }
-
-    fn by(variables: &[Vec<f64>], greatest: f64) -> Self {
-        let limits = |column: &Vec<f64>| {
-            let mut sorted = column.clone();
-            sorted.sort_by(f64::total_cmp);
-            std::array::from_fn(|k| sorted[(k + 1) * sorted.len() / CLASSES])
-        };
-        let scale = if greatest > 0.0 { greatest } else { 1.0 };
-        Self { limits: variables.iter().map(limits).collect(), scale }
-    }
-
-    /// How many variables there are.
-    pub fn variables(&self) -> usize {
-        self.limits.len()
-    }
-
-    /// Adds units as they were `drawn`, each with its greatest force (N, N·m), if it has one, and whether it malfunctions.
-    pub fn add<G>(&self, sums: &mut Sums, drawn: &Drawn<G>, units: impl Iterator<Item = (Option<f64>, bool)> + Clone) {
-        let Sums { of_force, of_malfunction } = sums;
-        let cells = of_force.iter_mut().zip(of_malfunction);
-        for ((limits, (of_force, of_malfunction)), column) in self.limits.iter().zip(cells).zip(&drawn.variables) {
-            for ((number, x), (force, fails)) in (drawn.numbers.start..).zip(column).zip(units.clone()) {
-                let class = limits.iter().filter(|limit| *limit <= x).count();
-                let part = (number % PARTS as u64) as usize;
-                of_malfunction[part][class].add(i64::from(fails));
-                if let Some(force) = force {
-                    let steps = (force / self.scale).clamp(-GREATEST, GREATEST) * STEPS;
-                    of_force[part][class].add(libm::round(steps) as i64);
-                }
-            }
-        }
-    }
-}
-
-impl Sums {
-    /// What the greatest force varies with: contributors, each with its variables.
-    pub fn of_force(&self, contributors: &[(&str, std::ops::Range<usize>)]) -> Vec<Driver> {
-        ranked(&self.of_force, contributors)
-    }
-
-    /// What malfunction varies with, likewise.
-    pub fn of_malfunction(&self, contributors: &[(&str, std::ops::Range<usize>)]) -> Vec<Driver> {
-        ranked(&self.of_malfunction, contributors)
-    }
-}
-
-/// The contributors, each with its variables, by falling share; none from fewer than [`LEAST_UNITS`] figures, of which the
-/// luckiest of many contributors would explain all.
-fn ranked(cells: &[Cells], contributors: &[(&str, std::ops::Range<usize>)]) -> Vec<Driver> {
-    let figures = |cells: &Cells| cells.as_flattened().iter().map(|cell| cell.count).sum::<u64>();
-    if cells.first().is_none_or(|cells| figures(cells) < LEAST_UNITS as u64) {
+/// What the greatest force varies with, likewise.
+pub fn of_force<G: UnitGaps>(production: &Production<G>, outcomes: &Outcomes, units: u64) -> Vec<Driver> {
+    let forces = outcomes.with_force(units);
+    let count = forces.len() as u64;
+    if count < LEAST_UNITS {
         return Vec::new();
     }
-    let of = |(name, own): &(&str, std::ops::Range<usize>)| {
-        let share = |without: Option<usize>| own.clone().map(|k| ratio(&cells[k], without)).sum::<f64>();
-        let all = share(None);
-        let parts: Vec<f64> = (0..PARTS).map(|part| share(Some(part))).collect();
-        let mean = parts.iter().sum::<f64>() / PARTS as f64;
-        let square: f64 = parts.iter().map(|part| (part - mean) * (part - mean)).sum();
-        let error = libm::sqrt(square * (PARTS as f64 - 1.0) / PARTS as f64);
-        Driver { name: (*name).to_owned(), share: all, error }
+    let mean = forces.iter().map(|unit| unit.force).sum::<f64>() / count as f64;
+    let marked: Vec<(u64, f64)> = forces.iter().map(|Kept { number, force }| (*number, force - mean)).collect();
+    ranked(production, count, &marked)
+}
+
+/// A variable, or a linear combination of those of a contributor: which, and their weights.
+type Column = Vec<(usize, f64)>;
+
+fn value(column: &Column, variables: &[Vec<f64>], i: usize) -> f64 {
+    column.iter().map(|(variable, weight)| weight * variables[*variable][i]).sum()
+}
+
+/// The contributors by falling share in the variance of a figure that is 0 except for the `marked` units: numbers, ascending, and
+/// figures. Where these are `units` in all, no others are looked at; otherwise all up to that number are.
+fn ranked<G: UnitGaps>(production: &Production<G>, units: u64, marked: &[(u64, f64)]) -> Vec<Driver> {
+    let contributors = production.contributors();
+    let variables = contributors.iter().map(|(_, own)| own.len()).sum::<usize>();
+    let drawn = of_marked(production, variables, marked);
+    let pilot = production.draw(0..PILOT).variables;
+    let mut columns: Vec<Column> = (0..variables).map(|variable| vec![(variable, 1.0)]).collect();
+    let mut combined = BTreeMap::new();
+    for (contributor, (_, own)) in contributors.iter().enumerate() {
+        if own.len() > 1 && marked.len() >= UNITS_A_WEIGHT * own.len() {
+            combined.insert(contributor, columns.len());
+            columns.push(combination(own.clone(), marked, &drawn, &pilot));
+        }
+    }
+    let found = columns_explained(production, units, marked, &drawn, &columns);
+    let of = |(contributor, (name, own)): (usize, &(&str, Range<usize>))| {
+        let each = own.clone().filter_map(|variable| found[variable]);
+        let alone = each.fold(Explained { share: 0.0, error: 0.0, chance: 0.0 }, |sum, next| Explained {
+            share: sum.share + next.share,
+            error: libm::hypot(sum.error, next.error),
+            chance: libm::hypot(sum.chance, next.chance),
+        });
+        let together = combined.get(&contributor).and_then(|column| found[*column]);
+        let best = together.filter(|together| together.share > alone.share).unwrap_or(alone);
+        Driver { name: (*name).to_owned(), share: best.share, error: best.error, chance: best.chance }
     };
-    let mut drivers: Vec<Driver> = contributors.iter().map(of).collect();
+    let mut drivers: Vec<Driver> = contributors.iter().enumerate().map(of).collect();
     drivers.sort_by(|one, other| other.share.total_cmp(&one.share));
     drivers
 }
 
-/// ω² of one variable: (SSB − (k−1)·MSW)/(SST + MSW).
-fn ratio(cells: &Cells, without: Option<usize>) -> f64 {
-    let mut classes = [Cell::default(); CLASSES];
-    for (_, part) in cells.iter().enumerate().filter(|(number, _)| Some(*number) != without) {
-        for (class, cell) in classes.iter_mut().zip(part) {
-            class.join(*cell);
+/// The variables of the `marked` units, a column each.
+fn of_marked<G: UnitGaps>(production: &Production<G>, variables: usize, marked: &[(u64, f64)]) -> Vec<Vec<f64>> {
+    let mut all = vec![Vec::with_capacity(marked.len()); variables];
+    for group in marked.chunk_by(|(one, _), (next, _)| one / PIECE == next / PIECE) {
+        let (first, end) = (group[0].0 / PIECE * PIECE, group[group.len() - 1].0 + 1);
+        let drawn = production.draw(first..end).variables;
+        for (column, drawn) in all.iter_mut().zip(&drawn) {
+            column.extend(group.iter().map(|(number, _)| drawn[(number - first) as usize]));
         }
     }
-    let used: Vec<&Cell> = classes.iter().filter(|class| class.count > 0).collect();
-    let total = |of: fn(&Cell) -> f64| used.iter().map(|class| of(class)).sum::<f64>();
-    let (count, sum) = (total(|class| class.count as f64), total(|class| class.sum as f64));
-    let square = total(|class| class.square as f64);
-    let between = total(|class| class.sum as f64 * class.sum as f64 / class.count as f64) - sum * sum / count;
-    let all = square - sum * sum / count;
-    let within = (all - between) / (count - used.len() as f64);
-    if all > 0.0 && within.is_finite() { (between - (used.len() as f64 - 1.0) * within) / (all + within) } else { 0.0 }
+    all
+}
+
+/// The linear combination of a contributor's `own` variables that the figure follows most, each weighed by its covariance with the
+/// figure over its variance.
+fn combination(own: Range<usize>, marked: &[(u64, f64)], drawn: &[Vec<f64>], pilot: &[Vec<f64>]) -> Column {
+    let weight = |variable: usize| {
+        let (values, count) = (&pilot[variable], pilot[variable].len() as f64);
+        let mean = values.iter().sum::<f64>() / count;
+        let variance = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count;
+        let covariance: f64 = marked.iter().zip(&drawn[variable]).map(|((_, y), x)| y * (x - mean)).sum();
+        (variable, if variance > 0.0 { covariance / variance } else { 0.0 })
+    };
+    own.map(weight).collect()
+}
+
+/// What each of the `columns` explains.
+fn columns_explained<G: UnitGaps>(
+    production: &Production<G>,
+    units: u64,
+    marked: &[(u64, f64)],
+    drawn: &[Vec<f64>],
+    columns: &[Column],
+) -> Vec<Option<Explained>> {
+    // By value, then by number: units with equal values come in an order that tells nothing.
+    let sorted: Vec<Vec<(f64, usize)>> = columns
+        .par_iter()
+        .map(|column| {
+            let mut sorted: Vec<(f64, usize)> = (0..marked.len()).map(|i| (value(column, drawn, i), i)).collect();
+            sorted.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
+            sorted
+        })
+        .collect();
+    let places = if marked.len() as u64 == units {
+        vec![(0..units).collect(); columns.len()]
+    } else {
+        places(production, units, marked, columns, &sorted)
+    };
+    let of = |(sorted, places): (&Vec<(f64, usize)>, &Vec<u64>)| {
+        let unit = |((_, i), place): (&(f64, usize), &u64)| Marked { place: *place, value: marked[*i].1 };
+        let ordered: Vec<Marked> = sorted.iter().zip(places).map(unit).collect();
+        explained(units, &ordered, columns.len())
+    };
+    sorted.par_iter().zip(&places).map(of).collect()
+}
+
+/// How many of the first `units` come before each of the marked ones, which are `sorted`, by each of the `columns`.
+fn places<G: UnitGaps>(
+    production: &Production<G>,
+    units: u64,
+    marked: &[(u64, f64)],
+    columns: &[Column],
+    sorted: &[Vec<(f64, usize)>],
+) -> Vec<Vec<u64>> {
+    // How many units lie between two marked ones, and before the first.
+    let mut counts = vec![vec![0u64; marked.len() + 1]; columns.len()];
+    let pieces: Vec<u64> = (0..units).step_by(PIECE as usize).collect();
+    // As many pieces at a time as keep all threads at work.
+    for starts in pieces.chunks(4 * rayon::current_num_threads()) {
+        let draw = |first: &u64| (*first, production.draw(*first..units.min(first + PIECE)).variables);
+        let drawn: Vec<(u64, Vec<Vec<f64>>)> = starts.par_iter().with_max_len(1).map(draw).collect();
+        counts.par_iter_mut().zip(columns).zip(sorted).for_each(|((counts, column), sorted)| {
+            for (first, variables) in &drawn {
+                for i in 0..units.min(first + PIECE) - first {
+                    let x = value(column, variables, i as usize);
+                    let before = |(other, k): &(f64, usize)| {
+                        other.total_cmp(&x).then(marked[*k].0.cmp(&(first + i))) != std::cmp::Ordering::Greater
+                    };
+                    counts[sorted.partition_point(before)] += 1;
+                }
+            }
+        });
+    }
+    let running = |counts: &Vec<u64>| {
+        let sum = |before: &mut u64, count: &u64| {
+            *before += count;
+            Some(*before)
+        };
+        counts[..marked.len()].iter().scan(0, sum).collect()
+    };
+    counts.iter().map(running).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Classes, Driver, Sums};
-    use crate::population::production::Drawn;
-    use slipfit_core::sampling::stream::{Rng, unit_stream};
+    use super::{Driver, LEAST_UNITS, of_force, of_malfunction};
+    use crate::{
+        dynamics::example,
+        population::{kept::Outcomes, production::Production},
+        scene::{Scene, SceneFile, shipped},
+        tolerance::distribution::normal::quantile,
+    };
 
-    /// What the `figures` of units with these `variables` vary with.
-    fn drivers(
-        variables: &[Vec<f64>],
-        figures: &[f64],
-        contributors: &[(&str, std::ops::Range<usize>)],
-    ) -> Vec<Driver> {
-        let classes = Classes::by(variables, 4.0);
-        let count = figures.len();
-        let drawn = Drawn {
-            numbers: 0..count as u64,
-            gaps: vec![(); count],
-            deviations: vec![],
-            variables: variables.to_vec(),
-        };
-        let mut sums = Sums::new(variables.len());
-        classes.add(&mut sums, &drawn, figures.iter().map(|figure| (Some(*figure), false)));
-        sums.of_force(contributors)
+    type Variables<'a> = &'a dyn Fn(usize) -> f64;
+
+    /// What the first `units` of a `production` do whose figure and outcome follow from their variables.
+    fn outcomes(production: &Production, units: u64, of: impl Fn(Variables) -> (Option<f64>, bool)) -> Outcomes {
+        let mut all = Outcomes::default();
+        for first in (0..units).step_by(4096) {
+            let drawn = production.draw(first..units.min(first + 4096));
+            for (i, number) in drawn.numbers.clone().enumerate() {
+                let (force, fails) = of(&|variable| drawn.variables[variable][i]);
+                all.add(number, force, fails);
+            }
+        }
+        all
     }
 
-    /// Of three units one of many contributors always explains all: nothing is said.
+    /// Name, mean and standard deviation of gaps of the slide.
+    fn gaps(scene: &Scene) -> Vec<[f64; 2]> {
+        scene.pins.iter().flat_map(|pin| pin.gaps).flatten().map(|gap| [gap.mean, gap.deviation]).collect()
+    }
+
+    #[track_caller]
+    fn only(drivers: &[Driver], name: &str) {
+        println!("{:?}", &drivers[..2]);
+        assert_eq!(drivers[0].name, name);
+        assert!((drivers[0].share - 1.0).abs() <= 2.0 * drivers[0].error, "{:?}", drivers[0]);
+        assert!(drivers[0].is_significant() && !drivers[1..].iter().any(Driver::is_significant), "{drivers:?}");
+    }
+
+    /// A single gap decides: at 68 %, at 1 %, on both sides, and at 1 in 100,000 units. The true share is 100 %.
+    #[test]
+    fn the_only_cause_of_failure_has_all_of_it() {
+        let scene = example::cd_rom();
+        let gaps = gaps(&scene);
+        let production = Production::new(&scene, None, 0.0, 9).unwrap();
+        let name = production.contributors()[3].0.to_owned();
+        for (units, p, both) in
+            [(20_000, 0.68, false), (20_000, 0.01, false), (20_000, 0.01, true), (1 << 21, 1e-5, false)]
+        {
+            let limit = -quantile(if both { 0.5 * p } else { p });
+            let fails = |x: Variables| {
+                let z = (x(3) - gaps[3][0]) / gaps[3][1];
+                if both { z.abs() > limit } else { z > limit }
+            };
+            let outcomes = outcomes(&production, units, |x| (None, fails(x)));
+            only(&of_malfunction(&production, &outcomes, units), &name);
+        }
+    }
+
+    /// A plane decides by a corner of its zone: by offset and both tilts together.
+    #[test]
+    fn the_only_cause_may_have_several_variables() {
+        let file = SceneFile::parse("drawing", shipped("cd-rom-slide-drawing").unwrap(), &[]).unwrap();
+        let (scene, product) = (file.slide.unwrap(), file.product.unwrap());
+        let production = Production::new(&scene, Some(&product), 0.0, 1).unwrap();
+        let contributors = production.contributors();
+        let (name, own) = contributors.iter().find(|(_, own)| own.len() == 3).unwrap();
+        let pilot = production.draw(0..2048).variables;
+        let spread = |k: usize| libm::sqrt(pilot[k].iter().map(|x| x * x).sum::<f64>() / 2048.0);
+        let weights: Vec<f64> = own.clone().map(|k| 1.0 / spread(k)).collect();
+        let corner = |x: Variables| own.clone().zip(&weights).map(|(k, weight)| weight * x(k)).sum::<f64>();
+        for limit in [3.0, 0.8] {
+            let outcomes = outcomes(&production, 8192, |x| (Some(corner(x)), corner(x) > limit));
+            let drivers = of_malfunction(&production, &outcomes, 8192);
+            println!("{:?}", &drivers[..2]);
+            assert_eq!(drivers[0].name, *name);
+            // The weights are those of some hundred units.
+            assert!(drivers[0].share > 0.85 && drivers[0].is_significant(), "{:?}", drivers[0]);
+            assert!(!drivers[1].is_significant(), "{:?}", drivers[1]);
+            let forces = of_force(&production, &outcomes, 8192);
+            assert!(forces[0].name == *name && forces[0].share > 0.98, "{:?}", forces[0]);
+        }
+    }
+
+    /// Gaps that are correlated tell of each other: with ρ = 0.8 the force, 2·a, is known to 64 % from any other gap.
+    #[test]
+    fn forces_have_their_shares_and_correlated_gaps_tell_of_each_other() {
+        let scene = example::cd_rom();
+        let production = Production::new(&scene, None, 0.8, 2).unwrap();
+        let outcomes = outcomes(&production, 4000, |x| (Some(2.0 * x(0)), false));
+        let drivers = of_force(&production, &outcomes, 4000);
+        assert!((drivers[0].share - 1.0).abs() < 0.01, "{:?}", drivers[0]);
+        for other in &drivers[1..] {
+            assert!((other.share - 0.64).abs() < 4.0 * other.error + 0.01, "{other:?}");
+        }
+        assert!(of_malfunction(&production, &outcomes, 4000).is_empty());
+    }
+
+    /// Of three units one of many contributors always explains all: nothing is said, nor of two malfunctions.
     #[test]
     fn few_units_tell_nothing() {
-        let columns = vec![vec![0.1, 0.2, 0.3]; 2];
-        assert!(drivers(&columns, &[1.0, 0.0, 0.0], &[("a", 0..1), ("b", 1..2)]).is_empty());
-    }
-
-    /// y = 2·a + b + (a pair's) c₀·c₁: shares 4/6, 1/6, and the product's that no single variable has.
-    #[test]
-    fn shares_are_those_of_a_known_function() {
-        let count = 20_000;
-        let mut columns = vec![Vec::new(); 4];
-        for i in 0..count {
-            let mut stream = unit_stream(5, i);
-            let mut uniform = || stream.next_u64() as f64 / 18_446_744_073_709_551_616.0 - 0.5;
-            columns.iter_mut().for_each(|column| column.push(uniform() * libm::sqrt(12.0)));
-        }
-        let figures: Vec<_> =
-            (0..count as usize).map(|i| 2.0 * columns[0][i] + columns[1][i] + columns[2][i] * columns[3][i]).collect();
-        let ranked = drivers(&columns, &figures, &[("b", 1..2), ("c", 2..4), ("a", 0..1)]);
-        assert_eq!(ranked.iter().map(|driver| driver.name.as_str()).collect::<Vec<_>>(), ["a", "b", "c"]);
-        // Classes lose a little of what is linear: 1/12².
-        for (driver, share) in ranked.iter().zip([4.0 / 6.0, 1.0 / 6.0, 0.0]) {
-            assert!((driver.share - share).abs() < 4.0 * driver.error + 0.01 * share, "{driver:?}");
-            assert!(driver.error < 0.01, "{driver:?}");
-        }
+        let scene = example::cd_rom();
+        let production = Production::new(&scene, None, 0.0, 1).unwrap();
+        let few = outcomes(&production, LEAST_UNITS - 1, |x| (Some(x(0)), x(0) > 0.0));
+        assert!(of_force(&production, &few, LEAST_UNITS - 1).is_empty());
+        assert!(of_malfunction(&production, &few, LEAST_UNITS - 1).is_empty());
+        let mut two = outcomes(&production, 500, |_| (None, false));
+        [500, 501].into_iter().for_each(|number| two.add(number, None, true));
+        assert!(of_malfunction(&production, &two, 502).is_empty());
     }
 }

@@ -5,12 +5,15 @@ use serde::Serialize;
 use super::{Unit, production::Production, statistics::is_over, subject::Subject, unit::Decisive};
 use crate::{
     dynamics::{
-        outcome::{JAMMED, RUNS, Verdict},
+        outcome::{JAMMED, OVERRUNS, RUNS, Verdict},
         simulate::SimulateError,
     },
     system::interrupt,
     tolerance::failure::Margins,
 };
+
+/// Speed, as a share of the command, below which units do not differ.
+const STANDSTILL: f64 = 1e-9;
 
 /// How a unit malfunctions. No unit does so in two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -20,6 +23,8 @@ pub enum Kind {
     Crawls,
     /// It jams.
     Jams,
+    /// It overruns its command.
+    Overruns,
     /// It does its job, but with more than the motor's force.
     OverLimit,
 }
@@ -30,18 +35,30 @@ impl Kind {
         match unit.outcome.verdict {
             Verdict::Crawls => Some(Self::Crawls),
             Verdict::Jammed => Some(Self::Jams),
+            Verdict::Overruns => Some(Self::Overruns),
             Verdict::Runs | Verdict::Undecided => is_over(unit, limit).then_some(Self::OverLimit),
         }
     }
 
-    /// Below 0 where a unit malfunctions in this way; none if that is not known.
-    fn margin(self, figures: &Decisive, limit: Option<f64>) -> Option<f64> {
+    /// Below 0 where a unit malfunctions in this way; none if that is not known. Units that malfunction in another way must not rank
+    /// before those that run because their speeds are close together: subsets would fill up with them, and never come to where this
+    /// malfunction is.
+    pub(super) fn margin(self, figures: &Decisive, limit: Option<f64>) -> Option<f64> {
+        // 1 at full speed.
+        let faster = |speed: f64| (speed - RUNS) / (1.0 - RUNS);
+        // 1 at a share of 1/e of the limit, and far beyond 1 at standstill, where jammed units creep.
+        let slower = |speed: f64| libm::log(JAMMED / speed.max(STANDSTILL));
+        // 1 at standstill.
+        let short_of_running = |speed: f64| (RUNS - speed) / RUNS;
         match self {
-            Self::Crawls => figures.speed.map(|speed| (speed - RUNS).max(JAMMED - speed)),
-            Self::Jams => figures.speed.map(|speed| speed - JAMMED),
+            Self::Crawls => figures.speed.map(|speed| faster(speed).max(slower(speed))),
+            // A unit that runs backwards overruns.
+            Self::Jams => figures.speed.map(|speed| (speed - JAMMED).max(-RUNS - speed)),
+            Self::Overruns => figures.speed.map(|speed| (OVERRUNS - speed).min(speed + RUNS)),
+            // 1 without any force.
             Self::OverLimit => {
                 let left = 1.0 - figures.force? / limit?;
-                Some(figures.speed.map_or(left, |speed| left.max(RUNS - speed)))
+                Some(figures.speed.map_or(left, |speed| left.max(short_of_running(speed)).max(speed - OVERRUNS)))
             }
         }
     }
@@ -89,6 +106,8 @@ pub struct LimitState<'a, S: Subject> {
     pub limit: Option<f64>,
     /// What was found out so far.
     pub log: Log,
+    /// The probability of the subset from which units are drawn now, over how many are.
+    pub weight: f64,
 }
 
 /// What happened while margins were computed.
@@ -96,10 +115,12 @@ pub struct LimitState<'a, S: Subject> {
 pub struct Log {
     /// Units that were simulated.
     pub simulated: u64,
-    /// Those whose margin is not known.
+    /// Those without a verdict.
     pub undecided: u64,
     /// Those whose parameters are out of bounds.
     pub out_of_bounds: u64,
+    /// About the share of the production without a verdict, or out of bounds, as far as subsets contain it.
+    pub unknown: f64,
     /// Why no more units were.
     pub error: Option<SimulateError>,
 }
@@ -115,14 +136,15 @@ impl<S: Subject> LimitState<'_, S> {
             (0..points.len()).filter(|i| made[*i] && self.side.has(self.subject, &drawn.gaps[*i])).collect();
         for (i, figures) in asked.iter().zip(self.subject.decisive(&drawn, &asked)?) {
             self.log.simulated += 1;
-            let Some(figures) = figures else {
-                self.log.out_of_bounds += 1;
-                continue;
-            };
-            match self.kind.margin(&figures, self.limit) {
-                Some(margin) => margins[*i] = margin,
-                None => self.log.undecided += 1,
+            match figures.map(|figures| self.kind.margin(&figures, self.limit)) {
+                Some(Some(margin)) => {
+                    margins[*i] = margin;
+                    continue;
+                }
+                Some(None) => self.log.undecided += 1,
+                None => self.log.out_of_bounds += 1,
             }
+            self.log.unknown += self.weight;
         }
         Ok(margins)
     }
@@ -134,6 +156,10 @@ impl<S: Subject> Margins for LimitState<'_, S> {
 
     fn dimensions(&self) -> usize {
         self.production.scores()
+    }
+
+    fn enter(&mut self, probability: f64, points: usize) {
+        self.weight = probability / points as f64;
     }
 
     /// After an error no unit malfunctions any more: the log tells.
@@ -176,6 +202,23 @@ mod tests {
         assert_eq!(Kind::OverLimit.margin(&unknown, Some(1.0)), Some(-1.0));
     }
 
+    /// Jammed units, which stand still, do not rank before running ones, whatever they malfunction by; those at the border do.
+    #[test]
+    fn units_that_malfunction_in_another_way_do_not_rank_first() {
+        let margin = |kind: Kind, speed: f64, force: f64| {
+            kind.margin(&Decisive { speed: Some(speed), force: Some(force) }, Some(1.0)).unwrap()
+        };
+        let standstill = 1e-5;
+        for speed in [0.55, 0.7, 0.9] {
+            assert!(margin(Kind::Crawls, speed, 0.2) < margin(Kind::Crawls, standstill, 0.9), "{speed}");
+            assert!(margin(Kind::OverLimit, speed, 0.2) < margin(Kind::OverLimit, standstill, 0.9), "{speed}");
+        }
+        assert!(margin(Kind::Crawls, 0.99 * JAMMED, 0.2) < margin(Kind::Crawls, 0.6, 0.2));
+        assert!(margin(Kind::OverLimit, 0.99 * RUNS, 1.1) < margin(Kind::OverLimit, 0.9, 0.9));
+        // Without a command it moves backwards: as far as can be.
+        assert!(margin(Kind::Crawls, -0.2, 0.2) > 1.0);
+    }
+
     #[test]
     fn every_unit_is_on_one_side_and_undecided_ones_are_counted() {
         let scene = example::cd_rom();
@@ -192,9 +235,11 @@ mod tests {
             side: Side::Any,
             limit: None,
             log: Log::default(),
+            weight: 0.0,
         };
+        state.enter(0.5, 4);
         let margins = state.at(&vec![vec![0.0; production.scores()]; 3]);
         assert!(margins.iter().all(|margin| *margin == f64::INFINITY));
-        assert_eq!((state.log.simulated, state.log.undecided), (3, 3));
+        assert_eq!((state.log.simulated, state.log.undecided, state.log.unknown), (3, 3, 0.375));
     }
 }

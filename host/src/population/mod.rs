@@ -4,8 +4,10 @@
 //! from the product's joint model or from means and deviations, and parameters that vary, and runs by itself.
 
 pub mod drivers;
+mod explained;
 pub mod finding;
 pub mod hypothesis;
+pub mod kept;
 pub mod limit_state;
 pub mod mechanism;
 pub mod part;

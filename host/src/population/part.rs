@@ -7,7 +7,7 @@ use slipfit_core::slide::CONTACTS;
 
 use super::{
     Unit,
-    drivers::Sums,
+    kept::Outcomes,
     ranked::Ranked,
     subject::UnitGaps,
     tally::{Tally, VERDICTS},
@@ -145,20 +145,21 @@ impl<G: StoredGaps> Found for Tally<G> {
         self.counts.units
     }
 
-    fn fits(&self, other: &Self) -> bool {
-        self.sums.variables() == other.sums.variables()
+    /// Whatever the scene, as much is kept.
+    fn fits(&self, _: &Self) -> bool {
+        true
     }
 
     fn join(&mut self, other: Self) {
         self.join(other);
     }
 
-    /// Counts, figures, sums, then units: the worst, and the first of each verdict.
+    /// Counts, figures, outcomes, then units: the worst, and the first of each verdict.
     fn encode(&self, out: &mut Vec<u8>) {
         let mut counts = self.counts;
         counts.each().for_each(|count| integer(out, *count));
         self.figures.each().into_iter().for_each(|figure| figure.encode(out));
-        self.sums.encode(out);
+        self.outcomes.encode(out);
         for units in [&self.worst].into_iter().chain(&self.first) {
             integer(out, units.len() as u64);
             units.iter().for_each(|unit| encode(unit, out));
@@ -166,14 +167,14 @@ impl<G: StoredGaps> Found for Tally<G> {
     }
 
     fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
-        let mut found = Self::new(0);
+        let mut found = Self::new();
         for count in found.counts.each() {
             *count = reader.integer()?;
         }
         for figure in found.figures.each_mut() {
             *figure = Ranked::decode(reader)?;
         }
-        found.sums = Sums::decode(reader)?;
+        found.outcomes = Outcomes::decode(reader)?;
         for units in [&mut found.worst].into_iter().chain(&mut found.first) {
             *units = (0..reader.count()?).map(|_| unit(reader)).collect::<Result<_, _>>()?;
         }
@@ -237,7 +238,7 @@ mod tests {
         let scene = example::cd_rom();
         let production = Production::new(&scene, None, 0.25, 5).unwrap();
         let settings = Settings::new(1100, 5, true, 0.25, Some(0.3));
-        let counter = Counter::new(&scene, &production, Duty { limit: settings.limit(), stroke: None });
+        let counter = Counter::new(&scene, Duty { limit: settings.limit(), stroke: None });
         let simulation = Simulation { subject: &scene, production: &production, settings, counter, listener: None };
         let source = Source { name: "cd-rom".into(), text: "its text".into(), set: Vec::new() };
         let folder = tempfile::tempdir().unwrap();

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     dynamics::{driven::DriveKind, outcome::Verdict},
     show::{
-        number::fixed,
+        number::percent,
         plot::{Chart, Look, Markers, Panel, PlotError, Series, Shape, line_chart},
     },
 };
@@ -61,7 +61,7 @@ pub fn forces<S: Subject>(subject: &S, tally: &Tally<S::Gaps>, limit: Option<f64
     let remark = if left { format!("; the first {} are marked", marks.len()) } else { String::new() };
     line_chart(&Chart {
         title: subject.title().into(),
-        subtitle: format!("{units} units, {} % malfunction{remark}", fixed(failed.share * 100.0, 1)),
+        subtitle: format!("{units} units, {} % malfunction{remark}", percent(failed.share, 1)),
         x_label: "tightness (σ, mean over the gaps; positive is tighter)".into(),
         panels: [
             Some(Panel {
@@ -71,6 +71,7 @@ pub fn forces<S: Subject>(subject: &S, tally: &Tally<S::Gaps>, limit: Option<f64
                     marked(Verdict::Runs, "runs", Shape::Ring),
                     marked(Verdict::Crawls, "crawls", Shape::Triangle),
                     marked(Verdict::Jammed, "jammed", Shape::Cross),
+                    marked(Verdict::Overruns, "overruns", Shape::Dot),
                 ],
                 ..Panel::default()
             }),

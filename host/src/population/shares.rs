@@ -120,7 +120,7 @@ pub fn ranking<G>(title: &str, kind: DriveKind, population: &Population<G>) -> R
             percent: 100.0 * driver.share,
             error: Some(100.0 * driver.error),
         };
-        let bars = drivers.iter().map(bar).filter(|bar| bar.percent >= LEAST).take(MOST).collect();
+        let bars = drivers.iter().filter(|driver| driver.is_significant()).map(bar).take(MOST).collect();
         Block { heading: heading.into(), bars }
     };
     let mut blocks = vec![
@@ -183,7 +183,7 @@ mod tests {
         assert!(drawn.contains("the tightest tenth") && drawn.contains("press hardest at"), "{drawn}");
         assert!(ranking(&scene.title, DriveKind::Pushes, &population).unwrap().contains("greatest force"));
         // Without failures and without forces there is less to show, and no error.
-        let nothing = Tally::new(0);
+        let nothing = Tally::new();
         assert_eq!(histogram(&scene.title, DriveKind::Pushes, &nothing, None), Err(PlotError::Empty));
         assert!(!sides(&scene, &nothing).contains("press hardest"));
     }

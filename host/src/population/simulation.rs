@@ -60,7 +60,7 @@ impl<S: Subject<Gaps: StoredGaps>> Simulation<'_, S> {
         let mut listener =
             self.listener.as_ref().map(|listener| listener.lock().unwrap_or_else(PoisonError::into_inner));
         simulate_units(self.subject, self.production, numbers, done, |drawn, units| {
-            self.counter.add(&mut tally, drawn, units);
+            self.counter.add(&mut tally, units);
             if let Some(listener) = listener.as_mut().filter(|listener| listener.next == drawn.numbers.start)
                 && heard.is_ok()
             {

@@ -83,6 +83,8 @@ pub struct Statistics {
     pub crawls: Share,
     /// Those that jam.
     pub jammed: Share,
+    /// Units that overrun the command.
+    pub overruns: Share,
     /// Those without a verdict.
     pub undecided: Share,
     /// Those that crawl, jam or need more than the force limit.
@@ -118,7 +120,7 @@ impl Statistics {
     pub fn new<G>(tally: &Tally<G>, duty: Duty) -> Self {
         let (counts, figures) = (&tally.counts, &tally.figures);
         let all = counts.units.max(1);
-        let [runs, crawls, jammed, undecided] = counts.verdicts.map(|units| Share::new(units, all));
+        let [runs, crawls, jammed, overruns, undecided] = counts.verdicts.map(|units| Share::new(units, all));
         let failed = Share::new(counts.malfunctions, all);
         Self {
             units: all,
@@ -126,6 +128,7 @@ impl Statistics {
             short: duty.stroke.map(|_| Share::new(counts.short, all)),
             crawls,
             jammed,
+            overruns,
             undecided,
             malfunctions: failed,
             over_limit: duty.limit.map(|_| Share::new(counts.over_limit, all)),

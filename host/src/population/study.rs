@@ -1,14 +1,15 @@
 //! A population as a whole: what its units did together, and what from.
 
 use super::{
+    drivers,
     drivers::Driver,
     production::Production,
     simulate_units,
-    statistics::{Share, Statistics, malfunctions},
+    statistics::{Statistics, malfunctions},
     subject::{Subject, UnitGaps},
     tally::{Counter, Duty, Tally},
 };
-use crate::dynamics::simulate::SimulateError;
+use crate::dynamics::{outcome::Verdict, simulate::SimulateError};
 use slipfit_core::slide::CONTACTS;
 
 /// A population.
@@ -24,22 +25,38 @@ pub struct Population<G = [f64; CONTACTS]> {
     pub of_malfunction: Vec<Driver>,
 }
 
-/// The share of the first `count` units of a `production` of `subject` that malfunction; see [`Population::study`].
+/// What units do, as far as requirements look at it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Judgement {
+    /// Units that malfunction.
+    pub failed: u64,
+    /// Others that come to no verdict.
+    pub undecided: u64,
+    /// All.
+    pub units: u64,
+}
+
+/// How many of the first `count` units of a `production` of `subject` malfunction, and how many come to no verdict; see
+/// [`Population::study`].
 ///
 /// # Errors
 /// See [`simulate_units`].
-pub fn share_of_malfunctions<S: Subject>(
+pub fn judge<S: Subject>(
     subject: &S,
     production: &Production<S::Gaps>,
     count: u64,
     limit: Option<f64>,
     done: impl Fn(u64) + Sync,
-) -> Result<Share, SimulateError> {
-    let mut failed = 0;
+) -> Result<Judgement, SimulateError> {
+    let mut found = Judgement { units: count, ..Judgement::default() };
     simulate_units(subject, production, 0..count, done, |_, units| {
-        failed += units.iter().filter(|unit| malfunctions(unit, limit)).count() as u64;
+        for unit in units {
+            let fails = malfunctions(unit, limit);
+            found.failed += u64::from(fails);
+            found.undecided += u64::from(!fails && unit.outcome.verdict == Verdict::Undecided);
+        }
     })?;
-    Ok(Share::new(failed, count))
+    Ok(found)
 }
 
 impl<G: UnitGaps> Population<G> {
@@ -55,19 +72,18 @@ impl<G: UnitGaps> Population<G> {
         duty: Duty,
         done: impl Fn(u64) + Sync,
     ) -> Result<Self, SimulateError> {
-        let counter = Counter::new(subject, production, duty);
+        let counter = Counter::new(subject, duty);
         let mut tally = counter.nothing();
-        simulate_units(subject, production, 0..count, done, |drawn, units| counter.add(&mut tally, drawn, units))?;
+        simulate_units(subject, production, 0..count, done, |_, units| counter.add(&mut tally, units))?;
         Ok(Self::of(production, tally, duty))
     }
 
     /// Of the `tally` of a `production` with this `duty`.
     pub fn of(production: &Production<G>, tally: Tally<G>, duty: Duty) -> Self {
-        let contributors = production.contributors();
         Self {
             statistics: Statistics::new(&tally, duty),
-            of_force: tally.sums.of_force(&contributors),
-            of_malfunction: tally.sums.of_malfunction(&contributors),
+            of_force: drivers::of_force(production, &tally.outcomes, tally.counts.units),
+            of_malfunction: drivers::of_malfunction(production, &tally.outcomes, tally.counts.units),
             tally,
         }
     }

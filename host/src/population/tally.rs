@@ -6,9 +6,8 @@ use slipfit_core::slide::CONTACTS;
 
 use super::{
     Unit,
-    drivers::{Classes, Sums},
+    kept::Outcomes,
     limit_state::{Kind, Side},
-    production::{Drawn, Production},
     ranked::Ranked,
     statistics::{is_over, malfunctions},
     subject::Subject,
@@ -22,9 +21,10 @@ pub const WORST: usize = 5;
 /// First units of each verdict, which are kept.
 const FIRST: usize = 1024;
 /// Verdicts, in the order in which units are counted by them.
-pub const VERDICTS: [Verdict; 4] = [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Undecided];
+pub const VERDICTS: [Verdict; 5] =
+    [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Overruns, Verdict::Undecided];
 /// Kinds of malfunction, in the order in which units are counted by them.
-pub const KINDS: [Kind; 3] = [Kind::Crawls, Kind::Jams, Kind::OverLimit];
+pub const KINDS: [Kind; 4] = [Kind::Crawls, Kind::Jams, Kind::Overruns, Kind::OverLimit];
 
 /// What units have to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,7 +41,7 @@ pub struct Counts {
     /// All.
     pub units: u64,
     /// By verdict, as in [`VERDICTS`].
-    pub verdicts: [u64; 4],
+    pub verdicts: [u64; 5],
     /// Those that run, but have not come to the end of the stroke when the run is over.
     pub short: u64,
     /// Those that need more than the limit.
@@ -53,7 +53,7 @@ pub struct Counts {
     /// Those that cannot be assembled.
     pub misfits: u64,
     /// Those that malfunction, by kind as in [`KINDS`]: tight ones and loose ones.
-    pub kinds: [[u64; 2]; 3],
+    pub kinds: [[u64; 2]; 4],
     /// Those that malfunction, by the contact that is pressed in deepest.
     pub pressed: [u64; CONTACTS],
 }
@@ -112,12 +112,12 @@ pub struct Tally<G> {
     pub counts: Counts,
     /// How figures spread.
     pub figures: Figures,
-    /// What the greatest force and malfunction vary with.
-    pub sums: Sums,
+    /// Which units malfunction and with what force: of this it is found what both vary with.
+    pub outcomes: Outcomes,
     /// The worst, at most [`WORST`]: of those that malfunction the ones that come least far, then those that need most force.
     pub worst: Vec<Unit<G>>,
     /// The first of each verdict, as in [`VERDICTS`], in order.
-    pub first: [Vec<Unit<G>>; 4],
+    pub first: [Vec<Unit<G>>; VERDICTS.len()],
 }
 
 /// The worse first. Of equal ones the first of the production.
@@ -145,14 +145,14 @@ fn keep<G: Clone>(
 }
 
 impl<G: Clone> Tally<G> {
-    /// Of no units, with so many `variables` each.
-    pub fn new(variables: usize) -> Self {
+    /// Of no units.
+    pub fn new() -> Self {
         Self {
             counts: Counts::default(),
             figures: Figures::default(),
-            sums: Sums::new(variables),
+            outcomes: Outcomes::default(),
             worst: Vec::new(),
-            first: [const { Vec::new() }; 4],
+            first: [const { Vec::new() }; VERDICTS.len()],
         }
     }
 
@@ -160,7 +160,7 @@ impl<G: Clone> Tally<G> {
     pub fn join(&mut self, mut other: Self) {
         self.counts.each().zip(other.counts.each()).for_each(|(own, other)| *own += *other);
         self.figures.each_mut().into_iter().zip(other.figures.each()).for_each(|(own, other)| own.join(other));
-        self.sums.join(&mut other.sums);
+        self.outcomes.join(&other.outcomes);
         other.worst.iter().for_each(|unit| keep(&mut self.worst, unit, WORST, by_badness));
         other.first.iter().flatten().for_each(|unit| self.keep_first(unit));
     }
@@ -198,26 +198,22 @@ impl<G: Clone> Tally<G> {
 pub struct Counter<'a, S: Subject> {
     subject: &'a S,
     duty: Duty,
-    classes: Classes,
 }
 
 impl<'a, S: Subject> Counter<'a, S> {
-    /// Of a `production` of `subject`.
-    pub fn new(subject: &'a S, production: &Production<S::Gaps>, duty: Duty) -> Self {
-        Self { subject, duty, classes: Classes::new(production, subject.greatest_force()) }
+    /// Of a production of `subject`.
+    pub fn new(subject: &'a S, duty: Duty) -> Self {
+        Self { subject, duty }
     }
 
     /// Of no units.
     pub fn nothing(&self) -> Tally<S::Gaps> {
-        Tally::new(self.classes.variables())
+        Tally::new()
     }
 
-    /// Adds the `units`, as `drawn`.
-    pub fn add(&self, tally: &mut Tally<S::Gaps>, drawn: &Drawn<S::Gaps>, units: &[Unit<S::Gaps>]) {
+    /// Adds the `units`.
+    pub fn add(&self, tally: &mut Tally<S::Gaps>, units: &[Unit<S::Gaps>]) {
         let Duty { limit, stroke } = self.duty;
-        let forces = units.iter().map(|unit| unit.outcome.peak_force);
-        let failures = units.iter().map(|unit| malfunctions(unit, limit));
-        self.classes.add(&mut tally.sums, drawn, forces.zip(failures));
         let Figures { force, running_force, failing_force, breakaway, final_velocity, tightness, failing_tightness } =
             &mut tally.figures;
         let counts = &mut tally.counts;
@@ -226,6 +222,7 @@ impl<'a, S: Subject> Counter<'a, S> {
             let outcome = &unit.outcome;
             let (runs, fails) = (outcome.verdict == Verdict::Runs, malfunctions(unit, limit));
             counts.units += 1;
+            tally.outcomes.add(unit.number, outcome.peak_force, fails);
             VERDICTS.iter().zip(&mut counts.verdicts).for_each(|(of, own)| count(own, *of == outcome.verdict));
             count(&mut counts.short, runs && stroke.is_some_and(|stroke| outcome.end.z < stroke - SHORT));
             count(&mut counts.over_limit, is_over(unit, limit));

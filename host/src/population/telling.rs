@@ -20,7 +20,7 @@ pub fn one_of_each<G>(tally: &Tally<G>, shown: impl Fn(&Unit<G>) -> bool) -> Vec
         own.sort_by(|one, other| force(one).total_cmp(&force(other)).then(one.number.cmp(&other.number)));
         own.get(own.len() / 2).copied()
     };
-    [Verdict::Jammed, Verdict::Crawls, Verdict::Runs].into_iter().filter_map(middle).collect()
+    [Verdict::Overruns, Verdict::Jammed, Verdict::Crawls, Verdict::Runs].into_iter().filter_map(middle).collect()
 }
 
 /// The unit of this `number` in a `production` of `scene` at about `count` moments.

@@ -8,6 +8,7 @@ use crate::tolerance::model::lanes::Lanes;
 
 use super::{
     common::Common,
+    contact::across,
     contacts::{Contacts, Joined, PlacementError},
     feature::{Feature, Located, Shape},
     vector::{Displacement, Vector},
@@ -99,6 +100,31 @@ impl Placement {
     /// The datum that two features are together.
     pub fn common(common: Common) -> Self {
         Self { support: Support::Common(common), carried: Vec::new() }
+    }
+
+    /// How far (m) the body is drawn off its contacts, and how far (rad) turned, if it is.
+    pub fn drawn_off(&self) -> Option<[f64; 2]> {
+        match &self.support {
+            Support::Contacts(contacts) => contacts.drawn_off(),
+            Support::Plane(_) | Support::Common(_) => None,
+        }
+    }
+
+    /// Motions that a frame of datums among the `features` is free to make, as shifts (m) and rotations (rad), and the point (m)
+    /// about which it turns.
+    pub fn free(&self, features: &[Feature]) -> (Vec<[[f64; 3]; 2]>, [f64; 3]) {
+        match &self.support {
+            Support::Plane(plane) => {
+                let [place, normal] = features[*plane].nominal;
+                let [one, two] = across(normal);
+                (vec![[one, [0.0; 3]], [two, [0.0; 3]], [[0.0; 3], normal]], place)
+            }
+            Support::Contacts(contacts) => {
+                let (motions, centre) = contacts.free();
+                (motions.to_vec(), centre)
+            }
+            Support::Common(_) => (Vec::new(), [0.0; 3]),
+        }
     }
 
     /// Lets the body carry another feature.

@@ -72,6 +72,15 @@ impl Contact {
 }
 
 impl Contact {
+    /// How many of its conditions are of places; the others are of directions.
+    pub fn places(&self) -> usize {
+        match self.kind {
+            Kind::PointOnPlane | Kind::PlaneOnPoint | Kind::Planes => 1,
+            Kind::Axes => 2,
+            Kind::Points => 3,
+        }
+    }
+
     /// How far from parallel the directions are, times the reach.
     #[inline(always)]
     fn tilts(&self, own: &Located, other: &Located) -> [Lanes; 2] {
@@ -151,12 +160,22 @@ impl Freedoms {
         combinations
     }
 
-    /// Holds what is left as it is, and gives those motions.
+    /// Holds what is left as it is: a body turns only as far as its contacts turn it, and then shifts only as far.
     pub fn hold_the_rest(&mut self) {
-        while let Some(motion) = self.one() {
-            self.left -= motion * motion.transpose();
-            self.held.push(([0.0; CONDITIONS], motion));
+        for first in [3, 0] {
+            self.hold(&Rows::from_fn(|row, component| if row < 3 && component == first + row { 1.0 } else { 0.0 }));
         }
+    }
+
+    /// The motions that are left, of length 1 and at right angles to each other.
+    pub fn rest(&self) -> Vec<Vector6<f64>> {
+        let mut others = Self { left: self.left, held: Vec::new() };
+        std::iter::from_fn(|| {
+            let motion = others.one()?;
+            others.left -= motion * motion.transpose();
+            Some(motion)
+        })
+        .collect()
     }
 
     /// How many are left.

@@ -29,6 +29,8 @@ pub struct Contacts {
     start: [f64; 6],
     /// Of each contact, components of the displacement per condition.
     gains: Vec<Vec<Gain>>,
+    /// Motions that the contacts leave a frame of datums: shifts (m) and rotations (rad) about the centre.
+    free: Vec<[[f64; 3]; 2]>,
 }
 
 /// A contact of two features.
@@ -42,6 +44,19 @@ pub struct Joined {
     pub other: usize,
     /// The play between both.
     pub float: Option<Float>,
+    /// Which of its conditions count where not all can be met.
+    pub order: Order,
+}
+
+/// Which conditions of a contact have precedence where those before it do not leave room for all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// None: the body turns by a least-squares fit of places and tilts.
+    LeastSquares,
+    /// Tilts.
+    Orientation,
+    /// Places.
+    Location,
 }
 
 /// A feature of the body that is placed.
@@ -106,7 +121,7 @@ impl Contacts {
         let spread = places.map(|place| (0..3).map(|i| (place[i] - centre[i]).abs()).fold(0.0, f64::max));
         let reaches = contacts.iter().map(|joined| assembly.features[joined.own.feature()].reach);
         let scale = Some(spread.chain(reaches).fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
-        let mut made = Self { joined: contacts, centre, scale, start: [0.0; 6], gains: Vec::new() };
+        let mut made = Self { joined: contacts, centre, scale, start: [0.0; 6], gains: Vec::new(), free: Vec::new() };
 
         let mut located = Vec::new();
         assembly.locate(nominal, &mut located);
@@ -153,7 +168,8 @@ impl Contacts {
         let mut freedoms = Freedoms::all();
         let mut combinations = Vec::new();
         for (i, rows) in derivatives.iter().enumerate() {
-            let held = freedoms.hold(rows);
+            let held: Vec<_> =
+                self.joined[i].stages(rows).iter().flatten().flat_map(|stage| freedoms.hold(stage)).collect();
             if held.is_empty() {
                 return Err(PlacementError::Over(i));
             }
@@ -167,6 +183,8 @@ impl Contacts {
             }
         }
         if self.joined.iter().any(|joined| matches!(joined.own, Own::Perfect(_))) {
+            self.free =
+                freedoms.rest().iter().map(|m| [[m[0], m[1], m[2]].map(|x| x * scale), [m[3], m[4], m[5]]]).collect();
             freedoms.hold_the_rest();
         }
         let Some(inverse) = freedoms.inverse() else {
@@ -212,6 +230,21 @@ impl Contacts {
             }
         }
         change
+    }
+
+    /// Motions that the contacts leave a frame of datums, as shifts (m) and rotations (rad), and the point (m) about which it
+    /// turns.
+    pub fn free(&self) -> (&[[[f64; 3]; 2]], [f64; 3]) {
+        (&self.free, self.centre)
+    }
+
+    /// How far (m) the body is drawn off its contacts, and how far (rad) turned; none if by less than 1e-5 of their size.
+    pub fn drawn_off(&self) -> Option<[f64; 2]> {
+        const NEGLIGIBLE: f64 = 1e-5;
+        let length = |vector: &[f64]| libm::sqrt(vector.iter().map(|x| x * x).sum());
+        let (shift, turn) = self.start.split_at(3);
+        let (shift, turn) = (length(shift), 2.0 * libm::atan(0.5 * length(turn)));
+        (shift.max(turn * self.scale) > NEGLIGIBLE * self.scale).then_some([shift, turn])
     }
 
     /// Where the body comes to lie; not a number where its contacts do not close.
@@ -295,6 +328,24 @@ impl Contacts {
 }
 
 impl Joined {
+    /// The derivatives of the conditions that are met first, and those of the others.
+    fn stages(&self, rows: &Rows) -> [Option<Rows>; 2] {
+        let some = |places: bool| {
+            let mut some = *rows;
+            let count = self.contact.places();
+            some.row_iter_mut()
+                .enumerate()
+                .filter(|(i, _)| (*i < count) != places)
+                .for_each(|(_, mut row)| row.fill(0.0));
+            Some(some)
+        };
+        match self.order {
+            Order::LeastSquares => [Some(*rows), None],
+            Order::Orientation => [some(false), some(true)],
+            Order::Location => [some(true), some(false)],
+        }
+    }
+
     /// The conditions at a displacement of the body.
     #[inline(always)]
     fn conditions(
@@ -324,7 +375,7 @@ impl Own {
 }
 
 /// A motion in words, by its greatest part.
-fn describe(motion: &[f64]) -> String {
+pub fn describe(motion: &[f64]) -> String {
     let (shift, turn) = motion.split_at(3);
     let size = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>();
     let (verb, part) = if size(turn) > size(shift) { ("turn about", turn) } else { ("move along", shift) };

@@ -1,7 +1,8 @@
 //! Toleranced numbers: a dimension's nominal value, its limits, and how it is distributed between them.
 
 use crate::tolerance::{
-    model::{Contributor, Distribution, Variation},
+    distribution::Marginal,
+    model::{Contributor, Distribution, Variation, ZoneRule},
     theory::quadrature::mean_and_deviation,
 };
 
@@ -21,16 +22,10 @@ pub struct Toleranced {
 pub enum Shape {
     /// Always the nominal value.
     Constant,
-    /// Normal about the middle of the limits, half of whose distance is `sigma` standard deviations.
-    Normal {
-        /// Standard deviations.
-        sigma: f64,
-    },
+    /// Normal.
+    Normal(Spread),
     /// The same, sorted out at the limits.
-    TruncatedNormal {
-        /// Standard deviations.
-        sigma: f64,
-    },
+    TruncatedNormal(Spread),
     /// Uniform.
     Uniform,
     /// Triangular; `mode` is the deviation (SI) of the most frequent value from the nominal one, or the middle.
@@ -43,10 +38,10 @@ pub enum Shape {
         /// Lower and upper.
         shoulders: [f64; 2],
     },
-    /// Shifted log-normal about the middle of the limits.
+    /// Shifted log-normal.
     Skewed {
-        /// Standard deviations in half of the limits' distance.
-        sigma: f64,
+        /// Mean and standard deviation.
+        spread: Spread,
         /// Skewness.
         skewness: f64,
     },
@@ -86,6 +81,57 @@ pub enum Shape {
     Table(Vec<f64>),
 }
 
+/// Mean and standard deviation of a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Mean.
+    pub mean: Mean,
+    /// Standard deviation.
+    pub deviation: Deviation,
+}
+
+/// Where the mean of a shape is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mean {
+    /// At this distance (SI) above the nominal value.
+    FromNominal(f64),
+    /// At this distance (SI) above the middle of the limits.
+    FromMiddle(f64),
+}
+
+/// How large the standard deviation of a shape is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Deviation {
+    /// Half the distance of the limits over this number.
+    Sigmas(f64),
+    /// Stated (SI), positive.
+    Stated(f64),
+    /// The distance of the mean from the nearer limit over three times this number.
+    Cpk(f64),
+}
+
+impl Spread {
+    /// About the middle of the limits, half of whose distance is `sigma` standard deviations.
+    pub fn sigmas(sigma: f64) -> Self {
+        Self { mean: Mean::FromMiddle(0.0), deviation: Deviation::Sigmas(sigma) }
+    }
+
+    /// Mean and standard deviation (SI) around `nominal` within `limits`.
+    fn within(&self, nominal: f64, limits: [f64; 2]) -> Result<[f64; 2], ShapeError> {
+        let [lower, upper] = limits;
+        let mean = match self.mean {
+            Mean::FromNominal(mean) => nominal + mean,
+            Mean::FromMiddle(shift) => (lower + upper) / 2.0 + shift,
+        };
+        let deviation = match self.deviation {
+            Deviation::Sigmas(sigma) => (upper - lower) / 2.0 / sigma,
+            Deviation::Stated(deviation) => deviation,
+            Deviation::Cpk(cpk) => (mean - lower).min(upper - mean) / (3.0 * cpk),
+        };
+        if deviation > 0.0 { Ok([mean, deviation]) } else { Err(ShapeError::Mean) }
+    }
+}
+
 /// One of the shapes of a mixture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Component {
@@ -100,7 +146,11 @@ pub struct Component {
 impl Shape {
     /// Whether it has a width of its own: its tolerance, if it has one, is what the worst case goes by, and nothing else.
     pub fn has_width(&self) -> bool {
-        matches!(self, Self::Weibull { .. } | Self::Gumbel { .. } | Self::Lognormal { .. } | Self::Mixture(_))
+        match self {
+            Self::Weibull { .. } | Self::Gumbel { .. } | Self::Lognormal { .. } | Self::Mixture(_) => true,
+            Self::Normal(spread) | Self::Skewed { spread, .. } => matches!(spread.deviation, Deviation::Stated(_)),
+            _ => false,
+        }
     }
 
     /// Whether it stands without a tolerance beside it.
@@ -125,6 +175,9 @@ pub enum ShapeError {
     /// Shoulders that are out of order or outside of the limits.
     #[error("the shoulders are not in order within the tolerance")]
     Shoulders,
+    /// A Cpk of a mean that is outside of the limits.
+    #[error("the mean is not within the tolerance, so that its Cpk is not positive")]
+    Mean,
     /// A log-normal whose mean is not above its least value.
     #[error("the mean is not above the location")]
     Location,
@@ -161,15 +214,18 @@ impl Toleranced {
         if needs_width && (deviations[0] >= deviations[1] || lower >= upper) {
             return Err(ShapeError::Width);
         }
-        let deviation = |sigma: f64| (deviations[1] - deviations[0]) / 2.0 / sigma;
         let distribution = match *shape {
             Shape::Constant => {
                 limits = [nominal; 2];
                 Distribution::Constant(nominal)
             }
-            Shape::Normal { sigma } => Distribution::Normal { mean, deviation: deviation(sigma) },
-            Shape::TruncatedNormal { sigma } => {
-                Distribution::TruncatedNormal { mean, deviation: deviation(sigma), limits }
+            Shape::Normal(spread) => {
+                let [mean, deviation] = spread.within(nominal, limits)?;
+                Distribution::Normal { mean, deviation }
+            }
+            Shape::TruncatedNormal(spread) => {
+                let [mean, deviation] = spread.within(nominal, limits)?;
+                Distribution::TruncatedNormal { mean, deviation, limits }
             }
             Shape::Uniform => Distribution::Uniform { limits },
             Shape::Triangular { mode } => {
@@ -187,7 +243,10 @@ impl Toleranced {
                 Distribution::Trapezoidal { limits, shoulders }
             }
             Shape::Skewed { skewness: 0.0, .. } => return Err(ShapeError::Skewness),
-            Shape::Skewed { sigma, skewness } => Distribution::Skewed { mean, deviation: deviation(sigma), skewness },
+            Shape::Skewed { spread, skewness } => {
+                let [mean, deviation] = spread.within(nominal, limits)?;
+                Distribution::Skewed { mean, deviation, skewness }
+            }
             Shape::Beta { shapes } => Distribution::Beta { limits, shapes },
             Shape::Weibull { shape, scale, location } => {
                 Distribution::Weibull { shape, scale, location: nominal + location }
@@ -233,11 +292,25 @@ impl Toleranced {
         Ok(Self { nominal, limits, distribution })
     }
 
-    /// How far a point is off in a zone of `width` (m): normal with a sixth of the width.
-    pub fn in_zone(width: f64) -> Self {
+    /// How far a feature is off along one direction in a zone of `width` (m), by a `rule`; `deviation` (m) is the standard
+    /// deviation where it is normal, before it is truncated.
+    pub fn in_zone(width: f64, rule: ZoneRule, deviation: f64) -> Self {
         let limits = [-width / 2.0, width / 2.0];
-        let distribution = Distribution::Normal { mean: 0.0, deviation: width / 6.0 };
+        let distribution = match rule {
+            ZoneRule::SigmaZone | ZoneRule::Translation => Distribution::Normal { mean: 0.0, deviation },
+            ZoneRule::Truncated => Distribution::TruncatedNormal { mean: 0.0, deviation, limits },
+            ZoneRule::UniformInZone => Distribution::Uniform { limits },
+        };
         Self { nominal: 0.0, limits, distribution }
+    }
+
+    /// The share of production outside of the limits.
+    pub fn outside(&self) -> f64 {
+        if matches!(self.distribution, Distribution::Constant(_)) {
+            return 0.0;
+        }
+        let marginal = Marginal::new(&self.distribution);
+        marginal.tails(self.limits[0])[0] + marginal.tails(self.limits[1])[1]
     }
 
     /// As a contributor called `name`.
@@ -259,7 +332,7 @@ mod tests {
     #[test]
     fn a_tolerance_gives_place_and_width() {
         let make = |shape| Toleranced::new(10.0, [-0.5, 1.0], &shape).unwrap();
-        let normal = make(Shape::Normal { sigma: 3.0 });
+        let normal = make(Shape::Normal(Spread::sigmas(3.0)));
         assert_eq!(normal.distribution, Distribution::Normal { mean: 10.25, deviation: 0.25 });
         assert_eq!((normal.nominal, normal.limits, normal.mean()), (10.0, [9.5, 11.0], 10.25));
         let limits = [9.5, 11.0];
@@ -285,7 +358,8 @@ mod tests {
         }
         assert_eq!(Toleranced::new(1.0, [-0.9, 2.0], &lognormal).unwrap().limits, [1.0 - 0.9, 3.0]);
         let part = |weight, deviations, shape| Component { weight, deviations, shape };
-        let lots = vec![part(3.0, [-0.2, 0.1], Shape::Uniform), part(1.0, [0.0, 0.3], Shape::Normal { sigma: 3.0 })];
+        let lots =
+            vec![part(3.0, [-0.2, 0.1], Shape::Uniform), part(1.0, [0.0, 0.3], Shape::Normal(Spread::sigmas(3.0)))];
         let mixed = Toleranced::new(1.0, [0.0; 2], &Shape::Mixture(lots)).unwrap();
         assert_eq!(mixed.limits, [0.8, 1.3]);
         assert!((mixed.mean() - (0.75 * 0.95 + 0.25 * 1.15)).abs() < 1e-14);
@@ -295,11 +369,14 @@ mod tests {
     fn shapes_that_do_not_fit_are_refused() {
         let error = |deviations, shape| Toleranced::new(1.0, deviations, &shape).unwrap_err();
         assert_eq!(error([0.0, 0.0], Shape::Uniform), ShapeError::Width);
-        assert_eq!(error([0.1, -0.1], Shape::Normal { sigma: 3.0 }), ShapeError::Reversed);
+        assert_eq!(error([0.1, -0.1], Shape::Normal(Spread::sigmas(3.0))), ShapeError::Reversed);
         assert_eq!(error([-1e-20, 1e-20], Shape::Uniform), ShapeError::Width);
         assert_eq!(error([-0.1, 0.1], Shape::Triangular { mode: Some(0.2) }), ShapeError::Mode);
         assert_eq!(error([-0.1, 0.1], Shape::Trapezoidal { shoulders: [0.05, -0.05] }), ShapeError::Shoulders);
-        assert_eq!(error([-0.1, 0.1], Shape::Skewed { sigma: 3.0, skewness: 0.0 }), ShapeError::Skewness);
+        assert_eq!(
+            error([-0.1, 0.1], Shape::Skewed { spread: Spread::sigmas(3.0), skewness: 0.0 }),
+            ShapeError::Skewness
+        );
         let lognormal = Shape::Lognormal { mean: 0.1, deviation: 0.5, location: 0.1 };
         assert_eq!(error([0.0, 0.0], lognormal), ShapeError::Location);
         assert_eq!(error([0.1, 0.1], Shape::Gumbel { mode: 0.0, scale: 1.0 }), ShapeError::Width);

@@ -189,6 +189,14 @@ impl Expression {
         self.kind.quantity().unwrap_or(Quantity::Ratio)
     }
 
+    /// The variables that it reads.
+    pub fn variables(&self) -> impl Iterator<Item = usize> {
+        self.steps.iter().filter_map(|step| match step.operation {
+            Operation::Read(Source::Variable(variable)) => Some(variable),
+            _ => None,
+        })
+    }
+
     /// Its value for the `variables` and the earlier `measures` (SI), operation by operation: what faster ways are
     /// compared with.
     #[cfg(test)]

@@ -165,8 +165,21 @@ impl Function for Measures {
                     LOCATED.set(located);
                 }
                 self.tape.evaluate(variables, measures);
+                for measure in measures.iter_mut() {
+                    *measure = measure.map(|value| if value.is_finite() { value } else { f64::NAN });
+                }
             },
         );
+    }
+
+    fn is_linear(&self, measure: usize) -> bool {
+        self.affine[measure].is_some()
+    }
+
+    fn kinks(&self, variables: &[Lanes]) -> Vec<Lanes> {
+        let mut measures = vec![Lanes::ZERO; self.count()];
+        self.evaluate(variables, &mut measures);
+        self.tape.kinks(variables, &measures)
     }
 
     fn nominal(&self) -> Option<&[f64]> {

@@ -24,7 +24,7 @@ const fn table(name: &'static str, below: &'static [Key]) -> Key {
 }
 
 /// Keys of a distribution alone.
-const SHAPE: [Key; 11] = [
+const SHAPE: [Key; 13] = [
     key("kind"),
     key("mode"),
     key("shoulders"),
@@ -35,7 +35,9 @@ const SHAPE: [Key; 11] = [
     key("scale"),
     key("location"),
     key("mean"),
+    key("shift"),
     key("deviation"),
+    key("cpk"),
 ];
 /// The same, and the parts of a mixture.
 const MIXTURE: [Key; SHAPE.len() + 1] = {
@@ -64,8 +66,7 @@ const COST: Key = table(
         key("grades"),
     ],
 );
-const TOLERANCED: &[Key] =
-    &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("side"), key("edge"), COST];
+const TOLERANCED: &[Key] = &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("edge"), COST];
 const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
@@ -196,7 +197,7 @@ pub(super) const ROOT: &[Key] = &[
     table("sweep", &[key("n")]),
     table("drawing", &[key("clearance")]),
     table("pin", &[key("name"), key("position"), key("left"), key("right"), key("rail"), key("wall")]),
-    table("tolerance", &[key("general"), key("rule"), key("sigma"), key("correlation")]),
+    table("tolerance", &[key("general"), key("rule"), key("sigma"), key("datums"), key("correlation")]),
     table(
         "dimension",
         &[

@@ -191,6 +191,7 @@ fn marked(levels: &[Judged], y_label: &str) -> Panel {
         (Verdict::Runs, Shape::Dot),
         (Verdict::Crawls, Shape::Triangle),
         (Verdict::Jammed, Shape::Cross),
+        (Verdict::Overruns, Shape::Square),
         (Verdict::Undecided, Shape::Ring),
     ];
     Panel { y_label: y_label.to_owned(), series, markers: shapes.map(marks).into(), ..Panel::default() }
@@ -215,6 +216,7 @@ pub(crate) fn word(verdict: Verdict) -> &'static str {
         Verdict::Runs => "runs",
         Verdict::Crawls => "crawls",
         Verdict::Jammed => "jammed",
+        Verdict::Overruns => "overruns",
         Verdict::Undecided => "undecided",
     }
 }

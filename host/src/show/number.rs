@@ -54,14 +54,28 @@ pub fn per_million(ppm: f64) -> String {
     if ppm > 0.0 && ppm < 1e-6 { "below 1e-6".to_owned() } else { three_digits(ppm) }
 }
 
+/// A share in percent with so many `decimals`; with three digits where these would not show two of it: 7.7 in a million are
+/// 0.00077 %, not nothing.
+pub fn percent(share: f64, decimals: usize) -> String {
+    let percent = 100.0 * share;
+    let least = (0..decimals).fold(10.0, |least, _| least / 10.0);
+    if percent != 0.0 && percent.abs() < least { small(percent) } else { fixed(percent, decimals) }
+}
+
+/// Three significant digits without an exponent down to a millionth.
+fn small(x: f64) -> String {
+    let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
+    if rounded.abs() >= 1e-6 { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
 /// What is there through `format`, else a dash.
-pub fn or_dash(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
+pub fn or_dash<T>(value: Option<T>, format: impl Fn(T) -> String) -> String {
     value.map_or_else(|| "-".to_owned(), format)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{fixed, level, per_million, ten_digits, three_digits, typeset};
+    use super::{fixed, level, per_million, percent, ten_digits, three_digits, typeset};
 
     #[test]
     fn ten_digits_are_short() {
@@ -84,6 +98,15 @@ mod tests {
             [0.0, 4.1e-80, 9.9e-7, 1.2e-6, 302.0].map(per_million),
             ["0", "below 1e-6", "below 1e-6", "1.2e-6", "302"]
         );
+    }
+
+    #[test]
+    fn a_small_share_is_not_nothing() {
+        assert_eq!(
+            [0.0, 7.7e-6, 1.0 / 130_000.0, 3e-9, 0.000_95, 0.001, 0.054_32, 1.0].map(|share| percent(share, 2)),
+            ["0.00", "0.00077", "0.000769", "3e-7", "0.095", "0.10", "5.43", "100.00"]
+        );
+        assert_eq!([0.004, 0.000_4, 0.12].map(|share| percent(share, 1)), ["0.4", "0.04", "12.0"]);
     }
 
     #[test]

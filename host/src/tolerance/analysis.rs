@@ -18,13 +18,13 @@ use super::{
     statistics::estimate::{Estimate, Joint, Spread, joint},
     theory::{
         derivative::{Expansion, evaluate, expansion},
-        extremes::{extremes, reaches},
+        extremes::reaches,
         indices::{Indices, indices},
         moments::{Moments, moments, spreads},
         rss::{RootSumSquare, root_sum_square},
         tensor,
         tensor::Exact,
-        worst_case::{WorstCase, middle, reaches as linear_reaches, worst_case},
+        worst_case::{WorstCase, reaches as linear_reaches, worst_cases},
     },
 };
 
@@ -112,9 +112,18 @@ pub fn analyse(model: &Model, settings: Settings, done: impl Fn(u64) + Sync) -> 
 /// Finds everything from units that have been drawn.
 ///
 /// # Errors
-/// [`StudyError`], if the model cannot be drawn or somebody asked to stop.
+/// [`StudyError`], if the model cannot be drawn, a measure cannot be computed in two units of a replicate at least, or somebody
+/// asked to stop.
 pub fn conclude(study: &Study, tallies: &[Tally]) -> Result<Analysis, StudyError> {
     let Settings { seed, method, .. } = study.settings;
+    for tally in tallies {
+        for (measure, counts) in study.model.measures.iter().zip(&tally.counts.measures) {
+            let (computed, units) = (tally.counts.units - counts.undefined, tally.counts.units);
+            if computed < 2 {
+                return Err(StudyError::Undefined { measure: measure.name.clone(), computed, units });
+            }
+        }
+    }
     let basis = Basis::new(study.model);
     let spread = Spread {
         shapes: basis.moments.iter().map(|moments| moments.shape).collect(),
@@ -152,8 +161,7 @@ pub fn theory(model: &Model, seed: u64, counted: Option<&Joint>) -> Result<Theor
 fn of_basis(model: &Model, basis: Basis, seed: u64, counted: Option<&Joint>) -> Result<Theory, StudyError> {
     let draw = Draw::new(model, seed)?;
     let Basis { deviations, around_mean, moments } = basis;
-    let middles: Vec<f64> = model.contributors.iter().flat_map(|contributor| middle(&contributor.variation)).collect();
-    let around_middle = expansion(model, &middles, &deviations);
+    let around_middle = expansion(model, &model.middles(), &deviations);
     let bends = |moments: &Moments| moments.curved > LINEAR || !moments.described;
     let curved = moments.iter().any(bends);
     stop_if_asked()?;
@@ -163,14 +171,12 @@ fn of_basis(model: &Model, basis: Basis, seed: u64, counted: Option<&Joint>) -> 
         vec![None; model.measures.len()]
     };
     let exact = if curved { tensor::of_measures(model) } else { vec![None; model.measures.len()] };
-    let mut worst_cases = worst_case(model, &around_middle);
+    let all: Vec<usize> = (0..model.measures.len()).collect();
+    let worst_cases = worst_cases(model, &around_middle, &all);
     let mut sensitivities: Vec<Vec<Sensitivity>> =
         around_middle.slopes.iter().map(|slopes| sensitivities(model, slopes)).collect();
-    for i in (0..moments.len()).filter(|i| !moments[*i].described) {
-        stop_if_asked()?;
-        let [low, high] = worst_cases[i].vertices.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
-        let [least, greatest] = extremes(model, i);
-        worst_cases[i].searched = Some([low.min(least), high.max(greatest)]);
+    stop_if_asked()?;
+    for i in (0..moments.len()).filter(|i| !moments[*i].by_slopes()) {
         let reaches = reaches(model, i).into_iter();
         sensitivities[i] = reaches.map(|reach| Sensitivity { slope: None, reach }).collect();
     }
@@ -241,10 +247,10 @@ fn closing(
     rare: Option<Tail>,
     counted: Option<&Joint>,
 ) -> Closing {
-    let members = || sum.measures.iter().map(|i| moments[*i]);
+    let members = || sum.measures.iter().map(|i| &moments[*i]);
     let mean: f64 = members().map(|moments| moments.mean).sum();
     let together: f64 = members().map(|moments| moments.deviation).sum();
-    let described = members().all(|moments| moments.described);
+    let described = members().all(Moments::by_slopes);
     let independent = libm::sqrt(members().map(|moments| moments.deviation * moments.deviation).sum());
     // Of first order: the sum's own slopes.
     let moves: Vec<f64> = (0..deviations.len())

@@ -36,7 +36,7 @@ fn chain_of_seven() {
     let analysis = analysed(&chain());
     let (theory, joint) = (&analysis.theory, &analysis.joint);
     let worst = theory.worst_cases[0];
-    for [low, high] in [worst.linear, worst.vertices.unwrap()] {
+    for [low, high] in [worst.linear, worst.range] {
         close(low, 0.017 * MM, 1e-9 * MM);
         close(high, 0.783 * MM, 1e-9 * MM);
     }
@@ -295,7 +295,7 @@ fn kinks_are_told_from_bends() {
     close(moments[2].mean, -1.0 / libm::sqrt(pi), 2e-4);
     close(moments[2].deviation, libm::sqrt(1.0 - 1.0 / pi), 2e-4);
     for (worst, expected) in worst_cases.iter().zip([[0.0, 3.0], [0.0, 0.0], [-3.0, 3.0]]) {
-        for (found, expected) in worst.searched.unwrap().into_iter().zip(expected) {
+        for (found, expected) in worst.range.into_iter().zip(expected) {
             close(found, expected, 1e-6);
         }
     }

@@ -115,6 +115,16 @@ def main(path, expected):
     other.restore(read)
     run(other, half, 3.3 * step, last * step)
     assert other.written(read) == text
+    # No damage to what was written is read.
+    for i in range(len(text)):
+        damaged = bytearray(text)
+        damaged[i] ^= 1 << i % 8
+        try:
+            other.read(bytes(damaged))
+        except Exception:
+            continue
+        raise AssertionError(f"a state with a flipped bit in byte {i} was read")
+    run(other, last * step, step, last * step)
     for state, of in [(state, unit), (read, other)]:
         (of.instance.freeFMUState if of.is_third else of.instance.freeFMUstate)(state)
     other.end()

@@ -11,7 +11,7 @@ use core::{panic::PanicInfo, slice};
 use cortex_m::register::fpscr;
 use cortex_m::{
     Peripherals,
-    peripheral::{SYST, syst::SystClkSource},
+    peripheral::{SCB, SYST, scb::SystemHandler, syst::SystClkSource},
     register::msp,
 };
 use cortex_m_rt::{ExceptionFrame, exception};
@@ -61,6 +61,7 @@ unsafe extern "C" {
 pub struct Board {
     out: Stdout,
     timer: SYST,
+    system: SCB,
     /// Instructions of an empty measurement.
     overhead: u32,
     /// Words of stack that were free at the start.
@@ -70,19 +71,22 @@ pub struct Board {
 }
 
 impl Board {
-    fn new(mut timer: SYST) -> Self {
+    fn new(mut timer: SYST, system: SCB) -> Self {
         timer.set_clock_source(SystClkSource::Core);
         timer.set_reload(0x00ff_ffff);
         timer.clear_current();
         timer.enable_counter();
         let (overhead, painted) = (instructions(|| {}), paint());
-        Self { out: io::stdout().expect("a debugger listens"), timer, overhead, painted, deepest: 0 }
+        Self { out: io::stdout().expect("a debugger listens"), timer, system, overhead, painted, deepest: 0 }
     }
 }
 
 impl Board {
-    /// Has the system timer's interrupt called every `period` of [`TICK`]s.
+    /// Has the system timer's interrupt called every `period` of [`TICK`]s, with the lowest priority: after a reset it has the
+    /// highest, so that every other interrupt would wait for what it does.
     pub fn tick_every(&mut self, period: u32) {
+        // SAFETY: no critical section goes by priorities; those of critical-section mask all interrupts.
+        unsafe { self.system.set_priority(SystemHandler::SysTick, 0xff) };
         self.timer.set_reload(period - 1);
         self.timer.clear_current();
         self.timer.enable_interrupt();
@@ -166,7 +170,7 @@ pub fn boot(program: impl FnOnce(&mut Board, &'static [u8]) -> bool) -> ! {
     let peripherals = Peripherals::take().expect("nobody has taken them before");
     #[cfg(target_abi = "eabihf")]
     assert_eq!(fpscr::read().bits() & FPSCR_MODES, 0, "FPSCR would give other bits than the host");
-    let done = program(&mut Board::new(peripherals.SYST), flash());
+    let done = program(&mut Board::new(peripherals.SYST, peripherals.SCB), flash());
     process::exit(i32::from(!done))
 }
 

@@ -43,7 +43,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
     let (mut said, mut found, mut spare) =
         (zeroed::<slipfit_prediction>(), zeroed::<slipfit_lookup>(), zeroed::<slipfit_spare>());
     let (mut scrubber, mut rounds) = (zeroed::<slipfit_scrubber>(), 0);
-    let (mut jam_watch, mut jam) = (zeroed::<slipfit_jam_watch>(), 0);
+    let (mut jam_watch, mut verdict) = (zeroed::<slipfit_jam_watch>(), 0);
     let (mut report, mut estimate) = (zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
     let (length, half) = (bytes.len() as u32, bytes.len() / 2);
     let (mut scene, mut limits) = (scene(SLIPFIT_FRICTION_REGULARISED), zeroed::<slipfit_limits>());
@@ -85,7 +85,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
                 16 => slipfit_monitor_adapt(&mut monitor, &estimate),
                 17 => slipfit_monitor_restart(&mut monitor),
                 18 => slipfit_jam_watch_init(&mut jam_watch, &limits),
-                19 => slipfit_jam_watch_step(&mut jam_watch, &sample, &mut jam),
+                19 => slipfit_jam_watch_step(&mut jam_watch, &sample, &mut verdict),
                 20 => slipfit_jam_watch_restart(&mut jam_watch),
                 _ => slipfit_table_look_up(&table, x, y, ptr::null_mut()),
             };

@@ -49,7 +49,7 @@ impl SlideVisitor<f32> for Stepped {
 fn step<E: Elastic<f32>, F: Friction<f32>, I: Integrator>(slide: Slide<f32, E, F>) -> Result<(), ParameterError<f32>> {
     let kernel = Kernel::<f32, _, I>::new(slide, black_box(1e-3))?;
     let mut state = black_box(kernel.at_rest(Pose::nominal()));
-    black_box(kernel.step(&mut state));
+    let _ = black_box(kernel.step(&mut state));
     black_box(kernel.mechanism().gaps(&state.motion.pose));
     black_box(kernel.mechanism().drive().force(kernel.time(state.steps), state.motion.velocity.z));
     Ok(())
@@ -72,15 +72,15 @@ fn smaller_scenes() -> Result<(), ParameterError<f32>> {
     let pin = Element { link: Pin { place: Vector2::zeros() }, law: PlanarSlot { gaps: [0.0, 1e-4], contact } };
     let flat = System::new(body, black_box(([pin; 4], pull)));
     let kernel = Kernel::<f32, _, Extrapolated<2, 4>>::new(flat, black_box(1e-3))?;
-    black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
+    let _ = black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
     let hole =
         Element { link: Hole { centre: Vector2::zeros() }, law: Journal { clearance: 1e-5, radius: 5e-3, contact } };
     let swing = System::new(body, black_box(([hole; 4], pull)));
     let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(swing, black_box(1e-3))?;
-    black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
+    let _ = black_box(kernel.step(&mut black_box(kernel.at_rest::<3>(PlanarPose::nominal()))));
     let driven = on_axis(black_box(1.0), black_box(0.0), slot, normal, data.drive)?;
     let kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(driven, black_box(1e-3))?;
-    black_box(kernel.step(&mut black_box(kernel.at_rest::<1>(0.0))));
+    let _ = black_box(kernel.step(&mut black_box(kernel.at_rest::<1>(0.0))));
     Ok(())
 }
 
@@ -89,7 +89,7 @@ fn planar_mechanisms() -> Result<(), ParameterError<f32>> {
     macro_rules! step {
         ($($name:ident)*) => {$({
             let (kernel, mut state) = black_box(mechanisms::$name::predictor(black_box(0.0))?);
-            black_box(kernel.step(&mut state));
+            let _ = black_box(kernel.step(&mut state));
         })*};
     }
     step!(four_bar slider_crank slider_crank_guide woodpecker_toy);
@@ -120,7 +120,7 @@ fn watch(table: &Table<'_>) {
     let sample = black_box(Sample { time: 0.0, force: 0.0, speed: 0.0, command: 0.0 });
     black_box(black_box(JamWatch::default()).step(&limits, &sample));
     if let Ok(monitor) = Monitor::new(*table, black_box(0.0), limits) {
-        black_box(monitor.step(&mut black_box(Watch::default()), &sample));
+        let _ = black_box(monitor.step(&mut black_box(Watch::default()), &sample));
     }
     if let Ok(mut bank) = LevelBank::<_, 96>::new(*table) {
         bank.add(black_box(0.0), black_box(0.0));

@@ -3,7 +3,7 @@
 use std::ptr;
 
 use slipfit_capi::*;
-use slipfit_core::monitor::{JamWatch, Limits, Sample};
+use slipfit_core::monitor::{JamWatch, Limits, Sample, Verdict};
 
 use super::{SPECIAL, common::zeroed};
 
@@ -32,20 +32,25 @@ fn made() -> slipfit_jam_watch {
     watch
 }
 
+/// The verdict on the sample.
+fn verdict(watch: &mut slipfit_jam_watch, sample: &slipfit_sample) -> u32 {
+    let mut verdict = 9;
+    // SAFETY: the pointers are to locals of their types.
+    assert_eq!(unsafe { slipfit_jam_watch_step(watch, sample, &mut verdict) }, SLIPFIT_OK);
+    assert!([SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_JAM, SLIPFIT_NO_DATA].contains(&verdict), "{verdict}");
+    verdict
+}
+
 /// Whether there is a jam at the sample.
 fn step(watch: &mut slipfit_jam_watch, sample: &slipfit_sample) -> bool {
-    let mut jam = 2;
-    // SAFETY: the pointers are to locals of their types.
-    assert_eq!(unsafe { slipfit_jam_watch_step(watch, sample, &mut jam) }, SLIPFIT_OK);
-    assert!(jam < 2, "{jam}");
-    jam == 1
+    verdict(watch, sample) == SLIPFIT_JAM
 }
 
 #[test]
 fn a_jam_is_reported_when_it_has_lasted_and_forgotten_with_the_motion() {
     let at = |i: u32, force, speed| slipfit_sample { time: i as f32 * 1e-3, force, speed, command: 0.1 };
     // A drive whose force nobody measures moves for 20 ms and then stands.
-    let stands = |i: u32| at(i, f32::NAN, if i < 20 { 0.1 } else { 0.0 });
+    let stands = |i: u32| at(i, 0.0, if i < 20 { 0.1 } else { 0.0 });
     let mut watch = made();
     assert_eq!((0..100).position(|i| step(&mut watch, &stands(i))), Some(23));
     // SAFETY: the pointer is to a local of its type.
@@ -56,6 +61,23 @@ fn a_jam_is_reported_when_it_has_lasted_and_forgotten_with_the_motion() {
 }
 
 #[test]
+fn a_dead_sensor_is_no_data() {
+    let good = slipfit_sample { time: 0.5, force: 1.0, speed: 0.1, command: 0.1 };
+    for sample in [
+        slipfit_sample { time: f32::NAN, ..good },
+        slipfit_sample { force: f32::NAN, ..good },
+        slipfit_sample { speed: f32::NAN, ..good },
+        slipfit_sample { command: f32::NAN, ..good },
+    ] {
+        let mut watch = made();
+        let verdicts: Vec<u32> = (0..1099).map(|_| verdict(&mut watch, &sample)).collect();
+        assert!(verdicts[..3].iter().all(|verdict| [SLIPFIT_BLIND, SLIPFIT_FREE].contains(verdict)), "{sample:?}");
+        assert!(verdicts[3..].iter().all(|verdict| *verdict == SLIPFIT_NO_DATA), "{sample:?}");
+        assert_eq!(verdict(&mut watch, &good), SLIPFIT_FREE);
+    }
+}
+
+#[test]
 fn every_sample_is_judged_as_in_rust() {
     let (mut watch, mut rust) = (made(), JamWatch::default());
     let mut jams = 0;
@@ -63,9 +85,11 @@ fn every_sample_is_judged_as_in_rust() {
         for speed in SPECIAL {
             for command in SPECIAL {
                 for force in SPECIAL {
-                    let jam = rust.step(&LIMITS, &Sample { time, force, speed, command });
-                    assert_eq!(step(&mut watch, &slipfit_sample { time, force, speed, command }), jam);
-                    jams += u32::from(jam);
+                    let expected = rust.step(&LIMITS, &Sample { time, force, speed, command });
+                    let found = verdict(&mut watch, &slipfit_sample { time, force, speed, command });
+                    // In the order in which Rust has them.
+                    assert_eq!(found, expected as u32);
+                    jams += u32::from(expected == Verdict::Jam);
                 }
             }
         }

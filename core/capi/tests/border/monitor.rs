@@ -5,10 +5,14 @@ use std::ptr;
 use slipfit_capi::*;
 use slipfit_core::{
     monitor::{Estimate, Limits, Monitor},
-    table::Table,
+    table::{AxisKind, Table},
 };
 
-use super::{SPECIAL, common::zeroed, table::table};
+use super::{
+    SPECIAL,
+    common::zeroed,
+    table::{table, table_over},
+};
 
 /// Limits for noise of 20 mN in samples of 1 kHz.
 fn limits() -> slipfit_limits {
@@ -62,7 +66,8 @@ fn limits_that_no_monitor_takes_are_refused_and_not_written() {
 
 #[test]
 fn a_monitor_adapts_as_in_rust_and_restarts() {
-    let bytes: &'static [u8] = table().leak();
+    // The last of its levels jams.
+    let bytes: &'static [u8] = table_over(&[(AxisKind::Level, 4, 1.0), (AxisKind::Time, 4, 0.1)]).leak();
     let (mut table, mut monitor, mut report) =
         (zeroed::<slipfit_table>(), zeroed::<slipfit_monitor>(), zeroed::<slipfit_report>());
     let limits = limits();
@@ -91,6 +96,8 @@ fn a_monitor_adapts_as_in_rust_and_restarts() {
             (1.1, f32::INFINITY, false),
             (f32::NAN, 0.1, false),
             (1.1, f32::NAN, false),
+            (1.1, -1.0, false),
+            (1.1, -f32::MIN_POSITIVE, false),
             (1.5, 0.1, true),
             // The band is about the level that the monitor was made for.
             (1.75, 0.1, false),
@@ -109,5 +116,39 @@ fn a_monitor_adapts_as_in_rust_and_restarts() {
         assert!(step(&mut monitor) != first);
         assert_eq!(slipfit_monitor_restart(&mut monitor), SLIPFIT_OK);
         assert_eq!(step(&mut monitor), first);
+        // Between the last level that runs and the one that jams there is no unit.
+        for (n, made) in [(2.0, SLIPFIT_OK), (2.5, SLIPFIT_MONITOR_MIXED), (3.0, SLIPFIT_OK), (3.5, SLIPFIT_PARAMETER)]
+        {
+            assert_eq!(slipfit_monitor_init(&mut monitor, &table, n, &limits), made, "{n}");
+        }
+    }
+}
+
+#[test]
+fn a_dead_sensor_and_the_tables_end_are_no_data() {
+    let bytes: &'static [u8] = table().leak();
+    let (mut table, mut monitor, mut report) =
+        (zeroed::<slipfit_table>(), zeroed::<slipfit_monitor>(), zeroed::<slipfit_report>());
+    let good = slipfit_sample { time: 0.1, force: 2.0, speed: 0.1, command: 0.1 };
+    // SAFETY: every pointer is to a local of its type, and the bytes stay.
+    unsafe {
+        let opened = slipfit_table_open(&mut table, bytes.as_ptr(), bytes.len() as u32, SLIPFIT_AXIS_TIME, 7);
+        assert_eq!(opened, SLIPFIT_OK);
+        for sample in [
+            slipfit_sample { time: f32::NAN, ..good },
+            slipfit_sample { time: 0.31, ..good },
+            slipfit_sample { force: f32::NAN, ..good },
+            slipfit_sample { speed: f32::NAN, ..good },
+            slipfit_sample { command: f32::NAN, ..good },
+        ] {
+            assert_eq!(slipfit_monitor_init(&mut monitor, &table, 0.0, &limits()), SLIPFIT_OK);
+            for i in 0..1099 {
+                assert_eq!(slipfit_monitor_step(&mut monitor, &sample, &mut report), SLIPFIT_OK);
+                // Ten periods, give or take rounding of their sum.
+                assert!(i == 10 || (report.verdict == SLIPFIT_NO_DATA) == (i > 10), "{i} {sample:?} {report:?}");
+            }
+            assert_eq!(slipfit_monitor_step(&mut monitor, &good, &mut report), SLIPFIT_OK);
+            assert_eq!(report.verdict, SLIPFIT_FREE, "{sample:?}");
+        }
     }
 }

@@ -37,12 +37,22 @@ impl Controller {
     }
 
     /// One period of [`STEP`](scene::STEP); gives the drive's force (N) at its end. Takes the same instructions every time.
-    pub fn step(&mut self) -> f32 {
-        self.kernel.step(&mut self.state);
+    ///
+    /// # Errors
+    /// If the motion left the finite range and was held as it was: the force would be that of an earlier time.
+    pub fn step(&mut self) -> Result<f32, Held> {
+        let report = self.kernel.step(&mut self.state);
+        if !report.residual.is_finite() {
+            return Err(Held);
+        }
         let speed = self.state.motion.velocity.z;
-        self.kernel.mechanism().drive().force(self.kernel.time(self.state.steps), speed)
+        Ok(self.kernel.mechanism().drive().force(self.kernel.time(self.state.steps), speed))
     }
 }
+
+/// The motion was held. In a product the drive stops here, or goes on without the prediction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Held;
 
 /// A hash (FNV-1a) of the bits of forces, by which a test compares them with those of the PC.
 pub struct Forces(u64);

@@ -42,7 +42,8 @@ async fn control(mut controller: Controller) {
     let mut period = Ticker::every(Duration::from_millis(1));
     for _ in 0..PERIODS {
         period.next().await;
-        FORCES.try_send(controller.step()).expect("the main task keeps up");
+        let force = controller.step().expect("the motion can be moved");
+        FORCES.try_send(force).expect("the main task keeps up");
     }
 }
 
@@ -50,8 +51,12 @@ async fn control(mut controller: Controller) {
 async fn main(_spawner: Spawner) {
     let mut core = Peripherals::take().expect("nobody has taken them before");
     TIMER.start(&mut core.SYST);
-    // The interrupt has the highest priority, as the timer has: it is that of every interrupt after a reset. If others must
-    // not wait for a step, set this one's lower before.
+    // The lowest priority. After a reset it is the highest, so that every other interrupt, the timer's too, would wait for a step.
+    #[allow(unsafe_code, reason = "a wrong priority breaks critical sections that rely on it; none does here")]
+    // SAFETY: no critical section goes by priorities: those of critical-section mask all interrupts.
+    unsafe {
+        core.NVIC.set_priority(Interrupt::GPIOA, 0xff);
+    }
     let task = control(Controller::new(LEVEL)).expect("it is spawned once");
     URGENT.start(Interrupt::GPIOA).spawn(task);
 

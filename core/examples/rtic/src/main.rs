@@ -48,7 +48,8 @@ mod app {
             // From one instant to the next, not from the end of the last step: so the period does not drift.
             next += 1.millis();
             Clock::delay_until(next).await;
-            sender.try_send(context.local.controller.step()).expect("the other task keeps up");
+            let force = context.local.controller.step().expect("the motion can be moved");
+            sender.try_send(force).expect("the other task keeps up");
         }
     }
 

@@ -1,13 +1,13 @@
 //! Plain SysTick: an interrupt at 1 kHz steps the kernel, a queue hands each force to the main loop.
 #![no_std]
 #![no_main]
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 use core::cell::RefCell;
 
 use cortex_m::{
     Peripherals, asm,
-    peripheral::{SYST, syst::SystClkSource},
+    peripheral::{SCB, SYST, scb::SystemHandler, syst::SystClkSource},
 };
 use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
@@ -25,13 +25,14 @@ static HANDED_OVER: Mutex<RefCell<Option<Own>>> = Mutex::new(RefCell::new(None))
 #[exception]
 fn SysTick() {
     // The interrupt takes it out once and is its only user from then on. So the kernel is stepped outside of any critical
-    // section, and interrupts of higher priority are not delayed by it.
+    // section, and interrupts of higher priority, which is every other one, are not delayed by it.
     static mut OWN: Option<Own> = None;
     if OWN.is_none() {
         *OWN = critical_section::with(|section| HANDED_OVER.take(section));
     }
     if let Some((controller, forces)) = OWN {
-        forces.enqueue(controller.step()).expect("the main loop keeps up");
+        let force = controller.step().expect("the motion can be moved");
+        forces.enqueue(force).expect("the main loop keeps up");
     }
 }
 
@@ -42,7 +43,8 @@ fn main() -> ! {
     let (sender, mut receiver) = QUEUE.split();
     let own = (Controller::new(LEVEL), sender);
     critical_section::with(|section| HANDED_OVER.replace(section, Some(own)));
-    let mut timer = Peripherals::take().expect("nobody has taken them before").SYST;
+    let Peripherals { SCB: mut system, SYST: mut timer, .. } = Peripherals::take().expect("nobody has taken them before");
+    give_way(&mut system);
     start(&mut timer);
 
     let mut forces = Forces::default();
@@ -58,6 +60,13 @@ fn main() -> ! {
     }
     timer.disable_interrupt();
     forces.print_and_exit()
+}
+
+/// Gives the interrupt the lowest priority. After a reset it has the highest, so that every other interrupt would wait for a step.
+#[allow(unsafe_code, reason = "a wrong priority breaks critical sections that rely on it; none does here")]
+fn give_way(system: &mut SCB) {
+    // SAFETY: no critical section goes by priorities: those of critical-section mask all interrupts.
+    unsafe { system.set_priority(SystemHandler::SysTick, 0xff) }
 }
 
 /// Has the interrupt called every millisecond.

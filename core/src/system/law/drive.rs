@@ -56,7 +56,7 @@ impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
     const TIMED: bool = true;
 
     #[inline(always)]
-    fn fresh() {}
+    fn fresh(&self) {}
 
     #[inline(always)]
     fn response(&self, t: S, _: &SVector<S, 2>, rate: &SVector<S, 2>, (): &(), _: Way<S>) -> (Response<S, 2>, ()) {
@@ -87,7 +87,7 @@ impl<S: Scalar, P: Push<S>> Law<S, 1> for Motor<P> {
     const TIMED: bool = true;
 
     #[inline(always)]
-    fn fresh() {}
+    fn fresh(&self) {}
 
     #[inline(always)]
     fn response(&self, t: S, _: &SVector<S, 1>, rate: &SVector<S, 1>, (): &(), _: Way<S>) -> (Response<S, 1>, ()) {

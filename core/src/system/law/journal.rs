@@ -37,7 +37,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
     const PLACES: usize = 2;
 
     #[inline(always)]
-    fn fresh() -> F::Internal {
+    fn fresh(&self) -> F::Internal {
         F::fresh()
     }
 

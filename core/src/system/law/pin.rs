@@ -76,7 +76,7 @@ impl<S: Scalar, G: Fit<Number = S>, N: Normal<S>, F: Friction<S>> Law<S, 3> for 
     const PLACES: usize = 2;
 
     #[inline(always)]
-    fn fresh() -> [F::Internal; 2] {
+    fn fresh(&self) -> [F::Internal; 2] {
         [F::fresh(); 2]
     }
 
@@ -86,6 +86,13 @@ impl<S: Scalar, G: Fit<Number = S>, N: Normal<S>, F: Friction<S>> Law<S, 3> for 
         let [x, y, _] = place.data.0[0];
         let deepest = (-(left + x)).max_of(x - right).max_of(-(wall + y)).max_of(y - rail);
         -deepest
+    }
+
+    #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, 3>, see: impl FnMut(S)) {
+        let [left, right, rail, wall] = self.gaps.gaps();
+        let [x, y, _] = place.data.0[0];
+        [left + x, right - x, wall + y, rail - y].into_iter().for_each(see);
     }
 
     #[inline(always)]

@@ -53,7 +53,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Ring<S, N, F> {
     const PLACES: usize = 2;
 
     #[inline(always)]
-    fn fresh() -> F::Internal {
+    fn fresh(&self) -> F::Internal {
         F::fresh()
     }
 

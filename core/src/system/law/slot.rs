@@ -25,7 +25,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Slot<S, N, F> {
     const PLACES: usize = 1;
 
     #[inline(always)]
-    fn fresh() -> F::Internal {
+    fn fresh(&self) -> F::Internal {
         F::fresh()
     }
 
@@ -33,6 +33,12 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Slot<S, N, F> {
     fn gap(&self, place: &SVector<S, 2>) -> S {
         let [low, high] = self.gaps;
         -(-(low + place[0])).max_of(place[0] - high)
+    }
+
+    #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, 2>, see: impl FnMut(S)) {
+        let [low, high] = self.gaps;
+        [low + place[0], high - place[0]].into_iter().for_each(see);
     }
 
     #[inline(always)]

@@ -24,7 +24,7 @@ impl<S: Scalar, C: Stop<S>, E: Elastic<S>> Law<S, 1> for Stopped<C, Impact<S, E>
     const PLACES: usize = 1;
 
     #[inline(always)]
-    fn fresh() {}
+    fn fresh(&self) {}
 
     #[inline(always)]
     fn response(

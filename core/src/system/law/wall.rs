@@ -77,7 +77,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
     const PLACES: usize = 1;
 
     #[inline(always)]
-    fn fresh() -> F::Internal {
+    fn fresh(&self) -> F::Internal {
         F::fresh()
     }
 
@@ -125,7 +125,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
     const PLACES: usize = 3;
 
     #[inline(always)]
-    fn fresh() -> F::Internal {
+    fn fresh(&self) -> F::Internal {
         F::fresh()
     }
 

@@ -10,7 +10,8 @@ use crate::{
     system::{GradientLink, Seen},
 };
 
-/// How much (rad) a body has turned against another, or against the frame where there is none; and how fast (rad/s).
+/// How much (rad, −π to π) a body has turned against another, or against the frame where there is none; and how fast (rad/s). Whole
+/// turns are not in it: a law for which they count keeps them, like [`Spring`](crate::system::law::Spring).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turning<A = Option<usize>, B = Option<usize>> {
     /// What turns the body.
@@ -93,23 +94,63 @@ impl<S: Scalar, J: Topology<D>, A: Turns, B: Turns, const D: usize> GradientLink
     }
 }
 
-/// The angle (rad), −π to π, of a direction of unit length, without branches: a half angle thrice, then a series.
+/// The arctangent as t·(1 + u·P(u)) with u = t²: the coefficients of P, fitted at Chebyshev's points to a relative error of 4e-17 for
+/// |t| ≤ tan(π/16).
+const ARCTANGENT: [f64; 7] = [
+    -0.333_333_333_333_332_37,
+    0.199_999_999_997_608_48,
+    -0.142_857_141_888_354_44,
+    0.111_110_963_672_385_24,
+    -0.090_898_375_909_099_9,
+    0.076_521_232_939_573_18,
+    -0.059_097_869_797_455_585,
+];
+
+/// The angle (rad), −π to π, of a direction of unit length, without branches: the tangent of half the angle, halved three times more,
+/// then a polynomial.
 #[inline(always)]
 fn angle<S: Scalar>(direction: &Vector2<S>) -> S {
-    let (one, quarter) = (S::one(), S::from_f64(1e-30));
-    // tan(θ/2) = sin/(1 + cos); near ±π the divisor vanishes.
-    let mut t = direction.y / (one + direction.x).max_of(quarter);
-    let huge = S::from_f64(1e9);
-    t = t.within(-huge, huge);
+    let (zero, one, huge) = (S::zero(), S::one(), S::from_f64(1e18));
+    let (cosine, sine) = (direction.x, direction.y);
+    // tan(θ/2) = sin/(1 + cos) = (1 − cos)/sin: each where it does not cancel.
+    let over = cosine.select_gt(zero, sine, one - cosine);
+    let under = cosine.select_gt(zero, one + cosine, sine);
+    // The square of 1e18 is finite in f32.
+    let mut t = (over / under).within(-huge, huge);
     for _ in 0..3 {
         t /= one + (one + t * t).sqrt();
     }
     let square = t * t;
-    // arctan: |t| ≤ tan(π/16) = 0.199.
-    let mut series = S::zero();
-    for k in (0..12u32).rev() {
-        let term = one / S::from_count(2 * k + 1);
-        series = (if k % 2 == 0 { term } else { -term }) + series * square;
+    let mut series = zero;
+    for coefficient in ARCTANGENT.iter().rev() {
+        series = S::from_f64(*coefficient) + series * square;
     }
-    S::from_f64(16.0) * t * series
+    S::from_f64(16.0) * (t + t * (series * square))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::angle;
+    use crate::{Scalar, Vector2};
+
+    fn worst<S: Scalar>(unit: f64) {
+        let mut worst = 0.0f64;
+        for k in -20_000..=20_000 {
+            // Everywhere, and ever closer to ±π and to 0.
+            let far = core::f64::consts::PI * f64::from(k) / 20_000.0;
+            for theta in [far, far * far * far * 1e-6, core::f64::consts::PI - libm::fabs(far * far * far) * 1e-6] {
+                let direction = Vector2::new(S::from_f64(libm::cos(theta)), S::from_f64(libm::sin(theta)));
+                let found = angle(&direction).to_f64();
+                worst = worst.max(libm::fabs(found - theta) / libm::fabs(theta).max(1e-12));
+            }
+        }
+        assert!(worst < unit, "{worst:e}");
+    }
+
+    #[test]
+    #[cfg_attr(miri, ignore = "an interpreter has no time for so many angles")]
+    fn an_angle_has_as_many_digits_as_its_direction_up_to_half_a_turn() {
+        worst::<f64>(1e-15);
+        worst::<f32>(6e-7);
+    }
 }

@@ -5,7 +5,7 @@ use slipfit_core::{Scalar, slide::CONTACTS};
 
 use crate::{
     pack::Pack,
-    settled::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled},
+    settled::{BREAKAWAY_SPEED, SETTLED_SHARE, SETTLED_WINDOW, settled},
 };
 
 /// Figures of one unit, in SI units. Speeds, forces and travel count along the commanded direction.
@@ -67,6 +67,9 @@ pub struct Watch<V: Simd> {
     speed: Pack<V>,
     force_before: Pack<V>,
     length_before: Pack<V>,
+    /// Least and greatest force and speed at the ends of accepted steps since the last note.
+    forces: [Pack<V>; 2],
+    speeds: [Pack<V>; 2],
     windows: Vec<Window>,
 }
 
@@ -114,6 +117,8 @@ impl<V: Simd> Watch<V> {
             speed: zero,
             force_before: zero,
             length_before: zero,
+            forces: [zero; 2],
+            speeds: [zero; 2],
             windows: vec![Window::EMPTY; Pack::<V>::LANES],
         };
         (0..Pack::<V>::LANES).for_each(|lane| watch.clear(lane));
@@ -122,11 +127,15 @@ impl<V: Simd> Watch<V> {
 
     /// Forgets what was in a `lane`.
     pub fn clear(&mut self, lane: usize) {
-        let Self { breakaway, peak, depths, force, speed, force_before, length_before, windows } = self;
+        let Self { breakaway, peak, depths, force, speed, force_before, length_before, forces, speeds, windows } = self;
         breakaway.set(lane, f32::NAN);
         peak.set(lane, f32::NEG_INFINITY);
         length_before.set(lane, 1.0);
         depths.iter_mut().chain([force, speed, force_before]).for_each(|pack| pack.set(lane, 0.0));
+        for [least, greatest] in [forces, speeds] {
+            least.set(lane, f32::INFINITY);
+            greatest.set(lane, f32::NEG_INFINITY);
+        }
         windows[lane].clear();
     }
 
@@ -163,21 +172,39 @@ impl<V: Simd> Watch<V> {
         self.length_before = ends.or_old(length, self.length_before);
         self.force = ends.or_old(force, self.force);
         self.speed = ends.or_old(speed, self.speed);
+        for ([least, greatest], now) in [(&mut self.forces, force), (&mut self.speeds, speed)] {
+            *least = ends.or_old(-(-now).max_of(-*least), *least);
+            *greatest = ends.or_old(now.max_of(*greatest), *greatest);
+        }
     }
 
-    /// Takes note of force and speed at the end of an accepted step of a `lane`, at time `t` (s).
+    /// Takes note of force and speed at the end of an accepted step of a `lane`, at time `t` (s), and of their extremes since the last
+    /// note.
     #[inline(always)]
     pub fn note(&mut self, lane: usize, t: f64) {
-        self.windows[lane].note(t, [self.force, self.speed].map(|pack| pack.get(lane)));
+        let mark = self.mark(lane, t);
+        self.windows[lane].note(mark);
+        for [least, greatest] in [&mut self.forces, &mut self.speeds] {
+            least.set(lane, f32::INFINITY);
+            greatest.set(lane, f32::NEG_INFINITY);
+        }
+    }
+
+    fn mark(&self, lane: usize, t: f64) -> Mark {
+        let of = |[least, greatest]: [Pack<V>; 2], now: Pack<V>| {
+            let now = now.get(lane);
+            Reading { now, least: least.get(lane).min(now), greatest: greatest.get(lane).max(now) }
+        };
+        Mark { t, force: of(self.forces, self.force), speed: of(self.speeds, self.speed) }
     }
 
     /// Writes what is known of the unit in a `lane` at its end, time `t` (s), to `figures`.
     pub fn conclude(&self, lane: usize, t: f64, figures: &mut Figures) {
         figures.breakaway = self.breakaway.get(lane);
         figures.peak_force = self.peak.get(lane);
-        let [force, speed] = [self.force, self.speed].map(|pack| pack.get(lane));
-        figures.settled_force = self.windows[lane].settled(t, force);
-        figures.end_speeds = self.windows[lane].speeds(t, speed);
+        let end = self.mark(lane, t);
+        figures.settled_force = self.windows[lane].settled(end);
+        figures.end_speeds = self.windows[lane].speeds(end);
         let deepest = (0..CONTACTS).max_by(|i, j| self.depths[*i].get(lane).total_cmp(&self.depths[*j].get(lane)));
         let deepest = deepest.unwrap_or(0);
         figures.contact = deepest as u8;
@@ -186,72 +213,134 @@ impl<V: Simd> Watch<V> {
     }
 }
 
-/// Forces and speeds of the last 20 ms.
+/// A number at one time, and its extremes since the last note.
+#[derive(Clone, Copy)]
+struct Reading {
+    now: f32,
+    least: f32,
+    greatest: f32,
+}
+
+/// Force and speed at the time `t` (s).
+#[derive(Clone, Copy)]
+struct Mark {
+    t: f64,
+    force: Reading,
+    speed: Reading,
+}
+
+/// Forces and speeds of the last 20 ms and more.
 #[derive(Clone, Copy)]
 struct Window {
-    times: [f64; 2 * SAMPLES],
-    forces: [f32; 2 * SAMPLES],
-    speeds: [f32; 2 * SAMPLES],
+    marks: [Mark; 2 * SAMPLES],
     count: usize,
 }
 
 impl Window {
-    const EMPTY: Self = Self {
-        times: [f64::NEG_INFINITY; 2 * SAMPLES],
-        forces: [0.0; 2 * SAMPLES],
-        speeds: [0.0; 2 * SAMPLES],
-        count: 0,
+    const EMPTY: Self = {
+        let none = Reading { now: 0.0, least: 0.0, greatest: 0.0 };
+        Self { marks: [Mark { t: f64::NEG_INFINITY, force: none, speed: none }; 2 * SAMPLES], count: 0 }
     };
 
     fn clear(&mut self) {
-        self.times.fill(f64::NEG_INFINITY);
-        self.count = 0;
+        *self = Self::EMPTY;
     }
 
     #[inline(always)]
-    fn note(&mut self, t: f64, [force, speed]: [f32; 2]) {
-        let at = self.count % (2 * SAMPLES);
-        (self.times[at], self.forces[at], self.speeds[at]) = (t, force, speed);
+    fn note(&mut self, mark: Mark) {
+        self.marks[self.count % (2 * SAMPLES)] = mark;
         self.count += 1;
     }
 
-    /// What was noted in the last 20 ms before `end` (s).
-    fn within(&self, end: f64) -> impl Iterator<Item = usize> {
-        let times = &self.times;
-        (0..2 * SAMPLES).filter(move |i| times[*i] >= end - SETTLED_WINDOW * (1.0 + 1e-9) && times[*i] < end)
+    /// The marks of the last 20 ms up to `end`, in order of time. The first is where the window begins: between the last mark before and the
+    /// first within, if there is one before. A step may be as long as the window, so that one of them alone says nothing of it.
+    fn within(&self, end: Mark) -> Vec<Mark> {
+        let begin = end.t - SETTLED_WINDOW * (1.0 + 1e-9);
+        let earliest = self.count.saturating_sub(2 * SAMPLES);
+        let all = (earliest..self.count).map(|i| self.marks[i % (2 * SAMPLES)]).filter(|mark| mark.t < end.t);
+        let (before, mut within): (Vec<_>, Vec<_>) = all.chain([end]).partition(|mark| mark.t < begin);
+        if let (Some(before), Some(first)) = (before.last(), within.first_mut()) {
+            let share = ((begin - before.t) / (first.t - before.t)) as f32;
+            let at_begin = |before: Reading, first: Reading| {
+                let now = before.now + share * (first.now - before.now);
+                Reading { now, least: now, greatest: now }
+            };
+            let force = at_begin(before.force, first.force);
+            let speed = at_begin(before.speed, first.speed);
+            // Its extremes may be from before the window.
+            for reading in [&mut first.force, &mut first.speed] {
+                (reading.least, reading.greatest) = (reading.now, reading.now);
+            }
+            within.insert(0, Mark { t: begin, force, speed });
+        }
+        within
     }
 
-    /// The mean force, if it varies by less than 1 %, over the last 20 ms before `end` (s), where it is `force` (N).
-    fn settled(&self, end: f64, force: f32) -> f32 {
-        let mut marks: Vec<(f64, f64)> = self.within(end).map(|i| (self.times[i], f64::from(self.forces[i]))).collect();
-        marks.push((end, f64::from(force)));
-        marks.sort_by(|one, other| one.0.total_cmp(&other.0));
-        settled(marks.iter().copied()).map_or(f32::NAN, |mean| mean as f32)
+    /// The mean force over the last 20 ms up to `end`, if it varies by less than 1 %; else NaN.
+    fn settled(&self, end: Mark) -> f32 {
+        let marks = self.within(end);
+        let [least, greatest] = extremes(marks.iter().map(|mark| mark.force));
+        let mean = settled(marks.iter().map(|mark| (mark.t, f64::from(mark.force.now))));
+        // Between the notes, too.
+        let mean = mean.filter(|mean| f64::from(greatest - least) < SETTLED_SHARE * mean.abs());
+        mean.map_or(f32::NAN, |mean| mean as f32)
     }
 
-    /// The least and the greatest speed over the same time, at whose end it is `speed` (m/s).
-    fn speeds(&self, end: f64, speed: f32) -> [f32; 2] {
-        self.within(end)
-            .map(|i| self.speeds[i])
-            .fold([speed; 2], |[least, greatest], speed| [least.min(speed), greatest.max(speed)])
+    /// The least and the greatest speed over the same time.
+    fn speeds(&self, end: Mark) -> [f32; 2] {
+        extremes(self.within(end).iter().map(|mark| mark.speed))
     }
+}
+
+/// The least and the greatest of `readings`.
+fn extremes(readings: impl Iterator<Item = Reading>) -> [f32; 2] {
+    readings.fold([f32::INFINITY, f32::NEG_INFINITY], |[least, greatest], reading| {
+        [least.min(reading.least), greatest.max(reading.greatest)]
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{SAMPLES, Window};
+    use super::{Mark, Reading, SAMPLES, Window};
+
+    fn mark(t: f64, [force, speed]: [f32; 2]) -> Mark {
+        let reading = |now| Reading { now, least: now, greatest: now };
+        Mark { t, force: reading(force), speed: reading(speed) }
+    }
 
     #[test]
     fn a_window_knows_the_last_twenty_milliseconds() {
         let mut window = Window::EMPTY;
         // One note a millisecond, the speed ever slower.
         for k in 0..3 * SAMPLES as u32 {
-            window.note(f64::from(k) * 1e-3, [2.0, 0.2 - 1e-3 * k as f32]);
+            window.note(mark(f64::from(k) * 1e-3, [2.0, 0.2 - 1e-3 * k as f32]));
         }
-        let end = (3 * SAMPLES) as f64 * 1e-3;
-        let [least, greatest] = window.speeds(end, 0.05);
-        assert_eq!((least, greatest), (0.05, 0.2 - 1e-3 * (3 * SAMPLES - 20) as f32));
-        assert_eq!(window.settled(end, 2.0), 2.0);
-        assert_eq!(Window::EMPTY.speeds(end, 0.05), [0.05; 2]);
+        let end = mark((3 * SAMPLES) as f64 * 1e-3, [2.0, 0.05]);
+        let [least, greatest] = window.speeds(end);
+        assert_eq!(least, 0.05);
+        assert!((greatest - (0.2 - 1e-3 * (3 * SAMPLES - 20) as f32)).abs() < 1e-6, "{greatest}");
+        assert_eq!(window.settled(end), 2.0);
+        assert_eq!(Window::EMPTY.speeds(end), [0.05; 2]);
+    }
+
+    #[test]
+    fn a_force_that_changes_within_one_long_step_or_between_two_notes_has_not_settled() {
+        let mut window = Window::EMPTY;
+        // Steps of 15 ms: the last of them, and a part of the one before, are the window. It rises by 1.3 % in 20 ms.
+        for k in 0..4 {
+            window.note(mark(0.015 * f64::from(k), [2.0 + 0.02 * k as f32, 0.1]));
+        }
+        assert!(window.settled(mark(0.06, [2.08, 0.1])).is_nan());
+        // At a tenth of that it has: the mean is that of the middle of the window.
+        let mut window = Window::EMPTY;
+        for k in 0..4 {
+            window.note(mark(0.015 * f64::from(k), [2.0 + 0.002 * k as f32, 0.1]));
+        }
+        let mean = window.settled(mark(0.06, [2.008, 0.1]));
+        assert!((mean - (2.008 - 0.002 * 10.0 / 15.0)).abs() < 1e-6, "{mean}");
+        let mut burst = mark(0.055, [2.0073, 0.1]);
+        burst.force.greatest = 2.05;
+        window.note(burst);
+        assert!(window.settled(mark(0.06, [2.008, 0.1])).is_nan());
     }
 }

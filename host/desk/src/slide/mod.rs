@@ -5,21 +5,23 @@
 pub mod abreast;
 mod fixed_steps;
 
-use std::ops::ControlFlow;
+use std::{array, ops::ControlFlow};
 
 use slipfit_core::{
     SVector,
     integrator::{Motion, Rodas4},
     law::{Elastic, Friction},
+    mechanism::Mechanism as _,
     menu::SlideData,
     pose::Pose,
-    slide::{CONTACTS, Internal, NO_INTERNAL, Slide},
+    slide::{ABSENT, CONTACTS, Internal, NO_INTERNAL, Slide},
 };
 
 pub use fixed_steps::{At, Controller, Report, Witness, by_controller};
 
 use crate::{
-    error_control::{Accelerations, Effort, Sensitivity, Stopped, Tolerance, integrate},
+    closing::{Approach, Gaps},
+    error_control::{Accelerations, Effort, Sensitivity, Stopped, Tolerance, Watched, integrate},
     laws::SlidingSlide,
     out_of_line::{Contacts, OutOfLine},
 };
@@ -43,7 +45,9 @@ pub fn by_desk(
     tolerance: Tolerance,
     see: See,
 ) -> Result<Effort, Stopped> {
-    let run = Run { sensitivity: Sensitivity { mass: data.body.mass, gain: data.drive.gain }, duration, tolerance };
+    let sensitivity = Sensitivity { mass: data.body.mass, gain: data.drive.gain };
+    let lever = data.body.pins_w.iter().map(|pin| pin.norm()).fold(0.0, f64::max);
+    let run = Run { sensitivity, lever, duration, tolerance };
     match SlidingSlide::new(data, stick_band)? {
         SlidingSlide::Usual(slide) => {
             #[cfg(target_arch = "x86_64")]
@@ -59,6 +63,8 @@ pub fn by_desk(
 /// A run whose slide's type is to be known.
 struct Run {
     sensitivity: Sensitivity,
+    /// Distance (m) of the farthest pin from the centre of mass at the start.
+    lever: f64,
     duration: f64,
     tolerance: Tolerance,
 }
@@ -71,9 +77,36 @@ impl Run {
     ) -> Result<Effort, Stopped> {
         let zero = SVector::zeros();
         let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, internal: NO_INTERNAL };
+        let slide = driven.mechanism();
         let error = |step: &_, length| self.sensitivity.error(self.tolerance, step, length);
-        integrate::<Rodas4, _, 6>(driven, rest, self.duration, error, |t, motion, accelerations| {
-            see(t, motion, &driven.mechanism().gaps(&motion.pose), accelerations)
+        let gaps = |motion: &SlideMotion, gaps: &mut Gaps| watch(slide, self.lever, motion, gaps);
+        let watched = Watched { gaps, depth: self.tolerance.position };
+        integrate::<Rodas4, _, 6>(driven, rest, self.duration, error, watched, |t, motion, accelerations, gaps| {
+            let gaps = array::from_fn(|k| gaps.approaches.get(k).map_or(ABSENT, |approach| approach.gap));
+            see(t, motion, &gaps, accelerations)
         })
     }
+}
+
+/// The time (s) over which the rates of gaps are quotients of differences.
+const DIFFERENCE: f64 = 1e-6;
+
+/// Fills in the contacts of a `slide` at a `motion`.
+fn watch<E: Elastic<f64>, F: Friction<f64, Internal = ()>>(
+    slide: &Slide<f64, E, F>,
+    lever: f64,
+    motion: &SlideMotion,
+    gaps: &mut Gaps,
+) {
+    let Motion { pose, velocity, .. } = motion;
+    let next = slide.explicit_update(pose, velocity, DIFFERENCE);
+    let [now, then] = [pose, &next].map(|pose| slide.gaps(pose));
+    gaps.spin = velocity.fixed_rows::<3>(3).norm();
+    // A point of the slide at a pin moves no faster than its centre of mass and its turning together.
+    let speed = velocity.fixed_rows::<3>(0).norm() + gaps.spin * (lever + pose.displacement_w.norm());
+    gaps.approaches.clear();
+    gaps.approaches.extend(now.iter().zip(&then).map(|(gap, then)| {
+        let rate = if *gap < ABSENT / 2.0 { (then - gap) / DIFFERENCE } else { 0.0 };
+        Approach { gap: *gap, rate, speed }
+    }));
 }

@@ -10,7 +10,10 @@ use std::path::PathBuf;
 use clap::Args;
 use slipfit_core::sampling::stream::derived;
 
-use self::{function::Function, report::Report};
+use self::{
+    function::{Function, Limits},
+    report::{Confirmation, Report},
+};
 use super::{Failure, SceneArguments, ThreadArguments, check, given, print, print_json, progress, warn};
 use crate::{
     product::{Product, costed::Costed},
@@ -20,10 +23,11 @@ use crate::{
         allocate::{
             AllocateError,
             check::check as checked_units,
+            confirm::{Counted, confirmed, least_units},
             cost::Process,
             curve::{LEVELS, curve as cost_against_defects},
             requirement::{Kind, OfMeasures, Requirement},
-            search::search,
+            search::{Figures as _, Found, search},
         },
         counting::study::{MOST_UNITS, StudyError},
         model::Model,
@@ -33,8 +37,10 @@ use crate::{
 /// Digits of a tolerance that is written, and of one that is looked at.
 const DIGITS: usize = 6;
 const ALL_DIGITS: usize = 17;
-/// What the seed of the units is derived with that check malfunctions.
-const OTHER_UNITS: u64 = 5 << 32;
+/// What seeds of fresh units, which confirm malfunctions, are derived with.
+const FRESH_UNITS: u64 = 5 << 32;
+/// How many times as many they are as the units of the search.
+const FRESH: u64 = 8;
 
 /// Chooses the cheapest tolerances that meet the requirements.
 ///
@@ -60,7 +66,8 @@ pub(super) struct Arguments {
     force_limit: Option<f64>,
     /// Units to simulate for every set of tolerances that is tried.
     ///
-    /// Only for requirements on malfunction. More units give a surer result and take longer.
+    /// Only for requirements on malfunction. The tolerances found are confirmed with eight times as many other units, or more if the
+    /// share is small. More units find cheaper tolerances and take longer.
     #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
     units: u64,
     /// Units to draw for the check of the tolerances found.
@@ -122,7 +129,9 @@ fn kind(text: &str) -> Result<Required, String> {
 impl From<AllocateError> for Failure {
     fn from(error: AllocateError) -> Self {
         match error {
-            AllocateError::NotLinear(_) | AllocateError::Model(_) => Self::Input(error.to_string()),
+            AllocateError::NotLinear(_) | AllocateError::Model(_) | AllocateError::Unjudged { .. } => {
+                Self::Input(error.to_string())
+            }
             AllocateError::Study(StudyError::Interrupted) => Self::Work(error.into()),
             AllocateError::Study(error) => Self::Input(error.to_string()),
             _ => Self::Work(error.into()),
@@ -140,21 +149,50 @@ impl Arguments {
             .product
             .ok_or_else(|| Failure::Input("the scene has no product, whose tolerances could be chosen".into()))?;
         let requirements = self.requirements(&product)?;
-        if function::limit(&requirements).is_some() && file.slide.is_none() {
+        let limits = Limits::of(&requirements);
+        if limits.is_some() && file.slide.is_none() {
             return Err(Failure::Input("the scene has no [slide], whose units could malfunction".into()));
         }
         check_costs(&product.costed)?;
         self.scene.check_outputs(&given(outputs))?;
         let scene = Tolerances { name: &name, text: &text, overrides: &overrides, costed: &product.costed };
         let model = |tolerances: &[f64]| scene.model(tolerances);
-        let function = Function::new(&scene, self.units);
-        let malfunctions =
-            |tolerances: &[f64], limit: Option<f64>| Ok(function.share(tolerances, limit, self.seed)?.share);
+        let function = limits.map(|limits| Function::new(&scene, limits));
+        let counted = |tolerances: &[f64], units: u64, seed: u64| match &function {
+            Some(function) => function.count(tolerances, units, seed),
+            None => Ok(Counted { failed: 0, units }),
+        };
+        let malfunctions = |tolerances: &[f64], _: Option<f64>| {
+            let Counted { failed, units } = counted(tolerances, self.units, self.seed)?;
+            Ok::<f64, AllocateError>(failed as f64 / units as f64)
+        };
         let processes: Vec<&[Process]> = product.costed.iter().map(|costed| costed.processes.as_slice()).collect();
         let start: Vec<f64> = product.costed.iter().map(|costed| costed.stated).collect();
+        let figures_of = |requirements: &[Requirement]| {
+            let figures = OfMeasures::new(requirements, &model, &start, self.seed)?;
+            Ok::<_, AllocateError>(figures.with_malfunctions(&malfunctions))
+        };
         let work = || -> Result<(Report, Vec<f64>), Failure> {
-            let figures = OfMeasures::new(&requirements, &model, &start, self.seed)?.with_malfunctions(&malfunctions);
-            let found = match search(&processes, &start, &figures) {
+            let figures = figures_of(&requirements)?;
+            let found = match limits {
+                None => search(&processes, &start, &figures).map(|found| (found, None)),
+                Some(Limits { allowed, .. }) => {
+                    let search = |target: f64, before: Option<&Found>| {
+                        let start = before.map_or(start.as_slice(), |found| found.solution.tolerances.as_slice());
+                        search(&processes, start, &figures_of(&aimed_at(&requirements, target))?)
+                    };
+                    let units = (FRESH * self.units).max(least_units(allowed));
+                    let count = |found: &Found, round: u64| {
+                        counted(&found.solution.tolerances, units, derived(self.seed, FRESH_UNITS + round))
+                    };
+                    confirmed(allowed, search, count).and_then(|confirmed| {
+                        let figures = figures.values(&confirmed.found.solution.tolerances)?;
+                        let confirmation = Confirmation::new(&confirmed);
+                        Ok((Found { figures, ..confirmed.found }, Some(confirmation)))
+                    })
+                }
+            };
+            let (found, confirmation) = match found {
                 Err(AllocateError::Infeasible { figures: least, .. }) => {
                     return Err(Failure::Work(anyhow::anyhow!(tables::missing(
                         &product.model,
@@ -164,13 +202,11 @@ impl Arguments {
                 }
                 other => other?,
             };
+            if let Some(function) = &function {
+                function.finish();
+            }
             let tolerances = found.solution.tolerances.clone();
             let checked = checked_units(&model(&tolerances)?, self.samples, self.seed)?;
-            // Units that the search has not seen: those that it has are better than others by chance.
-            let other = derived(self.seed, OTHER_UNITS);
-            let malfunctions = function::limit(&requirements).map(|limit| function.share(&tolerances, limit, other));
-            let malfunctions = malfunctions.transpose()?;
-            function.finish();
             let points = if self.csv.is_some() || self.plot.is_some() {
                 let bar = progress("cost against defects", LEVELS.len());
                 let points = cost_against_defects(&processes, &tolerances, &model, self.seed, || bar.inc(1))?;
@@ -179,11 +215,11 @@ impl Arguments {
             } else {
                 Vec::new()
             };
-            let checked = report::Checks { measures: checked, malfunctions };
+            let checked = report::Checks { measures: checked, confirmation };
             Ok((Report::new(&file.title, &product, figures.rows(), &found, &checked, points), tolerances))
         };
         let (mut report, tolerances) = self.threads.install(work)??;
-        let simulated = file.slide.iter().filter(|_| function::limit(&requirements).is_some());
+        let simulated = file.slide.iter().filter(|_| function.is_some());
         report.warnings.extend(simulated.flat_map(check::warnings_of));
         let csv = self.csv.as_ref().map(|path| Ok::<_, anyhow::Error>((path, curve::csv(&report)?))).transpose()?;
         let svg = self.plot.as_ref().map(|path| curve::svg(&report).map(|svg| (path, svg.into_bytes()))).transpose();
@@ -226,6 +262,17 @@ impl Arguments {
         }
         Ok(requirements)
     }
+}
+
+/// The same requirements, but for the share of units that may malfunction, which is the `target`.
+fn aimed_at(requirements: &[Requirement], target: f64) -> Vec<Requirement> {
+    let of = |requirement: &Requirement| match requirement.kind {
+        Kind::Malfunction { force_limit, .. } => {
+            Requirement { kind: Kind::Malfunction { allowed: target, force_limit }, ..*requirement }
+        }
+        _ => *requirement,
+    };
+    requirements.iter().map(of).collect()
 }
 
 /// Refuses what cannot be chosen.

@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use crate::{
-    population::statistics::Share,
     product::{Product, costed::Costed},
     scene::tolerance,
     show::number::{fixed, three_digits},
@@ -11,6 +10,7 @@ use crate::{
         allocate::{
             branch::Solution,
             check::{Check, Checked},
+            confirm::{Confirmed, Counted},
             curve::{LEVELS, Point},
             requirement::{Kind, Requirement, Row},
             search::Found,
@@ -41,14 +41,16 @@ pub struct Report {
     pub tolerances: Vec<Chosen>,
     /// What was required.
     pub requirements: Vec<Required>,
+    /// What the cost falls by if all requirements that bind are loosened at once, where several do.
+    pub price_together: Option<f64>,
     /// What the full model says of every measure with limits.
     pub check: Vec<Measured>,
     /// Units that were drawn for it.
     pub samples: u64,
     /// Share of these with all measures within their limits.
     pub good: Option<f64>,
-    /// Share of other units that malfunction, where that is required.
-    pub malfunctions: Option<Share>,
+    /// Other units that confirm the share of malfunctions, where that is required.
+    pub malfunctions: Option<Confirmation>,
     /// Cost against defects; empty unless it was asked for.
     pub curve: Vec<CurvePoint>,
     /// What to know before trusting it.
@@ -59,8 +61,33 @@ pub struct Report {
 pub struct Checks {
     /// Of the measures.
     pub measures: Check,
-    /// Share of other units that malfunction, where that is required.
-    pub malfunctions: Option<Share>,
+    /// Other units that confirm the share of malfunctions, where that is required.
+    pub confirmation: Option<Confirmation>,
+}
+
+/// Units that the search has not seen, and that confirm what is required of malfunction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Confirmation {
+    /// All.
+    pub units: u64,
+    /// Those that malfunction.
+    pub failed: u64,
+    /// Their share.
+    pub share: f64,
+    /// What the share of the production is at most, with 95 % confidence.
+    pub at_most: f64,
+    /// The share that the search aimed at.
+    pub target: f64,
+    /// How many times tolerances were chosen, each counted in other units.
+    pub rounds: u32,
+}
+
+impl Confirmation {
+    /// Of what was confirmed.
+    pub fn new(confirmed: &Confirmed<Found>) -> Self {
+        let Confirmed { target, counted: Counted { failed, units }, at_most, rounds, .. } = *confirmed;
+        Self { units, failed, share: failed as f64 / units as f64, at_most, target, rounds }
+    }
 }
 
 /// A tolerance that was chosen.
@@ -154,7 +181,7 @@ impl Report {
         checks: &Checks,
         points: Vec<Point>,
     ) -> Self {
-        let Checks { measures: checked, malfunctions } = checks;
+        let Checks { measures: checked, confirmation } = checks;
         let solution = &found.solution;
         let tightest = points.last().filter(|_| points.len() < LEVELS.len());
         let out_of_reach = tightest.map(|point| format!("fewer defects than {} ppm are out of reach", point.ppm));
@@ -188,10 +215,11 @@ impl Report {
             cost_before: product.costed.iter().map(before).sum(),
             tolerances: chosen.collect(),
             requirements: required.collect(),
+            price_together: found.together,
             check: checked.measures.iter().map(|of| Measured::new(&product.model, of, checked.units)).collect(),
             samples: checked.units,
             good: checked.good.map(|good| good.value),
-            malfunctions: *malfunctions,
+            malfunctions: *confirmation,
             curve: points
                 .into_iter()
                 .map(|point| CurvePoint { ppm: point.ppm, cost: point.cost, tolerances: in_units(&point.tolerances) })
@@ -203,22 +231,9 @@ impl Report {
                 .chain(off_centre(&product.model, rows))
                 .chain(unproven(solution))
                 .chain(out_of_reach)
-                .chain(malfunctions.and_then(|share| too_many(rows, share)))
                 .collect(),
         }
     }
-}
-
-/// Where units that the search has not seen malfunction more often than is allowed.
-fn too_many(rows: &[Row], share: Share) -> Option<String> {
-    let allowed = rows.iter().find_map(|row| match row.requirement.kind {
-        Kind::Malfunction { allowed, .. } => Some(allowed),
-        _ => None,
-    })?;
-    (share.interval[0] > allowed).then(|| {
-        let [found, allowed] = [share.share, allowed].map(|share| three_digits(100.0 * share));
-        format!("{found} % of other units malfunction, {allowed} % may: simulate more with --units")
-    })
 }
 
 /// Where branch and bound was not done.

@@ -1,9 +1,9 @@
 //! What was found, for people.
 
-use super::report::{Measured, Report, Required};
+use super::report::{Confirmation, Measured, Report, Required};
 use crate::{
     cli::text_table,
-    show::number::{fixed, or_dash, per_million, three_digits},
+    show::number::{fixed, or_dash, per_million, percent, three_digits},
     tolerance::{
         allocate::{requirement::Row, search::MET},
         model::Model,
@@ -37,12 +37,21 @@ pub fn tables(report: &Report) -> String {
     let rows: Vec<_> = report.requirements.iter().map(requirement).collect();
     text += "\n";
     text += &text_table(&["requirement", "found", "allowed", "price", "of"], &rows);
-    text += "price: what the cost falls by\n\n";
+    text += "price: what the cost falls by\n";
+    if let Some(price) = report.price_together {
+        text += &format!("all that bind, loosened together: {}\n", three_digits(price));
+    }
+    text += "\n";
     let rows: Vec<_> = report.check.iter().map(measure).collect();
-    if let Some(share) = &report.malfunctions {
-        let [found, least, most] =
-            [share.share, share.interval[0], share.interval[1]].map(|share| fixed(100.0 * share, 2));
-        text += &format!("Check by other simulated units: {found} % malfunction ({least} to {most} %)\n");
+    if let Some(Confirmation { units, share, at_most, target, rounds, .. }) = report.malfunctions {
+        let [share, at_most] = [share, at_most].map(|share| percent(share, 2));
+        let of = match rounds {
+            1 => String::new(),
+            _ => format!("; choice {rounds}, aimed at {} % of the units of the search", three_digits(100.0 * target)),
+        };
+        text += &format!(
+            "Confirmed by {units} other simulated units: {share} % malfunction, with 95 % confidence at most {at_most} %{of}\n"
+        );
     }
     if !rows.is_empty() {
         text += &format!("Check by the full model, {} units drawn\n", report.samples);

@@ -9,6 +9,7 @@ use crate::{
     cli::{Failure, SceneArguments, check::self_locking, print, print_json, text_table, warn},
     mechanism::{
         Freedom, Mechanism, Spring,
+        feedback::{Reversal, reversals},
         self_locking::{DriveSide, Locked, locked},
     },
     show::number::{fixed, level, or_dash, ten_digits},
@@ -103,6 +104,18 @@ fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
         let levers: Vec<_> = locked.levers.iter().map(|lever| ([lever.length, lever.distance], "beside")).collect();
         self_locking(locked.friction, locked.critical_friction, &levers, &meaning)
     };
+    let reversed = |found: &Reversal| {
+        let Reversal { drive, body, pivot, angle } = found;
+        let when = match *angle > 0.0 {
+            true => format!("once {body} has turned by {}°", fixed(angle.to_degrees(), 1)),
+            false => "from the start".into(),
+        };
+        format!(
+            "{drive} pushes {body} at a point away from its centre of mass, whose speed it controls: {when} the two are on different sides \
+             of {pivot}, and the drive runs away from its command"
+        )
+    };
     warnings.extend(locked(mechanism).iter().map(word));
+    warnings.extend(reversals(mechanism).iter().map(reversed));
     warnings
 }

@@ -9,8 +9,14 @@ use serde::Serialize;
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{Failure, print, print_json, simulate::MOMENTS, text_table, warn},
-    dynamics::answer::on_the_way,
-    mechanism::{Action, ByDrive, Mechanism, MechanismRun, RunError, SCHEME, controller_run, film, finer, run},
+    dynamics::{
+        answer::on_the_way,
+        outcome::{Outcome, Verdict},
+    },
+    mechanism::{
+        Action, ByDrive, Mechanism, MechanismRun, NamedDrive, RunError, SCHEME, agreement::Agreement, confirmed,
+        controller_run, film,
+    },
     population::{mechanism::mechanism_of, production::Production},
     scene::ControllerSpec,
     show::{
@@ -32,8 +38,10 @@ struct SimulateReport<'a> {
     accepted: u32,
     refused: u32,
     integration_ms: f64,
-    /// The greatest difference of a drive's force or torque to a run at a tenth of the tolerance, as a share of its peak.
+    /// The greatest difference of a column to a run at a tenth of the tolerance, as a share of its peak.
     difference: f64,
+    /// Which column that is; none if nothing differs.
+    difference_column: Option<&'a str>,
     /// None without a drive.
     controller: Option<ControllerReport>,
     drives: Vec<DriveReport<'a>>,
@@ -94,8 +102,9 @@ impl OneUnit {
 pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Wanted) -> Result<(), Failure> {
     let OneUnit { label, n, gaps } = unit;
     wanted.check_outputs()?;
-    let desk = run(mechanism, gaps, every)?;
-    let difference = differing(mechanism, &desk, &finer(mechanism, gaps, every)?);
+    let [desk, finer] = confirmed(mechanism, gaps, every)?;
+    let agreement = desk.agreement(&finer, mechanism);
+    warn(doubt(mechanism, &desk, &finer).as_slice());
     let controller = controller(mechanism, gaps, every, &desk, wanted.by_controller)?;
     let one = match &controller {
         Some(Controller { run: Some(run), .. }) if wanted.by_controller => run,
@@ -109,7 +118,7 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
         let svg = columns_over_time(&one.samples, &columns, &mechanism.title, label).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
     }
-    let computed = || computed(&desk, difference) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
+    let computed = || computed(&desk, &agreement) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
     let words = || described(mechanism, label, one) + &computed();
     let warnings = wanted.warnings(mechanism)?;
     if let Some(path) = wanted.page {
@@ -130,7 +139,8 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
             accepted: desk.effort.accepted,
             refused: desk.effort.refused,
             integration_ms: desk.integration.as_secs_f64() * 1e3,
-            difference,
+            difference: agreement.share,
+            difference_column: agreement.column.as_deref(),
             controller: controller.as_ref().map(|controller| ControllerReport {
                 integrator: mechanism.controller.integrator.name(),
                 step_s: mechanism.controller.step,
@@ -232,11 +242,13 @@ fn controller(
     }
 }
 
-/// The greatest difference of the drives' forces between two runs, as a share of the greatest force; of the first body's columns where
-/// there is no drive.
+/// The greatest difference of the drives' efforts between two runs, as a share of the greatest effort; of all columns where there is no
+/// drive.
 fn differing(mechanism: &Mechanism, one: &MechanismRun, finer: &MechanismRun) -> f64 {
-    let columns =
-        if mechanism.drives.is_empty() { 1..one.samples.columns.len() } else { 1..1 + mechanism.drives.len() };
+    if mechanism.drives.is_empty() {
+        return one.agreement(finer, mechanism).share;
+    }
+    let columns = 1..1 + mechanism.drives.len();
     let of_column = |k: usize| {
         let peak = finer.samples.rows.iter().fold(f64::MIN_POSITIVE, |most, row| most.max(row[k].abs()));
         let pairs = one.samples.rows.iter().zip(&finer.samples.rows);
@@ -275,16 +287,31 @@ fn plotted(mechanism: &Mechanism) -> Vec<String> {
     columns
 }
 
+/// Why a verdict of the desk's run is undecided that a `finer` one would have, if one is.
+fn doubt(mechanism: &Mechanism, desk: &MechanismRun, finer: &MechanismRun) -> Option<String> {
+    let mut drives = mechanism.drives.iter().zip(desk.outcomes.iter().zip(&finer.outcomes));
+    let is_doubtful = |of: &(&NamedDrive, (&Outcome, &Outcome))| {
+        of.1.0.verdict == Verdict::Undecided && of.1.1.verdict != Verdict::Undecided
+    };
+    let (named, (_, better)) = drives.find(is_doubtful)?;
+    Some(format!(
+        "{}: no verdict, because a run at a tenth of the tolerance ({}) differs by more than 1 % in peak, final speed or travel; take a \
+         tenth of run.error",
+        named.name, better.verdict
+    ))
+}
+
 /// How the desk has computed its run.
-fn computed(run: &MechanismRun, difference: f64) -> String {
+fn computed(run: &MechanismRun, agreement: &Agreement) -> String {
     format!(
         "Computed by the desk, error-controlled to {:.1e} m/s a step ({SCHEME}, {} steps, {} refused) in {} ms\n\
-         A run at a tenth of that differs by {:.4} % of the peak\n",
+         A run at a tenth of that differs by {:.4} % of the peak{}\n",
         run.tolerance,
         run.effort.accepted,
         run.effort.refused,
         fixed(run.integration.as_secs_f64() * 1e3, 2),
-        difference * 100.0
+        agreement.share * 100.0,
+        agreement.column.as_ref().map_or_else(String::new, |column| format!(" at most, in {column}"))
     )
 }
 

@@ -14,6 +14,7 @@ pub fn describe(rare: &Rare) -> String {
     for Part { kind, side, finding: found } in &rare.parts {
         let kind = match kind {
             Kind::Crawls => "crawls",
+            Kind::Overruns => "overruns",
             Kind::Jams => "jams",
             Kind::OverLimit => "over limit",
         };
@@ -24,7 +25,11 @@ pub fn describe(rare: &Rare) -> String {
         };
         let _ = writeln!(text, "  {:18}{}", format!("{kind}{side}"), finding(found));
     }
-    let _ = writeln!(text, "  by subset simulation, {} units", rare.simulated);
+    let unknown = match rare.unknown {
+        0 => String::new(),
+        units => format!("; {units} of them come to no verdict: the upper ends count them as malfunctions"),
+    };
+    let _ = writeln!(text, "  by subset simulation, {} units{unknown}", rare.simulated);
     text
 }
 
@@ -33,7 +38,9 @@ fn finding(finding: &Finding) -> String {
         Finding::Probability(Estimate { probability, interval: [low, high], .. }) => {
             format!("{probability:.2e}  ({low:.2e} to {high:.2e})")
         }
-        Finding::Rarer { rarer_than } => format!("rarer than {rarer_than:.0e}"),
+        Finding::Rarer { rarer_than, searched_to, searches } => {
+            format!("none found by {searches} searches down to {searched_to:.0e}; by count below {rarer_than:.1e}")
+        }
         Finding::Unknown { reason } => format!("no figure: {reason}"),
     }
 }

@@ -8,13 +8,13 @@ use crate::{
     dynamics::outcome::Verdict,
     population::{
         Unit,
-        drivers::{Driver, LEAST_UNITS},
+        drivers::{Driver, LEAST_OUTCOMES, LEAST_UNITS},
         statistics::{Share, Spread, Statistics},
         study::Population,
         subject::Subject,
     },
     scene::Scene,
-    show::number::{fixed, level, or_dash},
+    show::number::{self, fixed, level, or_dash},
 };
 
 /// Drivers that are listed.
@@ -88,7 +88,7 @@ impl Arguments {
 
 /// How many units have which verdict, in lines; those without any are left out.
 pub(in crate::cli) fn verdicts(statistics: &Statistics) -> String {
-    let Statistics { runs, short, crawls, jammed, undecided, .. } = *statistics;
+    let Statistics { runs, short, crawls, jammed, overruns, undecided, .. } = *statistics;
     let mut text = String::new();
     let mut line = |name: &str, share: Share, note: &str| {
         if share.units > 0 {
@@ -101,6 +101,7 @@ pub(in crate::cli) fn verdicts(statistics: &Statistics) -> String {
     }
     line("crawls", crawls, "");
     line("jammed", jammed, "");
+    line("overruns", overruns, "");
     line("undecided", undecided, "");
     text
 }
@@ -128,25 +129,27 @@ fn worst_units(scene: &Scene, units: &[Unit]) -> String {
     text_table(&heading, &rows)
 }
 
-/// The strongest of `drivers`, at most `most`, as far as they are told from nothing.
+/// The strongest of `drivers`, at most `most`, as far as chance does not explain them.
 pub fn strongest(drivers: &[Driver], most: usize) -> String {
     if drivers.is_empty() {
-        return format!("not known: that takes {LEAST_UNITS} units or more");
+        return format!(
+            "not known: that takes {LEAST_UNITS} units, and for failure {LEAST_OUTCOMES} each that do and do not fail"
+        );
     }
-    let shown = drivers.iter().filter(|driver| driver.share > 2.0 * driver.error).take(most);
+    let shown = drivers.iter().filter(|driver| driver.is_significant()).take(most);
     let shown: Vec<String> = shown
         .map(|driver| {
             let [share, error] = [driver.share, driver.error].map(|x| fixed(x * 100.0, 1));
             format!("{} {share} ± {error} %", driver.name)
         })
         .collect();
-    if shown.is_empty() { "nothing alone".to_owned() } else { shown.join(", ") }
+    if shown.is_empty() { "nothing alone, as far as so many units show".to_owned() } else { shown.join(", ") }
 }
 
 /// A share with its interval.
 pub fn percent(share: &Share) -> String {
-    let [low, high] = share.interval.map(|end| fixed(end * 100.0, 2));
-    format!("{} %  ({low} to {high} %)", fixed(share.share * 100.0, 2))
+    let [low, high] = share.interval.map(|end| number::percent(end, 2));
+    format!("{} %  ({low} to {high} %)", number::percent(share.share, 2))
 }
 
 /// Which levels do what, as ranges.

@@ -70,7 +70,7 @@ pub fn remedy(sweep: &Sweep, units: Option<Units>) -> String {
     }
     let strongest = units.and_then(|units| units.of_malfunction.first());
     let first = strongest
-        .filter(|driver| driver.share > 2.0 * driver.error)
+        .filter(|driver| driver.is_significant())
         .map_or_else(|| "no single tolerance stands out".to_owned(), |driver| format!("start with {}", driver.name));
     let failed = units.is_some_and(|units| units.statistics.malfunctions.units > 0);
     match first_to_go_wrong(sweep) {

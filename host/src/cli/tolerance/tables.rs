@@ -85,12 +85,15 @@ fn losses(report: &Report) -> String {
 /// How good that is, and what needs no units.
 fn by_formula(report: &Report) -> String {
     let by_quadrature = report.measures.iter().any(|m| m.quadrature.is_some());
+    let range = |[low, high]: [f64; 2]| format!("{} … {}", real(low), real(high));
+    let curved = report.measures.iter().any(|m| m.worst_case_linear.map(range) != Some(range(m.worst_case)));
     let plus_minus = |estimate: &Estimate| or_dash(estimate.error, |error| format!("±{}", three_digits(error)));
     let row = |m: &MeasureReport| {
-        let [low, high] = m.worst_case.map(real);
         let mut row = vec![m.name.clone(), plus_minus(&m.estimates.mean), plus_minus(&m.estimates.sd)];
         let rss = m.rss.map_or_else(|| "-".into(), |rss| format!("{} ± {}", real(rss.middle), real(rss.tolerance)));
-        row.extend([or_dash(m.nominal, real), format!("{low} … {high}"), rss]);
+        row.extend([or_dash(m.nominal, real), range(m.worst_case)]);
+        row.extend(curved.then(|| or_dash(m.worst_case_linear, range)));
+        row.push(rss);
         let modified = [m.rss.map(|rss| rss.bender), m.rss.map(|rss| rss.gilson)];
         row.extend(modified.map(|tolerance| or_dash(tolerance, |tolerance| format!("± {}", real(tolerance)))));
         let second = m.second_order;
@@ -100,19 +103,9 @@ fn by_formula(report: &Report) -> String {
         }
         row
     };
-    let mut heading = vec![
-        "measure",
-        "error of mean",
-        "of σ",
-        "nominal",
-        "worst case",
-        "RSS",
-        "Bender",
-        "Gilson",
-        "σ linear",
-        "mean 2nd order",
-    ];
-    heading.push("σ 2nd order");
+    let mut heading = vec!["measure", "error of mean", "of σ", "nominal", "worst case"];
+    heading.extend(curved.then_some("by slopes alone"));
+    heading.extend(["RSS", "Bender", "Gilson", "σ linear", "mean 2nd order", "σ 2nd order"]);
     if by_quadrature {
         heading.extend(["mean exact", "σ exact"]);
     }
@@ -128,7 +121,7 @@ fn contributors(report: &Report) -> String {
         let shares = m.contributors.iter().filter_map(|share| Some((&share.name, share.percent?)));
         let most = shares.filter(|(_, percent)| percent.abs() >= 1.0).take(6);
         let most: Vec<String> = most.map(|(name, percent)| format!("{name} {}", fixed(percent, 1))).collect();
-        let by = if m.rss.is_some() { "" } else { " (Sobol')" };
+        let by = if m.by_indices { " (Sobol')" } else { "" };
         let most = if most.is_empty() { "-".to_owned() } else { most.join(", ") };
         let _ = writeln!(text, "  {}{by}: {most}", m.name);
     }

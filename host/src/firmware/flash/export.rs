@@ -5,6 +5,8 @@ use std::fmt::Write;
 use ihex::Record;
 use slipfit_core::table::{AxisKind, Encoding, MotionVerdict, layout};
 
+use crate::firmware::guard::{c_name, guarded};
+
 /// What can be written, by a file's extension.
 pub const EXTENSIONS: [&str; 4] = ["bin", "hex", "h", "rs"];
 
@@ -30,17 +32,18 @@ pub enum ExportError {
     Hex(#[from] ihex::WriterError),
 }
 
-/// The content of a file with `extension` (without its dot, in any case) that holds `table`.
+/// The content of a file with `extension` (without its dot, in any case) that holds `table`. Names in a C header follow the `stem` of
+/// the file's name: in `table.h` the bytes are `slipfit_table_bytes`, and their number `SLIPFIT_TABLE_SIZE`.
 ///
 /// `base` is the address the table is flashed to; only Intel hex says it.
 ///
 /// # Errors
 /// [`ExportError`] if no format has the extension or the table does not fit behind `base`.
-pub fn render(extension: &str, table: &[u8], base: u32) -> Result<Vec<u8>, ExportError> {
+pub fn render(stem: &str, extension: &str, table: &[u8], base: u32) -> Result<Vec<u8>, ExportError> {
     match extension.to_ascii_lowercase().as_str() {
         "bin" => Ok(table.to_vec()),
         "hex" => Ok(hex(table, base)?.into_bytes()),
-        "h" => Ok(c_header(table).into_bytes()),
+        "h" => Ok(c_header(stem, table).into_bytes()),
         "rs" => Ok(rust_source(table).into_bytes()),
         _ => Err(ExportError::Extension { found: extension.to_owned() }),
     }
@@ -70,7 +73,9 @@ fn hex(table: &[u8], base: u32) -> Result<String, ExportError> {
 }
 
 /// What a C program needs in order to read a table: macros from the one description of the layout, then the bytes.
-fn c_header(table: &[u8]) -> String {
+fn c_header(stem: &str, table: &[u8]) -> String {
+    let name = c_name(stem);
+    let upper = name.to_uppercase();
     let mut text = String::from(C_INTRODUCTION);
     let mut define = |name: &str, value: usize| {
         let _ = writeln!(text, "#define SLIPFIT_TABLE_{name} {value}u");
@@ -106,10 +111,16 @@ fn c_header(table: &[u8]) -> String {
         define(verdict.name().to_uppercase().as_str(), verdict as usize);
     }
     define("CHECKSUM_SIZE", layout::CHECKSUM_SIZE);
-    define("SIZE", table.len());
+    let _ = writeln!(text, "#define SLIPFIT_{upper}_SIZE {}u", table.len());
     // Firmware compares it with the hash in the table that it finds.
-    let _ = writeln!(text, "#define SLIPFIT_TABLE_SCENE_HASH 0x{}ull", hash(table));
-    text + C_ARRAY + &array(table) + "};\n\n#endif\n"
+    let _ = writeln!(text, "#define SLIPFIT_{upper}_SCENE_HASH 0x{}ull", hash(table));
+    let array = array(table);
+    let _ = write!(
+        text,
+        "\n#if defined(__GNUC__)\n__attribute__((aligned(4), unused))\n#endif\n\
+         static const uint8_t slipfit_{name}_bytes[SLIPFIT_{upper}_SIZE] = {{\n{array}}};\n"
+    );
+    guarded(&format!("SLIPFIT_{upper}_H"), &text)
 }
 
 /// The hash that a table is stamped with, in hexadecimal.
@@ -134,18 +145,8 @@ const C_INTRODUCTION: &str = "\
  * CHECKSUM_SIZE bytes are the CRC-32/ISO-HDLC of everything before them. Axes are in
  * units of n (LEVEL), s (TIME), m (POSITION), m/s (VELOCITY).
  */
-#ifndef SLIPFIT_TABLE_H
-#define SLIPFIT_TABLE_H
-
 #include <stdint.h>
 
-";
-
-const C_ARRAY: &str = "
-#if defined(__GNUC__)
-__attribute__((aligned(4), unused))
-#endif
-static const uint8_t slipfit_table_bytes[SLIPFIT_TABLE_SIZE] = {
 ";
 
 /// A module's source with the table as `SLIPFIT_TABLE`.
@@ -215,7 +216,7 @@ mod tests {
 
     #[test]
     fn bin_is_the_table() {
-        assert_eq!(render("BIN", &table(), 0).unwrap(), table());
+        assert_eq!(render("table", "BIN", &table(), 0).unwrap(), table());
     }
 
     #[test]
@@ -223,18 +224,18 @@ mod tests {
         let long: Vec<u8> = (0..200_000u32).map(|i| (i % 251) as u8).collect();
         let end = u32::MAX - (table().len() as u32 - 1);
         for (bytes, base) in [(&table(), TABLE_ADDRESS), (&long, 0x0807_fff3), (&table(), end)] {
-            let text = render("hex", bytes, base).unwrap();
+            let text = render("table", "hex", bytes, base).unwrap();
             assert_eq!(parsed(std::str::from_utf8(&text).unwrap()), (base, bytes.clone()));
         }
         let (base, bytes) = (end + 1, table().len());
-        assert_eq!(render("hex", &table(), base), Err(ExportError::Address { base, bytes }));
+        assert_eq!(render("table", "hex", &table(), base), Err(ExportError::Address { base, bytes }));
     }
 
     #[test]
     fn c_header_compiles_and_holds_the_table() {
         let directory = tempfile::tempdir().unwrap();
         let path = |name: &str| directory.path().join(name);
-        fs::write(path("table.h"), render("h", &table(), 0).unwrap()).unwrap();
+        fs::write(path("table.h"), render("table", "h", &table(), 0).unwrap()).unwrap();
         fs::write(path("main.c"), C_PROGRAM).unwrap();
         let strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"];
         output(Command::new("cc").args(strict).arg("-fsyntax-only").arg(path("table.h")));
@@ -264,13 +265,45 @@ mod tests {
     fn rust_source_compiles_and_holds_the_table() {
         let directory = tempfile::tempdir().unwrap();
         let path = |name: &str| directory.path().join(name);
-        fs::write(path("table.rs"), render("rs", &table(), 0).unwrap()).unwrap();
+        fs::write(path("table.rs"), render("table", "rs", &table(), 0).unwrap()).unwrap();
         fs::write(path("main.rs"), RUST_PROGRAM).unwrap();
         let rustc = Path::new(env!("CARGO")).with_file_name("rustc");
         output(
             Command::new(rustc).args(["--edition=2024", "-Dwarnings"]).arg(path("main.rs")).arg("-o").arg(path("main")),
         );
         assert_eq!(output(&mut Command::new(path("main"))), table());
+    }
+
+    #[test]
+    fn a_program_includes_two_tables() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = |name: &str| directory.path().join(name);
+        let other = encode(&small(2, Encoding::F32)).unwrap();
+        fs::write(path("table.h"), render("table", "h", &table(), 0).unwrap()).unwrap();
+        fs::write(path("Other-1.h"), render("Other-1", "h", &other, 0).unwrap()).unwrap();
+        let program = "#include \"table.h\"\n#include \"Other-1.h\"\n#include \"table.h\"\n#include <stdio.h>\n\
+            int main(void) {\n    fwrite(slipfit_table_bytes, 1, SLIPFIT_TABLE_SIZE, stdout);\n    \
+            fwrite(slipfit_other_1_bytes, 1, SLIPFIT_OTHER_1_SIZE, stdout);\n    return 0;\n}\n";
+        fs::write(path("main.c"), program).unwrap();
+        let strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"];
+        output(Command::new("cc").args(strict).arg(path("main.c")).arg("-o").arg(path("main")));
+        assert_eq!(output(&mut Command::new(path("main"))), [table(), other].concat());
+        // Of the same name in another folder: refused, not dropped.
+        fs::create_dir(path("b")).unwrap();
+        fs::write(path("b/table.h"), render("table", "h", &encode(&small(2, Encoding::F32)).unwrap(), 0).unwrap())
+            .unwrap();
+        fs::write(path("both.c"), "#include \"table.h\"\n#include \"b/table.h\"\n").unwrap();
+        assert!(
+            !Command::new("cc")
+                .arg("-c")
+                .arg(path("both.c"))
+                .arg("-o")
+                .arg(path("o"))
+                .output()
+                .unwrap()
+                .status
+                .success()
+        );
     }
 
     const RUST_PROGRAM: &str = r#"
@@ -285,7 +318,7 @@ mod tests {
 
     #[test]
     fn other_extensions_are_named() {
-        let error = render("elf", &table(), 0).unwrap_err();
+        let error = render("table", "elf", &table(), 0).unwrap_err();
         assert_eq!(error.to_string(), r#"a table is not written as "elf"; allowed are .bin, .hex, .h, .rs"#);
     }
 }

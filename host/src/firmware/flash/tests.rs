@@ -130,7 +130,7 @@ fn exact_at_nodes_and_linear_between() {
         let found = table.lookup(at);
         assert!(!found.clamped);
         assert_near(&spec, &found, &at);
-        assert_eq!(found, Lookup { force, velocity, clamped: false, mixed: false });
+        assert_eq!(found, Lookup { force, velocity, clamped: false, mixed: false, damaged: false });
         if i < 2 && j < 4 && k < 2 {
             let half = table.lookup([at[0], at[1], at[2] + 1.0]);
             assert_eq!(half.force, force + 0.5 * (spec.force.values[index + 1] - force));
@@ -150,7 +150,7 @@ fn clamps_and_says_so() {
         assert_eq!(table.lookup([-1.0, outside]), Lookup { clamped: true, ..table.lookup(low) });
     }
     for outside in [f32::NAN, -f32::NAN] {
-        let Lookup { force, velocity, clamped, mixed } = table.lookup([outside, outside]);
+        let Lookup { force, velocity, clamped, mixed, .. } = table.lookup([outside, outside]);
         assert!(clamped && !mixed && force.abs() <= 4.0 && velocity.abs() <= 0.1);
     }
     assert_eq!(table.lookup([-0.0, 0.75]), table.lookup(high));

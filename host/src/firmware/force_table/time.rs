@@ -1,5 +1,11 @@
 //! Tables over tolerance level and time.
+//!
+//! Where a unit has come to its stroke's end before the table's last instant, it goes on as the drive goes on pushing it, and the table
+//! holds what it does then. Its verdict, and what is shown of it, end with the stroke.
 
+use std::borrow::Cow;
+
+use rayon::prelude::*;
 use slipfit_core::table::{AxisKind, Encoding};
 
 use super::{
@@ -9,11 +15,13 @@ use super::{
 };
 use crate::{
     dynamics::{
-        driven::Driven,
+        driven::{Driven, Motion},
+        simulate::SimulateError,
         sweep::{Keep, Level, Sweep, sweep},
         trajectory::Trajectory,
     },
     firmware::{flash, flash::FlashError},
+    scene::RunSpec,
 };
 
 /// Distance of the table's instants (s).
@@ -49,17 +57,39 @@ pub fn check(driven: &dyn Driven, demand: Demand) -> Result<(), FlashError> {
     grid::check(&axes(driven, every(driven, demand)), demand)
 }
 
-/// Makes the table of `driven` that `demand` asks for from a `sweep` at [`levels`], sampled `every` (s).
+/// The runs of a `sweep` of `driven`, those that end with their stroke beyond it.
+///
+/// # Errors
+/// Those of the runs.
+fn whole<'a>(driven: &dyn Driven, sweep: &'a Sweep, motion: Motion) -> Result<Vec<Cow<'a, Trajectory>>, SimulateError> {
+    let run = RunSpec { stroke: None, ..motion.run };
+    let beyond = |level: &'a Level| -> Result<Cow<'a, Trajectory>, SimulateError> {
+        let ends_early = level.outcome.stroke_reached == Some(true) && level.outcome.end.t < run.duration;
+        if !ends_early {
+            return Ok(Cow::Borrowed(&level.trajectory));
+        }
+        Ok(Cow::Owned(driven.level(level.n, Motion { run, ..motion })?.trajectory))
+    };
+    sweep.levels.par_iter().map(beyond).collect()
+}
+
+/// Makes the table of `driven` that `demand` asks for from the `runs` of a `sweep` at [`levels`], sampled `every` (s).
 ///
 /// # Errors
 /// If the sweep has fewer than two levels or instants, the table is larger than its region of flash, or none errs as
 /// little as asked for.
-fn build(driven: &dyn Driven, sweep: &Sweep, every: f64, demand: Demand) -> Result<ForceTable, TableError> {
+fn build(
+    driven: &dyn Driven,
+    sweep: &Sweep,
+    runs: &[Cow<'_, Trajectory>],
+    every: f64,
+    demand: Demand,
+) -> Result<ForceTable, TableError> {
     let axes = axes(driven, every);
     let at = &axes[1].at;
     let sample = |run: &Trajectory, i: usize| {
         let before = at[i] < driven.drive().ramp_start;
-        // Where a slide has come to its stroke's end, the table holds what it came there with.
+        // A run that is over before the last instant: the table holds what it ended with.
         let Some(last) = run.t.len().checked_sub(1) else {
             return Sample { values: [0.0; 2], stage: Stage::Beyond };
         };
@@ -70,8 +100,7 @@ fn build(driven: &dyn Driven, sweep: &Sweep, every: f64, demand: Demand) -> Resu
         };
         Sample { values: [run.force[i.min(last)], run.vz[i.min(last)]], stage }
     };
-    let runs = sweep.levels.iter().map(|level| &level.trajectory);
-    let values = runs.flat_map(|run| (0..at.len()).map(|i| sample(run, i)).collect::<Vec<_>>()).collect();
+    let values = runs.iter().flat_map(|run| (0..at.len()).map(|i| sample(run, i)).collect::<Vec<_>>()).collect();
     let verdicts = sweep.levels.iter().map(|level| level.outcome.verdict.into()).collect();
     Samples { axes, values, verdicts }.table(driven.hash(), demand)
 }
@@ -104,5 +133,6 @@ pub fn make(driven: &dyn Driven, demand: Demand, done: impl Fn() + Sync) -> Resu
     let every = every(driven, demand);
     let (levels, motion) = (levels(driven.levels()).levels(), driven.motion(every));
     let sweep = sweep(driven, &levels, Keep::Samples, |n| driven.level(n, motion), done)?;
-    Ok((build(driven, &sweep, every, demand)?, nodes(&sweep)))
+    let runs = whole(driven, &sweep, motion)?;
+    Ok((build(driven, &sweep, &runs, every, demand)?, nodes(&sweep)))
 }

@@ -169,7 +169,7 @@ fn elements<const D: usize>(
                     2,
                 )
             }
-            PlanarElement::Spring(one) => {
+            PlanarElement::Spring(one, _) => {
                 names.push("Turning");
                 laws.push("Spring");
                 let law = one.law;
@@ -181,8 +181,8 @@ fn elements<const D: usize>(
                     typed(
                         "Spring<S>",
                         format!(
-                            "Spring {{ stiffness: s({:?}), damping: s({:?}), rest: s({:?}) }}",
-                            law.stiffness, law.damping, law.rest
+                            "Spring {{ stiffness: s({:?}), damping: s({:?}), rest: s({:?}), start: s({:?}) }}",
+                            law.stiffness, law.damping, law.rest, law.start
                         ),
                     ),
                     1,

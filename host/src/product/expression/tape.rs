@@ -14,6 +14,8 @@ pub struct Tape {
     instructions: Vec<Instruction>,
     /// Measures, and what they are.
     results: Vec<(usize, Operand)>,
+    /// What `abs` is taken of, and both arguments of `min` and `max`.
+    kinks: Vec<[Operand; 2]>,
     /// Instructions that are there, by what they do.
     known: HashMap<Key, usize>,
 }
@@ -87,6 +89,11 @@ impl Tape {
         let place = *self.known.entry(key).or_insert(next);
         if place == next {
             self.instructions.push(instruction);
+            self.kinks.extend(match instruction {
+                Instruction::One(One::Absolute, x) => Some([x, Operand::Constant(0.0)]),
+                Instruction::Two(Two::Least | Two::Greatest, a, b) => Some([a, b]),
+                _ => None,
+            });
         }
         Operand::Result(place)
     }
@@ -94,9 +101,28 @@ impl Tape {
     /// Writes its `measures` of the units with these `variables`.
     #[inline(always)]
     pub fn evaluate(&self, variables: &[Lanes], measures: &mut [Lanes]) {
-        if self.results.is_empty() {
-            return;
+        if !self.results.is_empty() {
+            let results = self.run(variables, measures);
+            for (measure, operand) in &self.results {
+                measures[*measure] = operand.value(variables, measures, &results);
+            }
+            RESULTS.set(results);
         }
+    }
+
+    /// How far units with these `variables` and `measures` are from each kink: what `abs` is taken of, the difference of the
+    /// arguments of `min` and `max`.
+    pub fn kinks(&self, variables: &[Lanes], measures: &[Lanes]) -> Vec<Lanes> {
+        let results = self.run(variables, measures);
+        let value = |operand: Operand| operand.value(variables, measures, &results);
+        let kinks = self.kinks.iter().map(|[a, b]| value(*a) - value(*b)).collect();
+        RESULTS.set(results);
+        kinks
+    }
+
+    /// The results of all instructions.
+    #[inline(always)]
+    fn run(&self, variables: &[Lanes], measures: &[Lanes]) -> Vec<Lanes> {
         let mut results = RESULTS.take();
         results.clear();
         for instruction in &self.instructions {
@@ -106,10 +132,7 @@ impl Tape {
                 Instruction::Two(two, a, b) => two.of(value(a), value(b)),
             });
         }
-        for (measure, operand) in &self.results {
-            measures[*measure] = operand.value(variables, measures, &results);
-        }
-        RESULTS.set(results);
+        results
     }
 }
 

@@ -4,7 +4,7 @@ use crate::{
     product::{
         assembly::With,
         contact::{cross, unit},
-        dimension::{self, Toleranced},
+        dimension::{self, Spread, Toleranced},
         feature::{Bonus, Shape},
         iso2768::{self, GeometryClass},
     },
@@ -14,7 +14,7 @@ use crate::{
 
 use super::{
     Draft,
-    datum::{Datum, carry, datums},
+    datum::{Datum, Limited, carry, datums, left_free},
     material::{self, Material},
     part::FeatureDraft,
     pattern::{self, Pattern},
@@ -101,9 +101,10 @@ impl Callout<'_, '_> {
         matches!(self.name, "run_out" | "total_run_out")
     }
 
-    /// Whether all of an axis lies in its zone: its tilts are limited, too.
+    /// Whether all of an axis lies in its zone, which then limits its tilts, too. A concentricity and a roundness are of one
+    /// section.
     pub fn holds_tilts(&self) -> bool {
-        self.rule != ZoneRule::Translation && (self.runs_out() || matches!(self.name, "coaxiality" | "cylindricity"))
+        self.rule != ZoneRule::Translation && !matches!(self.name, "concentricity" | "roundness")
     }
 }
 
@@ -204,7 +205,47 @@ pub(super) fn read<'t, 's>(
         let with = if turns.is_empty() || turns == places { With::All } else { With::Place };
         carry(index, &places, with, &table, draft)?;
     }
-    if turns.is_empty() || turns == places { Ok(()) } else { carry(index, &turns, With::Direction, &table, draft) }
+    if !turns.is_empty() && turns != places {
+        carry(index, &turns, With::Direction, &table, draft)?;
+    }
+    warn_of_frames(index, location, orientation, draft);
+    Ok(())
+}
+
+/// Warns of datums that are missing, or do not hold what they are for.
+fn warn_of_frames(index: usize, location: Option<&Callout>, orientation: Option<&Callout>, draft: &Draft) {
+    let name = &draft.feature_names[index];
+    let shape = draft.assembly.features[index].shape;
+    let datums = |callout: Option<&Callout>| callout.is_some_and(|callout| !callout.datums.is_empty());
+    let needs =
+        |callout: &&Callout| callout.name == "position" || (callout.limits == Limits::Orientation && !datums(location));
+    for callout in
+        [location, orientation].into_iter().flatten().filter(needs).filter(|callout| callout.datums.is_empty())
+    {
+        callout.field.warn(&format!(
+            "the {} of {name} has no datum: its zone lies where the drawing has it in the frame of the part",
+            callout.name
+        ));
+    }
+    // An orientation with datums of its own holds the tilts.
+    let tilts = |callout: &Callout| shape == Shape::Plane || (shape == Shape::Axis && callout.holds_tilts());
+    let of_location = |callout: &Callout| Limited { place: true, tilts: !datums(orientation) && tilts(callout) };
+    let limited = [
+        location.map(|callout| (callout, of_location(callout))),
+        orientation.map(|callout| (callout, Limited { place: false, tilts: true })),
+    ];
+    for (callout, limited) in limited.into_iter().flatten().filter(|(callout, _)| !callout.datums.is_empty()) {
+        let along = (callout.name == "symmetry" && shape == Shape::Axis)
+            .then(|| draft.assembly.features[callout.datums[0].feature].nominal[1]);
+        let limited = Limited { tilts: limited.tilts && along.is_none(), ..limited };
+        if let Some(motion) = left_free(index, &callout.datums, limited, along, draft) {
+            callout.field.warn(&format!(
+                "the datums of the {} of {name} are an incomplete frame: they leave it free to {motion}, where the zone lies as \
+                 drawn",
+                callout.name
+            ));
+        }
+    }
 }
 
 /// Warns of a form that moves nothing.
@@ -275,7 +316,7 @@ fn general_place(made: &mut FeatureDraft, draft: &mut Draft) {
     for (name, distance, direction) in across {
         // The digits that turning made up would push a length over the end of its band.
         let distance = (distance.abs() * 1e12).round() / 1e12;
-        let shape = dimension::Shape::Normal { sigma: draft.defaults.sigma };
+        let shape = dimension::Shape::Normal(Spread::sigmas(draft.defaults.sigma));
         let half = iso2768::linear(class, distance).ok();
         if let Some(Ok(place)) = half.map(|half| Toleranced::new(0.0, [-half, half], &shape)) {
             shift(made, name, &place, *direction, draft);

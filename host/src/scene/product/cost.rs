@@ -19,7 +19,7 @@
 //! malfunction = 0.01           # share of units that crawl, jam, or need more than force_limit (N)
 //! ```
 //!
-//! A tolerance t costs fixed + reciprocal · (at/t)^power, or fixed + exponential · exp(−t/at). `at` is 1 mm (or 1°) and `power`
+//! A tolerance t costs fixed, fixed + reciprocal · (at/t)^power, or fixed + exponential · exp(−t/at). `at` is 1 mm (or 1°) and `power`
 //! 1 unless they are stated. `range` has the tightest and the widest tolerance that the process holds; with `step` only every
 //! so often between, with `grades` the standard tolerances of ISO 286 instead.
 
@@ -128,12 +128,16 @@ const SCALED: [&str; 6] = ["normal", "truncated-normal", "uniform", "triangular"
 fn refuse_shapes(table: &Field) -> Result<(), SceneError> {
     let Some(field) = table.get("distribution") else { return Ok(()) };
     let kind = field.get("kind").unwrap_or(field.clone());
-    let fixed = !SCALED.contains(&kind.to_text()?) || field.get("mode").is_some();
+    let own = ["mode", "mean", "shift", "deviation"];
+    let fixed = !SCALED.contains(&kind.to_text()?) || own.iter().any(|key| field.get(key).is_some());
     if !fixed {
         return Ok(());
     }
     let problem = Problem::Unsupported { what: "a cost beside a distribution with lengths of its own".into() };
-    Err(field.error(problem, "normal, truncated-normal, uniform, triangular without a mode, beta, skewed"))
+    Err(field.error(
+        problem,
+        "normal, truncated-normal, uniform, triangular, beta, skewed, without a mode, mean, shift or deviation",
+    ))
 }
 
 /// The tolerance that the scene has, and how it is written.
@@ -180,7 +184,7 @@ fn stated(
 
 /// Reads a process; `size` (m) is what grades are for.
 fn process(table: &Field, quantity: &Quantity, size: Option<f64>) -> Result<Process, SceneError> {
-    const ALLOWED: &str = "reciprocal = B: B·(at/t)^power, or exponential = B: B·exp(−t/at)";
+    const ALLOWED: &str = "fixed = A alone, reciprocal = B: B·(at/t)^power, or exponential = B: B·exp(−t/at)";
     table.expect_table()?;
     let number =
         |key: &str, quantity, otherwise| table.get(key).map_or(Ok(otherwise), |f: Field| f.to_number(quantity));
@@ -190,9 +194,18 @@ fn process(table: &Field, quantity: &Quantity, size: Option<f64>) -> Result<Proc
         (Some(factor), None) => {
             Law::Reciprocal { fixed, factor: factor.to_number(&MONEY)?, unit, power: number("power", &POWER, 1.0)? }
         }
-        (None, Some(factor)) => Law::Exponential { fixed, factor: factor.to_number(&MONEY)?, unit },
+        (None, Some(factor)) => {
+            if let Some(power) = table.get("power") {
+                return Err(power.no_effect("beside `exponential`", ALLOWED));
+            }
+            Law::Exponential { fixed, factor: factor.to_number(&MONEY)?, unit }
+        }
         (Some(_), Some(second)) => {
             return Err(second.error(Problem::Unsupported { what: "a cost by two laws".into() }, ALLOWED));
+        }
+        // A fixed price, whatever the tolerance.
+        (None, None) if table.get("fixed").is_some() && ["at", "power"].iter().all(|key| table.get(key).is_none()) => {
+            Law::Reciprocal { fixed, factor: 0.0, unit, power: 1.0 }
         }
         (None, None) => {
             return Err(table.error(Problem::Missing(format!("{}.reciprocal", table.key)), ALLOWED));
@@ -205,6 +218,9 @@ fn process(table: &Field, quantity: &Quantity, size: Option<f64>) -> Result<Proc
 fn values(table: &Field, quantity: &Quantity, size: Option<f64>) -> Result<Values, SceneError> {
     const RANGE: &str = "the tightest and the widest tolerance that the process holds, such as [0.01, 0.05]";
     if let Some(field) = table.get("grades") {
+        if let Some(ignored) = table.get("range").or(table.get("step")) {
+            return Err(ignored.no_effect("beside `grades`", "a range, with or without a step, or grades"));
+        }
         const ALLOWED: &str = "the finest and the coarsest grade of ISO 286, such as [6, 11], of a length up to 500 mm";
         let grades: [f64; 2] = field.to_numbers(&GRADE)?;
         let size = size.map_or(f64::NAN, |size| (size * 1e12).round() / 1e9);

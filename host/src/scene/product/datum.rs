@@ -4,8 +4,8 @@ use crate::{
     product::{
         assembly::{Carried, Placement, With},
         common::Common,
-        contact::Contact,
-        contacts::{Joined, Own},
+        contact::{Contact, cross, norm},
+        contacts::{Joined, Order, Own, describe},
         feature::Shape,
         float::{Float, Size},
     },
@@ -107,6 +107,66 @@ fn common(field: &Field, pair: [usize; 2], draft: &mut Draft) -> Result<usize, S
     Ok(index)
 }
 
+/// How frames of datums come to lie on features that do not fit them exactly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Frames {
+    /// A secondary or tertiary datum that cannot be met in place and direction turns the frame by a least-squares fit of both.
+    LeastSquares,
+    /// By ISO 5459: the secondary datum turns the frame by its orientation, the tertiary one by its location alone.
+    Iso5459,
+}
+
+impl Frames {
+    /// What has precedence in the datum of this `number`, from 0.
+    fn order(self, number: usize) -> Order {
+        match (self, number) {
+            (Self::LeastSquares, _) | (_, 0) => Order::LeastSquares,
+            (Self::Iso5459, 1) => Order::Orientation,
+            (Self::Iso5459, _) => Order::Location,
+        }
+    }
+}
+
+/// What of a feature a tolerance limits: its place, its tilts.
+#[derive(Clone, Copy)]
+pub(super) struct Limited {
+    pub place: bool,
+    pub tilts: bool,
+}
+
+/// A motion in words that the `datums` leave a frame and that moves the feature `index` in its zone; `None` where there is none.
+/// Where `along` is given its place is limited in this direction alone.
+pub(super) fn left_free(
+    index: usize,
+    datums: &[Datum],
+    limited: Limited,
+    along: Option<[f64; 3]>,
+    draft: &Draft,
+) -> Option<String> {
+    let (_, placement) = draft.datum_systems.iter().find(|(known, _)| known == datums)?;
+    let (motions, centre) = draft.assembly.placements[*placement].free(&draft.assembly.features);
+    let feature = &draft.assembly.features[index];
+    let [place, direction] = feature.nominal;
+    let arm = [0, 1, 2].map(|i| place[i] - centre[i]);
+    let moves = |[shift, turn]: &[[f64; 3]; 2]| {
+        let size = norm(*shift) + norm(*turn) * (norm(arm) + feature.reach);
+        let turned = cross(*turn, arm);
+        let shift = [0, 1, 2].map(|i| shift[i] + turned[i]);
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let off = match (along, feature.shape) {
+            (Some(along), _) => dot(shift, along).abs(),
+            (None, Shape::Axis) => norm(cross(shift, direction)),
+            (None, _) => dot(shift, direction).abs(),
+        };
+        let tilted = norm(cross(*turn, direction)) * feature.reach;
+        limited.place && off > NEGLIGIBLE * size || limited.tilts && tilted > NEGLIGIBLE * size
+    };
+    motions.iter().find(|motion| moves(motion)).map(|motion| describe(motion.as_flattened()))
+}
+
+/// The part of a motion that is none.
+const NEGLIGIBLE: f64 = 1e-6;
+
 /// Lets the feature `index` go where its datums go.
 pub(super) fn carry(
     index: usize,
@@ -131,7 +191,7 @@ pub(super) fn carry(
         }
         _ => {
             let mut contacts = Vec::new();
-            for Datum { feature: datum, .. } in datums {
+            for (number, Datum { feature: datum, .. }) in datums.iter().enumerate() {
                 let float = shift(*datum, datums, table, draft)?;
                 let feature = &draft.assembly.features[*datum];
                 let contact = Contact::new(feature.shape, feature.shape, feature.nominal[1], feature.reach);
@@ -140,6 +200,7 @@ pub(super) fn carry(
                     own: Own::Perfect(*datum),
                     other: *datum,
                     float,
+                    order: draft.defaults.frames.order(number),
                 }));
             }
             let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();

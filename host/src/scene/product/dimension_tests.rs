@@ -9,8 +9,10 @@ use crate::{
         model::{Distribution, Quantity, Variation},
         report::report,
         sampling::sampler::Method,
+        theory::quadrature::mean_and_deviation,
     },
 };
+
 /// A scene with one dimension of 5 mm, and the distribution and the tolerance that `keys` give it.
 fn alone(keys: &str) -> Result<SceneFile, SceneError> {
     parse(&format!("[[dimension]]\nname = \"x\"\nvalue = 5\n{keys}\n[[measure]]\nname = \"m\"\nis = \"x\"\n"), &[])
@@ -47,10 +49,70 @@ fn distributions_by_name() {
     close(deviation, 0.025e-3, 1e-17);
 }
 
+/// Mean, standard deviation and limits (mm, from the value of 5 mm) of a normal distribution.
+fn normal(keys: &str) -> ([f64; 2], [f64; 2]) {
+    let product = alone(keys).unwrap_or_else(|error| panic!("{error}")).product.unwrap();
+    let Variation::Scalar { distribution, limits } = &product.model.contributors[0].variation else { panic!("{keys}") };
+    let Distribution::Normal { mean, deviation } = distribution else { panic!("{distribution:?}") };
+    ([(mean - 5e-3) * 1e3, deviation * 1e3], limits.map(|limit| (limit - 5e-3) * 1e3))
+}
+
+#[test]
+fn a_process_has_a_mean_and_a_deviation_of_its_own() {
+    let tolerance = "tolerance = [-0.1, 0.3]\ndistribution = ";
+    for (keys, mean, deviation, limits) in [
+        ("{ kind = \"normal\" }", 0.1, 0.2 / 3.0, [-0.1, 0.3]),
+        // From the value, and from the middle of the limits.
+        ("{ kind = \"normal\", mean = 0.02 }", 0.02, 0.2 / 3.0, [-0.1, 0.3]),
+        ("{ kind = \"normal\", shift = 0.02 }", 0.12, 0.2 / 3.0, [-0.1, 0.3]),
+        ("{ kind = \"normal\", shift = \"-20 µm\", deviation = \"30 µm\" }", 0.08, 0.03, [-0.1, 0.3]),
+        // Cpk: the nearer limit is 3·Cpk standard deviations from the mean.
+        ("{ kind = \"normal\", cpk = 1.33 }", 0.1, 0.2 / 3.99, [-0.1, 0.3]),
+        ("{ kind = \"normal\", mean = 0.2, cpk = 1.25 }", 0.2, 0.1 / 3.75, [-0.1, 0.3]),
+        ("{ kind = \"normal\", mean = 0, cpk = 1.25 }", 0.0, 0.1 / 3.75, [-0.1, 0.3]),
+    ] {
+        let found = normal(&format!("{tolerance}{keys}"));
+        for (found, expected) in found.0.into_iter().chain(found.1).zip([mean, deviation].into_iter().chain(limits)) {
+            close(found, expected, 1e-12);
+        }
+    }
+    // With a deviation of its own it needs no tolerance: its limits are three standard deviations off.
+    let (found, limits) = normal("distribution = { kind = \"normal\", mean = 0.02, deviation = 0.01 }");
+    for (found, expected) in found.into_iter().chain(limits).zip([0.02, 0.01, -0.01, 0.05]) {
+        close(found, expected, 1e-12);
+    }
+    // What the analysis makes of it: Cpk as stated, the mean where it is.
+    let text = "[[dimension]]\nname = \"x\"\nvalue = 5\ntolerance = 0.1\ndistribution = { kind = \"normal\", shift = 0.05, cpk = 1 }\n\
+                [[measure]]\nname = \"m\"\nis = \"x\"\nlower = 4.9\nupper = 5.1\n";
+    let product = parse(text, &[]).unwrap().product.unwrap();
+    let settings = Settings { method: Method::PseudoRandom, samples: 100_000, replicates: 1, seed: 1 };
+    let found = &analyse(&product.model, settings, |_| ()).unwrap().joint.measures[0];
+    assert!((found.mean.value - 5.05e-3).abs() < 4.0 * found.mean.error.unwrap(), "{:?}", found.mean);
+    assert!((found.deviation.value - 0.05e-3 / 3.0).abs() < 4.0 * found.deviation.error.unwrap());
+    // The same of a truncated and of a skewed one.
+    for kind in ["truncated-normal", "skewed"] {
+        let more = if kind == "skewed" { ", skewness = 0.5" } else { "" };
+        let keys =
+            format!("tolerance = 0.3\ndistribution = {{ kind = \"{kind}\", mean = 0.05, deviation = 0.02{more} }}");
+        let product = alone(&keys).unwrap().product.unwrap();
+        let [mean, deviation] = mean_and_deviation(&product.model.contributors[0].variation)[0];
+        close(mean * 1e3, 5.05, 1e-9);
+        close(deviation * 1e3, 0.02, 1e-9);
+    }
+}
+
 #[test]
 fn distributions_that_do_not_fit_are_pointed_at() {
     for (keys, expected) in [
         ("distribution = \"cauchy\"", "gumbel-smallest, mixture"),
+        (
+            "tolerance = 0.1\ndistribution = { kind = \"normal\", mean = 0.1, cpk = 1 }",
+            "the mean is not within the tolerance",
+        ),
+        ("tolerance = 0.1\ndistribution = { kind = \"normal\", cpk = 0 }", "`dimension.distribution.cpk` is 0"),
+        ("tolerance = 0.1\ndistribution = { kind = \"normal\", deviation = 0 }", "more than 0"),
+        ("distribution = { kind = \"normal\", cpk = 1 }", "`dimension.tolerance` is missing"),
+        ("distribution = { kind = \"truncated-normal\", deviation = 1 }", "`dimension.tolerance` is missing"),
         ("distribution = \"weibull\"", "`dimension.distribution.shape` is missing"),
         ("distribution = { kind = \"weibull\", shape = 0.1, scale = 1 }", "`dimension.distribution.shape` is 0.1"),
         ("distribution = { kind = \"gumbel\", scale = -1 }", "more than 0"),
@@ -126,7 +188,7 @@ fn dimensions_are_numbers_and_forces_too() {
     let [drag, twice, _] = &report.measures[..] else { panic!("three measures") };
     assert_eq!([drag.unit, twice.unit], ["N", "N/mm"]);
     close(drag.nominal.unwrap(), 1.575, 1e-12);
-    close(drag.worst_case_vertices.unwrap()[1], 0.18 * (2.2 * 5.5 + 0.55), 1e-12);
+    close(drag.worst_case[1], 0.18 * (2.2 * 5.5 + 0.55), 1e-12);
     close(twice.rss.unwrap().tolerance, 0.4, 1e-9);
     // The middle of every tolerance is its nominal value: ∂drag/∂spring is friction · travel.
     let slopes =

@@ -58,7 +58,7 @@ fn a_refinement_narrows_and_adds_nothing() {
     close(range(&narrowed, 2), 0.1 / 400.0, 1e-9);
     close(alone.moments[2].deviation / narrowed.moments[2].deviation, 3.0, 1e-6);
     close(alone.moments[1].deviation, narrowed.moments[1].deviation, 1e-9);
-    let [low, high] = narrowed.worst_cases[0].vertices.unwrap();
+    let [low, high] = narrowed.worst_cases[0].range;
     close((high - low) * 1e3, 0.3, 1e-6);
 }
 

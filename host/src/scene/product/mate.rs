@@ -4,11 +4,13 @@ use crate::{
     product::{
         assembly::{Carried, Placement, With},
         contact::Contact,
-        contacts::{Joined, Own, PlacementError},
+        contacts::{Joined, Order, Own, PlacementError},
+        feature::{Feature, Shape},
         float::{Float, Size},
         pose::Pose,
     },
     scene::{Problem, SceneError, tree::Value, unit, unit::Quantity, value::Field},
+    show::number::ten_digits,
     tolerance::model::{
         Contributor, Variation, ZoneRule,
         lanes::Lanes,
@@ -166,8 +168,17 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
                 "plane and plane, plane and point, axis and axis, point and point",
             )
         })?;
+        if point_the_same_way(one, two) {
+            let [own, other] = [own, other].map(|feature| draft.feature_names[feature].as_str());
+            own_field.warn(&format!(
+                "the normals of {own} and {other}, which meet, point the same way: one of them points into the material"
+            ));
+        }
         let float = float(mate.float, [own, other], contacts.is_empty(), draft);
-        contacts.push(Joined { contact, own: Own::Made(own), other, float });
+        contacts.push(Joined { contact, own: Own::Made(own), other, float, order: Order::LeastSquares });
+    }
+    if let Some(field) = mate.table.get("float").filter(|_| contacts.iter().all(|joined| joined.float.is_none())) {
+        return Err(field.no_effect("in this mate", "a mate of a hole on a pin, both with a diameter"));
     }
     let fixed: Vec<_> = mate.motion.iter().map(|(_, freedom)| *freedom).collect();
     let members = draft.parts_of_features.iter().enumerate().filter(|(_, part)| **part == mate.part);
@@ -191,8 +202,23 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
         let part = parts[mate.part].name.to_owned();
         field.error(Problem::Placement { part, error }, allowed)
     })?;
+    if let Some([shift, turn]) = placement.drawn_off() {
+        let [shift, turn] = [shift * 1e3, turn.to_degrees()].map(|x| ten_digits((x * 1e6).round() / 1e6));
+        mate.table.get("part").unwrap_or(mate.table.clone()).warn(&format!(
+            "the part {} is drawn off the features that place it, shifted by {shift} mm and turned by {turn}°: also the \
+             nominal values are those where it meets them",
+            parts[mate.part].name
+        ));
+    }
     draft.assembly.placements.push(placement);
     Ok(())
+}
+
+/// Whether the outward normals of two faces, or of a face and a point on a face, that meet point to the same side.
+fn point_the_same_way(one: &Feature, two: &Feature) -> bool {
+    let along: f64 = one.nominal[1].iter().zip(two.nominal[1]).map(|(a, b)| a * b).sum();
+    let is_face = [one.shape, two.shape].contains(&Shape::Plane);
+    is_face && along > 1e-3
 }
 
 /// The play of two axes that both have a diameter: a contributor of its own. The `first` contact of a mate also holds tilts, which
@@ -229,7 +255,7 @@ pub(super) fn floating(
     draft: &mut Draft,
 ) -> Float {
     let variation = rule.map(|rule| match tilt > 0.0 {
-        true => Variation::Nested(Nested { of: Nest::Axis, rule, tilts: 1.0 }),
+        true => Variation::Nested(Nested { of: Nest::Ends, rule, tilts: 1.0 }),
         false => Variation::Disc(rule),
     });
     let first = variation.map(|variation| {

@@ -1,5 +1,7 @@
 //! Bonus tolerances and datum shift against closed forms.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use super::tests::{check_all, close, product_of};
 use crate::{
     product::Product,
@@ -14,10 +16,17 @@ fn theory_of(product: &Product) -> Theory {
     theory(&product.model, 1, None).unwrap()
 }
 
-/// Lowest and highest (mm).
+/// Lowest and highest (mm), by slopes where these describe the measure: closed forms leave out that tilts shorten distances, by
+/// some micrometres.
 fn worst(theory: &Theory, measure: usize) -> [f64; 2] {
     let found = theory.worst_cases[measure];
-    found.searched.unwrap_or(found.linear).map(|x| x * 1e3)
+    if !theory.moments[measure].described {
+        return found.range.map(|x| x * 1e3);
+    }
+    for (end, linear) in found.range.into_iter().zip(found.linear) {
+        close(end * 1e3, linear * 1e3, 5e-3);
+    }
+    found.linear.map(|x| x * 1e3)
 }
 
 fn check_worst(theory: &Theory, measure: usize, expected: [f64; 2]) {
@@ -67,9 +76,10 @@ fn a_wall_beside_a_hole_at_maximum_material() {
     // Least at the largest hole, which also has the greatest bonus; most at the virtual condition 10 − 0.1, whatever the size.
     check_worst(&theory, 1, [50.0 - 5.1 - 0.15, 50.0 - 4.95]);
     check_worst(&theory, 0, [-50.15, -49.85]);
-    // A zone of 0.1 + 0.1 in the mean, and how it and the radius vary with the size.
+    // A zone of 0.1 + 0.1 in the mean, of which the middle of an axis has less than its ends by √2; and how it and the radius
+    // vary with the size.
     let size = 0.1 / 3.0;
-    check_deviation(&plate, 1, root(&[0.2 / 6.0, size / 6.0, size / 2.0]));
+    check_deviation(&plate, 1, root(&[0.2 / 6.0 * FRAC_1_SQRT_2, size / 6.0 * FRAC_1_SQRT_2, size / 2.0]));
     assert!(theory.moments[1].described);
     // The size has both in the worst case, the position what is left in the middle.
     let reach: Vec<f64> = theory.sensitivities[1].iter().map(|sensitivity| sensitivity.reach * 1e3).collect();
@@ -82,7 +92,7 @@ fn a_wall_beside_a_hole_at_least_material() {
     // Never less than by the virtual condition 10.2 + 0.1; most at the smallest hole.
     check_worst(&theory_of(&plate), 1, [50.0 - 5.15, 50.0 - 5.0 + 0.15]);
     let size = 0.1 / 3.0;
-    check_deviation(&plate, 1, root(&[0.2 / 6.0, size / 6.0, size / 2.0]));
+    check_deviation(&plate, 1, root(&[0.2 / 6.0 * FRAC_1_SQRT_2, size / 6.0 * FRAC_1_SQRT_2, size / 2.0]));
     // The same of a pin: here the smallest one has the least material.
     let pin = product_of(&WALL.replace("maximum", "(L)").replace("\"hole\", diameter", "\"pin\", diameter"));
     check_worst(&theory_of(&pin), 1, [50.0 - 5.1 - 0.15, 50.0 - 4.95]);
@@ -179,8 +189,8 @@ fn holes_shift_with_their_datum_in_its_boundary() {
     check_worst(&theory, 0, [30.0 - 0.125, 30.0 + 0.125]);
     // Both shift together.
     check_worst(&theory, 1, [59.9, 60.1]);
-    check_deviation(&plate, 0, root(&[0.1 / 6.0, 0.1 / 6.0, 0.1 / 36.0]));
-    check_deviation(&plate, 1, libm::sqrt(2.0) * 0.1 / 6.0);
+    check_deviation(&plate, 0, root(&[0.1 / 6.0 * FRAC_1_SQRT_2, 0.1 / 6.0, 0.1 / 36.0]));
+    check_deviation(&plate, 1, 0.1 / 6.0);
     // A perpendicularity without Ⓜ leaves the boundary at the smallest hole.
     let own = SHIFT.replace("zone = 0.05, material = \"maximum\"", "zone = 0.05");
     check_worst(&theory_of(&product_of(&own)), 0, [30.0 - 0.1, 30.0 + 0.1]);

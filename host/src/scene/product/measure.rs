@@ -41,6 +41,9 @@ fn measure(table: &Field, number: usize, draft: &mut Draft, function: &mut Measu
     let (name, name_field) = name(table)?;
     let formula = formula(table, draft, function)?;
     let quantity = formula.quantity();
+    if let Formula::Expression(expression) = &formula {
+        draft.used.extend(expression.variables());
+    }
     function.push(formula);
     draft.name(&name_field, name, Source::Measure(number), Kind::of(quantity))?;
     let limits = limits(table, quantity)?;

@@ -5,6 +5,7 @@
 //! general = "mH"               # ISO 2768 classes: sizes f m c v, geometry H K L
 //! rule = "sigma-zone"          # planes in their zones: or truncated, uniform-in-zone, translation
 //! sigma = 3                    # a tolerance of ±t is this many standard deviations
+//! datums = "least-squares"     # how frames of datums lie on features that do not fit them: or "iso-5459"
 //! correlation = "pearson"      # what a [[correlation]] is of: values, or "spearman", their ranks
 //!
 //! [[dimension]]
@@ -57,10 +58,16 @@ mod callout;
 mod cost;
 mod datum;
 #[cfg(test)]
+mod datum_tests;
+#[cfg(test)]
 mod dimension_tests;
+#[cfg(test)]
+mod doubtful_tests;
 mod fit;
 #[cfg(test)]
 mod geometry_tests;
+#[cfg(test)]
+mod judgement_tests;
 mod mate;
 mod material;
 #[cfg(test)]
@@ -78,6 +85,8 @@ mod symmetric_tests;
 mod tests;
 mod toleranced;
 mod zone;
+#[cfg(test)]
+mod zone_tests;
 
 #[cfg(test)]
 pub(super) use toleranced::SHAPES;
@@ -101,7 +110,7 @@ use crate::{
     },
 };
 
-use self::datum::Datum;
+use self::datum::{Datum, Frames};
 
 use super::{
     Problem, SceneError,
@@ -121,6 +130,7 @@ struct Defaults {
     general: General,
     rule: ZoneRule,
     sigma: f64,
+    frames: Frames,
 }
 
 /// Directions in which a feature extends, and how far (m), if it says so.
@@ -152,6 +162,8 @@ struct Draft {
     fits: Vec<Fit>,
     /// Zones that go with sizes.
     widenings: Vec<Widening>,
+    /// Variables that expressions use.
+    used: Vec<usize>,
     /// What the user should know.
     warnings: Vec<String>,
 }
@@ -218,6 +230,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
         datum_systems: Vec::new(),
         fits: Vec::new(),
         widenings: Vec::new(),
+        used: Vec::new(),
         warnings: Vec::new(),
     };
     for table in tables(root, "dimension")? {
@@ -235,6 +248,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     draft.warnings.extend(untoleranced(&draft));
     let mut function = Measures::new(std::mem::take(&mut draft.assembly));
     let measures = measure::measures(root, &mut draft, &mut function)?;
+    warn_of_unused(root, &draft)?;
     let sums = measure::sums(root, &measures)?;
     let costed = cost::costs(root, &draft.contributors)?;
     let requirements = cost::requirements(root, &measures)?;
@@ -245,6 +259,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     function.widenings = std::mem::take(&mut draft.widenings);
     let Draft { contributors, nominal, quantities, fits, warnings: told, .. } = draft;
     warnings.extend(told);
+    warnings.extend(root.found().take_warnings());
     let assembly = function.assembly.clone();
     function.nominal.clone_from(&nominal);
     function.quantities = quantities;
@@ -275,8 +290,28 @@ fn untoleranced(draft: &Draft) -> Vec<String> {
     told.into_iter().flatten().collect()
 }
 
+/// Warns of every dimension that no measure uses.
+fn warn_of_unused(root: &Field, draft: &Draft) -> Result<(), SceneError> {
+    for table in tables(root, "dimension")? {
+        let Ok((name, field)) = name(&table) else { continue };
+        let unused = |(known, source, _): &(String, Source, Kind)| match source {
+            Source::Variable(variable) => known == name && !draft.used.contains(variable),
+            Source::Measure(_) => false,
+        };
+        if draft.names.iter().any(unused) {
+            field.warn(&format!("no measure uses the dimension `{name}`"));
+        }
+    }
+    Ok(())
+}
+
 fn defaults(root: &Field) -> Result<Defaults, SceneError> {
-    let mut defaults = Defaults { general: General::default(), rule: ZoneRule::SigmaZone, sigma: SIGMA_DEFAULT };
+    let mut defaults = Defaults {
+        general: General::default(),
+        rule: ZoneRule::SigmaZone,
+        sigma: SIGMA_DEFAULT,
+        frames: Frames::LeastSquares,
+    };
     let Some(table) = root.get("tolerance") else { return Ok(defaults) };
     table.expect_table()?;
     if let Some(field) = table.get("general") {
@@ -289,7 +324,18 @@ fn defaults(root: &Field) -> Result<Defaults, SceneError> {
         defaults.rule = rule(&field)?;
     }
     if let Some(field) = table.get("sigma") {
-        defaults.sigma = field.to_number(&SIGMA)?;
+        // Below 1 a third of the units of a normal distribution would be outside.
+        defaults.sigma = field.to_number(&Quantity { range: [1.0, SIGMA.range[1]], ..SIGMA })?;
+    }
+    if let Some(field) = table.get("datums") {
+        defaults.frames = match field.to_text()? {
+            "least-squares" => Frames::LeastSquares,
+            "iso-5459" => Frames::Iso5459,
+            _ => {
+                let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
+                return Err(field.error(problem, "least-squares, iso-5459"));
+            }
+        };
     }
     Ok(defaults)
 }

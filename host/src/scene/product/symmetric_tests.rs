@@ -3,24 +3,15 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::tests::{check_all, close, product_of};
-use crate::tolerance::theory::{
-    derivative::expansion,
-    moments,
-    worst_case::{middle, worst_case},
-};
+use crate::tolerance::theory::{derivative::expansion, moments, worst_case::linear};
 
 /// Worst case and standard deviation of every measure (mm or rad), by their slopes.
 fn spreads(text: &str) -> Vec<([f64; 2], f64)> {
     let product = product_of(text);
     let model = &product.model;
     let (_, deviations) = moments::spreads(model);
-    let middles: Vec<f64> = model.contributors.iter().flat_map(|c| middle(&c.variation)).collect();
-    let worst = worst_case(model, &expansion(model, &middles, &deviations));
-    worst
-        .into_iter()
-        .zip(moments::of_measures(model))
-        .map(|(worst, moments)| (worst.linear, moments.deviation))
-        .collect()
+    let worst = linear(model, &expansion(model, &model.middles(), &deviations));
+    worst.into_iter().zip(moments::of_measures(model)).map(|(worst, moments)| (worst, moments.deviation)).collect()
 }
 
 /// A shaft on two journals, with a seat in the middle between them and a shoulder.

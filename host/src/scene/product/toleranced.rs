@@ -2,7 +2,7 @@
 
 use crate::{
     product::{
-        dimension::{Component, Shape, ShapeError, Toleranced},
+        dimension::{Component, Deviation, Mean, Shape, ShapeError, Spread, Toleranced},
         expression::{Kind, Source},
         iso286,
         iso2768::{self, BandError, General, SizeClass},
@@ -13,6 +13,7 @@ use crate::{
         unit::{self, Quantity},
         value::Field,
     },
+    show::number::fixed,
     tolerance::model::{Contributor, Distribution, Quantity as Measured, Variation},
 };
 
@@ -33,6 +34,9 @@ pub(in crate::scene) const SHAPES: &str = "normal, truncated-normal, uniform, tr
 const WEIBULL: Quantity = Quantity { units: unit::ONE, range: [0.5, 100.0] };
 const BETA: Quantity = Quantity { units: unit::ONE, range: [0.1, 1000.0] };
 const WEIGHT: Quantity = Quantity { units: unit::ONE, range: [0.0, 1e6] };
+const CPK: Quantity = Quantity { units: unit::ONE, range: [0.1, 10.0] };
+/// The share of units outside of their own tolerance that is a mistake of the scene rather than a poor process.
+const DOUBTFUL: f64 = 0.1;
 
 /// Reads a `[[dimension]]`.
 pub(super) fn dimension(table: &Field, draft: &mut Draft) -> Result<(), SceneError> {
@@ -88,7 +92,12 @@ pub(super) fn diameter(axis: &Field, name: &str, draft: &mut Draft) -> Result<Op
         }
     });
     let kind = kind.transpose()?;
-    let Some(field) = axis.get("diameter") else { return Ok(None) };
+    let Some(field) = axis.get("diameter") else {
+        return match axis.get("kind") {
+            Some(kind) => Err(kind.no_effect("without a `diameter`", "an axis with a diameter")),
+            None => Ok(None),
+        };
+    };
     let value = match field.node.value {
         Value::Table(_) => field.require("value", "a length in mm")?,
         _ => field.clone(),
@@ -104,38 +113,56 @@ pub(super) fn diameter(axis: &Field, name: &str, draft: &mut Draft) -> Result<Op
     Ok(Some(Diameter { variable, limits: diameter.limits, hole: kind.or_else(of_class), own: [0.0; 2] }))
 }
 
+/// What a `side` is for.
+const SIDE: &str = "a side of an angle that a class of ISO 2768-1 tolerates";
+/// What an `edge` is for.
+const EDGE: &str = "an edge of a length that a class of ISO 2768-1 tolerates";
+
 /// Reads the size by which a feature lies off: deviations, or a table like a dimension's.
 pub(super) fn offset(field: &Field, draft: &Draft) -> Result<Toleranced, SceneError> {
-    match field.get("value") {
-        Some(value) => match toleranced(field, &value, draft)? {
+    if let Some(value) = field.get("value") {
+        return match toleranced(field, &value, draft)? {
             (offset, Measured::Length) => Ok(offset),
             _ => Err(value.out_of_range("mm", "a length")),
-        },
-        None => deviation(field, &LENGTH, draft.defaults.sigma),
+        };
     }
+    if let Some(edge) = field.get("edge") {
+        return Err(edge.no_effect("without a `value`", EDGE));
+    }
+    deviation(field, &LENGTH, draft.defaults.sigma)
 }
 
 /// Reads a deviation from 0: a tolerance, or a table of `tolerance`, `sigma`, which is the given one if not written, and
 /// `distribution`.
 pub(in crate::scene) fn deviation(field: &Field, quantity: &Quantity, sigma: f64) -> Result<Toleranced, SceneError> {
-    Ok(component(field, quantity, sigma)?.1)
+    Ok(component(field, quantity, sigma, 0.0)?.1)
 }
 
-/// The same as a part of a mixture, and alone.
-fn component(field: &Field, quantity: &Quantity, sigma: f64) -> Result<(Component, Toleranced), SceneError> {
-    let shape = shape(field, quantity, sigma)?;
+/// The same as a part of the mixture of a dimension with the value `nominal` (SI), and alone.
+fn component(
+    field: &Field,
+    quantity: &Quantity,
+    sigma: f64,
+    nominal: f64,
+) -> Result<(Component, Toleranced), SceneError> {
+    let shape = shape(field, quantity, sigma, nominal)?;
     let tolerance = match field.node.value {
         Value::Table(_) => field.get("tolerance"),
         _ => Some(field.clone()),
     };
     let deviations = match tolerance {
         Some(tolerance) if shape.is_whole() => return Err(excess(&tolerance)),
-        Some(tolerance) => deviations(&tolerance, quantity, DEVIATION)?,
+        Some(tolerance) => {
+            let [lower, upper] = deviations(&tolerance, quantity, DEVIATION)?;
+            doubt_absolute(&tolerance, nominal, &[lower, upper]);
+            [lower, upper]
+        }
         None if shape.is_whole() || shape.has_width() => [0.0; 2],
         None => return Err(field.error(Problem::Missing(format!("{}.tolerance", field.key)), DEVIATION)),
     };
     let made = Toleranced::new(0.0, deviations, &shape)
         .map_err(|error| field.error(Problem::Shape { key: field.key.clone(), error }, DEVIATION))?;
+    doubt(&field.get("distribution").unwrap_or(field.clone()), &made);
     let weight = field.get("weight").map_or(Ok(1.0), |field| positive(&field, &WEIGHT))?;
     Ok((Component { weight, deviations, shape }, made))
 }
@@ -151,26 +178,58 @@ pub(super) fn toleranced(table: &Field, value: &Field, draft: &Draft) -> Result<
     let measured = quantity::of(table, value)?;
     let quantity = quantity::units(measured);
     let nominal = value.to_number(quantity)?;
-    let shape = shape(table, quantity, draft.defaults.sigma)?;
+    let shape = shape(table, quantity, draft.defaults.sigma, nominal)?;
     let tolerance = table.get("tolerance");
+    let mut by_class = None;
+    let mut general = |class| {
+        by_class = Some(measured);
+        general(table, value, measured, nominal, class)
+    };
     let deviations = match (&tolerance, &shape) {
         (None, shape) if shape.is_whole() || shape.has_width() => [0.0; 2],
         (Some(field), shape) if shape.is_whole() => return Err(excess(field)),
         (Some(field), _) => match (class(field), fit(field)) {
-            (Some(class), _) if is_geometric(measured) => general(table, value, measured, nominal, class)?,
+            (Some(class), _) if is_geometric(measured) => general(class)?,
             (Some(_), _) => return Err(no_class(field, measured)),
             (None, Some(class)) => of_fit(field, value, measured, nominal, &class)?,
-            (None, None) => deviations(field, quantity, TOLERANCE)?,
+            (None, None) => {
+                let [lower, upper] = deviations(field, quantity, TOLERANCE)?;
+                doubt_absolute(field, nominal, &[lower, upper]);
+                [lower, upper]
+            }
         },
         (None, _) => match draft.defaults.general.size {
-            Some(class) if is_geometric(measured) => general(table, value, measured, nominal, class)?,
+            Some(class) if is_geometric(measured) => general(class)?,
             _ => return Err(table.error(Problem::Missing(format!("{}.tolerance", table.key)), TOLERANCE)),
         },
     };
-    let at = table.get("distribution").or(tolerance).unwrap_or(value.clone());
+    for (key, of, allowed) in [("side", Measured::Angle, SIDE), ("edge", Measured::Length, EDGE)] {
+        if let Some(field) = table.get(key).filter(|_| by_class != Some(of)) {
+            return Err(field.no_effect("here", allowed));
+        }
+    }
+    let at = table.get("distribution").or(table.get("sigma")).or(tolerance).unwrap_or(value.clone());
     let made = Toleranced::new(nominal, deviations, &shape);
     let toleranced = made.map_err(|error| at.error(Problem::Shape { key: at.key.clone(), error }, TOLERANCE))?;
+    doubt(&at, &toleranced);
     Ok((toleranced, measured))
+}
+
+/// Warns of a distribution that is far wider than its tolerance, or lies beside it.
+fn doubt(at: &Field, made: &Toleranced) {
+    let outside = made.outside();
+    if outside > DOUBTFUL {
+        let percent = fixed(outside * 100.0, 0);
+        at.warn(&format!("by `{}` {percent} % of the units are outside of the tolerance", at.key));
+    }
+}
+
+/// Warns of numbers that count from the value of their dimension, `nominal` (SI), and are all nearer to it than to 0.
+fn doubt_absolute(field: &Field, nominal: f64, numbers: &[f64]) {
+    if numbers.iter().all(|number| (number - nominal).abs() < number.abs()) {
+        let key = &field.key;
+        field.warn(&format!("`{key}` counts from `value`, and is nearer to `value` itself than to 0: is it absolute?"));
+    }
 }
 
 /// The class that a tolerance names instead of stating a width.
@@ -291,41 +350,120 @@ pub(super) fn band(field: &Field, error: BandError) -> SceneError {
     field.error(Problem::Band { key: field.key.clone(), error }, format!("from {least}{upper}, or a stated tolerance"))
 }
 
-/// A normal distribution. Below 1 a third of the units would be outside: then someone has `stated` the standard deviation itself.
-fn normal(sigma: f64, stated: Option<&Field>) -> Result<Shape, SceneError> {
+/// Keys of a distribution beside its `kind`.
+const PARAMETERS: [(&str, &[&str]); 14] = [
+    ("normal", &["mean", "shift", "deviation", "cpk"]),
+    ("truncated-normal", &["mean", "shift", "deviation", "cpk"]),
+    ("skewed", &["mean", "shift", "deviation", "cpk", "skewness"]),
+    ("uniform", &[]),
+    ("triangular", &["mode"]),
+    ("trapezoidal", &["shoulders"]),
+    ("beta", &["shapes"]),
+    ("lognormal", &["mean", "deviation", "location"]),
+    ("weibull", &["shape", "scale", "location"]),
+    ("gumbel", &["mode", "scale"]),
+    ("gumbel-smallest", &["mode", "scale"]),
+    ("mixture", &["of"]),
+    ("table", &["deviations"]),
+    ("constant", &[]),
+];
+
+/// Notes every key of the distribution in `field` that does nothing for its `kind`, and a `sigma` beside it that does nothing.
+fn note_ignored(field: &Field, kind: &str, sigma: Option<&Field>) {
+    let Some((_, own)) = PARAMETERS.iter().find(|(known, _)| *known == kind) else { return };
+    let with = format!("with the distribution `{kind}`");
+    let allowed = match own {
+        [] => "no further key".to_owned(),
+        own => own.join(", "),
+    };
+    let mut others: Vec<&str> = PARAMETERS.iter().flat_map(|(_, keys)| *keys).copied().collect();
+    others.sort_unstable();
+    others.dedup();
+    for ignored in others.iter().filter(|key| !own.contains(key)).filter_map(|key| field.get(key)) {
+        field.found().note(ignored.no_effect(with.as_str(), allowed.as_str()));
+    }
+    let Some(sigma) = sigma else { return };
+    let stated = ["deviation", "cpk"].into_iter().find(|key| field.get(key).is_some());
+    if let (true, Some(stated)) = (own.contains(&"cpk"), stated) {
+        field.found().note(sigma.no_effect(format!("beside `{stated}`"), "one of both"));
+    } else if !own.contains(&"cpk") {
+        let allowed = "normal, truncated-normal, skewed; of a mixture the `sigma` of its components";
+        field.found().note(sigma.no_effect(with, allowed));
+    }
+}
+
+/// Mean and standard deviation of a normal or skewed distribution in `field`, of a dimension with the value `nominal` (SI).
+/// Half the tolerance is `sigma` standard deviations unless something else is stated.
+fn spread(
+    field: &Field,
+    quantity: &Quantity,
+    sigma: f64,
+    stated: Option<&Field>,
+    nominal: f64,
+) -> Result<Spread, SceneError> {
+    let mean = match (field.get("mean"), field.get("shift")) {
+        (Some(_), Some(shift)) => return Err(shift.no_effect("beside `mean`", "one of both")),
+        (Some(mean), None) => {
+            let number = mean.to_number(quantity)?;
+            doubt_absolute(&mean, nominal, &[number]);
+            Mean::FromNominal(number)
+        }
+        (None, shift) => Mean::FromMiddle(shift.map_or(Ok(0.0), |shift| shift.to_number(quantity))?),
+    };
+    let deviation = match (field.get("deviation"), field.get("cpk")) {
+        (Some(_), Some(cpk)) => return Err(cpk.no_effect("beside `deviation`", "one of both")),
+        (Some(deviation), None) => Deviation::Stated(positive(&deviation, quantity)?),
+        (None, Some(cpk)) => Deviation::Cpk(cpk.to_number(&CPK)?),
+        (None, None) => Deviation::Sigmas(within_limits(sigma, stated)?),
+    };
+    Ok(Spread { mean, deviation })
+}
+
+/// A `sigma`. Below 1 a third of the units would be outside: then someone has `stated` the standard deviation itself.
+fn within_limits(sigma: f64, stated: Option<&Field>) -> Result<f64, SceneError> {
     match stated.filter(|_| sigma < 1.0) {
-        None => Ok(Shape::Normal { sigma }),
+        None => Ok(sigma),
         Some(field) => {
             let problem = Problem::OutOfRange { key: field.key.clone(), written: field.written("") };
-            let allowed =
-                "1 to 100: how many standard deviations half the tolerance is, not the standard deviation itself";
+            let allowed = "1 to 100: how many standard deviations half the tolerance is, not the standard deviation itself, \
+                           which is `deviation` of the distribution";
             Err(field.error(problem, allowed))
         }
     }
 }
 
-/// The keys `sigma` and `distribution`.
-fn shape(table: &Field, quantity: &Quantity, sigma: f64) -> Result<Shape, SceneError> {
+/// The keys `sigma` and `distribution` of a dimension with the value `nominal` (SI).
+fn shape(table: &Field, quantity: &Quantity, sigma: f64, nominal: f64) -> Result<Shape, SceneError> {
     let stated = table.get("sigma");
-    let sigma = stated.as_ref().map_or(Ok(sigma), |field| field.to_number(&SIGMA))?;
-    let Some(field) = table.get("distribution") else { return normal(sigma, stated.as_ref()) };
+    let own = stated.as_ref().map_or(Ok(sigma), |field| field.to_number(&SIGMA))?;
+    let Some(field) = table.get("distribution") else {
+        return Ok(Shape::Normal(Spread::sigmas(within_limits(own, stated.as_ref())?)));
+    };
     let kind = match &field.node.value {
         Value::Table(_) => field.require("kind", SHAPES)?,
         _ => field.clone(),
     };
-    let deviation = |key: &str| field.get(key).map(|field| field.to_number(quantity)).transpose();
+    note_ignored(&field, kind.to_text()?, stated.as_ref());
+    let spread = || spread(&field, quantity, own, stated.as_ref(), nominal);
+    // A place on the scale.
+    let deviation = |key: &str| {
+        let Some(field) = field.get(key) else { return Ok(None) };
+        let number = field.to_number(quantity)?;
+        doubt_absolute(&field, nominal, &[number]);
+        Ok(Some(number))
+    };
     let width = |key: &str| {
         let allowed = format!("more than 0: {}", quantity.units());
         positive(&field.require(key, &allowed)?, quantity)
     };
     Ok(match kind.to_text()? {
         "constant" => Shape::Constant,
-        "normal" => normal(sigma, stated.as_ref())?,
-        "truncated-normal" => Shape::TruncatedNormal { sigma },
+        "normal" => Shape::Normal(spread()?),
+        "truncated-normal" => Shape::TruncatedNormal(spread()?),
         "uniform" => Shape::Uniform,
         "triangular" => Shape::Triangular { mode: deviation("mode")? },
         "trapezoidal" => Shape::Trapezoidal { shoulders: field.numbers("shoulders", quantity)? },
-        "skewed" => Shape::Skewed { sigma, skewness: field.number("skewness", &SKEWNESS)? },
+        "skewed" => Shape::Skewed { spread: spread()?, skewness: field.number("skewness", &SKEWNESS)? },
         "beta" => Shape::Beta { shapes: field.numbers("shapes", &BETA)? },
         "weibull" => Shape::Weibull {
             shape: field.number("shape", &WEIBULL)?,
@@ -337,7 +475,10 @@ fn shape(table: &Field, quantity: &Quantity, sigma: f64) -> Result<Shape, SceneE
             Shape::Gumbel { mode, scale: if largest == "gumbel" { scale } else { -scale } }
         }
         "lognormal" => Shape::Lognormal {
-            mean: field.number("mean", quantity)?,
+            mean: match deviation("mean")? {
+                Some(mean) => mean,
+                None => field.number("mean", quantity)?,
+            },
             deviation: width("deviation")?,
             location: deviation("location")?.unwrap_or(0.0),
         },
@@ -349,7 +490,7 @@ fn shape(table: &Field, quantity: &Quantity, sigma: f64) -> Result<Shape, SceneE
             if nodes.len() < 2 {
                 return Err(list.error(Problem::Length { key: list.key.clone(), found: nodes.len() }, ALLOWED));
             }
-            let part = |node| Ok(component(&Field { key: list.key.clone(), node }, quantity, sigma)?.0);
+            let part = |node| Ok(component(&Field { key: list.key.clone(), node }, quantity, sigma, nominal)?.0);
             Shape::Mixture(nodes.iter().map(part).collect::<Result<_, SceneError>>()?)
         }
         "table" => {
@@ -357,7 +498,11 @@ fn shape(table: &Field, quantity: &Quantity, sigma: f64) -> Result<Shape, SceneE
             let list = field.require("deviations", ALLOWED)?;
             let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(ALLOWED)) };
             let number = |node| Field { key: list.key.clone(), node }.to_number(quantity);
-            Shape::Table(nodes.iter().map(number).collect::<Result<_, _>>()?)
+            let values: Vec<f64> = nodes.iter().map(number).collect::<Result<_, _>>()?;
+            if !values.is_empty() {
+                doubt_absolute(&list, nominal, &values);
+            }
+            Shape::Table(values)
         }
         _ => {
             let problem = Problem::Choice { key: kind.key.clone(), written: kind.written("") };

@@ -8,10 +8,13 @@ use std::ops::Range;
 use crate::{
     product::{dimension::Toleranced, feature::Shape},
     scene::{Problem, SceneError},
-    tolerance::model::{
-        Contributor, Distribution, Variation, ZoneRule,
-        nested::{Nest, Nested},
-        widening::Widening,
+    tolerance::{
+        model::{
+            Contributor, Variation, ZoneRule,
+            nested::{Nest, Nested},
+            widening::Widening,
+        },
+        theory::quadrature::SIGMA_ZONE,
     },
 };
 
@@ -44,19 +47,26 @@ pub(super) fn located(
     });
     let nested =
         nested.or((made.feature.shape == Shape::Axis && location.holds_tilts()).then_some((location.rule, 1.0)));
-    let of = if made.feature.shape == Shape::Axis { Nest::Axis } else { Nest::Face };
+    // An orientation that is as wide narrows nothing.
+    let bonus = location.bonus.or(orientation.and_then(|orientation| orientation.bonus));
+    let narrows = |orientation: &Callout| orientation.width < width || bonus.is_some();
+    let of = match made.feature.shape {
+        Shape::Axis if orientation.is_some_and(narrows) => Nest::Axis,
+        Shape::Axis => Nest::Ends,
+        _ => Nest::Face,
+    };
     if let Some(orientation) = orientation {
         bonus_of_both(made, location, orientation)?;
     }
     let variation = match (made.feature.shape, nested) {
         (Shape::Point, _) => {
-            shift(made, location.name, &Toleranced::in_zone(width), direction, draft);
+            shift(made, location.name, &of_point(location), direction, draft);
             return Ok(());
         }
         (Shape::Axis, _) if location.name == "symmetry" => {
             // Between two planes: along their normal alone.
             let normal = draft.assembly.features[location.datums[0].feature].nominal[1];
-            shift(made, location.name, &Toleranced::in_zone(width), normal, draft);
+            shift(made, location.name, &of_point(location), normal, draft);
             if let Some(orientation) = orientation {
                 oriented(made, orientation, draft);
             }
@@ -73,7 +83,7 @@ pub(super) fn located(
             made.feature.shift(first, direction, width / 2.0);
             first + 1..first + count
         }
-        Nest::Axis => {
+        Nest::Ends | Nest::Axis => {
             for (variable, side) in (first..).zip(made.sides) {
                 made.feature.shift(variable, side, width / 2.0);
             }
@@ -83,6 +93,12 @@ pub(super) fn located(
     tilt(made, tilts.clone(), width);
     widen(made, first..tilts.start, location, Some((tilts, orientation.unwrap_or(location))), draft);
     Ok(())
+}
+
+/// How far a point, or an axis between two planes, is off in its zone: where it is normal, a sixth of the zone is its standard
+/// deviation.
+fn of_point(callout: &Callout) -> Toleranced {
+    Toleranced::in_zone(callout.width, callout.rule, callout.width / 6.0)
 }
 
 /// Lets the zones of places and tilts go with the size, where they are at a condition of material.
@@ -146,7 +162,7 @@ pub(super) fn oriented(made: &mut FeatureDraft, callout: &Callout, draft: &mut D
 pub(super) fn formed(made: &mut FeatureDraft, form: &Callout, draft: &mut Draft) {
     let direction = made.feature.nominal[1];
     if made.feature.shape == Shape::Point {
-        return shift(made, form.name, &Toleranced::in_zone(form.width), direction, draft);
+        return shift(made, form.name, &of_point(form), direction, draft);
     }
     let variation = match made.feature.shape {
         Shape::Axis => Variation::Disc(form.rule),
@@ -167,17 +183,13 @@ pub(super) fn formed(made: &mut FeatureDraft, form: &Callout, draft: &mut Draft)
 
 /// Lets a plane shift in the zone of its form, as far as that lies within the zone of its orientation, which has the tilts.
 pub(super) fn offset_within(made: &mut FeatureDraft, form: &Callout, wider: f64, draft: &mut Draft) {
-    let half = form.width.min(wider) / 2.0;
-    let limits = [-half, half];
+    let width = form.width.min(wider);
     // As much as the offset varies in a zone of a form alone.
-    let deviation = half * Nested { of: Nest::Face, rule: form.rule, tilts: 1.0 }.deviations()[0];
-    let distribution = match form.rule {
-        ZoneRule::SigmaZone => Distribution::Normal { mean: 0.0, deviation },
-        ZoneRule::Truncated => Distribution::TruncatedNormal { mean: 0.0, deviation, limits },
-        ZoneRule::UniformInZone => Distribution::Uniform { limits },
-        ZoneRule::Translation => Distribution::Normal { mean: 0.0, deviation: half / 3.0 },
+    let deviation = match form.rule {
+        ZoneRule::Translation => width / 6.0,
+        _ => width / 2.0 * SIGMA_ZONE,
     };
-    let offset = Toleranced { nominal: 0.0, limits, distribution };
+    let offset = Toleranced::in_zone(width, form.rule, deviation);
     let direction = made.feature.nominal[1];
     shift(made, form.name, &offset, direction, draft);
 }

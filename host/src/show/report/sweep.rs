@@ -94,7 +94,7 @@ pub fn summary(sweep: &Sweep, clearances: &Clearances) -> Markup {
 
 fn verdicts(sweep: &Sweep) -> Markup {
     let count = |verdict| sweep.levels.iter().filter(|level| level.outcome.verdict == verdict).count();
-    let all = [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Undecided];
+    let all = [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Overruns, Verdict::Undecided];
     let counted = all.map(|verdict| (verdict, count(verdict))).into_iter().filter(|(_, count)| *count > 0);
     html! {
         @for (i, (verdict, count)) in counted.enumerate() {

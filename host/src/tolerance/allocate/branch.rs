@@ -3,6 +3,7 @@
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 use super::{
+    cost::Values,
     dual::Bound,
     program::{Choices, Piece, Program, Span},
 };
@@ -97,6 +98,22 @@ impl Program<'_> {
             }
         }
         best.map(|best| Solution { bound: lowest.min(best.cost), ..best })
+    }
+
+    /// The least cost with the processes of a solution, and with the values that it takes from lists.
+    pub fn cost_with(&self, solution: &Solution) -> f64 {
+        let of = |(item, (process, t)): (usize, (&usize, &f64))| {
+            let span = match &self.processes[item][*process].values {
+                Values::Range(range) => Span::Range(*range),
+                Values::List(values) => {
+                    let point = values.partition_point(|value| value < t).min(values.len() - 1);
+                    Span::Points([point, point + 1])
+                }
+            };
+            vec![Piece { process: *process, span }]
+        };
+        let choices: Choices = solution.processes.iter().zip(&solution.tolerances).enumerate().map(of).collect();
+        self.greatest_bound(&choices, vec![0.0; self.rows.len()], ACCURACY[1]).value
     }
 
     /// The cheapest of choices that leave one range or one value to every tolerance.

@@ -20,7 +20,7 @@ pub struct Checked {
     /// Share outside by importance sampling or subset simulation, where each limit has a figure to be trusted; and its
     /// standard error.
     pub by_tails: Option<[f64; 2]>,
-    /// Counted units below and above.
+    /// Counted units below and above, and those in which it cannot be computed.
     pub counted: u64,
     /// The 95 % interval of their share.
     pub interval: [f64; 2],
@@ -50,8 +50,7 @@ pub fn check(model: &Model, units: u64, seed: u64) -> Result<Check, AllocateErro
     let of = |i: usize| {
         let (statistics, worst) = (&found.joint.measures[i], &found.theory.worst_cases[i]);
         let limits = model.measures[i].limits;
-        let described = found.theory.moments[i].described;
-        let rss = described.then(|| &found.theory.sums_of_squares[i]);
+        let rss = found.theory.moments[i].by_slopes().then(|| &found.theory.sums_of_squares[i]);
         let by_rss = rss.map(|rss| {
             let sides = |distance: f64| normal::tail(3.0 * distance / rss.tolerance);
             match limits {
@@ -65,10 +64,15 @@ pub fn check(model: &Model, units: u64, seed: u64) -> Result<Check, AllocateErro
         let by_tails = tails.map(|(_, tail)| tail.as_ref()).try_fold([0.0, 0.0], |[sum, error], tail| {
             tail.map(|tail| [sum + tail.probability, libm::hypot(error, tail.error)])
         });
-        let counted = statistics.outside_counts(0).0 + statistics.outside_counts(1).0;
+        // What cannot be computed is outside.
+        let undefined = statistics.undefined as f64 / units as f64;
+        let by_tails = by_tails.map(|[sum, error]| {
+            [sum + undefined, libm::hypot(error, libm::sqrt(undefined * (1.0 - undefined) / units as f64))]
+        });
+        let counted = statistics.outside_counts(0).0 + statistics.outside_counts(1).0 + statistics.undefined;
         Checked {
             measure: i,
-            worst_case: worst.searched.or(worst.vertices).unwrap_or(worst.linear),
+            worst_case: worst.range,
             rss: rss.map(|rss| rss.tolerance),
             by_rss,
             by_tails,

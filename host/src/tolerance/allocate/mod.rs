@@ -6,6 +6,7 @@
 
 pub mod branch;
 pub mod check;
+pub mod confirm;
 pub mod cost;
 pub mod curve;
 mod dual;
@@ -20,6 +21,7 @@ pub mod slopes;
 #[cfg(test)]
 mod tests;
 
+use self::confirm::Counted;
 use super::counting::study::StudyError;
 
 /// Why there are no cheapest tolerances.
@@ -51,6 +53,32 @@ pub enum AllocateError {
     /// The steps came to no end.
     #[error("no tolerances were found that meet all requirements, though the tightest ones do")]
     NotFound,
+    /// Units without a verdict: more of them than may malfunction.
+    #[error("{undecided} of {units} units come to no verdict{why}, so that nobody knows whether they malfunction; {:.4} % may", 100.0 * .allowed)]
+    Unjudged {
+        /// Those without.
+        undecided: u64,
+        /// All.
+        units: u64,
+        /// The share that may malfunction.
+        allowed: f64,
+        /// Why, in brackets; empty if that is not known.
+        why: String,
+    },
+    /// Other units malfunction more often than those of the search.
+    #[error(
+        "no tolerances were found of which other units confirm that {:.4} % malfunction at most: of the last ones {} of {} units \
+         malfunction, {:.4} % at most with 95 % confidence; simulate more with --units",
+        100.0 * .allowed, .counted.failed, .counted.units, 100.0 * .at_most
+    )]
+    NotConfirmed {
+        /// The share that may malfunction.
+        allowed: f64,
+        /// The units that were counted last.
+        counted: Counted,
+        /// What their share is at most.
+        at_most: f64,
+    },
     /// Somebody asked to stop.
     #[error("interrupted")]
     Interrupted,

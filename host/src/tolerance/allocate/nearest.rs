@@ -2,7 +2,8 @@
 
 use crate::tolerance::model::{Function, Measure, Model, Quantity, lanes::Lanes};
 
-/// Measures, and behind them the least distance of any to its limit, in parts of the distance of its limits; negative outside.
+/// Measures, and behind them the least distance of any to its limit, in parts of the distance of its limits; negative outside,
+/// not a number where any of them cannot be computed.
 struct Nearest {
     function: Box<dyn Function>,
     limits: Vec<Limit>,
@@ -22,8 +23,8 @@ impl Function for Nearest {
         self.function.evaluate(variables, measures);
         for lane in 0..nearest.0.len() {
             let of = |limit: &Limit| limit.factor * (measures[limit.measure].0[lane] - limit.value);
-            // What cannot be computed is no failure here, as in every tail.
-            nearest.0[lane] = self.limits.iter().map(of).fold(f64::INFINITY, f64::min);
+            let least = |least: f64, next: f64| if next.is_nan() || next < least { next } else { least };
+            nearest.0[lane] = self.limits.iter().map(of).fold(f64::INFINITY, least);
         }
     }
 }

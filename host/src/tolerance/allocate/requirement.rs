@@ -12,7 +12,7 @@ use super::{
 use crate::tolerance::{
     distribution::normal,
     model::{Measure, Model},
-    theory::{derivative::expansion, moments, moments::spreads, worst_case::middle},
+    theory::{derivative::evaluate, moments, moments::Moments},
 };
 
 /// What is required.
@@ -74,8 +74,6 @@ pub struct Shown {
 /// Requirements of the measures of a product whose model follows from tolerances.
 pub struct OfMeasures<'a> {
     rows: Vec<Row>,
-    /// Whether slopes describe each measure.
-    described: Vec<bool>,
     model: &'a (dyn Fn(&[f64]) -> Result<Model, AllocateError> + Sync),
     malfunctions: Option<&'a Malfunctions<'a>>,
     seed: u64,
@@ -100,10 +98,8 @@ impl<'a> OfMeasures<'a> {
         seed: u64,
     ) -> Result<Self, AllocateError> {
         let at_start = model(start)?;
-        let described: Vec<bool> = moments::of_measures(&at_start).iter().map(|moments| moments.described).collect();
-        let (_, deviations) = spreads(&at_start);
-        let middles: Vec<f64> = at_start.contributors.iter().flat_map(|c| middle(&c.variation)).collect();
-        let values = expansion(&at_start, &middles, &deviations).values;
+        let by_slopes: Vec<bool> = moments::of_measures(&at_start).iter().map(Moments::by_slopes).collect();
+        let values = evaluate(&at_start, &[at_start.middles()]).concat();
         let mut rows = Vec::new();
         for requirement in requirements {
             let row = |side, distance, middle| Row { requirement: *requirement, side, distance, middle };
@@ -112,7 +108,7 @@ impl<'a> OfMeasures<'a> {
                 continue;
             };
             let Measure { name, limits, .. } = &at_start.measures[i];
-            if matches!(requirement.kind, Kind::Rss | Kind::RssOffCentre) && !described[i] {
+            if matches!(requirement.kind, Kind::Rss | Kind::RssOffCentre) && !by_slopes[i] {
                 return Err(AllocateError::NotLinear(name.clone()));
             }
             let room = [limits[0].map(|limit| values[i] - limit), limits[1].map(|limit| limit - values[i])];
@@ -124,7 +120,7 @@ impl<'a> OfMeasures<'a> {
                 ),
             }
         }
-        Ok(Self { rows, described, model, malfunctions: None, seed })
+        Ok(Self { rows, model, malfunctions: None, seed })
     }
 
     /// The same, with what tells how many units malfunction.
@@ -152,7 +148,7 @@ impl<'a> OfMeasures<'a> {
             }
             (Kind::Defects(allowed), _) => of_defects(defects(model, i, self.seed)?, allowed),
             (Kind::Ppk(allowed), _) => {
-                let [mean, deviation] = drawn(model, i, self.seed)?;
+                let Some([mean, deviation]) = drawn(model, i, self.seed)? else { return Ok(f64::INFINITY) };
                 let limit = model.measures[i].limits[row.side.unwrap_or(0)].unwrap_or(f64::NAN);
                 let room = if row.side == Some(0) { mean - limit } else { limit - mean };
                 let share = share(3.0 * deviation * allowed, room);
@@ -173,10 +169,17 @@ impl Figures for OfMeasures<'_> {
         if counts { Precision::COUNTED } else { Precision::COMPUTED }
     }
 
+    fn reliefs(&self) -> Vec<f64> {
+        self.rows.iter().map(Row::relief).collect()
+    }
+
     fn values(&self, tolerances: &[f64]) -> Result<Vec<f64>, AllocateError> {
         let model = (self.model)(tolerances)?;
         let by_formula = |row: &Row| matches!(row.requirement.kind, Kind::WorstCase | Kind::Rss | Kind::RssOffCentre);
-        let formula = self.rows.iter().any(by_formula).then(|| Formula::new(&model, &self.described));
+        let of_worst = |row: &Row| row.requirement.measure.filter(|_| row.requirement.kind == Kind::WorstCase);
+        let mut worst_of: Vec<usize> = self.rows.iter().filter_map(of_worst).collect();
+        worst_of.dedup();
+        let formula = self.rows.iter().any(by_formula).then(|| Formula::new(&model, &worst_of));
         let mut values = Vec::with_capacity(self.rows.len());
         for row in &self.rows {
             values.push(self.value(row, &model, formula.as_ref())?);

@@ -52,6 +52,11 @@ pub trait Figures: Sync {
         Precision::COMPUTED
     }
 
+    /// What each figure may rise by where its requirement is loosened a little.
+    fn reliefs(&self) -> Vec<f64> {
+        vec![1.0; self.powers().len()]
+    }
+
     /// The figures at `tolerances` (SI).
     ///
     /// # Errors
@@ -62,11 +67,14 @@ pub trait Figures: Sync {
 /// The cheapest tolerances that were found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Processes, tolerances and cost; prices are what the cost falls by for every unit that a figure may rise by. The bound is
-    /// that of the last program.
+    /// Processes, tolerances and cost; prices are what the cost falls by for every unit that a figure may rise by, all others
+    /// held. The bound is that of the last program.
     pub solution: Solution,
     /// The figures.
     pub figures: Vec<f64>,
+    /// What the cost falls by for every unit of relief that all figures which bind have together, where there are several: then
+    /// none of them may gain anything alone.
+    pub together: Option<f64>,
 }
 
 /// Finds the cheapest tolerances of `processes`, from `start` on.
@@ -91,7 +99,7 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
         processes.iter().zip(&tightest).map(|(of, low)| [*low, ends(of, 1, f64::max)]).collect();
     let mut at: Vec<f64> = start.iter().zip(&limits).map(|(t, [low, high])| t.clamp(*low, *high)).collect();
     let mut values = figures.values(&at)?;
-    let mut best: Option<Found> = None;
+    let mut best: Option<(Found, Local)> = None;
     let mut last = f64::INFINITY;
     for _ in 0..precision.programs {
         if crate::system::interrupt::requested() {
@@ -118,8 +126,9 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
             for ((constant, row), figure) in constants.iter_mut().zip(&rows).zip(&found) {
                 *constant = figure - row.usage(&solution.tolerances);
             }
-            if met && best.as_ref().is_none_or(|best| solution.cost < best.solution.cost) {
-                best = Some(Found { solution: solution.clone(), figures: found.clone() });
+            if met && best.as_ref().is_none_or(|(best, _)| solution.cost < best.solution.cost) {
+                let local = Local { rows: rows.clone(), constants: constants.clone() };
+                best = Some((Found { solution: solution.clone(), figures: found.clone(), together: None }, local));
             }
             next = Some((solution, found));
             if met && used {
@@ -137,7 +146,49 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
             break;
         }
     }
-    best.ok_or(AllocateError::NotFound)
+    let (mut found, local) = best.ok_or(AllocateError::NotFound)?;
+    local.price(processes, &mut found, &figures.reliefs(), precision.slack);
+    Ok(found)
+}
+
+/// Part of a relief over which prices of several figures that bind are found.
+const PRICED: f64 = 1e-2;
+
+/// The program around a solution.
+struct Local {
+    rows: Vec<Row>,
+    constants: Vec<f64>,
+}
+
+impl Local {
+    /// Prices figures that bind together. Multipliers do not tell what one of them gains alone: both limits of a symmetric
+    /// measure have one multiplier between them, and to loosen one gains nothing. So each is loosened, and then all at once.
+    fn price(&self, processes: &[&[Process]], found: &mut Found, reliefs: &[f64], slack: f64) {
+        let bind: Vec<usize> = (0..self.rows.len()).filter(|row| found.figures[*row] >= 1.0 - 2.0 * slack).collect();
+        if bind.len() < 2 {
+            return;
+        }
+        let cost = |loosened: &[usize]| -> f64 {
+            // What is loosened comes last, so that of rows that are alike those that still bind have the price.
+            let held = (0..self.rows.len()).filter(|row| !loosened.contains(row));
+            let scaled = held.chain(loosened.iter().copied()).map(|row| {
+                let more = if loosened.contains(&row) { PRICED * reliefs[row] } else { 0.0 };
+                // A figure that binds is taken to be 1.
+                let usage = self.rows[row].usage(&found.solution.tolerances);
+                let budget = if bind.contains(&row) { usage } else { 1.0 - self.constants[row] } + more;
+                let weights = self.rows[row].weights.iter().map(|weight| weight / budget).collect();
+                Row { power: self.rows[row].power, weights }
+            });
+            let program = Program { processes: processes.to_vec(), rows: scaled.collect(), near: None };
+            program.cost_with(&found.solution)
+        };
+        let now = cost(&[]);
+        let fall = |loosened: &[usize]| ((now - cost(loosened)) / PRICED).max(0.0);
+        let alone: Vec<f64> = bind.iter().map(|row| fall(&[*row]) / reliefs[*row]).collect();
+        let together = fall(&bind);
+        bind.iter().zip(alone).for_each(|(row, price)| found.solution.prices[*row] = price);
+        found.together = Some(together);
+    }
 }
 
 /// The cheapest tolerances where every figure is its constant and its row, within a factor of the tolerances they are `near`.

@@ -9,7 +9,7 @@ use super::{
     AllocateError,
     cost::{Law, Process, Values},
     requirement::{Kind, OfMeasures, Requirement},
-    search::{Found, search},
+    search::{Figures, Found, search},
 };
 use crate::{
     product::costed::Costed,
@@ -219,5 +219,110 @@ fn shares_that_are_counted_lead_near_the_closed_form() {
     assert!((found.solution.cost / cost - 1.0).abs() < 0.03, "{} {cost}", found.solution.cost);
     for (t, root) in found.solution.tolerances.iter().zip([1.0, 2.0, 3.0]) {
         assert!((t / (k * root) - 1.0).abs() < 0.2, "{:?}", found.solution.tolerances);
+    }
+}
+
+/// The figures of requirements with the tolerances that a scene states.
+fn figures(text: &str, requirements: &[Requirement]) -> Vec<f64> {
+    let model = |_: &[f64]| Ok(SceneFile::parse("x.toml", text, &[]).unwrap().product.unwrap().model);
+    OfMeasures::new(requirements, &model, &[], 1).unwrap().values(&[]).unwrap()
+}
+
+/// The worst case that is required is the one that is reported: of the clutch 5.9574 to 7.9385 degrees, below its lower limit.
+#[test]
+fn a_required_worst_case_is_that_of_corners_and_a_search() {
+    let middle = 7.018_389_8;
+    let found = figures(shipped("clutch").unwrap(), &of_first(Kind::WorstCase));
+    for (found, [end, limit]) in found.iter().zip([[5.957_364_5, 6.0184], [7.938_469_3, 8.0184]]) {
+        let expected = (end - middle) / (limit - middle);
+        assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
+    }
+    assert!(found[0] > 1.0 && found[1] < 1.0);
+    let text = "[[dimension]]\nname = 'L'\nvalue = 100\ntolerance = 0.1\n\
+                [[dimension]]\nname = 'tilt'\nvalue = '0°'\ntolerance = '3°'\n\
+                [[measure]]\nname = 'm'\nis = 'L - L*cos(tilt)'\nupper = 0.1\n";
+    let found = figures(text, &of_first(Kind::WorstCase));
+    assert!((found[0] - 1001.0 * (1.0 - libm::cos(3f64.to_radians()))).abs() < 1e-6, "{found:?}");
+}
+
+/// √x with x 1.5 standard deviations above 0 has no value in 6.68 % of the units: all of them are defects.
+#[test]
+fn units_without_a_value_are_defects() {
+    let text = "[[dimension]]\nname = 'x'\nvalue = 0.1\ntolerance = 0.2\n\
+                [[dimension]]\nname = 'y'\nvalue = 1\ntolerance = 0.1\n\
+                [[measure]]\nname = 'm'\nis = 'y + sqrt(x * 1 mm)'\nupper = 9\n\
+                [[measure]]\nname = 'n'\nis = 'y'\nupper = 9\n";
+    let expected = normal::tail(1.5);
+    for measure in [Some(0), None] {
+        let requirement = Requirement { measure, kind: Kind::Defects(expected) };
+        let found = figures(text, &[requirement])[0];
+        // The figure is 1 for as many defects as are allowed.
+        assert!((found - 1.0).abs() < 2e-3, "{measure:?}: {found}");
+    }
+    let none = figures(text, &[Requirement { measure: Some(1), kind: Kind::Defects(expected) }]);
+    assert!(none[0] < 0.1, "{none:?}");
+    let unbounded =
+        figures(text, &[Kind::Ppk(1.0), Kind::WorstCase].map(|kind| Requirement { measure: Some(0), kind }));
+    assert_eq!(unbounded, [f64::INFINITY; 2]);
+}
+
+/// a ± t and b ± u cost 1/t and 4/u: at t + u = T the least cost is 9/T, and 1 % wider limits bring a hundredth of it. Neither
+/// limit alone brings anything.
+#[test]
+fn limits_that_bind_together_have_a_price_together() {
+    let scene = |upper: f64| {
+        format!(
+            "[[dimension]]\nname = 'a'\nvalue = 10\ntolerance = 0.1\ncost = {{ reciprocal = 1, range = [0.001, 1] }}\n\
+             [[dimension]]\nname = 'b'\nvalue = 5\ntolerance = 0.1\ncost = {{ reciprocal = 4, range = [0.001, 1] }}\n\
+             [[measure]]\nname = 'm'\nis = 'a - b'\nlower = 4.7\nupper = {upper}\n"
+        )
+    };
+    let both = cheapest(&scene(5.3), &of_first(Kind::WorstCase), all).unwrap();
+    let cost = 9.0 / 0.3;
+    assert!((both.solution.cost / cost - 1.0).abs() < 1e-6, "{both:?}");
+    assert!((both.together.unwrap() / (0.01 * cost) - 1.0).abs() < 1e-3, "{both:?}");
+    assert!(both.solution.prices.iter().all(|price| price.abs() < 1e-6 * cost), "{both:?}");
+    // Where the lower limit alone binds it has the whole price.
+    let one = cheapest(&scene(5.5), &of_first(Kind::WorstCase), all).unwrap();
+    assert!(one.together.is_none() && one.solution.prices[1] == 0.0);
+    assert!((one.solution.prices[0] / cost - 1.0).abs() < 1e-3, "{one:?}");
+}
+
+/// Two measures that share a dimension bind together, each with a price of its own: a ± t costs 1/t in both, b and c 1/u and 1/v
+/// in one each. With t + u ≤ T and t + v ≤ S the prices are those of the stationary point, and together they add up.
+#[test]
+fn prices_of_two_measures_add_up() {
+    let dimension = |name: &str| {
+        format!(
+            "[[dimension]]\nname = '{name}'\nvalue = 10\ntolerance = 0.1\ncost = {{ reciprocal = 1, range = [0.001, 1] }}\n"
+        )
+    };
+    let text = ["a", "b", "c"].map(dimension).concat()
+        + "[[measure]]\nname = 'm'\nis = 'a + b'\nupper = 20.3\n[[measure]]\nname = 'n'\nis = 'a + c'\nupper = 20.2\n";
+    let requirements = [0, 1].map(|i| Requirement { measure: Some(i), kind: Kind::WorstCase });
+    let found = cheapest(&text, &requirements, all).unwrap();
+    // 1/t + 1/(T − t) + 1/(S − t) is least where 1/t² = 1/(T − t)² + 1/(S − t)².
+    let (mut low, mut high): (f64, f64) = (1e-3, 0.199);
+    for _ in 0..100 {
+        let t = 0.5 * (low + high);
+        let slope = 1.0 / ((0.3 - t) * (0.3 - t)) + 1.0 / ((0.2 - t) * (0.2 - t)) - 1.0 / (t * t);
+        if slope > 0.0 { high = t } else { low = t }
+    }
+    let prices = [0.3, 0.2].map(|limit| limit / ((limit - low) * (limit - low)));
+    for (found, expected) in found.solution.prices.iter().zip(prices) {
+        assert!((found / expected - 1.0).abs() < 5e-3, "{found} {expected}");
+    }
+    assert!((found.together.unwrap() / (0.01 * prices.iter().sum::<f64>()) - 1.0).abs() < 5e-3, "{found:?}");
+}
+
+#[test]
+fn a_process_may_have_a_fixed_price() {
+    let text = "[[dimension]]\nname = 'a'\nvalue = 10\ntolerance = 0.1\ncost = [{ fixed = 3, range = [0.05, 0.2] }, { fixed = 7, range = [0.01, 0.05] }]\n\
+                [[measure]]\nname = 'm'\nis = 'a'\nlower = 9.9\nupper = 10.1\n";
+    let found = cheapest(text, &of_first(Kind::WorstCase), all).unwrap();
+    assert_eq!((found.solution.cost, found.solution.processes.as_slice()), (3.0, &[0][..]));
+    for (key, allowed) in [("at = 0.1", false), ("power = 2", false), ("name = 'p'", true)] {
+        let text = text.replace("fixed = 3,", &format!("fixed = 3, {key},"));
+        assert_eq!(SceneFile::parse("x.toml", &text, &[]).is_ok(), allowed, "{key}");
     }
 }

@@ -2,8 +2,10 @@
 //!
 //! Little-endian: 8 bytes `SLIPSTDY`, version (u32), length of the header (u32), header (JSON: scene, settings, which
 //! blocks), tallies, CRC-32/ISO-HDLC of all before. Of each tally: units, rejected, measures, sums, then of each measure
-//! undefined, outside, extremes (f64), units at the extremes, bins; closings; trees, and of each first block, height, sums (f64). Integers are
+//! undefined, outside, extremes (f64), units at the extremes, bins, bins beyond (how many, and of each its number, zigzag, and units); closings; trees, and of each first block, height, sums (f64). Integers are
 //! LEB128. Everything that a reader allocates it has seen the bytes of.
+
+use std::collections::BTreeMap;
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -15,7 +17,7 @@ use super::{
 };
 use crate::tolerance::{model::Model, sampling::sampler};
 
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// The scene a study belongs to, as it was read.
@@ -197,6 +199,11 @@ impl Found for Vec<Tally> {
                 measure.extremes.iter().for_each(|extreme| out.extend(extreme.to_le_bytes()));
                 measure.at_extremes.iter().for_each(|count| integer(out, *count));
                 measure.bins.iter().for_each(|count| integer(out, *count));
+                integer(out, measure.far.len() as u64);
+                for (bin, count) in &measure.far {
+                    integer(out, u64::from(((bin << 1) ^ (bin >> 31)) as u32));
+                    integer(out, *count);
+                }
             }
             counts.closed.iter().for_each(|count| integer(out, *count));
             integer(out, sums.nodes().len() as u64);
@@ -286,7 +293,12 @@ impl<'a> Reader<'a> {
             let extremes = [self.number()?, self.number()?];
             let at_extremes = [self.integer()?, self.integer()?];
             let bins = (0..BINS).map(|_| self.integer()).collect::<Result<_, _>>()?;
-            counts.measures.push(MeasureCounts { undefined, outside, extremes, at_extremes, bins });
+            let mut far = BTreeMap::new();
+            for _ in 0..self.count()? {
+                let zigzag = u32::try_from(self.integer()?).map_err(|_| FormatError::Damaged)?;
+                far.insert((zigzag >> 1) as i32 ^ -((zigzag & 1) as i32), self.integer()?);
+            }
+            counts.measures.push(MeasureCounts { undefined, outside, extremes, at_extremes, bins, far });
         }
         counts.closed = (0..closed).map(|_| self.integer()).collect::<Result<_, _>>()?;
         let mut sums = Forest::default();

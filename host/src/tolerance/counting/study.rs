@@ -68,6 +68,16 @@ pub enum StudyError {
     /// More units than Sobol' points have values.
     #[error("{0} samples a replicate, Sobol' points at most 2^{DIGITS}")]
     SobolSamples(u64),
+    /// A measure without statistics.
+    #[error("`{measure}` can be computed in {computed} of {units} units, allowed is two or more")]
+    Undefined {
+        /// Its name.
+        measure: String,
+        /// Units in which it can be computed.
+        computed: u64,
+        /// Units of the replicate.
+        units: u64,
+    },
     /// Somebody asked to stop while results were worked out.
     #[error("interrupted")]
     Interrupted,

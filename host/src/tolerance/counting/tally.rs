@@ -2,6 +2,8 @@
 //!
 //! Sums are floating-point and so join in a fixed tree only ([`super::forest`]); counts and extremes join in any order.
 
+use std::collections::BTreeMap;
+
 use crate::tolerance::model::{
     Model,
     lanes::{LANES, Lanes, widest},
@@ -11,8 +13,13 @@ use crate::tolerance::model::{
 pub const TILE: usize = 256;
 /// Bins of a histogram in one standard deviation.
 pub const BINS_PER_DEVIATION: f64 = 128.0;
-/// Bins of a histogram: ten standard deviations to both sides; the outermost take what lies beyond.
+/// Bins of a histogram: [`NEAR`] standard deviations to both sides.
 pub const BINS: usize = 2561;
+/// How far (standard deviations) the bins reach. What lies beyond, such as a small lot far away, is in [`MeasureCounts::far`].
+pub const NEAR: f64 = 10.0;
+/// Bins beyond in each doubling of the distance, and doublings.
+const FAR_BINS: f64 = 1024.0;
+const DOUBLINGS: f64 = 64.0;
 /// 2⁵²: a number added to it has its integer part in the low bits.
 const MAGIC: f64 = 4_503_599_627_370_496.0;
 
@@ -60,6 +67,22 @@ pub struct MeasureCounts {
     pub at_extremes: [u64; 2],
     /// Units a bin; bin k is centred (k − 1280)/128 standard deviations from the frame's origin.
     pub bins: Vec<u64>,
+    /// Units beyond the bins, by the bins of [`far_ends`].
+    pub far: BTreeMap<i32, u64>,
+}
+
+/// The bin beyond all others of a value `d` (standard deviations) with |d| > [`NEAR`]: positive above, negative below.
+fn far_bin(d: f64) -> i32 {
+    let doublings = libm::log2(d.abs() / NEAR).clamp(0.0, DOUBLINGS);
+    let bin = 1 + (doublings * FAR_BINS) as i32;
+    if d > 0.0 { bin } else { -bin }
+}
+
+/// Both ends (standard deviations) of such a bin, in order.
+pub fn far_ends(bin: i32) -> [f64; 2] {
+    let end = |k: i32| NEAR * libm::exp2(f64::from(k) / FAR_BINS);
+    let [low, high] = [end(bin.abs() - 1), end(bin.abs())];
+    if bin > 0 { [low, high] } else { [-high, -low] }
 }
 
 impl Sums {
@@ -85,6 +108,7 @@ impl Counts {
             extremes: [f64::INFINITY, f64::NEG_INFINITY],
             at_extremes: [0; 2],
             bins: vec![0; BINS],
+            far: BTreeMap::new(),
         };
         Self { units: 0, rejected: 0, measures: vec![measure; model.measures.len()], closed: vec![0; model.sums.len()] }
     }
@@ -98,6 +122,7 @@ impl Counts {
             one.undefined += other.undefined;
             add(&mut one.outside, &other.outside);
             add(&mut one.bins, &other.bins);
+            other.far.iter().for_each(|(bin, units)| *one.far.entry(*bin).or_default() += units);
             one.stretch(other.extremes, other.at_extremes);
         }
     }
@@ -172,11 +197,17 @@ impl<'a> Tile<'a> {
             // All places first, which vectors do.
             let mut places = [0; TILE];
             for (place, value) in places.iter_mut().zip(row.iter()) {
-                let at = value.clamp(-10.0, 10.0) * BINS_PER_DEVIATION + (MAGIC + (BINS / 2) as f64);
+                let at = value.clamp(-NEAR, NEAR) * BINS_PER_DEVIATION + (MAGIC + (BINS / 2) as f64);
                 *place = (at.to_bits() & 0xfff).min(BINS as u64 - 1);
             }
             for place in &places[..units] {
                 counts.bins[*place as usize] += 1;
+            }
+            if row[..units].iter().any(|value| value.abs() > NEAR) {
+                for (place, value) in places.iter().zip(&row[..units]).filter(|(_, value)| value.abs() > NEAR) {
+                    counts.bins[*place as usize] -= 1;
+                    *counts.far.entry(far_bin(*value)).or_default() += 1;
+                }
             }
             if counts.undefined > 0 {
                 for value in row[..units].iter_mut().filter(|value| value.is_nan()) {

@@ -38,6 +38,9 @@ pub trait Margins {
 
     /// Margins at `points`.
     fn at(&mut self, points: &[Vec<f64>]) -> Vec<f64>;
+
+    /// From now on so many `points` are drawn in a subset of this `probability`.
+    fn enter(&mut self, _probability: f64, _points: usize) {}
 }
 
 /// A failure: the sum of some measures is below (or above) a limit.
@@ -97,7 +100,7 @@ impl<'a> LimitState<'a> {
         let inside = self.draw.is_inside(scores).0;
         std::array::from_fn(|lane| match margins[lane] {
             _ if !inside[lane] => f64::INFINITY,
-            margin if margin.is_nan() => undefined,
+            margin if !margin.is_finite() => undefined,
             margin => margin,
         })
     }

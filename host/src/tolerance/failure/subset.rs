@@ -42,6 +42,7 @@ pub enum Stopped {
 pub fn run<M: Margins>(state: &mut M, units: usize, levels: u64, seed: u64) -> Result<Run, Stopped> {
     let dimensions = state.dimensions();
     let (mut points, mut margins) = (Vec::with_capacity(units), Vec::with_capacity(units));
+    state.enter(1.0, units);
     for first in (0..units).step_by(M::TOGETHER) {
         let group = first..(first + M::TOGETHER).min(units);
         let mut streams: Vec<_> = group.map(|unit| unit_stream(seed, unit as u64)).collect();
@@ -75,6 +76,7 @@ pub fn run<M: Margins>(state: &mut M, units: usize, levels: u64, seed: u64) -> R
         let start = |chain: usize| below[chain * below.len() / chains];
         let starts: Vec<(Vec<f64>, f64)> =
             (0..chains).map(start).map(|unit| (points[unit].clone(), margins[unit])).collect();
+        state.enter(probability, (LENGTH - 1) * chains);
         (points, margins) = grown(state, &starts, threshold, &mut spread, derived(seed, level));
     }
     Err(Stopped::Rarer(probability))

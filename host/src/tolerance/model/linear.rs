@@ -72,6 +72,10 @@ impl Block {
 }
 
 impl Function for Linear {
+    fn is_linear(&self, _measure: usize) -> bool {
+        true
+    }
+
     fn evaluate(&self, variables: &[Lanes], measures: &mut [Lanes]) {
         widest(
             #[inline(always)]

@@ -1,5 +1,6 @@
 //! What every analysis works on: contributors that vary, and the measures that follow from them.
 
+pub mod extent;
 pub mod lanes;
 pub mod linear;
 pub mod nested;
@@ -33,13 +34,29 @@ impl Model {
         let counts = self.contributors.iter().map(|contributor| contributor.variation.variables());
         counts.scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect()
     }
+
+    /// The variables in the middle of all limits and zones.
+    pub fn middles(&self) -> Vec<f64> {
+        self.contributors.iter().flat_map(|contributor| contributor.variation.middle()).collect()
+    }
 }
 
 /// The measures of assembled units as a function of their variables.
 pub trait Function: Send + Sync {
-    /// Writes all `measures` (SI: m, rad) of the units whose `variables` these are. A measure that cannot be computed
-    /// is not a number.
+    /// Writes all `measures` (SI: m, rad) of the units whose `variables` these are. A measure that cannot be computed,
+    /// or is infinite, is not a number.
     fn evaluate(&self, variables: &[Lanes], measures: &mut [Lanes]);
+
+    /// Whether `measure` is a constant and a weighted sum of the variables.
+    fn is_linear(&self, _measure: usize) -> bool {
+        false
+    }
+
+    /// What decides on which side of a kink a unit is: arguments of `abs`, differences of those of `min` and `max`. The
+    /// measures change their slopes where one of them is 0.
+    fn kinks(&self, _variables: &[Lanes]) -> Vec<Lanes> {
+        Vec::new()
+    }
 
     /// The variables (SI) as a drawing has them, where there is one.
     fn nominal(&self) -> Option<&[f64]> {

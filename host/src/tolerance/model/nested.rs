@@ -1,5 +1,9 @@
-//! A zone whose tilts are narrowed by another tolerance: a refinement.
+//! A zone that limits place and tilts together: a cylinder around an axis, or a zone whose tilts another tolerance narrows.
 //!
+//! An axis lies in its cylinder where both of its ends do, and an end is off by place + tilt, the other by place − tilt: each of
+//! both sums is a vector of length 1 at most. The ends vary independently of each other.
+//!
+//! A refinement is narrower in the tilts.
 //! The place is one number u (a face) or two, x and y (an axis), over half of the zone's width; two tilts follow, in units of
 //! the same zone. With the size |·| of either, |u| and |p| + |r| of a face, the radii of an axis, the zone is
 //! |place| + |tilts| ≤ 1 and |tilts| ≤ ρ, ρ ≤ 1 the narrower width over the wider one: no corner leaves the wider zone, no
@@ -7,7 +11,10 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use super::ZoneRule;
+use super::{
+    ZoneRule,
+    extent::{along, steepest},
+};
 use crate::tolerance::{
     distribution::normal::tail,
     theory::quadrature::{Node, SIGMA_DISC, SIGMA_ZONE, piece},
@@ -18,7 +25,9 @@ use crate::tolerance::{
 pub enum Nest {
     /// A rectangular face: u and two tilts.
     Face,
-    /// The axis of a pin or hole: x, y and two tilts.
+    /// The axis of a pin or hole in a cylinder that limits both of its ends: x, y and two tilts, ρ = 1.
+    Ends,
+    /// The same with narrowed tilts.
     Axis,
 }
 
@@ -33,9 +42,6 @@ pub struct Nested {
     pub tilts: f64,
 }
 
-/// Points on the rim of a disc that stand for all.
-const RIM: usize = 24;
-
 impl Nested {
     /// How many variables it has.
     pub fn variables(&self) -> usize {
@@ -46,7 +52,7 @@ impl Nested {
     pub fn places(&self) -> usize {
         match self.of {
             Nest::Face => 1,
-            Nest::Axis => 2,
+            Nest::Ends | Nest::Axis => 2,
         }
     }
 
@@ -56,9 +62,24 @@ impl Nested {
     pub fn deviations(&self) -> [f64; 2] {
         match self.of {
             Nest::Face => [SIGMA_ZONE, SIGMA_ZONE * self.tilts],
-            Nest::Axis => {
+            Nest::Ends | Nest::Axis => {
                 let tilts = (SIGMA_DISC * self.tilts).min(SIGMA_DISC * FRAC_1_SQRT_2);
                 [libm::sqrt(SIGMA_DISC * SIGMA_DISC - tilts * tilts), tilts]
+            }
+        }
+    }
+
+    /// Levels ± of a variable of the place and of a tilt, so that no corner of a factorial design leaves the zone. Tilts that are
+    /// not narrowed have as much room as the place.
+    pub fn factorial(&self) -> [f64; 2] {
+        match self.of {
+            Nest::Face => {
+                let tilts = self.tilts.min(2.0 / 3.0);
+                [1.0 - tilts, 0.5 * tilts]
+            }
+            Nest::Ends | Nest::Axis => {
+                let tilts = self.tilts.min(0.5);
+                [1.0 - tilts, tilts].map(|radius| radius * FRAC_1_SQRT_2)
             }
         }
     }
@@ -71,6 +92,9 @@ impl Nested {
     /// How far a point reaches: at most 1 inside of the zone.
     pub fn reach(&self, point: &[f64]) -> f64 {
         let (place, tilts) = point.split_at(self.places());
+        if self.of == Nest::Ends {
+            return ends(place, tilts).map(|end| radius(&end)).into_iter().fold(0.0, f64::max);
+        }
         let tilt = self.tilt(tilts);
         (radius(place) + tilt).max(tilt / self.tilts)
     }
@@ -78,7 +102,7 @@ impl Nested {
     fn tilt(&self, tilts: &[f64]) -> f64 {
         match self.of {
             Nest::Face => tilts.iter().map(|tilt| tilt.abs()).sum(),
-            Nest::Axis => radius(tilts),
+            Nest::Ends | Nest::Axis => radius(tilts),
         }
     }
 
@@ -86,26 +110,52 @@ impl Nested {
     /// the border of either part.
     pub fn most(&self, slopes: &[f64], grown: [f64; 2]) -> f64 {
         let (place, tilts) = slopes.split_at(self.places());
+        if self.of == Nest::Ends {
+            // place and tilts are half of the sum and of the difference of both ends.
+            return grown[0] * ends(place, tilts).map(|slope| 0.5 * radius(&slope)).iter().sum::<f64>();
+        }
         let place = radius(place);
         let tilts = match self.of {
             Nest::Face => tilts.iter().fold(0.0, |most: f64, slope| most.max(slope.abs())),
-            Nest::Axis => radius(tilts),
+            Nest::Ends | Nest::Axis => radius(tilts),
         };
         let [width, tilted] = [grown[0], (self.tilts * grown[1]).min(grown[0])];
         (width * place).max((width - tilted) * place + tilted * tilts)
     }
 
-    /// Corners of the zone, or points on its rims.
-    pub fn corners(&self) -> Vec<Vec<f64>> {
-        let angles = || (0..RIM).map(|k| TAU * k as f64 / RIM as f64);
+    /// The point at which slopes · variables is greatest.
+    pub fn farthest(&self, slopes: &[f64]) -> Vec<f64> {
+        let (place, tilts) = slopes.split_at(self.places());
+        if self.of == Nest::Ends {
+            let [one, other] = ends(place, tilts).map(|slope| along(&slope));
+            return between([one[0], one[1]], [other[0], other[1]]).to_vec();
+        }
+        let tilts = match self.of {
+            Nest::Face => steepest(tilts),
+            Nest::Ends | Nest::Axis => along(tilts),
+        };
+        let joined = |part: f64| -> Vec<f64> {
+            along(place).iter().map(|x| x * (1.0 - part)).chain(tilts.iter().map(|x| x * part)).collect()
+        };
+        let value = |point: &Vec<f64>| slopes.iter().zip(point).map(|(slope, x)| slope * x).sum::<f64>();
+        let [flat, tilted] = [joined(0.0), joined(self.tilts)];
+        if value(&tilted) > value(&flat) { tilted } else { flat }
+    }
+
+    /// Corners of the zone, or `count` points on its rims.
+    pub fn corners(&self, count: usize) -> Vec<Vec<f64>> {
+        let angles = || (0..count).map(|k| TAU * k as f64 / count as f64);
         let rim = || angles().map(|angle| [libm::cos(angle), libm::sin(angle)]);
+        if self.of == Nest::Ends {
+            return rim().flat_map(|one| rim().map(move |other| between(one, other).to_vec())).collect();
+        }
         let places: Vec<Vec<f64>> = match self.of {
             Nest::Face => vec![vec![1.0], vec![-1.0]],
-            Nest::Axis => rim().map(Vec::from).collect(),
+            Nest::Ends | Nest::Axis => rim().map(Vec::from).collect(),
         };
         let tilts: Vec<[f64; 2]> = match self.of {
             Nest::Face => vec![[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]],
-            Nest::Axis => rim().collect(),
+            Nest::Ends | Nest::Axis => rim().collect(),
         };
         let joined = |place: &[f64], part: f64, tilts: [f64; 2]| -> Vec<f64> {
             place.iter().map(|x| x * (1.0 - part)).chain(tilts.map(|x| x * part)).collect()
@@ -130,6 +180,15 @@ impl Nested {
                 let r = width - libm::sqrt(width * width - (1.0 - outside(tilts[1])) * most * (2.0 * width - most));
                 let u = (1.0 - p - r).max(0.0) * (1.0 - outside(place[0]));
                 vec![u.copysign(place[0]), p.copysign(tilts[0]), r.copysign(tilts[1])]
+            }
+            Nest::Ends => {
+                let in_disc = |scores: &[f64]| {
+                    let radius = radius(scores);
+                    let reach = libm::sqrt(-libm::expm1(-0.5 * radius * radius));
+                    let scale = if radius > 0.0 { reach / radius } else { 0.0 };
+                    [scores[0] * scale, scores[1] * scale]
+                };
+                between(in_disc(place), in_disc(tilts)).to_vec()
             }
             Nest::Axis => {
                 // The volume up to a tilt t: t²·(1/2 − 2t/3 + t²/4).
@@ -172,16 +231,28 @@ impl Nested {
                     }
                 }
             }
+            Nest::Ends => {
+                let disc = || {
+                    piece(0.0, 1.0).flat_map(|(r, weight)| {
+                        let at = move |angle| [r * libm::cos(angle), r * libm::sin(angle)];
+                        angles().map(move |angle| (at(angle), weight * r * AROUND))
+                    })
+                };
+                for (one, weight) in disc() {
+                    for (other, other_weight) in disc() {
+                        let at = between(one, other);
+                        // A quarter: the volume of place and tilts over that of the ends.
+                        nodes.push(Node { weight: 0.25 * weight * other_weight * density(&at), at });
+                    }
+                }
+            }
             Nest::Axis => {
-                const ANGLES: usize = 8;
-                let angles = || (0..ANGLES).map(|k| TAU * (k as f64 + 0.5) / ANGLES as f64);
-                let around = TAU / ANGLES as f64;
                 for (t, wt) in piece(0.0, self.tilts) {
                     for (d, wd) in piece(0.0, 1.0 - t) {
                         for (one, other) in angles().flat_map(|one| angles().map(move |other| (one, other))) {
                             let at =
                                 [d * libm::cos(one), d * libm::sin(one), t * libm::cos(other), t * libm::sin(other)];
-                            nodes.push(Node { weight: wt * wd * t * d * around * around * density(&at), at });
+                            nodes.push(Node { weight: wt * wd * t * d * AROUND * AROUND * density(&at), at });
                         }
                     }
                 }
@@ -197,6 +268,26 @@ impl Nested {
         let peak = libm::pow(libm::sqrt(TAU) * place, self.places() as f64) * TAU * tilts * tilts;
         truncated.nodes().iter().map(|node| node.weight).sum::<f64>() / peak
     }
+}
+
+/// Angles of the nodes of a disc, and how far one is from the next (rad).
+const ANGLES: usize = 8;
+const AROUND: f64 = TAU / ANGLES as f64;
+
+fn angles() -> impl Iterator<Item = f64> {
+    (0..ANGLES).map(|k| AROUND * (k as f64 + 0.5))
+}
+
+/// Both ends of an axis with this place and these tilts.
+fn ends(place: &[f64], tilts: &[f64]) -> [[f64; 2]; 2] {
+    [1.0, -1.0].map(|sign| [0, 1].map(|k| place[k] + sign * tilts[k]))
+}
+
+/// Place and tilts of an axis with these ends.
+fn between(one: [f64; 2], other: [f64; 2]) -> [f64; 4] {
+    let half = |sign: f64| [0, 1].map(|k| 0.5 * (one[k] + sign * other[k]));
+    let ([x, y], [p, r]) = (half(1.0), half(-1.0));
+    [x, y, p, r]
 }
 
 fn radius(vector: &[f64]) -> f64 {
@@ -218,13 +309,14 @@ mod tests {
     use super::{Nest, Nested};
     use crate::tolerance::model::ZoneRule;
 
-    const ALL: [(Nest, f64); 4] = [(Nest::Face, 0.3), (Nest::Face, 1.0), (Nest::Axis, 0.3), (Nest::Axis, 1.0)];
+    const ALL: [(Nest, f64); 5] =
+        [(Nest::Face, 0.3), (Nest::Face, 1.0), (Nest::Ends, 1.0), (Nest::Axis, 0.3), (Nest::Axis, 1.0)];
 
     #[test]
     fn corners_are_the_farthest_points() {
         for (of, tilts) in ALL {
             let zone = Nested { of, rule: ZoneRule::SigmaZone, tilts };
-            let corners = zone.corners();
+            let corners = zone.corners(24);
             assert!(corners.iter().all(|corner| (zone.reach(corner) - 1.0).abs() < 1e-12), "{zone:?}");
             for slopes in [[1.0, 0.5, 2.0, 0.0], [0.1, 3.0, 0.0, 0.4], [2.0, 0.0, 0.1, 0.1]] {
                 let slopes = &slopes[..zone.variables()];

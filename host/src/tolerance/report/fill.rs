@@ -77,12 +77,12 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
     let factor = measure.quantity.factor();
     let scaled = |value: f64| value * factor;
     let (rss, moments, tails) = (&theory.sums_of_squares[i], theory.moments[i], &theory.tails[i]);
-    let described = moments.described;
+    let by_slopes = moments.by_slopes();
     let total: f64 = theory.indices[i].as_ref().map_or(0.0, |indices| indices.total.iter().sum());
+    let by_indices = total > 0.0 && (!by_slopes || moments.curved > COUNTS);
     let percent = |k: usize| match &theory.indices[i] {
-        _ if described => Some(rss.shares[k] * 100.0),
-        Some(indices) if total > 0.0 => Some(indices.total[k] / total * 100.0),
-        _ => None,
+        Some(indices) if by_indices => Some(indices.total[k] / total * 100.0),
+        _ => by_slopes.then(|| rss.shares[k] * 100.0),
     };
     let moved: Vec<_> = model.offsets().into_iter().map(|at| per(model.function.quantity(at))).collect();
     let contributor = |(k, contributor): (usize, &Contributor)| {
@@ -152,9 +152,11 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
             balanced_tolerance: loss.tolerance().map(scaled),
         }),
         estimates,
-        worst_case: theory.worst_cases[i].searched.unwrap_or(theory.worst_cases[i].linear).map(scaled),
-        worst_case_vertices: theory.worst_cases[i].vertices.map(|range| range.map(scaled)),
-        rss: described.then(|| Rss {
+        worst_case: theory.worst_cases[i].range.map(scaled),
+        worst_case_linear: Some(theory.worst_cases[i].linear.map(scaled))
+            .filter(|ends| ends.iter().all(|x| x.is_finite())),
+        by_indices,
+        rss: by_slopes.then(|| Rss {
             middle: scaled(rss.middle),
             tolerance: scaled(rss.tolerance),
             bender: scaled(rss.modified.bender),
@@ -162,7 +164,7 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
             modified: scaled(rss.modified.by_count),
             sd: scaled(rss.deviation),
         }),
-        second_order: described.then(|| SecondOrder {
+        second_order: moments.described.then(|| SecondOrder {
             mean: scaled(moments.mean),
             mean_shift: scaled(moments.shift),
             sd: scaled(moments.deviation),
@@ -179,8 +181,10 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
     }
 }
 
-/// Share of the curvature in a variance that the reader is told of.
+/// Share of the curvature in a variance from which on a note says so.
 const NOTED: f64 = 1e-3;
+/// The same from which on contributors have total Sobol' indices instead of shares in the variance of first order.
+const COUNTS: f64 = 1e-2;
 
 fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
     let mut notes = Vec::new();
@@ -198,7 +202,14 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
         if !moments.described {
             notes.push(format!(
                 "{} has a kink or a fold where it varies, as a radius or an angle has at 0: slopes do not describe it; its \
-                 worst case is by a search, its contributors are by Sobol' indices",
+                 contributors are by Sobol' indices",
+                measure.name
+            ));
+        } else if !moments.by_slopes() {
+            let percent = moments.curved * 100.0;
+            notes.push(format!(
+                "{} is far from linear: {percent:.2} % of its variance is curvature; slopes do not describe it, its \
+                 contributors are by Sobol' indices",
                 measure.name
             ));
         } else if moments.curved >= NOTED {
@@ -219,7 +230,18 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
     }
     for (measure, found) in model.measures.iter().zip(&analysis.joint.measures) {
         if found.undefined > 0 {
-            notes.push(format!("{} could not be computed in {} units", measure.name, found.undefined));
+            notes.push(format!(
+                "{} could not be computed in {} units, which count as outside of its limits",
+                measure.name, found.undefined
+            ));
+        }
+    }
+    for (measure, worst) in model.measures.iter().zip(&analysis.theory.worst_cases) {
+        if worst.undefined {
+            notes.push(format!(
+                "{} cannot be computed everywhere within the limits: its worst case is that of all that can",
+                measure.name
+            ));
         }
     }
     notes

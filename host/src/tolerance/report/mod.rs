@@ -93,10 +93,10 @@ pub struct MeasureReport {
     pub loss: Option<LossReport>,
     /// The same numbers with standard errors and 95 % intervals.
     pub estimates: Estimates,
-    /// Worst case by slopes; by a search where these do not describe the measure.
+    /// Worst case: least and greatest value within all limits and zones, by corners and a search; exact for a linear measure.
     pub worst_case: [f64; 2],
-    /// Worst case over all combinations of limits, where these are few.
-    pub worst_case_vertices: Option<[f64; 2]>,
+    /// The same by slopes in the middle of all limits: no bound for a measure that is not linear; none where there are no slopes.
+    pub worst_case_linear: Option<[f64; 2]>,
     /// Root sum of squares: value at the middle of the limits, half the tolerance, standard deviation of first order; none
     /// where slopes do not describe the measure.
     pub rss: Option<Rss>,
@@ -104,6 +104,8 @@ pub struct MeasureReport {
     pub second_order: Option<SecondOrder>,
     /// Moments by quadrature, where the measure is not linear and its variables are few: as good as exact.
     pub quadrature: Option<Quadrature>,
+    /// Whether the contributors' percentages are total Sobol' indices, scaled to a sum of 100 %.
+    pub by_indices: bool,
     /// By contributor, largest share first.
     pub contributors: Vec<Share>,
 }
@@ -136,7 +138,7 @@ pub struct LossReport {
     pub target: f64,
     /// k: cost over the square of the measure's unit.
     pub coefficient: f64,
-    /// Mean loss of a unit.
+    /// Mean loss of a unit; where a repair has a cost, none costs more than that.
     pub mean: Estimate,
     /// Signal-to-noise ratio, dB.
     pub signal_to_noise: Option<f64>,
@@ -202,8 +204,7 @@ pub struct Quadrature {
 pub struct Share {
     /// Name.
     pub name: String,
-    /// Share in the variance of first order, in %; where slopes do not describe the measure, of the total Sobol' indices, if
-    /// there are any.
+    /// Share in the variance of first order, in %; where curvature counts, of the total Sobol' indices, if there are any.
     pub percent: Option<f64>,
     /// ∂measure/∂tolerance: in the measure's unit, per `per` that a scalar moves.
     pub slope: Option<f64>,

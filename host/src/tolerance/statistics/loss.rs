@@ -1,7 +1,7 @@
 //! Taguchi's loss: what a unit costs its user that works, but is off its target.
 //!
 //! The loss is k·(y − T)² with k = A₀/Δ₀²: a deviation of Δ₀ costs A₀. Over the production it is k·(σ² + (mean − T)²) on average,
-//! whether the measure has limits or not. (Taguchi, *Introduction to quality engineering*, 1986.)
+//! whether the measure has limits or not. A unit that can be put right for less than its loss costs no more than that. (Taguchi, *Introduction to quality engineering*, 1986.)
 
 /// The loss of a measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Loss {
     pub at: f64,
     /// T (SI).
     pub target: f64,
-    /// What it costs the maker to put a unit right, if that is said.
+    /// What it costs to put a unit right, if that is said: no unit costs more.
     pub repair: Option<f64>,
 }
 
@@ -22,7 +22,13 @@ impl Loss {
         self.cost / (self.at * self.at)
     }
 
-    /// The mean loss of a production with this mean and standard deviation (SI).
+    /// The loss of a unit with this value (SI): at most the cost of a repair.
+    pub fn of(&self, value: f64) -> f64 {
+        let loss = self.coefficient() * (value - self.target) * (value - self.target);
+        self.repair.map_or(loss, |repair| loss.min(repair))
+    }
+
+    /// The mean loss of a production with this mean and standard deviation (SI) in which no unit is put right.
     pub fn mean(&self, mean: f64, deviation: f64) -> f64 {
         self.coefficient() * self.square(mean, deviation)
     }

@@ -1,8 +1,9 @@
 //! Designed experiments: a few units at chosen values instead of many random ones.
 //!
 //! Factors are variables at two or three levels: scalars at their limits (and the middle between), variables of a zone
-//! at ±1/3 (and 0), of a disc at ±1/√2, so that all corners of the design lie on the zone's boundary. Orthogonal arrays are Taguchi's: L4, L8, …
-//! of strength 2 for two levels, L9, L27, … for three; columns are the linear functions of the run's digits.
+//! at ±1/3 (and 0), of a disc at ±1/√2, so that all corners of the design lie on the zone's boundary; place and tilts of an axis at
+//! ±1/(2√2), so that none leaves it. Tilts that another tolerance narrows further leave the rest to the place. Orthogonal arrays are
+//! Taguchi's: L4, L8, … of strength 2 for two levels, L9, L27, … for three; columns are the linear functions of the run's digits.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -77,8 +78,7 @@ pub fn experiment(model: &Model, design: Design) -> Result<Experiment, DesignErr
                 for k in 0..count {
                     let half = match zone {
                         Variation::Disc(_) => FRAC_1_SQRT_2,
-                        Variation::Nested(zone) if k >= zone.places() => 0.5 * zone.tilts,
-                        Variation::Nested(zone) => (1.0 - zone.tilts) / libm::sqrt(zone.places() as f64),
+                        Variation::Nested(zone) => zone.factorial()[usize::from(k >= zone.places())],
                         _ => 1.0 / count as f64,
                     };
                     factors.push((centre.len(), half, contributor.name.clone()));

@@ -33,28 +33,28 @@ pub struct Indices {
 
 /// What the units of a piece add up to.
 struct Sums {
-    /// Σ values and Σ squares of both samples, of every measure.
-    whole: Vec<[f64; 2]>,
-    /// Numerators of the first-order and the total index, of every contributor to every measure.
-    parts: Vec<Vec<[f64; 2]>>,
+    /// Σ values and Σ squares of both samples and the number of both, of every measure.
+    whole: Vec<[f64; 3]>,
+    /// Numerators of the first-order and the total index and the number of units, of every contributor to every measure.
+    parts: Vec<Vec<[f64; 3]>>,
 }
 
 impl Sums {
     fn zero(measures: usize, contributors: usize) -> Self {
-        Self { whole: vec![[0.0; 2]; measures], parts: vec![vec![[0.0; 2]; contributors]; measures] }
+        Self { whole: vec![[0.0; 3]; measures], parts: vec![vec![[0.0; 3]; contributors]; measures] }
     }
 
     fn add(&mut self, piece: &Self) {
         let whole = self.whole.iter_mut().zip(&piece.whole);
         let parts = self.parts.iter_mut().flatten().zip(piece.parts.iter().flatten());
         for (sum, more) in whole.chain(parts) {
-            sum[0] += more[0];
-            sum[1] += more[1];
+            sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         }
     }
 }
 
-/// Of every measure, from 4096 · (contributors + 2) evaluations. The contributors have to be independent.
+/// Of every measure, from 4096 · (contributors + 2) evaluations. The contributors have to be independent. Units in which the
+/// measure cannot be computed do not count.
 pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Indices> {
     let (dimensions, contributors, measures) = (draw.dimensions(), model.contributors.len(), model.measures.len());
     let method = if 2 * dimensions > MOST_DIMENSIONS { Method::PseudoRandom } else { Method::ScrambledSobol };
@@ -65,7 +65,7 @@ pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Indices> {
         draw.transform(&mut scores);
         let mut values = vec![Lanes::ZERO; measures];
         model.function.evaluate(&scores, &mut values);
-        values
+        values.iter().map(|value| value.map(|value| if value.is_finite() { value } else { 0.0 })).collect::<Vec<_>>()
     };
     // Pieces do not depend on the number of threads, so that neither does the sum.
     let pieces = (0..UNITS).step_by(PIECE as usize).collect::<Vec<_>>().into_par_iter().map(|start| {
@@ -83,9 +83,10 @@ pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Indices> {
                 values.iter_mut().zip(&origin).for_each(|(value, origin)| *value -= *origin);
             }
             for (sums, (a, b)) in sums.whole.iter_mut().zip(values[0].iter().zip(&values[1])) {
-                for (a, b) in a.0.iter().zip(b.0) {
-                    sums[0] += a + b;
-                    sums[1] += a * a + b * b;
+                for value in a.0.into_iter().zip(b.0).flat_map(|(a, b)| [a, b]).filter(|value| value.is_finite()) {
+                    sums[0] += value;
+                    sums[1] += value * value;
+                    sums[2] += 1.0;
                 }
             }
             let mut mixed = samples[0].clone();
@@ -99,8 +100,11 @@ pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Indices> {
                     for lane in 0..LANES {
                         let [a, b, mixed] = [0, 1, 2].map(|k| values[k][measure].0[lane]);
                         let mixed = mixed - origin[measure].0[lane];
-                        part[0] += b * (mixed - a);
-                        part[1] += (mixed - a) * (mixed - a);
+                        if a.is_finite() && b.is_finite() && mixed.is_finite() {
+                            part[0] += b * (mixed - a);
+                            part[1] += (mixed - a) * (mixed - a);
+                            part[2] += 1.0;
+                        }
                     }
                 }
             }
@@ -109,14 +113,13 @@ pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Indices> {
     });
     let mut sums = Sums::zero(measures, contributors);
     pieces.collect::<Vec<_>>().iter().for_each(|piece| sums.add(piece));
-    let n = UNITS as f64;
-    let of = |(sums, parts): (&[f64; 2], &Vec<[f64; 2]>)| {
-        let mean = sums[0] / (2.0 * n);
-        let variance = sums[1] / (2.0 * n) - mean * mean;
-        let share = |part: f64| if variance > 0.0 { part / n / variance } else { 0.0 };
+    let of = |([sum, squares, count], parts): (&[f64; 3], &Vec<[f64; 3]>)| {
+        let mean = sum / count;
+        let variance = squares / count - mean * mean;
+        let share = |part: f64, units: f64| if variance > 0.0 && units > 0.0 { part / units / variance } else { 0.0 };
         Indices {
-            first: parts.iter().map(|part| share(part[0])).collect(),
-            total: parts.iter().map(|part| share(0.5 * part[1])).collect(),
+            first: parts.iter().map(|[first, _, units]| share(*first, *units)).collect(),
+            total: parts.iter().map(|[_, total, units]| share(0.5 * total, *units)).collect(),
         }
     };
     sums.whole.iter().zip(&sums.parts).map(of).collect()

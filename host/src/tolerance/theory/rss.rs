@@ -8,7 +8,8 @@ use crate::tolerance::model::{Model, Variation};
 pub struct RootSumSquare {
     /// Value at the middle of all limits.
     pub middle: f64,
-    /// √Σ(slope · half the tolerance)²; of a plane, three standard deviations of its variables are half the tolerance.
+    /// √ΣΣ ρᵢⱼ·pᵢ·pⱼ of the parts p = slope · half the tolerance, with the model's correlations ρ; of a plane, three standard
+    /// deviations of its variables are half the tolerance.
     pub tolerance: f64,
     /// The same by the factors that practice found wanting: parts drift and are not normal.
     pub modified: Modified,
@@ -62,16 +63,18 @@ pub fn root_sum_square(model: &Model, middle: &Expansion, mean: &Expansion, devi
         })
         .collect();
     let measure = |i: usize| {
-        let square = |(slope, half): (&f64, &f64)| slope * half * (slope * half);
-        let moves: Vec<f64> =
-            mean.slopes[i].iter().zip(deviations).map(|(slope, deviation)| slope * deviation).collect();
-        let parts: Vec<f64> = correlation.times(&moves).iter().zip(&moves).map(|(with, own)| with * own).collect();
+        let parts = |slopes: &[f64], spreads: &[f64]| -> Vec<f64> {
+            let moves: Vec<f64> = slopes.iter().zip(spreads).map(|(slope, spread)| slope * spread).collect();
+            correlation.times(&moves).iter().zip(&moves).map(|(with, own)| with * own).collect()
+        };
+        let square: f64 = parts(&middle.slopes[i], &halves).iter().sum();
+        let parts = parts(&mean.slopes[i], deviations);
         let variance: f64 = parts.iter().sum();
         let share = |(contributor, at): (&crate::tolerance::model::Contributor, &usize)| {
             let own: f64 = parts[*at..at + contributor.variation.variables()].iter().sum();
             if variance > 0.0 { own / variance } else { 0.0 }
         };
-        let tolerance = libm::sqrt(middle.slopes[i].iter().zip(&halves).map(square).sum());
+        let tolerance = libm::sqrt(square.max(0.0));
         let reaches = reaches(model, &middle.slopes[i]).into_iter().map(|[down, up]| 0.5 * (down + up));
         let reaches: Vec<f64> = reaches.filter(|reach| *reach > 0.0).collect();
         RootSumSquare {

@@ -65,8 +65,8 @@ fn agrees<F: Friction<f64>, I: Integrator>(friction: F, step: f64) {
     let (mut a, mut b) = (slide.at_rest::<6>(Pose::nominal()), flat.at_rest::<3>(PlanarPose::nominal()));
     // An interpreter that looks for undefined behaviour has no time for a whole motion.
     for _ in 0..if cfg!(miri) { 2 } else { 2000 } {
-        slide.step(&mut a);
-        flat.step(&mut b);
+        let _ = slide.step(&mut a);
+        let _ = flat.step(&mut b);
         let (v, w) = (a.motion.velocity, b.motion.velocity);
         // About the slide's y a turn goes from z to x.
         let miss = [v.x - w.x, v.z - w.y, v[4] + w.z, a.motion.pose.orientation.v.y + b.motion.pose.half_turn[1]];
@@ -121,7 +121,7 @@ fn hangs_as_deep_as_its_weight_presses() {
     let kernel = Kernel::<_, _, ImplicitEuler<4>>::new(pendulum(Vector2::new(0.0, LEVER), Frictionless), 1e-3).unwrap();
     let mut state = kernel.at_rest::<3>(PlanarPose::nominal());
     for _ in 0..if cfg!(miri) { 2 } else { 2000 } {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
     }
     let depth = libm::pow(MASS * GRAVITY / STIFFNESS, 2.0 / 3.0);
     let height = state.motion.pose.displacement.y;
@@ -137,14 +137,14 @@ fn swings_with_the_period_of_a_physical_pendulum() {
     let mut state = kernel.at_rest::<3>(PlanarPose::nominal());
     // Settled on its pin, then pushed.
     for _ in 0..5000 {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
     }
     let rate = 0.05;
     state.motion.velocity = SVector::<f64, 3>::new(rate * LEVER, 0.0, rate);
     let (from, mut crossings, mut last) = (kernel.time(state.steps), 0, 0.0);
     let mut before = state.motion.pose.half_turn[1];
     for _ in 0..30_000 {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
         let angle = state.motion.pose.half_turn[1];
         if before < 0.0 && angle >= 0.0 {
             crossings += 1;
@@ -202,7 +202,7 @@ fn moves_as_its_definition_says() {
     let mut other = [0.0, 0.0, 0.0, 0.01, 0.02, 1.5];
     let (mut touched, h) = (0, 2e-7);
     for _ in 0..10_000 {
-        kernel.step(&mut state);
+        let _ = kernel.step(&mut state);
         for _ in 0..10 {
             let at = |k: [f64; 6], by: f64| core::array::from_fn(|i| other[i] + by * k[i]);
             let k1 = rates(friction, stick_band, other);

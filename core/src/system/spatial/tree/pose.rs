@@ -90,7 +90,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
         next
     }
 
-    /// `pose` with its turns one Newton step nearer to unit length.
+    /// `pose` with its turns nearer to unit length.
     #[inline(always)]
     pub(super) fn at_unit_length(&self, pose: &[[S; 2]; D]) -> [[S; 2]; D] {
         let mut next = *pose;

@@ -5,7 +5,7 @@ use crate::{
     model::{FIXED, Model, NAMES, OUTPUTS, START, STEP, State, TOKEN, VALUES},
     numbers::Numbers,
 };
-use slipfit_core::{ParameterError, clearance::GapStatistics, kernel::Report};
+use slipfit_core::{ParameterError, clearance::GapStatistics, kernel::Report, table::layout::checksum};
 
 /// Why a call is refused, in words for the importer's log.
 pub struct Trouble(pub String);
@@ -228,7 +228,7 @@ impl Situation {
     }
 }
 
-/// The situation as bytes, in little-endian order whatever the machine.
+/// The situation as bytes, in little-endian order whatever the machine, and their checksum, CRC-32/ISO-HDLC.
 pub fn serialised(situation: &Situation) -> Vec<u8> {
     let Situation { mode, start, time, steps, values, state, report, .. } = situation;
     let mut bytes = Vec::new();
@@ -247,6 +247,7 @@ pub fn serialised(situation: &Situation) -> Vec<u8> {
     state.motion.velocity.each(&mut number);
     state.motion.acceleration.each(&mut number);
     state.motion.internal.each(&mut number);
+    bytes.extend(checksum(&bytes).to_le_bytes());
     bytes
 }
 
@@ -256,7 +257,10 @@ pub fn deserialised(bytes: &[u8]) -> Result<Situation, Trouble> {
     if bytes.len() != serialised(&situation).len() {
         return Err(format!("a state of {} bytes is not one of this unit", bytes.len()).into());
     }
-    let mut rest = bytes;
+    let body = bytes.split_last_chunk().filter(|(body, found)| checksum(body).to_le_bytes() == **found);
+    let Some((mut rest, _)) = body else {
+        return Err("the state is damaged: its checksum does not match".into());
+    };
     let mut word = |count: usize| {
         let (word, after) = rest.split_at(count);
         rest = after;

@@ -71,7 +71,7 @@ const WHOLE: &[(&str, &str)] = &[
 pub const DISTRIBUTIONS: &[(&str, &str)] = &[
     (
         "normal",
-        "Normal. Half the tolerance is `sigma` standard deviations, and some units lie outside the limits. The default.",
+        "Normal. Half the tolerance is `sigma` standard deviations, unless `deviation` or `cpk` says otherwise, and some units lie outside the limits. The default.",
     ),
     ("truncated-normal", "The same without the units outside the limits."),
     ("uniform", "Every value between the limits is equally probable."),
@@ -80,7 +80,7 @@ pub const DISTRIBUTIONS: &[(&str, &str)] = &[
     ("beta", "A beta distribution over the limits, with two `shapes`."),
     (
         "skewed",
-        "A shifted lognormal distribution with the mean and the standard deviation of `normal` and a stated `skewness`.",
+        "A shifted lognormal distribution with the mean and the standard deviation of `normal`, with the same keys, and a stated `skewness`.",
     ),
     ("lognormal", "Lognormal with a `mean` and a standard `deviation`, above a `location`."),
     ("weibull", "Weibull with a `shape` and a `scale`, above a `location`."),

@@ -16,6 +16,12 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ),
     ("tolerance.sigma", "How many standard deviations half the tolerance of a size is. Default: 3."),
     (
+        "tolerance.datums",
+        "How a frame of several datums turns where a secondary or tertiary datum does not fit it in place and direction. \
+         `least-squares`: by a fit of both. `iso-5459`: the secondary datum by its orientation, the tertiary one by its \
+         location alone. Default: `least-squares`.",
+    ),
+    (
         "tolerance.correlation",
         "Whether the coefficients of `[[correlation]]` are of values or of ranks. Default: `pearson`.",
     ),
@@ -39,8 +45,16 @@ pub const PRODUCT: &[(&str, &str)] = &[
         "Limits around the nominal size, as ± or as [lower, upper] deviations. Beside a `value` also a class: f, m, c, v of \
          ISO 2768-1, or of ISO 286, such as \"H7\". Default, where there is a `value`: the class in `tolerance.general`.",
     ),
-    ("dimension.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`."),
-    ("part.*.offset.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`."),
+    (
+        "dimension.sigma",
+        "How many standard deviations half the tolerance is, with `normal`, `truncated-normal` or `skewed`. Default: \
+         `tolerance.sigma`.",
+    ),
+    (
+        "part.*.offset.sigma",
+        "How many standard deviations half the tolerance is, with `normal`, `truncated-normal` or `skewed`. Default: \
+         `tolerance.sigma`.",
+    ),
     (
         "dimension.distribution",
         "How the number varies: a name, or a table with the name as its `kind`. Default: `normal`.",
@@ -51,16 +65,15 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ),
     (
         "dimension.side",
-        "Of an angle: length of its shorter side, by which ISO 2768-1 tolerates it. Required where a class of ISO 2768-1 tolerates an angle.",
+        "Of an angle: length of its shorter side, by which ISO 2768-1 tolerates it. Required where a class of ISO 2768-1 tolerates an angle, else an error.",
     ),
-    ("part.*.offset.side", "Of no use here: only angles have it."),
     (
         "dimension.edge",
-        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Default: an ordinary length.",
+        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Only where a class of ISO 2768-1 tolerates a length. Default: an ordinary length.",
     ),
     (
         "part.*.offset.edge",
-        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Default: an ordinary length.",
+        "`broken` marks an external radius or a chamfer, for which ISO 2768-1 has a table of its own. Only where a class of ISO 2768-1 tolerates a length. Default: an ordinary length.",
     ),
     (
         "dimension.cost",
@@ -86,12 +99,33 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ),
     ("*.distribution.scale", "Of `weibull` and the two Gumbel distributions: scale parameter."),
     ("*.distribution.location", "Of `lognormal` and `weibull`: least deviation from `value`. Default: 0."),
-    ("*.distribution.mean", "Of `lognormal`: mean deviation from `value`."),
-    ("*.distribution.deviation", "Of `lognormal`: standard deviation."),
+    (
+        "*.distribution.mean",
+        "Of `normal`, `truncated-normal`, `skewed` and `lognormal`: deviation of the mean from `value`. Required by \
+         `lognormal`. Default: the middle of the limits.",
+    ),
+    (
+        "*.distribution.shift",
+        "Of `normal`, `truncated-normal` and `skewed`, instead of `mean`: deviation of the mean from the middle of the \
+         limits. Default: 0.",
+    ),
+    (
+        "*.distribution.deviation",
+        "Of `normal`, `truncated-normal`, `skewed` and `lognormal`: standard deviation. Required by `lognormal`. Default: what \
+         `sigma` says.",
+    ),
+    (
+        "*.distribution.cpk",
+        "Of `normal`, `truncated-normal` and `skewed`, instead of `deviation`: Cpk of the process, the distance of the mean \
+         from the nearer limit over three standard deviations. Default: what `sigma` says.",
+    ),
     ("*.distribution.of", "Of `mixture`: its components, such as two machines that make the same part."),
     ("*.distribution.of.weight", "Share of the component, relative to the weights of the others. Default: 1."),
     ("*.distribution.of.tolerance", "Limits of the component's deviation."),
-    ("*.distribution.of.sigma", "How many standard deviations half the tolerance is. Default: `tolerance.sigma`."),
+    (
+        "*.distribution.of.sigma",
+        "How many standard deviations half the tolerance is; 1 or more of a normal distribution. Default: `tolerance.sigma`.",
+    ),
     (
         "*.distribution.of.distribution",
         "How the component varies: a name, or a table with the name as its `kind`. Default: `normal`.",
@@ -102,7 +136,7 @@ pub const PRODUCT: &[(&str, &str)] = &[
     (
         "*.cost.reciprocal",
         "B of the cost `fixed` + B·(`at`/t)^`power`. t is half the distance of the limits, or the width of a zone. Each \
-         process has either `reciprocal` or `exponential`.",
+         process has `reciprocal`, `exponential`, or `fixed` alone: a price for any tolerance that it holds.",
     ),
     ("*.cost.exponential", "B of the cost `fixed` + B·exp(−t/`at`), with t as for `reciprocal`."),
     (
@@ -215,7 +249,8 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ("part.*.vectorial.*.*.tolerance", "Limits of the deviation from the nominal value, in its unit."),
     (
         "part.*.vectorial.*.*.sigma",
-        "How many standard deviations half the tolerance is. Default: `tolerance.sigma`; in `[vary]` 3.",
+        "How many standard deviations half the tolerance is; 1 or more of a normal distribution. Default: `tolerance.sigma`; \
+         in `[vary]` 3.",
     ),
     (
         "part.*.vectorial.*.*.distribution",

@@ -223,6 +223,9 @@ fn statistics(
             })
         }),
         loss: loss.map(|loss| {
+            if loss.repair.is_some() {
+                return estimate(&|plain| plain.loss(&loss)[0], &|value| with_error(value, at.loss(&loss)[1]));
+            }
             estimate(&|plain| loss.mean(plain.mean, plain.deviation), &|value| {
                 let square = shape.of_square(at.deviation, at.mean - loss.target, units);
                 with_error(value, loss.coefficient() * square)

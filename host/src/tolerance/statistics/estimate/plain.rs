@@ -1,12 +1,15 @@
 //! Statistics of tallies without their errors.
 
+use std::collections::BTreeMap;
+
 use crate::tolerance::{
     counting::{
         study::Tally,
-        tally::{BINS, BINS_PER_DEVIATION, Frame, MeasureCounts, Sums},
+        tally::{BINS, BINS_PER_DEVIATION, Frame, MeasureCounts, NEAR, Sums, far_ends},
     },
     statistics::{
         interval,
+        loss::Loss,
         shape::{Shape, weighted},
     },
 };
@@ -33,6 +36,30 @@ pub(super) struct PlainMeasure<'a> {
     pub extremes: [f64; 2],
     pub frame: Frame,
     pub parts: Vec<&'a MeasureCounts>,
+    /// Bins with units in them, ascending.
+    cells: Vec<Cell>,
+}
+
+/// A bin with units in it.
+#[derive(Clone, Copy)]
+struct Cell {
+    /// Both ends (standard deviations of the frame).
+    ends: [f64; 2],
+    units: u64,
+}
+
+/// The bins of all `parts` that have units in them.
+fn cells(parts: &[&MeasureCounts]) -> Vec<Cell> {
+    let mut far = BTreeMap::new();
+    for (bin, units) in parts.iter().flat_map(|part| &part.far) {
+        *far.entry(*bin).or_insert(0) += units;
+    }
+    let beyond = |(bin, units): (&i32, &u64)| Cell { ends: far_ends(*bin), units: *units };
+    let border = |k: usize| ((k as f64 - 0.5 - (BINS / 2) as f64) / BINS_PER_DEVIATION).clamp(-NEAR, NEAR);
+    let near = (0..BINS)
+        .map(|k| Cell { ends: [border(k), border(k + 1)], units: parts.iter().map(|part| part.bins[k]).sum() });
+    let all = far.range(..0).map(beyond).chain(near).chain(far.range(0..).map(beyond));
+    all.filter(|cell| cell.units > 0).collect()
 }
 
 impl<'a> Plain<'a> {
@@ -66,6 +93,7 @@ impl<'a> Plain<'a> {
                 kurtosis: shape(fourth / (variance * variance)),
                 extremes,
                 frame: *frame,
+                cells: cells(&parts),
                 parts,
             }
         };
@@ -105,23 +133,23 @@ impl PlainMeasure<'_> {
         self.parts.iter().map(|part| part.bins[k]).sum()
     }
 
-    /// The shape of the sample, from its bins. What lies beyond these is taken for halfway to the extreme, but for that itself.
-    pub fn shape(&self) -> Shape {
+    /// Mean of a loss that a repair limits, and its standard error, from the bins.
+    pub fn loss(&self, loss: &Loss) -> [f64; 2] {
         let n = self.units as f64;
         let Frame { origin, scale } = self.frame;
-        let extremes = self.extremes.map(|extreme| (extreme - origin) / scale);
-        let value = |k: usize| (k as f64 - (BINS / 2) as f64) / BINS_PER_DEVIATION;
-        let of_bin = |k: usize| {
-            let count = self.bin(k) as f64;
-            let beyond = match k {
-                0 => extremes[0],
-                k if k + 1 == BINS => extremes[1],
-                _ => return [(count / n, value(k)), (0.0, 0.0)],
-            };
-            let one = count.min(1.0);
-            [((count - one) / n, 0.5 * (value(k) + beyond)), (one / n, beyond)]
+        let of = |Cell { ends: [low, high], units }: &Cell| {
+            (*units as f64 / n, loss.of(origin + scale * 0.5 * (low + high)))
         };
-        let (_, moments) = weighted((0..BINS).flat_map(of_bin).filter(|(weight, _)| *weight > 0.0));
+        let mean: f64 = self.cells.iter().map(of).map(|(share, loss)| share * loss).sum();
+        let square: f64 = self.cells.iter().map(of).map(|(share, loss)| share * (loss - mean) * (loss - mean)).sum();
+        [mean, libm::sqrt(square / n)]
+    }
+
+    /// The shape of the sample, from its bins.
+    pub fn shape(&self) -> Shape {
+        let n = self.units as f64;
+        let values = self.cells.iter().map(|Cell { ends: [low, high], units }| (*units as f64 / n, 0.5 * (low + high)));
+        let (_, moments) = weighted(values);
         Shape::of_moments(moments)
     }
 
@@ -149,17 +177,22 @@ impl PlainMeasure<'_> {
     /// The bin of the `rank`-th value (from 1 on): how many lie before it and in it, and its ends.
     fn ends(&self, rank: f64) -> ([u64; 2], [f64; 2]) {
         let mut before = 0;
-        let mut k = 0;
-        while k + 1 < BINS && ((before + self.bin(k)) as f64) < rank {
-            before += self.bin(k);
-            k += 1;
-        }
         let [least, greatest] = self.extremes;
         let Frame { origin, scale } = self.frame;
-        let border = |k: f64| origin + scale * (k - 0.5 - (BINS / 2) as f64) / BINS_PER_DEVIATION;
-        let low = if k == 0 { least } else { border(k as f64).clamp(least, greatest) };
-        let high = if k + 1 == BINS { greatest } else { border(k as f64 + 1.0).clamp(least, greatest) };
-        ([before, self.bin(k)], [low, high])
+        for (number, Cell { ends, units }) in self.cells.iter().enumerate() {
+            if number + 1 == self.cells.len() || (before + units) as f64 >= rank {
+                let mut ends = ends.map(|end| (origin + scale * end).max(least).min(greatest));
+                if number == 0 {
+                    ends[0] = least;
+                }
+                if number + 1 == self.cells.len() {
+                    ends[1] = greatest;
+                }
+                return ([before, *units], ends);
+            }
+            before += units;
+        }
+        ([0, 0], [f64::NAN; 2])
     }
 
     /// The point below which a value lies with `probability`, linear within its bin.
@@ -195,7 +228,11 @@ pub fn quantile(frames: &[Frame], tallies: &[Tally], i: usize, probability: f64)
 pub fn histogram(frames: &[Frame], tallies: &[Tally], i: usize, width: usize) -> Vec<(f64, f64)> {
     let plain = Plain::of(tallies, frames);
     let measure = &plain.measures[i];
-    let bins: Vec<u64> = (0..BINS).map(|k| measure.bin(k)).collect();
+    let mut bins: Vec<u64> = (0..BINS).map(|k| measure.bin(k)).collect();
+    // What lies beyond all bins is in the outermost.
+    for (bin, units) in measure.parts.iter().flat_map(|part| &part.far) {
+        bins[if *bin < 0 { 0 } else { BINS - 1 }] += units;
+    }
     let Frame { origin, scale } = measure.frame;
     let class = |(c, bins): (usize, &[u64])| {
         let middle = (c * width) as f64 + (bins.len() - 1) as f64 / 2.0 - (BINS / 2) as f64;

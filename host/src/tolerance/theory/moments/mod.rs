@@ -49,6 +49,16 @@ pub struct Moments {
     pub described: bool,
 }
 
+/// Share of the curvature in the variance up to which slopes describe a measure: RSS is then off by 5 % at most.
+pub const BENT: f64 = 0.1;
+
+impl Moments {
+    /// Whether slopes describe the measure: it has no kink and no fold, and hardly curves.
+    pub fn by_slopes(&self) -> bool {
+        self.described && self.curved <= BENT
+    }
+}
+
 /// Means and standard deviations of all variables.
 pub fn spreads(model: &Model) -> (Vec<f64>, Vec<f64>) {
     let spreads = model.contributors.iter().flat_map(|contributor| mean_and_deviation(&contributor.variation));

@@ -1,6 +1,9 @@
 //! The system timer's interrupt, and what it shares with the main loop.
 
-use core::{cell::RefCell, mem::MaybeUninit};
+use core::{
+    cell::RefCell,
+    mem::{MaybeUninit, swap},
+};
 
 use cortex_m::peripheral::SYST;
 use cortex_m_rt::exception;
@@ -20,7 +23,7 @@ const INSTRUCTION: u32 = 8;
 /// Ticks of a period of 1 ms.
 const PERIOD: u32 = 1_000_000 / TICK;
 
-/// What the interrupt works on, and what it has to say.
+/// What the interrupt is handed over before a motion and hands back after it, and what it has to say meanwhile.
 struct Shared {
     rig: Option<OnRig>,
     left: u32,
@@ -38,12 +41,26 @@ fn with<T>(work: impl FnOnce(&mut Shared) -> T) -> T {
 
 #[exception]
 fn SysTick() {
+    // The interrupt owns the rig for a motion, so that it steps it outside of any critical section: interrupts of higher priority,
+    // which is every other one, are not delayed by it. Critical sections are some instructions long but for the two swaps.
+    static mut OWN: Option<OnRig> = None;
+    if OWN.is_none() {
+        with(|shared| {
+            // After the last period it stays with the main loop.
+            if shared.left > 0 {
+                swap(OWN, &mut shared.rig);
+            }
+        });
+    }
+    let Some(rig) = OWN else { return };
+    // The timer counts down, once a period.
+    let record = rig.tick(|| PERIOD - SYST::get_current());
     with(|shared| {
-        let Some(rig) = shared.rig.as_mut().filter(|_| shared.left > 0) else { return };
-        // The timer counts down, once a period.
-        let record = rig.tick(|| PERIOD - SYST::get_current());
         shared.left -= 1;
         shared.lost += u32::from(shared.records.push_back(record).is_err());
+        if shared.left == 0 {
+            swap(OWN, &mut shared.rig);
+        }
     });
 }
 
@@ -55,8 +72,8 @@ impl Ticking for Board {
 
     fn ticks(&mut self, rig: OnRig, mut show: impl FnMut(&mut Self, &Record)) -> OnRig {
         with(|shared| {
-            shared.rig = Some(rig);
             shared.left = PERIODS;
+            shared.rig = Some(rig);
         });
         self.tick_every(PERIOD);
         loop {

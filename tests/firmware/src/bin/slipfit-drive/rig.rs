@@ -64,15 +64,22 @@ impl OnRig {
     }
 
     /// One period. `clock` counts what the control does, not the unit.
+    ///
+    /// # Panics
+    /// If the unit's motion leaves the finite range.
     pub fn tick(&mut self, clock: impl Fn() -> u32) -> Record {
         let sample = self.measured();
         self.control.tick(&sample, clock)
     }
 
     /// What the drive measures at the end of the next period.
+    ///
+    /// # Panics
+    /// If the unit's motion leaves the finite range.
     fn measured(&mut self) -> Sample {
         for _ in 0..PLANT_STEPS {
-            self.kernel.step(&mut self.state);
+            let report = self.kernel.step(&mut self.state);
+            assert!(report.residual.is_finite(), "the unit can be moved");
         }
         let (drive, time, speed) = (self.kernel.mechanism().drive(), self.control.time(), self.state.motion.velocity.z);
         let force = drive.force(time, speed) + self.noise * score::<f32>(self.random.next_u64());

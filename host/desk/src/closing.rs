@@ -1,0 +1,199 @@
+//! Whether a contact that is open at both ends of a step closes within it.
+//!
+//! Where no contact acts the error estimate of a step is zero however long it is, so that a step may begin before a bounce and end after
+//! it. Between the ends a gap is the cubic that has its values and rates there; what that leaves out is bounded by how far the bodies
+//! turn, since straight motion under constant forces is a parabola.
+
+/// A contact at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Approach {
+    /// Gap (m), negative where it penetrates.
+    pub gap: f64,
+    /// How fast it opens (m/s).
+    pub rate: f64,
+    /// Speed (m/s) of one body past the other at the contact.
+    pub speed: f64,
+}
+
+/// All contacts of a mechanism at one instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gaps {
+    /// Each contact, always in the same order.
+    pub approaches: Vec<Approach>,
+    /// The greatest angular velocity (rad/s) of a body.
+    pub spin: f64,
+}
+
+/// What is known of a step between its ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Between {
+    /// No open contact closes.
+    Apart,
+    /// One closes: a step of this share of the length ends within the contact. It is less than 1.
+    Closes(f64),
+}
+
+/// The greatest angle (rad) by which a body may turn in a step, where gaps are cubics.
+const MOST_TURN: f64 = 0.5;
+
+/// The greatest share of ∫|g'| by which a cubic falls below the values at its ends: that of s·(1 − s)².
+const DIP: f64 = 4.0 / 27.0;
+
+/// Where in its contact, from closing to the deepest point, a step ends that was made shorter.
+const WITHIN: f64 = 0.2;
+
+/// What happens between the ends `before` and `after` of a step of `length` (s). A contact not deeper than `depth` (m) does not count.
+pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between {
+    let turn = before.spin.max(after.spin) * length;
+    let mut share: Option<f64> = None;
+    for (from, to) in before.approaches.iter().zip(&after.approaches) {
+        if !(from.gap > 0.0 && to.gap > 0.0) {
+            continue;
+        }
+        let speed = from.speed.max(to.speed);
+        if turn > MOST_TURN && from.gap.min(to.gap) < speed * length {
+            share = share.into_iter().chain([0.9 * MOST_TURN / turn]).reduce(f64::min);
+            continue;
+        }
+        let rates = [from.rate * length, to.rate * length];
+        let reach = DIP * (rates[0].abs() + rates[1].abs());
+        // |g''''| ≤ spin³·speed; a cubic errs by at most length⁴/384 of it. Twice, since the speed is that of the ends.
+        let left_out = turn * turn * turn * length * speed / 192.0;
+        if from.gap.min(to.gap) > reach + left_out {
+            continue;
+        }
+        let cubic = Cubic::new([from.gap, to.gap], rates);
+        let found = match cubic.lowest() {
+            Some((at, lowest)) if lowest < -depth => Some(cubic.closing(at).min(0.9)),
+            // Too long to know: half of it is sixteen times as certain.
+            Some((_, lowest)) if lowest < left_out - depth && left_out > depth => Some(0.5),
+            _ => None,
+        };
+        share = found.into_iter().chain(share).reduce(f64::min);
+    }
+    share.map_or(Between::Apart, Between::Closes)
+}
+
+/// A gap over the share s of a step.
+struct Cubic {
+    /// Coefficients of 1, s, s² and s³.
+    coefficients: [f64; 4],
+}
+
+impl Cubic {
+    /// With these values and slopes at s = 0 and s = 1.
+    fn new([y0, y1]: [f64; 2], [d0, d1]: [f64; 2]) -> Self {
+        let rise = y1 - y0;
+        Self { coefficients: [y0, d0, 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise] }
+    }
+
+    fn at(&self, s: f64) -> f64 {
+        let [a, b, c, d] = self.coefficients;
+        a + s * (b + s * (c + s * d))
+    }
+
+    /// Where in (0, 1) it is least within, and how much it is there; `None` where it has no minimum there.
+    fn lowest(&self) -> Option<(f64, f64)> {
+        let [_, b, c, d] = self.coefficients;
+        // b + 2c·s + 3d·s² = 0 where the slope rises, without cancellation.
+        let under = c * c - 3.0 * b * d;
+        if under < 0.0 {
+            return None;
+        }
+        let root = libm::sqrt(under);
+        let s = if c >= 0.0 { -b / (c + root) } else { (root - c) / (3.0 * d) };
+        (s > 0.0 && s < 1.0).then(|| (s, self.at(s)))
+    }
+
+    /// A share shortly after it first becomes negative, which it is at `lowest` and not at 0.
+    fn closing(&self, lowest: f64) -> f64 {
+        let (mut open, mut closed) = (0.0, lowest);
+        for _ in 0..40 {
+            let middle = 0.5 * (open + closed);
+            if self.at(middle) > 0.0 { open = middle } else { closed = middle }
+        }
+        closed + WITHIN * (lowest - closed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two contacts over a step of `length` (s): one that is always far away, and one with this gap and rate over time.
+    fn step(length: f64, spin: f64, speed: f64, gap: impl Fn(f64) -> [f64; 2]) -> [Gaps; 2] {
+        [0.0, length].map(|t| {
+            let [gap, rate] = gap(t);
+            let far = Approach { gap: 10.0, rate: 0.0, speed };
+            Gaps { approaches: vec![far, Approach { gap, rate, speed }], spin }
+        })
+    }
+
+    #[test]
+    fn a_throw_against_a_ceiling_is_found_however_short_the_contact() {
+        // 50.968 mm high by itself, below a ceiling at 50.9 mm, and below one that it does not reach.
+        for (start, length) in [(0.0, 0.2), (0.08, 0.04), (0.09, 0.025)] {
+            let gap = |ceiling: f64| {
+                move |t: f64| {
+                    let (t, v) = (start + t, 1.0);
+                    [ceiling - v * t + 0.5 * 9.81 * t * t, -v + 9.81 * t]
+                }
+            };
+            let [before, after] = step(length, 0.0, 1.0, gap(0.0509));
+            let Between::Closes(share) = between(&before, &after, length, 1e-9) else { panic!("missed from {start}") };
+            let [there, _] = gap(0.0509)(share * length);
+            assert!(share < 1.0 && (-6.8e-5..0.0).contains(&there), "{start}: {share} {there}");
+            let [before, after] = step(length, 0.0, 1.0, gap(0.051));
+            assert_eq!(between(&before, &after, length, 1e-9), Between::Apart);
+        }
+    }
+
+    #[test]
+    fn grazing_counts_from_the_given_depth_on() {
+        for deep in [-1e-6, 1e-10, 1e-6] {
+            let [before, after] = step(0.02, 0.0, 0.1, |t| {
+                let s = t - 0.013;
+                [10.0 * s * s - deep, 20.0 * s]
+            });
+            let found = matches!(between(&before, &after, 0.02, 1e-9), Between::Closes(_));
+            assert_eq!(found, deep > 1e-9, "{deep}");
+        }
+    }
+
+    #[test]
+    fn a_point_that_turns_is_followed_until_the_cubic_is_good_enough() {
+        // A point on a radius of 0.1 m sweeps past a wall; halving as told, the contact is found or excluded.
+        let (radius, spin) = (0.1, 40.0);
+        for distance in [0.0999, 0.099_999, 0.100_001, 0.1001] {
+            let gap = |t: f64| {
+                let angle: f64 = spin * t - 1.3;
+                [distance - radius * libm::cos(angle), radius * spin * libm::sin(angle)]
+            };
+            let (mut t, mut length, mut closed) = (0.0, 0.065, false);
+            while t < 0.065 - 1e-12 {
+                let [before, after] = step(length, spin, radius * spin, |s| gap(t + s));
+                match between(&before, &after, length, 1e-9) {
+                    Between::Closes(share) => length *= share,
+                    Between::Apart => {
+                        t += length;
+                        closed |= gap(t)[0] < 0.0;
+                        length = (0.065 - t).max(0.0).min(0.02);
+                    }
+                }
+            }
+            assert_eq!(closed, distance < radius, "{distance}");
+        }
+    }
+
+    #[test]
+    fn a_cubic_has_its_minimum_where_it_is() {
+        for (y, d) in [([1.0, 1.0], [-4.0, 4.0]), ([1.0, 0.5], [-6.0, 0.1]), ([0.2, 3.0], [-1.0, 9.0])] {
+            let cubic = Cubic::new(y, d);
+            let least =
+                (1..1000).map(|k| f64::from(k) / 1000.0).map(|s| (cubic.at(s), s)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let (at, lowest) = cubic.lowest().unwrap();
+            assert!((at - least.unwrap().1).abs() < 2e-3 && lowest <= least.unwrap().0);
+        }
+        assert!(Cubic::new([0.0, 1.0], [1.0, 1.0]).lowest().is_none());
+    }
+}

@@ -1,0 +1,100 @@
+//! Whether the energy of a run is what its drives and gravity can have supplied.
+//!
+//! Contacts, friction and dampers take energy and springs return at most what was put into them. A motion with more energy than its
+//! start, the fall of its bodies and the work of its drives account for is an error of the computation.
+
+use nalgebra::{Rotation3, Vector3};
+
+use super::{Action, JointKind, Mechanism, columns::BodyMotion, source::joints_of_elements};
+use crate::dynamics::outcome::Instant;
+
+/// The energy account of a run (J).
+pub struct Energies<'a> {
+    mechanism: &'a Mechanism,
+    /// What was stored at the start: in motion and height, and in pressed contacts and turned springs.
+    start: f64,
+    /// Work of each drive.
+    work: Vec<f64>,
+    /// Time (s) and power (W) of each drive when it was seen last.
+    last: (f64, Vec<f64>),
+    /// The greatest of what there was to spend, and of what there was too much of it.
+    spent: f64,
+    excess: f64,
+}
+
+impl<'a> Energies<'a> {
+    /// Of a run of `mechanism` that starts with these `motions`; `pressed` are the gaps (m) of its elements there, as far as they are
+    /// contacts.
+    pub fn new(mechanism: &'a Mechanism, motions: &[BodyMotion], pressed: impl Iterator<Item = Option<f64>>) -> Self {
+        let contacts = pressed.zip(joints_of_elements(mechanism)).filter_map(|(gap, joint)| {
+            let ([stiffness, exponent], depth) = (joint?.laws.contact.spring(), -gap?);
+            // Of a pin the deepest of its four walls is known.
+            let walls = if matches!(joint?.kind, JointKind::Track { .. }) { 4.0 } else { 1.0 };
+            (depth > 0.0).then(|| walls * stiffness * libm::pow(depth, exponent + 1.0) / (exponent + 1.0))
+        });
+        let springs = mechanism.springs.iter().map(|spring| {
+            let angle = |port: Option<usize>| port.map_or(0.0, |body| motions[body].turn.z);
+            let turned = angle(spring.between[0]) - angle(spring.between[1]);
+            0.5 * spring.stiffness * turned * turned
+        });
+        let stored: f64 = contacts.chain(springs).sum();
+        let start = mechanism.energy(motions) + stored;
+        let count = mechanism.drives.len();
+        Self { mechanism, start, work: vec![0.0; count], last: (0.0, vec![0.0; count]), spent: stored, excess: 0.0 }
+    }
+
+    /// Takes note of the `motions` and the `drives` at time `t` (s). Times ascend.
+    pub fn observe(&mut self, t: f64, motions: &[BodyMotion], drives: &[Instant]) {
+        let length = t - self.last.0;
+        for (k, (named, at)) in self.mechanism.drives.iter().zip(drives).enumerate() {
+            let motion = &motions[named.body];
+            let speed = match named.action {
+                Action::Turns { .. } => at.vz,
+                Action::Pushes { axis } => {
+                    let point = named.drive.point_b;
+                    let turned = if point == Vector3::zeros() {
+                        point
+                    } else {
+                        Rotation3::from_scaled_axis(motion.turn) * point
+                    };
+                    (motion.velocity + motion.spin.cross(&turned)).dot(&Vector3::from(axis))
+                }
+            };
+            let power = at.force * speed;
+            self.work[k] += 0.5 * length * (power + self.last.1[k]);
+            self.last.1[k] = power;
+        }
+        self.last.0 = t;
+        let work: f64 = self.work.iter().sum();
+        let energy = self.mechanism.energy(motions);
+        let all = [self.start, work, energy].into_iter().fold(self.spent, |most, one| most.max(one.abs()));
+        self.spent = all;
+        // A NaN is no energy that anything supplied.
+        let excess = energy - self.start - work;
+        if excess > self.excess || excess.is_nan() {
+            self.excess = excess;
+        }
+    }
+
+    /// The energy that nothing supplied, as a share of the greatest energy that there was.
+    pub fn excess(&self) -> f64 {
+        if self.excess == 0.0 { 0.0 } else { self.excess / self.spent.max(f64::MIN_POSITIVE) }
+    }
+}
+
+impl Mechanism {
+    /// Energy (J) of motion, and of height against gravity from the drawn pose.
+    fn energy(&self, motions: &[BodyMotion]) -> f64 {
+        let gravity = Vector3::from(self.gravity);
+        let each = self.bodies.iter().zip(motions).map(|(body, motion)| {
+            // In a plane axes of body and frame share the one that counts.
+            let spin_b = match self.planar {
+                true => motion.spin,
+                false => Rotation3::from_scaled_axis(motion.turn).inverse() * motion.spin,
+            };
+            let turning: f64 = spin_b.iter().zip(body.inertia).map(|(spin, inertia)| inertia * spin * spin).sum();
+            0.5 * (body.mass * motion.velocity.norm_squared() + turning) - body.mass * gravity.dot(&motion.displacement)
+        });
+        each.sum()
+    }
+}

@@ -1,0 +1,316 @@
+//! Motions of one coordinate against closed forms and against an integration written here: classical Runge–Kutta in steps far shorter
+//! than any contact.
+
+use super::{Mechanism, MechanismRun, confirmed, finer, run};
+use crate::{
+    dynamics::outcome::Verdict,
+    scene::{Override, SceneFile, shipped},
+};
+
+fn scene(text: &str) -> Mechanism {
+    match SceneFile::parse("test", text, &[]) {
+        Ok(file) => file.mechanism.expect("a mechanism"),
+        Err(errors) => panic!("{errors:?}"),
+    }
+}
+
+fn simulated(mechanism: &Mechanism, every: f64) -> MechanismRun {
+    run(mechanism, &mechanism.gaps_at(&[0.0]).unwrap(), every).unwrap()
+}
+
+/// All values of a column.
+fn column(run: &MechanismRun, name: &str) -> Vec<f64> {
+    let k = run.samples.columns.iter().position(|column| column == name).unwrap();
+    run.samples.rows.iter().map(|row| row[k]).collect()
+}
+
+fn greatest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, x| if x.abs() > most || x.is_nan() { x.abs() } else { most })
+}
+
+/// Displacements and speeds every `every` (s) of a body with this `acceleration` at a place and speed, thrown at `speed`.
+fn independent(acceleration: impl Fn(f64, f64) -> f64, speed: f64, every: f64, count: usize) -> Vec<[f64; 2]> {
+    let steps = (every / 2e-7).round();
+    let h = every / steps;
+    let mut state = [0.0, speed];
+    let mut all = vec![state];
+    for _ in 0..count {
+        for _ in 0..steps as u32 {
+            let rate = |[x, v]: [f64; 2]| [v, acceleration(x, v)];
+            let add = |a: [f64; 2], b: [f64; 2], w: f64| [a[0] + w * b[0], a[1] + w * b[1]];
+            let k1 = rate(state);
+            let k2 = rate(add(state, k1, h / 2.0));
+            let k3 = rate(add(state, k2, h / 2.0));
+            let k4 = rate(add(state, k3, h));
+            for i in 0..2 {
+                state[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+            }
+        }
+        all.push(state);
+    }
+    all
+}
+
+/// A ball of 100 g on a rail along `axis`, thrown at `speed` (m/s), with stops `ahead` and `behind` (mm).
+fn ball(axis: [i32; 2], speed: f64, [ahead, behind]: [f64; 2], exponent: f64, stiffness: f64, error: f64) -> Mechanism {
+    let [x, y] = axis;
+    scene(&format!(
+        r#"
+title = "Ball between two stops"
+[mechanism]
+space = "plane"
+gravity = [0, -9.81]
+[contact]
+stiffness = "{stiffness} N/m^{exponent}"
+exponent = {exponent}
+damping = 0
+depth = 0.1
+[friction]
+law = "none"
+[[body]]
+name = "ball"
+mass = 100
+inertia = "1e-6 kg·m²"
+centre = [0, 0]
+speed = "{speed} m/s"
+[[joint]]
+name = "rail"
+kind = "prismatic"
+between = ["frame", "ball"]
+at = [0, 0]
+axis = [{x}, {y}]
+[[joint]]
+name = "ahead"
+kind = "stop"
+between = ["ball", "frame"]
+at = [0, 0]
+normal = [{}, {}]
+clearance = [{ahead}, 0]
+[[joint]]
+name = "behind"
+kind = "stop"
+between = ["ball", "frame"]
+at = [0, 0]
+normal = [{x}, {y}]
+clearance = [{behind}, 0]
+[run]
+duration = 200
+error = {error}
+"#,
+        -x, -y
+    ))
+}
+
+/// The closed form of the highest point: a ball that reaches a ceiling with some speed presses into it until the spring holds its energy.
+#[test]
+fn a_ball_thrown_at_a_ceiling_does_not_pass_through_it() {
+    let (mass, stiffness) = (0.1, 1e8);
+    for ceiling in [50.9, 50.96, 50.967, 40.0, 50.97] {
+        let speed = 1.0 - 2.0 * 9.81 * ceiling * 1e-3;
+        let pressed = if speed > 0.0 { libm::pow(1.25 * mass * speed / stiffness, 0.4) } else { 0.0 };
+        let highest = (ceiling * 1e-3 + pressed).min(1.0 / (2.0 * 9.81));
+        for error in [1e-3, 1e-5, 3e-7, 1e-9] {
+            let run = simulated(&ball([0, 1], 1.0, [ceiling, 99.0], 1.5, stiffness, error), 1e-4);
+            let top = column(&run, "ball.y (m)").into_iter().fold(0.0, f64::max);
+            assert!(top <= highest + 1e-8 && top > highest - 3e-6, "{ceiling} mm, {error}: {top}, not {highest}");
+        }
+    }
+}
+
+/// Late bounces in a play of 0.129 mm, at rest in the middle but for a small speed; every axis and both directions.
+#[test]
+fn bounces_within_play_are_all_there() {
+    for (axis, speed) in [([1, 0], 0.03), ([-1, 0], 0.03), ([1, 0], -0.03), ([1, 0], 0.004)] {
+        for (exponent, stiffness) in [(1.5, 1e8), (2.0, 1e10), (1.0, 1e6)] {
+            let mechanism = ball(axis, speed, [0.129, 0.129], exponent, stiffness, 3e-7);
+            let run = simulated(&mechanism, 1e-3);
+            let along = f64::from(axis[0]);
+            let force = |depth: f64| if depth > 0.0 { stiffness * libm::pow(depth, exponent) } else { 0.0 };
+            let acceleration = |x: f64, _: f64| (force(-0.129e-3 - x) - force(x - 0.129e-3)) / 0.1;
+            let expected = independent(acceleration, speed, 1e-3, 200);
+            let peak = greatest(&expected.iter().map(|state| state[0]).collect::<Vec<_>>());
+            let x = column(&run, "ball.x (m)");
+            let worst = x.iter().zip(&expected).fold(0.0f64, |most, (x, state)| most.max((along * x - state[0]).abs()));
+            assert!(worst < 2e-3 * peak, "{axis:?} {speed} e = {exponent}: {worst} of {peak}");
+        }
+    }
+}
+
+/// The tip of a lever that turns freely sweeps past a wall that it overlaps by micrometres, rubs and loses speed.
+#[test]
+fn a_lever_that_sweeps_past_a_wall_touches_it() {
+    for (overlap, spin) in [(0.01, 40.0), (0.01, -40.0), (0.002, -12.0), (-0.001, 40.0), (0.05, 120.0)] {
+        let mechanism = scene(&format!(
+            r#"
+title = "Lever past a wall"
+[mechanism]
+space = "plane"
+gravity = [0, 0]
+[contact]
+stiffness = "1e8 N/m^1.5"
+exponent = 1.5
+damping = 0
+depth = 0.1
+[friction]
+law = "regularised"
+coefficient = 0.3
+stick_band = 1
+[[body]]
+name = "lever"
+mass = 100
+inertia = "1e-4 kg·m²"
+centre = [0, 0]
+spin = {spin}
+[[joint]]
+name = "pivot"
+kind = "revolute"
+between = ["frame", "lever"]
+at = [0, 0]
+[[joint]]
+name = "wall"
+kind = "stop"
+between = ["lever", "frame"]
+at = [0, 80]
+normal = [-1, 0]
+clearance = [{}, 0]
+[run]
+duration = 160
+"#,
+            80.0 - overlap
+        ));
+        let run = simulated(&mechanism, 1e-3);
+        // The tip is at 0.08·(−sin φ, cos φ), and the wall at 0.08 − overlap along x.
+        let wall = 0.08 - overlap * 1e-3;
+        let acceleration = |angle: f64, rate: f64| {
+            let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+            let depth = -0.08 * sin - wall;
+            let force = if depth > 0.0 { 1e8 * libm::pow(depth, 1.5) } else { 0.0 };
+            let sliding = -0.08 * sin * rate;
+            let w = (sliding.abs() / 1e-3).min(1.0);
+            let rubbing = -0.3 * w * (3.0 - w * w) / 2.0 * force * sliding.signum();
+            // Moment of (−force, rubbing) at the tip.
+            (0.08 * cos * force - 0.08 * sin * rubbing) / 1e-4
+        };
+        let expected = independent(acceleration, spin, 1e-3, 160);
+        let [_, at_end] = expected[160];
+        let found = *column(&run, "lever.spin (rad/s)").last().unwrap();
+        assert!((found - at_end).abs() < 5e-3 * spin.abs(), "{overlap} mm {spin}: {found}, not {at_end}");
+        assert_eq!(overlap > 0.0, (at_end - spin).abs() > 1e-3 * spin.abs(), "the test says something: {at_end}");
+    }
+}
+
+/// Progressive contacts, far into which a long step's trial stages reach: no result is NaN.
+#[test]
+fn what_is_not_a_number_is_no_result() {
+    for exponent in [1.5, 2.5, 3.0, 4.0] {
+        for speed in [0.5, 5.0, 30.0] {
+            // 500 N at 0.1 mm.
+            let stiffness = 500.0 / libm::pow(1e-4, exponent);
+            let mechanism = ball([1, 0], speed, [30.0, 40.0], exponent, stiffness, 3e-7);
+            let run = simulated(&mechanism, 1e-3);
+            let force = |depth: f64| if depth > 0.0 { stiffness * libm::pow(depth, exponent) } else { 0.0 };
+            let acceleration = |x: f64, _: f64| (force(-0.04 - x) - force(x - 0.03)) / 0.1;
+            let expected = independent(acceleration, speed, 1e-3, 200);
+            let speeds = column(&run, "ball.vx (m/s)");
+            let kept = (speeds.last().unwrap().abs() - speed).abs();
+            assert!(kept < 2e-3 * speed, "e = {exponent}, {speed} m/s: {kept}");
+            let worst = column(&run, "ball.x (m)").iter().zip(&expected).fold(0.0f64, |most, (x, state)| {
+                let off = (x - state[0]).abs();
+                if off > most || off.is_nan() { off } else { most }
+            });
+            assert!(worst < 2e-4, "e = {exponent}, {speed} m/s: {worst} m");
+        }
+    }
+}
+
+/// A lever that a drive pushes at x = `point` (mm) from its pivot; the centre of mass is at x = `centre` (mm).
+fn lever(centre: f64, point: f64, y: f64) -> Mechanism {
+    scene(&format!(
+        r#"
+title = "Pushed lever"
+[mechanism]
+space = "plane"
+gravity = [0, 0]
+[contact]
+stiffness = "1e8 N/m^1.5"
+exponent = 1.5
+damping = 0
+depth = 0.1
+[friction]
+law = "none"
+[[body]]
+name = "lever"
+mass = 100
+inertia = "1e-4 kg·m²"
+centre = [{centre}, 0]
+[[joint]]
+name = "pivot"
+kind = "revolute"
+between = ["frame", "lever"]
+at = [0, 0]
+[[drive]]
+name = "rod"
+pushes = "lever"
+axis = [0, 1]
+point = [{}, {y}]
+gain = 0.04
+ramp_start = 0.01
+ramp_end = 0.02
+speed = 50
+[run]
+duration = 60
+"#,
+        point - centre
+    ))
+}
+
+#[test]
+fn a_drive_that_runs_away_does_not_complete_its_motion() {
+    let confirmed = |mechanism: &Mechanism| confirmed(mechanism, &[], 1e-3).unwrap()[0].outcomes[0];
+    let near = confirmed(&lever(30.0, 40.0, 0.0));
+    assert_eq!(near.verdict, Verdict::Runs);
+    let far = confirmed(&lever(30.0, -40.0, 0.0));
+    assert!(far.verdict.is_malfunction() || far.verdict == Verdict::Undecided, "{far:?}");
+    assert_eq!(far.verdict, Verdict::Overruns, "{far:?}");
+    let found =
+        super::feedback::reversals(&lever(30.0, -40.0, 0.0)).iter().map(|found| found.angle).collect::<Vec<_>>();
+    assert_eq!(found, [0.0]);
+    assert!(super::feedback::reversals(&lever(30.0, 40.0, 0.0)).is_empty());
+    assert_eq!(super::feedback::reversals(&lever(30.0, 40.0, 20.0)).len(), 1);
+}
+
+/// At any gain the drive of a slider-crank holds its speed, and gives what masses and contacts ask for.
+#[test]
+fn peaks_of_stiff_drives_are_those_of_the_load() {
+    for (name, peak) in [("slider-crank", 1.056), ("hatch", 3.3187), ("four-bar", 0.5194)] {
+        let text = shipped(name).unwrap();
+        for gain in [1e3, 1e4, 1e6, 1e8] {
+            let set = [Override::option("--set", "drive.motor.gain", &gain.to_string())];
+            let mechanism = SceneFile::parse(name, text, &set).unwrap().mechanism.unwrap();
+            let run = simulated(&mechanism, 1e-4);
+            let found = run.outcomes[0].peak_force.unwrap();
+            assert!((found - peak).abs() < 5e-3 * peak, "{name}, {gain}: {found}, not {peak}");
+            let ramp = mechanism.drives[0].drive.ramp_start;
+            let late = column(&run, "t (s)").iter().filter(|t| **t < ramp).count();
+            assert!(greatest(&column(&run, "motor.torque (N·m)")[late..]) <= 1.005 * found, "{name}, {gain}");
+        }
+    }
+}
+
+/// What is said of a run bounds its error in each column, here against a run at a thousandth of its tolerance.
+#[test]
+fn a_run_at_a_tenth_tells_how_far_every_column_is_off() {
+    for name in ["slider-crank", "slider-crank-guide", "four-bar", "hatch", "woodpecker-toy"] {
+        let mut mechanism = SceneFile::parse(name, shipped(name).unwrap(), &[]).unwrap().mechanism.unwrap();
+        let gaps = mechanism.gaps_at(&[0.0]).unwrap();
+        for error in [1e-4, 1e-5] {
+            mechanism.run.error = error;
+            let one = run(&mechanism, &gaps, 1e-3).unwrap();
+            let said = one.agreement(&finer(&mechanism, &gaps, 1e-3).unwrap(), &mechanism);
+            mechanism.run.error = error / 1e3;
+            let truth = one.agreement(&run(&mechanism, &gaps, 1e-3).unwrap(), &mechanism);
+            assert!(said.share > 0.5 * truth.share, "{name} {error}: {said:?}, but {truth:?}");
+            assert!(one.energy_excess < 2e-3, "{name} {error}: {}", one.energy_excess);
+        }
+    }
+}
