@@ -191,7 +191,6 @@ pub(super) fn warnings_of(scene: &Scene) -> Vec<String> {
     let mut warnings = scene.warnings.clone();
     warnings.extend(self::warnings(rank_of_normals(&contacts(scene)), guide(scene, 0.0).as_ref()));
     warnings.extend(clearance_note(scene));
-    warnings.extend(scene.warnings.iter().cloned());
     warnings
 }
 

@@ -75,7 +75,7 @@ pub struct Mechanism {
     pub controller: ControllerSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
-    /// What is possible but implausible in the scene file, each with its place.
+    /// What the user should know of the scene file: what is possible but implausible, each with its place.
     pub warnings: Vec<String>,
 }
 

@@ -76,7 +76,7 @@ pub struct Scene {
     pub vary: Vec<Varied>,
     /// Which measure of the product each gap is, pin by pin; `None` where the scene gives its statistics.
     pub gap_measures: GapMeasures,
-    /// What is possible but implausible in the scene file, each with its place.
+    /// What the user should know of the scene file: what is possible but implausible, each with its place.
     pub warnings: Vec<String>,
 }
 

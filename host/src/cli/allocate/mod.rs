@@ -219,7 +219,7 @@ impl Arguments {
             Ok((Report::new(&file.title, &product, figures.rows(), &found, &checked, points), tolerances))
         };
         let (mut report, tolerances) = self.threads.install(work)??;
-        let simulated = file.slide.iter().filter(|_| limits.is_some());
+        let simulated = file.slide.iter().filter(|_| function.is_some());
         report.warnings.extend(simulated.flat_map(check::warnings_of));
         let csv = self.csv.as_ref().map(|path| Ok::<_, anyhow::Error>((path, curve::csv(&report)?))).transpose()?;
         let svg = self.plot.as_ref().map(|path| curve::svg(&report).map(|svg| (path, svg.into_bytes()))).transpose();
