@@ -369,7 +369,8 @@ fn contributors(stack: &Stack, of: &MeasureReport, i: usize, scale: f64, chance:
     const COUNT: usize = 2000;
     let totals = total_indices(stack, i, COUNT, chance);
     let sum: f64 = totals.iter().map(|[total, _]| total).sum();
-    if sum * scale * scale <= 1e-18 {
+    // Without two units in which it is defined there is nothing to share.
+    if sum.is_nan() || sum * scale * scale <= 1e-18 {
         return;
     }
     for (dimension, [total, error]) in stack.dimensions.iter().zip(totals) {

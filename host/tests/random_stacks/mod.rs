@@ -39,10 +39,11 @@ fn limit(stack: &mut Stack, chance: &mut Chance) {
         let scale = if measure.kind == expression::Kind::Angle { 180.0 / std::f64::consts::PI } else { 1.0 };
         let mut values: Vec<f64> = drawn.iter().map(|unit| unit[i] * scale).filter(|x| x.is_finite()).collect();
         values.sort_by(f64::total_cmp);
-        if values.len() < 100 {
+        let width = values.last().copied().unwrap_or_default() - values.first().copied().unwrap_or_default();
+        // A limit of a constant would lie on it.
+        if values.len() < 100 || width < 1e-4 {
             continue;
         }
-        let width = values[values.len() - 1] - values[0];
         let point = |rank: usize| values[rank * (values.len() - 1) / 1000];
         let low = chance.one_of(&[None, Some(values[0] - 0.3 * width), Some(point(10)), Some(point(200)), Some(0.0)]);
         let high =
