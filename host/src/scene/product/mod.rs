@@ -121,7 +121,7 @@ use super::{
 
 /// Standard deviations in half of a tolerance, where nothing else is said.
 pub(super) const SIGMA_DEFAULT: f64 = 3.0;
-const SIGMA: Quantity = Quantity { units: unit::ONE, range: [0.1, 100.0] };
+const SIGMA: Quantity = Quantity { units: unit::ONE, range: [1.0, 100.0] };
 const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
 
 /// What holds for the whole product.
@@ -325,7 +325,7 @@ fn defaults(root: &Field) -> Result<Defaults, SceneError> {
     }
     if let Some(field) = table.get("sigma") {
         // Below 1 a third of the units of a normal distribution would be outside.
-        defaults.sigma = field.to_number(&Quantity { range: [1.0, SIGMA.range[1]], ..SIGMA })?;
+        defaults.sigma = field.to_number(&SIGMA)?;
     }
     if let Some(field) = table.get("datums") {
         defaults.frames = match field.to_text()? {

@@ -42,7 +42,7 @@ fn bad_input_is_shown_with_its_place_and_what_is_allowed() {
     let cases = [
         ("\"mK\"", "\"xK\"", ["general = |\"xK\"", "is \"xK\"", "f, m, c, v"]),
         ("general = \"mK\"", "rule = \"sigma\"", ["rule = |\"sigma", "is \"sigma\"", "sigma-zone, truncated"]),
-        ("general = \"mK\"", "sigma = 0", ["sigma = |0", "`tolerance.sigma` is 0", "0.1 to 100"]),
+        ("general = \"mK\"", "sigma = 0", ["sigma = |0", "`tolerance.sigma` is 0", "1 to 100"]),
         ("general = \"mK\"", "sigma = 3", ["|[[dimension]]\nname = \"b\"", "`dimension.tolerance` is missing", "±"]),
         ("general", "generl", ["|generl", "did you mean `tolerance.general`", "general, rule, sigma"]),
         ("value = 10", "value = true", ["value = |true", "is a boolean", "a number in mm"]),

@@ -394,13 +394,7 @@ fn note_ignored(field: &Field, kind: &str, sigma: Option<&Field>) {
 
 /// Mean and standard deviation of a normal or skewed distribution in `field`, of a dimension with the value `nominal` (SI).
 /// Half the tolerance is `sigma` standard deviations unless something else is stated.
-fn spread(
-    field: &Field,
-    quantity: &Quantity,
-    sigma: f64,
-    stated: Option<&Field>,
-    nominal: f64,
-) -> Result<Spread, SceneError> {
+fn spread(field: &Field, quantity: &Quantity, sigma: f64, nominal: f64) -> Result<Spread, SceneError> {
     let mean = match (field.get("mean"), field.get("shift")) {
         (Some(_), Some(shift)) => return Err(shift.no_effect("beside `mean`", "one of both")),
         (Some(mean), None) => {
@@ -414,37 +408,38 @@ fn spread(
         (Some(_), Some(cpk)) => return Err(cpk.no_effect("beside `deviation`", "one of both")),
         (Some(deviation), None) => Deviation::Stated(positive(&deviation, quantity)?),
         (None, Some(cpk)) => Deviation::Cpk(cpk.to_number(&CPK)?),
-        (None, None) => Deviation::Sigmas(within_limits(sigma, stated)?),
+        (None, None) => Deviation::Sigmas(sigma),
     };
     Ok(Spread { mean, deviation })
 }
 
-/// A `sigma`. Below 1 a third of the units would be outside: then someone has `stated` the standard deviation itself.
-fn within_limits(sigma: f64, stated: Option<&Field>) -> Result<f64, SceneError> {
-    match stated.filter(|_| sigma < 1.0) {
-        None => Ok(sigma),
-        Some(field) => {
+/// A `sigma` in `field`. Below 1 a third of the units would be outside: then someone has stated the standard deviation itself.
+fn sigmas(field: &Field) -> Result<f64, SceneError> {
+    let below = Quantity { range: [0.0, SIGMA.range[0]], ..SIGMA };
+    field.to_number(&SIGMA).map_err(|error| match field.to_number(&below) {
+        Err(_) => error,
+        Ok(_) => {
             let problem = Problem::OutOfRange { key: field.key.clone(), written: field.written("") };
             let allowed = "1 to 100: how many standard deviations half the tolerance is, not the standard deviation itself, \
                            which is `deviation` of the distribution";
-            Err(field.error(problem, allowed))
+            field.error(problem, allowed)
         }
-    }
+    })
 }
 
 /// The keys `sigma` and `distribution` of a dimension with the value `nominal` (SI).
 fn shape(table: &Field, quantity: &Quantity, sigma: f64, nominal: f64) -> Result<Shape, SceneError> {
     let stated = table.get("sigma");
-    let own = stated.as_ref().map_or(Ok(sigma), |field| field.to_number(&SIGMA))?;
+    let own = stated.as_ref().map_or(Ok(sigma), sigmas)?;
     let Some(field) = table.get("distribution") else {
-        return Ok(Shape::Normal(Spread::sigmas(within_limits(own, stated.as_ref())?)));
+        return Ok(Shape::Normal(Spread::sigmas(own)));
     };
     let kind = match &field.node.value {
         Value::Table(_) => field.require("kind", SHAPES)?,
         _ => field.clone(),
     };
     note_ignored(&field, kind.to_text()?, stated.as_ref());
-    let spread = || spread(&field, quantity, own, stated.as_ref(), nominal);
+    let spread = || spread(&field, quantity, own, nominal);
     // A place on the scale.
     let deviation = |key: &str| {
         let Some(field) = field.get(key) else { return Ok(None) };
