@@ -122,7 +122,7 @@ fn bad_input_is_refused_and_nothing_is_written() {
     }
     for (from, to, said) in [
         ("range = [0.015, 0.08]", "range = [0.08, 0.015]", "clutch.toml:12:64"),
-        ("reciprocal = 0.015, ", "", "cost.reciprocal` is missing"),
+        ("fixed = 10, reciprocal = 0.015, ", "", "cost.reciprocal` is missing"),
         ("reciprocal = 0.015, ", "reciprocal = 0.015, exponential = 1, ", "two laws is not supported"),
         ("fixed = 10", "fixd = 10", "did you mean `dimension.cost.fixed`"),
         ("require = \"rss\"", "require = \"RSS\"", "`measure.require` is \"RSS\""),

@@ -331,7 +331,7 @@ fn bad_input_is_refused_by_name() {
         (&["run", "--n", "0:1000000:500000"], "--n 0:1000000:500000"),
         (&["simulate", "--every", "-1ms"], "--every -1ms"),
         (&["simulate", "--step=-1ms"], "--step -1ms"),
-        (&["simulate", "unit.toml", "--csv", "unit.toml"], "it is the scene"),
+        (&["simulate", "unit.toml", "--csv", "unit.toml"], "--csv writes .csv, not .toml"),
         (&["run", "--out", "taken"], "report.html"),
         (&["check", "--set", "pin.left back.name=left front"], "a name of its own"),
         (&["simulate", "--integrator", "magic"], "--integrator"),

@@ -93,7 +93,7 @@ name = \"motor\"
 turns = \"a\"
 gain = 0.05
 ramp_start = 0
-ramp_end = 50
+ramp_end = 0.05
 speed = 30
 AXIS
 [[drive]]
@@ -102,7 +102,7 @@ pushes = \"b\"
 axis = PUSH
 gain = \"4 N·s/m\"
 ramp_start = 0
-ramp_end = 60
+ramp_end = 0.06
 speed = 300
 point = POINT
 ";
@@ -378,7 +378,7 @@ fn bodies_in_space_go_on_beyond_a_full_turn() {
                 "title = \"Rotor\"\n[mechanism]\nspace = \"space\"\n[run]\nduration = 1000\nstroke = 1000\nerror = 1e-6\n{laws}\
                  [[body]]\nname = \"rotor\"\nmass = 100\ninertia = [1e5, 1.1e5, 1.5e5]\ncentre = [0, 0, 0]\n\
                  [[joint]]\nname = \"joint\"\nbetween = [{between}]\n{joint}\n\
-                 [[drive]]\nname = \"motor\"\nturns = \"rotor\"\naxis = [0, 0, 1]\ngain = 0.1\nramp_start = 0\nramp_end = 20\nspeed = {speed}\n"
+                 [[drive]]\nname = \"motor\"\nturns = \"rotor\"\naxis = [0, 0, 1]\ngain = 0.1\nramp_start = 0\nramp_end = 0.02\nspeed = {speed}\n"
             ));
             let run = mean(&mechanism, 1e-3);
             let outcome = run.outcomes[0];

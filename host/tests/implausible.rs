@@ -181,7 +181,7 @@ fn parts_do_not_sink_deeper_than_their_gaps() {
     let found = warnings(&text, &[]);
     assert!(parts.iter().all(|part| found[0].contains(part)) && found.len() == 1, "{found:?}");
     assert!(
-        found[0].contains("their widest gap is 0.968 mm") && found[0].ends_with("N/mm^1.5 may be meant"),
+        found[0].contains("their widest gap is 0.96") && found[0].ends_with("N/mm^1.5 may be meant"),
         "{found:?}"
     );
     // On the side of too soft alone, and only where it is deeper than a gap.

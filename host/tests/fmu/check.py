@@ -113,7 +113,7 @@ def main(path, expected):
     other = Unit(folder, description).start({})
     read = other.read(text)
     other.restore(read)
-    run(other, half, 3.3 * step, last * step)
+    end = run(other, half, 3.3 * step, last * step)
     assert other.written(read) == text
     # No damage to what was written is read.
     for i in range(len(text)):
@@ -124,7 +124,7 @@ def main(path, expected):
         except Exception:
             continue
         raise AssertionError(f"a state with a flipped bit in byte {i} was read")
-    run(other, last * step, step, last * step)
+    check(other, end)
     for state, of in [(state, unit), (read, other)]:
         (of.instance.freeFMUState if of.is_third else of.instance.freeFMUstate)(state)
     other.end()

@@ -46,7 +46,7 @@ pub(super) struct Arguments {
     drive: DriveArguments,
     #[command(flatten)]
     levels: LevelArguments,
-    /// Units of the production to simulate one by one; 256 if not given.
+    /// Units of the production to simulate one by one; 512 if not given.
     ///
     /// `slipfit population` simulates more units and tells more about them.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
@@ -105,7 +105,7 @@ impl Arguments {
 const OUT: &str = "slipfit-out";
 
 /// Units of the production that are simulated where no number is given.
-const UNITS: u64 = 256;
+const UNITS: u64 = 512;
 
 /// The most ranges of levels on the first screen.
 const RANGES: usize = 6;
