@@ -132,7 +132,7 @@ fn bad_input_is_refused_and_nothing_is_written() {
             "distribution = { kind = \"trapezoidal\", shoulders = [-0.01, 0.01] }\ntolerance = 0.1 #",
             "lengths of its own",
         ),
-        ("fixed = 5, reciprocal = 0.5,", "fixed = 5, reciprocal = 0.5, grades = [6, 30],", "dimension.cost.grades"),
+        ("fixed = 5, reciprocal = 0.5,", "fixed = 5, reciprocal = 0.5, grades = [6, 30],", "dimension.cost.range"),
     ] {
         assert!(text.contains(from), "{from}");
         std::fs::write(folder.path().join("clutch.toml"), text.replacen(from, to, 1)).unwrap();

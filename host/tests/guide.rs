@@ -93,8 +93,9 @@ fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)
 }
 
-/// Does what the blocks of a page say, in a folder of its own; the outputs of its `sh` blocks.
-fn follow(page: &Path) -> String {
+/// Does what the blocks of a page say, in a folder of its own; the outputs of its `sh` blocks. What is printed otherwise than a `console`
+/// block says is added to `wrong`.
+fn follow(page: &Path, wrong: &mut Vec<String>) -> String {
     let folder = tempfile::tempdir().unwrap();
     let text = std::fs::read_to_string(page).unwrap();
     // What a reader has copied from the shipped scene.
@@ -118,12 +119,12 @@ fn follow(page: &Path) -> String {
                 for shown in block.split("$ ").skip(1) {
                     let (command, expected) = shown.split_once('\n').unwrap();
                     let (printed, succeeded) = printed(folder.path(), command.split("  #").next().unwrap().trim());
-                    assert!(
-                        succeeded != expected.starts_with("error")
-                            && are_lines(&lines_of(expected), &lines_of(&printed)),
-                        "{}: {command}\nprints\n{printed}\nand not\n{expected}",
-                        page.display()
-                    );
+                    let is_right = succeeded != expected.starts_with("error")
+                        && are_lines(&lines_of(expected), &lines_of(&printed));
+                    if !is_right {
+                        let page = page.display();
+                        wrong.push(format!("{page}: {command}\nprints\n{printed}\nand not\n{expected}"));
+                    }
                 }
             }
             ("toml", file) if !file.is_empty() => {
@@ -140,8 +141,9 @@ fn follow(page: &Path) -> String {
 
 #[test]
 fn every_command_of_the_guide_prints_what_it_says() {
+    let mut wrong = Vec::new();
     for page in pages() {
-        let outputs = follow(&page);
+        let outputs = follow(&page, &mut wrong);
         if !outputs.is_empty() {
             let name = page.file_stem().unwrap().to_str().unwrap().to_lowercase();
             insta::with_settings!({ prepend_module_to_snapshot => true, omit_expression => true }, {
@@ -149,6 +151,7 @@ fn every_command_of_the_guide_prints_what_it_says() {
             });
         }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
 #[test]

@@ -180,13 +180,10 @@ fn parts_do_not_sink_deeper_than_their_gaps() {
     let text = with(CD_ROM_SLIDE, stiff, "stiffness = \"100 N/m^1.5\" ");
     let found = warnings(&text, &[]);
     assert!(parts.iter().all(|part| found[0].contains(part)) && found.len() == 1, "{found:?}");
-    assert!(
-        found[0].contains("their widest gap is 0.96") && found[0].ends_with("N/mm^1.5 may be meant"),
-        "{found:?}"
-    );
+    assert!(found[0].contains("their widest gap is 0.96") && found[0].ends_with("N/mm^1.5 may be meant"), "{found:?}");
     // On the side of too soft alone, and only where it is deeper than a gap.
     let soft = |stiffness: &str| warnings(CD_ROM_SLIDE, &[&format!("contact.stiffness={stiffness}")]).len();
-    assert_eq!(["0.1", "0.2", "0.25", "1e6"].map(soft), [1, 1, 0, 0]);
+    assert_eq!(["0.1", "0.2", "0.25", "1000"].map(soft), [1, 1, 0, 0]);
     let of = |stiffness: f64| deep(stiffness * libm::pow(1e3, 1.5));
     assert!(of(0.2) > 0.9675e-3 && of(0.25) < 0.9675e-3, "{} {}", of(0.2), of(0.25));
     // A simulation without friction and drive sinks as deep.

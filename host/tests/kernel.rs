@@ -115,7 +115,8 @@ fn compiled(folder: &Path, text: &str) -> Option<String> {
     let strict = ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I"];
     let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/capi/include");
     let mut compiler = Command::new("cc");
-    let built = compiler.current_dir(folder).args(strict).arg(library).args(["main.c", "-o", "program"]).output().unwrap();
+    let built =
+        compiler.current_dir(folder).args(strict).arg(library).args(["main.c", "-o", "program"]).output().unwrap();
     let run = || Command::new(folder.join("program")).output().unwrap().stdout;
     built.status.success().then(|| String::from_utf8(run()).unwrap())
 }

@@ -79,7 +79,8 @@ fn moves(page: &Path, runs: u64, figures: u64) {
 fn the_page_of_a_population_moves_without_an_error() {
     let folder = tempfile::tempdir().unwrap();
     stdout(&slipfit(folder.path(), &["population", "cd-rom-slide-drawing", "--units", "128", "--page", "units.html"]));
-    moves(&folder.path().join("units.html"), 3, 6);
+    // Of so few units chance could explain the share of any tolerance, so that there is no picture of shares.
+    moves(&folder.path().join("units.html"), 3, 5);
 }
 
 #[test]

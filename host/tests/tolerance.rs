@@ -265,7 +265,7 @@ fn no_output_replaces_an_input_or_another_output() {
         (&["merge", "p1", "p2", "--csv", "m", "--plots", "m"], one),
         (&["tolerance", "clutch", "--csv", "a", "--draws", "a"], one),
         (&["tolerance", "clutch", "--out", "x", "--csv", "./x"], one),
-        (&["tolerance", "clutch", "--out", "x", "--draws", "x.partial"], one),
+        (&["tolerance", "clutch", "--out", "x.csv", "--draws", "./x.csv"], one),
         (&["tolerance", "clutch", "--plots", "x", "--csv", "x/histogram-1.svg"], one),
         (&["tolerance", "scene.toml", "--draws", "none/../scene.toml"], "it is the scene"),
         (&["simulate", "scene.toml", "--csv", "scene.toml"], "neither a slide"),

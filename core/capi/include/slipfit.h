@@ -225,7 +225,7 @@ typedef struct slipfit_limits {
   // Time constant (s) over which force is averaged.
   float smoothing;
   // By how many levels a unit may be tighter than it is taken for. By fewer where the table ends, or where its units end
-// differently from this one.
+  // differently from this one.
   float band;
   // What the averaged force (N) may differ from the table's beyond that band.
   float margin;

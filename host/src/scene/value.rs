@@ -76,7 +76,8 @@ impl<'t, 's> Field<'t, 's> {
         Ok(self.found().recover(self.as_number(quantity), quantity.some()))
     }
 
-    fn as_number(&self, quantity: &Quantity) -> Result<f64, SceneError> {
+    /// The same, without a note of what is wrong with it.
+    pub fn as_number(&self, quantity: &Quantity) -> Result<f64, SceneError> {
         let measure = self.measure(&quantity.units())?;
         let unit = match measure.unit {
             None => quantity.units.first(),

@@ -415,16 +415,13 @@ fn spread(field: &Field, quantity: &Quantity, sigma: f64, nominal: f64) -> Resul
 
 /// A `sigma` in `field`. Below 1 a third of the units would be outside: then someone has stated the standard deviation itself.
 fn sigmas(field: &Field) -> Result<f64, SceneError> {
-    let below = Quantity { range: [0.0, SIGMA.range[0]], ..SIGMA };
-    field.to_number(&SIGMA).map_err(|error| match field.to_number(&below) {
-        Err(_) => error,
-        Ok(_) => {
-            let problem = Problem::OutOfRange { key: field.key.clone(), written: field.written("") };
-            let allowed = "1 to 100: how many standard deviations half the tolerance is, not the standard deviation itself, \
-                           which is `deviation` of the distribution";
-            field.error(problem, allowed)
-        }
-    })
+    if field.as_number(&Quantity { range: [0.0, SIGMA.range[0]], ..SIGMA }).is_ok_and(|sigma| sigma < SIGMA.range[0]) {
+        let problem = Problem::OutOfRange { key: field.key.clone(), written: field.written("") };
+        let allowed = "1 to 100: how many standard deviations half the tolerance is, not the standard deviation itself, which is \
+                       `deviation` of the distribution";
+        return Err(field.error(problem, allowed));
+    }
+    field.to_number(&SIGMA)
 }
 
 /// The keys `sigma` and `distribution` of a dimension with the value `nominal` (SI).
