@@ -177,7 +177,7 @@ mod tests {
                     Between::Apart => {
                         t += length;
                         closed |= gap(t)[0] < 0.0;
-                        length = (0.065 - t).max(0.0).min(0.02);
+                        length = (0.065 - t).clamp(0.0, 0.02);
                     }
                 }
             }

@@ -289,7 +289,7 @@ impl<V: Simd> Lanes<V> {
         let speeds = [self.most_approach(&self.motions), self.most_approach(after)];
         let mut apart = Pack::splat(1.0);
         for lane in 0..Pack::<V>::LANES {
-            if !(may_close.get(lane) > 0.0) {
+            if may_close.get(lane) <= 0.0 {
                 continue;
             }
             let number = |pack: &Pack<V>| f64::from(pack.get(lane));
