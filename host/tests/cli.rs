@@ -126,17 +126,17 @@ fn pictures_are_drawn_when_asked_for() {
 fn machines_are_told_the_version_the_solver_and_the_warnings() {
     let folder = tempfile::tempdir().unwrap();
     let report = json(folder.path(), &["simulate", "--n", "2.5", "--json"]);
-    assert_eq!((&report["json_version"], &report["solver"]["by"]), (&1.into(), &"desk".into()));
+    assert_eq!((&report["json_version"], &report["solver"]["by"]), (&2.into(), &"desk".into()));
     assert!(report["solver"]["accepted"].as_u64().unwrap() > 50 && report["solver"]["tolerance_n"] == 1.2e-6);
     assert_eq!(report["controller"]["solver"]["integrator"], "implicit-euler");
     assert!(report["controller"]["trust"]["difference"].as_f64().unwrap() < 0.01);
     assert!(report["warnings"][0].as_str().unwrap().contains("self-locking"));
     let report = json(folder.path(), &["sweep", "--n", "0:1:1", "--stroke", "--json"]);
-    assert_eq!((&report["json_version"], &report["ranges"][0]["verdict"]), (&1.into(), &"jammed".into()));
+    assert_eq!((&report["json_version"], &report["ranges"][0]["verdict"]), (&2.into(), &"jammed".into()));
     assert!(report["levels"][0]["stops"]["z"].as_f64().unwrap() > 0.03, "{report}");
     for command in [&["check"][..], &["kernel"], &["table", "--n", "0:1:1"], &["run", "--n", "0:1:1"]] {
         let report = json(folder.path(), &[command, &["--json"]].concat());
-        assert_eq!(report["json_version"], 1, "{command:?}");
+        assert_eq!(report["json_version"], 2, "{command:?}");
     }
 }
 

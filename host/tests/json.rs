@@ -65,7 +65,7 @@ fn every_field_is_in_the_guide() {
         let output = command.current_dir(folder.path()).args(arguments).arg("--json").output().unwrap();
         assert!(output.status.success(), "{arguments:?} {}", String::from_utf8_lossy(&output.stderr));
         let value: Value = serde_json::from_slice(&output.stdout).unwrap();
-        assert_eq!(value["json_version"], 1, "{arguments:?}");
+        assert_eq!(value["json_version"], 2, "{arguments:?}");
         check_object(&tables, &value, name, &arguments.join(" "));
     }
 }

@@ -82,20 +82,14 @@ pub trait GradientLink<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usiz
     /// ∂(Λ·V)/∂Q, the velocities V being held.
     fn swept(&self, at: (&B, &B::Placed), view: &Self::View, gradient: &SMatrix<S, R, D>) -> SMatrix<S, R, D>;
 
-    /// Adds Λᵀ·C, as far as Λ is not zero. Column k of C is the sum over the numbers i of what forces change by with the number i
-    /// where the coordinate k changes: `change(i, k)`.
+    /// Adds Λᵀ·C, as far as Λ is not zero. Column k of C is the sum of the [`Change`] with all numbers where the coordinate k changes.
     #[inline(always)]
-    fn add_product(
-        &self,
-        gradient: &SMatrix<S, R, D>,
-        change: impl Fn(usize, usize) -> SVector<S, R>,
-        sum: &mut SMatrix<S, D, D>,
-    ) {
+    fn add_product(&self, gradient: &SMatrix<S, R, D>, change: &Change<'_, S, R, D>, sum: &mut SMatrix<S, D, D>) {
         for k in 0..D {
             if self.moves(k) {
                 let mut column = SVector::<S, R>::zeros();
                 for i in 0..R {
-                    column += change(i, k);
+                    column += change.with(i, k);
                 }
                 for j in 0..D {
                     if self.moves(j) {
@@ -105,6 +99,28 @@ pub trait GradientLink<S: Scalar, B: Bodies<S, D>, const D: usize, const R: usiz
                     }
                 }
             }
+        }
+    }
+}
+
+/// How forces change with what a link measures, and that with coordinates. No closure: where the compiler does not inline one, a panic is
+/// reachable in it.
+pub struct Change<'a, S, const R: usize, const D: usize> {
+    /// −∂φ/∂ẋ, and how the rates change with the coordinates.
+    impedance: &'a SMatrix<S, R, R>,
+    rates: &'a SMatrix<S, R, D>,
+    /// −∂φ/∂x of the first numbers, how these change with the coordinates, and how many they are.
+    by_place: Option<(&'a SMatrix<S, R, R>, &'a SMatrix<S, R, D>, usize)>,
+}
+
+impl<S: Scalar, const R: usize, const D: usize> Change<'_, S, R, D> {
+    /// What forces change by with the number `i` where the coordinate `k` changes.
+    #[inline(always)]
+    pub fn with(&self, i: usize, k: usize) -> SVector<S, R> {
+        let by_rate = self.impedance.column(i) * self.rates[(i, k)];
+        match self.by_place {
+            Some((stiffness, places, count)) if i < count => by_rate + stiffness.column(i) * places[(i, k)],
+            _ => by_rate,
         }
     }
 }
@@ -144,11 +160,9 @@ where
         let gradient = &self.gradient(at, view);
         let rates = gradient + self.swept(at, view, gradient) * a;
         let stiffness = response.stiffness * a;
-        let change = |i, k| {
-            let by_rate = response.impedance.column(i) * rates[(i, k)];
-            if i < W::PLACES { by_rate + stiffness.column(i) * gradient[(i, k)] } else { by_rate }
-        };
-        self.add_product(gradient, change, matrix);
+        let change =
+            Change { impedance: &response.impedance, rates: &rates, by_place: Some((&stiffness, gradient, W::PLACES)) };
+        self.add_product(gradient, &change, matrix);
         self.add_carried(at, view, gradient, &(response.force * a), matrix);
     }
 
@@ -163,12 +177,9 @@ where
     ) {
         let gradient = &self.gradient(at, view);
         let swept = self.swept(at, view, gradient);
-        self.add_product(gradient, |i, k| response.impedance.column(i) * gradient[(i, k)], damping);
-        let change = |i, k| {
-            let by_rate = response.impedance.column(i) * swept[(i, k)];
-            if i < W::PLACES { response.stiffness.column(i) * gradient[(i, k)] + by_rate } else { by_rate }
-        };
-        self.add_product(gradient, change, stiffness);
+        let (impedance, places) = (&response.impedance, (&response.stiffness, gradient, W::PLACES));
+        self.add_product(gradient, &Change { impedance, rates: gradient, by_place: None }, damping);
+        self.add_product(gradient, &Change { impedance, rates: &swept, by_place: Some(places) }, stiffness);
         self.add_carried(at, view, gradient, &response.force, stiffness);
     }
 }

@@ -36,7 +36,7 @@ pub use axis::{AxisBody, Displacement, OnAxis, on_axis};
 pub use bodies::{Bodies, ByCoordinate};
 pub use element::{Driving, Element, Elements, Law, Response};
 pub use jacobian::Jacobian;
-pub use link::{GradientLink, Link, Seen};
+pub use link::{Change, GradientLink, Link, Seen};
 pub use lu::Lu;
 pub use reduced::{Reduced, ThroughJoints};
 

@@ -56,7 +56,7 @@ pub fn tell(line: &str) {
 }
 
 /// The version of what `--json` prints: raised when a field is renamed, removed or means something else.
-const JSON_VERSION: u32 = 1;
+const JSON_VERSION: u32 = 2;
 
 /// Tells a person of `warnings`, on standard error whatever the command.
 pub fn warn(warnings: &[String]) {

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
-    system::{GradientLink, Seen},
+    system::{Change, GradientLink, Seen},
 };
 
 /// The centre of a pin as seen from a hole's, in the axes of the frame, with the turning of both bodies: displacement along x and y
@@ -105,19 +105,14 @@ impl<S: Scalar, J: Topology<D>, H: Carrier<D>, P: Carrier<D>, const D: usize> Gr
 
     /// The turns' rates go by one coordinate each, and by that as they are.
     #[inline(always)]
-    fn add_product(
-        &self,
-        gradient: &SMatrix<S, 4, D>,
-        change: impl Fn(usize, usize) -> SVector<S, 4>,
-        sum: &mut SMatrix<S, D, D>,
-    ) {
+    fn add_product(&self, gradient: &SMatrix<S, 4, D>, change: &Change<'_, S, 4, D>, sum: &mut SMatrix<S, D, D>) {
         let moves = |k: usize| self.hole.carrier.moves(k) || self.pin.carrier.moves(k);
         for k in 0..D {
             if moves(k) {
-                let mut column = change(0, k) + change(1, k);
+                let mut column = change.with(0, k) + change.with(1, k);
                 for (i, turn) in self.turns() {
                     if turn == Some(k) {
-                        column += change(i, k);
+                        column += change.with(i, k);
                     }
                 }
                 for j in 0..D {

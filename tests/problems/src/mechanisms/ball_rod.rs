@@ -55,7 +55,7 @@ pub const GAPS: [[f64; 2]; 6] = [
 pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
     let s = S::from_f64;
     let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
-    let gaps = [gap(GAPS[0], -0.1)?, gap(GAPS[1], -0.1)?, gap(GAPS[2], -0.1)?, gap(GAPS[3], -0.1)?, gap(GAPS[4], -0.1)?, gap(GAPS[5], -0.1)?];
+    let gaps = [gap(GAPS[0], -0.1)?, gap(GAPS[1], -0.1)?, gap(GAPS[2], -0.1)?, gap(GAPS[3], -0.1)?, gap(GAPS[4], -10.0)?, gap(GAPS[5], -10.0)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(100000000.0))?, s(100.0), s(5e-6))?, friction: Regularised::new(s(0.1), s(0.001))? };
     let bodies = SpatialTree::new(FreeBodies::new([Rigid { mass: s(0.05), inertia_b: Vector3::new(s(2e-6), s(2e-6), s(2e-6)), centre_w: Vector3::new(s(0.0), s(0.0), s(0.0)) }, Rigid { mass: s(0.02), inertia_b: Vector3::new(s(6e-6), s(2e-7), s(6e-6)), centre_w: Vector3::new(s(0.015), s(0.03), s(0.0)) }, Rigid { mass: s(0.2), inertia_b: Vector3::new(s(5e-5), s(5e-5), s(5e-5)), centre_w: Vector3::new(s(0.015), s(0.08), s(0.0)) }], Vector3::new(s(0.0), s(0.0), s(-9.81)))?, &[
         Mount { body: 0, on: None, joint: Joint::Revolute { at: Vector3::new(s(0.0), s(0.0), s(0.0)), axis: Vector3::new(s(0.0), s(0.6), s(0.8)) } },

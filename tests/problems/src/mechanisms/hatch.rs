@@ -54,7 +54,7 @@ pub const GAPS: [[f64; 2]; 4] = [
 pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
     let s = S::from_f64;
     let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
-    let gaps = [gap(GAPS[0], 0.0)?, gap(GAPS[1], -0.1)?, gap(GAPS[2], 0.0)?, gap(GAPS[3], -0.1)?];
+    let gaps = [gap(GAPS[0], 0.0)?, gap(GAPS[1], -10.0)?, gap(GAPS[2], 0.0)?, gap(GAPS[3], -10.0)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(100000000.0))?, s(300.0), s(1e-5))?, friction: Regularised::new(s(0.15), s(0.001))? };
     let bodies = FreeBodies::new([Rigid { mass: s(2.0), inertia_b: Vector3::new(s(0.015), s(0.042), s(0.027)), centre_w: Vector3::new(s(0.0), s(0.0), s(0.15)) }], Vector3::new(s(0.0), s(-9.81), s(0.0)))?;
     let elements = ([

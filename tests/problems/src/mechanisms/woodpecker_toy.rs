@@ -62,7 +62,7 @@ pub const GAPS: [[f64; 2]; 3] = [
 pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
     let s = S::from_f64;
     let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
-    let gaps = [gap(GAPS[0], -0.1)?, gap(GAPS[1], -0.1)?, gap(GAPS[2], -0.1)?];
+    let gaps = [gap(GAPS[0], -10.0)?, gap(GAPS[1], -10.0)?, gap(GAPS[2], -10.0)?];
     let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(10000000.0))?, s(2.0), s(1e-6))?, friction: Regularised::new(s(0.3), s(0.0001))? };
     let contact_1 = Contact { normal: Impact::new(ThreeHalves::new(s(10000000.0))?, s(6.0), s(1e-6))?, friction: Regularised::new(s(0.3), s(0.0001))? };
     let bodies = PlanarTree::of(Joints, [Vector2::new(s(0.0), s(1.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))], &[Rigid { mass: s(0.0003), inertia: s(5e-9), centre: Point { carrier: Chain { turn: Some(1), moves: [true, true, false] }, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.0), s(0.0))] } }, Rigid { mass: s(0.0045), inertia: s(7e-7), centre: Point { carrier: Chain { turn: Some(2), moves: [true, true, true] }, base: Vector2::new(s(0.0), s(0.0)), arms: [Vector2::new(s(0.0), s(0.0)), Vector2::new(s(0.01), s(0.0)), Vector2::new(s(0.015000000000000001), s(0.0))] } }], Vector2::new(s(0.0), s(-9.81)))?;
