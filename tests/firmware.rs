@@ -73,7 +73,7 @@ fn a_lookup_of_integers_takes_the_recorded_instructions() {
 
 /// From its first instruction to its return, whatever the way: nothing is called, and no branch leads back.
 #[test]
-fn a_lookup_has_at_most_120_instructions() {
+fn a_lookup_has_at_most_160_instructions() {
     assert!(!ON_TARGET.is_empty(), "it has been built");
     let lookups = cross::code(&cross::image(FOLDER, "slipfit-firmware"), "program::lookup");
     assert_eq!(lookups.len(), 2, "in f32 and in i16");
@@ -81,7 +81,7 @@ fn a_lookup_has_at_most_120_instructions() {
         // Behind the last return there is only what the linker fills up with.
         let (code, rest) = code.rsplit_once("\tpop\t").expect("a return");
         let instructions = code.lines().count();
-        assert!(instructions <= 120 && rest.lines().count() <= 2, "{instructions}\n{code}\n{rest}");
+        assert!(instructions <= 160 && rest.lines().count() <= 2, "{instructions}\n{code}\n{rest}");
         let address = |word: &str| u32::from_str_radix(word, 16).ok();
         let last = code.lines().last().and_then(|line| address(line.trim().split(':').next()?)).expect("an address");
         for line in code.lines() {

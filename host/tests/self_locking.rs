@@ -106,6 +106,7 @@ const LEFT: Gaps = {
 const FAR: &str = "left, beyond the guide line on the other side";
 
 /// Guides, drive points, where the guide line is and how far the drive passes beside it (mm), and the distance above or below.
+#[expect(clippy::type_complexity, reason = "a table, whose columns the comment above names")]
 const CASES: [(&str, Gaps, [f64; 3], f64, f64, f64); 9] = [
     ("both sides", BOTH, [60.0, 0.0, 0.0], 0.0, 60.0, 0.0),
     ("both sides, to the left", BOTH, [-60.0, 0.0, 0.0], 0.0, 60.0, 0.0),

@@ -77,7 +77,9 @@ fn timing(mnemonic: &str, operands: &str) -> Option<(&'static Timing, bool)> {
         };
         TIMINGS.iter().find(|timing| timing.operations.split(' ').any(|operation| operation == row))
     };
-    let on_condition = || CONDITIONS.iter().find_map(|condition| row(mnemonic.strip_suffix(condition)?));
+    // An operation on a condition may set flags, too.
+    let with_flags = |name: &str| row(name).or_else(|| row(name.strip_suffix('s')?));
+    let on_condition = || CONDITIONS.iter().find_map(|condition| with_flags(mnemonic.strip_suffix(condition)?));
     let unconditional = row(mnemonic).map(|row| (row, false));
     let setting_flags = || Some((row(mnemonic.strip_suffix('s')?)?, false));
     unconditional.or_else(|| on_condition().map(|row| (row, true))).or_else(setting_flags)

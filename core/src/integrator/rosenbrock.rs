@@ -72,13 +72,6 @@ impl<S: Scalar, const D: usize> Part<S, D> {
         Self { place: self.place + place * weight, velocity: self.velocity + velocity * weight }
     }
 
-    /// `self` where `condition` > 0, else nothing, even if `self` is not finite: a weight of 0 would make that NaN.
-    #[inline(always)]
-    pub fn only_if(&self, condition: S) -> Self {
-        let or_zero = |x: S| condition.select_gt(S::zero(), x, S::zero());
-        Self { place: self.place.map(or_zero), velocity: self.velocity.map(or_zero) }
-    }
-
     /// The sum of `parts` weighted by `weights`, of which zeros cost nothing.
     #[inline(always)]
     fn weighted(parts: &[Self; MOST_STAGES], weights: &[f64]) -> Self {

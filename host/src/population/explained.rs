@@ -162,7 +162,8 @@ mod tests {
     /// The only cause there is explains all, at any rate, below a limit or above it, on one side or on both, in the middle or in bands.
     #[test]
     fn the_only_cause_explains_all() {
-        let cases: [(&str, usize, fn(f64) -> bool); 9] = [
+        type Case = (&'static str, usize, fn(f64) -> bool);
+        let cases: [Case; 9] = [
             ("1 % above", 20_000, |u| u > 0.99),
             ("1 % below", 5_000, |u| u < 0.01),
             ("1 % on both sides", 20_000, |u| (u - 0.5).abs() > 0.495),
@@ -254,7 +255,8 @@ mod tests {
         let units = 5_000;
         let x = |i: usize| quantile((i as f64 + 0.5) / units as f64);
         let spread = (0..units).map(|i| x(i) * x(i)).sum::<f64>() / units as f64;
-        let cases: [(fn(f64) -> f64, f64, f64); 3] = [
+        type Case = (fn(f64) -> f64, f64, f64);
+        let cases: [Case; 3] = [
             (|x| if x < 0.467_7 { 4.0 } else { 1.2 }, 0.0, 2.8 * 2.8 * 0.68 * 0.32),
             (|x| if x < -2.326_3 { 4.0 } else { 1.2 }, 0.1, 2.8 * 2.8 * 0.01 * 0.99),
             (|x| 2.0 * x, 1.0, 4.0),

@@ -144,6 +144,12 @@ fn keep<G: Clone>(
     }
 }
 
+impl<G: Clone> Default for Tally<G> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<G: Clone> Tally<G> {
     /// Of no units.
     pub fn new() -> Self {

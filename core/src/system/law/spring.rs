@@ -115,7 +115,7 @@ mod tests {
         state.motion.velocity[0] = s(twist * rate);
         let mut worst = 0.0f64;
         while f64::from(state.steps) * step < 2.0 * TAU / rate {
-            kernel.step(&mut state);
+            let _ = kernel.step(&mut state);
             let t = f64::from(state.steps) * step;
             let [first, second] = [0, 1].map(|k| state.motion.velocity[k].to_f64());
             let momentum = 1e-3 * first + 3e-3 * second;

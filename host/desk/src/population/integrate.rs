@@ -81,7 +81,7 @@ pub fn integrate<V: Simd, M: Slides<V>>(
     loop {
         for lane in 0..Pack::<V>::LANES {
             if all.lanes[lane].ended {
-                all.load(lane, &mut next, units);
+                all.load(course, lane, &mut next, units);
             }
         }
         if !all.busy() {
@@ -102,6 +102,8 @@ struct Lanes<V: Simd> {
     watch: Watch<V>,
     /// Distances (m) of the farthest pins from the centres of mass at the start.
     lever: Pack<V>,
+    /// How deep (m) contacts may be that a step passes over: their forces are within the tolerance.
+    depth: Pack<V>,
     /// Lengths of the next steps (s).
     lengths: Pack<V>,
     lanes: Vec<Lane>,
@@ -129,6 +131,7 @@ impl<V: Simd> Lanes<V> {
             gaps: [Pack::splat(0.0); CONTACTS],
             watch: Watch::new(),
             lever: Pack::splat(0.0),
+            depth: Pack::splat(0.0),
             lengths: Pack::from_f64(FIRST_STEP),
             lanes: vec![Lane { ended: true, ..Lane::default() }; Pack::<V>::LANES],
         }
@@ -139,11 +142,13 @@ impl<V: Simd> Lanes<V> {
     }
 
     /// Puts the next of `units` into a `lane`, from rest.
-    fn load(&mut self, lane: usize, next: &mut usize, units: &[SlideData<f64>]) {
+    fn load(&mut self, course: &Course, lane: usize, next: &mut usize, units: &[SlideData<f64>]) {
         let unit = units.get(*next).map(|unit| {
             put(&mut self.data, lane, unit);
             let farthest = unit.body.pins_w.iter().map(|pin| pin.norm()).fold(0.0, f64::max);
             self.lever.set(lane, farthest as f32);
+            let depth = libm::pow(course.tolerance / unit.contact.stiffness, 1.0 / unit.contact.exponent);
+            self.depth.set(lane, depth.max(PLACE * course.tolerance) as f32);
             *next += 1;
             *next - 1
         });
@@ -182,7 +187,7 @@ impl<V: Simd> Lanes<V> {
         let good = error.select_gt(one, zero, one);
         let gaps = slide.gaps(&step.motion.pose);
         // Nor may it pass over a contact.
-        let apart = self.apart(slide, &step.motion, &gaps, length, good, course);
+        let apart = self.apart(slide, &step.motion, &gaps, length, good);
         let accepted = (good - good * beyond) * apart;
         self.lengths = (good * beyond).select_gt(zero, shorter.max_of(Pack::splat(LEAST_STEP)), self.lengths);
         for (number, new) in numbers(&mut self.motions).into_iter().zip(numbers(&mut step.motion)) {
@@ -239,13 +244,11 @@ impl<V: Simd> Lanes<V> {
         gaps: &[Pack<V>; CONTACTS],
         length: Pack<V>,
         good: Pack<V>,
-        course: &Course,
     ) -> Pack<V> {
         let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
-        let depth = Pack::from_f64(PLACE * course.tolerance);
         // A gap that closes and opens again moves twice its own size; a contact moves no faster than this.
         let speed = self.most_approach(&self.motions).max_of(self.most_approach(after));
-        let reach = speed * length * Pack::splat(0.75) - depth;
+        let reach = speed * length * Pack::splat(0.75) - self.depth;
         let mut may_close = zero;
         for (from, to) in self.gaps.iter().zip(gaps) {
             let least = from.select_gt(*to, *to, *from);
@@ -256,7 +259,7 @@ impl<V: Simd> Lanes<V> {
         if may_close <= zero {
             return one;
         }
-        self.searched(slide, after, gaps, length, may_close, f64::from(depth.get(0)))
+        self.searched(slide, after, gaps, length, may_close)
     }
 
     /// A speed (m/s) that no gap exceeds: sliding counts as far as the walls are tilted.
@@ -281,7 +284,6 @@ impl<V: Simd> Lanes<V> {
         gaps: &[Pack<V>; CONTACTS],
         length: Pack<V>,
         may_close: Pack<V>,
-        depth: f64,
     ) -> Pack<V> {
         let part = length * Pack::splat(DIFFERENCE);
         let later = |motions: &Motions<V>| slide.gaps(&slide.explicit_update(&motions.pose, &motions.velocity, part));
@@ -303,7 +305,7 @@ impl<V: Simd> Lanes<V> {
                 let spin = libm::sqrt(x * x + y * y + z * z);
                 Gaps { approaches: gaps.iter().zip(later).map(approach).collect(), spin }
             });
-            if let Between::Closes(share) = closing::between(&before, &after, number(&length), depth)
+            if let Between::Closes(share) = closing::between(&before, &after, number(&length), number(&self.depth))
                 && length.get(lane) > LEAST_STEP
             {
                 apart.set(lane, 0.0);

@@ -175,13 +175,13 @@ impl<'a> Climb<'a> {
         let mut changes = Vec::new();
         for i in &field.moving[self.measure] {
             let (variation, at) = (&field.model.contributors[*i].variation, field.offsets[*i]);
-            for k in at..at + variation.variables() {
+            for (k, here) in point.iter().enumerate().skip(at).take(variation.variables()) {
                 let [low, high] = match variation {
                     Variation::Scalar { limits: [low, high], .. } => {
                         let step = 0.5 * step * (high - low);
-                        [f64::max(point[k] - step, *low), f64::min(point[k] + step, *high)]
+                        [f64::max(here - step, *low), f64::min(here + step, *high)]
                     }
-                    _ => [point[k] - step, point[k] + step],
+                    _ => [here - step, here + step],
                 };
                 changes.extend([vec![(k, low)], vec![(k, high)]]);
                 ends.push(high - low);

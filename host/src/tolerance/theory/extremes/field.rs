@@ -23,6 +23,9 @@ const RANDOM: u64 = 4;
 /// The most kinks whose farthest points are starts.
 const KINKS: usize = 16;
 
+/// Values and the points that have them.
+type Best = Vec<(f64, Vec<f64>)>;
+
 /// A model with what all searches of its measures start from.
 pub(super) struct Field<'a> {
     pub model: &'a Model,
@@ -31,7 +34,7 @@ pub(super) struct Field<'a> {
     /// Where every search can start: the middle first.
     pub starts: Vec<Vec<f64>>,
     /// Of each measure and side, the best points of all that were computed.
-    pub best: Vec<[Vec<(f64, Vec<f64>)>; 2]>,
+    pub best: Vec<[Best; 2]>,
     /// Whether a measure cannot be computed at one of these.
     pub undefined: Vec<bool>,
     /// Of each measure, the contributors that move it at any start.
