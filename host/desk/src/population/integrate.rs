@@ -15,7 +15,6 @@ use slipfit_core::{
 };
 
 use crate::{
-    closing::{self, Approach, Between, Gaps},
     error_control::{CHANGES, FIRST_STEP, GREATEST_STEP, PLACE, SAFETY},
     out_of_line::OutOfLine,
     pack::Pack,
@@ -60,8 +59,6 @@ impl<V: Simd, M: Slides<V>> Slides<V> for OutOfLine<M> {
 const LEAST_STEP: f32 = 1e-9;
 /// How far (m) from the end of its stroke a unit may stop.
 const BEYOND: f64 = 1e-7;
-/// The part of a step over which the rates of gaps are quotients of differences.
-const DIFFERENCE: f32 = 0.05;
 /// Steps after which a unit has stalled.
 const MOST_STEPS: u32 = 200_000;
 
@@ -81,14 +78,13 @@ pub fn integrate<V: Simd, M: Slides<V>>(
     loop {
         for lane in 0..Pack::<V>::LANES {
             if all.lanes[lane].ended {
-                all.load(course, lane, &mut next, units);
+                all.load(lane, &mut next, units);
             }
         }
         if !all.busy() {
             return;
         }
         let Some(slide) = load(&all.data) else { return };
-        all.gaps = slide.gaps(&all.motions.pose);
         while !all.step(course, &slide, figures) {}
     }
 }
@@ -97,13 +93,7 @@ pub fn integrate<V: Simd, M: Slides<V>>(
 struct Lanes<V: Simd> {
     data: SlideData<Pack<V>>,
     motions: Motions<V>,
-    /// Gaps (m) there.
-    gaps: [Pack<V>; CONTACTS],
     watch: Watch<V>,
-    /// Distances (m) of the farthest pins from the centres of mass at the start.
-    lever: Pack<V>,
-    /// How deep (m) contacts may be that a step passes over: their forces are within the tolerance.
-    depth: Pack<V>,
     /// Lengths of the next steps (s).
     lengths: Pack<V>,
     lanes: Vec<Lane>,
@@ -128,10 +118,7 @@ impl<V: Simd> Lanes<V> {
         Self {
             data: any.cast(Pack::from_f64),
             motions: at_rest(),
-            gaps: [Pack::splat(0.0); CONTACTS],
             watch: Watch::new(),
-            lever: Pack::splat(0.0),
-            depth: Pack::splat(0.0),
             lengths: Pack::from_f64(FIRST_STEP),
             lanes: vec![Lane { ended: true, ..Lane::default() }; Pack::<V>::LANES],
         }
@@ -142,13 +129,9 @@ impl<V: Simd> Lanes<V> {
     }
 
     /// Puts the next of `units` into a `lane`, from rest.
-    fn load(&mut self, course: &Course, lane: usize, next: &mut usize, units: &[SlideData<f64>]) {
+    fn load(&mut self, lane: usize, next: &mut usize, units: &[SlideData<f64>]) {
         let unit = units.get(*next).map(|unit| {
             put(&mut self.data, lane, unit);
-            let farthest = unit.body.pins_w.iter().map(|pin| pin.norm()).fold(0.0, f64::max);
-            self.lever.set(lane, farthest as f32);
-            let depth = libm::pow(course.tolerance / unit.contact.stiffness, 1.0 / unit.contact.exponent);
-            self.depth.set(lane, depth.max(PLACE * course.tolerance) as f32);
             *next += 1;
             *next - 1
         });
@@ -176,7 +159,7 @@ impl<V: Simd> Lanes<V> {
         let factor = Pack::from_f64(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
         self.lengths = (length * factor.within(Pack::from_f64(CHANGES[0]), Pack::from_f64(CHANGES[1])))
             .within(Pack::splat(LEAST_STEP), Pack::from_f64(GREATEST_STEP));
-        let drive = self.data.drive;
+        let drive = &self.data.drive;
         let along = zero.select_gt(drive.speed, -one, one);
         let before = self.motions.pose.displacement_w.z * along;
         let after = step.motion.pose.displacement_w.z * along;
@@ -185,16 +168,10 @@ impl<V: Simd> Lanes<V> {
         let beyond = (after - stroke).select_gt(Pack::from_f64(BEYOND), one, zero);
         let shorter = length * ((stroke - before) / (after - before)).within(Pack::splat(0.0), one);
         let good = error.select_gt(one, zero, one);
-        let gaps = slide.gaps(&step.motion.pose);
-        // Nor may it pass over a contact.
-        let apart = self.apart(slide, &step.motion, &gaps, length, good);
-        let accepted = (good - good * beyond) * apart;
+        let accepted = good - good * beyond;
         self.lengths = (good * beyond).select_gt(zero, shorter.max_of(Pack::splat(LEAST_STEP)), self.lengths);
         for (number, new) in numbers(&mut self.motions).into_iter().zip(numbers(&mut step.motion)) {
             *number = accepted.select_gt(zero, *new, *number);
-        }
-        for (gap, new) in self.gaps.iter_mut().zip(gaps) {
-            *gap = accepted.select_gt(zero, new, *gap);
         }
 
         let speed = self.motions.velocity.z;
@@ -204,7 +181,7 @@ impl<V: Simd> Lanes<V> {
             length,
             force: drive.force(start + length, speed) * along,
             speed: speed * along,
-            gaps: &self.gaps,
+            gaps: &slide.gaps(&self.motions.pose),
             ramp_start: drive.ramp_start,
         };
         self.watch.observe(&ends);
@@ -231,88 +208,6 @@ impl<V: Simd> Lanes<V> {
             }
         }
         self.lanes.iter().any(|lane| lane.ended)
-    }
-
-    /// 1 in each lane whose step of this `length` (s) to the motions `after` and the `gaps` (m) there passes no contact over, or is not
-    /// `good`; 0 in the others, and a shorter length for the next step. A contact counts that is deep enough to err by more than the
-    /// tolerance.
-    #[inline(always)]
-    fn apart<M: Slides<V>>(
-        &mut self,
-        slide: &M,
-        after: &Motions<V>,
-        gaps: &[Pack<V>; CONTACTS],
-        length: Pack<V>,
-        good: Pack<V>,
-    ) -> Pack<V> {
-        let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
-        // A gap that closes and opens again moves twice its own size; a contact moves no faster than this.
-        let speed = self.most_approach(&self.motions).max_of(self.most_approach(after));
-        let reach = speed * length * Pack::splat(0.75) - self.depth;
-        let mut may_close = zero;
-        for (from, to) in self.gaps.iter().zip(gaps) {
-            let least = from.select_gt(*to, *to, *from);
-            let is_open = least.select_gt(zero, one, zero);
-            may_close = reach.select_gt(least, may_close.max_of(is_open), may_close);
-        }
-        let may_close = may_close * good;
-        if may_close <= zero {
-            return one;
-        }
-        self.searched(slide, after, gaps, length, may_close)
-    }
-
-    /// A speed (m/s) that no gap exceeds: sliding counts as far as the walls are tilted.
-    #[inline(always)]
-    fn most_approach(&self, motions: &Motions<V>) -> Pack<V> {
-        let amount = |x: Pack<V>| x.max_of(-x);
-        let [x, y, z, turn_x, turn_y, turn_z] = motions.velocity.data.0[0].map(amount);
-        let pose = &motions.pose;
-        let tilt = pose.orientation.v.data.0[0].map(amount);
-        let place = pose.displacement_w.data.0[0].map(amount);
-        let tilt = (tilt[0] + tilt[1] + tilt[2]) * Pack::splat(2.0);
-        let lever = self.lever + place[0] + place[1] + place[2];
-        x + y + z * tilt + (turn_x + turn_y + turn_z) * lever
-    }
-
-    /// [`apart`](Self::apart) where lanes `may_close`, each for itself. Out of line, since it is rare.
-    #[inline(never)]
-    fn searched<M: Slides<V>>(
-        &mut self,
-        slide: &M,
-        after: &Motions<V>,
-        gaps: &[Pack<V>; CONTACTS],
-        length: Pack<V>,
-        may_close: Pack<V>,
-    ) -> Pack<V> {
-        let part = length * Pack::splat(DIFFERENCE);
-        let later = |motions: &Motions<V>| slide.gaps(&slide.explicit_update(&motions.pose, &motions.velocity, part));
-        let ends = [(&self.motions, &self.gaps, later(&self.motions)), (after, gaps, later(after))];
-        let speeds = [self.most_approach(&self.motions), self.most_approach(after)];
-        let mut apart = Pack::splat(1.0);
-        for lane in 0..Pack::<V>::LANES {
-            if may_close.get(lane) <= 0.0 {
-                continue;
-            }
-            let number = |pack: &Pack<V>| f64::from(pack.get(lane));
-            let [before, after] = [0, 1].map(|end| {
-                let (motions, gaps, later) = &ends[end];
-                let approach = |(gap, later): (&Pack<V>, &Pack<V>)| {
-                    let [gap, later] = [gap, later].map(number);
-                    Approach { gap, rate: (later - gap) / number(&part), speed: number(&speeds[end]) }
-                };
-                let [.., x, y, z] = motions.velocity.data.0[0].each_ref().map(number);
-                let spin = libm::sqrt(x * x + y * y + z * z);
-                Gaps { approaches: gaps.iter().zip(later).map(approach).collect(), spin }
-            });
-            if let Between::Closes(share) = closing::between(&before, &after, number(&length), number(&self.depth))
-                && length.get(lane) > LEAST_STEP
-            {
-                apart.set(lane, 0.0);
-                self.lengths.set(lane, (length.get(lane) * share as f32).max(LEAST_STEP));
-            }
-        }
-        apart
     }
 
     /// The error of a step whose estimates of momentum (N·s) and of place (N·s²) these are; 1 is allowed. What is not a
