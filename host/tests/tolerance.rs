@@ -266,9 +266,9 @@ fn no_output_replaces_an_input_or_another_output() {
         (&["tolerance", "clutch", "--csv", "a", "--draws", "a"], one),
         (&["tolerance", "clutch", "--out", "x", "--csv", "./x"], one),
         (&["tolerance", "clutch", "--out", "x.csv", "--draws", "./x.csv"], one),
-        (&["tolerance", "clutch", "--plots", "x", "--csv", "x/histogram-1.svg"], one),
-        (&["tolerance", "scene.toml", "--draws", "none/../scene.toml"], "it is the scene"),
-        (&["simulate", "scene.toml", "--csv", "scene.toml"], "neither a slide"),
+        (&["tolerance", "clutch", "--plots", "x", "--csv", "x/histogram-1.svg"], "--csv writes .csv"),
+        (&["tolerance", "scene.toml", "--draws", "none/../scene.toml"], "--draws writes .csv"),
+        (&["simulate", "scene.toml", "--csv", "a.csv"], "neither a slide"),
         (&["precision", "--csv", "a", "--plot", "a"], one),
     ];
     for (arguments, said) in cases {
