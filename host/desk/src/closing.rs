@@ -33,6 +33,10 @@ pub enum Between {
     Closes(f64),
 }
 
+/// The time (s) over which the rate of a gap is the quotient of differences: short enough for a pin in a round hole, and long enough for
+/// the digits of a gap.
+pub const DIFFERENCE: f64 = 1e-6;
+
 /// The greatest angle (rad) by which a body may turn in a step, where gaps are cubics.
 const MOST_TURN: f64 = 0.5;
 
@@ -162,7 +166,7 @@ mod tests {
 
     #[test]
     fn a_point_that_turns_is_followed_until_the_cubic_is_good_enough() {
-        // A point on a radius of 0.1 m sweeps past a wall; halving as told, the contact is found or excluded.
+        // A point on a radius of 0.1 m sweeps past a wall; halved as `between` asks, the contact is found or excluded.
         let (radius, spin) = (0.1, 40.0);
         for distance in [0.0999, 0.099_999, 0.100_001, 0.1001] {
             let gap = |t: f64| {

@@ -18,7 +18,7 @@ use slipfit_core::{
 };
 
 use crate::{
-    closing::Approach,
+    closing::{Approach, DIFFERENCE},
     contact::Laws,
     laws::{AnyNormal, AnySliding},
 };
@@ -26,7 +26,7 @@ use crate::{
 /// Any contact without internal variables.
 pub type AnyContact<S = f64> = Contact<AnyNormal<S>, AnySliding<S>>;
 
-/// The contact of `laws`; true stick is stood for by the `stick_band` (m/s).
+/// The contact of `laws`; the `stick_band` (m/s) is used in place of true stick.
 ///
 /// # Errors
 /// [`ParameterError`] names the parameter that is not finite or out of bounds.
@@ -75,10 +75,6 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
     let view = element.link.view(at.0, at.1);
     Some(element.law.gap(&element.link.seen(at, &view).place))
 }
-
-/// The time (s) over which the rate of a gap is the quotient of differences: short enough for a pin in a round hole, and long enough for
-/// the digits of a gap.
-const DIFFERENCE: f64 = 1e-6;
 
 /// Adds the contacts of an `element` to `all`.
 fn approach<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(

@@ -45,7 +45,7 @@ fn reversal<'a>(mechanism: &'a Mechanism, named: &'a NamedDrive) -> Option<Rever
 }
 
 impl Body {
-    /// A vector of the body as it is at the start, turned about an `axis`.
+    /// A vector of the drawn body where the body starts, turned about an `axis`.
     fn at_start(&self, vector: Vector3<f64>, axis: [f64; 3]) -> Vector3<f64> {
         Rotation3::from_axis_angle(&Unit::new_normalize(Vector3::from(axis)), self.start.angle) * vector
     }

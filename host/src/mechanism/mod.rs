@@ -30,7 +30,7 @@ mod start;
 mod vary;
 
 pub use columns::BodyMotion;
-pub use driven::{ByDrive, confirmed, finer};
+pub use driven::{ByDrive, ENERGY, confirmed, finer};
 pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps, STOP_MOST, level_of};
 pub use hanging::MountError;

@@ -117,7 +117,7 @@ fn a_ball_thrown_at_a_ceiling_does_not_pass_through_it() {
     }
 }
 
-/// Late bounces in a play of 0.129 mm, at rest in the middle but for a small speed; every axis and both directions.
+/// Late bounces in a play of 0.129 mm, from the middle at a small speed; every axis and both directions.
 #[test]
 fn bounces_within_play_are_all_there() {
     for (axis, speed) in [([1, 0], 0.03), ([-1, 0], 0.03), ([1, 0], -0.03), ([1, 0], 0.004)] {
@@ -270,7 +270,6 @@ fn a_drive_that_runs_away_does_not_complete_its_motion() {
     let near = confirmed(&lever(30.0, 40.0, 0.0));
     assert_eq!(near.verdict, Verdict::Runs);
     let far = confirmed(&lever(30.0, -40.0, 0.0));
-    assert!(far.verdict.is_malfunction() || far.verdict == Verdict::Undecided, "{far:?}");
     assert_eq!(far.verdict, Verdict::Overruns, "{far:?}");
     let found =
         super::feedback::reversals(&lever(30.0, -40.0, 0.0)).iter().map(|found| found.angle).collect::<Vec<_>>();

@@ -18,7 +18,7 @@ use slipfit_core::slide::ABSENT;
 use super::{Action, JointKind, Mechanism, Port, mobility::SURFACE_NORMALS};
 use crate::scene::{PinSpec, Scene};
 
-/// Lengths (m) that are the same but for rounding.
+/// Lengths (m) that differ by rounding alone.
 const SAME: f64 = 1e-9;
 /// Turns (rad) at which contacts close together: less than any contact yields.
 const SAME_TURN: f64 = 1e-6;

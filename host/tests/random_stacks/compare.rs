@@ -200,7 +200,7 @@ fn counted(of: &MeasureReport, sample: &[f64], limits: [Option<f64>; 2], wrong: 
             1e-5 * kurtosis,
         );
     }
-    // A point is good to a bin: somewhere within one of it the share is the stated one, but for a unit.
+    // A point is good to a bin: somewhere within one of it the share is the stated one, to within a unit.
     let bin = sd / 64.0 + 1e-9 * size;
     for (what, point, share) in
         [("0.135 % point", of.q00135, 0.001_35), ("median", of.median, 0.5), ("99.865 % point", of.q99865, 0.998_65)]

@@ -319,7 +319,7 @@ impl Law {
         !matches!(self, Self::Constant | Self::Beta { .. } | Self::Mixture(_))
     }
 
-    /// Where all deviations lie but for a share of 1e-15, and so certainly those of every unit that is drawn.
+    /// Where all deviations lie except a share of 1e-15, and so certainly those of every unit that is drawn.
     pub fn support(&self, limits: [f64; 2]) -> [f64; 2] {
         match self {
             Self::Beta { .. } => limits,

@@ -38,7 +38,7 @@ fn figures(of: &MeasureReport) -> Vec<(&'static str, f64, f64)> {
     ]
 }
 
-/// Both reports are the same but for rounding; measure i of the first is measure `to(i)` of the second.
+/// The reports differ by rounding alone; measure i of the first is measure `to(i)` of the second.
 fn same(what: &str, one: &Report, other: &Report, to: &dyn Fn(usize) -> usize, wrong: &mut Deviations) {
     for (i, a) in one.measures.iter().enumerate() {
         let b = &other.measures[to(i)];
@@ -77,7 +77,7 @@ pub fn stack(stack: &Stack, chance: &mut Chance, wrong: &mut Deviations) {
             .map_err(|error| wrong.all.push(format!("{what}: {error}")))
             .ok()
     };
-    let Some(first) = run("as it is", &stack, &plain, wrong) else { return };
+    let Some(first) = run("unchanged", &stack, &plain, wrong) else { return };
     mirrored(&stack, &first.report, straight, wrong);
     let length = chance.one_of(&[("µm", 1e3), ("m", 1e-3), ("cm", 0.1), ("nm", 1e6), ("in", 1.0 / 25.4)]);
     let angle = chance.one_of(&[("rad", 1f64.to_radians()), ("mrad", 1f64.to_radians() * 1e3), ("°", 1.0)]);

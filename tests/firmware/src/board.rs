@@ -85,7 +85,7 @@ impl Board {
     /// Has the system timer's interrupt called every `period` of [`TICK`]s, with the lowest priority: after a reset it has the
     /// highest, so that every other interrupt would wait for what it does.
     pub fn tick_every(&mut self, period: u32) {
-        // SAFETY: no critical section goes by priorities; those of critical-section mask all interrupts.
+        // SAFETY: no critical section relies on priorities; those of critical-section mask all interrupts.
         unsafe { self.system.set_priority(SystemHandler::SysTick, 0xff) };
         self.timer.set_reload(period - 1);
         self.timer.clear_current();

@@ -53,7 +53,7 @@ async fn main(_spawner: Spawner) {
     TIMER.start(&mut core.SYST);
     // The lowest priority. After a reset it is the highest, so that every other interrupt, the timer's too, would wait for a step.
     #[allow(unsafe_code, reason = "a wrong priority breaks critical sections that rely on it; none does here")]
-    // SAFETY: no critical section goes by priorities: those of critical-section mask all interrupts.
+    // SAFETY: no critical section relies on priorities: those of critical-section mask all interrupts.
     unsafe {
         core.NVIC.set_priority(Interrupt::GPIOA, 0xff);
     }

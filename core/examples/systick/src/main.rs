@@ -65,7 +65,7 @@ fn main() -> ! {
 /// Gives the interrupt the lowest priority. After a reset it has the highest, so that every other interrupt would wait for a step.
 #[allow(unsafe_code, reason = "a wrong priority breaks critical sections that rely on it; none does here")]
 fn give_way(system: &mut SCB) {
-    // SAFETY: no critical section goes by priorities: those of critical-section mask all interrupts.
+    // SAFETY: no critical section relies on priorities: those of critical-section mask all interrupts.
     unsafe { system.set_priority(SystemHandler::SysTick, 0xff) }
 }
 

@@ -20,7 +20,7 @@ use slipfit_core::{
 pub use fixed_steps::{At, Controller, Report, Witness, by_controller};
 
 use crate::{
-    closing::{Approach, Gaps},
+    closing::{Approach, DIFFERENCE, Gaps},
     error_control::{Accelerations, Effort, Sensitivity, Stopped, Tolerance, Watched, integrate},
     laws::SlidingSlide,
     out_of_line::{Contacts, OutOfLine},
@@ -87,9 +87,6 @@ impl Run {
         })
     }
 }
-
-/// The time (s) over which the rates of gaps are quotients of differences.
-const DIFFERENCE: f64 = 1e-6;
 
 /// Fills in the contacts of a `slide` at a `motion`.
 fn watch<E: Elastic<f64>, F: Friction<f64, Internal = ()>>(

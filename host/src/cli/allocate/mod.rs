@@ -264,7 +264,7 @@ impl Arguments {
     }
 }
 
-/// The same requirements, but for the share of units that may malfunction, which is the `target`.
+/// The same requirements, except that the share of units that may malfunction is the `target`.
 fn aimed_at(requirements: &[Requirement], target: f64) -> Vec<Requirement> {
     let of = |requirement: &Requirement| match requirement.kind {
         Kind::Malfunction { force_limit, .. } => {

@@ -14,8 +14,8 @@ use crate::{
         outcome::{Outcome, Verdict},
     },
     mechanism::{
-        Action, ByDrive, Mechanism, MechanismRun, NamedDrive, RunError, SCHEME, agreement::Agreement, confirmed,
-        controller_run, film,
+        Action, ByDrive, ENERGY, Mechanism, MechanismRun, NamedDrive, RunError, SCHEME, agreement::Agreement,
+        confirmed, controller_run, film,
     },
     population::{mechanism::mechanism_of, production::Production},
     scene::ControllerSpec,
@@ -294,6 +294,14 @@ fn doubt(mechanism: &Mechanism, desk: &MechanismRun, finer: &MechanismRun) -> Op
         of.1.0.verdict == Verdict::Undecided && of.1.1.verdict != Verdict::Undecided
     };
     let (named, (_, better)) = drives.find(is_doubtful)?;
+    if desk.energy_excess.is_nan() || desk.energy_excess > ENERGY {
+        let excess = fixed(desk.energy_excess * 100.0, 1);
+        let name = &named.name;
+        return Some(format!(
+            "{name}: no verdict, because the run has up to {excess} % more energy than its start, gravity and its drives supplied; take a \
+             tenth of run.error"
+        ));
+    }
     Some(format!(
         "{}: no verdict, because a run at a tenth of the tolerance ({}) differs by more than 1 % in peak, final speed or travel; take a \
          tenth of run.error",

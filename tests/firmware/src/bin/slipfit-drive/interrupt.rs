@@ -42,7 +42,7 @@ fn with<T>(work: impl FnOnce(&mut Shared) -> T) -> T {
 #[exception]
 fn SysTick() {
     // The interrupt owns the rig for a motion, so that it steps it outside of any critical section: interrupts of higher priority,
-    // which is every other one, are not delayed by it. Critical sections are some instructions long but for the two swaps.
+    // which is every other one, are not delayed by it. Critical sections are some instructions long, except for the two swaps.
     static mut OWN: Option<OnRig> = None;
     if OWN.is_none() {
         with(|shared| {
