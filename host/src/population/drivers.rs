@@ -1,7 +1,7 @@
 //! What drives force and malfunction: the share of the variance that each contributor explains alone.
 //!
 //! The shares need no runs of their own. Units whose outcome is known are drawn again, which takes far less time than to simulate them,
-//! and put into order by each variable ([`explained`]). A contributor with several variables, such as a plane in its zone, explains
+//! and put into order by each variable (`explained`). A contributor with several variables, such as a plane in its zone, explains
 //! what each of them does alone, or what their most telling linear combination does, whichever is more.
 
 use std::{collections::BTreeMap, ops::Range};

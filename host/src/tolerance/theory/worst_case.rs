@@ -6,7 +6,7 @@ use crate::tolerance::model::{Model, Variation, widening::Widening};
 /// Lowest and highest value of a measure (SI).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstCase {
-    /// The worst case: of a linear measure exact, of any other by corners and a search ([`extremes`]).
+    /// The worst case: of a linear measure exact, of any other by corners and a search (`extremes`).
     pub range: [f64; 2],
     /// By its slopes at the middle of all limits, and by how zones grow with sizes: no bound for a measure that is not linear.
     pub linear: [f64; 2],
