@@ -43,7 +43,8 @@ fn main() -> ! {
     let (sender, mut receiver) = QUEUE.split();
     let own = (Controller::new(LEVEL), sender);
     critical_section::with(|section| HANDED_OVER.replace(section, Some(own)));
-    let Peripherals { SCB: mut system, SYST: mut timer, .. } = Peripherals::take().expect("nobody has taken them before");
+    let Peripherals { SCB: mut system, SYST: mut timer, .. } =
+        Peripherals::take().expect("nobody has taken them before");
     give_way(&mut system);
     start(&mut timer);
 
