@@ -10,13 +10,14 @@ use std::{
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// A Cargo whose target folder is in `folder`, the test's `CARGO_TARGET_TMPDIR`, so that it never waits for the Cargo
-/// that runs the test. Its compiler flags are the repository's, whatever the environment says: counts of instructions
-/// depend on them.
+/// that runs the test. Its compiler flags are the repository's, and nothing is compiled incrementally, whatever the
+/// environment says: counts of instructions depend on both.
 pub fn cargo(folder: &str) -> Command {
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .env("CARGO_TARGET_DIR", Path::new(folder).join("cross"))
+        .env("CARGO_INCREMENTAL", "0")
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env_remove("CARGO_BUILD_TARGET")

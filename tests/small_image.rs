@@ -87,10 +87,12 @@ fn steps(folder: &Path, level: &str, of_the_crate: &str) -> Steps {
     build
         .current_dir(folder)
         .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", level)
-        // The flags of the target, also where the target folder lies outside of the repository.
+        .args(["build", "--offline", "--release", "-p", "image", "--target", TARGET])
+        // The flags of the target, also where the target folder lies outside of the repository. After `build` like the other option of
+        // that name: Cargo drops those before it if there are some after it.
         .arg("--config")
         .arg(Path::new(ROOT).join(".cargo/config.toml"))
-        .args(["build", "--offline", "--release", "-p", "image", "--target", TARGET, "--config"])
+        .arg("--config")
         .arg(format!("profile.release.package.slide.opt-level={of_the_crate}"));
     let built = finished(&mut build);
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));

@@ -18,7 +18,7 @@ use crate::{
     mechanism::Driven,
     pose::Pose,
     system::{
-        Alike, Bodies, Element, System,
+        Alike, Bodies, Element, Link, Seen, System,
         law::{Contact, Pusher},
         spatial::{Floating, PinOfFrame, Pull},
     },
@@ -128,12 +128,31 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>, G: Fit<Number = S>> Slide<S, E, F
         let shift = to_body.apply(pose.displacement_w);
         let mut gaps = [S::zero(); CONTACTS];
         for (quad, (pin, fit)) in gaps.as_chunks_mut::<4>().0.iter_mut().zip(&self.elements().0.each) {
-            let d = to_body.change(pin.place_w) - shift;
-            let [left, right, rail, wall] = fit.gaps();
-            *quad = [left + d.x, right - d.x, rail - d.y, wall + d.y];
+            *quad = to_walls(fit.gaps(), &(to_body.change(pin.place_w) - shift));
         }
         gaps
     }
+
+    /// The [gaps](Self::gaps) (m) at `pose`, and how fast they open (m/s) at this `velocity`.
+    #[inline(always)]
+    pub fn approaches(&self, pose: &Pose<S>, velocity: &SVector<S, 6>) -> [[S; CONTACTS]; 2] {
+        let body = self.bodies();
+        let placed = body.placed(pose, velocity);
+        let [mut gaps, mut rates] = [[S::zero(); CONTACTS]; 2];
+        let quads = gaps.as_chunks_mut::<4>().0.iter_mut().zip(rates.as_chunks_mut::<4>().0);
+        for ((gaps, rates), (pin, fit)) in quads.zip(&self.elements().0.each) {
+            let Seen { place, rate } = pin.seen((body, &placed), &pin.view(body, &placed));
+            *gaps = to_walls(fit.gaps(), &place);
+            *rates = to_walls([S::zero(); 4], &rate);
+        }
+        [gaps, rates]
+    }
+}
+
+/// The gaps (m) of a pin to its left, right, rail and wall that are `nominal` where it is drawn, after a displacement `d` (m).
+#[inline(always)]
+fn to_walls<S: Scalar>([left, right, rail, wall]: [S; 4], d: &Vector3<S>) -> [S; 4] {
+    [left + d.x, right - d.x, rail - d.y, wall + d.y]
 }
 
 impl<S: Scalar, E: Elastic<S>, F: Friction<S, Internal = ()>, G: Fit<Number = S>> Driven<S, 6> for Slide<S, E, F, G> {

@@ -4,6 +4,8 @@
 //! it. Between the ends a gap is the cubic that has its values and rates there; what that leaves out is bounded by how far the bodies
 //! turn, since straight motion under constant forces is a parabola.
 
+use slipfit_core::Scalar;
+
 /// A contact at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Approach {
@@ -76,6 +78,33 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
         share = found.into_iter().chain(share).reduce(f64::min);
     }
     share.map_or(Between::Apart, Between::Closes)
+}
+
+/// 1 where a gap that is open at both ends of a step could close within, by its values (m) there and its rates times the step's length
+/// (m); else 0. Straight motion, as in [`Cubic`].
+#[inline(always)]
+pub fn reaches<S: Scalar>([from, to]: [S; 2], rates: [S; 2]) -> S {
+    let least = from.select_gt(to, to, from);
+    let [before, after] = rates.map(|rate| rate.max_of(-rate));
+    let reach = (before + after) * S::from_f64(DIP);
+    least.select_gt(S::zero(), reach.select_gt(least, S::one(), S::zero()), S::zero())
+}
+
+/// The same where the cubic also has a minimum within.
+#[inline(always)]
+pub fn may_dip<S: Scalar>([from, to]: [S; 2], rates: [S; 2]) -> S {
+    let rise = to - from;
+    // Monotone if both slopes have the rise's sign and neither is three times as steep (Fritsch and Carlson, SIAM J. Numer. Anal. 17,
+    // 1980).
+    let [before, after] = rates.map(|rate| rate * rise);
+    let least = before.select_gt(after, after, before);
+    let steep = before.max_of(after) - S::from_f64(3.0) * rise * rise;
+    let bends = steep.max_of(-least);
+    // Where it rises first and falls at last it has a maximum alone.
+    let [first, last] = rates;
+    let falls_or_rises = (-first).max_of(last);
+    let may = bends.select_gt(S::zero(), falls_or_rises.select_gt(S::zero(), S::one(), S::zero()), S::zero());
+    may * reaches([from, to], rates)
 }
 
 /// A gap over the share s of a step.

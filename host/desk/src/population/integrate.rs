@@ -5,7 +5,7 @@
 
 use pulp::Simd;
 use slipfit_core::{
-    Scalar,
+    SVector, Scalar,
     integrator::{Integrator, Rodas3},
     law::{Elastic, Friction},
     mechanism::Mechanism,
@@ -15,6 +15,7 @@ use slipfit_core::{
 };
 
 use crate::{
+    closing::{self, Approach, Between, Gaps},
     error_control::{CHANGES, FIRST_STEP, GREATEST_STEP, PLACE, SAFETY},
     out_of_line::OutOfLine,
     pack::Pack,
@@ -38,20 +39,20 @@ pub struct Course {
 
 /// As many slides as a pack has lanes.
 pub trait Slides<V: Simd>: Mechanism<Pack<V>, 6, Pose = Pose<Pack<V>>, Internal = Internal<()>> {
-    /// The gaps (m) of each.
-    fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS];
+    /// The gaps (m) of each, and how fast they open (m/s).
+    fn approaches(&self, pose: &Pose<Pack<V>>, velocity: &SVector<Pack<V>, 6>) -> [[Pack<V>; CONTACTS]; 2];
 }
 
 impl<V: Simd, E: Elastic<Pack<V>>, F: Friction<Pack<V>, Internal = ()>> Slides<V> for Slide<Pack<V>, E, F> {
     #[inline(always)]
-    fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS] {
-        self.gaps(pose)
+    fn approaches(&self, pose: &Pose<Pack<V>>, velocity: &SVector<Pack<V>, 6>) -> [[Pack<V>; CONTACTS]; 2] {
+        self.approaches(pose, velocity)
     }
 }
 
 impl<V: Simd, M: Slides<V>> Slides<V> for OutOfLine<M> {
-    fn gaps(&self, pose: &Pose<Pack<V>>) -> [Pack<V>; CONTACTS] {
-        self.mechanism().gaps(pose)
+    fn approaches(&self, pose: &Pose<Pack<V>>, velocity: &SVector<Pack<V>, 6>) -> [[Pack<V>; CONTACTS]; 2] {
+        self.mechanism().approaches(pose, velocity)
     }
 }
 
@@ -85,6 +86,7 @@ pub fn integrate<V: Simd, M: Slides<V>>(
             return;
         }
         let Some(slide) = load(&all.data) else { return };
+        all.approaches = slide.approaches(&all.motions.pose, &all.motions.velocity);
         while !all.step(course, &slide, figures) {}
     }
 }
@@ -93,6 +95,8 @@ pub fn integrate<V: Simd, M: Slides<V>>(
 struct Lanes<V: Simd> {
     data: SlideData<Pack<V>>,
     motions: Motions<V>,
+    /// Gaps (m) and how fast they open (m/s) there.
+    approaches: [[Pack<V>; CONTACTS]; 2],
     watch: Watch<V>,
     /// Lengths of the next steps (s).
     lengths: Pack<V>,
@@ -118,6 +122,7 @@ impl<V: Simd> Lanes<V> {
         Self {
             data: any.cast(Pack::from_f64),
             motions: at_rest(),
+            approaches: [[Pack::splat(0.0); CONTACTS]; 2],
             watch: Watch::new(),
             lengths: Pack::from_f64(FIRST_STEP),
             lanes: vec![Lane { ended: true, ..Lane::default() }; Pack::<V>::LANES],
@@ -159,8 +164,7 @@ impl<V: Simd> Lanes<V> {
         let factor = Pack::from_f64(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
         self.lengths = (length * factor.within(Pack::from_f64(CHANGES[0]), Pack::from_f64(CHANGES[1])))
             .within(Pack::splat(LEAST_STEP), Pack::from_f64(GREATEST_STEP));
-        let drive = &self.data.drive;
-        let along = zero.select_gt(drive.speed, -one, one);
+        let along = zero.select_gt(self.data.drive.speed, -one, one);
         let before = self.motions.pose.displacement_w.z * along;
         let after = step.motion.pose.displacement_w.z * along;
         // A step that ends beyond the stroke is taken again, as long as it may be.
@@ -168,20 +172,25 @@ impl<V: Simd> Lanes<V> {
         let beyond = (after - stroke).select_gt(Pack::from_f64(BEYOND), one, zero);
         let shorter = length * ((stroke - before) / (after - before)).within(Pack::splat(0.0), one);
         let good = error.select_gt(one, zero, one);
-        let accepted = good - good * beyond;
         self.lengths = (good * beyond).select_gt(zero, shorter.max_of(Pack::splat(LEAST_STEP)), self.lengths);
+        let approaches = slide.approaches(&step.motion.pose, &step.motion.velocity);
+        let within = good - good * beyond;
+        let accepted = self.passing_none_over(course, within, length, &step.motion.velocity, &approaches);
         for (number, new) in numbers(&mut self.motions).into_iter().zip(numbers(&mut step.motion)) {
             *number = accepted.select_gt(zero, *new, *number);
         }
+        for (number, new) in self.approaches.as_flattened_mut().iter_mut().zip(approaches.as_flattened()) {
+            *number = accepted.select_gt(zero, *new, *number);
+        }
 
-        let speed = self.motions.velocity.z;
+        let (drive, speed) = (&self.data.drive, self.motions.velocity.z);
         let ends = Ends {
             accepted,
             start,
             length,
             force: drive.force(start + length, speed) * along,
             speed: speed * along,
-            gaps: &slide.gaps(&self.motions.pose),
+            gaps: &self.approaches[0],
             ramp_start: drive.ramp_start,
         };
         self.watch.observe(&ends);
@@ -210,6 +219,72 @@ impl<V: Simd> Lanes<V> {
         self.lanes.iter().any(|lane| lane.ended)
     }
 
+    /// 1 in each lane that is 1 in `accepted` and whose step of this `length` (s), to these `approaches` and this `velocity`, passes no
+    /// contact over. The others are to take a shorter one.
+    #[inline(always)]
+    fn passing_none_over(
+        &mut self,
+        course: &Course,
+        accepted: Pack<V>,
+        length: Pack<V>,
+        velocity: &SVector<Pack<V>, 6>,
+        approaches: &[[Pack<V>; CONTACTS]; 2],
+    ) -> Pack<V> {
+        let zero = Pack::splat(0.0);
+        let ([gaps, rates], [new_gaps, new_rates]) = (&self.approaches, approaches);
+        let mut suspect = zero;
+        for k in 0..CONTACTS {
+            let near = closing::reaches([gaps[k], new_gaps[k]], [rates[k] * length, new_rates[k] * length]);
+            suspect = suspect.max_of(near);
+        }
+        if suspect * accepted <= zero {
+            return accepted;
+        }
+        let mut dips = zero;
+        for k in 0..CONTACTS {
+            let dip = closing::may_dip([gaps[k], new_gaps[k]], [rates[k] * length, new_rates[k] * length]);
+            dips = dips.max_of(dip);
+        }
+        let dips = dips * accepted;
+        if dips <= zero {
+            return accepted;
+        }
+        self.searched(course, accepted, dips, length, velocity, approaches)
+    }
+
+    /// [`passing_none_over`](Self::passing_none_over) where a gap `dips`, each lane for itself. Out of line, since it is rare.
+    #[inline(never)]
+    fn searched(
+        &mut self,
+        course: &Course,
+        mut accepted: Pack<V>,
+        dips: Pack<V>,
+        length: Pack<V>,
+        velocity: &SVector<Pack<V>, 6>,
+        approaches: &[[Pack<V>; CONTACTS]; 2],
+    ) -> Pack<V> {
+        for lane in (0..Pack::<V>::LANES).filter(|lane| dips.get(*lane) > 0.0) {
+            let number = |pack: &Pack<V>| f64::from(pack.get(lane));
+            let lever = self.data.body.pins_w.iter().map(|pin| pin.map(|x| number(&x)).norm()).fold(0.0, f64::max);
+            let gaps = |[gaps, rates]: &[[Pack<V>; CONTACTS]; 2], velocity: &SVector<Pack<V>, 6>| {
+                let half = |from: usize| velocity.fixed_rows::<3>(from).map(|x| number(&x)).norm();
+                let spin = half(3);
+                let speed = half(0) + spin * lever;
+                let approach = |(gap, rate)| Approach { gap: number(gap), rate: number(rate), speed };
+                Gaps { approaches: gaps.iter().zip(rates).map(approach).collect(), spin }
+            };
+            let (before, after) = (gaps(&self.approaches, &self.motions.velocity), gaps(approaches, velocity));
+            let depth = PLACE * course.tolerance;
+            if let Between::Closes(share) = closing::between(&before, &after, number(&length), depth)
+                && length.get(lane) > LEAST_STEP
+            {
+                accepted.set(lane, 0.0);
+                self.lengths.set(lane, (length.get(lane) * share as f32).max(LEAST_STEP));
+            }
+        }
+        accepted
+    }
+
     /// The error of a step whose estimates of momentum (N·s) and of place (N·s²) these are; 1 is allowed. What is not a
     /// number is the worst of all.
     #[inline(always)]
@@ -221,5 +296,56 @@ impl<V: Simd> Lanes<V> {
         let error = (velocity_error.max_of(place_error) + not_a_number) / mass;
         let worst = Pack::splat(1e9);
         worst.select_gt(error, error, worst).max_of(Pack::splat(1e-9))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfit_core::{Vector3, slide::ABSENT};
+
+    use super::*;
+    use crate::laws;
+
+    /// The greatest height (m) of a slide that is thrown up at 1 m/s below walls at the height `ceiling` (m).
+    fn height(ceiling: f64, stiffness: f64, tolerance: f64) -> f64 {
+        let mut data = slipfit_problems::cd_rom::data(0.0);
+        data.body.pins_w = [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].map(|[x, z]| Vector3::new(x, 0.0, z) * 0.05);
+        data.body.gaps = std::array::from_fn(|k| if k % 4 == 3 { ceiling } else { ABSENT });
+        data.body.gravity_w = Vector3::new(0.0, -9.81, 0.0);
+        (data.contact.stiffness, data.contact.damping) = (stiffness, 0.0);
+        (data.drive.ramp_start, data.drive.ramp_end) = (10.0, 11.0);
+        let course = Course { duration: 1.0, stroke: None, tolerance };
+        let mut lanes = Lanes::<pulp::Scalar>::new(&data);
+        lanes.load(0, &mut 0, &[data]);
+        lanes.motions.velocity.y.set(0, 1.0);
+        let slide = laws::usual::<Pack<pulp::Scalar>>(&lanes.data).unwrap();
+        lanes.approaches = slide.approaches(&lanes.motions.pose, &lanes.motions.velocity);
+        let mut figures = [Figures::NONE];
+        let mut highest = 0.0;
+        while lanes.lanes[0].time < 0.15 {
+            lanes.step(&course, &slide, &mut figures);
+            highest = lanes.motions.pose.displacement_w.y.get(0).max(highest);
+        }
+        f64::from(highest)
+    }
+
+    /// The closed form: what reaches the walls with some speed presses into them until their springs hold its energy.
+    #[test]
+    fn a_slide_that_is_thrown_at_walls_does_not_pass_through_them() {
+        let data = slipfit_problems::cd_rom::data(0.0);
+        for ceiling in [40.0, 50.0, 50.9, 50.95, 50.96, 51.0] {
+            let ceiling = ceiling * 1e-3;
+            let energy = 0.5 * data.body.mass * f64::max(1.0 - 2.0 * 9.81 * ceiling, 0.0);
+            for stiffness in [2e4, 2e5] {
+                let power = data.contact.exponent + 1.0;
+                let pressed = libm::pow(energy * power / (4.0 * stiffness), 1.0 / power);
+                let highest = (ceiling + pressed).min(1.0 / (2.0 * 9.81));
+                for tolerance in [1e-1, 1e-3] {
+                    let found = height(ceiling, stiffness, tolerance);
+                    let least = highest - if ceiling > highest { 1e-3 } else { pressed.max(1e-5) };
+                    assert!(found < highest + 2e-6 && found > least, "{ceiling} {stiffness} {tolerance}: {found} {highest}");
+                }
+            }
+        }
     }
 }

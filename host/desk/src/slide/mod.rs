@@ -11,7 +11,6 @@ use slipfit_core::{
     SVector,
     integrator::{Motion, Rodas4},
     law::{Elastic, Friction},
-    mechanism::Mechanism as _,
     menu::SlideData,
     pose::Pose,
     slide::{ABSENT, CONTACTS, Internal, NO_INTERNAL, Slide},
@@ -20,7 +19,7 @@ use slipfit_core::{
 pub use fixed_steps::{At, Controller, Report, Witness, by_controller};
 
 use crate::{
-    closing::{Approach, DIFFERENCE, Gaps},
+    closing::{Approach, Gaps},
     error_control::{Accelerations, Effort, Sensitivity, Stopped, Tolerance, Watched, integrate},
     laws::SlidingSlide,
     out_of_line::{Contacts, OutOfLine},
@@ -96,14 +95,10 @@ fn watch<E: Elastic<f64>, F: Friction<f64, Internal = ()>>(
     gaps: &mut Gaps,
 ) {
     let Motion { pose, velocity, .. } = motion;
-    let next = slide.explicit_update(pose, velocity, DIFFERENCE);
-    let [now, then] = [pose, &next].map(|pose| slide.gaps(pose));
+    let [now, rates] = slide.approaches(pose, velocity);
     gaps.spin = velocity.fixed_rows::<3>(3).norm();
     // A point of the slide at a pin moves no faster than its centre of mass and its turning together.
     let speed = velocity.fixed_rows::<3>(0).norm() + gaps.spin * (lever + pose.displacement_w.norm());
     gaps.approaches.clear();
-    gaps.approaches.extend(now.iter().zip(&then).map(|(gap, then)| {
-        let rate = if *gap < ABSENT / 2.0 { (then - gap) / DIFFERENCE } else { 0.0 };
-        Approach { gap: *gap, rate, speed }
-    }));
+    gaps.approaches.extend(now.iter().zip(&rates).map(|(&gap, &rate)| Approach { gap, rate, speed }));
 }
