@@ -133,25 +133,23 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S>, G: Fit<Number = S>> Slide<S, E, F
         gaps
     }
 
-    /// The [gaps](Self::gaps) (m) at `pose`, and how fast they open (m/s) at this `velocity`.
+    /// How far each pin is displaced (m) as the slide sees it at `pose`, and how fast (m/s) at this `velocity`, in the slide's axes.
     #[inline(always)]
-    pub fn approaches(&self, pose: &Pose<S>, velocity: &SVector<S, 6>) -> [[S; CONTACTS]; 2] {
+    pub fn pins(&self, pose: &Pose<S>, velocity: &SVector<S, 6>) -> [Seen<S, 3>; PINS] {
         let body = self.bodies();
         let placed = body.placed(pose, velocity);
-        let [mut gaps, mut rates] = [[S::zero(); CONTACTS]; 2];
-        let quads = gaps.as_chunks_mut::<4>().0.iter_mut().zip(rates.as_chunks_mut::<4>().0);
-        for ((gaps, rates), (pin, fit)) in quads.zip(&self.elements().0.each) {
-            let Seen { place, rate } = pin.seen((body, &placed), &pin.view(body, &placed));
-            *gaps = to_walls(fit.gaps(), &place);
-            *rates = to_walls([S::zero(); 4], &rate);
+        let mut pins = [Seen { place: Vector3::zeros(), rate: Vector3::zeros() }; PINS];
+        for (seen, (pin, _)) in pins.iter_mut().zip(&self.elements().0.each) {
+            *seen = pin.seen((body, &placed), &pin.view(body, &placed));
         }
-        [gaps, rates]
+        pins
     }
 }
 
-/// The gaps (m) of a pin to its left, right, rail and wall that are `nominal` where it is drawn, after a displacement `d` (m).
+/// The gaps (m) of a pin to its walls, left, right, rail and wall, after a displacement `d` (m) from where they are `nominal`; how fast
+/// they open, of a velocity and 0.
 #[inline(always)]
-fn to_walls<S: Scalar>([left, right, rail, wall]: [S; 4], d: &Vector3<S>) -> [S; 4] {
+pub fn to_walls<S: Scalar>([left, right, rail, wall]: [S; 4], d: &Vector3<S>) -> [S; 4] {
     [left + d.x, right - d.x, rail - d.y, wall + d.y]
 }
 

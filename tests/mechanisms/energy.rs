@@ -35,7 +35,7 @@ fn point(mechanism: &Mechanism, motions: &[BodyMotion], body: Option<usize>, at:
 }
 
 fn turned(motions: &[BodyMotion], body: Option<usize>) -> Rotation3<f64> {
-    body.map_or(Rotation3::identity(), |body| Rotation3::from_scaled_axis(motions[body].turn))
+    body.map_or(Rotation3::identity(), |body| motions[body].orientation.to_rotation_matrix())
 }
 
 /// How deep (m) the contacts of a `joint` are pressed in; negative where they are open.
@@ -82,13 +82,13 @@ fn energies(mechanism: &Mechanism, gaps: &[f64], moment: &Moment) -> [f64; 2] {
     let motions = &moment.motions[..];
     let (mut kinetic, mut stored) = (0.0, 0.0);
     for (body, motion) in mechanism.bodies.iter().zip(motions) {
-        let about = Rotation3::from_scaled_axis(motion.turn);
+        let about = motion.orientation.to_rotation_matrix();
         let inertia = about * Matrix3::from_diagonal(&Vector3::from(body.inertia)) * about.inverse();
         kinetic += 0.5 * body.mass * motion.velocity.norm_squared() + 0.5 * motion.spin.dot(&(inertia * motion.spin));
         stored -= body.mass * Vector3::from(mechanism.gravity).dot(&motion.displacement);
     }
     for spring in &mechanism.springs {
-        let [one, other] = spring.between.map(|body| body.map_or(0.0, |body| motions[body].turn.z));
+        let [one, other] = spring.between.map(|body| body.map_or(0.0, |body| motions[body].turned.z));
         stored += 0.5 * spring.stiffness * (one - other) * (one - other);
     }
     for joint in &mechanism.joints {

@@ -62,10 +62,9 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
             continue;
         }
         let rates = [from.rate * length, to.rate * length];
-        let reach = DIP * (rates[0].abs() + rates[1].abs());
         // |g''''| ≤ spin³·speed; a cubic errs by at most length⁴/384 of it. Twice, since the speed is that of the ends.
         let left_out = turn * turn * turn * length * speed / 192.0;
-        if from.gap.min(to.gap) > reach + left_out {
+        if from.gap.min(to.gap) > reach(rates[0], rates[1]) + left_out {
             continue;
         }
         let cubic = Cubic::new([from.gap, to.gap], rates);
@@ -80,31 +79,24 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
     share.map_or(Between::Apart, Between::Closes)
 }
 
-/// 1 where a gap that is open at both ends of a step could close within, by its values (m) there and its rates times the step's length
-/// (m); else 0. Straight motion, as in [`Cubic`].
+/// How far (m) below the values at its ends a gap may fall in between at most, by its rates times the step's length (m) there.
 #[inline(always)]
-pub fn reaches<S: Scalar>([from, to]: [S; 2], rates: [S; 2]) -> S {
-    let least = from.select_gt(to, to, from);
-    let [before, after] = rates.map(|rate| rate.max_of(-rate));
-    let reach = (before + after) * S::from_f64(DIP);
-    least.select_gt(S::zero(), reach.select_gt(least, S::one(), S::zero()), S::zero())
+pub fn reach<S: Scalar>(before: S, after: S) -> S {
+    (before.max_of(-before) + after.max_of(-after)) * S::from_f64(DIP)
 }
 
-/// The same where the cubic also has a minimum within.
+/// 1 where a gap has a minimum within a step, by its values (m) and its rates times the step's length (m) at the ends; else 0.
 #[inline(always)]
-pub fn may_dip<S: Scalar>([from, to]: [S; 2], rates: [S; 2]) -> S {
+pub fn dips<S: Scalar>([from, to]: [S; 2], [before, after]: [S; 2]) -> S {
     let rise = to - from;
     // Monotone if both slopes have the rise's sign and neither is three times as steep (Fritsch and Carlson, SIAM J. Numer. Anal. 17,
     // 1980).
-    let [before, after] = rates.map(|rate| rate * rise);
-    let least = before.select_gt(after, after, before);
-    let steep = before.max_of(after) - S::from_f64(3.0) * rise * rise;
-    let bends = steep.max_of(-least);
+    let (one, other) = (before * rise, after * rise);
+    let least = one.select_gt(other, other, one);
+    let steep = one.max_of(other) - S::from_f64(3.0) * rise * rise;
     // Where it rises first and falls at last it has a maximum alone.
-    let [first, last] = rates;
-    let falls_or_rises = (-first).max_of(last);
-    let may = bends.select_gt(S::zero(), falls_or_rises.select_gt(S::zero(), S::one(), S::zero()), S::zero());
-    may * reaches([from, to], rates)
+    let turns = (-before).max_of(after).select_gt(S::zero(), S::one(), S::zero());
+    steep.max_of(-least).select_gt(S::zero(), turns, S::zero())
 }
 
 /// A gap over the share s of a step.

@@ -44,37 +44,43 @@ pub struct Sensitivity {
 
 /// What is kept of a motion: some numbers that change smoothly.
 pub trait Values: Copy {
-    /// Number `k`.
-    fn get(&self, k: usize) -> f64;
+    /// What has to be known at the end of a step to say how fast they change there.
+    type Rates: Copy;
 
-    /// How fast number `k` changes, where that is known.
-    fn rate(&self, _k: usize) -> Option<f64> {
-        None
+    /// How fast they change, number by number.
+    fn slope(&self, rates: &Self::Rates) -> Self;
+
+    /// How fast they change where no scheme tells, number by number: as far as the numbers themselves do not say it, by a `guess`.
+    fn known_slope(&self, guess: Self) -> Self {
+        guess
     }
 
-    /// The same numbers, each given by its index.
-    fn with(&self, value: impl Fn(usize) -> f64) -> Self;
+    /// The same numbers, each combined of its values in some others.
+    fn combined<const N: usize>(of: [&Self; N], by: impl Fn([f64; N]) -> f64) -> Self;
 }
 
 impl<const K: usize> Values for [f64; K] {
-    fn get(&self, k: usize) -> f64 {
-        self[k]
+    type Rates = Self;
+
+    fn slope(&self, rates: &Self) -> Self {
+        *rates
     }
 
-    fn with(&self, value: impl Fn(usize) -> f64) -> Self {
-        std::array::from_fn(value)
+    #[inline]
+    fn combined<const N: usize>(of: [&Self; N], by: impl Fn([f64; N]) -> f64) -> Self {
+        std::array::from_fn(|k| by(of.map(|values| values[k])))
     }
 }
 
 /// The end of an accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Knot<V> {
+pub struct Knot<V: Values> {
     /// Time (s).
     pub t: f64,
     /// What is kept of the motion.
     pub values: V,
-    /// How fast that changes at the start and at the end of the step, as far as its scheme knows.
-    pub slopes: Option<[V; 2]>,
+    /// What tells how fast that changes at the start and at the end of the step, if its scheme knows.
+    pub rates: Option<[V::Rates; 2]>,
 }
 
 impl Sensitivity {
@@ -256,7 +262,7 @@ pub fn sampled<V: Values>(knots: &[Knot<V>], times: impl Iterator<Item = f64>) -
 }
 
 /// The values between two knots: a cubic each, by the values and slopes at both.
-struct Cubics<V> {
+pub struct Cubics<V> {
     from: f64,
     length: f64,
     start: V,
@@ -268,42 +274,45 @@ struct Cubics<V> {
 
 impl<V: Values> Cubics<V> {
     /// Between the knots `i` and `i + 1`.
-    fn of(knots: &[Knot<V>], i: usize) -> Self {
+    pub fn of(knots: &[Knot<V>], i: usize) -> Self {
         let (from, to) = (&knots[i], &knots[i + 1]);
-        let [start_slope, end_slope] = match to.slopes {
-            Some(slopes) => slopes.map(|slope| slope.with(|k| slope.get(k) * (to.t - from.t))),
+        let length = to.t - from.t;
+        let slopes = match to.rates {
+            Some([start, end]) => [from.values.slope(&start), to.values.slope(&end)],
             None => Self::guessed(knots, i),
         };
-        Self { from: from.t, length: to.t - from.t, start: from.values, end: to.values, start_slope, end_slope }
+        let [start_slope, end_slope] = slopes.map(|slope| V::combined([&slope], |[slope]| slope * length));
+        Self { from: from.t, length, start: from.values, end: to.values, start_slope, end_slope }
     }
 
-    /// Slopes over the length between the knots `i` and `i + 1`, by those next to them.
+    /// Slopes between the knots `i` and `i + 1`, by those next to them.
     fn guessed(knots: &[Knot<V>], i: usize) -> [V; 2] {
         let chord = |j: usize| {
-            let (from, to) = (knots[j], knots[j + 1]);
+            let (from, to) = (&knots[j], &knots[j + 1]);
             let length = to.t - from.t;
-            (length, from.values.with(|k| (to.values.get(k) - from.values.get(k)) / length))
+            (length, V::combined([&from.values, &to.values], |[from, to]| (to - from) / length))
         };
-        let (from, to) = (knots[i].values, knots[i + 1].values);
-        let own @ (length, _) = chord(i);
+        let (length, own) = chord(i);
         let before = i.checked_sub(1).map(chord);
         let after = (i + 2 < knots.len()).then(|| chord(i + 1));
-        let of = |k: usize| move |(length, chords): (f64, V)| (length, chords.get(k));
-        let slopes = |at: V, [other, further]: [Option<(f64, V)>; 2]| {
-            from.with(|k| {
-                let known = at.rate(k);
-                known.unwrap_or_else(|| slope(of(k)(own), other.map(of(k)), further.map(of(k)))) * length
-            })
+        let at = |values: V, other: Option<(f64, V)>, further: Option<(f64, V)>| {
+            let [beside, beyond] = [&other, &further].map(|one| one.as_ref().map_or(&own, |(_, chord)| chord));
+            values.known_slope(V::combined([&own, beside, beyond], |[own, beside, beyond]| {
+                slope(
+                    (length, own),
+                    other.map(|(length, _)| (length, beside)),
+                    further.map(|(length, _)| (length, beyond)),
+                )
+            }))
         };
-        [slopes(from, [before, after]), slopes(to, [after, before])]
+        [at(knots[i].values, before, after), at(knots[i + 1].values, after, before)]
     }
 
     /// At time `t` (s).
-    fn at(&self, t: f64) -> V {
+    pub fn at(&self, t: f64) -> V {
         let s = (t - self.from) / self.length;
-        self.start.with(|k| {
-            hermite(s, [self.start.get(k), self.end.get(k)], [self.start_slope.get(k), self.end_slope.get(k)])
-        })
+        let ends = [&self.start, &self.end, &self.start_slope, &self.end_slope];
+        V::combined(ends, |[y0, y1, d0, d1]| hermite(s, [y0, y1], [d0, d1]))
     }
 }
 
@@ -344,7 +353,7 @@ mod tests {
     fn a_bend_between_a_long_and_a_short_step_does_not_reach_into_the_long_one() {
         let y = |t: f64| if t < 0.4 { t * t } else { 0.16 + 7.0 * (t - 0.4) };
         let knots: Vec<_> =
-            [0.0, 0.2, 0.4, 0.41, 0.42, 0.44].map(|t| Knot { t, values: [y(t); 4], slopes: None }).into();
+            [0.0, 0.2, 0.4, 0.41, 0.42, 0.44].map(|t| Knot { t, values: [y(t); 4], rates: None }).into();
         for t in [0.25, 0.3, 0.39, 0.405, 0.43] {
             let [found, ..] = sampled(&knots, std::iter::once(t))[0];
             assert!((found - y(t)).abs() < 1e-14, "{t}: {found}");
@@ -354,7 +363,7 @@ mod tests {
     #[test]
     fn cubics_are_met_exactly_where_the_scheme_tells_their_slopes() {
         let (y, rate) = (|t: f64| 1.0 + t * (2.0 + t * (5.0 * t - 3.0)), |t: f64| 2.0 + t * (15.0 * t - 6.0));
-        let knot = |[from, t]: [f64; 2]| Knot { t, values: [y(t); 1], slopes: Some([[rate(from)], [rate(t)]]) };
+        let knot = |[from, t]: [f64; 2]| Knot { t, values: [y(t); 1], rates: Some([[rate(from)], [rate(t)]]) };
         let knots: Vec<_> = [[0.0, 0.0], [0.0, 0.1], [0.1, 0.9], [0.9, 1.0]].map(knot).into();
         for t in [0.05, 0.3, 0.5, 0.8, 0.95] {
             let [found] = sampled(&knots, std::iter::once(t))[0];
@@ -366,7 +375,7 @@ mod tests {
     fn parabolas_are_met_exactly_between_uneven_knots() {
         let y = |t: f64| 1.0 + t * (2.0 - 3.0 * t);
         let knots: Vec<_> =
-            [0.0, 0.1, 0.4, 0.5, 1.0].map(|t| Knot { t, values: [y(t), 0.0, t, 0.0], slopes: None }).into();
+            [0.0, 0.1, 0.4, 0.5, 1.0].map(|t| Knot { t, values: [y(t), 0.0, t, 0.0], rates: None }).into();
         let times = [0.05, 0.1, 0.25, 0.4, 0.45, 0.5, 0.7];
         for (t, found) in times.into_iter().zip(sampled(&knots, times.into_iter())) {
             assert!((found[0] - y(t)).abs() < 1e-14 && (found[2] - t).abs() < 1e-14, "{t}: {found:?}");

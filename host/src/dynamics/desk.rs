@@ -98,15 +98,15 @@ pub fn seen(
     let mut tipping = Tipping::default();
     let mut knots: Vec<Knot<[f64; 4]>> = Vec::new();
     let mut before = SVector::zeros();
-    let slope = |velocity: &SVector<f64, 6>, by: &SVector<f64, 6>| [by.z, velocity.x, velocity.y, velocity.z];
+    let rates = |velocity: &SVector<f64, 6>, by: &SVector<f64, 6>| [by.z, velocity.x, velocity.y, velocity.z];
     let start = Clock::now();
     let (data, band) = (scene.slide_data::<f64>(gaps), stick_band.unwrap_or(STICK_BAND[1]));
     let (duration, allowed) = (settings.run.duration, Tolerance::of_force(tolerance));
     let effort = by_desk(&data, band, duration, allowed, &mut |t, motion, gaps, accelerations| {
         let (r, after) = (motion.pose.displacement_w, motion.velocity);
-        let slopes = accelerations.map(|[from, to]| [slope(&before, &from), slope(&after, &to)]);
+        let rates = accelerations.map(|[from, to]| [rates(&before, &from), rates(&after, &to)]);
         before = after;
-        knots.push(Knot { t, values: [after.z, r.x, r.y, r.z], slopes });
+        knots.push(Knot { t, values: [after.z, r.x, r.y, r.z], rates });
         if let Some(see) = &mut see {
             see(t, after.z, &motion.pose, gaps);
         }
@@ -122,7 +122,7 @@ pub fn seen(
     let at_knots = knots.iter().map(|knot| scene.drive.force(knot.t, knot.values[0])).collect();
     let given = Effort::new(times, at_knots, scene.slide.mass / scene.drive.gain);
     let force = |t: f64, vz: f64| given.at(t, scene.drive.force(t, vz));
-    looks(&knots, end, |t, [vz, _, _, z]| {
+    looks(&knots, end, |t, [vz, _, _, z], _| {
         observer.observe(Instant { t, vz, force: force(t, vz), z });
     });
     let mut trajectory = Trajectory::default();

@@ -1,6 +1,6 @@
 //! When a run ends, and at which instants it is looked at for its figures.
 
-use super::error_control::{Knot, Values, between};
+use super::error_control::{Cubics, Knot, Values, between};
 
 /// Instants between two knots at which a run is looked at, the second knot among them: figures are to depend neither on the
 /// lengths of steps nor on how often a run is sampled.
@@ -20,18 +20,23 @@ pub fn end<V: Values>(knots: &[Knot<V>], mut is_at_end: impl FnMut(&V) -> bool) 
     after
 }
 
-/// Shows `look` the run at the times (s) at which it is looked at, up to its `end` (s).
-pub fn looks<V: Values>(knots: &[Knot<V>], end: f64, mut look: impl FnMut(f64, V)) {
-    for i in 0..knots.len() - 1 {
-        let [from, to] = [knots[i].t, knots[i + 1].t];
-        let first = if i == 0 { 0 } else { 1 };
-        for k in first..=LOOKS {
-            let t = (from + (to - from) * f64::from(k) / f64::from(LOOKS)).min(end);
-            look(t, between(knots, i, t));
-            if t == end {
-                return;
+/// Shows `look` the run at the times (s) at which it is looked at, up to its `end` (s); with them the knot that is there, if one is.
+pub fn looks<V: Values>(knots: &[Knot<V>], end: f64, mut look: impl FnMut(f64, V, Option<usize>)) {
+    look(knots[0].t, knots[0].values, Some(0));
+    for (i, pair) in knots.windows(2).enumerate() {
+        let [from, to] = [&pair[0], &pair[1]];
+        let cubics = Cubics::of(knots, i);
+        for k in 1..LOOKS {
+            let t = from.t + (to.t - from.t) * f64::from(k) / f64::from(LOOKS);
+            if t >= end {
+                return look(end, cubics.at(end), None);
             }
+            look(t, cubics.at(t), None);
         }
+        if to.t > end {
+            return look(end, cubics.at(end), None);
+        }
+        look(to.t, to.values, Some(i + 1));
     }
 }
 

@@ -17,7 +17,7 @@ use slipfit_core::{
 use slipfit_desk::element::next_to;
 
 use super::{Action, Mechanism, Mounts, NamedDrive, mounts::flat};
-use crate::dynamics::outcome::Instant;
+use crate::dynamics::{error_control::Values, outcome::Instant};
 
 /// Coordinates and their rates at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,12 +106,6 @@ impl<const D: usize> State<D> {
         let [[w, x], [y, z]] = [self.quaternions[k], self.quaternions[k + 1]];
         UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 0.0).unwrap_or_default()
     }
-
-    /// How fast these numbers change, where the velocities do by `accelerations` (m/s², rad/s²).
-    pub fn slope(&self, accelerations: [f64; D]) -> Self {
-        let at_rest = Self::at_rest(self.place_rates);
-        Self { rates: accelerations, quaternions: self.quaternion_rates, ..at_rest }
-    }
 }
 
 /// Cosine and sine of half an `angle` (rad).
@@ -138,22 +132,26 @@ fn rotation_vector(orientation: &UnitQuaternion<f64>, turned: &Vector3<f64>) -> 
     direction * next_to(whole_angle([orientation.w, orientation.imag().dot(&direction)]), turned.dot(&direction))
 }
 
-impl<const D: usize> crate::dynamics::error_control::Values for State<D> {
-    fn get(&self, k: usize) -> f64 {
-        *self.rates.iter().chain(&self.places).chain(self.quaternions.as_flattened()).nth(k).unwrap_or(&0.0)
+impl<const D: usize> Values for State<D> {
+    /// Accelerations (m/s², rad/s²).
+    type Rates = [f64; D];
+
+    fn slope(&self, accelerations: &[f64; D]) -> Self {
+        self.known_slope(Self { rates: *accelerations, ..*self })
     }
 
-    fn rate(&self, k: usize) -> Option<f64> {
-        let rates = self.place_rates.iter().chain(self.quaternion_rates.as_flattened());
-        k.checked_sub(D).and_then(|k| rates.copied().nth(k))
+    fn known_slope(&self, guess: Self) -> Self {
+        Self { places: self.place_rates, quaternions: self.quaternion_rates, ..guess }
     }
 
-    fn with(&self, value: impl Fn(usize) -> f64) -> Self {
+    #[inline]
+    fn combined<const N: usize>(of: [&Self; N], by: impl Fn([f64; N]) -> f64) -> Self {
         Self {
-            rates: std::array::from_fn(&value),
-            places: std::array::from_fn(|k| value(D + k)),
-            quaternions: std::array::from_fn(|k| [value(2 * D + 2 * k), value(2 * D + 2 * k + 1)]),
-            ..*self
+            rates: std::array::from_fn(|k| by(of.map(|state| state.rates[k]))),
+            places: std::array::from_fn(|k| by(of.map(|state| state.places[k]))),
+            quaternions: std::array::from_fn(|k| [0, 1].map(|row| by(of.map(|state| state.quaternions[k][row])))),
+            // Of no effect between the ends of steps.
+            ..Self::at_rest([0.0; D])
         }
     }
 }
@@ -163,15 +161,24 @@ impl<const D: usize> crate::dynamics::error_control::Values for State<D> {
 pub struct BodyMotion {
     /// Displacement of the centre of mass (m).
     pub displacement: Vector3<f64>,
-    /// Rotation vector from the drawn pose (rad); in a plane its third part is the angle.
-    pub turn: Vector3<f64>,
+    /// Rotation from the drawn pose.
+    pub orientation: UnitQuaternion<f64>,
     /// How much it has turned about the axes of the frame (rad): the integral of `spin` of a body that one axis or one point holds, or
     /// nothing; of other bodies the rotation vector.
     pub turned: Vector3<f64>,
+    /// Whether it turns about one axis alone, so that `turned` is the rotation vector.
+    pub is_axial: bool,
     /// Velocity of the centre of mass (m/s).
     pub velocity: Vector3<f64>,
     /// Angular velocity in the frame (rad/s).
     pub spin: Vector3<f64>,
+}
+
+impl BodyMotion {
+    /// Rotation vector from the drawn pose (rad); in a plane its third part is the angle. It goes on beyond full turns.
+    pub fn turn(&self) -> Vector3<f64> {
+        if self.is_axial { self.turned } else { rotation_vector(&self.orientation, &self.turned) }
+    }
 }
 
 /// The bodies of a mechanism in a plane: their centres of mass, where they are drawn (m), and what turns them.
@@ -198,10 +205,12 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
             let [place, velocity] = self.tree.motion_of(centre, &placed);
             let moved = place - drawn;
             let about = |values: &[f64; D]| Vector3::z() * turn.map_or(0.0, |turn| values[turn]);
+            let [cos, sin] = turn.map_or([1.0, 0.0], |turn| pose[turn]);
             BodyMotion {
                 displacement: Vector3::new(moved.x, moved.y, 0.0),
-                turn: about(&state.places),
+                orientation: UnitQuaternion::new_unchecked(Quaternion::new(cos, 0.0, 0.0, sin)),
                 turned: about(&state.places),
+                is_axial: true,
                 velocity: Vector3::new(velocity.x, velocity.y, 0.0),
                 spin: about(&state.rates),
             }
@@ -264,15 +273,14 @@ impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
         let placed = self.tree.placed(&pose, &SVector::from(state.rates));
         let body = |(turns, at): (&Turns, &PlacedBody<f64>)| {
             let sum = turns.sum(&state.places);
-            let orientation = || {
-                let rotation = nalgebra::Rotation3::from_matrix_unchecked(at.to_frame);
-                UnitQuaternion::from_rotation_matrix(&rotation)
-            };
-            let turn = if turns.is_axial { sum } else { rotation_vector(&orientation(), &sum) };
+            let rotation = nalgebra::Rotation3::from_matrix_unchecked(at.to_frame);
+            let orientation = UnitQuaternion::from_rotation_matrix(&rotation);
+            let is_held = turns.is_axial || turns.all.len() == 1;
             BodyMotion {
                 displacement: at.displacement_w,
-                turn,
-                turned: if turns.all.len() == 1 { sum } else { turn },
+                orientation,
+                turned: if is_held { sum } else { rotation_vector(&orientation, &sum) },
+                is_axial: turns.is_axial,
                 velocity: at.velocity_w,
                 spin: at.rotation_w,
             }
@@ -285,11 +293,12 @@ impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
 pub fn spatial<const D: usize>(state: &State<D>) -> Vec<BodyMotion> {
     let vector = |values: &[f64]| Vector3::new(values[0], values[1], values[2]);
     let body = |k: usize| {
-        let (orientation, turned) = (state.quaternion(k + 3), vector(&state.places[k + 3..]));
+        let orientation = state.quaternion(k + 3);
         BodyMotion {
             displacement: vector(&state.places[k..]),
-            turn: rotation_vector(&orientation, &turned),
-            turned,
+            orientation,
+            turned: vector(&state.places[k + 3..]),
+            is_axial: false,
             velocity: vector(&state.rates[k..]),
             spin: orientation * vector(&state.rates[k + 3..]),
         }
@@ -368,11 +377,11 @@ impl Mechanism {
         row.extend(drives.iter().map(|at| at.force));
         for motion in motions {
             if self.planar {
-                let BodyMotion { displacement: d, turn, velocity: v, spin, .. } = motion;
-                row.extend([d.x, d.y, turn.z, v.x, v.y, spin.z]);
+                let BodyMotion { displacement: d, turned, velocity: v, spin, .. } = motion;
+                row.extend([d.x, d.y, turned.z, v.x, v.y, spin.z]);
             } else {
-                let BodyMotion { displacement, turn, velocity, spin, .. } = motion;
-                row.extend(displacement.iter().chain(turn).chain(velocity).chain(spin));
+                let BodyMotion { displacement, velocity, spin, .. } = motion;
+                row.extend(displacement.iter().chain(&motion.turn()).chain(velocity).chain(spin));
             }
         }
         row
@@ -414,7 +423,7 @@ mod tests {
         let motion = only(&state);
         assert!((turning - motion.spin).norm() < 1e-9, "{turning} {}", motion.spin);
         assert!((turning - rotation_b).norm() > 0.1);
-        assert!((motion.turn - Vector3::new(0.9, -1.3, 0.4)).norm() < 1e-14, "{}", motion.turn);
+        assert!((motion.turn() - Vector3::new(0.9, -1.3, 0.4)).norm() < 1e-14, "{}", motion.turn());
     }
 
     /// A body that spins about an axis of its own, the axis tilted, is where it is to be between the ends of steps, at each of many turns
@@ -432,13 +441,13 @@ mod tests {
                 for k in 0..100 {
                     let t = step * f64::from(k);
                     let values = State::spatial(&pose(&at(t), if k % 3 == 0 { -1.0 } else { 1.0 }), rates, &last);
-                    let slopes = (k > 0).then(|| [last.slope([0.0; 6]), values.slope([0.0; 6])]);
-                    knots.push(Knot { t, values, slopes });
+                    knots.push(Knot { t, values, rates: (k > 0).then_some([[0.0; 6]; 2]) });
                     last = values;
                 }
                 for i in 0..99 {
                     let t = step * (f64::from(i as u32) + 0.37);
-                    let BodyMotion { turn, turned, spin, .. } = only(&between(&knots, i, t));
+                    let motion @ BodyMotion { turned, spin, .. } = only(&between(&knots, i, t));
+                    let turn = motion.turn();
                     let apart = (UnitQuaternion::new(turn).inverse() * at(t)).angle();
                     assert!(apart < 1e-4, "{t}: {apart:e}");
                     assert!((spin - axis * 10.0).norm() < 1e-2, "{t}: {spin}");

@@ -3,7 +3,7 @@
 //! Contacts, friction and dampers take energy and springs return at most what was put into them. A motion with more energy than its
 //! start, the fall of its bodies and the work of its drives account for is an error of the computation.
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 
 use super::{Action, JointKind, Mechanism, columns::BodyMotion, source::joints_of_elements};
 use crate::dynamics::outcome::Instant;
@@ -33,7 +33,7 @@ impl<'a> Energies<'a> {
             (depth > 0.0).then(|| walls * stiffness * libm::pow(depth, exponent + 1.0) / (exponent + 1.0))
         });
         let springs = mechanism.springs.iter().map(|spring| {
-            let angle = |port: Option<usize>| port.map_or(0.0, |body| motions[body].turn.z);
+            let angle = |port: Option<usize>| port.map_or(0.0, |body| motions[body].turned.z);
             let turned = angle(spring.between[0]) - angle(spring.between[1]);
             0.5 * spring.stiffness * turned * turned
         });
@@ -51,13 +51,8 @@ impl<'a> Energies<'a> {
             let speed = match named.action {
                 Action::Turns { .. } => at.vz,
                 Action::Pushes { axis } => {
-                    let point = named.drive.point_b;
-                    let turned = if point == Vector3::zeros() {
-                        point
-                    } else {
-                        Rotation3::from_scaled_axis(motion.turn) * point
-                    };
-                    (motion.velocity + motion.spin.cross(&turned)).dot(&Vector3::from(axis))
+                    let point = motion.orientation * named.drive.point_b;
+                    (motion.velocity + motion.spin.cross(&point)).dot(&Vector3::from(axis))
                 }
             };
             let power = at.force * speed;
@@ -87,11 +82,7 @@ impl Mechanism {
     fn energy(&self, motions: &[BodyMotion]) -> f64 {
         let gravity = Vector3::from(self.gravity);
         let each = self.bodies.iter().zip(motions).map(|(body, motion)| {
-            // In a plane axes of body and frame share the one that counts.
-            let spin_b = match self.planar {
-                true => motion.spin,
-                false => Rotation3::from_scaled_axis(motion.turn).inverse() * motion.spin,
-            };
+            let spin_b = motion.orientation.inverse() * motion.spin;
             let turning: f64 = spin_b.iter().zip(body.inertia).map(|(spin, inertia)| inertia * spin * spin).sum();
             0.5 * (body.mass * motion.velocity.norm_squared() + turning) - body.mass * gravity.dot(&motion.displacement)
         });

@@ -326,18 +326,21 @@ fn solve<P: Plant<D>, const D: usize>(
     };
     let named = mechanism.drives.iter().enumerate();
     let mut observers: Vec<_> = named.map(|(k, named)| Observer::new(named.drive, of_drive(k))).collect();
-    let ends = |observers: &[Observer], state: &State<D>| {
+    let ends = |observers: &[Observer], motions: &[BodyMotion]| {
         let (Some(first), Some(_)) = (observers.first(), mechanism.run.stroke) else { return false };
-        drives_at(0.0, &told(state)).first().is_some_and(|at| first.is_at_end(at.z))
+        drives_at(0.0, motions).first().is_some_and(|at| first.is_at_end(at.z))
     };
+    // At the knots.
+    let mut motions: Vec<Vec<BodyMotion>> = Vec::new();
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
     let mut keep = |t: f64, motion: &Motion<f64, P::Pose, (), D>, accelerations: Option<Accelerations<D>>| {
         let values = state(&motion.pose, motion.velocity.into());
-        let before = knots.last().map_or(values, |knot| knot.values);
-        let slopes = accelerations.map(|[from, to]| [before.slope(from.into()), values.slope(to.into())]);
-        knots.push(Knot { t, values, slopes });
-        if ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        knots.push(Knot { t, values, rates: accelerations.map(|rates| rates.map(<[f64; D]>::from)) });
+        let told = told(&values);
+        let at_end = ends(&observers, &told);
+        motions.push(told);
+        if at_end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
     let effort = match by.controller {
@@ -350,9 +353,9 @@ fn solve<P: Plant<D>, const D: usize>(
         }
     };
     let integration = clock.elapsed();
-    let end = end(&knots, |state| ends(&observers, state));
+    let end = end(&knots, |state| ends(&observers, &told(state)));
     let times: Vec<f64> = knots.iter().map(|knot| knot.t).collect();
-    let at_knots: Vec<_> = knots.iter().map(|knot| drives_at(knot.t, &told(&knot.values))).collect();
+    let at_knots: Vec<_> = knots.iter().zip(&motions).map(|(knot, motions)| drives_at(knot.t, motions)).collect();
     let efforts = mechanism.drives.iter().enumerate().map(|(k, named)| {
         let values = at_knots.iter().map(|drives| drives[k].force).collect();
         Effort::new(times.clone(), values, mechanism.least_inertia(named) / named.drive.gain)
@@ -363,10 +366,17 @@ fn solve<P: Plant<D>, const D: usize>(
         drives.iter_mut().zip(&efforts).for_each(|(at, effort)| at.force = effort.at(t, at.force));
         drives
     };
-    looks(&knots, end, |t, state| {
-        let motions = told(&state);
-        let drives = told_at(t, &motions);
-        energies.observe(t, &motions, &drives);
+    looks(&knots, end, |t, state, knot| {
+        let between;
+        let motions = match knot {
+            Some(knot) => &motions[knot],
+            None => {
+                between = told(&state);
+                &between
+            }
+        };
+        let drives = told_at(t, motions);
+        energies.observe(t, motions, &drives);
         observers.iter_mut().zip(drives).for_each(|(observer, at)| observer.observe(at));
     });
     let mut trajectories = vec![Trajectory::default(); mechanism.drives.len()];
@@ -383,7 +393,7 @@ fn solve<P: Plant<D>, const D: usize>(
     }
     let before_end: Vec<f64> = knots.iter().map(|knot| knot.t).filter(|t| *t <= end).collect();
     let shown = if by.moments > 0 { chosen(&before_end, by.moments) } else { Vec::new() };
-    let moment = |k: usize| Moment { t: knots[k].t, motions: told(&knots[k].values) };
+    let moment = |k: usize| Moment { t: knots[k].t, motions: motions[k].clone() };
     let film = shown.into_iter().map(moment).collect();
     let outcomes = observers.iter().map(Observer::outcome).collect();
     let samples = Samples { columns: mechanism.columns(), rows };

@@ -5,17 +5,17 @@
 
 use pulp::Simd;
 use slipfit_core::{
-    SVector, Scalar,
+    SVector, Scalar, Vector3,
     integrator::{Integrator, Rodas3},
     law::{Elastic, Friction},
     mechanism::Mechanism,
     menu::SlideData,
     pose::Pose,
-    slide::{CONTACTS, Internal, Slide},
+    slide::{Internal, PINS, Slide, to_walls},
+    system::Seen,
 };
 
 use crate::{
-    closing::{self, Approach, Between, Gaps},
     error_control::{CHANGES, FIRST_STEP, GREATEST_STEP, PLACE, SAFETY},
     out_of_line::OutOfLine,
     pack::Pack,
@@ -24,6 +24,7 @@ use crate::{
 use super::{
     figures::{BETWEEN_NOTES, Ends, Figures, Watch},
     lane::{Motions, at_rest, numbers, put},
+    passed_over::{self, End},
 };
 
 /// What all units are simulated for.
@@ -39,20 +40,20 @@ pub struct Course {
 
 /// As many slides as a pack has lanes.
 pub trait Slides<V: Simd>: Mechanism<Pack<V>, 6, Pose = Pose<Pack<V>>, Internal = Internal<()>> {
-    /// The gaps (m) of each, and how fast they open (m/s).
-    fn approaches(&self, pose: &Pose<Pack<V>>, velocity: &SVector<Pack<V>, 6>) -> [[Pack<V>; CONTACTS]; 2];
+    /// See [`Slide::pins`].
+    fn pins(&self, pose: &Pose<Pack<V>>, velocity: &SVector<Pack<V>, 6>) -> [Seen<Pack<V>, 3>; PINS];
 }
 
 impl<V: Simd, E: Elastic<Pack<V>>, F: Friction<Pack<V>, Internal = ()>> Slides<V> for Slide<Pack<V>, E, F> {
     #[inline(always)]
-    fn approaches(&self, pose: &Pose<Pack<V>>, velocity: &SVector<Pack<V>, 6>) -> [[Pack<V>; CONTACTS]; 2] {
-        self.approaches(pose, velocity)
+    fn pins(&self, pose: &Pose<Pack<V>>, velocity: &SVector<Pack<V>, 6>) -> [Seen<Pack<V>, 3>; PINS] {
+        self.pins(pose, velocity)
     }
 }
 
 impl<V: Simd, M: Slides<V>> Slides<V> for OutOfLine<M> {
-    fn approaches(&self, pose: &Pose<Pack<V>>, velocity: &SVector<Pack<V>, 6>) -> [[Pack<V>; CONTACTS]; 2] {
-        self.mechanism().approaches(pose, velocity)
+    fn pins(&self, pose: &Pose<Pack<V>>, velocity: &SVector<Pack<V>, 6>) -> [Seen<Pack<V>, 3>; PINS] {
+        self.mechanism().pins(pose, velocity)
     }
 }
 
@@ -86,7 +87,7 @@ pub fn integrate<V: Simd, M: Slides<V>>(
             return;
         }
         let Some(slide) = load(&all.data) else { return };
-        all.approaches = slide.approaches(&all.motions.pose, &all.motions.velocity);
+        all.pins = slide.pins(&all.motions.pose, &all.motions.velocity);
         while !all.step(course, &slide, figures) {}
     }
 }
@@ -95,8 +96,8 @@ pub fn integrate<V: Simd, M: Slides<V>>(
 struct Lanes<V: Simd> {
     data: SlideData<Pack<V>>,
     motions: Motions<V>,
-    /// Gaps (m) and how fast they open (m/s) there.
-    approaches: [[Pack<V>; CONTACTS]; 2],
+    /// How the slides see their pins there.
+    pins: [Seen<Pack<V>, 3>; PINS],
     watch: Watch<V>,
     /// Lengths of the next steps (s).
     lengths: Pack<V>,
@@ -122,7 +123,7 @@ impl<V: Simd> Lanes<V> {
         Self {
             data: any.cast(Pack::from_f64),
             motions: at_rest(),
-            approaches: [[Pack::splat(0.0); CONTACTS]; 2],
+            pins: [Seen { place: Vector3::zeros(), rate: Vector3::zeros() }; PINS],
             watch: Watch::new(),
             lengths: Pack::from_f64(FIRST_STEP),
             lanes: vec![Lane { ended: true, ..Lane::default() }; Pack::<V>::LANES],
@@ -173,24 +174,37 @@ impl<V: Simd> Lanes<V> {
         let shorter = length * ((stroke - before) / (after - before)).within(Pack::splat(0.0), one);
         let good = error.select_gt(one, zero, one);
         self.lengths = (good * beyond).select_gt(zero, shorter.max_of(Pack::splat(LEAST_STEP)), self.lengths);
-        let approaches = slide.approaches(&step.motion.pose, &step.motion.velocity);
         let within = good - good * beyond;
-        let accepted = self.passing_none_over(course, within, length, &step.motion.velocity, &approaches);
+        // One that passes a contact over ends within it instead.
+        let pins = slide.pins(&step.motion.pose, &step.motion.velocity);
+        let ends = [(&self.pins, &self.motions), (&pins, &step.motion)];
+        let ends = ends.map(|(pins, motions)| End { pins, velocity: &motions.velocity });
+        let asked = length.select_gt(Pack::splat(LEAST_STEP), within, zero);
+        let share = passed_over::share(&self.data.body, ends, length, asked, PLACE * course.tolerance);
+        let accepted = one.select_gt(share, zero, within);
+        self.lengths = one.select_gt(share, (length * share).max_of(Pack::splat(LEAST_STEP)), self.lengths);
         for (number, new) in numbers(&mut self.motions).into_iter().zip(numbers(&mut step.motion)) {
             *number = accepted.select_gt(zero, *new, *number);
         }
-        for (number, new) in self.approaches.as_flattened_mut().iter_mut().zip(approaches.as_flattened()) {
-            *number = accepted.select_gt(zero, *new, *number);
+        for (Seen { place, rate }, new) in self.pins.iter_mut().zip(&pins) {
+            for axis in 0..2 {
+                place[axis] = accepted.select_gt(zero, new.place[axis], place[axis]);
+                rate[axis] = accepted.select_gt(zero, new.rate[axis], rate[axis]);
+            }
         }
 
         let (drive, speed) = (&self.data.drive, self.motions.velocity.z);
+        let mut gaps = self.data.body.gaps;
+        for (gaps, pin) in gaps.as_chunks_mut::<4>().0.iter_mut().zip(&self.pins) {
+            *gaps = to_walls(*gaps, &pin.place);
+        }
         let ends = Ends {
             accepted,
             start,
             length,
             force: drive.force(start + length, speed) * along,
             speed: speed * along,
-            gaps: &self.approaches[0],
+            gaps: &gaps,
             ramp_start: drive.ramp_start,
         };
         self.watch.observe(&ends);
@@ -219,72 +233,6 @@ impl<V: Simd> Lanes<V> {
         self.lanes.iter().any(|lane| lane.ended)
     }
 
-    /// 1 in each lane that is 1 in `accepted` and whose step of this `length` (s), to these `approaches` and this `velocity`, passes no
-    /// contact over. The others are to take a shorter one.
-    #[inline(always)]
-    fn passing_none_over(
-        &mut self,
-        course: &Course,
-        accepted: Pack<V>,
-        length: Pack<V>,
-        velocity: &SVector<Pack<V>, 6>,
-        approaches: &[[Pack<V>; CONTACTS]; 2],
-    ) -> Pack<V> {
-        let zero = Pack::splat(0.0);
-        let ([gaps, rates], [new_gaps, new_rates]) = (&self.approaches, approaches);
-        let mut suspect = zero;
-        for k in 0..CONTACTS {
-            let near = closing::reaches([gaps[k], new_gaps[k]], [rates[k] * length, new_rates[k] * length]);
-            suspect = suspect.max_of(near);
-        }
-        if suspect * accepted <= zero {
-            return accepted;
-        }
-        let mut dips = zero;
-        for k in 0..CONTACTS {
-            let dip = closing::may_dip([gaps[k], new_gaps[k]], [rates[k] * length, new_rates[k] * length]);
-            dips = dips.max_of(dip);
-        }
-        let dips = dips * accepted;
-        if dips <= zero {
-            return accepted;
-        }
-        self.searched(course, accepted, dips, length, velocity, approaches)
-    }
-
-    /// [`passing_none_over`](Self::passing_none_over) where a gap `dips`, each lane for itself. Out of line, since it is rare.
-    #[inline(never)]
-    fn searched(
-        &mut self,
-        course: &Course,
-        mut accepted: Pack<V>,
-        dips: Pack<V>,
-        length: Pack<V>,
-        velocity: &SVector<Pack<V>, 6>,
-        approaches: &[[Pack<V>; CONTACTS]; 2],
-    ) -> Pack<V> {
-        for lane in (0..Pack::<V>::LANES).filter(|lane| dips.get(*lane) > 0.0) {
-            let number = |pack: &Pack<V>| f64::from(pack.get(lane));
-            let lever = self.data.body.pins_w.iter().map(|pin| pin.map(|x| number(&x)).norm()).fold(0.0, f64::max);
-            let gaps = |[gaps, rates]: &[[Pack<V>; CONTACTS]; 2], velocity: &SVector<Pack<V>, 6>| {
-                let half = |from: usize| velocity.fixed_rows::<3>(from).map(|x| number(&x)).norm();
-                let spin = half(3);
-                let speed = half(0) + spin * lever;
-                let approach = |(gap, rate)| Approach { gap: number(gap), rate: number(rate), speed };
-                Gaps { approaches: gaps.iter().zip(rates).map(approach).collect(), spin }
-            };
-            let (before, after) = (gaps(&self.approaches, &self.motions.velocity), gaps(approaches, velocity));
-            let depth = PLACE * course.tolerance;
-            if let Between::Closes(share) = closing::between(&before, &after, number(&length), depth)
-                && length.get(lane) > LEAST_STEP
-            {
-                accepted.set(lane, 0.0);
-                self.lengths.set(lane, (length.get(lane) * share as f32).max(LEAST_STEP));
-            }
-        }
-        accepted
-    }
-
     /// The error of a step whose estimates of momentum (N·s) and of place (N·s²) these are; 1 is allowed. What is not a
     /// number is the worst of all.
     #[inline(always)]
@@ -301,7 +249,7 @@ impl<V: Simd> Lanes<V> {
 
 #[cfg(test)]
 mod tests {
-    use slipfit_core::{Vector3, slide::ABSENT};
+    use slipfit_core::slide::ABSENT;
 
     use super::*;
     use crate::laws;
@@ -309,7 +257,8 @@ mod tests {
     /// The greatest height (m) of a slide that is thrown up at 1 m/s below walls at the height `ceiling` (m).
     fn height(ceiling: f64, stiffness: f64, tolerance: f64) -> f64 {
         let mut data = slipfit_problems::cd_rom::data(0.0);
-        data.body.pins_w = [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].map(|[x, z]| Vector3::new(x, 0.0, z) * 0.05);
+        data.body.pins_w =
+            [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].map(|[x, z]| Vector3::new(x, 0.0, z) * 0.05);
         data.body.gaps = std::array::from_fn(|k| if k % 4 == 3 { ceiling } else { ABSENT });
         data.body.gravity_w = Vector3::new(0.0, -9.81, 0.0);
         (data.contact.stiffness, data.contact.damping) = (stiffness, 0.0);
@@ -319,7 +268,7 @@ mod tests {
         lanes.load(0, &mut 0, &[data]);
         lanes.motions.velocity.y.set(0, 1.0);
         let slide = laws::usual::<Pack<pulp::Scalar>>(&lanes.data).unwrap();
-        lanes.approaches = slide.approaches(&lanes.motions.pose, &lanes.motions.velocity);
+        lanes.pins = slide.pins(&lanes.motions.pose, &lanes.motions.velocity);
         let mut figures = [Figures::NONE];
         let mut highest = 0.0;
         while lanes.lanes[0].time < 0.15 {
@@ -343,7 +292,10 @@ mod tests {
                 for tolerance in [1e-1, 1e-3] {
                     let found = height(ceiling, stiffness, tolerance);
                     let least = highest - if ceiling > highest { 1e-3 } else { pressed.max(1e-5) };
-                    assert!(found < highest + 2e-6 && found > least, "{ceiling} {stiffness} {tolerance}: {found} {highest}");
+                    assert!(
+                        found < highest + 2e-6 && found > least,
+                        "{ceiling} {stiffness} {tolerance}: {found} {highest}"
+                    );
                 }
             }
         }

@@ -3,6 +3,7 @@
 mod figures;
 mod integrate;
 mod lane;
+mod passed_over;
 
 use pulp::{Simd, WithSimd};
 use slipfit_core::menu::SlideData;

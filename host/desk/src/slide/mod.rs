@@ -13,7 +13,8 @@ use slipfit_core::{
     law::{Elastic, Friction},
     menu::SlideData,
     pose::Pose,
-    slide::{ABSENT, CONTACTS, Internal, NO_INTERNAL, Slide},
+    slide::{ABSENT, CONTACTS, Internal, NO_INTERNAL, Slide, to_walls},
+    system::Seen,
 };
 
 pub use fixed_steps::{At, Controller, Report, Witness, by_controller};
@@ -95,10 +96,13 @@ fn watch<E: Elastic<f64>, F: Friction<f64, Internal = ()>>(
     gaps: &mut Gaps,
 ) {
     let Motion { pose, velocity, .. } = motion;
-    let [now, rates] = slide.approaches(pose, velocity);
     gaps.spin = velocity.fixed_rows::<3>(3).norm();
     // A point of the slide at a pin moves no faster than its centre of mass and its turning together.
     let speed = velocity.fixed_rows::<3>(0).norm() + gaps.spin * (lever + pose.displacement_w.norm());
     gaps.approaches.clear();
-    gaps.approaches.extend(now.iter().zip(&rates).map(|(&gap, &rate)| Approach { gap, rate, speed }));
+    for (Seen { place, rate }, (_, fit)) in slide.pins(pose, velocity).iter().zip(&slide.elements().0.each) {
+        let rates = to_walls([0.0; 4], rate);
+        let all = to_walls(*fit, place).into_iter().zip(rates);
+        gaps.approaches.extend(all.map(|(gap, rate)| Approach { gap, rate, speed }));
+    }
 }

@@ -30,7 +30,7 @@ impl Meeting {
 }
 
 fn turn(moment: &Moment, port: Port) -> Rotation3<f64> {
-    port.map_or(Rotation3::identity(), |body| Rotation3::from_scaled_axis(moment.motions[body].turn))
+    port.map_or(Rotation3::identity(), |body| moment.motions[body].orientation.to_rotation_matrix())
 }
 
 /// Where a point of a body that is `at` (m) in the drawn pose has come to.

@@ -111,9 +111,9 @@ fn drawn(mechanism: &Mechanism, i: usize, body: &Drawn, moments: &[Moment], view
             x: part(&|motion| motion.displacement.x * MM, 4),
             y: part(&|motion| motion.displacement.y * MM, 4),
             z: part(&|motion| motion.displacement.z * MM, 4),
-            ax: part(&|motion| motion.turn.x, 6),
-            ay: part(&|motion| motion.turn.y, 6),
-            az: part(&|motion| motion.turn.z, 6),
+            ax: part(&|motion| motion.turn().x, 6),
+            ay: part(&|motion| motion.turn().y, 6),
+            az: part(&|motion| motion.turn().z, 6),
         },
         ..Body::default()
     }

@@ -1,0 +1,103 @@
+//! Whether steps of slides on the lanes of a pack pass a contact over.
+
+use pulp::Simd;
+use slipfit_core::{
+    SVector, Scalar, Vector3,
+    slide::{Body, PINS, to_walls},
+    system::Seen,
+};
+
+use crate::{
+    closing::{self, Approach, Between, Gaps},
+    pack::Pack,
+};
+
+/// How slides see their pins, and how they move, at one end of a step.
+#[derive(Clone, Copy)]
+pub struct End<'a, V: Simd> {
+    /// Pins.
+    pub pins: &'a [Seen<Pack<V>, 3>; PINS],
+    /// Velocities (m/s) and angular velocities (rad/s).
+    pub velocity: &'a SVector<Pack<V>, 6>,
+}
+
+/// A gap farther than which (m) none is looked at.
+const FAR: f32 = f32::MAX;
+
+/// The share of each step of a `length` (s) between two `ends` after which it ends within a contact of `bodies` that it would pass over; 1
+/// where there is none, and where `asked` is 0. A contact not deeper than `depth` (m) does not count.
+#[inline(always)]
+pub fn share<V: Simd>(
+    bodies: &Body<Pack<V>>,
+    ends: [End<V>; 2],
+    length: Pack<V>,
+    asked: Pack<V>,
+    depth: f64,
+) -> Pack<V> {
+    let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
+    // The least of gaps that are open at both ends, each beyond what it may fall by in between.
+    let mut least = Pack::splat(FAR);
+    let nominal = bodies.gaps.as_chunks::<4>().0;
+    for ([left, right, rail, wall], (from, to)) in nominal.iter().zip(ends[0].pins.iter().zip(ends[1].pins)) {
+        for (axis, opens, closes) in [(0, left, right), (1, wall, rail)] {
+            let (before, after) = (from.place[axis], to.place[axis]);
+            let reach = closing::reach(from.rate[axis] * length, to.rate[axis] * length);
+            let (low, high) = (before.select_gt(after, after, before), before.max_of(after));
+            for gap in [*opens + low, *closes - high] {
+                let beyond = gap.select_gt(zero, gap - reach, least);
+                least = least.select_gt(beyond, beyond, least);
+            }
+        }
+    }
+    let near = zero.select_gt(least, asked, zero);
+    if near <= zero {
+        return one;
+    }
+    let mut dips = zero;
+    for (nominal, (from, to)) in nominal.iter().zip(ends[0].pins.iter().zip(ends[1].pins)) {
+        let gaps = [to_walls(*nominal, &from.place), to_walls(*nominal, &to.place)];
+        let still = [zero; 4];
+        let rates = [to_walls(still, &(from.rate * length)), to_walls(still, &(to.rate * length))];
+        for k in 0..4 {
+            let open = gaps[0][k].select_gt(zero, gaps[1][k].select_gt(zero, one, zero), zero);
+            let dip = closing::dips([gaps[0][k], gaps[1][k]], [rates[0][k], rates[1][k]]);
+            dips = dips.max_of(open * dip);
+        }
+    }
+    let dips = dips * near;
+    if dips <= zero { one } else { lane_by_lane(bodies, ends, length, dips, depth) }
+}
+
+/// [`share`] where a gap `dips`. Out of line, since it is rare.
+#[inline(never)]
+fn lane_by_lane<V: Simd>(
+    bodies: &Body<Pack<V>>,
+    ends: [End<V>; 2],
+    length: Pack<V>,
+    dips: Pack<V>,
+    depth: f64,
+) -> Pack<V> {
+    let mut shares = Pack::splat(1.0);
+    for lane in (0..Pack::<V>::LANES).filter(|lane| dips.get(*lane) > 0.0) {
+        let number = |pack: &Pack<V>| f64::from(pack.get(lane));
+        let vector = |[x, y, z]: [&Pack<V>; 3]| Vector3::new(number(x), number(y), number(z));
+        let [before, after] = ends.map(|End { pins, velocity }| {
+            let [vx, vy, vz, wx, wy, wz] = velocity.data.0[0].each_ref();
+            let (velocity, spin) = (vector([vx, vy, vz]).norm(), vector([wx, wy, wz]).norm());
+            let mut gaps = Gaps { approaches: Vec::new(), spin };
+            for (k, pin) in pins.iter().enumerate() {
+                let [place, rate] = [&pin.place, &pin.rate].map(|v| vector([&v.x, &v.y, &v.z]));
+                let lever = vector(bodies.pins_w[k].data.0[0].each_ref()) + place;
+                let nominal = std::array::from_fn(|of| number(&bodies.gaps[4 * k + of]));
+                let speed = velocity + spin * lever.norm();
+                let all = to_walls(nominal, &place).into_iter().zip(to_walls([0.0; 4], &rate));
+                gaps.approaches.extend(all.map(|(gap, rate)| Approach { gap, rate, speed }));
+            }
+            gaps
+        });
+        if let Between::Closes(share) = closing::between(&before, &after, number(&length), depth) {
+            shares.set(lane, share as f32);
+        }
+    }
+    shares
+}
