@@ -21,7 +21,7 @@ use super::{
     driven::Driven,
     effort::Effort,
     error_control::{Knot, Tolerance, sampled},
-    looks::{end, looks, samples},
+    looks::{Place, end, looks, samples},
     outcome::{Instant, Observer},
     scheme::ScalarKind,
     simulate::{Run, Settings, SimulateError, Solved},
@@ -122,8 +122,10 @@ pub fn seen(
     let at_knots = knots.iter().map(|knot| scene.drive.force(knot.t, knot.values[0])).collect();
     let given = Effort::new(times, at_knots, scene.slide.mass / scene.drive.gain);
     let force = |t: f64, vz: f64| given.at(t, scene.drive.force(t, vz));
-    looks(&knots, end, |t, [vz, _, _, z], _| {
-        observer.observe(Instant { t, vz, force: force(t, vz), z });
+    looks(&knots, end, |t, [vz, _, _, z], place| {
+        let by_speed = scene.drive.force(t, vz);
+        let force = if let Place::Before(knot) = place { given.before(knot, t, by_speed) } else { by_speed };
+        observer.observe(Instant { t, vz, force, z });
     });
     let mut trajectory = Trajectory::default();
     let times = samples(end, settings.every);

@@ -26,9 +26,13 @@ impl Effort {
 
     /// The effort at time `t` (s), where that of the interpolated speed is `by_speed`.
     pub fn at(&self, t: f64, by_speed: f64) -> f64 {
-        let after = self.times.partition_point(|knot| *knot < t);
-        match after.checked_sub(1) {
-            Some(i) if after < self.times.len() && self.length(i) > self.longest => self.monotone(i, t),
+        self.before(self.times.partition_point(|knot| *knot < t), t, by_speed)
+    }
+
+    /// The same in the step that ends at `knot`.
+    pub fn before(&self, knot: usize, t: f64, by_speed: f64) -> f64 {
+        match knot.checked_sub(1) {
+            Some(i) if knot < self.times.len() && self.length(i) > self.longest => self.monotone(i, t),
             _ => by_speed,
         }
     }

@@ -20,23 +20,34 @@ pub fn end<V: Values>(knots: &[Knot<V>], mut is_at_end: impl FnMut(&V) -> bool) 
     after
 }
 
-/// Shows `look` the run at the times (s) at which it is looked at, up to its `end` (s); with them the knot that is there, if one is.
-pub fn looks<V: Values>(knots: &[Knot<V>], end: f64, mut look: impl FnMut(f64, V, Option<usize>)) {
-    look(knots[0].t, knots[0].values, Some(0));
+/// Where a run is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// At this knot.
+    At(usize),
+    /// Before this knot, in the step that ends there.
+    Before(usize),
+}
+
+/// Shows `look` the run at the times (s) at which it is looked at, up to its `end` (s).
+pub fn looks<V: Values>(knots: &[Knot<V>], end: f64, mut look: impl FnMut(f64, V, Place)) {
+    look(knots[0].t, knots[0].values, Place::At(0));
     for (i, pair) in knots.windows(2).enumerate() {
-        let [from, to] = [&pair[0], &pair[1]];
-        let cubics = Cubics::of(knots, i);
-        for k in 1..LOOKS {
-            let t = from.t + (to.t - from.t) * f64::from(k) / f64::from(LOOKS);
-            if t >= end {
-                return look(end, cubics.at(end), None);
+        let ([from, to], cubics) = ([pair[0].t, pair[1].t], Cubics::of(knots, i));
+        for k in 1..=LOOKS {
+            let t = if k == LOOKS { to } else { from + (to - from) * f64::from(k) / f64::from(LOOKS) };
+            if t > end {
+                return look(end, cubics.at(end), Place::Before(i + 1));
             }
-            look(t, cubics.at(t), None);
+            if k == LOOKS {
+                look(t, pair[1].values, Place::At(i + 1));
+            } else {
+                look(t, cubics.at(t), Place::Before(i + 1));
+            }
+            if t == end {
+                return;
+            }
         }
-        if to.t > end {
-            return look(end, cubics.at(end), None);
-        }
-        look(to.t, to.values, Some(i + 1));
     }
 }
 

@@ -197,8 +197,8 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
         Self { tree, bodies: mechanism.bodies.iter().enumerate().map(body).collect() }
     }
 
-    /// How they move.
-    pub fn told(&self, state: &State<D>) -> Vec<BodyMotion> {
+    /// Puts how they move in place of what was `told`.
+    pub fn tell(&self, state: &State<D>, told: &mut Vec<BodyMotion>) {
         let pose = self.tree.pose(state.places, half_angle);
         let placed = self.tree.placed(&pose, &SVector::from(state.rates));
         let body = |(centre, drawn, turn): &(Point<f64, D>, Vector2<f64>, Option<usize>)| {
@@ -215,7 +215,8 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
                 spin: about(&state.rates),
             }
         };
-        self.bodies.iter().map(body).collect()
+        told.clear();
+        told.extend(self.bodies.iter().map(body));
     }
 }
 
@@ -264,8 +265,8 @@ impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
         (0..D).rfind(turns).map_or(0.0, |k| self.tree.lever(k))
     }
 
-    /// How they move. Angles go on from turn to turn.
-    pub fn told(&self, state: &State<D>) -> Vec<BodyMotion> {
+    /// Puts how they move in place of what was `told`. Angles go on from turn to turn.
+    pub fn tell(&self, state: &State<D>, told: &mut Vec<BodyMotion>) {
         let mut pose = self.tree.pose(state.places, half_angle);
         for k in (0..D).filter(|k| self.tree.coordinate(*k).0 == SpatialKind::Ball) {
             pose[k..k + 2].copy_from_slice(&state.quaternions[k..k + 2]);
@@ -285,12 +286,13 @@ impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
                 spin: at.rotation_w,
             }
         };
-        self.turns.iter().zip(&placed.free.bodies).map(body).collect()
+        told.clear();
+        told.extend(self.turns.iter().zip(&placed.free.bodies).map(body));
     }
 }
 
-/// The free bodies of a mechanism in space.
-pub fn spatial<const D: usize>(state: &State<D>) -> Vec<BodyMotion> {
+/// Puts how the free bodies of a mechanism in space move in place of what was `told`.
+pub fn spatial<const D: usize>(state: &State<D>, told: &mut Vec<BodyMotion>) {
     let vector = |values: &[f64]| Vector3::new(values[0], values[1], values[2]);
     let body = |k: usize| {
         let orientation = state.quaternion(k + 3);
@@ -303,7 +305,8 @@ pub fn spatial<const D: usize>(state: &State<D>) -> Vec<BodyMotion> {
             spin: orientation * vector(&state.rates[k + 3..]),
         }
     };
-    (0..D).step_by(6).map(body).collect()
+    told.clear();
+    told.extend((0..D).step_by(6).map(body));
 }
 
 /// Two vectors along an axis.
@@ -407,8 +410,9 @@ mod tests {
     }
 
     fn only(state: &State<6>) -> BodyMotion {
-        let [motion] = spatial(state)[..] else { panic!("one body") };
-        motion
+        let mut told = Vec::new();
+        spatial(state, &mut told);
+        told[0]
     }
 
     #[test]

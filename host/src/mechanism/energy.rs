@@ -82,7 +82,8 @@ impl Mechanism {
     fn energy(&self, motions: &[BodyMotion]) -> f64 {
         let gravity = Vector3::from(self.gravity);
         let each = self.bodies.iter().zip(motions).map(|(body, motion)| {
-            let spin_b = motion.orientation.inverse() * motion.spin;
+            // In a plane axes of body and frame share the one that counts.
+            let spin_b = if self.planar { motion.spin } else { motion.orientation.inverse() * motion.spin };
             let turning: f64 = spin_b.iter().zip(body.inertia).map(|(spin, inertia)| inertia * spin * spin).sum();
             0.5 * (body.mass * motion.velocity.norm_squared() + turning) - body.mass * gravity.dot(&motion.displacement)
         });

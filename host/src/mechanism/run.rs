@@ -33,7 +33,7 @@ use crate::{
         effort::Effort,
         error_control::{self, Accelerations, Knot, Stopped, sampled},
         film::chosen,
-        looks::{end, looks, samples},
+        looks::{Place, end, looks, samples},
         outcome::{Instant as Looked, Observer, Outcome},
         scheme::ScalarKind,
         simulate::{SimulateError, Solved},
@@ -249,7 +249,9 @@ where
     let bodies = PlanarBodies::of(mechanism, mounts, &tree);
     let system = System::new(tree, &elements[..]);
     let desk = OutOfLine::by(system, Wide::of_machine());
-    solve(mechanism, desk, (pose, rates), (&limits, pressed), by, state, |state: &State<D>| bodies.told(state))
+    solve(mechanism, desk, (pose, rates), (&limits, pressed), by, state, |state: &State<D>, told: &mut _| {
+        bodies.tell(state, told)
+    })
 }
 
 fn in_space<const N: usize, const D: usize>(
@@ -301,7 +303,9 @@ where
     };
     let system = System::new(tree, ThroughJoints(&elements[..]));
     let desk = OutOfLine::by(system, Wide::of_machine());
-    solve(mechanism, desk, start, (&limits, pressed), by, state, |state: &State<D>| bodies.told(state))
+    solve(mechanism, desk, start, (&limits, pressed), by, state, |state: &State<D>, told: &mut _| {
+        bodies.tell(state, told)
+    })
 }
 
 fn solve<P: Plant<D>, const D: usize>(
@@ -311,24 +315,27 @@ fn solve<P: Plant<D>, const D: usize>(
     (limits, pressed): (&Limits, Vec<Option<f64>>),
     by: By,
     mut state: impl FnMut(&P::Pose, [f64; D]) -> State<D>,
-    told: impl Fn(&State<D>) -> Vec<BodyMotion>,
+    told: impl Fn(&State<D>, &mut Vec<BodyMotion>),
 ) -> Result<MechanismRun, RunError> {
     let least_mass = desk.least_mass();
     // The stroke is the first drive's.
     let of_drive = |k: usize| if k == 0 { mechanism.run } else { RunSpec { stroke: None, ..mechanism.run } };
     // Travel counts from the start, which need not be the drawn pose.
-    let at_start = told(&state(&pose, rates));
+    let mut at_start = Vec::new();
+    told(&state(&pose, rates), &mut at_start);
     let mut energies = Energies::new(mechanism, &at_start, pressed.into_iter());
     let origins: Vec<f64> = mechanism.drives_at(0.0, &at_start).map(|at| at.z).collect();
-    let drives_at = |t: f64, motions: &[BodyMotion]| -> Vec<Looked> {
+    let drives_at = |t: f64, motions: &[BodyMotion], drives: &mut Vec<Looked>| {
         let from = |(at, origin): (Looked, &f64)| Looked { z: at.z - origin, ..at };
-        mechanism.drives_at(t, motions).zip(&origins).map(from).collect()
+        drives.clear();
+        drives.extend(mechanism.drives_at(t, motions).zip(&origins).map(from));
     };
     let named = mechanism.drives.iter().enumerate();
     let mut observers: Vec<_> = named.map(|(k, named)| Observer::new(named.drive, of_drive(k))).collect();
     let ends = |observers: &[Observer], motions: &[BodyMotion]| {
         let (Some(first), Some(_)) = (observers.first(), mechanism.run.stroke) else { return false };
-        drives_at(0.0, motions).first().is_some_and(|at| first.is_at_end(at.z))
+        let first_drive = mechanism.drives_at(0.0, motions).next();
+        first_drive.is_some_and(|at| first.is_at_end(at.z - origins[0]))
     };
     // At the knots.
     let mut motions: Vec<Vec<BodyMotion>> = Vec::new();
@@ -337,9 +344,10 @@ fn solve<P: Plant<D>, const D: usize>(
     let mut keep = |t: f64, motion: &Motion<f64, P::Pose, (), D>, accelerations: Option<Accelerations<D>>| {
         let values = state(&motion.pose, motion.velocity.into());
         knots.push(Knot { t, values, rates: accelerations.map(|rates| rates.map(<[f64; D]>::from)) });
-        let told = told(&values);
-        let at_end = ends(&observers, &told);
-        motions.push(told);
+        let mut here = Vec::with_capacity(mechanism.bodies.len());
+        told(&values, &mut here);
+        let at_end = ends(&observers, &here);
+        motions.push(here);
         if at_end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
@@ -353,41 +361,49 @@ fn solve<P: Plant<D>, const D: usize>(
         }
     };
     let integration = clock.elapsed();
-    let end = end(&knots, |state| ends(&observers, &told(state)));
-    let times: Vec<f64> = knots.iter().map(|knot| knot.t).collect();
-    let at_knots: Vec<_> = knots.iter().zip(&motions).map(|(knot, motions)| drives_at(knot.t, motions)).collect();
-    let efforts = mechanism.drives.iter().enumerate().map(|(k, named)| {
-        let values = at_knots.iter().map(|drives| drives[k].force).collect();
-        Effort::new(times.clone(), values, mechanism.least_inertia(named) / named.drive.gain)
+    let end = end(&knots, |state| {
+        let mut there = Vec::new();
+        told(state, &mut there);
+        ends(&observers, &there)
     });
+    let times: Vec<f64> = knots.iter().map(|knot| knot.t).collect();
+    let mut drives = Vec::new();
+    let mut at_knots = vec![Vec::with_capacity(knots.len()); mechanism.drives.len()];
+    for (knot, motions) in knots.iter().zip(&motions) {
+        drives_at(knot.t, motions, &mut drives);
+        at_knots.iter_mut().zip(&drives).for_each(|(values, at)| values.push(at.force));
+    }
+    let efforts =
+        mechanism.drives.iter().zip(at_knots).map(|(named, values)| {
+            Effort::new(times.clone(), values, mechanism.least_inertia(named) / named.drive.gain)
+        });
     let efforts: Vec<_> = efforts.collect();
-    let told_at = |t: f64, motions: &[BodyMotion]| {
-        let mut drives = drives_at(t, motions);
-        drives.iter_mut().zip(&efforts).for_each(|(at, effort)| at.force = effort.at(t, at.force));
-        drives
-    };
-    looks(&knots, end, |t, state, knot| {
-        let between;
-        let motions = match knot {
-            Some(knot) => &motions[knot],
-            None => {
-                between = told(&state);
+    let mut between = Vec::new();
+    looks(&knots, end, |t, state, place| {
+        let motions = match place {
+            Place::At(knot) => &motions[knot],
+            Place::Before(_) => {
+                told(&state, &mut between);
                 &between
             }
         };
-        let drives = told_at(t, motions);
+        drives_at(t, motions, &mut drives);
+        if let Place::Before(knot) = place {
+            drives.iter_mut().zip(&efforts).for_each(|(at, effort)| at.force = effort.before(knot, t, at.force));
+        }
         energies.observe(t, motions, &drives);
-        observers.iter_mut().zip(drives).for_each(|(observer, at)| observer.observe(at));
+        observers.iter_mut().zip(&drives).for_each(|(observer, at)| observer.observe(*at));
     });
     let mut trajectories = vec![Trajectory::default(); mechanism.drives.len()];
     let mut rows = Vec::new();
     let times = samples(end, by.every);
     for (t, state) in times.clone().zip(sampled(&knots, times)) {
-        let motions = told(&state);
-        let drives = told_at(t, &motions);
-        rows.push(mechanism.row(t, &drives, &motions));
-        for ((trajectory, named), at) in trajectories.iter_mut().zip(&mechanism.drives).zip(drives) {
-            let place = motions[named.body].displacement;
+        told(&state, &mut between);
+        drives_at(t, &between, &mut drives);
+        drives.iter_mut().zip(&efforts).for_each(|(at, effort)| at.force = effort.at(t, at.force));
+        rows.push(mechanism.row(t, &drives, &between));
+        for ((trajectory, named), at) in trajectories.iter_mut().zip(&mechanism.drives).zip(&drives) {
+            let place = between[named.body].displacement;
             trajectory.push(t, [at.vz, place.x, place.y, at.z], at.force);
         }
     }

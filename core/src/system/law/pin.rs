@@ -107,7 +107,8 @@ impl<S: Scalar, G: Fit<Number = S>, N: Normal<S>, F: Friction<S>> Law<S, 3> for 
         let [left, right, rail, wall] = self.gaps.gaps();
         let [x, y, _] = place.data.0[0];
         // The walls' body moves against the pin the other way.
-        let [u, v, w] = rate.data.0[0].map(|rate| -rate);
+        let [u, v, w] = rate.data.0[0];
+        let (u, v, w) = (-u, -v, -w);
         let up = self.slot(&internal[1], [wall, rail], y, [v, u, w], way);
         let across = self.slot(&internal[0], [left, right], x, [u, v, w], way);
         let (f, g) = (across.force, up.force);

@@ -153,7 +153,9 @@ impl<V: Simd> Watch<V> {
         self.breakaway = ends.or_old(ends.since_ramp(start, crosses, self.breakaway), self.breakaway);
 
         // The top of the parabola through three ends, where the middle one is the highest.
-        let [before, middle, last] = [self.force_before, self.force, force].map(|force| force.max_of(-force));
+        // Number by number: in a map over an array vectors would not stay in registers.
+        let (before, middle) = (self.force_before.max_of(-self.force_before), self.force.max_of(-self.force));
+        let last = force.max_of(-force);
         let rise = (middle - before) / self.length_before;
         let fall = (last - middle) / length;
         let bend = (rise - fall) / (self.length_before + length);

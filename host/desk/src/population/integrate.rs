@@ -177,8 +177,10 @@ impl<V: Simd> Lanes<V> {
         let within = good - good * beyond;
         // One that passes a contact over ends within it instead.
         let pins = slide.pins(&step.motion.pose, &step.motion.velocity);
-        let ends = [(&self.pins, &self.motions), (&pins, &step.motion)];
-        let ends = ends.map(|(pins, motions)| End { pins, velocity: &motions.velocity });
+        let ends = [
+            End { pins: &self.pins, velocity: &self.motions.velocity },
+            End { pins: &pins, velocity: &step.motion.velocity },
+        ];
         let asked = length.select_gt(Pack::splat(LEAST_STEP), within, zero);
         let share = passed_over::share(&self.data.body, ends, length, asked, PLACE * course.tolerance);
         let accepted = one.select_gt(share, zero, within);
