@@ -27,6 +27,7 @@ mod side_by_side_tests;
 mod source;
 pub mod spatial;
 mod start;
+mod state;
 mod vary;
 
 pub use columns::BodyMotion;

@@ -21,12 +21,13 @@ use thiserror::Error;
 
 use super::{
     Mechanism, MountError, Mounts, Rest,
-    columns::{self, BodyMotion, JointedBodies, PlanarBodies, State},
+    columns::{self, BodyMotion, JointedBodies, PlanarBodies},
     energy::Energies,
     limits::Limits,
     planar,
     source::joints_of_elements,
     spatial,
+    state::{State, half_angle},
 };
 use crate::{
     dynamics::{
@@ -236,7 +237,7 @@ where
     let limits = Limits::of(mechanism, |body| mounts.turn(Some(body)).map_or(0.0, |turn| tree.lever(turn)));
     let elements = planar::elements::<D>(mechanism, mounts, gaps, limits.stick_band())?;
     let Rest { places, rates } = Rest::of(mechanism, mounts);
-    let pose = tree.pose(places, columns::half_angle);
+    let pose = tree.pose(places, half_angle);
     let placed = tree.placed(&pose, &SVector::from(rates));
     let pressed = elements.iter().map(|element| element.gap((&tree, &placed))).collect();
     let topology = *tree.topology();
@@ -293,7 +294,7 @@ where
     let limits = Limits::of(mechanism, |body| bodies.lever(body));
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let Rest { places, rates } = Rest::on_joints(mechanism, mounts);
-    let start = (tree.pose(places, columns::half_angle), rates);
+    let start = (tree.pose(places, half_angle), rates);
     let placed = tree.placed(&start.0, &SVector::from(rates));
     let pressed = elements.iter().map(|element| element.gap(tree.free(&placed))).collect();
     let mut last = State::at_rest(places);
@@ -332,23 +333,19 @@ fn solve<P: Plant<D>, const D: usize>(
     };
     let named = mechanism.drives.iter().enumerate();
     let mut observers: Vec<_> = named.map(|(k, named)| Observer::new(named.drive, of_drive(k))).collect();
-    let ends = |observers: &[Observer], motions: &[BodyMotion]| {
+    let mut there = Vec::new();
+    let mut ends = |observers: &[Observer], state: &State<D>| {
         let (Some(first), Some(_)) = (observers.first(), mechanism.run.stroke) else { return false };
-        let first_drive = mechanism.drives_at(0.0, motions).next();
+        told(state, &mut there);
+        let first_drive = mechanism.drives_at(0.0, &there).next();
         first_drive.is_some_and(|at| first.is_at_end(at.z - origins[0]))
     };
-    // At the knots.
-    let mut motions: Vec<Vec<BodyMotion>> = Vec::new();
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
     let mut keep = |t: f64, motion: &Motion<f64, P::Pose, (), D>, accelerations: Option<Accelerations<D>>| {
         let values = state(&motion.pose, motion.velocity.into());
         knots.push(Knot { t, values, rates: accelerations.map(|rates| rates.map(<[f64; D]>::from)) });
-        let mut here = Vec::with_capacity(mechanism.bodies.len());
-        told(&values, &mut here);
-        let at_end = ends(&observers, &here);
-        motions.push(here);
-        if at_end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
     let effort = match by.controller {
@@ -361,11 +358,13 @@ fn solve<P: Plant<D>, const D: usize>(
         }
     };
     let integration = clock.elapsed();
-    let end = end(&knots, |state| {
-        let mut there = Vec::new();
-        told(state, &mut there);
-        ends(&observers, &there)
-    });
+    let end = end(&knots, |state| ends(&observers, state));
+    let told_at = |knot: &Knot<State<D>>| {
+        let mut motions = Vec::with_capacity(mechanism.bodies.len());
+        told(&knot.values, &mut motions);
+        motions
+    };
+    let motions: Vec<_> = knots.iter().map(told_at).collect();
     let times: Vec<f64> = knots.iter().map(|knot| knot.t).collect();
     let mut drives = Vec::new();
     let mut at_knots = vec![Vec::with_capacity(knots.len()); mechanism.drives.len()];

@@ -10,7 +10,7 @@ use slipfit_core::{
 };
 
 use super::{
-    Joint, JointKind, Mechanism, Mounts, RunError, columns::half_angle, planar, source::joints_of_elements, spatial,
+    Joint, JointKind, Mechanism, Mounts, RunError, planar, source::joints_of_elements, spatial, state::half_angle,
 };
 
 /// Where and how fast a mechanism on ideal joints starts.

@@ -9,7 +9,7 @@ use slipfit_core::{
 
 use super::{Contacts, Parts, Typed, driven, element, grouped, joints_of_elements, nested, numbers, typed, vector};
 use crate::mechanism::{
-    JointKind, Mechanism, Mounts, Rest, RunError, columns::half_angle, element::PlanarElement, planar,
+    JointKind, Mechanism, Mounts, Rest, RunError, element::PlanarElement, planar, state::half_angle,
 };
 
 /// The parts of `mechanism`.

@@ -6,7 +6,7 @@ use slipfit_core::system::spatial::{
 };
 
 use super::{Contacts, Parts, Typed, driven, element, joints_of_elements, numbers, typed, vector};
-use crate::mechanism::{JointKind, Mechanism, Rest, RunError, columns::half_angle, element::SpatialElement, spatial};
+use crate::mechanism::{JointKind, Mechanism, Rest, RunError, element::SpatialElement, spatial, state::half_angle};
 
 /// The parts of `mechanism`.
 pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {
