@@ -123,7 +123,7 @@ fn one_line_of_the_profile_keeps_a_step_fast() {
             assert!(f64::from(most) <= 1.02 * f64::from(fast.most), "{found:?} {fast:?}");
             format!("{most}")
         } else {
-            format!("about {}000", (most + 500) / 1000)
+            format!("{:.0} times as many", f64::from(most) / f64::from(fast.most))
         };
         let _ = writeln!(table, "{:5}  {:5}  {count}", level.trim_matches('"'), of_the_crate.trim_matches('"'));
     }

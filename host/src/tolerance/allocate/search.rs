@@ -54,7 +54,7 @@ pub trait Figures: Sync {
 
     /// What each figure may rise by where its requirement is loosened a little.
     fn reliefs(&self) -> Vec<f64> {
-        vec![1.0; self.powers().len()]
+        vec![0.01; self.powers().len()]
     }
 
     /// The figures at `tolerances` (SI).
@@ -72,8 +72,8 @@ pub struct Found {
     pub solution: Solution,
     /// The figures.
     pub figures: Vec<f64>,
-    /// What the cost falls by for every unit of relief that all figures which bind have together, where there are several: then
-    /// none of them may gain anything alone.
+    /// What the cost falls by where all figures which bind have their relief together, if there are several: then none of them may gain
+    /// anything alone.
     pub together: Option<f64>,
 }
 
@@ -151,9 +151,6 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
     Ok(found)
 }
 
-/// Part of a relief over which prices of several figures that bind are found.
-const PRICED: f64 = 1e-2;
-
 /// The program around a solution.
 struct Local {
     rows: Vec<Row>,
@@ -161,10 +158,13 @@ struct Local {
 }
 
 impl Local {
-    /// Prices figures that bind together. Multipliers do not tell what one of them gains alone: both limits of a symmetric
-    /// measure have one multiplier between them, and to loosen one gains nothing. So each is loosened, and then all at once.
+    /// Prices figures that bind together, or would if another one had its relief. Multipliers do not tell what one of them gains alone:
+    /// both limits of a symmetric measure have one multiplier between them, and to loosen one gains nothing, or not more than until the
+    /// other binds. So each has its relief, and then all at once.
     fn price(&self, processes: &[&[Process]], found: &mut Found, reliefs: &[f64], slack: f64) {
-        let bind: Vec<usize> = (0..self.rows.len()).filter(|row| found.figures[*row] >= 1.0 - 2.0 * slack).collect();
+        let binds = |row: usize| found.figures[row] >= 1.0 - 2.0 * slack;
+        let bind: Vec<usize> =
+            (0..self.rows.len()).filter(|row| binds(*row) || found.figures[*row] >= 1.0 - reliefs[*row]).collect();
         if bind.len() < 2 {
             return;
         }
@@ -172,10 +172,10 @@ impl Local {
             // What is loosened comes last, so that of rows that are alike those that still bind have the price.
             let held = (0..self.rows.len()).filter(|row| !loosened.contains(row));
             let scaled = held.chain(loosened.iter().copied()).map(|row| {
-                let more = if loosened.contains(&row) { PRICED * reliefs[row] } else { 0.0 };
+                let more = if loosened.contains(&row) { reliefs[row] } else { 0.0 };
                 // A figure that binds is taken to be 1.
                 let usage = self.rows[row].usage(&found.solution.tolerances);
-                let budget = if bind.contains(&row) { usage } else { 1.0 - self.constants[row] } + more;
+                let budget = if binds(row) { usage } else { 1.0 - self.constants[row] } + more;
                 let weights = self.rows[row].weights.iter().map(|weight| weight / budget).collect();
                 Row { power: self.rows[row].power, weights }
             });
@@ -183,7 +183,7 @@ impl Local {
             program.cost_with(&found.solution)
         };
         let now = cost(&[]);
-        let fall = |loosened: &[usize]| ((now - cost(loosened)) / PRICED).max(0.0);
+        let fall = |loosened: &[usize]| (now - cost(loosened)).max(0.0);
         let alone: Vec<f64> = bind.iter().map(|row| fall(&[*row]) / reliefs[*row]).collect();
         let together = fall(&bind);
         bind.iter().zip(alone).for_each(|(row, price)| found.solution.prices[*row] = price);
