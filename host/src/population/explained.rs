@@ -51,21 +51,41 @@ impl Class {
     }
 }
 
-/// Classes of equal size that hold a marked unit, of `count` classes in all.
-fn classes(units: u64, marked: &[Marked], count: u64) -> Vec<Class> {
+/// Classes of equal size that hold a marked unit, of `count` classes in all: sums of `parts`, each with its class, by ascending class.
+fn classes(units: u64, count: u64, parts: impl Iterator<Item = (u64, Class)>) -> Vec<Class> {
     let first = |number: u64| (number * units).div_ceil(count);
     let mut all: Vec<Class> = Vec::new();
-    for Marked { place, value } in marked {
-        let number = place * count / units;
+    for (number, part) in parts {
         if all.last().is_none_or(|class| class.number != number) {
             all.push(Class { number, units: (first(number + 1) - first(number)) as f64, ..Class::default() });
         }
         if let Some(class) = all.last_mut() {
-            class.marked += 1.0;
-            class.sum += value;
-            class.square += value * value;
+            class.marked += part.marked;
+            class.sum += part.sum;
+            class.square += part.square;
         }
     }
+    all
+}
+
+/// The classes of the `marked` units, of [`FEWEST`] classes first, and each time of twice as many, as long as a class has two units.
+fn halvings(units: u64, marked: &[Marked]) -> Vec<(u64, Vec<Class>)> {
+    let mut count = FEWEST;
+    while 4 * count <= units {
+        count *= 2;
+    }
+    let of_unit = |Marked { place, value }: &Marked| {
+        let part = Class { marked: 1.0, sum: *value, square: value * value, ..Class::default() };
+        (place * count / units, part)
+    };
+    let mut all = vec![(count, classes(units, count, marked.iter().map(of_unit)))];
+    while count > FEWEST {
+        count /= 2;
+        let finer = all.last().map_or(&[][..], |(_, classes)| classes);
+        let coarser = classes(units, count, finer.iter().map(|class| (class.number / 2, *class)));
+        all.push((count, coarser));
+    }
+    all.reverse();
     all
 }
 
@@ -97,14 +117,12 @@ pub fn explained(units: u64, marked: &[Marked], variables: usize) -> Option<Expl
     };
     let fourth =
         |classes: &[Class]| classes.iter().map(|class| class.units * class.variance() * class.variance()).sum::<f64>();
-    let (mut count, mut chosen) = (FEWEST, classes(units, marked, FEWEST));
-    let mut finer = 2 * FEWEST;
-    while 2 * finer <= units {
-        let next = classes(units, marked, finer);
+    let mut halvings = halvings(units, marked).into_iter();
+    let (mut count, mut chosen) = halvings.next()?;
+    for (finer, next) in halvings {
         if share(&next) - share(&chosen) > noise(fourth(&chosen), finer, HALVING) {
             (count, chosen) = (finer, next);
         }
-        finer *= 2;
     }
     let found = share(&chosen);
     let variance = squares / (n - 1.0);
