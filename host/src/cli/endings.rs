@@ -27,6 +27,24 @@ pub fn check(outputs: &[(&str, &Path)]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Endings of formats that the file of a shard is not in.
+const OTHERS: [&str; 12] = ["csv", "tsv", "xls", "xlsx", "json", "toml", "svg", "png", "pdf", "html", "htm", "txt"];
+
+/// Whether the name that `option` gives the file of a shard, which has a format of its own, promises another one.
+///
+/// # Errors
+/// [`Failure::Input`] if it does.
+pub fn check_part(option: &str, path: Option<&Path>) -> Result<(), Failure> {
+    let Some(path) = path else { return Ok(()) };
+    let ending = path.extension().map(|ending| ending.to_string_lossy()).unwrap_or_default();
+    if OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other)) {
+        let message =
+            format!("{option} writes a file for `slipfit merge`, such as .part, not .{ending}: {}", path.display());
+        return Err(Failure::Input(message));
+    }
+    Ok(())
+}
+
 /// Whether the ending of `path`, if it has one, is among those `allowed` for what `option` writes.
 ///
 /// # Errors

@@ -8,7 +8,7 @@ use std::{
 use clap::Args;
 use slipfit_core::slide::CONTACTS;
 
-use super::{Failure, population, tolerance::OutputArguments};
+use super::{Failure, endings, population, tolerance::OutputArguments};
 use crate::{
     mechanism::ByDrive,
     population::{part::StoredGaps, tally::Tally},
@@ -55,6 +55,7 @@ impl Arguments {
         let model = &file.product.as_ref().ok_or_else(nothing)?.model;
         check(&part, self.files.first().map_or(Path::new(""), |path| path), model)?;
         let shards: Vec<_> = self.files.iter().map(|path| ("one of the shards", path.as_path())).collect();
+        endings::check_part("--out", self.out.as_deref())?;
         let own: Vec<_> = self.out.iter().map(|path| ("--out", path.as_path())).collect();
         self.outputs.prepare(&shards, &own, model.measures.len())?;
         let study = Study::new(model, part.header.settings).map_err(RunError::from)?;
@@ -71,6 +72,7 @@ impl Arguments {
         }
         let part: Part<Tally<G>> = merge(&self.files)?;
         let shards: Vec<_> = self.files.iter().map(|path| ("one of the shards", path.as_path())).collect();
+        endings::check_part("--out", self.out.as_deref())?;
         let own: Vec<_> = self.out.iter().map(|path| ("--out", path.as_path())).collect();
         files::check_distinct(&shards, &own)?;
         if let Some(path) = &self.out {

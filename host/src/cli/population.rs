@@ -13,8 +13,8 @@ use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
 use super::{
-    DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, check, given, mechanism, print, print_json,
-    progress, tolerance::Written, warn,
+    DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, check, endings, given, mechanism, print,
+    print_json, progress, tolerance::Written, warn,
 };
 use crate::{
     dynamics::driven::Driven,
@@ -206,6 +206,7 @@ impl Arguments {
             ("--out", &self.out),
             ("the checkpoint of --out", &partial),
         ];
+        endings::check_part("--out", self.out.as_deref())?;
         self.scene.check_outputs(&given(outputs))?;
         let settings = Settings::new(self.units, self.seed, self.opening, self.correlation, self.force_limit);
         let settings = settings.by_drive(drive);

@@ -90,10 +90,12 @@ pub fn figures_agree(one: &Outcome, better: &Outcome, command: f64) -> bool {
     };
     let speed = command.abs().max(better.final_velocity.abs());
     let [travel, better_travel] = [one.end.z, better.end.z];
-    one.verdict == better.verdict
-        && peaks
+    // The figures of a runaway grow until it is stopped.
+    let run_away = [one, better].iter().all(|outcome| outcome.runs_away(command));
+    let figures = peaks
         && within(one.final_velocity, better.final_velocity, speed)
-        && within(travel, better_travel, better_travel.abs().max(LEAST_TRAVEL))
+        && within(travel, better_travel, better_travel.abs().max(LEAST_TRAVEL));
+    one.verdict == better.verdict && (run_away || figures)
 }
 
 /// Travel (m, rad) that counts as some.

@@ -65,6 +65,13 @@ impl Verdict {
     }
 }
 
+impl Outcome {
+    /// Whether its drive has run away from the `command` (m/s, rad/s).
+    pub fn runs_away(&self, command: f64) -> bool {
+        has_run_away(self.final_velocity, command)
+    }
+}
+
 impl From<Verdict> for MotionVerdict {
     fn from(verdict: Verdict) -> Self {
         match verdict {
@@ -240,6 +247,14 @@ impl Observer {
             verdict,
         }
     }
+}
+
+/// Speed, as a share of the command, beyond which a drive has run away.
+const RUN_AWAY: f64 = 100.0;
+
+/// Whether a `speed` (m/s, rad/s) is that of a drive which has run away from its `command`.
+pub fn has_run_away(speed: f64, command: f64) -> bool {
+    command != 0.0 && speed.abs() > RUN_AWAY * command.abs()
 }
 
 /// Whether a limit between two verdicts lies between the least and the greatest of these speeds, as shares of the command.

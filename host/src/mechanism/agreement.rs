@@ -30,8 +30,9 @@ impl MechanismRun {
                 let difference = |i: usize| (at(rows, i, k) - at(better_rows, i, k)).abs();
                 // What is not a number differs by all there is.
                 let share =
-                    (0..count).map(difference).fold(0.0, |most: f64, x| if x > most || x.is_nan() { x } else { most })
-                        / peak;
+                    (0..count).map(difference).fold(0.0, |most: f64, x| if x > most || x.is_nan() { x } else { most });
+                // Of nothing at all nothing differs.
+                let share = if share == 0.0 { 0.0 } else { share / peak };
                 if share > worst.share || share.is_nan() {
                     worst = Agreement { share, column: Some(self.samples.columns[k].clone()) };
                 }

@@ -13,28 +13,12 @@ use slipfit_core::{
     },
 };
 
-use slipfit_desk::element::next_to;
-
 use super::{
     Action, Mechanism, Mounts, NamedDrive,
     mounts::flat,
-    state::{State, half_angle, whole_angle},
+    state::{State, half_angle, rotation_vector},
 };
 use crate::dynamics::outcome::Instant;
-
-/// The rotation vector (rad) of `orientation` whose length is next to that of what has `turned` (rad) about its direction.
-///
-/// It is smooth about a fixed axis. No rotation vector is where a tilted body comes by a full turn: there its direction swings around.
-fn rotation_vector(orientation: &UnitQuaternion<f64>, turned: &Vector3<f64>) -> Vector3<f64> {
-    let (sine, about) = (orientation.imag().norm(), turned.norm());
-    // At a full turn the direction is lost.
-    let direction = match (sine > 1e-9 || about < 1.0, sine > 0.0) {
-        (true, true) => orientation.imag() / sine,
-        (true, false) => return Vector3::zeros(),
-        (false, _) => turned / about,
-    };
-    direction * next_to(whole_angle([orientation.w, orientation.imag().dot(&direction)]), turned.dot(&direction))
-}
 
 /// How one body moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +32,8 @@ pub struct BodyMotion {
     pub turned: Vector3<f64>,
     /// Whether it turns about one axis alone, so that `turned` is the rotation vector.
     pub is_axial: bool,
+    /// The rotation vector (rad) shortly before, if it does not.
+    pub before: Vector3<f64>,
     /// Velocity of the centre of mass (m/s).
     pub velocity: Vector3<f64>,
     /// Angular velocity in the frame (rad/s).
@@ -57,7 +43,7 @@ pub struct BodyMotion {
 impl BodyMotion {
     /// Rotation vector from the drawn pose (rad); in a plane its third part is the angle. It goes on beyond full turns.
     pub fn turn(&self) -> Vector3<f64> {
-        if self.is_axial { self.turned } else { rotation_vector(&self.orientation, &self.turned) }
+        if self.is_axial { self.turned } else { rotation_vector(&self.orientation, &self.before) }
     }
 }
 
@@ -91,6 +77,7 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
                 orientation: UnitQuaternion::new_unchecked(Quaternion::new(cos, 0.0, 0.0, sin)),
                 turned: about(&state.places),
                 is_axial: true,
+                before: Vector3::zeros(),
                 velocity: Vector3::new(velocity.x, velocity.y, 0.0),
                 spin: about(&state.rates),
             }
@@ -108,6 +95,14 @@ struct Turns {
 }
 
 impl Turns {
+    /// The first coordinate of the spherical joint that alone turns it.
+    fn ball(&self) -> Option<usize> {
+        match self.all[..] {
+            [(k, SpatialKind::Ball, _)] => Some(k),
+            _ => None,
+        }
+    }
+
     /// How much (rad) they have turned the body by their `places`, drawn axis by drawn axis.
     fn sum(&self, places: &[f64]) -> Vector3<f64> {
         let one = |(k, kind, axis): &(usize, SpatialKind, Vector3<f64>)| match kind {
@@ -162,6 +157,7 @@ impl<const N: usize, const W: usize, const D: usize> JointedBodies<N, W, D> {
                 orientation,
                 turned: if is_held { sum } else { rotation_vector(&orientation, &sum) },
                 is_axial: turns.is_axial,
+                before: turns.ball().map_or(sum, |k| Vector3::from_column_slice(&state.turns[k..k + 3])),
                 velocity: at.velocity_w,
                 spin: at.rotation_w,
             }
@@ -181,6 +177,7 @@ pub fn spatial<const D: usize>(state: &State<D>, told: &mut Vec<BodyMotion>) {
             orientation,
             turned: vector(&state.places[k + 3..]),
             is_axial: false,
+            before: vector(&state.turns[k + 3..]),
             velocity: vector(&state.rates[k..]),
             spin: orientation * vector(&state.rates[k + 3..]),
         }
@@ -273,6 +270,8 @@ impl Mechanism {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use nalgebra::{Rotation3, UnitQuaternion, Vector3};
     use slipfit_core::pose::{Orientation, Pose};
 
@@ -308,6 +307,32 @@ mod tests {
         assert!((turning - motion.spin).norm() < 1e-9, "{turning} {}", motion.spin);
         assert!((turning - rotation_b).norm() > 0.1);
         assert!((motion.turn() - Vector3::new(0.9, -1.3, 0.4)).norm() < 1e-14, "{}", motion.turn());
+    }
+
+    /// A body whose axis moves while it turns by many turns: its rotation vector goes on without a jump, and is that of its orientation.
+    #[test]
+    fn the_rotation_vector_of_a_body_whose_axis_moves_does_not_jump() {
+        let h = 1e-3;
+        let mut last = State::at_rest([0.0; 6]);
+        let (mut orientation, mut before) = (UnitQuaternion::identity(), Vector3::zeros());
+        for k in 0..4000 {
+            let t = h * f64::from(k);
+            let spin = Vector3::new(libm::sin(9.0 * t), 0.7 * libm::cos(5.0 * t), libm::cos(7.0 * t)) * 40.0;
+            let state = State::spatial(
+                &pose(&orientation, if k % 2 == 0 { 1.0 } else { -1.0 }),
+                six(orientation.inverse() * spin),
+                &last,
+            );
+            let turn = only(&state).turn();
+            assert!((UnitQuaternion::new(turn).inverse() * orientation).angle() < 1e-7, "{t}");
+            // Of all rotation vectors of this orientation none is nearer to the one before.
+            let direction = turn.try_normalize(0.0).unwrap_or_default();
+            for other in [turn + direction * (2.0 * PI), turn - direction * (2.0 * PI)] {
+                assert!((turn - before).norm() <= (other - before).norm() + 1e-9, "{t}");
+            }
+            (before, last) = (turn, state);
+            orientation = UnitQuaternion::new(spin * h) * orientation;
+        }
     }
 
     /// A body that spins about an axis of its own, the axis tilted, is where it is to be between the ends of steps, at each of many turns

@@ -39,7 +39,8 @@ pub fn confirmed(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<[Mec
     let (mut one, finer) = (run(mechanism, gaps, every)?, finer(mechanism, gaps, every)?);
     let excess = one.energy_excess;
     for ((outcome, better), named) in one.outcomes.iter_mut().zip(&finer.outcomes).zip(&mechanism.drives) {
-        if excess.is_nan() || excess > ENERGY || !figures_agree(outcome, better, named.drive.command(better.end.t)) {
+        let agrees = figures_agree(outcome, better, named.drive.command(better.end.t));
+        if excess.is_nan() || excess > ENERGY || !agrees {
             outcome.verdict = Verdict::Undecided;
         }
     }

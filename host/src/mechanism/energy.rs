@@ -38,7 +38,7 @@ impl<'a> Energies<'a> {
             0.5 * spring.stiffness * turned * turned
         });
         let stored: f64 = contacts.chain(springs).sum();
-        let start = mechanism.energy(motions) + stored;
+        let start = mechanism.energy(motions).iter().sum::<f64>() + stored;
         let count = mechanism.drives.len();
         Self { mechanism, start, work: vec![0.0; count], last: (0.0, vec![0.0; count]), spent: stored, excess: 0.0 }
     }
@@ -61,8 +61,10 @@ impl<'a> Energies<'a> {
         }
         self.last.0 = t;
         let work: f64 = self.work.iter().sum();
-        let energy = self.mechanism.energy(motions);
-        let all = [self.start, work, energy].into_iter().fold(self.spent, |most, one| most.max(one.abs()));
+        // What falls, or swings, spends its height, although the sum of both does not change.
+        let [moving, height] = self.mechanism.energy(motions);
+        let energy = moving + height;
+        let all = [self.start, work, moving, height].into_iter().fold(self.spent, |most, one| most.max(one.abs()));
         self.spent = all;
         // A NaN is no energy that anything supplied.
         let excess = energy - self.start - work;
@@ -79,14 +81,17 @@ impl<'a> Energies<'a> {
 
 impl Mechanism {
     /// Energy (J) of motion, and of height against gravity from the drawn pose.
-    fn energy(&self, motions: &[BodyMotion]) -> f64 {
+    fn energy(&self, motions: &[BodyMotion]) -> [f64; 2] {
         let gravity = Vector3::from(self.gravity);
         let each = self.bodies.iter().zip(motions).map(|(body, motion)| {
             // In a plane axes of body and frame share the one that counts.
             let spin_b = if self.planar { motion.spin } else { motion.orientation.inverse() * motion.spin };
             let turning: f64 = spin_b.iter().zip(body.inertia).map(|(spin, inertia)| inertia * spin * spin).sum();
-            0.5 * (body.mass * motion.velocity.norm_squared() + turning) - body.mass * gravity.dot(&motion.displacement)
+            [
+                0.5 * (body.mass * motion.velocity.norm_squared() + turning),
+                -body.mass * gravity.dot(&motion.displacement),
+            ]
         });
-        each.sum()
+        each.fold([0.0, 0.0], |[moving, height], [of_motion, of_height]| [moving + of_motion, height + of_height])
     }
 }

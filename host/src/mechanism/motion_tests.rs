@@ -278,6 +278,65 @@ fn a_drive_that_runs_away_does_not_complete_its_motion() {
     assert_eq!(super::feedback::reversals(&lever(30.0, 40.0, 20.0)).len(), 1);
 }
 
+/// However fast it runs away, a unit overruns: where it grows beyond all steps the run ends, which is no failure.
+#[test]
+fn a_drive_that_runs_away_beyond_all_numbers_overruns() {
+    for gain in [40.0, 100.0, 1e3, 1e4] {
+        for duration in [0.06, 0.3, 3.0] {
+            let mut mechanism = lever(30.0, -40.0, 0.0);
+            mechanism.drives[0].drive.gain = gain;
+            mechanism.run.duration = duration;
+            let [one, finer] = confirmed(&mechanism, &[], 1e-3).unwrap();
+            assert_eq!(one.outcomes[0].verdict, Verdict::Overruns, "{gain} {duration}: {:?}", one.outcomes[0]);
+            assert!(one.agreement(&finer, &mechanism).share.is_finite());
+        }
+    }
+}
+
+/// A lid that falls from where it is drawn: height becomes motion, the sum stays 0.
+fn lid(gain: f64, duration: f64) -> Mechanism {
+    scene(&format!(
+        r#"
+[mechanism]
+space = "plane"
+gravity = [0, -9.81]
+[[body]]
+name = "lid"
+mass = 500
+inertia = "1e-3 kg·m²"
+centre = [100, 0]
+[[joint]]
+name = "hinge"
+kind = "revolute"
+between = ["frame", "lid"]
+at = [0, 0]
+[[drive]]
+name = "motor"
+turns = "lid"
+gain = {gain}
+ramp_start = 0.05
+ramp_end = 0.3
+speed = 2
+[run]
+duration = {duration}
+"#
+    ))
+}
+
+#[test]
+fn what_falls_from_rest_has_no_energy_too_much() {
+    for duration in [0.5, 200.0, 300.0, 500.0, 800.0] {
+        for gain in [0.0, 1e-6, 1.0] {
+            let lid = lid(gain, duration);
+            let [one, finer] = confirmed(&lid, &[], 1e-3).unwrap();
+            assert!(one.energy_excess < 1e-3, "{gain} {duration}: {}", one.energy_excess);
+            // Half a millisecond has one sample, of a body at rest: nothing differs.
+            let share = one.agreement(&finer, &lid).share;
+            assert!(share < 1e-3 && (duration > 1.0 || share == 0.0), "{gain} {duration}: {share}");
+        }
+    }
+}
+
 /// At any gain the drive of a slider-crank holds its speed, and gives what masses and contacts ask for.
 #[test]
 fn peaks_of_stiff_drives_are_those_of_the_load() {

@@ -20,7 +20,7 @@ use slipfit_desk::{
 use thiserror::Error;
 
 use super::{
-    Mechanism, MountError, Mounts, Rest,
+    Mechanism, MountError, Mounts, NamedDrive, Rest,
     columns::{self, BodyMotion, JointedBodies, PlanarBodies},
     energy::Energies,
     limits::Limits,
@@ -35,7 +35,7 @@ use crate::{
         error_control::{self, Accelerations, Knot, Stopped, sampled},
         film::chosen,
         looks::{Place, end, looks, samples},
-        outcome::{Instant as Looked, Observer, Outcome},
+        outcome::{Instant as Looked, Observer, Outcome, Verdict, has_run_away},
         scheme::ScalarKind,
         simulate::{SimulateError, Solved},
         trajectory::Trajectory,
@@ -345,19 +345,33 @@ fn solve<P: Plant<D>, const D: usize>(
     let mut keep = |t: f64, motion: &Motion<f64, P::Pose, (), D>, accelerations: Option<Accelerations<D>>| {
         let values = state(&motion.pose, motion.velocity.into());
         knots.push(Knot { t, values, rates: accelerations.map(|rates| rates.map(<[f64; D]>::from)) });
-        if ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let is_absurd = motion.velocity.iter().any(|rate| rate.abs() > ABSURD);
+        if is_absurd || ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
     let effort = match by.controller {
         None => {
             let error = |step: Reported, length: f64| limits.error(&step, length, least_mass);
-            desk.by_desk(start, duration, Allowed { error: &error, depth: limits.place() }, &mut keep)?
+            desk.by_desk(start, duration, Allowed { error: &error, depth: limits.place() }, &mut keep)
         }
         Some(ControllerSpec { step, integrator, .. }) => {
-            desk.by_controller(start, duration, (integrator, step), &mut keep)?
+            desk.by_controller(start, duration, (integrator, step), &mut keep)
         }
     };
     let integration = clock.elapsed();
+    // What runs away does so until no number is large enough: the run ends there.
+    let has_run_away = |knot: &Knot<State<D>>| {
+        let mut motions = Vec::new();
+        told(&knot.values, &mut motions);
+        let mut drives = mechanism.drives.iter().zip(mechanism.drives_at(knot.t, &motions));
+        drives.any(|(named, at)| has_run_away(at.vz, named.drive.speed))
+    };
+    let effort = effort.or_else(|stopped| match knots.last() {
+        Some(knot) if stopped != Stopped::Interrupted && has_run_away(knot) => {
+            Ok(error_control::Effort { accepted: knots.len() as u32 - 1, refused: 0 })
+        }
+        _ => Err(stopped),
+    })?;
     let end = end(&knots, |state| ends(&observers, state));
     let told_at = |knot: &Knot<State<D>>| {
         let mut motions = Vec::with_capacity(mechanism.bodies.len());
@@ -410,7 +424,13 @@ fn solve<P: Plant<D>, const D: usize>(
     let shown = if by.moments > 0 { chosen(&before_end, by.moments) } else { Vec::new() };
     let moment = |k: usize| Moment { t: knots[k].t, motions: motions[k].clone() };
     let film = shown.into_iter().map(moment).collect();
-    let outcomes = observers.iter().map(Observer::outcome).collect();
+    let outcome = |(observer, named): (&Observer, &NamedDrive)| {
+        let outcome = observer.outcome();
+        // Also before its ramp is over.
+        let verdict = if outcome.runs_away(named.drive.speed) { Verdict::Overruns } else { outcome.verdict };
+        Outcome { verdict, ..outcome }
+    };
+    let outcomes = observers.iter().zip(&mechanism.drives).map(outcome).collect();
     let samples = Samples { columns: mechanism.columns(), rows };
     let energy_excess = energies.excess();
     Ok(MechanismRun {
@@ -424,6 +444,9 @@ fn solve<P: Plant<D>, const D: usize>(
         integration,
     })
 }
+
+/// A speed (m/s, rad/s) that no mechanism has, at which a run ends.
+const ABSURD: f64 = 1e5;
 
 /// The scheme by which the desk integrates.
 pub const SCHEME: &str = Rodas4::NAME;

@@ -26,13 +26,15 @@ pub struct State<const D: usize> {
     pub quaternions: [[f64; 2]; D],
     /// How fast these change (1/s).
     pub quaternion_rates: [[f64; 2]; D],
+    /// The rotation vector (rad) of what turns about a point, next to the one before it in time.
+    pub turns: [f64; D],
 }
 
 impl<const D: usize> State<D> {
     /// At rest at these `places`, with nothing turned about a point.
     pub fn at_rest(places: [f64; D]) -> Self {
         let (none, no_rows) = ([0.0; D], [[0.0; 2]; D]);
-        Self { rates: none, places, place_rates: none, quaternions: no_rows, quaternion_rates: no_rows }
+        Self { rates: none, places, place_rates: none, quaternions: no_rows, quaternion_rates: no_rows, turns: none }
     }
 
     /// The state at a `pose` and `rates` in a plane, whose angles are next to those of the `last` places: a turn goes on where its
@@ -92,6 +94,8 @@ impl<const D: usize> State<D> {
         let turned = Vector3::from_column_slice(&last.places[k..k + 3]) + (now * before.inverse()).scaled_axis();
         self.places[k..k + 3].copy_from_slice(turned.as_slice());
         self.place_rates[k..k + 3].copy_from_slice(spin.as_slice());
+        let turn = rotation_vector(&now, &Vector3::from_column_slice(&last.turns[k..k + 3]));
+        self.turns[k..k + 3].copy_from_slice(turn.as_slice());
     }
 
     /// The orientation of what turns about a point by the coordinates from `k` on.
@@ -129,8 +133,23 @@ impl<const D: usize> Values for State<D> {
             rates: std::array::from_fn(|k| by(of.map(|state| state.rates[k]))),
             places: std::array::from_fn(|k| by(of.map(|state| state.places[k]))),
             quaternions: std::array::from_fn(|k| [0, 1].map(|row| by(of.map(|state| state.quaternions[k][row])))),
+            turns: of.first().map_or([0.0; D], |state| state.turns),
             // Of no effect between the ends of steps.
             ..Self::at_rest([0.0; D])
         }
     }
+}
+
+/// Of all rotation vectors (rad) of `orientation` the one that is nearest to the one `before`.
+///
+/// It is smooth as long as no body that is tilted comes by a full turn: there the direction swings around.
+pub fn rotation_vector(orientation: &UnitQuaternion<f64>, before: &Vector3<f64>) -> Vector3<f64> {
+    let (sine, about) = (orientation.imag().norm(), before.norm());
+    // At a full turn the direction is lost.
+    let direction = match (sine > 1e-9 || about < 1.0, sine > 0.0) {
+        (true, true) => orientation.imag() / sine,
+        (true, false) => return Vector3::zeros(),
+        (false, _) => before / about,
+    };
+    direction * next_to(whole_angle([orientation.w, orientation.imag().dot(&direction)]), before.dot(&direction))
 }

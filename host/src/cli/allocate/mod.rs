@@ -207,6 +207,14 @@ impl Arguments {
             }
             let tolerances = found.solution.tolerances.clone();
             let checked = checked_units(&model(&tolerances)?, self.samples, self.seed)?;
+            if let Some((requirement, outside)) = checked.contradicts(&requirements) {
+                let of = requirement.measure.map_or("all measures", |i| product.model.measures[i].name.as_str());
+                return Err(Failure::Work(anyhow::anyhow!(
+                    "{of}: {outside} of {} units drawn with the tolerances found are outside, more than is allowed: where a measure is \
+                     level and then bends, its tails may not be found",
+                    checked.units
+                )));
+            }
             let points = if self.csv.is_some() || self.plot.is_some() {
                 let bar = progress("cost against defects", LEVELS.len());
                 let points = cost_against_defects(&processes, &tolerances, &model, self.seed, || bar.inc(1))?;

@@ -15,6 +15,7 @@ use crate::{
 pub(super) fn show(title: &str, model: &Model, design: Design, json: bool) -> Result<(), Failure> {
     let made = experiment(model, design).map_err(|error| Failure::Input(error.to_string()))?;
     let scaled = |finding: &Finding, factor: f64| Finding {
+        undefined: finding.undefined,
         mean: finding.mean * factor,
         range: finding.range.map(|end| end * factor),
         effects: finding.effects.iter().map(|effect| effect * factor).collect(),
@@ -38,13 +39,12 @@ pub(super) fn show(title: &str, model: &Model, design: Design, json: bool) -> Re
         let most =
             ranks.into_iter().take(3).map(|k| format!("{} {}", made.factors[k], fixed(finding.shares[k] * 100.0, 1)));
         let [low, high] = finding.range;
-        vec![
-            measure.name.clone(),
-            fixed(finding.mean, 4),
-            fixed(low, 4),
-            fixed(high, 4),
-            most.collect::<Vec<_>>().join(", "),
-        ]
+        let told = |value: f64| if value.is_finite() { fixed(value, 4) } else { "-".to_owned() };
+        let factors = match finding.undefined {
+            0 => most.collect::<Vec<_>>().join(", "),
+            count => format!("has no value in {count} of {} runs", made.runs),
+        };
+        vec![measure.name.clone(), told(finding.mean), told(low), told(high), factors]
     };
     let rows: Vec<_> = model.measures.iter().zip(&findings).map(row).collect();
     let table = text_table(&["measure", "mean", "least", "greatest", "factors, %"], &rows);

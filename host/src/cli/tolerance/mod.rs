@@ -12,7 +12,7 @@ use indicatif::ProgressBar;
 use serde::Serialize;
 
 use self::gaps::Given;
-use super::{DRAWING, Failure, SceneArguments, ThreadArguments, print, print_json, progress, warn};
+use super::{DRAWING, Failure, SceneArguments, ThreadArguments, endings, print, print_json, progress, warn};
 use crate::{
     scene::Scene,
     show::number::ten_digits,
@@ -162,6 +162,7 @@ impl Arguments {
         let partial = self.out.as_deref().map(checkpoint);
         let own = [("--out", &self.out), ("the checkpoint of --out", &partial), ("--draws", &self.draws)];
         let own: Vec<_> = own.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?))).collect();
+        endings::check_part("--out", self.out.as_deref())?;
         self.outputs.prepare(&[("the scene", &self.scene.scene)], &own, model.measures.len())?;
         let (name, text) = self.scene.text()?;
         let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };

@@ -14,6 +14,10 @@ use super::Fit;
 /// Units that are tried.
 pub(super) const UNITS: usize = 1024;
 
+/// The most units whose contacts may be open. A measure has no value in such a unit, which is told; where there are many of them it is
+/// the scene that is wrong.
+pub(super) const OPEN_MOST: usize = UNITS / 20;
+
 /// What was found.
 pub(super) struct Tried {
     /// Sentences about fits that do not go together.

@@ -266,7 +266,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     let model = Model { contributors, correlations, measures, sums, function: Box::new(function) };
     let tried = fit::try_out(&model, &assembly, &fits);
     warnings.extend(tried.told);
-    if tried.open > 0 {
+    if tried.open > fit::OPEN_MOST {
         let error = PlacementError::OpenUnits { units: tried.open, of: fit::UNITS };
         let part = mates.first().map_or("", |mate| parts[mate.part].name).to_owned();
         let field = root.get("mate").unwrap_or(root.clone());

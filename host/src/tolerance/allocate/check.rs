@@ -1,9 +1,16 @@
 //! What the full model says of the tolerances, beside what the root of the sum of squares says.
 
-use super::AllocateError;
+use super::{
+    AllocateError,
+    requirement::{Kind, Requirement},
+};
 use crate::tolerance::{
-    analysis::analyse, counting::study::Settings, distribution::normal, model::Model, sampling::sampler::Method,
-    statistics::estimate::Estimate,
+    analysis::analyse,
+    counting::study::Settings,
+    distribution::normal,
+    model::Model,
+    sampling::sampler::Method,
+    statistics::{binomial, estimate::Estimate},
 };
 
 /// A measure with limits (SI; probabilities as shares).
@@ -37,6 +44,24 @@ pub struct Check {
     pub units: u64,
     /// Share of units with all measures within their limits.
     pub good: Option<Estimate>,
+}
+
+/// The chance that units which meet a requirement are taken to speak against it.
+const UNLIKELY: f64 = 1e-3;
+
+impl Check {
+    /// The first of some `requirements` on shares of units that the counted ones speak against, and how many of these are outside.
+    pub fn contradicts<'a>(&self, requirements: &'a [Requirement]) -> Option<(&'a Requirement, u64)> {
+        requirements.iter().find_map(|requirement| {
+            let Kind::Defects(allowed) = requirement.kind else { return None };
+            let outside = match requirement.measure {
+                Some(measure) => self.measures.iter().find(|checked| checked.measure == measure)?.counted,
+                None => ((1.0 - self.good?.value) * self.units as f64).round() as u64,
+            };
+            let [least, _] = binomial::limits(outside, self.units, UNLIKELY);
+            (least > allowed).then_some((requirement, outside))
+        })
+    }
 }
 
 /// Draws `units` units of `model`.

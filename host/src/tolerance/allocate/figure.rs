@@ -8,7 +8,7 @@ use crate::tolerance::{
     counting::study::{Settings, Study, StudyError},
     failure::{Failure, subset::normals, tail::probability},
     model::{
-        Measure, Model,
+        Model,
         lanes::{LANES, Lanes},
     },
     sampling::{draw::Draw, sampler::Method, sobol::MOST_DIMENSIONS},
@@ -89,14 +89,11 @@ fn undefined(model: &Model, draw: &Draw, measure: usize, seed: u64) -> Result<f6
     if found { counted(model, measure, seed, f64::is_nan) } else { Ok(0.0) }
 }
 
-/// The share of units in which any measure is outside.
+/// The share of units in which any measure is outside, or cannot be computed, whether it has limits or not.
 pub(super) fn any_defects(model: Model, seed: u64) -> Result<f64, AllocateError> {
-    let limited = |measure: &Measure| measure.limits.iter().any(Option::is_some);
-    let several = model.measures.iter().filter(|measure| limited(measure)).count() > 1;
-    match model.measures.iter().position(limited) {
-        None => Ok(0.0),
-        Some(only) if !several => defects(&model, only, seed),
-        Some(_) => {
+    match &model.measures[..] {
+        [_] => defects(&model, 0, seed),
+        _ => {
             let model = with_nearest(model);
             defects(&model, model.measures.len() - 1, seed)
         }

@@ -23,8 +23,10 @@ impl Function for Nearest {
         self.function.evaluate(variables, measures);
         for lane in 0..nearest.0.len() {
             let of = |limit: &Limit| limit.factor * (measures[limit.measure].0[lane] - limit.value);
-            let least = |least: f64, next: f64| if next.is_nan() || next < least { next } else { least };
-            nearest.0[lane] = self.limits.iter().map(of).fold(f64::INFINITY, least);
+            // Far from all limits where none has any.
+            let least = self.limits.iter().map(of).fold(1.0, f64::min);
+            let undefined: f64 = measures.iter().map(|measure| measure.0[lane] * 0.0).sum();
+            nearest.0[lane] = least + undefined;
         }
     }
 }

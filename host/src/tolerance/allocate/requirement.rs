@@ -79,6 +79,9 @@ pub struct OfMeasures<'a> {
     seed: u64,
 }
 
+/// What counts as on a limit, as a share of how far a measure varies.
+const TOUCHING: f64 = 1e-9;
+
 impl Kind {
     /// How its figures grow.
     pub fn power(self) -> Power {
@@ -140,7 +143,10 @@ impl<'a> OfMeasures<'a> {
             (Kind::WorstCase, Some(formula)) => {
                 let [low, high] = formula.worst[i];
                 let part = if row.side == Some(0) { row.middle - low } else { high - row.middle };
-                share(part, row.distance)
+                // A measure that lies on its limit in the middle, and goes nowhere beyond, holds it.
+                let close = TOUCHING * (high - low);
+                let touches = close.is_finite() && row.distance.abs() <= close;
+                if touches && part <= close { 0.0 } else { share(part, row.distance) }
             }
             (Kind::Rss | Kind::RssOffCentre, Some(formula)) => {
                 let share = share(formula.rss[i], row.distance);

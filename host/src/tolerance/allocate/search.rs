@@ -186,7 +186,11 @@ impl Local {
         let fall = |loosened: &[usize]| (now - cost(loosened)).max(0.0);
         let alone: Vec<f64> = bind.iter().map(|row| fall(&[*row]) / reliefs[*row]).collect();
         let together = fall(&bind);
-        bind.iter().zip(alone).for_each(|(row, price)| found.solution.prices[*row] = price);
+        for (row, price) in bind.iter().zip(alone) {
+            // The program is solved to so many digits.
+            let is_none = price * reliefs[*row] < MET * together;
+            found.solution.prices[*row] = if is_none { 0.0 } else { price };
+        }
         found.together = Some(together);
     }
 }

@@ -338,3 +338,57 @@ fn a_process_may_have_a_fixed_price() {
         assert_eq!(SceneFile::parse("x.toml", &text, &[]).is_ok(), allowed, "{key}");
     }
 }
+
+/// What a measure never is: below the value that it has in the middle. Its lower limit may be there.
+#[test]
+fn a_limit_that_is_touched_and_never_passed_is_met() {
+    let cases = [
+        ("max(10 mm - d, 0 mm)", "lower = 0\nupper = 0.1", 0.1),
+        ("(d - 10 mm)^2/(1 mm)", "lower = 0\nupper = 0.01", 0.1),
+        ("100 mm - (d - 10 mm)^2/(1 mm)", "lower = 99.99\nupper = 100", 0.1),
+        ("abs(d - 10 mm)", "lower = 0\nupper = 0.05", 0.05),
+    ];
+    for (is, limits, tolerance) in cases {
+        let text = format!(
+            "[[dimension]]\nname = 'd'\nvalue = 10\ntolerance = 0.05\ncost = {{ reciprocal = 1, range = [0.005, 0.5] }}\n\
+             [[measure]]\nname = 'm'\nis = '{is}'\n{limits}\n"
+        );
+        let found = cheapest(&text, &of_first(Kind::WorstCase), all).unwrap();
+        assert!((found.solution.tolerances[0] / (tolerance * 1e-3) - 1.0).abs() < 1e-5, "{is}: {found:?}");
+    }
+    let beyond = "[[dimension]]\nname = 'd'\nvalue = 10\ntolerance = 0.05\ncost = { reciprocal = 1, range = [0.005, 0.5] }\n\
+                  [[measure]]\nname = 'm'\nis = 'd'\nlower = 10\n";
+    assert!(matches!(cheapest(beyond, &of_first(Kind::WorstCase), all), Err(AllocateError::Infeasible { .. })));
+}
+
+/// max(0, p − h) is level where the pin goes into the hole: P(p − h > limit) by the normal of their difference.
+#[test]
+fn tails_beyond_a_level_part_are_found() {
+    let text = |t: f64, upper: f64| {
+        format!(
+            "[[dimension]]\nname = 'pin'\nvalue = 10\ntolerance = {t}\n[[dimension]]\nname = 'hole'\nvalue = 10.05\ntolerance = {t}\n\
+             [[measure]]\nname = 'm'\nis = 'max(0 mm, pin - hole)'\nupper = {upper}\n"
+        )
+    };
+    for (t, upper) in [(0.05, 0.04), (0.042, 0.04), (0.05, 0.02), (0.06, 0.1), (0.08, 0.1)] {
+        let expected = normal::tail((0.05 + upper) * 3.0 / (t * std::f64::consts::SQRT_2));
+        let requirement = Requirement { measure: Some(0), kind: Kind::Defects(expected) };
+        let found = figures(&text(t, upper), &[requirement])[0];
+        let share = Kind::Defects(expected);
+        // The figure is the square of a ratio of scores: 1 for as many as there are.
+        assert!((found - 1.0).abs() < 0.02, "{t} {upper}: {share:?} {found}");
+    }
+}
+
+/// Measures without limits have no units outside of them, but units without a value.
+#[test]
+fn a_yield_counts_units_without_a_value() {
+    let text = "[[dimension]]\nname = 'x'\nvalue = 0.1\ntolerance = 0.2\n[[dimension]]\nname = 'y'\nvalue = 1\ntolerance = 0.1\n\
+                [[measure]]\nname = 'm'\nis = 'y + sqrt(x * 1 mm)'\n";
+    let more = "[[measure]]\nname = 'n'\nis = 'y'\nupper = 9\n";
+    let requirement = Requirement { measure: None, kind: Kind::Defects(normal::tail(1.5)) };
+    for text in [text.to_owned(), text.to_owned() + more] {
+        let found = figures(&text, &[requirement])[0];
+        assert!((found - 1.0).abs() < 0.01, "{text}: {found}");
+    }
+}

@@ -13,6 +13,8 @@ use crate::tolerance::distribution::normal::Scores;
 const SHARE: f64 = 0.125;
 /// States of a chain.
 const LENGTH: usize = 8;
+/// The least number of units beyond a level part of the margin from which chains start.
+const LEAST_BEYOND: usize = 4;
 /// The least number of chains between two adaptations of the step.
 const ADAPTED_AFTER: usize = 16;
 /// The acceptance that is aimed at.
@@ -63,12 +65,20 @@ pub fn run<M: Margins>(state: &mut M, units: usize, levels: u64, seed: u64) -> R
         let mut order: Vec<usize> = (0..units).collect();
         order.sort_by(|one, other| margins[*one].total_cmp(&margins[*other]));
         let chains = units / LENGTH;
-        let threshold = margins[order[chains - 1]];
-        // On a level part of the margin many units are as good as the last: all of them make up the next level.
-        let below: Vec<usize> = (0..units).filter(|unit| margins[*unit] <= threshold).collect();
-        if below.len() == units || !threshold.is_finite() {
+        let mut threshold = margins[order[chains - 1]];
+        if threshold == margins[order[units - 1]] {
+            // Most units are on one level part of the margin: the next level are those that are beyond it, however few.
+            let beyond = order.partition_point(|unit| margins[*unit] < threshold);
+            if beyond < LEAST_BEYOND {
+                return Err(Stopped::Flat);
+            }
+            threshold = margins[order[beyond - 1]];
+        }
+        if !threshold.is_finite() {
             return Err(Stopped::Flat);
         }
+        // On a level part of the margin many units are as good as the last: all of them make up the next level.
+        let below: Vec<usize> = (0..units).filter(|unit| margins[*unit] <= threshold).collect();
         probability *= below.len() as f64 / units as f64;
         if level >= levels {
             break;

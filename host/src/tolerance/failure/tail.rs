@@ -136,8 +136,8 @@ fn of_regions(state: &mut LimitState, seed: u64, likely: impl Fn(&Tail) -> bool)
         seeds(derived(seed, 1), runs).map(|seed| subset::run(state, units, LEVELS, seed).ok()).collect();
     let from_origin = state.design_point(&origin);
     let Some(searches) = searches.into_iter().collect::<Option<Vec<_>>>() else {
-        // Too rare for levels to get there.
-        let point = from_origin?;
+        // Too rare for levels to get there; or the margin is level for most units, so that it takes many to find what is beyond.
+        let Some(point) = from_origin else { return of_levels(state, derived(seed, 3)).filter(&likely) };
         let sampled = Mixture::around(point.clone()).sample(state, seed);
         return by_importance(sampled, vec![point]).filter(likely);
     };

@@ -35,9 +35,12 @@ pub enum DesignError {
 /// The most factors of a full factorial.
 pub const MOST_FACTORS: usize = 16;
 
-/// What an experiment finds of one measure (SI).
+/// What an experiment finds of one measure (SI). Where it cannot be computed in some runs, there is no mean, and there are no effects nor
+/// shares: not a number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
+    /// Runs in which it cannot be computed.
+    pub undefined: usize,
     /// Mean of all runs.
     pub mean: f64,
     /// Least and greatest of all runs.
@@ -108,10 +111,11 @@ pub fn experiment(model: &Model, design: Design) -> Result<Experiment, DesignErr
         let total: f64 = squares.iter().sum();
         let extreme = |of: fn(f64, f64) -> f64, start| values.iter().map(|value| value[i]).fold(start, of);
         Finding {
+            undefined: values.iter().filter(|value| !value[i].is_finite()).count(),
             mean,
             range: [extreme(f64::min, f64::INFINITY), extreme(f64::max, f64::NEG_INFINITY)],
             effects: (0..factors.len()).map(|factor| at(factor, levels - 1) - at(factor, 0)).collect(),
-            shares: squares.iter().map(|square| if total > 0.0 { square / total } else { 0.0 }).collect(),
+            shares: squares.iter().map(|square| if total == 0.0 { 0.0 } else { square / total }).collect(),
         }
     };
     Ok(Experiment {
@@ -191,6 +195,20 @@ mod tests {
             if design == Design::FullFactorial {
                 assert!((finding.range[0] - 0.017 * MM).abs() < 1e-12 && (finding.range[1] - 0.783 * MM).abs() < 1e-12);
             }
+        }
+    }
+
+    /// The root of x − y + 0.05 mm has no value where x is a level below y.
+    #[test]
+    fn a_measure_without_a_value_in_one_run_has_no_mean_and_no_shares() {
+        let text = "[[dimension]]\nname = 'x'\nvalue = 1\ntolerance = 0.1\n[[dimension]]\nname = 'y'\nvalue = 1\ntolerance = 0.1\n\
+                    [[measure]]\nname = 'm'\nis = 'sqrt((x - y + 0.05 mm) * 1 mm)'\n[[measure]]\nname = 'n'\nis = 'x'\n";
+        let model = crate::scene::SceneFile::parse("x.toml", text, &[]).unwrap().product.unwrap().model;
+        for (design, undefined) in [(Design::FullFactorial, 1), (Design::TwoLevel, 1), (Design::ThreeLevel, 3)] {
+            let findings = experiment(&model, design).unwrap().findings;
+            assert_eq!([findings[0].undefined, findings[1].undefined], [undefined, 0], "{design:?}");
+            assert!(findings[0].mean.is_nan() && findings[0].shares.iter().all(|share| share.is_nan()));
+            assert!((findings[1].mean - MM).abs() < 1e-15 && (findings[1].shares[0] - 1.0).abs() < 1e-12);
         }
     }
 
