@@ -340,12 +340,19 @@ fn solve<P: Plant<D>, const D: usize>(
         let first_drive = mechanism.drives_at(0.0, &there).next();
         first_drive.is_some_and(|at| first.is_at_end(at.z - origins[0]))
     };
+    // What runs away does so until no number is large enough: the run ends there.
+    let run_away = |t: f64, state: &State<D>| {
+        let mut motions = Vec::new();
+        told(state, &mut motions);
+        let mut drives = mechanism.drives.iter().zip(mechanism.drives_at(t, &motions));
+        drives.any(|(named, at)| has_run_away(at.vz, named.drive.speed))
+    };
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
     let mut keep = |t: f64, motion: &Motion<f64, P::Pose, (), D>, accelerations: Option<Accelerations<D>>| {
         let values = state(&motion.pose, motion.velocity.into());
         knots.push(Knot { t, values, rates: accelerations.map(|rates| rates.map(<[f64; D]>::from)) });
-        let is_absurd = motion.velocity.iter().any(|rate| rate.abs() > ABSURD);
+        let is_absurd = motion.velocity.iter().any(|rate| rate.abs() > ABSURD) && run_away(t, &values);
         if is_absurd || ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
@@ -359,15 +366,8 @@ fn solve<P: Plant<D>, const D: usize>(
         }
     };
     let integration = clock.elapsed();
-    // What runs away does so until no number is large enough: the run ends there.
-    let has_run_away = |knot: &Knot<State<D>>| {
-        let mut motions = Vec::new();
-        told(&knot.values, &mut motions);
-        let mut drives = mechanism.drives.iter().zip(mechanism.drives_at(knot.t, &motions));
-        drives.any(|(named, at)| has_run_away(at.vz, named.drive.speed))
-    };
     let effort = effort.or_else(|stopped| match knots.last() {
-        Some(knot) if stopped != Stopped::Interrupted && has_run_away(knot) => {
+        Some(knot) if stopped != Stopped::Interrupted && run_away(knot.t, &knot.values) => {
             Ok(error_control::Effort { accepted: knots.len() as u32 - 1, refused: 0 })
         }
         _ => Err(stopped),
@@ -445,7 +445,7 @@ fn solve<P: Plant<D>, const D: usize>(
     })
 }
 
-/// A speed (m/s, rad/s) that no mechanism has, at which a run ends.
+/// A speed (m/s, rad/s) that no mechanism has, at which the run of one whose drive runs away ends.
 const ABSURD: f64 = 1e5;
 
 /// The scheme by which the desk integrates.
