@@ -142,7 +142,8 @@ fn no_flip_since_it_was_opened_leads_out_of_the_tables_own_range() {
             let forces = other.forces(0.7).map(Vec::from_iter);
             assert!(forces.is_none_or(|forces| forces.iter().all(|force| (-3.000_02..=8.000_02).contains(force))));
         }
-        assert!(found > 1000, "{found}");
+        // An interpreter has time for a few flips alone.
+        assert!(cfg!(miri) || found > 1000, "{found}");
     }
 }
 
