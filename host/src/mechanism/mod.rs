@@ -21,6 +21,7 @@ mod motion_tests;
 mod mounts;
 pub mod planar;
 mod run;
+mod run_error;
 pub mod self_locking;
 #[cfg(test)]
 mod side_by_side_tests;
@@ -36,7 +37,8 @@ pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps, STOP_MOST, level_of};
 pub use hanging::MountError;
 pub use mounts::Mounts;
-pub use run::{MechanismRun, Moment, RunError, SCHEME, Samples, controller_run, film, run};
+pub use run::{MechanismRun, Moment, SCHEME, Samples, controller_run, film, run};
+pub use run_error::RunError;
 pub use source::{dimension, drive_names, element_paths, rust_source};
 pub use start::{Rest, Torn, torn};
 pub use vary::{Parameter, Varied, rub_more, tilted_x, tilted_z};

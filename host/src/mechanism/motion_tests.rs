@@ -278,7 +278,7 @@ fn a_drive_that_runs_away_does_not_complete_its_motion() {
     assert_eq!(super::feedback::reversals(&lever(30.0, 40.0, 20.0)).len(), 1);
 }
 
-/// However fast it runs away, a unit overruns: where it grows beyond all steps the run ends, which is no failure.
+/// However fast a drive runs away, the unit overruns: the run ends where no step is short enough, and does not fail.
 #[test]
 fn a_drive_that_runs_away_beyond_all_numbers_overruns() {
     for gain in [40.0, 100.0, 1e3, 1e4] {
