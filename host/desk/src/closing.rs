@@ -35,10 +35,6 @@ pub enum Between {
     Closes(f64),
 }
 
-/// The time (s) over which the rate of a gap is the quotient of differences: short enough for a pin in a round hole, and long enough for
-/// the digits of a gap.
-pub const DIFFERENCE: f64 = 1e-6;
-
 /// The greatest angle (rad) by which a body may turn in a step, where gaps are cubics.
 const MOST_TURN: f64 = 0.5;
 
@@ -208,6 +204,27 @@ mod tests {
             }
             assert_eq!(closed, distance < radius, "{distance}");
         }
+    }
+
+    /// What excludes a step by its ends alone excludes none whose cubic has a minimum, and no minimum lies deeper than it may.
+    #[test]
+    fn no_minimum_is_excluded() {
+        let mut seed = 1u64;
+        let mut roll = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        let (mut with, mut excluded) = (0, 0);
+        for _ in 0..100_000 {
+            let (gaps, rates) = ([1.0 + roll(), 1.0 + roll()], [6.0 * roll(), 6.0 * roll()]);
+            let may = dips(gaps, rates) > 0.0;
+            excluded += u32::from(!may);
+            let Some((at, lowest)) = Cubic::new(gaps, rates).lowest() else { continue };
+            with += 1;
+            assert!(may, "{gaps:?} {rates:?} at {at}");
+            assert!(lowest > gaps[0].min(gaps[1]) - reach(rates[0], rates[1]) - 1e-12, "{gaps:?} {rates:?}");
+        }
+        assert!(with > 20_000 && excluded > 20_000, "{with} {excluded}");
     }
 
     #[test]

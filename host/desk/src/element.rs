@@ -18,7 +18,7 @@ use slipfit_core::{
 };
 
 use crate::{
-    closing::{Approach, DIFFERENCE},
+    closing::Approach,
     contact::Laws,
     laws::{AnyNormal, AnySliding},
 };
@@ -75,6 +75,10 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
     let view = element.link.view(at.0, at.1);
     Some(element.law.gap(&element.link.seen(at, &view).place))
 }
+
+/// The time (s) over which the rate of a gap is the quotient of differences: short enough for a pin in a round hole, and long enough for
+/// the digits of a gap.
+const DIFFERENCE: f64 = 1e-6;
 
 /// Adds the contacts of an `element` to `all`.
 fn approach<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(

@@ -44,18 +44,18 @@ pub struct Sensitivity {
 
 /// What is kept of a motion: some numbers that change smoothly.
 pub trait Values: Copy {
-    /// What has to be known at the end of a step to say how fast they change there.
+    /// The rates that a scheme gives at an end of a step, such as accelerations.
     type Rates: Copy;
 
-    /// How fast they change, number by number.
+    /// How fast they change (1/s), number by number, at these `rates`.
     fn slope(&self, rates: &Self::Rates) -> Self;
 
-    /// How fast they change where no scheme tells, number by number: as far as the numbers themselves do not say it, by a `guess`.
+    /// The same where the scheme gives no rates: a `guess`, except for numbers whose rates are kept with them.
     fn known_slope(&self, guess: Self) -> Self {
         guess
     }
 
-    /// The same numbers, each combined of its values in some others.
+    /// Number by number, what `by` makes of the values in `of`.
     fn combined<const N: usize>(of: [&Self; N], by: impl Fn([f64; N]) -> f64) -> Self;
 }
 
@@ -79,7 +79,7 @@ pub struct Knot<V: Values> {
     pub t: f64,
     /// What is kept of the motion.
     pub values: V,
-    /// What tells how fast that changes at the start and at the end of the step, if its scheme knows.
+    /// Rates at the start and at the end of the step, if its scheme knows them; see [`Values::slope`].
     pub rates: Option<[V::Rates; 2]>,
 }
 

@@ -8,8 +8,9 @@ use slipfit_core::{
 };
 
 use crate::{
-    closing::{self, Approach, Between, Gaps},
+    closing::{self, Between, Gaps},
     pack::Pack,
+    slide::approaches,
 };
 
 /// How slides see their pins, and how they move, at one end of a step.
@@ -20,9 +21,6 @@ pub struct End<'a, V: Simd> {
     /// Velocities (m/s) and angular velocities (rad/s).
     pub velocity: &'a SVector<Pack<V>, 6>,
 }
-
-/// A gap farther than which (m) none is looked at.
-const FAR: f32 = f32::MAX;
 
 /// The share of each step of a `length` (s) between two `ends` after which it ends within a contact of `bodies` that it would pass over; 1
 /// where there is none, and where `asked` is 0. A contact not deeper than `depth` (m) does not count.
@@ -36,7 +34,7 @@ pub fn share<V: Simd>(
 ) -> Pack<V> {
     let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
     // The least of gaps that are open at both ends, each beyond what it may fall by in between.
-    let mut least = Pack::splat(FAR);
+    let mut least = Pack::splat(f32::MAX);
     let nominal = bodies.gaps.as_chunks::<4>().0;
     for ([left, right, rail, wall], (from, to)) in nominal.iter().zip(ends[0].pins.iter().zip(ends[1].pins)) {
         for (axis, opens, closes) in [(0, left, right), (1, wall, rail)] {
@@ -89,9 +87,7 @@ fn lane_by_lane<V: Simd>(
                 let [place, rate] = [&pin.place, &pin.rate].map(|v| vector([&v.x, &v.y, &v.z]));
                 let lever = vector(bodies.pins_w[k].data.0[0].each_ref()) + place;
                 let nominal = std::array::from_fn(|of| number(&bodies.gaps[4 * k + of]));
-                let speed = velocity + spin * lever.norm();
-                let all = to_walls(nominal, &place).into_iter().zip(to_walls([0.0; 4], &rate));
-                gaps.approaches.extend(all.map(|(gap, rate)| Approach { gap, rate, speed }));
+                gaps.approaches.extend(approaches(&Seen { place, rate }, nominal, velocity + spin * lever.norm()));
             }
             gaps
         });

@@ -100,9 +100,14 @@ fn watch<E: Elastic<f64>, F: Friction<f64, Internal = ()>>(
     // A point of the slide at a pin moves no faster than its centre of mass and its turning together.
     let speed = velocity.fixed_rows::<3>(0).norm() + gaps.spin * (lever + pose.displacement_w.norm());
     gaps.approaches.clear();
-    for (Seen { place, rate }, (_, fit)) in slide.pins(pose, velocity).iter().zip(&slide.elements().0.each) {
-        let rates = to_walls([0.0; 4], rate);
-        let all = to_walls(*fit, place).into_iter().zip(rates);
-        gaps.approaches.extend(all.map(|(gap, rate)| Approach { gap, rate, speed }));
+    for (pin, (_, nominal)) in slide.pins(pose, velocity).iter().zip(&slide.elements().0.each) {
+        gaps.approaches.extend(approaches(pin, *nominal, speed));
     }
+}
+
+/// The contacts of a `pin` as the slide sees it with its walls, whose gaps (m) are `nominal` where it is drawn. No point of the slide is
+/// faster there than `speed` (m/s).
+pub fn approaches(pin: &Seen<f64, 3>, nominal: [f64; 4], speed: f64) -> impl Iterator<Item = Approach> {
+    let all = to_walls(nominal, &pin.place).into_iter().zip(to_walls([0.0; 4], &pin.rate));
+    all.map(move |(gap, rate)| Approach { gap, rate, speed })
 }

@@ -14,8 +14,8 @@ use super::Fit;
 /// Units that are tried.
 pub(super) const UNITS: usize = 1024;
 
-/// The most units whose contacts may be open. A measure has no value in such a unit, which is told; where there are many of them it is
-/// the scene that is wrong.
+/// The most units whose contacts may be open. Measures have no value in these units, and the report says in how many; with more of them
+/// the scene itself is taken to be wrong.
 pub(super) const OPEN_MOST: usize = UNITS / 20;
 
 /// What was found.

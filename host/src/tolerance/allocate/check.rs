@@ -46,11 +46,12 @@ pub struct Check {
     pub good: Option<Estimate>,
 }
 
-/// The chance that units which meet a requirement are taken to speak against it.
+/// See [`Check::contradicts`].
 const UNLIKELY: f64 = 1e-3;
 
 impl Check {
-    /// The first of some `requirements` on shares of units that the counted ones speak against, and how many of these are outside.
+    /// The first of some `requirements` on shares of units that the counted ones speak against, and how many of these are outside: as many
+    /// have a chance of a thousandth at most where the requirement is met.
     pub fn contradicts<'a>(&self, requirements: &'a [Requirement]) -> Option<(&'a Requirement, u64)> {
         requirements.iter().find_map(|requirement| {
             let Kind::Defects(allowed) = requirement.kind else { return None };
@@ -107,4 +108,37 @@ pub fn check(model: &Model, units: u64, seed: u64) -> Result<Check, AllocateErro
         }
     };
     Ok(Check { measures: limited.map(of).collect(), units, good: found.joint.good })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Check, Checked, Estimate, Kind, Requirement};
+
+    fn check(counted: u64, good: f64) -> Check {
+        let measure = Checked {
+            measure: 3,
+            worst_case: [0.0, 0.0],
+            rss: None,
+            by_rss: None,
+            by_tails: None,
+            counted,
+            interval: [0.0, 1.0],
+            ppk: None,
+        };
+        let good = Some(Estimate { value: good, error: None, interval: [None; 2] });
+        Check { measures: vec![measure], units: 1_000_000, good }
+    }
+
+    /// With 1 in a million allowed 5 of a million have a chance of 0.0037, 6 of 0.0006 (Poisson).
+    #[test]
+    fn counted_units_speak_against_a_requirement_beyond_chance() {
+        let allowed = |measure| [Requirement { measure, kind: Kind::Defects(1e-6) }];
+        for (counted, speaks) in [(0, false), (1, false), (5, false), (6, true), (100, true)] {
+            let of_one = check(counted, 0.0);
+            assert_eq!(of_one.contradicts(&allowed(Some(3))).map(|(_, outside)| outside), speaks.then_some(counted));
+            let of_all = check(0, 1.0 - counted as f64 * 1e-6);
+            assert_eq!(of_all.contradicts(&allowed(None)).map(|(_, outside)| outside), speaks.then_some(counted));
+        }
+        assert!(check(100, 0.0).contradicts(&[Requirement { measure: Some(3), kind: Kind::Ppk(1.0) }]).is_none());
+    }
 }
