@@ -123,6 +123,18 @@ impl<S: Scalar + PartialOrd> FrictionData<S> {
     }
 }
 
+impl<S: Scalar> ContactData<S> {
+    /// The same contact in numbers of another type.
+    pub fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> ContactData<T> {
+        ContactData {
+            stiffness: number(self.stiffness),
+            exponent: number(self.exponent),
+            damping: number(self.damping),
+            depth: number(self.depth),
+        }
+    }
+}
+
 impl<S: Scalar> SlideData<S> {
     /// The same slide in numbers of another type.
     pub fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> SlideData<T> {
@@ -136,12 +148,7 @@ impl<S: Scalar> SlideData<S> {
                 pins_w: body.pins_w.each_ref().map(vector),
                 gaps: body.gaps.map(&number),
             },
-            contact: ContactData {
-                stiffness: number(contact.stiffness),
-                exponent: number(contact.exponent),
-                damping: number(contact.damping),
-                depth: number(contact.depth),
-            },
+            contact: contact.cast(&number),
             friction: match *friction {
                 FrictionData::None => FrictionData::None,
                 FrictionData::Regularised { coefficient, stick_band } => {

@@ -1,10 +1,11 @@
-//! Whether a contact that is open at both ends of a step closes within it.
+//! Whether a contact acts within a step that does not act at its start: one that closes and opens again, or one that is closed and pushes
+//! only while it opens.
 //!
 //! Where no contact acts the error estimate of a step is zero however long it is, so that a step may begin before a bounce and end after
 //! it. Between the ends a gap is the cubic that has its values and rates there; what that leaves out is bounded by how far the bodies
 //! turn, since straight motion under constant forces is a parabola.
 
-use slipfit_core::Scalar;
+use slipfit_core::{Scalar, law::Normal};
 
 /// A contact at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,6 +16,17 @@ pub struct Approach {
     pub rate: f64,
     /// Speed (m/s) of one body past the other at the contact.
     pub speed: f64,
+    /// Whether it is closed and does not push, since it opens faster than its spring can follow.
+    pub slack: bool,
+}
+
+impl Approach {
+    /// A contact with the `normal` law.
+    #[inline(always)]
+    pub fn new(gap: f64, rate: f64, speed: f64, normal: &impl Normal<f64>) -> Self {
+        let opens = gap < 0.0 && rate > 0.0;
+        Self { gap, rate, speed, slack: opens && normal.response(-gap, -rate).force <= 0.0 }
+    }
 }
 
 /// All contacts of a mechanism at one instant.
@@ -29,9 +41,9 @@ pub struct Gaps {
 /// What is known of a step between its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Between {
-    /// No open contact closes.
+    /// No contact begins to act.
     Apart,
-    /// One closes: a step of this share of the length ends within the contact. It is less than 1.
+    /// One may: a step of this share of the length ends within it. The share is less than 1.
     Closes(f64),
 }
 
@@ -44,11 +56,21 @@ const DIP: f64 = 4.0 / 27.0;
 /// Where in its contact, from closing to the deepest point, a step ends that was made shorter.
 const WITHIN: f64 = 0.2;
 
+/// The share of its depth that a contact which does not push has at least after a step. It will push before it opens where damping fades
+/// out faster than elastic force, at a depth that only the law knows.
+pub const DEPTH_LEFT: f64 = 0.5;
+
 /// What happens between the ends `before` and `after` of a step of `length` (s). A contact not deeper than `depth` (m) does not count.
 pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between {
     let turn = before.spin.max(after.spin) * length;
     let mut share: Option<f64> = None;
     for (from, to) in before.approaches.iter().zip(&after.approaches) {
+        if from.slack && from.gap < -depth && to.gap > DEPTH_LEFT * from.gap {
+            let up = (DEPTH_LEFT + 0.1) * from.gap;
+            let cubic = Cubic::new([from.gap, to.gap], [from.rate * length, to.rate * length]);
+            share = share.into_iter().chain([cubic.opening(up)]).reduce(f64::min);
+            continue;
+        }
         if !(from.gap > 0.0 && to.gap > 0.0) {
             continue;
         }
@@ -128,13 +150,24 @@ impl Cubic {
 
     /// A share shortly after it first becomes negative, which it is at `lowest` and not at 0.
     fn closing(&self, lowest: f64) -> f64 {
-        let (mut open, mut closed) = (0.0, lowest);
-        for _ in 0..40 {
-            let middle = 0.5 * (open + closed);
-            if self.at(middle) > 0.0 { open = middle } else { closed = middle }
-        }
+        let closed = bisected(lowest, |s| self.at(s) <= 0.0);
         closed + WITHIN * (lowest - closed)
     }
+
+    /// A share where it comes from below `value` at 0, and is beyond at 1.
+    fn opening(&self, value: f64) -> f64 {
+        bisected(1.0, |s| self.at(s) > value)
+    }
+}
+
+/// Where in (0, `last`) something `happens` that does not at 0 and does at `last`.
+fn bisected(last: f64, happens: impl Fn(f64) -> bool) -> f64 {
+    let (mut before, mut after) = (0.0, last);
+    for _ in 0..40 {
+        let middle = 0.5 * (before + after);
+        if happens(middle) { after = middle } else { before = middle }
+    }
+    after
 }
 
 #[cfg(test)]
@@ -145,8 +178,8 @@ mod tests {
     fn step(length: f64, spin: f64, speed: f64, gap: impl Fn(f64) -> [f64; 2]) -> [Gaps; 2] {
         [0.0, length].map(|t| {
             let [gap, rate] = gap(t);
-            let far = Approach { gap: 10.0, rate: 0.0, speed };
-            Gaps { approaches: vec![far, Approach { gap, rate, speed }], spin }
+            let far = Approach { gap: 10.0, rate: 0.0, speed, slack: false };
+            Gaps { approaches: vec![far, Approach { gap, rate, ..far }], spin }
         })
     }
 

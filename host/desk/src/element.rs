@@ -80,18 +80,19 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
 /// the digits of a gap.
 const DIFFERENCE: f64 = 1e-6;
 
-/// Adds the contacts of an `element` to `all`.
+/// Adds the contacts of an `element` with the `normal` law to `all`.
 fn approach<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
-    Element { link, law }: &Element<L, W, R>,
+    (Element { link, law }, normal): (&Element<L, W, R>, &AnyNormal<f64>),
     at: (&B, &B::Placed),
     all: &mut Vec<Approach>,
 ) {
     let seen = link.seen(at, &link.view(at.0, at.1));
     let (first, speed) = (all.len(), seen.rate.norm());
-    law.each_gap(&seen.place, |gap| all.push(Approach { gap, rate: 0.0, speed }));
+    law.each_gap(&seen.place, |gap| all.push(Approach { gap, speed, ..Approach::default() }));
     let mut k = first;
     law.each_gap(&(seen.place + seen.rate * DIFFERENCE), |gap| {
-        all[k].rate = (gap - all[k].gap) / DIFFERENCE;
+        let rate = (gap - all[k].gap) / DIFFERENCE;
+        all[k] = Approach::new(all[k].gap, rate, speed, normal);
         k += 1;
     });
 }
@@ -146,8 +147,8 @@ impl<const D: usize> PlanarElement<D> {
         all: &mut Vec<Approach>,
     ) {
         match self {
-            Self::Journal(element) => approach(element, at, all),
-            Self::Pad(element) => approach(element, at, all),
+            Self::Journal(element) => approach((element, &element.law.contact.normal), at, all),
+            Self::Pad(element) => approach((element, &element.law.contact.normal), at, all),
             Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) => {}
         }
     }
@@ -174,9 +175,9 @@ impl SpatialElement {
         all: &mut Vec<Approach>,
     ) {
         match self {
-            Self::Pin(element) => approach(element, at, all),
-            Self::Wall(element) => approach(element, at, all),
-            Self::Ring(element) => approach(element, at, all),
+            Self::Pin(element) => approach((element, &element.law.contact.normal), at, all),
+            Self::Wall(element) => approach((element, &element.law.contact.normal), at, all),
+            Self::Ring(element) => approach((element, &element.law.contact.normal), at, all),
             Self::Motor(_) | Self::Pusher(_) => {}
         }
     }

@@ -245,6 +245,16 @@ fn normal<S: Scalar + PartialOrd, E: Elastic<S>>(
     Impact::new(elastic, contact.damping, contact.depth)
 }
 
+/// The law along the normal of `contact`, whatever its exponent.
+///
+/// # Errors
+/// [`ParameterError`] names the parameter that is not finite or out of bounds.
+pub fn any_normal<S: Scalar + PartialOrd>(
+    contact: &ContactData<S>,
+) -> Result<Impact<S, AnyElastic<S>>, ParameterError<S>> {
+    normal(AnyElastic::new(contact)?, contact)
+}
+
 /// The slide of `data` if it has the paper's laws. `None` if it has others, or is out of bounds.
 ///
 /// Inlined with all that it calls, so that packs are made by their own instructions.

@@ -53,8 +53,19 @@ fn independent(acceleration: impl Fn(f64, f64) -> f64, speed: f64, every: f64, c
 
 /// A ball of 100 g on a rail along `axis`, thrown at `speed` (m/s), with stops `ahead` and `behind` (mm).
 fn ball(axis: [i32; 2], speed: f64, [ahead, behind]: [f64; 2], exponent: f64, stiffness: f64, error: f64) -> Mechanism {
-    let [x, y] = axis;
-    scene(&format!(
+    scene(&ball_text(axis, speed, [ahead, behind], exponent, stiffness, error))
+}
+
+/// The scene of [`ball`].
+fn ball_text(
+    [x, y]: [i32; 2],
+    speed: f64,
+    [ahead, behind]: [f64; 2],
+    exponent: f64,
+    stiffness: f64,
+    error: f64,
+) -> String {
+    format!(
         r#"
 title = "Ball between two stops"
 [mechanism]
@@ -98,7 +109,37 @@ duration = 200
 error = {error}
 "#,
         -x, -y
-    ))
+    )
+}
+
+/// A ball that leaves a stop faster than its spring can follow is not pushed until damping, which fades out with the depth, is small
+/// enough. A step that begins where nothing pushes must not end beyond all of it.
+#[test]
+fn a_ball_that_leaves_a_damped_stop_is_pushed_at_last() {
+    // Depth at the start and depth of full damping (m), damping (N·s/m), stiffness (N/m), speed (m/s).
+    let starts = [
+        [63.2e-6, 43.7e-6, 3520.0, 2.80e6, 0.0618],
+        [275e-6, 99.5e-6, 4270.0, 1.63e6, 0.106],
+        [224e-6, 165e-6, 2810.0, 2.52e6, 0.343],
+        [32.8e-6, 58.1e-6, 5820.0, 4.92e6, 0.181],
+        [69.4e-6, 41.9e-6, 282.0, 6.68e5, 0.219],
+        [156e-6, 90.6e-6, 1550.0, 5.16e6, 0.700],
+        [493e-6, 128e-6, 1650.0, 1.19e5, 0.0394],
+        [40.6e-6, 16.1e-6, 3580.0, 6.80e6, 0.0934],
+    ];
+    for [start, full, damping, stiffness, speed] in starts {
+        let text = ball_text([1, 0], speed, [99.0, -1e3 * start], 1.0, stiffness, 3e-7);
+        let text = text.replace("damping = 0", &format!("damping = \"{damping} N·s/m\""));
+        let run = simulated(&scene(&text.replace("depth = 0.1", &format!("depth = {}", 1e3 * full))), 1e-3);
+        let acceleration = |x: f64, v: f64| {
+            let depth = (start - x).max(0.0);
+            let s = (depth / full).min(1.0);
+            (stiffness * depth - damping * s * s * (3.0 - 2.0 * s) * v).max(0.0) / 0.1
+        };
+        let gained = independent(acceleration, speed, 1e-3, 20)[20][1] - speed;
+        let error = column(&run, "ball.vx (m/s)")[20] - speed - gained;
+        assert!(gained > 1e-3 * speed && error.abs() < 1e-2 * gained, "{start} m, {speed} m/s: {error} of {gained}");
+    }
 }
 
 /// The closed form of the highest point: a ball that reaches a ceiling with some speed presses into it until the spring holds its energy.

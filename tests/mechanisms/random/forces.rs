@@ -95,6 +95,11 @@ impl<'a> Forces<'a> {
         self.contacts.iter().map(|contact| contact.touch(bodies)).collect()
     }
 
+    /// Whether the contact with this number presses at its `touch`.
+    pub fn pushes(&self, contact: usize, touch: &Touch) -> bool {
+        touch.gap < 0.0 && normal_force(&self.contacts[contact].laws, -touch.gap, -touch.rate) > 0.0
+    }
+
     /// The energy (J) that contacts and springs store, and that of height.
     pub fn stored(&self, bodies: &[Placed]) -> f64 {
         let pressed = |contact: &Contact| {

@@ -128,8 +128,20 @@ impl<'a> Integration<'a> {
         Some(motion)
     }
 
-    /// How long a step (s) may be at least before an open contact can close.
+    /// How long a step (s) may be at least before an open contact can close, or one that opens too fast to push can push again.
     fn until_contact(&self, state: &State, slope: &State, touches: &[Touch]) -> f64 {
+        self.until_closed(state, slope, touches).min(self.until_pushed(touches)).max(EVENT)
+    }
+
+    /// Damping may fade out faster than elastic force as a contact opens: half of its depth is left after a step.
+    fn until_pushed(&self, touches: &[Touch]) -> f64 {
+        let slack =
+            |(k, touch): &(usize, &Touch)| touch.gap < 0.0 && touch.rate > 0.0 && !self.forces.pushes(*k, touch);
+        let times = touches.iter().enumerate().filter(slack).map(|(_, touch)| -0.5 * touch.gap / touch.rate);
+        times.fold(LONGEST, f64::min)
+    }
+
+    fn until_closed(&self, state: &State, slope: &State, touches: &[Touch]) -> f64 {
         const AHEAD: f64 = 1e-7;
         if touches.iter().all(|touch| touch.gap < 0.0) {
             return LONGEST;
@@ -142,7 +154,7 @@ impl<'a> Integration<'a> {
             let bend = 10.0 + 3.0 * ((ahead.rate - touch.rate) / AHEAD).abs();
             0.9 * (touch.rate + libm::sqrt(touch.rate * touch.rate + 2.0 * bend * touch.gap)) / bend
         });
-        times.fold(LONGEST, f64::min).max(EVENT)
+        times.fold(LONGEST, f64::min)
     }
 
     /// The state after a step, and its error, of which 1 is allowed.

@@ -104,6 +104,9 @@ impl Row {
 /// Below this share of the greatest peak of its kind a column counts against that share.
 const LEAST_PEAK: f64 = 1e-4;
 
+/// Peaks (m, rad, N and their rates) below this are rounding, such as the angle of a body on a slide of the frame.
+const ROUNDING: f64 = 1e-9;
+
 /// What differs: the quantity, and of which drive or body.
 pub type Column = (&'static str, usize);
 
@@ -159,5 +162,5 @@ fn greatest(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 fn share(error: f64, peak: f64) -> f64 {
-    if error == 0.0 { 0.0 } else { error / peak.max(1e-12) }
+    if error == 0.0 { 0.0 } else { error / peak.max(ROUNDING) }
 }

@@ -1,14 +1,16 @@
-//! Whether steps of slides on the lanes of a pack pass a contact over.
+//! Whether steps of slides on the lanes of a pack pass over a contact that begins to act.
 
 use pulp::Simd;
 use slipfit_core::{
     SVector, Scalar, Vector3,
-    slide::{Body, PINS, to_walls},
+    menu::SlideData,
+    slide::{PINS, to_walls},
     system::Seen,
 };
 
 use crate::{
-    closing::{self, Between, Gaps},
+    closing::{self, Between, DEPTH_LEFT, Gaps},
+    laws::any_normal,
     pack::Pack,
     slide::approaches,
 };
@@ -22,20 +24,25 @@ pub struct End<'a, V: Simd> {
     pub velocity: &'a SVector<Pack<V>, 6>,
 }
 
-/// The share of each step of a `length` (s) between two `ends` after which it ends within a contact of `bodies` that it would pass over; 1
-/// where there is none, and where `asked` is 0. A contact not deeper than `depth` (m) does not count.
+/// The share of each step of a `length` (s) between two `ends` after which it ends within a contact of `slides` that it would pass over; 1
+/// where there is none, and where `asked` is 0. A contact not deeper than `depth` (m) does not count. `pressed` is the normal force (N) of
+/// a contact at this penetration (m) and its rate (m/s).
 #[inline(always)]
 pub fn share<V: Simd>(
-    bodies: &Body<Pack<V>>,
+    slides: &SlideData<Pack<V>>,
     ends: [End<V>; 2],
     length: Pack<V>,
     asked: Pack<V>,
     depth: f64,
+    pressed: impl Fn(Pack<V>, Pack<V>) -> Pack<V>,
 ) -> Pack<V> {
     let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
     // The least of gaps that are open at both ends, each beyond what it may fall by in between.
     let mut least = Pack::splat(f32::MAX);
-    let nominal = bodies.gaps.as_chunks::<4>().0;
+    // Above 0 where a contact opens, or loses much of its depth.
+    let mut opens_by = -one;
+    let (most, kept) = (Pack::from_f64(-depth), Pack::from_f64(DEPTH_LEFT));
+    let nominal = slides.body.gaps.as_chunks::<4>().0;
     for ([left, right, rail, wall], (from, to)) in nominal.iter().zip(ends[0].pins.iter().zip(ends[1].pins)) {
         for (axis, opens, closes) in [(0, left, right), (1, wall, rail)] {
             let (before, after) = (from.place[axis], to.place[axis]);
@@ -45,39 +52,46 @@ pub fn share<V: Simd>(
                 let beyond = gap.select_gt(zero, gap - reach, least);
                 least = least.select_gt(beyond, beyond, least);
             }
+            for [before, after] in [[*opens + before, *opens + after], [*closes - before, *closes - after]] {
+                opens_by = opens_by.max_of(most.select_gt(before, after - kept * before, -one));
+            }
         }
     }
     let near = zero.select_gt(least, asked, zero);
-    if near <= zero {
+    let leaves = opens_by.select_gt(zero, asked, zero);
+    if near.max_of(leaves) <= zero {
         return one;
     }
     let mut dips = zero;
     for (nominal, (from, to)) in nominal.iter().zip(ends[0].pins.iter().zip(ends[1].pins)) {
         let gaps = [to_walls(*nominal, &from.place), to_walls(*nominal, &to.place)];
         let still = [zero; 4];
-        let rates = [to_walls(still, &(from.rate * length)), to_walls(still, &(to.rate * length))];
+        let rates = [to_walls(still, &from.rate), to_walls(still, &to.rate)];
         for k in 0..4 {
-            let open = gaps[0][k].select_gt(zero, gaps[1][k].select_gt(zero, one, zero), zero);
-            let dip = closing::dips([gaps[0][k], gaps[1][k]], [rates[0][k], rates[1][k]]);
-            dips = dips.max_of(open * dip);
+            let [before, after] = [gaps[0][k], gaps[1][k]];
+            let open = before.select_gt(zero, after.select_gt(zero, one, zero), zero);
+            let dip = closing::dips([before, after], [rates[0][k] * length, rates[1][k] * length]);
+            dips = dips.max_of(open * dip * near);
+            let opens = most.select_gt(before, after.select_gt(kept * before, leaves, zero), zero);
+            dips = dips.max_of(pressed(-before, -rates[0][k]).select_gt(zero, zero, opens));
         }
     }
-    let dips = dips * near;
-    if dips <= zero { one } else { lane_by_lane(bodies, ends, length, dips, depth) }
+    if dips <= zero { one } else { lane_by_lane(slides, ends, length, dips, depth) }
 }
 
-/// [`share`] where a gap `dips`. Out of line, since it is rare.
+/// [`share`] where a contact `may` begin to act. Out of line, since it is rare.
 #[inline(never)]
 fn lane_by_lane<V: Simd>(
-    bodies: &Body<Pack<V>>,
+    SlideData { body, contact, .. }: &SlideData<Pack<V>>,
     ends: [End<V>; 2],
     length: Pack<V>,
-    dips: Pack<V>,
+    may: Pack<V>,
     depth: f64,
 ) -> Pack<V> {
     let mut shares = Pack::splat(1.0);
-    for lane in (0..Pack::<V>::LANES).filter(|lane| dips.get(*lane) > 0.0) {
+    for lane in (0..Pack::<V>::LANES).filter(|lane| may.get(*lane) > 0.0) {
         let number = |pack: &Pack<V>| f64::from(pack.get(lane));
+        let Ok(normal) = any_normal(&contact.cast(|pack| number(&pack))) else { continue };
         let vector = |[x, y, z]: [&Pack<V>; 3]| Vector3::new(number(x), number(y), number(z));
         let [before, after] = ends.map(|End { pins, velocity }| {
             let [vx, vy, vz, wx, wy, wz] = velocity.data.0[0].each_ref();
@@ -85,9 +99,10 @@ fn lane_by_lane<V: Simd>(
             let mut gaps = Gaps { approaches: Vec::new(), spin };
             for (k, pin) in pins.iter().enumerate() {
                 let [place, rate] = [&pin.place, &pin.rate].map(|v| vector([&v.x, &v.y, &v.z]));
-                let lever = vector(bodies.pins_w[k].data.0[0].each_ref()) + place;
-                let nominal = std::array::from_fn(|of| number(&bodies.gaps[4 * k + of]));
-                gaps.approaches.extend(approaches(&Seen { place, rate }, nominal, velocity + spin * lever.norm()));
+                let lever = vector(body.pins_w[k].data.0[0].each_ref()) + place;
+                let nominal = std::array::from_fn(|of| number(&body.gaps[4 * k + of]));
+                let seen = Seen { place, rate };
+                gaps.approaches.extend(approaches(&seen, nominal, velocity + spin * lever.norm(), &normal));
             }
             gaps
         });
