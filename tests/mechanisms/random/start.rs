@@ -25,7 +25,7 @@ pub fn start(scene: &Scene) -> Vec<Placed> {
             let at = carrier.map_or_else(Placed::frame, |carrier| placed[carrier].unwrap_or_else(Placed::frame));
             let drawn = carrier.map_or(Vec3::zeros(), |carrier| scene.bodies[carrier].centre);
             let Some(body) = body else { continue };
-            placed[body] = Some(on_joint(scene, joint, &scene.bodies[body], (&at, drawn)));
+            placed[body] = Some(on_joint(scene, joint, body, (&at, drawn)));
         } else if let Some(free) = placed.iter().position(Option::is_none) {
             placed[free] = Some(afloat(&scene.bodies[free]));
         } else {
@@ -46,7 +46,8 @@ fn afloat(body: &Body) -> Placed {
 }
 
 /// A body on its carrier, whose centre of mass is `drawn` in the drawn pose.
-fn on_joint(scene: &Scene, joint: &Joint, body: &Body, (carrier, drawn): (&Placed, Vec3)) -> Placed {
+fn on_joint(scene: &Scene, joint: &Joint, index: usize, (carrier, drawn): (&Placed, Vec3)) -> Placed {
+    let body = &scene.bodies[index];
     let at = carrier.place + carrier.turned * (joint.at - drawn);
     let axis = match joint.kind {
         Kind::Revolute(axis) | Kind::Prismatic(axis) | Kind::PinSlot(axis) | Kind::Cylindrical(axis) => axis,
@@ -62,6 +63,9 @@ fn on_joint(scene: &Scene, joint: &Joint, body: &Body, (carrier, drawn): (&Place
         (false, _) => (carrier.turned, carrier.angle, carrier.spin),
     };
     let lever = turned * (body.centre - joint.at);
+    // A slot belongs to the first body, and turns with it.
+    let has_slot = matches!(joint.kind, Kind::PinSlot(_)) && joint.between[0] == Some(index);
+    let along = if has_slot { turned * axis } else { along };
     let velocity = carrier.material(&at) + along * body.speed + spin.cross(&lever);
     Placed { place: at + lever, turned, angle, velocity, spin }
 }

@@ -2,7 +2,8 @@
 //!
 //! Every tolerance has processes with costs ([`cost`]). Requirements are figures of the tolerances ([`requirement`]), whatever they
 //! come from ([`search::Figures`]). Around some tolerances they are rows of a separable program ([`program`]), which is solved by
-//! branch and bound ([`branch`]) over Lagrangian bounds; its solution is where the figures are looked at next ([`search`]).
+//! branch and bound ([`branch`]) over Lagrangian bounds; its solution is where the figures are looked at next ([`search`]). Figures with
+//! kinks are followed by trading tolerances against each other (`exchange`).
 
 pub mod branch;
 pub mod check;
@@ -10,6 +11,7 @@ pub mod confirm;
 pub mod cost;
 pub mod curve;
 mod dual;
+mod exchange;
 mod figure;
 mod nearest;
 pub mod program;

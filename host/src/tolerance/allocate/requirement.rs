@@ -76,6 +76,8 @@ pub struct OfMeasures<'a> {
     rows: Vec<Row>,
     model: &'a (dyn Fn(&[f64]) -> Result<Model, AllocateError> + Sync),
     malfunctions: Option<&'a Malfunctions<'a>>,
+    /// Whether slopes describe all measures of which something is required.
+    smooth: bool,
     seed: u64,
 }
 
@@ -123,7 +125,12 @@ impl<'a> OfMeasures<'a> {
                 ),
             }
         }
-        Ok(Self { rows, model, malfunctions: None, seed })
+        let is_meant = |i: usize| match requirements.iter().any(|one| one.measure.is_none()) {
+            true => at_start.measures[i].limits != [None; 2],
+            false => requirements.iter().any(|one| one.measure == Some(i)),
+        };
+        let smooth = (0..by_slopes.len()).all(|i| by_slopes[i] || !is_meant(i));
+        Ok(Self { rows, model, malfunctions: None, smooth, seed })
     }
 
     /// The same, with what tells how many units malfunction.
@@ -173,6 +180,10 @@ impl Figures for OfMeasures<'_> {
     fn precision(&self) -> Precision {
         let counts = self.rows.iter().any(|row| matches!(row.requirement.kind, Kind::Malfunction { .. }));
         if counts { Precision::COUNTED } else { Precision::COMPUTED }
+    }
+
+    fn smooth(&self) -> bool {
+        self.smooth
     }
 
     fn reliefs(&self) -> Vec<f64> {

@@ -2,12 +2,14 @@
 //!
 //! Around some tolerances every figure is taken for a constant and a weighted sum of powers that has its value and its slopes there.
 //! The cheapest tolerances under these are where the figures are looked at next. For measures that are linear the first program
-//! is the right one. A solution counts only if the figures themselves are met there.
+//! is the right one. A solution counts only if the figures themselves are met there. Where programs come to no end, or slopes do not
+//! describe what is required, tolerances are [traded](super::exchange) against each other from there on.
 
 use super::{
     AllocateError,
     branch::Solution,
     cost::Process,
+    exchange::exchanged,
     program::{Power, Program, Row},
     slopes::{Slopes, weights},
 };
@@ -16,6 +18,8 @@ use super::{
 const FAR: f64 = 9.0;
 /// How far a figure may be above 1.
 pub const MET: f64 = 1e-6;
+/// How far below 1, in what it may rise by, a figure has a price that trades find.
+const BINDS: f64 = 2.0;
 /// The most corrections of a program.
 const CORRECTIONS: usize = 6;
 
@@ -32,20 +36,34 @@ pub struct Precision {
     pub still: f64,
     /// The most programs.
     pub programs: usize,
+    /// Whether tolerances are traded against each other where programs lead to no end.
+    pub trades: bool,
 }
 
 impl Precision {
     /// Figures that are smooth functions of tolerances.
-    pub const COMPUTED: Self =
-        Self { slopes: Slopes::Differences(0.02), reach: f64::INFINITY, slack: MET, still: 1e-7, programs: 16 };
+    pub const COMPUTED: Self = Self {
+        slopes: Slopes::Differences(0.02),
+        reach: f64::INFINITY,
+        slack: MET,
+        still: 1e-7,
+        programs: 16,
+        trades: true,
+    };
     /// Shares of some thousand simulated units, which move by one unit at a time, each taking long.
-    pub const COUNTED: Self = Self { slopes: Slopes::Design(1.3), reach: 1.6, slack: 0.03, still: 5e-3, programs: 8 };
+    pub const COUNTED: Self =
+        Self { slopes: Slopes::Design(1.3), reach: 1.6, slack: 0.03, still: 5e-3, programs: 8, trades: false };
 }
 
 /// What requirements come to: figures that must not exceed 1.
 pub trait Figures: Sync {
     /// How each figure grows with tolerances.
     fn powers(&self) -> Vec<Power>;
+
+    /// Whether slopes describe what they come from.
+    fn smooth(&self) -> bool {
+        true
+    }
 
     /// How finely they tell tolerances apart.
     fn precision(&self) -> Precision {
@@ -82,7 +100,6 @@ pub struct Found {
 /// # Errors
 /// [`AllocateError::Infeasible`], if the tightest of all do not meet the requirements.
 pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) -> Result<Found, AllocateError> {
-    let powers = figures.powers();
     let precision = figures.precision();
     let ends = |of: &[Process], end: usize, pick: fn(f64, f64) -> f64| {
         of.iter().map(|process| process.values.ends()[end]).reduce(pick).unwrap_or(f64::NAN)
@@ -101,6 +118,7 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
     let mut values = figures.values(&at)?;
     let mut best: Option<(Found, Local)> = None;
     let mut last = f64::INFINITY;
+    let mut settled = false;
     for _ in 0..precision.programs {
         if crate::system::interrupt::requested() {
             return Err(AllocateError::Interrupted);
@@ -110,11 +128,9 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
             values = figures.values(&at)?;
             continue;
         }
-        let weights = weights(precision.slopes, &at, &limits, figures)?;
-        let rows: Vec<Row> =
-            weights.into_iter().zip(&powers).map(|(weights, power)| Row { power: *power, weights }).collect();
-        let mut constants: Vec<f64> = rows.iter().zip(&values).map(|(row, value)| value - row.usage(&at)).collect();
+        let Local { rows, mut constants } = Local::around(&at, &values, &limits, figures)?;
         let mut next = None;
+        settled = false;
         for _ in 0..CORRECTIONS {
             let Some(solution) = solve(processes, &rows, &constants, (&at, precision.reach)) else { break };
             let found = figures.values(&solution.tolerances)?;
@@ -131,7 +147,8 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
                 best = Some((Found { solution: solution.clone(), figures: found.clone(), together: None }, local));
             }
             next = Some((solution, found));
-            if met && used {
+            settled = met && used;
+            if settled {
                 break;
             }
         }
@@ -142,13 +159,57 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
         };
         let still = (solution.cost - last).abs() <= precision.still * solution.cost.abs();
         (at, values, last) = (solution.tolerances, found, solution.cost);
+        settled &= still;
         if still && best.is_some() {
             break;
+        }
+    }
+    if precision.trades && !(settled && figures.smooth()) {
+        let programmed = best.as_ref().map(|(found, _)| &found.solution);
+        let starts = std::iter::once(&tightest).chain(programmed.map(|solution| &solution.tolerances));
+        let traded = traded(processes, &starts.collect::<Vec<_>>(), figures)?;
+        if let Some(traded) = traded
+            && programmed.is_none_or(|programmed| traded.solution.cost < programmed.cost * (1.0 - precision.still))
+        {
+            return Ok(traded);
         }
     }
     let (mut found, local) = best.ok_or(AllocateError::NotFound)?;
     local.price(processes, &mut found, &figures.reliefs(), precision.slack);
     Ok(found)
+}
+
+/// The cheapest of what trades find from each of `starts` on, all of which meet the figures, and its prices by trades.
+fn traded(
+    processes: &[&[Process]],
+    starts: &[&Vec<f64>],
+    figures: &dyn Figures,
+) -> Result<Option<Found>, AllocateError> {
+    let reliefs = figures.reliefs();
+    let mut best: Option<Found> = None;
+    for start in starts {
+        let Some((solution, figures)) = exchanged(processes, start, figures, &vec![1.0; reliefs.len()])? else {
+            continue;
+        };
+        if best.as_ref().is_none_or(|best| solution.cost < best.solution.cost) {
+            best = Some(Found { solution, figures, together: None });
+        }
+    }
+    let Some(mut found) = best else { return Ok(None) };
+    let bind: Vec<usize> =
+        (0..reliefs.len()).filter(|row| found.figures[*row] >= 1.0 - BINDS * reliefs[*row]).collect();
+    let fall = |loosened: &[usize]| -> Result<f64, AllocateError> {
+        let allowed = |row: usize| if loosened.contains(&row) { 1.0 + reliefs[row] } else { 1.0 };
+        let allowed: Vec<f64> = (0..reliefs.len()).map(allowed).collect();
+        let cheaper = exchanged(processes, &found.solution.tolerances, figures, &allowed)?;
+        Ok(cheaper.map_or(0.0, |(cheaper, _)| found.solution.cost - cheaper.cost))
+    };
+    let prices =
+        bind.iter().map(|row| Ok(fall(&[*row])? / reliefs[*row])).collect::<Result<Vec<f64>, AllocateError>>()?;
+    let together = if bind.len() > 1 { Some(fall(&bind)?) } else { None };
+    bind.iter().zip(prices).for_each(|(row, price)| found.solution.prices[*row] = price);
+    found.together = together;
+    Ok(Some(found))
 }
 
 /// The program around a solution.
@@ -158,6 +219,15 @@ struct Local {
 }
 
 impl Local {
+    /// Around tolerances with these values of the figures.
+    fn around(at: &[f64], values: &[f64], ends: &[[f64; 2]], figures: &dyn Figures) -> Result<Self, AllocateError> {
+        let weights = weights(figures.precision().slopes, at, ends, figures)?;
+        let rows = weights.into_iter().zip(figures.powers()).map(|(weights, power)| Row { power, weights });
+        let rows: Vec<Row> = rows.collect();
+        let constants = rows.iter().zip(values).map(|(row, value)| value - row.usage(at)).collect();
+        Ok(Self { rows, constants })
+    }
+
     /// Prices figures that bind together, or would if another one had its relief. Multipliers do not tell what one of them gains alone:
     /// both limits of a symmetric measure have one multiplier between them, and to loosen one gains nothing, or not more than until the
     /// other binds. So each has its relief, and then all at once.

@@ -392,3 +392,51 @@ fn a_yield_counts_units_without_a_value() {
         assert!((found - 1.0).abs() < 0.01, "{text}: {found}");
     }
 }
+
+/// Of kinked and folded measures, which no program around some tolerances describes, against all pairs of tolerances on a grid.
+#[test]
+fn kinked_measures_have_no_cheaper_tolerances_on_a_grid() {
+    const STEP: f64 = 1.08;
+    let cases = [
+        (
+            "(min((-0.5*d0) + (5.3 mm), (0.5*d0) + (-1*d1) + (15.0 mm)) + ((((2*d1) + (-0.5*d0) + (-34.95 mm))^2/(0.5 mm))))",
+            "lower = -0.0422285\nupper = 0.407804",
+            Kind::Defects(1e-4),
+        ),
+        ("max(min(d1 - 0.5*d0 - 15 mm, d0 - 10 mm), 10 mm - d0)", "lower = -0.03\nupper = 0.08", Kind::Defects(1e-3)),
+        ("max(min(d1 - 0.5*d0 - 15 mm, d0 - 10 mm), 10 mm - d0)", "lower = -0.03\nupper = 0.08", Kind::WorstCase),
+        ("abs(d1 - 2*d0) + max(d0 - 10.02 mm, 0 mm)", "upper = 0.15", Kind::WorstCase),
+        ("abs(d1 - 2*d0) + max(d0 - 10.02 mm, 0 mm)", "upper = 0.15", Kind::Ppk(1.0)),
+    ];
+    for (is, limits, kind) in cases {
+        let dimension = |name: &str, value: f64| {
+            format!(
+                "[[dimension]]\nname = '{name}'\nvalue = {value}\ntolerance = 0.05\ncost = {{ reciprocal = 1, range = [0.005, 0.2] }}\n"
+            )
+        };
+        let text = dimension("d0", 10.0)
+            + &dimension("d1", 20.0)
+            + &format!("[[measure]]\nname = 'm'\nis = '{is}'\n{limits}\n");
+        let requirements = of_first(kind);
+        let costed = costed(&text);
+        let model = |tolerances: &[f64]| {
+            let text = with_tolerances(&text, &costed, tolerances, 17);
+            Ok(SceneFile::parse("x.toml", &text, &[]).unwrap().product.unwrap().model)
+        };
+        let figures = OfMeasures::new(&requirements, &model, &[5e-5; 2], 1).unwrap();
+        let meets = |t: &[f64; 2]| figures.values(t).unwrap().iter().all(|figure| *figure <= 1.0);
+        let found = cheapest(&text, &requirements, all);
+        let count = (libm::log(40.0) / libm::log(STEP)) as i32;
+        let grid: Vec<f64> = (0..=count).map(|k| 5e-6 * libm::pow(STEP, f64::from(k))).collect();
+        let mut least = f64::INFINITY;
+        for t in &grid {
+            // Wider ones of the other tolerance first, and only what would be cheaper.
+            let cost = |u: f64| 1e-3 / t + 1e-3 / u;
+            let cheaper = grid.iter().rev().copied().take_while(|u| cost(*u) < least).find(|u| meets(&[*t, *u]));
+            least = cheaper.map_or(least, cost);
+        }
+        let cost = found.map(|found| found.solution.cost);
+        println!("{is} {kind:?}: {cost:?}, {least} on the grid");
+        assert!(cost.is_ok_and(|cost| cost < least * 1.002), "{is} {kind:?}: {least}");
+    }
+}
