@@ -38,6 +38,14 @@ pub struct Gaps {
     pub spin: f64,
 }
 
+impl Gaps {
+    /// How long (s) a step may be for contacts that do not push now, and are deeper than `depth` (m): longer ones would be refused.
+    pub fn until_pushed(&self, depth: f64) -> f64 {
+        let slack = self.approaches.iter().filter(|contact| contact.slack && contact.gap < -depth);
+        slack.map(|Approach { gap, rate, .. }| (1.0 - DEPTH_AIMED) * -gap / rate).fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// What is known of a step between its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Between {
@@ -58,7 +66,10 @@ const WITHIN: f64 = 0.2;
 
 /// The share of its depth that a contact which does not push has at least after a step. It will push before it opens where damping fades
 /// out faster than elastic force, at a depth that only the law knows.
-pub const DEPTH_LEFT: f64 = 0.5;
+pub const DEPTH_LEFT: f64 = 0.25;
+
+/// The share of its depth that a step aims at which was made shorter.
+const DEPTH_AIMED: f64 = 0.3;
 
 /// What happens between the ends `before` and `after` of a step of `length` (s). A contact not deeper than `depth` (m) does not count.
 pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between {
@@ -66,9 +77,8 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
     let mut share: Option<f64> = None;
     for (from, to) in before.approaches.iter().zip(&after.approaches) {
         if from.slack && from.gap < -depth && to.gap > DEPTH_LEFT * from.gap {
-            let up = (DEPTH_LEFT + 0.1) * from.gap;
             let cubic = Cubic::new([from.gap, to.gap], [from.rate * length, to.rate * length]);
-            share = share.into_iter().chain([cubic.opening(up)]).reduce(f64::min);
+            share = share.into_iter().chain([cubic.opening(DEPTH_AIMED * from.gap)]).reduce(f64::min);
             continue;
         }
         if !(from.gap > 0.0 && to.gap > 0.0) {

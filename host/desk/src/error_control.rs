@@ -223,6 +223,7 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
             continue;
         }
         std::mem::swap(&mut before, &mut after);
+        h = h.min(before.until_pushed(watched.depth)).max(LEAST_STEP);
         effort.accepted += 1;
         t = if length == duration - t { duration } else { t + length };
         motion = step.motion;

@@ -13,6 +13,7 @@ pub fn text_of(mut bytes: Vec<u8>) -> Result<String, String> {
         [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => return Err(format!("it is in UTF-32: {SAVE}")),
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => return Err(format!("it is in UTF-16: {SAVE}")),
         [0xef, 0xbb, 0xbf, ..] => drop(bytes.drain(..3)),
+        [b'P', b'K', 3, 4, ..] => return Err("it is a ZIP archive, as office programs write".into()),
         _ if is_wide => return Err(format!("it is in UTF-16 or not a text: {SAVE}")),
         _ => {}
     }
@@ -20,6 +21,12 @@ pub fn text_of(mut bytes: Vec<u8>) -> Result<String, String> {
         let (valid, rest) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
         let line = valid.iter().filter(|byte| **byte == b'\n').count() + 1;
         let byte = rest.first().copied().unwrap_or_default();
+        // Texts have no other control characters than those that move on.
+        if valid.iter().chain(rest).any(|byte| matches!(byte, 0..=8 | 14..=31)) {
+            return format!(
+                "line {line} has the byte 0x{byte:02x}, and control characters are in it: it is not a text"
+            );
+        }
         format!("line {line} has the byte 0x{byte:02x}, which is not UTF-8, but may be Latin-1 (Windows-1252): {SAVE}")
     })
 }
@@ -43,6 +50,8 @@ mod tests {
         }
         let four: Vec<u8> = "\u{feff}a".chars().flat_map(|c| u32::from(c).to_le_bytes()).collect();
         assert!(text_of(four).unwrap_err().contains("UTF-32"));
+        assert!(text_of(b"PK\x03\x04ab\xff".to_vec()).unwrap_err().contains("ZIP"));
+        assert!(text_of(b"\x89PNG\r\n\x1a\n\xff".to_vec()).unwrap_err().contains("not a text"));
         let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
         assert!(
             text_of(latin).unwrap_err().starts_with("line 1 has the byte 0xe4, which is not UTF-8, but may be Latin-1")

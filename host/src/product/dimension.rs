@@ -178,6 +178,11 @@ pub enum ShapeError {
     /// A Cpk of a mean that is outside of the limits.
     #[error("the mean is not within the tolerance, so that its Cpk is not positive")]
     Mean,
+    /// A truncated normal of which nothing is left.
+    #[error(
+        "the mean is {0:.0} standard deviations outside of the tolerance: nothing is left within it, 30 are allowed"
+    )]
+    Truncated(f64),
     /// A log-normal whose mean is not above its least value.
     #[error("the mean is not above the location")]
     Location,
@@ -194,6 +199,9 @@ pub enum ShapeError {
     #[error("the table needs two or more values in ascending order, not all of them the same")]
     Table,
 }
+
+/// How many standard deviations the mean of a truncated normal may be outside: beyond, its share within has no digits.
+const MOST_TRUNCATED: f64 = 30.0;
 
 impl Toleranced {
     /// `nominal` with the lower and upper `deviations` from it and a `shape`. A shape with a width of its own and deviations of 0 has
@@ -225,6 +233,10 @@ impl Toleranced {
             }
             Shape::TruncatedNormal(spread) => {
                 let [mean, deviation] = spread.within(nominal, limits)?;
+                let beyond = (lower - mean).max(mean - upper) / deviation;
+                if beyond > MOST_TRUNCATED {
+                    return Err(ShapeError::Truncated(beyond));
+                }
                 Distribution::TruncatedNormal { mean, deviation, limits }
             }
             Shape::Uniform => Distribution::Uniform { limits },

@@ -22,6 +22,9 @@ pub use grammar::parse;
 pub use kind::Kind;
 pub use tape::Tape;
 
+/// Values (SI) from here on are refused: sums of squares and products of many units are no numbers.
+const GREATEST: f64 = 1e100;
+
 /// The most intermediate results that wait for an operation.
 const DEPTH: usize = 16;
 
@@ -204,16 +207,18 @@ impl Expression {
         self.trace(variables, measures, |_, _| ())
     }
 
-    /// Whether the result and everything on the way to it is finite for these values.
+    /// Whether the result and everything on the way to it is finite for these values, and its square as well.
     ///
     /// # Errors
     /// [`ExpressionError`] points at the first operation whose result is not.
     pub fn check(&self, variables: &[Lanes], measures: &[Lanes]) -> Result<(), ExpressionError> {
         let mut first = None;
         self.trace(variables, measures, |step, value| {
-            if !value.0[0].is_finite() && first.is_none() {
+            let value = value.0[0];
+            if !(value.abs() < GREATEST) && first.is_none() {
                 let what = match step.operation {
-                    Operation::Two(Two::Divide) => "divides by zero",
+                    Operation::Two(Two::Divide) if !value.is_finite() => "divides by zero",
+                    _ if value.is_finite() => "is 1e100 or more",
                     _ => "is not a finite number",
                 };
                 let allowed = "an expression that is finite at the nominal values";
@@ -329,6 +334,8 @@ mod tests {
             ("a / (b.c - 3 mm)", "/", "divides by zero at the nominal"),
             ("acos(b.c / a)", "acos", "is not a finite number at the nominal"),
             ("sqrt(a - b.c) / sqrt(a)", "sqrt", "is not a finite number"),
+            ("a * 1e200", "1e200", "is 1e100 or more at the nominal"),
+            ("a * 1e60 * 1e60", "*", "is 1e100 or more at the nominal"),
         ] {
             let error = value(text).unwrap_err();
             assert!(error.fault.to_string().contains(message), "{text}: {}", error.fault);

@@ -77,6 +77,13 @@ impl SceneFile {
             let mechanism = mechanism::mechanism(&root, title.clone(), product.as_ref())?;
             return Ok(Self { title, product, slide: None, mechanism: Some(mechanism) });
         }
+        if product.is_some()
+            && root.get("slide").is_none()
+            && let Some(alone) = of_slide.iter().find_map(|key| root.get(key))
+        {
+            let allowed = "[slide] and [[pin]], or [[body]] and [[joint]], which it belongs to";
+            return Err(alone.no_effect("where nothing moves", allowed));
+        }
         root.table("slide")?;
         let (mut pins, gap_measures) = pins(&root, product.as_ref().map(|product| &product.model))?;
         // With values that stand for wrong ones there is nothing to compute.

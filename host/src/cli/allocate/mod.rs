@@ -8,13 +8,14 @@ mod tables;
 use std::path::PathBuf;
 
 use clap::Args;
+use indicatif::ProgressBar;
 use slipfit_core::sampling::stream::derived;
 
 use self::{
     function::{Function, Limits},
     report::{Confirmation, Report},
 };
-use super::{Failure, SceneArguments, ThreadArguments, check, given, print, print_json, progress, warn};
+use super::{Failure, SceneArguments, ThreadArguments, check, counter, given, print, print_json, progress, warn};
 use crate::{
     product::{Product, costed::Costed},
     scene::{Override, SceneFile, with_tolerances},
@@ -156,7 +157,11 @@ impl Arguments {
         check_costs(&product.costed)?;
         self.scene.check_outputs(&given(outputs))?;
         let scene = Tolerances { name: &name, text: &text, overrides: &overrides, costed: &product.costed };
-        let model = |tolerances: &[f64]| scene.model(tolerances);
+        let tried = if limits.is_none() { counter("sets of tolerances tried") } else { ProgressBar::hidden() };
+        let model = |tolerances: &[f64]| {
+            tried.inc(1);
+            scene.model(tolerances)
+        };
         let function = limits.map(|limits| Function::new(&scene, limits));
         let counted = |tolerances: &[f64], units: u64, seed: u64| match &function {
             Some(function) => function.count(tolerances, units, seed),
@@ -192,6 +197,7 @@ impl Arguments {
                     })
                 }
             };
+            tried.finish_and_clear();
             let (found, confirmation) = match found {
                 Err(AllocateError::Infeasible { figures: least, .. }) => {
                     return Err(Failure::Work(anyhow::anyhow!(tables::missing(

@@ -8,7 +8,6 @@ use crate::{
     show::number::{fixed, three_digits},
     tolerance::{
         allocate::{
-            branch::Solution,
             check::{Check, Checked},
             confirm::{Confirmed, Counted},
             curve::{LEVELS, Point},
@@ -229,15 +228,22 @@ impl Report {
                 .iter()
                 .cloned()
                 .chain(off_centre(&product.model, rows))
-                .chain(unproven(solution))
+                .chain(unproven(found))
                 .chain(out_of_reach)
                 .collect(),
         }
     }
 }
 
-/// Where branch and bound was not done.
-fn unproven(solution: &Solution) -> Option<String> {
+/// Why cheaper tolerances may exist.
+fn unproven(Found { solution, traded, .. }: &Found) -> Option<String> {
+    if *traded {
+        return Some(
+            "a measure with kinks or much curvature: tolerances were traded against each other until no trade saved anything; others, \
+             far from these, may be cheaper"
+                .into(),
+        );
+    }
     (solution.bound < solution.cost * (1.0 - PROVEN)).then(|| {
         let least = three_digits(solution.bound);
         format!("too many processes and steps to try them all: tolerances for {least} or more may be cheaper")

@@ -133,7 +133,7 @@ fn worst_units(scene: &Scene, units: &[Unit]) -> String {
 pub fn strongest(drivers: &[Driver], most: usize) -> String {
     if drivers.is_empty() {
         return format!(
-            "not known: that takes {LEAST_UNITS} units, and for failure {LEAST_OUTCOMES} each that do and do not fail"
+            "not known: that takes {LEAST_UNITS} units with a force, and for failure {LEAST_OUTCOMES} each that do and do not fail"
         );
     }
     let shown = drivers.iter().filter(|driver| driver.is_significant()).take(most);

@@ -40,9 +40,11 @@ pub fn coarse(driven: &dyn Driven, table: &ForceTable) -> Option<String> {
         });
         format!("neighbouring levels differ by more than can be interpolated: take finer ones{or}")
     };
+    // Where none runs the greatest is that of all.
+    let of = if table.longest(MotionVerdict::Runs).is_some() { "of units that run" } else { "there is" };
     (error > COARSE * greatest).then(|| {
         format!(
-            "the table errs by up to {error_words} {} where it is used, {share} % of the greatest {} of units that run: {advice}",
+            "the table errs by up to {error_words} {} where it is used, {share} % of the greatest {} {of}: {advice}",
             kind.effort_unit(),
             kind.effort()
         )

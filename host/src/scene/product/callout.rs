@@ -19,7 +19,7 @@ use super::{
     material::{self, Material},
     part::FeatureDraft,
     pattern::{self, Pattern},
-    rule, symmetric, toleranced, zone,
+    rule, slant, symmetric, toleranced, zone,
 };
 
 pub(super) const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
@@ -219,6 +219,9 @@ pub(super) fn read<'t, 's>(
         carry(index, &turns, With::Direction, &table, draft)?;
     }
     warn_of_frames(index, location, orientation, draft);
+    if let Some(orientation) = orientation {
+        slant::warn(index, orientation, draft);
+    }
     Ok(())
 }
 

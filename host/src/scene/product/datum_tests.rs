@@ -244,6 +244,19 @@ fn incomplete_frames_are_warned_of_at_their_line() {
 }
 
 #[test]
+fn an_orientation_at_another_angle_than_drawn_is_warned_of() {
+    for (of, callout, angle) in [
+        ("bore", "parallelism = { zone = 0.1, datum = \"box.A\" }", "90.0°"),
+        ("lid", "parallelism = { zone = 0.1, datum = \"box.B\" }", "90.0°"),
+        ("lid", "perpendicularity = { zone = 0.1, datum = \"box.A\" }", "0.0°"),
+    ] {
+        let warnings = warned(callout, of);
+        let expected = format!("it is drawn at {angle} to its datum box.");
+        assert!(warnings.iter().any(|warning| warning.contains(&expected)), "{callout}: {warnings:?}");
+    }
+}
+
+#[test]
 fn a_position_without_a_datum_is_warned_of_at_its_line() {
     for (of, callout) in [
         ("bore", "position = 0.1"),

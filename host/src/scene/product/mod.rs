@@ -78,6 +78,7 @@ mod pattern;
 mod quantity;
 #[cfg(test)]
 mod refused_tests;
+mod slant;
 mod symmetric;
 #[cfg(test)]
 mod symmetric_tests;

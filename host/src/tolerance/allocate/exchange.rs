@@ -35,16 +35,25 @@ struct Choice {
     cost: f64,
 }
 
-/// The cheapest tolerances of `processes` that are found from `start` on, of which no figure is above what is `allowed`, and their
-/// figures; those of `start` are not.
+/// What a step may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moves {
+    /// One tolerance, which is widened, or all of them.
+    Wider,
+    /// Two, of which one is tightened, as well.
+    Pairs,
+}
+
+/// The cheapest tolerances of `processes` that are found from `start` on by `moves`, of which no figure is above what is `allowed`, and
+/// their figures; those of `start` are not.
 ///
 /// # Errors
 /// [`AllocateError`], if there are no figures.
 pub fn exchanged(
     processes: &[&[Process]],
     start: &[f64],
-    figures: &dyn Figures,
-    allowed: &[f64],
+    (figures, allowed): (&dyn Figures, &[f64]),
+    moves: Moves,
 ) -> Result<Option<(Solution, Vec<f64>)>, AllocateError> {
     let Some(mut best) = choice(processes, start.iter().map(|t| libm::log(*t * (1.0 + MET))).collect()) else {
         return Ok(None);
@@ -54,23 +63,23 @@ pub fn exchanged(
             if crate::system::interrupt::requested() {
                 return Err(AllocateError::Interrupted);
             }
-            let Some(next) = step_from(processes, &best, step, (figures, allowed))? else { break };
+            let Some(next) = step_from(processes, &best, (step, moves), (figures, allowed))? else { break };
             best = next;
         }
     }
     let found = figures.values(&best.tolerances)?;
+    // With the widest tolerances of all.
+    let bound =
+        choice(processes, vec![f64::INFINITY; best.bounds.len()]).map_or(f64::NEG_INFINITY, |widest| widest.cost);
     let Choice { processes, tolerances, cost, .. } = best;
-    Ok(Some((
-        Solution { processes, tolerances, cost, prices: vec![0.0; found.len()], bound: f64::NEG_INFINITY },
-        found,
-    )))
+    Ok(Some((Solution { processes, tolerances, cost, prices: vec![0.0; found.len()], bound }, found)))
 }
 
 /// A cheaper choice one `step` away of which no figure is above what is allowed.
 fn step_from(
     processes: &[&[Process]],
     from: &Choice,
-    step: f64,
+    (step, moves): (f64, Moves),
     (figures, allowed): (&dyn Figures, &[f64]),
 ) -> Result<Option<Choice>, AllocateError> {
     let count = from.bounds.len();
@@ -82,7 +91,7 @@ fn step_from(
     let all: Vec<(usize, f64)> = (0..count).map(|item| (item, step)).collect();
     let mut trials: Vec<Choice> = moved(&all).into_iter().collect();
     trials.extend((0..count).filter_map(|item| moved(&[(item, step)])));
-    for wider in 0..count {
+    for wider in (0..count).filter(|_| moves == Moves::Pairs) {
         for tighter in (0..count).filter(|tighter| *tighter != wider) {
             trials.extend(AGAINST.iter().filter_map(|by| moved(&[(wider, step), (tighter, -by * step)])));
         }

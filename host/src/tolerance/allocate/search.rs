@@ -9,7 +9,7 @@ use super::{
     AllocateError,
     branch::Solution,
     cost::Process,
-    exchange::exchanged,
+    exchange::{Moves, exchanged},
     program::{Power, Program, Row},
     slopes::{Slopes, weights},
 };
@@ -20,6 +20,8 @@ const FAR: f64 = 9.0;
 pub const MET: f64 = 1e-6;
 /// How far below 1, in what it may rise by, a figure has a price that trades find.
 const BINDS: f64 = 2.0;
+/// What wider tolerances have to save, as a share of the cost, to speak against a program.
+const WIDENS: f64 = 1e-3;
 /// The most corrections of a program.
 const CORRECTIONS: usize = 6;
 
@@ -93,6 +95,8 @@ pub struct Found {
     /// What the cost falls by where all figures which bind have their relief together, if there are several: then none of them may gain
     /// anything alone.
     pub together: Option<f64>,
+    /// Whether they were found by trades of tolerances, since no program describes what is required.
+    pub traded: bool,
 }
 
 /// Finds the cheapest tolerances of `processes`, from `start` on.
@@ -144,7 +148,10 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
             }
             if met && best.as_ref().is_none_or(|(best, _)| solution.cost < best.solution.cost) {
                 let local = Local { rows: rows.clone(), constants: constants.clone() };
-                best = Some((Found { solution: solution.clone(), figures: found.clone(), together: None }, local));
+                best = Some((
+                    Found { solution: solution.clone(), figures: found.clone(), together: None, traded: false },
+                    local,
+                ));
             }
             next = Some((solution, found));
             settled = met && used;
@@ -164,8 +171,8 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
             break;
         }
     }
-    if precision.trades && !(settled && figures.smooth()) {
-        let programmed = best.as_ref().map(|(found, _)| &found.solution);
+    let programmed = best.as_ref().map(|(found, _)| &found.solution);
+    if precision.trades && (!settled || !figures.smooth() || widens(processes, programmed, figures)?) {
         let starts = std::iter::once(&tightest).chain(programmed.map(|solution| &solution.tolerances));
         let traded = traded(processes, &starts.collect::<Vec<_>>(), figures)?;
         if let Some(traded) = traded
@@ -179,6 +186,14 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
     Ok(found)
 }
 
+/// Whether tolerances of a solution can be widened: then figures do not grow with them as its program took them to.
+fn widens(processes: &[&[Process]], solution: Option<&Solution>, figures: &dyn Figures) -> Result<bool, AllocateError> {
+    let Some(Solution { tolerances, cost, .. }) = solution else { return Ok(true) };
+    let met = vec![1.0; figures.reliefs().len()];
+    let wider = exchanged(processes, tolerances, (figures, &met), Moves::Wider)?;
+    Ok(wider.is_some_and(|(wider, _)| wider.cost < cost * (1.0 - WIDENS)))
+}
+
 /// The cheapest of what trades find from each of `starts` on, all of which meet the figures, and its prices by trades.
 fn traded(
     processes: &[&[Process]],
@@ -187,12 +202,13 @@ fn traded(
 ) -> Result<Option<Found>, AllocateError> {
     let reliefs = figures.reliefs();
     let mut best: Option<Found> = None;
+    let met = vec![1.0; reliefs.len()];
     for start in starts {
-        let Some((solution, figures)) = exchanged(processes, start, figures, &vec![1.0; reliefs.len()])? else {
+        let Some((solution, figures)) = exchanged(processes, start, (figures, &met), Moves::Pairs)? else {
             continue;
         };
         if best.as_ref().is_none_or(|best| solution.cost < best.solution.cost) {
-            best = Some(Found { solution, figures, together: None });
+            best = Some(Found { solution, figures, together: None, traded: true });
         }
     }
     let Some(mut found) = best else { return Ok(None) };
@@ -201,7 +217,7 @@ fn traded(
     let fall = |loosened: &[usize]| -> Result<f64, AllocateError> {
         let allowed = |row: usize| if loosened.contains(&row) { 1.0 + reliefs[row] } else { 1.0 };
         let allowed: Vec<f64> = (0..reliefs.len()).map(allowed).collect();
-        let cheaper = exchanged(processes, &found.solution.tolerances, figures, &allowed)?;
+        let cheaper = exchanged(processes, &found.solution.tolerances, (figures, &allowed), Moves::Pairs)?;
         Ok(cheaper.map_or(0.0, |(cheaper, _)| found.solution.cost - cheaper.cost))
     };
     let prices =

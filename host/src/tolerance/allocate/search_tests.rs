@@ -396,7 +396,7 @@ fn a_yield_counts_units_without_a_value() {
 /// Of kinked and folded measures, which no program around some tolerances describes, against all pairs of tolerances on a grid.
 #[test]
 fn kinked_measures_have_no_cheaper_tolerances_on_a_grid() {
-    const STEP: f64 = 1.08;
+    const STEP: f64 = 1.12;
     let cases = [
         (
             "(min((-0.5*d0) + (5.3 mm), (0.5*d0) + (-1*d1) + (15.0 mm)) + ((((2*d1) + (-0.5*d0) + (-34.95 mm))^2/(0.5 mm))))",
@@ -439,4 +439,16 @@ fn kinked_measures_have_no_cheaper_tolerances_on_a_grid() {
         println!("{is} {kind:?}: {cost:?}, {least} on the grid");
         assert!(cost.is_ok_and(|cost| cost < least * 1.002), "{is} {kind:?}: {least}");
     }
+}
+
+/// A product of two factors has its least value, at d = 4.95 mm, within the tolerance: wider ones come no nearer to the lower limit. Beyond
+/// 5 mm + t the product reaches the upper limit.
+#[test]
+fn tolerances_are_widened_beyond_where_a_measure_turns() {
+    let text = "[[dimension]]\nname = 'd'\nvalue = 5\ntolerance = 0.05\ncost = { reciprocal = 1, range = [0.005, 0.2] }\n\
+                [[measure]]\nname = 'm'\nis = '(2*d - 10.1 mm)*(2*d - 9.7 mm)/(1 mm)'\nlower = -0.04\nupper = 0.0624585\n";
+    let found = cheapest(text, &of_first(Kind::WorstCase), all).unwrap();
+    // (2t − 0.1)·(2t + 0.3) = 0.0624585.
+    let t = (-0.4 + libm::sqrt(0.16 + 16.0 * (0.03 + 0.0624585))) / 8.0;
+    assert!((found.solution.tolerances[0] / (t * 1e-3) - 1.0).abs() < 3e-3 && found.traded, "{found:?} {t}");
 }

@@ -198,18 +198,19 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
     if settings.method != Method::PseudoRandom && settings.replicates < 2 {
         notes.push("one replicate of a design has no standard error: see --replicates".into());
     }
-    for (measure, moments) in model.measures.iter().zip(&analysis.theory.moments) {
+    let theory = &analysis.theory;
+    for ((measure, moments), indices) in model.measures.iter().zip(&theory.moments).zip(&theory.indices) {
+        let has_indices = indices.as_ref().is_some_and(|indices| indices.total.iter().sum::<f64>() > 0.0);
+        let contributors = if has_indices { "; its contributors are by Sobol' indices" } else { "" };
         if !moments.described {
             notes.push(format!(
-                "{} has a kink or a fold where it varies, as a radius or an angle has at 0: slopes do not describe it; its \
-                 contributors are by Sobol' indices",
+                "{} has a kink or a fold where it varies, as a radius or an angle has at 0: slopes do not describe it{contributors}",
                 measure.name
             ));
         } else if !moments.by_slopes() {
             let percent = moments.curved * 100.0;
             notes.push(format!(
-                "{} is far from linear: {percent:.2} % of its variance is curvature; slopes do not describe it, its \
-                 contributors are by Sobol' indices",
+                "{} is far from linear: {percent:.2} % of its variance is curvature; slopes do not describe it{contributors}",
                 measure.name
             ));
         } else if moments.curved >= NOTED {
@@ -237,7 +238,12 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
         }
     }
     for (measure, worst) in model.measures.iter().zip(&analysis.theory.worst_cases) {
-        if worst.undefined {
+        if worst.range.iter().any(|end| end.is_infinite()) {
+            notes.push(format!(
+                "{} grows beyond all bounds within the limits: it is divided by what can be 0 there",
+                measure.name
+            ));
+        } else if worst.undefined {
             notes.push(format!(
                 "{} cannot be computed everywhere within the limits: its worst case is that of all that can",
                 measure.name

@@ -84,7 +84,7 @@ pub fn experiment(model: &Model, design: Design) -> Result<Experiment, DesignErr
                         Variation::Nested(zone) => zone.factorial()[usize::from(k >= zone.places())],
                         _ => 1.0 / count as f64,
                     };
-                    factors.push((centre.len(), half, contributor.name.clone()));
+                    factors.push((centre.len(), half, format!("{} {}", contributor.name, k + 1)));
                     centre.push(0.0);
                 }
             }

@@ -21,10 +21,13 @@ const OF_ALL: [f64; 6] = [1.0 / 1024.0, 1.0 / 64.0, 0.25, 0.5, 0.75, 1.0];
 /// Distances for slopes (shares of half a tolerance or zone): a narrow one, and one that sees beyond a kink.
 const STEPS: [f64; 2] = [1e-3, 0.25];
 
+/// How many times the values at corners and random points a search exceeds that ends beside a pole.
+const POLE: f64 = 1e6;
+
 /// What was found of a measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
-    /// Least and greatest value (SI); not in order if it cannot be computed anywhere.
+    /// Least and greatest value (SI), infinite beside a pole; not in order if it cannot be computed anywhere.
     pub range: [f64; 2],
     /// Whether it cannot be computed, or is infinite, at some point that was looked at.
     pub undefined: bool,
@@ -43,7 +46,10 @@ pub fn extremes(model: &Model, measures: &[usize]) -> Vec<Extremes> {
         let mut found = Extremes { range: [f64::INFINITY, f64::NEG_INFINITY], undefined: field.undefined[*measure] };
         for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
             let (best, undefined) = Climb::new(&field, *measure, side).best();
-            found.range[side] = sign * best;
+            let ordinary = field.best[*measure].iter().flatten().fold(0.0f64, |most, (value, _)| most.max(value.abs()));
+            // Where all of these are 0 the measure is level nearly everywhere, which says nothing of poles.
+            let is_beside_pole = ordinary > 0.0 && best > POLE * ordinary;
+            found.range[side] = sign * if is_beside_pole { f64::INFINITY } else { best };
             found.undefined |= undefined;
         }
         found
@@ -120,5 +126,39 @@ impl Room {
         }
         model.function.evaluate(&self.variables, &mut self.measures);
         (0..changes.len()).for_each(|lane| each(lane, &self.measures));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::extremes;
+    use crate::scene::SceneFile;
+
+    /// x goes from 0 − 0.1 mm to 0.3 mm, or from 0 on, y from 4.9 to 5.1 mm.
+    fn range(is: &str, least: f64) -> [f64; 2] {
+        let text = format!(
+            "[[dimension]]\nname = 'x'\nvalue = 0.1\ntolerance = {}\n[[dimension]]\nname = 'y'\nvalue = 5\ntolerance = 0.1\n\
+             [[measure]]\nname = 'm'\nis = '{is}'\nupper = 1e6\n",
+            0.1 - least
+        );
+        let product = SceneFile::parse("test", &text, &[]).unwrap_or_else(|error| panic!("{error}")).product.unwrap();
+        extremes(&product.model, &[0])[0].range
+    }
+
+    #[test]
+    fn beside_a_pole_there_is_no_bound() {
+        for (is, least, [low, high]) in [
+            ("y/x", -0.1, [true, true]),
+            ("y/x", 0.0, [false, true]),
+            ("x - y^2/x", 0.0, [true, false]),
+            ("y/(x*x)*(1 mm)", -0.1, [false, true]),
+            ("1/(x - 0.07 mm)*(1 mm^2)", -0.1, [true, true]),
+            ("(1 mm)*(y/(1 mm))^9*(x/(1 mm))^9", -0.1, [false, false]),
+            ("max(0 mm, x + y - 5.39 mm)", -0.1, [false, false]),
+            ("y/(x + 0.101 mm)", -0.1, [false, false]),
+        ] {
+            let found = range(is, least);
+            assert_eq!(found.map(f64::is_infinite), [low, high], "{is} from {least}: {found:?}");
+        }
     }
 }
