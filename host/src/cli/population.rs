@@ -44,7 +44,7 @@ use crate::{
 
 pub(super) use reports::{LevelReport, UnitReport};
 use rows::Rows;
-pub(super) use words::{levels, percent, strongest, verdicts};
+pub(super) use words::{faults, levels, percent, strongest, verdicts};
 
 /// Simulates units of a production one by one: how many malfunction, and why.
 ///
@@ -304,6 +304,7 @@ impl Arguments {
         }
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
+        warnings.extend(faults(&found.population));
         if let Some(path) = &self.page {
             let (mut units, _) = page::units(scene, production, &found.population, self.force_limit)?;
             let svg = picture::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;

@@ -11,6 +11,12 @@ pub fn cd_rom() -> Scene {
     Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).unwrap()
 }
 
+/// The paper's slide with a friction that is so uncertain that some units have a negative one, which is out of bounds.
+pub fn of_uncertain_friction() -> Scene {
+    let vary = "\n[vary]\nfriction.coefficient = { distribution = { kind = \"normal\", deviation = 0.15 }, tolerance = 0.45 }\n";
+    Scene::parse("cd-rom-slide.toml", &(CD_ROM_SLIDE.to_owned() + vary), &[]).unwrap()
+}
+
 /// The paper's slide at `levels` for `duration` (s), the ramp ending at `ramp_end` (s).
 pub fn sweep(levels: LevelRange, duration: f64, ramp_end: f64) -> Sweep {
     let mut scene = cd_rom();

@@ -2,7 +2,13 @@
 
 use serde::Serialize;
 
-use super::{Unit, production::Production, statistics::is_over, subject::Subject, unit::Decisive};
+use super::{
+    Unit,
+    production::Production,
+    statistics::is_over,
+    subject::Subject,
+    unit::{Decisive, Fault},
+};
 use crate::{
     dynamics::{
         outcome::{JAMMED, OVERRUNS, RUNS, Verdict},
@@ -137,12 +143,12 @@ impl<S: Subject> LimitState<'_, S> {
         for (i, figures) in asked.iter().zip(self.subject.decisive(&drawn, &asked)?) {
             self.log.simulated += 1;
             match figures.map(|figures| self.kind.margin(&figures, self.limit)) {
-                Some(Some(margin)) => {
+                Ok(Some(margin)) => {
                     margins[*i] = margin;
                     continue;
                 }
-                Some(None) => self.log.undecided += 1,
-                None => self.log.out_of_bounds += 1,
+                Err(Fault::OutOfBounds) => self.log.out_of_bounds += 1,
+                Ok(None) | Err(Fault::Unsolved | Fault::Unassembled) => self.log.undecided += 1,
             }
             self.log.unknown += self.weight;
         }

@@ -7,11 +7,11 @@ use super::{
     production::Drawn,
     study::Population,
     subject::Subject,
-    unit::{Decisive, is_near_a_limit},
+    unit::{Decisive, Fault, is_near_a_limit},
 };
 use crate::{
     dynamics::{
-        outcome::{Moment, Outcome, Verdict},
+        outcome::{Outcome, Verdict},
         simulate::SimulateError,
     },
     mechanism::{ByDrive, Mechanism, confirmed, run},
@@ -37,11 +37,18 @@ impl Subject for ByDrive<'_> {
         drawn.gaps.par_iter().enumerate().with_max_len(1).map(unit).collect()
     }
 
-    fn decisive(&self, drawn: &Drawn<Vec<f64>>, asked: &[usize]) -> Result<Vec<Option<Decisive>>, SimulateError> {
+    fn decisive(
+        &self,
+        drawn: &Drawn<Vec<f64>>,
+        asked: &[usize],
+    ) -> Result<Vec<Result<Decisive, Fault>>, SimulateError> {
         let decisive = |i: &usize| {
             let (outcome, share) = unit(self, drawn, *i)?;
+            if let Some(fault @ (Fault::Unsolved | Fault::OutOfBounds)) = outcome.fault {
+                return Ok(Err(fault));
+            }
             let speed = (outcome.verdict != Verdict::Undecided).then_some(share);
-            Ok(Some(Decisive { speed, force: outcome.peak_force }))
+            Ok(Ok(Decisive { speed, force: outcome.peak_force }))
         };
         asked.par_iter().with_max_len(1).map(decisive).collect()
     }
@@ -77,10 +84,18 @@ fn unit(driven: &ByDrive, drawn: &Drawn<Vec<f64>>, i: usize) -> Result<(UnitOutc
     if interrupt::requested() {
         return Err(SimulateError::Interrupted);
     }
-    let gaps = &drawn.gaps[i];
-    if !driven.fits(gaps) {
-        return Ok((UNASSEMBLED, 0.0));
+    if !driven.fits(&drawn.gaps[i]) {
+        return Ok((Fault::Unassembled.outcome(), 0.0));
     }
+    match of_run(driven, drawn, i) {
+        Ok((outcome, share, at_desk)) => Ok((told(&outcome, at_desk), share)),
+        Err(error) => Ok((Fault::of(error)?.outcome(), 0.0)),
+    }
+}
+
+/// What the run of unit `i` found, its final speed as a share of the command, and whether it was run again.
+fn of_run(driven: &ByDrive, drawn: &Drawn<Vec<f64>>, i: usize) -> Result<(Outcome, f64, bool), SimulateError> {
+    let gaps = &drawn.gaps[i];
     let own = mechanism_of(driven.mechanism(), drawn, i);
     let spec = RunSpec { error: own.run.error.max(ERROR), ..own.run };
     let outcome = run(&Mechanism { run: spec, ..own.clone() }, gaps, spec.duration)?.outcomes[driven.index()];
@@ -89,26 +104,24 @@ fn unit(driven: &ByDrive, drawn: &Drawn<Vec<f64>>, i: usize) -> Result<(UnitOutc
     let is_doubtful = is_near_a_limit(share(&outcome)) || outcome.swings.is_some();
     // No verdict stays none.
     if outcome.verdict == Verdict::Undecided || !is_doubtful {
-        return Ok((told(&outcome, false), share(&outcome)));
+        return Ok((outcome, share(&outcome), false));
     }
     let [exact, _] = confirmed(&own, gaps, spec.duration)?;
     let exact = exact.outcomes[driven.index()];
-    Ok((told(&exact, true), share(&exact)))
+    Ok((exact, share(&exact), true))
 }
-
-/// What a unit does that cannot be assembled.
-const UNASSEMBLED: UnitOutcome = UnitOutcome {
-    verdict: Verdict::Jammed,
-    breakaway: None,
-    peak_force: None,
-    settled_force: None,
-    final_velocity: 0.0,
-    end: Moment { t: 0.0, z: 0.0 },
-    most_loaded: None,
-    at_desk: false,
-};
 
 fn told(outcome: &Outcome, at_desk: bool) -> UnitOutcome {
     let Outcome { verdict, breakaway, peak_force, settled_force, final_velocity, end, .. } = *outcome;
-    UnitOutcome { verdict, breakaway, peak_force, settled_force, final_velocity, end, most_loaded: None, at_desk }
+    UnitOutcome {
+        verdict,
+        breakaway,
+        peak_force,
+        settled_force,
+        final_velocity,
+        end,
+        most_loaded: None,
+        at_desk,
+        fault: None,
+    }
 }

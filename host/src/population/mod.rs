@@ -57,7 +57,7 @@ pub struct Unit<G = [f64; CONTACTS]> {
 /// number of threads.
 ///
 /// # Errors
-/// [`SimulateError`] of the first unit whose parameters are out of bounds, or that cannot be solved.
+/// [`SimulateError::Interrupted`].
 pub fn simulate_units<S: Subject>(
     subject: &S,
     production: &Production<S::Gaps>,

@@ -11,7 +11,7 @@ use super::{
     ranked::Ranked,
     subject::UnitGaps,
     tally::{Tally, VERDICTS},
-    unit::UnitOutcome,
+    unit::{FAULTS, UnitOutcome},
 };
 use crate::{
     dynamics::outcome::Moment,
@@ -182,13 +182,14 @@ impl<G: StoredGaps> Found for Tally<G> {
     }
 }
 
-/// Adds the bytes of a unit: number, verdict, contact (16 if none), whether the desk computed it, breakaway, peak and settled
+/// Adds the bytes of a unit: number, verdict, contact (16 if none), whether the desk computed it, fault (3 if none), breakaway, peak and settled
 /// force, final speed, end, the contact's force, gaps. NaN is none.
 fn encode<G: StoredGaps>(Unit { number, gaps, outcome }: &Unit<G>, out: &mut Vec<u8>) {
     integer(out, *number);
     let verdict = VERDICTS.iter().position(|verdict| *verdict == outcome.verdict).unwrap_or(VERDICTS.len() - 1);
     let (contact, force) = outcome.most_loaded.unwrap_or((CONTACTS, 0.0));
-    out.extend([verdict as u8, contact as u8, u8::from(outcome.at_desk)]);
+    let fault = FAULTS.iter().position(|fault| Some(*fault) == outcome.fault).unwrap_or(FAULTS.len());
+    out.extend([verdict as u8, contact as u8, u8::from(outcome.at_desk), fault as u8]);
     let optional = [outcome.breakaway, outcome.peak_force, outcome.settled_force];
     let figures = optional.map(|figure| figure.unwrap_or(f64::NAN)).into_iter();
     let numbers = figures.chain([outcome.final_velocity, outcome.end.t, outcome.end.z, force]);
@@ -198,7 +199,7 @@ fn encode<G: StoredGaps>(Unit { number, gaps, outcome }: &Unit<G>, out: &mut Vec
 
 fn unit<G: StoredGaps>(reader: &mut Reader) -> Result<Unit<G>, FormatError> {
     let number = reader.integer()?;
-    let [verdict, contact, at_desk] = reader.array()?;
+    let [verdict, contact, at_desk, fault] = reader.array()?;
     let verdict = *VERDICTS.get(usize::from(verdict)).ok_or(FormatError::Damaged)?;
     let mut optional = || Ok(Some(reader.number()?).filter(|figure| !figure.is_nan()));
     let (breakaway, peak_force, settled_force) = (optional()?, optional()?, optional()?);
@@ -211,9 +212,9 @@ fn unit<G: StoredGaps>(reader: &mut Reader) -> Result<Unit<G>, FormatError> {
         contact if contact < CONTACTS => Some((contact, force)),
         _ => return Err(FormatError::Damaged),
     };
-    let at_desk = at_desk != 0;
+    let (at_desk, fault) = (at_desk != 0, FAULTS.get(usize::from(fault)).copied());
     let outcome =
-        UnitOutcome { verdict, breakaway, peak_force, settled_force, final_velocity, end, most_loaded, at_desk };
+        UnitOutcome { verdict, breakaway, peak_force, settled_force, final_velocity, end, most_loaded, at_desk, fault };
     Ok(Unit { number, gaps, outcome })
 }
 
@@ -235,7 +236,8 @@ mod tests {
 
     #[test]
     fn shards_in_any_order_are_the_whole() {
-        let scene = example::cd_rom();
+        // With units that have no run.
+        let scene = example::of_uncertain_friction();
         let production = Production::new(&scene, None, 0.25, 5).unwrap();
         let settings = Settings::new(1100, 5, true, 0.25, Some(0.3));
         let counter = Counter::new(&scene, Duty { limit: settings.limit(), stroke: None });
@@ -249,6 +251,7 @@ mod tests {
         let whole = path("whole".into());
         let units = shard(&whole, Shard::ALL, false).unwrap();
         assert_eq!(units.counts.units, 1100);
+        assert!(units.counts.faults.iter().sum::<u64>() > 0);
         let parts: Vec<_> = (1..=3).map(|number| path(format!("part{number}"))).collect();
         for (number, out) in (1..).zip(&parts) {
             shard(out, Shard { number, count: 3 }, false).unwrap();

@@ -103,6 +103,12 @@ pub struct Statistics {
     pub final_velocity: Option<Spread>,
     /// Units that the desk computed.
     pub at_desk: u64,
+    /// Units that cannot be assembled, which count as jammed.
+    pub unassembled: u64,
+    /// Units that the desk cannot solve, which come to no verdict.
+    pub unsolved: u64,
+    /// Units whose parameters are out of bounds, which come to no verdict.
+    pub out_of_bounds: u64,
 }
 
 /// Whether a unit malfunctions: it crawls, jams, or needs more than the `limit` (N).
@@ -122,6 +128,7 @@ impl Statistics {
         let all = counts.units.max(1);
         let [runs, crawls, jammed, overruns, undecided] = counts.verdicts.map(|units| Share::new(units, all));
         let failed = Share::new(counts.malfunctions, all);
+        let [unassembled, unsolved, out_of_bounds] = counts.faults;
         Self {
             units: all,
             runs,
@@ -138,6 +145,9 @@ impl Statistics {
             breakaway: Spread::of(&figures.breakaway),
             final_velocity: Spread::of(&figures.final_velocity),
             at_desk: counts.at_desk,
+            unassembled,
+            unsolved,
+            out_of_bounds,
         }
     }
 }

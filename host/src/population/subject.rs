@@ -5,7 +5,7 @@ use slipfit_core::slide::{ABSENT, CONTACTS};
 use super::{
     Unit,
     production::Drawn,
-    unit::{self, Decisive},
+    unit::{self, Decisive, Fault},
 };
 use crate::{
     dynamics::{driven::Driven, simulate::SimulateError},
@@ -39,18 +39,21 @@ pub trait Subject: Driven {
     /// The gaps of a unit.
     type Gaps: UnitGaps;
 
-    /// Simulates the units that were `drawn`.
+    /// Simulates the units that were `drawn`; one that cannot be has a [`Fault`].
     ///
     /// # Errors
-    /// [`SimulateError`] of the first whose parameters are out of bounds, or that cannot be solved.
+    /// [`SimulateError::Interrupted`].
     fn units(&self, drawn: &Drawn<Self::Gaps>) -> Result<Vec<Unit<Self::Gaps>>, SimulateError>;
 
-    /// The figures that decide whether units do their job, of those `drawn` units that are `asked` for. None of a unit whose
-    /// parameters are out of bounds.
+    /// The figures that decide whether units do their job, of those `drawn` units that are `asked` for, or why there are none.
     ///
     /// # Errors
-    /// [`SimulateError`] of the first that cannot be solved.
-    fn decisive(&self, drawn: &Drawn<Self::Gaps>, asked: &[usize]) -> Result<Vec<Option<Decisive>>, SimulateError>;
+    /// [`SimulateError::Interrupted`].
+    fn decisive(
+        &self,
+        drawn: &Drawn<Self::Gaps>,
+        asked: &[usize],
+    ) -> Result<Vec<Result<Decisive, Fault>>, SimulateError>;
 
     /// The gaps (m) at the tolerance levels `n`, one for each; the last holds for all that follow.
     fn gaps_at(&self, n: &[f64]) -> Self::Gaps;
@@ -101,7 +104,7 @@ impl Subject for Scene {
         unit::units(self, drawn)
     }
 
-    fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Option<Decisive>>, SimulateError> {
+    fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Result<Decisive, Fault>>, SimulateError> {
         unit::decisive(self, drawn, asked)
     }
 

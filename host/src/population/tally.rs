@@ -11,6 +11,7 @@ use super::{
     ranked::Ranked,
     statistics::{is_over, malfunctions},
     subject::Subject,
+    unit::{FAULTS, Fault},
 };
 use crate::dynamics::outcome::Verdict;
 
@@ -50,8 +51,8 @@ pub struct Counts {
     pub malfunctions: u64,
     /// Those that the desk computed.
     pub at_desk: u64,
-    /// Those that cannot be assembled.
-    pub misfits: u64,
+    /// Those without a run, as in [`FAULTS`].
+    pub faults: [u64; FAULTS.len()],
     /// Those that malfunction, by kind as in [`KINDS`]: tight ones and loose ones.
     pub kinds: [[u64; 2]; 4],
     /// Those that malfunction, by the contact that is pressed in deepest.
@@ -61,9 +62,10 @@ pub struct Counts {
 impl Counts {
     /// Every count, in one order.
     pub fn each(&mut self) -> impl Iterator<Item = &mut u64> {
-        let Self { units, verdicts, short, over_limit, malfunctions, at_desk, misfits, kinds, pressed } = self;
-        [units, short, over_limit, malfunctions, at_desk, misfits]
+        let Self { units, verdicts, short, over_limit, malfunctions, at_desk, faults, kinds, pressed } = self;
+        [units, short, over_limit, malfunctions, at_desk]
             .into_iter()
+            .chain(faults)
             .chain(verdicts)
             .chain(kinds.as_flattened_mut())
             .chain(pressed)
@@ -234,7 +236,7 @@ impl<'a, S: Subject> Counter<'a, S> {
             count(&mut counts.over_limit, is_over(unit, limit));
             count(&mut counts.malfunctions, fails);
             count(&mut counts.at_desk, outcome.at_desk);
-            count(&mut counts.misfits, !self.subject.fits(&unit.gaps));
+            FAULTS.iter().zip(&mut counts.faults).for_each(|(of, own)| count(own, Some(*of) == outcome.fault));
             let n = self.subject.tightness(&unit.gaps);
             tightness.add(n);
             if let Some(peak) = outcome.peak_force {
@@ -247,7 +249,9 @@ impl<'a, S: Subject> Counter<'a, S> {
                 }
             }
             outcome.breakaway.into_iter().for_each(|t| breakaway.add(t));
-            final_velocity.add(outcome.final_velocity);
+            if !matches!(outcome.fault, Some(Fault::Unsolved | Fault::OutOfBounds)) {
+                final_velocity.add(outcome.final_velocity);
+            }
             if fails {
                 failing_tightness.add(n);
                 let kind = Kind::of(unit, limit);

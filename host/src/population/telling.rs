@@ -10,12 +10,12 @@ use crate::{
     scene::Scene,
 };
 
-/// One unit for each thing that units do: of the first that jam, crawl and run, as far as they are `shown`, the one whose greatest
+/// One unit for each thing that units do: of the first that jam, crawl and run, and have a run to show, the one whose greatest
 /// force is in their middle.
-pub fn one_of_each<G>(tally: &Tally<G>, shown: impl Fn(&Unit<G>) -> bool) -> Vec<&Unit<G>> {
+pub fn one_of_each<G>(tally: &Tally<G>) -> Vec<&Unit<G>> {
     let middle = |verdict: Verdict| {
-        let own = tally.first.iter().flatten().filter(|unit| unit.outcome.verdict == verdict && shown(unit));
-        let mut own: Vec<&Unit<G>> = own.collect();
+        let of_verdict = |unit: &&Unit<G>| unit.outcome.verdict == verdict && unit.outcome.fault.is_none();
+        let mut own: Vec<&Unit<G>> = tally.first.iter().flatten().filter(of_verdict).collect();
         let force = |unit: &Unit<G>| unit.outcome.peak_force.unwrap_or(f64::NEG_INFINITY);
         own.sort_by(|one, other| force(one).total_cmp(&force(other)).then(one.number.cmp(&other.number)));
         own.get(own.len() / 2).copied()

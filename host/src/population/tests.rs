@@ -5,7 +5,14 @@ use slipfit_core::{
     slide::CONTACTS,
 };
 
-use super::{Course, production::Production, simulate, simulate_in, simulate_units, unit};
+use super::{
+    Course,
+    production::Production,
+    simulate, simulate_in, simulate_units,
+    study::Population,
+    tally::Duty,
+    unit::{self, Fault},
+};
 use crate::{
     dynamics::{
         desk,
@@ -13,7 +20,7 @@ use crate::{
         example,
         outcome::{Outcome, Verdict},
         simulate as one,
-        simulate::Settings,
+        simulate::{Settings, SimulateError},
     },
     scene::Scene,
 };
@@ -82,6 +89,41 @@ fn units_without_a_verdict_are_not_run_again() {
     let drawn = Production::new(&scene, None, 0.0, 1).unwrap().draw(0..500);
     let units = unit::units(&scene, &drawn).unwrap();
     assert!(units.iter().all(|unit| unit.outcome.verdict == Verdict::Undecided && !unit.outcome.at_desk));
+}
+
+/// One unit that cannot be simulated ends no population: it is counted, with its number, and comes to no verdict.
+#[test]
+fn units_without_a_run_are_counted() {
+    let scene = example::of_uncertain_friction();
+    let production = Production::new(&scene, None, 0.0, 3).unwrap();
+    let drawn = production.draw(0..600);
+    let friction = |i: usize| match unit::scene_of(&scene, &drawn, i).friction {
+        FrictionData::Regularised { coefficient, .. } => coefficient,
+        _ => f64::NAN,
+    };
+    let outside: Vec<usize> = (0..600).filter(|i| friction(*i) < 0.0).collect();
+    assert!((3..60).contains(&outside.len()), "{outside:?}");
+    let found = Population::study(&scene, &production, 600, Duty::default(), |_| ()).unwrap();
+    let statistics = &found.statistics;
+    assert_eq!((statistics.units, statistics.out_of_bounds as usize), (600, outside.len()));
+    assert_eq!((statistics.unsolved, statistics.unassembled), (0, 0));
+    let kept = found.tally.first.iter().flatten().filter(|unit| unit.outcome.fault == Some(Fault::OutOfBounds));
+    assert_eq!(kept.map(|unit| unit.number as usize).collect::<Vec<_>>(), outside);
+    // The others are what they are alone.
+    let alone = unit::units(&scene, &drawn).unwrap();
+    let with_figures = alone.iter().filter(|unit| unit.outcome.peak_force.is_some()).count();
+    assert_eq!(statistics.final_velocity.as_ref().unwrap().units as usize, 600 - outside.len());
+    assert!(with_figures <= 600 - outside.len());
+}
+
+/// What has to do with one unit is its fault; to be stopped is not.
+#[test]
+fn faults_are_those_of_a_unit() {
+    assert_eq!(Fault::of(SimulateError::Unsolved { time: 0.1 }).unwrap(), Fault::Unsolved);
+    assert_eq!(Fault::of(SimulateError::NotFinite { time: 0.1, step: 1e-6 }).unwrap(), Fault::Unsolved);
+    assert_eq!(Fault::of(SimulateError::Parameter(String::new())).unwrap(), Fault::OutOfBounds);
+    assert!(Fault::of(SimulateError::Interrupted).is_err());
+    assert!(Fault::Unsolved.outcome().peak_force.is_none() && Fault::Unsolved.outcome().verdict == Verdict::Undecided);
 }
 
 /// The 95th percentile and the greatest of some errors.

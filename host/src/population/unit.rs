@@ -49,6 +49,52 @@ pub struct UnitOutcome {
     pub most_loaded: Option<(usize, f64)>,
     /// Whether the desk computed it.
     pub at_desk: bool,
+    /// Why there is no run, if there is none.
+    pub fault: Option<Fault>,
+}
+
+/// Why a unit has no run, and so no figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fault {
+    /// Its joints do not allow its gaps: it is jammed where it stands.
+    Unassembled,
+    /// No step of the desk meets the tolerance.
+    Unsolved,
+    /// One of its parameters is out of bounds.
+    OutOfBounds,
+}
+
+/// Faults, in the order in which units are counted by them.
+pub const FAULTS: [Fault; 3] = [Fault::Unassembled, Fault::Unsolved, Fault::OutOfBounds];
+
+impl Fault {
+    /// Of one unit.
+    ///
+    /// # Errors
+    /// What has nothing to do with the unit: somebody asked to stop.
+    pub fn of(error: SimulateError) -> Result<Self, SimulateError> {
+        match error {
+            SimulateError::Unsolved { .. } | SimulateError::NotFinite { .. } => Ok(Self::Unsolved),
+            SimulateError::Parameter(_) => Ok(Self::OutOfBounds),
+            SimulateError::Every { .. } | SimulateError::Interrupted => Err(error),
+        }
+    }
+
+    /// What a unit with it did.
+    pub fn outcome(self) -> UnitOutcome {
+        UnitOutcome {
+            verdict: if self == Self::Unassembled { Verdict::Jammed } else { Verdict::Undecided },
+            breakaway: None,
+            peak_force: None,
+            settled_force: None,
+            final_velocity: 0.0,
+            end: Moment { t: 0.0, z: 0.0 },
+            most_loaded: None,
+            at_desk: false,
+            fault: Some(self),
+        }
+    }
 }
 
 /// What a scene's units are simulated for.
@@ -70,23 +116,41 @@ pub fn scene_of(scene: &Scene, drawn: &Drawn, i: usize) -> Scene {
 /// Simulates the units that were `drawn` of a production of `scene`.
 ///
 /// # Errors
-/// [`SimulateError`] of the first whose parameters are out of bounds, or that the desk cannot solve.
+/// [`SimulateError::Interrupted`].
 pub fn units(scene: &Scene, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError> {
-    let course = course(scene);
-    let slides: Vec<SlideData<f64>> =
-        (0..drawn.gaps.len()).map(|i| slide(scene, drawn, i, &course)).collect::<Result<_, _>>()?;
-    let figures = super::simulate(course, &slides);
-    let unit = |(i, (slide, figures)): (usize, (&SlideData<f64>, &Figures))| {
-        let found = outcome(scene, slide, figures);
-        let gaps = drawn.gaps[i];
-        let outcome = if is_doubtful(slide, figures, found.verdict) { at_desk(scene, drawn, i, found)? } else { found };
-        Ok(Unit { number: drawn.numbers.start + i as u64, gaps, outcome })
+    let all: Vec<usize> = (0..drawn.gaps.len()).collect();
+    let unit = |(i, lane): (usize, Option<Lane>)| {
+        let outcome = match lane {
+            None => Fault::OutOfBounds.outcome(),
+            Some(Lane { slide, figures }) => {
+                let found = outcome(scene, &slide, &figures);
+                let is_doubtful = is_doubtful(&slide, &figures, found.verdict);
+                if is_doubtful { at_desk(scene, drawn, i, found)? } else { found }
+            }
+        };
+        Ok(Unit { number: drawn.numbers.start + i as u64, gaps: drawn.gaps[i], outcome })
     };
-    slides.iter().zip(&figures).enumerate().map(unit).collect()
+    lanes(scene, drawn, &all).into_iter().enumerate().map(unit).collect()
 }
 
-/// The slide of unit `i`, true stick by the law that stands for it.
-fn slide(scene: &Scene, drawn: &Drawn, i: usize, course: &Course) -> Result<SlideData<f64>, SimulateError> {
+/// A unit that ran on a lane.
+struct Lane {
+    slide: SlideData<f64>,
+    figures: Figures,
+}
+
+/// Those of the units that were `drawn` which are `asked` for, on lanes; none of one whose parameters are out of bounds.
+fn lanes(scene: &Scene, drawn: &Drawn, asked: &[usize]) -> Vec<Option<Lane>> {
+    let course = course(scene);
+    let slides: Vec<Option<SlideData<f64>>> = asked.iter().map(|i| slide(scene, drawn, *i, &course)).collect();
+    let sound: Vec<SlideData<f64>> = slides.iter().flatten().copied().collect();
+    let mut figures = super::simulate(course, &sound).into_iter();
+    let lane = |slide: Option<SlideData<f64>>| slide.and_then(|slide| Some(Lane { slide, figures: figures.next()? }));
+    slides.into_iter().map(lane).collect()
+}
+
+/// The slide of unit `i`, true stick by the law that stands for it; none whose parameters are out of bounds.
+fn slide(scene: &Scene, drawn: &Drawn, i: usize, course: &Course) -> Option<SlideData<f64>> {
     let gaps = &drawn.gaps[i];
     let mut data = match scene.vary.is_empty() {
         true => scene.slide_data::<f64>(gaps),
@@ -97,11 +161,8 @@ fn slide(scene: &Scene, drawn: &Drawn, i: usize, course: &Course) -> Result<Slid
     {
         data.friction = FrictionData::Regularised { coefficient, stick_band };
     }
-    let number = drawn.numbers.start + i as u64;
     // In single precision, in which it is simulated.
-    AnySlide::new(&data.cast(|x| x as f32))
-        .map_err(|error| SimulateError::Parameter(format!("unit {number}: {error}")))?;
-    Ok(data)
+    AnySlide::new(&data.cast(|x| x as f32)).ok().map(|_| data)
 }
 
 /// The speed at the end as a share of the command (m/s), and whether the run was over by then.
@@ -126,6 +187,7 @@ fn outcome(scene: &Scene, slide: &SlideData<f64>, figures: &Figures) -> UnitOutc
         end: Moment { t: f64::from(figures.end), z: f64::from(figures.travel) },
         most_loaded: (depth > 0.0).then_some((usize::from(figures.contact), force)),
         at_desk: false,
+        fault: None,
     }
 }
 
@@ -138,32 +200,28 @@ pub struct Decisive {
     pub force: Option<f64>,
 }
 
-/// The decisive figures of units that were `drawn`, those that are `asked` for: by the lanes alone, unless these stall. None of
-/// a unit whose parameters are out of bounds.
+/// The decisive figures of units that were `drawn`, those that are `asked` for: by the lanes alone, unless these stall.
 ///
 /// # Errors
-/// [`SimulateError`] of the first that the desk cannot solve.
-pub fn decisive(scene: &Scene, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Option<Decisive>>, SimulateError> {
-    let course = course(scene);
-    let slides: Vec<Option<SlideData<f64>>> = asked.iter().map(|i| slide(scene, drawn, *i, &course).ok()).collect();
-    let sound: Vec<SlideData<f64>> = slides.iter().flatten().copied().collect();
-    let mut figures = super::simulate(course, &sound).into_iter();
-    let of = |(slide, i): (&Option<SlideData<f64>>, &usize)| {
-        let Some((slide, figures)) = slide.as_ref().zip(slide.as_ref().and_then(|_| figures.next())) else {
-            return Ok(None);
-        };
-        let found = outcome(scene, slide, &figures);
-        let (share, _) = share(slide, &figures);
+/// [`SimulateError::Interrupted`].
+pub fn decisive(scene: &Scene, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Result<Decisive, Fault>>, SimulateError> {
+    let of = |(lane, i): (Option<Lane>, &usize)| {
+        let Some(Lane { slide, figures }) = lane else { return Ok(Err(Fault::OutOfBounds)) };
+        let found = outcome(scene, &slide, &figures);
+        let (share, _) = share(&slide, &figures);
         if !figures.stalled && share.is_finite() {
             let speed = (found.verdict != Verdict::Undecided).then_some(share);
-            return Ok(Some(Decisive { speed, force: found.peak_force }));
+            return Ok(Ok(Decisive { speed, force: found.peak_force }));
         }
         let found = at_desk(scene, drawn, *i, found)?;
+        if let Some(fault) = found.fault {
+            return Ok(Err(fault));
+        }
         let command = slide.drive.command(found.end.t).abs();
         let speed = (found.verdict != Verdict::Undecided).then_some(found.final_velocity / command);
-        Ok(Some(Decisive { speed, force: found.peak_force }))
+        Ok(Ok(Decisive { speed, force: found.peak_force }))
     };
-    slides.iter().zip(asked).map(of).collect()
+    lanes(scene, drawn, asked).into_iter().zip(asked).map(of).collect()
 }
 
 /// Whether the `verdict` of a unit may be another to a better tolerance. None stays none.
@@ -183,8 +241,10 @@ pub fn is_near_a_limit(share: f64) -> bool {
 /// Unit `i` once more, at the desk; what only lanes know is kept of `found`.
 fn at_desk(scene: &Scene, drawn: &Drawn, i: usize, found: UnitOutcome) -> Result<UnitOutcome, SimulateError> {
     let own = scene_of(scene, drawn, i);
-    let run = simulate(&own, &drawn.gaps[i], &Settings::desk(&own, 1.0))?;
-    let outcome = run.outcome;
+    let outcome = match simulate(&own, &drawn.gaps[i], &Settings::desk(&own, 1.0)) {
+        Ok(run) => run.outcome,
+        Err(error) => return Ok(Fault::of(error)?.outcome()),
+    };
     Ok(UnitOutcome {
         verdict: outcome.verdict,
         breakaway: outcome.breakaway,
@@ -194,5 +254,6 @@ fn at_desk(scene: &Scene, drawn: &Drawn, i: usize, found: UnitOutcome) -> Result
         end: outcome.end,
         most_loaded: found.most_loaded,
         at_desk: true,
+        fault: None,
     })
 }

@@ -9,8 +9,8 @@ use crate::{
     cli::{
         Failure,
         population::{
-            Arguments, HYPOTHESIS, LevelReport, UnitReport, levels, page::units_of_mechanism, percent, rare, strongest,
-            verdicts,
+            Arguments, HYPOTHESIS, LevelReport, UnitReport, faults, levels, page::units_of_mechanism, percent, rare,
+            strongest, verdicts,
         },
         print, print_json, text_table, warn,
     },
@@ -24,7 +24,7 @@ use crate::{
         picture::{forces, hypothesis},
         production::Production,
         rare::Rare,
-        statistics::{Share, Spread, Statistics},
+        statistics::{Spread, Statistics},
         study::Population,
         subject::Subject,
         tally::Tally,
@@ -52,8 +52,6 @@ struct Report<'a> {
     statistics: Statistics,
     force_drivers: Vec<Driver>,
     malfunction_drivers: Vec<Driver>,
-    /// Units that cannot be assembled.
-    misfits: Share,
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
     /// None if it was not asked for.
@@ -97,16 +95,9 @@ pub fn conclude(
     let mechanism = driven.mechanism();
     let limit = asked.force_limit;
     let found = asked.threads.install(|| Found::of(asked, driven, production, tally))??;
-    let counts = found.population.tally.counts;
-    let misfits = Share::new(counts.misfits, counts.units.max(1));
     let mut warnings = warnings_of(mechanism)?;
     warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
-    if misfits.units > 0 {
-        warnings.push(format!(
-            "{} of {} units cannot be assembled, because a pin is wider than its hole: they count as jammed",
-            misfits.units, counts.units
-        ));
-    }
+    warnings.extend(faults(&found.population));
     if let Some(path) = &asked.plot {
         let svg = forces(driven, &found.population.tally, limit).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
@@ -136,7 +127,6 @@ pub fn conclude(
             statistics: found.population.statistics,
             force_drivers: found.population.of_force,
             malfunction_drivers: found.population.of_malfunction,
-            misfits,
             warnings,
         });
     }

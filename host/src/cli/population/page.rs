@@ -14,7 +14,6 @@ use crate::{
         production::Production,
         shares,
         study::Population,
-        subject::Subject,
         telling::{filmed, one_of_each},
     },
     scene::Scene,
@@ -65,7 +64,7 @@ pub fn units(
         let film = filmed(scene, production, unit.number, MOMENTS)?;
         Ok(player::of_slide(scene, label(unit), &film))
     };
-    let player = played(&one_of_each(all, |_| true), run, "on its pins")?;
+    let player = played(&one_of_each(all), run, "on its pins")?;
     let (figures, names) = shown(FIGURES, pictures)?;
     Ok((Units { figures, player }, names))
 }
@@ -93,9 +92,7 @@ pub fn units_of_mechanism(
         let filmed = film(own.mechanism(), &drawn.gaps[i], MOMENTS)?;
         Ok(player::of_mechanism(own.mechanism(), Some(&own), &drawn.gaps[i], label(unit), &filmed))
     };
-    // What cannot be assembled does not move.
-    let moving = one_of_each(all, |unit| driven.fits(&unit.gaps));
-    let player = played(&moving, run, "on its joints")?;
+    let player = played(&one_of_each(all), run, "on its joints")?;
     let (figures, names) = shown(MECHANISM_FIGURES, pictures)?;
     Ok((Units { figures, player }, names))
 }

@@ -12,6 +12,7 @@ use crate::{
         statistics::{Share, Spread, Statistics},
         study::Population,
         subject::Subject,
+        unit::Fault,
     },
     scene::Scene,
     show::number::{self, fixed, level, or_dash},
@@ -104,6 +105,28 @@ pub(in crate::cli) fn verdicts(statistics: &Statistics) -> String {
     line("overruns", overruns, "");
     line("undecided", undecided, "");
     text
+}
+
+/// Warnings of units without a run.
+pub(in crate::cli) fn faults<G>(population: &Population<G>) -> Vec<String> {
+    let Statistics { units, unassembled, unsolved, out_of_bounds, .. } = population.statistics;
+    let first = |fault: Fault| {
+        let kept = population.tally.first.iter().flatten().filter(|unit| unit.outcome.fault == Some(fault));
+        let number = kept.map(|unit| unit.number).min();
+        number.map_or_else(String::new, |number| format!("; the first is unit {number}"))
+    };
+    let told = |count: u64, what: String| (count > 0).then(|| format!("{count} of {units} units {what}"));
+    let fits = "cannot be assembled, because a pin is wider than its hole: they count as jammed".to_owned();
+    let no_step = "come to no verdict, since no step meets the tolerance, however short";
+    let bounds = "come to no verdict, since one of their parameters is out of bounds";
+    [
+        told(unassembled, fits),
+        told(unsolved, format!("{no_step}{}", first(Fault::Unsolved))),
+        told(out_of_bounds, format!("{bounds}{}", first(Fault::OutOfBounds))),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// The table of the worst units.

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::tolerance::{model::Model, sampling::sampler};
 
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// The scene a study belongs to, as it was read.
