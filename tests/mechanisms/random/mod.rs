@@ -49,7 +49,7 @@ fn assembled(generate: fn(u64) -> Scene, seed: u64) -> Scene {
 }
 
 /// The greatest share of scenes that may need a tenth of the error.
-const TOLD: f64 = 5e-3;
+const TOLD: f64 = 1e-2;
 
 /// Compares scenes of a family and reports; panics with the scenes that differ.
 fn family(name: &str, generate: fn(u64) -> Scene) {
