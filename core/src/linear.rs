@@ -34,6 +34,15 @@ pub(crate) fn length<S: Scalar>(apart: &Vector2<S>) -> [S; 2] {
     [squared * reciprocal, reciprocal]
 }
 
+/// The length (m) of `apart`, and how fast (m/s) it grows at this `rate`: where there is no length at once, by the sum of both parts, which
+/// is no less than the length of the rate.
+#[inline(always)]
+pub(crate) fn growing<S: Scalar>(apart: &Vector2<S>, rate: &Vector2<S>) -> [S; 2] {
+    let [length, reciprocal] = length(apart);
+    let at_once = rate.x.max_of(-rate.x) + rate.y.max_of(-rate.y);
+    [length, length.select_gt(S::from_f64(1e-12), apart.dot(rate) * reciprocal, at_once)]
+}
+
 /// [a]×, the matrix with [a]×·b = a × b.
 #[inline(always)]
 pub(crate) fn cross_matrix<S: Scalar>(a: &Vector3<S>) -> Matrix3<S> {

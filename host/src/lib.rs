@@ -11,11 +11,12 @@ pub mod dynamics;
 pub mod firmware;
 pub mod mechanism;
 pub mod population;
-pub mod product;
 pub mod quality;
 #[cfg(test)]
 mod reference;
 pub mod scene;
 pub mod show;
-pub mod system;
-pub mod tolerance;
+
+pub use slipfit_system as system;
+pub use slipfit_tolerance as tolerance;
+pub use slipfit_tolerance::product;

@@ -1,6 +1,8 @@
 //! The guide's reference, written from the code: a test fails where the page is another. `INSTA_UPDATE=always` writes it.
 
-use crate::{cli, product::expression::FUNCTIONS, scene};
+use slipfit_tolerance::product::expression::FUNCTIONS;
+
+use crate::{cli, scene};
 
 const INTRODUCTION: &str = "# Reference
 

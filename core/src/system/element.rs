@@ -62,11 +62,10 @@ pub trait Law<S: Scalar, const R: usize> {
         S::zero()
     }
 
-    /// Shows `see` the distance (m) of each pair of surfaces that may touch, of which [`gap`](Self::gap) is the least.
+    /// Shows `see` the distance (m) of each pair of surfaces that may touch, of which [`gap`](Self::gap) is the least, and how fast
+    /// (m/s) it grows. Nothing of a law whose bodies always act on each other.
     #[inline(always)]
-    fn each_gap(&self, place: &SVector<S, R>, mut see: impl FnMut(S)) {
-        see(self.gap(place));
-    }
+    fn each_gap(&self, _place: &SVector<S, R>, _rate: &SVector<S, R>, _see: impl FnMut(S, S)) {}
 
     /// The forces at `place` and `rate` at time `t` (s), and the internal variables if the motion is accepted.
     fn response(

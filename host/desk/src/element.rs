@@ -18,7 +18,7 @@ use slipfit_core::{
 };
 
 use crate::{
-    closing::Approach,
+    closing::{Approach, Gaps},
     contact::Laws,
     laws::{AnyNormal, AnySliding},
 };
@@ -76,25 +76,16 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
     Some(element.law.gap(&element.link.seen(at, &view).place))
 }
 
-/// The time (s) over which the rate of a gap is the quotient of differences: short enough for a pin in a round hole, and long enough for
-/// the digits of a gap.
-const DIFFERENCE: f64 = 1e-6;
-
 /// Adds the contacts of an `element` with the `normal` law to `all`.
 fn approach<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
     (Element { link, law }, normal): (&Element<L, W, R>, &AnyNormal<f64>),
     at: (&B, &B::Placed),
-    all: &mut Vec<Approach>,
+    all: &mut Gaps,
 ) {
     let seen = link.seen(at, &link.view(at.0, at.1));
-    let (first, speed) = (all.len(), seen.rate.norm());
-    law.each_gap(&seen.place, |gap| all.push(Approach { gap, speed, ..Approach::default() }));
-    let mut k = first;
-    law.each_gap(&(seen.place + seen.rate * DIFFERENCE), |gap| {
-        let rate = (gap - all[k].gap) / DIFFERENCE;
-        all[k] = Approach::new(all[k].gap, rate, speed, normal);
-        k += 1;
-    });
+    // No less than the length of the rate.
+    let speed = seen.rate.abs().sum();
+    law.each_gap(&seen.place, &seen.rate, |gap, rate| all.add(Approach::new(gap, rate, speed, normal)));
 }
 
 /// An element in a plane.
@@ -141,11 +132,7 @@ impl<const D: usize> PlanarElement<D> {
     }
 
     /// Adds the contacts that it is to `all`.
-    pub fn approach(
-        &self,
-        at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed),
-        all: &mut Vec<Approach>,
-    ) {
+    pub fn approach(&self, at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed), all: &mut Gaps) {
         match self {
             Self::Journal(element) => approach((element, &element.law.contact.normal), at, all),
             Self::Pad(element) => approach((element, &element.law.contact.normal), at, all),
@@ -172,7 +159,7 @@ impl SpatialElement {
     pub fn approach<const N: usize, const D: usize>(
         &self,
         at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
-        all: &mut Vec<Approach>,
+        all: &mut Gaps,
     ) {
         match self {
             Self::Pin(element) => approach((element, &element.law.contact.normal), at, all),

@@ -11,11 +11,9 @@ use slipfit_core::{
     integrator::{Dense, MotionOf, Step, StepOf},
     mechanism::Mechanism,
 };
+use slipfit_system::interrupt;
 
-use crate::{
-    closing::{self, Between, Gaps},
-    interrupt,
-};
+use crate::closing::{self, Between, Gaps};
 
 /// How well each step has to do.
 #[derive(Clone, Copy, Debug, PartialEq)]

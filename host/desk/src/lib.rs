@@ -9,7 +9,6 @@ pub mod closing;
 pub mod contact;
 pub mod element;
 pub mod error_control;
-pub mod interrupt;
 pub mod laws;
 pub mod out_of_line;
 pub mod pack;

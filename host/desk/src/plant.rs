@@ -16,12 +16,12 @@ use slipfit_core::{
         spatial::{FreeBodies, tree::SpatialTree},
     },
 };
+use slipfit_system::interrupt;
 
 use crate::{
     closing::Gaps,
     element::{PlanarElement, SpatialElement},
     error_control::{Accelerations, Effort, Stopped, Watched, integrate},
-    interrupt,
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},
     side_by_side::SideBySide,
@@ -129,9 +129,8 @@ impl<const D: usize> Watch<[[f64; 2]; D], D> for PlanarPlant<'_, D> {
         let bodies = self.mechanism().bodies();
         let placed = bodies.placed(pose, velocity);
         let turning = bodies.topology().iter().zip(velocity).filter(|(kind, _)| **kind == Kind::Turn);
-        gaps.spin = turning.fold(0.0, |most, (_, rate)| most.max(rate.abs()));
-        gaps.approaches.clear();
-        self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), &mut gaps.approaches));
+        gaps.begin(turning.fold(0.0, |most, (_, rate)| most.max(rate.abs())));
+        self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), gaps));
     }
 }
 
@@ -158,9 +157,8 @@ fn watch_free<const N: usize, const D: usize>(
     elements: &[SpatialElement],
     gaps: &mut Gaps,
 ) {
-    gaps.spin = placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm()));
-    gaps.approaches.clear();
-    elements.iter().for_each(|one| one.approach((bodies, placed), &mut gaps.approaches));
+    gaps.begin(placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm())));
+    elements.iter().for_each(|one| one.approach((bodies, placed), gaps));
 }
 
 macro_rules! plants {

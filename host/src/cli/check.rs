@@ -5,6 +5,10 @@ use std::{fmt::Write, path::PathBuf};
 use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
+use slipfit_tolerance::{
+    number::{fixed, level},
+    product::Product,
+};
 
 use super::{Failure, SceneArguments, mechanism, print, print_json, text_table, warn};
 use crate::{
@@ -14,9 +18,7 @@ use crate::{
         mobility::{contacts, degrees_of_freedom, rank_of_normals},
         self_locking::{DriveSide, Guide, guide},
     },
-    product::Product,
     scene::Scene,
-    show::number::{fixed, level},
 };
 
 /// Checks a scene: degrees of freedom, gaps at a level, the level that closes each pair, warnings.

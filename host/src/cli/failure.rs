@@ -1,14 +1,10 @@
 //! Why a command ends without having done its work.
 
+use slipfit_system::files::{Coincidence, WriteError};
+use slipfit_tolerance::counting::{run::RunError, study::StudyError};
 use thiserror::Error;
 
-use crate::{
-    dynamics::simulate::SimulateError,
-    firmware::force_table::TableError,
-    scene::SceneError,
-    system::files::{Coincidence, WriteError},
-    tolerance::counting::{run::RunError, study::StudyError},
-};
+use crate::{dynamics::simulate::SimulateError, firmware::force_table::TableError, scene::SceneError};
 
 /// Why a command did not do its work.
 #[derive(Debug, Error)]
@@ -53,8 +49,8 @@ impl From<RunError> for Failure {
             RunError::Interrupted { .. }
             | RunError::Study(StudyError::Interrupted)
             | RunError::Write(_)
-            | RunError::Header(_) => Self::Work(error.into()),
-            RunError::Simulate(error) => error.into(),
+            | RunError::Header(_)
+            | RunError::Work(_) => Self::Work(error.into()),
             bad => Self::Input(bad.to_string()),
         }
     }

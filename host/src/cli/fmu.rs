@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use maud::{DOCTYPE, Markup, html};
 use serde::Serialize;
+use slipfit_system::{files, interrupt};
 
 use super::{
     Failure, Moving, SceneArguments, endings, kernel::core_folder, print, print_json, simulate::StepArguments,
@@ -17,7 +18,6 @@ use crate::{
         mechanism_unit, slide_unit,
     },
     show::xml::printable,
-    system::{files, interrupt},
 };
 
 /// Packs the controller's kernel as an FMI co-simulation unit (FMU), for system simulators.

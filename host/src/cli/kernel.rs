@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
+use slipfit_system::files;
 
 use super::{Failure, Moving, SceneArguments, print, print_json, simulate::StepArguments, terminal::warn};
 use crate::{
@@ -15,10 +16,8 @@ use crate::{
         kernel_crate::{CrateFiles, crate_name, is_written, mechanism_crate, slide_crate},
         kernel_source::{EXTENSIONS, c_header, rust_source},
     },
-    mechanism,
-    mechanism::{ByDrive, Mechanism},
+    mechanism::{self, ByDrive, Mechanism},
     scene::ControllerSpec,
-    system::files,
 };
 
 /// Writes the scene as source code for firmware: a type and its constants.

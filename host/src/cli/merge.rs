@@ -7,18 +7,18 @@ use std::{
 
 use clap::Args;
 use slipfit_core::slide::CONTACTS;
+use slipfit_system::files;
+use slipfit_tolerance::counting::{
+    file::{Found, Part},
+    run::{RunError, check, merge},
+    study::Study,
+};
 
 use super::{Failure, endings, population, tolerance::OutputArguments};
 use crate::{
     mechanism::ByDrive,
     population::{part::StoredGaps, tally::Tally},
     scene::{Override, SceneFile},
-    system::files,
-    tolerance::counting::{
-        file::{Found, Part},
-        run::{RunError, check, merge},
-        study::Study,
-    },
 };
 
 /// Joins the parts that `tolerance --shard` or `population --shard` wrote.

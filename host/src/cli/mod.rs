@@ -32,6 +32,8 @@ use clap::{
     Args, CommandFactory, Parser, Subcommand,
     builder::{PossibleValuesParser, TypedValueParser},
 };
+use slipfit_system::{files, interrupt};
+use slipfit_tolerance::product::Product;
 
 use self::{
     failure::{Failure, refused},
@@ -39,9 +41,7 @@ use self::{
 };
 use crate::{
     mechanism::{ByDrive, Mechanism},
-    product::Product,
     scene::{Override, SHIPPED, Scene, SceneFile, shipped},
-    system::{files, interrupt},
 };
 
 /// A parser of the names of `all`.

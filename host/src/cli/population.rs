@@ -11,6 +11,14 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
+use slipfit_system::files;
+use slipfit_tolerance::{
+    counting::{
+        file::{Found as _, Source},
+        run::{Keep, Shard, checkpoint, run},
+    },
+    product::Product,
+};
 
 use super::{
     DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, check, endings, given, mechanism, print,
@@ -32,14 +40,8 @@ use crate::{
         subject::Subject,
         tally::{Counter, Duty, Tally},
     },
-    product::Product,
     scene::Scene,
     show::report::{Figure, units_page},
-    system::files,
-    tolerance::counting::{
-        file::{Found as _, Source},
-        run::{Keep, Shard, checkpoint, run},
-    },
 };
 
 pub(super) use reports::{LevelReport, UnitReport};

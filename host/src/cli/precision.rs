@@ -5,6 +5,8 @@ use std::{fmt::Write, path::PathBuf};
 use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
+use slipfit_system::files;
+use slipfit_tolerance::number::{level, or_dash, three_digits};
 
 use super::{
     DriveArguments, Failure, Moving, SceneArguments, given, print, print_json, progress, stability::MapArguments,
@@ -18,11 +20,7 @@ use crate::{
         work_precision,
     },
     scene::Scene,
-    show::{
-        export::precision_csv,
-        number::{level, or_dash, three_digits},
-    },
-    system::files,
+    show::export::precision_csv,
 };
 
 /// Measures error against run time of every integration scheme, step and number type.

@@ -8,6 +8,7 @@ use clap::Args;
 use maud::Markup;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
+use slipfit_system::files;
 
 use super::{
     Failure, Moving, SceneArguments,
@@ -40,7 +41,6 @@ use crate::{
         player,
         report::{Figure, unit_page},
     },
-    system::files,
 };
 
 pub(super) use words::why_undecided;

@@ -4,16 +4,13 @@ use std::{fmt::Write, path::Path};
 
 use clap::Args;
 use serde::Serialize;
+use slipfit_system::files;
 
 use super::{Failure, ThreadArguments, print, print_json, progress, text_table};
 use crate::{
-    quality::{
-        stability,
-        stability::{FACTORS, Grade, Point, strips::stability_map, tally},
-    },
+    quality::stability::{self, FACTORS, Grade, Point, strips::stability_map, tally},
     scene::Scene,
     show::export::stability_csv,
-    system::files,
 };
 
 /// What the stability map takes besides the scene and its outputs.

@@ -5,6 +5,8 @@ use std::{collections::BTreeMap, fmt::Write, path::PathBuf};
 use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
+use slipfit_system::files;
+use slipfit_tolerance::number::{fixed, level, or_dash};
 
 use super::{
     Failure, Moving, SceneArguments, ThreadArguments, check, given,
@@ -24,12 +26,7 @@ use crate::{
         trust::Trust,
     },
     scene::{Override, Scene},
-    show::{
-        export::sweep_csv,
-        figure::verdicts,
-        number::{fixed, level, or_dash},
-    },
-    system::files,
+    show::{export::sweep_csv, figure::verdicts},
 };
 
 /// Simulates a slide or a mechanism at many tolerance levels: where does it run, crawl, jam?

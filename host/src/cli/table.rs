@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use slipfit_core::table::AxisKind;
+use slipfit_system::files;
 
 use super::{
     DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, check, mechanism, print, print_json, progress,
@@ -20,14 +21,12 @@ use crate::{
             AxisSpec, TABLE_ADDRESS,
             export::{EXTENSIONS, ExportError, render},
         },
-        force_table,
         force_table::{
-            Demand, ForceTable, position,
-            position::{PositionTable, Reach, Wish},
+            self, Demand, ForceTable,
+            position::{self, PositionTable, Reach, Wish},
         },
     },
     scene::{LevelRange, parse_levels},
-    system::files,
 };
 
 pub(super) use words::coarse;

@@ -1,13 +1,13 @@
 //! The answer to what a sweep was asked for: from which level to which a slide runs, crawls or jams, and with what force.
 
 use serde::Serialize;
+use slipfit_tolerance::number::{fixed, level};
 
 use super::{
     driven::DriveKind,
     outcome::{BREAKAWAY_SPEED, JAMMED, Moment, Outcome, Verdict},
     sweep::{Level, Sweep},
 };
-use crate::show::number::{fixed, level};
 
 /// Neighbouring levels with one verdict. For a drive that turns, N and m are N·m and rad.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

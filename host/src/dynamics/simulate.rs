@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 use slipfit_core::{ParameterError, slide::CONTACTS};
+use slipfit_tolerance::number::ten_digits;
 use thiserror::Error;
 
 use super::{
@@ -14,10 +15,7 @@ use super::{
     trajectory::Trajectory,
     trust::Trust,
 };
-use crate::{
-    scene::{ControllerSpec, RunSpec, Scene},
-    show::number::ten_digits,
-};
+use crate::scene::{ControllerSpec, RunSpec, Scene};
 
 pub use super::scheme::ScalarKind;
 

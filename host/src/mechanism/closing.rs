@@ -13,11 +13,9 @@ use std::fmt;
 
 use serde::Serialize;
 use slipfit_core::{clearance::GapStatistics, slide::PINS};
+use slipfit_tolerance::number::{fixed, level};
 
-use crate::{
-    scene::Scene,
-    show::number::{fixed, level},
-};
+use crate::scene::Scene;
 
 /// Table 2's derived columns at one tolerance level. SI units.
 #[derive(Clone, Debug, PartialEq, Serialize)]

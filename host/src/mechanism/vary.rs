@@ -1,9 +1,9 @@
 //! Parameters of a mechanism that vary over the production, beside its gaps.
 
 use slipfit_core::menu::FrictionData;
+use slipfit_tolerance::model::Contributor;
 
 use super::{Mechanism, NormalData};
-use crate::tolerance::model::Contributor;
 
 /// A parameter that varies, and by how much from the scene's value: a mechanism's, or of another menu `P`.
 #[derive(Clone, Debug, PartialEq)]

@@ -208,8 +208,8 @@ mod tests {
         dynamics::example,
         population::{kept::Outcomes, production::Production},
         scene::{Scene, SceneFile, shipped},
-        tolerance::distribution::normal::quantile,
     };
+    use slipfit_tolerance::distribution::normal::quantile;
 
     type Variables<'a> = &'a dyn Fn(usize) -> f64;
 

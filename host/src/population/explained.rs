@@ -152,8 +152,8 @@ pub fn explained(units: u64, marked: &[Marked], variables: usize) -> Option<Expl
 #[cfg(test)]
 mod tests {
     use super::{Explained, Marked, explained};
-    use crate::tolerance::distribution::normal::{quantile, tail};
     use slipfit_core::sampling::stream::{Rng, unit_stream};
+    use slipfit_tolerance::distribution::normal::{quantile, tail};
 
     /// Independent uniform numbers.
     fn uniforms(seed: u64) -> impl FnMut() -> f64 {

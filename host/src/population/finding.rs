@@ -1,8 +1,7 @@
 //! What is known of a probability after independent repeats: a figure with its error, a bound, or why there is no figure.
 
 use serde::{Serialize, Serializer};
-
-use crate::tolerance::{
+use slipfit_tolerance::{
     failure::{
         importance::mean_and_error,
         subset::Stopped,
@@ -219,7 +218,7 @@ impl Estimate {
 #[cfg(test)]
 mod tests {
     use super::{Estimate, Finding, REPEATS, Reason};
-    use crate::tolerance::failure::subset::Stopped;
+    use slipfit_tolerance::failure::subset::Stopped;
 
     #[test]
     fn no_figure_is_given_that_is_not_known() {

@@ -9,15 +9,13 @@ use slipfit_core::{
     sampling::stream::{Rng, derived, unit_stream},
     slide::ABSENT,
 };
+use slipfit_tolerance::distribution::normal;
 
 use super::{
     statistics::{Share, malfunctions},
     subject::Subject,
 };
-use crate::{
-    dynamics::{outcome::Verdict, simulate::SimulateError},
-    tolerance::distribution::normal,
-};
+use crate::dynamics::{outcome::Verdict, simulate::SimulateError};
 
 /// Distances from the mean unit, root mean square in standard deviations of the gaps.
 pub const DISTANCES: [f64; 7] = [0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0];

@@ -3,7 +3,7 @@
 //! A unit is drawn again from its number. So numbers are kept, of the first units that malfunction and of the first that do not; of a
 //! rare malfunction these are all that do.
 
-use crate::tolerance::counting::file::{FormatError, Reader, integer};
+use slipfit_tolerance::counting::file::{FormatError, Reader, integer};
 
 /// The most units of either outcome that are kept.
 const MOST: usize = 1 << 14;

@@ -1,6 +1,8 @@
 //! Kinds of malfunction as limit states over independent standard normal scores: margins that change steadily with the unit.
 
 use serde::Serialize;
+use slipfit_system::interrupt;
+use slipfit_tolerance::failure::Margins;
 
 use super::{
     Unit,
@@ -9,13 +11,9 @@ use super::{
     subject::Subject,
     unit::{Decisive, Fault},
 };
-use crate::{
-    dynamics::{
-        outcome::{JAMMED, OVERRUNS, RUNS, Verdict},
-        simulate::SimulateError,
-    },
-    system::interrupt,
-    tolerance::failure::Margins,
+use crate::dynamics::{
+    outcome::{JAMMED, OVERRUNS, RUNS, Verdict},
+    simulate::SimulateError,
 };
 
 /// Speed, as a share of the command, below which units do not differ.
@@ -189,8 +187,8 @@ mod tests {
             outcome::{JAMMED, RUNS},
         },
         population::{production::Production, unit::Decisive},
-        tolerance::failure::Margins,
     };
+    use slipfit_tolerance::failure::Margins;
 
     #[test]
     fn a_unit_malfunctions_in_one_way_only() {

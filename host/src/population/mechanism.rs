@@ -1,6 +1,7 @@
 //! Units of a mechanism's production, each run by the desk.
 
 use rayon::prelude::*;
+use slipfit_system::interrupt;
 
 use super::{
     Unit, UnitOutcome,
@@ -16,7 +17,6 @@ use crate::{
     },
     mechanism::{ByDrive, Mechanism, confirmed, run},
     scene::RunSpec,
-    system::interrupt,
 };
 
 /// Error that a step may make, as a share of the mechanism's own speed, unless the scene allows more.

@@ -28,8 +28,9 @@ pub mod unit;
 use rayon::prelude::*;
 use slipfit_core::slide::CONTACTS;
 pub use slipfit_desk::population::{Course, Figures, simulate, simulate_in};
+use slipfit_system::interrupt;
 
-use crate::{dynamics::simulate::SimulateError, system::interrupt};
+use crate::dynamics::simulate::SimulateError;
 
 #[cfg(test)]
 mod tests;

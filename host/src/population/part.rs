@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 use slipfit_core::slide::CONTACTS;
+use slipfit_tolerance::counting::file::{FormatError, Found, Reader, integer};
 
 use super::{
     Unit,
@@ -13,10 +14,7 @@ use super::{
     tally::{Tally, VERDICTS},
     unit::{FAULTS, UnitOutcome},
 };
-use crate::{
-    dynamics::outcome::Moment,
-    tolerance::counting::file::{FormatError, Found, Reader, integer},
-};
+use crate::dynamics::outcome::Moment;
 
 /// Units of a block.
 const BLOCK: u64 = 512;
@@ -228,10 +226,10 @@ mod tests {
             simulation::Simulation,
             tally::{Counter, Duty, Tally},
         },
-        tolerance::counting::{
-            file::{Found, Source},
-            run::{Keep, RunError, Shard, merge, run},
-        },
+    };
+    use slipfit_tolerance::counting::{
+        file::{Found, Source},
+        run::{Keep, RunError, Shard, merge, run},
     };
 
     #[test]

@@ -1,5 +1,7 @@
 //! Pictures of a population.
 
+use slipfit_tolerance::number::percent;
+
 use super::{
     hypothesis::{AtDistance, Hypothesis},
     statistics::Share,
@@ -8,10 +10,7 @@ use super::{
 };
 use crate::{
     dynamics::{driven::DriveKind, outcome::Verdict},
-    show::{
-        number::percent,
-        plot::{Chart, Look, Markers, Panel, PlotError, Series, Shape, line_chart},
-    },
+    show::plot::{Chart, Look, Markers, Panel, PlotError, Series, Shape, line_chart},
 };
 
 /// The most units that a picture marks.

@@ -5,6 +5,14 @@
 use std::{marker::PhantomData, ops::Range};
 
 use slipfit_core::{sampling::stream::derived, slide::CONTACTS};
+use slipfit_tolerance::{
+    model::{
+        Contributor,
+        lanes::{LANES, Lanes},
+    },
+    product::Product,
+    sampling::draw::DrawError,
+};
 
 use super::{
     source::{Columns, Held, Source, Stated, each_itself, of_statistics},
@@ -12,15 +20,7 @@ use super::{
 };
 use crate::{
     mechanism::{self, Mechanism},
-    product::Product,
     scene::Scene,
-    tolerance::{
-        model::{
-            Contributor,
-            lanes::{LANES, Lanes},
-        },
-        sampling::draw::DrawError,
-    },
 };
 
 /// The most units of a production.
@@ -211,8 +211,8 @@ mod tests {
     use crate::{
         dynamics::example,
         scene::{Scene, SceneFile, shipped},
-        tolerance::{distribution::normal::Scores, model::lanes::LANES},
     };
+    use slipfit_tolerance::{distribution::normal::Scores, model::lanes::LANES};
 
     fn moments(values: impl Iterator<Item = f64>) -> [f64; 2] {
         let values: Vec<f64> = values.collect();

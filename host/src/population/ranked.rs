@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::tolerance::counting::file::{FormatError, Reader, integer};
+use slipfit_tolerance::counting::file::{FormatError, Reader, integer};
 
 /// Classes that are kept apart. Where there are more, each two become one.
 const MOST: usize = 1 << 15;

@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 use slipfit_core::sampling::stream::derived;
+use slipfit_tolerance::failure::{Margins, subset};
 
 use super::{
     finding::{Finding, REPEATS, Reason},
@@ -14,10 +15,7 @@ use super::{
     production::Production,
     subject::Subject,
 };
-use crate::{
-    dynamics::simulate::SimulateError,
-    tolerance::failure::{Margins, subset},
-};
+use crate::dynamics::simulate::SimulateError;
 
 /// Repeats that find out whether there is anything to be found.
 const PILOTS: usize = 4;
@@ -160,14 +158,12 @@ mod tests {
     use rayon::prelude::*;
 
     use super::probability;
-    use crate::{
-        population::{
-            finding::{Estimate, Finding, Reason},
-            limit_state::Kind,
-            unit::Decisive,
-        },
-        tolerance::failure::Margins,
+    use crate::population::{
+        finding::{Estimate, Finding, Reason},
+        limit_state::Kind,
+        unit::Decisive,
     };
+    use slipfit_tolerance::failure::Margins;
 
     /// A margin of three scores.
     struct Of<F>(F);
@@ -188,7 +184,7 @@ mod tests {
 
     /// z with P(Z > z) = `probability`.
     fn limit(probability: f64) -> f64 {
-        -crate::tolerance::distribution::normal::quantile(probability)
+        -slipfit_tolerance::distribution::normal::quantile(probability)
     }
 
     /// How often the stated interval holds what is known, over 200 seeds. With 181 or fewer the chance of a true 95 % is below

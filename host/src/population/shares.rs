@@ -1,6 +1,7 @@
 //! Pictures of where malfunction comes from: the histogram of forces, the sides on which units fail, what drives them.
 
 use slipfit_core::slide::CONTACTS;
+use slipfit_tolerance::number::fixed;
 
 use super::{
     drivers::Driver,
@@ -16,7 +17,6 @@ use crate::{
     show::{
         bars::{Bar, Block, bars},
         chart::outline,
-        number::fixed,
         plot::{Chart, Look, Panel, PlotError, Series, small_chart},
     },
 };

@@ -5,6 +5,14 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
+use slipfit_system::files::WriteError;
+use slipfit_tolerance::counting::{
+    file::{Found as _, Part},
+    run::{RunError, Work},
+};
+
+use crate::dynamics::simulate::SimulateError;
+
 use super::{
     Unit,
     part::{Settings, StoredGaps},
@@ -12,13 +20,6 @@ use super::{
     simulate_units,
     subject::Subject,
     tally::{Counter, Tally},
-};
-use crate::{
-    system::files::WriteError,
-    tolerance::counting::{
-        file::{Found as _, Part},
-        run::{RunError, Work},
-    },
 };
 
 /// Where units go one by one, beside being counted: in order, each once.
@@ -50,6 +51,15 @@ pub struct Simulation<'a, S: Subject> {
     pub counter: Counter<'a, S>,
     /// Who else wants them.
     pub listener: Option<Mutex<Listener<'a, S::Gaps>>>,
+}
+
+impl From<SimulateError> for RunError {
+    fn from(error: SimulateError) -> Self {
+        match error {
+            SimulateError::Interrupted => Self::Interrupted { saved: None },
+            error => Self::Work(error.into()),
+        }
+    }
 }
 
 impl<S: Subject<Gaps: StoredGaps>> Simulation<'_, S> {

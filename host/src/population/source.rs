@@ -3,9 +3,7 @@
 use std::ops::{Deref, Range};
 
 use slipfit_core::clearance::GapStatistics;
-
-use super::production::MOST_UNITS;
-use crate::tolerance::{
+use slipfit_tolerance::{
     failure::gathered,
     model::{
         Contributor, Distribution, Measure, Model, Quantity, Variation,
@@ -17,6 +15,8 @@ use crate::tolerance::{
         sampler::{Method, Sampler},
     },
 };
+
+use super::production::MOST_UNITS;
 
 /// What a scene says of a gap.
 pub struct Stated {

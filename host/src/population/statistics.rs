@@ -1,13 +1,13 @@
 //! What a population's units did, together.
 
 use serde::Serialize;
+use slipfit_tolerance::{distribution::normal, statistics::binomial};
 
 use super::{
     Unit,
     ranked::Ranked,
     tally::{Duty, Tally},
 };
-use crate::tolerance::{distribution::normal, statistics::binomial};
 
 /// Chance beyond either end of an interval of 95 %.
 const SIDE: f64 = 0.025;

@@ -1,12 +1,9 @@
 //! Reading the law along a contact's normal.
 
 use slipfit_core::menu::ContactData;
+use slipfit_tolerance::unit::{self, Quantity};
 
-use super::{
-    Problem, SceneError,
-    unit::{self, Quantity},
-    value::Field,
-};
+use super::{Problem, SceneError, value::Field};
 use crate::mechanism::{NormalData, Rebound};
 
 const EXPONENT: Quantity = Quantity { units: unit::ONE, range: [1.0, 4.0] };

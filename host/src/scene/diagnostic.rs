@@ -3,13 +3,12 @@
 use std::{cell::RefCell, fmt, ops::Range};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str};
-
-use crate::product::{
+use slipfit_tolerance::number::ten_digits;
+use slipfit_tolerance::product::{
     contacts::PlacementError, dimension::ShapeError, expression::Fault, iso286::ClassError, iso2768::BandError,
 };
 
 use super::{GapError, LevelError};
-use crate::show::number::ten_digits;
 
 /// What is wrong with a scene. Keys are written in full, such as `slide.mass`; values as they were typed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,8 +1,9 @@
 //! A scene file as a whole: a product with its tolerances, a slide that moves, or both.
 
 use slipfit_core::clearance::GapStatistics;
+use slipfit_tolerance::{product::Product, theory::moments};
 
-use crate::{mechanism::Mechanism, product::Product, tolerance::theory::moments};
+use crate::mechanism::Mechanism;
 
 use super::{
     Override, Problem, Scene, SceneError,

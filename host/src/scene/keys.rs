@@ -1,6 +1,6 @@
 //! The keys of a scene file.
 
-use crate::product::feature::Shape;
+use slipfit_tolerance::product::feature::Shape;
 
 use super::{
     Problem, drawing,

@@ -20,7 +20,6 @@ mod shipped;
 #[cfg(test)]
 mod tests;
 mod tree;
-pub(crate) mod unit;
 mod value;
 pub mod vary;
 mod written;
@@ -32,11 +31,9 @@ use slipfit_core::{
     menu::{ContactData, FrictionData, SlideData},
     slide::{ABSENT, Body, CONTACTS, PINS, box_inertia},
 };
+use slipfit_tolerance::number::ten_digits;
 
-use crate::{
-    dynamics::scheme::{IntegratorKind, ScalarKind},
-    show::number::ten_digits,
-};
+use crate::dynamics::scheme::{IntegratorKind, ScalarKind};
 
 pub use diagnostic::{Problem, SceneError};
 pub use file::SceneFile;

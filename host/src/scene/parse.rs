@@ -7,6 +7,7 @@ use slipfit_core::{
     menu::{ContactData, FrictionData},
     slide::{CONTACTS, PINS, box_inertia},
 };
+use slipfit_tolerance::unit::{self, Quantity};
 
 use crate::{
     dynamics::scheme::{IntegratorKind, ScalarKind},
@@ -18,10 +19,9 @@ use super::{
     SlideSpec,
     contact::impact,
     diagnostic::{COMMAND_LINE, Found},
-    parse_levels, plausible,
-    plausible::Loads,
+    parse_levels,
+    plausible::{self, Loads},
     tree::{Source, Value},
-    unit::{self, Quantity},
     value::Field,
     vary::vary,
 };

@@ -1,16 +1,10 @@
 //! The pins of a scene and their gaps: statistics as they stand, or the name of a measure that has them.
 
 use slipfit_core::{clearance::GapStatistics, slide::PINS};
+use slipfit_tolerance::model::{Model, Quantity as Kind, Sum};
+use slipfit_tolerance::unit::{self, Quantity};
 
-use crate::tolerance::model::{Model, Quantity as Kind, Sum};
-
-use super::{
-    GapMeasures, PinSpec, Problem, SURFACES, SceneError,
-    parse::POINT,
-    tree::Value,
-    unit::{self, Quantity},
-    value::Field,
-};
+use super::{GapMeasures, PinSpec, Problem, SURFACES, SceneError, parse::POINT, tree::Value, value::Field};
 
 /// The mean of a gap.
 pub(super) const MEAN: Quantity = Quantity { units: unit::LENGTH, range: [-100.0, 100.0] };

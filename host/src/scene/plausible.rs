@@ -2,12 +2,10 @@
 
 use std::f64::consts::PI;
 
-use crate::show::number::{ten_digits, three_digits};
+use slipfit_tolerance::number::{ten_digits, three_digits};
+use slipfit_tolerance::unit::{self, Unit};
 
-use super::{
-    unit::{self, Unit},
-    value::Field,
-};
+use super::value::Field;
 
 /// Earth's gravity (m/s²).
 const EARTH: f64 = 9.81;

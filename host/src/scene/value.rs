@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
+use slipfit_tolerance::unit::Quantity;
+
 use super::{
     Problem, SceneError,
     diagnostic::Found,
     tree::{Node, Value},
-    unit::Quantity,
 };
 
 /// A value and the full name of its key.

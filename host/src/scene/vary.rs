@@ -1,11 +1,11 @@
 //! Parameters of a slide that vary over the production, beside its gaps.
 
 use slipfit_core::menu::FrictionData;
+use slipfit_tolerance::unit::{self, Quantity};
 
 use super::{
     Problem, Scene, SceneError,
     product::{SIGMA_DEFAULT, deviation},
-    unit::{self, Quantity},
     value::Field,
 };
 use crate::mechanism::{self, rub_more, tilted_x, tilted_z};

@@ -1,6 +1,6 @@
 //! Scene files with other tolerances: the text as it is but for these.
 
-use crate::product::costed::Costed;
+use slipfit_tolerance::product::costed::Costed;
 
 /// The `text` of the scene file that `costed` was read from, with `tolerances` (SI), one each, in `digits` significant digits
 /// and never wider. Those that do not stand in the file stay.

@@ -1,7 +1,8 @@
 //! Named shares as bars, in blocks with a heading each. Blue and vermilion (Okabe and Ito) can be told apart by every eye.
 
+use slipfit_tolerance::number::{fixed, typeset};
+
 use super::{
-    number::{fixed, typeset},
     palette::{INK, NEGATIVE, POSITIVE},
     svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, wrapped},
 };

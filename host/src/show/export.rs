@@ -3,8 +3,8 @@
 use std::{io, io::Write};
 
 use slipfit_core::{clearance::GapClass, slide::ABSENT};
+use slipfit_tolerance::number::ten_digits;
 
-use super::number::ten_digits;
 use crate::{
     dynamics::{driven::DriveKind, outcome::Moment, sweep::Sweep, trajectory::Trajectory},
     mechanism::Samples,

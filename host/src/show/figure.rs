@@ -1,10 +1,9 @@
 //! The figures of a sweep, velocity and force over time (the paper's Figs. 8 and 9) and verdict and force over n, and those
 //! of one unit.
 
-use super::{
-    number::{level, typeset},
-    plot::{Chart, Look, Markers, Panel, PlotError, Scale, Series, Shape, line_chart},
-};
+use slipfit_tolerance::number::{level, typeset};
+
+use super::plot::{Chart, Look, Markers, Panel, PlotError, Scale, Series, Shape, line_chart};
 use crate::{
     dynamics::{
         outcome::{Outcome, Verdict},

@@ -188,8 +188,13 @@ fn reordered(scene: &Scene, seed: u64) -> (Scene, Vec<usize>) {
     let (mut order, joints) = (shuffled(scene.bodies.len()), shuffled(scene.joints.len()));
     let mut new = in_order(scene, &order, &joints);
     let (old_start, new_start) = (start(scene), start(&new));
-    let moves = |(i, body): (usize, &usize)| (old_start[*body].velocity - new_start[i].velocity).norm() > 1e-12;
-    if order.iter().enumerate().any(moves) {
+    // What hangs on what may depend on the order, and with it whose start is relative to whom.
+    let differs = |(i, body): (usize, &usize)| {
+        let (old, new) = (&old_start[*body], &new_start[i]);
+        let moved = (old.velocity - new.velocity).norm() + (old.spin - new.spin).norm();
+        moved + (old.place - new.place).norm() + (old.turned - new.turned).norm() > 1e-12
+    };
+    if order.iter().enumerate().any(differs) {
         order.sort_unstable();
         new = in_order(scene, &order, &joints);
     }

@@ -10,7 +10,7 @@ use super::{Contact, Law, Response, Rub, steady};
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
     law::{Friction, Normal},
-    linear::length,
+    linear::{growing, length},
     mechanism::Way,
     system::planar::left,
 };
@@ -45,6 +45,12 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
     fn gap(&self, place: &SVector<S, 4>) -> S {
         let [distance, _] = length(&Vector2::new(place[0], place[1]));
         self.clearance - distance
+    }
+
+    #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, 4>, rate: &SVector<S, 4>, mut see: impl FnMut(S, S)) {
+        let [distance, speed] = growing(&Vector2::new(place[0], place[1]), &Vector2::new(rate[0], rate[1]));
+        see(self.clearance - distance, -speed);
     }
 
     #[inline(always)]

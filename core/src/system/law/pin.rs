@@ -89,10 +89,12 @@ impl<S: Scalar, G: Fit<Number = S>, N: Normal<S>, F: Friction<S>> Law<S, 3> for 
     }
 
     #[inline(always)]
-    fn each_gap(&self, place: &SVector<S, 3>, see: impl FnMut(S)) {
+    fn each_gap(&self, place: &SVector<S, 3>, rate: &SVector<S, 3>, mut see: impl FnMut(S, S)) {
         let [left, right, rail, wall] = self.gaps.gaps();
-        let [x, y, _] = place.data.0[0];
-        [left + x, right - x, wall + y, rail - y].into_iter().for_each(see);
+        let ([x, y, _], [u, v, _]) = (place.data.0[0], rate.data.0[0]);
+        [(left + x, u), (right - x, -u), (wall + y, v), (rail - y, -v)]
+            .into_iter()
+            .for_each(|(gap, rate)| see(gap, rate));
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use super::{Contact, Law, Response, steady};
 use crate::{
     SMatrix, SVector, Scalar, Vector2, Vector3,
     law::{Friction, Normal},
-    linear::length,
+    linear::{growing, length},
     mechanism::Way,
     system::planar::left,
 };
@@ -61,6 +61,12 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Ring<S, N, F> {
     fn gap(&self, place: &SVector<S, 3>) -> S {
         let [distance, _] = length(&Vector2::new(place[0], place[1]));
         self.clearance - distance
+    }
+
+    #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, 3>, rate: &SVector<S, 3>, mut see: impl FnMut(S, S)) {
+        let [distance, speed] = growing(&Vector2::new(place[0], place[1]), &Vector2::new(rate[0], rate[1]));
+        see(self.clearance - distance, -speed);
     }
 
     #[inline(always)]

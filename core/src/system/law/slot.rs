@@ -36,9 +36,10 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Slot<S, N, F> {
     }
 
     #[inline(always)]
-    fn each_gap(&self, place: &SVector<S, 2>, see: impl FnMut(S)) {
+    fn each_gap(&self, place: &SVector<S, 2>, rate: &SVector<S, 2>, mut see: impl FnMut(S, S)) {
         let [low, high] = self.gaps;
-        [low + place[0], high - place[0]].into_iter().for_each(see);
+        see(low + place[0], rate[0]);
+        see(high - place[0], -rate[0]);
     }
 
     #[inline(always)]

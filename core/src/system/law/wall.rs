@@ -87,6 +87,11 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
     }
 
     #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, 2>, rate: &SVector<S, 2>, mut see: impl FnMut(S, S)) {
+        see(self.gap + place[0], rate[0]);
+    }
+
+    #[inline(always)]
     fn response(
         &self,
         _: S,
@@ -132,6 +137,11 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 3> for Wall<S, N, F> {
     #[inline(always)]
     fn gap(&self, place: &SVector<S, 3>) -> S {
         self.gap + self.sign * self.axis.of(place.data.0[0])
+    }
+
+    #[inline(always)]
+    fn each_gap(&self, place: &SVector<S, 3>, rate: &SVector<S, 3>, mut see: impl FnMut(S, S)) {
+        see(self.gap(place), self.sign * self.axis.of(rate.data.0[0]));
     }
 
     #[inline(always)]

@@ -12,10 +12,10 @@ use slipfit_core::{
     pose::Pose,
     slide::{CONTACTS, Energy, Power, Slide},
 };
+use slipfit_system::interrupt;
 
 use crate::{
     error_control::Stopped,
-    interrupt,
     laws::{AnySlide, SlidingSlide, StickingSlide},
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor, ScalarKind},

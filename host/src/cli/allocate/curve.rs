@@ -1,9 +1,10 @@
 //! Cost against defects, as CSV and as a picture.
 
+use slipfit_tolerance::number::{ten_digits, three_digits};
+
 use super::report::Report;
 use crate::show::{
     chart::{Chart, Look, Panel, Scale, Series},
-    number::{ten_digits, three_digits},
     plot::{PlotError, line_chart},
 };
 

@@ -1,6 +1,11 @@
 //! How many units malfunction with given tolerances.
 
 use indicatif::ProgressBar;
+use slipfit_tolerance::allocate::{
+    AllocateError,
+    confirm::Counted,
+    requirement::{Kind, Requirement},
+};
 
 use super::Tolerances;
 use crate::{
@@ -9,11 +14,6 @@ use crate::{
     population::{
         production::Production,
         study::{Judgement, judge},
-    },
-    tolerance::allocate::{
-        AllocateError,
-        confirm::Counted,
-        requirement::{Kind, Requirement},
     },
 };
 

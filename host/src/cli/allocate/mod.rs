@@ -10,30 +10,28 @@ use std::path::PathBuf;
 use clap::Args;
 use indicatif::ProgressBar;
 use slipfit_core::sampling::stream::derived;
+use slipfit_system::files;
+use slipfit_tolerance::{
+    allocate::{
+        AllocateError,
+        check::check as checked_units,
+        confirm::{Counted, confirmed, least_units},
+        cost::Process,
+        curve::{LEVELS, curve as cost_against_defects},
+        requirement::{Kind, OfMeasures, Requirement},
+        search::{Figures as _, Found, search},
+    },
+    counting::study::{MOST_UNITS, StudyError},
+    model::Model,
+    product::{Product, costed::Costed},
+};
 
 use self::{
     function::{Function, Limits},
     report::{Confirmation, Report},
 };
 use super::{Failure, SceneArguments, ThreadArguments, check, counter, given, print, print_json, progress, warn};
-use crate::{
-    product::{Product, costed::Costed},
-    scene::{Override, SceneFile, with_tolerances},
-    system::files,
-    tolerance::{
-        allocate::{
-            AllocateError,
-            check::check as checked_units,
-            confirm::{Counted, confirmed, least_units},
-            cost::Process,
-            curve::{LEVELS, curve as cost_against_defects},
-            requirement::{Kind, OfMeasures, Requirement},
-            search::{Figures as _, Found, search},
-        },
-        counting::study::{MOST_UNITS, StudyError},
-        model::Model,
-    },
-};
+use crate::scene::{Override, SceneFile, with_tolerances};
 
 /// Digits of a tolerance that is written, and of one that is looked at.
 const DIGITS: usize = 6;

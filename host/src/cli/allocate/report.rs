@@ -1,22 +1,20 @@
 //! What was found, for tables and for machines.
 
 use serde::Serialize;
-
-use crate::{
-    product::{Product, costed::Costed},
-    scene::tolerance,
-    show::number::{fixed, three_digits},
-    tolerance::{
-        allocate::{
-            check::{Check, Checked},
-            confirm::{Confirmed, Counted},
-            curve::{LEVELS, Point},
-            requirement::{Kind, Requirement, Row},
-            search::Found,
-        },
-        model::Model,
+use slipfit_tolerance::{
+    allocate::{
+        check::{Check, Checked},
+        confirm::{Confirmed, Counted},
+        curve::{LEVELS, Point},
+        requirement::{Kind, Requirement, Row},
+        search::Found,
     },
+    model::Model,
+    number::{fixed, three_digits},
+    product::{Product, costed::Costed},
 };
+
+use crate::scene::tolerance;
 
 /// Prices below this share of the cost are rounding.
 const NOTHING: f64 = 1e-12;

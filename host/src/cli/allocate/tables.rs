@@ -1,14 +1,13 @@
 //! What was found, for people.
 
-use super::report::{Confirmation, Measured, Report, Required};
-use crate::{
-    cli::text_table,
-    show::number::{fixed, or_dash, per_million, percent, three_digits},
-    tolerance::{
-        allocate::{requirement::Row, search::MET},
-        model::Model,
-    },
+use slipfit_tolerance::{
+    allocate::{requirement::Row, search::MET},
+    model::Model,
+    number::{fixed, or_dash, per_million, percent, three_digits},
 };
+
+use super::report::{Confirmation, Measured, Report, Required};
+use crate::cli::text_table;
 
 /// A number with six digits at most.
 fn digits(value: f64) -> String {

@@ -3,6 +3,8 @@
 use std::{fmt::Write, path::Path};
 
 use serde::Serialize;
+use slipfit_system::files;
+use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 
 use super::{GapReport, gap_reports};
 use crate::{
@@ -12,8 +14,6 @@ use crate::{
         feedback::{Reversal, reversals},
         self_locking::{DriveSide, Locked, locked},
     },
-    show::number::{fixed, level, or_dash, ten_digits},
-    system::files,
 };
 
 #[derive(Serialize)]

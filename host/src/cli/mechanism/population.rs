@@ -3,6 +3,11 @@
 use std::fmt::Write;
 
 use serde::Serialize;
+use slipfit_system::files;
+use slipfit_tolerance::{
+    number::{fixed, level, or_dash},
+    product::Product,
+};
 
 use super::warnings_of;
 use crate::{
@@ -29,12 +34,7 @@ use crate::{
         subject::Subject,
         tally::Tally,
     },
-    product::Product,
-    show::{
-        number::{fixed, level, or_dash},
-        report::{Figure, units_page},
-    },
-    system::files,
+    show::report::{Figure, units_page},
 };
 
 /// Random combinations at each distance: fewer than of a slide, whose units take less time.

@@ -5,6 +5,8 @@ use std::fmt::Write;
 use maud::Markup;
 use nalgebra::Vector3;
 use serde::Serialize;
+use slipfit_system::files;
+use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
@@ -22,11 +24,9 @@ use crate::{
     show::{
         export::rows_csv,
         figure::{columns_over_time, word},
-        number::{fixed, level, or_dash, ten_digits},
         player,
         report::{Figure, unit_page},
     },
-    system::files,
 };
 
 #[derive(Serialize)]

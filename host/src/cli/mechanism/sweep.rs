@@ -4,18 +4,15 @@ use std::fmt::Write;
 
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
+use slipfit_system::files;
+use slipfit_tolerance::number::{fixed, level, or_dash};
 
 use super::{DriveReport, Wanted, shown, units};
 use crate::{
     cli::{Failure, ThreadArguments, print, print_json, progress, text_table, warn},
     dynamics::{answer::ranges_of, outcome::Outcome},
     mechanism::{Action, Mechanism, RunError, confirmed},
-    show::{
-        export::rows_csv,
-        figure::drives_over_n,
-        number::{fixed, level, or_dash},
-    },
-    system::files,
+    show::{export::rows_csv, figure::drives_over_n},
 };
 
 #[derive(Serialize)]

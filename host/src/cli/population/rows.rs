@@ -2,13 +2,11 @@
 
 use std::path::Path;
 
+use slipfit_system::files::{self, WriteError, Writing};
+
 use crate::{
     population::{Unit, subject::Subject},
     show::export::UnitRows,
-    system::{
-        files,
-        files::{WriteError, Writing},
-    },
 };
 
 /// Rows of units on their way into a file.

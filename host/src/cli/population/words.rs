@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use slipfit_tolerance::number::{self, fixed, level, or_dash};
+
 use super::{Arguments, Found, LevelReport, rare};
 use crate::{
     cli::{simulate::why_undecided, text_table},
@@ -15,7 +17,6 @@ use crate::{
         unit::Fault,
     },
     scene::Scene,
-    show::number::{self, fixed, level, or_dash},
 };
 
 /// Drivers that are listed.

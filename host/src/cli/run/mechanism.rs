@@ -3,6 +3,12 @@
 use std::fmt::Write;
 
 use serde::Serialize;
+use slipfit_tolerance::{
+    distribution::normal,
+    number::{fixed, per_million, ten_digits},
+    product::Product,
+    report::Report as Measures,
+};
 
 use super::{
     Arguments, UNITS,
@@ -26,23 +32,17 @@ use crate::{
         driven::Driven,
         sweep::Sweep,
     },
-    firmware::{
-        force_table,
-        force_table::{Demand, ForceTable},
-    },
+    firmware::force_table::{self, Demand, ForceTable},
     mechanism::ByDrive,
     population::{
         mechanism::MechanismPopulation, production::Production as DrawnProduction, statistics::Statistics,
         study::Population, tally::Duty,
     },
-    product::Product,
     show::{
         export::sweep_csv,
         figure::{forces, velocities, verdicts},
-        number::{fixed, per_million, ten_digits},
         report::{Clearances, Figure, Flash, Production, ReportInput, report},
     },
-    tolerance::{distribution::normal, report::Report as Measures},
 };
 
 /// The pictures: of a force, and of a torque.

@@ -8,6 +8,13 @@ mod slide;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use slipfit_tolerance::{
+    analysis::conclude,
+    counting::{run::RunError, study::Study},
+    number::fixed,
+    product::Product,
+    report::report,
+};
 
 use super::{
     DRAWING, DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, progress, sweep::LevelArguments,
@@ -17,14 +24,8 @@ use output::Output;
 
 use crate::{
     dynamics::{answer::ranges, driven::Driven, sweep::Sweep},
-    firmware::{force_table, force_table::Demand},
-    product::Product,
-    show::{number::fixed, report::Production},
-    tolerance::{
-        analysis::conclude,
-        counting::{run::RunError, study::Study},
-        report::{picture::pictures, report},
-    },
+    firmware::force_table::{self, Demand},
+    show::{report::Production, tolerances::pictures},
 };
 
 /// The main job: says at which tolerance levels the product works and what force it takes.

@@ -2,14 +2,16 @@
 
 use std::path::PathBuf;
 
+use slipfit_system::files;
+
+use crate::show::measures_csv::measures_csv;
+
 use crate::{
     cli::{Failure, SceneArguments, refused},
     show::{
         plot::PlotError,
         report::{Figure, Production},
     },
-    system::files,
-    tolerance::report::measures_csv,
 };
 
 /// The page.

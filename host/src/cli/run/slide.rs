@@ -3,6 +3,12 @@
 use std::fmt::Write;
 
 use serde::Serialize;
+use slipfit_tolerance::{
+    distribution::normal::tail,
+    number::{fixed, per_million},
+    product::Product,
+    report::Report as Measures,
+};
 
 use super::{
     Arguments, UNITS,
@@ -28,24 +34,18 @@ use crate::{
         outcome::Verdict,
         sweep::{Keep, Sweep, sweep},
     },
-    firmware::{
-        force_table,
-        force_table::{Demand, ForceTable},
-    },
+    firmware::force_table::{self, Demand, ForceTable},
     mechanism::{
         closing::{closing_level, derived},
         self_locking::{DriveSide, guide},
     },
     population::{production::Production as DrawnProduction, statistics::Statistics, study::Population, tally::Duty},
-    product::Product,
     scene::Scene,
     show::{
         export::sweep_csv,
         figure::{forces, velocities, verdicts},
-        number::{fixed, per_million},
         report::{Clearances, Figure, Flash, Production, ReportInput, Units as UnitsShown, report},
     },
-    tolerance::{distribution::normal::tail, report::Report as Measures},
 };
 
 /// The pictures.

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use slipfit_core::clearance::GapClass;
+use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 
 use super::Arguments;
 use crate::{
@@ -16,7 +17,6 @@ use crate::{
         trust::Trust,
     },
     scene::Scene,
-    show::number::{fixed, level, or_dash, ten_digits},
 };
 
 impl Arguments {

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use slipfit_core::table::{AxisKind, MotionVerdict};
+use slipfit_tolerance::number::{fixed, level, ten_digits};
 
 use crate::{
     dynamics::{
@@ -13,7 +14,6 @@ use crate::{
         flash::{AxisSpec, TABLE_REGION},
         force_table::{ForceTable, position::Reach},
     },
-    show::number::{fixed, level, ten_digits},
 };
 
 /// Share of what units that run need from which a table's error is worth a warning.

@@ -1,15 +1,13 @@
 //! Designed experiments.
 
 use serde::Serialize;
-
-use crate::{
-    cli::{Failure, print, print_json, text_table},
-    show::number::fixed,
-    tolerance::{
-        model::{Measure, Model},
-        theory::experiment::{Design, Finding, experiment},
-    },
+use slipfit_tolerance::{
+    model::{Measure, Model},
+    number::fixed,
+    theory::experiment::{Design, Finding, experiment},
 };
+
+use crate::cli::{Failure, print, print_json, text_table};
 
 /// Makes the experiment and shows it.
 pub(super) fn show(title: &str, model: &Model, design: Design, json: bool) -> Result<(), Failure> {

@@ -3,12 +3,12 @@
 use std::fmt::{self, Write};
 
 use serde::Serialize;
+use slipfit_tolerance::number::fixed;
 
 use crate::{
     cli::text_table,
     mechanism::closing::{Table2, derived},
     scene::{SURFACES, Scene},
-    show::number::fixed,
 };
 
 /// What follows from a slide's gaps at a tolerance level.

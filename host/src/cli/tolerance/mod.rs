@@ -10,24 +10,22 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 use serde::Serialize;
+use slipfit_system::files;
+use slipfit_tolerance::{
+    counting::{
+        file::Source,
+        run::{Keep, RunError, Shard, checkpoint, run},
+        study::{Settings, Study},
+    },
+    model::{Model, lanes::LANES},
+    number::ten_digits,
+    sampling::sampler::Method,
+    theory::experiment::Design,
+};
 
 use self::gaps::Given;
 use super::{DRAWING, Failure, SceneArguments, ThreadArguments, endings, print, print_json, progress, warn};
-use crate::{
-    scene::Scene,
-    show::number::ten_digits,
-    system::files,
-    tolerance::{
-        counting::{
-            file::Source,
-            run::{Keep, RunError, Shard, checkpoint, run},
-            study::{Settings, Study},
-        },
-        model::{Model, lanes::LANES},
-        sampling::sampler::Method,
-        theory::experiment::Design,
-    },
-};
+use crate::scene::Scene;
 
 pub(super) use output::OutputArguments;
 
@@ -216,7 +214,7 @@ fn draws_csv(study: &Study, bar: &ProgressBar) -> anyhow::Result<Vec<u8>> {
             writer.write_record(std::iter::once((first + lane as u64).to_string()).chain(fields))?;
         }
         bar.inc(units);
-        if crate::system::interrupt::requested() {
+        if slipfit_system::interrupt::requested() {
             return Err(RunError::Interrupted { saved: None }.into());
         }
     }

@@ -4,24 +4,24 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
+use slipfit_system::files;
+use slipfit_tolerance::{
+    analysis::conclude,
+    counting::{
+        run::RunError,
+        study::{Study, Tally},
+    },
+    report,
+};
 
 use super::{gaps::Columns, tables::tables};
 use crate::{
     cli::{Failure, endings, print, print_json, refused},
     mechanism::closing::closing_level,
     scene::Scene,
-    system::files,
-    tolerance::{
-        analysis::conclude,
-        counting::{
-            run::RunError,
-            study::{Study, Tally},
-        },
-        report,
-        report::{
-            measures_csv,
-            picture::{file_names, pictures},
-        },
+    show::{
+        measures_csv::measures_csv,
+        tolerances::{file_names, pictures},
     },
 };
 

@@ -2,15 +2,14 @@
 
 use std::fmt::Write;
 
-use crate::{
-    cli::text_table,
-    show::number::{fixed, or_dash, per_million, three_digits},
-    tolerance::{
-        report::{MeasureReport, Report, SumReport},
-        statistics::estimate::Estimate,
-        theory::rss::{BENDER, GILSON},
-    },
+use slipfit_tolerance::{
+    number::{fixed, or_dash, per_million, three_digits},
+    report::{MeasureReport, Report, SumReport},
+    statistics::estimate::Estimate,
+    theory::rss::{BENDER, GILSON},
 };
+
+use crate::cli::text_table;
 
 /// All that a person is shown of `report`.
 pub(super) fn tables(report: &Report) -> String {

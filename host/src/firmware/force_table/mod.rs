@@ -9,10 +9,11 @@ pub mod position;
 pub mod time;
 
 use slipfit_core::table::{Encoding, MotionVerdict};
+use slipfit_tolerance::number::three_digits;
 use thiserror::Error;
 
 use super::flash::{AxisSpec, FlashError};
-use crate::{dynamics::simulate::SimulateError, scene::LevelRange, show::number::three_digits};
+use crate::{dynamics::simulate::SimulateError, scene::LevelRange};
 
 pub use picture::picture;
 pub use time::{check, make};

@@ -1,15 +1,13 @@
 //! A force table as a picture: what a lookup gives, node by node.
 
 use slipfit_core::table::{AxisKind, Table};
+use slipfit_tolerance::number::{level, typeset};
 
 use super::ForceTable;
 use crate::{
     dynamics::driven::DriveKind,
     firmware::flash::AxisSpec,
-    show::{
-        number::{level, typeset},
-        plot::{Chart, Look, Panel, PlotError, Scale, Series, line_chart},
-    },
+    show::plot::{Chart, Look, Panel, PlotError, Scale, Series, line_chart},
 };
 
 /// The force of `table` over its second axis, a line a level, as SVG; of a table over three axes at the last speed.

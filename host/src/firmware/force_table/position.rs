@@ -12,6 +12,7 @@
 
 use rayon::prelude::*;
 use slipfit_core::table::{AxisKind, Encoding};
+use slipfit_tolerance::number::ten_digits;
 use thiserror::Error;
 
 use super::{
@@ -28,7 +29,6 @@ use crate::{
     },
     firmware::flash,
     scene::{LevelRange, RunSpec},
-    show::number::ten_digits,
 };
 
 /// Distance of the table's positions (m), unless its region of flash has too little room.

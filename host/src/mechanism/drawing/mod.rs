@@ -10,11 +10,11 @@ use super::{Action, Joint, JointKind, Mechanism, NamedDrive};
 use crate::{
     scene::SURFACES,
     show::{
-        number::ten_digits,
         palette::{Colour, KINDS, PAPER, SOFT},
         svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, WIDTH},
     },
 };
+use slipfit_tolerance::number::ten_digits;
 use symbol::Pen;
 use view::{Extent, View};
 

@@ -1,11 +1,12 @@
 //! The work-precision plot.
 
+use slipfit_tolerance::number::{level, typeset};
+
 use super::{Point, Problem, Truth};
 use crate::{
     dynamics::simulate::ScalarKind,
     show::{
         layout::extent,
-        number::{level, typeset},
         plot::{Chart, Look, Panel, PlotError, Scale, Series, line_chart},
     },
 };

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 use slipfit_core::{menu::FrictionData, slide::CONTACTS};
+use slipfit_tolerance::number::three_digits;
 
 use super::{EVERY, Problem, run_of};
 use crate::{
@@ -13,7 +14,6 @@ use crate::{
     },
     mechanism::{ByDrive, Mechanism, MechanismRun, RunError, controller_run, run},
     scene::{ControllerSpec, RunSpec, Scene},
-    show::number::three_digits,
 };
 
 /// Steps of all fixed-step schemes (s).

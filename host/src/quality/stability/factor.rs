@@ -1,6 +1,7 @@
 //! What the stability map varies, and how far.
 
 use slipfit_core::{menu::FrictionData, slide::CONTACTS};
+use slipfit_tolerance::number::fixed;
 
 use crate::{
     dynamics::{
@@ -8,7 +9,6 @@ use crate::{
         simulate::Settings,
     },
     scene::{ControllerSpec, Scene},
-    show::number::fixed,
 };
 
 /// One point of the map: a scene with the unit to be simulated.

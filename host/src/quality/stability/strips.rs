@@ -1,9 +1,10 @@
 //! The stability map as a picture: a strip a factor and scheme, a cell a value. Colours that the colour-blind can tell
 //! apart (Okabe and Ito), and a letter in every cell that is not sound.
 
+use slipfit_tolerance::number::typeset;
+
 use super::{FACTORS, Grade, Point, SCHEMES, tally};
 use crate::show::{
-    number::typeset,
     palette::Colour,
     svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE},
 };

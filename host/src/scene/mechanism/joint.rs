@@ -1,12 +1,12 @@
 //! Joints, ideal or with play.
 
 use slipfit_core::menu::{ContactData, FrictionData};
+use slipfit_tolerance::number::three_digits;
 
 use super::{Field, Gaps, Laws, Names, Problem, Quantity, SceneError, direction, laws, note, place, tables, unit};
 use crate::{
     mechanism::{Joint, JointKind, Mechanism, NormalData, STOP_MOST},
     scene::{SURFACES, parse::POINT, pins::MEAN, plausible},
-    show::number::three_digits,
 };
 
 const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 1e5] };

@@ -8,20 +8,20 @@ mod tests;
 mod vary;
 
 use slipfit_core::{clearance::GapStatistics, menu::FrictionData};
+use slipfit_tolerance::product::Product;
+use slipfit_tolerance::unit::{self, Quantity};
 
 use super::{
     LevelRange, Problem, SceneError, contact,
     diagnostic::Found,
-    parse, plausible,
-    plausible::Loads,
+    parse,
+    plausible::{self, Loads},
     tree::Value,
-    unit::{self, Quantity},
     value::Field,
 };
 use crate::{
     dynamics::driven::DriveKind,
     mechanism::{Gap, Joint, JointKind, Laws, Mechanism, MountError, Mounts, NormalData, Port, spatial},
-    product::Product,
     scene::SURFACES,
 };
 
@@ -262,7 +262,7 @@ impl Gaps<'_> {
     fn measured(&self, field: &Field) -> Result<(GapStatistics<f64>, Option<usize>), SceneError> {
         let model = self.product.map(|product| &product.model);
         let index = super::pins::length(field, model)?;
-        let moments = model.map(crate::tolerance::theory::moments::of_measures).unwrap_or_default();
+        let moments = model.map(slipfit_tolerance::theory::moments::of_measures).unwrap_or_default();
         let of = moments.get(index).map(|of| GapStatistics { mean: of.mean, deviation: of.deviation });
         of.map(|of| (of, Some(index))).ok_or_else(|| field.wrong_type("a measure of the product"))
     }

@@ -1,13 +1,13 @@
 //! What varies of a mechanism from unit to unit, beside its gaps.
 
 use slipfit_core::menu::FrictionData;
+use slipfit_tolerance::unit::{self, Quantity};
 
 use super::{Field, Names, Problem, SceneError, tables};
 use crate::{
     mechanism::{Action, Mechanism, NormalData, Parameter, Varied},
     scene::{
         product::{SIGMA_DEFAULT, deviation},
-        unit::{self, Quantity},
         vary::{DAMPING, FRICTIONLESS, MASS, RAMP_END, SHARE, TILT, UNTILTED, across},
     },
 };

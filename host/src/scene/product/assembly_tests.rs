@@ -1,18 +1,17 @@
 //! Products of parts, features and mates.
 
-use super::tests::{at, check_all, close, parse, product};
-use crate::{
-    product::Product,
-    scene::{Scene, SceneFile, shipped},
-    tolerance::{
-        analysis,
-        model::{
-            Variation, ZoneRule,
-            nested::{Nest, Nested},
-        },
-        theory::{derivative::expansion, moments},
+use slipfit_tolerance::{
+    analysis,
+    model::{
+        Variation, ZoneRule,
+        nested::{Nest, Nested},
     },
+    product::Product,
+    theory::{derivative::expansion, moments},
 };
+
+use super::tests::{at, check_all, close, parse, product};
+use crate::scene::{Scene, SceneFile, shipped};
 
 fn variable(product: &Product, name: &str) -> usize {
     let mut first = 0;

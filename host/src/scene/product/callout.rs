@@ -1,6 +1,8 @@
 //! Reads the tolerances of a feature: what moves it, and what it moves with.
 
-use crate::{
+use slipfit_tolerance::{
+    model::ZoneRule,
+    number::ten_digits,
     product::{
         assembly::With,
         contact::{cross, unit},
@@ -8,10 +10,10 @@ use crate::{
         feature::{Bonus, Shape},
         iso2768::{self, GeometryClass},
     },
-    scene::{Problem, SceneError, keys, tree::Value, unit as units, unit::Quantity, value::Field},
-    show::number::ten_digits,
-    tolerance::model::ZoneRule,
+    unit::{self as units, Quantity},
 };
+
+use crate::scene::{Problem, SceneError, keys, tree::Value, value::Field};
 
 use super::{
     Draft,

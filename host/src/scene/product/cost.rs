@@ -23,25 +23,20 @@
 //! 1 unless they are stated. `range` has the tightest and the widest tolerance that the process holds; with `step` only every
 //! so often between, with `grades` the standard tolerances of ISO 286 instead.
 
-use crate::{
+use slipfit_tolerance::{
+    allocate::{
+        cost::{Law, Process, Values},
+        requirement::{Kind, Requirement},
+    },
+    model::{Contributor, Measure, Quantity as Measured, Variation},
     product::{
         costed::{Costed, Written},
         iso286,
     },
-    scene::{
-        Problem, SceneError,
-        tree::Value,
-        unit::{self, Quantity},
-        value::Field,
-    },
-    tolerance::{
-        allocate::{
-            cost::{Law, Process, Values},
-            requirement::{Kind, Requirement},
-        },
-        model::{Contributor, Measure, Quantity as Measured, Variation},
-    },
+    unit::{self, Quantity},
 };
+
+use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
 use super::{
     quantity::{self, LENGTH},

@@ -1,6 +1,7 @@
 //! Reads datums: single ones, common ones (A-B), and systems of them.
 
-use crate::{
+use slipfit_tolerance::{
+    model::lanes::Lanes,
     product::{
         assembly::{Carried, Placement, With},
         common::Common,
@@ -9,9 +10,9 @@ use crate::{
         feature::Shape,
         float::{Float, Size},
     },
-    scene::{Problem, SceneError, tree::Value, value::Field},
-    tolerance::model::lanes::Lanes,
 };
+
+use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
 use super::{
     Draft,

@@ -1,7 +1,8 @@
 //! Frames of datums: which datum turns them, and what an incomplete one leaves free.
 
+use slipfit_tolerance::product::Product;
+
 use super::tests::{at, check_all, close, parse, product_of};
-use crate::product::Product;
 
 fn variable(product: &Product, name: &str) -> usize {
     let at = product.model.contributors.iter().position(|contributor| contributor.name == name);

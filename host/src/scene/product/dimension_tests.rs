@@ -1,17 +1,16 @@
 //! Distributions and kinds of dimensions.
 
-use super::tests::{close, parse};
-use crate::{
-    scene::{SceneError, SceneFile},
-    tolerance::{
-        analysis::analyse,
-        counting::study::Settings,
-        model::{Distribution, Quantity, Variation},
-        report::report,
-        sampling::sampler::Method,
-        theory::quadrature::mean_and_deviation,
-    },
+use slipfit_tolerance::{
+    analysis::analyse,
+    counting::study::Settings,
+    model::{Distribution, Quantity, Variation},
+    report::report,
+    sampling::sampler::Method,
+    theory::quadrature::mean_and_deviation,
 };
+
+use super::tests::{close, parse};
+use crate::scene::{SceneError, SceneFile};
 
 /// A scene with one dimension of 5 mm, and the distribution and the tolerance that `keys` give it.
 fn alone(keys: &str) -> Result<SceneFile, SceneError> {

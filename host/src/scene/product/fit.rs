@@ -1,12 +1,10 @@
 //! Holes on pins, tried out before anything is analysed: does every pin go into its hole, does every mate close?
 
-use crate::{
+use slipfit_tolerance::{
+    model::{Model, lanes::Lanes},
+    number::{fixed, ten_digits},
     product::assembly::Assembly,
-    show::number::{fixed, ten_digits},
-    tolerance::{
-        model::{Model, lanes::Lanes},
-        theory::moments::drawn,
-    },
+    theory::moments::drawn,
 };
 
 use super::Fit;

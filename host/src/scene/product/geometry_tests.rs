@@ -1,14 +1,13 @@
 //! Refinements, datums of their own, common datums, holes on pins, against closed forms.
 
-use super::tests::{at, close, parse, product_of};
-use crate::{
+use slipfit_tolerance::{
+    analysis,
+    model::{Model, Variation},
     product::Product,
-    tolerance::{
-        analysis,
-        model::{Model, Variation},
-        theory::moments,
-    },
+    theory::moments,
 };
+
+use super::tests::{at, close, parse, product_of};
 
 fn variable(model: &Model, name: &str) -> usize {
     let at = model.contributors.iter().position(|contributor| contributor.name == name);

@@ -1,13 +1,15 @@
 //! Worst cases, contributors, undefined measures and far lots of scenes against closed forms.
 
-use super::tests::{close, parse, product_of};
-use crate::tolerance::{
+use slipfit_tolerance::{
     analysis::{Analysis, analyse, theory},
     counting::study::{Settings, StudyError},
     distribution::normal::{density, quantile, tail},
     report::{MeasureReport, report},
     sampling::sampler::Method,
+    theory::experiment::{Design, experiment},
 };
+
+use super::tests::{close, parse, product_of};
 
 /// Dimensions (name, value, lower and upper deviation; mm or with their units) and measures (keys in TOML).
 fn scene(dimensions: &[(&str, &str, &str)], measures: &[&str]) -> String {
@@ -36,8 +38,8 @@ fn analysed(text: &str, samples: u64) -> (Analysis, Vec<MeasureReport>) {
 fn worst_cases(text: &str) -> Vec<[f64; 2]> {
     let model = product_of(text).model;
     let found = theory(&model, 1, None).unwrap();
-    let scaled = |(worst, measure): (&crate::tolerance::theory::worst_case::WorstCase, _)| {
-        let measure: &crate::tolerance::model::Measure = measure;
+    let scaled = |(worst, measure): (&slipfit_tolerance::theory::worst_case::WorstCase, _)| {
+        let measure: &slipfit_tolerance::model::Measure = measure;
         worst.range.map(|end| end * measure.quantity.factor())
     };
     found.worst_cases.iter().zip(&model.measures).map(scaled).collect()
@@ -262,5 +264,42 @@ fn sigma_has_the_bounds_that_are_documented() {
         ("1", "", true),
     ] {
         assert_eq!(parse(&text(of_all, own), &[]).is_ok(), allowed, "{of_all} {own}");
+    }
+}
+
+/// The least and the greatest of y/x and its like, where x is 0.1 ± 0.2 mm or not below 0, and y 5 ± 0.1 mm.
+#[test]
+fn beside_a_pole_there_is_no_bound() {
+    for (is, least, [low, high]) in [
+        ("y/x", -0.1, [true, true]),
+        ("y/x", 0.0, [false, true]),
+        ("x - y^2/x", 0.0, [true, false]),
+        ("y/(x*x)*(1 mm)", -0.1, [false, true]),
+        ("1/(x - 0.07 mm)*(1 mm^2)", -0.1, [true, true]),
+        ("(1 mm)*(y/(1 mm))^9*(x/(1 mm))^9", -0.1, [false, false]),
+        ("max(0 mm, x + y - 5.39 mm)", -0.1, [false, false]),
+        ("y/(x + 0.101 mm)", -0.1, [false, false]),
+    ] {
+        let text = format!(
+            "[[dimension]]\nname = 'x'\nvalue = 0.1\ntolerance = {}\n[[dimension]]\nname = 'y'\nvalue = 5\ntolerance = 0.1\n\
+             [[measure]]\nname = 'm'\nis = '{is}'\nupper = 1e6\n",
+            0.1 - least
+        );
+        let found = worst_cases(&text)[0];
+        assert_eq!(found.map(f64::is_infinite), [low, high], "{is} from {least}: {found:?}");
+    }
+}
+
+/// The root of x − y + 0.05 mm has no value where x is a level below y.
+#[test]
+fn a_measure_without_a_value_in_one_run_has_no_mean_and_no_shares() {
+    let text = "[[dimension]]\nname = 'x'\nvalue = 1\ntolerance = 0.1\n[[dimension]]\nname = 'y'\nvalue = 1\ntolerance = 0.1\n\
+                [[measure]]\nname = 'm'\nis = 'sqrt((x - y + 0.05 mm) * 1 mm)'\n[[measure]]\nname = 'n'\nis = 'x'\n";
+    let model = product_of(text).model;
+    for (design, undefined) in [(Design::FullFactorial, 1), (Design::TwoLevel, 1), (Design::ThreeLevel, 3)] {
+        let findings = experiment(&model, design).unwrap().findings;
+        assert_eq!([findings[0].undefined, findings[1].undefined], [undefined, 0], "{design:?}");
+        assert!(findings[0].mean.is_nan() && findings[0].shares.iter().all(|share| share.is_nan()));
+        assert!((findings[1].mean - 1e-3).abs() < 1e-15 && (findings[1].shares[0] - 1.0).abs() < 1e-12);
     }
 }

@@ -1,6 +1,13 @@
 //! Reads mates: which contacts place which part, in what order, and how it has moved.
 
-use crate::{
+use slipfit_tolerance::{
+    model::{
+        Contributor, Variation, ZoneRule,
+        lanes::Lanes,
+        nested::{Nest, Nested},
+        widening::Widening,
+    },
+    number::ten_digits,
     product::{
         assembly::{Carried, Placement, With},
         contact::Contact,
@@ -9,15 +16,10 @@ use crate::{
         float::{Float, Size},
         pose::Pose,
     },
-    scene::{Problem, SceneError, tree::Value, unit, unit::Quantity, value::Field},
-    show::number::ten_digits,
-    tolerance::model::{
-        Contributor, Variation, ZoneRule,
-        lanes::Lanes,
-        nested::{Nest, Nested},
-        widening::Widening,
-    },
+    unit::{self, Quantity},
 };
+
+use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
 use super::{
     Draft, Fit,

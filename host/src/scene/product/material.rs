@@ -1,16 +1,15 @@
 //! Maximum and least material condition: which size a zone or a datum goes with, and how far.
 
-use crate::{
-    product::{
-        feature::{Bonus, Shape},
-        float::Size,
-    },
-    scene::{
-        Problem, SceneError,
-        drawing::{Modifier, named, split},
-        tree::Value,
-        value::Field,
-    },
+use slipfit_tolerance::product::{
+    feature::{Bonus, Shape},
+    float::Size,
+};
+
+use crate::scene::{
+    Problem, SceneError,
+    drawing::{Modifier, named, split},
+    tree::Value,
+    value::Field,
 };
 
 use super::{part::FeatureDraft, toleranced::Diameter};

@@ -2,15 +2,14 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use super::tests::{check_all, close, product_of};
-use crate::{
+use slipfit_tolerance::{
+    analysis::{Theory, analyse, theory},
+    counting::study::Settings,
     product::Product,
-    tolerance::{
-        analysis::{Theory, analyse, theory},
-        counting::study::Settings,
-        sampling::sampler::Method,
-    },
+    sampling::sampler::Method,
 };
+
+use super::tests::{check_all, close, product_of};
 
 fn theory_of(product: &Product) -> Theory {
     theory(&product.model, 1, None).unwrap()

@@ -1,17 +1,17 @@
 //! Reads measures and sums of them.
 
-use crate::{
+use slipfit_tolerance::{
+    model::{Function, Measure, Quantity as Measured, Sum, lanes::Lanes},
     product::{
         expression::{Expression, ExpressionError, Kind, Source, parse},
         feature::Shape,
         function::{Between, Formula, Measures},
     },
-    scene::{Problem, SceneError, unit, unit::Quantity, value::Field},
-    tolerance::{
-        model::{Function, Measure, Quantity as Measured, Sum, lanes::Lanes},
-        statistics::loss::Loss,
-    },
+    statistics::loss::Loss,
+    unit::{self, Quantity},
 };
+
+use crate::scene::{Problem, SceneError, value::Field};
 
 use super::{Draft, name, quantity::units, tables, texts, toleranced};
 

@@ -53,6 +53,8 @@
 //! datums of its own. Costs of tolerances and requirements of measures: see `cost`. Two datums that are one (A-B on a drawing) are "PART.A-PART.B", or a list in the list.
 
 #[cfg(test)]
+mod allocate_tests;
+#[cfg(test)]
 mod assembly_tests;
 mod callout;
 mod cost;
@@ -93,7 +95,9 @@ mod zone_tests;
 pub(super) use toleranced::SHAPES;
 pub(super) use toleranced::deviation;
 
-use crate::{
+use slipfit_tolerance::{
+    model::{Contributor, Distribution, Model, Quantity as Measured, Variation, ZoneRule, widening::Widening},
+    number::fixed,
     product::{
         Product,
         assembly::Assembly,
@@ -104,21 +108,13 @@ use crate::{
         function::Measures,
         iso2768::{General, WITHDRAWN},
     },
-    show::number::fixed,
-    tolerance::{
-        model::{Contributor, Distribution, Model, Quantity as Measured, Variation, ZoneRule, widening::Widening},
-        sampling::{copula, copula::Coefficient},
-    },
+    sampling::copula::{self, Coefficient},
+    unit::{self, Quantity},
 };
 
 use self::datum::{Datum, Frames};
 
-use super::{
-    Problem, SceneError,
-    tree::Value,
-    unit::{self, Quantity},
-    value::Field,
-};
+use super::{Problem, SceneError, tree::Value, value::Field};
 
 /// Standard deviations in half of a tolerance, where nothing else is said.
 pub(super) const SIGMA_DEFAULT: f64 = 3.0;

@@ -1,18 +1,15 @@
 //! Reads parts and where their features are; [`super::callout`] reads what the features' tolerances are.
 
-use crate::{
+use slipfit_tolerance::{
     product::{
         contact::{cross, unit},
         feature::{Feature, Shape},
         pose::Pose,
     },
-    scene::{
-        Problem, SceneError,
-        tree::Value,
-        unit::{self as units, Quantity},
-        value::Field,
-    },
+    unit::{self as units, Quantity},
 };
+
+use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
 use super::{Draft, callout, name, pattern::Pattern, tables, toleranced};
 
@@ -113,9 +110,11 @@ fn feature<'t, 's>(
         Shape::Plane => (Some(table.numbers("extents", &SIZE)?), direction(&table, "along")?),
         Shape::Point => {
             let extents = table.get("extents").map(|extents| extents.to_numbers(&SIZE)).transpose()?;
-            (extents, crate::product::contact::across(own_direction)[0])
+            (extents, slipfit_tolerance::product::contact::across(own_direction)[0])
         }
-        Shape::Axis => (Some([table.number("length", &SIZE)?; 2]), crate::product::contact::across(own_direction)[0]),
+        Shape::Axis => {
+            (Some([table.number("length", &SIZE)?; 2]), slipfit_tolerance::product::contact::across(own_direction)[0])
+        }
     };
     if cross(own_direction, along).iter().map(|x| x * x).sum::<f64>() < 1.0 - 1e-9 {
         let field = table.require("along", DIRECTION)?;

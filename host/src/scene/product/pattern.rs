@@ -4,17 +4,18 @@
 //! narrower one: √(x² + y²) + R·|θ| is at most half of their difference, R the distance of the farthest axis. Where the narrower
 //! zone has datums that hold the turn, it does not turn.
 
-use crate::{
+use slipfit_tolerance::{
+    model::{
+        Contributor, Variation,
+        nested::{Nest, Nested},
+    },
     product::{
         contact::{cross, norm, unit},
         feature::Shape,
     },
-    scene::{Problem, SceneError, value::Field},
-    tolerance::model::{
-        Contributor, Variation,
-        nested::{Nest, Nested},
-    },
 };
+
+use crate::scene::{Problem, SceneError, value::Field};
 
 use super::{
     Draft,

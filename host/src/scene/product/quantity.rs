@@ -1,14 +1,11 @@
 //! What kinds of numbers dimensions and measures are, and in which units a scene has them.
 
-use crate::{
-    scene::{
-        Problem, SceneError,
-        tree::Value,
-        unit::{self, Quantity},
-        value::Field,
-    },
-    tolerance::model::Quantity as Measured,
+use slipfit_tolerance::{
+    model::Quantity as Measured,
+    unit::{self, Quantity},
 };
+
+use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
 pub(super) const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [-1e7, 1e7] };
 

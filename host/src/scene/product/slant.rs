@@ -1,6 +1,6 @@
 //! Whether features are drawn as their orientations to datums say.
 
-use crate::{product::feature::Shape, show::number::fixed};
+use slipfit_tolerance::{number::fixed, product::feature::Shape};
 
 use super::{Draft, callout::Callout};
 

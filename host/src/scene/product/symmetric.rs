@@ -1,12 +1,11 @@
 //! What tolerances about an axis or a middle need of their datums: run-out, coaxiality, concentricity, symmetry.
 
-use crate::{
-    product::{
-        contact::{cross, norm},
-        feature::Shape,
-    },
-    scene::{Problem, SceneError, value::Field},
+use slipfit_tolerance::product::{
+    contact::{cross, norm},
+    feature::Shape,
 };
+
+use crate::scene::{Problem, SceneError, value::Field};
 
 use super::{Draft, datum::Datum, part::FeatureDraft};
 

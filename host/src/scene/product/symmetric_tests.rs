@@ -2,8 +2,9 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
+use slipfit_tolerance::theory::{derivative::expansion, moments, worst_case::linear};
+
 use super::tests::{check_all, close, product_of};
-use crate::tolerance::theory::{derivative::expansion, moments, worst_case::linear};
 
 /// Worst case and standard deviation of every measure (mm or rad), by their slopes.
 fn spreads(text: &str) -> Vec<([f64; 2], f64)> {

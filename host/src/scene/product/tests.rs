@@ -1,21 +1,20 @@
 //! The shipped products against known numbers, and what tests of products have in common.
 
-use super::judgement_tests::capped;
-use crate::{
-    product::Product,
-    scene::{Override, Problem, SceneError, SceneFile, shipped},
-    tolerance::{
-        analysis::analyse,
-        counting::study::Settings,
-        model::{
-            Distribution, Quantity, Variation,
-            lanes::{LANES, Lanes},
-        },
-        report::report,
-        sampling::sampler::Method,
-        theory::moments,
+use slipfit_tolerance::{
+    analysis::analyse,
+    counting::study::Settings,
+    model::{
+        Distribution, Quantity, Variation,
+        lanes::{LANES, Lanes},
     },
+    product::Product,
+    report::report,
+    sampling::sampler::Method,
+    theory::moments,
 };
+
+use super::judgement_tests::capped;
+use crate::scene::{Override, Problem, SceneError, SceneFile, shipped};
 
 pub(super) fn parse(text: &str, overrides: &[&str]) -> Result<SceneFile, SceneError> {
     let overrides: Vec<_> = overrides.iter().map(|text| Override::set(text)).collect();
@@ -250,7 +249,7 @@ fn general_tolerances_cover_place_and_no_form_beyond_an_orientation() {
     let told = "without a tolerance of their place: box.wall".to_owned();
     assert!(fixed.warnings.contains(&told), "{:?}", fixed.warnings);
     // All of the lean is that of the stated zone: the general flatness of 0.4 mm is not in force.
-    let theory = crate::tolerance::analysis::theory(&fixed.model, 1, None).unwrap();
+    let theory = slipfit_tolerance::analysis::theory(&fixed.model, 1, None).unwrap();
     let [low, high] = theory.worst_cases[0].linear;
     close(0.5 * (high - low), libm::atan(0.05 / 10.0), 1e-6);
 }

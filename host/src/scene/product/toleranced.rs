@@ -1,21 +1,18 @@
 //! Reads toleranced numbers.
 
-use crate::{
+use slipfit_tolerance::{
+    model::{Contributor, Distribution, Quantity as Measured, Variation},
+    number::fixed,
     product::{
         dimension::{Component, Deviation, Mean, Shape, ShapeError, Spread, Toleranced},
         expression::{Kind, Source},
         iso286,
         iso2768::{self, BandError, General, SizeClass},
     },
-    scene::{
-        Problem, SceneError,
-        tree::Value,
-        unit::{self, Quantity},
-        value::Field,
-    },
-    show::number::fixed,
-    tolerance::model::{Contributor, Distribution, Quantity as Measured, Variation},
+    unit::{self, Quantity},
 };
+
+use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
 pub(super) use super::quantity::LENGTH;
 use super::{Draft, SIGMA, name, quantity};

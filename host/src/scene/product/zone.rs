@@ -5,18 +5,17 @@
 
 use std::ops::Range;
 
-use crate::{
-    product::{dimension::Toleranced, feature::Shape},
-    scene::{Problem, SceneError},
-    tolerance::{
-        model::{
-            Contributor, Variation, ZoneRule,
-            nested::{Nest, Nested},
-            widening::Widening,
-        },
-        theory::quadrature::SIGMA_ZONE,
+use slipfit_tolerance::{
+    model::{
+        Contributor, Variation, ZoneRule,
+        nested::{Nest, Nested},
+        widening::Widening,
     },
+    product::{dimension::Toleranced, feature::Shape},
+    theory::quadrature::SIGMA_ZONE,
 };
+
+use crate::scene::{Problem, SceneError};
 
 use super::{
     Draft,

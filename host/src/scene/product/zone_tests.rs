@@ -1,12 +1,13 @@
 //! Axes and points in their zones by every rule, against closed forms and a sampler of its own.
 
-use super::tests::{close, product_of};
-use crate::tolerance::{
+use slipfit_tolerance::{
     analysis::{analyse, theory},
     counting::study::Settings,
     sampling::sampler::Method,
     theory::experiment::{Design, experiment},
 };
+
+use super::tests::{close, product_of};
 
 const RULES: [&str; 4] = ["sigma-zone", "truncated", "uniform-in-zone", "translation"];
 

@@ -6,10 +6,9 @@ mod probe;
 
 use std::fmt::Write;
 
-use super::{
-    keys::{Key, ROOT, join},
-    unit::{self, Unit},
-};
+use slipfit_tolerance::unit::{self, Unit};
+
+use super::keys::{Key, ROOT, join};
 use meaning::{DISTRIBUTIONS, MEANINGS};
 
 /// Kinds of quantities with their units.

@@ -1,10 +1,11 @@
 //! The axes of a chart: their ends, their ticks and how ticks are written.
 
+use slipfit_tolerance::number::{fixed, typeset};
+
 use super::PlotError;
 use crate::show::{
     chart::{Chart, Panel, Scale},
     layout::{Ticks, extent},
-    number::{fixed, typeset},
 };
 
 /// An axis from `low` to `high`, places on its scale, with its ticks.

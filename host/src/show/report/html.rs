@@ -1,14 +1,11 @@
 //! Pieces of the page.
 
 use maud::{Markup, PreEscaped, Render, html};
+use slipfit_tolerance::number::{fixed, level, typeset};
 
 use crate::{
     dynamics::outcome::Verdict,
-    show::{
-        figure::word,
-        number::{fixed, level, typeset},
-        svg::width,
-    },
+    show::{figure::word, svg::width},
 };
 
 /// The widest picture (px) that a phone shows without scrolling.

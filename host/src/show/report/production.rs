@@ -1,12 +1,13 @@
 //! How the product's measures vary, as a section of the page.
 
 use maud::{Markup, html};
+use slipfit_tolerance::{
+    number::{per_million, typeset},
+    report::{MeasureReport, Report, SumReport},
+};
 
 use super::html::{columns, figure, list, optional, real, row, table};
-use crate::{
-    show::number::{per_million, typeset},
-    tolerance::report::{MeasureReport, Report, SumReport, picture::Picture},
-};
+use crate::show::tolerances::Picture;
 
 /// The analysis of a product.
 pub struct Production {

@@ -1,4 +1,0 @@
-//! Files that are whole or not there, and Ctrl-C.
-
-pub mod files;
-pub mod interrupt;

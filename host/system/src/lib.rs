@@ -1,0 +1,5 @@
+//! What an operating system has: files that are whole or not there, and a request to stop.
+#![forbid(unsafe_code)]
+
+pub mod files;
+pub mod interrupt;
