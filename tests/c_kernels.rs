@@ -9,7 +9,8 @@ use std::{
 
 use slipfit::{
     firmware::kernel_crate::{mechanism_crate, slide_crate},
-    scene::{CD_ROM_SLIDE, Override, Scene, SceneFile, shipped},
+    scene::{CD_ROM_SLIDE, Override, SceneFile, shipped},
+    setup::Scene,
 };
 use slipfit_core::pose::Pose;
 use slipfit_problems::mechanisms;

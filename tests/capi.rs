@@ -13,8 +13,13 @@ use std::{
 };
 
 use slipfit::{
-    firmware::{flash::export, force_table, force_table::Demand, kernel_source},
-    scene::{CD_ROM_SLIDE, Override, Scene},
+    firmware::{
+        flash::export,
+        force_table::{self, Demand},
+        kernel_source,
+    },
+    scene::{CD_ROM_SLIDE, Override},
+    setup::Scene,
 };
 use slipfit_core::{
     ahead::{self, Ahead, Prediction},

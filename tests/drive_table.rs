@@ -6,8 +6,9 @@ use std::{
 };
 
 use slipfit::{
-    firmware::{force_table, force_table::Demand},
-    scene::{CD_ROM_SLIDE, Override, Scene},
+    firmware::force_table::{self, Demand},
+    scene::{CD_ROM_SLIDE, Override},
+    setup::Scene,
 };
 
 /// Its file, written into `folder`: the shipped slide's stroke with exact friction, at levels from 1 to 3.

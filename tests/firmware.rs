@@ -8,8 +8,12 @@ use std::{
 };
 
 use slipfit::{
-    firmware::{flash, force_table, force_table::Demand},
-    scene::{CD_ROM_SLIDE, Scene},
+    firmware::{
+        flash,
+        force_table::{self, Demand},
+    },
+    scene::CD_ROM_SLIDE,
+    setup::Scene,
 };
 use slipfit_tests::cross::{self, TARGET, cargo, printed};
 

@@ -5,7 +5,8 @@ use std::{fs, path::Path};
 use slipfit::{
     dynamics::simulate::{Settings, simulate},
     firmware::kernel_source::{rust_source, scene_data},
-    scene::{CD_ROM_SLIDE, Override, Scene},
+    scene::{CD_ROM_SLIDE, Override},
+    setup::Scene,
 };
 use slipfit_core::{
     integrator::ImplicitEuler,

@@ -13,10 +13,10 @@ use slipfit::{
     },
     firmware::{
         flash::{AxisSpec, ChannelSpec, TableSpec, encode},
-        force_table,
-        force_table::Demand,
+        force_table::{self, Demand},
     },
-    scene::{CD_ROM_SLIDE, Override, Scene},
+    scene::{CD_ROM_SLIDE, Override},
+    setup::Scene,
 };
 use slipfit_core::{
     monitor::{BankError, Estimate, LevelBank, Limits, Monitor, MonitorError, Report, Sample, Verdict, Watch},

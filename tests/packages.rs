@@ -8,9 +8,15 @@ use std::{
 };
 
 use slipfit::{
-    firmware::{flash::export, force_table, force_table::Demand, kernel_crate::mechanism_crate, kernel_source},
+    firmware::{
+        flash::export,
+        force_table::{self, Demand},
+        kernel_crate::mechanism_crate,
+        kernel_source,
+    },
     mechanism::rust_source,
-    scene::{CD_ROM_SLIDE, Override, Scene, SceneFile, shipped},
+    scene::{CD_ROM_SLIDE, Override, SceneFile, shipped},
+    setup::Scene,
 };
 use slipfit_tests::{
     cross::{cargo, printed, require_crates},

@@ -10,7 +10,8 @@ use std::{
 use serde_json::Value;
 use slipfit::{
     firmware::kernel_source::{c_header, rust_source},
-    scene::{CD_ROM_SLIDE, Scene},
+    scene::CD_ROM_SLIDE,
+    setup::Scene,
 };
 use slipfit_core::pose::Pose;
 use slipfit_tests::{

@@ -9,7 +9,8 @@ use slipfit::{
         scheme::{IntegratorKind, ScalarKind},
         simulate::{Run, Settings, simulate},
     },
-    scene::{CD_ROM_SLIDE, ControllerSpec, Scene},
+    scene::CD_ROM_SLIDE,
+    setup::{ControllerSpec, Scene},
 };
 use slipfit_core::{menu::FrictionData, slide::CONTACTS};
 use slipfit_tests::known_runs::{Reference, references};

@@ -3,10 +3,7 @@
 
 use std::{fmt::Write, fs, path::Path};
 
-use slipfit::{
-    firmware::kernel_crate::slide_crate,
-    scene::{CD_ROM_SLIDE, Scene},
-};
+use slipfit::{firmware::kernel_crate::slide_crate, scene::CD_ROM_SLIDE, setup::Scene};
 use slipfit_tests::cross::{self, TARGET, cargo, finished, printed};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");

@@ -9,8 +9,9 @@ use slipfit::{
         scheme::{IntegratorKind, ScalarKind},
         simulate::{Settings, simulate},
     },
-    quality::{stability, stability::Grade},
-    scene::{CD_ROM_SLIDE, ControllerSpec, Override, Scene},
+    quality::stability::{self, Grade},
+    scene::{CD_ROM_SLIDE, Override},
+    setup::{ControllerSpec, Scene},
 };
 use slipfit_core::slide::CONTACTS;
 

@@ -13,7 +13,8 @@ use slipfit::{
         simulate::{Settings, simulate},
         sweep::{Keep, sweep},
     },
-    scene::{CD_ROM_SLIDE, ControllerSpec, Override, Scene},
+    scene::{CD_ROM_SLIDE, Override},
+    setup::{ControllerSpec, Scene},
 };
 
 /// The most that the sweep may take of the time of one stroke by fixed steps, on two cores.

@@ -23,7 +23,8 @@ use slipfit::{
         simulate::{Settings, simulate as at_desk},
     },
     population::{Course, production::Production, simulate, simulate_in, unit},
-    scene::{CD_ROM_SLIDE, Scene},
+    scene::CD_ROM_SLIDE,
+    setup::Scene,
 };
 use slipfit_core::menu::SlideData;
 use slipfit_problems::cd_rom;

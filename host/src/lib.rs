@@ -15,7 +15,9 @@ pub mod quality;
 #[cfg(test)]
 mod reference;
 pub mod scene;
+pub mod setup;
 pub mod show;
+pub(crate) mod xml;
 
 pub use slipfit_system as system;
 pub use slipfit_tolerance as tolerance;

@@ -52,7 +52,7 @@ fn over_time_a_table_goes_on_beyond_the_stroke() {
     let (made, sweep) = force_table::make(&driven, Demand::Full, || ()).unwrap();
     let table = Table::<2>::open(&made.bytes).unwrap().expect_axes([AxisKind::Level, AxisKind::Time]).unwrap();
     assert_eq!(made.verdicts, [MotionVerdict::Runs; 2]);
-    let on = Mechanism { run: slipfit::scene::RunSpec { stroke: None, ..mechanism.run }, ..mechanism.clone() };
+    let on = Mechanism { run: slipfit::setup::RunSpec { stroke: None, ..mechanism.run }, ..mechanism.clone() };
     let step = f64::from(table.axes()[1].step());
     let mut apart: f64 = 0.0;
     for level in &sweep.levels {

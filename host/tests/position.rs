@@ -8,10 +8,11 @@ use slipfit::{
         simulate::{Settings, simulate},
     },
     firmware::force_table::{
-        Demand, TableError, position,
-        position::{PositionError, PositionTable, SAMPLE, Wish},
+        Demand, TableError,
+        position::{self, PositionError, PositionTable, SAMPLE, Wish},
     },
-    scene::{LevelRange, Override, RunSpec, Scene, shipped},
+    scene::{Override, shipped},
+    setup::{LevelRange, RunSpec, Scene},
 };
 use slipfit_core::{
     drive::Drive,

@@ -11,7 +11,8 @@ use slipfit::{
         Mechanism, run,
         self_locking::{DriveSide, guide, locked},
     },
-    scene::{Override, Scene, SceneFile},
+    scene::{Override, SceneFile},
+    setup::Scene,
 };
 
 /// Pins at x = ±62 mm, z = ±18 mm, by whose gaps a slide or a body on tracks is guided: left, right, rail and wall in the order left

@@ -18,7 +18,7 @@ use crate::{
         mobility::{contacts, degrees_of_freedom, rank_of_normals},
         self_locking::{DriveSide, Guide, guide},
     },
-    scene::Scene,
+    setup::Scene,
 };
 
 /// Checks a scene: degrees of freedom, gaps at a level, the level that closes each pair, warnings.

@@ -17,7 +17,7 @@ use crate::{
         Causality, CompileError, Entry, Fmi, Sources, Unit, archive, compile, description, identifier, library_path,
         mechanism_unit, slide_unit,
     },
-    show::xml::printable,
+    xml::printable,
 };
 
 /// Packs the controller's kernel as an FMI co-simulation unit (FMU), for system simulators.

@@ -17,7 +17,7 @@ use crate::{
         kernel_source::{EXTENSIONS, c_header, rust_source},
     },
     mechanism::{self, ByDrive, Mechanism},
-    scene::ControllerSpec,
+    setup::ControllerSpec,
 };
 
 /// Writes the scene as source code for firmware: a type and its constants.

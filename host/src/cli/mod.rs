@@ -41,7 +41,8 @@ use self::{
 };
 use crate::{
     mechanism::{ByDrive, Mechanism},
-    scene::{Override, SHIPPED, Scene, SceneFile, shipped},
+    scene::{Override, SHIPPED, SceneFile, shipped},
+    setup::Scene,
 };
 
 /// A parser of the names of `all`.

@@ -31,7 +31,6 @@ use crate::{
         drivers::Driver,
         hypothesis::Hypothesis,
         part::{Settings, StoredGaps},
-        picture,
         production::Production,
         rare::{Question, Rare},
         simulation::{Listener, Simulation},
@@ -40,8 +39,11 @@ use crate::{
         subject::Subject,
         tally::{Counter, Duty, Tally},
     },
-    scene::Scene,
-    show::report::{Figure, units_page},
+    setup::Scene,
+    show::{
+        report::{Figure, units_page},
+        units,
+    },
 };
 
 pub(super) use reports::{LevelReport, UnitReport};
@@ -296,12 +298,12 @@ impl Arguments {
     ) -> Result<(), Failure> {
         let found = self.threads.install(|| self.find(scene, production, tally))??;
         if let Some(path) = &self.plot {
-            let svg = picture::forces(scene, &found.population.tally, self.force_limit);
+            let svg = units::forces(scene, &found.population.tally, self.force_limit);
             let svg = svg.map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         if let Some(path) = &self.plot_distance {
-            let svg = picture::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;
+            let svg = units::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         let mut warnings = check::warnings_of(scene);
@@ -309,7 +311,7 @@ impl Arguments {
         warnings.extend(faults(&found.population));
         if let Some(path) = &self.page {
             let (mut units, _) = page::units(scene, production, &found.population, self.force_limit)?;
-            let svg = picture::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;
+            let svg = units::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;
             units.figures.push(Figure { caption: HYPOTHESIS.into(), svg });
             let words = self.summary(scene, &found);
             files::write(path, units_page(&scene.title, &words, &units, &warnings).into_string().as_bytes())?;

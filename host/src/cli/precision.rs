@@ -17,10 +17,9 @@ use crate::{
     mechanism::ByDrive,
     quality::precision::{
         OPENING, Point, Problem, STROKE, Solver, Truth, measure, quickest_within, solvers, solvers_of, truth, truth_of,
-        work_precision,
     },
-    scene::Scene,
-    show::export::precision_csv,
+    setup::Scene,
+    show::{export::precision_csv, precision::work_precision},
 };
 
 /// Measures error against run time of every integration scheme, step and number type.

@@ -34,7 +34,8 @@ use crate::{
         production::{MOST_UNITS, Production},
         unit::scene_of,
     },
-    scene::{Override, Scene, parse_every},
+    scene::{Override, parse_every},
+    setup::Scene,
     show::{
         export,
         figure::{unit_over_time, word},

@@ -8,9 +8,9 @@ use slipfit_system::files;
 
 use super::{Failure, ThreadArguments, print, print_json, progress, text_table};
 use crate::{
-    quality::stability::{self, FACTORS, Grade, Point, strips::stability_map, tally},
-    scene::Scene,
-    show::export::stability_csv,
+    quality::stability::{self, FACTORS, Grade, Point, tally},
+    setup::Scene,
+    show::{export::stability_csv, stability::stability_map},
 };
 
 /// What the stability map takes besides the scene and its outputs.

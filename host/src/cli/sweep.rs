@@ -25,7 +25,8 @@ use crate::{
         sweep::{Keep, Level, Sweep, sweep},
         trust::Trust,
     },
-    scene::{Override, Scene},
+    scene::Override,
+    setup::Scene,
     show::{export::sweep_csv, figure::verdicts},
 };
 

@@ -26,7 +26,9 @@ use crate::{
             position::{self, PositionTable, Reach, Wish},
         },
     },
-    scene::{LevelRange, parse_levels},
+    scene::parse_levels,
+    setup::LevelRange,
+    show::force_table::picture,
 };
 
 pub(super) use words::coarse;
@@ -194,7 +196,7 @@ impl Arguments {
         let file = render(&stem, &extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
         files::write(&self.output, &file)?;
         if let Some(path) = &self.plot {
-            let svg = force_table::picture(kind, &table, driven.title()).map_err(anyhow::Error::from)?;
+            let svg = picture(kind, &table, driven.title()).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
         if self.scene.json {

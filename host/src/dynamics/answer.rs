@@ -140,7 +140,7 @@ mod tests {
             example,
             outcome::{Moment, Verdict},
         },
-        scene::LevelRange,
+        setup::LevelRange,
     };
 
     #[test]

@@ -8,7 +8,7 @@ use super::{
     simulate::{Run, Settings, SimulateError, Solver, simulate},
     trust::Trust,
 };
-use crate::scene::Scene;
+use crate::setup::Scene;
 
 /// How much finer than the desk's run the one is that it is held against.
 const FINER: f64 = 0.1;

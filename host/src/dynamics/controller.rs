@@ -14,7 +14,7 @@ use super::{
     trajectory::Trajectory,
     trust::Watch,
 };
-use crate::scene::{ControllerSpec, Scene};
+use crate::setup::{ControllerSpec, Scene};
 
 /// Runs the slide of `scene` with the given `gaps` (m) as `spec` has it.
 ///

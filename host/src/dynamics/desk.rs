@@ -29,7 +29,7 @@ use super::{
     trajectory::Trajectory,
     trust::Trust,
 };
-use crate::scene::Scene;
+use crate::setup::Scene;
 
 /// Stick bands in the error of speed that a step may make; see the top of the file.
 const STICK_BANDS: f64 = 4.0;

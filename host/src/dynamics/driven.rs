@@ -7,10 +7,7 @@ use super::{
     simulate::{Settings, SimulateError, simulate},
     sweep::{Level, classes},
 };
-use crate::{
-    firmware::flash,
-    scene::{LevelRange, RunSpec, Scene},
-};
+use crate::setup::{LevelRange, RunSpec, Scene, scene_hash};
 
 /// What a drive gives: a force along an axis, or a torque about one. Forces (N), speeds (m/s) and travel (m) of the one
 /// are torques (N·m), angular velocities (rad/s) and angles (rad) of the other.
@@ -151,7 +148,7 @@ impl Driven for Scene {
         let deviations = self.pins.iter().flat_map(|pin| pin.gaps.map(|gap| gap.map_or(0.0, |gap| gap.deviation)));
         let mut all = [0.0; CONTACTS];
         all.iter_mut().zip(deviations).for_each(|(slot, deviation)| *slot = deviation);
-        flash::scene_hash(&self.slide_data::<f64>(&self.gaps_at(&[0.0; CONTACTS])), &all)
+        scene_hash(&self.slide_data::<f64>(&self.gaps_at(&[0.0; CONTACTS])), &all)
     }
 
     fn level(&self, n: f64, Motion { speed, run, every }: Motion) -> Result<Level, SimulateError> {

@@ -4,7 +4,10 @@ use super::{
     driven::Driven,
     sweep::{Keep, Sweep},
 };
-use crate::scene::{CD_ROM_SLIDE, LevelRange, Scene};
+use crate::{
+    scene::CD_ROM_SLIDE,
+    setup::{LevelRange, Scene},
+};
 
 /// The scene of the paper.
 pub fn cd_rom() -> Scene {

@@ -7,7 +7,7 @@ use super::{
     outcome::Outcome,
     simulate::{Settings, SimulateError},
 };
-use crate::scene::Scene;
+use crate::setup::Scene;
 
 /// A moment of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use serde::Serialize;
 use slipfit_core::{drive::Drive, table::MotionVerdict};
 pub use slipfit_desk::settled::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled};
 
-use crate::scene::RunSpec;
+use crate::setup::RunSpec;
 
 /// Share of the commanded speed from which a unit runs.
 pub const RUNS: f64 = 0.5;

@@ -15,7 +15,7 @@ use super::{
     trajectory::Trajectory,
     trust::Trust,
 };
-use crate::scene::{ControllerSpec, RunSpec, Scene};
+use crate::setup::{ControllerSpec, RunSpec, Scene};
 
 pub use super::scheme::ScalarKind;
 

@@ -9,9 +9,8 @@ use super::{
 };
 use crate::{
     dynamics::driven::{DriveKind, Driven},
-    mechanism,
-    mechanism::{ByDrive, Mechanism, NamedDrive, RunError},
-    scene::Scene,
+    mechanism::{self, ByDrive, Mechanism, NamedDrive, RunError},
+    setup::Scene,
 };
 
 /// A crate's name that Cargo or the compiler does not take.

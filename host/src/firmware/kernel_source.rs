@@ -9,10 +9,7 @@ use slipfit_core::{
 };
 
 use super::guard::{c_name, guarded};
-use crate::{
-    dynamics::{driven::Driven, scheme::IntegratorKind},
-    scene::Scene,
-};
+use crate::{dynamics::driven::Driven, mechanism::scheme, setup::Scene};
 
 /// What can be written, by a file's extension.
 pub const EXTENSIONS: [&str; 2] = ["rs", "h"];
@@ -188,21 +185,6 @@ pub fn c_header(scene: &Scene, stem: &str) -> Result<String, CError> {
     field("drive_point", &list(&data.drive_point_b));
     Ok(guarded(&format!("SLIPFIT_{upper}_H"), &(text + "};\n")))
 }
-
-/// Name and type of a scheme in core.
-pub(crate) fn scheme(kind: IntegratorKind) -> (&'static str, &'static str) {
-    match kind {
-        IntegratorKind::SemiImplicitEuler => ("SemiImplicitEuler", "SemiImplicitEuler"),
-        IntegratorKind::RungeKutta4 => ("RungeKutta4", "RungeKutta4"),
-        IntegratorKind::Rodas3 => ("Rodas3", "Rodas3"),
-        IntegratorKind::Rodas4 => ("Rodas4", "Rodas4"),
-        IntegratorKind::LinearlyImplicitEuler => ("ImplicitEuler", "ImplicitEuler<1>"),
-        IntegratorKind::ImplicitEuler => ("ImplicitEuler", "ImplicitEuler<4>"),
-        IntegratorKind::Sdirk2 => ("Sdirk2", "Sdirk2<4>"),
-        IntegratorKind::Extrapolated => ("Extrapolated", "Extrapolated<2, 4>"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use slipfit_core::slide::CONTACTS;
@@ -210,7 +192,8 @@ mod tests {
     use super::{CError, c_header, rust_source, scene_data};
     use crate::{
         dynamics::driven::Driven,
-        scene::{CD_ROM_SLIDE, Override, Scene},
+        scene::{CD_ROM_SLIDE, Override},
+        setup::Scene,
     };
 
     fn scene(settings: &[&str]) -> Scene {

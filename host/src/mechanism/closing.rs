@@ -15,7 +15,7 @@ use serde::Serialize;
 use slipfit_core::{clearance::GapStatistics, slide::PINS};
 use slipfit_tolerance::number::{fixed, level};
 
-use crate::scene::Scene;
+use crate::setup::Scene;
 
 /// Table 2's derived columns at one tolerance level. SI units.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -12,7 +12,7 @@ use crate::{
         sweep::{Level, classes},
         trust::Trust,
     },
-    scene::{LevelRange, RunSpec},
+    setup::{LevelRange, RunSpec},
 };
 
 /// How much finer the run is that each is held against.

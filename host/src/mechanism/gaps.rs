@@ -4,7 +4,7 @@ use slipfit_core::clearance::GapStatistics;
 use slipfit_tolerance::number::{level, ten_digits};
 
 use super::{Gap, Joint, JointKind, Mechanism};
-use crate::scene::GAP_MOST;
+use crate::setup::GAP_MOST;
 
 /// How far (m) a stop may be.
 pub const STOP_MOST: f64 = 10.0;

@@ -1,7 +1,7 @@
 //! The hash that ties a table and a kernel to the mechanism that they were made of.
 
 use super::{Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port};
-use crate::firmware::flash::Digest;
+use crate::setup::Digest;
 use slipfit_core::{drive::Drive, menu::FrictionData};
 
 /// The physics of every unit, and which drive a table is of. Titles and names, what is simulated and how a controller

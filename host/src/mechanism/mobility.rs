@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use crate::scene::{PinSpec, Scene};
+use crate::setup::{PinSpec, Scene};
 
 /// n = 6(N − 1) − Σ i·c_i − n_cl: the degrees of freedom of `parts` N parts with ideal joints that remove
 /// `removed[k]` degrees of freedom each, and clearance joints that remove `by_clearance` n_cl together.
@@ -26,7 +26,7 @@ pub fn rank_of_normals(contacts: &[(Vector3<f64>, Vector3<f64>)]) -> u32 {
     gram.rank(1e-9) as u32
 }
 
-/// Outward normals of the walls around a pin, in the order of [`SURFACES`](crate::scene::SURFACES): left, right, rail and wall.
+/// Outward normals of the walls around a pin, in the order of [`SURFACES`](crate::setup::SURFACES): left, right, rail and wall.
 pub const SURFACE_NORMALS: [[f64; 3]; 4] = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
 
 /// The scene's contacts at the nominal pose: point (m, from the centre of mass) and outward normal of the slide.

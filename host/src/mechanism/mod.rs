@@ -6,7 +6,6 @@
 pub mod agreement;
 pub mod closing;
 pub mod columns;
-mod drawing;
 mod driven;
 mod energy;
 pub mod feedback;
@@ -39,9 +38,10 @@ pub use hanging::MountError;
 pub use mounts::Mounts;
 pub use run::{MechanismRun, Moment, SCHEME, Samples, controller_run, film, run};
 pub use run_error::RunError;
+pub(crate) use source::scheme;
 pub use source::{dimension, drive_names, element_paths, rust_source};
 pub use start::{Rest, Torn, torn};
-pub use vary::{Parameter, Varied, rub_more, tilted_x, tilted_z};
+pub use vary::{Parameter, Varied};
 
 use slipfit_core::{clearance::GapStatistics, drive::Drive};
 pub use slipfit_desk::{
@@ -49,7 +49,7 @@ pub use slipfit_desk::{
     element,
 };
 
-use crate::scene::{ControllerSpec, LevelRange, RunSpec};
+use crate::setup::{ControllerSpec, LevelRange, RunSpec};
 
 /// Which bodies there are, what joins them, and what is to be simulated. SI units.
 #[derive(Clone, Debug, PartialEq)]

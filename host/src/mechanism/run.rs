@@ -39,7 +39,7 @@ use crate::{
         simulate::Solved,
         trajectory::Trajectory,
     },
-    scene::{ControllerSpec, RunSpec},
+    setup::{ControllerSpec, RunSpec},
 };
 
 /// What is told of a run.

@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 use slipfit_core::slide::ABSENT;
 
 use super::{Action, JointKind, Mechanism, Port, mobility::SURFACE_NORMALS};
-use crate::scene::{PinSpec, Scene};
+use crate::setup::{PinSpec, Scene};
 
 /// Lengths (m) that differ by rounding alone.
 const SAME: f64 = 1e-9;

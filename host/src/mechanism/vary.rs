@@ -1,18 +1,10 @@
 //! Parameters of a mechanism that vary over the production, beside its gaps.
 
-use slipfit_core::menu::FrictionData;
-use slipfit_tolerance::model::Contributor;
-
 use super::{Mechanism, NormalData};
+use crate::setup::{self, rub_more, tilted_x, tilted_z};
 
-/// A parameter that varies, and by how much from the scene's value: a mechanism's, or of another menu `P`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Varied<P = Parameter> {
-    /// Which.
-    pub parameter: P,
-    /// Its deviation (SI) from the scene's value.
-    pub deviation: Contributor,
-}
+/// A parameter of a mechanism that varies.
+pub type Varied = setup::Varied<Parameter>;
 
 /// A parameter that can vary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,26 +56,4 @@ impl Parameter {
             Self::TiltZ => mechanism.gravity = tilted_z(mechanism.gravity, deviation),
         }
     }
-}
-
-/// Raises the coefficient of `friction` by a `deviation`; where there is no friction there is none.
-pub fn rub_more(friction: &mut FrictionData<f64>, deviation: f64) {
-    match friction {
-        FrictionData::Regularised { coefficient, .. } | FrictionData::Exact { coefficient } => {
-            *coefficient += deviation
-        }
-        FrictionData::None => {}
-    }
-}
-
-/// `gravity` (m/s²) turned about x by an `angle` (rad).
-pub fn tilted_x([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
-    let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-    [x, cos * y - sin * z, sin * y + cos * z]
-}
-
-/// `gravity` (m/s²) turned about z by an `angle` (rad).
-pub fn tilted_z([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
-    let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-    [cos * x - sin * y, sin * x + cos * y, z]
 }

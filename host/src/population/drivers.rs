@@ -207,7 +207,8 @@ mod tests {
     use crate::{
         dynamics::example,
         population::{kept::Outcomes, production::Production},
-        scene::{Scene, SceneFile, shipped},
+        scene::{SceneFile, shipped},
+        setup::Scene,
     };
     use slipfit_tolerance::distribution::normal::quantile;
 

@@ -16,7 +16,7 @@ use crate::{
         simulate::SimulateError,
     },
     mechanism::{ByDrive, Mechanism, confirmed, run},
-    scene::RunSpec,
+    setup::RunSpec,
 };
 
 /// Error that a step may make, as a share of the mechanism's own speed, unless the scene allows more.

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     mechanism::{self, Mechanism},
-    scene::Scene,
+    setup::Scene,
 };
 
 /// The most units of a production.
@@ -210,7 +210,8 @@ mod tests {
     use super::Production;
     use crate::{
         dynamics::example,
-        scene::{Scene, SceneFile, shipped},
+        scene::{SceneFile, shipped},
+        setup::Scene,
     };
     use slipfit_tolerance::{distribution::normal::Scores, model::lanes::LANES};
 

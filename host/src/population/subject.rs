@@ -10,7 +10,7 @@ use super::{
 use crate::{
     dynamics::{driven::Driven, simulate::SimulateError},
     mechanism::level_of,
-    scene::Scene,
+    setup::Scene,
 };
 
 /// The gaps (m) of one unit: as many as a slide's pins have, or as many as a mechanism has.

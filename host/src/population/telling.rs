@@ -7,7 +7,7 @@ use crate::{
         outcome::Verdict,
         simulate::SimulateError,
     },
-    scene::Scene,
+    setup::Scene,
 };
 
 /// One unit for each thing that units do: of the first that jam, crawl and run, and have a run to show, the one whose greatest

@@ -22,7 +22,7 @@ use crate::{
         simulate as one,
         simulate::{Settings, SimulateError},
     },
-    scene::Scene,
+    setup::Scene,
 };
 
 fn slides(scene: &Scene, units: u64) -> Vec<SlideData<f64>> {

@@ -13,7 +13,7 @@ use crate::{
         outcome::{JAMMED, Moment, RUNS, Verdict, between_verdicts},
         simulate::{Settings, SimulateError, simulate},
     },
-    scene::Scene,
+    setup::Scene,
 };
 
 use super::{Course, Figures, Unit, production::Drawn};

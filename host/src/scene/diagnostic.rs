@@ -8,7 +8,8 @@ use slipfit_tolerance::product::{
     contacts::PlacementError, dimension::ShapeError, expression::Fault, iso286::ClassError, iso2768::BandError,
 };
 
-use super::{GapError, LevelError};
+use super::LevelError;
+use crate::setup::GapError;
 
 /// What is wrong with a scene. Keys are written in full, such as `slide.mass`; values as they were typed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

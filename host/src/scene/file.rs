@@ -6,7 +6,7 @@ use slipfit_tolerance::{product::Product, theory::moments};
 use crate::mechanism::Mechanism;
 
 use super::{
-    Override, Problem, Scene, SceneError,
+    Override, Problem, SceneError,
     diagnostic::Found,
     keys, mechanism,
     parse::{scene, title},
@@ -15,6 +15,7 @@ use super::{
     tree::{Node, Source},
     value::Field,
 };
+use crate::setup::Scene;
 
 /// What a scene file describes.
 pub struct SceneFile {

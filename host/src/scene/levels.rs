@@ -1,6 +1,6 @@
 //! Ranges of tolerance levels, or of other numbers, `FIRST:LAST:STEP`.
 
-use super::LevelRange;
+use crate::setup::LevelRange;
 
 /// The most levels of a sweep.
 pub const MOST_LEVELS: usize = 100_000;

@@ -15,8 +15,7 @@ use crate::{
 };
 
 use super::{
-    ControllerSpec, GapMeasures, LevelRange, Override, PinSpec, Problem, RunSpec, SURFACES, Scene, SceneError,
-    SlideSpec,
+    Override, Problem, SceneError,
     contact::impact,
     diagnostic::{COMMAND_LINE, Found},
     parse_levels,
@@ -25,6 +24,7 @@ use super::{
     value::Field,
     vary::vary,
 };
+use crate::setup::{ControllerSpec, GapMeasures, LevelRange, PinSpec, RunSpec, SURFACES, Scene, SlideSpec};
 
 const MASS: Quantity = Quantity { units: unit::MASS, range: [0.001, 1e7] };
 const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };

@@ -6,9 +6,8 @@ use slipfit_problems::cd_rom;
 
 use crate::dynamics::scheme::{IntegratorKind, ScalarKind};
 
-use super::{
-    CD_ROM_SLIDE, ControllerSpec, LevelRange, Override, Problem, RunSpec, Scene, SceneError, SceneFile, shipped,
-};
+use super::{CD_ROM_SLIDE, Override, Problem, SceneError, SceneFile, shipped};
+use crate::setup::{ControllerSpec, LevelRange, RunSpec, Scene};
 
 const FAST: &str = include_str!("../../scenes/cd-rom-slide-fast.toml");
 

@@ -4,11 +4,12 @@ use slipfit_core::menu::FrictionData;
 use slipfit_tolerance::unit::{self, Quantity};
 
 use super::{
-    Problem, Scene, SceneError,
+    Problem, SceneError,
     product::{SIGMA_DEFAULT, deviation},
     value::Field,
 };
-use crate::mechanism::{self, rub_more, tilted_x, tilted_z};
+use crate::setup::Scene;
+use crate::setup::{SlideParameter as Parameter, Varied};
 
 /// A deviation that is a number without a unit.
 pub(super) const SHARE: Quantity = Quantity { units: unit::ONE, range: [-100.0, 100.0] };
@@ -31,43 +32,7 @@ pub(super) fn across(gravity: [f64; 3], axis: usize) -> f64 {
     (0..3).filter(|i| *i != axis).map(|i| gravity[i].abs()).fold(0.0, f64::max)
 }
 
-/// A parameter of a slide that varies, and by how much from the scene's value.
-pub type Varied = mechanism::Varied<Parameter>;
-
-/// A parameter that can vary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// Coefficient of friction.
-    Friction,
-    /// Stiffness of the contacts.
-    Stiffness,
-    /// Damping of the contacts.
-    Damping,
-    /// Mass; the inertia goes with it.
-    Mass,
-    /// Gain of the drive.
-    Gain,
-    /// End of the drive's ramp.
-    RampEnd,
-    /// Direction of gravity: rotation about the frame's x.
-    TiltX,
-    /// Direction of gravity: rotation about the frame's z.
-    TiltZ,
-}
-
 impl Parameter {
-    /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::Friction,
-        Self::Stiffness,
-        Self::Damping,
-        Self::Mass,
-        Self::Gain,
-        Self::RampEnd,
-        Self::TiltX,
-        Self::TiltZ,
-    ];
-
     /// Table and key under `[vary]`.
     pub const fn key(self) -> [&'static str; 2] {
         match self {
@@ -100,20 +65,6 @@ impl Parameter {
             Self::TiltX => (across(scene.slide.gravity, 0) == 0.0).then_some(UNTILTED),
             Self::TiltZ => (across(scene.slide.gravity, 2) == 0.0).then_some(UNTILTED),
             Self::Stiffness | Self::Damping | Self::Mass | Self::Gain | Self::RampEnd => None,
-        }
-    }
-
-    /// Moves the parameter of `scene` by a `deviation` (SI).
-    pub fn apply(self, scene: &mut Scene, deviation: f64) {
-        match self {
-            Self::Friction => rub_more(&mut scene.friction, deviation),
-            Self::Stiffness => scene.contact.stiffness *= 1.0 + deviation,
-            Self::Damping => scene.contact.damping += deviation,
-            Self::Mass => scene.slide.mass += deviation,
-            Self::Gain => scene.drive.gain += deviation,
-            Self::RampEnd => scene.drive.ramp_end += deviation,
-            Self::TiltX => scene.slide.gravity = tilted_x(scene.slide.gravity, deviation),
-            Self::TiltZ => scene.slide.gravity = tilted_z(scene.slide.gravity, deviation),
         }
     }
 }

@@ -225,7 +225,7 @@ mod tests {
     use super::{forces, unit_over_time, velocities, verdicts};
     use crate::{
         dynamics::{example, outcome::Verdict},
-        scene::LevelRange,
+        setup::LevelRange,
     };
 
     #[test]

@@ -1,11 +1,9 @@
 //! A small writer of SVG documents, in pixels.
 
+use crate::xml::escape;
 use std::{collections::BTreeMap, fmt::Write};
 
-use super::{
-    palette::{Colour, INK, PAPER, SOFT},
-    xml::escape,
-};
+use super::palette::{Colour, INK, PAPER, SOFT};
 
 const FONTS: &str = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif";
 

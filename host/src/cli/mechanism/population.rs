@@ -26,7 +26,6 @@ use crate::{
         drivers::Driver,
         hypothesis::Hypothesis,
         mechanism::MechanismPopulation,
-        picture::{forces, hypothesis},
         production::Production,
         rare::Rare,
         statistics::{Spread, Statistics},
@@ -34,7 +33,10 @@ use crate::{
         subject::Subject,
         tally::Tally,
     },
-    show::report::{Figure, units_page},
+    show::{
+        report::{Figure, units_page},
+        units::{forces, hypothesis},
+    },
 };
 
 /// Random combinations at each distance: fewer than of a slide, whose units take less time.

@@ -20,7 +20,7 @@ use crate::{
         confirmed, controller_run, film,
     },
     population::{mechanism::mechanism_of, production::Production},
-    scene::ControllerSpec,
+    setup::ControllerSpec,
     show::{
         export::rows_csv,
         figure::{columns_over_time, word},

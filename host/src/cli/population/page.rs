@@ -10,18 +10,18 @@ use crate::{
     population::{
         Unit,
         mechanism::{MechanismPopulation, mechanism_of},
-        picture,
         production::Production,
-        shares,
         study::Population,
         telling::{filmed, one_of_each},
     },
-    scene::Scene,
+    setup::Scene,
     show::{
+        causes,
         figure::word,
         player,
         plot::PlotError,
         report::{Figure, Units},
+        units,
     },
 };
 
@@ -45,19 +45,19 @@ pub fn units(
 ) -> Result<(Units, Vec<&'static str>), Failure> {
     let all = &population.tally;
     let pictures = [
-        (EVERY_MARK, picture::forces(scene, all, limit)),
+        (EVERY_MARK, units::forces(scene, all, limit)),
         (
             "What force units need. Those that jam need all that the drive has.",
-            shares::histogram(&scene.title, DriveKind::Pushes, all, limit),
+            causes::histogram(&scene.title, DriveKind::Pushes, all, limit),
         ),
         (
             "Where units fail: how many of the loose and of the tight ones, and which contact presses hardest.",
-            Ok(shares::sides(scene, all)),
+            Ok(causes::sides(scene, all)),
         ),
         (
             "Which tolerances the force and the malfunction vary with, the strongest first. What is missing to 100 % comes from \
              weaker ones and from several together.",
-            shares::ranking(&scene.title, DriveKind::Pushes, population),
+            causes::ranking(&scene.title, DriveKind::Pushes, population),
         ),
     ];
     let run = |unit: &Unit| {
@@ -78,11 +78,11 @@ pub fn units_of_mechanism(
 ) -> Result<(Units, Vec<&'static str>), Failure> {
     let (title, kind, all) = (driven.title(), driven.kind(), &population.tally);
     let pictures = [
-        (EVERY_MARK, picture::forces(driven, all, limit)),
-        ("The greatest force or torque that units need of the drive.", shares::histogram(title, kind, all, limit)),
+        (EVERY_MARK, units::forces(driven, all, limit)),
+        ("The greatest force or torque that units need of the drive.", causes::histogram(title, kind, all, limit)),
         (
             "Which gaps and tolerances malfunction and the greatest force or torque vary with, the strongest first.",
-            shares::ranking(title, kind, population),
+            causes::ranking(title, kind, population),
         ),
     ];
     let run = |unit: &Unit<Vec<f64>>| {

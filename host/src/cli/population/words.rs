@@ -16,7 +16,7 @@ use crate::{
         subject::Subject,
         unit::Fault,
     },
-    scene::Scene,
+    setup::Scene,
 };
 
 /// Drivers that are listed.

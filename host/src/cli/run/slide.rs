@@ -40,7 +40,7 @@ use crate::{
         self_locking::{DriveSide, guide},
     },
     population::{production::Production as DrawnProduction, statistics::Statistics, study::Population, tally::Duty},
-    scene::Scene,
+    setup::Scene,
     show::{
         export::sweep_csv,
         figure::{forces, velocities, verdicts},

@@ -16,7 +16,7 @@ use crate::{
         simulate::Run,
         trust::Trust,
     },
-    scene::Scene,
+    setup::Scene,
 };
 
 impl Arguments {

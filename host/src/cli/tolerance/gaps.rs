@@ -8,7 +8,7 @@ use slipfit_tolerance::number::fixed;
 use crate::{
     cli::text_table,
     mechanism::closing::{Table2, derived},
-    scene::{SURFACES, Scene},
+    setup::{SURFACES, Scene},
 };
 
 /// What follows from a slide's gaps at a tolerance level.

@@ -25,7 +25,7 @@ use slipfit_tolerance::{
 
 use self::gaps::Given;
 use super::{DRAWING, Failure, SceneArguments, ThreadArguments, endings, print, print_json, progress, warn};
-use crate::scene::Scene;
+use crate::setup::Scene;
 
 pub(super) use output::OutputArguments;
 

@@ -18,7 +18,7 @@ use super::{gaps::Columns, tables::tables};
 use crate::{
     cli::{Failure, endings, print, print_json, refused},
     mechanism::closing::closing_level,
-    scene::Scene,
+    setup::Scene,
     show::{
         measures_csv::measures_csv,
         tolerances::{file_names, pictures},

@@ -1,7 +1,6 @@
 //! The flash table's builder: bytes from grids, in the layout that [`slipfit_core::table`] describes and reads.
 
 pub mod export;
-mod hash;
 #[cfg(test)]
 mod tests;
 
@@ -16,8 +15,6 @@ use slipfit_core::table::{
     motions, verdict_bytes,
 };
 
-pub use hash::{Digest, scene_hash};
-
 /// Size of the TABLE region of `memory.x` (bytes): the longest table there can be.
 pub const TABLE_REGION: usize = 256 * 1024;
 
@@ -27,7 +24,7 @@ pub const TABLE_ADDRESS: u32 = 0x0008_0000;
 /// What a table is made of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableSpec {
-    /// What [`scene_hash`] gives.
+    /// What [`scene_hash`](crate::setup::scene_hash) gives.
     pub scene_hash: u64,
     /// Two or three axes, slowest first.
     pub axes: Vec<AxisSpec>,

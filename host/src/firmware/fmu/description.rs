@@ -6,7 +6,7 @@ use super::{
     Unit,
     variable::{Causality, UNITS, Variable},
 };
-use crate::show::xml::escape;
+use crate::xml::escape;
 
 /// The version of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

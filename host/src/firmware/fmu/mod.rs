@@ -25,7 +25,7 @@ pub use mechanism::mechanism_unit;
 pub use slide::slide_unit;
 pub use variable::{Causality, UNITS, Variable};
 
-use crate::{firmware::kernel_crate::CrateFiles, scene::ControllerSpec};
+use crate::{firmware::kernel_crate::CrateFiles, setup::ControllerSpec};
 use variable::Variables;
 
 /// A scene as a unit before it is compiled.

@@ -14,7 +14,7 @@ use crate::{
         kernel_crate::slide_crate,
         kernel_source::{elastic, scene_data},
     },
-    scene::{GAP_MOST, Scene},
+    setup::{GAP_MOST, Scene},
 };
 
 /// The unit of `scene`; `core` is where slipfit-core lies.

@@ -4,11 +4,8 @@ use slipfit_core::table::{AxisKind, Encoding, MotionVerdict, Table, motions};
 
 use super::{Demand, ForceTable, TableError, levels};
 use crate::{
-    firmware::{
-        flash,
-        flash::{AxisSpec, ChannelSpec, FlashError, TableSpec},
-    },
-    scene::LevelRange,
+    firmware::flash::{self, AxisSpec, ChannelSpec, FlashError, TableSpec},
+    setup::LevelRange,
 };
 
 /// Equidistant samples along an axis.
@@ -295,7 +292,7 @@ mod tests {
     use super::{Grid, Sample, SampleAxis, Samples, Stage};
     use crate::{
         firmware::force_table::{Demand, TableError},
-        scene::LevelRange,
+        setup::LevelRange,
     };
 
     const LEVELS: LevelRange = LevelRange { first: -1.0, step: 0.5, count: 3 };

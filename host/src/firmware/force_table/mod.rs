@@ -4,7 +4,6 @@
 
 mod grid;
 mod passage;
-mod picture;
 pub mod position;
 pub mod time;
 
@@ -13,9 +12,8 @@ use slipfit_tolerance::number::three_digits;
 use thiserror::Error;
 
 use super::flash::{AxisSpec, FlashError};
-use crate::{dynamics::simulate::SimulateError, scene::LevelRange};
+use crate::{dynamics::simulate::SimulateError, setup::LevelRange};
 
-pub use picture::picture;
 pub use time::{check, make};
 
 /// Samples of a run from one node of the finest table to the next; those between serve the error only.

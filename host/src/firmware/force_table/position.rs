@@ -28,7 +28,7 @@ use crate::{
         simulate::SimulateError,
     },
     firmware::flash,
-    scene::{LevelRange, RunSpec},
+    setup::{LevelRange, RunSpec},
 };
 
 /// Distance of the table's positions (m), unless its region of flash has too little room.

@@ -20,8 +20,8 @@ use crate::{
         sweep::{Keep, Level, Sweep, sweep},
         trajectory::Trajectory,
     },
-    firmware::{flash, flash::FlashError},
-    scene::RunSpec,
+    firmware::flash::{self, FlashError},
+    setup::RunSpec,
 };
 
 /// Distance of the table's instants (s).

@@ -9,6 +9,8 @@ mod spatial;
 
 use std::fmt::Write;
 
+use slipfit_desk::scheme::IntegratorKind;
+
 use super::{Joint, Mechanism, RunError, hash::hash};
 use laws::Contacts;
 
@@ -72,7 +74,7 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     }
     let through = if parts.through_joints.is_some() { ", ThroughJoints" } else { "" };
     let title = mechanism.title.split_whitespace().collect::<Vec<_>>().join(" ");
-    let (scheme, scheme_type) = crate::firmware::kernel_source::scheme(mechanism.controller.integrator);
+    let (scheme, scheme_type) = scheme(mechanism.controller.integrator);
     let list = |names: &[&'static str]| {
         let mut names = names.to_vec();
         names.sort_unstable();
@@ -333,5 +335,19 @@ fn elements_of(joint: &Joint) -> usize {
         Bearing { .. } => 2,
         Guide { .. } => 4,
         _ => 0,
+    }
+}
+
+/// Name and type of a scheme in core.
+pub(crate) fn scheme(kind: IntegratorKind) -> (&'static str, &'static str) {
+    match kind {
+        IntegratorKind::SemiImplicitEuler => ("SemiImplicitEuler", "SemiImplicitEuler"),
+        IntegratorKind::RungeKutta4 => ("RungeKutta4", "RungeKutta4"),
+        IntegratorKind::Rodas3 => ("Rodas3", "Rodas3"),
+        IntegratorKind::Rodas4 => ("Rodas4", "Rodas4"),
+        IntegratorKind::LinearlyImplicitEuler => ("ImplicitEuler", "ImplicitEuler<1>"),
+        IntegratorKind::ImplicitEuler => ("ImplicitEuler", "ImplicitEuler<4>"),
+        IntegratorKind::Sdirk2 => ("Sdirk2", "Sdirk2<4>"),
+        IntegratorKind::Extrapolated => ("Extrapolated", "Extrapolated<2, 4>"),
     }
 }

@@ -1,6 +1,5 @@
 //! Error against run time: every solver at every setting, measured against a far finer run.
 
-mod figure;
 mod solver;
 
 use std::time::{Duration, Instant};
@@ -8,7 +7,6 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
-pub use figure::work_precision;
 pub use solver::{Knob, Solver, Timed, solvers, solvers_of};
 
 use crate::{
@@ -17,7 +15,7 @@ use crate::{
         simulate::{Run, ScalarKind, Settings, SimulateError, simulate},
     },
     mechanism::{ByDrive, run},
-    scene::{RunSpec, Scene},
+    setup::{RunSpec, Scene},
 };
 use solver::{to, whole};
 
@@ -178,6 +176,7 @@ mod tests {
 
     use super::*;
     use crate::dynamics::{example, scheme::IntegratorKind};
+    use crate::show::precision::work_precision;
 
     const SHORT: Problem = Problem { name: "opening", duration: 0.06 };
 

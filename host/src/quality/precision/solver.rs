@@ -13,7 +13,7 @@ use crate::{
         simulate::{Run, ScalarKind, Settings, SimulateError},
     },
     mechanism::{ByDrive, Mechanism, MechanismRun, RunError, controller_run, run},
-    scene::{ControllerSpec, RunSpec, Scene},
+    setup::{ControllerSpec, RunSpec, Scene},
 };
 
 /// Steps of all fixed-step schemes (s).

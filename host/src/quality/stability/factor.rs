@@ -8,7 +8,7 @@ use crate::{
         scheme::{IntegratorKind, ScalarKind},
         simulate::Settings,
     },
-    scene::{ControllerSpec, Scene},
+    setup::{ControllerSpec, Scene},
 };
 
 /// One point of the map: a scene with the unit to be simulated.

@@ -6,7 +6,6 @@
 
 mod factor;
 mod generator;
-pub mod strips;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -17,7 +16,7 @@ use crate::{
         controller::audited,
         simulate::{Run, Settings, SimulateError, simulate},
     },
-    scene::Scene,
+    setup::Scene,
 };
 
 pub use factor::{FACTORS, Factor, Range, SCHEMES, STEP, Setup, Zero};

@@ -6,7 +6,8 @@ use slipfit_tolerance::number::three_digits;
 use super::{Field, Gaps, Laws, Names, Problem, Quantity, SceneError, direction, laws, note, place, tables, unit};
 use crate::{
     mechanism::{Joint, JointKind, Mechanism, NormalData, STOP_MOST},
-    scene::{SURFACES, parse::POINT, pins::MEAN, plausible},
+    scene::{parse::POINT, pins::MEAN, plausible},
+    setup::SURFACES,
 };
 
 const LENGTH: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 1e5] };

@@ -12,17 +12,18 @@ use slipfit_tolerance::product::Product;
 use slipfit_tolerance::unit::{self, Quantity};
 
 use super::{
-    LevelRange, Problem, SceneError, contact,
+    Problem, SceneError, contact,
     diagnostic::Found,
     parse,
     plausible::{self, Loads},
     tree::Value,
     value::Field,
 };
+use crate::setup::LevelRange;
 use crate::{
     dynamics::driven::DriveKind,
     mechanism::{Gap, Joint, JointKind, Laws, Mechanism, MountError, Mounts, NormalData, Port, spatial},
-    scene::SURFACES,
+    setup::SURFACES,
 };
 
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };

@@ -11,7 +11,10 @@ use slipfit_tolerance::{
 };
 
 use super::tests::{at, check_all, close, parse, product};
-use crate::scene::{Scene, SceneFile, shipped};
+use crate::{
+    scene::{SceneFile, shipped},
+    setup::Scene,
+};
 
 fn variable(product: &Product, name: &str) -> usize {
     let mut first = 0;

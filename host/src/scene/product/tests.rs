@@ -290,7 +290,7 @@ fn losses_are_counted_off_the_target() {
 
 #[test]
 fn only_a_slide_moves() {
-    let error = crate::scene::Scene::parse("clutch.toml", shipped("clutch").unwrap(), &[]).unwrap_err();
+    let error = crate::setup::Scene::parse("clutch.toml", shipped("clutch").unwrap(), &[]).unwrap_err();
     assert_eq!(error.problem(), &Problem::NoSlide);
     assert!(parse(shipped("clutch").unwrap(), &[]).unwrap().slide.is_none());
 }

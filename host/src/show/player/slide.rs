@@ -8,7 +8,7 @@ use crate::{
         film::{Film, Frame},
         laws::AnyElastic,
     },
-    scene::{SURFACES, Scene},
+    setup::{SURFACES, Scene},
 };
 
 /// How far (mm) the slide is drawn beyond its pins at least.

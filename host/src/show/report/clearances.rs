@@ -12,7 +12,7 @@ use crate::{
         Gap, JointKind, Mechanism,
         closing::{Pair, Pin, Table2, Toes, derived},
     },
-    scene::{SURFACES, Scene},
+    setup::{SURFACES, Scene},
 };
 
 /// The section of the page; `computed` if the gaps follow from a product.

@@ -15,7 +15,7 @@ use super::{palette::style_sheet, player};
 use crate::{
     dynamics::{driven::DriveKind, sweep::Sweep},
     mechanism::Mechanism,
-    scene::Scene,
+    setup::Scene,
 };
 
 /// What a report is made of.

@@ -3,7 +3,7 @@
 use super::{Clearances, Figure, Flash, ReportInput, report};
 use crate::{
     dynamics::{driven::DriveKind, example, sweep::Sweep},
-    scene::LevelRange,
+    setup::LevelRange,
     show::figure::{forces, velocities, verdicts},
 };
 

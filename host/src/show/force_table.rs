@@ -3,7 +3,7 @@
 use slipfit_core::table::{AxisKind, Table};
 use slipfit_tolerance::number::{level, typeset};
 
-use super::ForceTable;
+use crate::firmware::force_table::ForceTable;
 use crate::{
     dynamics::driven::DriveKind,
     firmware::flash::AxisSpec,

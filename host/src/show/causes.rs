@@ -3,22 +3,24 @@
 use slipfit_core::slide::CONTACTS;
 use slipfit_tolerance::number::fixed;
 
-use super::{
-    drivers::Driver,
-    picture::effort,
-    ranked::Ranked,
-    statistics::Share,
-    study::Population,
-    tally::{Counts, Tally},
-};
 use crate::{
     dynamics::driven::DriveKind,
-    scene::Scene,
+    setup::Scene,
     show::{
         bars::{Bar, Block, bars},
         chart::outline,
         plot::{Chart, Look, Panel, PlotError, Series, small_chart},
     },
+};
+use crate::{
+    population::{
+        drivers::Driver,
+        ranked::Ranked,
+        statistics::Share,
+        study::Population,
+        tally::{Counts, Tally},
+    },
+    show::units::effort,
 };
 
 /// The fewest and the most classes of a histogram.

@@ -6,9 +6,9 @@
 mod symbol;
 mod view;
 
-use super::{Action, Joint, JointKind, Mechanism, NamedDrive};
+use crate::mechanism::{Action, Joint, JointKind, Mechanism, NamedDrive};
 use crate::{
-    scene::SURFACES,
+    setup::SURFACES,
     show::{
         palette::{Colour, KINDS, PAPER, SOFT},
         svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, WIDTH},

@@ -3,7 +3,7 @@
 
 use slipfit_tolerance::number::typeset;
 
-use super::{FACTORS, Grade, Point, SCHEMES, tally};
+use crate::quality::stability::{FACTORS, Grade, Point, SCHEMES, tally};
 use crate::show::{
     palette::Colour,
     svg::{Anchor, Font, PLAIN, SUBTITLE, Svg, TITLE},

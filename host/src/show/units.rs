@@ -2,7 +2,7 @@
 
 use slipfit_tolerance::number::percent;
 
-use super::{
+use crate::population::{
     hypothesis::{AtDistance, Hypothesis},
     statistics::Share,
     subject::Subject,

@@ -2,7 +2,7 @@
 
 use slipfit_tolerance::number::{level, typeset};
 
-use super::{Point, Problem, Truth};
+use crate::quality::precision::{Point, Problem, Truth};
 use crate::{
     dynamics::simulate::ScalarKind,
     show::{
