@@ -9,11 +9,11 @@ use std::{
 use slipfit::tolerance::{
     counting::{
         file::{Part, Source},
-        run,
-        run::{Keep, RunError, Shard, checkpoint, run},
+        run::{self, Keep, RunError, Shard, checkpoint, run},
         study::{Settings, Study},
     },
-    model::{Contributor, Distribution, Function, Measure, Model, Quantity, Variation, lanes::Lanes},
+    model::{Contributor, Distribution, Function, Measure, Model, Quantity, Variation},
+    numeric::lanes::Lanes,
     sampling::sampler::Method,
 };
 

@@ -210,7 +210,7 @@ mod tests {
         scene::{SceneFile, shipped},
         setup::Scene,
     };
-    use slipfit_tolerance::distribution::normal::quantile;
+    use slipfit_tolerance::numeric::normal::quantile;
 
     type Variables<'a> = &'a dyn Fn(usize) -> f64;
 

@@ -153,7 +153,7 @@ pub fn explained(units: u64, marked: &[Marked], variables: usize) -> Option<Expl
 mod tests {
     use super::{Explained, Marked, explained};
     use slipfit_core::sampling::stream::{Rng, unit_stream};
-    use slipfit_tolerance::distribution::normal::{quantile, tail};
+    use slipfit_tolerance::numeric::normal::{quantile, tail};
 
     /// Independent uniform numbers.
     fn uniforms(seed: u64) -> impl FnMut() -> f64 {

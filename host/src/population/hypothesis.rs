@@ -9,7 +9,7 @@ use slipfit_core::{
     sampling::stream::{Rng, derived, unit_stream},
     slide::ABSENT,
 };
-use slipfit_tolerance::distribution::normal;
+use slipfit_tolerance::numeric::normal;
 
 use super::{
     statistics::{Share, malfunctions},

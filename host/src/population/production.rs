@@ -6,10 +6,8 @@ use std::{marker::PhantomData, ops::Range};
 
 use slipfit_core::{sampling::stream::derived, slide::CONTACTS};
 use slipfit_tolerance::{
-    model::{
-        Contributor,
-        lanes::{LANES, Lanes},
-    },
+    model::Contributor,
+    numeric::lanes::{LANES, Lanes},
     product::Product,
     sampling::draw::DrawError,
 };
@@ -213,7 +211,7 @@ mod tests {
         scene::{SceneFile, shipped},
         setup::Scene,
     };
-    use slipfit_tolerance::{distribution::normal::Scores, model::lanes::LANES};
+    use slipfit_tolerance::numeric::{lanes::LANES, normal::Scores};
 
     fn moments(values: impl Iterator<Item = f64>) -> [f64; 2] {
         let values: Vec<f64> = values.collect();

@@ -184,7 +184,7 @@ mod tests {
 
     /// z with P(Z > z) = `probability`.
     fn limit(probability: f64) -> f64 {
-        -slipfit_tolerance::distribution::normal::quantile(probability)
+        -slipfit_tolerance::numeric::normal::quantile(probability)
     }
 
     /// How often the stated interval holds what is known, over 200 seeds. With 181 or fewer the chance of a true 95 % is below

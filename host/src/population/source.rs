@@ -5,11 +5,8 @@ use std::ops::{Deref, Range};
 use slipfit_core::clearance::GapStatistics;
 use slipfit_tolerance::{
     failure::gathered,
-    model::{
-        Contributor, Distribution, Measure, Model, Quantity, Variation,
-        lanes::{LANES, Lanes},
-        linear::Linear,
-    },
+    model::{Contributor, Distribution, Measure, Model, Quantity, Variation, linear::Linear},
+    numeric::lanes::{LANES, Lanes},
     sampling::{
         draw::{Draw, DrawError},
         sampler::{Method, Sampler},

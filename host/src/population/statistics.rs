@@ -1,7 +1,7 @@
 //! What a population's units did, together.
 
 use serde::Serialize;
-use slipfit_tolerance::{distribution::normal, statistics::binomial};
+use slipfit_tolerance::{numeric::normal, statistics::binomial};
 
 use super::{
     Unit,

@@ -91,7 +91,7 @@ fn histogram_svg(report: &Report, study: &Study, tallies: &[Tally], i: usize) ->
     let [low, high] = ends.fold([-4.0, 4.0], |[low, high]: [f64; 2], z| [low.min(z - 0.25), high.max(z + 0.25)]);
     let normal = (0..=320).map(|k| {
         let z = low + (high - low) * f64::from(k) / 320.0;
-        (measure.mean + z * measure.sd, slipfit_tolerance::distribution::normal::density(z) / measure.sd)
+        (measure.mean + z * measure.sd, slipfit_tolerance::numeric::normal::density(z) / measure.sd)
     });
     let line = |label: &str, look, points| Series { label: label.into(), look, points };
     let mut series = vec![line("units", Look::Level(0.0), outline)];

@@ -8,7 +8,6 @@ use super::{
         pairs::Pairs,
         study::{Settings, Study, StudyError, Tally},
     },
-    distribution::normal,
     failure::{
         Failure,
         tail::{Source, Tail, probability},
@@ -22,11 +21,11 @@ use super::{
         indices::{Indices, indices},
         moments::{Moments, moments, spreads},
         rss::{RootSumSquare, root_sum_square},
-        tensor,
-        tensor::Exact,
+        tensor::{self, Exact},
         worst_case::{WorstCase, reaches as linear_reaches, worst_cases},
     },
 };
+use crate::numeric::normal;
 
 /// Share of the curvature in a measure's variance above which the measure counts as not linear.
 pub const LINEAR: f64 = 1e-6;

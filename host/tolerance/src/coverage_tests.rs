@@ -5,13 +5,14 @@ use super::{
         pairs::Pairs,
         study::{Settings, Study},
     },
-    distribution::{Marginal, normal::quantile},
+    distribution::Marginal,
     examples::{linear, scalar},
     model::Distribution,
     sampling::sampler::Method,
     statistics::estimate::{Estimate, POINTS, Spread, joint},
     theory::moments,
 };
+use crate::numeric::normal::quantile;
 
 /// Four times 300, whose own scatter is already 1.3 %.
 const SEEDS: u64 = 1200;

@@ -1,8 +1,7 @@
 //! Models with known answers.
 
-use super::model::{
-    Contributor, Distribution, Function, Measure, Model, Quantity, Sum, Variation, lanes::Lanes, linear::Linear,
-};
+use super::model::{Contributor, Distribution, Function, Measure, Model, Quantity, Sum, Variation, linear::Linear};
+use crate::numeric::lanes::Lanes;
 
 pub const MM: f64 = 1e-3;
 

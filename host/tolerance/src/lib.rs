@@ -18,6 +18,7 @@ mod examples;
 pub mod failure;
 pub mod model;
 pub mod number;
+pub mod numeric;
 pub mod product;
 pub mod report;
 pub mod sampling;

@@ -6,13 +6,16 @@ use super::{
         pairs::Pairs,
         study::{Settings, Study, StudyError, join},
     },
-    distribution::normal::{density, tail},
     examples::{MM, chain, clutch, left_front, linear, normal, normals, rectangulars, scalar},
-    model::{Distribution, Function, Model, lanes::Lanes},
+    model::{Distribution, Function, Model},
     report::report,
     sampling::sampler::Method,
     statistics::estimate::{Estimate, Spread, quantile},
     theory::moments,
+};
+use crate::numeric::{
+    lanes::Lanes,
+    normal::{density, tail},
 };
 
 const MC: Settings = Settings { method: Method::PseudoRandom, samples: 100_000, replicates: 1, seed: 1 };

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use serde::Serialize;
 use slipfit_tolerance::{
-    distribution::normal,
     number::{fixed, per_million, ten_digits},
+    numeric::normal,
     product::Product,
     report::Report as Measures,
 };

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use serde::Serialize;
 use slipfit_tolerance::{
-    distribution::normal::tail,
     number::{fixed, per_million},
+    numeric::normal::tail,
     product::Product,
     report::Report as Measures,
 };

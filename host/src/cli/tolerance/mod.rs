@@ -17,8 +17,9 @@ use slipfit_tolerance::{
         run::{Keep, RunError, Shard, checkpoint, run},
         study::{Settings, Study},
     },
-    model::{Model, lanes::LANES},
+    model::Model,
     number::ten_digits,
+    numeric::lanes::LANES,
     sampling::sampler::Method,
     theory::experiment::Design,
 };

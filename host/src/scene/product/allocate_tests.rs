@@ -11,7 +11,7 @@ use slipfit_tolerance::{
         requirement::{Kind, OfMeasures, Requirement},
         search::{Figures, Found, search},
     },
-    distribution::normal,
+    numeric::normal,
     product::costed::Costed,
 };
 

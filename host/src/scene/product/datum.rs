@@ -1,7 +1,7 @@
 //! Reads datums: single ones, common ones (A-B), and systems of them.
 
 use slipfit_tolerance::{
-    model::lanes::Lanes,
+    numeric::lanes::Lanes,
     product::{
         assembly::{Carried, Placement, With},
         common::Common,

@@ -3,10 +3,10 @@
 use slipfit_tolerance::{
     analysis::analyse,
     counting::study::Settings,
+    distribution::quadrature::mean_and_deviation,
     model::{Distribution, Quantity, Variation},
     report::report,
     sampling::sampler::Method,
-    theory::quadrature::mean_and_deviation,
 };
 
 use super::tests::{close, parse};

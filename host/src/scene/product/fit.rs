@@ -1,8 +1,9 @@
 //! Holes on pins, tried out before anything is analysed: does every pin go into its hole, does every mate close?
 
 use slipfit_tolerance::{
-    model::{Model, lanes::Lanes},
+    model::Model,
     number::{fixed, ten_digits},
+    numeric::lanes::Lanes,
     product::assembly::Assembly,
     theory::moments::drawn,
 };

@@ -3,7 +3,7 @@
 use slipfit_tolerance::{
     analysis::{Analysis, analyse, theory},
     counting::study::{Settings, StudyError},
-    distribution::normal::{density, quantile, tail},
+    numeric::normal::{density, quantile, tail},
     report::{MeasureReport, report},
     sampling::sampler::Method,
     theory::experiment::{Design, experiment},

@@ -3,11 +3,11 @@
 use slipfit_tolerance::{
     model::{
         Contributor, Variation, ZoneRule,
-        lanes::Lanes,
         nested::{Nest, Nested},
         widening::Widening,
     },
     number::ten_digits,
+    numeric::lanes::Lanes,
     product::{
         assembly::{Carried, Placement, With},
         contact::Contact,

@@ -1,13 +1,13 @@
 //! Reads measures and sums of them.
 
 use slipfit_tolerance::{
-    model::{Function, Measure, Quantity as Measured, Sum, lanes::Lanes},
+    model::{Function, Measure, Quantity as Measured, Sum, loss::Loss},
+    numeric::lanes::Lanes,
     product::{
         expression::{Expression, ExpressionError, Kind, Source, parse},
         feature::Shape,
         function::{Between, Formula, Measures},
     },
-    statistics::loss::Loss,
     unit::{self, Quantity},
 };
 

@@ -3,10 +3,8 @@
 use slipfit_tolerance::{
     analysis::analyse,
     counting::study::Settings,
-    model::{
-        Distribution, Quantity, Variation,
-        lanes::{LANES, Lanes},
-    },
+    model::{Distribution, Quantity, Variation},
+    numeric::lanes::{LANES, Lanes},
     product::Product,
     report::report,
     sampling::sampler::Method,

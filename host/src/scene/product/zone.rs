@@ -6,13 +6,13 @@
 use std::ops::Range;
 
 use slipfit_tolerance::{
+    model::SIGMA_ZONE,
     model::{
         Contributor, Variation, ZoneRule,
         nested::{Nest, Nested},
         widening::Widening,
     },
     product::{dimension::Toleranced, feature::Shape},
-    theory::quadrature::SIGMA_ZONE,
 };
 
 use crate::scene::{Problem, SceneError};

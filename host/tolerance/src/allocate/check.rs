@@ -7,8 +7,8 @@ use super::{
 use crate::{
     analysis::analyse,
     counting::study::Settings,
-    distribution::normal,
     model::Model,
+    numeric::normal,
     sampling::sampler::Method,
     statistics::{binomial, estimate::Estimate},
 };

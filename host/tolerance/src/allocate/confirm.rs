@@ -7,7 +7,7 @@
 
 use super::AllocateError;
 use crate::{
-    distribution::normal,
+    numeric::normal,
     statistics::{binomial, interval::CONFIDENCE},
 };
 
@@ -101,7 +101,7 @@ mod tests {
     use super::{Confirmed, Counted, ROUNDS, confirmed, least_units, risk};
     use crate::{
         allocate::AllocateError,
-        distribution::normal::{quantile, tail},
+        numeric::normal::{quantile, tail},
         statistics::binomial,
     };
     use slipfit_core::sampling::stream::{Rng, derived, unit_stream};

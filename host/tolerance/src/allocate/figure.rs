@@ -7,10 +7,8 @@ use super::{AllocateError, nearest::with_nearest};
 use crate::{
     counting::study::{Settings, Study, StudyError},
     failure::{Failure, subset::normals, tail::probability},
-    model::{
-        Model,
-        lanes::{LANES, Lanes},
-    },
+    model::Model,
+    numeric::lanes::{LANES, Lanes},
     sampling::{draw::Draw, sampler::Method, sobol::MOST_DIMENSIONS},
     theory::{derivative::expansion, moments::spreads, rss::root_sum_square, worst_case::worst_cases},
 };

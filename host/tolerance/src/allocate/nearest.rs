@@ -1,6 +1,9 @@
 //! All limits of a product as one measure: how far the nearest of them is.
 
-use crate::model::{Function, Measure, Model, Quantity, lanes::Lanes};
+use crate::{
+    model::{Function, Measure, Model, Quantity},
+    numeric::lanes::Lanes,
+};
 
 /// Measures, and behind them the least distance of any to its limit, in parts of the distance of its limits; negative outside,
 /// not a number where any of them cannot be computed.

@@ -10,8 +10,8 @@ use super::{
     search::{Figures, Precision},
 };
 use crate::{
-    distribution::normal,
     model::{Measure, Model},
+    numeric::normal,
     theory::{
         derivative::evaluate,
         moments::{self, Moments},

@@ -1,10 +1,8 @@
 //! How the correlation of two measures spreads from sample to sample.
 
 use crate::{
-    model::{
-        Model,
-        lanes::{LANES, Lanes},
-    },
+    model::Model,
+    numeric::lanes::{LANES, Lanes},
     theory::moments::drawn,
 };
 

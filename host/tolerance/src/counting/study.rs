@@ -10,10 +10,8 @@ use super::{
     tally::{Counts, Frame, Sums, TILE, Tile},
 };
 use crate::{
-    model::{
-        Model,
-        lanes::{LANES, Lanes},
-    },
+    model::Model,
+    numeric::lanes::{LANES, Lanes},
     sampling::{
         draw::{Draw, DrawError},
         sampler::{Method, Sampler},

@@ -4,9 +4,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{
-    Model,
-    lanes::{LANES, Lanes, widest},
+use crate::{
+    model::Model,
+    numeric::lanes::{LANES, Lanes, widest},
 };
 
 /// Units worked on at a time: their measures fit the innermost cache.

@@ -2,8 +2,8 @@
 
 use statrs::function::beta::beta_reg;
 
-use super::normal::tail;
-use crate::statistics::root::{excess, zero};
+use crate::numeric::normal::tail;
+use crate::numeric::root::{excess, zero};
 
 /// The logarithm of the least positive number.
 const LEAST: f64 = -708.0;
@@ -63,7 +63,7 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use super::Beta;
-    use crate::distribution::normal::tail;
+    use crate::numeric::normal::tail;
 
     fn close(found: f64, expected: f64, relative: f64) {
         assert!((found / expected - 1.0).abs() < relative, "{found:e}, not {expected:e}");

@@ -2,15 +2,14 @@
 
 use statrs::distribution::{ContinuousCDF, Gumbel, Weibull};
 
-use super::Marginal;
+use super::{Marginal, quadrature::nodes};
 use crate::{
     analysis::analyse,
     counting::study::Settings,
     examples::{linear, scalar},
     model::{Distribution, Variation},
+    numeric::shape::{Shape, weighted},
     sampling::sampler::Method,
-    statistics::shape::{Shape, weighted},
-    theory::quadrature::nodes,
 };
 
 /// A distribution with its mean, standard deviation, skewness and kurtosis in closed form.

@@ -1,6 +1,7 @@
 //! Probabilities below and above a value of a scalar contributor.
 
-use super::{Marginal, Skewing, normal::tail};
+use super::{Marginal, Skewing};
+use crate::numeric::normal::tail;
 
 impl Skewing {
     /// The score at which the value is x: infinite from the end on.
@@ -66,10 +67,7 @@ impl Marginal {
 
 #[cfg(test)]
 mod tests {
-    use crate::{
-        distribution::{Marginal, normal::tail},
-        model::Distribution,
-    };
+    use crate::{distribution::Marginal, model::Distribution, numeric::normal::tail};
 
     /// The tails of a value are those of the score that it was made of, at 6σ as in the middle.
     #[test]

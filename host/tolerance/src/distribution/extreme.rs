@@ -2,7 +2,7 @@
 //!
 //! Both follow from an exponential variable E = −ln P(Z > z) of a standard normal score z, which is accurate in both tails.
 
-use super::normal::tail;
+use crate::numeric::normal::tail;
 
 /// The unit exponential variable of a standard normal score; it grows with the score.
 fn exponential(score: f64) -> f64 {

@@ -1,7 +1,8 @@
 //! Mixtures: units from several machines or lots, each with a distribution of its own.
 
-use super::{Marginal, normal::tail};
-use crate::statistics::root::{excess, zero};
+use super::Marginal;
+use crate::numeric::normal::tail;
+use crate::numeric::root::{excess, zero};
 
 /// The distribution of a unit that is of one of several distributions.
 #[derive(Clone, Debug)]
@@ -42,11 +43,9 @@ impl Mixture {
 mod tests {
     use super::Mixture;
     use crate::{
-        distribution::{
-            Marginal,
-            normal::{quantile, tail},
-        },
+        distribution::Marginal,
         model::Distribution,
+        numeric::normal::{quantile, tail},
     };
 
     #[test]

@@ -6,15 +6,16 @@ mod by_name_tests;
 pub(crate) mod cumulative;
 mod extreme;
 mod mixture;
-pub mod normal;
+pub mod quadrature;
 
 use self::{
     beta::Beta,
     extreme::{Gumbel, Weibull},
     mixture::Mixture,
-    normal::{quantile, tail},
 };
-use super::model::{Distribution, lanes::Lanes};
+use super::model::Distribution;
+use crate::numeric::lanes::Lanes;
+use crate::numeric::normal::{quantile, tail};
 
 /// A distribution made ready for drawing.
 #[derive(Clone, Debug)]
@@ -176,10 +177,11 @@ impl Marginal {
 
 #[cfg(test)]
 mod tests {
-    use super::{Marginal, normal::quantile};
+    use super::Marginal;
+    use crate::numeric::normal::quantile;
     use crate::{
+        distribution::quadrature::mean_and_deviation,
         model::{Distribution, Variation},
-        theory::quadrature::mean_and_deviation,
     };
 
     /// Integrating the values over the probability gives the moments that the density has.

@@ -7,8 +7,10 @@
 
 use super::{DesignPoint, LimitState, Margins, dot};
 use crate::{
-    distribution::normal::Scores,
-    model::lanes::{LANES, Lanes},
+    numeric::{
+        lanes::{LANES, Lanes},
+        normal::Scores,
+    },
     sampling::{
         sampler::{Method, Sampler},
         sobol::MOST_DIMENSIONS,

@@ -10,13 +10,8 @@ pub mod tail;
 #[cfg(test)]
 mod tail_tests;
 
-use super::{
-    model::{
-        Model,
-        lanes::{LANES, Lanes},
-    },
-    sampling::draw::Draw,
-};
+use super::{model::Model, sampling::draw::Draw};
+use crate::numeric::lanes::{LANES, Lanes};
 
 /// Distance of points for slopes (scores).
 const STEP: f64 = 0.01;

@@ -3,7 +3,7 @@
 use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
 
 use super::{DesignPoint, LimitState, Margins, dot, importance::Mixture, norm};
-use crate::distribution::normal::{Scores, density, tail};
+use crate::numeric::normal::{Scores, density, tail};
 
 /// How far a nearly linear margin may leave its tangent (scores of the steepest direction).
 const STRAIGHT: f64 = 0.1;

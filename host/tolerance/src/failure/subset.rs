@@ -7,7 +7,7 @@
 use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
 
 use super::Margins;
-use crate::distribution::normal::Scores;
+use crate::numeric::normal::Scores;
 
 /// Share of the units that go on to the next level.
 const SHARE: f64 = 0.125;

@@ -13,7 +13,7 @@ use super::{
     regions::{Cover, is_straight, seeds},
     subset,
 };
-use crate::{distribution::normal::tail, model::Model, sampling::draw::Draw, statistics::binomial};
+use crate::{model::Model, numeric::normal::tail, sampling::draw::Draw, statistics::binomial};
 
 /// Runs of subset simulation that look for failures, and their units a level.
 const SEARCHES: (u64, usize) = (8, 512);

@@ -7,9 +7,12 @@ use super::{
     tail::{Source, Tail, probability},
 };
 use crate::{
-    distribution::normal::{density, tail},
     examples::{linear, normal},
-    model::{Function, Model, lanes::Lanes},
+    model::{Function, Model},
+    numeric::{
+        lanes::Lanes,
+        normal::{density, tail},
+    },
     sampling::draw::Draw,
     statistics::interval::student_factor,
 };

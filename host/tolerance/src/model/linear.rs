@@ -1,9 +1,7 @@
 //! Measures that are linear in the variables, as one product of a matrix.
 
-use super::{
-    Function,
-    lanes::{Lanes, widest},
-};
+use super::Function;
+use crate::numeric::lanes::{Lanes, widest};
 
 /// Measures that share the reading of their variables: their sums fit the registers.
 const ROWS: usize = 4;

@@ -1,13 +1,14 @@
 //! What every analysis works on: contributors that vary, and the measures that follow from them.
 
 pub mod extent;
-pub mod lanes;
 pub mod linear;
+pub mod loss;
 pub mod nested;
 pub mod widening;
 
-use self::{lanes::Lanes, nested::Nested, widening::Widening};
-use super::statistics::loss::Loss;
+use self::{nested::Nested, widening::Widening};
+use crate::model::loss::Loss;
+use crate::numeric::lanes::Lanes;
 
 /// A product whose measures are a function of independent (or correlated) random variables.
 pub struct Model {
@@ -241,4 +242,21 @@ pub struct Sum {
     pub name: String,
     /// Indices of its measures.
     pub measures: Vec<usize>,
+}
+
+/// Standard deviation 1/(3√3) of u, p and r in a sigma-zone: a corner of the face has a sixth of the zone.
+pub const SIGMA_ZONE: f64 = 0.192_450_089_729_875_26;
+/// Standard deviation of x and y in a disc: a sixth of the zone's diameter.
+pub const SIGMA_DISC: f64 = 1.0 / 3.0;
+
+impl Variation {
+    /// How many variables it has.
+    pub fn variables(&self) -> usize {
+        match self {
+            Self::Scalar { .. } | Self::Zone(ZoneRule::Translation) => 1,
+            Self::Disc(_) => 2,
+            Self::Nested(zone) => zone.variables(),
+            Self::Zone(_) => 3,
+        }
+    }
 }

@@ -12,12 +12,12 @@
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use super::{
-    ZoneRule,
+    SIGMA_DISC, SIGMA_ZONE, ZoneRule,
     extent::{along, steepest},
 };
-use crate::{
-    distribution::normal::tail,
-    theory::quadrature::{Node, SIGMA_DISC, SIGMA_ZONE, piece},
+use crate::numeric::{
+    gauss::{Node, piece},
+    normal::tail,
 };
 
 /// What lies in a zone.
@@ -342,7 +342,7 @@ mod tests {
             let units = 20_000;
             let root = |k: usize| libm::sqrt([2.0, 3.0, 5.0, 7.0][k]);
             let points = (1..=units).map(|n| {
-                let score = |k| crate::distribution::normal::quantile((f64::from(n) * root(k)).fract());
+                let score = |k| crate::numeric::normal::quantile((f64::from(n) * root(k)).fract());
                 zone.uniform(&(0..count).map(score).collect::<Vec<_>>())
             });
             let points: Vec<Vec<f64>> = points.collect();

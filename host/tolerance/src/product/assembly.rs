@@ -4,7 +4,7 @@
 //! deviation and that of its datums make q_tol; q_as, how a part comes to lie on others, is solved for from its contacts.
 //! All small ones are shifts with a Gibbs vector, exact for any size of rotation.
 
-use crate::model::lanes::Lanes;
+use crate::numeric::lanes::Lanes;
 
 use super::{
     common::Common,

@@ -1,6 +1,6 @@
 //! Common datums: two coaxial axes, or two faces in one plane, that are one datum together (A-B on a drawing).
 
-use crate::model::lanes::Lanes;
+use crate::numeric::lanes::Lanes;
 
 use super::{
     contact::cross,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix4, Matrix6, SMatrix, SymmetricEigen, Vector6};
 
-use crate::model::lanes::Lanes;
+use crate::numeric::lanes::Lanes;
 
 use super::{
     feature::{Located, Shape},

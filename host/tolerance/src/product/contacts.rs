@@ -1,6 +1,6 @@
 //! A body on its contacts: where it comes to lie in each unit.
 
-use crate::model::lanes::{LANES, Lanes};
+use crate::numeric::lanes::{LANES, Lanes};
 
 use super::{
     assembly::Assembly,

@@ -2,8 +2,8 @@
 
 use crate::{
     distribution::Marginal,
+    distribution::quadrature::mean_and_deviation,
     model::{Contributor, Distribution, Variation, ZoneRule},
-    theory::quadrature::mean_and_deviation,
 };
 
 /// A number of the drawing and its variation. SI units.

@@ -13,7 +13,7 @@ mod tape;
 
 use std::ops::Range;
 
-use crate::model::{Quantity, lanes::Lanes};
+use crate::{model::Quantity, numeric::lanes::Lanes};
 
 pub use affine::Affine;
 pub use grammar::FUNCTIONS;

@@ -5,7 +5,7 @@
 //! a × b, so that |u| + |p| + |r| ≤ 1 keeps all four corners in the zone. At maximum or least material condition t goes with
 //! the feature's size.
 
-use crate::model::lanes::Lanes;
+use crate::numeric::lanes::Lanes;
 
 use super::vector::{Displacement, Vector};
 

@@ -1,6 +1,6 @@
 //! The play of a hole on its pin, in which it floats.
 
-use crate::model::lanes::{LANES, Lanes};
+use crate::numeric::lanes::{LANES, Lanes};
 
 use super::contact::CONDITIONS;
 

@@ -3,13 +3,8 @@
 use std::cell::Cell;
 
 use crate::{
-    model::{
-        Function, Quantity,
-        lanes::{Lanes, widest},
-        linear::Linear,
-        widening::Widening,
-    },
-    statistics::loss::Loss,
+    model::{Function, Quantity, linear::Linear, loss::Loss, widening::Widening},
+    numeric::lanes::{Lanes, widest},
 };
 
 use super::{

@@ -19,10 +19,7 @@ pub mod iso286;
 pub mod pose;
 pub mod vector;
 
-use crate::{
-    allocate::requirement::Requirement,
-    model::{Model, lanes::Lanes},
-};
+use crate::{allocate::requirement::Requirement, model::Model, numeric::lanes::Lanes};
 
 use costed::Costed;
 

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use crate::model::lanes::Lanes;
+use crate::numeric::lanes::Lanes;
 
 /// A vector of each of several units.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use crate::{distribution::Marginal, model::Distribution, theory::quadrature::scores};
+use crate::{distribution::Marginal, distribution::quadrature::scores, model::Distribution};
 
 /// Terms of the series.
 const TERMS: usize = 80;

@@ -7,16 +7,12 @@ use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
 
 use super::correlation::{Row, cholesky};
 use crate::{
-    distribution::{
-        Marginal,
+    distribution::Marginal,
+    model::{Model, SIGMA_DISC, SIGMA_ZONE, Variation, ZoneRule, nested::Nested},
+    numeric::{
+        lanes::{LANES, Lanes, widest},
         normal::{Scores, tail},
     },
-    model::{
-        Model, Variation, ZoneRule,
-        lanes::{LANES, Lanes, widest},
-        nested::Nested,
-    },
-    theory::quadrature::{SIGMA_DISC, SIGMA_ZONE},
 };
 
 /// Why no unit of a model can be drawn.
@@ -278,7 +274,8 @@ mod tests {
     use super::{Draw, DrawError, INSIDE, octahedral};
     use crate::{
         examples::{linear, normal},
-        model::{Contributor, Model, Variation, ZoneRule, lanes::LANES},
+        model::{Contributor, Model, Variation, ZoneRule},
+        numeric::lanes::LANES,
         sampling::sampler::{Method, Sampler},
     };
 
@@ -311,13 +308,13 @@ mod tests {
         for rule in [ZoneRule::Truncated, ZoneRule::UniformInZone] {
             let units = units(&zone(rule), count);
             assert_eq!(inside(&units), 1.0);
-            let expected = crate::theory::quadrature::mean_and_deviation(&Variation::Zone(rule));
+            let expected = crate::distribution::quadrature::mean_and_deviation(&Variation::Zone(rule));
             for k in 0..3 {
                 let square: f64 = units.iter().map(|unit| unit[k] * unit[k]).sum::<f64>() / count as f64;
                 assert!((square / expected[k][1] / expected[k][1] - 1.0).abs() < 0.04, "{rule:?} {k} {square}");
             }
         }
-        let nodes = crate::theory::quadrature::nodes(&Variation::Zone(ZoneRule::Truncated));
+        let nodes = crate::distribution::quadrature::nodes(&Variation::Zone(ZoneRule::Truncated));
         assert!((nodes.iter().map(|node| node.weight).sum::<f64>() - 1.0).abs() < 1e-12);
     }
 
@@ -338,7 +335,9 @@ mod tests {
             let inside = units.iter().filter(|unit| super::circular(unit) <= 1.0).count() as f64 / count as f64;
             let expected = if deviation * 3.0 == 1.0 { super::INSIDE_DISC } else { 1.0 };
             assert!((inside - expected).abs() < 4.0 * libm::sqrt(0.011 / count as f64), "{rule:?} {inside}");
-            for (k, known) in crate::theory::quadrature::mean_and_deviation(&Variation::Disc(rule)).iter().enumerate() {
+            for (k, known) in
+                crate::distribution::quadrature::mean_and_deviation(&Variation::Disc(rule)).iter().enumerate()
+            {
                 let square: f64 = units.iter().map(|unit| unit[k] * unit[k]).sum::<f64>() / count as f64;
                 assert!((libm::sqrt(square) / deviation - 1.0).abs() < 0.02, "{rule:?} {k} {square}");
                 assert!(known[0].abs() < 1e-12 && (known[1] / deviation - 1.0).abs() < 1e-9, "{rule:?} {known:?}");

@@ -11,7 +11,7 @@ use super::{
     sobol::{Directions, key, scrambled},
     streams::Streams,
 };
-use crate::model::lanes::{LANES, widest};
+use crate::numeric::lanes::{LANES, widest};
 
 /// Version of what units are drawn with: of random numbers, scores, distributions and zones. Units of one version are not
 /// those of another.

@@ -4,7 +4,7 @@
 
 use slipfit_core::sampling::stream::{GOLDEN, derived, mix};
 
-use crate::model::lanes::LANES;
+use crate::numeric::lanes::LANES;
 
 /// States of xoshiro256++ (Blackman, Vigna 2021), one a unit.
 pub struct Streams([[u64; LANES]; 4]);

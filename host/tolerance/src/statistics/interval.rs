@@ -3,19 +3,12 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
 use super::binomial;
-use crate::distribution::normal::quantile;
+use crate::numeric::normal::{SIDE, normal_factor, quantile};
 
 /// Values below a point beyond which their number counts as normal.
 const MANY: f64 = 500.0;
 /// Confidence of every interval.
-pub const CONFIDENCE: f64 = 0.95;
-/// Probability left out on either side.
-const SIDE: f64 = 0.5 * (1.0 - CONFIDENCE);
-
-/// Half the width of an interval of a normal estimate, in standard errors.
-pub fn normal_factor() -> f64 {
-    -quantile(SIDE)
-}
+pub const CONFIDENCE: f64 = 1.0 - 2.0 * SIDE;
 
 /// Half the width of an interval in standard errors that were found from `count` ≥ 2 replicates.
 pub fn student_factor(count: usize) -> f64 {

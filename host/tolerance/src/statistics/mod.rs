@@ -3,6 +3,3 @@
 pub mod binomial;
 pub mod estimate;
 pub mod interval;
-pub mod loss;
-pub(crate) mod root;
-pub mod shape;

@@ -2,9 +2,9 @@
 
 use slipfit_core::sampling::stream::mix;
 
-use crate::model::{
-    Model,
-    lanes::{LANES, Lanes},
+use crate::{
+    model::Model,
+    numeric::lanes::{LANES, Lanes},
 };
 
 /// Distance of the inner points (standard deviations of a variable): where cutting off and rounding are both small.

@@ -6,10 +6,8 @@
 use rayon::prelude::*;
 
 use crate::{
-    model::{
-        Model,
-        lanes::{LANES, Lanes},
-    },
+    model::Model,
+    numeric::lanes::{LANES, Lanes},
     sampling::{
         draw::Draw,
         sampler::{Method, Sampler},

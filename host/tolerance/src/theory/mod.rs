@@ -5,7 +5,6 @@ pub mod experiment;
 pub(crate) mod extremes;
 pub mod indices;
 pub mod moments;
-pub mod quadrature;
 pub mod rss;
 pub mod tensor;
 pub mod worst_case;

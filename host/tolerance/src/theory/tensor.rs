@@ -6,11 +6,13 @@
 
 use nalgebra::DMatrix;
 
-use super::{
-    derivative::evaluate,
-    quadrature::{Node, SIGMA_DISC, SIGMA_ZONE, nodes},
-};
+use super::derivative::evaluate;
 use crate::model::{Distribution, Model, Variation, ZoneRule};
+use crate::{
+    distribution::quadrature::nodes,
+    model::{SIGMA_DISC, SIGMA_ZONE},
+    numeric::gauss::Node,
+};
 
 /// Points a variable; the rule is exact for polynomials of degree 17.
 const POINTS: usize = 9;
@@ -143,9 +145,10 @@ fn moments(model: &Model, rules: &[Vec<Point>]) -> Vec<Exact> {
 mod tests {
     use super::{Exact, of_measures, rule};
     use crate::{
+        distribution::quadrature::nodes,
         examples::{clutch, linear, normal, rectangulars, scalar},
-        model::{Contributor, Distribution, Function, Model, Variation, ZoneRule, lanes::Lanes},
-        theory::quadrature::nodes,
+        model::{Contributor, Distribution, Function, Model, Variation, ZoneRule},
+        numeric::lanes::Lanes,
     };
 
     struct Of(fn(f64) -> f64);

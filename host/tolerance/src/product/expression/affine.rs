@@ -1,7 +1,7 @@
 //! Which expressions are linear in the variables.
 
 use super::{Expression, Operation, Source, Two};
-use crate::model::lanes::Lanes;
+use crate::numeric::lanes::Lanes;
 
 /// c + Σ coefficient · variable.
 #[derive(Clone, Debug, Default, PartialEq)]

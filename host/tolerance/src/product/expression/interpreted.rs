@@ -1,7 +1,7 @@
 //! Expressions operation by operation, which the faster ways are compared with.
 
 use super::{Expression, One, Operation, Source, Two};
-use crate::model::lanes::Lanes;
+use crate::numeric::lanes::Lanes;
 
 /// An intermediate result: its value, the sum of the absolute values of all that it adds up, and whether it is constant.
 #[derive(Clone, Copy)]
@@ -62,7 +62,8 @@ mod tests {
         Lanes, bound,
     };
     use crate::{
-        model::{Function, lanes::LANES},
+        model::Function,
+        numeric::lanes::LANES,
         product::function::{Formula, Measures},
     };
 

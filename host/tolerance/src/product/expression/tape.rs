@@ -6,7 +6,7 @@
 use std::{cell::Cell, collections::HashMap};
 
 use super::{Expression, One, Operation, Source, Two};
-use crate::model::lanes::Lanes;
+use crate::numeric::lanes::Lanes;
 
 /// Instructions for the measures that are expressions.
 #[derive(Clone, Debug, Default)]

@@ -15,15 +15,15 @@ use self::{
     errors::Errors,
     plain::{Plain, PlainMeasure},
 };
-use super::{
-    interval,
-    loss::Loss,
-    shape::{Shape, about, between},
-};
+use super::interval;
 use crate::{
     counting::{pairs::Pairs, study::Tally, tally::Frame},
     model::{Measure, Model},
     sampling::sampler::Method,
+};
+use crate::{
+    model::loss::Loss,
+    numeric::shape::{Shape, about, between},
 };
 
 /// The probabilities of the natural limits ±3σ and of the median.

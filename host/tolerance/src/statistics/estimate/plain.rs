@@ -7,11 +7,9 @@ use crate::{
         study::Tally,
         tally::{BINS, BINS_PER_DEVIATION, Frame, MeasureCounts, NEAR, Sums, far_ends},
     },
-    statistics::{
-        interval,
-        loss::Loss,
-        shape::{Shape, weighted},
-    },
+    model::loss::Loss,
+    numeric::shape::{Shape, weighted},
+    statistics::interval,
 };
 
 /// Statistics without errors.

@@ -1,9 +1,9 @@
 //! The search for the greatest value of one measure.
 
 use super::{Change, OF_ALL, Room, STEPS, field::Field, moved_to, on_line, places, targets};
-use crate::model::{
-    Variation,
-    lanes::{LANES, Lanes},
+use crate::{
+    model::Variation,
+    numeric::lanes::{LANES, Lanes},
 };
 
 /// Contributors up to which a search has many starts; and up to which it has some.

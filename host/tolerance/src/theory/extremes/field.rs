@@ -4,10 +4,8 @@ use slipfit_core::sampling::stream::mix;
 
 use super::{Change, Room, STEPS, moved_to};
 use crate::{
-    model::{
-        Contributor, Model, Variation,
-        lanes::{LANES, Lanes},
-    },
+    model::{Contributor, Model, Variation},
+    numeric::lanes::{LANES, Lanes},
     theory::derivative::evaluate,
 };
 

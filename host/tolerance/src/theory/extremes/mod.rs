@@ -12,7 +12,10 @@ use rayon::prelude::*;
 
 use self::{climb::Climb, field::Field};
 use super::derivative::evaluate;
-use crate::model::{Model, Variation, lanes::Lanes};
+use crate::{
+    model::{Model, Variation},
+    numeric::lanes::Lanes,
+};
 
 /// Places on a line that are looked at: of a scalar, of a zone, of all contributors together.
 const OF_SCALAR: [f64; 6] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0, 1.0];

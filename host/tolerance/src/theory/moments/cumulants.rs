@@ -3,9 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
+    distribution::quadrature::nodes,
     model::{Distribution, Variation, ZoneRule},
-    statistics::shape::{ORDER, cumulants, weighted},
-    theory::quadrature::{Node, nodes},
+    numeric::{
+        gauss::Node,
+        shape::{ORDER, cumulants, weighted},
+    },
 };
 
 /// From the mean on.

@@ -1,16 +1,16 @@
 //! Moments of units that are drawn, where no formula has them.
 
 use crate::{
-    model::{
-        Model,
+    model::Model,
+    numeric::{
         lanes::{LANES, Lanes},
+        shape::{Shape, weighted},
     },
     sampling::{
         draw::Draw,
         sampler::{Method, Sampler},
         sobol::MOST_DIMENSIONS,
     },
-    statistics::shape::{Shape, weighted},
 };
 
 /// Units whose moments are taken where there is no formula.

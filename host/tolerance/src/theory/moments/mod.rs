@@ -17,13 +17,11 @@ use self::{
     cumulants::{Cumulants, Group, add, gaussian, is_normal, of_one},
     drawn::{DRAWN, measures_of, of_values, units},
 };
-use super::{
-    derivative::{Expansion, evaluate, expansion, interacting, mixed},
-    quadrature::mean_and_deviation,
-};
+use super::derivative::{Expansion, evaluate, expansion, interacting, mixed};
+use crate::distribution::quadrature::mean_and_deviation;
 use crate::{
     model::Model,
-    statistics::shape::{ORDER, Shape},
+    numeric::shape::{ORDER, Shape},
 };
 
 pub use self::drawn::drawn;

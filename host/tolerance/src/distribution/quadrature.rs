@@ -1,23 +1,16 @@
 //! Weighted points that stand for how a contributor varies: averages over them are its moments.
 
+use super::Marginal;
 use crate::{
-    distribution::{Marginal, normal::density},
-    model::{Distribution, Variation, ZoneRule},
+    model::{Distribution, SIGMA_DISC, SIGMA_ZONE, Variation, ZoneRule},
+    numeric::{
+        gauss::{Node, POINTS, piece},
+        normal::density,
+    },
 };
-
-/// A point of a contributor's variables; a scalar's is the first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Node {
-    /// Its weight; those of a contributor add up to 1.
-    pub weight: f64,
-    /// Its place.
-    pub at: [f64; 4],
-}
 
 /// Where the tails of a normal are cut off (standard deviations): beyond lie 2e-19.
 const REACH: f64 = 9.0;
-/// Points of a piece.
-const POINTS: usize = 10;
 
 /// Nodes of a contributor: exact for polynomials up to degree 8 but for the accuracy of normal and skewed
 /// distributions, 1e-12, and of truncated zones, 1e-8.
@@ -164,26 +157,6 @@ fn disc(density: impl Fn(f64) -> f64) -> Vec<Node> {
     nodes
 }
 
-/// Gauss–Legendre points between `from` and `to`, with weights that add up to its length.
-pub(crate) fn piece(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
-    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    (0..POINTS).map(move |i| {
-        let mut x = libm::cos(std::f64::consts::PI * (i as f64 + 0.75) / (POINTS as f64 + 0.5));
-        let mut slope = 1.0;
-        // Newton's method on the Legendre polynomial; quadratic from this start.
-        for _ in 0..6 {
-            let (mut before, mut value) = (1.0, x);
-            for k in 2..=POINTS {
-                let k = k as f64;
-                (before, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * before) / k);
-            }
-            slope = POINTS as f64 * (x * value - before) / (x * x - 1.0);
-            x -= value / slope;
-        }
-        (middle - half * x, half * 2.0 / ((1.0 - x * x) * slope * slope))
-    })
-}
-
 /// Mean and standard deviation of every variable of a contributor.
 pub fn mean_and_deviation(variation: &Variation) -> Vec<[f64; 2]> {
     if let Variation::Zone(ZoneRule::SigmaZone) = variation {
@@ -209,23 +182,6 @@ pub fn mean_and_deviation(variation: &Variation) -> Vec<[f64; 2]> {
             [mean, libm::sqrt(square)]
         })
         .collect()
-}
-
-/// Standard deviation 1/(3√3) of u, p and r in a sigma-zone: a corner of the face has a sixth of the zone.
-pub const SIGMA_ZONE: f64 = 0.192_450_089_729_875_26;
-/// Standard deviation of x and y in a disc: a sixth of the zone's diameter.
-pub const SIGMA_DISC: f64 = 1.0 / 3.0;
-
-impl Variation {
-    /// How many variables it has.
-    pub fn variables(&self) -> usize {
-        match self {
-            Self::Scalar { .. } | Self::Zone(ZoneRule::Translation) => 1,
-            Self::Disc(_) => 2,
-            Self::Nested(zone) => zone.variables(),
-            Self::Zone(_) => 3,
-        }
-    }
 }
 
 #[cfg(test)]
@@ -293,13 +249,13 @@ mod tests {
         assert!((libm::sqrt(corner) - 1.0 / 3.0).abs() < 1e-15);
         assert!((of(ZoneRule::Translation)[0][1] - 1.0 / 3.0).abs() < 1e-12);
         let truncated = of(ZoneRule::Truncated)[0][1];
-        assert!(truncated < super::SIGMA_ZONE && truncated > 0.97 * super::SIGMA_ZONE);
+        assert!(truncated < crate::model::SIGMA_ZONE && truncated > 0.97 * crate::model::SIGMA_ZONE);
     }
 
     /// Of a `sigma-zone`, 98.956 % lies inside: the integral of its density over the octahedron.
     #[test]
     fn share_inside_a_zone() {
-        let variance = 2.0 * super::SIGMA_ZONE * super::SIGMA_ZONE;
+        let variance = 2.0 * crate::model::SIGMA_ZONE * crate::model::SIGMA_ZONE;
         let exponential = |at: [f64; 3]| libm::exp(-at.iter().map(|x| x * x).sum::<f64>() / variance);
         let integral: f64 = super::octahedron(exponential).iter().map(|node| node.weight).sum();
         let inside = integral / libm::pow(std::f64::consts::PI * variance, 1.5);

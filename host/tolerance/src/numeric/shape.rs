@@ -5,7 +5,7 @@
 //! order for a kurtosis. A few thousand units of a skewed measure do not know these; the model does, but it counts values that
 //! are too rare for a sample of this size to have.
 
-use super::interval;
+use super::normal::normal_factor;
 
 /// The highest moment.
 pub const ORDER: usize = 8;
@@ -107,7 +107,7 @@ pub fn between(model: f64, own: f64) -> f64 {
 
 /// The 95 % interval of a statistic with a standard `error` about its `value`.
 pub fn about(value: f64, error: f64) -> [f64; 2] {
-    let half = interval::normal_factor() * error;
+    let half = normal_factor() * error;
     [value - half, value + half]
 }
 
@@ -144,7 +144,7 @@ fn binomial(n: usize, k: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{ORDER, Shape, cumulants, weighted};
+    use crate::numeric::shape::{ORDER, Shape, cumulants, weighted};
 
     #[track_caller]
     fn close(found: f64, expected: f64) {

@@ -57,7 +57,7 @@ pub fn excess(found: f64, wanted: f64) -> f64 {
 mod tests {
     use std::cell::Cell;
 
-    use super::zero;
+    use crate::numeric::root::zero;
 
     #[test]
     fn without_finite_ends_there_is_no_zero() {

@@ -7,8 +7,10 @@ use std::{f64::consts::FRAC_1_SQRT_2, sync::LazyLock};
 
 use slipfit_core::sampling::normal::upper_score;
 
-use crate::model::lanes::{LANES, Lanes};
+use crate::numeric::lanes::{LANES, Lanes};
 
+/// Probability that intervals of 95 % leave out on either side.
+pub const SIDE: f64 = 0.025;
 /// 1/√(2π).
 const DENSITY_AT_MEAN: f64 = 0.398_942_280_401_432_7;
 /// Binary digits that choose a piece of an octave.
@@ -114,11 +116,16 @@ pub fn quantile(probability: f64) -> f64 {
     if probability < 0.5 { -upper_score(probability) } else { upper_score(1.0 - probability) }
 }
 
+/// Half the width of an interval of 95 % of a normal estimate, in standard errors.
+pub fn normal_factor() -> f64 {
+    -quantile(SIDE)
+}
+
 #[cfg(test)]
 mod tests {
     use slipfit_core::sampling::{normal::score, stream::mix};
 
-    use super::{Scores, quantile, tail};
+    use crate::numeric::normal::{Scores, quantile, tail};
 
     #[test]
     fn table_meets_its_bound() {

@@ -57,7 +57,7 @@ impl Loss {
 
 #[cfg(test)]
 mod tests {
-    use super::Loss;
+    use crate::model::loss::Loss;
 
     /// A supply of 115 V ± 20 V that costs 100 to replace and 2 to put right: k = 0.25, ± 2.83 V.
     #[test]
