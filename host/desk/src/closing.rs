@@ -30,56 +30,17 @@ impl Approach {
 }
 
 /// All contacts of a mechanism at one instant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gaps {
     /// Each contact, always in the same order.
-    approaches: Vec<Approach>,
+    pub approaches: Vec<Approach>,
     /// The greatest angular velocity (rad/s) of a body.
-    spin: f64,
-    /// The least gap (m) that is open.
-    least: f64,
-    /// The greatest rate of a gap, and speed at a contact (m/s).
-    fastest: [f64; 2],
-    /// Whether a contact is slack.
-    slack: bool,
-}
-
-impl Default for Gaps {
-    fn default() -> Self {
-        Self { approaches: Vec::new(), spin: 0.0, least: f64::INFINITY, fastest: [0.0; 2], slack: false }
-    }
+    pub spin: f64,
 }
 
 impl Gaps {
-    /// Forgets all contacts, of bodies that turn at `spin` (rad/s) at most.
-    #[inline(always)]
-    pub fn begin(&mut self, spin: f64) {
-        self.approaches.clear();
-        (self.spin, self.least, self.fastest, self.slack) = (spin, f64::INFINITY, [0.0; 2], false);
-    }
-
-    /// Adds a contact.
-    #[inline(always)]
-    pub fn add(&mut self, contact: Approach) {
-        let Approach { gap, rate, speed, slack } = contact;
-        let [rates, speeds] = self.fastest;
-        self.least = if gap > 0.0 { self.least.min(gap) } else { self.least };
-        self.fastest = [rates.max(rate.abs()), speeds.max(speed)];
-        self.slack |= slack;
-        self.approaches.push(contact);
-    }
-
-    /// The gap (m) of the contact with this number.
-    #[inline]
-    pub fn gap(&self, contact: usize) -> Option<f64> {
-        self.approaches.get(contact).map(|contact| contact.gap)
-    }
-
     /// How long (s) a step may be for contacts that do not push now, and are deeper than `depth` (m): longer ones would be refused.
     pub fn until_pushed(&self, depth: f64) -> f64 {
-        if !self.slack {
-            return f64::INFINITY;
-        }
         let slack = self.approaches.iter().filter(|contact| contact.slack && contact.gap < -depth);
         slack.map(|Approach { gap, rate, .. }| (1.0 - DEPTH_AIMED) * -gap / rate).fold(f64::INFINITY, f64::min)
     }
@@ -113,12 +74,6 @@ const DEPTH_AIMED: f64 = 0.3;
 /// What happens between the ends `before` and `after` of a step of `length` (s). A contact not deeper than `depth` (m) does not count.
 pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between {
     let turn = before.spin.max(after.spin) * length;
-    // What excludes all contacts at once excludes most steps.
-    let [rates, speeds] = [0, 1].map(|k| [before.fastest[k] * length, after.fastest[k] * length]);
-    let reached = reach(rates[0], rates[1]) + left_out(turn, speeds[0].max(speeds[1]));
-    if !before.slack && turn <= MOST_TURN && before.least.min(after.least) > reached {
-        return Between::Apart;
-    }
     let mut share: Option<f64> = None;
     for (from, to) in before.approaches.iter().zip(&after.approaches) {
         if from.slack && from.gap < -depth && to.gap > DEPTH_LEFT * from.gap {
@@ -135,7 +90,8 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
             continue;
         }
         let rates = [from.rate * length, to.rate * length];
-        let left_out = left_out(turn, length * speed);
+        // |g''''| ≤ spin³·speed; a cubic errs by at most length⁴/384 of it. Twice, since the speed is that of the ends.
+        let left_out = turn * turn * turn * length * speed / 192.0;
         if from.gap.min(to.gap) > reach(rates[0], rates[1]) + left_out {
             continue;
         }
@@ -149,13 +105,6 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
         share = found.into_iter().chain(share).reduce(f64::min);
     }
     share.map_or(Between::Apart, Between::Closes)
-}
-
-/// How far (m) a gap may be from its cubic where a body turns by `turn` (rad) and passes the other by `path` (m) in a step.
-#[inline(always)]
-fn left_out(turn: f64, path: f64) -> f64 {
-    // |g''''| ≤ spin³·speed; a cubic errs by at most length⁴/384 of it. Twice, since the speed is that of the ends.
-    turn * turn * turn * path / 192.0
 }
 
 /// How far (m) below the values at its ends a gap may fall in between at most, by its rates times the step's length (m) there.
@@ -240,10 +189,7 @@ mod tests {
         [0.0, length].map(|t| {
             let [gap, rate] = gap(t);
             let far = Approach { gap: 10.0, rate: 0.0, speed, slack: false };
-            let mut gaps = Gaps::default();
-            gaps.begin(spin);
-            [far, Approach { gap, rate, ..far }].into_iter().for_each(|contact| gaps.add(contact));
-            gaps
+            Gaps { approaches: vec![far, Approach { gap, rate, ..far }], spin }
         })
     }
 

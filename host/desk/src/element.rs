@@ -18,7 +18,7 @@ use slipfit_core::{
 };
 
 use crate::{
-    closing::{Approach, Gaps},
+    closing::Approach,
     contact::Laws,
     laws::{AnyNormal, AnySliding},
 };
@@ -80,12 +80,12 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
 fn approach<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
     (Element { link, law }, normal): (&Element<L, W, R>, &AnyNormal<f64>),
     at: (&B, &B::Placed),
-    all: &mut Gaps,
+    all: &mut Vec<Approach>,
 ) {
     let seen = link.seen(at, &link.view(at.0, at.1));
     // No less than the length of the rate.
     let speed = seen.rate.abs().sum();
-    law.each_gap(&seen.place, &seen.rate, |gap, rate| all.add(Approach::new(gap, rate, speed, normal)));
+    law.each_gap(&seen.place, &seen.rate, |gap, rate| all.push(Approach::new(gap, rate, speed, normal)));
 }
 
 /// An element in a plane.
@@ -132,7 +132,11 @@ impl<const D: usize> PlanarElement<D> {
     }
 
     /// Adds the contacts that it is to `all`.
-    pub fn approach(&self, at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed), all: &mut Gaps) {
+    pub fn approach(
+        &self,
+        at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed),
+        all: &mut Vec<Approach>,
+    ) {
         match self {
             Self::Journal(element) => approach((element, &element.law.contact.normal), at, all),
             Self::Pad(element) => approach((element, &element.law.contact.normal), at, all),
@@ -159,7 +163,7 @@ impl SpatialElement {
     pub fn approach<const N: usize, const D: usize>(
         &self,
         at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
-        all: &mut Gaps,
+        all: &mut Vec<Approach>,
     ) {
         match self {
             Self::Pin(element) => approach((element, &element.law.contact.normal), at, all),

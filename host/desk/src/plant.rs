@@ -129,8 +129,9 @@ impl<const D: usize> Watch<[[f64; 2]; D], D> for PlanarPlant<'_, D> {
         let bodies = self.mechanism().bodies();
         let placed = bodies.placed(pose, velocity);
         let turning = bodies.topology().iter().zip(velocity).filter(|(kind, _)| **kind == Kind::Turn);
-        gaps.begin(turning.fold(0.0, |most, (_, rate)| most.max(rate.abs())));
-        self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), gaps));
+        gaps.spin = turning.fold(0.0, |most, (_, rate)| most.max(rate.abs()));
+        gaps.approaches.clear();
+        self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), &mut gaps.approaches));
     }
 }
 
@@ -157,8 +158,9 @@ fn watch_free<const N: usize, const D: usize>(
     elements: &[SpatialElement],
     gaps: &mut Gaps,
 ) {
-    gaps.begin(placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm())));
-    elements.iter().for_each(|one| one.approach((bodies, placed), gaps));
+    gaps.spin = placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm()));
+    gaps.approaches.clear();
+    elements.iter().for_each(|one| one.approach((bodies, placed), &mut gaps.approaches));
 }
 
 macro_rules! plants {

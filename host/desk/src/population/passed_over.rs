@@ -39,8 +39,8 @@ pub fn share<V: Simd>(
     let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
     // The least of gaps that are open at both ends, each beyond what it may fall by in between.
     let mut least = Pack::splat(f32::MAX);
-    // Above 0 where a contact opens, or loses much of its depth.
-    let mut opens_by = -one;
+    // The least of all gaps at the start.
+    let mut deepest = zero;
     let (most, kept) = (Pack::from_f64(-depth), Pack::from_f64(DEPTH_LEFT));
     let nominal = slides.body.gaps.as_chunks::<4>().0;
     for ([left, right, rail, wall], (from, to)) in nominal.iter().zip(ends[0].pins.iter().zip(ends[1].pins)) {
@@ -52,13 +52,13 @@ pub fn share<V: Simd>(
                 let beyond = gap.select_gt(zero, gap - reach, least);
                 least = least.select_gt(beyond, beyond, least);
             }
-            for [before, after] in [[*opens + before, *opens + after], [*closes - before, *closes - after]] {
-                opens_by = opens_by.max_of(most.select_gt(before, after - kept * before, -one));
+            for gap in [*opens + before, *closes - before] {
+                deepest = gap.select_gt(deepest, deepest, gap);
             }
         }
     }
     let near = zero.select_gt(least, asked, zero);
-    let leaves = opens_by.select_gt(zero, asked, zero);
+    let leaves = if (most - deepest) * asked <= zero { zero } else { leaving(nominal, ends, [most, kept], asked) };
     if near.max_of(leaves) <= zero {
         return one;
     }
@@ -79,6 +79,27 @@ pub fn share<V: Simd>(
     if dips <= zero { one } else { lane_by_lane(slides, ends, length, dips, depth) }
 }
 
+/// Where not 0, `asked`: where a contact that is deeper than `most` opens, or keeps less than the share `kept` of its depth.
+#[inline(always)]
+fn leaving<V: Simd>(
+    nominal: &[[Pack<V>; 4]],
+    ends: [End<V>; 2],
+    [most, kept]: [Pack<V>; 2],
+    asked: Pack<V>,
+) -> Pack<V> {
+    let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
+    let mut opens_by = -one;
+    for ([left, right, rail, wall], (from, to)) in nominal.iter().zip(ends[0].pins.iter().zip(ends[1].pins)) {
+        for (axis, opens, closes) in [(0, left, right), (1, wall, rail)] {
+            let (before, after) = (from.place[axis], to.place[axis]);
+            for [before, after] in [[*opens + before, *opens + after], [*closes - before, *closes - after]] {
+                opens_by = opens_by.max_of(most.select_gt(before, after - kept * before, -one));
+            }
+        }
+    }
+    opens_by.select_gt(zero, asked, zero)
+}
+
 /// [`share`] where a contact `may` begin to act. Out of line, since it is rare.
 #[inline(never)]
 fn lane_by_lane<V: Simd>(
@@ -96,15 +117,13 @@ fn lane_by_lane<V: Simd>(
         let [before, after] = ends.map(|End { pins, velocity }| {
             let [vx, vy, vz, wx, wy, wz] = velocity.data.0[0].each_ref();
             let (velocity, spin) = (vector([vx, vy, vz]).norm(), vector([wx, wy, wz]).norm());
-            let mut gaps = Gaps::default();
-            gaps.begin(spin);
+            let mut gaps = Gaps { approaches: Vec::new(), spin };
             for (k, pin) in pins.iter().enumerate() {
                 let [place, rate] = [&pin.place, &pin.rate].map(|v| vector([&v.x, &v.y, &v.z]));
                 let lever = vector(body.pins_w[k].data.0[0].each_ref()) + place;
                 let nominal = std::array::from_fn(|of| number(&body.gaps[4 * k + of]));
                 let seen = Seen { place, rate };
-                let speed = velocity + spin * lever.norm();
-                approaches(&seen, nominal, speed, &normal).for_each(|contact| gaps.add(contact));
+                gaps.approaches.extend(approaches(&seen, nominal, velocity + spin * lever.norm(), &normal));
             }
             gaps
         });

@@ -82,7 +82,7 @@ impl Run {
         let gaps = |motion: &SlideMotion, gaps: &mut Gaps| watch(slide, self.lever, motion, gaps);
         let watched = Watched { gaps, depth: self.tolerance.position };
         integrate::<Rodas4, _, 6>(driven, rest, self.duration, error, watched, |t, motion, accelerations, gaps| {
-            let gaps = array::from_fn(|k| gaps.gap(k).unwrap_or(ABSENT));
+            let gaps = array::from_fn(|k| gaps.approaches.get(k).map_or(ABSENT, |approach| approach.gap));
             see(t, motion, &gaps, accelerations)
         })
     }
@@ -96,12 +96,12 @@ fn watch<E: Elastic<f64>, F: Friction<f64, Internal = ()>>(
     gaps: &mut Gaps,
 ) {
     let Motion { pose, velocity, .. } = motion;
-    let spin = velocity.fixed_rows::<3>(3).norm();
-    gaps.begin(spin);
+    gaps.spin = velocity.fixed_rows::<3>(3).norm();
     // A point of the slide at a pin moves no faster than its centre of mass and its turning together.
-    let speed = velocity.fixed_rows::<3>(0).norm() + spin * (lever + pose.displacement_w.norm());
+    let speed = velocity.fixed_rows::<3>(0).norm() + gaps.spin * (lever + pose.displacement_w.norm());
+    gaps.approaches.clear();
     for (pin, (_, nominal)) in slide.pins(pose, velocity).iter().zip(&slide.elements().0.each) {
-        approaches(pin, *nominal, speed, &slide.contact().normal).for_each(|contact| gaps.add(contact));
+        gaps.approaches.extend(approaches(pin, *nominal, speed, &slide.contact().normal));
     }
 }
 
