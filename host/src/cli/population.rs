@@ -308,7 +308,7 @@ impl Arguments {
         }
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
-        warnings.extend(faults(&found.population));
+        warnings.extend(faults(scene, production, &found.population)?);
         if let Some(path) = &self.page {
             let (mut units, _) = page::units(scene, production, &found.population, self.force_limit)?;
             let svg = units::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;

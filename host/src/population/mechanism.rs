@@ -53,6 +53,10 @@ impl Subject for ByDrive<'_> {
         asked.par_iter().with_max_len(1).map(decisive).collect()
     }
 
+    fn trouble(&self, drawn: &Drawn<Vec<f64>>, i: usize) -> Option<String> {
+        of_run(self, drawn, i).err().map(|error| error.to_string())
+    }
+
     fn gaps_at(&self, n: &[f64]) -> Vec<f64> {
         self.mechanism().stated_gaps_at(n)
     }

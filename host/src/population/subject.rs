@@ -55,6 +55,9 @@ pub trait Subject: Driven {
         asked: &[usize],
     ) -> Result<Vec<Result<Decisive, Fault>>, SimulateError>;
 
+    /// Why unit `i` of those `drawn` has no run; `None` if it has one.
+    fn trouble(&self, drawn: &Drawn<Self::Gaps>, i: usize) -> Option<String>;
+
     /// The gaps (m) at the tolerance levels `n`, one for each; the last holds for all that follow.
     fn gaps_at(&self, n: &[f64]) -> Self::Gaps;
 
@@ -106,6 +109,10 @@ impl Subject for Scene {
 
     fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Result<Decisive, Fault>>, SimulateError> {
         unit::decisive(self, drawn, asked)
+    }
+
+    fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String> {
+        unit::trouble(self, drawn, i)
     }
 
     fn gaps_at(&self, n: &[f64]) -> [f64; CONTACTS] {

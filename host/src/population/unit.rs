@@ -238,6 +238,12 @@ pub fn is_near_a_limit(share: f64) -> bool {
     !share.is_finite() || near(RUNS) || near(JAMMED)
 }
 
+/// Why unit `i` of those `drawn` has no run at the desk; `None` if it has one.
+pub fn trouble(scene: &Scene, drawn: &Drawn, i: usize) -> Option<String> {
+    let own = scene_of(scene, drawn, i);
+    simulate(&own, &drawn.gaps[i], &Settings::desk(&own, 1.0)).err().map(|error| error.to_string())
+}
+
 /// Unit `i` once more, at the desk; what only lanes know is kept of `found`.
 fn at_desk(scene: &Scene, drawn: &Drawn, i: usize, found: UnitOutcome) -> Result<UnitOutcome, SimulateError> {
     let own = scene_of(scene, drawn, i);

@@ -99,7 +99,7 @@ pub fn conclude(
     let found = asked.threads.install(|| Found::of(asked, driven, production, tally))??;
     let mut warnings = warnings_of(mechanism)?;
     warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
-    warnings.extend(faults(&found.population));
+    warnings.extend(faults(driven, production, &found.population)?);
     if let Some(path) = &asked.plot {
         let svg = forces(driven, &found.population.tally, limit).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;

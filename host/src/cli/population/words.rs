@@ -6,11 +6,12 @@ use slipfit_tolerance::number::{self, fixed, level, or_dash};
 
 use super::{Arguments, Found, LevelReport, rare};
 use crate::{
-    cli::{simulate::why_undecided, text_table},
+    cli::{Failure, simulate::why_undecided, text_table},
     dynamics::outcome::Verdict,
     population::{
         Unit,
         drivers::{Driver, LEAST_OUTCOMES, LEAST_UNITS},
+        production::Production,
         statistics::{Share, Spread, Statistics},
         study::Population,
         subject::Subject,
@@ -108,26 +109,39 @@ pub(in crate::cli) fn verdicts(statistics: &Statistics) -> String {
     text
 }
 
+/// The greatest share of units that may be out of bounds: beyond, what varies does so too much.
+const OUT_OF_BOUNDS: f64 = 0.01;
+
 /// Warnings of units without a run.
-pub(in crate::cli) fn faults<G>(population: &Population<G>) -> Vec<String> {
+///
+/// # Errors
+/// Where so many have a parameter that is out of bounds that the scene is to blame.
+pub(in crate::cli) fn faults<S: Subject>(
+    subject: &S,
+    production: &Production<S::Gaps>,
+    population: &Population<S::Gaps>,
+) -> Result<Vec<String>, Failure> {
     let Statistics { units, unassembled, unsolved, out_of_bounds, .. } = population.statistics;
     let first = |fault: Fault| {
         let kept = population.tally.first.iter().flatten().filter(|unit| unit.outcome.fault == Some(fault));
-        let number = kept.map(|unit| unit.number).min();
-        number.map_or_else(String::new, |number| format!("; the first is unit {number}"))
+        let number = kept.map(|unit| unit.number).min()?;
+        let (drawn, i) = production.draw_one(number);
+        let why = subject.trouble(&drawn, i).map_or_else(String::new, |why| format!(": {why}"));
+        Some(format!("; the first is unit {number}{why}"))
     };
-    let told = |count: u64, what: String| (count > 0).then(|| format!("{count} of {units} units {what}"));
-    let fits = "cannot be assembled, because a pin is wider than its hole: they count as jammed".to_owned();
-    let no_step = "come to no verdict, since no step meets the tolerance, however short";
+    let told = |count: u64, what: &str, fault: Option<Fault>| {
+        let first = fault.and_then(first).unwrap_or_default();
+        (count > 0).then(|| format!("{count} of {units} units {what}{first}"))
+    };
+    let fits = "cannot be assembled, because a pin is wider than its hole: they count as jammed";
+    let no_step = "come to no verdict, since no step meets the tolerance";
     let bounds = "come to no verdict, since one of their parameters is out of bounds";
-    [
-        told(unassembled, fits),
-        told(unsolved, format!("{no_step}{}", first(Fault::Unsolved))),
-        told(out_of_bounds, format!("{bounds}{}", first(Fault::OutOfBounds))),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let bounds = told(out_of_bounds, bounds, Some(Fault::OutOfBounds));
+    if out_of_bounds as f64 > OUT_OF_BOUNDS * units as f64 {
+        return Err(Failure::Input(bounds.unwrap_or_default()));
+    }
+    let all = [told(unassembled, fits, None), told(unsolved, no_step, Some(Fault::Unsolved)), bounds];
+    Ok(all.into_iter().flatten().collect())
 }
 
 /// The table of the worst units.

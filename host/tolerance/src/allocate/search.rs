@@ -20,7 +20,7 @@ const FAR: f64 = 9.0;
 pub const MET: f64 = 1e-6;
 /// How far below 1, in what it may rise by, a figure has a price that trades find.
 const BINDS: f64 = 2.0;
-/// What wider tolerances have to save, as a share of the cost, to speak against a program.
+/// What wider or traded tolerances have to save, as a share of the cost, to speak against a program.
 const WIDENS: f64 = 1e-3;
 /// The most corrections of a program.
 const CORRECTIONS: usize = 6;
@@ -176,7 +176,7 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
         let starts = std::iter::once(&tightest).chain(programmed.map(|solution| &solution.tolerances));
         let traded = traded(processes, &starts.collect::<Vec<_>>(), figures)?;
         if let Some(traded) = traded
-            && programmed.is_none_or(|programmed| traded.solution.cost < programmed.cost * (1.0 - precision.still))
+            && programmed.is_none_or(|programmed| traded.solution.cost < programmed.cost * (1.0 - WIDENS))
         {
             return Ok(traded);
         }
