@@ -1,7 +1,7 @@
 //! Tolerance analysis, dynamics and flash tables of mechanisms with clearance joints.
 //!
-//! What a designer writes is read by [`scene`]; it becomes a [`product`] (parts, tolerances, measures), a
-//! [`mechanism`] (bodies, joints, drives) or both. [`tolerance`] says how the measures vary, [`dynamics`] what one unit
+//! What a designer writes is read by [`scene`]; it becomes a [`product`] (parts, tolerances, measures), a slide as [`setup`] has it, or a
+//! [`mechanism`] (bodies, joints, drives). [`tolerance`] says how the measures vary, [`dynamics`] what one unit
 //! does, [`population`] what every unit of a production does, [`quality`] how far the solvers can be believed. [`firmware`]
 //! is what the controller gets, [`show`] what people look at. The command line is in [`cli`], one file a command.
 #![deny(unsafe_code)]

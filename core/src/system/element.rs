@@ -63,7 +63,8 @@ pub trait Law<S: Scalar, const R: usize> {
     }
 
     /// Shows `see` the distance (m) of each pair of surfaces that may touch, of which [`gap`](Self::gap) is the least, and how fast
-    /// (m/s) it grows. Nothing of a law whose bodies always act on each other.
+    /// (m/s) it grows. Nothing of a law whose bodies always act on each other; a law that has a gap has to show it here as well, or steps
+    /// under error control may pass it over.
     #[inline(always)]
     fn each_gap(&self, _place: &SVector<S, R>, _rate: &SVector<S, R>, _see: impl FnMut(S, S)) {}
 

@@ -170,8 +170,8 @@ pub struct Watched<F> {
 }
 
 /// Integrates `mechanism` from `start` at time 0 over `duration` (s) or until `accept` breaks, which sees the start and the
-/// motion at the end of each accepted step, with the step's accelerations, and the contacts there. A step is accepted if `error`, which also sees its
-/// length (s), is at most 1, and if no contact that is open at its ends closes in between.
+/// motion at the end of each accepted step, with the step's accelerations, and the contacts there. A step is accepted if `error`,
+/// which also sees its length (s), is at most 1, and if no contact begins to act in it (see [`closing`]).
 ///
 /// # Errors
 /// See [`Stopped`].

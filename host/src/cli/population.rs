@@ -297,6 +297,7 @@ impl Arguments {
         product: Option<&Product>,
     ) -> Result<(), Failure> {
         let found = self.threads.install(|| self.find(scene, production, tally))??;
+        let without_run = faults(scene, production, &found.population)?;
         if let Some(path) = &self.plot {
             let svg = units::forces(scene, &found.population.tally, self.force_limit);
             let svg = svg.map_err(anyhow::Error::from)?;
@@ -308,7 +309,7 @@ impl Arguments {
         }
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
-        warnings.extend(faults(scene, production, &found.population)?);
+        warnings.extend(without_run);
         if let Some(path) = &self.page {
             let (mut units, _) = page::units(scene, production, &found.population, self.force_limit)?;
             let svg = units::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;

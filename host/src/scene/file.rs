@@ -83,8 +83,8 @@ impl SceneFile {
             && root.get("slide").is_none()
             && let Some(alone) = of_slide.iter().find_map(|key| root.get(key))
         {
-            let allowed = "[slide] and [[pin]], or [[body]] and [[joint]], which it belongs to";
-            return Err(alone.no_effect("where nothing moves", allowed));
+            let allowed = "[slide] and [[pin]], or [[body]] and [[joint]], beside it";
+            return Err(alone.no_effect("without a [slide] or bodies", allowed));
         }
         root.table("slide")?;
         let (mut pins, gap_measures) = pins(&root, product.as_ref().map(|product| &product.model))?;

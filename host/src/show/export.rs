@@ -8,7 +8,7 @@ use slipfit_tolerance::number::ten_digits;
 use crate::{
     dynamics::{driven::DriveKind, outcome::Moment, sweep::Sweep, trajectory::Trajectory},
     mechanism::Samples,
-    population::Unit,
+    population::{Unit, unit::Fault},
     quality::{precision, stability},
 };
 
@@ -74,15 +74,18 @@ impl<W: Write> UnitRows<W> {
     pub fn add<G: AsRef<[f64]>>(&mut self, tightness: f64, unit: &Unit<G>) -> io::Result<()> {
         let Unit { number, gaps, outcome } = unit;
         let optional = |value: Option<f64>| value.map_or(String::new(), ten_digits);
+        // A unit without a run has no figures; one that cannot be assembled stands still.
+        let runs = matches!(outcome.fault, None | Some(Fault::Unassembled));
+        let figure = |value: f64| optional(runs.then_some(value));
         let own = [
             number.to_string(),
             ten_digits(tightness),
             optional(outcome.breakaway),
             optional(outcome.peak_force),
             optional(outcome.settled_force),
-            ten_digits(outcome.final_velocity),
-            ten_digits(outcome.end.t),
-            ten_digits(outcome.end.z),
+            figure(outcome.final_velocity),
+            figure(outcome.end.t),
+            figure(outcome.end.z),
             outcome.verdict.to_string(),
             outcome.at_desk.to_string(),
         ];

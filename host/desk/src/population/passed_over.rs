@@ -79,7 +79,8 @@ pub fn share<V: Simd>(
     if dips <= zero { one } else { lane_by_lane(slides, ends, length, dips, depth) }
 }
 
-/// Where not 0, `asked`: where a contact that is deeper than `most` opens, or keeps less than the share `kept` of its depth.
+/// `asked` in the lanes in which a contact that is deeper than −`most` (m) opens, or keeps less than the share `kept` of its depth; 0 in
+/// the others.
 #[inline(always)]
 fn leaving<V: Simd>(
     nominal: &[[Pack<V>; 4]],

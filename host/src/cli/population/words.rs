@@ -36,7 +36,8 @@ impl Arguments {
     /// What the units did together.
     pub(super) fn summary(&self, scene: &Scene, found: &Found) -> String {
         let Population { statistics, of_force, of_malfunction, .. } = &found.population;
-        let Statistics { units, undecided, malfunctions, over_limit, sigma_level, .. } = *statistics;
+        let Statistics { units, undecided, malfunctions, over_limit, sigma_level, unsolved, out_of_bounds, .. } =
+            *statistics;
         let mut text = format!("{}: {units} units", scene.title);
         let length = match self.duty_of(scene).stroke {
             Some(stroke) => format!("the stroke of {} mm", fixed(stroke * 1e3, 1)),
@@ -45,7 +46,8 @@ impl Arguments {
         let _ = writeln!(text, ", {length}\n");
         let _ = writeln!(text, "Malfunction     {}", percent(&malfunctions));
         text += &verdicts(statistics);
-        if undecided.units > 0 {
+        // The others are told of in warnings.
+        if undecided.units > unsolved + out_of_bounds {
             let why = match self.opening {
                 true => {
                     ": the opening ends before the ramp does; without --opening the whole stroke is simulated".into()

@@ -452,3 +452,22 @@ fn tolerances_are_widened_beyond_where_a_measure_turns() {
     let t = (-0.4 + libm::sqrt(0.16 + 16.0 * (0.03 + 0.0624585))) / 8.0;
     assert!((found.solution.tolerances[0] / (t * 1e-3) - 1.0).abs() < 3e-3 && found.traded, "{found:?} {t}");
 }
+
+/// Trades reach processes and steps that lie far from each other: a fixed price up to 0.05 mm and one from there on, and a list of two.
+#[test]
+fn trades_reach_tolerances_far_apart() {
+    let dimension = |name: &str, cost: &str| {
+        format!("[[dimension]]\nname = '{name}'\nvalue = 10\ntolerance = 0.02\ncost = {cost}\n")
+    };
+    for (cost, expected) in [
+        ("[{ fixed = 7, range = [0.01, 0.015] }, { fixed = 3, range = [0.1, 0.15] }]", [3.0, 7.0]),
+        ("{ reciprocal = 1, range = [0.01, 0.16], step = 0.15 }", [6.25, 100.0]),
+    ] {
+        // Only one of both may be wide: |a − 10| and |b − 10| add up.
+        let text = dimension("a", cost)
+            + &dimension("b", cost)
+            + "[[measure]]\nname = 'm'\nis = 'abs(a - 10 mm) + abs(b - 10 mm)'\nupper = 0.18\n";
+        let found = cheapest(&text, &of_first(Kind::WorstCase), all).unwrap();
+        assert!((found.solution.cost - expected.iter().sum::<f64>()).abs() < 1e-9, "{cost}: {found:?}");
+    }
+}

@@ -2,7 +2,7 @@
 //!
 //! Figures of measures with kinks may fall in steps, or along one tolerance only where another is tight, which no separable program
 //! around some tolerances tells. Here a tolerance is widened where that is possible, or where another one that is tightened instead costs
-//! less; steps get shorter until none of a thousandth is left that saves anything (a pattern search: Kolda, Lewis and Torczon, SIAM Review
+//! less; steps get shorter until none of two thousandths is left that saves anything (a pattern search: Kolda, Lewis and Torczon, SIAM Review
 //! 45, 2003). It assumes that a tighter tolerance is never worse, and finds a local minimum.
 
 use rayon::prelude::*;
@@ -60,9 +60,6 @@ pub fn exchanged(
     };
     for step in STEPS {
         for _ in 0..MOST {
-            if slipfit_system::interrupt::requested() {
-                return Err(AllocateError::Interrupted);
-            }
             let Some(next) = step_from(processes, &best, (step, moves), (figures, allowed))? else { break };
             best = next;
         }
@@ -83,9 +80,14 @@ fn step_from(
     (figures, allowed): (&dyn Figures, &[f64]),
 ) -> Result<Option<Choice>, AllocateError> {
     let count = from.bounds.len();
+    // By one step, or to the next tolerance that costs less: between some, or up to another process, there may be none.
+    let wider: Vec<f64> =
+        (0..count).map(|item| (from.bounds[item] + step).max(next_cheaper(processes[item], from, item))).collect();
     let moved = |moves: &[(usize, f64)]| {
         let mut bounds = from.bounds.clone();
-        moves.iter().for_each(|(item, by)| bounds[*item] += by);
+        for (item, by) in moves {
+            bounds[*item] = if *by > 0.0 { wider[*item] } else { bounds[*item] + by };
+        }
         choice(processes, bounds).filter(|next| next.cost < from.cost * (1.0 - SAVES))
     };
     let all: Vec<(usize, f64)> = (0..count).map(|item| (item, step)).collect();
@@ -98,6 +100,9 @@ fn step_from(
     }
     trials.sort_by(|one, other| one.cost.total_cmp(&other.cost));
     for trials in trials.chunks(AT_ONCE) {
+        if slipfit_system::interrupt::requested() {
+            return Err(AllocateError::Interrupted);
+        }
         let values: Vec<_> = trials.par_iter().map(|next| figures.values(&next.tolerances)).collect();
         for (next, values) in trials.iter().zip(values) {
             if values?.iter().zip(allowed).all(|(figure, allowed)| *figure <= allowed + MET) {
@@ -126,6 +131,25 @@ fn choice(processes: &[&[Process]], bounds: Vec<f64>) -> Option<Choice> {
         all.cost += cost;
     }
     Some(all)
+}
+
+/// The least bound (logarithm of SI) of an `item` within which something costs less than what it has; −∞ if nothing does.
+fn next_cheaper(processes: &[Process], from: &Choice, item: usize) -> f64 {
+    let (most, now) = (from.tolerances[item], processes[from.processes[item]].law.cost(from.tolerances[item]));
+    let cheaper = |of: &Process| match &of.values {
+        Values::List(values) => values.iter().copied().find(|t| *t > most && of.law.cost(*t) < now),
+        Values::Range([low, high]) if of.law.cost(*high) < now && *high > most => {
+            // Costs fall.
+            let (mut dear, mut cheap) = (low.max(most), *high);
+            while cheap > dear * (1.0 + SAVES) {
+                let middle = libm::sqrt(dear * cheap);
+                if of.law.cost(middle) < now { cheap = middle } else { dear = middle }
+            }
+            Some(if of.law.cost(low.max(most)) < now { low.max(most) } else { cheap })
+        }
+        Values::Range(_) => None,
+    };
+    processes.iter().filter_map(cheaper).reduce(f64::min).map_or(f64::NEG_INFINITY, libm::log)
 }
 
 /// The widest of `values` that is at most `most`.

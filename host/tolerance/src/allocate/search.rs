@@ -18,7 +18,9 @@ use super::{
 const FAR: f64 = 9.0;
 /// How far a figure may be above 1.
 pub const MET: f64 = 1e-6;
-/// How far below 1, in what it may rise by, a figure has a price that trades find.
+/// What trades save less than, as a share of the cost, is nothing.
+const NOTHING: f64 = 1e-5;
+/// Figures within so many times of what they may rise by below 1 get a price by trades.
 const BINDS: f64 = 2.0;
 /// What wider or traded tolerances have to save, as a share of the cost, to speak against a program.
 const WIDENS: f64 = 1e-3;
@@ -178,7 +180,7 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
         if let Some(traded) = traded
             && programmed.is_none_or(|programmed| traded.solution.cost < programmed.cost * (1.0 - WIDENS))
         {
-            return Ok(traded);
+            return priced_by_trades(processes, traded, figures);
         }
     }
     let (mut found, local) = best.ok_or(AllocateError::NotFound)?;
@@ -194,15 +196,14 @@ fn widens(processes: &[&[Process]], solution: Option<&Solution>, figures: &dyn F
     Ok(wider.is_some_and(|(wider, _)| wider.cost < cost * (1.0 - WIDENS)))
 }
 
-/// The cheapest of what trades find from each of `starts` on, all of which meet the figures, and its prices by trades.
+/// The cheapest of what trades find from each of `starts` on, all of which meet the figures; without prices.
 fn traded(
     processes: &[&[Process]],
     starts: &[&Vec<f64>],
     figures: &dyn Figures,
 ) -> Result<Option<Found>, AllocateError> {
-    let reliefs = figures.reliefs();
     let mut best: Option<Found> = None;
-    let met = vec![1.0; reliefs.len()];
+    let met = vec![1.0; figures.reliefs().len()];
     for start in starts {
         let Some((solution, figures)) = exchanged(processes, start, (figures, &met), Moves::Pairs)? else {
             continue;
@@ -211,21 +212,29 @@ fn traded(
             best = Some(Found { solution, figures, together: None, traded: true });
         }
     }
-    let Some(mut found) = best else { return Ok(None) };
+    Ok(best)
+}
+
+/// What was `found`, with the prices of figures that bind: what trades save where these have their relief.
+fn priced_by_trades(processes: &[&[Process]], mut found: Found, figures: &dyn Figures) -> Result<Found, AllocateError> {
+    let reliefs = figures.reliefs();
     let bind: Vec<usize> =
         (0..reliefs.len()).filter(|row| found.figures[*row] >= 1.0 - BINDS * reliefs[*row]).collect();
     let fall = |loosened: &[usize]| -> Result<f64, AllocateError> {
         let allowed = |row: usize| if loosened.contains(&row) { 1.0 + reliefs[row] } else { 1.0 };
         let allowed: Vec<f64> = (0..reliefs.len()).map(allowed).collect();
         let cheaper = exchanged(processes, &found.solution.tolerances, (figures, &allowed), Moves::Pairs)?;
-        Ok(cheaper.map_or(0.0, |(cheaper, _)| found.solution.cost - cheaper.cost))
+        let saved = cheaper.map_or(0.0, |(cheaper, _)| found.solution.cost - cheaper.cost);
+        // What a start is widened by so that its own bounds hold it.
+        Ok(if saved > NOTHING * found.solution.cost { saved } else { 0.0 })
     };
     let prices =
         bind.iter().map(|row| Ok(fall(&[*row])? / reliefs[*row])).collect::<Result<Vec<f64>, AllocateError>>()?;
-    let together = if bind.len() > 1 { Some(fall(&bind)?) } else { None };
+    let alone = bind.iter().zip(&prices).map(|(row, price)| price * reliefs[*row]).fold(0.0, f64::max);
+    let together = if bind.len() > 1 { Some(fall(&bind)?.max(alone)) } else { None };
     bind.iter().zip(prices).for_each(|(row, price)| found.solution.prices[*row] = price);
     found.together = together;
-    Ok(Some(found))
+    Ok(found)
 }
 
 /// The program around a solution.

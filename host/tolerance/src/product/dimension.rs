@@ -180,7 +180,7 @@ pub enum ShapeError {
     Mean,
     /// A truncated normal of which nothing is left.
     #[error(
-        "the mean is {0:.0} standard deviations outside of the tolerance: nothing is left within it, 30 are allowed"
+        "the mean is {0:.1} standard deviations outside of the tolerance: nothing is left within it, 30 are allowed"
     )]
     Truncated(f64),
     /// A log-normal whose mean is not above its least value.

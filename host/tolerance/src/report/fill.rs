@@ -238,9 +238,9 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
         }
     }
     for (measure, worst) in model.measures.iter().zip(&analysis.theory.worst_cases) {
-        if worst.range.iter().any(|end| end.is_infinite()) {
+        if worst.range[0] <= worst.range[1] && worst.range.iter().any(|end| end.is_infinite()) {
             notes.push(format!(
-                "{} grows beyond all bounds within the limits: it is divided by what can be 0 there",
+                "{} grows beyond all bounds near some point within the limits: it has no worst case there",
                 measure.name
             ));
         } else if worst.undefined {

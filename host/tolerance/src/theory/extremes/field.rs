@@ -33,10 +33,20 @@ pub(super) struct Field<'a> {
     pub starts: Vec<Vec<f64>>,
     /// Of each measure and side, the best points of all that were computed.
     pub best: Vec<[Best; 2]>,
+    /// The greatest magnitude of a scalar's limit (SI).
+    pub size: f64,
     /// Whether a measure cannot be computed at one of these.
     pub undefined: Vec<bool>,
     /// Of each measure, the contributors that move it at any start.
     pub moving: Vec<Vec<usize>>,
+}
+
+/// The greatest magnitude of a scalar's limits (SI).
+fn size(variation: &Variation) -> f64 {
+    match variation {
+        Variation::Scalar { limits: [low, high], .. } => low.abs().max(high.abs()),
+        Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_) => 0.0,
+    }
 }
 
 impl<'a> Field<'a> {
@@ -48,6 +58,7 @@ impl<'a> Field<'a> {
             offsets: model.offsets(),
             starts: vec![model.middles()],
             best: vec![[Vec::new(), Vec::new()]; count],
+            size: model.contributors.iter().map(|contributor| size(&contributor.variation)).fold(0.0, f64::max),
             undefined: vec![false; count],
             moving: Vec::new(),
         };

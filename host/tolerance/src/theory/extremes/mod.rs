@@ -27,6 +27,9 @@ const STEPS: [f64; 2] = [1e-3, 0.25];
 /// How many times the values at corners and random points a search exceeds that ends beside a pole.
 const POLE: f64 = 1e6;
 
+/// Values below this share of the variables' size may be rounding.
+const ROUNDING: f64 = 1e-13;
+
 /// What was found of a measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
@@ -50,8 +53,8 @@ pub fn extremes(model: &Model, measures: &[usize]) -> Vec<Extremes> {
         for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
             let (best, undefined) = Climb::new(&field, *measure, side).best();
             let ordinary = field.best[*measure].iter().flatten().fold(0.0f64, |most, (value, _)| most.max(value.abs()));
-            // Where all of these are 0 the measure is level nearly everywhere, which says nothing of poles.
-            let is_beside_pole = ordinary > 0.0 && best > POLE * ordinary;
+            // Where all of these are rounding the measure is level nearly everywhere, which says nothing of poles.
+            let is_beside_pole = ordinary > ROUNDING * field.size && best > POLE * ordinary;
             found.range[side] = sign * if is_beside_pole { f64::INFINITY } else { best };
             found.undefined |= undefined;
         }
