@@ -134,8 +134,8 @@ fn controlled(n: f64, milliseconds: u32) -> Vec<Entry> {
                 duration,
                 Tolerance::of_force(force),
                 &mut |t, motion, _, accelerations| {
-                    let slopes = accelerations.map(|both| both.map(|acceleration| [acceleration.z]));
-                    knots.push(Knot { t, values: [motion.velocity.z], slopes });
+                    let rates = accelerations.map(|both| both.map(|acceleration| [acceleration.z]));
+                    knots.push(Knot { t, values: [motion.velocity.z], rates });
                     ControlFlow::Continue(())
                 },
             )

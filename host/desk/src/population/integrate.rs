@@ -318,7 +318,7 @@ mod tests {
             while height < start {
                 let depth: f64 = start - height;
                 let s = (depth / full).min(1.0);
-                let force = stiffness * depth * depth.sqrt() - damping * s * s * (3.0 - 2.0 * s) * expected;
+                let force = stiffness * depth * libm::sqrt(depth) - damping * s * s * (3.0 - 2.0 * s) * expected;
                 expected += h * 4.0 * force.max(0.0) / data.body.mass;
                 height += h * expected;
             }

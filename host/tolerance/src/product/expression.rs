@@ -214,7 +214,7 @@ impl Expression {
         let mut first = None;
         self.trace(variables, measures, |step, value| {
             let value = value.0[0];
-            if !(value.abs() < GREATEST) && first.is_none() {
+            if (value.is_nan() || value.abs() >= GREATEST) && first.is_none() {
                 let what = match step.operation {
                     Operation::Two(Two::Divide) if !value.is_finite() => "divides by zero",
                     _ if value.is_finite() => "is 1e100 or more",
