@@ -4,7 +4,7 @@
 //! are drawn. What draws them ([`sampling`]) and makes statistics of the measures ([`counting`], [`statistics`]) does not
 //! know what they mean. [`theory`] finds figures without drawing, [`failure`] the probability of what is too rare to be
 //! counted, [`allocate`] the cheapest tolerances. What a model is of may be a [`product`]: parts, features, tolerances and mates.
-//! [`unit`] and [`number`] are how quantities are written.
+//! [`mod@unit`] and [`number`] are how quantities are written.
 #![forbid(unsafe_code)]
 
 pub mod allocate;

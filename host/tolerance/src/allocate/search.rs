@@ -3,7 +3,7 @@
 //! Around some tolerances every figure is taken for a constant and a weighted sum of powers that has its value and its slopes there.
 //! The cheapest tolerances under these are where the figures are looked at next. For measures that are linear the first program
 //! is the right one. A solution counts only if the figures themselves are met there. Where programs come to no end, or slopes do not
-//! describe what is required, tolerances are [traded](super::exchange) against each other from there on.
+//! describe what is required, tolerances are traded against each other from there on.
 
 use super::{
     AllocateError,
