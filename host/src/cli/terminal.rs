@@ -7,7 +7,7 @@ use std::{
 
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
-use super::Failure;
+use super::failure::Failure;
 
 /// A progress bar with an estimate, on standard error, if that is a terminal.
 pub fn progress(what: &'static str, length: usize) -> ProgressBar {

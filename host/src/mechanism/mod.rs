@@ -6,6 +6,8 @@
 pub mod agreement;
 pub mod closing;
 pub mod columns;
+#[cfg(test)]
+mod contact_tests;
 mod driven;
 mod energy;
 pub mod feedback;

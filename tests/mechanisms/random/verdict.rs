@@ -11,7 +11,7 @@ use super::{
 };
 
 /// What the desk may err by in a step, as a share of the mechanism's own speed: its default, and the tenth by which its own confirmation
-/// tells how far a run is off.
+/// reports how far a run is off.
 pub const ERROR: f64 = 3e-7;
 const TENTH: f64 = 0.1;
 /// Time (s) between two rows.

@@ -1,7 +1,7 @@
 //! What was found, for people.
 
 use slipfit_tolerance::{
-    allocate::{requirement::Row, search::MET},
+    allocate::{figures::MET, requirement::Row},
     model::Model,
     number::{fixed, or_dash, per_million, percent, three_digits},
 };

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::{Failure, SceneArguments, given};
 use crate::{
-    dynamics::outcome::Outcome,
+    dynamics::{error_control::Stopped, outcome::Outcome},
     mechanism::{Action, GapError, Mechanism, RunError},
 };
 
@@ -22,8 +22,10 @@ pub(super) use sweep::sweep;
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
-            RunError::Unsolved(_) | RunError::NotFinite { .. } | RunError::Interrupted => Self::Work(error.into()),
-            RunError::Mounts(_) | RunError::Bodies(_) | RunError::Parameter(_) => Self::Input(error.to_string()),
+            RunError::Mounts(_) | RunError::Bodies(_) | RunError::Stopped { stopped: Stopped::Parameter(_) } => {
+                Self::Input(error.to_string())
+            }
+            RunError::Stopped { .. } => Self::Work(error.into()),
         }
     }
 }

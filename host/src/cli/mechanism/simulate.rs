@@ -13,6 +13,7 @@ use crate::{
     cli::{Failure, print, print_json, simulate::MOMENTS, text_table, warn},
     dynamics::{
         answer::on_the_way,
+        error_control::Stopped,
         outcome::{Outcome, Verdict},
     },
     mechanism::{
@@ -233,7 +234,9 @@ fn controller(
         return Ok(None);
     }
     match controller_run(mechanism, gaps, every) {
-        Err(RunError::NotFinite { .. }) if !asked => Ok(Some(Controller { run: None, difference: None })),
+        Err(RunError::Stopped { stopped: Stopped::NotFinite { .. } }) if !asked => {
+            Ok(Some(Controller { run: None, difference: None }))
+        }
         run => {
             let run = run?;
             let difference = Some(differing(mechanism, &run, desk));

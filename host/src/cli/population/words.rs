@@ -46,7 +46,7 @@ impl Arguments {
         let _ = writeln!(text, ", {length}\n");
         let _ = writeln!(text, "Malfunction     {}", percent(&malfunctions));
         text += &verdicts(statistics);
-        // The others are told of in warnings.
+        // Warnings name the others.
         if undecided.units > unsolved + out_of_bounds {
             let why = match self.opening {
                 true => {

@@ -2,7 +2,7 @@
 
 use slipfit_tolerance::{
     model::ZoneRule,
-    number::ten_digits,
+    number::{fixed, ten_digits},
     product::{
         assembly::With,
         contact::{cross, unit},
@@ -21,7 +21,9 @@ use super::{
     material::{self, Material},
     part::FeatureDraft,
     pattern::{self, Pattern},
-    rule, slant, symmetric, toleranced, zone,
+    rule,
+    slant::slant,
+    symmetric, toleranced, zone,
 };
 
 pub(super) const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
@@ -222,9 +224,23 @@ pub(super) fn read<'t, 's>(
     }
     warn_of_frames(index, location, orientation, draft);
     if let Some(orientation) = orientation {
-        slant::warn(index, orientation, draft);
+        warn_of_angle(index, orientation, draft);
     }
     Ok(())
+}
+
+/// Warns of a parallelism or a perpendicularity between features that are drawn at another angle.
+fn warn_of_angle(index: usize, callout: &Callout, draft: &Draft) {
+    let Some(datum) = callout.datums.first().map(|datum| datum.feature) else { return };
+    let is_parallel = callout.name == "parallelism";
+    if !is_parallel && callout.name != "perpendicularity" {
+        return;
+    }
+    if let Some(angle) = slant([index, datum].map(|feature| &draft.assembly.features[feature]), is_parallel) {
+        let [own, datum] = [index, datum].map(|feature| &draft.feature_names[feature]);
+        let angle = fixed(angle, 1);
+        callout.field.warn(&format!("the {} of {own}: it is drawn at {angle}° to its datum {datum}", callout.name));
+    }
 }
 
 /// Warns of datums that are missing, or do not hold the place that they are for. An orientation to a face leaves the turn about

@@ -87,6 +87,8 @@ mod symmetric_tests;
 #[cfg(test)]
 mod tests;
 mod toleranced;
+#[cfg(test)]
+mod trade_tests;
 mod zone;
 #[cfg(test)]
 mod zone_tests;

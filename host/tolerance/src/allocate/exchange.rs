@@ -11,7 +11,7 @@ use super::{
     AllocateError,
     branch::Solution,
     cost::{Process, Values},
-    search::{Figures, MET},
+    figures::{Figures, MET},
 };
 
 /// Steps, as logarithms of a factor, from the longest to the shortest.
@@ -20,8 +20,6 @@ const STEPS: [f64; 5] = [0.6, 0.15, 0.04, 0.01, 0.002];
 const AGAINST: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
 /// What a step has to save, as a share of the cost.
 const SAVES: f64 = 1e-6;
-/// Steps of one length.
-const MOST: usize = 60;
 /// Trials that are made at once.
 const AT_ONCE: usize = 8;
 
@@ -55,12 +53,12 @@ pub fn exchanged(
     (figures, allowed): (&dyn Figures, &[f64]),
     moves: Moves,
 ) -> Result<Option<(Solution, Vec<f64>)>, AllocateError> {
-    let Some(mut best) = choice(processes, start.iter().map(|t| libm::log(*t * (1.0 + MET))).collect()) else {
+    let Some(mut best) = choice(processes, start.iter().map(|t| libm::log(*t)).collect()) else {
         return Ok(None);
     };
     for step in STEPS {
-        for _ in 0..MOST {
-            let Some(next) = step_from(processes, &best, (step, moves), (figures, allowed))? else { break };
+        // Each step saves a share of the cost, so that there is a last one.
+        while let Some(next) = step_from(processes, &best, (step, moves), (figures, allowed))? {
             best = next;
         }
     }

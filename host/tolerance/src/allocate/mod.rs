@@ -1,7 +1,7 @@
 //! Tolerance synthesis: the cheapest tolerances with which a product meets its requirements.
 //!
 //! Every tolerance has processes with costs ([`cost`]). Requirements are figures of the tolerances ([`requirement`]), whatever they
-//! come from ([`search::Figures`]). Around some tolerances they are rows of a separable program ([`program`]), which is solved by
+//! come from ([`figures::Figures`]). Around some tolerances they are rows of a separable program ([`program`]), which is solved by
 //! branch and bound ([`branch`]) over Lagrangian bounds; its solution is where the figures are looked at next ([`search`]). Figures with
 //! kinks are followed by trading tolerances against each other (`exchange`).
 
@@ -12,7 +12,8 @@ pub mod cost;
 pub mod curve;
 mod dual;
 mod exchange;
-mod figure;
+pub mod figures;
+mod full_model;
 mod nearest;
 pub mod program;
 pub mod requirement;

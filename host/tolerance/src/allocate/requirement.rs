@@ -5,9 +5,9 @@
 
 use super::{
     AllocateError,
-    figure::{Formula, any_defects, defects, drawn},
+    figures::{Figures, Precision},
+    full_model::{Formula, any_defects, defects, drawn},
     program::Power,
-    search::{Figures, Precision},
 };
 use crate::{
     model::{Measure, Model},

@@ -10,81 +10,19 @@ use super::{
     branch::Solution,
     cost::Process,
     exchange::{Moves, exchanged},
-    program::{Power, Program, Row},
-    slopes::{Slopes, weights},
+    figures::{Figures, MET},
+    program::{Program, Row},
+    slopes::weights,
 };
 
 /// Figures beyond this say little of where they would be 1.
 const FAR: f64 = 9.0;
-/// How far a figure may be above 1.
-pub const MET: f64 = 1e-6;
-/// What trades save less than, as a share of the cost, is nothing.
-const NOTHING: f64 = 1e-5;
 /// Figures within so many times of what they may rise by below 1 get a price by trades.
 const BINDS: f64 = 2.0;
 /// What wider or traded tolerances have to save, as a share of the cost, to speak against a program.
 const WIDENS: f64 = 1e-3;
 /// The most corrections of a program.
 const CORRECTIONS: usize = 6;
-
-/// How finely figures tell tolerances apart, and how far what is found around some tolerances can be followed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Precision {
-    /// How slopes are found.
-    pub slopes: Slopes,
-    /// By which factor a program may leave the tolerances around which its slopes were found.
-    pub reach: f64,
-    /// How far below 1 a figure with a price may be.
-    pub slack: f64,
-    /// A change of the cost (share of it) that no longer counts.
-    pub still: f64,
-    /// The most programs.
-    pub programs: usize,
-    /// Whether tolerances are traded against each other where programs lead to no end.
-    pub trades: bool,
-}
-
-impl Precision {
-    /// Figures that are smooth functions of tolerances.
-    pub const COMPUTED: Self = Self {
-        slopes: Slopes::Differences(0.02),
-        reach: f64::INFINITY,
-        slack: MET,
-        still: 1e-7,
-        programs: 16,
-        trades: true,
-    };
-    /// Shares of some thousand simulated units, which move by one unit at a time, each taking long.
-    pub const COUNTED: Self =
-        Self { slopes: Slopes::Design(1.3), reach: 1.6, slack: 0.03, still: 5e-3, programs: 8, trades: false };
-}
-
-/// What requirements come to: figures that must not exceed 1.
-pub trait Figures: Sync {
-    /// How each figure grows with tolerances.
-    fn powers(&self) -> Vec<Power>;
-
-    /// Whether slopes describe what they come from.
-    fn smooth(&self) -> bool {
-        true
-    }
-
-    /// How finely they tell tolerances apart.
-    fn precision(&self) -> Precision {
-        Precision::COMPUTED
-    }
-
-    /// What each figure may rise by where its requirement is loosened a little.
-    fn reliefs(&self) -> Vec<f64> {
-        vec![0.01; self.powers().len()]
-    }
-
-    /// The figures at `tolerances` (SI).
-    ///
-    /// # Errors
-    /// [`AllocateError`], if there are none.
-    fn values(&self, tolerances: &[f64]) -> Result<Vec<f64>, AllocateError>;
-}
 
 /// The cheapest tolerances that were found.
 #[derive(Clone, Debug, PartialEq)]
@@ -224,9 +162,7 @@ fn priced_by_trades(processes: &[&[Process]], mut found: Found, figures: &dyn Fi
         let allowed = |row: usize| if loosened.contains(&row) { 1.0 + reliefs[row] } else { 1.0 };
         let allowed: Vec<f64> = (0..reliefs.len()).map(allowed).collect();
         let cheaper = exchanged(processes, &found.solution.tolerances, (figures, &allowed), Moves::Pairs)?;
-        let saved = cheaper.map_or(0.0, |(cheaper, _)| found.solution.cost - cheaper.cost);
-        // What a start is widened by so that its own bounds hold it.
-        Ok(if saved > NOTHING * found.solution.cost { saved } else { 0.0 })
+        Ok(cheaper.map_or(0.0, |(cheaper, _)| (found.solution.cost - cheaper.cost).max(0.0)))
     };
     let prices =
         bind.iter().map(|row| Ok(fall(&[*row])? / reliefs[*row])).collect::<Result<Vec<f64>, AllocateError>>()?;

@@ -2,17 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::{AllocateError, program::Power, search::Figures};
-
-/// How the weights of tolerances are found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Slopes {
-    /// By central differences, a tolerance at a time, over this share of it either way: for figures that are smooth.
-    Differences(f64),
-    /// By a designed experiment that moves all tolerances at once by this factor: for figures that are counted, in which a
-    /// single tolerance's part is lost between those of chance.
-    Design(f64),
-}
+use super::{
+    AllocateError,
+    figures::{Figures, Slopes},
+    program::Power,
+};
 
 /// Sweeps of the least squares.
 const SWEEPS: usize = 1000;
@@ -131,7 +125,7 @@ fn least_squares(rows: &[Vec<f64>], observed: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::{Slopes, weights};
-    use crate::allocate::{AllocateError, program::Power, search::Figures};
+    use crate::allocate::{AllocateError, figures::Figures, program::Power};
 
     /// 0.2 + Σ w·t², and 0.1 + Σ w·t.
     struct Known;
