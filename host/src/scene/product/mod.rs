@@ -57,12 +57,15 @@ mod allocate_tests;
 #[cfg(test)]
 mod assembly_tests;
 mod callout;
+mod correlations;
 mod cost;
 mod datum;
 #[cfg(test)]
 mod datum_tests;
+mod defaults;
 #[cfg(test)]
 mod dimension_tests;
+mod distribution;
 #[cfg(test)]
 mod doubtful_tests;
 mod fit;
@@ -94,43 +97,34 @@ mod zone;
 mod zone_tests;
 
 #[cfg(test)]
-pub(super) use toleranced::SHAPES;
+pub(super) use distribution::SHAPES;
 pub(super) use toleranced::deviation;
 
 use slipfit_tolerance::{
-    model::{Contributor, Distribution, Model, Quantity as Measured, Variation, ZoneRule, widening::Widening},
-    number::fixed,
+    model::{Contributor, Model, Quantity as Measured, widening::Widening},
     product::{
         Product,
         assembly::Assembly,
         contacts::PlacementError,
-        correlation,
         expression::{Kind, Source},
         feature::Feature,
         function::Measures,
-        iso2768::{General, WITHDRAWN},
+        iso2768::WITHDRAWN,
     },
-    sampling::copula::{self, Coefficient},
     unit::{self, Quantity},
 };
 
-use self::datum::{Datum, Frames};
+use self::{
+    correlations::correlations,
+    datum::Datum,
+    defaults::{Defaults, defaults, rule},
+};
 
 use super::{Problem, SceneError, tree::Value, value::Field};
 
 /// Standard deviations in half of a tolerance, where nothing else is said.
 pub(super) const SIGMA_DEFAULT: f64 = 3.0;
 const SIGMA: Quantity = Quantity { units: unit::ONE, range: [1.0, 100.0] };
-const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
-
-/// What holds for the whole product.
-#[derive(Clone, Copy)]
-struct Defaults {
-    general: General,
-    rule: ZoneRule,
-    sigma: f64,
-    frames: Frames,
-}
 
 /// Directions in which a feature extends, and how far (m), if it says so.
 type Face = ([[f64; 3]; 2], Option<[f64; 2]>);
@@ -304,55 +298,6 @@ fn warn_of_unused(root: &Field, draft: &Draft) -> Result<(), SceneError> {
     Ok(())
 }
 
-fn defaults(root: &Field) -> Result<Defaults, SceneError> {
-    let mut defaults = Defaults {
-        general: General::default(),
-        rule: ZoneRule::SigmaZone,
-        sigma: SIGMA_DEFAULT,
-        frames: Frames::LeastSquares,
-    };
-    let Some(table) = root.get("tolerance") else { return Ok(defaults) };
-    table.expect_table()?;
-    if let Some(field) = table.get("general") {
-        const ALLOWED: &str =
-            "ISO 2768 classes: f, m, c, v for sizes and H, K, L for geometry, such as \"mH\" or \"K\"";
-        let choice = |_| field.error(Problem::Choice { key: field.key.clone(), written: field.written("") }, ALLOWED);
-        defaults.general = field.to_text()?.parse().map_err(choice)?;
-    }
-    if let Some(field) = table.get("rule") {
-        defaults.rule = rule(&field)?;
-    }
-    if let Some(field) = table.get("sigma") {
-        // Below 1 a third of the units of a normal distribution would be outside.
-        defaults.sigma = field.to_number(&SIGMA)?;
-    }
-    if let Some(field) = table.get("datums") {
-        defaults.frames = match field.to_text()? {
-            "least-squares" => Frames::LeastSquares,
-            "iso-5459" => Frames::Iso5459,
-            _ => {
-                let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
-                return Err(field.error(problem, "least-squares, iso-5459"));
-            }
-        };
-    }
-    Ok(defaults)
-}
-
-/// How a plane varies in its zone.
-fn rule(field: &Field) -> Result<ZoneRule, SceneError> {
-    match field.to_text()? {
-        "sigma-zone" => Ok(ZoneRule::SigmaZone),
-        "truncated" => Ok(ZoneRule::Truncated),
-        "uniform-in-zone" => Ok(ZoneRule::UniformInZone),
-        "translation" => Ok(ZoneRule::Translation),
-        _ => {
-            let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
-            Err(field.error(problem, "sigma-zone, truncated, uniform-in-zone, translation"))
-        }
-    }
-}
-
 /// The tables of the list `key`; none if it is not there.
 fn tables<'t, 's>(root: &Field<'t, 's>, key: &str) -> Result<Vec<Field<'t, 's>>, SceneError> {
     let Some(list) = root.get(key) else { return Ok(Vec::new()) };
@@ -378,83 +323,4 @@ fn texts<'t, 's>(table: &Field<'t, 's>, key: &str, allowed: &str) -> Result<Vec<
     let list = table.require(key, allowed)?;
     let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(allowed)) };
     nodes.iter().map(|node| Field { key: list.key.clone(), node }).map(|field| Ok((field.to_text()?, field))).collect()
-}
-
-fn correlations(root: &Field, contributors: &[Contributor]) -> Result<Vec<(usize, usize, f64)>, SceneError> {
-    const ALLOWED: &str = "a list of two contributors, such as [\"a\", \"b\"]";
-    let kind = match root.get("tolerance").and_then(|table| table.get("correlation")) {
-        None => Coefficient::Values,
-        Some(field) => match field.to_text()? {
-            "pearson" => Coefficient::Values,
-            "spearman" => Coefficient::Ranks,
-            _ => {
-                let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
-                return Err(field.error(problem, "pearson: of the values, or spearman: of their ranks"));
-            }
-        },
-    };
-    let mut correlations: Vec<(usize, usize, f64)> = Vec::new();
-    let mut fields = Vec::new();
-    let tables = tables(root, "correlation")?;
-    for table in &tables {
-        let mut pair = Vec::new();
-        for (name, field) in texts(table, "of", ALLOWED)? {
-            let scalar = |c: &&Contributor| matches!(c.variation, Variation::Scalar { .. });
-            let at = contributors.iter().position(|contributor| contributor.name == name && scalar(&contributor));
-            pair.push(at.ok_or_else(|| {
-                let names: Vec<_> = contributors.iter().filter(scalar).map(|c| c.name.as_str()).collect();
-                let problem = Problem::UnknownName { of: "contributor of one variable".into(), name: name.into() };
-                field.error(problem, names.join(", "))
-            })?);
-        }
-        let of = table.require("of", ALLOWED)?;
-        let &[row, column] = &pair[..] else {
-            return Err(of.error(Problem::Length { key: of.key.clone(), found: pair.len() }, ALLOWED));
-        };
-        let same = |(a, b, _): &(usize, usize, f64)| [*a, *b] == [row, column] || [*a, *b] == [column, row];
-        if row == column || correlations.iter().any(same) {
-            let problem = Problem::Duplicate { key: of.key.clone(), name: contributors[column].name.clone() };
-            return Err(of.error(problem, "two different contributors, every pair once"));
-        }
-        let fixed_at = |i: &&usize| {
-            matches!(contributors[**i].variation, Variation::Scalar { distribution: Distribution::Constant(_), .. })
-        };
-        if let Some(fixed) = [row, column].iter().find(fixed_at) {
-            let written = format!("{}, of which \"{}\" is constant", of.written(""), contributors[*fixed].name);
-            let problem = Problem::OutOfRange { key: of.key.clone(), written };
-            return Err(of.error(problem, "two contributors that vary"));
-        }
-        let field = table.require("coefficient", "a number from -1 to 1")?;
-        let stated = field.to_number(&COEFFICIENT)?;
-        let of = [row, column].map(|i| match &contributors[i].variation {
-            Variation::Scalar { distribution, .. } => Some(distribution),
-            Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_) => None,
-        });
-        let scores = match of {
-            [Some(one), Some(other)] => copula::of_scores(one, other, kind, stated).map_err(|[least, greatest]| {
-                if !(least.is_finite() && greatest.is_finite()) {
-                    let what =
-                        "a correlation of values of which one does not vary, or has no finite standard deviation"
-                            .into();
-                    return field.error(
-                        Problem::Unsupported { what },
-                        "correlation = \"spearman\" under [tolerance], of ranks",
-                    );
-                }
-                let [least, greatest] = [least, greatest].map(|end| fixed(end, 3));
-                field.out_of_range("", format!("between {least} and {greatest} for these two distributions"))
-            })?,
-            _ => stated,
-        };
-        correlations.push((row, column, scores));
-        fields.push(field);
-    }
-    // As a whole: a part of a possible matrix with nothing beside it need not be one.
-    if !correlation::is_positive_definite(contributors.len(), &correlations) {
-        let greatest = correlations.iter().zip(&fields).max_by(|a, b| a.0.2.abs().total_cmp(&b.0.2.abs()));
-        if let Some((_, field)) = greatest {
-            return Err(field.error(Problem::NotPositiveDefinite, "coefficients nearer to 0"));
-        }
-    }
-    Ok(correlations)
 }
