@@ -74,37 +74,53 @@ const DEPTH_AIMED: f64 = 0.3;
 /// What happens between the ends `before` and `after` of a step of `length` (s). A contact not deeper than `depth` (m) does not count.
 pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between {
     let turn = before.spin.max(after.spin) * length;
+    // What a cubic leaves out, as a share of how far a contact goes: |g''''| ≤ spin³·speed; it errs by at most length⁴/384 of it. Twice,
+    // since the speed is that of the ends.
+    let left_out = turn * turn * turn / 192.0;
+    let most = if turn > MOST_TURN { left_out.max(1.0) } else { left_out };
+    let contacts = || before.approaches.iter().zip(&after.approaches);
+    // Most steps have none of these: without branches, since it is asked of every contact after every step.
+    let may_act = contacts().fold(false, |may_act, (from, to)| {
+        let (low, way) = (from.gap.at_most(to.gap), from.speed.max_of(to.speed) * length);
+        let fall = reach(from.rate, to.rate) * length + most * way;
+        may_act | from.slack | ((low > 0.0) & (low <= fall))
+    });
+    if !may_act {
+        return Between::Apart;
+    }
     let mut share: Option<f64> = None;
-    for (from, to) in before.approaches.iter().zip(&after.approaches) {
-        if from.slack && from.gap < -depth && to.gap > DEPTH_LEFT * from.gap {
-            let cubic = Cubic::new([from.gap, to.gap], [from.rate * length, to.rate * length]);
-            share = share.into_iter().chain([cubic.opening(DEPTH_AIMED * from.gap)]).reduce(f64::min);
-            continue;
-        }
-        if !(from.gap > 0.0 && to.gap > 0.0) {
-            continue;
-        }
-        let speed = from.speed.max(to.speed);
-        if turn > MOST_TURN && from.gap.min(to.gap) < speed * length {
-            share = share.into_iter().chain([0.9 * MOST_TURN / turn]).reduce(f64::min);
-            continue;
-        }
-        let rates = [from.rate * length, to.rate * length];
-        // |g''''| ≤ spin³·speed; a cubic errs by at most length⁴/384 of it. Twice, since the speed is that of the ends.
-        let left_out = turn * turn * turn * length * speed / 192.0;
-        if from.gap.min(to.gap) > reach(rates[0], rates[1]) + left_out {
-            continue;
-        }
-        let cubic = Cubic::new([from.gap, to.gap], rates);
-        let found = match cubic.lowest() {
-            Some((at, lowest)) if lowest < -depth => Some(cubic.closing(at).min(0.9)),
-            // Too long to know: half of it is sixteen times as certain.
-            Some((_, lowest)) if lowest < left_out - depth && left_out > depth => Some(0.5),
-            _ => None,
+    for (from, to) in contacts() {
+        let found = if from.slack && from.gap < -depth {
+            let cubic = || Cubic::new([from.gap, to.gap], [from.rate * length, to.rate * length]);
+            (to.gap > DEPTH_LEFT * from.gap).then(|| cubic().opening(DEPTH_AIMED * from.gap))
+        } else {
+            closes([from, to], length, turn, left_out, depth)
         };
         share = found.into_iter().chain(share).reduce(f64::min);
     }
     share.map_or(Between::Apart, Between::Closes)
+}
+
+/// The share of a step of `length` (s), in which bodies `turn` (rad), after which it would end within a contact that is open at both ends.
+fn closes([from, to]: [&Approach; 2], length: f64, turn: f64, left_out: f64, depth: f64) -> Option<f64> {
+    let (low, way) = (from.gap.min(to.gap), from.speed.max(to.speed) * length);
+    if low <= 0.0 {
+        return None;
+    }
+    if turn > MOST_TURN && low < way {
+        return Some(0.9 * MOST_TURN / turn);
+    }
+    let (rates, left_out) = ([from.rate * length, to.rate * length], left_out * way);
+    if low > reach(rates[0], rates[1]) + left_out {
+        return None;
+    }
+    let cubic = Cubic::new([from.gap, to.gap], rates);
+    match cubic.lowest() {
+        Some((at, lowest)) if lowest < -depth => Some(cubic.closing(at).min(0.9)),
+        // Too long to know: half of it is sixteen times as certain.
+        Some((_, lowest)) if lowest < left_out - depth && left_out > depth => Some(0.5),
+        _ => None,
+    }
 }
 
 /// How far (m) below the values at its ends a gap may fall in between at most, by its rates times the step's length (m) there.

@@ -124,6 +124,15 @@ fn random_assemblies_agree_with_sampling_and_corners() {
     all(assembly_checked, 20);
 }
 
+/// Assemblies whose searches have many hills, and one in which a wall leans so much that the order of its turns counts.
+#[test]
+fn assemblies_that_are_hard_to_search_agree() {
+    for number in [1036, 1041, 1059, 1411, 1412] {
+        let (text, wrong) = assembly_checked(number);
+        assert!(wrong.is_empty(), "number {number}\n{text}\n{}", wrong.join("\n"));
+    }
+}
+
 #[test]
 fn units_names_order_and_frames_change_nothing() {
     all(unchanged, 30);

@@ -186,9 +186,15 @@ impl<V: Simd> Watch<V> {
     pub fn note(&mut self, lane: usize, t: f64) {
         let mark = self.mark(lane, t);
         self.windows[lane].note(mark);
+    }
+
+    /// Forgets the extremes of the lanes that are `noted`, above 0. At once, since a register waits for lanes that are written one by one.
+    #[inline(always)]
+    pub fn forget_extremes(&mut self, noted: Pack<V>) {
+        let zero = Pack::splat(0.0);
         for [least, greatest] in [&mut self.forces, &mut self.speeds] {
-            least.set(lane, f32::INFINITY);
-            greatest.set(lane, f32::NEG_INFINITY);
+            *least = noted.select_gt(zero, Pack::splat(f32::INFINITY), *least);
+            *greatest = noted.select_gt(zero, Pack::splat(f32::NEG_INFINITY), *greatest);
         }
     }
 
@@ -205,8 +211,9 @@ impl<V: Simd> Watch<V> {
         figures.breakaway = self.breakaway.get(lane);
         figures.peak_force = self.peak.get(lane);
         let end = self.mark(lane, t);
-        figures.settled_force = self.windows[lane].settled(end);
-        figures.end_speeds = self.windows[lane].speeds(end);
+        let within = self.windows[lane].within(end);
+        figures.settled_force = settled_force(&within);
+        figures.end_speeds = extremes(within.iter().map(|mark| mark.speed));
         let deepest = (0..CONTACTS).max_by(|i, j| self.depths[*i].get(lane).total_cmp(&self.depths[*j].get(lane)));
         let deepest = deepest.unwrap_or(0);
         figures.contact = deepest as u8;
@@ -258,10 +265,15 @@ impl Window {
     /// first within, if there is one before. A step may be as long as the window, so that one of them alone says nothing of it.
     fn within(&self, end: Mark) -> Vec<Mark> {
         let begin = end.t - SETTLED_WINDOW * (1.0 + 1e-9);
+        let mark = |i: usize| self.marks[i % (2 * SAMPLES)];
         let earliest = self.count.saturating_sub(2 * SAMPLES);
-        let all = (earliest..self.count).map(|i| self.marks[i % (2 * SAMPLES)]).filter(|mark| mark.t < end.t);
-        let (before, mut within): (Vec<_>, Vec<_>) = all.chain([end]).partition(|mark| mark.t < begin);
-        if let (Some(before), Some(first)) = (before.last(), within.first_mut()) {
+        // A mark at the end itself says the same again.
+        let last = self.count - usize::from(self.count > 0 && mark(self.count - 1).t >= end.t);
+        let inside = (earliest..last).rev().take_while(|i| mark(*i).t >= begin).count();
+        let mut first = if inside > 0 { mark(last - inside) } else { end };
+        let mut within = Vec::with_capacity(inside + 2);
+        if last - inside > earliest {
+            let before = mark(last - inside - 1);
             let share = ((begin - before.t) / (first.t - before.t)) as f32;
             let at_begin = |before: Reading, first: Reading| {
                 let now = before.now + share * (first.now - before.now);
@@ -273,25 +285,21 @@ impl Window {
             for reading in [&mut first.force, &mut first.speed] {
                 (reading.least, reading.greatest) = (reading.now, reading.now);
             }
-            within.insert(0, Mark { t: begin, force, speed });
+            within.push(Mark { t: begin, force, speed });
         }
+        within.push(first);
+        within.extend((last - inside + 1..last).map(mark).chain((inside > 0).then_some(end)));
         within
     }
+}
 
-    /// The mean force over the last 20 ms up to `end`, if it varies by less than 1 %; else NaN.
-    fn settled(&self, end: Mark) -> f32 {
-        let marks = self.within(end);
-        let [least, greatest] = extremes(marks.iter().map(|mark| mark.force));
-        let mean = settled(marks.iter().map(|mark| (mark.t, f64::from(mark.force.now))));
-        // Between the notes, too.
-        let mean = mean.filter(|mean| f64::from(greatest - least) < SETTLED_SHARE * mean.abs());
-        mean.map_or(f32::NAN, |mean| mean as f32)
-    }
-
-    /// The least and the greatest speed over the same time.
-    fn speeds(&self, end: Mark) -> [f32; 2] {
-        extremes(self.within(end).iter().map(|mark| mark.speed))
-    }
+/// The mean force over the `marks` of a window, if it varies by less than 1 %; else NaN.
+fn settled_force(marks: &[Mark]) -> f32 {
+    let [least, greatest] = extremes(marks.iter().map(|mark| mark.force));
+    let mean = settled(marks.iter().map(|mark| (mark.t, f64::from(mark.force.now))));
+    // Between the notes, too.
+    let mean = mean.filter(|mean| f64::from(greatest - least) < SETTLED_SHARE * mean.abs());
+    mean.map_or(f32::NAN, |mean| mean as f32)
 }
 
 /// The least and the greatest of `readings`.
@@ -303,11 +311,19 @@ fn extremes(readings: impl Iterator<Item = Reading>) -> [f32; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::{Mark, Reading, SAMPLES, Window};
+    use super::{Mark, Reading, SAMPLES, Window, extremes, settled_force};
 
     fn mark(t: f64, [force, speed]: [f32; 2]) -> Mark {
         let reading = |now| Reading { now, least: now, greatest: now };
         Mark { t, force: reading(force), speed: reading(speed) }
+    }
+
+    fn settled(window: &Window, end: Mark) -> f32 {
+        settled_force(&window.within(end))
+    }
+
+    fn speeds(window: &Window, end: Mark) -> [f32; 2] {
+        extremes(window.within(end).iter().map(|mark| mark.speed))
     }
 
     #[test]
@@ -318,11 +334,11 @@ mod tests {
             window.note(mark(f64::from(k) * 1e-3, [2.0, 0.2 - 1e-3 * k as f32]));
         }
         let end = mark((3 * SAMPLES) as f64 * 1e-3, [2.0, 0.05]);
-        let [least, greatest] = window.speeds(end);
+        let [least, greatest] = speeds(&window, end);
         assert_eq!(least, 0.05);
         assert!((greatest - (0.2 - 1e-3 * (3 * SAMPLES - 20) as f32)).abs() < 1e-6, "{greatest}");
-        assert_eq!(window.settled(end), 2.0);
-        assert_eq!(Window::EMPTY.speeds(end), [0.05; 2]);
+        assert_eq!(settled(&window, end), 2.0);
+        assert_eq!(speeds(&Window::EMPTY, end), [0.05; 2]);
     }
 
     #[test]
@@ -332,17 +348,17 @@ mod tests {
         for k in 0..4 {
             window.note(mark(0.015 * f64::from(k), [2.0 + 0.02 * k as f32, 0.1]));
         }
-        assert!(window.settled(mark(0.06, [2.08, 0.1])).is_nan());
+        assert!(settled(&window, mark(0.06, [2.08, 0.1])).is_nan());
         // At a tenth of that it has: the mean is that of the middle of the window.
         let mut window = Window::EMPTY;
         for k in 0..4 {
             window.note(mark(0.015 * f64::from(k), [2.0 + 0.002 * k as f32, 0.1]));
         }
-        let mean = window.settled(mark(0.06, [2.008, 0.1]));
+        let mean = settled(&window, mark(0.06, [2.008, 0.1]));
         assert!((mean - (2.008 - 0.002 * 10.0 / 15.0)).abs() < 1e-6, "{mean}");
         let mut burst = mark(0.055, [2.0073, 0.1]);
         burst.force.greatest = 2.05;
         window.note(burst);
-        assert!(window.settled(mark(0.06, [2.008, 0.1])).is_nan());
+        assert!(settled(&window, mark(0.06, [2.008, 0.1])).is_nan());
     }
 }

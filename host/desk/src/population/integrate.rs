@@ -224,6 +224,7 @@ impl<V: Simd> Lanes<V> {
         };
         self.watch.observe(&ends);
         let travel = self.motions.pose.displacement_w.z * along;
+        let mut notes = zero;
         for (lane, Lane { unit, ended, time, noted, tried }) in self.lanes.iter_mut().enumerate() {
             let Some(unit) = *unit else { continue };
             *tried += 1;
@@ -231,6 +232,7 @@ impl<V: Simd> Lanes<V> {
                 *time += f64::from(length.get(lane));
                 if *time - *noted >= BETWEEN_NOTES {
                     self.watch.note(lane, *time);
+                    notes.set(lane, 1.0);
                     *noted = *time;
                 }
             }
@@ -245,6 +247,7 @@ impl<V: Simd> Lanes<V> {
                 (of_unit.steps, of_unit.stalled) = (*tried, stalled);
             }
         }
+        self.watch.forget_extremes(notes);
         self.lanes.iter().any(|lane| lane.ended)
     }
 

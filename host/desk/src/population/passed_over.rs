@@ -37,27 +37,23 @@ pub fn share<V: Simd>(
     pressed: impl Fn(Pack<V>, Pack<V>) -> Pack<V>,
 ) -> Pack<V> {
     let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
-    // The least of gaps that are open at both ends, each beyond what it may fall by in between.
-    let mut least = Pack::splat(f32::MAX);
-    // The least of all gaps at the start.
+    // Above zero where a gap that is open at both ends is smaller than what it may fall by in between.
+    let mut closes_within = -one;
+    // The least of all gaps at both ends.
     let mut deepest = zero;
     let (most, kept) = (Pack::from_f64(-depth), Pack::from_f64(DEPTH_LEFT));
     let nominal = slides.body.gaps.as_chunks::<4>().0;
     for ([left, right, rail, wall], (from, to)) in nominal.iter().zip(ends[0].pins.iter().zip(ends[1].pins)) {
         for (axis, opens, closes) in [(0, left, right), (1, wall, rail)] {
             let (before, after) = (from.place[axis], to.place[axis]);
-            let reach = closing::reach(from.rate[axis] * length, to.rate[axis] * length);
-            let (low, high) = (before.select_gt(after, after, before), before.max_of(after));
-            for gap in [*opens + low, *closes - high] {
-                let beyond = gap.select_gt(zero, gap - reach, least);
-                least = least.select_gt(beyond, beyond, least);
-            }
-            for gap in [*opens + before, *closes - before] {
-                deepest = gap.select_gt(deepest, deepest, gap);
+            let reach = closing::reach(from.rate[axis], to.rate[axis]) * length;
+            for gap in [*opens + before.at_most(after), *closes - before.max_of(after)] {
+                closes_within = closes_within.max_of(gap * (reach - gap));
+                deepest = deepest.at_most(gap);
             }
         }
     }
-    let near = zero.select_gt(least, asked, zero);
+    let near = closes_within.select_gt(zero, asked, zero);
     let leaves = if (most - deepest) * asked <= zero { zero } else { leaving(nominal, ends, [most, kept], asked) };
     if near.max_of(leaves) <= zero {
         return one;

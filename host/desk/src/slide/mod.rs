@@ -101,18 +101,13 @@ fn watch<E: Elastic<f64>, F: Friction<f64, Internal = ()>>(
     let speed = velocity.fixed_rows::<3>(0).norm() + gaps.spin * (lever + pose.displacement_w.norm());
     gaps.approaches.clear();
     for (pin, (_, nominal)) in slide.pins(pose, velocity).iter().zip(&slide.elements().0.each) {
-        gaps.approaches.extend(approaches(pin, *nominal, speed, &slide.contact().normal));
+        gaps.approaches.extend_from_slice(&approaches(pin, *nominal, speed, &slide.contact().normal));
     }
 }
 
 /// The contacts of a `pin` as the slide sees it with its walls, whose gaps (m) are `nominal` where it is drawn and whose law is `normal`. No
 /// point of the slide is faster there than `speed` (m/s).
-pub fn approaches(
-    pin: &Seen<f64, 3>,
-    nominal: [f64; 4],
-    speed: f64,
-    normal: &impl Normal<f64>,
-) -> impl Iterator<Item = Approach> {
-    let all = to_walls(nominal, &pin.place).into_iter().zip(to_walls([0.0; 4], &pin.rate));
-    all.map(move |(gap, rate)| Approach::new(gap, rate, speed, normal))
+pub fn approaches(pin: &Seen<f64, 3>, nominal: [f64; 4], speed: f64, normal: &impl Normal<f64>) -> [Approach; 4] {
+    let (gaps, rates) = (to_walls(nominal, &pin.place), to_walls([0.0; 4], &pin.rate));
+    array::from_fn(|k| Approach::new(gaps[k], rates[k], speed, normal))
 }

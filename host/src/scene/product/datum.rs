@@ -189,13 +189,9 @@ pub(super) fn carry(
                 let float = shift(*datum, datums, table, draft)?;
                 let feature = &draft.assembly.features[*datum];
                 let contact = Contact::new(feature.shape, feature.shape, feature.nominal[1], feature.reach);
-                contacts.extend(contact.map(|contact| Joined {
-                    contact,
-                    own: Own::Perfect(*datum),
-                    other: *datum,
-                    float,
-                    order: draft.defaults.frames.order(number),
-                }));
+                let order = draft.defaults.frames.order(number);
+                contacts
+                    .extend(contact.map(|contact| Joined::new(contact, Own::Perfect(*datum), *datum, float, order)));
             }
             let nominal: Vec<_> = draft.nominal.iter().map(|value| Lanes::splat(*value)).collect();
             let placed = Placement::on_contacts(&draft.assembly, &nominal, contacts, &[], vec![carried]);

@@ -1,5 +1,6 @@
 //! Refinements, datums of their own, common datums, holes on pins, against closed forms.
 
+use nalgebra::{Matrix3, Vector3};
 use slipfit_tolerance::{
     analysis,
     model::{Model, Variation},
@@ -252,4 +253,54 @@ fn contacts_that_do_not_close_are_an_error() {
     assert!(parse(&ROD.replace("OFFSET", "20"), &[]).is_ok());
     let error = parse(&ROD.replace("OFFSET", "60"), &[]).err().unwrap().to_string();
     assert!(error.contains("the contacts cannot be closed in ") && error.contains("of 1024 units"), "{error}");
+}
+
+/// A block in a corner whose floor leans by 4 mm on 100 and whose wall by 4 mm on 10, so that turns differ by their squares.
+#[test]
+fn a_block_turns_about_the_floor_it_lies_on_until_it_meets_the_wall() {
+    let product = product_of(
+        r#"
+[[part]]
+name = "base"
+plane = [
+  { name = "floor", at = [0, 0, 0], normal = "+z", along = "+x", extents = [100, 60], flatness = { zone = 4 } },
+  { name = "wall", at = [0, 30, 5], normal = "-y", along = "+x", extents = [100, 10], flatness = { zone = 4 } },
+  { name = "stop", at = [50, 0, 5], normal = "-x", along = "+y", extents = [60, 10] },
+  { name = "front", at = [0, -40, 5], normal = "+y", along = "+x", extents = [60, 10] },
+]
+[[part]]
+name = "block"
+plane = [
+  { name = "bottom", at = [0, 0, 0], normal = "-z", along = "+x", extents = [100, 60] },
+  { name = "back", at = [0, 30, 20], normal = "+y", along = "+x", extents = [100, 40] },
+  { name = "side", at = [50, 0, 20], normal = "+x", along = "+y", extents = [60, 40] },
+]
+point = [{ name = "tip", at = [-50, -30, 40], normal = "+z" }]
+[[mate]]
+part = "block"
+contacts = [["block.bottom", "base.floor"], ["block.back", "base.wall"], ["block.side", "base.stop"]]
+[[measure]]
+name = "from stop"
+distance = ["block.tip", "base.stop"]
+[[measure]]
+name = "from front"
+distance = ["block.tip", "base.front"]
+"#,
+    );
+    let [floor, wall] = ["base.floor flatness", "base.wall flatness"].map(|name| variable(&product.model, name));
+    for [along, up] in [[1.0, 1.0], [1.0, -1.0], [-1.0, 0.7]] {
+        let found = at(&product, &[(floor + 1, along), (wall + 2, up)]);
+        let normals = [Vector3::new(-0.04 * along, 0.0, 1.0), Vector3::new(0.0, -1.0, -0.4 * up), -Vector3::x()];
+        // What is left of the wall's normal across the floor's is the block's second axis.
+        let third = normals[0].normalize();
+        let second = -(normals[1] - third * normals[1].dot(&third)).normalize();
+        let axes = Matrix3::from_columns(&[second.cross(&third), second, third]);
+        let own = [[0.0, 0.0, 0.0], [0.0, 30.0, 20.0], [50.0, 0.0, 20.0]].map(Vector3::from);
+        let met = [[0.0, 0.0, 0.0], [0.0, 30.0, 5.0], [50.0, 0.0, 5.0]].map(Vector3::from);
+        let short = Vector3::from_fn(|i, _| (met[i] - axes * own[i]).dot(&normals[i]));
+        let rows = Matrix3::from_rows(&normals.map(|normal| normal.transpose()));
+        let tip = axes * Vector3::new(-50.0, -30.0, 40.0) + rows.try_inverse().unwrap() * short;
+        close(found[0] * 1e3, 50.0 - tip.x, 1e-6);
+        close(found[1] * 1e3, 40.0 + tip.y, 1e-6);
+    }
 }

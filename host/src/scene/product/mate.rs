@@ -177,7 +177,7 @@ pub(super) fn place(mate: &Mate, parts: &[Part], draft: &mut Draft) -> Result<()
             ));
         }
         let float = float(mate.float, [own, other], contacts.is_empty(), draft);
-        contacts.push(Joined { contact, own: Own::Made(own), other, float, order: Order::LeastSquares });
+        contacts.push(Joined::new(contact, Own::Made(own), other, float, Order::LeastSquares));
     }
     if let Some(field) = mate.table.get("float").filter(|_| contacts.iter().all(|joined| joined.float.is_none())) {
         return Err(field.no_effect("in this mate", "a mate of a hole on a pin, both with a diameter"));

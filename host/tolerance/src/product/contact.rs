@@ -45,17 +45,27 @@ impl Contact {
         Some(Self { kind, across: across(direction), reach })
     }
 
-    /// What has to be zero (m) for the features to meet.
+    /// Whether both features are planes.
+    pub fn is_of_planes(&self) -> bool {
+        self.kind == Kind::Planes
+    }
+
+    /// What has to be zero (m) for the features to meet. A body that lies on a plane already turns about the normal of that alone: planes
+    /// have to be parallel `about` it.
     #[inline(always)]
-    pub fn conditions(&self, own: &Located, other: &Located) -> [Lanes; CONDITIONS] {
+    pub fn conditions(&self, own: &Located, other: &Located, about: Option<&Vector>) -> [Lanes; CONDITIONS] {
         let apart = own.place - other.place;
         let zero = Lanes::ZERO;
         match self.kind {
             Kind::PointOnPlane => [apart.dot(other.direction), zero, zero, zero],
             Kind::PlaneOnPoint => [apart.dot(own.direction), zero, zero, zero],
             Kind::Planes => {
+                let off = apart.dot(other.direction);
+                if let Some(normal) = about {
+                    return [off, own.direction.cross(other.direction).dot(*normal) * self.reach, zero, zero];
+                }
                 let [p, r] = self.tilts(own, other);
-                [apart.dot(other.direction), p, r, zero]
+                [off, p, r, zero]
             }
             Kind::Axes => {
                 let along = apart.dot(other.direction) / other.direction.dot(other.direction);

@@ -42,6 +42,8 @@ pub struct Joined {
     pub own: Own,
     /// The feature that it meets.
     pub other: usize,
+    /// The plane that the body lies on by a contact before this one.
+    about: Option<usize>,
     /// The play between both.
     pub float: Option<Float>,
     /// Which of its conditions count where not all can be met.
@@ -112,9 +114,14 @@ impl Contacts {
     pub fn new(
         assembly: &Assembly,
         nominal: &[Lanes],
-        contacts: Vec<Joined>,
+        mut contacts: Vec<Joined>,
         fixed: &[[[f64; 3]; 2]],
     ) -> Result<Self, PlacementError> {
+        let mut plane = None;
+        for joined in &mut contacts {
+            joined.about = plane;
+            plane = plane.or(joined.contact.is_of_planes().then_some(joined.other));
+        }
         let places = contacts.iter().map(|joined| joined.own.feature()).map(|i| assembly.features[i].nominal[0]);
         let count = contacts.len().max(1) as f64;
         let centre = places.clone().fold([0.0; 3], |sum, place| [0, 1, 2].map(|i| sum[i] + place[i] / count));
@@ -328,6 +335,11 @@ impl Contacts {
 }
 
 impl Joined {
+    /// A feature of the body that meets an `other`.
+    pub fn new(contact: Contact, own: Own, other: usize, float: Option<Float>, order: Order) -> Self {
+        Self { contact, own, other, float, order, about: None }
+    }
+
     /// The derivatives of the conditions that are met first, and those of the others.
     fn stages(&self, rows: &Rows) -> [Option<Rows>; 2] {
         let some = |places: bool| {
@@ -359,7 +371,8 @@ impl Joined {
             Own::Made(feature) => located[feature].displaced(displacement),
             Own::Perfect(feature) => assembly.features[feature].perfect().displaced(displacement),
         };
-        let mut conditions = self.contact.conditions(&own, &located[self.other]);
+        let about = self.about.map(|plane| &located[plane].direction);
+        let mut conditions = self.contact.conditions(&own, &located[self.other], about);
         if let Some(float) = &self.float {
             float.take_off(variables, &mut conditions);
         }

@@ -81,15 +81,13 @@ impl<'a> Climb<'a> {
         // Where the climb was a round and two rounds ago.
         let mut before = [point.clone(), point.clone()];
         for _ in 0..ROUNDS {
-            let onwards = self.onwards(&point, &before[1]);
-            let Some((value, change)) = self.step(&point, best, onwards) else { break };
-            let gain = value - best;
+            let start = best;
             let here = point.clone();
-            change.into_iter().for_each(|(k, value)| point[k] = value);
+            let onwards = self.onwards(&point, &before[1]);
+            self.round(&mut point, &mut best, onwards);
             let [last, _] = before;
             before = [here, last];
-            best = value;
-            if gain <= still.max(1e-15 * best.abs()) {
+            if best - start <= still.max(1e-15 * best.abs()) {
                 break;
             }
         }
@@ -110,26 +108,28 @@ impl<'a> Climb<'a> {
         field.moving[self.measure].iter().filter_map(along).collect()
     }
 
-    /// The best change that was found of a point whose value is `best`, the line `onwards` among them; `None` if none is better.
-    fn step(&mut self, point: &[f64], best: f64, onwards: Change) -> Option<(f64, Change)> {
+    /// Moves a `point` whose value is `best` to better ones: along each contributor in turn, then along all of them together, the
+    /// line `onwards` among these.
+    fn round(&mut self, point: &mut [f64], best: &mut f64, onwards: Change) {
         let field = self.field;
-        let mut found = None;
-        let mut joint = Change::new();
         for i in &field.moving[self.measure] {
             let variation = &field.model.contributors[*i].variation;
             let lines: Vec<Change> =
                 targets(variation).iter().map(|target| moved_to(field.offsets[*i], target)).collect();
-            let Some((value, change)) = self.best_along(point, &lines, places(variation), best) else { continue };
-            joint.extend(&change);
-            if found.as_ref().is_none_or(|(other, _)| value > *other) {
-                found = Some((value, change));
-            }
+            self.take_best(point, best, &lines, places(variation));
         }
-        let mut lines = vec![joint, onwards];
+        let mut lines = vec![onwards];
         lines.extend(STEPS.map(|step| self.promised(point, step)));
         lines.retain(|line| !line.is_empty());
-        let best = found.as_ref().map_or(best, |(value, _)| *value);
-        self.best_along(point, &lines, &OF_ALL, best).or(found)
+        self.take_best(point, best, &lines, &OF_ALL);
+    }
+
+    /// Moves a `point` along the best of some `lines` if it is better there than its value `best`.
+    fn take_best(&mut self, point: &mut [f64], best: &mut f64, lines: &[Change], parts: &[f64]) {
+        if let Some((value, change)) = self.best_along(point, lines, parts, *best) {
+            change.into_iter().for_each(|(k, value)| point[k] = value);
+            *best = value;
+        }
     }
 
     /// The best change on any of some `lines`, first at `parts` of them; `None` if none is better than `best`.

@@ -14,10 +14,10 @@ const MOST_CORNERS: usize = 1 << 16;
 /// Points that are computed at a time.
 const CHUNK: usize = 1 << 12;
 /// Corners and random points inside that each search starts from: the best of all that were computed.
-const BEST: usize = 2;
+const BEST: usize = 4;
 /// Random points inside that are computed, and random corners to start from.
 const INSIDE: u64 = 256;
-const RANDOM: u64 = 4;
+const RANDOM: u64 = 16;
 /// The most kinks whose farthest points are starts.
 const KINKS: usize = 16;
 
