@@ -2,6 +2,16 @@
 //!
 //! `libm::pow` leaves early for many arguments, so that its run time depends on them, and cannot be vectorised.
 
+/// √`x`, which IEEE 754 rounds alike on every machine.
+#[inline(always)]
+pub(crate) fn sqrt_f64(x: f64) -> f64 {
+    // libm has the instruction as assembly in its old encoding, which amid wide instructions takes a hundred times as long.
+    #[cfg(feature = "std")]
+    return x.sqrt();
+    #[cfg(not(feature = "std"))]
+    libm::sqrt(x)
+}
+
 /// 1/√`x` for x > 0.
 #[inline(always)]
 pub fn rsqrt_f32(x: f32) -> f32 {
@@ -131,7 +141,22 @@ fn split_log_f64(x: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::{ln_f32, ln_f64, pow_f32, pow_f64};
+    use super::{ln_f32, ln_f64, pow_f32, pow_f64, sqrt_f64};
+
+    /// With the feature `std` the root is the processor's, without it `libm`'s.
+    #[test]
+    fn roots_have_the_same_bits_whoever_computes_them() {
+        let mut word = 1u64;
+        for _ in 0..if cfg!(miri) { 1000 } else { 100_000 } {
+            word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let x = f64::from_bits(word & !(1 << 63));
+            assert!(x.is_nan() || sqrt_f64(x).to_bits() == libm::sqrt(x).to_bits(), "{x:e}");
+        }
+        for x in [0.0, -0.0, f64::from_bits(1), f64::MIN_POSITIVE, f64::MAX, f64::INFINITY] {
+            assert_eq!(sqrt_f64(x).to_bits(), libm::sqrt(x).to_bits(), "{x:e}");
+        }
+        assert!(sqrt_f64(-1.0).is_nan());
+    }
 
     #[test]
     fn logarithms_meet_their_bounds_against_libm() {

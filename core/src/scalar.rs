@@ -170,12 +170,12 @@ impl Scalar for f64 {
 
     #[inline(always)]
     fn rsqrt(self) -> Self {
-        1.0 / libm::sqrt(self)
+        1.0 / power::sqrt_f64(self)
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        libm::sqrt(self)
+        power::sqrt_f64(self)
     }
 
     #[inline(always)]

@@ -18,4 +18,3 @@ pub mod scheme;
 pub mod settled;
 pub mod side_by_side;
 pub mod slide;
-pub mod wide;

@@ -25,14 +25,13 @@ use crate::{
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},
     side_by_side::SideBySide,
-    wide::Wide,
 };
 
 /// Most bodies of a mechanism in space.
 pub const MOST_BODIES: usize = 3;
 
 /// Bodies in a plane with `D` coordinates.
-pub type PlanarPlant<'a, const D: usize> = OutOfLine<System<PlanarTree<f64, D>, &'a [PlanarElement<D>]>, Wide>;
+pub type PlanarPlant<'a, const D: usize> = OutOfLine<System<PlanarTree<f64, D>, &'a [PlanarElement<D>]>>;
 
 /// `N` bodies in space with `D` = 6·N coordinates, all of whose joints have play.
 pub type FreePlant<'a, const N: usize, const D: usize> =
@@ -43,7 +42,7 @@ pub type JointedBodies<const D: usize> = SpatialTree<f64, MOST_BODIES, { 6 * MOS
 
 /// The same with what acts on them.
 pub type JointedPlant<'a, const D: usize> =
-    OutOfLine<System<JointedBodies<D>, ThroughJoints<&'a [SpatialElement], { 6 * MOST_BODIES }>>, Wide>;
+    OutOfLine<System<JointedBodies<D>, ThroughJoints<&'a [SpatialElement], { 6 * MOST_BODIES }>>>;
 
 /// Sees the time (s) and the motion at the start and at the end of every step, with the step's accelerations where they are known,
 /// and says whether to go on.

@@ -15,7 +15,6 @@ use slipfit_desk::{
     out_of_line::OutOfLine,
     plant::{Allowed, FreePlant, JointedPlant, PlanarPlant, Plant, Reported},
     side_by_side::SideBySide,
-    wide::Wide,
 };
 
 use super::{
@@ -190,7 +189,7 @@ where
     };
     let bodies = PlanarBodies::of(mechanism, mounts, &tree);
     let system = System::new(tree, &elements[..]);
-    let desk = OutOfLine::by(system, Wide::of_machine());
+    let desk = OutOfLine::new(system);
     solve(mechanism, desk, (pose, rates), (&limits, pressed), by, state, |state: &State<D>, told: &mut _| {
         bodies.tell(state, told)
     })
@@ -244,7 +243,7 @@ where
         last
     };
     let system = System::new(tree, ThroughJoints(&elements[..]));
-    let desk = OutOfLine::by(system, Wide::of_machine());
+    let desk = OutOfLine::new(system);
     solve(mechanism, desk, start, (&limits, pressed), by, state, |state: &State<D>, told: &mut _| {
         bodies.tell(state, told)
     })

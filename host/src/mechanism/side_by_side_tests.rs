@@ -11,10 +11,9 @@ use slipfit_core::{
 use slipfit_desk::{
     element::SpatialElement,
     error_control::{Watched, integrate},
-    out_of_line::{Contacts, OutOfLine},
+    out_of_line::{Contacts, InTurn, OutOfLine},
     plant::Reported,
     side_by_side::SideBySide,
-    wide::Wide,
 };
 
 use super::{Mechanism, limits::Limits, source::joints_of_elements, spatial};
@@ -63,7 +62,7 @@ fn compare<const N: usize, const D: usize>(name: &str, quads: usize) {
     let by_lane = steps::<_, N, D>(&mechanism, by_lane);
     let wide = steps::<_, N, D>(&mechanism, SideBySide::new(&bodies, &elements, laws(), band));
     assert!(by_lane == wide, "{name}: {} and {} steps", by_lane.len(), wide.len());
-    let in_turn = steps::<_, N, D>(&mechanism, Wide::of_machine());
+    let in_turn = steps::<_, N, D>(&mechanism, InTurn);
     let most = in_turn.iter().fold(0.0f64, |most, (_, velocity)| most.max(velocity.amax()));
     let ends = [&by_lane, &in_turn].map(|steps| steps.last().unwrap().1);
     assert!((ends[0] - ends[1]).amax() < 1e-5 * most, "{name}: {} {}", ends[0], ends[1]);

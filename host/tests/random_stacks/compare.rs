@@ -378,6 +378,10 @@ fn contributors(stack: &Stack, of: &MeasureReport, i: usize, scale: f64, chance:
     if sum.is_nan() || sum * scale * scale <= 1e-18 {
         return;
     }
+    // Withheld, and said so, where few of its units have the measure.
+    if 2 * of.undefined as usize > UNITS && of.contributors.iter().all(|share| share.percent.is_none()) {
+        return;
+    }
     for (dimension, [total, error]) in stack.dimensions.iter().zip(totals) {
         let found = of.contributors.iter().find(|share| share.name == dimension.name).and_then(|share| share.percent);
         // Both have an error; slipfit's 4096 units are spread evenly. Products of few large numbers converge slowly.

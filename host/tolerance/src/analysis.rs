@@ -50,7 +50,8 @@ pub struct Theory {
     pub sensitivities: Vec<Vec<Sensitivity>>,
     /// Moments by quadrature of the measures that are not linear, where their variables are few.
     pub exact: Vec<Option<Exact>>,
-    /// Sobol' indices of the measures that are not linear; none with correlated contributors, or more than 512.
+    /// Sobol' indices of the measures that are not linear; none with correlated contributors, or more than 512, or of a measure that too few
+    /// units have.
     pub indices: Vec<Option<Indices>>,
     /// P(below the lower limit), P(above the upper limit) of every measure.
     pub tails: Vec<[Option<Tail>; 2]>,
@@ -165,7 +166,7 @@ fn of_basis(model: &Model, basis: Basis, seed: u64, counted: Option<&Joint>) -> 
     let curved = moments.iter().any(bends);
     stop_if_asked()?;
     let all_indices = if curved && model.correlations.is_empty() && model.contributors.len() <= MOST_INDICES {
-        indices(model, &draw, derived(seed, INDICES)).into_iter().map(Some).collect()
+        indices(model, &draw, derived(seed, INDICES))
     } else {
         vec![None; model.measures.len()]
     };

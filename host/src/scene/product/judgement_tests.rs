@@ -147,6 +147,22 @@ fn what_slopes_do_not_describe_has_no_rss_and_total_indices() {
     assert_eq!(linear[0].worst_case_linear, Some(linear[0].worst_case));
 }
 
+/// √(a − b) where a is above b in few units, in half of them, and in all; the shares of both are equal by symmetry.
+#[test]
+fn a_measure_that_few_units_have_tells_no_shares() {
+    for (apart, has_shares) in
+        [("[0.02, 0.22]", false), ("[-0.04, 0.16]", false), ("0.1", true), ("[-0.5, -0.3]", true)]
+    {
+        let text = scene(&[("a", "1", "0.1"), ("b", "1", apart)], &["is = \"sqrt((a - b) * 1 mm)\""]);
+        let model = product_of(&text).model;
+        let report = report("", &model, &analyse(&model, settings(100_000), |_| ()).unwrap());
+        let shares: Vec<_> = report.measures[0].contributors.iter().filter_map(|share| share.percent).collect();
+        let is_told = report.notes.iter().any(|note| note.contains("too few units have it"));
+        assert_eq!((!shares.is_empty(), is_told), (has_shares, !has_shares), "{apart}: {:?}", report.notes);
+        assert!(shares.iter().all(|share| (share - 50.0).abs() < 5.0), "{apart}: {shares:?}");
+    }
+}
+
 #[test]
 fn rss_has_the_correlations_of_the_scene() {
     for (rho, sum, difference) in [(0.5, 0.07, 0.03), (-0.5, 0.03, 0.07), (0.0, 0.05, 0.05)] {

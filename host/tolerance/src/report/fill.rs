@@ -199,9 +199,17 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
         notes.push("one replicate of a design has no standard error: see --replicates".into());
     }
     let theory = &analysis.theory;
-    for ((measure, moments), indices) in model.measures.iter().zip(&theory.moments).zip(&theory.indices) {
-        let has_indices = indices.as_ref().is_some_and(|indices| indices.total.iter().sum::<f64>() > 0.0);
-        let contributors = if has_indices { "; its contributors are by Sobol' indices" } else { "" };
+    let found = &analysis.joint.measures;
+    for (((measure, moments), indices), found) in
+        model.measures.iter().zip(&theory.moments).zip(&theory.indices).zip(found)
+    {
+        let contributors = match indices {
+            Some(indices) if indices.total.iter().sum::<f64>() > 0.0 => "; its contributors are by Sobol' indices",
+            None if found.undefined > 0 && model.correlations.is_empty() => {
+                "; too few units have it to tell what its contributors are"
+            }
+            _ => "",
+        };
         if !moments.described {
             notes.push(format!(
                 "{} has a kink or a fold where it varies, as a radius or an angle has at 0: slopes do not describe it{contributors}",

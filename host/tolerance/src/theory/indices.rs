@@ -17,6 +17,8 @@ use crate::{
 
 /// Units of each of the two samples.
 const UNITS: u64 = 4096;
+/// Pairs of units with the measure, of one contributor, below which its share would be chance.
+const LEAST_PAIRS: f64 = 512.0;
 /// Units that are worked on together.
 const PIECE: u64 = 256;
 
@@ -33,27 +35,26 @@ pub struct Indices {
 struct Sums {
     /// Σ values and Σ squares of both samples and the number of both, of every measure.
     whole: Vec<[f64; 3]>,
-    /// Numerators of the first-order and the total index and the number of units, of every contributor to every measure.
-    parts: Vec<Vec<[f64; 3]>>,
+    /// Numerators of the first-order and the total index and the number of units of each, of every contributor to every measure.
+    parts: Vec<Vec<[f64; 4]>>,
 }
 
 impl Sums {
     fn zero(measures: usize, contributors: usize) -> Self {
-        Self { whole: vec![[0.0; 3]; measures], parts: vec![vec![[0.0; 3]; contributors]; measures] }
+        Self { whole: vec![[0.0; 3]; measures], parts: vec![vec![[0.0; 4]; contributors]; measures] }
     }
 
     fn add(&mut self, piece: &Self) {
-        let whole = self.whole.iter_mut().zip(&piece.whole);
-        let parts = self.parts.iter_mut().flatten().zip(piece.parts.iter().flatten());
-        for (sum, more) in whole.chain(parts) {
-            sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
-        }
+        let whole = self.whole.as_flattened_mut().iter_mut().zip(piece.whole.as_flattened());
+        let parts = self.parts.iter_mut().zip(&piece.parts);
+        let parts = parts.flat_map(|(sums, more)| sums.as_flattened_mut().iter_mut().zip(more.as_flattened()));
+        whole.chain(parts).for_each(|(sum, more)| *sum += more);
     }
 }
 
 /// Of every measure, from 4096 · (contributors + 2) evaluations. The contributors have to be independent. Units in which the
-/// measure cannot be computed do not count.
-pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Indices> {
+/// measure cannot be computed do not count; `None` where too few are left.
+pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Option<Indices>> {
     let (dimensions, contributors, measures) = (draw.dimensions(), model.contributors.len(), model.measures.len());
     let method = if 2 * dimensions > MOST_DIMENSIONS { Method::PseudoRandom } else { Method::ScrambledSobol };
     let sampler = Sampler::new(method, seed, 2 * dimensions, 1, UNITS);
@@ -98,10 +99,13 @@ pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Indices> {
                     for lane in 0..LANES {
                         let [a, b, mixed] = [0, 1, 2].map(|k| values[k][measure].0[lane]);
                         let mixed = mixed - origin[measure].0[lane];
-                        if a.is_finite() && b.is_finite() && mixed.is_finite() {
-                            part[0] += b * (mixed - a);
+                        if a.is_finite() && mixed.is_finite() {
                             part[1] += (mixed - a) * (mixed - a);
-                            part[2] += 1.0;
+                            part[3] += 1.0;
+                            if b.is_finite() {
+                                part[0] += b * (mixed - a);
+                                part[2] += 1.0;
+                            }
                         }
                     }
                 }
@@ -111,14 +115,17 @@ pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Indices> {
     });
     let mut sums = Sums::zero(measures, contributors);
     pieces.collect::<Vec<_>>().iter().for_each(|piece| sums.add(piece));
-    let of = |([sum, squares, count], parts): (&[f64; 3], &Vec<[f64; 3]>)| {
+    let of = |([sum, squares, count], parts): (&[f64; 3], &Vec<[f64; 4]>)| {
+        if parts.iter().any(|[.., pairs]| *pairs < LEAST_PAIRS) {
+            return None;
+        }
         let mean = sum / count;
         let variance = squares / count - mean * mean;
         let share = |part: f64, units: f64| if variance > 0.0 && units > 0.0 { part / units / variance } else { 0.0 };
-        Indices {
-            first: parts.iter().map(|[first, _, units]| share(*first, *units)).collect(),
-            total: parts.iter().map(|[_, total, units]| share(0.5 * total, *units)).collect(),
-        }
+        Some(Indices {
+            first: parts.iter().map(|[first, _, units, _]| share(*first, *units)).collect(),
+            total: parts.iter().map(|[_, total, _, pairs]| share(0.5 * total, *pairs)).collect(),
+        })
     };
     sums.whole.iter().zip(&sums.parts).map(of).collect()
 }
