@@ -3,6 +3,7 @@
 //! `libm::pow` leaves early for many arguments, so that its run time depends on them, and cannot be vectorised.
 
 /// √`x`, which IEEE 754 rounds alike on every machine.
+#[cfg_attr(feature = "std", expect(clippy::disallowed_methods, reason = "a root has no other bits"))]
 #[inline(always)]
 pub(crate) fn sqrt_f64(x: f64) -> f64 {
     // libm has the instruction as assembly in its old encoding, which amid wide instructions takes a hundred times as long.
