@@ -126,7 +126,9 @@ pub fn compare(
         worst(of, range, wrong);
         if i >= stack.dimensions.len() {
             linearised(stack, of, &function, &limits, wrong);
-            if stack.correlations.is_empty() && of.sd > 0.0 {
+            let said_uncertain = format!("{}: the shares of its contributors", of.name);
+            let is_told = found.report.notes.iter().any(|note| note.starts_with(&said_uncertain));
+            if stack.correlations.is_empty() && of.sd > 0.0 && !is_told {
                 contributors(stack, of, i, scale, chance, wrong);
             }
         }

@@ -163,6 +163,24 @@ fn a_measure_that_few_units_have_tells_no_shares() {
     }
 }
 
+/// A lot of a few in ten thousand, far away: the variance is in so few units that its shares are chance, and said to be.
+#[test]
+fn shares_of_a_rare_lot_are_said_to_be_uncertain() {
+    let lot = |weight: f64| {
+        format!(
+            "[[dimension]]\nname = \"c\"\nvalue = 10\ndistribution = {{ kind = \"mixture\", of = [{{ weight = 1, tolerance = 0.1 }}, \
+             {{ weight = {weight}, tolerance = [20, 21], distribution = \"uniform\" }}] }}\n"
+        )
+    };
+    for (weight, is_uncertain) in [(5e-4, true), (2e-3, true), (0.3, false)] {
+        let own = scene(&[("a", "1", "0.15"), ("b", "2", "0.15")], &["is = \"a * c * b / (1 mm)^2\""]);
+        let model = product_of(&(lot(weight) + &own)).model;
+        let report = report("", &model, &analyse(&model, settings(10_000), |_| ()).unwrap());
+        let is_told = report.notes.iter().any(|note| note.contains("shares of its contributors"));
+        assert_eq!(is_told, is_uncertain, "{weight}: {:?}", report.notes);
+    }
+}
+
 #[test]
 fn rss_has_the_correlations_of_the_scene() {
     for (rho, sum, difference) in [(0.5, 0.07, 0.03), (-0.5, 0.03, 0.07), (0.0, 0.05, 0.05)] {

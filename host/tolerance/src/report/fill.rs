@@ -186,6 +186,9 @@ const NOTED: f64 = 1e-3;
 /// The same from which on contributors have total Sobol' indices instead of shares in the variance of first order.
 const COUNTS: f64 = 1e-2;
 
+/// The standard error of contributors' shares from which on it is told.
+const UNCERTAIN: f64 = 0.03;
+
 fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
     let mut notes = Vec::new();
     let settings = analysis.settings;
@@ -224,6 +227,13 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
         } else if moments.curved >= NOTED {
             let percent = moments.curved * 100.0;
             notes.push(format!("{} is not linear: {percent:.2} % of its variance is curvature", measure.name));
+        }
+        if let Some(indices) = indices.as_ref().filter(|indices| indices.error > UNCERTAIN) {
+            notes.push(format!(
+                "{}: the shares of its contributors by Sobol' indices have a standard error of {:.0} points: few units carry its variance",
+                measure.name,
+                indices.error * 100.0
+            ));
         }
     }
     for (measure, (tails, found)) in

@@ -29,6 +29,8 @@ pub struct Indices {
     pub first: Vec<f64>,
     /// Share that stays if all but the contributor are known.
     pub total: Vec<f64>,
+    /// The greatest standard error of a contributor's part in the sum of total indices: by how much that changes from units to units.
+    pub error: f64,
 }
 
 /// What the units of a piece add up to.
@@ -113,9 +115,11 @@ pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Option<Indices>> {
         }
         sums
     });
+    let pieces: Vec<Sums> = pieces.collect();
     let mut sums = Sums::zero(measures, contributors);
-    pieces.collect::<Vec<_>>().iter().for_each(|piece| sums.add(piece));
-    let of = |([sum, squares, count], parts): (&[f64; 3], &Vec<[f64; 4]>)| {
+    pieces.iter().for_each(|piece| sums.add(piece));
+    let of = |measure: usize| {
+        let ([sum, squares, count], parts) = (sums.whole[measure], &sums.parts[measure]);
         if parts.iter().any(|[.., pairs]| *pairs < LEAST_PAIRS) {
             return None;
         }
@@ -125,7 +129,27 @@ pub fn indices(model: &Model, draw: &Draw, seed: u64) -> Vec<Option<Indices>> {
         Some(Indices {
             first: parts.iter().map(|[first, _, units, _]| share(*first, *units)).collect(),
             total: parts.iter().map(|[_, total, _, pairs]| share(0.5 * total, *pairs)).collect(),
+            error: jackknifed(parts, pieces.iter().map(|piece| &piece.parts[measure])),
         })
     };
-    sums.whole.iter().zip(&sums.parts).map(of).collect()
+    (0..measures).map(of).collect()
+}
+
+/// The greatest standard error of a contributor's part in the sum of total indices, by how much each of the `pieces` of the sums `all`
+/// changes it (jackknife).
+fn jackknifed<'a>(all: &[[f64; 4]], pieces: impl ExactSizeIterator<Item = &'a Vec<[f64; 4]>>) -> f64 {
+    let count = pieces.len() as f64;
+    let mut sums = vec![[0.0; 2]; all.len()];
+    for piece in pieces {
+        let without = |(all, own): (&[f64; 4], &[f64; 4])| (all[1] - own[1]) / (all[3] - own[3]).max(1.0);
+        let totals: Vec<f64> = all.iter().zip(piece).map(without).collect();
+        let sum = totals.iter().sum::<f64>();
+        for (sums, total) in sums.iter_mut().zip(totals) {
+            let part = if sum > 0.0 { total / sum } else { 0.0 };
+            sums[0] += part;
+            sums[1] += part * part;
+        }
+    }
+    let variance = |[sum, squares]: [f64; 2]| (count - 1.0) * (squares / count - (sum / count) * (sum / count));
+    libm::sqrt(sums.into_iter().map(variance).fold(0.0, f64::max))
 }
