@@ -373,7 +373,8 @@ fn linearised(
 
 /// Shares of the contributors are those of their total indices.
 fn contributors(stack: &Stack, of: &MeasureReport, i: usize, scale: f64, chance: &mut Chance, wrong: &mut Deviations) {
-    const COUNT: usize = 2000;
+    // So many that lots of a thousandth, far away, are among them.
+    const COUNT: usize = 8000;
     let totals = total_indices(stack, i, COUNT, chance);
     let sum: f64 = totals.iter().map(|[total, _]| total).sum();
     // Without two units in which it is defined there is nothing to share.
