@@ -6,7 +6,8 @@
 #[cfg_attr(feature = "std", expect(clippy::disallowed_methods, reason = "a root has no other bits"))]
 #[inline(always)]
 pub(crate) fn sqrt_f64(x: f64) -> f64 {
-    // libm has the instruction as assembly in its old encoding, which amid wide instructions takes a hundred times as long.
+    // libm has the instruction as assembly in its old encoding, for which a processor waits amid wide instructions: mechanisms in a plane
+    // took three times as long.
     #[cfg(feature = "std")]
     return x.sqrt();
     #[cfg(not(feature = "std"))]
