@@ -43,7 +43,6 @@ const LAYERS: [(&str, &[&str]); 4] = [
             "scheme",
             "pack",
             "out_of_line",
-            "wide",
             "element",
             "side_by_side",
             "error_control",

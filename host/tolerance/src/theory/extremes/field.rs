@@ -64,22 +64,22 @@ impl<'a> Field<'a> {
         };
         let corners: Vec<_> = model.contributors.iter().map(|contributor| contributor.variation.corners()).collect();
         let all = corners.iter().try_fold(1usize, |all, corners| all.checked_mul(corners.len()));
-        match all.filter(|all| *all <= MOST_CORNERS) {
-            Some(all) => field.compute((0..all).map(|mut number| {
+        if let Some(all) = all.filter(|all| *all <= MOST_CORNERS) {
+            field.compute((0..all).map(|mut number| {
                 let corner = |corners: &Vec<Vec<f64>>| {
                     let choice = number % corners.len();
                     number /= corners.len();
                     corners[choice].clone()
                 };
                 corners.iter().flat_map(corner).collect()
-            })),
-            None => field.starts.extend((0..RANDOM).map(|number| {
-                let corner = |(i, corners): (usize, &Vec<Vec<f64>>)| {
-                    corners[(mix(number << 32 | i as u64) % corners.len() as u64) as usize].clone()
-                };
-                corners.iter().enumerate().flat_map(corner).collect()
-            })),
+            }));
         }
+        field.starts.extend((0..RANDOM).map(|number| {
+            let corner = |(i, corners): (usize, &Vec<Vec<f64>>)| {
+                corners[(mix(number << 32 | i as u64) % corners.len() as u64) as usize].clone()
+            };
+            corners.iter().enumerate().flat_map(corner).collect()
+        }));
         field.compute((0..INSIDE).map(|number| inside(model, number)));
         field.starts.extend(at_kinks(model, &field.offsets));
         field.moving = field.moving();
