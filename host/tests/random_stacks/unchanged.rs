@@ -128,7 +128,12 @@ fn reordered(stack: &Stack, one: &Report, other: &Report, wrong: &mut Deviations
         if let (Some(x), Some(y)) = (a.quadrature, b.quadrature) {
             wrong.near(&format!("reordered: sd by quadrature of {}", a.name), y.sd, x.sd, 1e-5 * x.sd + 1e-9 * size);
         }
+        // Whether slopes describe a measure is tried at points of chance: close to the bound its shares may be withheld, which is said.
+        let is_told = |of: &Report| of.notes.iter().any(|note| note.starts_with(&a.name));
         for (x, y) in shares(stack, a).into_iter().zip(shares(stack, b)) {
+            if (x.is_none() && is_told(one)) || (y.is_none() && is_told(other)) {
+                continue;
+            }
             // Sobol' indices are sampled.
             let [x, y] = [x, y].map(|share| share.unwrap_or(0.0));
             wrong.near(&format!("reordered: a share in {}", a.name), y, x, 8.0);
