@@ -81,9 +81,8 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
     let contacts = || before.approaches.iter().zip(&after.approaches);
     // Most steps have none of these: without branches, since it is asked of every contact after every step.
     let may_act = contacts().fold(false, |may_act, (from, to)| {
-        let (low, way) = (from.gap.at_most(to.gap), from.speed.max_of(to.speed) * length);
-        let fall = reach(from.rate, to.rate) * length + most * way;
-        may_act | from.slack | ((low > 0.0) & (low <= fall))
+        let (low, way) = least_and_way([from, to], length);
+        may_act | from.slack | ((low > 0.0) & (low <= fall([from, to], length) + most * way))
     });
     if !may_act {
         return Between::Apart;
@@ -101,20 +100,30 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
     share.map_or(Between::Apart, Between::Closes)
 }
 
+/// The least gap (m) at the ends of a step of `length` (s), and how far (m) one body goes past the other in it.
+fn least_and_way([from, to]: [&Approach; 2], length: f64) -> (f64, f64) {
+    (from.gap.at_most(to.gap), from.speed.max_of(to.speed) * length)
+}
+
+/// How far (m) below its values at the ends of a step of `length` (s) the gap's cubic may fall.
+fn fall([from, to]: [&Approach; 2], length: f64) -> f64 {
+    reach(from.rate, to.rate) * length
+}
+
 /// The share of a step of `length` (s), in which bodies `turn` (rad), after which it would end within a contact that is open at both ends.
 fn closes([from, to]: [&Approach; 2], length: f64, turn: f64, left_out: f64, depth: f64) -> Option<f64> {
-    let (low, way) = (from.gap.min(to.gap), from.speed.max(to.speed) * length);
+    let (low, way) = least_and_way([from, to], length);
     if low <= 0.0 {
         return None;
     }
     if turn > MOST_TURN && low < way {
         return Some(0.9 * MOST_TURN / turn);
     }
-    let (rates, left_out) = ([from.rate * length, to.rate * length], left_out * way);
-    if low > reach(rates[0], rates[1]) + left_out {
+    let left_out = left_out * way;
+    if low > fall([from, to], length) + left_out {
         return None;
     }
-    let cubic = Cubic::new([from.gap, to.gap], rates);
+    let cubic = Cubic::new([from.gap, to.gap], [from.rate * length, to.rate * length]);
     match cubic.lowest() {
         Some((at, lowest)) if lowest < -depth => Some(cubic.closing(at).min(0.9)),
         // Too long to know: half of it is sixteen times as certain.

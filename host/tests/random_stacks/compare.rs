@@ -82,6 +82,23 @@ pub fn analysed(text: &str, kinds: &[Kind], settings: Settings) -> Result<Analys
     Ok(Analysed { report: report("random", &model, &analysis), units })
 }
 
+/// The measures of random units of a stack, measure by measure.
+pub fn drawn(stack: &Stack, chance: &mut Chance) -> Vec<Vec<f64>> {
+    let units = Units::new(stack);
+    let mut drawn = vec![Vec::with_capacity(UNITS); stack.measures.len()];
+    for _ in 0..UNITS {
+        let values = stack.values(&units.draw(chance));
+        drawn.iter_mut().zip(values).for_each(|(all, value)| all.push(value));
+    }
+    drawn
+}
+
+/// Whether the `error` is that a measure cannot be computed in two of so many `units`, and hardly any of those `drawn` has one.
+pub fn is_right_to_refuse(error: &str, drawn: &[Vec<f64>], units: usize) -> bool {
+    let expected = |values: &Vec<f64>| values.iter().filter(|x| x.is_finite()).count() * units / UNITS;
+    error.contains("can be computed in") && drawn.iter().any(|values| expected(values) < 20)
+}
+
 /// Compares all of slipfit's results of a stack.
 pub fn compare(
     stack: &Stack,
@@ -94,18 +111,11 @@ pub fn compare(
     let replicates = if method == Method::PseudoRandom { 1 } else { 8 };
     let settings = Settings { method, samples: UNITS as u64, replicates, seed: chance.below(1 << 30) as u64 };
     let analysed = analysed(text, &kinds, settings);
-    let units = Units::new(stack);
-    let mut drawn = vec![Vec::with_capacity(UNITS); kinds.len()];
-    for _ in 0..UNITS {
-        let values = stack.values(&units.draw(chance));
-        drawn.iter_mut().zip(values).for_each(|(all, value)| all.push(value));
-    }
+    let drawn = drawn(stack, chance);
     let found = match analysed {
         Ok(found) => found,
         Err(error) => {
-            // One of the designs may have no two units with a measure that hardly any unit has.
-            let expected = |values: &Vec<f64>| values.iter().filter(|x| x.is_finite()).count() / replicates as usize;
-            if !(error.contains("can be computed in") && drawn.iter().any(|values| expected(values) < 20)) {
+            if !is_right_to_refuse(&error, &drawn, UNITS / replicates as usize) {
                 wrong.all.push(error);
             }
             return None;
@@ -126,10 +136,8 @@ pub fn compare(
         worst(of, range, wrong);
         if i >= stack.dimensions.len() {
             linearised(stack, of, &function, &limits, wrong);
-            let said_uncertain = format!("{}: the shares of its contributors", of.name);
-            let is_told = found.report.notes.iter().any(|note| note.starts_with(&said_uncertain));
-            if stack.correlations.is_empty() && of.sd > 0.0 && !is_told {
-                contributors(stack, of, i, scale, chance, wrong);
+            if stack.correlations.is_empty() && of.sd > 0.0 {
+                contributors(stack, &found.report, i, scale, chance, wrong);
             }
         }
     }
@@ -372,7 +380,8 @@ fn linearised(
 }
 
 /// Shares of the contributors are those of their total indices.
-fn contributors(stack: &Stack, of: &MeasureReport, i: usize, scale: f64, chance: &mut Chance, wrong: &mut Deviations) {
+fn contributors(stack: &Stack, report: &Report, i: usize, scale: f64, chance: &mut Chance, wrong: &mut Deviations) {
+    let of = &report.measures[i];
     // So many that lots of a thousandth, far away, are among them.
     const COUNT: usize = 8000;
     let totals = total_indices(stack, i, COUNT, chance);
@@ -381,14 +390,21 @@ fn contributors(stack: &Stack, of: &MeasureReport, i: usize, scale: f64, chance:
     if sum.is_nan() || sum * scale * scale <= 1e-18 {
         return;
     }
+    let note = |text: &str| report.notes.iter().find(|note| note.starts_with(&of.name) && note.contains(text));
     // Withheld, and said so, where few of its units have the measure.
     if 2 * of.undefined as usize > UNITS && of.contributors.iter().all(|share| share.percent.is_none()) {
-        return;
+        let is_said = note("too few units have it").is_some();
+        return wrong.that(is_said, || format!("{}: shares are withheld without a note", of.name));
     }
+    // Where few units carry the variance the shares have the standard error that is said.
+    let said = note("standard error of").and_then(|note| {
+        let (_, after) = note.split_once("standard error of ")?;
+        after.split(' ').next()?.parse::<f64>().ok()
+    });
     for (dimension, [total, error]) in stack.dimensions.iter().zip(totals) {
         let found = of.contributors.iter().find(|share| share.name == dimension.name).and_then(|share| share.percent);
         // Both have an error; slipfit's 4096 units are spread evenly. Products of few large numbers converge slowly.
-        let bound = 100.0 * (ERRORS * 1.5 * error / sum) + 2.0;
+        let bound = 100.0 * (ERRORS * 1.5 * error / sum) + 2.0 + ERRORS * said.unwrap_or(0.0);
         wrong.near(
             &format!("{}: share of {}", of.name, dimension.name),
             found.unwrap_or(f64::NAN),

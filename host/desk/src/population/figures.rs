@@ -311,7 +311,9 @@ fn extremes(readings: impl Iterator<Item = Reading>) -> [f32; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::{Mark, Reading, SAMPLES, Window, extremes, settled_force};
+    use super::{Ends, Figures, Mark, Reading, SAMPLES, Watch, Window, extremes, settled_force};
+    use crate::pack::Pack;
+    use slipfit_core::{Scalar, slide::CONTACTS};
 
     fn mark(t: f64, [force, speed]: [f32; 2]) -> Mark {
         let reading = |now| Reading { now, least: now, greatest: now };
@@ -360,5 +362,36 @@ mod tests {
         burst.force.greatest = 2.05;
         window.note(burst);
         assert!(settled(&window, mark(0.06, [2.008, 0.1])).is_nan());
+    }
+
+    /// A force that is steady but for a burst in the run's last half millisecond, whose end is noted.
+    #[test]
+    fn what_happens_right_before_the_end_counts() {
+        type One = Pack<pulp::Scalar>;
+        for (burst, has_settled) in [(2.0, true), (2.05, false)] {
+            let mut watch = Watch::<pulp::Scalar>::new();
+            // Steps of a quarter of a millisecond; a note after every fourth.
+            let mut figures = Figures::NONE;
+            for k in 1..=120u32 {
+                let (force, t) = (if k == 119 { burst } else { 2.0 }, 0.25e-3 * f64::from(k));
+                watch.observe(&Ends {
+                    accepted: One::splat(1.0),
+                    start: One::from_f64(t - 0.25e-3),
+                    length: One::from_f64(0.25e-3),
+                    force: One::splat(force),
+                    speed: One::splat(0.1),
+                    gaps: &[One::splat(1.0); CONTACTS],
+                    ramp_start: One::splat(0.0),
+                });
+                if k % 4 == 0 {
+                    watch.note(0, t);
+                    if k == 120 {
+                        watch.conclude(0, t, &mut figures);
+                    }
+                    watch.forget_extremes(One::splat(1.0));
+                }
+            }
+            assert_eq!(!figures.settled_force.is_nan(), has_settled, "{burst}");
+        }
     }
 }

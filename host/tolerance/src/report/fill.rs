@@ -186,7 +186,7 @@ const NOTED: f64 = 1e-3;
 /// The same from which on contributors have total Sobol' indices instead of shares in the variance of first order.
 const COUNTS: f64 = 1e-2;
 
-/// The standard error of contributors' shares from which on it is told.
+/// The standard error of contributors' shares from which on a note states it.
 const UNCERTAIN: f64 = 0.03;
 
 fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {

@@ -108,7 +108,7 @@ impl<'a> Climb<'a> {
         field.moving[self.measure].iter().filter_map(along).collect()
     }
 
-    /// Moves a `point` whose value is `best` to better ones: along each contributor in turn, then along all of them together, the
+    /// Moves a `point` whose value is `best` to better ones: along one contributor after the other, then along all of them together, the
     /// line `onwards` among these.
     fn round(&mut self, point: &mut [f64], best: &mut f64, onwards: Change) {
         let field = self.field;

@@ -1,7 +1,7 @@
 //! The least and the greatest value of measures that are not linear, over all limits and zones.
 //!
 //! All corners are computed where these are few. From the best of them, from the middle, from random points and corners and from
-//! where each kink is farthest away, a search then climbs: along each contributor in turn, onwards where the last rounds led, and
+//! where each kink is farthest away, a search then climbs: along one contributor after the other, onwards where the last rounds led, and
 //! towards the point at which the slopes promise most. On every such line the best place is narrowed down, so that extremes inside of the
 //! limits and on the rim of round zones are found as well. The search is deterministic, and its effort is bounded.
 
