@@ -12,17 +12,24 @@ use crate::{
 pub const LANES: usize = 4;
 
 /// Numbers `S` side by side.
-pub trait Lanes<S>: Scalar {
+pub trait Lanes<S: Scalar>: Scalar {
     /// The `numbers`, each in its lane.
     fn of(numbers: [S; LANES]) -> Self;
 
+    /// The number in each lane.
+    fn each(self) -> [S; LANES];
+
     /// The sum over the lanes, from the first to the last.
-    fn sum(self) -> S;
+    #[inline(always)]
+    fn sum(self) -> S {
+        let [a, b, c, d] = self.each();
+        a + b + c + d
+    }
 }
 
 /// `number` in every lane.
 #[inline(always)]
-pub fn everywhere<S: Copy, L: Lanes<S>>(number: S) -> L {
+pub fn everywhere<S: Scalar, L: Lanes<S>>(number: S) -> L {
     L::of([number; LANES])
 }
 

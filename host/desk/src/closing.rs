@@ -5,44 +5,117 @@
 //! it. Between the ends a gap is the cubic that has its values and rates there; what that leaves out is bounded by how far the bodies
 //! turn, since straight motion under constant forces is a parabola.
 
-use slipfit_core::{Scalar, law::Normal};
+use std::array;
 
-/// A contact at one instant.
+use slipfit_core::{
+    Scalar,
+    law::Normal,
+    slide::ABSENT,
+    system::{LANES, Lanes},
+};
+
+/// A contact at one instant, or several side by side in a number `S` that holds one of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Approach {
+pub struct Approach<S = f64> {
     /// Gap (m), negative where it penetrates.
-    pub gap: f64,
+    pub gap: S,
     /// How fast it opens (m/s).
-    pub rate: f64,
+    pub rate: S,
     /// Speed (m/s) of one body past the other at the contact.
-    pub speed: f64,
-    /// Whether it is closed and does not push, since it opens faster than its spring can follow.
-    pub slack: bool,
+    pub speed: S,
+    /// 1 where it is closed and does not push, since it opens faster than its spring can follow; else 0.
+    pub slack: S,
 }
 
-impl Approach {
+impl<S: Scalar + PartialOrd> Approach<S> {
     /// A contact with the `normal` law.
     #[inline(always)]
-    pub fn new(gap: f64, rate: f64, speed: f64, normal: &impl Normal<f64>) -> Self {
-        let opens = gap < 0.0 && rate > 0.0;
-        Self { gap, rate, speed, slack: opens && normal.response(-gap, -rate).force <= 0.0 }
+    pub fn new(gap: S, rate: S, speed: S, normal: &impl Normal<S>) -> Self {
+        let (zero, one) = (S::zero(), S::one());
+        let opens = (-gap).at_most(rate);
+        // Most are open, or close.
+        let slack = if opens <= zero {
+            zero
+        } else {
+            normal.response(-gap, -rate).force.select_gt(zero, zero, opens.select_gt(zero, one, zero))
+        };
+        Self { gap, rate, speed, slack }
+    }
+}
+
+impl<S: Lanes<f64>> Approach<S> {
+    /// The contacts of each lane.
+    #[inline(always)]
+    pub fn lanes(self) -> Approach<[f64; LANES]> {
+        let Self { gap, rate, speed, slack } = self;
+        Approach { gap: gap.each(), rate: rate.each(), speed: speed.each(), slack: slack.each() }
+    }
+}
+
+impl Approach<[f64; LANES]> {
+    /// No contact in any lane.
+    const NONE: Self = Self { gap: [ABSENT; LANES], rate: [0.0; LANES], speed: [0.0; LANES], slack: [0.0; LANES] };
+
+    /// The contact in a `lane`.
+    fn of(&self, lane: usize) -> Approach {
+        let Self { gap, rate, speed, slack } = self;
+        Approach { gap: gap[lane], rate: rate[lane], speed: speed[lane], slack: slack[lane] }
     }
 }
 
 /// All contacts of a mechanism at one instant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gaps {
-    /// Each contact, always in the same order.
-    pub approaches: Vec<Approach>,
+    /// The contacts, always in the same order. Four at a time are compared in the time of one.
+    fours: Vec<Approach<[f64; LANES]>>,
+    /// Lanes of the last four that hold none.
+    free: usize,
     /// The greatest angular velocity (rad/s) of a body.
-    pub spin: f64,
+    spin: f64,
 }
 
 impl Gaps {
+    /// Forgets all contacts; no body is faster than `spin` (rad/s).
+    pub fn clear(&mut self, spin: f64) {
+        self.fours.clear();
+        (self.free, self.spin) = (0, spin);
+    }
+
+    /// Adds a contact.
+    pub fn add(&mut self, contact: Approach) {
+        if self.free == 0 {
+            self.fours.push(Approach::NONE);
+            self.free = LANES;
+        }
+        let lane = LANES - self.free;
+        self.free -= 1;
+        if let Some(four) = self.fours.last_mut() {
+            let Approach { gap, rate, speed, slack } = contact;
+            (four.gap[lane], four.rate[lane], four.speed[lane], four.slack[lane]) = (gap, rate, speed, slack);
+        }
+    }
+
+    /// Adds four contacts.
+    #[inline(always)]
+    pub fn add_four(&mut self, contacts: Approach<[f64; LANES]>) {
+        self.fours.push(contacts);
+        self.free = 0;
+    }
+
+    /// The gaps (m), four at a time.
+    pub fn gaps(&self) -> impl Iterator<Item = [f64; LANES]> {
+        self.fours.iter().map(|four| four.gap)
+    }
+
     /// How long (s) a step may be for contacts that do not push now, and are deeper than `depth` (m): longer ones would be refused.
     pub fn until_pushed(&self, depth: f64) -> f64 {
-        let slack = self.approaches.iter().filter(|contact| contact.slack && contact.gap < -depth);
+        let slack = self.each().filter(|contact| contact.slack > 0.0 && contact.gap < -depth);
         slack.map(|Approach { gap, rate, .. }| (1.0 - DEPTH_AIMED) * -gap / rate).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Each contact.
+    fn each(&self) -> impl Iterator<Item = Approach> {
+        self.fours.iter().flat_map(|four| (0..LANES).map(|lane| four.of(lane)))
     }
 }
 
@@ -78,22 +151,26 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
     // since the speed is that of the ends.
     let left_out = turn * turn * turn / 192.0;
     let most = if turn > MOST_TURN { left_out.max(1.0) } else { left_out };
-    let contacts = || before.approaches.iter().zip(&after.approaches);
-    // Most steps have none of these: without branches, since it is asked of every contact after every step.
-    let may_act = contacts().fold(false, |may_act, (from, to)| {
-        let (low, way) = least_and_way([from, to], length);
-        may_act | from.slack | ((low > 0.0) & (low <= fall([from, to], length) + most * way))
+    // Most steps have none of these: without branches, since it is asked of every contact after every step. Above 0 where one may begin to
+    // act that is open at both ends, or does not push at the start.
+    let fours = before.fours.iter().zip(&after.fours);
+    let may_act = fours.fold([0.0; LANES], |may_act, (from, to)| {
+        array::from_fn(|lane| {
+            let ends = [from.of(lane), to.of(lane)];
+            let (low, way) = least_and_way(&ends, length);
+            may_act[lane].max_of(low * (fall(&ends, length) + most * way - low)).max_of(from.slack[lane])
+        })
     });
-    if !may_act {
+    if may_act == [0.0; LANES] {
         return Between::Apart;
     }
     let mut share: Option<f64> = None;
-    for (from, to) in contacts() {
-        let found = if from.slack && from.gap < -depth {
+    for (from, to) in before.each().zip(after.each()) {
+        let found = if from.slack > 0.0 && from.gap < -depth {
             let cubic = || Cubic::new([from.gap, to.gap], [from.rate * length, to.rate * length]);
             (to.gap > DEPTH_LEFT * from.gap).then(|| cubic().opening(DEPTH_AIMED * from.gap))
         } else {
-            closes([from, to], length, turn, left_out, depth)
+            closes(&[from, to], length, turn, left_out, depth)
         };
         share = found.into_iter().chain(share).reduce(f64::min);
     }
@@ -101,18 +178,19 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
 }
 
 /// The least gap (m) at the ends of a step of `length` (s), and how far (m) one body goes past the other in it.
-fn least_and_way([from, to]: [&Approach; 2], length: f64) -> (f64, f64) {
+fn least_and_way([from, to]: &[Approach; 2], length: f64) -> (f64, f64) {
     (from.gap.at_most(to.gap), from.speed.max_of(to.speed) * length)
 }
 
 /// How far (m) below its values at the ends of a step of `length` (s) the gap's cubic may fall.
-fn fall([from, to]: [&Approach; 2], length: f64) -> f64 {
+fn fall([from, to]: &[Approach; 2], length: f64) -> f64 {
     reach(from.rate, to.rate) * length
 }
 
 /// The share of a step of `length` (s), in which bodies `turn` (rad), after which it would end within a contact that is open at both ends.
-fn closes([from, to]: [&Approach; 2], length: f64, turn: f64, left_out: f64, depth: f64) -> Option<f64> {
-    let (low, way) = least_and_way([from, to], length);
+fn closes(ends: &[Approach; 2], length: f64, turn: f64, left_out: f64, depth: f64) -> Option<f64> {
+    let [from, to] = ends;
+    let (low, way) = least_and_way(ends, length);
     if low <= 0.0 {
         return None;
     }
@@ -120,7 +198,7 @@ fn closes([from, to]: [&Approach; 2], length: f64, turn: f64, left_out: f64, dep
         return Some(0.9 * MOST_TURN / turn);
     }
     let left_out = left_out * way;
-    if low > fall([from, to], length) + left_out {
+    if low > fall(ends, length) + left_out {
         return None;
     }
     let cubic = Cubic::new([from.gap, to.gap], [from.rate * length, to.rate * length]);
@@ -213,8 +291,11 @@ mod tests {
     fn step(length: f64, spin: f64, speed: f64, gap: impl Fn(f64) -> [f64; 2]) -> [Gaps; 2] {
         [0.0, length].map(|t| {
             let [gap, rate] = gap(t);
-            let far = Approach { gap: 10.0, rate: 0.0, speed, slack: false };
-            Gaps { approaches: vec![far, Approach { gap, rate, ..far }], spin }
+            let far = Approach { gap: 10.0, rate: 0.0, speed, slack: 0.0 };
+            let mut gaps = Gaps::default();
+            gaps.clear(spin);
+            [far, Approach { gap, rate, ..far }].into_iter().for_each(|contact| gaps.add(contact));
+            gaps
         })
     }
 

@@ -76,16 +76,34 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
     Some(element.law.gap(&element.link.seen(at, &view).place))
 }
 
-/// Adds the contacts of an `element` with the `normal` law to `all`.
-fn approach<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
-    (Element { link, law }, normal): (&Element<L, W, R>, &AnyNormal<f64>),
+/// The most contacts of an element.
+const MOST_WALLS: usize = 4;
+
+/// Shows `see` the contacts of an `element` with the `normal` law.
+#[inline(always)]
+fn approach<
+    S: Scalar + PartialOrd,
+    B: Bodies<S, D>,
+    L: Link<S, B, D, R>,
+    W: Law<S, R>,
+    const D: usize,
+    const R: usize,
+>(
+    (Element { link, law }, normal): (&Element<L, W, R>, &AnyNormal<S>),
     at: (&B, &B::Placed),
-    all: &mut Vec<Approach>,
+    see: &mut impl FnMut(Approach<S>),
 ) {
     let seen = link.seen(at, &link.view(at.0, at.1));
     // No less than the length of the rate.
-    let speed = seen.rate.abs().sum();
-    law.each_gap(&seen.place, &seen.rate, |gap, rate| all.push(Approach::new(gap, rate, speed, normal)));
+    let speed = seen.rate.iter().fold(S::zero(), |sum, rate| sum + rate.max_of(-*rate));
+    let (mut walls, mut count) = ([(S::zero(), S::zero()); MOST_WALLS], 0);
+    law.each_gap(&seen.place, &seen.rate, |gap, rate| {
+        walls[count] = (gap, rate);
+        count += 1;
+    });
+    for (gap, rate) in &walls[..count] {
+        see(Approach::new(*gap, *rate, speed, normal));
+    }
 }
 
 /// An element in a plane.
@@ -131,15 +149,15 @@ impl<const D: usize> PlanarElement<D> {
         }
     }
 
-    /// Adds the contacts that it is to `all`.
+    /// Shows `see` the contacts that it is.
     pub fn approach(
         &self,
         at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed),
-        all: &mut Vec<Approach>,
+        see: &mut impl FnMut(Approach),
     ) {
         match self {
-            Self::Journal(element) => approach((element, &element.law.contact.normal), at, all),
-            Self::Pad(element) => approach((element, &element.law.contact.normal), at, all),
+            Self::Journal(element) => approach((element, &element.law.contact.normal), at, see),
+            Self::Pad(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) => {}
         }
     }
@@ -158,17 +176,20 @@ impl SpatialElement {
             Self::Motor(_) | Self::Pusher(_) => None,
         }
     }
+}
 
-    /// Adds the contacts that it is to `all`.
+impl<S: Scalar + PartialOrd> SpatialElement<S> {
+    /// Shows `see` the contacts that it is.
+    #[inline(always)]
     pub fn approach<const N: usize, const D: usize>(
         &self,
-        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
-        all: &mut Vec<Approach>,
+        at: (&FreeBodies<S, N, D>, &<FreeBodies<S, N, D> as Bodies<S, D>>::Placed),
+        see: &mut impl FnMut(Approach<S>),
     ) {
         match self {
-            Self::Pin(element) => approach((element, &element.law.contact.normal), at, all),
-            Self::Wall(element) => approach((element, &element.law.contact.normal), at, all),
-            Self::Ring(element) => approach((element, &element.law.contact.normal), at, all),
+            Self::Pin(element) => approach((element, &element.law.contact.normal), at, see),
+            Self::Wall(element) => approach((element, &element.law.contact.normal), at, see),
+            Self::Ring(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Motor(_) | Self::Pusher(_) => {}
         }
     }

@@ -90,6 +90,11 @@ impl<M, C> OutOfLine<M, C> {
     pub fn mechanism(&self) -> &M {
         &self.mechanism
     }
+
+    /// What computes its contacts.
+    pub fn contacts(&self) -> &C {
+        &self.contacts
+    }
 }
 
 impl<S: Scalar, M: Mechanism<S, D>, const D: usize, C: Contacts<S, M, D>> Mechanism<S, D> for OutOfLine<M, C> {

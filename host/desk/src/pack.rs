@@ -43,9 +43,8 @@ impl<V: Simd> Lanes<f64> for Pack<V, f64> {
     }
 
     #[inline(always)]
-    fn sum(self) -> f64 {
-        let [a, b, c, d]: [f64; 4] = bytemuck::cast(self.0);
-        a + b + c + d
+    fn each(self) -> [f64; 4] {
+        bytemuck::cast(self.0)
     }
 }
 

@@ -24,7 +24,7 @@ use crate::{
     error_control::{Accelerations, Effort, Stopped, Watched, integrate},
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},
-    side_by_side::SideBySide,
+    side_by_side::{SideBySide, fastest},
 };
 
 /// Most bodies of a mechanism in space.
@@ -128,16 +128,15 @@ impl<const D: usize> Watch<[[f64; 2]; D], D> for PlanarPlant<'_, D> {
         let bodies = self.mechanism().bodies();
         let placed = bodies.placed(pose, velocity);
         let turning = bodies.topology().iter().zip(velocity).filter(|(kind, _)| **kind == Kind::Turn);
-        gaps.spin = turning.fold(0.0, |most, (_, rate)| most.max(rate.abs()));
-        gaps.approaches.clear();
-        self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), &mut gaps.approaches));
+        gaps.clear(turning.fold(0.0, |most, (_, rate)| most.max(rate.abs())));
+        let mut add = |contact| gaps.add(contact);
+        self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), &mut add));
     }
 }
 
 impl<const N: usize, const D: usize> Watch<[Pose<f64>; N], D> for FreePlant<'_, N, D> {
     fn watch(&self, pose: &[Pose<f64>; N], velocity: &SVector<f64, D>, gaps: &mut Gaps) {
-        let bodies = self.mechanism().bodies();
-        watch_free(bodies, &bodies.placed(pose, velocity), self.mechanism().elements(), gaps);
+        self.contacts().watch(self.mechanism(), pose, velocity, gaps);
     }
 }
 
@@ -146,20 +145,10 @@ impl<const D: usize> Watch<[[f64; 2]; D], D> for JointedPlant<'_, D> {
         let bodies = self.mechanism().bodies();
         let placed = bodies.placed(pose, velocity);
         let (free, placed) = bodies.free(&placed);
-        watch_free(free, placed, self.mechanism().elements().0, gaps);
+        gaps.clear(fastest(placed));
+        let mut add = |contact| gaps.add(contact);
+        self.mechanism().elements().0.iter().for_each(|one| one.approach((free, placed), &mut add));
     }
-}
-
-/// Fills in the contacts of free bodies that are `placed`.
-fn watch_free<const N: usize, const D: usize>(
-    bodies: &FreeBodies<f64, N, D>,
-    placed: &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed,
-    elements: &[SpatialElement],
-    gaps: &mut Gaps,
-) {
-    gaps.spin = placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm()));
-    gaps.approaches.clear();
-    elements.iter().for_each(|one| one.approach((bodies, placed), &mut gaps.approaches));
 }
 
 macro_rules! plants {

@@ -9,13 +9,14 @@ use slipfit_core::{
     mechanism::Differentiated,
     pose::Pose,
     system::{
-        Element, JacobiansOf, LANES, Lanes, System, everywhere,
+        AbreastBodies, Bodies, Element, JacobiansOf, LANES, Lanes, System, everywhere,
         law::{Axis, Pin, Ring, Wall},
-        spatial::{FreeBodies, Port, Rim, Seat},
+        spatial::{FreeBodies, Placed, Port, Rim, Seat},
     },
 };
 
 use crate::{
+    closing::{Approach, Gaps},
     contact::Laws,
     element::{SpatialElement, contact},
     out_of_line::Contacts,
@@ -158,6 +159,28 @@ impl<const N: usize, const D: usize> SideBySide<N, D> {
             Self::ByLane(ByLane { lanes: [lane, ..], rest }) => (lane.len(), rest.len()),
         }
     }
+
+    /// Fills in the contacts of `system` at a `pose` and a `velocity`.
+    pub fn watch(&self, system: &Free<N, D>, pose: &[Pose<f64>; N], velocity: &SVector<f64, D>, gaps: &mut Gaps) {
+        let bodies = system.bodies();
+        let placed = bodies.placed(pose, velocity);
+        gaps.clear(fastest(&placed));
+        let rest: [&[SpatialElement]; LANES + 1] = match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Wide(quads) => {
+                Simd::vectorize(quads.instructions, Watch { quads, placed: &placed, gaps });
+                [&quads.rest, &[], &[], &[], &[]]
+            }
+            Self::ByLane(ByLane { lanes: [a, b, c, d], rest }) => [a, b, c, d, rest],
+        };
+        let mut add = |contact| gaps.add(contact);
+        rest.into_iter().flatten().for_each(|one| one.approach((bodies, &placed), &mut add));
+    }
+}
+
+/// The greatest angular velocity (rad/s) of bodies that are `placed`.
+pub fn fastest<const N: usize>(placed: &Placed<f64, N>) -> f64 {
+    placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm()))
 }
 
 /// Elements by their kinds, and those that are no contacts.
@@ -282,6 +305,27 @@ struct Forces<'a, V: Simd, const N: usize, const D: usize> {
 struct Derivatives<'a, V: Simd, const N: usize, const D: usize> {
     quads: &'a Quads<V, N, D>,
     at: At<'a, N, D>,
+}
+
+/// Contacts of bodies that are `placed`, likewise.
+struct Watch<'a, V: Simd, const N: usize, const D: usize> {
+    quads: &'a Quads<V, N, D>,
+    placed: &'a Placed<f64, N>,
+    gaps: &'a mut Gaps,
+}
+
+impl<V: Simd, const N: usize, const D: usize> WithSimd for Watch<'_, V, N, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<W: Simd>(self, _: W) {
+        let Quads { bodies, quads, .. } = self.quads;
+        let placed = <FreeBodies<f64, N, D> as AbreastBodies<f64, Quad<V>, D>>::everywhere(self.placed);
+        let mut add = |four: Approach<Quad<V>>| self.gaps.add_four(four.lanes());
+        for quad in quads {
+            quad.approach((bodies, &placed), &mut add);
+        }
+    }
 }
 
 impl<V: Simd, const N: usize, const D: usize> WithSimd for Forces<'_, V, N, D> {

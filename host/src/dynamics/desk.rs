@@ -40,6 +40,9 @@ const STICK_BAND: [f64; 2] = [1e-9, 1e-4];
 /// How much a narrow stick band may tighten the tolerance.
 const NARROWEST: f64 = 0.01;
 
+/// Steps of most units: what is kept of them is not moved while it grows.
+const USUAL_STEPS: usize = 1024;
+
 /// The least error of force (N) that a step is held to, where the drive has no force.
 const LEAST_TOLERANCE: f64 = 1e-9;
 
@@ -96,7 +99,7 @@ pub fn seen(
     let stick_band = stick_band(scene, tolerance);
     let mut observer = Observer::new(scene.drive, settings.run);
     let mut tipping = Tipping::default();
-    let mut knots: Vec<Knot<[f64; 4]>> = Vec::new();
+    let mut knots: Vec<Knot<[f64; 4]>> = Vec::with_capacity(USUAL_STEPS);
     let mut before = SVector::zeros();
     let rates = |velocity: &SVector<f64, 6>, by: &SVector<f64, 6>| [by.z, velocity.x, velocity.y, velocity.z];
     let start = Clock::now();

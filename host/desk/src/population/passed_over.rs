@@ -114,13 +114,15 @@ fn lane_by_lane<V: Simd>(
         let [before, after] = ends.map(|End { pins, velocity }| {
             let [vx, vy, vz, wx, wy, wz] = velocity.data.0[0].each_ref();
             let (velocity, spin) = (vector([vx, vy, vz]).norm(), vector([wx, wy, wz]).norm());
-            let mut gaps = Gaps { approaches: Vec::new(), spin };
+            let mut gaps = Gaps::default();
+            gaps.clear(spin);
             for (k, pin) in pins.iter().enumerate() {
                 let [place, rate] = [&pin.place, &pin.rate].map(|v| vector([&v.x, &v.y, &v.z]));
                 let lever = vector(body.pins_w[k].data.0[0].each_ref()) + place;
                 let nominal = std::array::from_fn(|of| number(&body.gaps[4 * k + of]));
                 let seen = Seen { place, rate };
-                gaps.approaches.extend(approaches(&seen, nominal, velocity + spin * lever.norm(), &normal));
+                let of_pin = approaches(&seen, nominal, velocity + spin * lever.norm(), &normal);
+                of_pin.into_iter().for_each(|contact| gaps.add(contact));
             }
             gaps
         });

@@ -9,9 +9,11 @@ use slipfit_core::{
     menu::SlideData,
     pose::Pose,
     slide::{AbreastPins, Internal, Slide, abreast, abreast_pins},
+    system::{AbreastBodies, Bodies, Element, Link, spatial::Floating},
 };
 
-use crate::{laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
+use super::{SlideMotion, Watch, approaches};
+use crate::{closing::Gaps, laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
 
 /// A number for each pin.
 type Quad = Pack<V3, f64>;
@@ -66,6 +68,13 @@ impl Contacts<f64, Usual<f64>, 6> for SideBySide {
     }
 }
 
+impl Watch<Usual<f64>> for SideBySide {
+    fn watch(&self, slide: &Usual<f64>, SlideMotion { pose, velocity, .. }: &SlideMotion, speed: f64, gaps: &mut Gaps) {
+        let placed = Bodies::<f64, 6>::placed(slide.bodies(), pose, velocity);
+        self.instructions.vectorize(Watched { pins: self, placed: &placed, speed, gaps });
+    }
+}
+
 /// What forces are computed of.
 struct Call<'a> {
     slide: &'a Usual<f64>,
@@ -81,6 +90,28 @@ struct Forces<'a>(Call<'a>);
 
 /// Forces and their derivatives, likewise.
 struct Derivatives<'a>(Call<'a>);
+
+/// Contacts of a slide that is `placed`, likewise.
+struct Watched<'a> {
+    pins: &'a SideBySide,
+    placed: &'a <Floating<f64> as Bodies<f64, 6>>::Placed,
+    speed: f64,
+    gaps: &'a mut Gaps,
+}
+
+impl NullaryFnOnce for Watched<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (body, Element { link, law }) = (self.pins.pins.bodies(), self.pins.pins.elements());
+        let placed = Floating::everywhere(self.placed);
+        let seen = link.seen((body, &placed), &link.view(body, &placed));
+        for wall in approaches(&seen, law.gaps, Quad::splat(self.speed), &law.contact.normal) {
+            self.gaps.add_four(wall.lanes());
+        }
+    }
+}
 
 impl NullaryFnOnce for Forces<'_> {
     type Output = SVector<f64, 6>;

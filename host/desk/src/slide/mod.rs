@@ -8,12 +8,12 @@ mod fixed_steps;
 use std::{array, ops::ControlFlow};
 
 use slipfit_core::{
-    SVector,
+    SVector, Scalar,
     integrator::{Motion, Rodas4},
     law::{Elastic, Friction, Normal},
     menu::SlideData,
     pose::Pose,
-    slide::{ABSENT, CONTACTS, Internal, NO_INTERNAL, Slide, to_walls},
+    slide::{ABSENT, CONTACTS, Internal, NO_INTERNAL, PINS, Slide, to_walls},
     system::Seen,
 };
 
@@ -23,10 +23,10 @@ use crate::{
     closing::{Approach, Gaps},
     error_control::{Accelerations, Effort, Sensitivity, Stopped, Tolerance, Watched, integrate},
     laws::SlidingSlide,
-    out_of_line::{Contacts, OutOfLine},
+    out_of_line::{Contacts, InTurn, OutOfLine},
 };
 
-/// Where the slide is and how it moves, with the gaps (m) of its contacts.
+/// Where the slide is and how it moves.
 pub type SlideMotion = Motion<f64, Pose<f64>, Internal<()>, 6>;
 
 /// Sees the time (s), the motion and the gaps (m) at the start and at the end of every step, with the step's accelerations, and says
@@ -70,44 +70,61 @@ struct Run {
 }
 
 impl Run {
-    fn of<E: Elastic<f64>, F: Friction<f64, Internal = ()>, C: Contacts<f64, Slide<f64, E, F>, 6>>(
+    fn of<E: Elastic<f64>, F: Friction<f64, Internal = ()>, C>(
         self,
         driven: &OutOfLine<Slide<f64, E, F>, C>,
         see: See,
-    ) -> Result<Effort, Stopped> {
+    ) -> Result<Effort, Stopped>
+    where
+        C: Contacts<f64, Slide<f64, E, F>, 6> + Watch<Slide<f64, E, F>>,
+    {
         let zero = SVector::zeros();
         let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, internal: NO_INTERNAL };
         let slide = driven.mechanism();
         let error = |step: &_, length| self.sensitivity.error(self.tolerance, step, length);
-        let gaps = |motion: &SlideMotion, gaps: &mut Gaps| watch(slide, self.lever, motion, gaps);
+        let gaps = |motion: &SlideMotion, gaps: &mut Gaps| {
+            let [velocity, spin] = [0, 3].map(|first| motion.velocity.fixed_rows::<3>(first).norm());
+            // A point of the slide at a pin moves no faster than its centre of mass and its turning together.
+            let speed = velocity + spin * (self.lever + motion.pose.displacement_w.norm());
+            gaps.clear(spin);
+            driven.contacts().watch(slide, motion, speed, gaps);
+        };
         let watched = Watched { gaps, depth: self.tolerance.position };
         integrate::<Rodas4, _, 6>(driven, rest, self.duration, error, watched, |t, motion, accelerations, gaps| {
-            let gaps = array::from_fn(|k| gaps.approaches.get(k).map_or(ABSENT, |approach| approach.gap));
-            see(t, motion, &gaps, accelerations)
+            let mut of_pins = [ABSENT; CONTACTS];
+            for (wall, of_wall) in gaps.gaps().enumerate() {
+                of_wall.iter().enumerate().for_each(|(pin, gap)| of_pins[4 * pin + wall] = *gap);
+            }
+            see(t, motion, &of_pins, accelerations)
         })
     }
 }
 
-/// Fills in the contacts of a `slide` at a `motion`.
-fn watch<E: Elastic<f64>, F: Friction<f64, Internal = ()>>(
-    slide: &Slide<f64, E, F>,
-    lever: f64,
-    motion: &SlideMotion,
-    gaps: &mut Gaps,
-) {
-    let Motion { pose, velocity, .. } = motion;
-    gaps.spin = velocity.fixed_rows::<3>(3).norm();
-    // A point of the slide at a pin moves no faster than its centre of mass and its turning together.
-    let speed = velocity.fixed_rows::<3>(0).norm() + gaps.spin * (lever + pose.displacement_w.norm());
-    gaps.approaches.clear();
-    for (pin, (_, nominal)) in slide.pins(pose, velocity).iter().zip(&slide.elements().0.each) {
-        gaps.approaches.extend_from_slice(&approaches(pin, *nominal, speed, &slide.contact().normal));
+/// What sees the contacts of a slide `M`.
+trait Watch<M> {
+    /// Adds those of the `slide` at a `motion` to the `gaps`: of each pin the first wall, then of each the second. No point of the slide is
+    /// faster at a pin than `speed` (m/s).
+    fn watch(&self, slide: &M, motion: &SlideMotion, speed: f64, gaps: &mut Gaps);
+}
+
+impl<E: Elastic<f64>, F: Friction<f64, Internal = ()>> Watch<Slide<f64, E, F>> for InTurn {
+    fn watch(&self, slide: &Slide<f64, E, F>, motion: &SlideMotion, speed: f64, gaps: &mut Gaps) {
+        let (pins, each) = (slide.pins(&motion.pose, &motion.velocity), &slide.elements().0.each);
+        let of_pin = |k: usize| approaches(&pins[k], each[k].1, speed, &slide.contact().normal);
+        let of_pins: [_; PINS] = array::from_fn(of_pin);
+        (0..4).for_each(|wall| of_pins.iter().for_each(|of_pin| gaps.add(of_pin[wall])));
     }
 }
 
 /// The contacts of a `pin` as the slide sees it with its walls, whose gaps (m) are `nominal` where it is drawn and whose law is `normal`. No
 /// point of the slide is faster there than `speed` (m/s).
-pub fn approaches(pin: &Seen<f64, 3>, nominal: [f64; 4], speed: f64, normal: &impl Normal<f64>) -> [Approach; 4] {
-    let (gaps, rates) = (to_walls(nominal, &pin.place), to_walls([0.0; 4], &pin.rate));
+#[inline(always)]
+pub fn approaches<S: Scalar + PartialOrd>(
+    pin: &Seen<S, 3>,
+    nominal: [S; 4],
+    speed: S,
+    normal: &impl Normal<S>,
+) -> [Approach<S>; 4] {
+    let (gaps, rates) = (to_walls(nominal, &pin.place), to_walls([S::zero(); 4], &pin.rate));
     array::from_fn(|k| Approach::new(gaps[k], rates[k], speed, normal))
 }
