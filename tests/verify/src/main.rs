@@ -1,5 +1,5 @@
 //! Every test with one command, `cargo verify`: installs what the tests need where it may, and says what is missing where
-//! it may not. No test is ever skipped. Arguments go to `cargo test`.
+//! it may not. No test is ever skipped, also not the long ones that `cargo test` leaves out. Arguments go to `cargo test`.
 #![forbid(unsafe_code)]
 
 mod programs;

@@ -91,6 +91,7 @@ impl Program {
     fn passes(&self) -> bool {
         let start = Instant::now();
         let ran = Command::new(&self.file)
+            .arg("--include-ignored")
             .current_dir(&self.folder)
             .env("CARGO_MANIFEST_DIR", &self.folder)
             .stdin(Stdio::null())
