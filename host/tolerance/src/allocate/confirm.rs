@@ -5,6 +5,8 @@
 //! with a smaller share, and its next choice is counted in other fresh units. The k-th choice may err with a chance of 5 %/2ᵏ: all
 //! together err with less than 5 %, whatever the search makes of the counts before.
 
+pub use super::Counted;
+
 use super::AllocateError;
 use crate::{
     numeric::normal,
@@ -17,15 +19,6 @@ const ROUNDS: i32 = 8;
 const SPARE: f64 = 0.5;
 /// The least and the greatest factor of the share that the next search aims at.
 const STEP: [f64; 2] = [0.3, 0.95];
-
-/// Fresh units that were counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counted {
-    /// Those that malfunction.
-    pub failed: u64,
-    /// All.
-    pub units: u64,
-}
 
 /// A choice that was confirmed.
 #[derive(Clone, Debug, PartialEq)]

@@ -22,7 +22,6 @@ pub mod slopes;
 #[cfg(test)]
 mod tests;
 
-use self::confirm::Counted;
 use super::counting::study::StudyError;
 
 /// Why there are no cheapest tolerances.
@@ -83,4 +82,13 @@ pub enum AllocateError {
     /// Somebody asked to stop.
     #[error("interrupted")]
     Interrupted,
+}
+
+/// Fresh units that were counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counted {
+    /// Those that malfunction.
+    pub failed: u64,
+    /// All.
+    pub units: u64,
 }

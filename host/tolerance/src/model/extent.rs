@@ -2,7 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use super::{Distribution, Variation};
+use super::{
+    Distribution, Variation,
+    zone::{along, steepest},
+};
 
 /// Points on the rim of a disc where corners are asked for.
 const RIM: usize = 8;
@@ -69,20 +72,6 @@ impl Variation {
             Self::Nested(zone) => zone.most(slopes, grown),
         }
     }
-}
-
-/// The vector of length 1 along `slopes`; 0 for none.
-pub(super) fn along(slopes: &[f64]) -> Vec<f64> {
-    let length = libm::sqrt(slopes.iter().map(|slope| slope * slope).sum());
-    slopes.iter().map(|slope| if length > 0.0 { slope / length } else { 0.0 }).collect()
-}
-
-/// The unit vector of the greatest of the `slopes`, with its sign; 0 for none.
-pub(super) fn steepest(slopes: &[f64]) -> Vec<f64> {
-    let most = slopes.iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
-    let first = slopes.iter().position(|slope| slope.abs() == most && most > 0.0);
-    let of = |(k, slope): (usize, &f64)| if Some(k) == first { 1f64.copysign(*slope) } else { 0.0 };
-    slopes.iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]

@@ -5,9 +5,10 @@ pub mod linear;
 pub mod loss;
 pub mod nested;
 pub mod widening;
+mod zone;
 
-use self::{nested::Nested, widening::Widening};
-use crate::model::loss::Loss;
+pub use self::zone::{SIGMA_DISC, SIGMA_ZONE, ZoneRule};
+use self::{loss::Loss, nested::Nested, widening::Widening};
 use crate::numeric::lanes::Lanes;
 
 /// A product whose measures are a function of independent (or correlated) random variables.
@@ -107,20 +108,6 @@ pub enum Variation {
     Disc(ZoneRule),
     /// A plane or an axis in its zone, with tilts that another tolerance narrows: place, then two tilts.
     Nested(Nested),
-}
-
-/// How a plane or an axis varies in its zone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ZoneRule {
-    /// u, p, r independent normals of standard deviation 1/(3√3): a corner of the face has t/6. In a disc x, y independent
-    /// normals of standard deviation 1/3: the axis has t/6 along any direction.
-    SigmaZone,
-    /// The same, drawn again until inside the zone.
-    Truncated,
-    /// Uniform in the octahedron or the disc.
-    UniformInZone,
-    /// Offset only: u normal of standard deviation 1/3; a disc as by [`ZoneRule::SigmaZone`].
-    Translation,
 }
 
 /// Distribution of a scalar contributor. SI units.
@@ -243,11 +230,6 @@ pub struct Sum {
     /// Indices of its measures.
     pub measures: Vec<usize>,
 }
-
-/// Standard deviation 1/(3√3) of u, p and r in a sigma-zone: a corner of the face has a sixth of the zone.
-pub const SIGMA_ZONE: f64 = 0.192_450_089_729_875_26;
-/// Standard deviation of x and y in a disc: a sixth of the zone's diameter.
-pub const SIGMA_DISC: f64 = 1.0 / 3.0;
 
 impl Variation {
     /// How many variables it has.

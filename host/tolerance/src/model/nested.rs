@@ -11,10 +11,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use super::{
-    SIGMA_DISC, SIGMA_ZONE, ZoneRule,
-    extent::{along, steepest},
-};
+use super::zone::{SIGMA_DISC, SIGMA_ZONE, ZoneRule, along, steepest};
 use crate::numeric::{
     gauss::{Node, piece},
     normal::tail,

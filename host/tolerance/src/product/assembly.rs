@@ -93,8 +93,10 @@ impl Placement {
         fixed: &[[[f64; 3]; 2]],
         carried: Vec<Carried>,
     ) -> Result<Self, PlacementError> {
-        let support = Support::Contacts(Contacts::new(assembly, nominal, contacts, fixed)?);
-        Ok(Self { support, carried })
+        let mut located = Vec::new();
+        assembly.locate(nominal, &mut located);
+        let contacts = Contacts::new(&assembly.features, nominal, &located, contacts, fixed)?;
+        Ok(Self { support: Support::Contacts(contacts), carried })
     }
 
     /// The datum that two features are together.
@@ -134,14 +136,14 @@ impl Placement {
 
     /// Moves the features that the body carries to where it comes to lie.
     #[inline(always)]
-    fn place(&self, assembly: &Assembly, variables: &[Lanes], located: &mut [Located]) {
+    fn place(&self, features: &[Feature], variables: &[Lanes], located: &mut [Located]) {
         let displacement = match &self.support {
-            Support::Plane(plane) => onto_plane(&assembly.features[*plane], &located[*plane]),
-            Support::Contacts(contacts) => contacts.displacement(assembly, variables, located),
+            Support::Plane(plane) => onto_plane(&features[*plane], &located[*plane]),
+            Support::Contacts(contacts) => contacts.displacement(features, variables, located),
             Support::Common(common) => return common.locate(located),
         };
         for carried in &self.carried {
-            carried.by(&displacement, &assembly.features, located);
+            carried.by(&displacement, features, located);
         }
     }
 }
@@ -171,7 +173,7 @@ impl Assembly {
             feature.locate(variables, located);
         }
         for placement in &self.placements {
-            placement.place(self, variables, located);
+            placement.place(&self.features, variables, located);
         }
     }
 
@@ -185,11 +187,11 @@ impl Assembly {
         let mut open = 0;
         for placement in &self.placements {
             if let Support::Contacts(contacts) = &placement.support {
-                let displacement = contacts.displacement(self, variables, &located);
-                contacts.misfits(self, variables, &located, &displacement, &mut fit);
+                let displacement = contacts.displacement(&self.features, variables, &located);
+                contacts.misfits(&self.features, variables, &located, &displacement, &mut fit);
                 open += displacement.undefined();
             }
-            placement.place(self, variables, &mut located);
+            placement.place(&self.features, variables, &mut located);
         }
         open
     }

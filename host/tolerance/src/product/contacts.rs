@@ -3,9 +3,8 @@
 use crate::numeric::lanes::{LANES, Lanes};
 
 use super::{
-    assembly::Assembly,
     contact::{CONDITIONS, Contact, Freedoms, Rows},
-    feature::Located,
+    feature::{Feature, Located},
     float::Float,
     vector::Displacement,
 };
@@ -106,14 +105,15 @@ pub enum PlacementError {
 }
 
 impl Contacts {
-    /// Contacts, the first with precedence over the next; other freedoms are `fixed`: directions of shifts, and of
-    /// rotations about the centre.
+    /// Contacts of the `features`, `located` where they are at the `nominal` values; the first with precedence over the next. Other
+    /// freedoms are `fixed`: directions of shifts, and of rotations about the centre.
     ///
     /// # Errors
     /// [`PlacementError`].
     pub fn new(
-        assembly: &Assembly,
+        features: &[Feature],
         nominal: &[Lanes],
+        located: &[Located],
         mut contacts: Vec<Joined>,
         fixed: &[[[f64; 3]; 2]],
     ) -> Result<Self, PlacementError> {
@@ -122,20 +122,18 @@ impl Contacts {
             joined.about = plane;
             plane = plane.or(joined.contact.is_of_planes().then_some(joined.other));
         }
-        let places = contacts.iter().map(|joined| joined.own.feature()).map(|i| assembly.features[i].nominal[0]);
+        let places = contacts.iter().map(|joined| joined.own.feature()).map(|i| features[i].nominal[0]);
         let count = contacts.len().max(1) as f64;
         let centre = places.clone().fold([0.0; 3], |sum, place| [0, 1, 2].map(|i| sum[i] + place[i] / count));
         let spread = places.map(|place| (0..3).map(|i| (place[i] - centre[i]).abs()).fold(0.0, f64::max));
-        let reaches = contacts.iter().map(|joined| assembly.features[joined.own.feature()].reach);
+        let reaches = contacts.iter().map(|joined| features[joined.own.feature()].reach);
         let scale = Some(spread.chain(reaches).fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
         let mut made = Self { joined: contacts, centre, scale, start: [0.0; 6], gains: Vec::new(), free: Vec::new() };
 
-        let mut located = Vec::new();
-        assembly.locate(nominal, &mut located);
         for _ in 0..NOMINAL_PASSES {
-            made.linearise(assembly, nominal, &located, fixed)?;
+            made.linearise(features, nominal, located, fixed)?;
             let start = made.start.map(Lanes::splat);
-            let change = made.correction(assembly, nominal, &located, &start);
+            let change = made.correction(features, nominal, located, &start);
             for (component, change) in made.start.iter_mut().zip(change) {
                 *component -= change.0[0];
             }
@@ -143,7 +141,7 @@ impl Contacts {
                 break;
             }
         }
-        let residual = made.correction(assembly, nominal, &located, &made.start.map(Lanes::splat));
+        let residual = made.correction(features, nominal, located, &made.start.map(Lanes::splat));
         let closed = residual.iter().all(|change| change.0[0].abs() < 1e-12);
         if closed { Ok(made) } else { Err(PlacementError::Open) }
     }
@@ -151,7 +149,7 @@ impl Contacts {
     /// Finds the gains at `self.start`.
     fn linearise(
         &mut self,
-        assembly: &Assembly,
+        features: &[Feature],
         nominal: &[Lanes],
         located: &[Located],
         fixed: &[[[f64; 3]; 2]],
@@ -166,7 +164,7 @@ impl Contacts {
             moved[component].0[1] -= step;
             let displacement = Displacement::new(&moved, self.centre);
             for (rows, joined) in derivatives.iter_mut().zip(&self.joined) {
-                for (row, condition) in joined.conditions(assembly, nominal, located, &displacement).iter().enumerate()
+                for (row, condition) in joined.conditions(features, nominal, located, &displacement).iter().enumerate()
                 {
                     rows[(row, component)] = (condition.0[0] - condition.0[1]) / (2.0 * STEP * scale);
                 }
@@ -223,7 +221,7 @@ impl Contacts {
     #[inline(always)]
     fn correction(
         &self,
-        assembly: &Assembly,
+        features: &[Feature],
         variables: &[Lanes],
         located: &[Located],
         components: &[Lanes; 6],
@@ -231,7 +229,7 @@ impl Contacts {
         let displacement = Displacement::new(components, self.centre);
         let mut change = [Lanes::ZERO; 6];
         for (joined, gains) in self.joined.iter().zip(&self.gains) {
-            let conditions = joined.conditions(assembly, variables, located, &displacement);
+            let conditions = joined.conditions(features, variables, located, &displacement);
             for gain in gains {
                 change[gain.component] += conditions[gain.condition] * gain.factor;
             }
@@ -256,11 +254,11 @@ impl Contacts {
 
     /// Where the body comes to lie; not a number where its contacts do not close.
     #[inline(always)]
-    pub fn displacement(&self, assembly: &Assembly, variables: &[Lanes], located: &[Located]) -> Displacement {
+    pub fn displacement(&self, features: &[Feature], variables: &[Lanes], located: &[Located]) -> Displacement {
         let mut components = self.start.map(Lanes::splat);
         let mut change = [Lanes::ZERO; 6];
         for _ in 0..PASSES {
-            change = self.correction(assembly, variables, located, &components);
+            change = self.correction(features, variables, located, &components);
             for (component, change) in components.iter_mut().zip(change) {
                 *component -= change;
             }
@@ -268,7 +266,7 @@ impl Contacts {
         let size = self.size(&change);
         // Hardly any unit is that far off.
         if size.0.iter().any(|size| size.is_nan() || *size > AT_REST) {
-            self.go_on(assembly, variables, located, &mut components, size);
+            self.go_on(features, variables, located, &mut components, size);
         }
         Displacement::new(&components, self.centre)
     }
@@ -289,7 +287,7 @@ impl Contacts {
     #[cold]
     fn go_on(
         &self,
-        assembly: &Assembly,
+        features: &[Feature],
         variables: &[Lanes],
         located: &[Located],
         components: &mut [Lanes; 6],
@@ -301,7 +299,7 @@ impl Contacts {
             if still == Lanes::ZERO {
                 return;
             }
-            let change = self.correction(assembly, variables, located, components);
+            let change = self.correction(features, variables, located, components);
             let now = self.size(&change);
             for lane in (0..LANES).filter(|lane| still.0[*lane] > 0.0) {
                 components.iter_mut().zip(&change).for_each(|(component, change)| component.0[lane] -= change.0[lane]);
@@ -317,7 +315,7 @@ impl Contacts {
     /// Calls `fit` with the number of each fit and of units in which it does not go together.
     pub fn misfits(
         &self,
-        assembly: &Assembly,
+        features: &[Feature],
         variables: &[Lanes],
         located: &[Located],
         displacement: &Displacement,
@@ -328,7 +326,7 @@ impl Contacts {
         for joined in &self.joined {
             let Some(float) = &joined.float else { continue };
             let Some(number) = float.fit else { continue };
-            let [x, y, ..] = joined.conditions(assembly, variables, located, displacement);
+            let [x, y, ..] = joined.conditions(features, variables, located, displacement);
             fit(number, float.misfits(variables, (x * x + y * y).map(libm::sqrt), room));
         }
     }
@@ -362,14 +360,14 @@ impl Joined {
     #[inline(always)]
     fn conditions(
         &self,
-        assembly: &Assembly,
+        features: &[Feature],
         variables: &[Lanes],
         located: &[Located],
         displacement: &Displacement,
     ) -> [Lanes; CONDITIONS] {
         let own = match self.own {
             Own::Made(feature) => located[feature].displaced(displacement),
-            Own::Perfect(feature) => assembly.features[feature].perfect().displaced(displacement),
+            Own::Perfect(feature) => features[feature].perfect().displaced(displacement),
         };
         let about = self.about.map(|plane| &located[plane].direction);
         let mut conditions = self.contact.conditions(&own, &located[self.other], about);

@@ -5,252 +5,27 @@
 //! `30°`) or is a plain number. A name with spaces stands in single quotes.
 
 mod affine;
+mod fault;
 mod grammar;
 #[cfg(test)]
 pub(crate) mod interpreted;
 mod kind;
+mod operation;
 mod tape;
 
-use std::ops::Range;
-
-use crate::{model::Quantity, numeric::lanes::Lanes};
-
-pub use affine::Affine;
-pub use grammar::FUNCTIONS;
-pub use grammar::parse;
-pub use kind::Kind;
-pub use tape::Tape;
-
-/// Values (SI) from here on are refused: sums of squares and products of many units are no numbers.
-const GREATEST: f64 = 1e100;
-
-/// The most intermediate results that wait for an operation.
-const DEPTH: usize = 16;
-
-/// A validated expression: operations on a stack.
-#[derive(Clone, Debug)]
-pub struct Expression {
-    steps: Vec<Step>,
-    kind: Kind,
-}
-
-/// What a name in an expression stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// A variable of the model.
-    Variable(usize),
-    /// An earlier measure.
-    Measure(usize),
-}
-
-/// An operation and the bytes of the text that it came from.
-#[derive(Clone, Debug)]
-struct Step {
-    operation: Operation,
-    place: Range<usize>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Operation {
-    Constant(f64),
-    Read(Source),
-    One(One),
-    Two(Two),
-}
-
-/// Operations on one number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum One {
-    Negate,
-    Absolute,
-    SquareRoot,
-    Sine,
-    Cosine,
-    Tangent,
-    ArcSine,
-    ArcCosine,
-    ArcTangent,
-}
-
-/// Operations on two numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Two {
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Least,
-    Greatest,
-}
-
-impl One {
-    #[inline(always)]
-    fn of(self, x: Lanes) -> Lanes {
-        match self {
-            Self::Negate => -x,
-            Self::Absolute => x.map(f64::abs),
-            Self::SquareRoot => x.sqrt(),
-            Self::Sine => x.map(libm::sin),
-            Self::Cosine => x.map(libm::cos),
-            Self::Tangent => x.map(libm::tan),
-            Self::ArcSine => x.map(libm::asin),
-            Self::ArcCosine => x.map(libm::acos),
-            Self::ArcTangent => x.map(libm::atan),
-        }
-    }
-}
-
-impl Two {
-    #[inline(always)]
-    fn of(self, a: Lanes, b: Lanes) -> Lanes {
-        match self {
-            Self::Add => a + b,
-            Self::Subtract => a - b,
-            Self::Multiply => a * b,
-            Self::Divide => a / b,
-            // A square is by far the most frequent power.
-            Self::Power if b == Lanes::splat(2.0) => a * a,
-            Self::Power => a.zip(b, libm::pow),
-            Self::Least => a.zip(b, |a, b| if a.is_nan() || a < b { a } else { b }),
-            Self::Greatest => a.zip(b, |a, b| if a.is_nan() || a > b { a } else { b }),
-        }
-    }
-}
-
-/// What is wrong with an expression.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Fault {
-    /// Something else was expected.
-    #[error("expected {expected}, found {}", quoted(found))]
-    Expected {
-        /// What.
-        expected: &'static str,
-        /// What stands there; empty at the end.
-        found: String,
-    },
-    /// No dimension and no earlier measure has this name.
-    #[error("there is no dimension and no measure above called `{0}`")]
-    UnknownName(String),
-    /// No such function.
-    #[error("there is no function `{0}`")]
-    UnknownFunction(String),
-    /// No such unit.
-    #[error("`{0}` is no unit of a constant")]
-    UnknownUnit(String),
-    /// Kinds that do not go together.
-    #[error("{operation} {}", one_or_both(kinds))]
-    Kinds {
-        /// What cannot be done.
-        operation: &'static str,
-        /// With what.
-        kinds: Vec<Kind>,
-    },
-    /// Not of a kind that measures have.
-    #[error("the result is {0}, which is no measure")]
-    Result(Kind),
-    /// Nested too deeply.
-    #[error("the expression is nested too deeply")]
-    Depth,
-    /// Not finite at the nominal values.
-    #[error("{what} at the nominal values")]
-    NotFinite {
-        /// What happens.
-        what: &'static str,
-    },
-}
-
-fn quoted(text: &str) -> String {
-    if text.is_empty() { "the end".into() } else { format!("`{text}`") }
-}
-
-fn one_or_both(kinds: &[Kind]) -> String {
-    kinds.iter().map(Kind::to_string).collect::<Vec<_>>().join(" and ")
-}
-
-/// A [`Fault`], where it is, and what is allowed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ExpressionError {
-    /// What is wrong.
-    pub fault: Fault,
-    /// Bytes of the expression.
-    pub place: Range<usize>,
-    /// What is allowed there, as a phrase.
-    pub allowed: &'static str,
-}
-
-impl Expression {
-    /// What kind of number it gives.
-    pub fn kind(&self) -> Kind {
-        self.kind
-    }
-
-    /// What kind of measure it is.
-    pub fn quantity(&self) -> Quantity {
-        self.kind.quantity().unwrap_or(Quantity::Ratio)
-    }
-
-    /// The variables that it reads.
-    pub fn variables(&self) -> impl Iterator<Item = usize> {
-        self.steps.iter().filter_map(|step| match step.operation {
-            Operation::Read(Source::Variable(variable)) => Some(variable),
-            _ => None,
-        })
-    }
-
-    /// Its value for the `variables` and the earlier `measures` (SI), operation by operation: what faster ways are
-    /// compared with.
-    #[cfg(test)]
-    pub fn evaluate(&self, variables: &[Lanes], measures: &[Lanes]) -> Lanes {
-        self.trace(variables, measures, |_, _| ())
-    }
-
-    /// Whether the result and everything on the way to it is finite for these values, and its square as well.
-    ///
-    /// # Errors
-    /// [`ExpressionError`] points at the first operation whose result is not.
-    pub fn check(&self, variables: &[Lanes], measures: &[Lanes]) -> Result<(), ExpressionError> {
-        let mut first = None;
-        self.trace(variables, measures, |step, value| {
-            let value = value.0[0];
-            if (value.is_nan() || value.abs() >= GREATEST) && first.is_none() {
-                let what = match step.operation {
-                    Operation::Two(Two::Divide) if !value.is_finite() => "divides by zero",
-                    _ if value.is_finite() => "is 1e100 or more",
-                    _ => "is not a finite number",
-                };
-                let allowed = "an expression that is finite at the nominal values";
-                first = Some(ExpressionError { fault: Fault::NotFinite { what }, place: step.place.clone(), allowed });
-            }
-        });
-        first.map_or(Ok(()), Err)
-    }
-
-    fn trace(&self, variables: &[Lanes], measures: &[Lanes], mut look: impl FnMut(&Step, Lanes)) -> Lanes {
-        // Parsing has checked that no more than DEPTH wait and that every operation finds its operands.
-        let mut stack = [Lanes::ZERO; DEPTH];
-        let mut height = 0;
-        for step in &self.steps {
-            let (operands, value) = match step.operation {
-                Operation::Constant(value) => (0, Lanes::splat(value)),
-                Operation::Read(Source::Variable(i)) => (0, variables[i]),
-                Operation::Read(Source::Measure(i)) => (0, measures[i]),
-                Operation::One(one) => (1, one.of(stack[height - 1])),
-                Operation::Two(two) => (2, two.of(stack[height - 2], stack[height - 1])),
-            };
-            height -= operands;
-            stack[height] = value;
-            height += 1;
-            look(step, value);
-        }
-        stack[0]
-    }
-}
+pub use self::{
+    affine::Affine,
+    fault::{ExpressionError, Fault},
+    grammar::{FUNCTIONS, parse},
+    kind::Kind,
+    operation::{Expression, Source},
+    tape::Tape,
+};
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{ExpressionError, Fault, Kind, Source, parse};
+    use crate::{model::Quantity, numeric::lanes::Lanes};
 
     /// Variables: a 2 mm, b 3 mm, φ 60°; measure `the gap` 0.5 mm.
     fn value(text: &str) -> Result<(f64, Quantity), ExpressionError> {

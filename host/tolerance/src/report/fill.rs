@@ -1,6 +1,8 @@
 //! A report from an analysis.
 
-use super::{Defects, Estimates, LossReport, MeasureReport, Quadrature, Report, Rss, SecondOrder, Share, SumReport};
+use super::contents::{
+    Defects, Estimates, LossReport, MeasureReport, Quadrature, Report, Rss, SecondOrder, Share, SumReport,
+};
 use crate::{
     analysis::{Analysis, better},
     failure::{

@@ -1,6 +1,6 @@
 //! Correlations of a model's variables, and what makes independent scores correlated.
 
-use super::{copula, draw::DrawError};
+use super::{copula, error::DrawError};
 use crate::model::{Model, Variation};
 
 /// Row of the Cholesky factor: a variable, and the weights of variables up to it.

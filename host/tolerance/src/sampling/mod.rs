@@ -3,6 +3,7 @@
 pub mod copula;
 pub mod correlation;
 pub mod draw;
+mod error;
 mod permutation;
 pub mod sampler;
 pub mod sobol;

@@ -1,6 +1,6 @@
 //! Which expressions are linear in the variables.
 
-use super::{Expression, Operation, Source, Two};
+use super::operation::{Expression, One, Operation, Source, Two};
 use crate::numeric::lanes::Lanes;
 
 /// c + Σ coefficient · variable.
@@ -28,7 +28,7 @@ impl Affine {
                 Operation::One(one) => {
                     let operand = stack.pop()?;
                     match (one, operand.is_constant()) {
-                        (super::One::Negate, _) => operand.map(|x| -x),
+                        (One::Negate, _) => operand.map(|x| -x),
                         (_, true) => Self::of_constant(one.of(Lanes::splat(operand.constant)).0[0]),
                         _ => return None,
                     }

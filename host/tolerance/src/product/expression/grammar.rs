@@ -4,7 +4,11 @@ use std::ops::Range;
 
 use crate::unit::{self, Unit};
 
-use super::{DEPTH, Expression, ExpressionError, Fault, Kind, One, Operation, Source, Step, Two};
+use super::{
+    fault::{ExpressionError, Fault},
+    kind::Kind,
+    operation::{DEPTH, Expression, One, Operation, Source, Step, Two},
+};
 
 /// The deepest nesting of parentheses, signs and powers.
 const NESTING: usize = 64;

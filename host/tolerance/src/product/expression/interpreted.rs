@@ -1,6 +1,6 @@
 //! Expressions operation by operation, which the faster ways are compared with.
 
-use super::{Expression, One, Operation, Source, Two};
+use super::operation::{Expression, One, Operation, Source, Two};
 use crate::numeric::lanes::Lanes;
 
 /// An intermediate result: its value, the sum of the absolute values of all that it adds up, and whether it is constant.

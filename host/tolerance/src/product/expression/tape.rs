@@ -5,7 +5,7 @@
 
 use std::{cell::Cell, collections::HashMap};
 
-use super::{Expression, One, Operation, Source, Two};
+use super::operation::{Expression, One, Operation, Source, Two};
 use crate::numeric::lanes::Lanes;
 
 /// Instructions for the measures that are expressions.

@@ -1,6 +1,9 @@
 //! Capability by the standard deviation, and by points for what is not normal (ISO 22514-2).
 
-use super::{Estimate, POINTS, plain::PlainMeasure};
+use super::{errors::Estimate, plain::PlainMeasure};
+
+/// The probabilities of the natural limits ±3σ and of the median.
+pub const POINTS: [f64; 3] = [0.001_35, 0.5, 0.998_65];
 
 /// A capability from the three points and the limits, where these suffice for it.
 type ByPoints = fn([f64; 3], [Option<f64>; 2]) -> Option<f64>;

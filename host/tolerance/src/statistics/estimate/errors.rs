@@ -1,7 +1,36 @@
-//! Where the errors of estimates come from.
+//! Estimates, and where their errors come from.
 
-use super::{Estimate, plain::Plain};
+use serde::Serialize;
+
+use super::plain::Plain;
 use crate::statistics::interval;
+
+/// A number found from a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Its standard error, where one is known.
+    pub error: Option<f64>,
+    /// Lower and upper end of its 95 % confidence interval; `None` where the sample does not bound it.
+    pub interval: [Option<f64>; 2],
+}
+
+impl Estimate {
+    pub(super) fn between(value: f64, error: Option<f64>, ends: [f64; 2]) -> Self {
+        Self { value, error, interval: ends.map(Some) }
+    }
+
+    /// The same in another unit.
+    pub fn scaled(self, factor: f64) -> Self {
+        let scale = |value: f64| value * factor;
+        Self {
+            value: scale(self.value),
+            error: self.error.map(scale),
+            interval: self.interval.map(|end| end.map(scale)),
+        }
+    }
+}
 
 /// Independent units, or independent designs.
 pub(super) enum Errors<'a> {

@@ -8,9 +8,11 @@ mod capability;
 mod errors;
 mod plain;
 
-use serde::Serialize;
-
-pub use self::plain::{histogram, quantile};
+pub use self::{
+    capability::POINTS,
+    errors::Estimate,
+    plain::{histogram, quantile},
+};
 use self::{
     errors::Errors,
     plain::{Plain, PlainMeasure},
@@ -18,43 +20,10 @@ use self::{
 use super::interval;
 use crate::{
     counting::{pairs::Pairs, study::Tally, tally::Frame},
-    model::{Measure, Model},
+    model::{Measure, Model, loss::Loss},
+    numeric::shape::{Shape, about, between},
     sampling::sampler::Method,
 };
-use crate::{
-    model::loss::Loss,
-    numeric::shape::{Shape, about, between},
-};
-
-/// The probabilities of the natural limits ±3σ and of the median.
-pub const POINTS: [f64; 3] = [0.001_35, 0.5, 0.998_65];
-
-/// A number found from a sample.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Estimate {
-    /// The number.
-    pub value: f64,
-    /// Its standard error, where one is known.
-    pub error: Option<f64>,
-    /// Lower and upper end of its 95 % confidence interval; `None` where the sample does not bound it.
-    pub interval: [Option<f64>; 2],
-}
-
-impl Estimate {
-    fn between(value: f64, error: Option<f64>, ends: [f64; 2]) -> Self {
-        Self { value, error, interval: ends.map(Some) }
-    }
-
-    /// The same in another unit.
-    pub fn scaled(self, factor: f64) -> Self {
-        let scale = |value: f64| value * factor;
-        Self {
-            value: scale(self.value),
-            error: self.error.map(scale),
-            interval: self.interval.map(|end| end.map(scale)),
-        }
-    }
-}
 
 /// Statistics of one measure (SI).
 #[derive(Clone, Debug, PartialEq)]

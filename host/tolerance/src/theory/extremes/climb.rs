@@ -1,6 +1,9 @@
 //! The search for the greatest value of one measure.
 
-use super::{Change, OF_ALL, Room, STEPS, field::Field, moved_to, on_line, places, targets};
+use super::{
+    field::Field,
+    line::{Change, OF_ALL, Room, STEPS, moved_to, on_line, places, targets},
+};
 use crate::{
     model::Variation,
     numeric::lanes::{LANES, Lanes},

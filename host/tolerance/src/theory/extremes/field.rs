@@ -2,7 +2,7 @@
 
 use slipfit_core::sampling::stream::mix;
 
-use super::{Change, Room, STEPS, moved_to};
+use super::line::{Change, Room, STEPS, moved_to};
 use crate::{
     model::{Contributor, Model, Variation},
     numeric::lanes::{LANES, Lanes},

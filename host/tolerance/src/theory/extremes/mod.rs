@@ -7,22 +7,17 @@
 
 mod climb;
 mod field;
+mod line;
 
 use rayon::prelude::*;
 
-use self::{climb::Climb, field::Field};
-use super::derivative::evaluate;
-use crate::{
-    model::{Model, Variation},
-    numeric::lanes::Lanes,
+use self::{
+    climb::Climb,
+    field::Field,
+    line::{moved_to, on_line, places, targets},
 };
-
-/// Places on a line that are looked at: of a scalar, of a zone, of all contributors together.
-const OF_SCALAR: [f64; 6] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0, 1.0];
-const OF_ZONE: [f64; 2] = [0.5, 1.0];
-const OF_ALL: [f64; 6] = [1.0 / 1024.0, 1.0 / 64.0, 0.25, 0.5, 0.75, 1.0];
-/// Distances for slopes (shares of half a tolerance or zone): a narrow one, and one that sees beyond a kink.
-const STEPS: [f64; 2] = [1e-3, 0.25];
+use super::derivative::evaluate;
+use crate::model::{Model, Variation};
 
 /// How many times the values at corners and random points a search exceeds that ends beside a pole.
 const POLE: f64 = 1e6;
@@ -38,9 +33,6 @@ pub struct Extremes {
     /// Whether it cannot be computed, or is infinite, at some point that was looked at.
     pub undefined: bool,
 }
-
-/// Variables and the values to which they are moved.
-type Change = Vec<(usize, f64)>;
 
 /// Of each of some `measures`.
 pub fn extremes(model: &Model, measures: &[usize]) -> Vec<Extremes> {
@@ -83,54 +75,4 @@ pub fn reaches(model: &Model, measure: usize) -> Vec<f64> {
         if low <= high { 0.5 * (high - low) } else { 0.0 }
     };
     model.contributors.iter().map(|contributor| &contributor.variation).zip(model.offsets()).map(of).collect()
-}
-
-/// Places on a line of one contributor.
-fn places(variation: &Variation) -> &'static [f64] {
-    match variation {
-        Variation::Scalar { .. } => &OF_SCALAR,
-        Variation::Zone(_) | Variation::Disc(_) | Variation::Nested(_) => &OF_ZONE,
-    }
-}
-
-/// Points towards which a contributor is moved: its corners, and the middle of a zone.
-fn targets(variation: &Variation) -> Vec<Vec<f64>> {
-    let mut targets = variation.corners();
-    if !matches!(variation, Variation::Scalar { .. }) {
-        targets.push(variation.middle());
-    }
-    targets
-}
-
-/// The change of the variables from `at` on to a point.
-fn moved_to(at: usize, point: &[f64]) -> Change {
-    point.iter().enumerate().map(|(k, value)| (at + k, *value)).collect()
-}
-
-/// The change to a place on the line from `point` to the end of `line`, which the part 1 hits exactly.
-fn on_line(point: &[f64], line: &Change, part: f64) -> Change {
-    let place = |end: f64, start: f64| if part == 1.0 { end } else { start + part * (end - start) };
-    line.iter().map(|(k, end)| (*k, place(*end, point[*k]))).collect()
-}
-
-/// Numbers of some units at work.
-struct Room {
-    variables: Vec<Lanes>,
-    measures: Vec<Lanes>,
-}
-
-impl Room {
-    fn new(model: &Model) -> Self {
-        Self { variables: vec![Lanes::ZERO; model.variables()], measures: vec![Lanes::ZERO; model.measures.len()] }
-    }
-
-    /// Calls `each` with lane and measures of every change of `base`, up to one a lane.
-    fn evaluate(&mut self, model: &Model, base: &[f64], changes: &[Change], mut each: impl FnMut(usize, &[Lanes])) {
-        self.variables.iter_mut().zip(base).for_each(|(variable, value)| *variable = Lanes::splat(*value));
-        for (lane, change) in changes.iter().enumerate() {
-            change.iter().for_each(|(k, value)| self.variables[*k].0[lane] = *value);
-        }
-        model.function.evaluate(&self.variables, &mut self.measures);
-        (0..changes.len()).for_each(|lane| each(lane, &self.measures));
-    }
 }
