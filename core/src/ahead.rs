@@ -23,7 +23,7 @@ use crate::{
     mechanism::Driven,
 };
 
-use self::ring::{Knot, Ring};
+use self::ring::{Knot, Ring, signed};
 
 /// What prediction ahead of the clock is held to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -311,13 +311,6 @@ fn factor<S: Scalar, const N: usize>(x: S, steps: [[f64; 2]; N]) -> S {
     steps
         .iter()
         .fold(one, |product, [below, factor]| product * S::from_f64(*below).select_gt(x, S::from_f64(*factor), one))
-}
-
-/// A difference of ticks as a number.
-#[inline(always)]
-fn signed<S: Scalar>(ticks: u32) -> S {
-    let ticks = ticks.cast_signed();
-    S::from_count(ticks.max(0).cast_unsigned()) - S::from_count(ticks.min(0).unsigned_abs())
 }
 
 impl<S: Scalar> Prediction<S> {

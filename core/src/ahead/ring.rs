@@ -2,7 +2,7 @@
 
 use crate::{SVector, Scalar};
 
-use super::{cubic::weights, signed};
+use super::cubic::weights;
 
 /// A motion at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,4 +160,11 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
         self.times = [if head.wrapping_sub(instant).cast_signed() < 0 { head } else { instant }; N];
         self.knots[Self::place(self.newest)] = knot;
     }
+}
+
+/// A difference of ticks as a number.
+#[inline(always)]
+pub(super) fn signed<S: Scalar>(ticks: u32) -> S {
+    let ticks = ticks.cast_signed();
+    S::from_count(ticks.max(0).cast_unsigned()) - S::from_count(ticks.min(0).unsigned_abs())
 }

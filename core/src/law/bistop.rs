@@ -2,8 +2,24 @@
 //!
 //! Two opposing pads of one pin are a slot: they share the offset and the sliding velocity.
 
-use super::{NormalResponse, fit::SlotForce};
+use super::response::NormalResponse;
 use crate::Scalar;
+
+/// What a slot does along its axis to the body that carries it.
+pub trait SlotForce<S> {
+    /// Force on the body (N).
+    fn force(&self) -> S;
+
+    /// Sum of the two normal forces (N), which friction acts upon.
+    fn normal(&self) -> S;
+
+    /// −∂force/∂u and ∂normal/∂u (N·s/m), for a body velocity u along the axis that also moves the offset, by −u times
+    /// the time `over` which it does (s), if one is given.
+    fn impedances(&self, over: Option<S>) -> [S; 2];
+
+    /// −∂force/∂x and ∂normal/∂x (N/m), for a displacement x of the body along the axis, which moves the offset by −x.
+    fn stiffnesses(&self) -> [S; 2];
+}
 
 /// What a slot does to its pin's partner, along the slot's axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +63,8 @@ impl<S: Scalar> SlotForce<S> for SlotResponse<S> {
 
 #[cfg(test)]
 mod tests {
-    use crate::law::{Impact, Normal, ThreeHalves, fit::SlotForce};
+    use super::SlotForce;
+    use crate::law::{Impact, Normal, ThreeHalves};
 
     #[test]
     fn both_ends_are_the_one_sided_law_and_slopes_are_derivatives() {

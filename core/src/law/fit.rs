@@ -3,24 +3,9 @@
 //! A pin that fits with interference is pressed from both ends. One that fits with clearance meets one end at most, so that a step
 //! need only compute the nearer one. Where gaps have a clearance, both ways compute the same force.
 
+pub use super::bistop::SlotForce;
 use super::{Normal, NormalResponse, bistop::SlotResponse};
 use crate::{ParameterError, Scalar, error::bounded};
-
-/// What a slot does along its axis to the body that carries it.
-pub trait SlotForce<S> {
-    /// Force on the body (N).
-    fn force(&self) -> S;
-
-    /// Sum of the two normal forces (N), which friction acts upon.
-    fn normal(&self) -> S;
-
-    /// −∂force/∂u and ∂normal/∂u (N·s/m), for a body velocity u along the axis that also moves the offset, by −u times
-    /// the time `over` which it does (s), if one is given.
-    fn impedances(&self, over: Option<S>) -> [S; 2];
-
-    /// −∂force/∂x and ∂normal/∂x (N/m), for a displacement x of the body along the axis, which moves the offset by −x.
-    fn stiffnesses(&self) -> [S; 2];
-}
 
 /// Gaps (m) of a pin at the nominal poses, left, right, rail and wall, and how the two slots between them fit. Four numbers are a fit
 /// of any kind.

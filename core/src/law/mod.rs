@@ -8,6 +8,7 @@ pub mod hunt_crossley;
 pub mod impact;
 pub mod lankarani_nikravesh;
 mod normal;
+mod response;
 pub mod step;
 pub mod stop;
 
@@ -17,5 +18,6 @@ pub use friction::{Exact, Friction, Frictionless, Regularised, StaticKinetic};
 pub use hunt_crossley::HuntCrossley;
 pub use impact::Impact;
 pub use lankarani_nikravesh::LankaraniNikravesh;
-pub use normal::{Normal, NormalResponse};
+pub use normal::Normal;
+pub use response::NormalResponse;
 pub use stop::{Pad, Slot, Stop};

@@ -1,7 +1,41 @@
-//! What elements add up to: forces alone, with the balance of a stage, or with all derivatives.
+//! What sets of elements are, and what they add up to: forces alone, with the balance of a stage, or with all derivatives.
 
-use super::{Bodies, Elements, Jacobian, Law, Link, Reduced, Response};
+use super::{Bodies, Jacobian, Law, Link, Reduced, Response};
 use crate::{SVector, Scalar, mechanism::Way};
+
+/// Elements that act on bodies `B`: one, an array, a slice, or a tuple of such.
+pub trait Elements<S: Scalar, B: Bodies<S, D>, const D: usize> {
+    /// The internal variables of their laws.
+    type Internal: Copy;
+
+    /// Whether one of them can hold bodies at rest.
+    const STICKS: bool;
+
+    /// The internal variables of laws that nothing has happened to yet.
+    fn fresh(&self) -> Self::Internal;
+
+    /// Adds the forces at time `t` (s) to `sum`, and writes the internal variables if the motion is accepted.
+    fn act(
+        &self,
+        way: (S, Way<S>),
+        at: (&B, &B::Placed),
+        internal: &Self::Internal,
+        updated: Option<&mut Self::Internal>,
+        sum: &mut impl Assembly<S, B, D>,
+    );
+
+    /// The internal variables after a step that led to where the bodies are placed, see [`Law::remembered`].
+    #[inline(always)]
+    fn remembered(&self, _at: (&B, &B::Placed), internal: &Self::Internal) -> Self::Internal {
+        *internal
+    }
+
+    /// `base + weight·(to − from)`.
+    fn shifted(&self, base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal;
+
+    /// Makes `kept` `next`, number by number where it is finite and `condition` > 0.
+    fn accept(&self, condition: S, next: &Self::Internal, kept: &mut Self::Internal);
+}
 
 /// Takes what elements of bodies `B` do.
 pub trait Assembly<S: Scalar, B: Bodies<S, D>, const D: usize> {

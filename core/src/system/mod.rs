@@ -27,18 +27,21 @@ mod lu;
 pub mod planar;
 mod reduced;
 pub mod spatial;
+mod through_joints;
 
 pub use abreast::{AbreastBodies, LANES, Lanes, everywhere};
 pub use alike::{Alike, Shape};
-pub use assembly::Assembly;
+pub use assembly::{Assembly, Elements};
 pub use axes::Axes;
 pub use axis::{AxisBody, Displacement, OnAxis, on_axis};
 pub use bodies::{Bodies, ByCoordinate};
-pub use element::{Driving, Element, Elements, Law, Response};
+pub use element::{Driving, Element};
 pub use jacobian::Jacobian;
+pub use law::{Law, Response};
 pub use link::{Change, GradientLink, Link, Seen};
 pub use lu::Lu;
-pub use reduced::{Reduced, ThroughJoints};
+pub use reduced::Reduced;
+pub use through_joints::ThroughJoints;
 
 use crate::{
     SVector, Scalar,

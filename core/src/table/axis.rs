@@ -1,51 +1,6 @@
 //! An axis of the grid: equidistant nodes, and where a coordinate lies between them.
 
-use super::{TableError, layout::NODES_MOST};
-
-/// What varies along an axis; the discriminant is what a table stores.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u8)]
-pub enum AxisKind {
-    /// Tolerance level n.
-    Level = 1,
-    /// Time t (s).
-    Time = 2,
-    /// Position z (m).
-    Position = 3,
-    /// Commanded speed (m/s): the one that the drive's ramp leads to, not the slide's own.
-    Velocity = 4,
-}
-
-impl AxisKind {
-    /// All kinds.
-    pub const ALL: [Self; 4] = [Self::Level, Self::Time, Self::Position, Self::Velocity];
-
-    /// The kind stored as `code`.
-    pub fn of(code: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| *kind as u8 == code)
-    }
-
-    /// The quantity's name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Level => "level",
-            Self::Time => "time",
-            Self::Position => "position",
-            Self::Velocity => "speed",
-        }
-    }
-
-    /// The quantity's unit.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Level => "1",
-            Self::Time => "s",
-            Self::Position => "m",
-            Self::Velocity => "m/s",
-        }
-    }
-}
+use super::{AxisKind, TableError, layout::NODES_MOST};
 
 /// Equidistant nodes, in the unit of the axis's kind.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -48,6 +48,7 @@
 //! version.
 
 mod axis;
+mod codes;
 mod error;
 #[cfg(test)]
 pub(crate) mod example;
@@ -64,12 +65,13 @@ mod verdict;
 
 use layout::{CHANNELS, CHECKSUM_SIZE, HEADER_SIZE};
 
+pub use axis::Axis;
 pub(crate) use axis::Place;
-pub use axis::{Axis, AxisKind};
+pub use codes::{AxisKind, Encoding};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
 use nodes::Range;
-pub use nodes::{AnyNodes, ChannelKind, Encoding, F32Nodes, I16Nodes, Nodes, Values};
+pub use nodes::{AnyNodes, ChannelKind, F32Nodes, I16Nodes, Nodes, Values};
 pub use scrubber::Scrubber;
 pub use slots::{RECORD_SIZE, Record, Slots, WORD_MOST, Word};
 #[cfg(feature = "embedded-storage")]

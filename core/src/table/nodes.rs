@@ -1,7 +1,7 @@
 //! The table's values: force and velocity of a node side by side, decoded where they lie.
 
 use super::{
-    ChannelRecord, TableError,
+    ChannelRecord, Encoding, TableError,
     layout::{CHANNELS, VALUE_MOST},
 };
 
@@ -24,43 +24,6 @@ impl ChannelKind {
         match self {
             Self::Force => "force",
             Self::Velocity => "velocity",
-        }
-    }
-}
-
-/// How values are stored; the discriminant is what a table stores.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u8)]
-pub enum Encoding {
-    /// As they are.
-    F32 = 1,
-    /// As multiples of the channel's scale.
-    I16 = 2,
-}
-
-impl Encoding {
-    /// All encodings.
-    pub const ALL: [Self; 2] = [Self::F32, Self::I16];
-
-    /// The encoding stored as `code`.
-    pub fn of(code: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|encoding| *encoding as u8 == code)
-    }
-
-    /// The type's name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::I16 => "i16",
-        }
-    }
-
-    /// Size of a stored value (bytes).
-    pub fn size(self) -> usize {
-        match self {
-            Self::F32 => size_of::<f32>(),
-            Self::I16 => size_of::<i16>(),
         }
     }
 }

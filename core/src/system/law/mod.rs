@@ -1,4 +1,4 @@
-//! Force laws of elements, one a file.
+//! What a force law of an element is; the laws, one a file.
 
 mod drive;
 mod journal;
@@ -18,12 +18,100 @@ pub use spring::Spring;
 pub use stopped::Stopped;
 pub use wall::{Axis, Pad, Wall};
 
-use super::{Law, Response};
 use crate::{
     SMatrix, SVector, Scalar,
     law::{Friction, Normal, NormalResponse, friction::Traction},
     mechanism::Way,
 };
+
+/// What a law answers: forces along what it sees and how they change.
+#[derive(Clone, Copy, Debug)]
+pub struct Response<S, const R: usize> {
+    /// φ (N, N·m): its power is φ·ẋ.
+    pub force: SVector<S, R>,
+    /// −∂φ/∂ẋ of rates that also move the places over the time [`Way::over`], if one is given; rows are forces.
+    pub impedance: SMatrix<S, R, R>,
+    /// −∂φ/∂x; rows are forces.
+    pub stiffness: SMatrix<S, R, R>,
+    /// ∂φ/∂t.
+    pub per_time: SVector<S, R>,
+}
+
+impl<S: Scalar, const R: usize> Response<S, R> {
+    /// The same for rates that also move the first `places` numbers `over` a time (s), if one is given: for laws that find damping
+    /// and stiffness apart.
+    #[inline(always)]
+    #[must_use]
+    pub fn moving(mut self, over: Option<S>, places: usize) -> Self {
+        if let Some(a) = over {
+            for (column, by_place) in self.impedance.data.0.iter_mut().zip(&self.stiffness.data.0).take(places) {
+                for (entry, by_place) in column.iter_mut().zip(by_place) {
+                    *entry += *by_place * a;
+                }
+            }
+        }
+        self
+    }
+}
+
+/// A force law of `R` lengths and angles.
+pub trait Law<S: Scalar, const R: usize> {
+    /// Its internal variables, kept from one step to the next; `()` where it has none.
+    type Internal: Copy + core::fmt::Debug + PartialEq;
+
+    /// Whether it can hold bodies at rest.
+    const STICKS: bool;
+
+    /// How many of the numbers, the first ones, it answers to by their place, not by their rate alone: the other columns of its
+    /// stiffness are zero and not looked at.
+    const PLACES: usize;
+
+    /// Which force answers to which rate: `ANSWERS[i][j]` where entry (i, j) of the impedance is not zero. The others are not
+    /// looked at.
+    const ANSWERS: [[bool; R]; R] = [[true; R]; R];
+
+    /// Whether it changes with time where nothing moves; where not, [`Response::per_time`] is zero and not looked at.
+    const TIMED: bool = false;
+
+    /// The internal variables of a law that nothing has happened to yet.
+    fn fresh(&self) -> Self::Internal;
+
+    /// The least distance (m) at `place` of what may touch, negative where it penetrates. Where it is positive the law exerts nothing,
+    /// at any rate. Zero of a law whose bodies always act on each other.
+    #[inline(always)]
+    fn gap(&self, _place: &SVector<S, R>) -> S {
+        S::zero()
+    }
+
+    /// Shows `see` the distance (m) of each pair of surfaces that may touch, of which [`gap`](Self::gap) is the least, and how fast
+    /// (m/s) it grows. Nothing of a law whose bodies always act on each other; a law that has a gap has to show it here as well, or steps
+    /// under error control may pass it over.
+    #[inline(always)]
+    fn each_gap(&self, _place: &SVector<S, R>, _rate: &SVector<S, R>, _see: impl FnMut(S, S)) {}
+
+    /// The forces at `place` and `rate` at time `t` (s), and the internal variables if the motion is accepted.
+    fn response(
+        &self,
+        t: S,
+        place: &SVector<S, R>,
+        rate: &SVector<S, R>,
+        internal: &Self::Internal,
+        way: Way<S>,
+    ) -> (Response<S, R>, Self::Internal);
+
+    /// The internal variables after a step that led to `place`, of a scheme that takes no response there: for laws that remember places
+    /// alone.
+    #[inline(always)]
+    fn remembered(_place: &SVector<S, R>, internal: &Self::Internal) -> Self::Internal {
+        *internal
+    }
+
+    /// `base + weight·(to − from)`.
+    fn shifted(base: &Self::Internal, from: &Self::Internal, to: &Self::Internal, weight: S) -> Self::Internal;
+
+    /// `new` where it is finite and `condition` > 0, else `old`, number by number.
+    fn or_old(new: &Self::Internal, condition: S, old: &Self::Internal) -> Self::Internal;
+}
 
 /// The laws of a contact: along its normal and along its tangents.
 #[derive(Clone, Copy, Debug, PartialEq)]

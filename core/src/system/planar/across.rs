@@ -6,7 +6,7 @@ use super::{
     Placed, PlanarTree, Point, left,
     pair::Pair,
     topology::{Carrier, Chain, Topology},
-    tree::turned,
+    turned,
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,

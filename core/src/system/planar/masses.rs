@@ -9,7 +9,7 @@
 use super::{
     Placed, Point, left,
     topology::{Carrier, Kind, Topology, Turns},
-    tree::turned,
+    turned,
 };
 use crate::{ParameterError, SMatrix, SVector, Scalar, Vector2, error::bounded};
 

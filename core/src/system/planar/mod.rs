@@ -6,6 +6,7 @@
 mod across;
 mod along;
 mod between;
+mod coordinate;
 #[cfg(test)]
 pub(crate) mod example;
 mod floating;
@@ -19,11 +20,12 @@ mod turning;
 pub use across::Across;
 pub use along::Along;
 pub use between::Between;
+pub use coordinate::{Coordinate, Placed};
 pub use floating::{Floating, Hole, Pin, PlanarPose, Pull};
 pub use masses::Rigid;
 pub use point::{At, Point};
 pub use topology::{Carrier, Chain, Frame, Kind, Path, STRAIGHT, Topology, Turns};
-pub use tree::{Coordinate, Placed, PlanarTree};
+pub use tree::PlanarTree;
 pub use turning::Turning;
 
 use crate::{Scalar, Vector2};
@@ -32,4 +34,10 @@ use crate::{Scalar, Vector2};
 #[inline(always)]
 pub(crate) fn left<S: Scalar>(p: &Vector2<S>) -> Vector2<S> {
     Vector2::new(-p.y, p.x)
+}
+
+/// `p` turned by the angle whose cosine and sine `by` holds.
+#[inline(always)]
+fn turned<S: Scalar>(by: &Vector2<S>, p: &Vector2<S>) -> Vector2<S> {
+    p * by.x + left(p) * by.y
 }

@@ -3,7 +3,7 @@
 use super::{
     Coordinate, Placed, left,
     topology::{Carrier, Chain, Kind, Topology},
-    tree::turned,
+    turned,
 };
 use crate::{SMatrix, SVector, Scalar, Vector2};
 

@@ -1,30 +1,17 @@
 //! The tree: coordinates, bodies, and how they resist.
 
 use super::{
-    Point, left,
+    Coordinate, Placed, Point,
     masses::{Masses, Rigid},
     point::At,
     topology::{Carrier, Kind, Topology},
+    turned,
 };
 use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector2,
     error::bounded,
     system::{Bodies, ByCoordinate, Lu, half_turn},
 };
-
-/// A generalised coordinate of ideal joints in the plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Coordinate<S> {
-    /// An angle in the frame.
-    Turn,
-    /// A displacement along `axis`, of unit length, fixed in the axes of the turning coordinate `on`, or of the frame.
-    Slide {
-        /// Which coordinate, a turning one, turns the axis.
-        on: Option<usize>,
-        /// Direction.
-        axis: Vector2<S>,
-    },
-}
 
 /// Bodies in a plane with `D` coordinates. The topology `J` may be a type, so that what a scene does not have leaves no code.
 ///
@@ -135,17 +122,6 @@ impl<S: Scalar, J: Topology<D>, const D: usize> PlanarTree<S, D, J> {
         }
         pose
     }
-}
-
-/// The tree at a pose and motion.
-#[derive(Clone, Copy, Debug)]
-pub struct Placed<S, const D: usize> {
-    /// Cosine and sine of turning coordinates; of sliding ones the axis in the frame.
-    pub axes: [Vector2<S>; D],
-    /// Displacements of sliding coordinates (m).
-    pub places: [S; D],
-    /// Generalised velocities.
-    pub rates: SVector<S, D>,
 }
 
 impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D, J> {
@@ -296,9 +272,3 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
 }
 
 impl<S, const D: usize, J> ByCoordinate for PlanarTree<S, D, J> {}
-
-/// `p` turned by the angle whose cosine and sine `by` holds.
-#[inline(always)]
-pub(super) fn turned<S: Scalar>(by: &Vector2<S>, p: &Vector2<S>) -> Vector2<S> {
-    p * by.x + left(p) * by.y
-}

@@ -3,7 +3,7 @@
 use super::{
     Placed, PlanarTree,
     topology::{Topology, Turns},
-    tree::turned,
+    turned,
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,

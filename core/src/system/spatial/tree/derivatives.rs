@@ -12,7 +12,9 @@
 
 use super::{
     SpatialTree,
-    motion::{Pairs, Placed, pair, times},
+    motion::Pairs,
+    numbers::{pair, times},
+    placed::Placed,
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector3,

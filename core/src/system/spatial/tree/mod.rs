@@ -8,6 +8,8 @@
 mod derivatives;
 mod joint;
 mod motion;
+mod numbers;
+mod placed;
 mod pose;
 #[cfg(test)]
 mod tests;
@@ -24,7 +26,7 @@ use crate::{
 };
 
 pub use joint::{Joint, Kind, Mount};
-pub use motion::Placed;
+pub use placed::Placed;
 
 /// A coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -239,7 +241,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> Bodies<S, D> for
         for (k, coordinate) in self.coordinates.iter().enumerate() {
             match coordinate.kind {
                 Kind::Slide | Kind::Turn => add_column(&mut matrix, stiffness, k, a),
-                Kind::Ball => add_turned(&mut matrix, stiffness, (k, &pose::three(velocity, k)), a),
+                Kind::Ball => add_turned(&mut matrix, stiffness, (k, &numbers::three(velocity, k)), a),
                 Kind::OfBall | Kind::Still => {}
             }
         }
@@ -266,7 +268,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> Bodies<S, D> for
 
     #[inline(always)]
     fn momentum(&self, mass: &SMatrix<S, D, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
-        motion::times(mass, velocity)
+        numbers::times(mass, velocity)
     }
 
     #[inline(always)]
@@ -304,13 +306,13 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> Bodies<S, D> for
     /// Summed in order, so that coordinates that stand still change no bit.
     #[inline(always)]
     fn impulse(&self, imbalance: &SVector<S, D>) -> S {
-        motion::length(&imbalance.component_mul(&self.per_lever))
+        numbers::length(&imbalance.component_mul(&self.per_lever))
     }
 
     /// Likewise.
     #[inline(always)]
     fn weighed(&self, change: &SVector<S, D>) -> S {
-        self.least_mass * motion::length(&change.component_div(&self.per_lever))
+        self.least_mass * numbers::length(&change.component_div(&self.per_lever))
     }
 }
 

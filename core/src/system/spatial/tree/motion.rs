@@ -5,7 +5,9 @@ use nalgebra::Matrix3;
 use super::{
     SpatialTree,
     joint::Kind,
-    pose::{ball, three},
+    numbers::{pair, set, three},
+    placed::{Placed, PlacedJoint},
+    pose::ball,
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector3,
@@ -19,38 +21,6 @@ use crate::{
 
 /// A vector of each body: of its centre of mass, and of its turning.
 pub(super) type Pairs<S, const N: usize> = [[Vector3<S>; 2]; N];
-
-/// A joint at a pose and motion, in the axes of the frame.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PlacedJoint<S> {
-    /// From the centre of mass of what it hangs on to the joint, and from there to its own body's (m).
-    pub arms: [Vector3<S>; 2],
-    /// How fast it slides (m/s).
-    pub sliding: Vector3<S>,
-    /// How fast it turns (rad/s).
-    pub turning: Vector3<S>,
-}
-
-/// The bodies at a pose and motion.
-#[derive(Clone, Copy, Debug)]
-pub struct Placed<S, const N: usize, const W: usize, const D: usize> {
-    /// The bodies, as free ones.
-    pub free: PlacedBodies<S, N>,
-    /// The joints, mount by mount.
-    pub(super) joints: [PlacedJoint<S>; N],
-    /// The axis of each coordinate.
-    pub(super) axes: [Vector3<S>; D],
-    /// J: the velocities (m/s, rad/s) of the free bodies, body by body, by those of the coordinates; in the axes of the frame.
-    pub transform: SMatrix<S, W, D>,
-}
-
-impl<S: Scalar, const N: usize, const W: usize, const D: usize> Placed<S, N, W, D> {
-    /// How body `body` moves by the coordinate `k`: its centre of mass, and its turning.
-    #[inline(always)]
-    pub(super) fn column(&self, k: usize, body: usize) -> [Vector3<S>; 2] {
-        self.transform.data.0.get(k).map_or([Vector3::zeros(); 2], |column| pair(column, body))
-    }
-}
 
 impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N, W, D> {
     /// Where the bodies are in `pose`, and how fast they move by the `rates` of the coordinates.
@@ -279,40 +249,4 @@ fn turn_about<S: Scalar>(axis: &Vector3<S>, half: [S; 2]) -> Matrix3<S> {
     // 1 + sin·[a]× + (1 − cos)·[a]×²
     let crossed = cross_matrix(axis);
     Matrix3::identity() + crossed * sine + cross_columns(axis, &crossed) * less
-}
-
-/// The two vectors of a body among numbers in sixes.
-#[inline(always)]
-pub(super) fn pair<S: Scalar>(numbers: &[S], body: usize) -> [Vector3<S>; 2] {
-    let [x, y, z, a, b, c] = numbers.as_chunks::<6>().0.get(body).copied().unwrap_or([S::zero(); 6]);
-    [Vector3::new(x, y, z), Vector3::new(a, b, c)]
-}
-
-/// `matrix`·`v`, summed in order.
-#[inline(always)]
-pub(super) fn times<S: Scalar, const R: usize, const C: usize>(
-    matrix: &SMatrix<S, R, C>,
-    v: &SVector<S, C>,
-) -> SVector<S, R> {
-    let mut result = SVector::<S, R>::zeros();
-    for (column, x) in matrix.data.0.iter().zip(&v.data.0[0]) {
-        for (sum, entry) in result.data.0[0].iter_mut().zip(column) {
-            *sum += *entry * *x;
-        }
-    }
-    result
-}
-
-/// The length of `v`, summed in order.
-#[inline(always)]
-pub(super) fn length<S: Scalar, const D: usize>(v: &SVector<S, D>) -> S {
-    v.data.0[0].iter().fold(S::zero(), |sum, x| sum + *x * *x).sqrt()
-}
-
-/// Writes `value` to its place in `all`.
-#[inline(always)]
-pub(super) fn set<T>(all: &mut [T], i: usize, value: T) {
-    if let Some(place) = all.get_mut(i) {
-        *place = value;
-    }
 }

@@ -1,6 +1,10 @@
 //! Where joints are: how their coordinates are written, and how they go on.
 
-use super::{SpatialTree, joint::Kind, motion::set};
+use super::{
+    SpatialTree,
+    joint::Kind,
+    numbers::{set, three},
+};
 use crate::{
     SVector, Scalar, Vector3,
     pose::{Orientation, Pose, turn_rate, turned_over},
@@ -135,13 +139,6 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
         }
         rate
     }
-}
-
-/// The three numbers of a ball from `k` on.
-#[inline(always)]
-pub(super) fn three<S: Scalar, const D: usize>(of: &SVector<S, D>, k: usize) -> Vector3<S> {
-    let numbers = of.data.0[0].get(k..).and_then(|rest| rest.first_chunk::<3>());
-    numbers.map_or(Vector3::zeros(), |numbers| Vector3::from(*numbers))
 }
 
 /// How a ball is turned whose first coordinate is `k`.
