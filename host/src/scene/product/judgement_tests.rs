@@ -80,6 +80,30 @@ fn worst_cases_are_those_of_corners_kinks_and_the_inside() {
     );
 }
 
+/// What moves such measures shows inside alone: at every corner, and where most dimensions are in the middle, they are level.
+#[test]
+fn worst_cases_of_measures_that_are_level_at_all_corners() {
+    for middle in ["0.5", "0.7", "1", "1.4", "2", "2.5"] {
+        let overlap = [("width", "0.4", "0.2"), ("position", middle, "3")];
+        check_worst(&overlap, "max(0 mm, width - abs(position))", [0.0, 0.6]);
+        check_worst(&overlap, "min(0.05*width, abs(position))", [0.0, 0.03]);
+        check_worst(&overlap, "sqrt(max(0 mm * 1 mm, width^2 - position^2))", [0.0, 0.6]);
+        check_worst(&overlap, "max(0 mm, min(width - position, width + position))", [0.0, 0.6]);
+    }
+    let bell = [("a", "1.4", "0.47"), ("b", "0.14", "0.34"), ("c", "0", "0.3"), ("d", "1", "0.1")];
+    check_worst(&bell, "max(0 mm, a - b^2 / 0.01 mm)", [0.0, 1.87]);
+    check_worst(&bell, "max(0 mm, a - b^2 / 0.0025 mm)", [0.0, 1.87]);
+    check_worst(&bell, "max(0.9 mm, a*cos(b * 8 rad / 1 mm))", [0.9, 1.87]);
+    check_worst(&bell, "max(0 mm, a - abs(b)/0.05 - abs(c)/0.05)", [0.0, 1.87]);
+    check_worst(&bell, "max(0 mm, a - abs(b - c - 0.3 mm)/0.05) * d / 1 mm", [0.0, 1.87 * 1.1]);
+    check_worst(&bell, "max(0 mm, min(b - 0.05 mm, 0.1 mm - b)) * a / 1 mm", [0.0, 0.025 * 1.87]);
+    let windows = [("a", "0", "0.3"), ("b", "1", "0.2"), ("c", "0", "0.3"), ("d", "1", "0.2")];
+    let window = |x: &str, by: &str| format!("min(max({x} - 0.1 mm, 0 mm), max(0.2 mm - {x}, 0 mm)) * {by} / 1 mm");
+    check_worst(&windows, &format!("{} + {}", window("a", "b"), window("c", "d")), [0.0, 0.12]);
+    let three = [("x", "0.4", "0.2"), ("y", "1.4", "3"), ("z", "0", "0.1")];
+    check_worst(&three, "min(0.3 mm, abs(y - z)) + x", [0.2, 0.9]);
+}
+
 /// More dimensions than have all their corners computed.
 #[test]
 fn worst_cases_of_many_dimensions() {

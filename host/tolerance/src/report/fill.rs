@@ -223,12 +223,12 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
         } else if !moments.by_slopes() {
             let percent = moments.curved * 100.0;
             notes.push(format!(
-                "{} is far from linear: {percent:.2} % of its variance is curvature; slopes do not describe it{contributors}",
+                "{} is far from linear: curvature changes its variance by {percent:.2} %; slopes do not describe it{contributors}",
                 measure.name
             ));
         } else if moments.curved >= NOTED {
             let percent = moments.curved * 100.0;
-            notes.push(format!("{} is not linear: {percent:.2} % of its variance is curvature", measure.name));
+            notes.push(format!("{} is not linear: curvature changes its variance by {percent:.2} %", measure.name));
         }
         if let Some(indices) = indices.as_ref().filter(|indices| indices.error > UNCERTAIN) {
             notes.push(format!(

@@ -18,6 +18,8 @@ const BEST: usize = 4;
 /// Random points inside that are computed, and random corners to start from.
 const INSIDE: u64 = 256;
 const RANDOM: u64 = 16;
+/// The most changes of one contributor that are computed to see what moves a measure.
+const MOST_MOVES: usize = 1 << 18;
 /// The most kinks whose farthest points are starts.
 const KINKS: usize = 16;
 
@@ -37,7 +39,7 @@ pub(super) struct Field<'a> {
     pub size: f64,
     /// Whether a measure cannot be computed at one of these.
     pub undefined: Vec<bool>,
-    /// Of each measure, the contributors that move it at any start.
+    /// Of each measure, the contributors that move it at any start, or from where any measure is best.
     pub moving: Vec<Vec<usize>>,
 }
 
@@ -106,12 +108,15 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// Contributors that move a measure at any start, measure by measure.
+    /// Contributors that move a measure at any start, or from where any measure is best, measure by measure. A measure that is level at all
+    /// corners, as one with a limit of its own is, shows only inside what moves it.
     fn moving(&self) -> Vec<Vec<usize>> {
         let contributors = &self.model.contributors;
         let mut moves = vec![vec![false; contributors.len()]; self.best.len()];
         let room = &mut Room::new(self.model);
-        for (number, start) in self.starts.iter().enumerate() {
+        let best = self.best.iter().flatten().flat_map(|best| best.iter().map(|(_, point)| point));
+        let most = (MOST_MOVES / contributors.len().max(1)).max(self.starts.len());
+        for (number, start) in self.starts.iter().chain(best).take(most).enumerate() {
             let here = evaluate(self.model, std::slice::from_ref(start)).concat();
             let change = |i: usize| {
                 let own = &start[self.offsets[i]..];
@@ -165,8 +170,8 @@ fn inside(model: &Model, number: u64) -> Vec<f64> {
     model.contributors.iter().enumerate().flat_map(of).collect()
 }
 
-/// The points at which what decides on each kink is least and greatest, by its slopes in the middle: a measure may be level
-/// everywhere but there.
+/// The points at which what decides on each kink is least and greatest, by its slopes in the middle, and where it is zero between there and
+/// the middle: a measure may be level everywhere but at one of these.
 fn at_kinks(model: &Model, offsets: &[usize]) -> Vec<Vec<f64>> {
     let centre: Vec<Lanes> = model.middles().into_iter().map(Lanes::splat).collect();
     let count = model.function.kinks(&centre).len().min(KINKS);
@@ -188,6 +193,7 @@ fn at_kinks(model: &Model, offsets: &[usize]) -> Vec<Vec<f64>> {
             }
         }
     }
+    let middles = model.middles();
     let farthest = |slopes: &Vec<f64>, sign: f64| -> Vec<f64> {
         let of = |(contributor, at): (&Contributor, &usize)| {
             let own = &slopes[*at..at + contributor.variation.variables()];
@@ -195,5 +201,33 @@ fn at_kinks(model: &Model, offsets: &[usize]) -> Vec<Vec<f64>> {
         };
         model.contributors.iter().zip(offsets).flat_map(of).collect()
     };
-    slopes.iter().flat_map(|slopes| [-1.0, 1.0].map(|sign| farthest(slopes, sign))).collect()
+    let of_kink = |(kink, slopes): (usize, &Vec<f64>)| {
+        let ends = [-1.0, 1.0].map(|sign| farthest(slopes, sign));
+        let zeros = ends.clone().map(|end| zero(model, kink, &middles, &end));
+        ends.into_iter().chain(zeros.into_iter().flatten())
+    };
+    slopes.iter().enumerate().flat_map(of_kink).collect()
+}
+
+/// Where what decides on a `kink` is zero on the way from one point to another; `None` where it has the same sign at both.
+fn zero(model: &Model, kink: usize, from: &[f64], to: &[f64]) -> Option<Vec<f64>> {
+    let at = |parts: [f64; LANES]| -> [f64; LANES] {
+        let place = |(from, to): (&f64, &f64)| Lanes(parts.map(|part| from + part * (to - from)));
+        let points: Vec<Lanes> = from.iter().zip(to).map(place).collect();
+        model.function.kinks(&points)[kink].0
+    };
+    let mut parts = [0.0; LANES];
+    parts[1] = 1.0;
+    let [start, end, ..] = at(parts);
+    let is_between = start * end < 0.0;
+    if !is_between {
+        return None;
+    }
+    let (mut low, mut width) = (0.0, 1.0);
+    for _ in 0..16 {
+        width /= (LANES + 1) as f64;
+        let values = at(std::array::from_fn(|lane| low + width * (lane + 1) as f64));
+        low += width * values.iter().take_while(|value| **value * start > 0.0).count() as f64;
+    }
+    Some(from.iter().zip(to).map(|(from, to)| from + low * (to - from)).collect())
 }

@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// Places on a line that are looked at: of a scalar, of a zone, of all contributors together.
-const OF_SCALAR: [f64; 6] = [1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0, 1.0];
+const OF_SCALAR: [f64; 8] = [1.0 / 4096.0, 1.0 / 512.0, 1.0 / 64.0, 0.25, 0.5, 0.75, 63.0 / 64.0, 1.0];
 const OF_ZONE: [f64; 2] = [0.5, 1.0];
 pub(super) const OF_ALL: [f64; 6] = [1.0 / 1024.0, 1.0 / 64.0, 0.25, 0.5, 0.75, 1.0];
 /// Distances for slopes (shares of half a tolerance or zone): a narrow one, and one that sees beyond a kink.

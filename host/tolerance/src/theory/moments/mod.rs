@@ -41,7 +41,7 @@ pub struct Moments {
     pub kurtosis: f64,
     /// The same with the higher moments.
     pub shape: Shape,
-    /// Share of the curvature in the variance: 0 for a linear measure.
+    /// Share of the curvature in the variance, or by which share the variance by slopes is off, if that is more: 0 for a linear measure.
     pub curved: f64,
     /// Whether the quadratic describes units drawn at random: not where the measure has a kink or a fold.
     pub described: bool,
@@ -92,7 +92,7 @@ pub fn moments(model: &Model, around: &Expansion, means: &[f64], deviations: &[f
         // What varies by rounding alone is described well enough.
         let least = 1e-12 * around.values[i].abs();
         let described = witnesses.is_empty() || libm::sqrt(square) <= (OFF * spread).max(least);
-        let (cumulants, curved) = quadratic.cumulants(&basis, deviations);
+        let (cumulants, [linear, curved]) = quadratic.cumulants(&basis, deviations);
         let shape = Shape::of_cumulants(&cumulants);
         let [shift, variance] = [cumulants[0], cumulants[1]];
         let found = Moments {
@@ -102,7 +102,7 @@ pub fn moments(model: &Model, around: &Expansion, means: &[f64], deviations: &[f
             skewness: shape.skewness(),
             kurtosis: shape.kurtosis(),
             shape,
-            curved: if variance > 0.0 { curved / variance } else { 0.0 },
+            curved: if variance > 0.0 { curved.max((variance - linear).abs()) / variance } else { 0.0 },
             described,
         };
         let known = if !described || basis.left_out[i] {
@@ -114,24 +114,25 @@ pub fn moments(model: &Model, around: &Expansion, means: &[f64], deviations: &[f
         } else {
             Known::All
         };
-        (found, known)
+        (found, known, linear)
     };
-    let (mut moments, known): (Vec<Moments>, Vec<Known>) = (0..model.measures.len()).map(measure).unzip();
-    if known.iter().any(|known| *known != Known::All) {
+    let mut measures: Vec<(Moments, Known, f64)> = (0..model.measures.len()).map(measure).collect();
+    if measures.iter().any(|(_, known, _)| *known != Known::All) {
         let values = measures_of(model, DRAWN);
-        let unknown = moments.iter_mut().zip(known).enumerate().filter(|(_, (_, known))| *known != Known::All);
-        for (i, (found, known)) in unknown {
+        let unknown = measures.iter_mut().enumerate().filter(|(_, (_, known, _))| *known != Known::All);
+        for (i, (found, known, linear)) in unknown {
             let ([mean, deviation], shape) = of_values(values.iter().map(|unit| unit[i]));
-            if known == Known::Nothing {
+            if *known == Known::Nothing {
                 *found = Moments { mean, shift: mean - around.values[i], ..*found };
             }
             if matches!(known, Known::Nothing | Known::Mean) {
-                *found = Moments { deviation, ..*found };
+                let off = if deviation > 0.0 { (1.0 - *linear / (deviation * deviation)).abs() } else { 0.0 };
+                *found = Moments { deviation, curved: found.curved.max(off), ..*found };
             }
             *found = Moments { skewness: shape.skewness(), kurtosis: shape.kurtosis(), shape, ..*found };
         }
     }
-    moments
+    measures.into_iter().map(|(found, ..)| found).collect()
 }
 
 /// What a quadratic knows of a measure.
@@ -251,12 +252,13 @@ impl<'a> Quadratic<'a> {
         places.into_iter().any(|m| self.hessian.row(m).iter().any(|entry| *entry != 0.0))
     }
 
-    /// Cumulants, and the part of curvature in the variance.
-    fn cumulants(&self, basis: &Basis, deviations: &[f64]) -> (Cumulants, f64) {
+    /// Cumulants, and of the variance the part by slopes alone and that of curvature of normal variables.
+    fn cumulants(&self, basis: &Basis, deviations: &[f64]) -> (Cumulants, [f64; 2]) {
         let mut cumulants = [0.0; ORDER];
-        let mut curved = 0.0;
+        let (mut linear, mut curved) = (0.0, 0.0);
         for k in (0..deviations.len()).filter(|k| basis.place[*k].is_none()) {
             let (b, a) = (self.slopes[k] * deviations[k], self.curvatures[k] * deviations[k] * deviations[k]);
+            linear += b * b;
             curved += 0.5 * a * a;
             if !basis.grouped[k] && (b != 0.0 || a != 0.0) {
                 add(&mut cumulants, &of_one(b, a), 1.0);
@@ -270,6 +272,7 @@ impl<'a> Quadratic<'a> {
             Some(factor) => (factor.transpose() * b, factor.transpose() * a * factor),
             None => (b, a),
         };
+        linear += b.norm_squared();
         curved += 0.5 * a.norm_squared();
         add(&mut cumulants, &gaussian(&b, &a), 1.0);
         let entry = |j: usize, k: usize| match (basis.place[j], basis.place[k]) {
@@ -292,7 +295,7 @@ impl<'a> Quadratic<'a> {
                 add(&mut cumulants, &gaussian(&b, &a), -1.0);
             }
         }
-        (cumulants, curved)
+        (cumulants, [linear, curved])
     }
 }
 
@@ -327,6 +330,27 @@ mod tests {
         assert!((square.mean - 1.0 / 3.0).abs() < 1e-9, "{square:?}");
         assert!((square.deviation / libm::sqrt(4.0 / 45.0) - 1.0).abs() < 2e-3, "{square:?}");
         assert!((sum.deviation / libm::sqrt(4.0 / 45.0 + 0.01) - 1.0).abs() < 2e-3, "{sum:?}");
+    }
+
+    /// x and 0.02·x².
+    struct Bent;
+
+    impl Function for Bent {
+        fn evaluate(&self, variables: &[Lanes], measures: &mut [Lanes]) {
+            measures[0] = variables[0] + variables[0] * variables[0] * Lanes::splat(0.02);
+        }
+    }
+
+    /// x is 10 with a probability of 1 %, else 0: the variance is that of 10 + 0.02·10², by the slope in the mean that of 10·1.004.
+    #[test]
+    fn a_bend_counts_that_a_rare_lot_far_away_feels() {
+        let lot = |at: f64| Distribution::Uniform { limits: [at - 1e-4, at + 1e-4] };
+        let x = Distribution::Mixture(vec![(0.99, lot(0.0)), (0.01, lot(10.0))]);
+        let mut model = linear(vec![scalar("x", x, [-1.0, 11.0])], vec![vec![1.0]]);
+        model.function = Box::new(Bent);
+        let found = of_measures(&model)[0];
+        let off = 1.0 - (10.04 / 12.0) * (10.04 / 12.0);
+        assert!((found.curved - off).abs() < 1e-3 && !found.by_slopes(), "{found:?}");
     }
 
     /// Ten times the dimensions take a hundred times the time, and no matrix.
