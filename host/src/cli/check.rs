@@ -10,7 +10,12 @@ use slipfit_tolerance::{
     product::Product,
 };
 
-use super::{Failure, SceneArguments, mechanism, print, print_json, text_table, warn};
+use super::{
+    arguments::SceneArguments,
+    failure::Failure,
+    mechanism,
+    terminal::{print, print_json, text_table, warn},
+};
 use crate::{
     dynamics::sweep::classes,
     mechanism::{

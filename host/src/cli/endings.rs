@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::Failure;
+use super::failure::Failure;
 
 /// Options that write one format, and the endings of its file names.
 const ENDINGS: [(&str, &[&str]); 6] = [

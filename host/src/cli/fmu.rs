@@ -9,7 +9,12 @@ use serde::Serialize;
 use slipfit_system::{files, interrupt};
 
 use super::{
-    Failure, Moving, SceneArguments, endings, kernel::core_folder, print, print_json, simulate::StepArguments,
+    arguments::{Moving, SceneArguments},
+    endings,
+    failure::Failure,
+    kernel::core_folder,
+    simulate::StepArguments,
+    terminal::{print, print_json},
 };
 use crate::{
     dynamics::scheme::ScalarKind,

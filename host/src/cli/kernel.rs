@@ -6,7 +6,12 @@ use clap::Args;
 use serde::Serialize;
 use slipfit_system::files;
 
-use super::{Failure, Moving, SceneArguments, print, print_json, simulate::StepArguments, terminal::warn};
+use super::{
+    arguments::{Moving, SceneArguments},
+    failure::Failure,
+    simulate::StepArguments,
+    terminal::{print, print_json, warn},
+};
 use crate::{
     dynamics::{
         driven::Driven,

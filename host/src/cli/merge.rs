@@ -14,7 +14,7 @@ use slipfit_tolerance::counting::{
     study::Study,
 };
 
-use super::{Failure, endings, population, tolerance::OutputArguments};
+use super::{endings, failure::Failure, population, tolerance::OutputArguments};
 use crate::{
     mechanism::ByDrive,
     population::{part::StoredGaps, tally::Tally},

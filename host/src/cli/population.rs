@@ -21,8 +21,12 @@ use slipfit_tolerance::{
 };
 
 use super::{
-    DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, check, endings, given, mechanism, print,
-    print_json, progress, tolerance::Written, warn,
+    arguments::{DriveArguments, Moving, SceneArguments, ThreadArguments},
+    check, endings,
+    failure::Failure,
+    mechanism,
+    terminal::{given, print, print_json, progress, warn},
+    tolerance::Written,
 };
 use crate::{
     dynamics::driven::Driven,

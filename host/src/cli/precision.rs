@@ -9,8 +9,10 @@ use slipfit_system::files;
 use slipfit_tolerance::number::{level, or_dash, three_digits};
 
 use super::{
-    DriveArguments, Failure, Moving, SceneArguments, given, print, print_json, progress, stability::MapArguments,
-    text_table,
+    arguments::{DriveArguments, Moving, SceneArguments},
+    failure::Failure,
+    stability::MapArguments,
+    terminal::{given, print, print_json, progress, text_table},
 };
 use crate::{
     dynamics::deviation::Deviation,

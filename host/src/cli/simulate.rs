@@ -11,11 +11,11 @@ use slipfit_core::slide::CONTACTS;
 use slipfit_system::files;
 
 use super::{
-    Failure, Moving, SceneArguments,
+    arguments::{Moving, SceneArguments, one_of},
     check::{self, GapReport, gap_reports},
-    given,
+    failure::Failure,
     mechanism::{self, Wanted},
-    one_of, print, print_json, warn,
+    terminal::{given, print, print_json, warn},
 };
 use crate::{
     dynamics::{
@@ -32,7 +32,7 @@ use crate::{
     },
     population::{
         production::{MOST_UNITS, Production},
-        unit::scene_of,
+        slide::scene_of,
     },
     scene::{Override, parse_every},
     setup::Scene,

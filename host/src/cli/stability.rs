@@ -6,7 +6,11 @@ use clap::Args;
 use serde::Serialize;
 use slipfit_system::files;
 
-use super::{Failure, ThreadArguments, print, print_json, progress, text_table};
+use super::{
+    arguments::ThreadArguments,
+    failure::Failure,
+    terminal::{print, print_json, progress, text_table},
+};
 use crate::{
     quality::stability::{self, FACTORS, Grade, Point, tally},
     setup::Scene,

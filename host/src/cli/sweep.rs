@@ -9,19 +9,20 @@ use slipfit_system::files;
 use slipfit_tolerance::number::{fixed, level, or_dash};
 
 use super::{
-    Failure, Moving, SceneArguments, ThreadArguments, check, given,
+    arguments::{Moving, SceneArguments, ThreadArguments},
+    check,
+    failure::Failure,
     mechanism::{self, Wanted},
-    print, print_json, progress,
     simulate::{ControllerArguments, LengthArguments, why_undecided},
-    text_table, warn,
+    terminal::{given, print, print_json, progress, text_table, warn},
 };
 use crate::{
     dynamics::{
         answer::{Range, on_the_way, ranges},
         confirm::with_step_tried,
-        driven::slide_level,
         outcome::{Outcome, Verdict},
         simulate::{Settings, Solved},
+        slide::slide_level,
         sweep::{Keep, Level, Sweep, sweep},
         trust::Trust,
     },

@@ -10,9 +10,12 @@ use slipfit_core::table::AxisKind;
 use slipfit_system::files;
 
 use super::{
-    DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, check, mechanism, print, print_json, progress,
+    arguments::{DriveArguments, Moving, SceneArguments, ThreadArguments},
+    check,
+    failure::Failure,
+    mechanism,
     sweep::{LevelArguments, doubts},
-    warn,
+    terminal::{print, print_json, progress, warn},
 };
 use crate::{
     dynamics::driven::{DriveKind, Driven},

@@ -3,9 +3,11 @@
 use slipfit_core::slide::CONTACTS;
 
 use super::{
-    desk,
     outcome::{Outcome, Verdict},
-    simulate::{Run, Settings, SimulateError, Solver, simulate},
+    run::{Run, SimulateError},
+    settings::{Settings, Solver},
+    simulate::simulate,
+    tolerance::tolerance,
     trust::Trust,
 };
 use crate::setup::Scene;
@@ -28,7 +30,7 @@ const SHORTEST_TRIED: f64 = 5e-6;
 pub fn confirmed(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, run: Run) -> Result<Run, SimulateError> {
     let tolerance = match settings.solver {
         Solver::Desk { tolerance } => FINER * tolerance,
-        Solver::Controller(_) => desk::tolerance(scene),
+        Solver::Controller(_) => tolerance(scene),
     };
     Ok(against(&simulate(scene, gaps, &settings.to(tolerance))?, scene, settings, run))
 }

@@ -11,11 +11,16 @@ pub mod effort;
 #[cfg(test)]
 pub(crate) mod example;
 pub mod film;
+pub mod level;
 pub(crate) mod looks;
 pub mod outcome;
+pub mod run;
+pub mod settings;
 pub mod simulate;
+pub mod slide;
 pub mod sweep;
 pub mod tipping;
+pub mod tolerance;
 pub mod trajectory;
 pub mod trust;
 

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Action, JointKind, Mechanism, columns::BodyMotion, source::joints_of_elements};
+use super::{Action, JointKind, Mechanism, columns::BodyMotion, joint_elements::joints_of_elements};
 use crate::dynamics::outcome::Instant;
 
 /// The energy account of a run (J).

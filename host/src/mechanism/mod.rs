@@ -15,6 +15,7 @@ mod freedom;
 mod gaps;
 mod hanging;
 mod hash;
+mod joint_elements;
 mod limits;
 pub mod mobility;
 #[cfg(test)]
@@ -30,6 +31,7 @@ mod source;
 pub mod spatial;
 mod start;
 mod state;
+mod torn;
 mod vary;
 
 pub use columns::BodyMotion;
@@ -42,7 +44,8 @@ pub use run::{MechanismRun, Moment, SCHEME, Samples, controller_run, film, run};
 pub use run_error::RunError;
 pub(crate) use source::scheme;
 pub use source::{dimension, drive_names, element_paths, rust_source};
-pub use start::{Rest, Torn, torn};
+pub use start::Rest;
+pub use torn::{Torn, torn};
 pub use vary::{Parameter, Varied};
 
 use slipfit_core::{clearance::GapStatistics, drive::Drive};

@@ -21,10 +21,9 @@ use super::{
     Mechanism, Mounts, NamedDrive, Rest, RunError,
     columns::{self, BodyMotion, JointedBodies, PlanarBodies},
     energy::Energies,
+    joint_elements::joints_of_elements,
     limits::Limits,
-    planar,
-    source::joints_of_elements,
-    spatial,
+    planar, spatial,
     state::{State, half_angle},
 };
 use crate::{

@@ -16,7 +16,7 @@ use slipfit_desk::{
     side_by_side::SideBySide,
 };
 
-use super::{Mechanism, limits::Limits, source::joints_of_elements, spatial};
+use super::{Mechanism, joint_elements::joints_of_elements, limits::Limits, spatial};
 use crate::scene::{SceneFile, shipped};
 
 /// Free bodies with what acts on them.

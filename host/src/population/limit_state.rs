@@ -1,49 +1,24 @@
 //! Kinds of malfunction as limit states over independent standard normal scores: margins that change steadily with the unit.
 
-use serde::Serialize;
 use slipfit_system::interrupt;
 use slipfit_tolerance::failure::Margins;
 
 use super::{
-    Unit,
     production::Production,
-    statistics::is_over,
     subject::Subject,
     unit::{Decisive, Fault},
 };
 use crate::dynamics::{
-    outcome::{JAMMED, OVERRUNS, RUNS, Verdict},
+    outcome::{JAMMED, OVERRUNS, RUNS},
     simulate::SimulateError,
 };
+
+pub use super::malfunction::{Kind, Side};
 
 /// Speed, as a share of the command, below which units do not differ.
 const STANDSTILL: f64 = 1e-9;
 
-/// How a unit malfunctions. No unit does so in two ways.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Kind {
-    /// It crawls.
-    Crawls,
-    /// It jams.
-    Jams,
-    /// It overruns its command.
-    Overruns,
-    /// It does its job, but with more than the motor's force.
-    OverLimit,
-}
-
 impl Kind {
-    /// Of a `unit`, with a motor's force `limit` (N); none if it does not malfunction.
-    pub fn of<G>(unit: &Unit<G>, limit: Option<f64>) -> Option<Self> {
-        match unit.outcome.verdict {
-            Verdict::Crawls => Some(Self::Crawls),
-            Verdict::Jammed => Some(Self::Jams),
-            Verdict::Overruns => Some(Self::Overruns),
-            Verdict::Runs | Verdict::Undecided => is_over(unit, limit).then_some(Self::OverLimit),
-        }
-    }
-
     /// Below 0 where a unit malfunctions in this way; none if that is not known. Units that malfunction in another way must not rank
     /// before those that run because their speeds are close together: subsets would fill up with them, and never come to where this
     /// malfunction is.
@@ -64,34 +39,6 @@ impl Kind {
                 let left = 1.0 - figures.force? / limit?;
                 Some(figures.speed.map_or(left, |speed| left.max(short_of_running(speed)).max(speed - OVERRUNS)))
             }
-        }
-    }
-}
-
-/// Half of a production.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Side {
-    /// Units that are tighter than the mean one.
-    Tight,
-    /// The others.
-    Loose,
-    /// All, where no gap varies.
-    Any,
-}
-
-impl Side {
-    /// Those that a production of `subject` has.
-    pub fn all<S: Subject>(subject: &S) -> &'static [Self] {
-        if subject.has_levels() { &[Self::Tight, Self::Loose] } else { &[Self::Any] }
-    }
-
-    /// Whether a unit with these `gaps` (m) is on it.
-    pub fn has<S: Subject>(self, subject: &S, gaps: &S::Gaps) -> bool {
-        match self {
-            Self::Tight => subject.tightness(gaps) > 0.0,
-            Self::Loose => subject.tightness(gaps) <= 0.0,
-            Self::Any => true,
         }
     }
 }

@@ -6,15 +6,18 @@
 pub mod drivers;
 mod explained;
 pub mod finding;
+pub mod gaps;
 pub mod hypothesis;
 pub mod kept;
 pub mod limit_state;
+pub mod malfunction;
 pub mod mechanism;
 pub mod part;
 pub mod production;
 pub mod ranked;
 pub mod rare;
 pub mod simulation;
+pub mod slide;
 mod source;
 pub mod statistics;
 pub mod study;
@@ -24,7 +27,6 @@ pub mod telling;
 pub mod unit;
 
 use rayon::prelude::*;
-use slipfit_core::slide::CONTACTS;
 pub use slipfit_desk::population::{Course, Figures, simulate, simulate_in};
 use slipfit_system::interrupt;
 
@@ -35,21 +37,10 @@ mod tests;
 
 use production::{Drawn, Production};
 use subject::Subject;
-pub use unit::UnitOutcome;
+pub use unit::{Unit, UnitOutcome};
 
 /// Units that are simulated together; they share nothing but the work.
 const PIECE: usize = 128;
-
-/// One unit of a population.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Unit<G = [f64; CONTACTS]> {
-    /// Its number in the production, from 0 on.
-    pub number: u64,
-    /// Its gaps (m): of a slide in the order of Table 2, else in the mechanism's order.
-    pub gaps: G,
-    /// What it did.
-    pub outcome: UnitOutcome,
-}
 
 /// Simulates the units `numbers` of a `production` of `subject` on all threads of the current pool; `done` is called with how
 /// many are. `see` gets the units of each piece in order, with what they were drawn as. The result does not depend on the

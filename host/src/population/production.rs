@@ -13,16 +13,15 @@ use slipfit_tolerance::{
 };
 
 use super::{
+    gaps::UnitGaps,
     source::{Columns, Held, Source, Stated, each_itself, of_statistics},
-    subject::UnitGaps,
 };
 use crate::{
     mechanism::{self, Mechanism},
     setup::Scene,
 };
 
-/// The most units of a production.
-pub const MOST_UNITS: u64 = 1 << 40;
+pub use super::source::MOST_UNITS;
 
 /// What seeds of gaps and of parameters are derived with.
 const STREAMS: [u64; 2] = [3 << 32, 4 << 32];

@@ -13,7 +13,8 @@ use slipfit_tolerance::{
     },
 };
 
-use super::production::MOST_UNITS;
+/// The most units of a production.
+pub const MOST_UNITS: u64 = 1 << 40;
 
 /// What a scene says of a gap.
 pub struct Stated {

@@ -4,10 +4,11 @@ use serde::Serialize;
 use slipfit_tolerance::{numeric::normal, statistics::binomial};
 
 use super::{
-    Unit,
     ranked::Ranked,
     tally::{Duty, Tally},
 };
+
+pub use super::malfunction::{is_over, malfunctions};
 
 /// Chance beyond either end of an interval of 95 %.
 const SIDE: f64 = 0.025;
@@ -109,16 +110,6 @@ pub struct Statistics {
     pub unsolved: u64,
     /// Units whose parameters are out of bounds, which come to no verdict.
     pub out_of_bounds: u64,
-}
-
-/// Whether a unit malfunctions: it crawls, jams, or needs more than the `limit` (N).
-pub fn malfunctions<G>(unit: &Unit<G>, limit: Option<f64>) -> bool {
-    unit.outcome.verdict.is_malfunction() || is_over(unit, limit)
-}
-
-/// Whether a unit needs more than the `limit` (N).
-pub fn is_over<G>(unit: &Unit<G>, limit: Option<f64>) -> bool {
-    unit.outcome.peak_force.zip(limit).is_some_and(|(force, limit)| force > limit)
 }
 
 impl Statistics {

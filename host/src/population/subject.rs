@@ -1,35 +1,12 @@
 //! What a population is of: a slide on pins, or a mechanism by one of its drives.
 
-use slipfit_core::slide::{ABSENT, CONTACTS};
-
 use super::{
-    Unit,
     production::Drawn,
-    unit::{self, Decisive, Fault},
+    unit::{Decisive, Fault, Unit},
 };
-use crate::{
-    dynamics::{driven::Driven, simulate::SimulateError},
-    mechanism::level_of,
-    setup::Scene,
-};
+use crate::dynamics::{driven::Driven, simulate::SimulateError};
 
-/// The gaps (m) of one unit: as many as a slide's pins have, or as many as a mechanism has.
-pub trait UnitGaps: Clone + Send + Sync + AsRef<[f64]> + AsMut<[f64]> {
-    /// `count` that are [`ABSENT`].
-    fn absent(count: usize) -> Self;
-}
-
-impl UnitGaps for [f64; CONTACTS] {
-    fn absent(_: usize) -> Self {
-        [ABSENT; CONTACTS]
-    }
-}
-
-impl UnitGaps for Vec<f64> {
-    fn absent(count: usize) -> Self {
-        vec![ABSENT; count]
-    }
-}
+pub use super::gaps::UnitGaps;
 
 /// A level of eq. 9, and the unit there.
 pub type AtLevel<G> = (f64, Unit<G>);
@@ -97,37 +74,5 @@ pub trait Subject: Driven {
         let (n, gaps): (Vec<_>, Vec<_>) =
             n.iter().map(|n| (*n, self.gaps_at(&[*n]))).filter(|(_, gaps)| self.fits(gaps)).unzip();
         Ok(n.into_iter().zip(self.units(&self.as_drawn(gaps))?).collect())
-    }
-}
-
-impl Subject for Scene {
-    type Gaps = [f64; CONTACTS];
-
-    fn units(&self, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError> {
-        unit::units(self, drawn)
-    }
-
-    fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Result<Decisive, Fault>>, SimulateError> {
-        unit::decisive(self, drawn, asked)
-    }
-
-    fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String> {
-        unit::trouble(self, drawn, i)
-    }
-
-    fn gaps_at(&self, n: &[f64]) -> [f64; CONTACTS] {
-        Scene::gaps_at(self, &std::array::from_fn(|i| level_of(n, i)))
-    }
-
-    fn levels_of(&self, gaps: &[f64; CONTACTS]) -> Vec<Option<f64>> {
-        Scene::levels_of(self, gaps).to_vec()
-    }
-
-    fn fits(&self, _: &[f64; CONTACTS]) -> bool {
-        true
-    }
-
-    fn parameters(&self) -> usize {
-        self.vary.len()
     }
 }

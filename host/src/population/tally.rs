@@ -7,9 +7,8 @@ use slipfit_core::slide::CONTACTS;
 use super::{
     Unit,
     kept::Outcomes,
-    limit_state::{Kind, Side},
+    malfunction::{Kind, Side, is_over, malfunctions},
     ranked::Ranked,
-    statistics::{is_over, malfunctions},
     subject::Subject,
     unit::{FAULTS, Fault},
 };

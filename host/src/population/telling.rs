@@ -1,6 +1,6 @@
 //! Units worth a closer look.
 
-use super::{Unit, production::Production, tally::Tally, unit::scene_of};
+use super::{Unit, production::Production, slide::scene_of, tally::Tally};
 use crate::{
     dynamics::{
         film::{Film, film},

@@ -6,12 +6,8 @@ use slipfit_core::{
 };
 
 use super::{
-    Course,
-    production::Production,
-    simulate, simulate_in, simulate_units,
-    study::Population,
-    tally::Duty,
-    unit::{self, Fault},
+    Course, production::Production, simulate, simulate_in, simulate_units, slide, study::Population, tally::Duty,
+    unit::Fault,
 };
 use crate::{
     dynamics::{
@@ -50,7 +46,7 @@ fn figures_have_the_same_bits_for_any_number_of_lanes() {
 
 fn figures_have_the_same_bits(scene: &Scene) {
     let slides = slides(scene, 40);
-    let course = unit::course(scene);
+    let course = slide::course(scene);
     let expected = format!("{:?}", simulate(course, &slides));
     for lanes in [1, 8] {
         assert_eq!(format!("{:?}", simulate_in(lanes, course, &slides)), expected, "{lanes}");
@@ -87,7 +83,7 @@ fn a_population_is_the_same_for_any_number_of_threads_and_any_split() {
 fn units_without_a_verdict_are_not_run_again() {
     let scene = example::cd_rom();
     let drawn = Production::new(&scene, None, 0.0, 1).unwrap().draw(0..500);
-    let units = unit::units(&scene, &drawn).unwrap();
+    let units = slide::units(&scene, &drawn).unwrap();
     assert!(units.iter().all(|unit| unit.outcome.verdict == Verdict::Undecided && !unit.outcome.at_desk));
 }
 
@@ -97,7 +93,7 @@ fn units_without_a_run_are_counted() {
     let scene = example::of_uncertain_friction();
     let production = Production::new(&scene, None, 0.0, 3).unwrap();
     let drawn = production.draw(0..600);
-    let friction = |i: usize| match unit::scene_of(&scene, &drawn, i).friction {
+    let friction = |i: usize| match slide::scene_of(&scene, &drawn, i).friction {
         FrictionData::Regularised { coefficient, .. } => coefficient,
         _ => f64::NAN,
     };
@@ -110,7 +106,7 @@ fn units_without_a_run_are_counted() {
     let kept = found.tally.first.iter().flatten().filter(|unit| unit.outcome.fault == Some(Fault::OutOfBounds));
     assert_eq!(kept.map(|unit| unit.number as usize).collect::<Vec<_>>(), outside);
     // The others are what they are alone.
-    let alone = unit::units(&scene, &drawn).unwrap();
+    let alone = slide::units(&scene, &drawn).unwrap();
     let with_figures = alone.iter().filter(|unit| unit.outcome.peak_force.is_some()).count();
     assert_eq!(statistics.final_velocity.as_ref().unwrap().units as usize, 600 - outside.len());
     assert!(with_figures <= 600 - outside.len());
@@ -139,7 +135,7 @@ fn figures_are_those_of_the_desk() {
     for (scene, count) in [(example::cd_rom(), 150), (stroke(), 150)] {
         let drawn = Production::new(&scene, None, 0.0, 2).unwrap().draw(0..count);
         let (mut peaks, mut ends, mut breakaways) = (Vec::new(), Vec::new(), Vec::new());
-        for unit in &unit::units(&scene, &drawn).unwrap() {
+        for unit in &slide::units(&scene, &drawn).unwrap() {
             let desk = at_desk(&scene, &unit.gaps);
             let found = unit.outcome;
             assert_eq!(found.verdict, desk.verdict, "unit {}", unit.number);
@@ -163,7 +159,7 @@ fn true_stick_is_simulated_as_the_desk_does() {
     scene.friction = FrictionData::Exact { coefficient: 0.3 };
     let drawn = Production::new(&scene, None, 0.0, 4).unwrap().draw(0..600);
     let mut errors = Vec::new();
-    for unit in unit::units(&scene, &drawn).unwrap() {
+    for unit in slide::units(&scene, &drawn).unwrap() {
         let peak = |error: f64| {
             let settings = Settings::desk(&scene, 1.0).to(desk::tolerance_of(&scene, error));
             one::simulate(&scene, &unit.gaps, &settings).unwrap().outcome.peak_force.unwrap()
@@ -186,8 +182,8 @@ fn true_stick_is_simulated_as_the_desk_does() {
 fn no_verdict_changes_with_a_tenth_of_the_tolerance() {
     let scene = stroke();
     let drawn = Production::new(&scene, None, 0.0, 3).unwrap().draw(0..1500);
-    let course = unit::course(&scene);
-    let found = unit::units(&scene, &drawn).unwrap();
+    let course = slide::course(&scene);
+    let found = slide::units(&scene, &drawn).unwrap();
     let slides: Vec<SlideData<f64>> = drawn.gaps.iter().map(|gaps| scene.slide_data(gaps)).collect();
     let finer = simulate(Course { tolerance: course.tolerance / 10.0, ..course }, &slides);
     let changed: Vec<u64> = found

@@ -9,7 +9,7 @@ use slipfit_core::{
 };
 use slipfit_tolerance::number::ten_digits;
 
-use super::{ControllerSpec, GAP_MOST, LevelRange, RunSpec, Varied};
+use super::{ControllerSpec, GAP_MOST, LevelRange, RunSpec, SlideParameter, Varied, rub_more, tilted_x, tilted_z};
 
 /// Which surfaces meet a pin, in the order of Table 2.
 pub const SURFACES: [&str; 4] = ["left", "right", "rail", "wall"];
@@ -148,5 +148,21 @@ impl Scene {
         let data: SlideData<f64> =
             SlideData { body, contact: self.contact, friction: self.friction, drive: self.drive };
         data.cast(S::from_f64)
+    }
+}
+
+impl SlideParameter {
+    /// Moves the parameter of `scene` by a `deviation` (SI).
+    pub fn apply(self, scene: &mut Scene, deviation: f64) {
+        match self {
+            Self::Friction => rub_more(&mut scene.friction, deviation),
+            Self::Stiffness => scene.contact.stiffness *= 1.0 + deviation,
+            Self::Damping => scene.contact.damping += deviation,
+            Self::Mass => scene.slide.mass += deviation,
+            Self::Gain => scene.drive.gain += deviation,
+            Self::RampEnd => scene.drive.ramp_end += deviation,
+            Self::TiltX => scene.slide.gravity = tilted_x(scene.slide.gravity, deviation),
+            Self::TiltZ => scene.slide.gravity = tilted_z(scene.slide.gravity, deviation),
+        }
     }
 }

@@ -3,8 +3,6 @@
 use slipfit_core::menu::FrictionData;
 use slipfit_tolerance::model::Contributor;
 
-use super::Scene;
-
 /// A parameter that varies, and by how much from the stated value: of a slide, or of another menu `P`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Varied<P = SlideParameter> {
@@ -47,20 +45,6 @@ impl SlideParameter {
         Self::TiltX,
         Self::TiltZ,
     ];
-
-    /// Moves the parameter of `scene` by a `deviation` (SI).
-    pub fn apply(self, scene: &mut Scene, deviation: f64) {
-        match self {
-            Self::Friction => rub_more(&mut scene.friction, deviation),
-            Self::Stiffness => scene.contact.stiffness *= 1.0 + deviation,
-            Self::Damping => scene.contact.damping += deviation,
-            Self::Mass => scene.slide.mass += deviation,
-            Self::Gain => scene.drive.gain += deviation,
-            Self::RampEnd => scene.drive.ramp_end += deviation,
-            Self::TiltX => scene.slide.gravity = tilted_x(scene.slide.gravity, deviation),
-            Self::TiltZ => scene.slide.gravity = tilted_z(scene.slide.gravity, deviation),
-        }
-    }
 }
 
 /// Raises the coefficient of `friction` by a `deviation`; where there is no friction there is none.

@@ -146,3 +146,14 @@ pub(crate) fn outline(classes: impl Iterator<Item = (f64, f64)>, width: f64) -> 
     points.extend(points.last().map(|(right, _)| (*right, 0.0)));
     points
 }
+
+/// Why a chart cannot be drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlotError {
+    /// No point at all.
+    #[error("nothing to plot")]
+    Empty,
+    /// A point that is not finite, or too large to find ticks for.
+    #[error("cannot plot {0}: a value is not finite or too large")]
+    NotFinite(String),
+}

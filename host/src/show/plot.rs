@@ -11,18 +11,7 @@ use super::{
     svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, WIDTH, wrapped},
 };
 
-pub use super::chart::{Chart, Look, Markers, Panel, Scale, Series, Shape};
-
-/// Why a chart cannot be drawn.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PlotError {
-    /// No point at all.
-    #[error("nothing to plot")]
-    Empty,
-    /// A point that is not finite, or too large to find ticks for.
-    #[error("cannot plot {0}: a value is not finite or too large")]
-    NotFinite(String),
-}
+pub use super::chart::{Chart, Look, Markers, Panel, PlotError, Scale, Series, Shape};
 
 /// The most lines drawn in full.
 pub const LABELLED: usize = LEVELS.len();

@@ -7,9 +7,9 @@ use slipfit_tolerance::allocate::{
     requirement::{Kind, Requirement},
 };
 
-use super::Tolerances;
+use super::tolerances::Tolerances;
 use crate::{
-    cli::{counter, simulate::why_undecided},
+    cli::{simulate::why_undecided, terminal::counter},
     dynamics::{driven::Driven, outcome::Verdict, simulate::SimulateError},
     population::{
         production::Production,

@@ -4,6 +4,7 @@ mod curve;
 mod function;
 mod report;
 mod tables;
+mod tolerances;
 
 use std::path::PathBuf;
 
@@ -23,20 +24,22 @@ use slipfit_tolerance::{
         search::{Found, search},
     },
     counting::study::{MOST_UNITS, StudyError},
-    model::Model,
     product::{Product, costed::Costed},
 };
 
 use self::{
     function::{Function, Limits},
     report::{Confirmation, Report},
+    tolerances::{DIGITS, Tolerances},
 };
-use super::{Failure, SceneArguments, ThreadArguments, check, counter, given, print, print_json, progress, warn};
-use crate::scene::{Override, SceneFile, with_tolerances};
+use super::{
+    arguments::{SceneArguments, ThreadArguments},
+    check,
+    failure::Failure,
+    terminal::{counter, given, print, print_json, progress, warn},
+};
+use crate::scene::{SceneFile, with_tolerances};
 
-/// Digits of a tolerance that is written, and of one that is looked at.
-const DIGITS: usize = 6;
-const ALL_DIGITS: usize = 17;
 /// What seeds of fresh units, which confirm malfunctions, are derived with.
 const FRESH_UNITS: u64 = 5 << 32;
 /// How many times as many they are as the units of the search.
@@ -297,27 +300,5 @@ fn check_costs(costed: &[Costed]) -> Result<(), Failure> {
     match costed.iter().find(|costed| costed.place.is_none()) {
         Some(set) => Err(Failure::Input(format!("--set: the tolerance of {} is to be chosen", set.name))),
         None => Ok(()),
-    }
-}
-
-/// A scene file with tolerances to choose.
-struct Tolerances<'a> {
-    name: &'a str,
-    text: &'a str,
-    overrides: &'a [Override],
-    costed: &'a [Costed],
-}
-
-impl Tolerances<'_> {
-    /// The scene with these tolerances (SI).
-    fn file(&self, tolerances: &[f64]) -> Result<SceneFile, AllocateError> {
-        let text = with_tolerances(self.text, self.costed, tolerances, ALL_DIGITS);
-        SceneFile::parse(self.name, &text, self.overrides).map_err(|error| AllocateError::Model(error.into()))
-    }
-
-    /// The model of the scene with these tolerances (SI).
-    fn model(&self, tolerances: &[f64]) -> Result<Model, AllocateError> {
-        let product = self.file(tolerances)?.product;
-        Ok(product.ok_or_else(|| AllocateError::Model("it has no product".into()))?.model)
     }
 }

@@ -193,7 +193,7 @@ impl Report {
                 before: costed.stated * factor,
                 process: (!process.name.is_empty()).then(|| process.name.clone()),
                 cost: process.law.cost(*t),
-                written: format!("{} = {}", costed.written.key, tolerance(costed, *t, super::DIGITS)),
+                written: format!("{} = {}", costed.written.key, tolerance(costed, *t, super::tolerances::DIGITS)),
             }
         });
         let in_units = |tolerances: &[f64]| {

@@ -7,7 +7,7 @@ use slipfit_tolerance::{
 };
 
 use super::report::{Confirmation, Measured, Report, Required};
-use crate::cli::text_table;
+use crate::cli::terminal::text_table;
 
 /// A number with six digits at most.
 fn digits(value: f64) -> String {

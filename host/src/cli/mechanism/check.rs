@@ -8,7 +8,12 @@ use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 
 use super::{GapReport, gap_reports};
 use crate::{
-    cli::{Failure, SceneArguments, check::self_locking, print, print_json, text_table, warn},
+    cli::{
+        arguments::SceneArguments,
+        check::self_locking,
+        failure::Failure,
+        terminal::{print, print_json, text_table, warn},
+    },
     mechanism::{
         Freedom, Mechanism, Spring,
         feedback::{Reversal, reversals},

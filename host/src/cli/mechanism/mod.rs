@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::{Failure, SceneArguments, given};
+use super::{arguments::SceneArguments, failure::Failure, terminal::given};
 use crate::{
     dynamics::{error_control::Stopped, outcome::Outcome},
     mechanism::{Action, GapError, Mechanism, RunError},

@@ -12,12 +12,12 @@ use slipfit_tolerance::{
 use super::warnings_of;
 use crate::{
     cli::{
-        Failure,
+        failure::Failure,
         population::{
             Arguments, HYPOTHESIS, LevelReport, UnitReport, faults, levels, page::units_of_mechanism, percent, rare,
             strongest, verdicts,
         },
-        print, print_json, text_table, warn,
+        terminal::{print, print_json, text_table, warn},
     },
     dynamics::driven::{DriveKind, Driven},
     mechanism::ByDrive,

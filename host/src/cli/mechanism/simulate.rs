@@ -10,7 +10,11 @@ use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
-    cli::{Failure, print, print_json, simulate::MOMENTS, text_table, warn},
+    cli::{
+        failure::Failure,
+        simulate::MOMENTS,
+        terminal::{print, print_json, text_table, warn},
+    },
     dynamics::{
         answer::on_the_way,
         error_control::Stopped,

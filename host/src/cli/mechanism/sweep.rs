@@ -9,7 +9,11 @@ use slipfit_tolerance::number::{fixed, level, or_dash};
 
 use super::{DriveReport, Wanted, shown, units};
 use crate::{
-    cli::{Failure, ThreadArguments, print, print_json, progress, text_table, warn},
+    cli::{
+        arguments::ThreadArguments,
+        failure::Failure,
+        terminal::{print, print_json, progress, text_table, warn},
+    },
     dynamics::{answer::ranges_of, outcome::Outcome},
     mechanism::{Action, Mechanism, RunError, confirmed},
     show::{export::rows_csv, figure::drives_over_n},

@@ -4,7 +4,7 @@ use maud::Markup;
 use rayon::prelude::*;
 
 use crate::{
-    cli::{Failure, simulate::MOMENTS},
+    cli::{failure::Failure, simulate::MOMENTS},
     dynamics::driven::{DriveKind, Driven},
     mechanism::{ByDrive, film},
     population::{

@@ -6,7 +6,7 @@ use slipfit_tolerance::number::{self, fixed, level, or_dash};
 
 use super::{Arguments, Found, LevelReport, rare};
 use crate::{
-    cli::{Failure, simulate::why_undecided, text_table},
+    cli::{failure::Failure, simulate::why_undecided, terminal::text_table},
     dynamics::outcome::Verdict,
     population::{
         Unit,

@@ -19,13 +19,13 @@ use super::{
 };
 use crate::{
     cli::{
-        Failure, mechanism,
+        failure::Failure,
+        mechanism,
         population::page::{MECHANISM_FIGURES, units_of_mechanism},
-        print, print_json, progress,
         sweep::{LevelReport, doubts, for_machines},
         table,
+        terminal::{print, print_json, progress, warn},
         tolerance::DEFAULT,
-        warn,
     },
     dynamics::{
         answer::{Range, ranges},

@@ -17,7 +17,10 @@ use slipfit_tolerance::{
 };
 
 use super::{
-    DRAWING, DriveArguments, Failure, Moving, SceneArguments, ThreadArguments, progress, sweep::LevelArguments,
+    arguments::{DRAWING, DriveArguments, Moving, SceneArguments, ThreadArguments},
+    failure::Failure,
+    sweep::LevelArguments,
+    terminal::progress,
     tolerance::DEFAULT,
 };
 use output::Output;

@@ -7,7 +7,10 @@ use slipfit_system::files;
 use crate::show::measures_csv::measures_csv;
 
 use crate::{
-    cli::{Failure, SceneArguments, refused},
+    cli::{
+        arguments::SceneArguments,
+        failure::{Failure, refused},
+    },
     show::{
         plot::PlotError,
         report::{Figure, Production},

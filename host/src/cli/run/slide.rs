@@ -19,14 +19,14 @@ use super::{
 };
 use crate::{
     cli::{
-        Failure, check,
+        check,
+        failure::Failure,
         population::page,
-        print, print_json, progress,
         simulate::why_undecided,
         sweep::{LevelReport, doubts, for_machines},
         table,
+        terminal::{print, print_json, progress, warn},
         tolerance::DEFAULT,
-        warn,
     },
     dynamics::{
         answer::{Range, ranges},

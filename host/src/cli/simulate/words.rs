@@ -7,7 +7,7 @@ use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 
 use super::Arguments;
 use crate::{
-    cli::{check::GapReport, text_table},
+    cli::{check::GapReport, terminal::text_table},
     dynamics::{
         answer::on_the_way,
         audit::Audit,

@@ -7,7 +7,10 @@ use slipfit_tolerance::{
     theory::experiment::{Design, Finding, experiment},
 };
 
-use crate::cli::{Failure, print, print_json, text_table};
+use crate::cli::{
+    failure::Failure,
+    terminal::{print, print_json, text_table},
+};
 
 /// Makes the experiment and shows it.
 pub(super) fn show(title: &str, model: &Model, design: Design, json: bool) -> Result<(), Failure> {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use slipfit_tolerance::number::fixed;
 
 use crate::{
-    cli::text_table,
+    cli::terminal::text_table,
     mechanism::closing::{Table2, derived},
     setup::{SURFACES, Scene},
 };

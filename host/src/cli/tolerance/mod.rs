@@ -25,7 +25,12 @@ use slipfit_tolerance::{
 };
 
 use self::gaps::Given;
-use super::{DRAWING, Failure, SceneArguments, ThreadArguments, endings, print, print_json, progress, warn};
+use super::{
+    arguments::{DRAWING, SceneArguments, ThreadArguments},
+    endings,
+    failure::Failure,
+    terminal::{print, print_json, progress, warn},
+};
 use crate::setup::Scene;
 
 pub(super) use output::OutputArguments;

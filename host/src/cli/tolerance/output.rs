@@ -16,7 +16,11 @@ use slipfit_tolerance::{
 
 use super::{gaps::Columns, tables::tables};
 use crate::{
-    cli::{Failure, endings, print, print_json, refused},
+    cli::{
+        endings,
+        failure::{Failure, refused},
+        terminal::{print, print_json},
+    },
     mechanism::closing::closing_level,
     setup::Scene,
     show::{
@@ -31,7 +35,7 @@ fn finite(text: &str) -> Result<f64, String> {
 
 /// What is written of an analysis.
 #[derive(Args)]
-pub(in crate::cli) struct OutputArguments {
+pub struct OutputArguments {
     /// Tolerance level at which a slide's clearances are shown; positive is tighter.
     ///
     /// The default is the level that closes the first pair of gaps, to a hundredth: 3.43 for the paper's slide.

@@ -9,7 +9,7 @@ use slipfit_tolerance::{
     theory::rss::{BENDER, GILSON},
 };
 
-use crate::cli::text_table;
+use crate::cli::terminal::text_table;
 
 /// All that a person is shown of `report`.
 pub(super) fn tables(report: &Report) -> String {

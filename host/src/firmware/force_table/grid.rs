@@ -2,7 +2,10 @@
 
 use slipfit_core::table::{AxisKind, Encoding, MotionVerdict, Table, motions};
 
-use super::{Demand, ForceTable, TableError, levels};
+use super::{
+    levels,
+    table::{Demand, ForceTable, TableError},
+};
 use crate::{
     firmware::flash::{self, AxisSpec, ChannelSpec, FlashError, TableSpec},
     setup::LevelRange,

@@ -9,9 +9,10 @@ use rayon::prelude::*;
 use slipfit_core::table::{AxisKind, Encoding};
 
 use super::{
-    Demand, ForceTable, SUBSAMPLES, TableError,
+    SUBSAMPLES,
     grid::{self, Sample, SampleAxis, Samples, Stage},
     levels,
+    table::{Demand, ForceTable, TableError},
 };
 use crate::{
     dynamics::{

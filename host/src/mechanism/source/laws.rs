@@ -2,7 +2,7 @@
 
 use slipfit_core::menu::{FrictionData, FrictionType, NormalType};
 
-use super::Typed;
+use super::expression::Typed;
 use crate::mechanism::{Laws, NormalData, Rebound};
 
 /// The contacts met so far, each once.

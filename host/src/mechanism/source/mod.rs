@@ -3,7 +3,9 @@
 //! What is written is what [`run`](super::run) computes with, element by element in the same order, so that the type gives the
 //! same bits in f64.
 
+mod expression;
 mod laws;
+mod parts;
 mod planar;
 mod spatial;
 
@@ -11,48 +13,10 @@ use std::fmt::Write;
 
 use slipfit_desk::scheme::IntegratorKind;
 
-use super::{Joint, Mechanism, RunError, hash::hash};
+use super::{Joint, Mechanism, RunError, hash::hash, joint_elements::joints_of_elements};
+use expression::{grouped, nested, typed};
 use laws::Contacts;
-
-/// Type and value of an expression.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Typed {
-    of: String,
-    value: String,
-}
-
-fn typed(of: impl Into<String>, value: impl Into<String>) -> Typed {
-    Typed { of: of.into(), value: value.into() }
-}
-
-/// An element of a link that measures `count` numbers, and a law.
-fn element(link: Typed, law: Typed, count: usize) -> Typed {
-    typed(
-        format!("Element<{}, {}, {count}>", link.of, law.of),
-        format!("Element {{ link: {}, law: {} }}", link.value, law.value),
-    )
-}
-
-/// What one kind of mechanism is made of.
-struct Parts {
-    /// What the file says before the types.
-    head: String,
-    /// Number of coordinates.
-    dimension: usize,
-    /// Bodies.
-    bodies: Typed,
-    /// Elements, in the order in which they act.
-    elements: Vec<Typed>,
-    /// How many velocities the bodies have without their ideal joints, where elements act through these.
-    through_joints: Option<usize>,
-    /// Names used from `slipfit_core::system::law`, and from the module `module` of `slipfit_core::system`.
-    laws: Vec<&'static str>,
-    module: &'static str,
-    names: Vec<&'static str>,
-    /// Type and value of the pose that it starts in, and the rates (m/s, rad/s).
-    pose: Typed,
-    rates: Vec<f64>,
-}
+use parts::Parts;
 
 fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {
     if mechanism.planar { planar::parts(mechanism, contacts) } else { spatial::parts(mechanism, contacts) }
@@ -192,26 +156,6 @@ fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
     text
 }
 
-impl Parts {
-    /// Where each of the elements is in the unit's `elements()`.
-    fn paths(&self) -> Vec<String> {
-        let inside = if self.through_joints.is_some() { ".0" } else { "" };
-        paths(&self.elements).iter().map(|at| format!("{inside}{at}")).collect()
-    }
-}
-
-/// Where each of the `elements` is among all.
-fn paths(elements: &[Typed]) -> Vec<String> {
-    let groups: Vec<_> = elements.chunk_by(|one, next| one.of == next.of).collect();
-    let of_group = |(i, group): (usize, &&[Typed])| {
-        let last = i + 1 == groups.len();
-        let at = ".1".repeat(i) + if last { "" } else { ".0" };
-        let many = group.len() > 1;
-        (0..group.len()).map(move |k| if many { format!("{at}[{k}]") } else { at.clone() }).collect::<Vec<_>>()
-    };
-    groups.iter().enumerate().flat_map(of_group).collect()
-}
-
 /// Where in a unit's `elements()` those of the joints with play, the springs and the drives are, in this order, each with its joint.
 ///
 /// # Errors
@@ -269,73 +213,6 @@ fn write_gaps(text: &mut String, mechanism: &Mechanism) {
         let _ = writeln!(text, "    [{:?}, {:?}], // {}", gap.statistics.mean, gap.statistics.deviation, gap.name);
     }
     text.push_str("];\n\n");
-}
-
-/// Neighbours of one type as arrays.
-fn grouped(elements: &[Typed]) -> Vec<Typed> {
-    let groups = elements.chunk_by(|one, next| one.of == next.of);
-    let group = |group: &[Typed]| match group {
-        [one] => one.clone(),
-        all => {
-            let values: Vec<_> = all.iter().map(|one| one.value.as_str()).collect();
-            let value = format!("[\n        {},\n    ]", values.join(",\n        "));
-            typed(format!("[{}; {}]", all[0].of, all.len()), value)
-        }
-    };
-    groups.map(group).collect()
-}
-
-/// `(a, (b, c))` of several, `()` of none.
-fn nested(all: Vec<Typed>) -> Typed {
-    let pair = |rest: Typed, first: Typed| {
-        typed(format!("({}, {})", first.of, rest.of), format!("({}, {})", first.value, rest.value))
-    };
-    all.into_iter().rev().reduce(pair).unwrap_or_else(|| typed("()", "()"))
-}
-
-/// Numbers as arguments, converted to the unit's scalar.
-fn numbers(values: &[f64]) -> String {
-    let texts: Vec<_> = values.iter().map(|value| format!("s({value:?})")).collect();
-    texts.join(", ")
-}
-
-/// A vector of two or three numbers.
-fn vector(values: &[f64]) -> String {
-    format!("Vector{}::new({})", values.len(), numbers(values))
-}
-
-/// A drive that can be stepped.
-fn drive(drive: &slipfit_core::drive::Drive<f64>) -> String {
-    format!(
-        "Drive {{ gain: s({:?}), ramp_start: s({:?}), ramp_end: s({:?}), speed: s({:?}), point_b: {} }}.checked()?",
-        drive.gain,
-        drive.ramp_start,
-        drive.ramp_end,
-        drive.speed,
-        vector(drive.point_b.as_slice())
-    )
-}
-
-/// A law by the name of `law` that a drive acts by.
-fn driven(law: &str, by: &slipfit_core::drive::Drive<f64>) -> Typed {
-    typed(format!("{law}<Drive<S>>"), format!("{law}({})", drive(by)))
-}
-
-/// The joint that each element stands for, in the order of elements; none for those that are no joint's, which come last.
-pub(super) fn joints_of_elements(mechanism: &Mechanism) -> impl Iterator<Item = Option<&Joint>> {
-    let joints = mechanism.joints.iter().flat_map(|joint| std::iter::repeat_n(joint, elements_of(joint)));
-    joints.map(Some).chain(std::iter::repeat(None))
-}
-
-/// How many elements there are of a joint.
-fn elements_of(joint: &Joint) -> usize {
-    use super::JointKind::{Bearing, Guide, Journal, Stop, Track};
-    match joint.kind {
-        Journal { .. } | Stop { .. } | Track { .. } => 1,
-        Bearing { .. } => 2,
-        Guide { .. } => 4,
-        _ => 0,
-    }
 }
 
 /// Name and type of a scheme in core.

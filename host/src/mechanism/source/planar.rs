@@ -7,9 +7,14 @@ use slipfit_core::{
     system::planar::{Chain, Kind, Point, Rigid},
 };
 
-use super::{Contacts, Parts, Typed, driven, element, grouped, joints_of_elements, nested, numbers, typed, vector};
+use super::{
+    expression::{Typed, driven, element, grouped, nested, numbers, typed, vector},
+    laws::Contacts,
+    parts::Parts,
+};
 use crate::mechanism::{
-    JointKind, Mechanism, Mounts, Rest, RunError, element::PlanarElement, planar, state::half_angle,
+    JointKind, Mechanism, Mounts, Rest, RunError, element::PlanarElement, joint_elements::joints_of_elements, planar,
+    state::half_angle,
 };
 
 /// The parts of `mechanism`.

@@ -5,8 +5,15 @@ use slipfit_core::system::spatial::{
     tree::{Joint, Mount},
 };
 
-use super::{Contacts, Parts, Typed, driven, element, joints_of_elements, numbers, typed, vector};
-use crate::mechanism::{JointKind, Mechanism, Rest, RunError, element::SpatialElement, spatial, state::half_angle};
+use super::{
+    expression::{Typed, driven, element, numbers, typed, vector},
+    laws::Contacts,
+    parts::Parts,
+};
+use crate::mechanism::{
+    JointKind, Mechanism, Rest, RunError, element::SpatialElement, joint_elements::joints_of_elements, spatial,
+    state::half_angle,
+};
 
 /// The parts of `mechanism`.
 pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunError> {

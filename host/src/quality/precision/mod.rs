@@ -7,33 +7,22 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 
-pub use solver::{Knob, Solver, Timed, solvers, solvers_of};
+pub use solver::{EVERY, Knob, Problem, Solver, Timed, solvers, solvers_of};
 
 use crate::{
     dynamics::{
         deviation::Deviation,
-        simulate::{Run, ScalarKind, Settings, SimulateError, simulate},
+        simulate::{ScalarKind, Settings, SimulateError},
     },
     mechanism::{ByDrive, run},
-    setup::{RunSpec, Scene},
+    setup::Scene,
 };
-use solver::{to, whole};
+use solver::{run_of, to, whole};
 
-/// Interval of the samples that are compared (s).
-pub const EVERY: f64 = 1e-3;
 /// Error of force (N) that a step of the finest run may make.
 const FINEST: f64 = 1e-9;
 /// The same of a mechanism, as a share of its own speed.
 const FINEST_SHARE: f64 = 1e-9;
-
-/// A stretch of motion to be simulated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Problem {
-    /// Its name.
-    pub name: &'static str,
-    /// Simulated time (s).
-    pub duration: f64,
-}
 
 /// The paper's first 200 ms.
 pub const OPENING: Problem = Problem { name: "opening", duration: 0.2 };
@@ -162,12 +151,6 @@ fn quickest(run: impl Fn() -> Result<Timed, SimulateError>) -> Result<Timed, Sim
 pub fn quickest_within<'a>(points: impl IntoIterator<Item = &'a Point>, percent: f64) -> Option<&'a Point> {
     let within = points.into_iter().filter(|point| point.max_percent.is_some_and(|error| error <= percent));
     within.min_by(|a, b| a.run_ms.unwrap_or(f64::INFINITY).total_cmp(&b.run_ms.unwrap_or(f64::INFINITY)))
-}
-
-/// `duration` (s) of `scene` as `solver` computes it, whatever its stroke.
-fn run_of(scene: &Scene, gaps: &[f64; CONTACTS], duration: f64, settings: Settings) -> Result<Run, SimulateError> {
-    let run = RunSpec { duration, stroke: None, ..scene.run };
-    simulate(scene, gaps, &Settings { run, every: EVERY, ..settings })
 }
 
 #[cfg(test)]

@@ -6,16 +6,17 @@ use serde::Serialize;
 use slipfit_core::{menu::FrictionData, slide::CONTACTS};
 use slipfit_tolerance::number::three_digits;
 
-use super::{EVERY, Problem, run_of};
 use crate::{
     dynamics::{
         scheme::IntegratorKind,
-        simulate::{Run, ScalarKind, Settings, SimulateError},
+        simulate::{Run, ScalarKind, Settings, SimulateError, simulate},
     },
     mechanism::{ByDrive, Mechanism, MechanismRun, RunError, controller_run, run},
     setup::{ControllerSpec, RunSpec, Scene},
 };
 
+/// Interval of the samples that are compared (s).
+pub const EVERY: f64 = 1e-3;
 /// Steps of all fixed-step schemes (s).
 const STEPS: [f64; 8] = [1e-3, 500e-6, 250e-6, 200e-6, 100e-6, 50e-6, 25e-6, 10e-6];
 /// Further steps of the explicit ones (s), which are cheap and stable only when they resolve the stick band.
@@ -24,6 +25,15 @@ const FINER: [f64; 4] = [5e-6, 2e-6, 1e-6, 0.5e-6];
 const TOLERANCES: [f64; 8] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6];
 /// The same of a mechanism, as shares of its own speed.
 const SHARES: [f64; 6] = [1e-4, 3e-5, 1e-5, 1e-6, 1e-7, 1e-8];
+
+/// A stretch of motion to be simulated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Problem {
+    /// Its name.
+    pub name: &'static str,
+    /// Simulated time (s).
+    pub duration: f64,
+}
 
 /// What a solver's setting is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -153,4 +163,10 @@ pub fn whole(driven: &ByDrive) -> Mechanism {
 /// The `mechanism` with another error of a step of the desk.
 pub fn to(mechanism: &Mechanism, error: f64) -> Mechanism {
     Mechanism { run: RunSpec { error, ..mechanism.run }, ..mechanism.clone() }
+}
+
+/// `duration` (s) of `scene` as `solver` computes it, whatever its stroke.
+pub fn run_of(scene: &Scene, gaps: &[f64; CONTACTS], duration: f64, settings: Settings) -> Result<Run, SimulateError> {
+    let run = RunSpec { duration, stroke: None, ..scene.run };
+    simulate(scene, gaps, &Settings { run, every: EVERY, ..settings })
 }

@@ -1,11 +1,12 @@
 //! Bodies.
 
 use slipfit_core::system::{planar::Coordinate, spatial::tree::Joint as IdealJoint};
+use slipfit_tolerance::unit::{self, Quantity};
 
-use super::{Field, Problem, Quantity, SceneError, note, place, tables, unit};
+use super::{names::tables, place::place};
 use crate::{
     mechanism::{Body, Joint, JointKind, Mechanism, Mounts, Start, Torn, spatial, torn},
-    scene::{parse::POINT, plausible},
+    scene::{Problem, SceneError, parse::POINT, plausible, value::Field},
 };
 
 const MASS: Quantity = Quantity { units: unit::MASS, range: [1e-6, 1e7] };
@@ -35,7 +36,7 @@ fn body(name: String, table: &Field, planar: bool) -> Result<Body, SceneError> {
         if planar { [0.0, 0.0, table.number("inertia", &INERTIA)?] } else { table.numbers("inertia", &INERTIA)? };
     if let Some(field) = table.get("inertia").filter(|_| !planar && !plausible::are_moments(inertia)) {
         let allowed = "principal moments of inertia, of which none is greater than the other two together";
-        note(table.found(), Err(field.out_of_range("g·mm²", allowed)));
+        table.found().note(field.out_of_range("g·mm²", allowed));
     }
     let centre = table.require("centre", if planar { "a place [x, y] in mm" } else { "a place [x, y, z] in mm" })?;
     let centre = place(&centre, planar, &POINT)?;
@@ -54,7 +55,7 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
         if !joined && !sprung {
             let name = fields[i].get("name").unwrap_or_else(|| fields[i].clone());
             let error = name.error(Problem::Floating { body: body.name.clone() }, "a [[joint]] that joins it");
-            note(fields[i].found(), Err(error));
+            fields[i].found().note(error);
         }
         // What only slides on the frame never turns.
         let slides = |joint: &Joint| matches!(joint.kind, JointKind::Prismatic { .. }) && joint.between.contains(&None);
@@ -97,7 +98,7 @@ fn check_freedoms([turns, slides]: [bool; 2], table: &Field) {
     for (key, can) in [("angle", turns), ("spin", turns), ("speed", slides)] {
         if let Some(field) = table.get(key).filter(|_| !can) {
             let what = format!("`{key}` at the start of a body that no joint lets move so");
-            note(table.found(), Err(field.error(Problem::Unsupported { what }, "to leave it out")));
+            table.found().note(field.error(Problem::Unsupported { what }, "to leave it out"));
         }
     }
 }

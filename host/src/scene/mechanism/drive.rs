@@ -1,11 +1,19 @@
 //! Drives and torsion springs.
 
 use slipfit_core::drive::Drive;
+use slipfit_tolerance::unit::{self, Quantity};
 
-use super::{Field, Names, Problem, Quantity, SceneError, direction, place, tables, unit};
+use super::{
+    names::{Names, tables},
+    place::{direction, place},
+};
 use crate::{
     mechanism::{Action, NamedDrive, Spring},
-    scene::parse::{GAIN, LEAST_RAMP, POINT, RAMP, SPEED},
+    scene::{
+        Problem, SceneError,
+        parse::{GAIN, LEAST_RAMP, POINT, RAMP, SPEED},
+        value::Field,
+    },
 };
 
 const TORQUE_GAIN: Quantity = Quantity { units: unit::TORQUE_GAIN, range: [0.0, 1e9] };

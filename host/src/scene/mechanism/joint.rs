@@ -1,12 +1,19 @@
 //! Joints, ideal or with play.
 
-use slipfit_core::menu::{ContactData, FrictionData};
-use slipfit_tolerance::number::three_digits;
+use slipfit_core::menu::FrictionData;
+use slipfit_tolerance::{
+    number::three_digits,
+    unit::{self, Quantity},
+};
 
-use super::{Field, Gaps, Laws, Names, Problem, Quantity, SceneError, direction, laws, note, place, tables, unit};
+use super::{
+    contact::{Gaps, NO_CONTACT, laws},
+    names::{Names, tables},
+    place::{direction, place},
+};
 use crate::{
-    mechanism::{Joint, JointKind, Mechanism, NormalData, STOP_MOST},
-    scene::{parse::POINT, pins::MEAN, plausible},
+    mechanism::{Joint, JointKind, Laws, Mechanism, STOP_MOST},
+    scene::{Problem, SceneError, parse::POINT, pins::MEAN, plausible, value::Field},
     setup::SURFACES,
 };
 
@@ -58,9 +65,7 @@ fn joint(
     Ok(Joint { name, between, at, kind, laws })
 }
 
-/// The law of a joint without contacts.
-pub(super) const NO_CONTACT: NormalData =
-    NormalData::Impact(ContactData { stiffness: 0.0, exponent: 1.0, damping: 0.0, depth: 1.0 });
+/// The laws of a joint without contacts.
 const NO_LAWS: Laws = Laws { contact: NO_CONTACT, friction: FrictionData::None };
 
 /// Reads what the joint called `name` is.
@@ -184,7 +189,7 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field], bodies: &[Field]) -
                 at.error(problem, format!("{} mm at most, {FAR} of its radii of gyration", three_digits(most * 1e3)))
             }
         };
-        note(field.found(), Err(error));
+        field.found().note(error);
     }
     Ok(())
 }

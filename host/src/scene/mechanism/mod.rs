@@ -1,41 +1,41 @@
 //! Reading a mechanism: bodies, joints, springs and drives.
 
 mod body;
+mod contact;
 mod drive;
 mod joint;
+mod names;
+mod place;
 #[cfg(test)]
 mod tests;
 mod vary;
 
-use slipfit_core::{clearance::GapStatistics, menu::FrictionData};
-use slipfit_tolerance::product::Product;
-use slipfit_tolerance::unit::{self, Quantity};
+use slipfit_core::menu::FrictionData;
+use slipfit_tolerance::{
+    product::Product,
+    unit::{self, Quantity},
+};
 
+use self::{
+    contact::{Gaps, laws},
+    names::Names,
+    place::place,
+};
 use super::{
-    Problem, SceneError, contact,
-    diagnostic::Found,
-    parse,
+    Problem, SceneError, parse,
     plausible::{self, Loads},
-    tree::Value,
     value::Field,
 };
-use crate::setup::LevelRange;
 use crate::{
     dynamics::driven::DriveKind,
-    mechanism::{Gap, Joint, JointKind, Laws, Mechanism, MountError, Mounts, NormalData, Port, spatial},
-    setup::SURFACES,
+    mechanism::{Joint, JointKind, Mechanism, MountError, Mounts, NormalData, spatial},
+    setup::{LevelRange, SURFACES},
 };
 
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
 
-/// What the frame is called where bodies are named.
-const FRAME: &str = "frame";
-
 /// The levels of a sweep where a scene states none.
 const LEVELS: LevelRange = LevelRange { first: -3.0, step: 0.5, count: 13 };
-
-/// How long an axis or a normal at least is, in its own numbers.
-const LEAST_AXIS: f64 = 1e-9;
 
 /// Whether the scene `root` has bodies of its own.
 pub(super) fn is_mechanism(root: &Field) -> bool {
@@ -190,160 +190,4 @@ fn check_tree(mechanism: &Mechanism, joints: &[Field], root: &Field) -> Result<(
             Err(root.error(Problem::Mechanism(error.to_string()), "fewer bodies, or joints that hold them"))
         }
     }
-}
-
-/// Names of bodies.
-struct Names {
-    names: Vec<String>,
-}
-
-impl Names {
-    /// The body that `field` names, or the frame.
-    fn port(&self, field: &Field) -> Result<Port, SceneError> {
-        let name = field.to_text()?;
-        if name == FRAME {
-            return Ok(None);
-        }
-        self.find(name).map(Some).ok_or_else(|| {
-            let problem = Problem::UnknownName { of: "body".into(), name: name.into() };
-            field.error(problem, format!("{FRAME}, {}", self.names.join(", ")))
-        })
-    }
-
-    /// The moving body that `field` names.
-    fn body(&self, field: &Field) -> Result<usize, SceneError> {
-        let name = field.to_text()?;
-        self.find(name).ok_or_else(|| {
-            let (key, of, name) = (field.key.clone(), "body".into(), name.into());
-            let problem =
-                if name == FRAME { Problem::Choice { key, written: name } } else { Problem::UnknownName { of, name } };
-            field.error(problem, format!("a body that moves: {}", self.names.join(", ")))
-        })
-    }
-
-    fn find(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|one| one == name)
-    }
-
-    /// The two bodies of a joint or spring.
-    fn between(&self, table: &Field) -> Result<[Port; 2], SceneError> {
-        const ALLOWED: &str = "a list of two bodies, such as [\"frame\", \"crank\"]";
-        let field = table.require("between", ALLOWED)?;
-        let Value::List(nodes) = &field.node.value else { return Err(field.wrong_type(ALLOWED)) };
-        let [first, second] = &nodes[..] else {
-            return Err(field.error(Problem::Length { key: field.key.clone(), found: nodes.len() }, ALLOWED));
-        };
-        let port = |node| self.port(&Field { key: field.key.clone(), node });
-        let between = [port(first)?, port(second)?];
-        if between[0] == between[1] {
-            let name = between[0].map_or(FRAME, |body| &self.names[body]).to_owned();
-            return Err(field.error(Problem::JoinedToItself { key: field.key.clone(), name }, "two different bodies"));
-        }
-        Ok(between)
-    }
-}
-
-/// The gaps met so far.
-struct Gaps<'p> {
-    gaps: Vec<Gap>,
-    product: Option<&'p Product>,
-}
-
-impl Gaps<'_> {
-    /// The index of a new gap with the statistics that `field` gives, by itself or as a measure of the product; its mean is a `quantity`.
-    fn add(&mut self, name: String, field: &Field, quantity: &Quantity) -> Result<usize, SceneError> {
-        let (statistics, measure) = match field.node.value {
-            Value::Text(_) => self.measured(field)?,
-            _ => (super::pins::statistics(field, quantity)?, None),
-        };
-        self.gaps.push(Gap { name, statistics, measure });
-        Ok(self.gaps.len() - 1)
-    }
-
-    fn measured(&self, field: &Field) -> Result<(GapStatistics<f64>, Option<usize>), SceneError> {
-        let model = self.product.map(|product| &product.model);
-        let index = super::pins::length(field, model)?;
-        let moments = model.map(slipfit_tolerance::theory::moments::of_measures).unwrap_or_default();
-        let of = moments.get(index).map(|of| GapStatistics { mean: of.mean, deviation: of.deviation });
-        of.map(|of| (of, Some(index))).ok_or_else(|| field.wrong_type("a measure of the product"))
-    }
-}
-
-/// Reads the laws of `table`, where it states none of its own `otherwise`; the friction law alone may be missing. A mistake in one law is
-/// noted, and another law stands for it.
-fn laws(table: &Field, otherwise: Option<Laws>) -> Result<Option<Laws>, SceneError> {
-    let found = table.found();
-    let contact = match table.get("contact") {
-        None => otherwise.map(|laws| laws.contact),
-        Some(_) => {
-            Some(found.recover(table.table("contact").and_then(|table| contact::normal(&table)), joint::NO_CONTACT))
-        }
-    };
-    let friction = match table.get("friction") {
-        None => otherwise.map_or(FrictionData::None, |laws| laws.friction),
-        Some(_) => found.recover(table.table("friction").and_then(|table| parse::friction(&table)), FrictionData::None),
-    };
-    Ok(contact.map(|contact| Laws { contact, friction }))
-}
-
-/// Reads a list of tables, each with a name of its own.
-fn tables<'t, 's>(root: &Field<'t, 's>, key: &str) -> Result<Vec<(String, Field<'t, 's>)>, SceneError> {
-    let Some(list) = root.get(key) else { return Ok(Vec::new()) };
-    let allowed = format!("tables [[{}]]", list.key);
-    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(allowed)) };
-    let mut named: Vec<(String, Field)> = Vec::new();
-    for node in nodes {
-        let table = Field { key: list.key.clone(), node };
-        table.expect_table()?;
-        let field = table.require("name", "a text in quotes")?;
-        let name = field.to_text()?;
-        if name == FRAME {
-            let problem = Problem::Choice { key: field.key.clone(), written: name.into() };
-            return Err(field.error(problem, "another name: this is what the frame is called, which does not move"));
-        }
-        if named.iter().any(|(other, _)| other == name) {
-            let problem = Problem::Duplicate { key: field.key.clone(), name: name.into() };
-            return Err(field.error(problem, "a name of its own for each"));
-        }
-        named.push((name.into(), table));
-    }
-    Ok(named)
-}
-
-/// Reads a place or a direction: two numbers in a plane, else three.
-fn place(field: &Field, planar: bool, quantity: &Quantity) -> Result<[f64; 3], SceneError> {
-    if planar { field.to_numbers::<2>(quantity).map(|[x, y]| [x, y, 0.0]) } else { field.to_numbers(quantity) }
-}
-
-/// Reads a direction, to unit length.
-fn direction(table: &Field, key: &str, planar: bool) -> Result<[f64; 3], SceneError> {
-    const NUMBER: Quantity = Quantity { units: unit::ONE, range: [-1e6, 1e6] };
-    let field = table.require(key, if planar { "a direction [x, y]" } else { "a direction [x, y, z]" })?;
-    let axis = place(&field, planar, &NUMBER)?;
-    let length = libm::sqrt(axis.iter().map(|x| x * x).sum());
-    if length < LEAST_AXIS {
-        return Err(field.out_of_range("", "a direction other than zero"));
-    }
-    // What is given along an axis stays exactly so.
-    Ok(if axis.iter().filter(|x| **x != 0.0).count() == 1 {
-        axis.map(f64::signum_or_zero)
-    } else {
-        axis.map(|x| x / length)
-    })
-}
-
-/// The sign of a number, 0 for 0.
-trait SignumOrZero {
-    fn signum_or_zero(self) -> f64;
-}
-
-impl SignumOrZero for f64 {
-    fn signum_or_zero(self) -> f64 {
-        if self == 0.0 { 0.0 } else { self.signum() }
-    }
-}
-
-/// Notes an `error` and goes on.
-fn note(found: &Found, result: Result<(), SceneError>) {
-    found.recover(result, ());
 }

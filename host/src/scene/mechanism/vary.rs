@@ -3,11 +3,13 @@
 use slipfit_core::menu::FrictionData;
 use slipfit_tolerance::unit::{self, Quantity};
 
-use super::{Field, Names, Problem, SceneError, tables};
+use super::names::{Names, tables};
 use crate::{
     mechanism::{Action, Mechanism, NormalData, Parameter, Varied},
     scene::{
+        Problem, SceneError,
         product::{SIGMA_DEFAULT, deviation},
+        value::Field,
         vary::{DAMPING, FRICTIONLESS, MASS, RAMP_END, SHARE, TILT, UNTILTED, across},
     },
 };

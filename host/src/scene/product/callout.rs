@@ -7,42 +7,26 @@ use slipfit_tolerance::{
         assembly::With,
         contact::{cross, unit},
         dimension::{self, Spread, Toleranced},
-        feature::{Bonus, Shape},
+        feature::Shape,
         iso2768::{self, GeometryClass},
     },
-    unit::{self as units, Quantity},
 };
 
 use crate::scene::{Problem, SceneError, keys, tree::Value, value::Field};
 
 use super::{
-    Draft,
-    datum::{Datum, carry, datums, left_free},
-    material::{self, Material},
-    part::FeatureDraft,
+    datum::{carry, datums, left_free},
+    defaults::rule,
+    diameter::Material,
+    draft::{Datum, Draft, FeatureDraft},
+    geometric::{Callout, Limits, WIDTH, shift},
+    material,
     pattern::{self, Pattern},
-    rule,
     slant::slant,
     symmetric, toleranced, zone,
 };
 
-pub(super) const WIDTH: Quantity = Quantity { units: units::LENGTH, range: [0.0, 1e7] };
 const ZONE: &str = "the width of its zone in mm, or { zone = …, datum = [\"…\"], rule = \"…\" }";
-
-/// What a geometric tolerance limits.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Limits {
-    /// Form: offset and tilts, without a datum.
-    Form,
-    /// Form along the first extent only.
-    Line,
-    /// Form of the surface around an axis: what mates with it finds the axis off, and tilted.
-    Surface,
-    /// Tilts towards a datum.
-    Orientation,
-    /// Offset and tilts towards datums.
-    Location,
-}
 
 /// The geometric tolerances.
 pub(super) const CALLOUTS: [&str; 14] = [
@@ -74,42 +58,6 @@ fn limits(callout: &str, shape: Shape) -> Limits {
         "position" | "profile" | "coaxiality" | "concentricity" | "symmetry" => Limits::Location,
         "run_out" | "total_run_out" if shape != Shape::Plane => Limits::Location,
         _ => Limits::Orientation,
-    }
-}
-
-/// A geometric tolerance as it is read.
-pub(super) struct Callout<'t, 's> {
-    pub name: &'static str,
-    pub limits: Limits,
-    /// Width of its zone (m), in the middle of the limits of the size that it goes with.
-    pub width: f64,
-    /// Its condition of material.
-    pub material: Option<Material>,
-    /// How it goes with the size there.
-    pub bonus: Option<Bonus>,
-    /// Its datums; none of a form.
-    pub datums: Vec<Datum>,
-    pub rule: ZoneRule,
-    /// Number of the pattern that it moves with.
-    pub pattern: Option<usize>,
-    pub field: Field<'t, 's>,
-}
-
-impl Callout<'_, '_> {
-    /// Its condition of material, and its width (m) there.
-    fn at_condition(&self) -> Option<(Material, f64)> {
-        Some((self.material?, self.bonus?.width))
-    }
-
-    /// Whether it holds the surface, its form included, not the axis alone.
-    fn runs_out(&self) -> bool {
-        matches!(self.name, "run_out" | "total_run_out")
-    }
-
-    /// Whether all of an axis lies in its zone, which then limits its tilts, too. A concentricity and a roundness are of one
-    /// section.
-    pub fn holds_tilts(&self) -> bool {
-        self.rule != ZoneRule::Translation && !matches!(self.name, "concentricity" | "roundness")
     }
 }
 
@@ -429,12 +377,6 @@ fn shorter_leg(made: &FeatureDraft, extents: [f64; 2], datums: &[Datum], draft: 
         Some(size.map_or(own, |size| own.min(leg(feature.shape, line, sides, size))))
     };
     datums.iter().filter_map(of_datum).fold(extents[0].max(extents[1]), f64::min)
-}
-
-/// Lets the feature shift by a toleranced number along a direction.
-pub(super) fn shift(made: &mut FeatureDraft, what: &str, size: &Toleranced, along: [f64; 3], draft: &mut Draft) {
-    let variable = draft.add(size.contributor(format!("{} {what}", made.name)), &[size.nominal]);
-    made.feature.shift(variable, along, 1.0);
 }
 
 /// Vectorial tolerances: components of the position vector and the orientation vector, each with its own, in the part's

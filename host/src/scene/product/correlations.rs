@@ -10,7 +10,7 @@ use slipfit_tolerance::{
 
 use crate::scene::{Problem, SceneError, value::Field};
 
-use super::{tables, texts};
+use super::tables::{tables, texts};
 
 const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
 

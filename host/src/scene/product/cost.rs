@@ -40,7 +40,7 @@ use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
 use super::{
     quantity::{self, LENGTH},
-    tables,
+    tables::tables,
     toleranced::positive,
 };
 

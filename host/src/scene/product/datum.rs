@@ -6,7 +6,7 @@ use slipfit_tolerance::{
         assembly::{Carried, Placement, With},
         common::Common,
         contact::{Contact, cross, norm},
-        contacts::{Joined, Order, Own, describe},
+        contacts::{Joined, Own, describe},
         feature::Shape,
         float::{Float, Size},
     },
@@ -15,19 +15,10 @@ use slipfit_tolerance::{
 use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
 use super::{
-    Draft,
-    mate::floating,
-    material::{self, Material},
+    draft::{Datum, Draft},
+    float::floating,
+    material,
 };
-
-/// A datum of a feature.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Datum {
-    /// Its feature.
-    pub feature: usize,
-    /// The condition of material at which it is referenced.
-    pub material: Option<Material>,
-}
 
 /// The datums of the list, or the only one: features of the part of `feature` that stand above.
 pub(super) fn datums(list: &Field, draft: &mut Draft) -> Result<Vec<Datum>, SceneError> {
@@ -106,26 +97,6 @@ fn common(field: &Field, pair: [usize; 2], draft: &mut Draft) -> Result<usize, S
     draft.common.push(index);
     draft.assembly.placements.push(Placement::common(datum));
     Ok(index)
-}
-
-/// How frames of datums come to lie on features that do not fit them exactly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Frames {
-    /// A secondary or tertiary datum that cannot be met in place and direction turns the frame by a least-squares fit of both.
-    LeastSquares,
-    /// By ISO 5459: the secondary datum turns the frame by its orientation, the tertiary one by its location alone.
-    Iso5459,
-}
-
-impl Frames {
-    /// What has precedence in the datum of this `number`, from 0.
-    fn order(self, number: usize) -> Order {
-        match (self, number) {
-            (Self::LeastSquares, _) | (_, 0) => Order::LeastSquares,
-            (Self::Iso5459, 1) => Order::Orientation,
-            (Self::Iso5459, _) => Order::Location,
-        }
-    }
 }
 
 /// A motion in words that the `datums` leave a frame and that moves the feature `index` in its zone; `None` where there is none.

@@ -1,10 +1,36 @@
 //! Reads what holds where a dimension or a feature says nothing else.
 
-use slipfit_tolerance::{model::ZoneRule, product::iso2768::General};
+use slipfit_tolerance::{
+    model::ZoneRule,
+    product::{contacts::Order, iso2768::General},
+    unit::{self, Quantity},
+};
 
 use crate::scene::{Problem, SceneError, value::Field};
 
-use super::{SIGMA, SIGMA_DEFAULT, datum::Frames};
+/// Standard deviations in half of a tolerance, where nothing else is said.
+pub(in crate::scene) const SIGMA_DEFAULT: f64 = 3.0;
+pub(super) const SIGMA: Quantity = Quantity { units: unit::ONE, range: [1.0, 100.0] };
+
+/// How frames of datums come to lie on features that do not fit them exactly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Frames {
+    /// A secondary or tertiary datum that cannot be met in place and direction turns the frame by a least-squares fit of both.
+    LeastSquares,
+    /// By ISO 5459: the secondary datum turns the frame by its orientation, the tertiary one by its location alone.
+    Iso5459,
+}
+
+impl Frames {
+    /// What has precedence in the datum of this `number`, from 0.
+    pub fn order(self, number: usize) -> Order {
+        match (self, number) {
+            (Self::LeastSquares, _) | (_, 0) => Order::LeastSquares,
+            (Self::Iso5459, 1) => Order::Orientation,
+            (Self::Iso5459, _) => Order::Location,
+        }
+    }
+}
 
 /// What holds for the whole product.
 #[derive(Clone, Copy)]

@@ -8,7 +8,7 @@ use slipfit_tolerance::{
 
 use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
-use super::SIGMA;
+use super::defaults::SIGMA;
 
 /// What may be stated of what has no size of its own, such as a part of a mixture.
 const DEVIATION: &str = "± as one number or [lower, upper] deviations, of a length in mm, or texts with their units";

@@ -8,7 +8,7 @@ use slipfit_tolerance::{
     theory::moments::drawn,
 };
 
-use super::Fit;
+use super::draft::Fit;
 
 /// Units that are tried.
 pub(super) const UNITS: usize = 1024;

@@ -12,16 +12,10 @@ use crate::scene::{
     value::Field,
 };
 
-use super::{part::FeatureDraft, toleranced::Diameter};
-
-/// A condition of material.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Material {
-    /// The largest pin, the smallest hole: Ⓜ.
-    Maximum,
-    /// The smallest pin, the largest hole: Ⓛ.
-    Least,
-}
+use super::{
+    diameter::{Diameter, Material},
+    draft::FeatureDraft,
+};
 
 /// What may be written for a condition of material.
 const CONDITIONS: &str = "\"maximum\" (MMC, Ⓜ), \"least\" (LMC, Ⓛ)";
@@ -110,25 +104,4 @@ pub(super) fn boundary(
     // A hole at maximum, and a pin at least material, goes around its boundary.
     let around = limit == diameter.limits[0];
     Ok(if around { [actual, Size::Boundary(limit - own)] } else { [Size::Boundary(limit + own), actual] })
-}
-
-impl Material {
-    /// In a sentence.
-    pub fn named(self) -> &'static str {
-        match self {
-            Self::Maximum => "maximum material condition",
-            Self::Least => "least material condition",
-        }
-    }
-
-    /// The size (m) of the feature called `name` at the condition.
-    pub fn limit(self, diameter: &Diameter, name: &str, field: &Field) -> Result<f64, SceneError> {
-        let hole = diameter.hole.ok_or_else(|| {
-            field.error(
-                Problem::Missing(format!("{name}.kind")),
-                "kind = \"hole\" or \"pin\", or an ISO 286 class of the diameter",
-            )
-        })?;
-        Ok(diameter.limits[usize::from(hole == (self == Self::Least))])
-    }
 }

@@ -13,7 +13,12 @@ use slipfit_tolerance::{
 
 use crate::scene::{Problem, SceneError, value::Field};
 
-use super::{Draft, name, quantity::units, tables, texts, toleranced};
+use super::{
+    draft::Draft,
+    quantity::units,
+    tables::{name, tables, texts},
+    toleranced,
+};
 
 const COST: Quantity = Quantity { units: unit::ONE, range: [0.0, 1e12] };
 

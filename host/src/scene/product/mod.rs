@@ -63,12 +63,16 @@ mod datum;
 #[cfg(test)]
 mod datum_tests;
 mod defaults;
+mod diameter;
 #[cfg(test)]
 mod dimension_tests;
 mod distribution;
 #[cfg(test)]
 mod doubtful_tests;
+mod draft;
 mod fit;
+mod float;
+mod geometric;
 #[cfg(test)]
 mod geometry_tests;
 #[cfg(test)]
@@ -87,6 +91,7 @@ mod slant;
 mod symmetric;
 #[cfg(test)]
 mod symmetric_tests;
+mod tables;
 #[cfg(test)]
 mod tests;
 mod toleranced;
@@ -96,12 +101,13 @@ mod zone;
 #[cfg(test)]
 mod zone_tests;
 
+pub(super) use defaults::SIGMA_DEFAULT;
 #[cfg(test)]
 pub(super) use distribution::SHAPES;
 pub(super) use toleranced::deviation;
 
 use slipfit_tolerance::{
-    model::{Contributor, Model, Quantity as Measured, widening::Widening},
+    model::Model,
     product::{
         Product,
         assembly::Assembly,
@@ -111,100 +117,16 @@ use slipfit_tolerance::{
         function::Measures,
         iso2768::WITHDRAWN,
     },
-    unit::{self, Quantity},
 };
 
 use self::{
     correlations::correlations,
-    datum::Datum,
-    defaults::{Defaults, defaults, rule},
+    defaults::defaults,
+    draft::Draft,
+    tables::{name, tables},
 };
 
-use super::{Problem, SceneError, tree::Value, value::Field};
-
-/// Standard deviations in half of a tolerance, where nothing else is said.
-pub(super) const SIGMA_DEFAULT: f64 = 3.0;
-const SIGMA: Quantity = Quantity { units: unit::ONE, range: [1.0, 100.0] };
-
-/// Directions in which a feature extends, and how far (m), if it says so.
-type Face = ([[f64; 3]; 2], Option<[f64; 2]>);
-
-/// A product in the making.
-struct Draft {
-    defaults: Defaults,
-    contributors: Vec<Contributor>,
-    /// Variables at their nominal values.
-    nominal: Vec<f64>,
-    /// What kinds of numbers they are, those of zones left at lengths.
-    quantities: Vec<Measured>,
-    /// What expressions can use.
-    names: Vec<(String, Source, Kind)>,
-    assembly: Assembly,
-    /// Names with the parts'.
-    feature_names: Vec<String>,
-    parts_of_features: Vec<usize>,
-    /// How they extend.
-    faces: Vec<Face>,
-    /// Their diameters.
-    diameters: Vec<Option<toleranced::Diameter>>,
-    /// Those that are two others together.
-    common: Vec<usize>,
-    /// Datums that go together, and what they place.
-    datum_systems: Vec<(Vec<Datum>, usize)>,
-    /// Holes on pins.
-    fits: Vec<Fit>,
-    /// Zones that go with sizes.
-    widenings: Vec<Widening>,
-    /// Variables that expressions use.
-    used: Vec<usize>,
-    /// What the user should know.
-    warnings: Vec<String>,
-}
-
-/// A hole on a pin.
-struct Fit {
-    /// As "lid.hole on box.pin".
-    name: String,
-    /// The variables in which it floats.
-    float: std::ops::Range<usize>,
-    /// The least play (m) that the diameters' limits leave.
-    least: f64,
-}
-
-impl Draft {
-    /// Adds a `contributor` with its nominal value, or values, and gives its first variable.
-    fn add(&mut self, contributor: Contributor, nominal: &[f64]) -> usize {
-        self.contributors.push(contributor);
-        self.nominal.extend(nominal);
-        self.quantities.resize(self.nominal.len(), Measured::Length);
-        self.nominal.len() - nominal.len()
-    }
-
-    /// The feature that `field` names, as PART.FEATURE.
-    fn feature(&self, field: &Field) -> Result<usize, SceneError> {
-        self.feature_called(field.to_text()?, field)
-    }
-
-    /// The feature of this `name`, which stands in `field`.
-    fn feature_called(&self, name: &str, field: &Field) -> Result<usize, SceneError> {
-        self.feature_names.iter().position(|known| known == name).ok_or_else(|| {
-            let near = self.feature_names.iter().map(|known| (strsim::osa_distance(known, name), known)).min();
-            let hint = near.map(|(_, known)| format!(", such as {known}")).unwrap_or_default();
-            let problem = Problem::UnknownName { of: "feature".into(), name: name.into() };
-            field.error(problem, format!("PART.FEATURE of a part that stands further up{hint}"))
-        })
-    }
-
-    /// Gives `name` to `source`, unless something else has it.
-    fn name(&mut self, field: &Field, name: &str, source: Source, kind: Kind) -> Result<(), SceneError> {
-        if self.names.iter().any(|(known, ..)| known == name) {
-            let problem = Problem::Duplicate { key: field.key.clone(), name: name.into() };
-            return Err(field.error(problem, "a name of its own for each dimension and measure"));
-        }
-        self.names.push((name.into(), source, kind));
-        Ok(())
-    }
-}
+use super::{Problem, SceneError, value::Field};
 
 /// Reads the product in `root`.
 pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
@@ -296,31 +218,4 @@ fn warn_of_unused(root: &Field, draft: &Draft) -> Result<(), SceneError> {
         }
     }
     Ok(())
-}
-
-/// The tables of the list `key`; none if it is not there.
-fn tables<'t, 's>(root: &Field<'t, 's>, key: &str) -> Result<Vec<Field<'t, 's>>, SceneError> {
-    let Some(list) = root.get(key) else { return Ok(Vec::new()) };
-    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(format!("tables [[{}]]", list.key))) };
-    let tables: Vec<_> = nodes.iter().map(|node| Field { key: list.key.clone(), node }).collect();
-    tables.iter().try_for_each(Field::expect_table)?;
-    Ok(tables)
-}
-
-/// The name of the table.
-fn name<'t, 's>(table: &Field<'t, 's>) -> Result<(&'t str, Field<'t, 's>), SceneError> {
-    const ALLOWED: &str = "a text in quotes, without single quotes in it";
-    let field = table.require("name", ALLOWED)?;
-    let name = field.to_text()?;
-    if name.trim().is_empty() || name.contains('\'') {
-        return Err(field.error(Problem::Choice { key: field.key.clone(), written: field.written("") }, ALLOWED));
-    }
-    Ok((name, field))
-}
-
-/// The texts of the list `key` in the `table`, each with its field.
-fn texts<'t, 's>(table: &Field<'t, 's>, key: &str, allowed: &str) -> Result<Vec<(&'t str, Field<'t, 's>)>, SceneError> {
-    let list = table.require(key, allowed)?;
-    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(allowed)) };
-    nodes.iter().map(|node| Field { key: list.key.clone(), node }).map(|field| Ok((field.to_text()?, field))).collect()
 }

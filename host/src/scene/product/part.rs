@@ -11,7 +11,13 @@ use slipfit_tolerance::{
 
 use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
-use super::{Draft, callout, name, pattern::Pattern, tables, toleranced};
+use super::{
+    callout,
+    draft::{Draft, FeatureDraft},
+    pattern::Pattern,
+    tables::{name, tables},
+    toleranced,
+};
 
 const POSITION: Quantity = Quantity { units: units::LENGTH, range: [-1e7, 1e7] };
 const SIZE: Quantity = Quantity { units: units::LENGTH, range: [1e-6, 1e7] };
@@ -30,28 +36,6 @@ pub(super) struct Part<'t, 's> {
     /// How kinematic displacements have moved it, its own after those of what it rests on.
     pub motion: Pose,
     table: Field<'t, 's>,
-}
-
-/// A feature in the making.
-pub(super) struct FeatureDraft<'t, 's> {
-    /// Name of part and feature.
-    pub name: String,
-    /// Its table.
-    pub table: Field<'t, 's>,
-    /// The feature.
-    pub feature: Feature,
-    /// Its directions of extent, across its direction.
-    pub sides: [[f64; 3]; 2],
-    /// Its extents (m): of a plane, and of a point if it says on which face it is; the length of an axis, twice.
-    pub extents: Option<[f64; 2]>,
-    /// Its place in the part's own frame (m): along its direction and along its sides.
-    pub coordinates: [f64; 3],
-    /// Its diameter, of an axis that has one.
-    pub diameter: Option<toleranced::Diameter>,
-    /// From its part's frame to the assembly's.
-    pub pose: Pose,
-    /// Index of its part.
-    pub part: usize,
 }
 
 /// The parts' names and nominal places, before they are mated.
@@ -78,7 +62,7 @@ pub(super) fn features<'t, 's>(parts: &[Part<'t, 's>], draft: &mut Draft) -> Res
         // In the order of the text, so that a datum stands above what refers to it.
         let mut tables = Vec::new();
         for (key, shape) in [("plane", Shape::Plane), ("point", Shape::Point), ("axis", Shape::Axis)] {
-            tables.extend(self::tables(&part.table, key)?.into_iter().map(|table| (shape, table)));
+            tables.extend(super::tables::tables(&part.table, key)?.into_iter().map(|table| (shape, table)));
         }
         tables.sort_by_key(|(_, table)| table.node.place.start());
         for (shape, table) in tables {

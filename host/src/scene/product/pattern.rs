@@ -18,10 +18,9 @@ use slipfit_tolerance::{
 use crate::scene::{Problem, SceneError, value::Field};
 
 use super::{
-    Draft,
-    callout::{Callout, WIDTH},
-    datum::{Datum, datums},
-    part::FeatureDraft,
+    datum::datums,
+    draft::{Datum, Draft, FeatureDraft},
+    geometric::{Callout, WIDTH},
     toleranced,
 };
 

@@ -7,7 +7,7 @@ use slipfit_tolerance::product::{
 
 use crate::scene::{Problem, SceneError, value::Field};
 
-use super::{Draft, datum::Datum, part::FeatureDraft};
+use super::draft::{Datum, Draft, FeatureDraft};
 
 /// How far (m) a feature may lie off its datum on the drawing.
 const OFF: f64 = 1e-9;

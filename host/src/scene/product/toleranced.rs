@@ -16,9 +16,11 @@ use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 pub(super) use super::distribution::positive;
 pub(super) use super::quantity::LENGTH;
 use super::{
-    Draft,
+    diameter::Diameter,
     distribution::{component, deviations, doubt, doubt_absolute, excess, shape},
-    name, quantity,
+    draft::Draft,
+    quantity,
+    tables::name,
 };
 
 /// A component of a unit vector.
@@ -45,26 +47,6 @@ pub(super) fn stand_in(table: &Field, draft: &mut Draft) {
         let variable = draft.add(Contributor { name: name.into(), variation }, &[1.0]);
         // Nobody else has the name.
         let _ = draft.name(&field, name, Source::Variable(variable), Kind::of(Measured::Length));
-    }
-}
-
-/// The diameter of an axis.
-#[derive(Clone, Copy)]
-pub(super) struct Diameter {
-    /// Its variable.
-    pub variable: usize,
-    /// Least and greatest (m).
-    pub limits: [f64; 2],
-    /// Whether it is a hole's, if that is said.
-    pub hole: Option<bool>,
-    /// Widths (m) of the axis's own tolerance at maximum and at least material condition.
-    pub own: [f64; 2],
-}
-
-impl Diameter {
-    /// The middle of its limits (m).
-    pub fn middle(&self) -> f64 {
-        0.5 * (self.limits[0] + self.limits[1])
     }
 }
 

@@ -18,9 +18,8 @@ use slipfit_tolerance::{
 use crate::scene::{Problem, SceneError};
 
 use super::{
-    Draft,
-    callout::{Callout, Limits, shift},
-    part::FeatureDraft,
+    draft::{Draft, FeatureDraft},
+    geometric::{Callout, Limits, shift},
 };
 
 /// Lets a feature vary in the zone of its location; an `orientation` narrows its tilts.

@@ -10,12 +10,12 @@ use crate::mechanism::{Action, Joint, JointKind, Mechanism, NamedDrive};
 use crate::{
     setup::SURFACES,
     show::{
-        palette::{Colour, KINDS, PAPER, SOFT},
+        palette::{Colour, PAPER, SOFT},
         svg::{Anchor, Font, PLAIN, SUBTITLE, Stroke, Svg, TITLE, WIDTH},
     },
 };
 use slipfit_tolerance::number::ten_digits;
-use symbol::Pen;
+use symbol::{Pen, colour};
 use view::{Extent, View};
 
 const HEADING: f64 = 62.0;
@@ -42,11 +42,6 @@ enum Mark {
 fn letter(i: usize) -> String {
     let letter = char::from(b'A' + (i % 26) as u8);
     if i < 26 { letter.to_string() } else { format!("{letter}{}", i / 26 + 1) }
-}
-
-/// The colour of a body, and of the frame.
-fn colour(body: Option<usize>) -> Colour {
-    body.map_or(SOFT, |body| KINDS[body % KINDS.len()])
 }
 
 impl Mechanism {

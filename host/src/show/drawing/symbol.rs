@@ -1,16 +1,21 @@
 //! Symbols of joints, bodies and drives.
 
-use super::{colour, view::View};
+use super::view::View;
 use crate::{
     mechanism::{Joint, JointKind},
     show::{
-        palette::{Colour, INK, KINDS, PAPER},
+        palette::{Colour, INK, KINDS, PAPER, SOFT},
         svg::{Stroke, Svg, number},
     },
 };
 
 /// The colour of drives.
 pub const DRIVE: Colour = KINDS[7];
+
+/// The colour of a body, and of the frame.
+pub fn colour(body: Option<usize>) -> Colour {
+    body.map_or(SOFT, |body| KINDS[body % KINDS.len()])
+}
 
 /// Radius of a pin (px), and how much of a gap is shown.
 const PIN: f64 = 6.0;

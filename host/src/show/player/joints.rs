@@ -3,11 +3,7 @@
 use nalgebra::{Rotation3, Vector2, Vector3};
 use slipfit_core::law::Elastic;
 
-use super::{
-    Contact, Joint, MM, Series,
-    mechanism::{AXES, series},
-    rounded,
-};
+use super::{AXES, Contact, Joint, MM, Series, rounded, series};
 use crate::{
     dynamics::laws::AnyElastic,
     mechanism::{Joint as Joined, JointKind, Mechanism, Moment, Port},

@@ -1,6 +1,6 @@
 //! A mechanism of bodies and joints for the player: bodies at true scale, pins enlarged in their gaps.
 
-use super::{Body, Event, MM, Motion, Plot, Run, Series, View, events, hull::hull, joints::joints, rounded};
+use super::{AXES, Body, Event, MM, Motion, Plot, Run, View, events, hull::hull, joints::joints, rounded, series};
 use crate::{
     dynamics::driven::Driven,
     mechanism::{Body as Drawn, BodyMotion, ByDrive, JointKind, Mechanism, MechanismRun, Moment},
@@ -8,9 +8,6 @@ use crate::{
 
 /// How far a body is drawn beyond its joints, as a share of the mechanism's size.
 const RIM: f64 = 0.025;
-/// Letters of the axes.
-pub const AXES: [&str; 3] = ["x", "y", "z"];
-
 /// A `run` of the unit of a `mechanism` with these `gaps` (m), `driven` by one of its drives if it has any; its `label` tells it
 /// from other runs.
 pub fn run(mechanism: &Mechanism, driven: Option<&ByDrive>, gaps: &[f64], label: String, run: &MechanismRun) -> Run {
@@ -55,11 +52,6 @@ fn of_drive(driven: &ByDrive, run: &MechanismRun) -> (Vec<Plot>, Vec<Event>) {
     };
     let speed = Plot { name: "speed", unit: kind.speed_unit(), values: at_drive(&|_, speed| kind.speed(speed), 3) };
     (vec![force, speed], events(&run.outcomes[driven.index()]))
-}
-
-/// A number of every moment, with so many decimals.
-pub fn series(moments: &[Moment], digits: i32, of: impl Fn(&Moment) -> f64) -> Series {
-    Series(moments.iter().map(|moment| rounded(of(moment), digits)).collect())
 }
 
 /// The longest edge (m) of the box around all bodies and joints.

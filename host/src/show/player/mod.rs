@@ -11,7 +11,7 @@ mod slide;
 use maud::{Markup, PreEscaped, html};
 use serde::{Serialize, Serializer};
 
-use crate::dynamics::outcome::Outcome;
+use crate::{dynamics::outcome::Outcome, mechanism::Moment};
 
 pub use mechanism::run as of_mechanism;
 pub use slide::run as of_slide;
@@ -20,6 +20,9 @@ pub use slide::run as of_slide;
 pub const SCRIPT: PreEscaped<&str> = PreEscaped(include_str!("player.js"));
 /// Its style.
 pub const STYLE: PreEscaped<&str> = PreEscaped(include_str!("player.css"));
+
+/// Letters of the axes.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A run to be played.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -56,6 +59,11 @@ impl Serialize for Series {
             _ => self.0.serialize(serializer),
         }
     }
+}
+
+/// A number of every moment, with so many decimals.
+fn series(moments: &[Moment], digits: i32, of: impl Fn(&Moment) -> f64) -> Series {
+    Series(moments.iter().map(|moment| rounded(of(moment), digits)).collect())
 }
 
 /// A side.

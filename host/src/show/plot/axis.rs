@@ -2,9 +2,8 @@
 
 use slipfit_tolerance::number::{fixed, typeset};
 
-use super::PlotError;
 use crate::show::{
-    chart::{Chart, Panel, Scale},
+    chart::{Chart, Panel, PlotError, Scale},
     layout::{Ticks, extent},
 };
 

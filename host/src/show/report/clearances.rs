@@ -3,10 +3,7 @@
 use maud::{Markup, html};
 use slipfit_core::clearance::GapStatistics;
 
-use super::{
-    Clearances,
-    html::{columns, group, mm, optional, real, row, table, tall, typed},
-};
+use super::html::{columns, group, mm, optional, real, row, table, tall, typed};
 use crate::{
     mechanism::{
         Gap, JointKind, Mechanism,
@@ -14,6 +11,20 @@ use crate::{
     },
     setup::{SURFACES, Scene},
 };
+
+/// Whose gaps are shown.
+#[derive(Clone, Copy)]
+pub enum Clearances<'a> {
+    /// Those of a slide's pins.
+    Pins {
+        /// The slide.
+        scene: &'a Scene,
+        /// The tolerance level at which their sums and differences are shown.
+        n: f64,
+    },
+    /// Those of a mechanism's joints.
+    Joints(&'a Mechanism),
+}
 
 /// The section of the page; `computed` if the gaps follow from a product.
 pub fn section(clearances: &Clearances, computed: bool) -> Markup {

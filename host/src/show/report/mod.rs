@@ -10,13 +10,9 @@ mod sweep;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use self::html::{figure, list, minus_signs, real};
-pub use self::production::Production;
+pub use self::{clearances::Clearances, production::Production};
 use super::{palette::style_sheet, player};
-use crate::{
-    dynamics::{driven::DriveKind, sweep::Sweep},
-    mechanism::Mechanism,
-    setup::Scene,
-};
+use crate::dynamics::{driven::DriveKind, sweep::Sweep};
 
 /// What a report is made of.
 #[derive(Clone, Copy)]
@@ -57,20 +53,6 @@ pub struct Units {
     pub figures: Vec<Figure>,
     /// A player, as [`super::player::figure`] makes it.
     pub player: Option<Markup>,
-}
-
-/// Whose gaps are shown.
-#[derive(Clone, Copy)]
-pub enum Clearances<'a> {
-    /// Those of a slide's pins.
-    Pins {
-        /// The slide.
-        scene: &'a Scene,
-        /// The tolerance level at which their sums and differences are shown.
-        n: f64,
-    },
-    /// Those of a mechanism's joints.
-    Joints(&'a Mechanism),
 }
 
 /// Figures of a flash table.

@@ -3,8 +3,7 @@
 use maud::{Markup, html};
 
 use super::{
-    Clearances,
-    clearances::first_to_close,
+    clearances::{Clearances, first_to_close},
     html::{columns, group, marked, optional, real, table, tall, typed},
 };
 use crate::dynamics::{
