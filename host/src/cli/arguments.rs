@@ -112,13 +112,12 @@ impl SceneArguments {
         self.set.iter().map(|assignment| Override::set(assignment)).chain(options.iter().cloned()).collect()
     }
 
-    /// Name and text of the scene: a file, or a shipped one by its name.
     /// The scene's name without folder and ending.
     pub fn stem(&self) -> &std::ffi::OsStr {
         self.scene.file_stem().unwrap_or("scene".as_ref())
     }
 
-    /// Its name for messages, and its text.
+    /// Its name for messages, and its text: of a file, or of a shipped one by its name.
     pub fn text(&self) -> Result<(String, Cow<'static, str>), Failure> {
         let path = &self.scene;
         let unreadable =

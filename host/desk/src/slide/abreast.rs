@@ -12,7 +12,7 @@ use slipfit_core::{
     system::{AbreastBodies, Bodies, Element, Link, spatial::Floating},
 };
 
-use super::{SlideMotion, Watch, approaches};
+use super::watch::{SlideMotion, Watch, approaches};
 use crate::{closing::Gaps, laws::SlidingSlide, out_of_line::Contacts, pack::Pack};
 
 /// A number for each pin.
