@@ -4,7 +4,8 @@ use crate::{
     ParameterError, Scalar, Vector3,
     drive::Drive,
     law::{Elastic, Exact, Friction, Frictionless, Impact, Linear, Power, Regularised, ThreeHalves},
-    slide::{Body, Slide},
+    slide::{Body, PINS, Slide},
+    system::{Lanes, everywhere},
 };
 
 /// Contact parameters, SI units.
@@ -164,6 +165,32 @@ impl<S: Scalar> SlideData<S> {
                 point_b: vector(&drive.point_b),
             },
         }
+    }
+
+    /// What a slide of lanes is to be made of for [`abreast_pins`](crate::slide::abreast_pins): the parameters of this one in every lane, and in
+    /// place of each pin all of them, each in its lane.
+    pub fn abreast<L: Lanes<S>>(&self) -> SlideData<L> {
+        let mut lanes = self.cast(everywhere);
+        let [a, b, c, d] = self.body.pins_w;
+        let place = Vector3::new(L::of([a.x, b.x, c.x, d.x]), L::of([a.y, b.y, c.y, d.y]), L::of([a.z, b.z, c.z, d.z]));
+        lanes.body.pins_w = [place; PINS];
+        #[rustfmt::skip]
+        let [
+            left_a, right_a, rail_a, wall_a,
+            left_b, right_b, rail_b, wall_b,
+            left_c, right_c, rail_c, wall_c,
+            left_d, right_d, rail_d, wall_d,
+        ] = self.body.gaps;
+        let [left, right, rail, wall] = [
+            [left_a, left_b, left_c, left_d],
+            [right_a, right_b, right_c, right_d],
+            [rail_a, rail_b, rail_c, rail_d],
+            [wall_a, wall_b, wall_c, wall_d],
+        ]
+        .map(L::of);
+        lanes.body.gaps =
+            [left, right, rail, wall, left, right, rail, wall, left, right, rail, wall, left, right, rail, wall];
+        lanes
     }
 }
 

@@ -24,7 +24,7 @@ use crate::{
     },
 };
 
-pub use abreast::{AbreastPins, abreast, abreast_pins};
+pub use abreast::{AbreastPins, abreast_pins};
 pub use energy::{Energy, Power};
 
 /// Pins of the slide.

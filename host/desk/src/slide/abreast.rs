@@ -8,7 +8,7 @@ use slipfit_core::{
     mechanism::{Differentiated, Mechanism},
     menu::SlideData,
     pose::Pose,
-    slide::{AbreastPins, Internal, Slide, abreast, abreast_pins},
+    slide::{AbreastPins, Internal, Slide, abreast_pins},
     system::{AbreastBodies, Bodies, Element, Link, spatial::Floating},
 };
 
@@ -35,7 +35,7 @@ impl SideBySide {
     /// no such registers, or the laws are not the paper's.
     pub fn new(data: &SlideData<f64>, stick_band: f64) -> Option<Self> {
         let instructions = V3::try_new()?;
-        match SlidingSlide::new(&abreast(data), Quad::splat(stick_band)) {
+        match SlidingSlide::new(&data.abreast(), Quad::splat(stick_band)) {
             Ok(SlidingSlide::Usual(lanes)) => Some(Self { instructions, pins: abreast_pins(&lanes) }),
             _ => None,
         }
