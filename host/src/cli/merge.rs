@@ -62,6 +62,7 @@ impl Arguments {
         if let Some(path) = &self.out {
             files::write(path, &part.encode().map_err(RunError::from)?)?;
         }
+        self.outputs.check_level(file.slide.is_some())?;
         self.outputs.show(&file.title, file.slide.as_ref(), &study, &part.tallies, self.json)
     }
 

@@ -47,9 +47,9 @@ pub(super) const DEFAULT: Settings = Settings { method: Method::PseudoRandom, sa
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Units to draw, in each replicate.
-    #[arg(long, default_value_t = DEFAULT.samples)]
-    samples: u64,
+    /// Units to draw, in each replicate; if not given 5000.
+    #[arg(long)]
+    samples: Option<u64>,
     /// How units are drawn.
     #[arg(long, value_enum, default_value_t = Sampling::Mc)]
     method: Sampling,
@@ -58,9 +58,11 @@ pub(super) struct Arguments {
     /// Standard errors follow from their spread.
     #[arg(long)]
     replicates: Option<u64>,
-    /// Seed of the production. The same scene, seed and number give the same unit on every machine.
-    #[arg(long, default_value_t = DEFAULT.seed)]
-    seed: u64,
+    /// Seed of the production; if not given 1.
+    ///
+    /// The same scene, seed and number give the same unit on every machine.
+    #[arg(long)]
+    seed: Option<u64>,
     #[command(flatten)]
     threads: ThreadArguments,
     /// Works on part I of N and writes it to `--out`; `slipfit merge` joins the parts.
@@ -115,6 +117,7 @@ impl Arguments {
         let file = self.scene.load_file(&[])?;
         match (&file.product, &file.slide) {
             (Some(product), _) => {
+                self.outputs.check_level(file.slide.is_some())?;
                 self.study(&file.title, &product.model, file.slide.as_ref())?;
                 warn(&product.warnings);
                 Ok(())
@@ -129,14 +132,21 @@ impl Arguments {
 
     /// The gaps as the scene gives them.
     fn given(&self, scene: &Scene) -> Result<(), Failure> {
-        self.refuse_files("the scene gives its gaps, there is no product to draw")?;
+        self.refuse_units("the scene gives its gaps, there is no product to draw")?;
         let given = Given::new(scene, self.outputs.level(scene));
         if self.scene.json { print_json(&given) } else { print(&given.describe()) }
     }
 
-    /// Refuses options that ask for files of random units where there are none.
-    fn refuse_files(&self, why: &str) -> Result<(), Failure> {
-        let own = self.out.as_ref().map(|_| "--out").or(self.draws.as_ref().map(|_| "--draws"));
+    /// Refuses options of random units where there are none.
+    fn refuse_units(&self, why: &str) -> Result<(), Failure> {
+        let own = [
+            ("--out", self.out.is_some()),
+            ("--draws", self.draws.is_some()),
+            ("--samples", self.samples.is_some()),
+            ("--replicates", self.replicates.is_some()),
+            ("--seed", self.seed.is_some()),
+        ];
+        let own = own.iter().find(|(_, is_given)| *is_given).map(|(option, _)| *option);
         let option = own.or(self.outputs.asked());
         option.map_or(Ok(()), |option| Err(Failure::Input(format!("{option}: {why}"))))
     }
@@ -148,17 +158,18 @@ impl Arguments {
             _ => (DEFAULT.method, DEFAULT.replicates),
         };
         let replicates = self.replicates.unwrap_or(replicates);
-        let bad = || Failure::Input(format!("{} samples in {replicates} replicates are too many", self.samples));
-        let samples = self.samples.checked_mul(replicates).ok_or_else(bad)?;
-        if replicates > 1024 {
+        if !(1..=1024).contains(&replicates) {
             return Err(Failure::Input(format!("--replicates is {replicates}, allowed are 1 to 1024")));
         }
-        Ok(Settings { method, samples, replicates, seed: self.seed })
+        let samples = self.samples.unwrap_or(DEFAULT.samples);
+        let bad = || Failure::Input(format!("{samples} samples in {replicates} replicates are too many"));
+        let samples = samples.checked_mul(replicates).ok_or_else(bad)?;
+        Ok(Settings { method, samples, replicates, seed: self.seed.unwrap_or(DEFAULT.seed) })
     }
 
     fn study(&self, title: &str, model: &Model, slide: Option<&Scene>) -> Result<(), Failure> {
         if let Some(design) = self.method.design() {
-            self.refuse_files("a designed experiment has no random units")?;
+            self.refuse_units("a designed experiment has no random units")?;
             return experiment::show(title, model, design, self.scene.json);
         }
         let settings = self.settings()?;

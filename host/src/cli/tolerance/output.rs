@@ -82,6 +82,19 @@ impl OutputArguments {
         self.n.unwrap_or_else(|| closing_level(slide))
     }
 
+    /// Refuses a level where the scene `has_slide` not.
+    ///
+    /// # Errors
+    /// If a level is given.
+    pub fn check_level(&self, has_slide: bool) -> Result<(), Failure> {
+        match self.n {
+            Some(_) if !has_slide => {
+                Err(Failure::Input("--n: the scene has no slide whose clearances a level could change".into()))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The option given that asks for a file, if any does.
     pub fn asked(&self) -> Option<&'static str> {
         self.csv.as_ref().map(|_| "--csv").or(self.plots.as_ref().map(|_| "--plots"))
