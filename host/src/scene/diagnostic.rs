@@ -176,7 +176,9 @@ pub enum Problem {
         lower: String,
     },
     /// Coefficients that no set of random variables can have.
-    #[error("the correlations leave a dimension nothing of its own (±1), or contradict each other: their matrix is not positive definite")]
+    #[error(
+        "the correlations leave a dimension nothing of its own (±1), or contradict each other: their matrix is not positive definite"
+    )]
     NotPositiveDefinite,
     /// Something that drawings have and this program does not.
     #[error("{what} is not supported")]
