@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::path::Path;
+
 use common::{json, slipfit, stdout};
 use nalgebra::{Rotation3, Vector3};
 use slipfit::{
@@ -341,4 +343,18 @@ fn schemes_of_a_mechanism_are_compared() {
     assert!(error("desk", 1e-8) < error("desk", 1e-5));
     let output = slipfit(folder.path(), &["precision", "four-bar", "--stability"]);
     assert_eq!(output.status.code(), Some(2));
+}
+
+/// A column that a finer run does not confirm is told, also where the verdict's figures agree.
+#[test]
+fn columns_that_a_finer_run_does_not_confirm_are_warned_of() {
+    let warned = |error: &str| {
+        let output = slipfit(Path::new("."), &["simulate", "linear-guide", "--set", &format!("run.error={error}")]);
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let warning = warned("1e-3");
+    let told = "a run at a tenth of the tolerance differs by 8.0 % of the peak in carriage.wy (rad/s)";
+    assert!(warning.contains(told) && warning.contains("run.error"), "{warning}");
+    assert!(!warned("1e-5").contains("a run at a tenth"));
 }

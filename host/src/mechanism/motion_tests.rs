@@ -212,6 +212,32 @@ fn peaks_of_stiff_drives_are_those_of_the_load() {
     }
 }
 
+/// A drive gives what its command says, also against joints that hold its body, whatever the steps are.
+#[test]
+fn the_effort_of_a_drive_that_is_held_follows_its_command() {
+    for (start, end) in [(0.1, 0.101), (0.0995, 0.1), (0.01, 0.02), (0.05, 0.3)] {
+        for (space, inertia, axis, held) in [
+            ("plane", "\"1e-4 kg·m²\"".to_owned(), "[1, 0]", ""),
+            ("space", format!("[{}]", ["\"1e-4 kg·m²\""; 3].join(", ")), "[1, 0, 0]", "axis = [0, 0, 1]"),
+        ] {
+            let zero = if space == "plane" { "[0, 0]" } else { "[0, 0, 0]" };
+            let text = format!(
+                "[mechanism]\nspace = \"{space}\"\n[[body]]\nname = \"b\"\nmass = 100\ninertia = {inertia}\ncentre = {zero}\n\
+                 [[joint]]\nname = \"j\"\nkind = \"prismatic\"\nbetween = [\"b\", \"frame\"]\nat = {zero}\naxis = {axis}\n\
+                 [[drive]]\nname = \"d\"\nturns = \"b\"\n{held}\ngain = 10\nramp_start = {start}\nramp_end = {end}\nspeed = 5\n\
+                 [run]\nduration = 300\n"
+            );
+            let mechanism = SceneFile::parse("held", &text, &[]).unwrap().mechanism.unwrap();
+            let run = simulated(&mechanism, 1e-3);
+            let drive = mechanism.drives[0].drive;
+            for (t, torque) in column(&run, "t (s)").iter().zip(column(&run, "d.torque (N·m)")) {
+                let expected = drive.force(*t, 0.0);
+                assert!((torque - expected).abs() < 1e-9, "{space} {start} {t}: {torque}, not {expected}");
+            }
+        }
+    }
+}
+
 /// What is said of a run bounds its error in each column, here against a run at a thousandth of its tolerance.
 #[test]
 fn a_run_at_a_tenth_tells_how_far_every_column_is_off() {

@@ -320,15 +320,20 @@ fn solve<P: Plant<D>, const D: usize>(
     let motions: Vec<_> = knots.iter().map(told_at).collect();
     let times: Vec<f64> = knots.iter().map(|knot| knot.t).collect();
     let mut drives = Vec::new();
-    let mut at_knots = vec![Vec::with_capacity(knots.len()); mechanism.drives.len()];
+    // Of each drive its effort, and whether its body ever moves along it.
+    let mut at_knots = vec![(Vec::with_capacity(knots.len()), false); mechanism.drives.len()];
     for (knot, motions) in knots.iter().zip(&motions) {
         drives_at(knot.t, motions, &mut drives);
-        at_knots.iter_mut().zip(&drives).for_each(|(values, at)| values.push(at.force));
+        for ((values, moves), at) in at_knots.iter_mut().zip(&drives) {
+            values.push(at.force);
+            *moves |= at.vz != 0.0;
+        }
     }
-    let efforts =
-        mechanism.drives.iter().zip(at_knots).map(|(named, values)| {
-            Effort::new(times.clone(), values, mechanism.least_inertia(named) / named.drive.gain)
-        });
+    let efforts = mechanism.drives.iter().zip(at_knots).map(|(named, (values, moves))| {
+        // What other joints hold still has a speed that is known exactly at all times.
+        let time_constant = if moves { mechanism.least_inertia(named) / named.drive.gain } else { f64::INFINITY };
+        Effort::new(times.clone(), values, time_constant)
+    });
     let efforts: Vec<_> = efforts.collect();
     let mut between = Vec::new();
     looks(&knots, end, |t, state, place| {

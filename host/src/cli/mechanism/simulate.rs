@@ -109,7 +109,8 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
     wanted.check_outputs()?;
     let [desk, finer] = confirmed(mechanism, gaps, every)?;
     let agreement = desk.agreement(&finer, mechanism);
-    warn(doubt(mechanism, &desk, &finer).as_slice());
+    let coarse = is_coarse(&agreement);
+    warn(doubt(mechanism, &desk, &finer).or(coarse).as_slice());
     let controller = controller(mechanism, gaps, every, &desk, wanted.by_controller)?;
     let one = match &controller {
         Some(Controller { run: Some(run), .. }) if wanted.by_controller => run,
@@ -313,6 +314,18 @@ fn doubt(mechanism: &Mechanism, desk: &MechanismRun, finer: &MechanismRun) -> Op
         "{}: no verdict, because a run at a tenth of the tolerance ({}) differs by more than 1 % in peak, final speed or travel; take a \
          tenth of run.error",
         named.name, better.verdict
+    ))
+}
+
+/// Difference (share of the peak) to a run at a tenth of the tolerance from which on a warning says so.
+const COARSE: f64 = 0.01;
+
+/// That figures agree and a column does not, if it is so.
+fn is_coarse(agreement: &Agreement) -> Option<String> {
+    let column = agreement.column.as_ref().filter(|_| agreement.share.is_nan() || agreement.share > COARSE)?;
+    let percent = agreement.share * 100.0;
+    Some(format!(
+        "a run at a tenth of the tolerance differs by {percent:.1} % of the peak in {column}: take a tenth of run.error"
     ))
 }
 
