@@ -391,9 +391,10 @@ fn contributors(stack: &Stack, report: &Report, i: usize, scale: f64, chance: &m
         return;
     }
     let note = |text: &str| report.notes.iter().find(|note| note.starts_with(&of.name) && note.contains(text));
-    // Withheld, and said so, where few of its units have the measure.
-    if 2 * of.undefined as usize > UNITS && of.contributors.iter().all(|share| share.percent.is_none()) {
-        let is_said = note("too few units have it").is_some();
+    // Withheld, and said so, where few of its units have the measure, or differ: then its kurtosis is large.
+    let few = 2 * of.undefined as usize > UNITS || of.kurtosis.is_none_or(|kurtosis| kurtosis > 50.0);
+    if few && of.contributors.iter().all(|share| share.percent.is_none()) {
+        let is_said = note("too few units have it").or(note("too few units differ")).is_some();
         return wrong.that(is_said, || format!("{}: shares are withheld without a note", of.name));
     }
     // Where few units carry the variance the shares have the standard error that is said.

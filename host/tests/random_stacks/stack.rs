@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{
-    chance::Chance,
+    chance::{Chance, decimal},
     expected::value_correlation,
     expression::{Kind, Material, One, Range, Tree, Two},
     law::{Law, Mean, Spread, Width},
@@ -289,11 +289,14 @@ impl Stack {
         for number in 0..1 + chance.below(3) {
             let kind = chance.one_of(&[Kind::Length, Kind::Length, Kind::Angle, Kind::Ratio]);
             let material = Material { inputs: &inputs, measures: &known };
-            let tree = if chance.happens(0.3) {
-                material.chain(kind, chance)
+            let clipped = if chance.happens(0.15) { Self::clipped(&dimensions, chance) } else { None };
+            let (kind, tree) = if let Some(tree) = clipped {
+                (Kind::Length, tree)
+            } else if chance.happens(0.3) {
+                (kind, material.chain(kind, chance))
             } else {
                 let depth = 1 + chance.below(4);
-                material.random(kind, depth, chance)
+                (kind, material.random(kind, depth, chance))
             };
             let ranges: Vec<_> =
                 [&inputs, &known].map(|all| all.iter().map(|(_, range)| *range).collect::<Vec<_>>()).into();
@@ -315,6 +318,19 @@ impl Stack {
             made.sums.push(lengths);
         }
         made
+    }
+
+    /// A length that is 0 but where a chain of dimensions is near a place inside its worst case: at all corners it is level.
+    fn clipped(dimensions: &[Dimension], chance: &mut Chance) -> Option<Tree> {
+        let limits: Vec<_> = dimensions.iter().map(|d| (d.kind, d.limits())).collect();
+        let chain = Material { inputs: &limits, measures: &[] }.chain(Kind::Length, chance);
+        let ranges: Vec<Range> = limits.iter().map(|(_, range)| *range).collect();
+        let [low, high] = chain.range(&ranges, &[])?;
+        let (place, width) = (low + (high - low) * chance.between(0.2, 0.8), (high - low) * chance.between(0.05, 0.3));
+        let constant = |x: f64| Box::new(Tree::Constant(decimal(x, 5), Kind::Length));
+        let apart = Tree::One(One::Absolute, Box::new(Tree::Two(Two::Subtract, Box::new(chain), constant(place))));
+        let height = Tree::Two(Two::Subtract, constant(width), Box::new(apart));
+        (high - low > 1e-3).then(|| Tree::Extreme(true, vec![*constant(0.0), height]))
     }
 
     /// A measure that some units do not have, if there are dimensions for one: it is defined at the nominal values.

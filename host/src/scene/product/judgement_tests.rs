@@ -205,6 +205,30 @@ fn shares_of_a_rare_lot_are_said_to_be_uncertain() {
     }
 }
 
+/// What one unit in a hundred thousand has, slopes and moments of second order do not see: they are withheld, and contributors are not told.
+#[test]
+fn a_measure_that_few_units_move_is_not_said_to_be_level() {
+    for (from, is_level) in [("0.142", false), ("0.15", false), ("0.7", true)] {
+        let text = scene(
+            &[("x", "1", "0.1"), ("y", "1", "0.1")],
+            &[&format!("is = \"max(0 mm, x - 1 mm - {from} mm) + 0*y\"")],
+        );
+        let model = product_of(&text).model;
+        let report = report("", &model, &analyse(&model, settings(1 << 20), |_| ()).unwrap());
+        let measure = &report.measures[0];
+        assert_eq!(measure.sd > 0.0, !is_level, "{from}: {measure:?}");
+        assert_eq!(measure.rss.is_none() && measure.second_order.is_none(), !is_level, "{from}: {measure:?}");
+        assert_eq!(
+            report.notes.iter().any(|note| note.contains("has a kink")),
+            !is_level,
+            "{from}: {:?}",
+            report.notes
+        );
+        let shares: Vec<_> = measure.contributors.iter().filter_map(|share| share.percent).collect();
+        assert!(is_level || shares.is_empty() || (shares[0] - 100.0).abs() < 1e-6, "{from}: {shares:?}");
+    }
+}
+
 #[test]
 fn rss_has_the_correlations_of_the_scene() {
     for (rho, sum, difference) in [(0.5, 0.07, 0.03), (-0.5, 0.03, 0.07), (0.0, 0.05, 0.05)] {

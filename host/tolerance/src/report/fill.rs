@@ -11,7 +11,11 @@ use crate::{
     },
     model::{Contributor, Model, Quantity, Sum},
     sampling::sampler::Method,
-    statistics::{estimate::Estimate, interval::student_factor},
+    statistics::{
+        estimate::{Estimate, Statistics},
+        interval::student_factor,
+    },
+    theory::moments::Moments,
 };
 
 fn defects(counted: &Estimate, tail: Option<&Tail>) -> Defects {
@@ -74,12 +78,23 @@ fn per(quantity: Quantity) -> (f64, &'static str) {
     if quantity == Quantity::Angle { (1.0, "rad") } else { (quantity.factor(), quantity.unit()) }
 }
 
+/// Share of the units' standard deviation below which that of second order misses what makes them differ.
+const MISSED: f64 = 0.1;
+
+/// Whether units of a measure differ that is level by its `moments` of second order: what makes them differ is met by few.
+fn misses_variation(moments: &Moments, found: &Statistics) -> bool {
+    let [low, high] = found.extremes;
+    let is_rounding = high - low <= 1e-9 * low.abs().max(high.abs());
+    !is_rounding && moments.deviation < MISSED * found.deviation.value
+}
+
 fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
     let (measure, theory, found) = (&model.measures[i], &analysis.theory, &analysis.joint.measures[i]);
     let factor = measure.quantity.factor();
     let scaled = |value: f64| value * factor;
     let (rss, moments, tails) = (&theory.sums_of_squares[i], theory.moments[i], &theory.tails[i]);
-    let by_slopes = moments.by_slopes();
+    let is_missed = misses_variation(&moments, found);
+    let by_slopes = moments.by_slopes() && !is_missed;
     let total: f64 = theory.indices[i].as_ref().map_or(0.0, |indices| indices.total.iter().sum());
     let by_indices = total > 0.0 && (!by_slopes || moments.curved > COUNTS);
     let percent = |k: usize| match &theory.indices[i] {
@@ -166,7 +181,7 @@ fn measure(model: &Model, analysis: &Analysis, i: usize) -> MeasureReport {
             modified: scaled(rss.modified.by_count),
             sd: scaled(rss.deviation),
         }),
-        second_order: moments.described.then(|| SecondOrder {
+        second_order: (moments.described && !is_missed).then(|| SecondOrder {
             mean: scaled(moments.mean),
             mean_shift: scaled(moments.shift),
             sd: scaled(moments.deviation),
@@ -213,9 +228,10 @@ fn notes(model: &Model, analysis: &Analysis) -> Vec<String> {
             None if found.undefined > 0 && model.correlations.is_empty() => {
                 "; too few units have it to tell what its contributors are"
             }
+            _ if misses_variation(moments, found) => "; too few units differ to tell what its contributors are",
             _ => "",
         };
-        if !moments.described {
+        if !moments.described || misses_variation(moments, found) {
             notes.push(format!(
                 "{} has a kink or a fold where it varies, as a radius or an angle has at 0: slopes do not describe it{contributors}",
                 measure.name
