@@ -222,7 +222,7 @@ impl Modules {
         modules.imports = texts.iter().map(|(module, _)| (module.clone(), Vec::new())).collect();
         for (module, text) in texts {
             let code = code(&text);
-            let mut body = String::new();
+            let (mut body, mut brought) = (String::new(), BTreeMap::new());
             for statement in code.split_inclusive(';') {
                 let start = statement.rfind("use ").filter(|at| {
                     let before = statement[..*at].chars().next_back();
@@ -237,8 +237,9 @@ impl Modules {
                 for path in expanded(&statement[start + 4..statement.len() - 1]) {
                     let (path, name) = path.split_once(" as ").map_or((path.as_str(), None), |(a, b)| (a, Some(b)));
                     let Some(path) = modules.absolute(&module, path) else { continue };
+                    let name = name.map(str::to_owned).or(path.last().cloned()).unwrap_or_default();
+                    brought.insert(name.clone(), path.clone());
                     if is_public {
-                        let name = name.map(str::to_owned).or(path.last().cloned()).unwrap_or_default();
                         modules.passed_on.entry(module.clone()).or_default().insert(name, path);
                     } else {
                         modules.imports.entry(module.clone()).or_default().push(path);
@@ -247,7 +248,14 @@ impl Modules {
             }
             let is_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
             let paths = body.split(|c: char| !is_path(c)).filter(|path| path.contains("::"));
-            let paths: Vec<Name> = paths.filter_map(|path| modules.absolute(&module, path)).collect();
+            // By a name that was brought, such as a module's, or from the module itself.
+            let absolute = |path: &str| match path.split_once("::").map(|(first, rest)| (brought.get(first), rest)) {
+                Some((Some(from), rest)) => {
+                    Some(from.iter().cloned().chain(rest.split("::").map(str::to_owned)).collect())
+                }
+                _ => modules.absolute(&module, path),
+            };
+            let paths: Vec<Name> = paths.filter_map(absolute).collect();
             modules.imports.entry(module).or_default().extend(paths);
         }
         modules

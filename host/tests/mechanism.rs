@@ -345,7 +345,7 @@ fn schemes_of_a_mechanism_are_compared() {
     assert_eq!(output.status.code(), Some(2));
 }
 
-/// A column that a finer run does not confirm is told, also where the verdict's figures agree.
+/// A warning names a column that a finer run does not confirm, even where the figures of the verdict agree.
 #[test]
 fn columns_that_a_finer_run_does_not_confirm_are_warned_of() {
     let warned = |error: &str| {

@@ -14,7 +14,7 @@ use slipfit_core::{
     system::{LANES, Lanes},
 };
 
-/// A contact at one instant, or several side by side in a number `S` that holds one of each.
+/// A contact at one instant, or several side by side: a number `S` has a value for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Approach<S = f64> {
     /// Gap (m), negative where it penetrates.

@@ -14,6 +14,7 @@ use super::{
     arguments::SceneArguments,
     failure::Failure,
     mechanism,
+    self_locking::self_locking,
     terminal::{print, print_json, text_table, warn},
 };
 use crate::{
@@ -224,19 +225,6 @@ fn warnings(n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
         warnings.push(self_locking(guide.friction, critical, &levers, meaning));
     }
     warnings
-}
-
-/// The warning of a guide that locks, with the `levers` of its drive: length of the guide and distance of the drive (m), and where it is.
-pub(super) fn self_locking(friction: f64, critical: f64, levers: &[([f64; 2], &str)], meaning: &str) -> String {
-    let lever = |([length, distance], whence): &([f64; 2], &str)| {
-        let [length, distance] = [length, distance].map(|x| fixed(x.abs() * 1e3, 1));
-        format!("a guide {length} mm long, driven {distance} mm {whence} it")
-    };
-    let levers = levers.iter().map(lever).collect::<Vec<_>>().join(", and ");
-    format!(
-        "self-locking: friction {friction} is not below the critical {critical:.4} of {levers}: {meaning}. Drive nearer to the \
-         guide, lengthen the guide, or lower the friction"
-    )
 }
 
 /// Where the scene's clearances are not those that its gaps add up to.

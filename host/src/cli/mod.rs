@@ -15,6 +15,7 @@ mod precision;
 #[cfg(test)]
 pub(crate) mod reference;
 mod run;
+mod self_locking;
 mod simulate;
 mod stability;
 mod sweep;

@@ -23,7 +23,7 @@ use crate::{
         confirm::{confirmed, with_step_tried},
         controller::audited,
         driven::Driven,
-        film::{Film, film},
+        film::{Film, MOMENTS, film},
         outcome::{Outcome, Verdict},
         scheme::{IntegratorKind, ScalarKind},
         simulate::{Run, Settings, SimulateError, Solved, simulate},
@@ -45,9 +45,6 @@ use crate::{
 };
 
 pub(super) use words::why_undecided;
-
-/// Moments of a run that is played.
-pub(super) const MOMENTS: usize = 160;
 
 /// Simulates one unit: speed and drive force over time.
 ///

@@ -9,6 +9,9 @@ use super::{
 };
 use crate::setup::Scene;
 
+/// Moments of a run that is played.
+pub const MOMENTS: usize = 160;
+
 /// A moment of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {

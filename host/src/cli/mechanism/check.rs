@@ -10,8 +10,8 @@ use super::{GapReport, gap_reports};
 use crate::{
     cli::{
         arguments::SceneArguments,
-        check::self_locking,
         failure::Failure,
+        self_locking::self_locking,
         terminal::{print, print_json, text_table, warn},
     },
     mechanism::{

@@ -14,8 +14,11 @@ use crate::{
     cli::{
         failure::Failure,
         population::{
-            Arguments, HYPOTHESIS, LevelReport, UnitReport, faults, levels, page::units_of_mechanism, percent, rare,
-            strongest, verdicts,
+            asked::{Arguments, HYPOTHESIS},
+            page::units_of_mechanism,
+            rare,
+            reports::{LevelReport, UnitReport},
+            words::{faults, levels, percent, strongest, verdicts},
         },
         terminal::{print, print_json, text_table, warn},
     },

@@ -12,12 +12,12 @@ use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{
         failure::Failure,
-        simulate::MOMENTS,
         terminal::{print, print_json, text_table, warn},
     },
     dynamics::{
         answer::on_the_way,
         error_control::Stopped,
+        film::MOMENTS,
         outcome::{Outcome, Verdict},
     },
     mechanism::{
@@ -109,8 +109,7 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
     wanted.check_outputs()?;
     let [desk, finer] = confirmed(mechanism, gaps, every)?;
     let agreement = desk.agreement(&finer, mechanism);
-    let coarse = is_coarse(&agreement);
-    warn(doubt(mechanism, &desk, &finer).or(coarse).as_slice());
+    warn(doubt(mechanism, &desk, &finer).or_else(|| coarse(&agreement)).as_slice());
     let controller = controller(mechanism, gaps, every, &desk, wanted.by_controller)?;
     let one = match &controller {
         Some(Controller { run: Some(run), .. }) if wanted.by_controller => run,
@@ -320,8 +319,8 @@ fn doubt(mechanism: &Mechanism, desk: &MechanismRun, finer: &MechanismRun) -> Op
 /// Difference (share of the peak) to a run at a tenth of the tolerance from which on a warning says so.
 const COARSE: f64 = 0.01;
 
-/// That figures agree and a column does not, if it is so.
-fn is_coarse(agreement: &Agreement) -> Option<String> {
+/// The warning of a column that a run at a tenth of the tolerance does not confirm.
+fn coarse(agreement: &Agreement) -> Option<String> {
     let column = agreement.column.as_ref().filter(|_| agreement.share.is_nan() || agreement.share > COARSE)?;
     let percent = agreement.share * 100.0;
     Some(format!(

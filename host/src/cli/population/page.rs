@@ -4,8 +4,11 @@ use maud::Markup;
 use rayon::prelude::*;
 
 use crate::{
-    cli::{failure::Failure, simulate::MOMENTS},
-    dynamics::driven::{DriveKind, Driven},
+    cli::failure::Failure,
+    dynamics::{
+        driven::{DriveKind, Driven},
+        film::MOMENTS,
+    },
     mechanism::{ByDrive, film},
     population::{
         Unit,

@@ -1,98 +1,25 @@
-//! A population, for people.
+//! What all units of a production did, for people: of slides and mechanisms.
 
 use std::fmt::Write;
 
-use slipfit_tolerance::number::{self, fixed, level, or_dash};
+use slipfit_tolerance::number::{self, fixed, level};
 
-use super::{Arguments, Found, LevelReport, rare};
+use super::reports::LevelReport;
 use crate::{
-    cli::{failure::Failure, simulate::why_undecided, terminal::text_table},
+    cli::failure::Failure,
     dynamics::outcome::Verdict,
     population::{
-        Unit,
         drivers::{Driver, LEAST_OUTCOMES, LEAST_UNITS},
         production::Production,
-        statistics::{Share, Spread, Statistics},
+        statistics::{Share, Statistics},
         study::Population,
         subject::Subject,
         unit::Fault,
     },
-    setup::Scene,
 };
 
-/// Drivers that are listed.
-const DRIVERS: usize = 5;
-
-impl Arguments {
-    /// The answer, for people: what the units did together, and the worst of them.
-    pub(super) fn describe(&self, scene: &Scene, found: &Found) -> String {
-        let title = match found.population.statistics.malfunctions.units {
-            0 => "None malfunctions; the greatest forces",
-            _ => "The worst",
-        };
-        format!("{}\n{title}\n{}", self.summary(scene, found), worst_units(scene, &found.population.tally.worst))
-    }
-
-    /// What the units did together.
-    pub(super) fn summary(&self, scene: &Scene, found: &Found) -> String {
-        let Population { statistics, of_force, of_malfunction, .. } = &found.population;
-        let Statistics { units, undecided, malfunctions, over_limit, sigma_level, unsolved, out_of_bounds, .. } =
-            *statistics;
-        let mut text = format!("{}: {units} units", scene.title);
-        let length = match self.duty_of(scene).stroke {
-            Some(stroke) => format!("the stroke of {} mm", fixed(stroke * 1e3, 1)),
-            None => format!("{} ms", fixed(scene.run.duration * 1e3, 0)),
-        };
-        let _ = writeln!(text, ", {length}\n");
-        let _ = writeln!(text, "Malfunction     {}", percent(&malfunctions));
-        text += &verdicts(statistics);
-        // Warnings name the others.
-        if undecided.units > unsolved + out_of_bounds {
-            let why = match self.opening {
-                true => {
-                    ": the opening ends before the ramp does; without --opening the whole stroke is simulated".into()
-                }
-                false => why_undecided(scene, Verdict::Undecided),
-            };
-            let _ = writeln!(text, "                undecided{why}");
-        }
-        if let (Some(share), Some(limit)) = (over_limit, self.force_limit) {
-            let name = format!("  over {limit} N ");
-            let _ = writeln!(text, "{name:16}{}", percent(&share));
-        }
-        if let Some(level) = sigma_level {
-            let _ = writeln!(
-                text,
-                "Sigma level     {} σ, one-sided: the normal quantile of the share that does its job",
-                fixed(level, 2)
-            );
-        }
-        for (name, spread) in [("Peak force", &statistics.peak_force), ("  that run", &statistics.running_force)] {
-            if let Some(Spread { quantiles: [least, low, median, high, most], .. }) = spread {
-                let _ = writeln!(
-                    text,
-                    "{name:16}{} N at the median; 90 % of the units {} to {} N, all {} to {} N",
-                    fixed(*median, 3),
-                    fixed(*low, 3),
-                    fixed(*high, 3),
-                    fixed(*least, 3),
-                    fixed(*most, 3)
-                );
-            }
-        }
-        for (name, drivers) in [("Force due to", of_force), ("Failure due to", of_malfunction)] {
-            let _ = writeln!(text, "{name:16}{}", strongest(drivers, DRIVERS));
-        }
-        if scene.has_levels() {
-            let _ = writeln!(text, "Levels n        {}", levels(&found.levels));
-            let _ = writeln!(text, "Hypothesis      {}", found.hypothesis.verdict());
-        }
-        text + &found.rare.as_ref().map(rare::describe).unwrap_or_default()
-    }
-}
-
 /// How many units have which verdict, in lines; those without any are left out.
-pub(in crate::cli) fn verdicts(statistics: &Statistics) -> String {
+pub fn verdicts(statistics: &Statistics) -> String {
     let Statistics { runs, short, crawls, jammed, overruns, undecided, .. } = *statistics;
     let mut text = String::new();
     let mut line = |name: &str, share: Share, note: &str| {
@@ -118,7 +45,7 @@ const OUT_OF_BOUNDS: f64 = 0.01;
 ///
 /// # Errors
 /// Where so many have a parameter that is out of bounds that the scene is to blame.
-pub(in crate::cli) fn faults<S: Subject>(
+pub fn faults<S: Subject>(
     subject: &S,
     production: &Production<S::Gaps>,
     population: &Population<S::Gaps>,
@@ -144,29 +71,6 @@ pub(in crate::cli) fn faults<S: Subject>(
     }
     let all = [told(unassembled, fits, None), told(unsolved, no_step, Some(Fault::Unsolved)), bounds];
     Ok(all.into_iter().flatten().collect())
-}
-
-/// The table of the worst units.
-fn worst_units(scene: &Scene, units: &[Unit]) -> String {
-    let row = |unit: &Unit| {
-        let outcome = unit.outcome;
-        vec![
-            unit.number.to_string(),
-            level((scene.tightness(&unit.gaps) * 100.0).round() / 100.0),
-            outcome.verdict.to_string(),
-            or_dash(outcome.peak_force, |force| fixed(force, 3)),
-            fixed(outcome.final_velocity * 1e3, 3),
-            fixed(outcome.end.z * 1e3, 2),
-            or_dash(outcome.breakaway, |t| fixed(t * 1e3, 1)),
-            outcome
-                .most_loaded
-                .map_or("-".into(), |(i, force)| format!("{} ({} N)", scene.contact_names()[i], fixed(force, 2))),
-        ]
-    };
-    let rows: Vec<Vec<String>> = units.iter().map(row).collect();
-    let heading =
-        ["unit", "tightness", "verdict", "peak, N", "final, mm/s", "travel, mm", "breakaway, ms", "most loaded"];
-    text_table(&heading, &rows)
 }
 
 /// The strongest of `drivers`, at most `most`, as far as chance does not explain them.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::{
-    cli::population::{percent, strongest},
+    cli::population::words::{percent, strongest},
     dynamics::{
         outcome::Verdict,
         sweep::{Level, Sweep},

@@ -1,0 +1,16 @@
+//! The warning of a guide that locks itself, of slides and mechanisms.
+
+use slipfit_tolerance::number::fixed;
+
+/// The warning of a guide that locks, with the `levers` of its drive: length of the guide and distance of the drive (m), and where it is.
+pub fn self_locking(friction: f64, critical: f64, levers: &[([f64; 2], &str)], meaning: &str) -> String {
+    let lever = |([length, distance], whence): &([f64; 2], &str)| {
+        let [length, distance] = [length, distance].map(|x| fixed(x.abs() * 1e3, 1));
+        format!("a guide {length} mm long, driven {distance} mm {whence} it")
+    };
+    let levers = levers.iter().map(lever).collect::<Vec<_>>().join(", and ");
+    format!(
+        "self-locking: friction {friction} is not below the critical {critical:.4} of {levers}: {meaning}. Drive nearer to the \
+         guide, lengthen the guide, or lower the friction"
+    )
+}
