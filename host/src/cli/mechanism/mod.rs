@@ -1,6 +1,7 @@
 //! What `check`, `simulate`, `sweep` and `population` say of a mechanism of bodies and joints, one file a command.
 
 mod check;
+mod doubt;
 pub(super) mod population;
 mod simulate;
 mod sweep;

@@ -8,21 +8,16 @@ use serde::Serialize;
 use slipfit_system::files;
 use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 
-use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
+use super::{DriveReport, GapReport, Wanted, doubt, gap_reports, levels, shown, units};
 use crate::{
     cli::{
         failure::Failure,
         terminal::{print, print_json, text_table, warn},
     },
-    dynamics::{
-        answer::on_the_way,
-        error_control::Stopped,
-        film::MOMENTS,
-        outcome::{Outcome, Verdict},
-    },
+    dynamics::{answer::on_the_way, error_control::Stopped, film::MOMENTS},
     mechanism::{
-        Action, ByDrive, ENERGY, Mechanism, MechanismRun, NamedDrive, RunError, SCHEME, agreement::Agreement,
-        confirmed, controller_run, film,
+        Action, ByDrive, Mechanism, MechanismRun, RunError, SCHEME, agreement::Agreement, confirmed, controller_run,
+        film,
     },
     population::{mechanism::mechanism_of, production::Production},
     setup::ControllerSpec,
@@ -109,7 +104,7 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
     wanted.check_outputs()?;
     let [desk, finer] = confirmed(mechanism, gaps, every)?;
     let agreement = desk.agreement(&finer, mechanism);
-    warn(doubt(mechanism, &desk, &finer).or_else(|| coarse(&agreement)).as_slice());
+    warn(doubt::warning(mechanism, &desk, &finer, &agreement).as_slice());
     let controller = controller(mechanism, gaps, every, &desk, wanted.by_controller)?;
     let one = match &controller {
         Some(Controller { run: Some(run), .. }) if wanted.by_controller => run,
@@ -292,40 +287,6 @@ fn plotted(mechanism: &Mechanism) -> Vec<String> {
         }
     }
     columns
-}
-
-/// Why a verdict of the desk's run is undecided that a `finer` one would have, if one is.
-fn doubt(mechanism: &Mechanism, desk: &MechanismRun, finer: &MechanismRun) -> Option<String> {
-    let mut drives = mechanism.drives.iter().zip(desk.outcomes.iter().zip(&finer.outcomes));
-    let is_doubtful = |of: &(&NamedDrive, (&Outcome, &Outcome))| {
-        of.1.0.verdict == Verdict::Undecided && of.1.1.verdict != Verdict::Undecided
-    };
-    let (named, (_, better)) = drives.find(is_doubtful)?;
-    if desk.energy_excess.is_nan() || desk.energy_excess > ENERGY {
-        let excess = fixed(desk.energy_excess * 100.0, 1);
-        let name = &named.name;
-        return Some(format!(
-            "{name}: no verdict, because the run has up to {excess} % more energy than its start, gravity and its drives supplied; take a \
-             tenth of run.error"
-        ));
-    }
-    Some(format!(
-        "{}: no verdict, because a run at a tenth of the tolerance ({}) differs by more than 1 % in peak, final speed or travel; take a \
-         tenth of run.error",
-        named.name, better.verdict
-    ))
-}
-
-/// Difference (share of the peak) to a run at a tenth of the tolerance from which on a warning says so.
-const COARSE: f64 = 0.01;
-
-/// The warning of a column that a run at a tenth of the tolerance does not confirm.
-fn coarse(agreement: &Agreement) -> Option<String> {
-    let column = agreement.column.as_ref().filter(|_| agreement.share.is_nan() || agreement.share > COARSE)?;
-    let percent = agreement.share * 100.0;
-    Some(format!(
-        "a run at a tenth of the tolerance differs by {percent:.1} % of the peak in {column}: take a tenth of run.error"
-    ))
 }
 
 /// How the desk has computed its run.
