@@ -269,3 +269,46 @@ fn every_stage_of_a_drawer_is_looked_at() {
     let found = stages(&["drive.motor.point=[140, 0, 50]"]);
     assert!(found.len() == 1 && found[0].0 == "intermediate", "{found:?}");
 }
+
+/// A push at an angle between the two contacts, 40 mm apart, presses the body on its guide with tan α of what moves it.
+#[test]
+fn a_block_pushed_at_an_angle_locks_where_the_rule_says() {
+    for (degrees, ahead) in [(60.0, 0.0), (75.0, 0.0), (75.0, 15.0), (60.0, -10.0), (50.0, 5.0)] {
+        let angle = f64::to_radians(degrees);
+        let critical = 1.0 / libm::tan(angle);
+        for (share, locks) in [(0.95, false), (1.05, true)] {
+            let set = [
+                format!("drive.motor.axis=[{}, {}]", libm::cos(angle), libm::sin(angle)),
+                format!("drive.motor.point=[{ahead:?}, 0]"),
+                format!("friction.coefficient={}", critical * share),
+                "mechanism.gravity=[0, 0]".into(),
+            ];
+            let mechanism = mechanism(BLOCK, &set.each_ref().map(String::as_str));
+            let found = locked(&mechanism);
+            assert_eq!(found.len(), usize::from(locks), "{degrees}° {ahead}: {found:?}");
+            assert!(found.iter().all(|found| (found.critical_friction / critical - 1.0).abs() < 1e-9), "{found:?}");
+            assert!(found.iter().all(|found| (found.angle - angle).abs() < 1e-9), "{found:?}");
+            let expected = if locks { Verdict::Jammed } else { Verdict::Runs };
+            assert_eq!(verdict_of(&mechanism), expected, "{degrees}° {ahead} mm at {share} of the critical friction");
+        }
+    }
+}
+
+/// A drive on an arm that is fixed to the guided body drives that body.
+#[test]
+fn a_block_driven_by_its_arm_locks_where_the_rule_says() {
+    let arm = "{ name = \"arm\", mass = 1, inertia = 10, centre = [0, 60] }";
+    let weld = "\n[[joint]]\nname = \"weld\"\nkind = \"fixed\"\nbetween = [\"arm\", \"block\"]\nat = [0, 60]\n";
+    let text = BLOCK.replace("centre = [0, 0] }]", &format!("centre = [0, 0] }}, {arm}]")) + weld;
+    let text = text.replace("pushes = \"block\"", "pushes = \"arm\"");
+    let critical = 40.0 / (2.0 * 60.0);
+    for (share, locks) in [(0.95, false), (1.05, true)] {
+        let mechanism =
+            mechanism(&text, &["drive.motor.point=[0, 0]", &format!("friction.coefficient={}", critical * share)]);
+        let found = locked(&mechanism);
+        assert_eq!(found.len(), usize::from(locks), "{found:?}");
+        assert!(found.iter().all(|found| (found.critical_friction / critical - 1.0).abs() < 1e-9), "{found:?}");
+        let expected = if locks { Verdict::Jammed } else { Verdict::Runs };
+        assert_eq!(verdict_of(&mechanism), expected, "at {share} of the critical friction");
+    }
+}

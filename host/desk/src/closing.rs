@@ -107,6 +107,15 @@ impl Gaps {
         self.fours.iter().map(|four| four.gap)
     }
 
+    /// The least gap (m); infinite without contacts.
+    pub fn least(&self) -> f64 {
+        let fours = self
+            .fours
+            .iter()
+            .fold([f64::INFINITY; LANES], |least, four| array::from_fn(|lane| least[lane].at_most(four.gap[lane])));
+        fours.into_iter().fold(f64::INFINITY, f64::min)
+    }
+
     /// How long (s) a step may be for contacts that do not push now, and are deeper than `depth` (m): longer ones would be refused.
     pub fn until_pushed(&self, depth: f64) -> f64 {
         let slack = self.each().filter(|contact| contact.slack > 0.0 && contact.gap < -depth);

@@ -44,10 +44,10 @@ pub type JointedBodies<const D: usize> = SpatialTree<f64, MOST_BODIES, { 6 * MOS
 pub type JointedPlant<'a, const D: usize> =
     OutOfLine<System<JointedBodies<D>, ThroughJoints<&'a [SpatialElement], { 6 * MOST_BODIES }>>>;
 
-/// Sees the time (s) and the motion at the start and at the end of every step, with the step's accelerations where they are known,
-/// and says whether to go on.
+/// Sees the time (s) and the motion at the start and at the end of every step, with the step's accelerations and the contacts there where
+/// they are known, and says whether to go on.
 pub type See<'a, P, const D: usize> =
-    &'a mut dyn FnMut(f64, &Motion<f64, P, (), D>, Option<Accelerations<D>>) -> ControlFlow<()>;
+    &'a mut dyn FnMut(f64, &Motion<f64, P, (), D>, Option<Accelerations<D>>, Option<&Gaps>) -> ControlFlow<()>;
 
 /// What a step may err by.
 #[derive(Clone, Copy)]
@@ -181,7 +181,7 @@ macro_rules! plants {
                         },
                         depth: allowed.depth,
                     },
-                    |t, motion, accelerations, _| see(t, &visible(motion), accelerations),
+                    |t, motion, accelerations, gaps| see(t, &visible(motion), accelerations, Some(gaps)),
                 )
             }
 
@@ -229,7 +229,7 @@ impl<M: Mechanism<f64, D>, const D: usize> IntegratorVisitor for FixedSteps<'_, 
         let Self { plant, start, duration, step, see } = self;
         let kernel = Kernel::<f64, M, I>::new(plant, step)?;
         let mut state = State { steps: 0, motion: start };
-        let _ = see(0.0, &visible(&state.motion), None);
+        let _ = see(0.0, &visible(&state.motion), None, None);
         let mut accepted = 0;
         while kernel.time(state.steps) < duration * (1.0 - 1e-12) {
             let report = kernel.step(&mut state);
@@ -241,7 +241,7 @@ impl<M: Mechanism<f64, D>, const D: usize> IntegratorVisitor for FixedSteps<'_, 
                 return Err(Stopped::Interrupted);
             }
             accepted += 1;
-            if see(time, &visible(&state.motion), None).is_break() {
+            if see(time, &visible(&state.motion), None, None).is_break() {
                 break;
             }
         }

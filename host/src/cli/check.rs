@@ -222,7 +222,7 @@ fn warnings(n_cl: u32, guide: Option<&Guide>) -> Vec<String> {
         let across = (guide.drive_distance > 1e-9).then_some(([guide.length, guide.drive_distance], "beside"));
         let height = guide.height.map(|lever| ([lever.length, lever.distance], "above or below"));
         let levers: Vec<_> = across.into_iter().chain(height).collect();
-        warnings.push(self_locking(guide.friction, critical, &levers, meaning));
+        warnings.push(self_locking(guide.friction, critical, 0.0, &levers, meaning));
     }
     warnings
 }

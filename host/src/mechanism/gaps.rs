@@ -38,9 +38,27 @@ impl Gap {
         let GapStatistics { mean, deviation } = self.statistics;
         Some(mean / deviation).filter(|n| n.is_finite())
     }
+
+    /// The widest (m) that it usually is.
+    fn widest(&self) -> f64 {
+        self.statistics.mean.abs() + 3.0 * self.statistics.deviation
+    }
 }
 
 impl Mechanism {
+    /// The widest gap (m) of its production. The distance to a stop is no play, unless there is nothing else.
+    pub fn widest_gap(&self) -> f64 {
+        let with_play = || self.joints.iter().filter(|joint| !joint.kind.is_ideal());
+        let all_stop = with_play().all(|joint| joint.kind.is_stop());
+        let counts = with_play().filter(|joint| all_stop || !joint.kind.is_stop());
+        counts.map(|joint| self.widest_of(joint)).fold(0.0, f64::max)
+    }
+
+    /// The widest gap (m) of a `joint` over the production.
+    pub(super) fn widest_of(&self, joint: &Joint) -> f64 {
+        joint.kind.gaps().map(|gap| self.gaps[gap].widest()).fold(0.0, f64::max)
+    }
+
     /// The joint that loses its play at the lowest level, and that level, of those that have some by their mean. A track loses it
     /// where two opposite gaps together are nothing, any other joint where its gap is.
     pub fn first_to_close(&self) -> Option<(String, f64)> {

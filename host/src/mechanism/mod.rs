@@ -31,6 +31,7 @@ mod source;
 pub mod spatial;
 mod start;
 mod state;
+mod sunk;
 mod torn;
 mod vary;
 
@@ -45,6 +46,7 @@ pub use run_error::RunError;
 pub(crate) use source::scheme;
 pub use source::{dimension, drive_names, element_paths, rust_source};
 pub use start::Rest;
+pub use sunk::Sunk;
 pub use torn::{Torn, torn};
 pub use vary::{Parameter, Varied};
 
@@ -205,6 +207,11 @@ impl JointKind {
     pub fn is_ideal(&self) -> bool {
         use JointKind::{Cylindrical, Fixed, PinSlot, Prismatic, Revolute, Spherical};
         matches!(self, Fixed | Revolute { .. } | Prismatic { .. } | PinSlot { .. } | Cylindrical { .. } | Spherical)
+    }
+
+    /// Whether it ends a travel.
+    pub fn is_stop(&self) -> bool {
+        matches!(self, Self::Stop { .. })
     }
 
     /// What scene files call it.

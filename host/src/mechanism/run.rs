@@ -12,6 +12,7 @@ use slipfit_core::{
     system::{Bodies, Reduced, System, ThroughJoints, spatial::tree::Mount},
 };
 use slipfit_desk::{
+    closing::Gaps,
     out_of_line::OutOfLine,
     plant::{Allowed, FreePlant, JointedPlant, PlanarPlant, Plant, Reported},
     side_by_side::SideBySide,
@@ -25,6 +26,7 @@ use super::{
     limits::Limits,
     planar, spatial,
     state::{State, half_angle},
+    sunk::{self, Depths, Sunk},
 };
 use crate::{
     dynamics::{
@@ -71,6 +73,8 @@ pub struct MechanismRun {
     pub film: Vec<Moment>,
     /// Energy that neither the start, nor gravity, nor a drive supplied, as a share of the greatest energy: an error of the computation.
     pub energy_excess: f64,
+    /// The contact that yielded most beyond what is usual, if one did at the desk.
+    pub sunk: Option<Sunk>,
     /// Error of speed (m/s) that a step was allowed.
     pub tolerance: f64,
     /// Steps.
@@ -177,8 +181,10 @@ where
     let elements = planar::elements::<D>(mechanism, mounts, gaps, limits.stick_band())?;
     let Rest { places, rates } = Rest::of(mechanism, mounts);
     let pose = tree.pose(places, half_angle);
-    let placed = tree.placed(&pose, &SVector::from(rates));
-    let pressed = elements.iter().map(|element| element.gap((&tree, &placed))).collect();
+    let gaps_at = |pose: &_, velocity: &_| {
+        let placed = tree.placed(pose, velocity);
+        elements.iter().map(|element| element.gap((&tree, &placed))).collect()
+    };
     let topology = *tree.topology();
     let mut last = places;
     let state = move |pose: &[[f64; 2]; D], rates: [f64; D]| {
@@ -189,7 +195,7 @@ where
     let bodies = PlanarBodies::of(mechanism, mounts, &tree);
     let system = System::new(tree, &elements[..]);
     let desk = OutOfLine::new(system);
-    solve(mechanism, desk, (pose, rates), (&limits, pressed), by, state, |state: &State<D>, told: &mut _| {
+    solve(mechanism, desk, (pose, rates), (&limits, gaps_at), by, state, |state: &State<D>, told: &mut _| {
         bodies.tell(state, told)
     })
 }
@@ -206,8 +212,10 @@ where
     let limits = Limits::of(mechanism, |body| bodies.lever(body));
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let start = (bodies.nominal(), [0.0; D]);
-    let placed = bodies.placed(&start.0, &SVector::zeros());
-    let pressed = elements.iter().map(|element| element.gap((&bodies, &placed))).collect();
+    let gaps_at = |pose: &_, velocity: &_| {
+        let placed = bodies.placed(pose, velocity);
+        elements.iter().map(|element| element.gap((&bodies, &placed))).collect()
+    };
     let laws = joints_of_elements(mechanism).map(|joint| joint.map(|joint| joint.laws));
     let system = System::new(bodies, &elements[..]);
     let desk = OutOfLine::by(system, SideBySide::new(&bodies, &elements, laws, limits.stick_band()));
@@ -216,7 +224,7 @@ where
         last = State::spatial(poses, rates, &last);
         last
     };
-    solve(mechanism, desk, start, (&limits, pressed), by, state, columns::spatial)
+    solve(mechanism, desk, start, (&limits, gaps_at), by, state, columns::spatial)
 }
 
 fn on_joints<const D: usize>(
@@ -234,8 +242,10 @@ where
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
     let Rest { places, rates } = Rest::on_joints(mechanism, mounts);
     let start = (tree.pose(places, half_angle), rates);
-    let placed = tree.placed(&start.0, &SVector::from(rates));
-    let pressed = elements.iter().map(|element| element.gap(tree.free(&placed))).collect();
+    let gaps_at = |pose: &_, velocity: &_| {
+        let placed = tree.placed(pose, velocity);
+        elements.iter().map(|element| element.gap(tree.free(&placed))).collect()
+    };
     let mut last = State::at_rest(places);
     let state = move |pose: &[[f64; 2]; D], rates: [f64; D]| {
         last = State::on_joints(&tree, pose, rates, &last);
@@ -243,7 +253,7 @@ where
     };
     let system = System::new(tree, ThroughJoints(&elements[..]));
     let desk = OutOfLine::new(system);
-    solve(mechanism, desk, start, (&limits, pressed), by, state, |state: &State<D>, told: &mut _| {
+    solve(mechanism, desk, start, (&limits, gaps_at), by, state, |state: &State<D>, told: &mut _| {
         bodies.tell(state, told)
     })
 }
@@ -252,7 +262,7 @@ fn solve<P: Plant<D>, const D: usize>(
     mechanism: &Mechanism,
     desk: P,
     (pose, rates): (P::Pose, [f64; D]),
-    (limits, pressed): (&Limits, Vec<Option<f64>>),
+    (limits, gaps_at): (&Limits, impl Fn(&P::Pose, &SVector<f64, D>) -> Vec<Option<f64>>),
     by: By,
     mut state: impl FnMut(&P::Pose, [f64; D]) -> State<D>,
     told: impl Fn(&State<D>, &mut Vec<BodyMotion>),
@@ -263,7 +273,9 @@ fn solve<P: Plant<D>, const D: usize>(
     // Travel counts from the start, which need not be the drawn pose.
     let mut at_start = Vec::new();
     told(&state(&pose, rates), &mut at_start);
-    let mut energies = Energies::new(mechanism, &at_start, pressed.into_iter());
+    let pressed = gaps_at(&pose, &SVector::from(rates));
+    let mut energies = Energies::new(mechanism, &at_start, pressed.iter().copied());
+    let mut depths = Depths::new(pressed);
     let origins: Vec<f64> = mechanism.drives_at(0.0, &at_start).map(|at| at.z).collect();
     let drives_at = |t: f64, motions: &[BodyMotion], drives: &mut Vec<Looked>| {
         let from = |(at, origin): (Looked, &f64)| Looked { z: at.z - origin, ..at };
@@ -288,9 +300,12 @@ fn solve<P: Plant<D>, const D: usize>(
     };
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
-    let mut keep = |t: f64, motion: &Motion<f64, P::Pose, (), D>, accelerations: Option<Accelerations<D>>| {
+    let mut keep = |t: f64, motion: &Motion<f64, P::Pose, (), D>, accelerations: Option<_>, gaps: Option<&Gaps>| {
+        if gaps.is_some_and(|gaps| gaps.least() < -sunk::LEAST) {
+            depths.observe(gaps_at(&motion.pose, &motion.velocity));
+        }
         let values = state(&motion.pose, motion.velocity.into());
-        knots.push(Knot { t, values, rates: accelerations.map(|rates| rates.map(<[f64; D]>::from)) });
+        knots.push(Knot { t, values, rates: accelerations.map(|rates: Accelerations<D>| rates.map(<[f64; D]>::from)) });
         let is_absurd = motion.velocity.iter().any(|rate| rate.abs() > ABSURD) && run_away(t, &values);
         if is_absurd || ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
@@ -383,6 +398,7 @@ fn solve<P: Plant<D>, const D: usize>(
         trajectories,
         film,
         energy_excess,
+        sunk: depths.sunk(mechanism),
         tolerance: limits.speed,
         effort,
         integration,

@@ -96,6 +96,7 @@ struct Guided<'a> {
     point: Vector3<f64>,
     centre: Vector3<f64>,
     gravity: Vector3<f64>,
+    planar: bool,
 }
 
 impl Guided<'_> {
@@ -177,6 +178,7 @@ pub fn guide(scene: &Scene, n: f64) -> Option<Guide> {
         point: scene.drive.point_b,
         centre: Vector3::zeros(),
         gravity: scene.slide.gravity.into(),
+        planar: false,
     };
     let levers @ [across, height] = [Vector3::x(), Vector3::y()].map(|across| guided.lever(across));
     let across = across?;
@@ -209,6 +211,8 @@ pub struct Locked<'a> {
     pub body: &'a str,
     /// What the joints join it to.
     pub on: &'a str,
+    /// The angle (rad) of its push to the travel.
+    pub angle: f64,
     /// How far the drive passes beside the contacts that carry its moment, in the directions in which it does, and how long they guide.
     pub levers: Vec<Lever>,
     /// Whether the drive is beyond the other resistances, or on the edge.
@@ -219,23 +223,24 @@ pub struct Locked<'a> {
     pub friction: f64,
 }
 
-/// The drives of `mechanism` that lock a body in joints with play, all of which let it slide along the drive's axis: the driven body on
-/// what carries it, and that, where it has such joints too, on what carries it in turn.
+/// The drives of `mechanism` that lock a body in joints with play, all of which let it slide one way: the driven body, with all that is
+/// fixed to it, on what carries it, and that, where it has such joints too, on what carries it in turn.
 pub fn locked(mechanism: &Mechanism) -> Vec<Locked<'_>> {
     let mut all = Vec::new();
     for driven in &mechanism.drives {
         let Action::Pushes { axis } = driven.action else { continue };
-        let axis = Vector3::from(axis) * direction(driven.drive.speed);
+        let push = Vector3::from(axis) * direction(driven.drive.speed);
         let point = Vector3::from(mechanism.bodies[driven.body].centre) + driven.drive.point_b;
-        let mut moving = vec![driven.body];
-        while let Some(stage) = Stage::of(mechanism, &moving, axis) {
-            if let Some(levers) = stage.locks(mechanism, &moving, axis, point) {
-                let last = moving.last().copied();
+        let (mut moving, mut last) = (mechanism.fixed_to(driven.body), driven.body);
+        while let Some(travel) = travel(mechanism, &moving, push) {
+            let Some(stage) = Stage::of(mechanism, &moving, travel) else { break };
+            if let Some(levers) = stage.locks(mechanism, &moving, (travel, push), point) {
                 let (side, critical) = levers.1;
                 all.push(Locked {
                     drive: &driven.name,
-                    body: mechanism.name_of(last),
+                    body: mechanism.name_of(Some(last)),
                     on: mechanism.name_of(stage.on),
+                    angle: push.cross(&travel).norm().atan2(push.dot(&travel)),
                     levers: levers.0,
                     side,
                     critical_friction: critical,
@@ -243,10 +248,40 @@ pub fn locked(mechanism: &Mechanism) -> Vec<Locked<'_>> {
                 });
             }
             let Some(next) = stage.on else { break };
-            moving.push(next);
+            moving.extend(mechanism.fixed_to(next));
+            last = next;
         }
     }
     all
+}
+
+impl Mechanism {
+    /// The `body` and all that is fixed to it.
+    fn fixed_to(&self, body: usize) -> Vec<usize> {
+        let mut all = vec![body];
+        let fixed = || self.joints.iter().filter(|joint| joint.kind == JointKind::Fixed);
+        while let Some(next) = fixed().find_map(|joint| match joint.between {
+            [Some(a), Some(b)] if all.contains(&a) != all.contains(&b) => Some(if all.contains(&a) { b } else { a }),
+            _ => None,
+        }) {
+            all.push(next);
+        }
+        all
+    }
+}
+
+/// Where the bodies `moving` go on their first joint with play that lets them slide, as far as a `push` moves them there.
+fn travel(mechanism: &Mechanism, moving: &[usize], push: Vector3<f64>) -> Option<Vector3<f64>> {
+    let is_moving = |port: Port| port.is_some_and(|body| moving.contains(&body));
+    let guiding = mechanism.joints.iter().filter(|joint| is_moving(joint.between[0]) != is_moving(joint.between[1]));
+    let axis = guiding.clone().find_map(|joint| match joint.kind {
+        JointKind::Track { .. } => Some(Vector3::z()),
+        JointKind::Bearing { axis, .. } | JointKind::Guide { axis, .. } => Some(Vector3::from(axis)),
+        _ => None,
+    })?;
+    let along = axis.dot(&push);
+    // What stands across the travel to within rounding moves nothing.
+    (along.abs() > 1e-6).then(|| axis * along.signum())
 }
 
 /// What guides bodies that move as one.
@@ -323,26 +358,52 @@ impl Stage {
         Some(stage)
     }
 
-    /// The levers of a drive through `point` along the `axis`, and its case, if it locks the bodies `moving`.
+    /// The levers of a drive through `point` along `push`, and its case, if it locks the bodies `moving` on their travel along `axis`.
     fn locks(
         &self,
         mechanism: &Mechanism,
         moving: &[usize],
-        axis: Vector3<f64>,
+        (axis, push): (Vector3<f64>, Vector3<f64>),
         point: Vector3<f64>,
     ) -> Option<(Vec<Lever>, (DriveSide, f64))> {
         let bodies = || moving.iter().map(|body| &mechanism.bodies[*body]);
         let mass: f64 = bodies().map(|body| body.mass).sum();
         let centre = bodies().map(|body| Vector3::from(body.centre) * body.mass).sum::<Vector3<f64>>() / mass;
-        let guided = Guided { contacts: &self.contacts, axis, point, centre, gravity: mechanism.gravity.into() };
+        let (gravity, planar) = (mechanism.gravity.into(), mechanism.planar);
+        let guided = Guided { contacts: &self.contacts, axis, point, centre, gravity, planar };
         let mut levers = [None; 2];
         for (lever, across) in levers.iter_mut().zip(sideways(mechanism.planar, axis)) {
             *lever = guided.lever(across);
         }
-        let (side, critical) = locking(levers, self.round);
+        let (side, critical) = match push.cross(&axis).norm() > SAME {
+            true => (DriveSide::Beyond, self.oblique(&guided, push, levers)),
+            false => locking(levers, self.round),
+        };
         let critical = critical.filter(|critical| side != DriveSide::Short && self.friction >= *critical)?;
         let beside = levers.into_iter().flatten().filter(|lever| lever.distance.abs() > SAME);
         Some((beside.collect(), (side, critical)))
+    }
+}
+
+impl Stage {
+    /// The critical friction of a body that is pushed at an angle to its travel. In each direction across it the contacts carry the share
+    /// of the force there, or more where they oppose each other to carry its moment. What they carry of the moment of that share itself is
+    /// left out: such bodies rattle more than they lock.
+    fn oblique(&self, guided: &Guided, push: Vector3<f64>, levers: [Option<Lever>; 2]) -> Option<f64> {
+        let along = push.dot(&guided.axis);
+        let mut pressed = Vec::new();
+        for (across, lever) in sideways(guided.planar, guided.axis).into_iter().zip(levers) {
+            let force = push.dot(&across) / along;
+            // Where nothing stands in its way the body leaves the guide.
+            let stands = |contact: &Contact| contact.push.dot(&across) * force < -0.5 * force.abs();
+            if force.abs() > SAME && !self.contacts.iter().any(stands) {
+                return None;
+            }
+            pressed.push(force.abs().max(lever.map_or(0.0, |lever| 2.0 * lever.ratio())));
+        }
+        let squares = || pressed.iter().map(|force| force * force).sum();
+        let sum = if self.round { libm::sqrt(squares()) } else { pressed.iter().sum() };
+        (sum > 0.0).then(|| 1.0 / sum)
     }
 }
 

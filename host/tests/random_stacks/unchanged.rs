@@ -130,6 +130,10 @@ fn reordered(stack: &Stack, one: &Report, other: &Report, wrong: &mut Deviations
         if let (Some(x), Some(y)) = (a.quadrature, b.quadrature) {
             wrong.near(&format!("reordered: sd by quadrature of {}", a.name), y.sd, x.sd, 1e-5 * x.sd + 1e-9 * size);
         }
+        // Where none of the units drawn in one order differs there are no shares.
+        if (a.sd == 0.0) != (b.sd == 0.0) {
+            continue;
+        }
         // Whether slopes describe a measure is tried at points of chance: close to the bound its shares may be withheld, which is said.
         let is_told = |of: &Report| of.notes.iter().any(|note| note.starts_with(&a.name));
         for (x, y) in shares(stack, a).into_iter().zip(shares(stack, b)) {

@@ -107,7 +107,7 @@ fn warnings(mechanism: &Mechanism, freedom: &Freedom) -> Vec<String> {
             _ => format!("no force of \"{}\" moves \"{}\" on \"{}\"", locked.drive, locked.body, locked.on),
         };
         let levers: Vec<_> = locked.levers.iter().map(|lever| ([lever.length, lever.distance], "beside")).collect();
-        self_locking(locked.friction, locked.critical_friction, &levers, &meaning)
+        self_locking(locked.friction, locked.critical_friction, locked.angle, &levers, &meaning)
     };
     let reversed = |found: &Reversal| {
         let Reversal { drive, body, pivot, angle } = found;

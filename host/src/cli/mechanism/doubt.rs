@@ -1,20 +1,30 @@
-//! Warnings of a run that a run at a tenth of the tolerance does not confirm.
+//! Warnings of a run that a run at a tenth of the tolerance does not confirm, or whose parts sink deep into each other.
 
-use slipfit_tolerance::number::fixed;
+use slipfit_tolerance::number::{fixed, three_digits};
 
 use crate::{
     dynamics::outcome::{Outcome, Verdict},
-    mechanism::{ENERGY, Mechanism, MechanismRun, NamedDrive, agreement::Agreement},
+    mechanism::{ENERGY, Mechanism, MechanismRun, NamedDrive, Sunk, agreement::Agreement},
 };
 
 /// What speaks against the `desk`'s run of `mechanism`, by a `finer` one with which it has this `agreement`.
-pub fn warning(
+pub fn warnings(
     mechanism: &Mechanism,
     desk: &MechanismRun,
     finer: &MechanismRun,
     agreement: &Agreement,
-) -> Option<String> {
-    undecided(mechanism, desk, finer).or_else(|| coarse(agreement))
+) -> Vec<String> {
+    let unconfirmed = undecided(mechanism, desk, finer).or_else(|| coarse(agreement));
+    unconfirmed.into_iter().chain(desk.sunk.as_ref().map(sunk)).collect()
+}
+
+/// The warning of a contact that yields too much to stand for parts that touch.
+fn sunk(Sunk { joint, depth, usual }: &Sunk) -> String {
+    let [depth, usual] = [depth, usual].map(|length| three_digits(length * 1e3));
+    format!(
+        "in \"{joint}\" the parts sink {depth} mm into each other, usual is up to {usual} mm: is its contact.stiffness in the unit that \
+         is meant, and are drives, speeds and masses of their true size?"
+    )
 }
 
 /// Why a verdict of the desk's run is undecided that a `finer` one would have, if one is.
@@ -47,6 +57,7 @@ fn coarse(agreement: &Agreement) -> Option<String> {
     let column = agreement.column.as_ref().filter(|_| agreement.share.is_nan() || agreement.share > COARSE)?;
     let percent = agreement.share * 100.0;
     Some(format!(
-        "a run at a tenth of the tolerance differs by {percent:.1} % of the peak in {column}: take a tenth of run.error"
+        "a run at a tenth of the tolerance differs by {percent:.1} % of {} in {column}: take a tenth of run.error",
+        agreement.whole
     ))
 }

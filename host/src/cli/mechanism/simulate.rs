@@ -104,7 +104,6 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
     wanted.check_outputs()?;
     let [desk, finer] = confirmed(mechanism, gaps, every)?;
     let agreement = desk.agreement(&finer, mechanism);
-    warn(doubt::warning(mechanism, &desk, &finer, &agreement).as_slice());
     let controller = controller(mechanism, gaps, every, &desk, wanted.by_controller)?;
     let one = match &controller {
         Some(Controller { run: Some(run), .. }) if wanted.by_controller => run,
@@ -120,7 +119,8 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
     }
     let computed = || computed(&desk, &agreement) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
     let words = || described(mechanism, label, one) + &computed();
-    let warnings = wanted.warnings(mechanism)?;
+    let mut warnings = wanted.warnings(mechanism)?;
+    warnings.extend(doubt::warnings(mechanism, &desk, &finer, &agreement));
     if let Some(path) = wanted.page {
         files::write(path, page(mechanism, unit, one, &words(), &warnings)?.into_string().as_bytes())?;
     }
@@ -293,12 +293,13 @@ fn plotted(mechanism: &Mechanism) -> Vec<String> {
 fn computed(run: &MechanismRun, agreement: &Agreement) -> String {
     format!(
         "Computed by the desk, error-controlled to {:.1e} m/s a step ({SCHEME}, {} steps, {} refused) in {} ms\n\
-         A run at a tenth of that differs by {:.4} % of the peak{}\n",
+         A run at a tenth of that differs by {:.4} % of {}{}\n",
         run.tolerance,
         run.effort.accepted,
         run.effort.refused,
         fixed(run.integration.as_secs_f64() * 1e3, 2),
         agreement.share * 100.0,
+        agreement.whole,
         agreement.column.as_ref().map_or_else(String::new, |column| format!(" at most, in {column}"))
     )
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use slipfit_system::files;
 use slipfit_tolerance::number::{fixed, level, or_dash};
 
-use super::{DriveReport, Wanted, shown, units};
+use super::{DriveReport, Wanted, doubt, shown, units};
 use crate::{
     cli::{
         arguments::ThreadArguments,
@@ -42,14 +42,15 @@ pub fn sweep(mechanism: &Mechanism, wanted: &Wanted, threads: &ThreadArguments) 
     let units_of: Vec<_> =
         n.iter().map(|n| mechanism.gaps_at(&[*n]).map(|gaps| (*n, gaps))).collect::<Result<_, _>>()?;
     let bar = progress("simulating", n.len());
-    let one = |(n, gaps): &(f64, Vec<f64>)| -> Result<(f64, Vec<Outcome>), RunError> {
-        let [one, _] = confirmed(mechanism, gaps, 1e-3)?;
+    let one = |(n, gaps): &(f64, Vec<f64>)| -> Result<_, RunError> {
+        let [one, finer] = confirmed(mechanism, gaps, 1e-3)?;
         bar.inc(1);
-        Ok((*n, one.outcomes))
+        let doubts = doubt::warnings(mechanism, &one, &finer, &one.agreement(&finer, mechanism));
+        Ok(((*n, one.outcomes), doubts))
     };
     let levels = threads.install(|| units_of.par_iter().map(one).collect::<Result<Vec<_>, _>>())?;
     bar.finish_and_clear();
-    let levels = levels?;
+    let (levels, doubts): (Vec<_>, Vec<_>) = levels?.into_iter().unzip();
     if let Some(path) = wanted.csv {
         files::write(path, &rows_csv(&table(mechanism, &levels))?)?;
     }
@@ -61,7 +62,8 @@ pub fn sweep(mechanism: &Mechanism, wanted: &Wanted, threads: &ThreadArguments) 
         let svg = drives_over_n(&drives, &mechanism.title).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
     }
-    let warnings = wanted.warnings(mechanism)?;
+    let mut warnings = wanted.warnings(mechanism)?;
+    warnings.extend(doubtful(&levels, &doubts));
     if wanted.scene.json {
         let level = |(n, outcomes): &(f64, Vec<Outcome>)| {
             let drives = mechanism.drives.iter().zip(outcomes).map(|(drive, outcome)| DriveReport {
@@ -99,6 +101,18 @@ pub fn sweep(mechanism: &Mechanism, wanted: &Wanted, threads: &ThreadArguments) 
     print(&text)?;
     warn(&warnings);
     Ok(())
+}
+
+/// What speaks against the runs of `levels`, of the first of which it does.
+fn doubtful(levels: &[(f64, Vec<Outcome>)], doubts: &[Vec<String>]) -> Option<String> {
+    let mut doubted = levels.iter().zip(doubts).filter_map(|((n, _), doubts)| Some((*n, doubts.first()?)));
+    let (n, doubt) = doubted.next()?;
+    let others = match doubted.count() {
+        0 => String::new(),
+        1 => " (and at another level)".into(),
+        more => format!(" (and at {more} other levels)"),
+    };
+    Some(format!("at n = {}{others}: {doubt}", level(n)))
 }
 
 /// The figures of all drives over n.

@@ -125,19 +125,15 @@ fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
     let pushes = mechanism.drives.iter().filter(|drive| drive.action.kind() == DriveKind::Pushes);
     let drives = pushes.map(|named| (named.drive.gain * named.drive.speed).abs()).sum();
     let loads = Loads::new(mass, mechanism.gravity, drives);
-    let is_stop = |joint: &Joint| matches!(joint.kind, JointKind::Stop { .. });
     let with_play = || mechanism.joints.iter().filter(|joint| !joint.kind.is_ideal());
-    let gap = |gap: usize| mechanism.gaps[gap].statistics;
-    // The distance to a stop is no play, unless there is nothing else.
-    let all_stop = with_play().all(is_stop);
-    let widest = with_play().filter(|joint| all_stop || !is_stop(joint)).flat_map(|joint| joint.kind.gaps());
-    let widest = widest.map(|of| gap(of).mean.abs() + 3.0 * gap(of).deviation).fold(0.0, f64::max);
+    let widest = mechanism.widest_gap();
+    let all_stop = with_play().all(|joint| joint.kind.is_stop());
     // A bearing and a guide have two ends.
     let ends = |joint: &Joint| match joint.kind {
         JointKind::Bearing { .. } | JointKind::Guide { .. } => 2,
         _ => 1,
     };
-    let contacts = with_play().filter(|joint| all_stop || !is_stop(joint)).map(ends).sum();
+    let contacts = with_play().filter(|joint| all_stop || !joint.kind.is_stop()).map(ends).sum();
     for (joint, field) in mechanism.joints.iter().zip(joints).filter(|(joint, _)| !joint.kind.is_ideal()) {
         let law = match joint.laws.contact {
             NormalData::Impact(data) => [data.stiffness, data.exponent],
@@ -151,7 +147,8 @@ fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
             let name = &mechanism.gaps[of].name;
             let key = SURFACES.into_iter().find(|surface| *name == format!("{} {surface}", joint.name));
             if let Some(stated) = field.get(key.unwrap_or("clearance")) {
-                plausible::pressed(&stated, name, is_stop(joint), gap(of).mean, law, loads);
+                let gap = mechanism.gaps[of].statistics.mean;
+                plausible::pressed(&stated, name, joint.kind.is_stop(), gap, law, loads);
             }
         }
     }
