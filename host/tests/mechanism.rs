@@ -354,7 +354,7 @@ fn columns_that_a_finer_run_does_not_confirm_are_warned_of() {
         String::from_utf8(output.stderr).unwrap()
     };
     let warning = warned("1e-3");
-    let told = "a run at a tenth of the tolerance differs by 8.0 % of the peak in carriage.wy (rad/s)";
+    let told = "a run at a tenth of the tolerance differs by 8.0 % of the body's greatest spin in carriage.wy (rad/s)";
     assert!(warning.contains(told) && warning.contains("run.error"), "{warning}");
     assert!(!warned("1e-5").contains("a run at a tenth"));
 }
