@@ -23,7 +23,7 @@ use super::{
     material,
     pattern::{self, Pattern},
     slant::slant,
-    symmetric, toleranced, zone,
+    symmetric, toleranced, vectorial, zone,
 };
 
 const ZONE: &str = "the width of its zone in mm, or { zone = …, datum = [\"…\"], rule = \"…\" }";
@@ -95,7 +95,7 @@ pub(super) fn read<'t, 's>(
         made.feature.nominal[0] = [0, 1, 2].map(|i| made.feature.nominal[0][i] - size.nominal * normal[i]);
         shift(&mut made, "offset", &size, normal, draft);
     }
-    formed |= vectorial(&mut made, draft)?;
+    formed |= vectorial::read(&mut made, draft)?;
     if let Some(class) = draft.defaults.general.geometry.filter(|_| !formed && made.feature.shape != Shape::Axis) {
         callouts.push(general_flatness(class, &made, draft)?);
     }
@@ -377,29 +377,4 @@ fn shorter_leg(made: &FeatureDraft, extents: [f64; 2], datums: &[Datum], draft: 
         Some(size.map_or(own, |size| own.min(leg(feature.shape, line, sides, size))))
     };
     datums.iter().filter_map(of_datum).fold(extents[0].max(extents[1]), f64::min)
-}
-
-/// Vectorial tolerances: components of the position vector and the orientation vector, each with its own, in the part's
-/// frame. Gives whether there are any.
-fn vectorial(made: &mut FeatureDraft, draft: &mut Draft) -> Result<bool, SceneError> {
-    let Some(table) = made.table.get("vectorial") else { return Ok(false) };
-    table.expect_table()?;
-    for (key, quantity) in [("position", &toleranced::LENGTH), ("orientation", &toleranced::RATIO)] {
-        let Some(vector) = table.get(key) else { continue };
-        vector.expect_table()?;
-        for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
-            let Some(field) = vector.get(axis) else { continue };
-            let size = toleranced::deviation(&field, quantity, draft.defaults.sigma)?;
-            let variable = draft.add(size.contributor(format!("{} {key} {axis}", made.name)), &[0.0]);
-            let mut component = [0.0; 3];
-            component[i] = 1.0;
-            let component = made.pose.direction(component);
-            if key == "position" {
-                made.feature.shift(variable, component, 1.0);
-            } else {
-                made.feature.tilt(variable, component, 1.0);
-            }
-        }
-    }
-    Ok(true)
 }

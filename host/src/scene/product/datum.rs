@@ -30,7 +30,16 @@ pub(super) fn datums(list: &Field, draft: &mut Draft) -> Result<Vec<Datum>, Scen
         let problem = Problem::Length { key: list.key.clone(), found: nodes.len() };
         return Err(list.error(problem, "one to three datums, the primary first"));
     }
-    nodes.iter().map(|datum| one(datum, draft)).collect()
+    let mut datums: Vec<Datum> = Vec::new();
+    for field in &nodes {
+        let datum = one(field, draft)?;
+        if datums.iter().any(|known| known.feature == datum.feature) {
+            let what = format!("the datum `{}` twice", draft.feature_names[datum.feature]);
+            return Err(field.error(Problem::Unsupported { what }, "each feature once"));
+        }
+        datums.push(datum);
+    }
+    Ok(datums)
 }
 
 /// One datum, of one feature or of two.

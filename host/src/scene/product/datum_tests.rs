@@ -156,7 +156,7 @@ angle = ["box.bore", "box.A"]
 }
 
 /// A box whose features have the callout of a case.
-fn warned(callout: &str, of: &str) -> Vec<String> {
+fn box_with(callout: &str, of: &str) -> String {
     let face = |(name, at, normal, along): (&str, &str, &str, &str)| {
         format!(
             "[[part.plane]]\nname = \"{name}\"\nat = {at}\nnormal = \"{normal}\"\nalong = \"{along}\"\nextents = [100, 40]\n\
@@ -165,7 +165,7 @@ fn warned(callout: &str, of: &str) -> Vec<String> {
     };
     let faces = [("A", "[0, 0, 0]", "-z", "+x"), ("B", "[-50, 0, 20]", "-x", "+y"), ("C", "[0, -50, 20]", "-y", "+x")]
         .map(face);
-    let text = format!(
+    format!(
         r#"[[part]]
 name = "box"
 {faces}
@@ -201,7 +201,12 @@ distance = ["box.tip", "box.A"]
         lid = if of == "lid" { callout } else { "" },
         bore = if of == "bore" { callout } else { "" },
         tip = if of == "tip" { callout } else { "" },
-    );
+    )
+}
+
+/// The warnings at the `callout` of a feature `of` that box.
+fn warned(callout: &str, of: &str) -> Vec<String> {
+    let text = box_with(callout, of);
     let first = callout.lines().next().unwrap();
     let place = text.lines().position(|line| line == first).unwrap();
     let column = callout.find('=').unwrap() + 3;
@@ -272,4 +277,22 @@ fn a_position_without_a_datum_is_warned_of_at_its_line() {
     // Beside a position the orientation has its datums.
     let both = "position = { zone = 0.1, datum = [\"box.A\", \"box.B\", \"box.C\"] }\nperpendicularity = 0.02";
     assert!(warned(both, "bore").is_empty());
+}
+
+#[test]
+fn a_datum_stands_once_in_a_list() {
+    let text = box_with("position = { zone = 0.1, datum = [\"box.A\", \"box.B\", \"box.A\"] }", "bore");
+    let error = parse(&text, &[]).err().unwrap().to_string();
+    assert!(error.contains("the datum `box.A` twice") && error.contains("each feature once"), "{error}");
+}
+
+#[test]
+fn a_direction_that_would_tilt_along_itself_is_warned_of() {
+    // The bore goes along z.
+    for (axis, warns) in [("x", false), ("y", false), ("z", true)] {
+        let text = box_with(&format!("vectorial = {{ orientation = {{ {axis} = 0.01 }} }}"), "bore");
+        let warnings = parse(&text, &[]).unwrap_or_else(|error| panic!("{error}")).product.unwrap().warnings;
+        let told: Vec<_> = warnings.iter().filter(|warning| warning.contains("does not tilt along itself")).collect();
+        assert_eq!(told.len(), usize::from(warns), "{axis}: {warnings:?}");
+    }
 }

@@ -97,6 +97,7 @@ mod tests;
 mod toleranced;
 #[cfg(test)]
 mod trade_tests;
+mod vectorial;
 mod zone;
 #[cfg(test)]
 mod zone_tests;

@@ -81,12 +81,15 @@ impl<'a> Plain<'a> {
             // What varies by rounding alone has no shape.
             let constant = extremes[1] - extremes[0] <= 1e-12 * extremes[0].abs().max(extremes[1].abs());
             let shape = |moment: f64| if constant { f64::NAN } else { moment };
+            // Seen from a frame elsewhere what is the same in all units would scatter by rounding.
+            let is_level = extremes[0] == extremes[1];
+            let deviation = frame.scale * libm::sqrt(variance * n / (n - 1.0));
             PlainMeasure {
                 units,
                 undefined,
                 outside: [0, 1].map(|side| parts.iter().map(|part| part.outside[side]).sum()),
-                mean: frame.origin + frame.scale * m1,
-                deviation: frame.scale * libm::sqrt(variance * n / (n - 1.0)),
+                mean: if is_level { extremes[0] } else { frame.origin + frame.scale * m1 },
+                deviation: if is_level { 0.0 } else { deviation },
                 skewness: shape(third / (variance * libm::sqrt(variance))),
                 kurtosis: shape(fourth / (variance * variance)),
                 extremes,
@@ -117,9 +120,10 @@ impl<'a> Plain<'a> {
             product / n - self.sums.powers[i][0] / n * (self.sums.powers[j][0] / n)
         };
         let count = self.measures.len();
-        let coefficient = |i, j| {
+        let coefficient = |i: usize, j: usize| {
             let scale = libm::sqrt(covariance(i, i) * covariance(j, j));
-            if i == j || scale == 0.0 { f64::from(i == j) } else { covariance(i, j) / scale }
+            let is_level = [i, j].iter().any(|k| self.measures[*k].deviation == 0.0);
+            if i == j || scale == 0.0 || is_level { f64::from(i == j) } else { covariance(i, j) / scale }
         };
         (0..count).map(|i| (0..count).map(|j| coefficient(i, j)).collect()).collect()
     }
