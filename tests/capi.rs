@@ -32,7 +32,7 @@ use slipfit_core::{
 };
 use slipfit_problems::cd_rom::{self, CdRomSlide};
 use slipfit_tests::{
-    cross::{self, TARGET, cargo, printed},
+    cross::{self, TARGET, printed, whole_program},
     guide,
 };
 
@@ -69,7 +69,11 @@ static HEADERS: LazyLock<PathBuf> = LazyLock::new(|| {
 fn library(name: &str, options: &[&str]) -> PathBuf {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _building = ONE_AT_A_TIME.lock();
-    printed(cargo(FOLDER).args(["rustc", "--release", "-p", "slipfit-capi", "--crate-type=staticlib"]).args(options));
+    printed(
+        whole_program(FOLDER)
+            .args(["rustc", "--release", "-p", "slipfit-capi", "--crate-type=staticlib"])
+            .args(options),
+    );
     let target = if options.contains(&TARGET) { TARGET } else { "" };
     let built = Path::new(FOLDER).join("cross").join(target).join("release/libslipfit_capi.a");
     let kept = Path::new(FOLDER).join(format!("libslipfit_capi-{name}.a"));

@@ -26,6 +26,13 @@ pub fn cargo(folder: &str) -> Command {
     cargo
 }
 
+/// The same, whose releases are optimised as a whole program, as firmware is.
+pub fn whole_program(folder: &str) -> Command {
+    let mut cargo = cargo(folder);
+    cargo.env("CARGO_PROFILE_RELEASE_LTO", "fat");
+    cargo
+}
+
 /// Runs `command` to its end.
 ///
 /// # Panics
@@ -116,7 +123,7 @@ pub fn require_emulator_of(architecture: &str, package: &str) {
 /// If it cannot be built.
 pub fn built(folder: &str, name: &str) -> PathBuf {
     require_target();
-    let mut build = cargo(folder);
+    let mut build = whole_program(folder);
     build.args(["build", "--quiet", "--release", "-p", "slipfit-firmware", "--bin", name, "--target", TARGET]);
     printed(&mut build);
     image(folder, name)

@@ -9,7 +9,7 @@ use std::{
 
 use defmt_decoder::{DecodeError, Table};
 use slipfit_tests::{
-    cross::{self, TARGET, cargo, printed},
+    cross::{self, TARGET, printed, whole_program},
     drive_table,
 };
 
@@ -20,7 +20,7 @@ static TABLE: LazyLock<PathBuf> = LazyLock::new(|| drive_table::written(FOLDER))
 
 /// The drive with a table, its target folder in `folder`.
 fn drive(folder: &str, options: &[&str], table: &Path) -> Command {
-    let mut cargo = cargo(folder);
+    let mut cargo = whole_program(folder);
     cargo.args(["run", "-p", "slipfit-firmware", "--bin", "slipfit-drive"]).args(options).arg("--").arg(table);
     cargo
 }

@@ -15,7 +15,7 @@ use slipfit::{
     scene::CD_ROM_SLIDE,
     setup::Scene,
 };
-use slipfit_tests::cross::{self, TARGET, cargo, printed};
+use slipfit_tests::cross::{self, TARGET, cargo, printed, whole_program};
 
 const FOLDER: &str = env!("CARGO_TARGET_TMPDIR");
 
@@ -148,7 +148,11 @@ fn on_host(table: Option<&Path>) -> String {
 fn on_target(table: Option<&Path>) -> String {
     cross::require_target();
     cross::require_emulator();
-    printed(cargo(FOLDER).args(["run", "--release", "-p", "slipfit-firmware", "--target", TARGET, "--"]).args(table))
+    printed(
+        whole_program(FOLDER)
+            .args(["run", "--release", "-p", "slipfit-firmware", "--target", TARGET, "--"])
+            .args(table),
+    )
 }
 
 /// The table of the paper's slide over n from −3 to 5, with [`Demand::Full`] the one that `slipfit run` makes.

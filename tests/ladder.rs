@@ -4,7 +4,7 @@
 use std::{collections::BTreeMap, fmt::Write, process::Command, sync::LazyLock};
 
 use slipfit_tests::{
-    cross::{self, TARGET, cargo, printed},
+    cross::{self, TARGET, printed, whole_program},
     guide::{self, with_comma},
 };
 
@@ -40,7 +40,7 @@ static ON_TARGET: LazyLock<String> = LazyLock::new(|| {
 });
 
 fn ladder() -> Command {
-    let mut cargo = cargo(FOLDER);
+    let mut cargo = whole_program(FOLDER);
     cargo.args(["run", "-p", "slipfit-firmware", "--bin", "slipfit-ladder"]);
     cargo
 }

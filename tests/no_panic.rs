@@ -1,7 +1,7 @@
 //! No panic is reachable from making and stepping a kernel, from predicting ahead of the clock, or from opening and looking
 //! up a table.
 
-use slipfit_tests::cross::{self, TARGET, cargo, finished, printed};
+use slipfit_tests::cross::{self, TARGET, finished, printed, whole_program};
 
 const BUILD: [&str; 6] = ["build", "--release", "-p", "slipfit-no-panic", "--target", TARGET];
 
@@ -9,7 +9,7 @@ const BUILD: [&str; 6] = ["build", "--release", "-p", "slipfit-no-panic", "--tar
 fn the_images_link_only_without_panics() {
     cross::require_target();
     let build = || {
-        let mut cargo = cargo(env!("CARGO_TARGET_TMPDIR"));
+        let mut cargo = whole_program(env!("CARGO_TARGET_TMPDIR"));
         cargo.args(BUILD);
         cargo
     };

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fmt::Write, path::Path, process::Command};
 
 use slipfit_tests::{
-    cross::{self, TARGET, cargo, printed},
+    cross::{self, TARGET, printed, whole_program},
     trace::Trace,
 };
 
@@ -110,7 +110,7 @@ fn a_pass_takes_the_recorded_instructions() {
     cross::require_target();
     cross::require_c_compiler();
     // The lines of source add nothing to the code.
-    let mut build = cargo(FOLDER);
+    let mut build = whole_program(FOLDER);
     build.env("CARGO_PROFILE_RELEASE_DEBUG", "line-tables-only");
     printed(build.args([
         "build",

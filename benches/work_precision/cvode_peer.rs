@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use slipfit_tests::cross::cargo;
+use slipfit_tests::cross::whole_program;
 
 use crate::entry::{Achieved, Entry, Tolerances};
 
@@ -33,7 +33,7 @@ impl Cvode {
         if !probe.status.success() {
             return Err("libsundials-dev or a C compiler is not installed".to_owned());
         }
-        succeed(cargo(folder).args(["build", "--release", "-p", "slipfit-cvode"]))?;
+        succeed(whole_program(folder).args(["build", "--release", "-p", "slipfit-cvode"]))?;
         let program = Path::new(folder).join("cvode");
         let rates = Path::new(folder).join("cross/release/libslipfit_cvode.a");
         succeed(Command::new("cc").arg("-O3").arg(&source).arg(&rates).args(LIBRARIES).arg("-o").arg(&program))?;
