@@ -22,7 +22,7 @@ use slipfit::{
         outcome::Verdict,
         simulate::{Settings, simulate as at_desk},
     },
-    population::{Course, production::Production, simulate, simulate_in, unit},
+    population::{Course, production::Production, simulate, simulate_in, slide},
     scene::CD_ROM_SLIDE,
     setup::Scene,
 };
@@ -54,10 +54,10 @@ fn main() -> ExitCode {
 fn changed_verdicts(scene: &Scene) -> bool {
     let [all, piece] = JUDGED;
     let production = Production::new(scene, None, 0.0, 3).expect("it can be drawn");
-    let course = unit::course(scene);
+    let course = slide::course(scene);
     let pieces = (0..all / piece).into_par_iter().map(|k| {
         let drawn = production.draw(k * piece..(k + 1) * piece);
-        let units = unit::units(scene, &drawn).expect("the desk solves what it is left");
+        let units = slide::units(scene, &drawn).expect("the desk solves what it is left");
         let slides: Vec<SlideData<f64>> = drawn.gaps.iter().map(|gaps| scene.slide_data(gaps)).collect();
         let finer = simulate(Course { tolerance: course.tolerance / 10.0, ..course }, &slides);
         let mut counts = [0, 0];
@@ -85,7 +85,7 @@ fn p95(mut errors: Vec<f64>) -> f64 {
 fn compare(name: &str, scene: &Scene, units: usize, peers: usize) {
     let drawn = Production::new(scene, None, 0.0, 1).expect("it can be drawn").draw(0..units as u64);
     let slides: Vec<SlideData<f64>> = drawn.gaps.iter().map(|gaps| scene.slide_data(gaps)).collect();
-    let course = unit::course(scene);
+    let course = slide::course(scene);
     // Peak and end.
     let truth: Vec<[f64; 2]> = drawn.gaps[..100]
         .iter()
