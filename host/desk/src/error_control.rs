@@ -339,6 +339,7 @@ fn slope((length, own): (f64, f64), other: Option<(f64, f64)>, further: Option<(
 }
 
 /// The cubic with the given values and slopes at 0 and 1.
+#[inline]
 fn hermite(s: f64, [y0, y1]: [f64; 2], [d0, d1]: [f64; 2]) -> f64 {
     let rest = 1.0 - s;
     y0 * rest * rest * (1.0 + 2.0 * s) + y1 * s * s * (3.0 - 2.0 * s) + d0 * s * rest * rest - d1 * s * s * rest
