@@ -61,20 +61,35 @@ impl Ranked {
         self.shrink();
     }
 
+    /// Leaves out the fewest bits that leave no more classes than are kept apart.
     fn shrink(&mut self) {
-        while self.counts.len() > MOST {
-            self.coarsen(1);
+        let mut classes = self.counts.len();
+        if classes <= MOST {
+            return;
         }
+        // Neighbours by the bits after which they are one class. All at once: numbers of single precision share some thirty bits.
+        let mut one_after = [0; 65];
+        for (class, next) in self.counts.keys().zip(self.counts.keys().skip(1)) {
+            one_after[(64 - (class ^ next).leading_zeros()) as usize] += 1;
+        }
+        let enough = |bits: &u32| {
+            classes -= one_after[*bits as usize];
+            classes <= MOST
+        };
+        self.coarsen((1..64).find(enough).unwrap_or(63));
     }
 
     fn coarsen(&mut self, bits: u32) {
         if bits > 0 {
             self.shift += bits;
-            let mut coarse = BTreeMap::new();
+            let mut coarse: Vec<(u64, u64)> = Vec::with_capacity(self.counts.len());
             for (class, count) in &self.counts {
-                *coarse.entry(class >> bits).or_default() += count;
+                match coarse.last_mut().filter(|(last, _)| *last == class >> bits) {
+                    Some((_, sum)) => *sum += count,
+                    None => coarse.push((class >> bits, *count)),
+                }
             }
-            self.counts = coarse;
+            self.counts = coarse.into_iter().collect();
         }
     }
 
