@@ -357,4 +357,14 @@ fn columns_that_a_finer_run_does_not_confirm_are_warned_of() {
     let told = "a run at a tenth of the tolerance differs by 8.0 % of the body's greatest spin in carriage.wy (rad/s)";
     assert!(warning.contains(told) && warning.contains("run.error"), "{warning}");
     assert!(!warned("1e-5").contains("a run at a tenth"));
+    // A sweep says at which levels.
+    let swept = |error: &str| {
+        let set = ["--set", &format!("run.error={error}"), "--n", "0:1:1"];
+        let output = slipfit(Path::new("."), &[&["sweep", "linear-guide"][..], &set].concat());
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let warning = swept("1e-3");
+    assert!(warning.contains("at n = 0 (and at another level): ") && warning.contains(told), "{warning}");
+    assert!(!swept("1e-5").contains("a run at a tenth"));
 }

@@ -1,13 +1,10 @@
 //! One unit of any mechanism: by the desk in error-controlled steps, or by its controller's in steps of one length.
 
-use std::{
-    ops::ControlFlow,
-    time::{Duration, Instant},
-};
+use std::{ops::ControlFlow, time::Instant};
 
 use slipfit_core::{
     SVector,
-    integrator::{Integrator, Motion, Rodas4},
+    integrator::Motion,
     pose::Pose,
     system::{Bodies, Reduced, System, ThroughJoints, spatial::tree::Mount},
 };
@@ -24,9 +21,11 @@ use super::{
     energy::Energies,
     joint_elements::joints_of_elements,
     limits::Limits,
-    planar, spatial,
+    planar,
+    record::{MechanismRun, Moment, Samples},
+    spatial,
     state::{State, half_angle},
-    sunk::{self, Depths, Sunk},
+    sunk::{self, Depths},
 };
 use crate::{
     dynamics::{
@@ -35,70 +34,10 @@ use crate::{
         film::chosen,
         looks::{Place, end, looks, samples},
         outcome::{Instant as Looked, Observer, Outcome, Verdict, has_run_away},
-        scheme::ScalarKind,
-        simulate::Solved,
         trajectory::Trajectory,
     },
     setup::{ControllerSpec, RunSpec},
 };
-
-/// What is told of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Samples {
-    /// Names with units.
-    pub columns: Vec<String>,
-    /// Values, one row a sample.
-    pub rows: Vec<Vec<f64>>,
-}
-
-/// Where all bodies are at one time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
-    /// When (s).
-    pub t: f64,
-    /// How each body has moved.
-    pub motions: Vec<BodyMotion>,
-}
-
-/// A finished run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MechanismRun {
-    /// Samples.
-    pub samples: Samples,
-    /// Figures of each drive: forces and travel along its axis, or torques and angles about it.
-    pub outcomes: Vec<Outcome>,
-    /// What each drive does over time, likewise; x and y are its body's.
-    pub trajectories: Vec<Trajectory>,
-    /// Moments that show the motion, from rest to the end; none unless [`film`] asks for them.
-    pub film: Vec<Moment>,
-    /// Energy that neither the start, nor gravity, nor a drive supplied, as a share of the greatest energy: an error of the computation.
-    pub energy_excess: f64,
-    /// The contact that yielded most beyond what is usual, if one did at the desk.
-    pub sunk: Option<Sunk>,
-    /// Error of speed (m/s) that a step was allowed.
-    pub tolerance: f64,
-    /// Steps.
-    pub effort: error_control::Effort,
-    /// Time that the integration alone took.
-    pub integration: Duration,
-}
-
-impl MechanismRun {
-    /// What computed it.
-    pub fn solved(&self) -> Solved {
-        Solved {
-            by: "desk",
-            integrator: SCHEME,
-            scalar: ScalarKind::F64,
-            step_s: None,
-            tolerance_n: None,
-            tolerance_m_per_s: Some(self.tolerance),
-            stick_band_m_per_s: None,
-            effort: self.effort,
-            worst_residual: 0.0,
-        }
-    }
-}
 
 /// Runs the unit of `mechanism` with the given `gaps` (m) and tells of it every `every` (s).
 ///
@@ -407,6 +346,3 @@ fn solve<P: Plant<D>, const D: usize>(
 
 /// A speed (m/s, rad/s) that no mechanism has, at which the run of one whose drive runs away ends.
 const ABSURD: f64 = 1e5;
-
-/// The scheme by which the desk integrates.
-pub const SCHEME: &str = Rodas4::NAME;

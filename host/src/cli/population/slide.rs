@@ -44,6 +44,7 @@ use crate::{
 
 /// Random combinations at each distance.
 const DIRECTIONS: u64 = 512;
+
 #[derive(Serialize)]
 struct Report {
     title: String,
