@@ -243,9 +243,7 @@ fn shards_of_a_mechanism_are_the_whole() {
 fn peaks_of_units_are_good_to_a_thousandth() {
     let units = 40;
     let folder = tempfile::tempdir().unwrap();
-    for (name, column) in
-        [("four-bar", "peak_torque_N_m"), ("slider-crank", "peak_torque_N_m"), ("hatch", "peak_force_N")]
-    {
+    for name in ["four-bar", "slider-crank", "hatch", "linear-guide"] {
         let count = units.to_string();
         let output = slipfit(folder.path(), &["population", name, "--units", &count, "--csv", "units.csv"]);
         assert!(output.status.success(), "{output:?}");

@@ -37,7 +37,7 @@ pub struct MechanismRun {
     pub outcomes: Vec<Outcome>,
     /// What each drive does over time, likewise; x and y are its body's.
     pub trajectories: Vec<Trajectory>,
-    /// Moments that show the motion, from rest to the end; none unless [`film`] asks for them.
+    /// Moments that show the motion, from rest to the end; none unless [`super::film`] asks for them.
     pub film: Vec<Moment>,
     /// Energy that neither the start, nor gravity, nor a drive supplied, as a share of the greatest energy: an error of the computation.
     pub energy_excess: f64,
