@@ -13,6 +13,8 @@ pub struct Effort {
     values: Vec<f64>,
     /// Longest step (s) within which the effort follows from the speed.
     longest: f64,
+    /// Whether a step is longer.
+    any_longer: bool,
 }
 
 /// Time constants of the drive in the longest step within which its effort follows from the speed.
@@ -21,11 +23,17 @@ const TIME_CONSTANTS: f64 = 30.0;
 impl Effort {
     /// With these `values` at the ends of steps, at ascending `times` (s), of a drive with this `time_constant` (s).
     pub fn new(times: Vec<f64>, values: Vec<f64>, time_constant: f64) -> Self {
-        Self { times, values, longest: TIME_CONSTANTS * time_constant }
+        let longest = TIME_CONSTANTS * time_constant;
+        let any_longer = times.windows(2).any(|ends| ends[1] - ends[0] > longest);
+        Self { times, values, longest, any_longer }
     }
 
     /// The effort at time `t` (s), where that of the interpolated speed is `by_speed`.
     pub fn at(&self, t: f64, by_speed: f64) -> f64 {
+        // Of most runs no step is: no search for the one around `t`.
+        if !self.any_longer {
+            return by_speed;
+        }
         self.before(self.times.partition_point(|knot| *knot < t), t, by_speed)
     }
 

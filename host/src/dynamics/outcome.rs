@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use slipfit_core::{drive::Drive, table::MotionVerdict};
+use slipfit_desk::settled::extremes;
 pub use slipfit_desk::settled::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled};
 
 use crate::setup::RunSpec;
@@ -228,9 +229,7 @@ impl Observer {
         // At the stroke's end what the command is by then counts.
         let over = t >= self.drive.ramp_end || is_at_end == Some(true);
         let verdict = Verdict::of(share, over && command > 0.0);
-        let speeds = || self.window.iter().map(|at| at.vz);
-        let extremes = speeds().reduce(f64::min).zip(speeds().reduce(f64::max)).map(|(least, most)| [least, most]);
-        let swings = extremes
+        let swings = extremes(self.window.iter().map(|at| at.vz))
             .filter(|speeds| verdict != Verdict::Undecided && between_verdicts(speeds.map(|speed| speed / command)));
         let [slows, stops] = self.below.map(|below| below.since.filter(|_| over));
         Outcome {

@@ -74,7 +74,7 @@ const LEAST_STEP: f32 = 1e-9;
 /// How far (m) from the end of its stroke a unit may stop.
 const BEYOND: f64 = 1e-7;
 /// Steps after which a unit has stalled.
-const MOST_STEPS: u32 = 200_000;
+const MOST_STEPS: f64 = 200_000.0;
 
 /// Simulates all `units`, slides that `load` makes of their parameters, and writes what each did to `figures`, of the same
 /// length. Where `load` makes none there are no figures. That the machine has them is what `_instructions` prove.
@@ -91,7 +91,7 @@ pub fn integrate<V: Simd, M: Slides<V>>(
     let mut next = 0;
     loop {
         for lane in 0..Pack::<V>::LANES {
-            if all.lanes[lane].ended {
+            if all.progress.ended.get(lane) > 0.0 {
                 all.load(lane, &mut next, units);
             }
         }
@@ -113,21 +113,26 @@ struct Lanes<V: Simd> {
     watch: Watch<V>,
     /// Lengths of the next steps (s).
     lengths: Pack<V>,
-    lanes: Vec<Lane>,
+    progress: Progress<V>,
 }
 
-/// How far the unit in a lane is.
-#[derive(Clone, Copy, Default)]
-struct Lane {
-    /// Its index; none if there are no more.
-    unit: Option<usize>,
-    ended: bool,
+/// The most lanes of a register.
+const MOST_LANES: usize = 16;
+
+/// How far the unit in each lane is.
+struct Progress<V: Simd> {
+    /// Its index.
+    units: [usize; MOST_LANES],
+    /// 1 where there is one, 0 where there are no more.
+    busy: Pack<V>,
     /// Its time (s).
-    time: f64,
-    /// When its force was noted last (s).
-    noted: f64,
+    times: [f64; MOST_LANES],
+    /// Time (s) since its force was noted last.
+    since_note: Pack<V>,
     /// Steps, refused ones among them.
-    tried: u32,
+    tried: Pack<V>,
+    /// Above 0 where it has come to its end, and the lane waits for another.
+    ended: Pack<V>,
 }
 
 impl<V: Simd> Lanes<V> {
@@ -138,22 +143,35 @@ impl<V: Simd> Lanes<V> {
             pins: [Seen { place: Vector3::zeros(), rate: Vector3::zeros() }; PINS],
             watch: Watch::new(),
             lengths: Pack::from_f64(FIRST_STEP),
-            lanes: vec![Lane { ended: true, ..Lane::default() }; Pack::<V>::LANES],
+            progress: Progress {
+                units: [0; MOST_LANES],
+                busy: Pack::splat(0.0),
+                times: [0.0; MOST_LANES],
+                since_note: Pack::splat(0.0),
+                tried: Pack::splat(0.0),
+                ended: Pack::splat(1.0),
+            },
         }
     }
 
     fn busy(&self) -> bool {
-        self.lanes.iter().any(|lane| lane.unit.is_some())
+        self.progress.busy.numbers().iter().any(|busy| *busy > 0.0)
     }
 
     /// Puts the next of `units` into a `lane`, from rest.
     fn load(&mut self, lane: usize, next: &mut usize, units: &[SlideData<f64>]) {
-        let unit = units.get(*next).map(|unit| {
+        let of = &mut self.progress;
+        of.busy.set(lane, 0.0);
+        if let Some(unit) = units.get(*next) {
             put(&mut self.data, lane, unit);
+            of.busy.set(lane, 1.0);
+            of.units[lane] = *next;
             *next += 1;
-            *next - 1
-        });
-        self.lanes[lane] = Lane { unit, noted: f64::NEG_INFINITY, ..Lane::default() };
+        }
+        of.times[lane] = 0.0;
+        of.since_note.set(lane, f32::INFINITY);
+        of.tried.set(lane, 0.0);
+        of.ended.set(lane, 0.0);
         for (number, rest) in numbers(&mut self.motions).into_iter().zip(numbers(&mut at_rest::<V>())) {
             number.set(lane, rest.get(lane));
         }
@@ -165,16 +183,18 @@ impl<V: Simd> Lanes<V> {
     #[inline(always)]
     fn step<M: Slides<V>>(&mut self, course: &Course, slide: &M, figures: &mut [Figures]) -> bool {
         let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
-        let (mut start, mut length) = (zero, zero);
-        for (lane, Lane { time, .. }) in self.lanes.iter().enumerate() {
-            let left = (course.duration - time) as f32;
+        let (mut start, mut left) = (zero, zero);
+        for (lane, time) in self.progress.times[..Pack::<V>::LANES].iter().enumerate() {
             start.set(lane, *time as f32);
-            let step = self.lengths.get(lane);
-            length.set(lane, if 1.01 * step >= left { left.max(LEAST_STEP) } else { step });
+            left.set(lane, (course.duration - time) as f32);
         }
+        let length =
+            left.select_gt(self.lengths * Pack::splat(1.01), self.lengths, left.max_of(Pack::splat(LEAST_STEP)));
         let mut step = Rodas3::step::<Pack<V>, _, 6>(slide, start, length, &self.motions);
         let error = self.error(course, [step.error, step.drift]);
-        let factor = Pack::from_f64(SAFETY) / error.pow(Pack::from_f64(1.0 / 3.0));
+        let mut root = error;
+        root.numbers_mut().iter_mut().for_each(|x| *x = cube_root(*x));
+        let factor = Pack::from_f64(SAFETY) / root;
         self.lengths = (length * factor.within(Pack::from_f64(CHANGES[0]), Pack::from_f64(CHANGES[1])))
             .within(Pack::splat(LEAST_STEP), Pack::from_f64(GREATEST_STEP));
         let along = zero.select_gt(self.data.drive.speed, -one, one);
@@ -224,31 +244,32 @@ impl<V: Simd> Lanes<V> {
         };
         self.watch.observe(&ends);
         let travel = self.motions.pose.displacement_w.z * along;
-        let mut notes = zero;
-        for (lane, Lane { unit, ended, time, noted, tried }) in self.lanes.iter_mut().enumerate() {
-            let Some(unit) = *unit else { continue };
-            *tried += 1;
-            if accepted.get(lane) > 0.0 {
-                *time += f64::from(length.get(lane));
-                if *time - *noted >= BETWEEN_NOTES {
-                    self.watch.note(lane, *time);
-                    notes.set(lane, 1.0);
-                    *noted = *time;
-                }
+        let Progress { units, busy, times, since_note, tried, ended } = &mut self.progress;
+        let gone = length * accepted;
+        times.iter_mut().zip(gone.numbers()).for_each(|(time, gone)| *time += f64::from(*gone));
+        *tried += one;
+        *since_note += gone;
+        let notes = *busy * Pack::from_f64(BETWEEN_NOTES).select_gt(*since_note, zero, accepted);
+        *since_note = notes.select_gt(zero, zero, *since_note);
+        let at_least = Pack::splat(LEAST_STEP);
+        let stalled = (one - good) * length.select_gt(at_least, zero, one);
+        let stalled = Pack::from_f64(MOST_STEPS).select_gt(*tried, stalled, one);
+        let at_stroke = (stroke - Pack::from_f64(BEYOND)).select_gt(travel, zero, one);
+        *ended = *busy * (left - gone).select_gt(at_least, stalled.max_of(at_stroke), one);
+        for lane in 0..Pack::<V>::LANES {
+            if notes.get(lane) > 0.0 {
+                self.watch.note(lane, times[lane]);
             }
-            let stalled = (good.get(lane) == 0.0 && length.get(lane) <= LEAST_STEP) || *tried >= MOST_STEPS;
-            let at_end = travel.get(lane) >= stroke.get(lane) - BEYOND as f32;
-            *ended = stalled || at_end || *time >= course.duration - f64::from(LEAST_STEP);
-            if *ended {
-                let of_unit = &mut figures[unit];
-                self.watch.conclude(lane, *time, of_unit);
+            if ended.get(lane) > 0.0 {
+                let of_unit = &mut figures[units[lane]];
+                self.watch.conclude(lane, times[lane], of_unit);
                 of_unit.final_velocity = ends.speed.get(lane);
                 of_unit.travel = travel.get(lane).min(stroke.get(lane));
-                (of_unit.steps, of_unit.stalled) = (*tried, stalled);
+                (of_unit.steps, of_unit.stalled) = (tried.get(lane) as u32, stalled.get(lane) > 0.0);
             }
         }
         self.watch.forget_extremes(notes);
-        self.lanes.iter().any(|lane| lane.ended)
+        !(*ended <= zero)
     }
 
     /// The error of a step whose estimates of momentum (N·s) and of place (N·s²) these are; 1 is allowed. What is not a
@@ -265,6 +286,14 @@ impl<V: Simd> Lanes<V> {
     }
 }
 
+/// ∛`x` to 0.02 %, for x > 0 and normal: Halley's step from a guess whose bits have a third of the exponent.
+#[inline(always)]
+fn cube_root(x: f32) -> f32 {
+    let guess = f32::from_bits(x.to_bits() / 3 + 0x2a51_19f2);
+    let cube = guess * guess * guess;
+    guess * (cube + x + x) / (cube + cube + x)
+}
+
 #[cfg(test)]
 mod tests {
     use slipfit_core::slide::ABSENT;
@@ -275,6 +304,27 @@ mod tests {
     /// Of the four gaps of a pin, the one that opens as the slide rises and the one that closes.
     const RAIL: usize = 2;
     const CEILING: usize = 3;
+
+    #[test]
+    fn cube_roots_meet_their_bound() {
+        for k in -4000..4000 {
+            let x = libm::exp2f(k as f32 / 67.0);
+            let error = f64::from(cube_root(x)) / libm::cbrt(f64::from(x)) - 1.0;
+            assert!(error.abs() < 2e-4, "{x:e}: {error:e}");
+        }
+    }
+
+    /// More units than lanes, and a number of them that no register divides: each has the figures that it has alone.
+    #[test]
+    fn lanes_that_have_no_more_units_change_nothing() {
+        let slides: Vec<SlideData<f64>> = (0..19).map(|k| slide(RAIL, 1e-6 * f64::from(k))).collect();
+        let course = Course { duration: 0.02, stroke: None, tolerance: 1e-4 };
+        let together = super::super::simulate(course, &slides);
+        for (slide, figures) in slides.iter().zip(&together) {
+            let alone = super::super::simulate(course, std::slice::from_ref(slide));
+            assert_eq!(format!("{:?}", alone[0]), format!("{figures:?}"));
+        }
+    }
 
     /// A slide on four pins at the distance `gap` (m) from this wall of each.
     fn slide(wall: usize, gap: f64) -> SlideData<f64> {
@@ -296,7 +346,7 @@ mod tests {
         lanes.pins = slide.pins(&lanes.motions.pose, &lanes.motions.velocity);
         let mut figures = [Figures::NONE];
         let mut highest = 0.0;
-        while lanes.lanes[0].time < duration {
+        while lanes.progress.times[0] < duration {
             lanes.step(&course, &slide, &mut figures);
             highest = lanes.motions.pose.displacement_w.y.get(0).max(highest);
         }
