@@ -1,6 +1,8 @@
 //! Measured parts.
 //!
-//! A [`table::MeasuredTable`] holds one value per part and characteristic, with nominal values, limits and subgroups.
+//! A [`table::MeasuredTable`] holds one value per part and characteristic, with nominal values, limits and subgroups;
+//! [`csv`] reads and writes it.
 #![forbid(unsafe_code)]
 
+pub mod csv;
 pub mod table;

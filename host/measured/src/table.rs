@@ -133,18 +133,9 @@ pub struct Grouping {
 impl Grouping {
     /// The grouping by a text per part; parts with an empty text belong to no subgroup.
     pub fn new<'a>(name: &str, texts: impl IntoIterator<Item = &'a str>) -> Self {
-        let mut grouping = Self { name: name.to_owned(), ..Self::default() };
-        let mut index = HashMap::new();
-        for text in texts {
-            let group = (!text.is_empty()).then(|| {
-                *index.entry(text).or_insert_with(|| {
-                    grouping.groups.push(text.to_owned());
-                    (grouping.groups.len() - 1) as u32
-                })
-            });
-            grouping.group_of.push(group);
-        }
-        grouping
+        let mut builder = GroupingBuilder::new(name);
+        texts.into_iter().for_each(|text| builder.push(text));
+        builder.finish()
     }
 
     /// The measured values of a `column` by subgroup, parts without a subgroup last.
@@ -158,6 +149,38 @@ impl Grouping {
         }
         divided.retain(|values| !values.is_empty());
         divided
+    }
+}
+
+/// A grouping part by part, which keeps each text once.
+pub struct GroupingBuilder {
+    grouping: Grouping,
+    index: HashMap<String, u32>,
+}
+
+impl GroupingBuilder {
+    /// Without parts.
+    pub fn new(name: &str) -> Self {
+        Self { grouping: Grouping { name: name.to_owned(), ..Grouping::default() }, index: HashMap::new() }
+    }
+
+    /// Adds a part; with an empty text it belongs to no subgroup.
+    pub fn push(&mut self, text: &str) {
+        let group = (!text.is_empty()).then(|| match self.index.get(text) {
+            Some(group) => *group,
+            None => {
+                let group = self.grouping.groups.len() as u32;
+                self.grouping.groups.push(text.to_owned());
+                self.index.insert(text.to_owned(), group);
+                group
+            }
+        });
+        self.grouping.group_of.push(group);
+    }
+
+    /// The grouping of all parts.
+    pub fn finish(self) -> Grouping {
+        self.grouping
     }
 }
 
