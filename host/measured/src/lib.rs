@@ -5,4 +5,8 @@
 #![forbid(unsafe_code)]
 
 pub mod csv;
+#[cfg(test)]
+mod examples;
+pub mod families;
+pub mod numeric;
 pub mod table;
