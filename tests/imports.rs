@@ -34,7 +34,7 @@ const LAYERS: [(&str, &[&str]); 5] = [
             "product",
         ],
     ),
-    ("host/measured/src", &["table", "csv", "numeric", "families"]),
+    ("host/measured/src", &["table", "csv", "numeric", "families", "capability"]),
     (
         "host/desk/src",
         &[

@@ -4,6 +4,7 @@
 //! [`csv`] reads and writes it.
 #![forbid(unsafe_code)]
 
+pub mod capability;
 pub mod csv;
 #[cfg(test)]
 mod examples;

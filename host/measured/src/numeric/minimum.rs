@@ -20,7 +20,7 @@ pub fn minimise<const N: usize>(
     for _ in 0..6 {
         let before = best.1;
         best = simplex(best, steps, &value);
-        if !(before - best.1 > 1e-10 * before.abs().max(1.0)) && before.is_finite() {
+        if before.is_finite() && before - best.1 <= 1e-10 * before.abs().max(1.0) {
             break;
         }
         steps = steps.map(|step| 0.3 * step);
