@@ -5,6 +5,7 @@ mod johnson_su;
 mod lognormal;
 mod mixture;
 mod normal;
+mod posterior;
 mod shifted;
 #[cfg(test)]
 mod tests;
@@ -17,7 +18,7 @@ use slipfit_tolerance::numeric::normal::quantile;
 
 pub use self::{
     johnson_sb::JohnsonSb, johnson_su::JohnsonSu, lognormal::Lognormal, mixture::TwoNormals, normal::Normal,
-    weibull::Weibull,
+    posterior::Posterior, weibull::Weibull,
 };
 
 /// A distribution of a family.
