@@ -217,7 +217,7 @@ fn inverse_root(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
             let rest = matrix[i][j] - (0..j).map(|k| lower[i][k] * lower[j][k]).sum::<f64>();
             if i == j {
                 // Directions that the sample hardly tells anything of are as good as not determined.
-                if !(rest > 1e-9 * matrix[i][i]) {
+                if rest.is_nan() || rest <= 1e-9 * matrix[i][i] {
                     return None;
                 }
                 lower[i][i] = libm::sqrt(rest);

@@ -165,13 +165,8 @@ fn coverage(kind: Kind, family: &dyn Family, parts: usize, repeats: u64) -> [f64
 
 #[test]
 fn intervals_hold_within_a_family_and_without_knowing_it() {
-    let all = std::env::var("ALL").is_ok();
-    for (kind, family) in examples() {
-        for parts in if all { vec![30, 60, 100] } else { vec![30] } {
-            if parts >= kind.least_parts() && (all || kind.parameters() == 2) {
-                let held = coverage(kind, family.as_ref(), parts, 100);
-                println!("{kind} {parts}: {held:?}");
-            }
-        }
+    for (kind, family) in examples().into_iter().filter(|(kind, _)| kind.parameters() == 2) {
+        let held = coverage(kind, family.as_ref(), 30, 100);
+        assert!(held.iter().all(|held| *held >= 90.0), "{kind}: {held:?} %");
     }
 }
