@@ -3,5 +3,5 @@
 pub mod gauss;
 pub mod lanes;
 pub mod normal;
-pub(crate) mod root;
+pub mod root;
 pub mod shape;

@@ -1,0 +1,219 @@
+//! What measured parts tell of a production: performance and capability by ISO 22514-2.
+//!
+//! Intervals are of 95 % and exact for a normal production, unless their documentation says otherwise, whatever the number
+//! of parts. Outliers are named and stay in every figure.
+
+mod failing;
+mod indices;
+mod normality;
+mod outliers;
+mod points;
+mod sample;
+#[cfg(test)]
+mod tests;
+mod tolerance_interval;
+mod within;
+
+use serde::Serialize;
+use slipfit_tolerance::statistics::interval;
+
+pub use self::{
+    failing::{Counted, Failing},
+    indices::{Indices, Known},
+    normality::{LEAST_PARTS, Normality},
+    outliers::{Outlier, SIGNIFICANCE},
+    points::{Points, SCORES},
+    sample::Sample,
+    tolerance_interval::{ToleranceInterval, one_sided_factor, parts_for_any, two_sided_factor},
+    within::{Group, Within},
+};
+use crate::{
+    families::{FitError, Kind, choose, preferred},
+    numeric::tails::student_quantile_above,
+    table::{MeasuredTable, Unit},
+};
+use slipfit_tolerance::numeric::normal::SIDE;
+
+/// A figure with its interval of 95 %; an end may be infinite.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The figure.
+    pub value: f64,
+    /// The interval.
+    pub interval: [f64; 2],
+}
+
+impl Estimate {
+    /// With a rising `function` of it.
+    fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        Self { value: function(self.value), interval: self.interval.map(function) }
+    }
+}
+
+/// A column whose capability cannot be told.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CapabilityError {
+    /// Too few parts for a standard deviation.
+    #[error("\"{column}\" has {found} measured parts, but capability needs at least {least}")]
+    FewParts {
+        /// Name of the column.
+        column: String,
+        /// Parts that it needs.
+        least: usize,
+        /// Parts that there are.
+        found: usize,
+    },
+    /// All values are the same.
+    #[error("all {found} measured parts have \"{column}\" {value}; a finer reading is needed to tell its variation")]
+    NoVariation {
+        /// Name of the column.
+        column: String,
+        /// The value.
+        value: f64,
+        /// Parts.
+        found: usize,
+    },
+    /// Values too far apart for numbers.
+    #[error("the values of \"{column}\" differ by more than numbers hold")]
+    TooFarApart {
+        /// Name of the column.
+        column: String,
+    },
+    /// An index beyond the columns or groupings.
+    #[error("there is no column or grouping {0}")]
+    NoColumn(usize),
+}
+
+/// How capability is found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Family of the indices by points; `None` chooses one from the data.
+    pub family: Option<Kind>,
+    /// Index of the grouping whose subgroups are told apart.
+    pub grouping: Option<usize>,
+    /// Shares of the production for which tolerance intervals are told.
+    pub shares: Vec<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { family: None, grouping: None, shares: vec![0.95, 0.99, 0.9973] }
+    }
+}
+
+/// What a column of measured parts tells.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Capability {
+    /// Name of the column.
+    pub name: String,
+    /// Unit of all figures of length or angle.
+    pub unit: Unit,
+    /// Nominal value.
+    pub nominal: Option<f64>,
+    /// Lower and upper limit.
+    pub limits: [Option<f64>; 2],
+    /// Measured parts.
+    pub count: usize,
+    /// Parts that were not measured.
+    pub missing: usize,
+    /// Mean.
+    pub mean: Estimate,
+    /// Standard deviation.
+    pub deviation: Estimate,
+    /// Least value.
+    pub least: f64,
+    /// Median.
+    pub median: f64,
+    /// Greatest value.
+    pub greatest: f64,
+    /// Pp and Ppk of a normal production.
+    pub performance: Indices,
+    /// Expected shares outside the limits of a normal production.
+    pub failing: Failing,
+    /// Measured parts outside the limits, whatever the distribution; `None` without limits.
+    pub counted: Option<Counted>,
+    /// Figures of subgroups, with Cp and Cpk.
+    pub within: Option<Within>,
+    /// Test of normality; `None` of too few parts.
+    pub normality: Option<Normality>,
+    /// Values too far away for a normal production.
+    pub outliers: Vec<Outlier>,
+    /// Indices by points of the family.
+    pub points: Option<Points>,
+    /// Why there are none.
+    pub no_points: Option<String>,
+    /// Tolerance intervals.
+    pub tolerance_intervals: Vec<ToleranceInterval>,
+}
+
+/// What a `column` of a table tells.
+pub fn capability(table: &MeasuredTable, column: usize, options: &Options) -> Result<Capability, CapabilityError> {
+    let measured = table.columns().get(column).ok_or(CapabilityError::NoColumn(column))?;
+    let grouping = match options.grouping {
+        Some(index) => Some(table.groupings().get(index).ok_or(CapabilityError::NoColumn(index))?),
+        None => None,
+    };
+    let limits = measured.limits;
+    let sample = Sample::new(&measured.name, &measured.values)?;
+    let known = Known::of(&sample);
+    let has_limits = limits.iter().any(Option::is_some);
+    let (points, no_points) = match points(&sample, options.family, limits) {
+        Ok(points) => (Some(points), None),
+        Err(error) => (None, Some(error.to_string())),
+    };
+    let shares = options.shares.iter().filter(|share| 0.0 < **share && **share < 1.0);
+    Ok(Capability {
+        name: measured.name.clone(),
+        unit: measured.unit,
+        nominal: measured.nominal,
+        limits,
+        count: sample.sorted.len(),
+        missing: measured.missing(),
+        mean: known.mean_estimate(),
+        deviation: known.deviation_estimate(),
+        least: sample.sorted.first().copied().unwrap_or_default(),
+        median: sample.median(),
+        greatest: sample.sorted.last().copied().unwrap_or_default(),
+        performance: known.indices(limits),
+        failing: known.failing(limits),
+        counted: has_limits.then(|| Counted::new(&sample.sorted, limits)),
+        within: grouping.and_then(|grouping| Within::new(measured, grouping, &sample)),
+        normality: Normality::new(&sample),
+        outliers: outliers::outliers(&sample, |part| table.label(part)),
+        points,
+        no_points,
+        tolerance_intervals: shares.map(|share| ToleranceInterval::new(*share, &known, &sample.sorted)).collect(),
+    })
+}
+
+/// Indices by points of a stated family, or the one that the data choose.
+fn points(sample: &Sample, family: Option<Kind>, limits: [Option<f64>; 2]) -> Result<Points, FitError> {
+    match family {
+        Some(kind) => Ok(Points::new(&kind.fit(&sample.sorted)?, limits)),
+        None => {
+            let (fits, errors) = choose(&sample.sorted)?;
+            let error = || errors.into_iter().next().unwrap_or(FitError::TooFarApart);
+            Ok(Points::new(preferred(&fits).ok_or_else(error)?, limits))
+        }
+    }
+}
+
+impl Known {
+    /// What a sample tells.
+    pub fn of(sample: &Sample) -> Self {
+        let parts = sample.count();
+        Self { parts, mean: sample.mean, deviation: sample.deviation, freedom: parts - 1.0 }
+    }
+
+    /// The mean with its interval by W. Gosset's t.
+    pub fn mean_estimate(&self) -> Estimate {
+        let half = student_quantile_above(SIDE, self.freedom) * self.deviation / libm::sqrt(self.parts);
+        Estimate { value: self.mean, interval: [self.mean - half, self.mean + half] }
+    }
+
+    /// The standard deviation with its interval by χ².
+    pub fn deviation_estimate(&self) -> Estimate {
+        Estimate { value: self.deviation, interval: interval::deviation(self.deviation, self.freedom) }
+    }
+}

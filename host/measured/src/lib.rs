@@ -1,0 +1,13 @@
+//! Measured parts.
+//!
+//! A [`table::MeasuredTable`] holds one value per part and characteristic, with nominal values, limits and subgroups;
+//! [`csv`] reads and writes it.
+#![forbid(unsafe_code)]
+
+pub mod capability;
+pub mod csv;
+#[cfg(test)]
+mod examples;
+pub mod families;
+pub mod numeric;
+pub mod table;
