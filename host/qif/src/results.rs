@@ -140,8 +140,7 @@ impl Table {
                 }
             };
             let items = ids(measurement, "FeatureMeasurementIds");
-            let items: Vec<String> =
-                items.iter().map(|id| (*features.get(id).unwrap_or(id)).to_owned()).collect();
+            let items: Vec<String> = items.iter().map(|id| (*features.get(id).unwrap_or(id)).to_owned()).collect();
             let count = seen.entry((part, id.to_owned(), items.clone())).or_default();
             let key = (id.to_owned(), items, *count);
             *count += 1;
@@ -155,14 +154,7 @@ impl Table {
         Ok(())
     }
 
-    fn put(
-        &mut self,
-        part: usize,
-        key: Key,
-        kind: &str,
-        value: Node,
-        known: &Characteristics,
-    ) -> Result<(), QifError> {
+    fn put(&mut self, part: usize, key: Key, kind: &str, value: Node, known: &Characteristics) -> Result<(), QifError> {
         let is_angle = kind.starts_with("Angle") || kind.starts_with("Angular") && kind != "Angularity";
         let is_length = !kind.starts_with("UserDefined") || kind == "UserDefinedLinear";
         let (unit, scale) = if is_length { known.unit(value, is_angle) } else { (Unit::None, 1.0) };
@@ -197,7 +189,8 @@ impl Table {
         let mut columns = Vec::new();
         for (mut made, name) in self.columns.into_iter().zip(names) {
             made.values.resize(parts, None);
-            let (nominal, limits) = known.item(&made.key.0).map_or((None, [None; 2]), |item| limits(&item, &made, known));
+            let (nominal, limits) =
+                known.item(&made.key.0).map_or((None, [None; 2]), |item| limits(&item, &made, known));
             columns.push(Column { name, unit: made.unit, nominal, limits, values: made.values });
         }
         let serial = serial_numbers(root);
@@ -224,8 +217,10 @@ fn names(columns: &[Made], known: &Characteristics) -> Vec<String> {
         let designator = path(item, &["CharacteristicDesignator", "Designator"]).map(text);
         Some(words::one_line(text_of(item, "Name").or(designator)?)).filter(|name| !name.is_empty())
     };
-    let own: Vec<_> =
-        columns.iter().map(|made| of_item(&made.key.0).unwrap_or_else(|| format!("{} {}", made.kind, made.key.0))).collect();
+    let own: Vec<_> = columns
+        .iter()
+        .map(|made| of_item(&made.key.0).unwrap_or_else(|| format!("{} {}", made.kind, made.key.0)))
+        .collect();
     let mut items: HashMap<&str, HashSet<&str>> = HashMap::new();
     let mut values: HashMap<&str, usize> = HashMap::new();
     for (made, own) in columns.iter().zip(&own) {

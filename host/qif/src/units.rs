@@ -93,7 +93,9 @@ mod tests {
     #[test]
     fn units_default_to_those_of_the_file() {
         let unit = |kind: &str, name: &str, factor: &str| {
-            format!("<{kind}><UnitName>{name}</UnitName><UnitConversion><Factor>{factor}</Factor></UnitConversion></{kind}>")
+            format!(
+                "<{kind}><UnitName>{name}</UnitName><UnitConversion><Factor>{factor}</Factor></UnitConversion></{kind}>"
+            )
         };
         let primary = unit("LinearUnit", "mm", "0.001") + &unit("PMILinearUnit", "inch", "0.0254");
         let text = format!(

@@ -146,9 +146,8 @@ pub fn is_true(node: Node, wanted: &str) -> bool {
 
 /// The child element of a name, which must be there.
 pub fn require<'a, 'i>(node: Node<'a, 'i>, wanted: &str) -> Result<Node<'a, 'i>, QifError> {
-    child(node, wanted).ok_or_else(|| {
-        error_at(node, Problem::Missing { element: name(node).to_owned(), missing: wanted.to_owned() })
-    })
+    child(node, wanted)
+        .ok_or_else(|| error_at(node, Problem::Missing { element: name(node).to_owned(), missing: wanted.to_owned() }))
 }
 
 /// The finite number that an element holds (xs:decimal).

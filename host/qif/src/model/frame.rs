@@ -74,7 +74,10 @@ fn reference(node: Node, datums: &HashMap<&str, usize>) -> Result<Result<Referen
     for element in children(node) {
         match name(element) {
             // Which of the sizes of the datum its condition of material goes by does not matter where it has one.
-            "DatumDefinitionId" | "MaterialModifier" | "ReferencedComponent" | "SizeCharacteristicDefinitionId"
+            "DatumDefinitionId"
+            | "MaterialModifier"
+            | "ReferencedComponent"
+            | "SizeCharacteristicDefinitionId"
             | "Attributes" => {}
             _ if text(element) == "false" => {}
             other => return Ok(Err(format!("a datum with {other}"))),

@@ -68,8 +68,7 @@ fn part_name(part: Option<Node>) -> String {
 fn features(root: Node, part: Option<Node>, units: &Units) -> Result<Vec<Feature>, QifError> {
     let definitions = shape::by_id(path(root, &["Features", "FeatureDefinitions"]));
     let nominals = path(root, &["Features", "FeatureNominals"]);
-    let mut features =
-        nominals.into_iter().flat_map(children).map(|node| shape::feature(node, &definitions, units));
+    let mut features = nominals.into_iter().flat_map(children).map(|node| shape::feature(node, &definitions, units));
     let features = features.by_ref().collect::<Result<Vec<_>, _>>()?;
     // Parts of several frames are refused above, so that a feature that no part lists can only be this one's.
     if let Some(part) = part {

@@ -80,7 +80,8 @@ pub fn tolerances<'a>(
             found.push(context.tolerance(node, node, Vec::new(), limits));
         }
     }
-    let mut remarks: Vec<_> = notes(root).into_iter().map(|note| format!("note of the drawing, not read: {note}")).collect();
+    let mut remarks: Vec<_> =
+        notes(root).into_iter().map(|note| format!("note of the drawing, not read: {note}")).collect();
     remarks.extend(mixed_units(list, units));
     Ok((found, remarks))
 }
@@ -102,9 +103,8 @@ fn mixed_units(list: Node, units: &Units) -> Option<String> {
 
 impl<'a> Context<'a, '_> {
     fn read(&self, node: Node<'a, '_>) -> Result<Tolerance, QifError> {
-        let refers = |id: &str| {
-            error_at(node, Problem::Reference { element: name(node).to_owned(), id: words::one_line(id) })
-        };
+        let refers =
+            |id: &str| error_at(node, Problem::Reference { element: name(node).to_owned(), id: words::one_line(id) });
         let id = text_of(node, "CharacteristicDefinitionId").unwrap_or_default();
         let definition = *self.definitions.get(id).ok_or_else(|| refers(id))?;
         let features = ids(node, "FeatureNominalIds");
@@ -193,7 +193,10 @@ impl<'a> Context<'a, '_> {
 
     fn geometric(&self, node: Node, definition: Node) -> Result<Result<Limits, Reason>, QifError> {
         let Some(control) = control(name(definition)) else {
-            return Ok(Err(format!("the kind {}, which a part of a scene does not have", words::kind(name(definition)))));
+            return Ok(Err(format!(
+                "the kind {}, which a part of a scene does not have",
+                words::kind(name(definition))
+            )));
         };
         let handled = [
             "ToleranceValue",

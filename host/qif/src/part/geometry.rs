@@ -33,9 +33,7 @@ pub fn are_common(one: &Shape, two: &Shape) -> bool {
     let between = plus(other, -1.0, at);
     are_parallel(direction, second)
         && match (one, two) {
-            (Shape::Plane(_), Shape::Plane(_)) => {
-                dot(between, direction).abs() <= OFF && dot(direction, second) > 0.0
-            }
+            (Shape::Plane(_), Shape::Plane(_)) => dot(between, direction).abs() <= OFF && dot(direction, second) > 0.0,
             (Shape::Axis(_), Shape::Axis(_)) => norm(cross(between, direction)) <= OFF,
             _ => false,
         }

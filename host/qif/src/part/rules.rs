@@ -102,7 +102,9 @@ pub fn geometric(
                 return Err("a composite frame of something other than axes".into());
             }
             if !geometric.frame.starts_with(lower) || *width >= geometric.width || *width < 0.0 {
-                return Err("a lower segment that is not narrower, or whose datums are not the first of the upper one".into());
+                return Err(
+                    "a lower segment that is not narrower, or whose datums are not the first of the upper one".into()
+                );
             }
             if *width == 0.0 && geometric.material == Material::None {
                 return Err("a lower segment without a width".into());
@@ -125,8 +127,8 @@ pub fn geometric(
 /// Whether a shape can have the tolerance with this zone.
 fn allowed(geometric: &Geometric, shape: &Shape) -> Result<(), String> {
     use Control::{
-        Angularity, Coaxiality, Concentricity, Cylindricity, Flatness, Parallelism, Perpendicularity, Position, Profile,
-        Roundness, RunOut, Straightness, Symmetry, TotalRunOut,
+        Angularity, Coaxiality, Concentricity, Cylindricity, Flatness, Parallelism, Perpendicularity, Position,
+        Profile, Roundness, RunOut, Straightness, Symmetry, TotalRunOut,
     };
     let zone = geometric.zone;
     let ok = match (shape, geometric.control) {
@@ -139,15 +141,23 @@ fn allowed(geometric: &Geometric, shape: &Shape) -> Result<(), String> {
         (Shape::Plane(Plane { width: Some(_), .. }), Flatness | Profile | RunOut | TotalRunOut) => {
             return Err("a tolerance of both faces, which the part has only the middle plane of".into());
         }
-        (Shape::Plane(_), Straightness) => return Err("straightness of a face in a direction that is not stated".into()),
+        (Shape::Plane(_), Straightness) => {
+            return Err("straightness of a face in a direction that is not stated".into());
+        }
         (Shape::Point(_), Profile) => zone == Zone::Natural,
-        (Shape::Axis(_), Position | Straightness | Parallelism | Perpendicularity | Angularity) => zone == Zone::Cylinder,
+        (Shape::Axis(_), Position | Straightness | Parallelism | Perpendicularity | Angularity) => {
+            zone == Zone::Cylinder
+        }
         (Shape::Axis(_), Coaxiality | Concentricity) => matches!(zone, Zone::Cylinder | Zone::Natural),
         (Shape::Axis(_), Roundness | Cylindricity | RunOut | TotalRunOut) => zone == Zone::Natural,
         (Shape::Axis(_), Symmetry) => matches!(zone, Zone::Natural | Zone::Slab(None)),
         _ => return Err("a tolerance that such a feature of a part does not have".into()),
     };
-    if ok { Ok(()) } else { Err("a zone of a shape that the tolerance of such a feature does not have in a part".into()) }
+    if ok {
+        Ok(())
+    } else {
+        Err("a zone of a shape that the tolerance of such a feature does not have in a part".into())
+    }
 }
 
 /// The datums of a frame, which must be planes or axes of the part that each hold something.
@@ -185,7 +195,9 @@ fn frame(
             return Err(format!("the datum {label}, which is the feature itself"));
         }
         if reference.material != Material::None && !features.iter().all(|feature| is_held(*feature)) {
-            return Err(format!("the datum {label} at a condition of material, without a diameter with limits in the part"));
+            return Err(format!(
+                "the datum {label} at a condition of material, without a diameter with limits in the part"
+            ));
         }
         shapes.extend(of.first().map(|shape| **shape));
         found.push(DatumRef { features, material: reference.material });

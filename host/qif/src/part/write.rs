@@ -38,7 +38,13 @@ pub fn features(drawing: &Drawing, decided: &Decided, part: &str, names: &[Strin
     }
     for (index, feature) in drawing.features.iter().enumerate() {
         let Err(reason) = &feature.shape else { continue };
-        let _ = writeln!(text, "\n# not a feature of the part: {} {}: {}", feature.kind, one_line(&feature.name), one_line(reason));
+        let _ = writeln!(
+            text,
+            "\n# not a feature of the part: {} {}: {}",
+            feature.kind,
+            one_line(&feature.name),
+            one_line(reason)
+        );
         comments(&mut text, drawing, decided, index);
     }
     text
@@ -58,7 +64,11 @@ pub fn list(drawing: &Drawing, decided: &Decided) -> String {
             }
         }
         let count = tolerance.features.len();
-        let some = if reasons.len() < count { format!(" for {} of its {count} features", reasons.len()) } else { String::new() };
+        let some = if reasons.len() < count {
+            format!(" for {} of its {count} features", reasons.len())
+        } else {
+            String::new()
+        };
         let reasons = one_line(&distinct.join("; "));
         let _ = writeln!(text, "# {:3}. {}{some}: {reasons}", number + 1, said(tolerance));
     }
@@ -128,7 +138,11 @@ fn size(text: &mut String, shape: &Shape, entries: &[Entry]) {
                 _ if is_sized => {}
                 kind => {
                     let kind = kind.map(|kind| format!(" of a {kind}")).unwrap_or_default();
-                    let _ = writeln!(text, "# diameter{kind} {} mm, without limits that the part could state", axis.diameter);
+                    let _ = writeln!(
+                        text,
+                        "# diameter{kind} {} mm, without limits that the part could state",
+                        axis.diameter
+                    );
                 }
             }
         }
