@@ -99,22 +99,24 @@ fn ctc_01_equals_its_drawing() {
 fn ctc_03_is_converted_from_inch_with_its_modifiers() {
     let (drawing, part) = part(CTC_03);
     let toml: toml::Table = toml::from_str(&part.file()).expect("valid TOML");
-    let text = |feature: &str, key: &str| value(&toml, feature, key).expect("a callout").to_string();
-    assert_eq!(text("B", "diameter"), "{ value = 11.1252, tolerance = [-0.127, 0.127] }");
+    let of = |feature: &str, key: &str| value(&toml, feature, key).expect("a callout").clone();
+    let is = |written: &str| toml::from_str::<toml::Table>(&format!("is = {written}")).expect("TOML")["is"].clone();
+    assert_eq!(of("B", "diameter"), is("{ value = 11.1252, tolerance = [-0.127, 0.127] }"));
     for hole in ["Nominal 3054", "Nominal 3055"] {
         let datums = "[\"p.A\", \"p.B (M)\", \"p.C (M)\"]";
-        assert_eq!(text(hole, "position"), format!("{{ zone = 0.05, material = \"maximum\", datum = {datums} }}"));
+        let expected = format!("{{ zone = 0.05, material = \"maximum\", datum = {datums} }}");
+        assert_eq!(of(hole, "position"), is(&expected));
     }
     for hole in 3057..=3060 {
         let datums = "[\"p.D\", \"p.B\", \"p.C\"]";
         let expected = format!("{{ zone = 0.05, material = \"maximum\", datum = {datums} }}");
-        assert_eq!(text(&format!("Nominal {hole}"), "position"), expected);
+        assert_eq!(of(&format!("Nominal {hole}"), "position"), is(&expected));
     }
-    assert_eq!(text("E", "angularity"), "{ zone = 0.04, datum = [\"p.A\"] }");
-    assert_eq!(text("E", "profile"), "{ zone = 0.06, datum = [\"p.A\", \"p.B\", \"p.C\"] }");
-    assert_eq!(text("A", "profile"), "0.01");
+    assert_eq!(of("E", "angularity"), is("{ zone = 0.04, datum = [\"p.A\"] }"));
+    assert_eq!(of("E", "profile"), is("{ zone = 0.06, datum = [\"p.A\", \"p.B\", \"p.C\"] }"));
+    assert_eq!(of("A", "profile"), is("0.01"));
     // The faces state the same Location; their boundaries tell them apart.
-    let places: BTreeSet<_> = (3073..=3076).map(|face| text(&format!("Nominal {face}"), "at")).collect();
+    let places: BTreeSet<_> = (3073..=3076).map(|face| of(&format!("Nominal {face}"), "at").to_string()).collect();
     assert_eq!(places.len(), 4);
     assert!(drawing.remarks.iter().any(|remark| remark.contains("inch")));
 }
