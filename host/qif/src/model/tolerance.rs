@@ -30,6 +30,9 @@ struct Context<'a, 'i> {
 /// Why something is not read.
 type Reason = String;
 
+/// Shape of the zone, condition of material and datums.
+type Segment = (Zone, Material, Vec<Reference>);
+
 /// Elements of a characteristic that say nothing of what it limits.
 const HARMLESS: [&str; 13] = [
     "Attributes",
@@ -245,7 +248,7 @@ impl<'a> Context<'a, '_> {
     }
 
     /// Shape of the zone, condition of material and datums of a characteristic or of a segment of it.
-    fn segment(&self, node: Node) -> Result<Result<(Zone, Material, Vec<Reference>), Reason>, QifError> {
+    fn segment(&self, node: Node) -> Result<Result<Segment, Reason>, QifError> {
         let zone = match child(node, "ZoneShape").map(zone).transpose()? {
             Some(Err(reason)) => return Ok(Err(reason)),
             Some(Ok(zone)) => zone,
