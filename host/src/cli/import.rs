@@ -20,12 +20,12 @@ const LARGEST: u64 = 1 << 30;
 /// measure is added as an example, so that `slipfit check` accepts the file.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// QIF 3.0 file of the model (.qif)
+    /// QIF 3.0 file of the model (.qif).
     model: PathBuf,
-    /// Writes the part to this file instead of the terminal
+    /// Writes the part to this file instead of the terminal.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Name of the part [default: the one in the model]
+    /// Name of the part; default: the one in the model.
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
 }
