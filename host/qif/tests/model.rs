@@ -52,8 +52,8 @@ fn everything_is_counted_and_nothing_lost() {
     }
 }
 
-/// Feature, key, zone (mm), datums of each geometric tolerance that the drawing of CTC-01 shows and a part can have; as the text of
-/// its presentation in the file (PMIDisplay), which is what the published drawing NIST CTC-01 ASME1 shows.
+/// Sizes, zones and datums of CTC-01, typed from the texts of the callouts that its file displays (PMIDisplay). The printed drawing
+/// was not at hand.
 #[test]
 fn ctc_01_equals_its_drawing() {
     let (drawing, part) = part(CTC_01);
