@@ -7,6 +7,7 @@ mod encoding;
 mod endings;
 mod failure;
 mod fmu;
+mod import;
 mod kernel;
 mod mechanism;
 mod merge;
@@ -65,6 +66,7 @@ Examples:
 enum Command {
     Run(run::Arguments),
     Check(check::Arguments),
+    Import(import::Arguments),
     Tolerance(tolerance::Arguments),
     Allocate(allocate::Arguments),
     Simulate(simulate::Arguments),
@@ -97,6 +99,7 @@ pub fn main() -> ExitCode {
         None => print(&Cli::command().render_help().to_string()),
         Some(Command::Run(arguments)) => arguments.run(),
         Some(Command::Check(arguments)) => arguments.run(),
+        Some(Command::Import(arguments)) => arguments.run(),
         Some(Command::Tolerance(arguments)) => arguments.run(),
         Some(Command::Allocate(arguments)) => arguments.run(),
         Some(Command::Simulate(arguments)) => arguments.run(),
