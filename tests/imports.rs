@@ -349,7 +349,15 @@ fn expanded(tree: &str) -> Vec<String> {
 fn no_files_import_each_other() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut count = 0;
-    for folder in ["core/src", "host/src", "host/desk/src", "host/measured/src", "host/qif/src", "host/system/src", "host/tolerance/src"] {
+    for folder in [
+        "core/src",
+        "host/src",
+        "host/desk/src",
+        "host/measured/src",
+        "host/qif/src",
+        "host/system/src",
+        "host/tolerance/src",
+    ] {
         let modules = Modules::of(&root.join(folder), root);
         count += modules.imports.keys().map(|module| modules.imported(module).len()).sum::<usize>();
         let circles = modules.in_circles();

@@ -1,6 +1,6 @@
 //! The commands of the README and the guide, as they stand there, with what they print.
 //!
-//! - A block `toml FILE` is appended to that file; of a block `diff FILE` each line `-` is replaced by the line `+` after it.
+//! - A block `toml FILE` or `csv FILE` is appended to that file; of a block `diff FILE` each line `-` is replaced by the line `+` after it.
 //! - Commands of a `sh` block are run, and what they print is compared with a snapshot.
 //! - A `console` block with lines `$ slipfit …` shows what they print. `[..]` stands for any characters of a line, a line
 //!   `...` for any lines. Blocks without such lines need the repository, a target or minutes, and are not run.
@@ -127,7 +127,7 @@ fn follow(page: &Path, wrong: &mut Vec<String>) -> String {
                     }
                 }
             }
-            ("toml", file) if !file.is_empty() => {
+            ("toml" | "csv", file) if !file.is_empty() => {
                 let path = folder.path().join(file);
                 let before = std::fs::read_to_string(&path).unwrap_or_default();
                 std::fs::write(path, before + block).unwrap();

@@ -16,8 +16,12 @@ const SHARD: &str = "A shard of tolerance or population";
 fn every_field_is_in_the_guide() {
     let tables = guide();
     let folder = tempfile::tempdir().unwrap();
-    let commands: [(&str, &[&str]); 32] = [
+    let row = |k: u32| format!("{k},{},{}\n", ["A", "B"][k as usize % 2], 10.0 + 0.01 * f64::from(k * k % 37));
+    let parts = (0..70).fold("part,tool,width [mm]\nlower,,9.9\nupper,,10.5\n".to_owned(), |text, k| text + &row(k));
+    std::fs::write(folder.path().join("parts.csv"), parts).unwrap();
+    let commands: [(&str, &[&str]); 33] = [
         ("check", &["check"]),
+        ("capability", &["capability", "parts.csv", "--group", "tool"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
         ("check of a product", &["check", "clutch"]),
         ("simulate", &["simulate", "--n", "2.5"]),

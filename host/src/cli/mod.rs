@@ -2,6 +2,7 @@
 
 mod allocate;
 mod arguments;
+mod capability;
 mod check;
 mod encoding;
 mod endings;
@@ -50,9 +51,9 @@ struct Cli {
 
 const EXAMPLES: &str = "\
 Examples:
-  slipfit run                              the whole job on the CD-ROM slide, into slipfit-out/cd-rom-slide-drawing/
+  slipfit run                              the whole job on the CD-ROM slide, into slipfit-out/
   slipfit check my-slide.toml              is the scene sound, at which level does a gap close
-  slipfit tolerance three-part-stack       how a product's measures vary, and which tolerances cause it
+  slipfit tolerance three-part-stack       how a product's measures vary, and why
   slipfit allocate clutch-processes        the cheapest tolerances that meet requirements
   slipfit simulate --n 2.5 --csv unit.csv  one unit, tighter by 2.5 sigma
   slipfit sweep --stroke --n 0:5:0.5 --plot force.svg
@@ -67,6 +68,7 @@ enum Command {
     Run(run::Arguments),
     Check(check::Arguments),
     Import(import::Arguments),
+    Capability(capability::Arguments),
     Tolerance(tolerance::Arguments),
     Allocate(allocate::Arguments),
     Simulate(simulate::Arguments),
@@ -100,6 +102,7 @@ pub fn main() -> ExitCode {
         Some(Command::Run(arguments)) => arguments.run(),
         Some(Command::Check(arguments)) => arguments.run(),
         Some(Command::Import(arguments)) => arguments.run(),
+        Some(Command::Capability(arguments)) => arguments.run(),
         Some(Command::Tolerance(arguments)) => arguments.run(),
         Some(Command::Allocate(arguments)) => arguments.run(),
         Some(Command::Simulate(arguments)) => arguments.run(),

@@ -45,6 +45,8 @@ pub struct MechanismRun {
     pub sunk: Option<Sunk>,
     /// Error of speed (m/s) that a step was allowed.
     pub tolerance: f64,
+    /// The same as a share of the mechanism's own speed: the key run.error, or less where a finer run was needed.
+    pub error: f64,
     /// Steps.
     pub effort: error_control::Effort,
     /// Time that the integration alone took.

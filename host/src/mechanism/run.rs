@@ -339,6 +339,7 @@ fn solve<P: Plant<D>, const D: usize>(
         energy_excess,
         sunk: depths.sunk(mechanism),
         tolerance: limits.speed,
+        error: mechanism.run.error,
         effort,
         integration,
     })

@@ -9,7 +9,7 @@ use slipfit_tolerance::{
     statistics::interval,
 };
 
-use super::{Estimate, indices::Known};
+use super::{estimate::Estimate, indices::Known};
 use crate::numeric::{scale::scores, tails::chi_squared_above};
 
 /// Parts outside the limits that were measured, without a family.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use slipfit_tolerance::{numeric::normal::SIDE, statistics::interval};
 
-use super::Estimate;
+use super::estimate::Estimate;
 use crate::numeric::noncentral_t::NoncentralT;
 
 /// Indices by ISO 22514-2. Each is there if it has its limits.

@@ -3,6 +3,8 @@
 //! Intervals are of 95 % and exact for a normal production, unless their documentation says otherwise, whatever the number
 //! of parts. Outliers are named and stay in every figure.
 
+mod error;
+mod estimate;
 mod failing;
 mod indices;
 mod normality;
@@ -18,6 +20,8 @@ use serde::Serialize;
 use slipfit_tolerance::statistics::interval;
 
 pub use self::{
+    error::CapabilityError,
+    estimate::Estimate,
     failing::{Counted, Failing},
     indices::{Indices, Known},
     normality::{LEAST_PARTS, Normality},
@@ -33,57 +37,6 @@ use crate::{
     table::{MeasuredTable, Unit},
 };
 use slipfit_tolerance::numeric::normal::SIDE;
-
-/// A figure with its interval of 95 %; an end may be infinite.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Estimate {
-    /// The figure.
-    pub value: f64,
-    /// The interval.
-    pub interval: [f64; 2],
-}
-
-impl Estimate {
-    /// With a rising `function` of it.
-    fn map(self, function: impl Fn(f64) -> f64) -> Self {
-        Self { value: function(self.value), interval: self.interval.map(function) }
-    }
-}
-
-/// A column whose capability cannot be told.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CapabilityError {
-    /// Too few parts for a standard deviation.
-    #[error("\"{column}\" has {found} measured parts, but capability needs at least {least}")]
-    FewParts {
-        /// Name of the column.
-        column: String,
-        /// Parts that it needs.
-        least: usize,
-        /// Parts that there are.
-        found: usize,
-    },
-    /// All values are the same.
-    #[error("all {found} measured parts have \"{column}\" {value}; a finer reading is needed to tell its variation")]
-    NoVariation {
-        /// Name of the column.
-        column: String,
-        /// The value.
-        value: f64,
-        /// Parts.
-        found: usize,
-    },
-    /// Values too far apart for numbers.
-    #[error("the values of \"{column}\" differ by more than numbers hold")]
-    TooFarApart {
-        /// Name of the column.
-        column: String,
-    },
-    /// An index beyond the columns or groupings.
-    #[error("there is no column or grouping {0}")]
-    NoColumn(usize),
-}
 
 /// How capability is found.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! The measured values of a column.
 
-use super::CapabilityError;
+use super::error::CapabilityError;
 
 /// Values of which at least two differ.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use serde::Serialize;
 use slipfit_tolerance::statistics::interval;
 
 use super::{
-    Estimate,
+    estimate::Estimate,
     indices::{Indices, Known},
     sample::{Sample, mean_and_deviation},
 };

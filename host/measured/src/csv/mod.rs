@@ -22,6 +22,7 @@
 
 mod cells;
 mod error;
+mod options;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -31,32 +32,10 @@ use std::{io, path::Path};
 
 use self::cells::delimiter;
 pub use self::error::{CsvError, Place, Problem, Shown};
+pub use self::options::{LARGEST, Options};
 use self::read::File;
 pub use self::write::write;
 use crate::table::MeasuredTable;
-
-/// The greatest file that is read unless an option says otherwise, in bytes. A table needs at most twenty times as much
-/// memory as its file.
-pub const LARGEST: u64 = 1 << 28;
-
-/// How a CSV file is read.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Name of the column that labels the parts.
-    pub labels: Option<String>,
-    /// Names of the columns that divide the parts into subgroups.
-    pub groups: Vec<String>,
-    /// Names of the columns that are left out.
-    pub ignored: Vec<String>,
-    /// Greatest size of the file (bytes).
-    pub largest: u64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { labels: None, groups: Vec::new(), ignored: Vec::new(), largest: LARGEST }
-    }
-}
 
 /// A CSV file that could not be read.
 #[derive(Debug, thiserror::Error)]

@@ -5,9 +5,9 @@ use std::collections::HashSet;
 use ::csv::{Reader, ReaderBuilder, StringRecord};
 
 use super::{
-    Options,
     cells::{Numbers, cell_span},
     error::{CsvError, Place, Problem, Shown},
+    options::Options,
 };
 use crate::table::{Column, GroupingBuilder, MeasuredTable, TableError, Unit};
 

@@ -2,7 +2,11 @@
 
 use slipfit_tolerance::numeric::normal::tail;
 
-use super::{Family, Sample, mean_and_square, normal::LN_ROOT_TAU};
+use super::{
+    family::Family,
+    normal::LN_ROOT_TAU,
+    sample::{Sample, mean_and_square},
+};
 use crate::numeric::minimum::minimise;
 
 /// A distribution of which γ + δ·ln((x − ξ)/(ξ + λ − x)) is standard normal: from ξ to ξ + λ.

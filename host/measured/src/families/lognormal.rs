@@ -2,7 +2,7 @@
 
 use slipfit_tolerance::numeric::normal::tail;
 
-use super::{Family, mean_and_square, normal::LN_ROOT_TAU};
+use super::{family::Family, normal::LN_ROOT_TAU, sample::mean_and_square};
 
 /// A distribution of which the logarithm of the distance from a lower end is normal.
 #[derive(Clone, Copy, Debug, PartialEq)]

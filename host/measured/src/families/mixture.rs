@@ -5,7 +5,7 @@ use slipfit_tolerance::numeric::{
     root::{excess, zero},
 };
 
-use super::{Family, Normal, Sample};
+use super::{family::Family, normal::Normal, sample::Sample};
 
 /// Two normals, of which the first has a share of the parts.
 #[derive(Clone, Copy, Debug, PartialEq)]

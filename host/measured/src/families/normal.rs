@@ -2,7 +2,7 @@
 
 use slipfit_tolerance::numeric::normal::tail;
 
-use super::Family;
+use super::family::Family;
 
 /// ln √(2π).
 pub const LN_ROOT_TAU: f64 = 0.918_938_533_204_672_7;

@@ -6,7 +6,10 @@ use slipfit_core::sampling::{
 };
 use slipfit_tolerance::numeric::normal::SIDE;
 
-use super::{Family, Fit, JohnsonSb, JohnsonSu, Kind, Lognormal, Normal, Sample, TwoNormals, Weibull};
+use super::{
+    family::Family, fit::Fit, johnson_sb::JohnsonSb, johnson_su::JohnsonSu, kind::Kind, lognormal::Lognormal,
+    mixture::TwoNormals, normal::Normal, sample::Sample, weibull::Weibull,
+};
 
 /// Distributions drawn.
 const DRAWS: usize = 4000;
@@ -228,13 +231,13 @@ fn inverse_root(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     }
     // The transpose of its inverse.
     let mut root = vec![vec![0.0; n]; n];
-    for column in 0..n {
+    for (column, into) in root.iter_mut().enumerate() {
         let mut solved = vec![0.0; n];
         for i in column..n {
             let unit = if i == column { 1.0 } else { 0.0 };
             solved[i] = (unit - (column..i).map(|k| lower[i][k] * solved[k]).sum::<f64>()) / lower[i][i];
         }
-        root[column] = solved;
+        *into = solved;
     }
     Some(root)
 }

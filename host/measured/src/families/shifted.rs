@@ -1,6 +1,10 @@
 //! The lower end of a family that has one.
 
-use super::{Family, FitError, Kind, Sample};
+use super::{
+    family::Family,
+    kind::{FitError, Kind},
+    sample::Sample,
+};
 
 /// Distances of the lower end from the least value that are tried first, in standard deviations; the nearest is divided by
 /// the number of parts, as the least value of many is nearer to the end.

@@ -5,7 +5,7 @@ use slipfit_tolerance::numeric::{
     root::zero,
 };
 
-use super::{Family, mean_and_square};
+use super::{family::Family, sample::mean_and_square};
 
 /// A Weibull distribution: ((x − shift)/scale)^shape is exponential with mean 1.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use roxmltree::Node;
 
-use super::shape::{direction, place};
+use super::place::{direction, place};
 use crate::{
     error::{Problem, QifError},
     format::{cross, dot, plus, rounded, rounded_direction, unit},

@@ -2,6 +2,8 @@
 
 mod face;
 mod frame;
+mod notes;
+mod place;
 mod shape;
 mod tolerance;
 
@@ -14,7 +16,7 @@ use crate::{
     error::{Problem, QifError},
     units::Units,
     words,
-    xml::{self, child, children, error_at, ids, path, text, text_of},
+    xml::{self, child, children, error_at, ids, path, text_of},
 };
 
 /// Reads the features, datums and tolerances of the part in a QIF 3.0 product model.
@@ -80,12 +82,4 @@ fn features(root: Node, part: Option<Node>, units: &Units) -> Result<Vec<Feature
         }
     }
     Ok(features)
-}
-
-/// The notes of a drawing that say something (NoteSetType).
-fn notes(root: Node) -> Vec<String> {
-    let notes = path(root, &["Product", "NoteSet"]).into_iter().flat_map(children);
-    let flagged = path(root, &["Product", "NoteFlagSet"]).into_iter().flat_map(children);
-    let texts = notes.chain(flagged).filter_map(|note| child(note, "Text")).map(|note| words::one_line(text(note)));
-    texts.filter(|text| !text.is_empty()).collect()
 }

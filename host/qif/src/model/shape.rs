@@ -4,14 +4,17 @@ use std::collections::HashMap;
 
 use roxmltree::Node;
 
-use super::face;
+use super::{
+    face,
+    place::{direction, place},
+};
 use crate::{
     drawing::{Axis, Feature, Plane, Point, Shape},
     error::{Problem, QifError},
     format::{dot, plus, rounded, rounded_direction, unit},
     units::Units,
     words,
-    xml::{child, children, error_at, name, numbers, require, text_of, triple},
+    xml::{child, children, error_at, name, numbers, require, text_of},
 };
 
 /// Elements by their id.
@@ -134,16 +137,4 @@ fn is_internal(definition: Node) -> Option<bool> {
         Some("EXTERNAL") => Some(false),
         _ => None,
     }
-}
-
-/// A place (PointType) in mm.
-pub fn place(node: Node, units: &Units) -> Result<[f64; 3], QifError> {
-    let scale = units.scale(node)?;
-    Ok(triple(node)?.map(|x| x * scale))
-}
-
-/// A direction (UnitVectorType).
-pub fn direction(node: Node) -> Result<[f64; 3], QifError> {
-    let wrong = || error_at(node, Problem::Number(node.text().unwrap_or_default().chars().take(40).collect()));
-    unit(triple(node)?).map(rounded_direction).ok_or_else(wrong)
 }

@@ -6,8 +6,9 @@ use roxmltree::Node;
 
 use super::{
     frame::{Frame, material},
-    notes,
-    shape::{ById, by_id, direction},
+    notes::notes,
+    place::direction,
+    shape::{ById, by_id},
 };
 use crate::{
     drawing::{Control, Datum, Geometric, Limits, Material, Range, Reference, Size, Tolerance, Zone},

@@ -117,7 +117,8 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
         let svg = columns_over_time(&one.samples, &columns, &mechanism.title, label).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
     }
-    let computed = || computed(&desk, &agreement) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
+    let computed =
+        || computed(mechanism, &desk, &agreement) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
     let words = || described(mechanism, label, one) + &computed();
     let mut warnings = wanted.warnings(mechanism)?;
     warnings.extend(doubt::warnings(mechanism, &desk, &finer, &agreement));
@@ -290,8 +291,14 @@ fn plotted(mechanism: &Mechanism) -> Vec<String> {
 }
 
 /// How the desk has computed its run.
-fn computed(run: &MechanismRun, agreement: &Agreement) -> String {
-    format!(
+fn computed(mechanism: &Mechanism, run: &MechanismRun, agreement: &Agreement) -> String {
+    let asked = mechanism.run.error;
+    let refined = if run.error < asked {
+        format!("Its run.error is {:.1e}, because at {asked:.1e} a finer run differed by more than 0.3 %\n", run.error)
+    } else {
+        String::new()
+    };
+    let computed = format!(
         "Computed by the desk, error-controlled to {:.1e} m/s a step ({SCHEME}, {} steps, {} refused) in {} ms\n\
          A run at a tenth of that differs by {:.4} % of {}{}\n",
         run.tolerance,
@@ -301,7 +308,8 @@ fn computed(run: &MechanismRun, agreement: &Agreement) -> String {
         agreement.share * 100.0,
         agreement.whole,
         agreement.column.as_ref().map_or_else(String::new, |column| format!(" at most, in {column}"))
-    )
+    );
+    computed + &refined
 }
 
 /// How far the controller is off; its run is what was `shown`, if it was asked for.

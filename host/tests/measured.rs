@@ -1,0 +1,94 @@
+//! Measured parts and models from other programs, as commands take them.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{json, slipfit, stdout};
+use slipfit_measured::csv;
+use slipfit_qif::results;
+
+/// A file of the QIF crate's tests.
+fn qif(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("qif/tests/data").join(name)
+}
+
+/// The same data give the same bytes, whichever file they come in.
+#[test]
+fn capability_of_qif_results_is_that_of_the_same_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["SheetMetal_QIF_Results_6_samples.QIF", "WIDGET_QIF_RESULTS.QIF"] {
+        let file = qif(name);
+        let table = results::read(&std::fs::read_to_string(&file).unwrap()).unwrap();
+        std::fs::write(folder.path().join("parts.csv"), csv::write(&table)).unwrap();
+        let by = |file: &str| {
+            let output = slipfit(folder.path(), &["capability", file, "--json"]);
+            (output.status.code(), output.stdout, String::from_utf8(output.stderr).unwrap())
+        };
+        let [(code, bytes, errors), (code_of_csv, bytes_of_csv, errors_of_csv)] =
+            [by(file.to_str().unwrap()), by("parts.csv")];
+        assert_eq!((code, &bytes), (code_of_csv, &bytes_of_csv), "{name}: {errors} {errors_of_csv}");
+        // One part of each characteristic has no variation to tell.
+        assert_eq!(code, Some(if name.starts_with("Sheet") { 0 } else { 2 }), "{name}: {errors}");
+    }
+}
+
+/// Mean and standard deviation by hand: 1, 2, 4 and 5 have 3 and √(10/3).
+#[test]
+fn figures_are_those_of_the_values() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("p.csv"), "part,a [mm]\nupper,9\n1,1\n2,2\n3,4\n4,5\n5,-\n").unwrap();
+    let found = json(folder.path(), &["capability", "p.csv", "--json"]);
+    let a = &found["characteristics"][0];
+    let deviation = f64::sqrt(10.0 / 3.0);
+    assert_eq!(
+        (a["count"].as_u64(), a["missing"].as_u64(), a["mean"]["value"].as_f64()),
+        (Some(4), Some(1), Some(3.0))
+    );
+    assert!((a["deviation"]["value"].as_f64().unwrap() - deviation).abs() < 1e-12);
+    assert!((a["performance"]["least"]["value"].as_f64().unwrap() - 6.0 / (3.0 * deviation)).abs() < 1e-12);
+    assert!(a["performance"]["spread"].is_null());
+}
+
+/// Errors name file, line and column, and what to do.
+#[test]
+fn bad_files_are_told_where_they_are_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    for (text, expected) in [
+        ("part,a [mm],tool\n1,2,A\n", "p.csv:2:5: \"A\" in column \"tool\" is not a number"),
+        ("part,a [mm]\n1,2,3\n", "p.csv:2:"),
+        ("part,a [kg]\n1,2\n", "p.csv:1:"),
+        ("part,a\n1,2\n", "\"a\" has 1 measured parts"),
+        ("", "p.csv:1:1: the file is empty"),
+    ] {
+        std::fs::write(folder.path().join("p.csv"), text).unwrap();
+        let output = slipfit(folder.path(), &["capability", "p.csv"]);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && errors.contains(expected), "{text}: {errors}");
+    }
+    for (arguments, expected) in [
+        (vec!["capability", "absent.csv"], "absent.csv: No such file"),
+        (vec!["capability", "p.qif", "--group", "a"], "--group names a column of a CSV file"),
+        (vec!["import", "p.csv"], "p.csv:1:1"),
+    ] {
+        let output = slipfit(folder.path(), &arguments);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && errors.contains(expected), "{arguments:?}: {errors}");
+    }
+}
+
+#[test]
+fn an_imported_model_is_a_part_that_check_accepts() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, [in_part, all]) in [("nist_ctc_01_asme1_ap242.qif", [11, 14]), ("nist_ctc_03_asme1_ap242.qif", [18, 22])]
+    {
+        let file = qif(name);
+        let output = slipfit(folder.path(), &["import", file.to_str().unwrap(), "-o", "part.toml"]);
+        let told = String::from_utf8(output.stderr.clone()).unwrap();
+        stdout(&output);
+        assert!(told.starts_with(&format!("{in_part} of {all} tolerances")), "{told}");
+        stdout(&slipfit(folder.path(), &["check", "part.toml"]));
+        let printed = stdout(&slipfit(folder.path(), &["import", file.to_str().unwrap()]));
+        assert_eq!(printed, std::fs::read_to_string(folder.path().join("part.toml")).unwrap());
+    }
+}
