@@ -40,7 +40,7 @@ fn figures_are_those_of_the_values() {
     std::fs::write(folder.path().join("p.csv"), "part,a [mm]\nupper,9\n1,1\n2,2\n3,4\n4,5\n5,-\n").unwrap();
     let found = json(folder.path(), &["capability", "p.csv", "--json"]);
     let a = &found["characteristics"][0];
-    let deviation = f64::sqrt(10.0 / 3.0);
+    let deviation = libm::sqrt(10.0 / 3.0);
     assert_eq!(
         (a["count"].as_u64(), a["missing"].as_u64(), a["mean"]["value"].as_f64()),
         (Some(4), Some(1), Some(3.0))
