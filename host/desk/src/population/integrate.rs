@@ -269,7 +269,8 @@ impl<V: Simd> Lanes<V> {
             }
         }
         self.watch.forget_extremes(notes);
-        ended.numbers().iter().fold(0.0, |most: f32, ended| most.max(*ended)) > 0.0
+        let none_ended = *ended <= zero;
+        !none_ended
     }
 
     /// The error of a step whose estimates of momentum (N·s) and of place (N·s²) these are; 1 is allowed. What is not a
