@@ -1,6 +1,6 @@
 //! What the comparison of one scene finds.
 
-use slipfit::{mechanism::run, scene::SceneFile};
+use slipfit::{mechanism::confirmed, scene::SceneFile};
 
 use super::{
     forces::Forces,
@@ -10,10 +10,8 @@ use super::{
     transform::{self, Transform},
 };
 
-/// What the desk may err by in a step, as a share of the mechanism's own speed: its default, and the tenth by which its own confirmation
-/// reports how far a run is off.
+/// What the desk may err by in a step, as a share of the mechanism's own speed: its default.
 pub const ERROR: f64 = 3e-7;
-const TENTH: f64 = 0.1;
 /// Time (s) between two rows.
 const EVERY: f64 = 1e-3;
 /// What a column may differ by, as a share of its peak.
@@ -38,15 +36,13 @@ pub struct Verdict {
     pub compared: f64,
     /// Worst differences, as shares of the peaks.
     pub differences: Vec<(Column, f64)>,
-    /// What differs by more than is allowed, and not with a tenth of the error: the desk says so itself.
-    pub told: Option<String>,
     /// What is wrong.
     pub failure: Option<String>,
 }
 
 /// Compares slipfit's motion of the scene of a `seed`, and of another description of it, with the independent integration.
 pub fn compared(scene: &Scene, seed: u64) -> Verdict {
-    let mut verdict = Verdict { seed, closed: 0, compared: 1.0, differences: Vec::new(), told: None, failure: None };
+    let mut verdict = Verdict { seed, closed: 0, compared: 1.0, differences: Vec::new(), failure: None };
     verdict.failure = found(scene, &Forces::of(scene), &mut verdict).err();
     verdict
 }
@@ -58,26 +54,19 @@ fn found(scene: &Scene, forces: &Forces, verdict: &mut Verdict) -> Result<(), St
     verdict.closed = expected.closed;
     let expected = expected.rows;
     let mut sensitive = Horizon { scene, expected: &expected, rows: None };
-    let own = slipfit(scene, EVERY, ERROR)?;
+    let own = slipfit(scene, EVERY)?;
     let transform = transform::ALL[verdict.seed as usize % transform::ALL.len()];
     let (other, order) = transform.scene(scene, verdict.seed);
     let interval = transform.interval(EVERY);
-    let moved = slipfit(&other, interval, ERROR).map_err(|error| format!("{transform:?}: {error}"))?;
+    let moved = slipfit(&other, interval).map_err(|error| format!("{transform:?}: {error}"))?;
     if transform == Transform::Renamed && format!("{moved:?}") != format!("{own:?}") {
         return Err("other names change bits".into());
     }
     let to_meet = transform.rows(scene, &expected, &order);
-    let comparisons = [
-        (scene, &expected, EVERY, &own, "slipfit".to_owned()),
-        (&other, &to_meet, interval, &moved, format!("{transform:?}")),
-    ];
-    for (scene, expected, every, found, name) in comparisons {
-        let mut compared = sensitive.differences(scene, expected, found, &name);
-        if let Err(wrong) = compared {
-            compared = sensitive.differences(scene, expected, &slipfit(scene, every, TENTH * ERROR)?, &name);
-            verdict.told = compared.is_ok().then_some(wrong);
-        }
-        verdict.differences.extend(compared?);
+    let comparisons =
+        [(scene, &expected, &own, "slipfit".to_owned()), (&other, &to_meet, &moved, format!("{transform:?}"))];
+    for (scene, expected, found, name) in comparisons {
+        verdict.differences.extend(sensitive.differences(scene, expected, found, &name)?);
     }
     verdict.compared = sensitive.rows.map_or(1.0, |rows| rows as f64 / expected.len() as f64);
     if scene.drives.is_empty() {
@@ -86,13 +75,13 @@ fn found(scene: &Scene, forces: &Forces, verdict: &mut Verdict) -> Result<(), St
     momentum(scene, &own)
 }
 
-/// slipfit's motion of `scene` by steps of this `error`.
-fn slipfit(scene: &Scene, every: f64, error: f64) -> Result<Vec<Row>, String> {
-    let text = scene.toml(error);
+/// slipfit's motion of `scene`, as `simulate` gives it.
+fn slipfit(scene: &Scene, every: f64) -> Result<Vec<Row>, String> {
+    let text = scene.toml(ERROR);
     let file = SceneFile::parse("random.toml", &text, &[]).map_err(|error| format!("refused: {error}"))?;
     let mechanism = file.mechanism.ok_or("no mechanism")?;
     let gaps = mechanism.gaps_at(&[0.0]).map_err(|error| error.to_string())?;
-    let run = run(&mechanism, &gaps, every).map_err(|error| error.to_string())?;
+    let [run, _] = confirmed(&mechanism, &gaps, every).map_err(|error| error.to_string())?;
     let rows: Vec<Row> = run.samples.rows.iter().map(|numbers| Row::of(scene, numbers)).collect();
     match rows.iter().find(|row| !row.is_finite()) {
         Some(row) => Err(format!("not finite at {} s", row.t)),
