@@ -41,6 +41,47 @@ ramp_end = 0.01
 speed = 1
 "#;
 
+/// A slider that is pushed towards two stops with friction.
+const SLIDER: &str = r#"
+run = { duration = 100 }
+mechanism = { space = "plane" }
+contact = { stiffness = "1e7 N/m^1.5", exponent = 1.5, damping = "10 N·s/m", depth = 0.01 }
+friction = { law = "regularised", coefficient = 0.2, stick_band = 1 }
+[[body]]
+name = "slider"
+mass = 100
+inertia = 1e5
+centre = [0, 0]
+[[joint]]
+name = "guide"
+kind = "prismatic"
+between = ["slider", "frame"]
+at = [0, 0]
+axis = [1, 0]
+[[joint]]
+name = "end"
+kind = "stop"
+between = ["slider", "frame"]
+at = [50, 0]
+normal = [-1, 0]
+clearance = [40, 0.1]
+[[joint]]
+name = "start"
+kind = "stop"
+between = ["slider", "frame"]
+at = [-50, 0]
+normal = [1, 0]
+clearance = [40, 0.1]
+[[drive]]
+name = "motor"
+pushes = "slider"
+axis = [1, 0]
+gain = 1
+ramp_start = 0
+ramp_end = 0.01
+speed = 50
+"#;
+
 fn parse(text: &str, set: &[&str]) -> Result<SceneFile, String> {
     let set: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
     SceneFile::parse("scene.toml", text, &set).map_err(|error| error.to_string())
@@ -122,6 +163,22 @@ fn friction_is_one_that_solids_have() {
     let own = "clearance = [5, 0.1]\nfriction = { law = \"exact\", coefficient = 30 }";
     warned(LEVER, ["clearance = [5, 0.1]", own, "30 }"], &["`joint.friction.coefficient` is 30"]);
     assert_eq!(warnings(&with(CD_ROM_SLIDE, from, "coefficient = 1.6"), &[]), [""; 0]);
+}
+
+/// A band of sticking wider than the commanded speed leaves no dry friction; a hair below it is no matter of opinion.
+#[test]
+fn a_stick_band_is_slower_than_the_drive() {
+    let [from, at] = ["stick_band = 0.1", "101"];
+    warned(CD_ROM_SLIDE, [from, "stick_band = 101", at], &["`friction.stick_band` is 101 mm/s", "commanded 100 mm/s"]);
+    warned(CD_ROM_SLIDE, [from, "stick_band = \"0.5 m/s\"", "\"0.5 m/s"], &["is 500 mm/s"]);
+    assert_eq!(warnings(&with(CD_ROM_SLIDE, from, "stick_band = 99"), &[]), [""; 0]);
+    let exact = with(CD_ROM_SLIDE, "\"regularised\"", "\"exact\"");
+    assert_eq!(warnings(&with(&exact, from, "stick_band = 500"), &[]), [""; 0]);
+    // On the stop of a slider that is pushed with 50 mm/s.
+    let slider = SLIDER.replace("stick_band = 1 ", "stick_band = 60 ");
+    let found = warnings(&slider, &[]);
+    assert!(matches!(&found[..], [one] if one.contains("is 60 mm/s, more than the commanded 50 mm/s")), "{found:?}");
+    assert_eq!(warnings(SLIDER, &[]), [""; 0]);
 }
 
 /// No principal moment of inertia of a rigid body is greater than the other two together; equal it is of a flat plate.

@@ -121,6 +121,9 @@ fn doubt(root: &Field, scene: &Scene) {
     if let Some(field) = root.get("contact").and_then(|contact| contact.get("stiffness")) {
         plausible::stiffness(&field, law, loads, contacts, widest);
     }
+    if let Some(field) = root.get("friction").and_then(|friction| friction.get("stick_band")) {
+        plausible::stick_band(&field, &scene.friction, scene.drive.speed.abs());
+    }
     let Some(Value::List(nodes)) = root.get("pin").map(|pins| &pins.node.value) else { return };
     for (node, pin) in nodes.iter().zip(&scene.pins) {
         let table = Field { key: "pin".into(), node };

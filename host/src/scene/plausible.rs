@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use slipfit_core::menu::FrictionData;
 use slipfit_tolerance::number::{ten_digits, three_digits};
 use slipfit_tolerance::unit::{self, Unit};
 
@@ -54,6 +55,21 @@ pub(super) fn friction(field: &Field, coefficient: f64) {
         let (key, value, share) = (&field.key, ten_digits(coefficient), ten_digits(coefficient / 100.0));
         field.warn(&format!("`{key}` is {value}, usual is 0.05 to 1; {share} if per cent is meant"));
     }
+}
+
+/// Warns about a stick band, stated by `field` in a law of `friction`, that is wider than the commanded `speed` (m/s): all sliding is then
+/// inside it, where friction acts as a damper.
+pub(super) fn stick_band(field: &Field, friction: &FrictionData<f64>, speed: f64) {
+    let FrictionData::Regularised { stick_band, .. } = *friction else { return };
+    if speed == 0.0 || stick_band <= speed {
+        return;
+    }
+    let [band, speed] = [stick_band * 1e3, speed * 1e3].map(ten_digits);
+    field.warn(&format!(
+        "`{}` is {band} mm/s, more than the commanded {speed} mm/s: inside the band friction grows with speed as a damper's does, and \
+         holds nothing; usual is a hundredth of the speed or less",
+        field.key
+    ));
 }
 
 /// The least and the greatest radius of gyration (m) about one axis that are usual for a `mass` (kg), and the least that three

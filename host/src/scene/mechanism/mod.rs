@@ -125,6 +125,12 @@ fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
     let pushes = mechanism.drives.iter().filter(|drive| drive.action.kind() == DriveKind::Pushes);
     let drives = pushes.map(|named| (named.drive.gain * named.drive.speed).abs()).sum();
     let loads = Loads::new(mass, mechanism.gravity, drives);
+    // How fast surfaces slide that a drive turns, depends on where they are.
+    let speed = mechanism.drives.iter().map(|named| match named.action.kind() {
+        DriveKind::Pushes => named.drive.speed.abs(),
+        DriveKind::Turns => f64::INFINITY,
+    });
+    let speed = speed.reduce(f64::max).unwrap_or_default();
     let with_play = || mechanism.joints.iter().filter(|joint| !joint.kind.is_ideal());
     let widest = mechanism.widest_gap();
     let all_stop = with_play().all(|joint| joint.kind.is_stop());
@@ -142,6 +148,10 @@ fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
         let stiffness = [field, root].iter().find_map(|table| table.get("contact"));
         if let Some(stiffness) = stiffness.and_then(|contact| contact.get("stiffness")) {
             plausible::stiffness(&stiffness, law, loads, contacts, widest);
+        }
+        let friction = [field, root].iter().find_map(|table| table.get("friction"));
+        if let Some(band) = friction.and_then(|friction| friction.get("stick_band")) {
+            plausible::stick_band(&band, &joint.laws.friction, speed);
         }
         for of in joint.kind.gaps() {
             let name = &mechanism.gaps[of].name;
