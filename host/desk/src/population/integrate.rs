@@ -22,6 +22,7 @@ use crate::{
 };
 
 use super::{
+    cube_root::cube_root,
     figures::{BETWEEN_NOTES, Ends, Figures, Watch},
     lane::{Motions, at_rest, numbers, put},
     passed_over::{self, End},
@@ -251,11 +252,11 @@ impl<V: Simd> Lanes<V> {
         *since_note += gone;
         let notes = *busy * Pack::from_f64(BETWEEN_NOTES).select_gt(*since_note, zero, accepted);
         *since_note = notes.select_gt(zero, zero, *since_note);
-        let at_least = Pack::splat(LEAST_STEP);
-        let stalled = (one - good) * length.select_gt(at_least, zero, one);
+        let least_step = Pack::splat(LEAST_STEP);
+        let stalled = (one - good) * length.select_gt(least_step, zero, one);
         let stalled = Pack::from_f64(MOST_STEPS).select_gt(*tried, stalled, one);
         let at_stroke = (stroke - Pack::from_f64(BEYOND)).select_gt(travel, zero, one);
-        *ended = *busy * (left - gone).select_gt(at_least, stalled.max_of(at_stroke), one);
+        *ended = *busy * (left - gone).select_gt(least_step, stalled.max_of(at_stroke), one);
         for lane in 0..Pack::<V>::LANES {
             if notes.get(lane) > 0.0 {
                 self.watch.note(lane, times[lane]);
@@ -287,14 +288,6 @@ impl<V: Simd> Lanes<V> {
     }
 }
 
-/// ∛`x` to 0.02 %, for x > 0 and normal: Halley's step from a guess whose bits have a third of the exponent.
-#[inline(always)]
-fn cube_root(x: f32) -> f32 {
-    let guess = f32::from_bits(x.to_bits() / 3 + 0x2a51_19f2);
-    let cube = guess * guess * guess;
-    guess * (cube + x + x) / (cube + cube + x)
-}
-
 #[cfg(test)]
 mod tests {
     use slipfit_core::slide::ABSENT;
@@ -305,15 +298,6 @@ mod tests {
     /// Of the four gaps of a pin, the one that opens as the slide rises and the one that closes.
     const RAIL: usize = 2;
     const CEILING: usize = 3;
-
-    #[test]
-    fn cube_roots_meet_their_bound() {
-        for k in -4000..4000 {
-            let x = libm::exp2f(k as f32 / 67.0);
-            let error = f64::from(cube_root(x)) / libm::cbrt(f64::from(x)) - 1.0;
-            assert!(error.abs() < 2e-4, "{x:e}: {error:e}");
-        }
-    }
 
     /// More units than lanes, and a number of them that no register divides: each has the figures that it has alone.
     #[test]

@@ -1,5 +1,6 @@
 //! Many slides at a time: each unit of a population on a lane of the machine's registers.
 
+mod cube_root;
 mod figures;
 mod integrate;
 mod lane;
