@@ -7,6 +7,7 @@ use crate::{
     dynamics::{
         confirm::figures_agree,
         driven::{DriveKind, Driven, Motion},
+        error_control,
         outcome::Verdict,
         simulate::SimulateError,
         sweep::{Level, classes},
@@ -47,24 +48,28 @@ pub fn confirmed(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<[Mec
     let mut asked = mechanism.clone();
     let (mut one, mut better) = (run(&asked, gaps, every)?, finer(&asked, gaps, every)?);
     for _ in 0..REFINED {
-        // Not every drive that runs away or mechanism that bounces can be run more finely: then what is there stays, and is warned of.
-        let differs = one.agreement(&better, mechanism).share;
-        if differs <= AGREES {
+        if one.agreement(&better, mechanism).share <= AGREES {
             break;
         }
         asked.run.error /= FINER;
-        let Ok(finest) = finer(&asked, gaps, every) else { break };
+        let finest = match finer(&asked, gaps, every) {
+            Ok(finest) => finest,
+            Err(interrupted @ RunError::Stopped { stopped: error_control::Stopped::Interrupted }) => {
+                return Err(interrupted);
+            }
+            // A drive that runs away may have no finer run. The difference is then warned of.
+            Err(_) => break,
+        };
         one = std::mem::replace(&mut better, finest);
     }
-    let (mut one, finer) = (one, better);
     let excess = one.energy_excess;
-    for ((outcome, better), named) in one.outcomes.iter_mut().zip(&finer.outcomes).zip(&mechanism.drives) {
-        let agrees = figures_agree(outcome, better, named.drive.command(better.end.t));
+    for ((outcome, finer), named) in one.outcomes.iter_mut().zip(&better.outcomes).zip(&mechanism.drives) {
+        let agrees = figures_agree(outcome, finer, named.drive.command(finer.end.t));
         if excess.is_nan() || excess > ENERGY || !agrees {
             outcome.verdict = Verdict::Undecided;
         }
     }
-    Ok([one, finer])
+    Ok([one, better])
 }
 
 /// A mechanism and one of its drives.
