@@ -34,8 +34,8 @@ const LAYERS: [(&str, &[&str]); 6] = [
             "product",
         ],
     ),
-    ("host/measured/src", &["table", "csv", "numeric", "families", "capability"]),
-    ("host/qif/src", &["error", "drawing", "format", "xml", "words", "units", "model", "part", "results"]),
+    ("host/measured/src", &["unit", "table", "csv", "numeric", "families", "capability"]),
+    ("host/qif/src", &["error", "file", "drawing", "format", "xml", "words", "units", "model", "part", "results"]),
     (
         "host/desk/src",
         &[

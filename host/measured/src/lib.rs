@@ -11,3 +11,4 @@ mod examples;
 pub mod families;
 pub mod numeric;
 pub mod table;
+pub mod unit;

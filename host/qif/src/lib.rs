@@ -10,6 +10,7 @@
 
 pub mod drawing;
 pub mod error;
+pub mod file;
 mod format;
 pub mod model;
 pub mod part;

@@ -3,7 +3,10 @@
 use std::collections::{HashMap, HashSet};
 
 use roxmltree::Node;
-use slipfit_measured::table::{Column, MeasuredTable, Unit};
+use slipfit_measured::{
+    table::{Column, MeasuredTable},
+    unit::Unit,
+};
 
 use crate::{
     error::{Problem, QifError},

@@ -1,6 +1,6 @@
 //! Measurement results against values that are found by scanning the text alone.
 
-use slipfit_measured::table::{Column, Unit};
+use slipfit_measured::{table::Column, unit::Unit};
 use slipfit_qif::results::read;
 
 const SHEET_METAL: &str = include_str!("data/SheetMetal_QIF_Results_6_samples.QIF");

@@ -10,7 +10,7 @@ use slipfit_measured::{
     families::Kind,
     table::MeasuredTable,
 };
-use slipfit_qif::results;
+use slipfit_qif::{file, results};
 use slipfit_tolerance::number::{fixed, or_dash, percent, three_digits};
 
 use super::{
@@ -117,7 +117,7 @@ impl Arguments {
         if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
             return Err(Failure::Input(format!("{option} names a column of a CSV file, and {shown} is QIF")));
         }
-        let text = std::fs::read_to_string(&self.file).map_err(|error| Failure::Input(format!("{shown}: {error}")))?;
+        let text = file::read(&self.file).map_err(|error| Failure::Input(format!("{shown}: {error}")))?;
         results::read(&text).map_err(|error| Failure::Input(format!("{shown}:{error}")))
     }
 }
@@ -138,7 +138,8 @@ fn warnings_of(of: &Capability) -> Vec<String> {
     let mut warnings = Vec::new();
     for outlier in &of.outliers {
         warnings.push(format!(
-            "\"{name}\": {} of part {} lies {} standard deviations from the mean, farther than a normal production reaches; it stays in every figure",
+            "\"{name}\": {} of part {} lies {} standard deviations from the mean, farther than a normal production reaches; it \
+             stays in every figure",
             fixed(outlier.value, digits),
             outlier.label,
             fixed(outlier.distance, 1)

@@ -3,16 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfit_qif::{model, part};
+use slipfit_qif::{file, model, part};
 use slipfit_system::files;
 
 use super::{
     failure::Failure,
     terminal::{tell, write_out},
 };
-
-/// Largest file that is read (bytes).
-const LARGEST: u64 = 1 << 30;
 
 /// Turns the features, datums and tolerances of a QIF 3.0 product model into a `[[part]]`.
 ///
@@ -37,12 +34,7 @@ impl Arguments {
     /// A file that cannot be read or is no QIF model; a part that cannot be written.
     pub(super) fn run(self) -> Result<(), Failure> {
         let shown = self.model.display();
-        let unread = |error: std::io::Error| Failure::Input(format!("{shown}: {error}"));
-        let length = std::fs::metadata(&self.model).map_err(unread)?.len();
-        if length > LARGEST {
-            return Err(Failure::Input(format!("{shown}: more than {LARGEST} bytes")));
-        }
-        let text = std::fs::read_to_string(&self.model).map_err(unread)?;
+        let text = file::read(&self.model).map_err(|error| Failure::Input(format!("{shown}: {error}")))?;
         let drawing = model::read(&text).map_err(|error| Failure::Input(format!("{shown}:{error}")))?;
         let source = self.model.file_name().unwrap_or_default().to_string_lossy();
         let part = part::write(&drawing, self.name.as_deref(), &source);

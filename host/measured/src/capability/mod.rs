@@ -33,19 +33,18 @@ pub use self::{
 };
 use crate::{
     families::{FitError, Kind, choose, preferred},
-    numeric::tails::student_quantile_above,
-    table::{MeasuredTable, Unit},
+    table::MeasuredTable,
+    unit::Unit,
 };
-use slipfit_tolerance::numeric::normal::SIDE;
 
 /// How capability is found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Family of the indices by points; `None` chooses one from the data.
     pub family: Option<Kind>,
-    /// Index of the grouping whose subgroups are told apart.
+    /// Index of the grouping by whose subgroups the parts are divided.
     pub grouping: Option<usize>,
-    /// Shares of the production for which tolerance intervals are told.
+    /// Shares of the production for which tolerance intervals are computed.
     pub shares: Vec<f64>,
 }
 
@@ -161,7 +160,7 @@ impl Known {
 
     /// The mean with its interval by W. Gosset's t.
     pub fn mean_estimate(&self) -> Estimate {
-        let half = student_quantile_above(SIDE, self.freedom) * self.deviation / libm::sqrt(self.parts);
+        let half = interval::student_factor(self.parts as usize) * self.deviation / libm::sqrt(self.parts);
         Estimate { value: self.mean, interval: [self.mean - half, self.mean + half] }
     }
 

@@ -93,8 +93,7 @@ fn confidence_of(parts: usize, rank: usize, share: f64) -> f64 {
         return 0.0;
     }
     let (a, b) = ((parts + 1 - 2 * rank) as f64, (2 * rank) as f64);
-    // The complement by the mirrored function, which keeps its digits.
-    checked_beta_reg(b, a, 1.0 - share).map_or(0.0, |below| 1.0 - (1.0 - below)).clamp(0.0, 1.0)
+    checked_beta_reg(b, a, 1.0 - share).unwrap_or(0.0)
 }
 
 /// The greatest rank from both ends between which a `share` lies with a `confidence`.

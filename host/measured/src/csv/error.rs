@@ -2,7 +2,7 @@
 
 use std::{fmt, ops::Range};
 
-use crate::table::{TableError, UnitError};
+use crate::{table::TableError, unit::UnitError};
 
 /// What is wrong with a CSV file, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -70,7 +70,7 @@ pub enum Problem {
     /// A column without a name.
     #[error("column {0} has no name")]
     Unnamed(usize),
-    /// An option that names a column which is not there.
+    /// An option that names a missing column.
     #[error("there is no column {name} for {role}; the columns are {columns}")]
     NoColumn {
         /// The name.

@@ -9,7 +9,10 @@ use super::{
     error::{CsvError, Place, Problem, Shown},
     options::Options,
 };
-use crate::table::{Column, GroupingBuilder, MeasuredTable, TableError, Unit};
+use crate::{
+    table::{Column, GroupingBuilder, MeasuredTable, TableError},
+    unit::Unit,
+};
 
 /// First cells of the rows that state limits.
 pub const LIMIT_ROWS: [&str; 3] = ["nominal", "lower", "upper"];

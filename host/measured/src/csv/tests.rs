@@ -4,7 +4,10 @@
 use proptest::prelude::*;
 
 use super::{CsvError, Options, Problem, read, read_file, write};
-use crate::table::{Column, Grouping, MeasuredTable, Unit};
+use crate::{
+    table::{Column, Grouping, MeasuredTable},
+    unit::Unit,
+};
 
 const TABLE: &str = "\
 part,cavity,length [mm],angle [°]

@@ -3,7 +3,7 @@
 use ::csv::{QuoteStyle, WriterBuilder};
 
 use super::read::{LABELS, LIMIT_ROWS, name_and_unit};
-use crate::table::{MeasuredTable, Unit};
+use crate::{table::MeasuredTable, unit::Unit};
 
 /// A table as CSV with commas, which reads as the same table when its groupings are named: labels (numbers if there are
 /// none, but limits), groupings, then the columns. Numbers have as many digits as it takes to be the same when read; a

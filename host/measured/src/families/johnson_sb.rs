@@ -23,7 +23,7 @@ pub struct JohnsonSb {
 }
 
 /// Least and greatest distance of an end from the value next to it, in the range of the values; the least one is divided by
-/// the number of parts. With an end at a value, the likelihood is infinite, which is no estimate; far ends change nothing.
+/// the number of parts. With an end at a value, the likelihood is infinite and estimates nothing; far ends change nothing.
 const DISTANCE: [f64; 2] = [0.5, 100.0];
 
 impl JohnsonSb {

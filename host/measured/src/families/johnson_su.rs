@@ -23,8 +23,8 @@ pub struct JohnsonSu {
     pub lambda: f64,
 }
 
-/// Least and greatest λ in standard deviations. With ξ at one value, the likelihood grows without bound as λ goes to 0,
-/// which is no estimate; beyond the greatest one, the distribution is normal.
+/// Least and greatest λ in standard deviations. With ξ at one value, the likelihood grows without bound as λ goes to 0
+/// and estimates nothing; beyond the greatest one, the distribution is normal.
 const LAMBDA: [f64; 2] = [0.1, 50.0];
 
 impl JohnsonSu {

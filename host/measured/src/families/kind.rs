@@ -41,9 +41,7 @@ pub enum FitError {
         found: usize,
     },
     /// Fewer parts than it takes to choose among families.
-    #[error(
-        "to choose a distribution takes {least} measured parts, but there are {found}; state one, such as `normal`"
-    )]
+    #[error("to choose a distribution takes {least} measured parts, but there are {found}")]
     FewToChoose {
         /// Parts that it takes.
         least: usize,
@@ -94,11 +92,6 @@ impl Kind {
             Self::JohnsonSb => "johnson-sb",
             Self::TwoNormals => "two-normals",
         }
-    }
-
-    /// The family of a name.
-    pub fn of_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
     /// Number of parameters.

@@ -16,8 +16,8 @@ pub struct TwoNormals {
     pub parts: [Normal; 2],
 }
 
-/// Least standard deviation of either in that of all values: with one at a single value, the likelihood is infinite,
-/// which is no estimate.
+/// Least standard deviation of either in that of all values: with one at a single value, the likelihood is infinite
+/// and estimates nothing.
 const LEAST_DEVIATION: f64 = 0.1;
 const MOST_STEPS: usize = 500;
 

@@ -58,7 +58,7 @@ impl Posterior {
             let weight = if is_many {
                 1.0
             } else {
-                // The density of Student's t but for a constant.
+                // The density of Student's t up to a constant factor.
                 let inside = 1.0 + stretch * stretch * length / FREEDOM as f64;
                 libm::exp(lowest - cost(&free) + 0.5 * (FREEDOM as f64 + size) * libm::log(inside))
             };

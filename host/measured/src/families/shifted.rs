@@ -13,7 +13,7 @@ const FARTHEST: f64 = 200.0;
 const STEPS: usize = 60;
 
 /// The likeliest distribution with a lower end. The likelihood of such families is infinite with the end at the least
-/// value, which is no estimate (B. Hill, "The three-parameter lognormal distribution and Bayesian analysis of a
+/// value and estimates nothing there (B. Hill, "The three-parameter lognormal distribution and Bayesian analysis of a
 /// point-source epidemic", 1963); meant is its highest local maximum. If it grows on towards ends far away, the values
 /// are not skewed to the right, and there is none.
 pub fn fit<F: Family>(sample: &Sample, kind: Kind, of_logarithms: impl Fn(&[f64], f64) -> F) -> Result<F, FitError> {

@@ -8,7 +8,7 @@ use slipfit_tolerance::numeric::{
 
 use super::{
     scale::{ratios, scores},
-    tails::{chi_squared_above, normal_below},
+    tails::chi_squared_above,
 };
 
 /// Its points for some degrees of freedom.
@@ -30,7 +30,7 @@ impl NoncentralT {
     pub fn sides(&self, t: f64, shift: f64) -> [f64; 2] {
         // Of the two variables, the integral is over the one along which the other's probability is smoother.
         if t.abs() < libm::sqrt(2.0 * self.freedom) {
-            let below = self.ratios.iter().map(|[ratio, weight]| weight * normal_below(t * ratio - shift)).sum();
+            let below = self.ratios.iter().map(|[ratio, weight]| weight * tail(shift - t * ratio)).sum();
             let above = self.ratios.iter().map(|[ratio, weight]| weight * tail(t * ratio - shift)).sum();
             return [below, above];
         }

@@ -12,27 +12,22 @@ const PIECES: usize = 10;
 pub fn ratios(freedom: f64) -> Vec<[f64; 2]> {
     let spread = WIDEST / libm::sqrt(2.0 * freedom);
     let (from, to) = ((1.0 - spread).max(0.0), 1.0 + spread);
-    let step = (to - from) / PIECES as f64;
-    let mut points: Vec<[f64; 2]> = (0..PIECES)
-        .flat_map(|i| piece(from + i as f64 * step, from + (i + 1) as f64 * step))
-        .map(|(ratio, weight)| {
-            // ln of the density but for a constant: 0 at its top for many parts.
-            let exponent = (freedom - 1.0) * libm::log(ratio) - 0.5 * freedom * (ratio * ratio - 1.0);
-            [ratio, weight * libm::exp(exponent)]
-        })
-        .collect();
-    let sum: f64 = points.iter().map(|[_, weight]| weight).sum();
-    points.iter_mut().for_each(|[_, weight]| *weight /= sum);
-    points
+    // Shifted by a constant, so that its top is at 0 for many parts.
+    weighted([from, to], |ratio| (freedom - 1.0) * libm::log(ratio) - 0.5 * freedom * (ratio * ratio - 1.0))
 }
 
 /// Points of a standard normal with weights that add up to 1.
 pub fn scores() -> Vec<[f64; 2]> {
     const FARTHEST: f64 = 9.0;
-    let step = 2.0 * FARTHEST / PIECES as f64;
+    weighted([-FARTHEST, FARTHEST], |score| -0.5 * score * score)
+}
+
+/// Points of a variable between two ends, with weights that add up to 1 and follow the logarithm of its density, up to a constant.
+fn weighted([from, to]: [f64; 2], ln_density: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
+    let step = (to - from) / PIECES as f64;
     let mut points: Vec<[f64; 2]> = (0..PIECES)
-        .flat_map(|i| piece(-FARTHEST + i as f64 * step, -FARTHEST + (i + 1) as f64 * step))
-        .map(|(score, weight)| [score, weight * libm::exp(-0.5 * score * score)])
+        .flat_map(|i| piece(from + i as f64 * step, from + (i + 1) as f64 * step))
+        .map(|(x, weight)| [x, weight * libm::exp(ln_density(x))])
         .collect();
     let sum: f64 = points.iter().map(|[_, weight]| weight).sum();
     points.iter_mut().for_each(|[_, weight]| *weight /= sum);

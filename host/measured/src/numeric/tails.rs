@@ -6,11 +6,6 @@ use slipfit_tolerance::numeric::{
 };
 use statrs::function::{beta::checked_beta_reg, gamma::checked_gamma_ur};
 
-/// P(Z ≤ `score`) of a standard normal, accurate in the lower tail.
-pub fn normal_below(score: f64) -> f64 {
-    tail(-score)
-}
-
 /// P(χ² > `value`) with some degrees of `freedom`.
 pub fn chi_squared_above(value: f64, freedom: f64) -> f64 {
     if value <= 0.0 {

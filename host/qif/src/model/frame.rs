@@ -73,7 +73,7 @@ fn reference(node: Node, datums: &HashMap<&str, usize>) -> Result<Result<Referen
     let datum = *datums.get(id).ok_or_else(|| error_at(node, problem()))?;
     for element in children(node) {
         match name(element) {
-            // Which of the sizes of the datum its condition of material goes by does not matter where it has one.
+            // The size that a condition of material refers to does not matter where the datum has only one.
             "DatumDefinitionId"
             | "MaterialModifier"
             | "ReferencedComponent"

@@ -70,7 +70,7 @@ fn plane(node: Node, units: &Units) -> Found {
     Ok(Ok(Shape::Plane(Plane { at, normal, along: rectangle.along, extents: rectangle.extents, width: None })))
 }
 
-/// CylinderFeatureNominalType. Its axis starts at AxisPoint and goes by Length in Direction.
+/// CylinderFeatureNominalType. Its axis runs from AxisPoint over Length in Direction.
 fn cylinder(node: Node, definition: Option<Node>, units: &Units) -> Found {
     let axis = require(node, "Axis")?;
     let start = place(require(axis, "AxisPoint")?, units)?;

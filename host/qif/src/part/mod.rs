@@ -19,7 +19,7 @@ pub struct Part {
     pub name: String,
     /// The `[[part]]` with its features and comments.
     pub text: String,
-    /// The list of what is not in the part, as comments.
+    /// The tolerances and dimensions left out of the part, as comments.
     pub list: String,
     /// A measure between two features as an example, without which a scene of the part alone has nothing to compute; empty for
     /// a part of less than two features.
