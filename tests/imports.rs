@@ -13,7 +13,19 @@ use std::{
 const LAYERS: [(&str, &[&str]); 6] = [
     (
         "host/src",
-        &["xml", "setup", "dynamics", "mechanism", "scene", "population", "quality", "firmware", "show", "cli"],
+        &[
+            "xml",
+            "setup",
+            "dynamics",
+            "mechanism",
+            "scene",
+            "possible",
+            "population",
+            "quality",
+            "firmware",
+            "show",
+            "cli",
+        ],
     ),
     (
         "host/tolerance/src",
@@ -34,7 +46,7 @@ const LAYERS: [(&str, &[&str]); 6] = [
             "product",
         ],
     ),
-    ("host/measured/src", &["unit", "table", "csv", "numeric", "families", "capability"]),
+    ("host/measured/src", &["unit", "table", "csv", "numeric", "families", "capability", "production"]),
     ("host/qif/src", &["error", "file", "drawing", "format", "xml", "words", "units", "model", "part", "results"]),
     (
         "host/desk/src",

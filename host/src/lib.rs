@@ -11,6 +11,7 @@ pub mod dynamics;
 pub mod firmware;
 pub mod mechanism;
 pub mod population;
+pub mod possible;
 pub mod quality;
 #[cfg(test)]
 mod reference;

@@ -46,7 +46,7 @@ fn model(pause: Duration) -> Model {
         correlations: vec![(0, 2, 0.5)],
         measures: ["product", "quotient"].map(measure).into(),
         sums: Vec::new(),
-        function: Box::new(Bent(pause)),
+        function: std::sync::Arc::new(Bent(pause)),
     }
 }
 

@@ -10,5 +10,6 @@ pub mod csv;
 mod examples;
 pub mod families;
 pub mod numeric;
+pub mod production;
 pub mod table;
 pub mod unit;

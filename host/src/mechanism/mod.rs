@@ -58,7 +58,7 @@ pub use slipfit_desk::{
     element,
 };
 
-use crate::setup::{ControllerSpec, LevelRange, RunSpec};
+use crate::setup::{ControllerSpec, LevelRange, MeasuredGaps, RunSpec};
 
 /// Which bodies there are, what joins them, and what is to be simulated. SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,6 +87,8 @@ pub struct Mechanism {
     pub controller: ControllerSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
+    /// Gaps whose distribution is that of measured parts.
+    pub measured: MeasuredGaps,
     /// What the user should know of the scene file: what is possible but implausible, each with its place.
     pub warnings: Vec<String>,
 }

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     mechanism::{self, Mechanism},
-    setup::Scene,
+    setup::{MeasuredGaps, Scene},
 };
 
 pub use super::source::MOST_UNITS;
@@ -68,7 +68,7 @@ impl<'a> Production<'a> {
         let stated =
             named.map(|((gap, name), measure)| Some(Stated { name, statistics: gap?, measure: *measure })).collect();
         let vary = scene.vary.iter().map(|varied| varied.deviation.clone()).collect();
-        Self::of(stated, product, correlation, vary, seed)
+        Self::of(stated, product, correlation, &scene.measured, vary, seed)
     }
 }
 
@@ -88,7 +88,7 @@ impl<'a> Production<'a, Vec<f64>> {
             Some(Stated { name: gap.name.clone(), statistics: gap.statistics, measure: gap.measure })
         };
         let vary = mechanism.vary.iter().map(|varied| varied.deviation.clone()).collect();
-        Self::of(mechanism.gaps.iter().map(stated).collect(), product, correlation, vary, seed)
+        Self::of(mechanism.gaps.iter().map(stated).collect(), product, correlation, &mechanism.measured, vary, seed)
     }
 }
 
@@ -98,6 +98,7 @@ impl<'a, G: UnitGaps> Production<'a, G> {
         stated: Vec<Option<Stated>>,
         product: Option<&'a Product>,
         correlation: f64,
+        measured: &MeasuredGaps,
         vary: Vec<Contributor>,
         seed: u64,
     ) -> Result<Self, DrawError> {
@@ -118,7 +119,7 @@ impl<'a, G: UnitGaps> Production<'a, G> {
             for (measure, (i, _)) in own.iter().enumerate() {
                 gaps[*i] = Gap::Drawn(sources.len(), measure);
             }
-            let model = of_statistics(&own, correlation);
+            let model = of_statistics(&own, correlation, measured);
             sources.push(Source::new(Held::Own(Box::new(model)), derived(seed, STREAMS[0] + 1))?);
         }
         let parameters = vary.len();

@@ -1,6 +1,9 @@
 //! What the units of a production are drawn from: a product's model, or gaps and parameters that vary by themselves.
 
-use std::ops::{Deref, Range};
+use std::{
+    ops::{Deref, Range},
+    sync::Arc,
+};
 
 use slipfit_core::clearance::GapStatistics;
 use slipfit_tolerance::{
@@ -12,6 +15,8 @@ use slipfit_tolerance::{
         sampler::{Method, Sampler},
     },
 };
+
+use crate::setup::MeasuredGaps;
 
 /// The most units of a production.
 pub const MOST_UNITS: u64 = 1 << 40;
@@ -102,18 +107,27 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Normal gaps of the given statistics, any two with the same correlation.
-pub fn of_statistics(gaps: &[(usize, &Stated)], correlation: f64) -> Model {
-    let normal = |(_, gap): &(usize, &Stated)| {
+/// Gaps by their numbers: distributed and correlated as they were `measured`, else normal with the given statistics, any two
+/// with the same correlation.
+pub fn of_statistics(gaps: &[(usize, &Stated)], correlation: f64, measured: &MeasuredGaps) -> Model {
+    let place = |gap: usize| measured.distributions.iter().position(|(number, _)| *number == gap);
+    let normal = |(number, gap): &(usize, &Stated)| {
         let GapStatistics { mean, deviation } = gap.statistics;
-        let distribution =
-            if deviation > 0.0 { Distribution::Normal { mean, deviation } } else { Distribution::Constant(mean) };
+        let distribution = match place(*number) {
+            Some(place) => measured.distributions[place].1.clone(),
+            None if deviation > 0.0 => Distribution::Normal { mean, deviation },
+            None => Distribution::Constant(mean),
+        };
         let limits = [mean - 3.0 * deviation, mean + 3.0 * deviation];
         Contributor { name: format!("{} gap", gap.name), variation: Variation::Scalar { distribution, limits } }
     };
     let varying: Vec<usize> = (0..gaps.len()).filter(|i| gaps[*i].1.statistics.deviation > 0.0).collect();
-    let pairs = varying.iter().flat_map(|i| varying.iter().filter(move |j| *j > i).map(move |j| (*i, *j, correlation)));
-    let correlations = if correlation == 0.0 { Vec::new() } else { pairs.collect() };
+    let of_pair = |i: usize, j: usize| match [i, j].map(|at| place(gaps[at].0)) {
+        [Some(one), Some(other)] => measured.correlation(one, other),
+        _ => correlation,
+    };
+    let pairs = varying.iter().flat_map(|i| varying.iter().filter(move |j| *j > i).map(move |j| (*i, *j)));
+    let correlations = pairs.map(|(i, j)| (i, j, of_pair(i, j))).filter(|(.., r)| *r != 0.0).collect();
     Model { correlations, ..each_itself(gaps.iter().map(normal).collect()) }
 }
 
@@ -130,6 +144,6 @@ pub fn each_itself(contributors: Vec<Contributor>) -> Model {
         correlations: Vec::new(),
         measures,
         sums: Vec::new(),
-        function: Box::new(Linear::new(&vec![0.0; count], &(0..count).map(row).collect::<Vec<_>>())),
+        function: Arc::new(Linear::new(&vec![0.0; count], &(0..count).map(row).collect::<Vec<_>>())),
     }
 }

@@ -122,6 +122,14 @@ pub enum Problem {
         /// Where, such as "with a uniform distribution".
         place: String,
     },
+    /// Measured parts that make no distribution.
+    #[error("`{of}` cannot be measured: {why}")]
+    Measured {
+        /// The characteristic, or the file.
+        of: String,
+        /// Why.
+        why: String,
+    },
     /// Exact friction with a scheme that does not solve for forces.
     #[error("`controller.integrator` is \"{0}\", which cannot do exact friction")]
     ExplicitFriction(String),

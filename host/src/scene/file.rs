@@ -1,21 +1,23 @@
 //! A scene file as a whole: a product with its tolerances, a slide that moves, or both.
 
-use slipfit_core::clearance::GapStatistics;
-use slipfit_tolerance::{product::Product, theory::moments};
+use slipfit_core::{clearance::GapStatistics, slide::PINS};
+use slipfit_tolerance::{model::Variation, product::Product, theory::moments};
 
 use crate::mechanism::Mechanism;
 
 use super::{
     Override, Problem, SceneError,
     diagnostic::Found,
-    keys, mechanism,
+    keys,
+    measured::{self, columns::Columns},
+    mechanism,
     parse::{scene, title},
     pins::{fill, pins, sums},
     product::product,
     tree::{Node, Source},
     value::Field,
 };
-use crate::setup::Scene;
+use crate::setup::{GapMeasures, Measured, MeasuredGaps, PinSpec, SURFACES, Scene};
 
 /// What a scene file describes.
 pub struct SceneFile {
@@ -28,6 +30,8 @@ pub struct SceneFile {
     pub slide: Option<Scene>,
     /// The mechanism, if it is made of bodies and joints of its own.
     pub mechanism: Option<Mechanism>,
+    /// What of it was measured, if anything was.
+    pub measured: Option<Measured>,
 }
 
 impl SceneFile {
@@ -65,19 +69,24 @@ impl SceneFile {
     pub(super) fn read(tree: &Node<'_>, file_name: &str) -> Result<Self, SceneError> {
         let root = Field { key: String::new(), node: tree };
         let title = title(&root, file_name)?;
+        let measured = measured::columns(&root, file_name)?;
         let mut product = ["dimension", "part", "measure"]
             .iter()
             .any(|key| root.get(key).is_some())
-            .then(|| product(&root))
+            .then(|| product(&root, measured.as_ref()))
             .transpose()?;
         let of_slide = ["slide", "contact", "friction", "drive", "run", "controller", "sweep", "pin", "vary"];
         if product.is_some() && !mechanism::is_mechanism(&root) && of_slide.iter().all(|key| root.get(key).is_none()) {
-            return Ok(Self { title, product, slide: None, mechanism: None });
+            let measured = found(measured, product.as_ref(), Vec::new())?;
+            return Ok(Self { title, product, slide: None, mechanism: None, measured });
         }
         if mechanism::is_mechanism(&root) {
             mechanism::refuse_slide(&root)?;
-            let mechanism = mechanism::mechanism(&root, title.clone(), product.as_ref())?;
-            return Ok(Self { title, product, slide: None, mechanism: Some(mechanism) });
+            let mut mechanism = mechanism::mechanism(&root, title.clone(), product.as_ref(), measured.as_ref())?;
+            let names = mechanism.gaps.iter().map(|gap| gap.name.clone()).collect();
+            let measured = found(measured, product.as_ref(), names)?;
+            mechanism.measured = gaps_of(measured.as_ref());
+            return Ok(Self { title, product, slide: None, mechanism: Some(mechanism), measured });
         }
         if product.is_some()
             && root.get("slide").is_none()
@@ -87,7 +96,9 @@ impl SceneFile {
             return Err(alone.no_effect("without a [slide] or bodies", allowed));
         }
         root.table("slide")?;
-        let (mut pins, gap_measures) = pins(&root, product.as_ref().map(|product| &product.model))?;
+        let (mut pins, mut gap_measures) = pins(&root, product.as_ref().map(|product| &product.model))?;
+        let names = measure_pins(&mut pins, &mut gap_measures, measured.as_ref());
+        let measured = found(measured, product.as_ref(), names)?;
         // With values that stand for wrong ones there is nothing to compute.
         let sound = !tree.place.found().any();
         if let Some(product) = product.as_mut().filter(|_| sound && gap_measures.iter().flatten().any(Option::is_some))
@@ -98,8 +109,9 @@ impl SceneFile {
             fill(&mut pins, &gap_measures, &statistics);
             product.model.sums.extend(sums(&pins, &gap_measures));
         }
-        let slide = Some(scene(&root, title.clone(), pins, gap_measures)?);
-        Ok(Self { title, product, slide, mechanism: None })
+        let mut slide = scene(&root, title.clone(), pins, gap_measures)?;
+        slide.measured = gaps_of(measured.as_ref());
+        Ok(Self { title, product, slide: Some(slide), mechanism: None, measured })
     }
 
     /// The slide of the scene file `file_name` and the product it belongs to, if the scene has one.
@@ -144,6 +156,40 @@ impl Scene {
     pub fn parse(file_name: &str, text: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         SceneFile::parse_with_slide(file_name, text, overrides).map(|(scene, _)| scene)
     }
+}
+
+/// What of a scene was measured, whose gaps have these `names`.
+fn found(
+    columns: Option<Columns>,
+    product: Option<&Product>,
+    mut names: Vec<String>,
+) -> Result<Option<Measured>, SceneError> {
+    let contributors = product.into_iter().flat_map(|product| &product.model.contributors);
+    let scalars = contributors.filter(|of| matches!(of.variation, Variation::Scalar { .. }));
+    names.extend(scalars.map(|contributor| contributor.name.clone()));
+    columns.map(|columns| columns.found(&names)).transpose()
+}
+
+fn gaps_of(measured: Option<&Measured>) -> MeasuredGaps {
+    measured.map(|measured| measured.gaps(measured.production.joint())).unwrap_or_default()
+}
+
+/// Gives measured gaps of the `pins` their statistics; they are measures of the product no more. The names of all gaps.
+fn measure_pins(pins: &mut [PinSpec; PINS], measures: &mut GapMeasures, columns: Option<&Columns>) -> Vec<String> {
+    let mut names = Vec::new();
+    for (p, (pin, measures)) in pins.iter_mut().zip(measures).enumerate() {
+        for (s, surface) in SURFACES.into_iter().enumerate() {
+            let name = format!("{} {surface}", pin.name);
+            if pin.gaps[s].is_none() && measures[s].is_none() {
+                continue;
+            }
+            if let Some(statistics) = columns.and_then(|columns| columns.gap(&name, SURFACES.len() * p + s)) {
+                (pin.gaps[s], measures[s]) = (Some(statistics), None);
+            }
+            names.push(name);
+        }
+    }
+    names
 }
 
 /// There is no slide in the scene; `wanted` says what has one, and what works without.

@@ -241,6 +241,16 @@ pub(super) const ROOT: &[Key] = &[
     ),
     table("allocate", &[key("yield"), key("malfunction"), key("force_limit")]),
     table("sum", &[key("name"), key("of")]),
+    table(
+        "measured",
+        &[
+            key("file"),
+            key("group"),
+            key("only"),
+            key("distribution"),
+            table("column", &[key("of"), key("heading"), key("distribution"), key("least"), key("most")]),
+        ],
+    ),
     table("correlation", &[key("of"), key("coefficient")]),
     table(
         "vary",

@@ -9,6 +9,7 @@ mod drawing;
 mod file;
 mod keys;
 mod levels;
+mod measured;
 mod mechanism;
 mod parse;
 mod pins;

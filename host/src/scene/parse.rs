@@ -24,7 +24,9 @@ use super::{
     value::Field,
     vary::vary,
 };
-use crate::setup::{ControllerSpec, GapMeasures, LevelRange, PinSpec, RunSpec, SURFACES, Scene, SlideSpec};
+use crate::setup::{
+    ControllerSpec, GapMeasures, LevelRange, MeasuredGaps, PinSpec, RunSpec, SURFACES, Scene, SlideSpec,
+};
 
 const MASS: Quantity = Quantity { units: unit::MASS, range: [0.001, 1e7] };
 const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
@@ -88,6 +90,7 @@ pub(super) fn scene(
         sweep: levels,
         vary: Vec::new(),
         gap_measures,
+        measured: MeasuredGaps::default(),
         warnings: Vec::new(),
     };
     let scene = Scene { vary: found.recover(vary(root, &scene), Vec::new()), ..scene };

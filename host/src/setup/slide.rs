@@ -9,7 +9,9 @@ use slipfit_core::{
 };
 use slipfit_tolerance::number::ten_digits;
 
-use super::{ControllerSpec, GAP_MOST, LevelRange, RunSpec, SlideParameter, Varied, rub_more, tilted_x, tilted_z};
+use super::{
+    ControllerSpec, GAP_MOST, LevelRange, MeasuredGaps, RunSpec, SlideParameter, Varied, rub_more, tilted_x, tilted_z,
+};
 
 /// Which surfaces meet a pin, in the order of Table 2.
 pub const SURFACES: [&str; 4] = ["left", "right", "rail", "wall"];
@@ -41,6 +43,8 @@ pub struct Scene {
     pub vary: Vec<Varied>,
     /// Which measure of the product each gap is, pin by pin; `None` where the scene gives its statistics.
     pub gap_measures: GapMeasures,
+    /// Gaps whose distribution is that of measured parts.
+    pub measured: MeasuredGaps,
     /// What the user should know of the scene file: what is possible but implausible, each with its place.
     pub warnings: Vec<String>,
 }

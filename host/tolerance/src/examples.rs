@@ -1,5 +1,7 @@
 //! Models with known answers.
 
+use std::sync::Arc;
+
 use super::model::{Contributor, Distribution, Function, Measure, Model, Quantity, Sum, Variation, linear::Linear};
 use crate::numeric::lanes::Lanes;
 
@@ -28,7 +30,7 @@ pub fn linear(contributors: Vec<Contributor>, coefficients: Vec<Vec<f64>>) -> Mo
         contributors,
         correlations: Vec::new(),
         sums: Vec::new(),
-        function: Box::new(Linear::new(&vec![0.0; coefficients.len()], &coefficients)),
+        function: Arc::new(Linear::new(&vec![0.0; coefficients.len()], &coefficients)),
     }
 }
 
@@ -72,7 +74,7 @@ pub fn clutch() -> Model {
         correlations: Vec::new(),
         measures: vec![Measure { name: "pressure angle".into(), quantity: Quantity::Angle, limits }],
         sums: Vec::new(),
-        function: Box::new(Clutch),
+        function: Arc::new(Clutch),
     }
 }
 

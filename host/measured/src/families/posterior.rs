@@ -88,6 +88,11 @@ impl Posterior {
         (!draws.is_empty()).then_some(Self { draws })
     }
 
+    /// The drawn distributions, each with its weight.
+    pub fn draws(&self) -> impl Iterator<Item = (f64, &dyn Family)> {
+        self.draws.iter().map(|(weight, family)| (*weight, family.as_ref()))
+    }
+
     /// The interval of 95 % of a `figure` of the distribution.
     pub fn interval(&self, figure: impl Fn(&dyn Family) -> f64) -> [f64; 2] {
         let mut figures: Vec<(f64, f64)> =

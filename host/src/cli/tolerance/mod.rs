@@ -31,7 +31,7 @@ use super::{
     failure::Failure,
     terminal::{print, print_json, progress, warn},
 };
-use crate::setup::Scene;
+use crate::setup::{Measured, Scene};
 
 pub(super) use output::OutputArguments;
 
@@ -118,7 +118,7 @@ impl Arguments {
         match (&file.product, &file.slide) {
             (Some(product), _) => {
                 self.outputs.check_level(file.slide.is_some())?;
-                self.study(&file.title, &product.model, file.slide.as_ref())?;
+                self.study(&file.title, &product.model, file.slide.as_ref(), file.measured.as_ref())?;
                 warn(&product.warnings);
                 Ok(())
             }
@@ -167,7 +167,13 @@ impl Arguments {
         Ok(Settings { method, samples, replicates, seed: self.seed.unwrap_or(DEFAULT.seed) })
     }
 
-    fn study(&self, title: &str, model: &Model, slide: Option<&Scene>) -> Result<(), Failure> {
+    fn study(
+        &self,
+        title: &str,
+        model: &Model,
+        slide: Option<&Scene>,
+        measured: Option<&Measured>,
+    ) -> Result<(), Failure> {
         if let Some(design) = self.method.design() {
             self.refuse_units("a designed experiment has no random units")?;
             return experiment::show(title, model, design, self.scene.json);
@@ -196,7 +202,10 @@ impl Arguments {
                 let written = Written { shard: number, of: shard.count, units, file: out.display().to_string() };
                 if self.scene.json { print_json(&written) } else { print(&written.to_string()) }
             }
-            _ => self.outputs.show(title, slide, &study, &tallies, self.scene.json),
+            _ => {
+                let show = || self.outputs.show(title, slide, measured, &study, &tallies, self.scene.json);
+                self.threads.install(show)?
+            }
         }
     }
 }

@@ -19,10 +19,11 @@ use crate::{
     cli::{
         endings,
         failure::{Failure, refused},
-        terminal::{print, print_json},
+        terminal::{print, print_json, progress},
     },
     mechanism::closing::closing_level,
-    setup::Scene,
+    possible::{self, PRODUCTIONS},
+    setup::{Measured, Scene},
     show::{
         measures_csv::measures_csv,
         tolerances::{file_names, pictures},
@@ -100,17 +101,27 @@ impl OutputArguments {
         self.csv.as_ref().map(|_| "--csv").or(self.plots.as_ref().map(|_| "--plots"))
     }
 
-    /// Shows and writes what was found of `study`, with Table 2's derived columns if the scene has a `slide`.
+    /// Shows and writes what was found of `study`, with Table 2's derived columns if the scene has a `slide`; intervals
+    /// include what the parts that were `measured` leave open.
     pub fn show(
         &self,
         title: &str,
         slide: Option<&Scene>,
+        measured: Option<&Measured>,
         study: &Study,
         tallies: &[Tally],
         json: bool,
     ) -> Result<(), Failure> {
         let analysis = conclude(study, tallies).map_err(RunError::from)?;
-        let report = report::report(title, study.model, &analysis);
+        let mut report = report::report(title, study.model, &analysis);
+        if let Some(measured) = measured.filter(|measured| measured.has_contributors()) {
+            let bar = progress("weighing what the parts leave open", PRODUCTIONS as usize);
+            let possible =
+                possible::reports(study.model, measured, study.settings, || bar.inc(1)).map_err(RunError::from)?;
+            bar.finish_and_clear();
+            report::widen(&mut report, &possible);
+            report.notes.insert(0, possible::note(measured));
+        }
         if let Some(path) = &self.csv {
             files::write(path, &measures_csv(&report)?)?;
         }

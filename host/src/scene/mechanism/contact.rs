@@ -8,27 +8,30 @@ use slipfit_tolerance::{product::Product, unit::Quantity};
 
 use crate::{
     mechanism::{Gap, Laws, NormalData},
-    scene::{SceneError, contact, parse, pins, tree::Value, value::Field},
+    scene::{SceneError, contact, measured::columns::Columns, parse, pins, tree::Value, value::Field},
 };
 
 /// The gaps met so far.
-pub(super) struct Gaps<'p> {
+pub(super) struct Gaps<'p, 't, 's> {
     pub gaps: Vec<Gap>,
     pub product: Option<&'p Product>,
+    pub measured: Option<&'p Columns<'t, 's>>,
 }
 
-impl Gaps<'_> {
+impl Gaps<'_, '_, '_> {
     /// The index of a new gap with the statistics that `field` gives, by itself or as a measure of the product; its mean is a `quantity`.
     pub fn add(&mut self, name: String, field: &Field, quantity: &Quantity) -> Result<usize, SceneError> {
         let (statistics, measure) = match field.node.value {
-            Value::Text(_) => self.measured(field)?,
+            Value::Text(_) => self.of_product(field)?,
             _ => (pins::statistics(field, quantity)?, None),
         };
+        let measured = self.measured.and_then(|columns| columns.gap(&name, self.gaps.len()));
+        let (statistics, measure) = measured.map_or((statistics, measure), |measured| (measured, None));
         self.gaps.push(Gap { name, statistics, measure });
         Ok(self.gaps.len() - 1)
     }
 
-    fn measured(&self, field: &Field) -> Result<(GapStatistics<f64>, Option<usize>), SceneError> {
+    fn of_product(&self, field: &Field) -> Result<(GapStatistics<f64>, Option<usize>), SceneError> {
         let model = self.product.map(|product| &product.model);
         let index = pins::length(field, model)?;
         let moments = model.map(slipfit_tolerance::theory::moments::of_measures).unwrap_or_default();

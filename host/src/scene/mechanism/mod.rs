@@ -22,14 +22,16 @@ use self::{
     place::place,
 };
 use super::{
-    Problem, SceneError, parse,
+    Problem, SceneError,
+    measured::columns::Columns,
+    parse,
     plausible::{self, Loads},
     value::Field,
 };
 use crate::{
     dynamics::driven::DriveKind,
     mechanism::{Joint, JointKind, Mechanism, MountError, Mounts, NormalData, spatial},
-    setup::{LevelRange, SURFACES},
+    setup::{LevelRange, MeasuredGaps, SURFACES},
 };
 
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
@@ -56,8 +58,13 @@ pub(super) fn refuse_slide(root: &Field) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Reads the mechanism of the scene `root`, whose gaps may be measures of `product`.
-pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) -> Result<Mechanism, SceneError> {
+/// Reads the mechanism of the scene `root`, whose gaps may be measures of `product` or `measured`.
+pub(super) fn mechanism(
+    root: &Field,
+    title: String,
+    product: Option<&Product>,
+    measured: Option<&Columns>,
+) -> Result<Mechanism, SceneError> {
     let found = root.found();
     let table = root.table("mechanism")?;
     let planar = match table.get("space") {
@@ -82,7 +89,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
     let (bodies, fields) = body::bodies(root, planar)?;
     let names = Names { names: bodies.iter().map(|body| body.name.clone()).collect() };
     let laws = laws(root, None)?;
-    let mut gaps = Gaps { gaps: Vec::new(), product };
+    let mut gaps = Gaps { gaps: Vec::new(), product, measured };
     let (joints, joint_fields) = joint::joints(root, planar, &names, laws, &mut gaps)?;
     let sweep = root.get("sweep").map(|_| parse::sweep(&root.table("sweep")?)).transpose()?.unwrap_or(LEVELS);
     let drives = drive::drives(root, planar, &names)?;
@@ -101,6 +108,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         run,
         controller: parse::controller(root, &laws.map_or(FrictionData::None, |laws| laws.friction))?,
         sweep,
+        measured: MeasuredGaps::default(),
         warnings: Vec::new(),
     };
     let mechanism = Mechanism { vary: vary::vary(root, &names, &mechanism)?, ..mechanism };

@@ -14,8 +14,12 @@ use super::tables::{tables, texts};
 
 const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
 
-/// The `[[correlation]]` of contributors: their numbers and the correlation of their scores.
-pub(super) fn correlations(root: &Field, contributors: &[Contributor]) -> Result<Vec<(usize, usize, f64)>, SceneError> {
+/// The `[[correlation]]` of contributors, beside those that are `measured`: their numbers and the correlation of their scores.
+pub(super) fn correlations(
+    root: &Field,
+    contributors: &[Contributor],
+    measured: Vec<(usize, usize, f64)>,
+) -> Result<Vec<(usize, usize, f64)>, SceneError> {
     const ALLOWED: &str = "a list of two contributors, such as [\"a\", \"b\"]";
     let kind = match root.get("tolerance").and_then(|table| table.get("correlation")) {
         None => Coefficient::Values,
@@ -28,7 +32,8 @@ pub(super) fn correlations(root: &Field, contributors: &[Contributor]) -> Result
             }
         },
     };
-    let mut correlations: Vec<(usize, usize, f64)> = Vec::new();
+    let first = measured.len();
+    let mut correlations = measured;
     let mut fields = Vec::new();
     let tables = tables(root, "correlation")?;
     for table in &tables {
@@ -49,7 +54,9 @@ pub(super) fn correlations(root: &Field, contributors: &[Contributor]) -> Result
         let same = |(a, b, _): &(usize, usize, f64)| [*a, *b] == [row, column] || [*a, *b] == [column, row];
         if row == column || correlations.iter().any(same) {
             let problem = Problem::Duplicate { key: of.key.clone(), name: contributors[column].name.clone() };
-            return Err(of.error(problem, "two different contributors, every pair once"));
+            let allowed =
+                "two different contributors, every pair once; measured ones are correlated as their parts are";
+            return Err(of.error(problem, allowed));
         }
         let fixed_at = |i: &&usize| {
             matches!(contributors[**i].variation, Variation::Scalar { distribution: Distribution::Constant(_), .. })
@@ -86,7 +93,7 @@ pub(super) fn correlations(root: &Field, contributors: &[Contributor]) -> Result
     }
     // As a whole: a part of a possible matrix with nothing beside it need not be one.
     if !correlation::is_positive_definite(contributors.len(), &correlations) {
-        let greatest = correlations.iter().zip(&fields).max_by(|a, b| a.0.2.abs().total_cmp(&b.0.2.abs()));
+        let greatest = correlations[first..].iter().zip(&fields).max_by(|a, b| a.0.2.abs().total_cmp(&b.0.2.abs()));
         if let Some((_, field)) = greatest {
             return Err(field.error(Problem::NotPositiveDefinite, "coefficients nearer to 0"));
         }

@@ -84,7 +84,7 @@ mod material_tests;
 mod measure;
 mod part;
 mod pattern;
-mod quantity;
+pub(super) mod quantity;
 #[cfg(test)]
 mod refused_tests;
 mod slant;
@@ -107,6 +107,8 @@ pub(super) use defaults::SIGMA_DEFAULT;
 pub(super) use distribution::SHAPES;
 pub(super) use toleranced::deviation;
 
+use std::sync::Arc;
+
 use slipfit_tolerance::{
     model::Model,
     product::{
@@ -127,10 +129,10 @@ use self::{
     tables::{name, tables},
 };
 
-use super::{Problem, SceneError, value::Field};
+use super::{Problem, SceneError, measured::columns::Columns, value::Field};
 
 /// Reads the product in `root`.
-pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
+pub(super) fn product(root: &Field, measured: Option<&Columns>) -> Result<Product, SceneError> {
     let mut draft = Draft {
         defaults: defaults(root)?,
         contributors: Vec::new(),
@@ -160,13 +162,15 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     let mates = mate::mates(root, &mut parts)?;
     part::features(&parts, &mut draft)?;
     mates.iter().try_for_each(|mate| mate::place(mate, &parts, &mut draft))?;
-    let correlations = correlations(root, &draft.contributors)?;
+    let together = measured.map_or(Ok(Vec::new()), |columns| columns.apply(&mut draft.contributors))?;
+    let correlations = correlations(root, &draft.contributors, together)?;
     draft.warnings.extend(untoleranced(&draft));
     let mut function = Measures::new(std::mem::take(&mut draft.assembly));
     let measures = measure::measures(root, &mut draft, &mut function)?;
     warn_of_unused(root, &draft)?;
     let sums = measure::sums(root, &measures)?;
     let costed = cost::costs(root, &draft.contributors)?;
+    measured.map_or(Ok(()), |columns| columns.refuse_costs(&costed))?;
     let requirements = cost::requirements(root, &measures)?;
     let mut warnings = Vec::new();
     if draft.defaults.general.geometry.is_some() {
@@ -179,7 +183,7 @@ pub(super) fn product(root: &Field) -> Result<Product, SceneError> {
     let assembly = function.assembly.clone();
     function.nominal.clone_from(&nominal);
     function.quantities = quantities;
-    let model = Model { contributors, correlations, measures, sums, function: Box::new(function) };
+    let model = Model { contributors, correlations, measures, sums, function: Arc::new(function) };
     let tried = fit::try_out(&model, &assembly, &fits);
     warnings.extend(tried.told);
     if tried.open > fit::OPEN_MOST {

@@ -37,12 +37,12 @@ const KNOWN: [Known; 9] = [
 ];
 
 /// The units and the range of a kind.
-pub(super) fn units(measured: Measured) -> &'static Quantity {
+pub(in crate::scene) fn units(measured: Measured) -> &'static Quantity {
     KNOWN.iter().find(|known| known.measured == measured).map_or(&LENGTH, |known| &known.quantity)
 }
 
 /// What kind of number a dimension is: by its key `quantity`, by the unit of its `value`, or a length.
-pub(super) fn of(table: &Field, value: &Field) -> Result<Measured, SceneError> {
+pub(in crate::scene) fn of(table: &Field, value: &Field) -> Result<Measured, SceneError> {
     if let Some(field) = table.get("quantity") {
         let name = field.to_text()?;
         let known = KNOWN.iter().find(|known| known.name == name).map(|known| known.measured);

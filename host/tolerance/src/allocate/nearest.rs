@@ -1,5 +1,7 @@
 //! All limits of a product as one measure: how far the nearest of them is.
 
+use std::sync::Arc;
+
 use crate::{
     model::{Function, Measure, Model, Quantity},
     numeric::lanes::Lanes,
@@ -8,7 +10,7 @@ use crate::{
 /// Measures, and behind them the least distance of any to its limit, in parts of the distance of its limits; negative outside,
 /// not a number where any of them cannot be computed.
 struct Nearest {
-    function: Box<dyn Function>,
+    function: Arc<dyn Function>,
     limits: Vec<Limit>,
 }
 
@@ -48,5 +50,5 @@ pub fn with_nearest(model: Model) -> Model {
     let limits = model.measures.iter().enumerate().flat_map(of).collect();
     let mut measures = model.measures;
     measures.push(Measure { name: "nearest limit".into(), quantity: Quantity::Ratio, limits: [Some(0.0), None] });
-    Model { measures, sums: Vec::new(), function: Box::new(Nearest { function: model.function, limits }), ..model }
+    Model { measures, sums: Vec::new(), function: Arc::new(Nearest { function: model.function, limits }), ..model }
 }

@@ -7,6 +7,8 @@ pub mod nested;
 pub mod widening;
 mod zone;
 
+use std::sync::Arc;
+
 pub use self::zone::{SIGMA_DISC, SIGMA_ZONE, ZoneRule};
 use self::{loss::Loss, nested::Nested, widening::Widening};
 use crate::numeric::lanes::Lanes;
@@ -22,7 +24,7 @@ pub struct Model {
     /// Sums of measures whose closing is asked for.
     pub sums: Vec<Sum>,
     /// Measures of the variables.
-    pub function: Box<dyn Function>,
+    pub function: Arc<dyn Function>,
 }
 
 impl Model {

@@ -1,7 +1,7 @@
 //! Whether coefficients of correlation can belong to random variables.
 
 /// Whether the symmetric matrix of `size` rows with ones on its diagonal, the coefficients (row, column, value) off it
-/// and zeros elsewhere is positive definite, by Cholesky's factorisation.
+/// and zeros elsewhere is positive definite.
 pub fn is_positive_definite(size: usize, coefficients: &[(usize, usize, f64)]) -> bool {
     // Only what is correlated at all takes part.
     let mut members: Vec<usize> = coefficients.iter().flat_map(|(row, column, _)| [*row, *column]).collect();
@@ -9,23 +9,28 @@ pub fn is_positive_definite(size: usize, coefficients: &[(usize, usize, f64)]) -
     members.dedup();
     debug_assert!(members.iter().all(|member| *member < size));
     let place = |member: &usize| members.binary_search(member).unwrap_or(0);
-    let n = members.len();
-    let mut factor = vec![vec![0.0; n]; n];
+    let among: Vec<_> = coefficients.iter().map(|(row, column, value)| (place(row), place(column), *value)).collect();
+    factor(members.len(), &among).is_some()
+}
+
+/// Cholesky's lower factor of the symmetric matrix of `size` rows with ones on its diagonal, the coefficients
+/// (row, column, value) off it and zeros elsewhere; `None` if it is not positive definite.
+pub fn factor(size: usize, coefficients: &[(usize, usize, f64)]) -> Option<Vec<Vec<f64>>> {
+    let mut factor = vec![vec![0.0; size]; size];
     for (i, row) in factor.iter_mut().enumerate() {
         row[i] = 1.0;
     }
     for (row, column, value) in coefficients {
-        let (i, j) = (place(row), place(column));
-        factor[i.max(j)][i.min(j)] = *value;
+        factor[*row.max(column)][*row.min(column)] = *value;
     }
-    for column in 0..n {
-        for row in column..n {
+    for column in 0..size {
+        for row in column..size {
             let known: f64 = (0..column).map(|k| factor[row][k] * factor[column][k]).sum();
             let rest = factor[row][column] - known;
             if row == column {
                 // A pivot that is only rounding is as bad as none.
                 if rest < 1e-12 {
-                    return false;
+                    return None;
                 }
                 factor[row][row] = libm::sqrt(rest);
             } else {
@@ -33,7 +38,7 @@ pub fn is_positive_definite(size: usize, coefficients: &[(usize, usize, f64)]) -
             }
         }
     }
-    true
+    Some(factor)
 }
 
 #[cfg(test)]

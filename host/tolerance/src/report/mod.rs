@@ -2,8 +2,10 @@
 
 mod contents;
 mod fill;
+mod possible;
 
 pub use self::{
     contents::{Defects, Estimates, LossReport, MeasureReport, Quadrature, Report, Rss, SecondOrder, Share, SumReport},
     fill::report,
+    possible::widen,
 };

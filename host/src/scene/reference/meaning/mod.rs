@@ -61,6 +61,10 @@ const WHOLE: &[(&str, &str)] = &[
     ),
     ("correlation", "A list `[[correlation]]`: pairs of contributors that do not vary independently. Optional."),
     (
+        "measured",
+        "Dimensions and gaps whose distribution is that of measured parts. Limits stay those of the drawing. Optional.",
+    ),
+    (
         "vary",
         "Parameters that vary from unit to unit, besides the gaps, in `slipfit population`. Each takes a tolerance, around \
          the scene's value. Optional.",

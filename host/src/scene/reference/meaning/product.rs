@@ -328,6 +328,36 @@ pub const PRODUCT: &[(&str, &str)] = &[
         "Two contributors, by the names that `slipfit tolerance` prints: dimensions, diameters and others of one variable.",
     ),
     ("correlation.coefficient", "Coefficient of correlation."),
+    (
+        "measured.file",
+        "A file of measured parts, CSV or QIF results, or a list of such files with the same columns. Paths are relative to \
+         the scene's folder.",
+    ),
+    (
+        "measured.group",
+        "Column of a CSV file whose texts divide the parts, such as a cavity or a machine. Required by `only`.",
+    ),
+    ("measured.only", "The group, or a list of the groups, whose parts count. Default: all parts."),
+    (
+        "measured.distribution",
+        "`smoothed`: the distribution of the values themselves, from 30 parts on. A family, such as `normal` or \
+         `weibull`: its likeliest distribution. `chosen`: the family that fits best, from 30 parts on. Default: `smoothed`.",
+    ),
+    (
+        "measured.column",
+        "A list `[[measured.column]]`: what was measured, at least one. Columns are correlated as their parts are.",
+    ),
+    (
+        "measured.column.of",
+        "Name of a dimension, an offset, a diameter or a gap, as `slipfit tolerance` and `slipfit population` print it.",
+    ),
+    ("measured.column.heading", "Name of the column in the file. Default: the same as `of`."),
+    ("measured.column.distribution", "As `measured.distribution`, for this column."),
+    (
+        "measured.column.least",
+        "Least value that a part can have: smoothed values are reflected there. Default: no limit.",
+    ),
+    ("measured.column.most", "Greatest value that a part can have. Default: no limit."),
     ("vary.friction", "What varies of the friction. Optional."),
     ("vary.contact", "What varies of the contacts. Optional."),
     ("vary.slide", "What varies of the slide. Optional."),

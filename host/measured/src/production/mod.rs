@@ -1,0 +1,209 @@
+//! The production that measured parts come from: a distribution per characteristic, and how they move together.
+
+mod dependence;
+mod marginal;
+mod smoothed;
+#[cfg(test)]
+mod tests;
+
+use std::sync::OnceLock;
+
+use slipfit_core::sampling::stream::{Rng, Xoshiro256PlusPlus, unit_stream};
+use slipfit_tolerance::model::Distribution;
+
+use self::{
+    dependence::Dependence,
+    marginal::of_family,
+    smoothed::{LEAST_TO_SMOOTH, Smoothing},
+};
+use crate::families::{Family, Fit, FitError, Kind, Posterior, choose, preferred};
+
+/// What the distribution of a characteristic is taken from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Assumed {
+    /// The measured values, smoothed.
+    Smoothed,
+    /// The family that fits best.
+    Chosen,
+    /// This family.
+    Family(Kind),
+}
+
+/// A characteristic, in the order of the parts.
+#[derive(Clone, Debug)]
+pub struct Characteristic {
+    /// Values (SI); `None` where a part was not measured.
+    pub values: Vec<Option<f64>>,
+    /// What its distribution is taken from.
+    pub assumed: Assumed,
+    /// Least and greatest value that a part can have; only smoothed values could exceed them.
+    pub bounds: [f64; 2],
+}
+
+/// Why a characteristic has no distribution.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProductionError {
+    /// Too few parts to smooth.
+    #[error(
+        "smoothing takes {LEAST_TO_SMOOTH} measured parts, but there are {0}; `distribution = \"normal\"` assumes a family, \
+         whose parameters fewer parts determine"
+    )]
+    FewParts(usize),
+    /// A family that does not fit.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// A measured value that no part can have.
+    #[error("one part has {value}, which is beyond the bounds")]
+    Bounds {
+        /// The value (SI).
+        value: f64,
+    },
+    /// A family whose parameters the parts do not determine.
+    #[error("the parts do not determine the parameters of the family {0}; a simpler one, or more parts, would do")]
+    Undetermined(Kind),
+}
+
+/// Distributions of some characteristics that are correlated by a Gaussian copula.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// One per characteristic (SI).
+    pub distributions: Vec<Distribution>,
+    /// Correlations of their normal scores, as (row, column, coefficient); none is 0.
+    pub correlations: Vec<(usize, usize, f64)>,
+}
+
+/// A production as its measured parts show it.
+#[derive(Debug)]
+pub struct Production {
+    characteristics: Vec<Characteristic>,
+    shapes: Vec<Shape>,
+    dependence: Dependence,
+    joint: Joint,
+}
+
+/// The distribution of a characteristic, with what the parts leave open of it.
+#[derive(Debug)]
+enum Shape {
+    Smoothed(Smoothing),
+    Fitted { fit: Fit, values: Vec<f64>, left: OnceLock<Vec<(f64, Distribution)>> },
+}
+
+const SEED: u64 = 0x6d65_6173;
+
+impl Production {
+    /// Of `characteristics` of the same parts.
+    ///
+    /// # Errors
+    /// The number of the characteristic that has no distribution, and why.
+    pub fn new(characteristics: Vec<Characteristic>) -> Result<Self, (usize, ProductionError)> {
+        let shape = |(i, of): (usize, &Characteristic)| Shape::of(of).map_err(|error| (i, error));
+        let shapes: Vec<Shape> = characteristics.iter().enumerate().map(shape).collect::<Result<_, _>>()?;
+        let values: Vec<&[Option<f64>]> = characteristics.iter().map(|of| of.values.as_slice()).collect();
+        let dependence = Dependence::of(&values);
+        let joint = Joint {
+            distributions: shapes.iter().map(Shape::likeliest).collect(),
+            correlations: dependence.coefficients(None),
+        };
+        Ok(Self { characteristics, shapes, dependence, joint })
+    }
+
+    /// The likeliest distributions.
+    pub fn joint(&self) -> &Joint {
+        &self.joint
+    }
+
+    /// What the distribution of a characteristic is: a family's name, or "smoothed".
+    pub fn shape(&self, characteristic: usize) -> &'static str {
+        match self.shapes.get(characteristic) {
+            Some(Shape::Fitted { fit, .. }) => fit.kind.name(),
+            _ => "smoothed",
+        }
+    }
+
+    /// Values (SI) of a characteristic in the order of the parts.
+    pub fn values(&self, characteristic: usize) -> &[Option<f64>] {
+        self.characteristics.get(characteristic).map_or(&[], |of| &of.values)
+    }
+
+    /// Measured parts of a characteristic.
+    pub fn parts(&self, characteristic: usize) -> usize {
+        self.characteristics.get(characteristic).map_or(0, |of| of.values.iter().flatten().count())
+    }
+
+    /// Distributions that the parts leave possible, drawn with their posterior probability; a pure function of `number`.
+    ///
+    /// The parameters of a family are drawn from its [`Posterior`]. Smoothed values are weighted anew, all characteristics of
+    /// a part alike (D. Rubin, "The Bayesian Bootstrap", 1981). Fisher's z of a correlation has the variance 1/(n − 3).
+    pub fn drawn(&self, number: u64) -> Joint {
+        let mut stream = unit_stream(SEED, number);
+        let parts = self.characteristics.first().map_or(0, |of| of.values.len());
+        let weights: Vec<f64> = (0..parts).map(|_| -libm::log(share(&mut stream))).collect();
+        let shares = self.dependence.shares(&mut stream);
+        let drawn = |(shape, share): (&Shape, &f64)| shape.drawn(&weights, *share);
+        let distributions = self.shapes.iter().zip(&shares).map(drawn).collect();
+        Joint { distributions, correlations: self.dependence.coefficients(Some(&mut stream)) }
+    }
+}
+
+/// Uniform between 0 and 1, neither of both.
+fn share(stream: &mut Xoshiro256PlusPlus) -> f64 {
+    ((stream.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+}
+
+impl Shape {
+    fn of(characteristic: &Characteristic) -> Result<Self, ProductionError> {
+        let Characteristic { values, assumed, bounds } = characteristic;
+        let measured: Vec<f64> = values.iter().copied().flatten().collect();
+        if let Some(value) = measured.iter().find(|value| **value < bounds[0] || **value > bounds[1]) {
+            return Err(ProductionError::Bounds { value: *value });
+        }
+        let fit = match assumed {
+            Assumed::Smoothed if measured.len() < LEAST_TO_SMOOTH => {
+                return Err(ProductionError::FewParts(measured.len()));
+            }
+            Assumed::Smoothed => return Ok(Self::Smoothed(Smoothing::new(values, *bounds)?)),
+            Assumed::Family(kind) => kind.fit(&measured)?,
+            Assumed::Chosen => {
+                let (fits, _) = choose(&measured)?;
+                let kind = preferred(&fits).map_or(Kind::Normal, |fit| fit.kind);
+                kind.fit(&measured)?
+            }
+        };
+        Ok(Self::Fitted { fit, values: measured, left: OnceLock::new() })
+    }
+
+    fn likeliest(&self) -> Distribution {
+        match self {
+            Self::Smoothed(smoothing) => smoothing.table(None),
+            Self::Fitted { fit, .. } => of_family(fit.kind, fit.family.as_ref()),
+        }
+    }
+
+    /// One that the parts leave possible: by `weights` of the parts, or at this `share` of the posterior.
+    fn drawn(&self, weights: &[f64], share: f64) -> Distribution {
+        match self {
+            Self::Smoothed(smoothing) => smoothing.table(Some(weights)),
+            Self::Fitted { fit, values, left } => {
+                let left = left.get_or_init(|| left_possible(fit, values));
+                let at = left.partition_point(|(below, _)| *below < share);
+                left.get(at).or(left.last()).map_or_else(|| self.likeliest(), |(_, distribution)| distribution.clone())
+            }
+        }
+    }
+}
+
+/// Distributions that `values` leave possible with the probabilities up to each: ordered by their medians, so that
+/// characteristics that are correlated have correlated means. None if the likelihood is too far from a normal one.
+fn left_possible(fit: &Fit, values: &[f64]) -> Vec<(f64, Distribution)> {
+    let Some(posterior) = Posterior::new(fit, values) else { return Vec::new() };
+    let mut draws: Vec<(f64, &dyn Family)> = posterior.draws().collect();
+    draws.sort_by(|a, b| a.1.value(0.0).total_cmp(&b.1.value(0.0)));
+    let sum: f64 = draws.iter().map(|(weight, _)| weight).sum();
+    let mut below = 0.0;
+    let of = |(weight, family): (f64, &dyn Family)| {
+        below += weight / sum;
+        (below, of_family(fit.kind, family))
+    };
+    draws.into_iter().map(of).collect()
+}

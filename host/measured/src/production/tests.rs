@@ -1,0 +1,204 @@
+//! Productions against the distributions that their parts were drawn from.
+
+use slipfit_core::sampling::{
+    normal::score,
+    stream::{Rng, unit_stream},
+};
+use slipfit_tolerance::{distribution::Marginal, model::Distribution, numeric::normal::tail};
+
+use super::{Assumed, Characteristic, LEAST_TO_SMOOTH, Production, ProductionError};
+use crate::families::Kind;
+
+const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+/// Characteristics of `parts` parts with standard normal scores of this `correlation`, made values by `value`.
+fn characteristics(
+    seed: u64,
+    parts: usize,
+    correlation: f64,
+    assumed: Assumed,
+    value: impl Fn(f64) -> f64,
+) -> Vec<Characteristic> {
+    let mut stream = unit_stream(seed, 0);
+    let mut values = [Vec::new(), Vec::new()];
+    for _ in 0..parts {
+        let [a, b] = [(); 2].map(|()| score::<f64>(stream.next_u64()));
+        values[0].push(Some(value(a)));
+        values[1].push(Some(value(correlation * a + libm::sqrt(1.0 - correlation * correlation) * b)));
+    }
+    values.map(|values| Characteristic { values, assumed, bounds: ANY }).to_vec()
+}
+
+/// Mean and standard deviation, by values at the middles of equal shares.
+fn moments(distribution: &Distribution) -> [f64; 2] {
+    const COUNT: usize = 20_000;
+    let marginal = Marginal::new(distribution);
+    let at = |i: usize| marginal.value(slipfit_tolerance::numeric::normal::quantile((i as f64 + 0.5) / COUNT as f64));
+    let mean = (0..COUNT).map(at).sum::<f64>() / COUNT as f64;
+    let square = (0..COUNT).map(|i| (at(i) - mean) * (at(i) - mean)).sum::<f64>() / COUNT as f64;
+    [mean, libm::sqrt(square)]
+}
+
+fn sample_moments(values: &[Option<f64>]) -> [f64; 2] {
+    let n = values.len() as f64;
+    let mean = values.iter().flatten().sum::<f64>() / n;
+    let square = values.iter().flatten().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+    [mean, libm::sqrt(square)]
+}
+
+#[test]
+fn smoothing_keeps_mean_and_deviation() {
+    for (seed, parts) in [(1, 30), (2, 100), (3, 5000)] {
+        let of = characteristics(seed, parts, 0.0, Assumed::Smoothed, |z| 5.0 + 2.0 * libm::expm1(0.5 * z));
+        let [mean, deviation] = sample_moments(&of[0].values);
+        let made = Production::new(of).expect("a production");
+        let found = moments(&made.joint().distributions[0]);
+        assert!((found[0] - mean).abs() < 2e-3 * deviation, "{found:?} {mean}");
+        assert!((found[1] / deviation - 1.0).abs() < 5e-3, "{found:?} {deviation}");
+        assert_eq!((made.shape(0), made.parts(0)), ("smoothed", parts));
+    }
+}
+
+#[test]
+fn smoothed_values_stay_within_their_bounds() {
+    let mut of = characteristics(4, 60, 0.0, Assumed::Smoothed, |z| libm::exp(2.0 * z));
+    of[0].bounds = [0.0, f64::INFINITY];
+    let bounded = Production::new(of.clone()).expect("a production");
+    let Distribution::Table(values) = &bounded.joint().distributions[0] else { panic!("a table") };
+    assert!(values[0] >= 0.0);
+    of[0].bounds = ANY;
+    let free = Production::new(of.clone()).expect("a production");
+    let Distribution::Table(values) = &free.joint().distributions[0] else { panic!("a table") };
+    assert!(values[0] < 0.0);
+    of[0].bounds = [1.0, 2.0];
+    assert!(matches!(Production::new(of), Err((0, ProductionError::Bounds { .. }))));
+}
+
+/// The families that have a distribution to draw from have the same tails there.
+#[test]
+fn a_family_is_drawn_as_it_is_fitted() {
+    let of = characteristics(5, 200, 0.0, Assumed::Smoothed, |z| 3.0 + libm::exp(0.4 * z));
+    let values: Vec<f64> = of[0].values.iter().copied().flatten().collect();
+    for kind in Kind::ALL {
+        let Ok(fit) = kind.fit(&values) else { continue };
+        let own = Characteristic { assumed: Assumed::Family(kind), ..of[0].clone() };
+        let marginal = Marginal::new(&Production::new(vec![own]).expect("a production").joint().distributions[0]);
+        for z in [-3.0, -1.0, 0.0, 0.7, 2.0, 3.0] {
+            let x = fit.family.value(z);
+            let (found, wanted) = (marginal.tails(x)[1], fit.family.tails(x)[1]);
+            assert!((found - wanted).abs() <= 2e-3 * wanted.min(1.0 - wanted) + 1e-4, "{kind} {z}: {found}, {wanted}");
+        }
+    }
+}
+
+#[test]
+fn correlations_are_those_of_the_scores() {
+    for (seed, correlation) in [(6, 0.9), (7, -0.5), (8, 0.0)] {
+        // The values are a bent function of the scores, which does not change the correlation of these.
+        let of = characteristics(seed, 2000, correlation, Assumed::Smoothed, |z| z * z * z + z);
+        let made = Production::new(of).expect("a production");
+        let [(0, 1, found)] = made.joint().correlations[..] else { panic!("one pair") };
+        let error = (1.0 - correlation * correlation) / libm::sqrt(2000.0);
+        assert!((found - correlation).abs() < 4.0 * error, "{found}, not {correlation}");
+    }
+}
+
+/// Characteristics of which each pair is known from other parts contradict each other, and are brought together.
+#[test]
+fn contradicting_correlations_are_reconciled() {
+    let mut stream = unit_stream(9, 0);
+    let mut values = vec![Vec::new(); 3];
+    for part in 0..120 {
+        let z: f64 = score(stream.next_u64());
+        let absent = part % 3;
+        for (i, of) in values.iter_mut().enumerate() {
+            // Each pair moves together but the last, which moves against each other.
+            let sign = if absent == 0 && i == 2 { -1.0 } else { 1.0 };
+            of.push((i != absent).then_some(sign * z));
+        }
+    }
+    let assumed = Assumed::Family(Kind::Normal);
+    let of = values.into_iter().map(|values| Characteristic { values, assumed, bounds: ANY });
+    let joint = Production::new(of.collect()).expect("a production").joint().clone();
+    assert_eq!(joint.correlations.len(), 3);
+    assert!(slipfit_tolerance::product::correlation::is_positive_definite(3, &joint.correlations));
+}
+
+#[test]
+fn too_few_parts_are_refused() {
+    let of = |parts, assumed| Production::new(characteristics(10, parts, 0.3, assumed, |z| z));
+    assert!(matches!(of(LEAST_TO_SMOOTH - 1, Assumed::Smoothed), Err((0, ProductionError::FewParts(29)))));
+    assert!(matches!(of(20, Assumed::Chosen), Err((0, ProductionError::Fit(_)))));
+    assert!(of(6, Assumed::Family(Kind::Normal)).is_ok());
+    let same = Characteristic { values: vec![Some(1.0); 40], assumed: Assumed::Smoothed, bounds: ANY };
+    assert!(matches!(Production::new(vec![same]), Err((0, ProductionError::Fit(_)))));
+}
+
+/// How often the interval of 95 % of `figure` over the distributions that the parts leave possible holds its true value.
+fn coverage(
+    repeats: u64,
+    parts: usize,
+    correlation: f64,
+    assumed: Assumed,
+    figure: impl Fn(&super::Joint) -> f64,
+    truth: f64,
+) -> f64 {
+    const DRAWS: u64 = 200;
+    let holds = |seed: &u64| {
+        let made = Production::new(characteristics(1000 + seed, parts, correlation, assumed, |z| z));
+        let made = made.expect("a production");
+        let mut figures: Vec<f64> = (0..DRAWS).map(|number| figure(&made.drawn(number))).collect();
+        figures.sort_by(f64::total_cmp);
+        (figures[4] + figures[5]) / 2.0 < truth && truth < (figures[194] + figures[195]) / 2.0
+    };
+    (0..repeats).filter(holds).count() as f64 / repeats as f64
+}
+
+/// Mean and standard deviation of one, and the standard deviation and the failing share of the sum of two.
+#[test]
+#[ignore = "eleven thousand productions"]
+fn intervals_hold() {
+    let normal = Assumed::Family(Kind::Normal);
+    let of = |joint: &super::Joint| match joint.distributions[0] {
+        Distribution::Normal { mean, deviation } => [mean, deviation],
+        ref other => moments_fast(other),
+    };
+    // Mean of a sum of two that move together: their means are not independent.
+    let mean = |one: &Distribution| match one {
+        Distribution::Normal { mean, .. } => *mean,
+        other => moments_fast(other)[0],
+    };
+    let sum = |joint: &super::Joint| joint.distributions.iter().map(mean).sum::<f64>();
+    for (assumed, parts, least) in [
+        (normal, 6, 0.92),
+        (normal, 30, 0.92),
+        (normal, 100, 0.92),
+        (Assumed::Smoothed, 30, 0.90),
+        (Assumed::Smoothed, 100, 0.90),
+        (Assumed::Smoothed, 300, 0.92),
+    ] {
+        for (name, found) in [
+            ("mean", coverage(300, parts, 0.9, assumed, |joint| of(joint)[0], 0.0)),
+            ("deviation", coverage(300, parts, 0.9, assumed, |joint| of(joint)[1], 1.0)),
+            ("mean of a sum", coverage(300, parts, 0.9, assumed, sum, 0.0)),
+        ] {
+            println!("{assumed:?} {parts} {name} {found:.3}");
+            assert!((least..=0.98).contains(&found), "{assumed:?} {parts} {name} {found}");
+        }
+    }
+    let share = |joint: &super::Joint| {
+        let [mean, deviation] = of(joint);
+        tail((2.0 - mean) / deviation)
+    };
+    let found = coverage(300, 30, 0.9, normal, share, tail(2.0));
+    println!("share {found:.3}");
+    assert!((0.92..=0.98).contains(&found), "{found}");
+}
+
+/// Mean and standard deviation of a table.
+fn moments_fast(distribution: &Distribution) -> [f64; 2] {
+    let Distribution::Table(values) = distribution else { panic!("a table") };
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    [mean, libm::sqrt(values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n)]
+}

@@ -1,0 +1,186 @@
+//! Reads `[measured]`: which dimensions and gaps have the distribution of measured parts.
+
+pub(super) mod columns;
+mod doubt;
+pub mod file;
+
+use std::path::Path;
+
+use slipfit_measured::{
+    families::Kind,
+    production::{Assumed, Characteristic, Production},
+    table::MeasuredTable,
+    unit::Unit,
+};
+use slipfit_tolerance::{model::Quantity as Measurand, unit::Quantity};
+
+use self::columns::{Column, Columns};
+use super::{
+    Problem, SceneError,
+    product::quantity::{of as quantity_of, units},
+    tree::Value,
+    value::Field,
+};
+
+const SHAPES: &str = "smoothed: the values themselves; chosen: the family that fits best; normal, lognormal, shifted-lognormal, \
+                      weibull, shifted-weibull, johnson-su, johnson-sb, two-normals";
+
+/// The measured parts.
+struct Parts<'t, 's> {
+    field: Field<'t, 's>,
+    /// A table for each file.
+    tables: Vec<MeasuredTable>,
+    /// The groups whose parts count; all if none is stated.
+    only: Option<Vec<&'t str>>,
+    assumed: Assumed,
+}
+
+/// Reads the optional table `[measured]` of the scene `root` in the file `file_name`, to whose folder paths are relative.
+pub(super) fn columns<'t, 's>(root: &Field<'t, 's>, file_name: &str) -> Result<Option<Columns<'t, 's>>, SceneError> {
+    const ALLOWED: &str = "tables [[measured.column]], each with what it is `of`";
+    let Some(table) = root.get("measured") else { return Ok(None) };
+    table.expect_table()?;
+    let parts = parts(&table, file_name)?;
+    let list = table.require("column", ALLOWED)?;
+    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(ALLOWED)) };
+    let (mut columns, mut characteristics): (Vec<Column>, Vec<_>) = (Vec::new(), Vec::new());
+    for node in nodes {
+        let own = Field { key: list.key.clone(), node };
+        own.expect_table()?;
+        let field = own.require("of", "the name of a dimension, an offset, a diameter or a gap")?;
+        let of = field.to_text()?;
+        if columns.iter().any(|column| column.of == of) {
+            let problem = Problem::Duplicate { key: field.key.clone(), name: of.into() };
+            return Err(field.error(problem, "each dimension or gap once"));
+        }
+        let found = parts.characteristic(root, &own, of)?;
+        doubt::warn(&field, of, &found);
+        characteristics.push(found);
+        columns.push(Column { of, field });
+    }
+    if columns.is_empty() {
+        return Err(list.error(Problem::Length { key: list.key.clone(), found: 0 }, ALLOWED));
+    }
+    let production = Production::new(characteristics).map_err(|(i, error)| {
+        let Column { of, field } = &columns[i];
+        field.error(Problem::Measured { of: (*of).into(), why: error.to_string() }, SHAPES)
+    })?;
+    Ok(Some(Columns::new(production, columns)))
+}
+
+/// Reads the files and what holds for all columns.
+fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str) -> Result<Parts<'t, 's>, SceneError> {
+    const FILES: &str = "a file of measured parts, CSV or QIF results, or a list of such files";
+    let field = table.require("file", FILES)?;
+    let group = table.get("group").map(|field| field.to_text()).transpose()?;
+    let only = match (table.get("only"), group) {
+        (Some(only), None) => {
+            return Err(only.no_effect("without a `group`", "the column that divides the parts, as `group`"));
+        }
+        (only, _) => only.map(|field| texts(&field, "a group, or a list of groups")).transpose()?,
+    };
+    let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
+    let mut tables = Vec::new();
+    for path in texts(&field, FILES)? {
+        let read = file::load(&folder.join(path), group);
+        let read = read.map_err(|why| field.error(Problem::Measured { of: path.into(), why }, FILES))?;
+        tables.push(read);
+    }
+    let assumed = table.get("distribution").map_or(Ok(Assumed::Smoothed), |field| assumed(&field))?;
+    let parts = Parts { field, tables, only, assumed };
+    if let Some(only) = table.get("only") {
+        parts.check_groups(&only)?;
+    }
+    Ok(parts)
+}
+
+/// One text, or a list of them.
+fn texts<'t>(field: &Field<'t, '_>, allowed: &str) -> Result<Vec<&'t str>, SceneError> {
+    match &field.node.value {
+        Value::List(nodes) if !nodes.is_empty() => {
+            nodes.iter().map(|node| Field { key: field.key.clone(), node }.to_text()).collect()
+        }
+        Value::Text(text) => Ok(vec![text]),
+        _ => Err(field.wrong_type(allowed)),
+    }
+}
+
+fn assumed(field: &Field) -> Result<Assumed, SceneError> {
+    let name = field.to_text()?;
+    match name {
+        "smoothed" => Ok(Assumed::Smoothed),
+        "chosen" => Ok(Assumed::Chosen),
+        _ => {
+            let family = Kind::ALL.into_iter().find(|kind| kind.name() == name).map(Assumed::Family);
+            let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
+            family.ok_or_else(|| field.error(problem, SHAPES))
+        }
+    }
+}
+
+impl Parts<'_, '_> {
+    /// Refuses groups that no file has.
+    fn check_groups(&self, field: &Field) -> Result<(), SceneError> {
+        let groups = || self.tables.iter().flat_map(|table| table.groupings()).flat_map(|grouping| &grouping.groups);
+        let unknown = self.only.iter().flatten().find(|name| groups().all(|group| group != *name));
+        let Some(name) = unknown else { return Ok(()) };
+        let mut known: Vec<&str> = groups().map(String::as_str).collect();
+        known.sort_unstable();
+        known.dedup();
+        let problem = Problem::UnknownName { of: "group of parts".into(), name: (*name).into() };
+        Err(field.error(problem, known.join(", ")))
+    }
+
+    /// The characteristic `of` the scene, whose table is `own`.
+    fn characteristic(&self, root: &Field, own: &Field, of: &str) -> Result<Characteristic, SceneError> {
+        let heading = own.get("heading").map_or(Ok(of), |field| field.to_text())?;
+        let quantity = quantity(root, of)?;
+        let mut values = Vec::new();
+        for table in &self.tables {
+            let Some(column) = table.column(heading) else {
+                let known: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
+                let problem = Problem::UnknownName { of: "measured column".into(), name: heading.into() };
+                let field = own.get("heading").or(own.get("of")).unwrap_or_else(|| own.clone());
+                return Err(field.error(problem, known.join(", ")));
+            };
+            let unit =
+                quantity.units.iter().find(|unit| column.unit != Unit::None && unit.symbol == column.unit.symbol());
+            let unit = unit.or(quantity.units.first().filter(|_| column.unit == Unit::None));
+            let unit = unit.ok_or_else(|| {
+                let why = format!("the column \"{heading}\" is in {}", column.unit);
+                self.field.error(Problem::Measured { of: of.into(), why }, quantity.units())
+            })?;
+            let grouping = table.groupings().first();
+            let counts = |part: usize| {
+                let group = grouping.and_then(|grouping| grouping.groups.get(grouping.group_of[part]? as usize));
+                self.only.as_ref().is_none_or(|only| group.is_some_and(|group| only.contains(&group.as_str())))
+            };
+            let parts = column.values.iter().enumerate().filter(|(part, _)| counts(*part));
+            values.extend(parts.map(|(_, value)| value.map(|value| unit.to_si(value))));
+        }
+        let assumed = own.get("distribution").map_or(Ok(self.assumed), |field| assumed(&field))?;
+        let mut bounds = [f64::NEG_INFINITY, f64::INFINITY];
+        for (bound, key) in bounds.iter_mut().zip(["least", "most"]) {
+            let Some(field) = own.get(key) else { continue };
+            if assumed != Assumed::Smoothed {
+                let place = "with a family, which has its own bounds";
+                return Err(field.no_effect(place, "distribution = \"smoothed\" beside it"));
+            }
+            *bound = field.to_number(quantity)?;
+        }
+        Ok(Characteristic { values, assumed, bounds })
+    }
+}
+
+/// What kind of number the dimension or gap `of` the scene is.
+fn quantity(root: &Field, of: &str) -> Result<&'static Quantity, SceneError> {
+    let Some(Value::List(nodes)) = root.get("dimension").map(|list| &list.node.value) else {
+        return Ok(units(Measurand::Length));
+    };
+    let tables = nodes.iter().map(|node| Field { key: "dimension".into(), node });
+    let is_named = |table: &Field| table.get("name").is_some_and(|name| name.to_text().is_ok_and(|name| name == of));
+    match tables.into_iter().find(is_named).and_then(|table| Some((table.get("value")?, table))) {
+        Some((value, table)) => Ok(units(quantity_of(&table, &value)?)),
+        None => Ok(units(Measurand::Length)),
+    }
+}

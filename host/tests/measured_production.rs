@@ -1,0 +1,171 @@
+//! Productions whose distributions are those of measured parts, as commands take them.
+
+mod common;
+
+use std::{fmt::Write, path::Path};
+
+use common::{json, slipfit};
+use serde_json::Value;
+use slipfit_core::sampling::{
+    normal::score,
+    stream::{Rng, unit_stream},
+};
+
+/// A ring in a groove, of which the ring is measured.
+const STACK: &str = "
+title = \"stack\"
+dimension = [{ name = \"ring\", value = 20, tolerance = 0.1 }, { name = \"groove\", value = 20.2, tolerance = 0.1 }]
+measure = [{ name = \"play\", is = \"groove - ring\", lower = 0.05, upper = 0.35 }]
+[measured]
+file = \"parts.csv\"
+column = [{ of = \"ring\", heading = \"width\" }]
+";
+
+/// Writes parts with a column for each of `columns`: its heading, and its value from two correlated standard normal scores.
+fn write_parts(folder: &Path, parts: usize, seed: u64, rho: f64, columns: [(&str, &dyn Fn(f64) -> f64); 2]) {
+    let mut stream = unit_stream(seed, 0);
+    let mut text = format!("part,{},{}\n", columns[0].0, columns[1].0);
+    for part in 0..parts {
+        let [a, b] = [(); 2].map(|()| score::<f64>(stream.next_u64()));
+        let other = rho * a + libm::sqrt(1.0 - rho * rho) * b;
+        let _ = writeln!(text, "{part},{},{}", columns[0].1(a), columns[1].1(other));
+    }
+    std::fs::write(folder.join("parts.csv"), text).unwrap();
+}
+
+fn stderr(output: &std::process::Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn measure<'a>(report: &'a Value, key: &str) -> &'a Value {
+    &report["measures"][0]["estimates"][key]
+}
+
+/// The measured distribution takes the place of the drawing's, whose limits stay.
+#[test]
+fn a_measured_dimension_has_mean_and_deviation_of_its_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let width = |z: f64| 20.02 + 0.01 * z;
+    write_parts(folder.path(), 400, 1, 0.0, [("width [mm]", &width), ("width2 [in]", &|z| width(z) / 25.4)]);
+    std::fs::write(folder.path().join("stack.toml"), STACK).unwrap();
+    let run = |set: &str| json(folder.path(), &["tolerance", "stack.toml", "--json", "--set", set]);
+    let plain = run("title=a");
+    let worst = plain["measures"][0]["worst_case"][0].as_f64().unwrap();
+    assert!(worst.abs() < 1e-9, "the limits are those of the drawing");
+    let [mean, sd] = ["mean", "sd"].map(|key| measure(&plain, key)["value"].as_f64().unwrap());
+    let expected = libm::hypot(0.1 / 3.0, 0.01);
+    assert!((mean - 0.18).abs() < 0.003 && (sd / expected - 1.0).abs() < 0.04, "{mean} {sd}");
+    // The unit of the column counts, not that of the scene.
+    let other = run("measured.column=[{ of = \"ring\", heading = \"width2\" }]");
+    assert!((measure(&other, "mean")["value"].as_f64().unwrap() - 0.18).abs() < 0.003);
+}
+
+/// Of a measure that is the measured dimension alone, the intervals are the textbook's: t and χ² with n − 1 degrees of freedom.
+#[test]
+fn intervals_are_those_of_the_number_of_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "
+        title = \"one\"
+        dimension = [{ name = \"ring\", value = 20, tolerance = 0.1 }]
+        measure = [{ name = \"width\", is = \"ring\", lower = 19.9, upper = 20.1 }]
+        [measured]
+        file = \"parts.csv\"
+        distribution = \"normal\"
+        column = [{ of = \"ring\" }]
+    ";
+    std::fs::write(folder.path().join("one.toml"), scene).unwrap();
+    // 2.5 % quantiles of Student's t and of χ², from tables.
+    for (parts, t, chi) in [(6_usize, 2.570_58, [0.831_21, 12.832_5]), (30, 2.045_23, [16.047_1, 45.722_3])] {
+        write_parts(folder.path(), parts, 5, 0.0, [("ring [mm]", &|z| 20.01 + 0.03 * z), ("other", &|z| z)]);
+        let text = std::fs::read_to_string(folder.path().join("parts.csv")).unwrap();
+        let values: Vec<f64> =
+            text.lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect();
+        let n = parts as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let deviation = libm::sqrt(values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0));
+        let report = json(folder.path(), &["tolerance", "one.toml", "--json", "--samples", "100000"]);
+        let interval = |key: &str| [0, 1].map(|end| measure(&report, key)["interval"][end].as_f64().unwrap());
+        let ends = interval("mean");
+        let half = t * deviation / libm::sqrt(n);
+        // Interval ends are quantiles of 120 draws.
+        assert!(
+            ends.iter().zip([mean - half, mean + half]).all(|(a, b)| (a - b).abs() < 0.3 * half),
+            "{ends:?} {mean} {half}"
+        );
+        let ends = interval("sd");
+        let expected = [chi[1], chi[0]].map(|chi| deviation * libm::sqrt((n - 1.0) / chi));
+        assert!(ends.iter().zip(expected).all(|(a, b)| (a / b - 1.0).abs() < 0.25), "{ends:?} {expected:?}");
+    }
+}
+
+/// Two gaps of the CD-ROM slide that move together: their production has the correlation of the parts.
+#[test]
+fn measured_gaps_are_drawn_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let columns: [(&str, &dyn Fn(f64) -> f64); 2] =
+        [("front [mm]", &|z| -0.0223 + 0.0624 * z), ("back [mm]", &|z| 0.0064 + 0.0404 * z)];
+    write_parts(folder.path(), 2000, 3, 0.9, columns);
+    let measured = "[measured]\nfile = \"parts.csv\"\ncolumn = [{ of = \"left front left\", heading = \"front\" }, \
+                    { of = \"left back left\", heading = \"back\" }]\n";
+    let scene = slipfit::scene::shipped("cd-rom-slide").unwrap();
+    std::fs::write(folder.path().join("slide.toml"), format!("{scene}\n{measured}")).unwrap();
+    let args = ["population", "slide.toml", "--units", "2000", "--opening", "--csv", "units.csv", "--json"];
+    json(folder.path(), &args);
+    let mut units = csv::Reader::from_path(folder.path().join("units.csv")).unwrap();
+    let heads = units.headers().unwrap().clone();
+    let at = |name: &str| heads.iter().position(|head| head.starts_with(name)).unwrap_or_else(|| panic!("{heads:?}"));
+    let [front, back, other] = ["left front left", "left back left", "right back left"].map(at);
+    let rows: Vec<[f64; 3]> = units
+        .records()
+        .map(|row| row.unwrap())
+        .map(|row| [front, back, other].map(|i| row[i].parse().unwrap()))
+        .collect();
+    let correlation = |i: usize, j: usize| {
+        let n = rows.len() as f64;
+        let mean = |i: usize| rows.iter().map(|row| row[i]).sum::<f64>() / n;
+        let [a, b] = [i, j].map(mean);
+        let sum = |i: usize, a: f64, j: usize, b: f64| rows.iter().map(|row| (row[i] - a) * (row[j] - b)).sum::<f64>();
+        sum(i, a, j, b) / libm::sqrt(sum(i, a, i, a) * sum(j, b, j, b))
+    };
+    assert!((correlation(0, 1) - 0.9).abs() < 0.02, "{}", correlation(0, 1));
+    assert!(correlation(0, 2).abs() < 0.09, "{}", correlation(0, 2));
+}
+
+/// What is wrong is said at its line, or with the file's line.
+#[test]
+fn mistakes_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    write_parts(folder.path(), 40, 1, 0.0, [("width [mm]", &|z| 20.0 + 0.01 * z), ("angle [°]", &|z| z)]);
+    std::fs::write(folder.path().join("stack.toml"), STACK).unwrap();
+    std::fs::write(folder.path().join("bad.csv"), "part,width [mm]\n1,20\n2,x\n").unwrap();
+    std::fs::write(folder.path().join("few.csv"), "part,width [mm]\n1,20\n2,20.01\n3,19.99\n").unwrap();
+    for (set, wanted) in [
+        ("measured.file=none.csv", "none.csv"),
+        ("measured.file=bad.csv", "bad.csv:3:3"),
+        ("measured.file=few.csv", "30 measured parts, but there are 3"),
+        ("measured.only=A", "`measured.only` has no effect without a `group`"),
+        ("measured.distribution=cauchy", "smoothed: the values themselves"),
+        ("measured.column=[]", "`measured.column` is a list of 0"),
+        (
+            "measured.column=[{ of = \"rung\", heading = \"width\" }]",
+            "there is no dimension or gap that could be measured `rung`",
+        ),
+        ("measured.column=[{ of = \"ring\", heading = \"size\" }]", "there is no measured column `size`"),
+        ("measured.column=[{ of = \"ring\", heading = \"angle\" }]", "is in °"),
+        ("measured.column=[{ of = \"ring\", heading = \"width\" }, { of = \"ring\", heading = \"width\" }]", "again"),
+        ("measured.column=[{ of = \"ring\", heading = \"width\", least = 20 }]", "beyond the bounds"),
+        (
+            "measured.column=[{ of = \"ring\", heading = \"width\", least = 19, distribution = \"normal\" }]",
+            "no effect",
+        ),
+    ] {
+        let output = slipfit(folder.path(), &["tolerance", "stack.toml", "--set", set]);
+        assert_eq!(output.status.code(), Some(2), "{set}");
+        assert!(stderr(&output).contains(wanted), "{set}: {}", stderr(&output));
+    }
+    let scene =
+        STACK.replace("tolerance = 0.1 }, {", "tolerance = 0.1, cost = { reciprocal = 1, range = [0.01, 0.2] } }, {");
+    std::fs::write(folder.path().join("costed.toml"), scene).unwrap();
+    let output = slipfit(folder.path(), &["allocate", "costed.toml"]);
+    assert!(stderr(&output).contains("does not change measured parts"), "{}", stderr(&output));
+}
