@@ -150,7 +150,10 @@ fn mistakes_are_named() {
             "measured.column=[{ of = \"rung\", heading = \"width\" }]",
             "there is no dimension or gap that could be measured `rung`",
         ),
-        ("measured.column=[{ of = \"ring\", heading = \"size\" }]", "there is no measured column `size`"),
+        (
+            "measured.column=[{ of = \"ring\", heading = \"size\" }]",
+            "there is no column \"size\" for measured values; the columns are \"part\", \"width\", \"angle\"",
+        ),
         ("measured.column=[{ of = \"ring\", heading = \"angle\" }]", "is in °"),
         ("measured.column=[{ of = \"ring\", heading = \"width\" }, { of = \"ring\", heading = \"width\" }]", "again"),
         ("measured.column=[{ of = \"ring\", heading = \"width\", least = 20 }]", "beyond the bounds"),

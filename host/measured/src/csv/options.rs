@@ -13,12 +13,14 @@ pub struct Options {
     pub groups: Vec<String>,
     /// Names of the columns that are left out.
     pub ignored: Vec<String>,
+    /// Names of the columns of measured values, all others being left out; all columns if not stated.
+    pub values: Option<Vec<String>>,
     /// Greatest size of the file (bytes).
     pub largest: u64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { labels: None, groups: Vec::new(), ignored: Vec::new(), largest: LARGEST }
+        Self { labels: None, groups: Vec::new(), ignored: Vec::new(), values: None, largest: LARGEST }
     }
 }

@@ -141,6 +141,7 @@ impl File<'_> {
             (options.labels.as_slice(), "the labels of the parts"),
             (&options.groups, "subgroups"),
             (&options.ignored, "leaving it out"),
+            (options.values.as_deref().unwrap_or_default(), "measured values"),
         ];
         for (wanted, role) in wanted {
             if let Some(name) = wanted.iter().find(|name| !seen.contains(name.as_str())) {
@@ -156,11 +157,13 @@ impl File<'_> {
         let mut targets = Vec::new();
         for (index, (name, unit)) in names.into_iter().enumerate() {
             let is_in = |list: &[String]| list.iter().any(|other| other == name);
+            let is_wanted =
+                |name: &str| options.values.as_ref().is_none_or(|values| values.iter().any(|other| other == name));
             targets.push(if labels == Some(index) {
                 Target::Labels(Vec::new())
             } else if is_in(&options.groups) {
                 Target::Grouping(GroupingBuilder::new(name))
-            } else if is_in(&options.ignored) || (index == 0 && states_limits) {
+            } else if is_in(&options.ignored) || (index == 0 && states_limits) || !is_wanted(name) {
                 Target::Ignored
             } else {
                 let unit = unit

@@ -22,6 +22,7 @@ use super::{
     value::Field,
 };
 
+const OF: &str = "the name of a dimension, an offset, a diameter or a gap";
 const SHAPES: &str = "smoothed: the values themselves; chosen: the family that fits best; normal, lognormal, shifted-lognormal, \
                       weibull, shifted-weibull, johnson-su, johnson-sb, two-normals";
 
@@ -40,14 +41,17 @@ pub(super) fn columns<'t, 's>(root: &Field<'t, 's>, file_name: &str) -> Result<O
     const ALLOWED: &str = "tables [[measured.column]], each with what it is `of`";
     let Some(table) = root.get("measured") else { return Ok(None) };
     table.expect_table()?;
-    let parts = parts(&table, file_name)?;
     let list = table.require("column", ALLOWED)?;
     let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(ALLOWED)) };
+    if nodes.is_empty() {
+        return Err(list.error(Problem::Length { key: list.key.clone(), found: 0 }, ALLOWED));
+    }
+    let tables = || nodes.iter().map(|node| Field { key: list.key.clone(), node });
+    let headings = tables().map(|own| Ok(heading(&own)?.to_owned())).collect::<Result<Vec<_>, SceneError>>()?;
+    let parts = parts(&table, file_name, &headings)?;
     let (mut columns, mut characteristics): (Vec<Column>, Vec<_>) = (Vec::new(), Vec::new());
-    for node in nodes {
-        let own = Field { key: list.key.clone(), node };
-        own.expect_table()?;
-        let field = own.require("of", "the name of a dimension, an offset, a diameter or a gap")?;
+    for own in tables() {
+        let field = own.require("of", OF)?;
         let of = field.to_text()?;
         if columns.iter().any(|column| column.of == of) {
             let problem = Problem::Duplicate { key: field.key.clone(), name: of.into() };
@@ -58,9 +62,6 @@ pub(super) fn columns<'t, 's>(root: &Field<'t, 's>, file_name: &str) -> Result<O
         characteristics.push(found);
         columns.push(Column { of, field });
     }
-    if columns.is_empty() {
-        return Err(list.error(Problem::Length { key: list.key.clone(), found: 0 }, ALLOWED));
-    }
     let production = Production::new(characteristics).map_err(|(i, error)| {
         let Column { of, field } = &columns[i];
         field.error(Problem::Measured { of: (*of).into(), why: error.to_string() }, SHAPES)
@@ -68,8 +69,17 @@ pub(super) fn columns<'t, 's>(root: &Field<'t, 's>, file_name: &str) -> Result<O
     Ok(Some(Columns::new(production, columns)))
 }
 
-/// Reads the files and what holds for all columns.
-fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str) -> Result<Parts<'t, 's>, SceneError> {
+/// The heading of the column whose table is `own`.
+fn heading<'t>(own: &Field<'t, '_>) -> Result<&'t str, SceneError> {
+    own.expect_table()?;
+    match own.get("heading") {
+        Some(field) => field.to_text(),
+        None => own.require("of", OF)?.to_text(),
+    }
+}
+
+/// Reads the columns `headings` of the files, and what holds for all of them.
+fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str, headings: &[String]) -> Result<Parts<'t, 's>, SceneError> {
     const FILES: &str = "a file of measured parts, CSV or QIF results, or a list of such files";
     let field = table.require("file", FILES)?;
     let group = table.get("group").map(|field| field.to_text()).transpose()?;
@@ -82,7 +92,7 @@ fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str) -> Result<Parts<'t, 's>
     let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
     let mut tables = Vec::new();
     for path in texts(&field, FILES)? {
-        let read = file::load(&folder.join(path), group);
+        let read = file::load(&folder.join(path), group, headings);
         let read = read.map_err(|why| field.error(Problem::Measured { of: path.into(), why }, FILES))?;
         tables.push(read);
     }
@@ -133,7 +143,7 @@ impl Parts<'_, '_> {
 
     /// The characteristic `of` the scene, whose table is `own`.
     fn characteristic(&self, root: &Field, own: &Field, of: &str) -> Result<Characteristic, SceneError> {
-        let heading = own.get("heading").map_or(Ok(of), |field| field.to_text())?;
+        let heading = heading(own)?;
         let quantity = quantity(root, of)?;
         let mut values = Vec::new();
         for table in &self.tables {
