@@ -122,7 +122,13 @@ fn doubt(root: &Field, scene: &Scene) {
     let contacts = scene.pins.iter().filter(carries).count();
     let law = [scene.contact.stiffness, scene.contact.exponent];
     if let Some(field) = root.get("contact").and_then(|contact| contact.get("stiffness")) {
-        plausible::stiffness(&field, law, loads, contacts, widest);
+        let is_soft = plausible::stiffness(&field, law, loads, contacts, widest);
+        if let Some(table) = root.get("contact").filter(|_| !is_soft) {
+            plausible::damping(&table, &scene.contact, scene.slide.mass, widest);
+        }
+    }
+    if let Some(field) = root.get("drive").and_then(|drive| drive.get("gain")) {
+        plausible::gain(&field, scene.drive.gain);
     }
     if let Some(field) = root.get("friction").and_then(|friction| friction.get("stick_band")) {
         plausible::stick_band(&field, &scene.friction, scene.drive.speed.abs());

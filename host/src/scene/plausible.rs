@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use slipfit_core::menu::FrictionData;
+use slipfit_core::menu::{ContactData, FrictionData};
 use slipfit_tolerance::number::{ten_digits, three_digits};
 use slipfit_tolerance::unit::{self, Unit};
 
@@ -21,6 +21,10 @@ const ROD: [f64; 2] = [1000.0, 1000.0];
 /// How many times less than a ball of the densest solid a body's radius of gyration about one axis may be: a needle of steel has
 /// a third about its own axis.
 const NEEDLE: f64 = 5.0;
+/// How many times more than it takes to stop all that moves without a rebound a contact's damping may be.
+const OVERDAMPED: f64 = 1000.0;
+/// How many times deeper than the widest gap the penetration of full damping may be.
+const DEEP: f64 = 10.0;
 /// How many times greater than weight and drive force together the force of a joint pressed at the start may be.
 const PRESSED: f64 = 10.0;
 
@@ -160,15 +164,21 @@ pub(super) fn sink_depth(stiffness: f64, exponent: f64, load: f64) -> f64 {
 }
 
 /// Warns about a `stiffness` (N/m^e), stated by `field`, to which the weight, or where there is none the drive's force, presses the parts
-/// deeper than their `widest` gap (m), shared evenly by a number of contacts.
-pub(super) fn stiffness(field: &Field, [stiffness, exponent]: [f64; 2], loads: Loads, contacts: usize, widest: f64) {
+/// deeper than their `widest` gap (m), shared evenly by a number of contacts. Whether it does.
+pub(super) fn stiffness(
+    field: &Field,
+    [stiffness, exponent]: [f64; 2],
+    loads: Loads,
+    contacts: usize,
+    widest: f64,
+) -> bool {
     let (load, whose) = if loads.weight > 0.0 { (loads.weight, "weight") } else { (loads.drives, "drive's force") };
     let share = load / contacts.max(1) as f64;
     let depth = |stiffness: f64| sink_depth(stiffness, exponent, share);
     let deep = depth(stiffness);
     // Less than a hundredth of a millimetre is no play to compare with.
     if load == 0.0 || deep <= widest.max(1e-5) {
-        return;
+        return false;
     }
     let other = stiffness * libm::pow(1e3, exponent);
     let is_per_metre = field.written("").contains("N/m^") || field.written("").ends_with("N/m");
@@ -184,6 +194,53 @@ pub(super) fn stiffness(field: &Field, [stiffness, exponent]: [f64; 2], loads: L
         "`{key}` is {written}: under the {whose} of {load} N{shared} the parts sink {deep} mm into each other, where their widest gap \
          is {widest} mm; usual is a small share of a gap{meant}"
     ));
+    true
+}
+
+/// Warns where `contact`, the law in a `table`, damps a `mass` (kg) far more than it takes to stop it without a rebound, or reaches its
+/// damping only at a penetration that is far deeper than the `widest` gap (m).
+pub(super) fn damping(table: &Field, contact: &ContactData<f64>, mass: f64, widest: f64) {
+    let ContactData { stiffness, exponent, damping, depth } = *contact;
+    let tangent = exponent * stiffness * libm::pow(depth, exponent - 1.0);
+    let critical = 2.0 * libm::sqrt(tangent * mass);
+    if let Some(field) = table.get("damping").filter(|_| damping > OVERDAMPED * critical) {
+        let [times, critical] = [damping / critical, critical / 1e3].map(three_digits);
+        field.warn(&format!(
+            "`{}` is {}: {times} times the {critical} N·s/mm at which a contact of this stiffness stops {} g without a rebound; \
+             usual is a share of that to ten times",
+            field.key,
+            field.written("N·s/mm"),
+            ten_digits(mass * 1e3)
+        ));
+    }
+    // Less than a tenth of a millimetre is no play to compare with.
+    let most = DEEP * widest.max(1e-4);
+    if let Some(field) = table.get("depth").filter(|_| depth > most) {
+        field.warn(&format!(
+            "`{}` is {}, where the widest gap is {} mm: contacts this shallow are hardly damped; usual is a share of a gap",
+            field.key,
+            field.written("mm"),
+            three_digits(widest * 1e3)
+        ));
+    }
+}
+
+/// Warns about a `gain` of 0, with which a drive exerts no force.
+pub(super) fn gain(field: &Field, gain: f64) {
+    if gain == 0.0 {
+        field.warn(&format!("`{}` is 0: the drive exerts no force, whatever it commands", field.key));
+    }
+}
+
+/// Warns about a pin, whose `radius` (m) is stated by `field`, that is smaller than its radial clearance `gap` (m). A radius of 0 means friction without a torque.
+pub(super) fn radius(field: &Field, radius: f64, gap: f64) {
+    if radius > 0.0 && radius < gap {
+        let [radius, gap] = [radius * 1e3, gap * 1e3].map(ten_digits);
+        field.warn(&format!(
+            "`{}` is {radius} mm, less than the radial clearance of {gap} mm: a pin is usually a hundred times larger than its play",
+            field.key
+        ));
+    }
 }
 
 /// Warns about a `gap` (m), stated by `field`, that presses a joint called `name` at the start far harder than weight and drives.

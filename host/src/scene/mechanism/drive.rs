@@ -12,6 +12,7 @@ use crate::{
     scene::{
         Problem, SceneError,
         parse::{GAIN, LEAST_RAMP, POINT, RAMP, SPEED},
+        plausible,
         value::Field,
     },
 };
@@ -57,6 +58,7 @@ fn drive(name: String, table: &Field, planar: bool, names: &Names) -> Result<Nam
         Action::Turns { .. } => None,
     };
     let point = point.unwrap_or_default();
+    table.get("gain").iter().for_each(|field| plausible::gain(field, gain));
     Ok(NamedDrive { name, body, drive: Drive { gain, ramp_start, ramp_end, speed, point_b: point.into() }, action })
 }
 

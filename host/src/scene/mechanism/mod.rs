@@ -153,13 +153,23 @@ fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
             NormalData::Impact(data) => [data.stiffness, data.exponent],
             NormalData::HuntCrossley(data) | NormalData::LankaraniNikravesh(data) => [data.stiffness, data.exponent],
         };
+        let mut is_soft = false;
         let stiffness = [field, root].iter().find_map(|table| table.get("contact"));
         if let Some(stiffness) = stiffness.and_then(|contact| contact.get("stiffness")) {
-            plausible::stiffness(&stiffness, law, loads, contacts, widest);
+            is_soft = plausible::stiffness(&stiffness, law, loads, contacts, widest);
+        }
+        let contact = [field, root].iter().find_map(|table| table.get("contact"));
+        if let (NormalData::Impact(data), Some(table), false) = (&joint.laws.contact, contact, is_soft) {
+            plausible::damping(&table, data, mass, widest);
         }
         let friction = [field, root].iter().find_map(|table| table.get("friction"));
         if let Some(band) = friction.and_then(|friction| friction.get("stick_band")) {
             plausible::stick_band(&band, &joint.laws.friction, speed);
+        }
+        if let (JointKind::Journal { gap, radius } | JointKind::Bearing { gap, radius, .. }, Some(stated)) =
+            (&joint.kind, field.get("radius"))
+        {
+            plausible::radius(&stated, *radius, mechanism.gaps[*gap].statistics.mean);
         }
         for of in joint.kind.gaps() {
             let name = &mechanism.gaps[of].name;
