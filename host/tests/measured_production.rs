@@ -131,6 +131,38 @@ fn measured_gaps_are_drawn_together() {
     assert!(correlation(0, 2).abs() < 0.09, "{}", correlation(0, 2));
 }
 
+/// Both gaps of a pin that are tight together: the share that malfunctions is that of the true joint distribution, and not that of
+/// gaps which are independent.
+#[test]
+#[ignore = "eight populations"]
+fn shares_are_those_of_the_joint_distribution() {
+    const SAMPLES: u64 = 6;
+    let folder = tempfile::tempdir().unwrap();
+    let scene = slipfit::scene::shipped("cd-rom-slide").unwrap().replace("coefficient = 0.3", "coefficient = 0.2");
+    let measured = "[measured]\nfile = \"parts.csv\"\ncolumn = [{ of = \"left front left\", heading = \"a\" }, \
+                    { of = \"left front right\", heading = \"b\" }]\n";
+    std::fs::write(folder.path().join("slide.toml"), format!("{scene}\n{measured}")).unwrap();
+    let gap = |z: f64| 0.1 + 0.15 * z;
+    let shares = |parts: usize, seed: u64, rho: f64| {
+        write_parts(folder.path(), parts, seed, rho, [("a [mm]", &gap), ("b [mm]", &gap)]);
+        let seed = format!("{seed}");
+        let found = json(folder.path(), &["population", "slide.toml", "--units", "2500", "--seed", &seed, "--json"]);
+        ["malfunctions", "crawls"].map(|kind| found["statistics"][kind]["share"].as_f64().unwrap())
+    };
+    let truth = shares(50_000, 100, 0.9);
+    let independent = shares(50_000, 101, 0.0);
+    let found: Vec<[f64; 2]> = (0..SAMPLES).map(|seed| shares(100, seed, 0.9)).collect();
+    let n = SAMPLES as f64;
+    for (kind, name) in ["malfunctions", "crawls"].into_iter().enumerate() {
+        let mean = found.iter().map(|shares| shares[kind]).sum::<f64>() / n;
+        let square = found.iter().map(|shares| (shares[kind] - mean) * (shares[kind] - mean)).sum::<f64>() / (n - 1.0);
+        let error = libm::sqrt(square / n);
+        println!("{name}: {mean:.4} ± {error:.4}, true {:.4}, independent {:.4}", truth[kind], independent[kind]);
+        assert!((mean - truth[kind]).abs() < 4.0 * error, "{name}");
+        assert!((mean - independent[kind]).abs() > 4.0 * error, "{name}");
+    }
+}
+
 /// What is wrong is said at its line, or with the file's line.
 #[test]
 fn mistakes_are_named() {
