@@ -10,18 +10,22 @@ mod file;
 mod keys;
 mod levels;
 mod mechanism;
+mod parameter;
 mod parse;
 mod pins;
 mod plausible;
 mod product;
+mod quantity;
 #[cfg(test)]
 pub(crate) mod reference;
 mod shipped;
+mod slide_parameters;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod uncertain;
 mod value;
-pub mod vary;
+mod vary;
 mod written;
 
 pub use diagnostic::{Problem, SceneError};

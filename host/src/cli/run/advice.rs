@@ -2,13 +2,22 @@
 
 use std::fmt::Write;
 
+use slipfit_tolerance::number::fixed;
+
 use crate::{
-    cli::population::words::{percent, strongest},
+    cli::population::{
+        uncertain::{decided, from_to},
+        words::{percent, strongest},
+    },
     dynamics::{
         outcome::Verdict,
         sweep::{Level, Sweep},
     },
-    population::{drivers::Driver, statistics::Statistics},
+    population::{
+        drivers::Driver,
+        statistics::Statistics,
+        uncertain::answer::{Answer, Expected},
+    },
 };
 
 /// Units of the production, as far as advice needs them.
@@ -18,6 +27,8 @@ pub struct Units<'a> {
     pub statistics: &'a Statistics,
     /// What drives malfunction, the strongest first.
     pub of_malfunction: &'a [Driver],
+    /// What is not known leaves open, if anything is not.
+    pub unknown: Option<&'a Answer>,
 }
 
 impl Units<'_> {
@@ -29,7 +40,16 @@ impl Units<'_> {
         }
         let unknown =
             if undecided.units > 0 { format!("; {} come to no verdict", undecided.units) } else { String::new() };
-        let mut text = format!("Production      {} of {units} units malfunction{unknown}\n", percent(malfunctions));
+        let mut text = String::new();
+        let mut title = "Production";
+        if let Some(answer) = self.unknown {
+            let Expected { expected, interval } = answer.malfunctions;
+            let share =
+                format!("{} % of the units malfunction, {} % expected", from_to(interval), fixed(100.0 * expected, 1));
+            let _ = writeln!(text, "Production      {share}; decided by {}", decided(answer));
+            title = "  as stated";
+        }
+        let _ = writeln!(text, "{title:16}{} of {units} units malfunction{unknown}", percent(malfunctions));
         if malfunctions.units > 0 {
             let _ = writeln!(text, "Failure due to  {}", strongest(self.of_malfunction, 2));
         }

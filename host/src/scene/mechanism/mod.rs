@@ -5,10 +5,10 @@ mod contact;
 mod drive;
 mod joint;
 mod names;
+mod parameters;
 mod place;
 #[cfg(test)]
 mod tests;
-mod vary;
 
 use slipfit_core::menu::FrictionData;
 use slipfit_tolerance::{
@@ -19,12 +19,15 @@ use slipfit_tolerance::{
 use self::{
     contact::{Gaps, laws},
     names::Names,
+    parameters::named,
     place::place,
 };
 use super::{
     Problem, SceneError, parse,
     plausible::{self, Loads},
+    uncertain::uncertain,
     value::Field,
+    vary::vary,
 };
 use crate::{
     dynamics::driven::DriveKind,
@@ -91,6 +94,7 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
     let mechanism = Mechanism {
         title,
         vary: Vec::new(),
+        uncertain: Vec::new(),
         planar,
         gravity,
         springs: drive::springs(root, planar, &names)?,
@@ -103,7 +107,9 @@ pub(super) fn mechanism(root: &Field, title: String, product: Option<&Product>) 
         sweep,
         warnings: Vec::new(),
     };
-    let mechanism = Mechanism { vary: vary::vary(root, &names, &mechanism)?, ..mechanism };
+    let varied = vary(named(root, "vary", &names, &mechanism)?)?;
+    let unknown = uncertain(named(root, "uncertain", &names, &mechanism)?, &mechanism)?;
+    let mechanism = Mechanism { vary: varied, uncertain: unknown, ..mechanism };
     // With values that stand for wrong ones there is nothing to look at.
     if !found.any() {
         joint::check(&mechanism, &joint_fields, &fields)?;
