@@ -61,7 +61,7 @@ impl Kind {
         match self {
             Self::Number(quantity) => quantity.covers(value),
             Self::RampEnd(start) => value - start >= LEAST_RAMP && RAMP.covers(value),
-            Self::Stiffness(_) => STIFFNESS[0] <= value && value <= STIFFNESS[1],
+            Self::Stiffness(_) => (STIFFNESS[0]..=STIFFNESS[1]).contains(&value),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use slipfit_tolerance::number::{fixed, percent, three_digits};
+use slipfit_tolerance::number::{fixed, three_digits};
 
 use super::asked::Arguments;
 use crate::{
@@ -63,17 +63,21 @@ pub fn warnings(answer: &Answer) -> Result<Vec<String>, Failure> {
     Ok(all.into_iter().flatten().collect())
 }
 
-/// An interval of shares, in whole percent where these show it.
-pub fn from_to([low, high]: [f64; 2]) -> String {
-    let decimals = usize::from(high < 0.1);
-    let [low, high] = [low, high].map(|share| percent(share, decimals));
-    if low == high { low } else { format!("{low} to {high}") }
+/// Digits after the point of shares up to `high` in percent: whole percent of what is not known are enough.
+fn decimals(high: f64) -> usize {
+    match high {
+        0.1.. => 0,
+        0.01.. => 1,
+        _ => 3,
+    }
 }
 
-/// A share of the whole production.
-fn share(of: &Expected) -> String {
-    let decimals = usize::from(of.interval[1] < 0.1);
-    format!("{} % of the units, {} % expected", from_to(of.interval), percent(of.expected, decimals))
+/// A share of the whole production, and what it may be.
+pub fn share(of: &Expected) -> String {
+    let [low, high] = of.interval;
+    let [low, high, expected] = [low, high, of.expected].map(|share| fixed(100.0 * share, decimals(of.interval[1])));
+    let ends = if low == high { low } else { format!("{low} to {high}") };
+    format!("{ends} % of the units, {expected} % expected")
 }
 
 /// What decides, and what to do about it.

@@ -2,22 +2,16 @@
 
 use std::fmt::Write;
 
-use slipfit_tolerance::number::fixed;
-
 use crate::{
     cli::population::{
-        uncertain::{decided, from_to},
+        uncertain::{decided, share},
         words::{percent, strongest},
     },
     dynamics::{
         outcome::Verdict,
         sweep::{Level, Sweep},
     },
-    population::{
-        drivers::Driver,
-        statistics::Statistics,
-        uncertain::answer::{Answer, Expected},
-    },
+    population::{drivers::Driver, statistics::Statistics, uncertain::answer::Answer},
 };
 
 /// Units of the production, as far as advice needs them.
@@ -43,10 +37,8 @@ impl Units<'_> {
         let mut text = String::new();
         let mut title = "Production";
         if let Some(answer) = self.unknown {
-            let Expected { expected, interval } = answer.malfunctions;
-            let share =
-                format!("{} % of the units malfunction, {} % expected", from_to(interval), fixed(100.0 * expected, 1));
-            let _ = writeln!(text, "Production      {share}; decided by {}", decided(answer));
+            let share = share(&answer.malfunctions);
+            let _ = writeln!(text, "Production      {share} malfunction (95 %); decided by {}", decided(answer));
             title = "  as stated";
         }
         let _ = writeln!(text, "{title:16}{} of {units} units malfunction{unknown}", percent(malfunctions));
