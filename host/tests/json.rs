@@ -14,7 +14,7 @@ const SHARD: &str = "A shard of tolerance or population";
 
 /// What is not known of a slide, and of a mechanism.
 const FRICTION: &str = "uncertain.friction.coefficient=[0.2, 0.3]";
-const STIFFNESS: &str = "uncertain.contact.stiffness={ median = 100, factor = 3 }";
+const STIFFNESS: &str = "uncertain.contact.stiffness={ median = 3000, factor = 3 }";
 
 #[test]
 fn every_field_is_in_the_guide() {

@@ -95,11 +95,11 @@ impl Arguments {
         production: Option<Production>,
     ) -> Result<(), Failure> {
         let mechanism = driven.mechanism();
-        let varies = mechanism.gaps.iter().any(|gap| gap.statistics.deviation > 0.0);
+        let varies = mechanism.gaps.iter().any(|gap| gap.statistics.deviation > 0.0) || !mechanism.uncertain.is_empty();
         let units = if varies { self.units.unwrap_or(UNITS) } else { 0 };
         let drawn = DrawnProduction::of_mechanism(mechanism, product, 0.0, DEFAULT.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
-        let design = design(varies && !mechanism.uncertain.is_empty(), units, DEFAULT.seed)?;
+        let design = design(!mechanism.uncertain.is_empty(), units, DEFAULT.seed)?;
         let all = units + design.map_or(0, |design| design.units());
         let bar = progress("simulating", force_table::levels(driven.levels()).count + all as usize);
         let ((table, sweep), found) = self.threads.install(|| {

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
 /// The greatest degree of a polynomial.
-const DEGREE: usize = 8;
+const DEGREE: usize = 5;
 /// Points for each coefficient.
 const POINTS_A_TERM: usize = 4;
 /// The chance that any of the unknowns without effect passes for one with an effect.

@@ -16,7 +16,7 @@ use crate::numeric::{
 /// Units, and hits and misses, from which on a beta distribution is computed by its normal approximation, which then errs by less
 /// than 1e-4. Continued fractions would take the square root of their number in terms.
 const MANY: f64 = 2000.0;
-const SEVERAL: f64 = 10.0;
+const SEVERAL: f64 = 20.0;
 
 /// What is known of a probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn betas_of_many_units_are_nearly_normal() {
-        for (a, b) in [(12.0, 3000.0), (300.0, 2500.0), (1500.0, 1500.0), (5000.0, 20.0)] {
+        for (a, b) in [(25.0, 3000.0), (300.0, 2500.0), (1500.0, 1500.0), (5000.0, 25.0)] {
             let mean = a / (a + b);
             let deviation = libm::sqrt(mean * (1.0 - mean) / (a + b + 1.0));
             for z in [-2.5, -1.0, 0.0, 0.5, 1.96] {
