@@ -12,6 +12,10 @@ use fields::{check_object, guide};
 /// The guide's heading of what is printed for a shard.
 const SHARD: &str = "A shard of tolerance or population";
 
+/// What is not known of a slide, and of a mechanism.
+const FRICTION: &str = "uncertain.friction.coefficient=[0.2, 0.3]";
+const STIFFNESS: &str = "uncertain.contact.stiffness={ median = 3000, factor = 3 }";
+
 #[test]
 fn every_field_is_in_the_guide() {
     let tables = guide();
@@ -19,7 +23,7 @@ fn every_field_is_in_the_guide() {
     let row = |k: u32| format!("{k},{},{}\n", ["A", "B"][k as usize % 2], 10.0 + 0.01 * f64::from(k * k % 37));
     let parts = (0..70).fold("part,tool,width [mm]\nlower,,9.9\nupper,,10.5\n".to_owned(), |text, k| text + &row(k));
     std::fs::write(folder.path().join("parts.csv"), parts).unwrap();
-    let commands: [(&str, &[&str]); 33] = [
+    let commands: [(&str, &[&str]); 37] = [
         ("check", &["check"]),
         ("capability", &["capability", "parts.csv", "--group", "tool"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
@@ -39,6 +43,11 @@ fn every_field_is_in_the_guide() {
         ),
         // Forces have a figure, verdicts have none in an opening.
         ("population", &["population", "--units", "300", "--opening", "--force-limit", "0.25", "--rare"]),
+        ("population", &["population", "--units", "100", "--force-limit", "2", "--set", FRICTION]),
+        (
+            "population of a mechanism",
+            &["population", "slider-crank", "--units", "20", "--set", "run.duration=50", "--set", STIFFNESS],
+        ),
         ("table", &["table", "--n", "0:2:1", "-o", "table.bin"]),
         ("table", &["table", "--over", "position", "--n", "0:2:1", "-o", "z.bin"]),
         ("tolerance", &["tolerance", "clutch", "--samples", "1000"]),
@@ -58,8 +67,24 @@ fn every_field_is_in_the_guide() {
             "allocate",
             &["allocate", "slide-processes", "--samples", "1000", "--units", "100", "--require", "malfunction=0.2"],
         ),
+        (
+            "allocate",
+            &[
+                "allocate",
+                "slide-processes",
+                "--samples",
+                "1000",
+                "--units",
+                "100",
+                "--require",
+                "malfunction=0.3",
+                "--set",
+                FRICTION,
+            ],
+        ),
         ("allocate", &["allocate", "shaft-housing", "--samples", "1000", "--require", "yield=0.99", "--csv", "c.csv"]),
         ("run", &["run", "--n", "0:2:1"]),
+        ("run", &["run", "cd-rom-slide", "--n", "0:1:1", "--units", "20", "--set", FRICTION]),
         ("run of a mechanism", &["run", "slider-crank", "--n", "0:1:1", "--set", "run.duration=100"]),
         ("table", &["table", "slider-crank", "--n", "0:1:1", "--set", "run.duration=100", "-o", "torque.bin"]),
         ("kernel", &["kernel", "slider-crank", "-o", "unit.rs"]),

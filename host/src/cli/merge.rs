@@ -105,7 +105,7 @@ impl Arguments {
         let (mut scene, product) = SceneFile::parse_with_slide(&source.name, &source.text, &set)?;
         let asked = population::Arguments::of_parts(&part.header.settings, self.json);
         let production = asked.prepare(&mut scene, product.as_ref())?;
-        asked.conclude(&scene, &production, part.tallies, product.as_ref())
+        asked.conclude(&scene, &production, part.tallies, None, product.as_ref())
     }
 }
 

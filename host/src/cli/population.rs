@@ -6,6 +6,7 @@ pub(super) mod rare;
 pub(super) mod reports;
 mod rows;
 mod slide;
+pub(super) mod uncertain;
 pub(super) mod words;
 
 use slipfit_tolerance::product::Product;
@@ -13,7 +14,7 @@ use slipfit_tolerance::product::Product;
 use super::{arguments::Moving, failure::Failure, mechanism};
 use crate::{
     mechanism::{ByDrive, Mechanism},
-    population::tally::Tally,
+    population::{tally::Tally, uncertain::study},
 };
 
 pub(super) use asked::Arguments;
@@ -32,11 +33,16 @@ impl Arguments {
             Moving::Mechanism(mechanism) => return self.of_mechanism(&mechanism, product.as_ref()),
         };
         self.drive.refuse()?;
+        let design = self.design(!scene.uncertain.is_empty())?;
         let production = self.prepare(&mut scene, product.as_ref())?;
-        match self.simulated(&scene, &production, self.duty_of(&scene), 0)? {
-            Some(tally) => self.conclude(&scene, &production, tally, product.as_ref()),
-            None => Ok(()),
-        }
+        let (duty, bar) = (self.duty_of(&scene), self.bar(design));
+        let Some(tally) = self.simulated(&scene, &production, duty, 0, &bar)? else { return Ok(()) };
+        let answer = |design| {
+            self.threads.install(|| study::of_slide(&scene, &production, design, duty, |units| bar.inc(units)))
+        };
+        let unknown = design.map(answer).transpose()?.transpose()?;
+        bar.finish_and_clear();
+        self.conclude(&scene, &production, tally, unknown, product.as_ref())
     }
 
     /// The population of a `mechanism`.
@@ -47,11 +53,16 @@ impl Arguments {
             ));
         }
         let driven = self.drive.of(mechanism)?;
+        let design = self.design(!mechanism.uncertain.is_empty())?;
         let production = self.production_of(mechanism, product)?;
-        match self.simulated(&driven, &production, self.duty_of_mechanism(mechanism), driven.index())? {
-            Some(tally) => mechanism::population::conclude(self, &driven, &production, tally, product),
-            None => Ok(()),
-        }
+        let (duty, bar) = (self.duty_of_mechanism(mechanism), self.bar(design));
+        let Some(tally) = self.simulated(&driven, &production, duty, driven.index(), &bar)? else { return Ok(()) };
+        let answer = |design| {
+            self.threads.install(|| study::of_mechanism(&driven, &production, design, duty, |units| bar.inc(units)))
+        };
+        let unknown = design.map(answer).transpose()?.transpose()?;
+        bar.finish_and_clear();
+        mechanism::population::conclude(self, &driven, &production, tally, unknown, product)
     }
 
     /// Shows and writes what all units of a mechanism, counted in `tally`, did, by the drive that they were simulated by.
@@ -62,6 +73,6 @@ impl Arguments {
         product: Option<&Product>,
     ) -> Result<(), Failure> {
         let production = self.production_of(driven.mechanism(), product)?;
-        mechanism::population::conclude(self, driven, &production, tally, product)
+        mechanism::population::conclude(self, driven, &production, tally, None, product)
     }
 }

@@ -21,6 +21,7 @@ pub mod mobility;
 #[cfg(test)]
 mod motion_tests;
 mod mounts;
+mod parameter;
 pub mod planar;
 mod record;
 mod run;
@@ -34,7 +35,6 @@ mod start;
 mod state;
 mod sunk;
 mod torn;
-mod vary;
 
 pub use columns::BodyMotion;
 pub use driven::{ByDrive, ENERGY, confirmed, finer};
@@ -42,6 +42,7 @@ pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps, STOP_MOST, level_of};
 pub use hanging::MountError;
 pub use mounts::Mounts;
+pub use parameter::{Parameter, Uncertain, Varied};
 pub use record::{MechanismRun, Moment, SCHEME, Samples};
 pub use run::{controller_run, film, run};
 pub use run_error::RunError;
@@ -50,7 +51,6 @@ pub use source::{dimension, drive_names, element_paths, rust_source};
 pub use start::Rest;
 pub use sunk::Sunk;
 pub use torn::{Torn, torn};
-pub use vary::{Parameter, Varied};
 
 use slipfit_core::{clearance::GapStatistics, drive::Drive};
 pub use slipfit_desk::{
@@ -81,6 +81,8 @@ pub struct Mechanism {
     pub gaps: Vec<Gap>,
     /// Parameters that vary over the production, beside the gaps.
     pub vary: Vec<Varied>,
+    /// Parameters that have one value in the whole production, which is not known.
+    pub uncertain: Vec<Uncertain>,
     /// What is simulated: the stroke (m) is the first drive's, and the error a share of the mechanism's own speed.
     pub run: RunSpec,
     /// How a controller computes it.

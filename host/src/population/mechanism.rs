@@ -16,7 +16,7 @@ use crate::{
         simulate::SimulateError,
     },
     mechanism::{ByDrive, ENERGY, Mechanism, confirmed, run},
-    setup::RunSpec,
+    setup::{Adjustable, RunSpec},
 };
 
 /// Error that a step may make, as a share of the mechanism's own speed, unless the scene allows more. Of the shipped mechanisms it costs
@@ -79,7 +79,7 @@ impl Subject for ByDrive<'_> {
 pub fn mechanism_of(mechanism: &Mechanism, drawn: &Drawn<Vec<f64>>, i: usize) -> Mechanism {
     let mut own = mechanism.clone();
     for (varied, deviation) in mechanism.vary.iter().zip(&drawn.deviations[i]) {
-        varied.parameter.apply(&mut own, *deviation);
+        varied.parameter.vary(&mut own, *deviation);
     }
     own
 }

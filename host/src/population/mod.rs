@@ -24,6 +24,7 @@ pub mod study;
 pub mod subject;
 pub mod tally;
 pub mod telling;
+pub mod uncertain;
 pub mod unit;
 
 use rayon::prelude::*;

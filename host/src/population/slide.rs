@@ -20,7 +20,7 @@ use crate::{
         simulate::{Settings, SimulateError, simulate},
     },
     mechanism::level_of,
-    setup::Scene,
+    setup::{Adjustable, Scene},
 };
 
 /// Error of the drive force that a step may make, as a share of the drive's greatest force. Single precision knows the
@@ -73,7 +73,7 @@ pub fn course(scene: &Scene) -> Course {
 pub fn scene_of(scene: &Scene, drawn: &Drawn, i: usize) -> Scene {
     let mut own = scene.clone();
     for (varied, deviation) in scene.vary.iter().zip(&drawn.deviations[i]) {
-        varied.parameter.apply(&mut own, *deviation);
+        varied.parameter.vary(&mut own, *deviation);
     }
     own
 }

@@ -7,12 +7,12 @@ use super::{Problem, SceneError, value::Field};
 use crate::mechanism::{NormalData, Rebound};
 
 const EXPONENT: Quantity = Quantity { units: unit::ONE, range: [1.0, 4.0] };
-const DAMPING: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
-const DEPTH: Quantity = Quantity { units: unit::LENGTH, range: [1e-6, 1000.0] };
+pub(super) const DAMPING: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
+pub(super) const DEPTH: Quantity = Quantity { units: unit::LENGTH, range: [1e-6, 1000.0] };
 const RESTITUTION: Quantity = Quantity { units: unit::ONE, range: [0.0, 1.0] };
 const SPEED: Quantity = Quantity { units: unit::SPEED, range: [1e-3, 1e7] };
 /// N/m^e.
-const STIFFNESS: [f64; 2] = [1e-9, 1e20];
+pub(super) const STIFFNESS: [f64; 2] = [1e-9, 1e20];
 
 /// Names of the laws in scene files.
 const IMPACT: &str = "impact";
@@ -36,7 +36,7 @@ pub(super) fn normal(table: &Field) -> Result<NormalData, SceneError> {
     let law = table.get("law");
     let name = law.as_ref().map_or(Ok(IMPACT), Field::to_text)?;
     let exponent = table.number("exponent", &EXPONENT)?;
-    let stiffness = stiffness(table, exponent)?;
+    let stiffness = stiffness(&table.require("stiffness", &units(exponent))?, exponent)?;
     let rebound = || {
         none_of(table, ["damping", "depth"], name)?;
         let (restitution, speed) = (table.number("restitution", &RESTITUTION)?, table.number("speed", &SPEED)?);
@@ -69,10 +69,20 @@ fn none_of(table: &Field, keys: [&str; 2], law: &str) -> Result<(), SceneError> 
     }
 }
 
-/// The stiffness (N/m^e); its unit has the contact's exponent.
-fn stiffness(table: &Field, exponent: f64) -> Result<f64, SceneError> {
-    let units = format!("a number in N/mm^{exponent}, or a text with its unit: N/mm^{exponent}, N/m^{exponent}");
-    let field = table.require("stiffness", &units)?;
+/// What a stiffness with this `exponent` may be.
+fn units(exponent: f64) -> String {
+    format!("a number in N/mm^{exponent}, or a text with its unit: N/mm^{exponent}, N/m^{exponent}")
+}
+
+/// A stiffness in N/mm^e with this `exponent` e as N/m^e: k·1000^e under the root, where 1000^1.5 is not yet rounded, is the nearest
+/// double for the paper's contact.
+pub(super) fn per_millimetre(number: f64, exponent: f64) -> f64 {
+    libm::copysign(libm::sqrt(number * number * libm::pow(1e6, exponent)), number)
+}
+
+/// The stiffness (N/m^e) in `field`; its unit has the contact's exponent.
+pub(super) fn stiffness(field: &Field, exponent: f64) -> Result<f64, SceneError> {
+    let units = units(exponent);
     let measure = field.measure(&units)?;
     let (key, written) = (field.key.clone(), field.written(""));
 
@@ -86,8 +96,7 @@ fn stiffness(table: &Field, exponent: f64) -> Result<f64, SceneError> {
     }
     let number = measure.number;
     let value = match length {
-        // k·1000^e under the root, where 1000^1.5 is not yet rounded: the nearest double for the paper's contact.
-        "mm" => libm::copysign(libm::sqrt(number * number * libm::pow(1e6, exponent)), number),
+        "mm" => per_millimetre(number, exponent),
         _ => number,
     };
     let [least, greatest] = STIFFNESS;

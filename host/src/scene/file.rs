@@ -75,7 +75,8 @@ impl SceneFile {
             .any(|key| root.get(key).is_some())
             .then(|| product(&root, measured.as_ref()))
             .transpose()?;
-        let of_slide = ["slide", "contact", "friction", "drive", "run", "controller", "sweep", "pin", "vary"];
+        let of_slide =
+            ["slide", "contact", "friction", "drive", "run", "controller", "sweep", "pin", "vary", "uncertain"];
         if product.is_some() && !mechanism::is_mechanism(&root) && of_slide.iter().all(|key| root.get(key).is_none()) {
             let measured = found(measured, product.as_ref(), Vec::new())?;
             return Ok(Self { title, product, slide: None, mechanism: None, measured });

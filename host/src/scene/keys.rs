@@ -68,6 +68,20 @@ const COST: Key = table(
 );
 const TOLERANCED: &[Key] = &[key("value"), key("tolerance"), key("sigma"), DISTRIBUTION, key("edge"), COST];
 const DEVIATION: &[Key] = &[key("tolerance"), key("sigma"), DISTRIBUTION];
+const BELIEF: &[Key] = &[key("mean"), key("deviation"), key("median"), key("factor")];
+/// Parameters of what moves, each with the keys `below` it.
+macro_rules! parameters {
+    ($below:expr) => {
+        &[
+            table("friction", &[table("coefficient", $below), table("stick_band", $below)]),
+            table("contact", &[table("stiffness", $below), table("damping", $below), table("depth", $below)]),
+            table("slide", &[table("mass", $below), table("tilt_x", $below), table("tilt_z", $below)]),
+            table("mechanism", &[table("tilt_x", $below), table("tilt_z", $below)]),
+            table("body", &[key("name"), table("mass", $below)]),
+            table("drive", &[key("name"), table("gain", $below), table("ramp_end", $below)]),
+        ]
+    };
+}
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
 const ZONE: &[Key] = &[
@@ -252,17 +266,8 @@ pub(super) const ROOT: &[Key] = &[
         ],
     ),
     table("correlation", &[key("of"), key("coefficient")]),
-    table(
-        "vary",
-        &[
-            table("friction", &[table("coefficient", DEVIATION)]),
-            table("contact", &[table("stiffness", DEVIATION), table("damping", DEVIATION)]),
-            table("slide", &[table("mass", DEVIATION), table("tilt_x", DEVIATION), table("tilt_z", DEVIATION)]),
-            table("mechanism", &[table("tilt_x", DEVIATION), table("tilt_z", DEVIATION)]),
-            table("body", &[key("name"), table("mass", DEVIATION)]),
-            table("drive", &[key("name"), table("gain", DEVIATION), table("ramp_end", DEVIATION)]),
-        ],
-    ),
+    table("vary", parameters!(DEVIATION)),
+    table("uncertain", parameters!(BELIEF)),
 ];
 
 /// Notes every key below the root `node` that no scene has, and every text that is not fit to be printed.
@@ -272,7 +277,7 @@ pub fn note_unfit(node: &Node<'_>) {
 
 /// Tables of what moves and of its run. Which of their keys count depends on the scene: on the kind of a joint, the law of a contact,
 /// whether it is a slide or a mechanism.
-const OF_MOTION: [&str; 14] = [
+const OF_MOTION: [&str; 15] = [
     "slide",
     "contact",
     "friction",
@@ -287,6 +292,7 @@ const OF_MOTION: [&str; 14] = [
     "drawing",
     "pin",
     "vary",
+    "uncertain",
 ];
 
 /// Notes every key of the tables of motion below the `root` that nothing has read: it has no effect.

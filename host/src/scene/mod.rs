@@ -11,18 +11,22 @@ mod keys;
 mod levels;
 mod measured;
 mod mechanism;
+mod parameter;
 mod parse;
 mod pins;
 mod plausible;
 mod product;
+mod quantity;
 #[cfg(test)]
 pub(crate) mod reference;
 mod shipped;
+mod slide_parameters;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod uncertain;
 mod value;
-pub mod vary;
+mod vary;
 mod written;
 
 pub use diagnostic::{Problem, SceneError};

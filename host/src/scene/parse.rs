@@ -20,7 +20,10 @@ use super::{
     diagnostic::{COMMAND_LINE, Found},
     parse_levels,
     plausible::{self, Loads},
+    quantity::{COEFFICIENT, GAIN, LEAST_RAMP, MASS, POINT, RAMP, SPEED, STICK_BAND},
+    slide_parameters,
     tree::{Source, Value},
+    uncertain::uncertain,
     value::Field,
     vary::vary,
 };
@@ -28,15 +31,8 @@ use crate::setup::{
     ControllerSpec, GapMeasures, LevelRange, MeasuredGaps, PinSpec, RunSpec, SURFACES, Scene, SlideSpec,
 };
 
-const MASS: Quantity = Quantity { units: unit::MASS, range: [0.001, 1e7] };
 const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
-const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [0.0, 100.0] };
-const STICK_BAND: Quantity = Quantity { units: unit::SPEED, range: [1e-7, 1000.0] };
-pub(super) const GAIN: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
-pub(super) const RAMP: Quantity = Quantity { units: unit::SECONDS, range: [-1000.0, 1000.0] };
-pub(super) const SPEED: Quantity = Quantity { units: unit::SPEED, range: [-1e6, 1e6] };
-pub(super) const POINT: Quantity = Quantity { units: unit::LENGTH, range: [-1e5, 1e5] };
 const CLEARANCE: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
 const DURATION: Quantity = Quantity { units: unit::MILLISECONDS, range: [0.001, 1e6] };
 const STROKE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
@@ -53,9 +49,6 @@ const DEFAULT_CONTROLLER: ControllerSpec =
 
 /// kg·m²: what the slide's kernel takes.
 const LEAST_MOMENT: f64 = 1e-12;
-/// s: what the slide's kernel takes.
-pub(super) const LEAST_RAMP: f64 = 1e-6;
-
 /// Reads the slide and its run around the `pins`.
 pub(super) fn scene(
     root: &Field,
@@ -89,11 +82,15 @@ pub(super) fn scene(
         controller,
         sweep: levels,
         vary: Vec::new(),
+        uncertain: Vec::new(),
         gap_measures,
         measured: MeasuredGaps::default(),
         warnings: Vec::new(),
     };
-    let scene = Scene { vary: found.recover(vary(root, &scene), Vec::new()), ..scene };
+    let named = |table| slide_parameters::named(root, table, &scene);
+    let varied = found.recover(named("vary").and_then(vary), Vec::new());
+    let unknown = found.recover(named("uncertain").and_then(|named| uncertain(named, &scene)), Vec::new());
+    let scene = Scene { vary: varied, uncertain: unknown, ..scene };
     for i in [0, scene.sweep.count - 1] {
         scene.check_gaps(&[scene.sweep.level(i); CONTACTS]).map_err(|error| {
             let table = root.get("sweep").unwrap_or(root.clone());

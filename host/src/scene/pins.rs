@@ -4,7 +4,7 @@ use slipfit_core::{clearance::GapStatistics, slide::PINS};
 use slipfit_tolerance::model::{Model, Quantity as Kind, Sum};
 use slipfit_tolerance::unit::{self, Quantity};
 
-use super::{Problem, SceneError, parse::POINT, tree::Value, value::Field};
+use super::{Problem, SceneError, quantity::POINT, tree::Value, value::Field};
 use crate::setup::{GapMeasures, PinSpec, SURFACES};
 
 /// The mean of a gap.

@@ -1,13 +1,15 @@
-//! What is to be computed, as data: a slide on four pins, runs and controllers, tolerance levels, and what varies.
+//! What is to be computed, as data: a slide on four pins, runs and controllers, tolerance levels, what varies and what is not known.
 
 mod hash;
 mod measured;
+mod parameter;
 mod slide;
 mod task;
-mod vary;
+mod uncertain;
 
 pub use hash::{Digest, scene_hash};
 pub use measured::{Measured, MeasuredGaps, Place};
+pub use parameter::{Adjustable, SlideParameter, Varied, coefficient, stick_band, tilted_x, tilted_z};
 pub use slide::{GapError, GapMeasures, PinSpec, SURFACES, Scene, SlideSpec};
 pub use task::{ControllerSpec, GAP_MOST, LevelRange, RunSpec};
-pub use vary::{SlideParameter, Varied, rub_more, tilted_x, tilted_z};
+pub use uncertain::{Belief, REACH, ShownIn, Uncertain};

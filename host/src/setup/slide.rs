@@ -10,7 +10,8 @@ use slipfit_core::{
 use slipfit_tolerance::number::ten_digits;
 
 use super::{
-    ControllerSpec, GAP_MOST, LevelRange, MeasuredGaps, RunSpec, SlideParameter, Varied, rub_more, tilted_x, tilted_z,
+    Adjustable, ControllerSpec, GAP_MOST, LevelRange, MeasuredGaps, RunSpec, SlideParameter, Uncertain, Varied,
+    coefficient, stick_band, tilted_x, tilted_z,
 };
 
 /// Which surfaces meet a pin, in the order of Table 2.
@@ -41,6 +42,8 @@ pub struct Scene {
     pub sweep: LevelRange,
     /// What varies over the production beside the gaps.
     pub vary: Vec<Varied>,
+    /// What has one value in the whole production, which is not known.
+    pub uncertain: Vec<Uncertain>,
     /// Which measure of the product each gap is, pin by pin; `None` where the scene gives its statistics.
     pub gap_measures: GapMeasures,
     /// Gaps whose distribution is that of measured parts.
@@ -155,18 +158,29 @@ impl Scene {
     }
 }
 
-impl SlideParameter {
-    /// Moves the parameter of `scene` by a `deviation` (SI).
-    pub fn apply(self, scene: &mut Scene, deviation: f64) {
-        match self {
-            Self::Friction => rub_more(&mut scene.friction, deviation),
-            Self::Stiffness => scene.contact.stiffness *= 1.0 + deviation,
-            Self::Damping => scene.contact.damping += deviation,
-            Self::Mass => scene.slide.mass += deviation,
-            Self::Gain => scene.drive.gain += deviation,
-            Self::RampEnd => scene.drive.ramp_end += deviation,
-            Self::TiltX => scene.slide.gravity = tilted_x(scene.slide.gravity, deviation),
-            Self::TiltZ => scene.slide.gravity = tilted_z(scene.slide.gravity, deviation),
+impl Adjustable for SlideParameter {
+    type Of = Scene;
+
+    fn change(self, scene: &mut Scene, change: &mut dyn FnMut(f64) -> f64) {
+        let gravity = scene.slide.gravity;
+        let value = match self {
+            Self::Friction => coefficient(&mut scene.friction),
+            Self::StickBand => stick_band(&mut scene.friction),
+            Self::Stiffness => Some(&mut scene.contact.stiffness),
+            Self::Damping => Some(&mut scene.contact.damping),
+            Self::Depth => Some(&mut scene.contact.depth),
+            Self::Mass => Some(&mut scene.slide.mass),
+            Self::Gain => Some(&mut scene.drive.gain),
+            Self::RampEnd => Some(&mut scene.drive.ramp_end),
+            Self::TiltX => return scene.slide.gravity = tilted_x(gravity, change(0.0)),
+            Self::TiltZ => return scene.slide.gravity = tilted_z(gravity, change(0.0)),
+        };
+        if let Some(value) = value {
+            *value = change(*value);
         }
+    }
+
+    fn varies_by_shares(self) -> bool {
+        self == Self::Stiffness
     }
 }

@@ -17,4 +17,5 @@ pub mod report;
 pub mod stability;
 pub(crate) mod svg;
 pub mod tolerances;
+pub mod uncertain;
 pub mod units;

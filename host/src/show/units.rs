@@ -90,7 +90,7 @@ pub fn forces<S: Subject>(subject: &S, tally: &Tally<S::Gaps>, limit: Option<f64
 }
 
 /// Shares (%) over a place, with the ends of their intervals as guides.
-fn with_interval(shares: &[(f64, Share)], label: &str) -> Vec<Series> {
+pub(super) fn with_interval(shares: &[(f64, Share)], label: &str) -> Vec<Series> {
     let line = |label: &str, look, of: &dyn Fn(&Share) -> f64| Series {
         label: label.into(),
         look,

@@ -1,10 +1,13 @@
 //! How many units malfunction with given tolerances.
 
 use indicatif::ProgressBar;
-use slipfit_tolerance::allocate::{
-    AllocateError,
-    confirm::Counted,
-    requirement::{Kind, Requirement},
+use slipfit_tolerance::{
+    allocate::{
+        AllocateError,
+        confirm::Counted,
+        requirement::{Kind, Requirement},
+    },
+    product::Product,
 };
 
 use super::tolerances::Tolerances;
@@ -14,7 +17,10 @@ use crate::{
     population::{
         production::Production,
         study::{Judgement, judge},
+        tally::Duty,
+        uncertain::{answer::Answer, design::Design, study::of_slide},
     },
+    setup::Scene,
 };
 
 /// What units of a scene do with other tolerances.
@@ -57,16 +63,10 @@ impl<'a> Function<'a> {
     /// [`AllocateError`], if the scene is not sound, a unit cannot be simulated, or more units come to no verdict than may malfunction.
     pub fn count(&self, tolerances: &[f64], units: u64, seed: u64) -> Result<Counted, AllocateError> {
         let Limits { allowed, force } = self.limits;
-        let file = self.scene.file(tolerances)?;
-        let mut slide = file.slide.ok_or_else(|| AllocateError::Model("it has no [slide]".into()))?;
-        slide.run.duration = slide.stroke_duration().unwrap_or(slide.run.duration);
-        let production = Production::new(&slide, file.product.as_ref(), 0.0, seed)
-            .map_err(|error| AllocateError::Function(error.into()))?;
+        let (slide, product) = self.slide(tolerances)?;
+        let production = production(&slide, product.as_ref(), seed)?;
         let found = judge(&slide, &production, units, force, |units| self.bar.inc(units));
-        let Judgement { failed, undecided, .. } = found.map_err(|error| match error {
-            SimulateError::Interrupted => AllocateError::Interrupted,
-            error => AllocateError::Function(error.into()),
-        })?;
+        let Judgement { failed, undecided, .. } = found.map_err(stopped)?;
         if undecided as f64 > allowed * units as f64 {
             let why = why_undecided(&slide, Verdict::Undecided);
             return Err(AllocateError::Unjudged { undecided, units, allowed, why });
@@ -74,8 +74,42 @@ impl<'a> Function<'a> {
         Ok(Counted { failed: failed + undecided, units })
     }
 
+    /// What the units do with these `tolerances` (SI) over all that is not known, beside `units` that were counted; none where everything
+    /// is known.
+    ///
+    /// # Errors
+    /// [`AllocateError`], if the scene is not sound or a unit cannot be simulated.
+    pub fn unknown(&self, tolerances: &[f64], units: u64, seed: u64) -> Result<Option<Answer>, AllocateError> {
+        let (slide, product) = self.slide(tolerances)?;
+        let Some(design) = Design::beside(units, seed).filter(|_| !slide.uncertain.is_empty()) else {
+            return Ok(None);
+        };
+        let production = production(&slide, product.as_ref(), seed)?;
+        let duty = Duty { limit: self.limits.force, stroke: slide.run.stroke };
+        of_slide(&slide, &production, design, duty, |units| self.bar.inc(units)).map(Some).map_err(stopped)
+    }
+
+    /// The slide with these `tolerances` (SI), which runs its whole stroke, and its product.
+    fn slide(&self, tolerances: &[f64]) -> Result<(Scene, Option<Product>), AllocateError> {
+        let file = self.scene.file(tolerances)?;
+        let mut slide = file.slide.ok_or_else(|| AllocateError::Model("it has no [slide]".into()))?;
+        slide.run.duration = slide.stroke_duration().unwrap_or(slide.run.duration);
+        Ok((slide, file.product))
+    }
+
     /// Takes the progress away.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+fn production<'p>(slide: &Scene, product: Option<&'p Product>, seed: u64) -> Result<Production<'p>, AllocateError> {
+    Production::new(slide, product, 0.0, seed).map_err(|error| AllocateError::Function(error.into()))
+}
+
+fn stopped(error: SimulateError) -> AllocateError {
+    match error {
+        SimulateError::Interrupted => AllocateError::Interrupted,
+        error => AllocateError::Function(error.into()),
     }
 }

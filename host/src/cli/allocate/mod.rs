@@ -36,6 +36,7 @@ use super::{
     arguments::{SceneArguments, ThreadArguments},
     check,
     failure::Failure,
+    population::uncertain,
     terminal::{counter, given, print, print_json, progress, warn},
 };
 use crate::scene::{SceneFile, with_tolerances};
@@ -210,10 +211,16 @@ impl Arguments {
                 }
                 other => other?,
             };
+            let tolerances = found.solution.tolerances.clone();
+            let unknown = match &function {
+                Some(function) => function.unknown(&tolerances, self.units, self.seed)?,
+                None => None,
+            };
             if let Some(function) = &function {
                 function.finish();
             }
-            let tolerances = found.solution.tolerances.clone();
+            let doubts = unknown.as_ref().map(uncertain::warnings).transpose()?.unwrap_or_default();
+            let unknown = unknown.zip(limits).map(|(answer, limits)| report::Unknown::new(answer, limits.allowed));
             let checked = checked_units(&model(&tolerances)?, self.samples, self.seed)?;
             if let Some((requirement, outside)) = checked.contradicts(&requirements) {
                 let of = requirement.measure.map_or("all measures", |i| product.model.measures[i].name.as_str());
@@ -231,8 +238,10 @@ impl Arguments {
             } else {
                 Vec::new()
             };
-            let checked = report::Checks { measures: checked, confirmation };
-            Ok((Report::new(&file.title, &product, figures.rows(), &found, &checked, points), tolerances))
+            let checked = report::Checks { measures: checked, confirmation, unknown };
+            let mut report = Report::new(&file.title, &product, figures.rows(), &found, checked, points);
+            report.warnings.extend(doubts);
+            Ok((report, tolerances))
         };
         let (mut report, tolerances) = self.threads.install(work)??;
         let simulated = file.slide.iter().filter(|_| function.is_some());

@@ -14,7 +14,7 @@ use slipfit_tolerance::{
     product::{Product, costed::Costed},
 };
 
-use crate::scene::tolerance;
+use crate::{population::uncertain::answer::Answer, scene::tolerance};
 
 /// Prices below this share of the cost are rounding.
 const NOTHING: f64 = 1e-12;
@@ -48,6 +48,8 @@ pub struct Report {
     pub good: Option<f64>,
     /// Other units that confirm the share of malfunctions, where that is required.
     pub malfunctions: Option<Confirmation>,
+    /// What units do over all that is not known, where something is not and malfunction is limited.
+    pub uncertain: Option<Unknown>,
     /// Cost against defects; empty unless it was asked for.
     pub curve: Vec<CurvePoint>,
     /// What to know before trusting it.
@@ -60,6 +62,27 @@ pub struct Checks {
     pub measures: Check,
     /// Other units that confirm the share of malfunctions, where that is required.
     pub confirmation: Option<Confirmation>,
+    /// What units do over all that is not known.
+    pub unknown: Option<Unknown>,
+}
+
+/// What units do with the tolerances found, over all that is not known.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Unknown {
+    /// The share of them that may malfunction.
+    pub allowed: f64,
+    /// Whether no more do over the whole interval of 95 %.
+    pub holds: bool,
+    /// What they do.
+    #[serde(flatten)]
+    pub answer: Answer,
+}
+
+impl Unknown {
+    /// Of an `answer`, where this share is `allowed`.
+    pub fn new(answer: Answer, allowed: f64) -> Self {
+        Self { allowed, holds: answer.malfunctions.interval[1] <= allowed, answer }
+    }
 }
 
 /// Units that the search has not seen, and that confirm what is required of malfunction.
@@ -175,10 +198,10 @@ impl Report {
         product: &Product,
         rows: &[Row],
         found: &Found,
-        checks: &Checks,
+        checks: Checks,
         points: Vec<Point>,
     ) -> Self {
-        let Checks { measures: checked, confirmation } = checks;
+        let Checks { measures: checked, confirmation, unknown } = checks;
         let solution = &found.solution;
         let tightest = points.last().filter(|_| points.len() < LEVELS.len());
         let out_of_reach = tightest.map(|point| format!("fewer defects than {} ppm are out of reach", point.ppm));
@@ -216,7 +239,8 @@ impl Report {
             check: checked.measures.iter().map(|of| Measured::new(&product.model, of, checked.units)).collect(),
             samples: checked.units,
             good: checked.good.map(|good| good.value),
-            malfunctions: *confirmation,
+            malfunctions: confirmation,
+            uncertain: unknown,
             curve: points
                 .into_iter()
                 .map(|point| CurvePoint { ppm: point.ppm, cost: point.cost, tolerances: in_units(&point.tolerances) })

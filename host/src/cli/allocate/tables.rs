@@ -6,13 +6,27 @@ use slipfit_tolerance::{
     number::{fixed, or_dash, per_million, percent, three_digits},
 };
 
-use super::report::{Confirmation, Measured, Report, Required};
-use crate::cli::terminal::text_table;
+use super::report::{Confirmation, Measured, Report, Required, Unknown};
+use crate::cli::{
+    population::uncertain::{decided, share},
+    terminal::text_table,
+};
 
 /// A number with six digits at most.
 fn digits(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-4..1e9).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+/// Whether the requirement on malfunction holds over all that is not known.
+fn over_unknown(Unknown { allowed, holds, answer }: &Unknown) -> String {
+    let holds = if *holds { "holds over the whole interval" } else { "does not hold over the whole interval" };
+    format!(
+        "Over what is not known: {} (95 %) malfunction; the requirement, {} %, {holds}. Decided by {}\n",
+        share(&answer.malfunctions),
+        percent(*allowed, 2),
+        decided(answer)
+    )
 }
 
 /// The answer first, then what it rests on.
@@ -52,6 +66,7 @@ pub fn tables(report: &Report) -> String {
             "Confirmed by {units} other simulated units: {share} % malfunction, with 95 % confidence at most {at_most} %{of}\n"
         );
     }
+    text += &report.uncertain.as_ref().map(over_unknown).unwrap_or_default();
     if !rows.is_empty() {
         text += &format!("Check by the full model, {} units drawn\n", report.samples);
         text += &text_table(

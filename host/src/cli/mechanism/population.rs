@@ -15,9 +15,10 @@ use crate::{
         failure::Failure,
         population::{
             asked::{Arguments, HYPOTHESIS},
-            page::units_of_mechanism,
+            page::{units_of_mechanism, unknown_figure},
             rare,
             reports::{LevelReport, UnitReport},
+            uncertain,
             words::{faults, levels, percent, strongest, verdicts},
         },
         terminal::{print, print_json, text_table, warn},
@@ -35,6 +36,7 @@ use crate::{
         study::Population,
         subject::Subject,
         tally::Tally,
+        uncertain::answer::Answer,
     },
     show::{
         report::{Figure, units_page},
@@ -57,6 +59,8 @@ struct Report<'a> {
     statistics: Statistics,
     force_drivers: Vec<Driver>,
     malfunction_drivers: Vec<Driver>,
+    /// None if everything is known.
+    uncertain: Option<Answer>,
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
     /// None if it was not asked for.
@@ -71,6 +75,8 @@ struct Found {
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
     rare: Option<Rare>,
+    /// What is not known leaves open.
+    unknown: Option<Answer>,
 }
 
 impl Found {
@@ -80,12 +86,13 @@ impl Found {
         driven: &ByDrive,
         production: &Production<Vec<f64>>,
         tally: Tally<Vec<f64>>,
+        unknown: Option<Answer>,
     ) -> Result<Self, Failure> {
         let population = Population::of(production, tally, asked.duty_of_mechanism(driven.mechanism()));
         let levels = LevelReport::all(driven, &population.tally)?;
         let hypothesis = Hypothesis::test(driven, DIRECTIONS, asked.seed, asked.force_limit)?;
         let rare = asked.rare.then(|| asked.estimate(driven, production, &population)).transpose()?;
-        Ok(Self { population, levels, hypothesis, rare })
+        Ok(Self { population, levels, hypothesis, rare, unknown })
     }
 }
 
@@ -95,14 +102,16 @@ pub fn conclude(
     driven: &ByDrive,
     production: &Production<Vec<f64>>,
     tally: Tally<Vec<f64>>,
+    unknown: Option<Answer>,
     product: Option<&Product>,
 ) -> Result<(), Failure> {
     let mechanism = driven.mechanism();
     let limit = asked.force_limit;
-    let found = asked.threads.install(|| Found::of(asked, driven, production, tally))??;
+    let found = asked.threads.install(|| Found::of(asked, driven, production, tally, unknown))??;
     let mut warnings = warnings_of(mechanism)?;
     warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
     warnings.extend(faults(driven, production, &found.population)?);
+    warnings.extend(found.unknown.as_ref().map(uncertain::warnings).transpose()?.unwrap_or_default());
     if let Some(path) = &asked.plot {
         let svg = forces(driven, &found.population.tally, limit).map_err(anyhow::Error::from)?;
         files::write(path, svg.as_bytes())?;
@@ -116,6 +125,7 @@ pub fn conclude(
             asked.threads.install(|| units_of_mechanism(driven, production, &found.population, limit))??;
         let svg = hypothesis(driven.title(), &found.hypothesis);
         page.figures.push(Figure { caption: HYPOTHESIS.into(), svg: svg.map_err(anyhow::Error::from)? });
+        page.figures.extend(found.unknown.as_ref().map(|answer| unknown_figure(driven.title(), answer)).transpose()?);
         let words = summary(driven, &found, limit);
         files::write(path, units_page(&mechanism.title, &words, &page, &warnings).into_string().as_bytes())?;
     }
@@ -132,6 +142,7 @@ pub fn conclude(
             statistics: found.population.statistics,
             force_drivers: found.population.of_force,
             malfunction_drivers: found.population.of_malfunction,
+            uncertain: found.unknown,
             warnings,
         });
     }
@@ -146,13 +157,14 @@ fn summary(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
     let (effort, unit) = (kind.effort(), kind.effort_unit());
     let statistics = &found.population.statistics;
     let mut text = format!(
-        "{}: {} units, {} ms, by {}\n\nMalfunction     {}\n",
+        "{}: {} units, {} ms, by {}\n\n",
         mechanism.title,
         statistics.units,
         fixed(mechanism.run.duration * 1e3, 0),
         driven.name(),
-        percent(&statistics.malfunctions)
     );
+    text += &found.unknown.as_ref().map(|answer| uncertain::before(answer, kind)).unwrap_or_default();
+    let _ = writeln!(text, "Malfunction     {}", percent(&statistics.malfunctions));
     text += &verdicts(statistics);
     if let (Some(share), Some(limit)) = (statistics.over_limit, limit) {
         let name = format!("  over {limit} {unit} ");

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use indicatif::ProgressBar;
 use slipfit_tolerance::{
     counting::{
         file::{Found as _, Source},
@@ -30,6 +31,7 @@ use crate::{
         study::Population,
         subject::Subject,
         tally::{Counter, Duty, Tally},
+        uncertain::design::Design,
     },
     setup::Scene,
 };
@@ -38,7 +40,8 @@ use crate::{
 ///
 /// For slides and mechanisms with a drive. Every unit has gaps of its own. Gaps that are measures follow from the product's
 /// tolerances; the others are drawn from the mean and the standard deviation in the scene. With `[vary]` in the scene friction, stiffness, damping, mass, gain, ramp
-/// and the direction of gravity vary, too. A slide runs the whole stroke unless `--opening` is given, a mechanism
+/// and the direction of gravity vary, too. With `[uncertain]` four times as many units more are simulated, and the answer covers what is not known.
+/// A slide runs the whole stroke unless `--opening` is given, a mechanism
 /// `run.duration` or to the end of its stroke.
 ///
 /// For slides only: `--opening`.
@@ -117,14 +120,32 @@ impl Arguments {
         Duty { limit: self.force_limit, stroke: mechanism.run.stroke }
     }
 
-    /// Simulates what is asked for of a `production` of `subject` with this `duty`, by the `drive` of that number. None, if it is
-    /// one of several shards, which is written to its file.
+    fn settings(&self) -> Settings {
+        Settings::new(self.units, self.seed, self.opening, self.correlation, self.force_limit)
+    }
+
+    /// The units of this shard.
+    fn numbers(&self) -> std::ops::Range<u64> {
+        let (settings, shard) = (self.settings(), self.shard.unwrap_or(Shard::ALL));
+        settings.units_in(&shard.blocks(Tally::<Vec<f64>>::blocks(&settings)))
+    }
+
+    /// The progress of the units of this shard, and of those of a `design`.
+    pub fn bar(&self, design: Option<Design>) -> ProgressBar {
+        let numbers = self.numbers();
+        let units = numbers.end - numbers.start.min(numbers.end) + design.map_or(0, |design| design.units());
+        progress("simulating", units as usize)
+    }
+
+    /// Simulates what is asked for of a `production` of `subject` with this `duty`, by the `drive` of that number, and tells `bar` of
+    /// each unit. None, if it is one of several shards, which is written to its file.
     pub fn simulated<S: Subject<Gaps: StoredGaps>>(
         &self,
         subject: &S,
         production: &Production<S::Gaps>,
         duty: Duty,
         drive: usize,
+        bar: &ProgressBar,
     ) -> Result<Option<Tally<S::Gaps>>, Failure> {
         let partial = self.out.as_deref().map(checkpoint);
         let outputs = [
@@ -137,27 +158,24 @@ impl Arguments {
         ];
         endings::check_part("--out", self.out.as_deref())?;
         self.scene.check_outputs(&given(outputs))?;
-        let settings = Settings::new(self.units, self.seed, self.opening, self.correlation, self.force_limit);
-        let settings = settings.by_drive(drive);
+        let settings = self.settings().by_drive(drive);
         let (name, text) = self.scene.text()?;
         let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
         let shard = self.shard.unwrap_or(Shard::ALL);
         let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
-        let numbers = settings.units_in(&shard.blocks(Tally::<S::Gaps>::blocks(&settings)));
-        let bar = progress("simulating", (numbers.end - numbers.start.min(numbers.end)) as usize);
         let mut rows = self.csv.as_deref().map(|path| Rows::begin(path, subject)).transpose()?;
         let listener = rows.as_mut().map(|rows| Listener::new(Box::new(|units| rows.add(units))));
         let counter = Counter::new(subject, duty);
         let simulation = Simulation { subject, production, settings, counter, listener };
         let tally = self.threads.install(|| {
             let tally = run(&simulation, &source, shard, keep.as_ref(), |units| bar.inc(units))?;
-            simulation.catch_up(numbers.end).map(|()| tally)
+            simulation.catch_up(self.numbers().end).map(|()| tally)
         })??;
-        bar.finish_and_clear();
         drop(simulation);
         rows.map_or(Ok(()), Rows::end)?;
         let (Some(out), Shard { number, count: 2.. }) = (&self.out, shard) else { return Ok(Some(tally)) };
         let units = tally.counts.units;
+        bar.finish_and_clear();
         let written = Written { shard: number, of: shard.count, units, file: out.display().to_string() };
         if self.scene.json { print_json(&written) } else { print(&written.to_string()) }.map(|()| None)
     }

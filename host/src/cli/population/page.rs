@@ -16,6 +16,7 @@ use crate::{
         production::Production,
         study::Population,
         telling::{filmed, one_of_each},
+        uncertain::answer::Answer,
     },
     setup::Scene,
     show::{
@@ -24,6 +25,7 @@ use crate::{
         player,
         plot::PlotError,
         report::{Figure, Units},
+        uncertain::decisive,
         units,
     },
 };
@@ -34,6 +36,9 @@ pub const FIGURES: [&str; 4] =
 
 /// The same of a mechanism.
 pub const MECHANISM_FIGURES: [&str; 3] = ["population.svg", "population-forces.svg", "population-drivers.svg"];
+
+/// Name of the picture of what is not known.
+pub const UNKNOWN_FIGURE: &str = "population-unknown.svg";
 
 /// What the picture of forces shows.
 const EVERY_MARK: &str = "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: its gaps \
@@ -98,6 +103,14 @@ pub fn units_of_mechanism(
     let player = played(&one_of_each(all), run, "on its joints")?;
     let (figures, names) = shown(MECHANISM_FIGURES, pictures)?;
     Ok((Units { figures, player }, names))
+}
+
+/// The picture of what is not known, of which an `answer` says what it leaves open.
+pub fn unknown_figure(title: &str, answer: &Answer) -> Result<Figure, Failure> {
+    let svg = decisive(title, answer).map_err(anyhow::Error::from)?;
+    let caption = "How many units malfunction, over what decides most of what is not known. Each ring is a value that was tried, with \
+                   units of its own; the other unknowns differ between them.";
+    Ok(Figure { caption: caption.into(), svg })
 }
 
 /// What tells a unit from others.

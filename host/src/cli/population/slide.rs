@@ -12,8 +12,10 @@ use slipfit_tolerance::{
 
 use super::{
     asked::{Arguments, HYPOTHESIS},
-    page, rare,
+    page::{self, unknown_figure},
+    rare,
     reports::{LevelReport, UnitReport},
+    uncertain,
     words::{faults, levels, percent, strongest, verdicts},
 };
 use crate::{
@@ -23,7 +25,7 @@ use crate::{
         simulate::why_undecided,
         terminal::{print, print_json, text_table, warn},
     },
-    dynamics::outcome::Verdict,
+    dynamics::{driven::DriveKind, outcome::Verdict},
     population::{
         Unit,
         drivers::Driver,
@@ -34,6 +36,7 @@ use crate::{
         study::Population,
         subject::Subject,
         tally::Tally,
+        uncertain::answer::Answer,
     },
     setup::Scene,
     show::{
@@ -52,6 +55,8 @@ struct Report {
     statistics: Statistics,
     force_drivers: Vec<Driver>,
     malfunction_drivers: Vec<Driver>,
+    /// None if everything is known.
+    uncertain: Option<Answer>,
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
     /// None if it was not asked for.
@@ -66,6 +71,8 @@ struct Found {
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
     rare: Option<Rare>,
+    /// What is not known leaves open.
+    unknown: Option<Answer>,
 }
 
 impl Arguments {
@@ -75,9 +82,10 @@ impl Arguments {
         scene: &Scene,
         production: &Production,
         tally: Tally<[f64; CONTACTS]>,
+        unknown: Option<Answer>,
         product: Option<&Product>,
     ) -> Result<(), Failure> {
-        let found = self.threads.install(|| self.find(scene, production, tally))??;
+        let found = self.threads.install(|| self.find(scene, production, tally, unknown))??;
         let without_run = faults(scene, production, &found.population)?;
         if let Some(path) = &self.plot {
             let svg = units::forces(scene, &found.population.tally, self.force_limit);
@@ -91,10 +99,14 @@ impl Arguments {
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
         warnings.extend(without_run);
+        warnings.extend(found.unknown.as_ref().map(uncertain::warnings).transpose()?.unwrap_or_default());
         if let Some(path) = &self.page {
             let (mut units, _) = page::units(scene, production, &found.population, self.force_limit)?;
             let svg = units::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;
             units.figures.push(Figure { caption: HYPOTHESIS.into(), svg });
+            units
+                .figures
+                .extend(found.unknown.as_ref().map(|answer| unknown_figure(&scene.title, answer)).transpose()?);
             let words = self.summary(scene, &found);
             files::write(path, units_page(&scene.title, &words, &units, &warnings).into_string().as_bytes())?;
         }
@@ -107,6 +119,7 @@ impl Arguments {
                 statistics,
                 force_drivers: of_force,
                 malfunction_drivers: of_malfunction,
+                uncertain: found.unknown,
                 levels: found.levels,
                 hypothesis: found.hypothesis,
                 rare: found.rare,
@@ -119,12 +132,18 @@ impl Arguments {
         Ok(())
     }
 
-    fn find(&self, scene: &Scene, production: &Production, tally: Tally<[f64; CONTACTS]>) -> Result<Found, Failure> {
+    fn find(
+        &self,
+        scene: &Scene,
+        production: &Production,
+        tally: Tally<[f64; CONTACTS]>,
+        unknown: Option<Answer>,
+    ) -> Result<Found, Failure> {
         let population = Population::of(production, tally, self.duty_of(scene));
         let levels = LevelReport::all(scene, &population.tally)?;
         let hypothesis = Hypothesis::test(scene, DIRECTIONS, self.seed, self.force_limit)?;
         let rare = self.rare.then(|| self.estimate(scene, production, &population)).transpose()?;
-        Ok(Found { population, levels, hypothesis, rare })
+        Ok(Found { population, levels, hypothesis, rare, unknown })
     }
 }
 
@@ -152,6 +171,7 @@ impl Arguments {
             None => format!("{} ms", fixed(scene.run.duration * 1e3, 0)),
         };
         let _ = writeln!(text, ", {length}\n");
+        text += &found.unknown.as_ref().map(|answer| uncertain::before(answer, DriveKind::Pushes)).unwrap_or_default();
         let _ = writeln!(text, "Malfunction     {}", percent(&malfunctions));
         text += &verdicts(statistics);
         // Warnings name the others.

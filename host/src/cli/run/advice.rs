@@ -3,12 +3,15 @@
 use std::fmt::Write;
 
 use crate::{
-    cli::population::words::{percent, strongest},
+    cli::population::{
+        uncertain::{decided, share},
+        words::{percent, strongest},
+    },
     dynamics::{
         outcome::Verdict,
         sweep::{Level, Sweep},
     },
-    population::{drivers::Driver, statistics::Statistics},
+    population::{drivers::Driver, statistics::Statistics, uncertain::answer::Answer},
 };
 
 /// Units of the production, as far as advice needs them.
@@ -18,6 +21,8 @@ pub struct Units<'a> {
     pub statistics: &'a Statistics,
     /// What drives malfunction, the strongest first.
     pub of_malfunction: &'a [Driver],
+    /// What is not known leaves open, if anything is not.
+    pub unknown: Option<&'a Answer>,
 }
 
 impl Units<'_> {
@@ -29,7 +34,14 @@ impl Units<'_> {
         }
         let unknown =
             if undecided.units > 0 { format!("; {} come to no verdict", undecided.units) } else { String::new() };
-        let mut text = format!("Production      {} of {units} units malfunction{unknown}\n", percent(malfunctions));
+        let mut text = String::new();
+        let mut title = "Production";
+        if let Some(answer) = self.unknown {
+            let share = share(&answer.malfunctions);
+            let _ = writeln!(text, "Production      {share} malfunction (95 %); decided by {}", decided(answer));
+            title = "  as stated";
+        }
+        let _ = writeln!(text, "{title:16}{} of {units} units malfunction{unknown}", percent(malfunctions));
         if malfunctions.units > 0 {
             let _ = writeln!(text, "Failure due to  {}", strongest(self.of_malfunction, 2));
         }

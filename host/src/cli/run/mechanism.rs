@@ -21,7 +21,10 @@ use crate::{
     cli::{
         failure::Failure,
         mechanism,
-        population::page::{MECHANISM_FIGURES, units_of_mechanism},
+        population::{
+            page::{MECHANISM_FIGURES, UNKNOWN_FIGURE, units_of_mechanism, unknown_figure},
+            uncertain::{design, warnings as warnings_of},
+        },
         sweep::{LevelReport, doubts, for_machines},
         table,
         terminal::{print, print_json, progress, warn},
@@ -35,8 +38,12 @@ use crate::{
     firmware::force_table::{self, Demand, ForceTable},
     mechanism::ByDrive,
     population::{
-        mechanism::MechanismPopulation, production::Production as DrawnProduction, statistics::Statistics,
-        study::Population, tally::Duty,
+        mechanism::MechanismPopulation,
+        production::Production as DrawnProduction,
+        statistics::Statistics,
+        study::Population,
+        tally::Duty,
+        uncertain::{answer::Answer, study::of_mechanism},
     },
     show::{
         export::sweep_csv,
@@ -63,6 +70,8 @@ struct Report {
     levels: Vec<LevelReport>,
     /// What units drawn one by one do; none where no gap varies.
     population: Option<Statistics>,
+    /// What is not known leaves open of it; none if everything is known, or no unit is drawn.
+    uncertain: Option<Answer>,
     /// How the product's measures vary, as `slipfit tolerance --json` shows it.
     tolerance: Option<Measures>,
     warnings: Vec<String>,
@@ -70,9 +79,12 @@ struct Report {
 
 impl Arguments {
     pub(super) fn run_mechanism(&self, driven: &ByDrive, product: Option<&Product>) -> Result<(), Failure> {
-        self.written(driven, product, &[FIGURES.as_slice(), &MECHANISM_FIGURES].concat(), |output, production| {
-            self.fill_with_mechanism(output, driven, product, production)
-        })
+        self.written(
+            driven,
+            product,
+            &[FIGURES.as_slice(), &MECHANISM_FIGURES, &[UNKNOWN_FIGURE]].concat(),
+            |output, production| self.fill_with_mechanism(output, driven, product, production),
+        )
     }
 
     fn fill_with_mechanism(
@@ -83,28 +95,39 @@ impl Arguments {
         production: Option<Production>,
     ) -> Result<(), Failure> {
         let mechanism = driven.mechanism();
-        let varies = mechanism.gaps.iter().any(|gap| gap.statistics.deviation > 0.0);
+        let varies = mechanism.gaps.iter().any(|gap| gap.statistics.deviation > 0.0) || !mechanism.uncertain.is_empty();
         let units = if varies { self.units.unwrap_or(UNITS) } else { 0 };
         let drawn = DrawnProduction::of_mechanism(mechanism, product, 0.0, DEFAULT.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
-        let bar = progress("simulating", force_table::levels(driven.levels()).count + units as usize);
+        let design = design(!mechanism.uncertain.is_empty(), units, DEFAULT.seed)?;
+        let all = units + design.map_or(0, |design| design.units());
+        let bar = progress("simulating", force_table::levels(driven.levels()).count + all as usize);
         let ((table, sweep), found) = self.threads.install(|| {
             let made = force_table::make(driven, Demand::Full, || bar.inc(1))?;
             let duty = Duty { limit: None, stroke: mechanism.run.stroke };
             let found = varies.then(|| {
                 let population = Population::study(driven, &drawn, units, duty, |units| bar.inc(units))?;
-                let shown = units_of_mechanism(driven, &drawn, &population, None)?;
-                Ok::<_, Failure>((population, shown))
+                let answer = |design| of_mechanism(driven, &drawn, design, duty, |units| bar.inc(units));
+                let unknown = design.map(answer).transpose()?;
+                let (mut shown, mut names) = units_of_mechanism(driven, &drawn, &population, None)?;
+                if let Some(answer) = &unknown {
+                    shown.figures.push(unknown_figure(driven.title(), answer)?);
+                    names.push(UNKNOWN_FIGURE);
+                }
+                Ok::<_, Failure>(((population, unknown), (shown, names)))
             });
             Ok::<_, Failure>((made, found.transpose()?))
         })??;
         let (population, shown) = found.unzip();
+        let (population, unknown) = population.unzip();
+        let unknown: Option<Answer> = unknown.flatten();
         bar.finish_and_clear();
         let mut warnings = mechanism::warnings_of(driven.mechanism())?;
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.clone()));
         warnings.extend(doubts(&sweep));
+        warnings.extend(unknown.as_ref().map(warnings_of).transpose()?.unwrap_or_default());
 
-        let answer = said(driven, &table, &sweep, population.as_ref());
+        let answer = said(driven, &table, &sweep, population.as_ref(), unknown.as_ref());
         let figures = figures(driven, &sweep)?;
         let page = report(&ReportInput {
             title: driven.title(),
@@ -145,6 +168,7 @@ impl Arguments {
                 ranges: ranges(&sweep),
                 levels: for_machines(&sweep),
                 population: population.map(|population| population.statistics),
+                uncertain: unknown,
                 tolerance: production.map(|production| production.report),
                 warnings,
             });
@@ -156,11 +180,17 @@ impl Arguments {
 }
 
 /// What the mechanism does at which levels, what closes first, what to change, and the table.
-fn said(driven: &ByDrive, table: &ForceTable, sweep: &Sweep, population: Option<&MechanismPopulation>) -> String {
+fn said(
+    driven: &ByDrive,
+    table: &ForceTable,
+    sweep: &Sweep,
+    population: Option<&MechanismPopulation>,
+    unknown: Option<&Answer>,
+) -> String {
     let mut text = answer(sweep);
     text.push('\n');
-    let units = population
-        .map(|population| Units { statistics: &population.statistics, of_malfunction: &population.of_malfunction });
+    let units =
+        population.map(|found| Units { statistics: &found.statistics, of_malfunction: &found.of_malfunction, unknown });
     text += &units.map(|units| units.describe()).unwrap_or_default();
     if let Some((joint, n)) = driven.mechanism().first_to_close() {
         let closed = per_million(normal::tail(n) * 1e6);

@@ -52,7 +52,8 @@ pub(super) struct Arguments {
     levels: LevelArguments,
     /// Units of the production to simulate one by one; 512 if not given.
     ///
-    /// `slipfit population` simulates more units and tells more about them.
+    /// `slipfit population` simulates more units and tells more about them. With `[uncertain]` in the scene four times as many more are
+    /// simulated.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     units: Option<u64>,
     #[command(flatten)]

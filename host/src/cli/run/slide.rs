@@ -21,7 +21,10 @@ use crate::{
     cli::{
         check,
         failure::Failure,
-        population::page,
+        population::{
+            page::{self, UNKNOWN_FIGURE, unknown_figure},
+            uncertain,
+        },
         simulate::why_undecided,
         sweep::{LevelReport, doubts, for_machines},
         table,
@@ -39,7 +42,13 @@ use crate::{
         closing::{closing_level, derived},
         self_locking::{DriveSide, guide},
     },
-    population::{production::Production as DrawnProduction, statistics::Statistics, study::Population, tally::Duty},
+    population::{
+        production::Production as DrawnProduction,
+        statistics::Statistics,
+        study::Population,
+        tally::Duty,
+        uncertain::{answer::Answer, study::of_slide},
+    },
     setup::Scene,
     show::{
         export::sweep_csv,
@@ -64,6 +73,8 @@ struct Report {
     levels: Vec<LevelReport>,
     /// What units drawn one by one do, as `slipfit population --json` shows it.
     population: Statistics,
+    /// What is not known leaves open of it; none if everything is known.
+    uncertain: Option<Answer>,
     /// How the product's measures vary, as `slipfit tolerance --json` shows it.
     tolerance: Option<Measures>,
     warnings: Vec<String>,
@@ -79,13 +90,15 @@ struct Simulated {
     population: Population,
     /// The same for the page, and the names of its pictures' files.
     units: (UnitsShown, Vec<&'static str>),
+    /// What is not known leaves open, if anything is not.
+    unknown: Option<Answer>,
 }
 
 impl Simulated {
     /// The units of the production.
     fn of_units(&self) -> Units<'_> {
         let Population { statistics, of_malfunction, .. } = &self.population;
-        Units { statistics, of_malfunction }
+        Units { statistics, of_malfunction, unknown: self.unknown.as_ref() }
     }
 
     /// What verdicts are given by.
@@ -96,9 +109,12 @@ impl Simulated {
 
 impl Arguments {
     pub(super) fn run_slide(&self, scene: &Scene, product: Option<&Product>) -> Result<(), Failure> {
-        self.written(scene, product, &[FIGURES.as_slice(), &page::FIGURES].concat(), |output, production| {
-            self.fill_with_slide(output, scene, product, production)
-        })
+        self.written(
+            scene,
+            product,
+            &[FIGURES.as_slice(), &page::FIGURES, &[UNKNOWN_FIGURE]].concat(),
+            |output, production| self.fill_with_slide(output, scene, product, production),
+        )
     }
 
     fn fill_with_slide(
@@ -112,6 +128,7 @@ impl Arguments {
         let mut warnings = check::warnings_of(scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.clone()));
         warnings.extend(doubts(simulated.judged()));
+        warnings.extend(simulated.unknown.as_ref().map(uncertain::warnings).transpose()?.unwrap_or_default());
         let undecided = |level: &crate::dynamics::sweep::Level| level.outcome.verdict == Verdict::Undecided;
         if simulated.judged().levels.iter().any(undecided) {
             warnings.push(format!("not every level comes to a verdict{}", why_undecided(scene, Verdict::Undecided)));
@@ -158,6 +175,7 @@ impl Arguments {
                 ranges: ranges(simulated.judged()),
                 levels: for_machines(simulated.judged()),
                 population: simulated.population.statistics.clone(),
+                uncertain: simulated.unknown,
                 tolerance: production.map(|production| production.report),
                 warnings,
             });
@@ -177,7 +195,9 @@ impl Arguments {
         let production = DrawnProduction::new(scene, product, 0.0, DEFAULT.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
         let runs = opening + duration.map_or(0, |_| levels.len());
-        let bar = progress("simulating", runs + units as usize);
+        let design = uncertain::design(!scene.uncertain.is_empty(), units, DEFAULT.seed)?;
+        let all = units + design.map_or(0, |design| design.units());
+        let bar = progress("simulating", runs + all as usize);
         let made = self.threads.install(|| {
             let (table, opening) = force_table::make(scene, Demand::Full, || bar.inc(1))?;
             let mut whole = scene.clone();
@@ -186,8 +206,14 @@ impl Arguments {
             let stroke = duration.map(|_| sweep(&whole, &levels, Keep::Samples, unit, || bar.inc(1)));
             let duty = Duty { limit: None, stroke: whole.run.stroke };
             let population = Population::study(&whole, &production, units, duty, |units| bar.inc(units))?;
-            let units = page::units(&whole, &production, &population, None)?;
-            Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()?, population, units })
+            let answer = |design| of_slide(&whole, &production, design, duty, |units| bar.inc(units));
+            let unknown = design.map(answer).transpose()?;
+            let mut units = page::units(&whole, &production, &population, None)?;
+            if let Some(answer) = &unknown {
+                units.0.figures.push(unknown_figure(&whole.title, answer)?);
+                units.1.push(UNKNOWN_FIGURE);
+            }
+            Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()?, population, units, unknown })
         })??;
         bar.finish_and_clear();
         Ok(made)

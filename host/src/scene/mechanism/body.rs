@@ -6,10 +6,10 @@ use slipfit_tolerance::unit::{self, Quantity};
 use super::{names::tables, place::place};
 use crate::{
     mechanism::{Body, Joint, JointKind, Mechanism, Mounts, Start, Torn, spatial, torn},
-    scene::{Problem, SceneError, parse::POINT, plausible, value::Field},
+    scene::{Problem, SceneError, plausible, quantity::POINT, value::Field},
 };
 
-const MASS: Quantity = Quantity { units: unit::MASS, range: [1e-6, 1e7] };
+pub(super) const MASS: Quantity = Quantity { units: unit::MASS, range: [1e-6, 1e7] };
 const INERTIA: Quantity = Quantity { units: unit::INERTIA, range: [1e-6, 1e15] };
 const ANGLE: Quantity = Quantity { units: unit::ANGLE, range: [-1e4, 1e4] };
 const SPIN: Quantity = Quantity { units: unit::ROTATION, range: [-1e6, 1e6] };

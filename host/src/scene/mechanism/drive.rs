@@ -10,14 +10,13 @@ use super::{
 use crate::{
     mechanism::{Action, NamedDrive, Spring},
     scene::{
-        Problem, SceneError,
-        parse::{GAIN, LEAST_RAMP, POINT, RAMP, SPEED},
-        plausible,
+        Problem, SceneError, plausible,
+        quantity::{GAIN, LEAST_RAMP, POINT, RAMP, SPEED},
         value::Field,
     },
 };
 
-const TORQUE_GAIN: Quantity = Quantity { units: unit::TORQUE_GAIN, range: [0.0, 1e9] };
+pub(super) const TORQUE_GAIN: Quantity = Quantity { units: unit::TORQUE_GAIN, range: [0.0, 1e9] };
 const ROTATION: Quantity = Quantity { units: unit::ROTATION, range: [-1e6, 1e6] };
 const TORSION: Quantity = Quantity { units: unit::TORSION, range: [0.0, 1e12] };
 

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     mechanism::{Joint, JointKind, Laws, Mechanism, STOP_MOST},
-    scene::{Problem, SceneError, parse::POINT, pins::MEAN, plausible, value::Field},
+    scene::{Problem, SceneError, pins::MEAN, plausible, quantity::POINT, value::Field},
     setup::SURFACES,
 };
 

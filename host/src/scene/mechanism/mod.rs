@@ -5,10 +5,10 @@ mod contact;
 mod drive;
 mod joint;
 mod names;
+mod parameters;
 mod place;
 #[cfg(test)]
 mod tests;
-mod vary;
 
 use slipfit_core::menu::FrictionData;
 use slipfit_tolerance::{
@@ -19,6 +19,7 @@ use slipfit_tolerance::{
 use self::{
     contact::{Gaps, laws},
     names::Names,
+    parameters::named,
     place::place,
 };
 use super::{
@@ -26,7 +27,9 @@ use super::{
     measured::columns::Columns,
     parse,
     plausible::{self, Loads},
+    uncertain::uncertain,
     value::Field,
+    vary::vary,
 };
 use crate::{
     dynamics::driven::DriveKind,
@@ -98,6 +101,7 @@ pub(super) fn mechanism(
     let mechanism = Mechanism {
         title,
         vary: Vec::new(),
+        uncertain: Vec::new(),
         planar,
         gravity,
         springs: drive::springs(root, planar, &names)?,
@@ -111,7 +115,9 @@ pub(super) fn mechanism(
         measured: MeasuredGaps::default(),
         warnings: Vec::new(),
     };
-    let mechanism = Mechanism { vary: vary::vary(root, &names, &mechanism)?, ..mechanism };
+    let varied = vary(named(root, "vary", &names, &mechanism)?)?;
+    let unknown = uncertain(named(root, "uncertain", &names, &mechanism)?, &mechanism)?;
+    let mechanism = Mechanism { vary: varied, uncertain: unknown, ..mechanism };
     // With values that stand for wrong ones there is nothing to look at.
     if !found.any() {
         joint::check(&mechanism, &joint_fields, &fields)?;

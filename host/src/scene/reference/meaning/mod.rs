@@ -69,6 +69,11 @@ const WHOLE: &[(&str, &str)] = &[
         "Parameters that vary from unit to unit, besides the gaps, in `slipfit population`. Each takes a tolerance, around \
          the scene's value. Optional.",
     ),
+    (
+        "uncertain",
+        "The same parameters where one value holds for all units, but is not known: `[least, greatest]`, `{ mean, deviation }` \
+         or `{ median, factor }` of the value itself. `population`, `run` and `allocate` answer for all of it. Optional.",
+    ),
 ];
 
 /// Distributions and what they are.

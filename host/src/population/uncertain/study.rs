@@ -1,0 +1,114 @@
+//! Units at values of what is unknown.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::{
+    answer::{Answer, Tried, UnknownReport, forces},
+    design::Design,
+    unknown::Unknown,
+};
+use crate::{
+    dynamics::simulate::SimulateError,
+    mechanism::ByDrive,
+    population::{
+        production::Production,
+        simulate_units,
+        subject::Subject,
+        tally::{Counter, Counts, Duty},
+    },
+    setup::Scene,
+};
+
+/// What units did at one value: their counts, and the greatest forces (N) that half and 95 % of them do not exceed.
+pub type Counted = (Counts, Option<[f64; 2]>);
+
+/// The units `numbers` of a `production` of `subject` with this `duty`; `done` is called with how many are simulated.
+///
+/// # Errors
+/// See [`simulate_units`].
+pub fn counted<S: Subject>(
+    subject: &S,
+    production: &Production<S::Gaps>,
+    numbers: Range<u64>,
+    duty: Duty,
+    done: impl Fn(u64) + Sync,
+) -> Result<Counted, SimulateError> {
+    let counter = Counter::new(subject, duty);
+    let mut tally = counter.nothing();
+    simulate_units(subject, production, numbers, done, |_, units| counter.add(&mut tally, units))?;
+    Ok((tally.counts, forces(&tally.figures.force)))
+}
+
+/// What the production of `model` does with the values of a `design` of the `unknowns`, at least one, on all threads of the current
+/// pool: `count` counts units of a model by their numbers. The result does not depend on the number of threads.
+///
+/// # Errors
+/// Those of `count`.
+pub fn study<M: Clone + Sync>(
+    model: &M,
+    unknowns: &[&dyn Unknown<M>],
+    design: Design,
+    duty: Duty,
+    count: impl Fn(&M, Range<u64>) -> Result<Counted, SimulateError> + Sync,
+) -> Result<Answer, SimulateError> {
+    let points = design.points(unknowns.iter().map(|unknown| unknown.coordinates()).sum());
+    let tried = |value: usize| {
+        let (mut own, mut at, mut shown) = (model.clone(), 0, Vec::with_capacity(unknowns.len()));
+        for unknown in unknowns {
+            let point = &points[value][at..at + unknown.coordinates()];
+            at += point.len();
+            unknown.apply(point, &mut own);
+            shown.push(unknown.shown(point));
+        }
+        let (counts, force) = count(&own, design.units_of(value as u64))?;
+        Ok(Tried { point: points[value].clone(), shown, counts, force })
+    };
+    let tried: Vec<Tried> =
+        (0..points.len()).into_par_iter().with_max_len(1).map(tried).collect::<Result<_, SimulateError>>()?;
+    let report = |(i, unknown): (usize, &&dyn Unknown<M>)| UnknownReport {
+        name: unknown.name().to_owned(),
+        unit: unknown.unit().to_owned(),
+        tried: tried.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], tried| {
+            [low.min(tried.shown[i]), high.max(tried.shown[i])]
+        }),
+        coordinates: unknown.coordinates(),
+    };
+    let unknowns = unknowns.iter().enumerate().map(report).collect();
+    Ok(Answer::of(unknowns, &tried, design.units_each, duty))
+}
+
+/// Of a `production` of `scene`.
+///
+/// # Errors
+/// See [`simulate_units`].
+pub fn of_slide(
+    scene: &Scene,
+    production: &Production,
+    design: Design,
+    duty: Duty,
+    done: impl Fn(u64) + Sync,
+) -> Result<Answer, SimulateError> {
+    let unknowns: Vec<&dyn Unknown<Scene>> = scene.uncertain.iter().map(|one| one as _).collect();
+    study(scene, &unknowns, design, duty, |own, numbers| counted(own, production, numbers, duty, &done))
+}
+
+/// Of a `production` of a mechanism by one of its drives.
+///
+/// # Errors
+/// See [`simulate_units`].
+pub fn of_mechanism(
+    driven: &ByDrive,
+    production: &Production<Vec<f64>>,
+    design: Design,
+    duty: Duty,
+    done: impl Fn(u64) + Sync,
+) -> Result<Answer, SimulateError> {
+    let mechanism = driven.mechanism();
+    let unknowns: Vec<&dyn Unknown<_>> = mechanism.uncertain.iter().map(|one| one as _).collect();
+    study(mechanism, &unknowns, design, duty, |own, numbers| {
+        let own = ByDrive::new(own, driven.index()).expect("the drive of the same mechanism");
+        counted(&own, production, numbers, duty, &done)
+    })
+}
