@@ -131,6 +131,29 @@ fn measured_gaps_are_drawn_together() {
     assert!(correlation(0, 2).abs() < 0.09, "{}", correlation(0, 2));
 }
 
+/// What few parts leave open is in the interval of the share that malfunctions: of 30 parts it is wider than of 3000.
+#[test]
+fn few_parts_leave_the_failing_share_open() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = slipfit::scene::shipped("cd-rom-slide").unwrap().replace("coefficient = 0.3", "coefficient = 0.2");
+    let measured = "[measured]\nfile = \"parts.csv\"\ndistribution = \"normal\"\ncolumn = [{ of = \"left front left\", heading = \"a\" }, \
+                    { of = \"left front right\", heading = \"b\" }]\n";
+    std::fs::write(folder.path().join("slide.toml"), format!("{scene}\n{measured}")).unwrap();
+    let gap = |z: f64| 0.1 + 0.15 * z;
+    let [few, many] = [30, 3000].map(|parts| {
+        write_parts(folder.path(), parts, 4, 0.9, [("a [mm]", &gap), ("b [mm]", &gap)]);
+        let found = json(folder.path(), &["population", "slide.toml", "--units", "800", "--json"]);
+        let unknown = &found["uncertain"];
+        assert_eq!(unknown["measured"], serde_json::json!(["left front left", "left front right"]));
+        [0, 1].map(|end| unknown["malfunctions"]["interval"][end].as_f64().unwrap())
+    });
+    // Of the true joint distribution 11 % malfunction.
+    assert!(many[0] > 0.07 && many[1] < 0.16, "{many:?}");
+    assert!(few[0] < 0.11 && 0.11 < few[1] && few[1] - few[0] > 2.0 * (many[1] - many[0]), "{few:?} {many:?}");
+    let output = slipfit(folder.path(), &["population", "slide.toml", "--rare"]);
+    assert!(stderr(&output).contains("a scene without [uncertain] and [measured]"), "{}", stderr(&output));
+}
+
 /// Both gaps of a pin that are tight together: the share that malfunctions is that of the true joint distribution, and not that of
 /// gaps which are independent.
 #[test]

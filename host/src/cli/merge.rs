@@ -63,7 +63,7 @@ impl Arguments {
             files::write(path, &part.encode().map_err(RunError::from)?)?;
         }
         self.outputs.check_level(file.slide.is_some())?;
-        self.outputs.show(&file.title, file.slide.as_ref(), file.measured.as_ref(), &study, &part.tallies, self.json)
+        self.outputs.show(&file.title, file.slide.as_ref(), file.measured.as_deref(), &study, &part.tallies, self.json)
     }
 
     /// All shards of a population, written as one if that is asked for.

@@ -33,7 +33,7 @@ impl Arguments {
             Moving::Mechanism(mechanism) => return self.of_mechanism(&mechanism, product.as_ref()),
         };
         self.drive.refuse()?;
-        let design = self.design(!scene.uncertain.is_empty())?;
+        let design = self.design(scene.has_unknowns())?;
         let production = self.prepare(&mut scene, product.as_ref())?;
         let (duty, bar) = (self.duty_of(&scene), self.bar(design));
         let Some(tally) = self.simulated(&scene, &production, duty, 0, &bar)? else { return Ok(()) };
@@ -53,7 +53,7 @@ impl Arguments {
             ));
         }
         let driven = self.drive.of(mechanism)?;
-        let design = self.design(!mechanism.uncertain.is_empty())?;
+        let design = self.design(mechanism.has_unknowns())?;
         let production = self.production_of(mechanism, product)?;
         let (duty, bar) = (self.duty_of_mechanism(mechanism), self.bar(design));
         let Some(tally) = self.simulated(&driven, &production, duty, driven.index(), &bar)? else { return Ok(()) };

@@ -46,6 +46,11 @@ impl Gap {
 }
 
 impl Mechanism {
+    /// Whether one value or distribution in the whole production is not known.
+    pub fn has_unknowns(&self) -> bool {
+        !self.uncertain.is_empty() || self.measured.is_some()
+    }
+
     /// The widest gap (m) of its production. The distance to a stop is no play, unless there is nothing else.
     pub fn widest_gap(&self) -> f64 {
         let with_play = || self.joints.iter().filter(|joint| !joint.kind.is_ideal());

@@ -52,13 +52,15 @@ pub use start::Rest;
 pub use sunk::Sunk;
 pub use torn::{Torn, torn};
 
+use std::sync::Arc;
+
 use slipfit_core::{clearance::GapStatistics, drive::Drive};
 pub use slipfit_desk::{
     contact::{Laws, NormalData, Rebound},
     element,
 };
 
-use crate::setup::{ControllerSpec, LevelRange, MeasuredGaps, RunSpec};
+use crate::setup::{ControllerSpec, LevelRange, Measured, RunSpec};
 
 /// Which bodies there are, what joins them, and what is to be simulated. SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,8 +91,8 @@ pub struct Mechanism {
     pub controller: ControllerSpec,
     /// Tolerance levels of a sweep.
     pub sweep: LevelRange,
-    /// Gaps whose distribution is that of measured parts.
-    pub measured: MeasuredGaps,
+    /// Dimensions and gaps whose distribution is that of measured parts, if any is.
+    pub measured: Option<Arc<Measured>>,
     /// What the user should know of the scene file: what is possible but implausible, each with its place.
     pub warnings: Vec<String>,
 }

@@ -2,9 +2,10 @@
 //!
 //! A unit is a pure function of scene, seed and its number.
 
-use std::{marker::PhantomData, ops::Range};
+use std::{marker::PhantomData, ops::Range, sync::Arc};
 
 use slipfit_core::{sampling::stream::derived, slide::CONTACTS};
+use slipfit_measured::production::Joint;
 use slipfit_tolerance::{
     model::Contributor,
     numeric::lanes::{LANES, Lanes},
@@ -18,7 +19,7 @@ use super::{
 };
 use crate::{
     mechanism::{self, Mechanism},
-    setup::{MeasuredGaps, Scene},
+    setup::{Measured, MeasuredGaps, Scene},
 };
 
 pub use super::source::MOST_UNITS;
@@ -34,6 +35,19 @@ pub struct Production<'a, G = [f64; CONTACTS]> {
     sources: Vec<Source<'a>>,
     parameters: usize,
     names: Vec<String>,
+    made_of: Ingredients<'a>,
+}
+
+/// What a production is made of.
+struct Ingredients<'a> {
+    /// None where there is no gap.
+    gaps: Vec<Option<Stated>>,
+    product: Option<&'a Product>,
+    /// Of any two gaps with means and deviations that were not measured.
+    correlation: f64,
+    vary: Vec<Contributor>,
+    measured: Option<Arc<Measured>>,
+    seed: u64,
 }
 
 /// Where a gap comes from.
@@ -65,10 +79,10 @@ impl<'a> Production<'a> {
     pub fn new(scene: &Scene, product: Option<&'a Product>, correlation: f64, seed: u64) -> Result<Self, DrawError> {
         let gaps = scene.pins.iter().flat_map(|pin| pin.gaps);
         let named = gaps.zip(scene.contact_names()).zip(scene.gap_measures.as_flattened());
-        let stated =
+        let gaps =
             named.map(|((gap, name), measure)| Some(Stated { name, statistics: gap?, measure: *measure })).collect();
         let vary = scene.vary.iter().map(|varied| varied.deviation.clone()).collect();
-        Self::of(stated, product, correlation, &scene.measured, vary, seed)
+        Self::of(Ingredients { gaps, product, correlation, vary, measured: scene.measured.clone(), seed })
     }
 }
 
@@ -88,30 +102,49 @@ impl<'a> Production<'a, Vec<f64>> {
             Some(Stated { name: gap.name.clone(), statistics: gap.statistics, measure: gap.measure })
         };
         let vary = mechanism.vary.iter().map(|varied| varied.deviation.clone()).collect();
-        Self::of(mechanism.gaps.iter().map(stated).collect(), product, correlation, &mechanism.measured, vary, seed)
+        let gaps = mechanism.gaps.iter().map(stated).collect();
+        Self::of(Ingredients { gaps, product, correlation, vary, measured: mechanism.measured.clone(), seed })
     }
 }
 
 impl<'a, G: UnitGaps> Production<'a, G> {
-    /// Of gaps as they are `stated`, none where there is no gap, and of parameters that `vary`.
-    fn of(
-        stated: Vec<Option<Stated>>,
-        product: Option<&'a Product>,
-        correlation: f64,
-        measured: &MeasuredGaps,
-        vary: Vec<Contributor>,
-        seed: u64,
-    ) -> Result<Self, DrawError> {
+    /// The likeliest production.
+    fn of(made_of: Ingredients<'a>) -> Result<Self, DrawError> {
+        let measured = made_of.measured.as_ref();
+        let gaps = measured.map(|measured| measured.gaps(measured.production.joint())).unwrap_or_default();
+        let model = made_of.product.map(|product| Held::Shared(&product.model));
+        Self::made(made_of, model, &gaps)
+    }
+
+    /// A production of this `number` that the measured parts leave possible; none where nothing was measured.
+    pub fn possible(&self, number: u64) -> Option<Result<Self, DrawError>> {
+        let Ingredients { ref gaps, product, correlation, ref vary, ref measured, seed } = self.made_of;
+        let own = measured.as_ref()?;
+        let drawn = own.production.drawn(number);
+        let made = |joint: &Joint| {
+            let model = product.map(|product| Held::Own(Box::new(own.model(&product.model, joint))));
+            let (gaps, vary, measured) = (gaps.clone(), vary.clone(), measured.clone());
+            let made_of = Ingredients { gaps, product, correlation, vary, measured, seed };
+            Self::made(made_of, model, &own.gaps(joint))
+        };
+        // Drawn correlations may contradict those that the scene states; the likeliest do not.
+        let likeliest = || Joint { correlations: own.production.joint().correlations.clone(), ..drawn.clone() };
+        Some(made(&drawn).or_else(|_| made(&likeliest())))
+    }
+
+    /// Of a `model` of the product and `measured` gaps.
+    fn made(made_of: Ingredients<'a>, model: Option<Held<'a>>, measured: &MeasuredGaps) -> Result<Self, DrawError> {
+        let Ingredients { gaps: ref stated, product, correlation, ref vary, seed, .. } = made_of;
         let mut sources = Vec::new();
         let mut gaps = vec![Gap::Absent; stated.len()];
         let measure = |gap: &Option<Stated>| gap.as_ref()?.measure;
-        if let Some(product) = product.filter(|_| stated.iter().any(|gap| measure(gap).is_some())) {
-            for (gap, stated) in gaps.iter_mut().zip(&stated) {
+        if let Some(model) = model.filter(|_| stated.iter().any(|gap| measure(gap).is_some())) {
+            for (gap, stated) in gaps.iter_mut().zip(stated) {
                 if let Some(measure) = measure(stated) {
                     *gap = Gap::Drawn(sources.len(), measure);
                 }
             }
-            sources.push(Source::new(Held::Shared(&product.model), derived(seed, STREAMS[0]))?);
+            sources.push(Source::new(model, derived(seed, STREAMS[0]))?);
         }
         let own = stated.iter().enumerate().filter_map(|(i, gap)| Some((i, gap.as_ref()?)));
         let own: Vec<(usize, &Stated)> = own.filter(|(_, gap)| product.is_none() || gap.measure.is_none()).collect();
@@ -124,11 +157,11 @@ impl<'a, G: UnitGaps> Production<'a, G> {
         }
         let parameters = vary.len();
         if parameters > 0 {
-            sources.push(Source::new(Held::Own(Box::new(each_itself(vary))), derived(seed, STREAMS[1]))?);
+            sources.push(Source::new(Held::Own(Box::new(each_itself(vary.clone()))), derived(seed, STREAMS[1]))?);
         }
         let contributors = sources.iter().flat_map(|source| &source.model.contributors);
         let names = contributors.map(|contributor| contributor.name.clone()).collect();
-        Ok(Self { kind: PhantomData, gaps, sources, parameters, names })
+        Ok(Self { kind: PhantomData, gaps, sources, parameters, names, made_of })
     }
 
     /// What varies: name, and which of the variables are its own.

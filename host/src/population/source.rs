@@ -22,6 +22,7 @@ use crate::setup::MeasuredGaps;
 pub const MOST_UNITS: u64 = 1 << 40;
 
 /// What a scene says of a gap.
+#[derive(Clone)]
 pub struct Stated {
     /// Its name.
     pub name: String,

@@ -1,5 +1,7 @@
 //! A scene file as a whole: a product with its tolerances, a slide that moves, or both.
 
+use std::sync::Arc;
+
 use slipfit_core::{clearance::GapStatistics, slide::PINS};
 use slipfit_tolerance::{model::Variation, product::Product, theory::moments};
 
@@ -17,7 +19,7 @@ use super::{
     tree::{Node, Source},
     value::Field,
 };
-use crate::setup::{GapMeasures, Measured, MeasuredGaps, PinSpec, SURFACES, Scene};
+use crate::setup::{GapMeasures, Measured, PinSpec, SURFACES, Scene};
 
 /// What a scene file describes.
 pub struct SceneFile {
@@ -31,7 +33,7 @@ pub struct SceneFile {
     /// The mechanism, if it is made of bodies and joints of its own.
     pub mechanism: Option<Mechanism>,
     /// What of it was measured, if anything was.
-    pub measured: Option<Measured>,
+    pub measured: Option<Arc<Measured>>,
 }
 
 impl SceneFile {
@@ -86,7 +88,7 @@ impl SceneFile {
             let mut mechanism = mechanism::mechanism(&root, title.clone(), product.as_ref(), measured.as_ref())?;
             let names = mechanism.gaps.iter().map(|gap| gap.name.clone()).collect();
             let measured = found(measured, product.as_ref(), names)?;
-            mechanism.measured = gaps_of(measured.as_ref());
+            mechanism.measured.clone_from(&measured);
             return Ok(Self { title, product, slide: None, mechanism: Some(mechanism), measured });
         }
         if product.is_some()
@@ -111,7 +113,7 @@ impl SceneFile {
             product.model.sums.extend(sums(&pins, &gap_measures));
         }
         let mut slide = scene(&root, title.clone(), pins, gap_measures)?;
-        slide.measured = gaps_of(measured.as_ref());
+        slide.measured.clone_from(&measured);
         Ok(Self { title, product, slide: Some(slide), mechanism: None, measured })
     }
 
@@ -164,15 +166,11 @@ fn found(
     columns: Option<Columns>,
     product: Option<&Product>,
     mut names: Vec<String>,
-) -> Result<Option<Measured>, SceneError> {
+) -> Result<Option<Arc<Measured>>, SceneError> {
     let contributors = product.into_iter().flat_map(|product| &product.model.contributors);
     let scalars = contributors.filter(|of| matches!(of.variation, Variation::Scalar { .. }));
     names.extend(scalars.map(|contributor| contributor.name.clone()));
-    columns.map(|columns| columns.found(&names)).transpose()
-}
-
-fn gaps_of(measured: Option<&Measured>) -> MeasuredGaps {
-    measured.map(|measured| measured.gaps(measured.production.joint())).unwrap_or_default()
+    columns.map(|columns| columns.found(&names).map(Arc::new)).transpose()
 }
 
 /// Gives measured gaps of the `pins` their statistics; they are measures of the product no more. The names of all gaps.

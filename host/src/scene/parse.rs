@@ -27,9 +27,7 @@ use super::{
     value::Field,
     vary::vary,
 };
-use crate::setup::{
-    ControllerSpec, GapMeasures, LevelRange, MeasuredGaps, PinSpec, RunSpec, SURFACES, Scene, SlideSpec,
-};
+use crate::setup::{ControllerSpec, GapMeasures, LevelRange, PinSpec, RunSpec, SURFACES, Scene, SlideSpec};
 
 const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
@@ -84,7 +82,7 @@ pub(super) fn scene(
         vary: Vec::new(),
         uncertain: Vec::new(),
         gap_measures,
-        measured: MeasuredGaps::default(),
+        measured: None,
         warnings: Vec::new(),
     };
     let named = |table| slide_parameters::named(root, table, &scene);

@@ -1,5 +1,7 @@
 //! A slide on four pins, as data.
 
+use std::sync::Arc;
+
 use slipfit_core::{
     Scalar,
     clearance::GapStatistics,
@@ -10,7 +12,7 @@ use slipfit_core::{
 use slipfit_tolerance::number::ten_digits;
 
 use super::{
-    Adjustable, ControllerSpec, GAP_MOST, LevelRange, MeasuredGaps, RunSpec, SlideParameter, Uncertain, Varied,
+    Adjustable, ControllerSpec, GAP_MOST, LevelRange, Measured, RunSpec, SlideParameter, Uncertain, Varied,
     coefficient, stick_band, tilted_x, tilted_z,
 };
 
@@ -46,8 +48,8 @@ pub struct Scene {
     pub uncertain: Vec<Uncertain>,
     /// Which measure of the product each gap is, pin by pin; `None` where the scene gives its statistics.
     pub gap_measures: GapMeasures,
-    /// Gaps whose distribution is that of measured parts.
-    pub measured: MeasuredGaps,
+    /// Dimensions and gaps whose distribution is that of measured parts, if any is.
+    pub measured: Option<Arc<Measured>>,
     /// What the user should know of the scene file: what is possible but implausible, each with its place.
     pub warnings: Vec<String>,
 }
@@ -96,6 +98,11 @@ pub struct GapError {
 }
 
 impl Scene {
+    /// Whether one value or distribution in the whole production is not known.
+    pub fn has_unknowns(&self) -> bool {
+        !self.uncertain.is_empty() || self.measured.is_some()
+    }
+
     /// Names of the sixteen contacts, such as "left front rail"; those that the scene leaves out too.
     pub fn contact_names(&self) -> [String; CONTACTS] {
         std::array::from_fn(|i| format!("{} {}", self.pins[i / 4].name, SURFACES[i % 4]))

@@ -81,7 +81,7 @@ impl<'a> Function<'a> {
     /// [`AllocateError`], if the scene is not sound or a unit cannot be simulated.
     pub fn unknown(&self, tolerances: &[f64], units: u64, seed: u64) -> Result<Option<Answer>, AllocateError> {
         let (slide, product) = self.slide(tolerances)?;
-        let Some(design) = Design::beside(units, seed).filter(|_| !slide.uncertain.is_empty()) else {
+        let Some(design) = Design::beside(units, seed).filter(|_| slide.has_unknowns()) else {
             return Ok(None);
         };
         let production = production(&slide, product.as_ref(), seed)?;

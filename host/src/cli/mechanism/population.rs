@@ -125,7 +125,7 @@ pub fn conclude(
             asked.threads.install(|| units_of_mechanism(driven, production, &found.population, limit))??;
         let svg = hypothesis(driven.title(), &found.hypothesis);
         page.figures.push(Figure { caption: HYPOTHESIS.into(), svg: svg.map_err(anyhow::Error::from)? });
-        page.figures.extend(found.unknown.as_ref().map(|answer| unknown_figure(driven.title(), answer)).transpose()?);
+        page.figures.extend(unknown_figure(driven.title(), found.unknown.as_ref())?);
         let words = summary(driven, &found, limit);
         files::write(path, units_page(&mechanism.title, &words, &page, &warnings).into_string().as_bytes())?;
     }

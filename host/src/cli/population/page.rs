@@ -105,12 +105,13 @@ pub fn units_of_mechanism(
     Ok((Units { figures, player }, names))
 }
 
-/// The picture of what is not known, of which an `answer` says what it leaves open.
-pub fn unknown_figure(title: &str, answer: &Answer) -> Result<Figure, Failure> {
+/// The picture of what is not known, of which an `answer` says what it leaves open; none where that has no number.
+pub fn unknown_figure(title: &str, answer: Option<&Answer>) -> Result<Option<Figure>, Failure> {
+    let Some(answer) = answer.filter(|answer| !answer.unknowns.is_empty()) else { return Ok(None) };
     let svg = decisive(title, answer).map_err(anyhow::Error::from)?;
     let caption = "How many units malfunction, over what decides most of what is not known. Each ring is a value that was tried, with \
                    units of its own; the other unknowns differ between them.";
-    Ok(Figure { caption: caption.into(), svg })
+    Ok(Some(Figure { caption: caption.into(), svg }))
 }
 
 /// What tells a unit from others.

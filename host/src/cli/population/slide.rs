@@ -104,9 +104,7 @@ impl Arguments {
             let (mut units, _) = page::units(scene, production, &found.population, self.force_limit)?;
             let svg = units::hypothesis(&scene.title, &found.hypothesis).map_err(anyhow::Error::from)?;
             units.figures.push(Figure { caption: HYPOTHESIS.into(), svg });
-            units
-                .figures
-                .extend(found.unknown.as_ref().map(|answer| unknown_figure(&scene.title, answer)).transpose()?);
+            units.figures.extend(unknown_figure(&scene.title, found.unknown.as_ref())?);
             let words = self.summary(scene, &found);
             files::write(path, units_page(&scene.title, &words, &units, &warnings).into_string().as_bytes())?;
         }

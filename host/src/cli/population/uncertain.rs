@@ -25,7 +25,8 @@ pub fn design(unknown: bool, units: u64, seed: u64) -> Result<Option<Design>, Fa
     if !unknown {
         return Ok(None);
     }
-    let few = || format!("--units {units}: with [uncertain] in the scene at least {LEAST_UNITS} are allowed");
+    let few =
+        || format!("--units {units}: with [uncertain] or [measured] in the scene at least {LEAST_UNITS} are allowed");
     Design::beside(units, seed).map(Some).ok_or_else(|| Failure::Input(few()))
 }
 
@@ -38,7 +39,7 @@ impl Arguments {
         let asked = [("--shard", self.shard.is_some()), ("--out", self.out.is_some()), ("--rare", self.rare)];
         if let Some((option, _)) = asked.into_iter().find(|(_, asked)| unknown && *asked) {
             let message = format!(
-                "{option} takes the values that the scene states for what is not known: allowed is a scene without [uncertain]"
+                "{option} takes the values that the scene states for what is not known: allowed is a scene without [uncertain] and [measured]"
             );
             return Err(Failure::Input(message));
         }
@@ -85,7 +86,7 @@ pub fn decided(answer: &Answer) -> String {
     let [first, others @ ..] = &answer.decides[..] else {
         return "nothing that is unknown, as far as so many units show".into();
     };
-    if answer.unknowns.len() == 1 {
+    if answer.unknowns.len() == 1 && answer.measured.is_empty() {
         return format!("{}, the only unknown: measure it", first.name);
     }
     let of = |share: f64, error: f64| format!("{} ± {} %", fixed(share * 100.0, 0), fixed(error * 100.0, 0));
@@ -98,7 +99,10 @@ pub fn decided(answer: &Answer) -> String {
 pub fn describe(answer: &Answer, kind: DriveKind) -> String {
     let (effort, unit) = (kind.effort(), kind.effort_unit());
     let mut text = format!("Malfunction     {}  (95 %)\n", share(&answer.malfunctions));
-    let _ = writeln!(text, "  decided by    {}", decided(answer));
+    // What parts leave open has no value that could be held against what the units do.
+    if !answer.unknowns.is_empty() {
+        let _ = writeln!(text, "  decided by    {}", decided(answer));
+    }
     let over = answer.over_limit.iter().map(|over| ("over the limit", over));
     let verdicts = [("crawls", &answer.crawls), ("jammed", &answer.jammed), ("overruns", &answer.overruns)];
     for (name, of) in verdicts.into_iter().chain(over).filter(|(_, of)| of.expected > 0.0) {
@@ -121,7 +125,10 @@ pub fn describe(answer: &Answer, kind: DriveKind) -> String {
         let [low, high] = unknown.tried.map(three_digits);
         format!("{} {low} to {high} {}", unknown.name, unknown.unit).trim_end().to_owned()
     };
-    let names: Vec<String> = answer.unknowns.iter().map(known).collect();
+    let mut names: Vec<String> = answer.unknowns.iter().map(known).collect();
+    if !answer.measured.is_empty() {
+        names.push(format!("what measured parts leave open of {}", answer.measured.join(", ")));
+    }
     let _ = writeln!(text, "Not known       {}", names.join(", "));
     let _ = writeln!(text, "                {} values, {} units of each", answer.values.len(), answer.units_each);
     text

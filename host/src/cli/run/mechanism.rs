@@ -95,11 +95,11 @@ impl Arguments {
         production: Option<Production>,
     ) -> Result<(), Failure> {
         let mechanism = driven.mechanism();
-        let varies = mechanism.gaps.iter().any(|gap| gap.statistics.deviation > 0.0) || !mechanism.uncertain.is_empty();
+        let varies = mechanism.gaps.iter().any(|gap| gap.statistics.deviation > 0.0) || mechanism.has_unknowns();
         let units = if varies { self.units.unwrap_or(UNITS) } else { 0 };
         let drawn = DrawnProduction::of_mechanism(mechanism, product, 0.0, DEFAULT.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
-        let design = design(!mechanism.uncertain.is_empty(), units, DEFAULT.seed)?;
+        let design = design(mechanism.has_unknowns(), units, DEFAULT.seed)?;
         let all = units + design.map_or(0, |design| design.units());
         let bar = progress("simulating", force_table::levels(driven.levels()).count + all as usize);
         let ((table, sweep), found) = self.threads.install(|| {
@@ -110,8 +110,8 @@ impl Arguments {
                 let answer = |design| of_mechanism(driven, &drawn, design, duty, |units| bar.inc(units));
                 let unknown = design.map(answer).transpose()?;
                 let (mut shown, mut names) = units_of_mechanism(driven, &drawn, &population, None)?;
-                if let Some(answer) = &unknown {
-                    shown.figures.push(unknown_figure(driven.title(), answer)?);
+                if let Some(figure) = unknown_figure(driven.title(), unknown.as_ref())? {
+                    shown.figures.push(figure);
                     names.push(UNKNOWN_FIGURE);
                 }
                 Ok::<_, Failure>(((population, unknown), (shown, names)))

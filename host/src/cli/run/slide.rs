@@ -195,7 +195,7 @@ impl Arguments {
         let production = DrawnProduction::new(scene, product, 0.0, DEFAULT.seed)
             .map_err(|error| Failure::Input(error.to_string()))?;
         let runs = opening + duration.map_or(0, |_| levels.len());
-        let design = uncertain::design(!scene.uncertain.is_empty(), units, DEFAULT.seed)?;
+        let design = uncertain::design(scene.has_unknowns(), units, DEFAULT.seed)?;
         let all = units + design.map_or(0, |design| design.units());
         let bar = progress("simulating", runs + all as usize);
         let made = self.threads.install(|| {
@@ -209,8 +209,8 @@ impl Arguments {
             let answer = |design| of_slide(&whole, &production, design, duty, |units| bar.inc(units));
             let unknown = design.map(answer).transpose()?;
             let mut units = page::units(&whole, &production, &population, None)?;
-            if let Some(answer) = &unknown {
-                units.0.figures.push(unknown_figure(&whole.title, answer)?);
+            if let Some(figure) = unknown_figure(&whole.title, unknown.as_ref())? {
+                units.0.figures.push(figure);
                 units.1.push(UNKNOWN_FIGURE);
             }
             Ok::<_, Failure>(Simulated { table, opening, stroke: stroke.transpose()?, population, units, unknown })

@@ -118,7 +118,7 @@ impl Arguments {
         match (&file.product, &file.slide) {
             (Some(product), _) => {
                 self.outputs.check_level(file.slide.is_some())?;
-                self.study(&file.title, &product.model, file.slide.as_ref(), file.measured.as_ref())?;
+                self.study(&file.title, &product.model, file.slide.as_ref(), file.measured.as_deref())?;
                 warn(&product.warnings);
                 Ok(())
             }

@@ -77,6 +77,8 @@ pub struct ValueReport {
 pub struct Answer {
     /// What is not known.
     pub unknowns: Vec<UnknownReport>,
+    /// What is known from measured parts alone.
+    pub measured: Vec<String>,
     /// Units that were simulated at each value.
     pub units_each: u64,
     /// Share of the units that malfunction.
@@ -105,7 +107,13 @@ pub struct Answer {
 
 impl Answer {
     /// Of the values that were `tried`, with so many units each.
-    pub fn of(unknowns: Vec<UnknownReport>, tried: &[Tried], units_each: u64, duty: Duty) -> Self {
+    pub fn of(
+        unknowns: Vec<UnknownReport>,
+        measured: Vec<String>,
+        tried: &[Tried],
+        units_each: u64,
+        duty: Duty,
+    ) -> Self {
         let hits = |of: &dyn Fn(&Counts) -> u64| tried.iter().map(|tried| of(&tried.counts)).collect::<Vec<u64>>();
         let mixture = |of: &dyn Fn(&Counts) -> u64| Mixture::of(&hits(of), units_each);
         let share = |of: &dyn Fn(&Counts) -> u64| {
@@ -128,6 +136,7 @@ impl Answer {
             |tried: &Tried| ValueReport { values: tried.shown.clone(), malfunctions: tried.counts.malfunctions };
         let count = |of: &dyn Fn(&Counts) -> u64| hits(of).iter().sum();
         Self {
+            measured,
             units_each,
             malfunctions: Expected { expected: malfunctions.expected, interval: malfunctions.interval },
             crawls: verdict(Verdict::Crawls),

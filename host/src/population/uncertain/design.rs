@@ -51,6 +51,9 @@ impl Design {
     /// The values as points of the unit cube with so many `coordinates`: scrambled Sobol' points, so that each coordinate has one value
     /// in each of as many equal strata.
     pub fn points(&self, coordinates: usize) -> Vec<Vec<f64>> {
+        if coordinates == 0 {
+            return vec![Vec::new(); self.values as usize];
+        }
         let sampler = Sampler::new(Method::ScrambledSobol, derived(self.seed, STREAM), coordinates, 1, self.values);
         let point = |value: u64| {
             let mut bits = vec![[0; LANES]; coordinates];

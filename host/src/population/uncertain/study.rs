@@ -13,12 +13,13 @@ use crate::{
     dynamics::simulate::SimulateError,
     mechanism::ByDrive,
     population::{
+        gaps::UnitGaps,
         production::Production,
         simulate_units,
         subject::Subject,
         tally::{Counter, Counts, Duty},
     },
-    setup::Scene,
+    setup::{Measured, Scene},
 };
 
 /// What units did at one value: their counts, and the greatest forces (N) that half and 95 % of them do not exceed.
@@ -41,17 +42,18 @@ pub fn counted<S: Subject>(
     Ok((tally.counts, forces(&tally.figures.force)))
 }
 
-/// What the production of `model` does with the values of a `design` of the `unknowns`, at least one, on all threads of the current
-/// pool: `count` counts units of a model by their numbers. The result does not depend on the number of threads.
+/// What the production of `model` does with the values of a `design` of the `unknowns`, and with what `measured` parts leave open, on all threads of the current pool: `count` counts
+/// units of a model at a value, both by their numbers. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// Those of `count`.
 pub fn study<M: Clone + Sync>(
     model: &M,
     unknowns: &[&dyn Unknown<M>],
+    measured: Option<&Measured>,
     design: Design,
     duty: Duty,
-    count: impl Fn(&M, Range<u64>) -> Result<Counted, SimulateError> + Sync,
+    count: impl Fn(&M, u64, Range<u64>) -> Result<Counted, SimulateError> + Sync,
 ) -> Result<Answer, SimulateError> {
     let points = design.points(unknowns.iter().map(|unknown| unknown.coordinates()).sum());
     let tried = |value: usize| {
@@ -62,7 +64,7 @@ pub fn study<M: Clone + Sync>(
             unknown.apply(point, &mut own);
             shown.push(unknown.shown(point));
         }
-        let (counts, force) = count(&own, design.units_of(value as u64))?;
+        let (counts, force) = count(&own, value as u64, design.units_of(value as u64))?;
         Ok(Tried { point: points[value].clone(), shown, counts, force })
     };
     let tried: Vec<Tried> =
@@ -76,7 +78,14 @@ pub fn study<M: Clone + Sync>(
         coordinates: unknown.coordinates(),
     };
     let unknowns = unknowns.iter().enumerate().map(report).collect();
-    Ok(Answer::of(unknowns, &tried, design.units_each, duty))
+    let measured = measured.map(|measured| measured.names.clone()).unwrap_or_default();
+    Ok(Answer::of(unknowns, measured, &tried, design.units_each, duty))
+}
+
+/// The production of this number that measured parts leave possible beside the likeliest one; none where nothing was measured.
+fn possible<'a, G: UnitGaps>(production: &Production<'a, G>, number: u64) -> Option<Production<'a, G>> {
+    // The likeliest can be drawn, and these have its correlations where their own contradict what the scene states.
+    production.possible(number)?.ok()
 }
 
 /// Of a `production` of `scene`.
@@ -91,7 +100,9 @@ pub fn of_slide(
     done: impl Fn(u64) + Sync,
 ) -> Result<Answer, SimulateError> {
     let unknowns: Vec<&dyn Unknown<Scene>> = scene.uncertain.iter().map(|one| one as _).collect();
-    study(scene, &unknowns, design, duty, |own, numbers| counted(own, production, numbers, duty, &done))
+    study(scene, &unknowns, scene.measured.as_deref(), design, duty, |own, value, numbers| {
+        counted(own, possible(production, value).as_ref().unwrap_or(production), numbers, duty, &done)
+    })
 }
 
 /// Of a `production` of a mechanism by one of its drives.
@@ -107,8 +118,8 @@ pub fn of_mechanism(
 ) -> Result<Answer, SimulateError> {
     let mechanism = driven.mechanism();
     let unknowns: Vec<&dyn Unknown<_>> = mechanism.uncertain.iter().map(|one| one as _).collect();
-    study(mechanism, &unknowns, design, duty, |own, numbers| {
+    study(mechanism, &unknowns, mechanism.measured.as_deref(), design, duty, |own, value, numbers| {
         let own = ByDrive::new(own, driven.index()).expect("the drive of the same mechanism");
-        counted(&own, production, numbers, duty, &done)
+        counted(&own, possible(production, value).as_ref().unwrap_or(production), numbers, duty, &done)
     })
 }

@@ -34,7 +34,7 @@ use super::{
 use crate::{
     dynamics::driven::DriveKind,
     mechanism::{Joint, JointKind, Mechanism, MountError, Mounts, NormalData, spatial},
-    setup::{LevelRange, MeasuredGaps, SURFACES},
+    setup::{LevelRange, SURFACES},
 };
 
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
@@ -112,7 +112,7 @@ pub(super) fn mechanism(
         run,
         controller: parse::controller(root, &laws.map_or(FrictionData::None, |laws| laws.friction))?,
         sweep,
-        measured: MeasuredGaps::default(),
+        measured: None,
         warnings: Vec::new(),
     };
     let varied = vary(named(root, "vary", &names, &mechanism)?)?;
