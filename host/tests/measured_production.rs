@@ -142,7 +142,7 @@ fn few_parts_leave_the_failing_share_open() {
     let gap = |z: f64| 0.1 + 0.15 * z;
     let [few, many] = [30, 3000].map(|parts| {
         write_parts(folder.path(), parts, 4, 0.9, [("a [mm]", &gap), ("b [mm]", &gap)]);
-        let found = json(folder.path(), &["population", "slide.toml", "--units", "800", "--json"]);
+        let found = json(folder.path(), &["population", "slide.toml", "--units", "3000", "--json"]);
         let unknown = &found["uncertain"];
         assert_eq!(unknown["measured"], serde_json::json!(["left front left", "left front right"]));
         [0, 1].map(|end| unknown["malfunctions"]["interval"][end].as_f64().unwrap())
