@@ -79,7 +79,7 @@ pub enum EstimateError {
     #[error(transparent)]
     NoInfluence(#[from] NoInfluence),
     /// A grid of too many parameters, or of one without bounds.
-    #[error("a grid needs one to {} parameters, each with two bounds, and not {0}", grid::MOST)]
+    #[error("a grid needs one to three parameters, each with two bounds, and not {0}")]
     Grid(usize),
     /// More parameters than samples.
     #[error("{parameters} parameters are sought in {samples} samples, and each needs at least ten")]
