@@ -10,10 +10,22 @@ use std::{
 };
 
 /// The modules at the top of each crate, the lowest first.
-const LAYERS: [(&str, &[&str]); 6] = [
+const LAYERS: [(&str, &[&str]); 7] = [
     (
         "host/src",
-        &["xml", "setup", "dynamics", "mechanism", "scene", "population", "quality", "firmware", "show", "cli"],
+        &[
+            "xml",
+            "setup",
+            "dynamics",
+            "mechanism",
+            "scene",
+            "identify",
+            "population",
+            "quality",
+            "firmware",
+            "show",
+            "cli",
+        ],
     ),
     (
         "host/tolerance/src",
@@ -35,6 +47,7 @@ const LAYERS: [(&str, &[&str]); 6] = [
         ],
     ),
     ("host/measured/src", &["unit", "table", "csv", "numeric", "families", "capability"]),
+    ("host/identify/src", &["signal", "record", "model", "fit", "doubt", "estimate", "compare", "drive_train"]),
     ("host/qif/src", &["error", "file", "drawing", "format", "xml", "words", "units", "model", "part", "results"]),
     (
         "host/desk/src",

@@ -20,25 +20,32 @@ pub struct Compared {
     pub estimate: Estimate,
 }
 
-/// Fits all `models`, of which there is at least one; they are in the order in which they are given.
-///
-/// # Errors
-/// That of the first model without an estimate.
-pub fn compare(models: &[(&str, &dyn Model)], options: &Options) -> Result<Vec<Compared>, EstimateError> {
-    let estimates = models.iter().map(|(_, model)| estimate(*model, options)).collect::<Result<Vec<_>, _>>()?;
+/// A model without an estimate, and why there is none.
+pub type Refused<'m> = (&'m str, EstimateError);
+
+/// Fits all `models`; those with an estimate and those without, in the order in which they are given.
+pub fn compare<'m>(models: &[(&'m str, &dyn Model)], options: &Options) -> (Vec<Compared>, Vec<Refused<'m>>) {
+    let (mut estimates, mut refused) = (Vec::new(), Vec::new());
+    for (name, model) in models {
+        match estimate(*model, options) {
+            Ok(estimate) => estimates.push((*name, estimate)),
+            Err(error) => refused.push((*name, error)),
+        }
+    }
     // Residuals of the richest model are nearest to noise.
     let count = |estimate: &Estimate| estimate.parameters.len() - estimate.undetermined.len();
-    let effective = estimates.iter().max_by_key(|estimate| count(estimate)).map_or(1.0, |of| of.effective_samples);
+    let richest = estimates.iter().max_by_key(|(_, estimate)| count(estimate));
+    let effective = richest.map_or(1.0, |(_, estimate)| estimate.effective_samples);
     let criterion = |estimate: &Estimate| {
         let squares: f64 = estimate.residuals.iter().map(|residual| residual * residual).sum();
         effective * libm::log(squares.max(f64::MIN_POSITIVE)) + count(estimate) as f64 * libm::log(effective.max(1.0))
     };
-    let least = estimates.iter().map(criterion).fold(f64::INFINITY, f64::min);
-    let of = |((name, _), estimate): (&(&str, _), Estimate)| {
-        let behind = criterion(&estimate) - least;
-        Compared { name: (*name).to_owned(), behind, estimate }
-    };
-    Ok(models.iter().zip(estimates).map(of).collect())
+    let least = estimates.iter().map(|(_, estimate)| criterion(estimate)).fold(f64::INFINITY, f64::min);
+    let compared = estimates
+        .into_iter()
+        .map(|(name, estimate)| Compared { name: name.to_owned(), behind: criterion(&estimate) - least, estimate })
+        .collect();
+    (compared, refused)
 }
 
 /// The best of the `compared` models.

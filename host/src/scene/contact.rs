@@ -72,7 +72,12 @@ fn none_of(table: &Field, keys: [&str; 2], law: &str) -> Result<(), SceneError> 
 /// The stiffness (N/m^e); its unit has the contact's exponent.
 fn stiffness(table: &Field, exponent: f64) -> Result<f64, SceneError> {
     let units = format!("a number in N/mm^{exponent}, or a text with its unit: N/mm^{exponent}, N/m^{exponent}");
-    let field = table.require("stiffness", &units)?;
+    stiffness_of(&table.require("stiffness", &units)?, exponent)
+}
+
+/// The stiffness (N/m^e) in a `field`, whose unit has the contact's exponent.
+pub(super) fn stiffness_of(field: &Field, exponent: f64) -> Result<f64, SceneError> {
+    let units = format!("a number in N/mm^{exponent}, or a text with its unit: N/mm^{exponent}, N/m^{exponent}");
     let measure = field.measure(&units)?;
     let (key, written) = (field.key.clone(), field.written(""));
 

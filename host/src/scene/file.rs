@@ -8,14 +8,14 @@ use crate::mechanism::Mechanism;
 use super::{
     Override, Problem, SceneError,
     diagnostic::Found,
-    keys, mechanism,
+    identify, keys, mechanism,
     parse::{scene, title},
     pins::{fill, pins, sums},
     product::product,
     tree::{Node, Source},
     value::Field,
 };
-use crate::setup::Scene;
+use crate::setup::{Identification, Scene};
 
 /// What a scene file describes.
 pub struct SceneFile {
@@ -28,6 +28,8 @@ pub struct SceneFile {
     pub slide: Option<Scene>,
     /// The mechanism, if it is made of bodies and joints of its own.
     pub mechanism: Option<Mechanism>,
+    /// What is sought in measured motion, if it says so.
+    pub identify: Option<Identification>,
 }
 
 impl SceneFile {
@@ -65,6 +67,9 @@ impl SceneFile {
     pub(super) fn read(tree: &Node<'_>, file_name: &str) -> Result<Self, SceneError> {
         let root = Field { key: String::new(), node: tree };
         let title = title(&root, file_name)?;
+        if let Some(identify) = identify::drive_train(&root)? {
+            return Ok(Self { title, product: None, slide: None, mechanism: None, identify: Some(identify) });
+        }
         let mut product = ["dimension", "part", "measure"]
             .iter()
             .any(|key| root.get(key).is_some())
@@ -72,12 +77,12 @@ impl SceneFile {
             .transpose()?;
         let of_slide = ["slide", "contact", "friction", "drive", "run", "controller", "sweep", "pin", "vary"];
         if product.is_some() && !mechanism::is_mechanism(&root) && of_slide.iter().all(|key| root.get(key).is_none()) {
-            return Ok(Self { title, product, slide: None, mechanism: None });
+            return Ok(Self { title, product, slide: None, mechanism: None, identify: None });
         }
         if mechanism::is_mechanism(&root) {
             mechanism::refuse_slide(&root)?;
             let mechanism = mechanism::mechanism(&root, title.clone(), product.as_ref())?;
-            return Ok(Self { title, product, slide: None, mechanism: Some(mechanism) });
+            return Ok(Self { title, product, slide: None, mechanism: Some(mechanism), identify: None });
         }
         if product.is_some()
             && root.get("slide").is_none()
@@ -98,8 +103,9 @@ impl SceneFile {
             fill(&mut pins, &gap_measures, &statistics);
             product.model.sums.extend(sums(&pins, &gap_measures));
         }
-        let slide = Some(scene(&root, title.clone(), pins, gap_measures)?);
-        Ok(Self { title, product, slide, mechanism: None })
+        let slide = scene(&root, title.clone(), pins, gap_measures)?;
+        let identify = identify::slide(&root, &slide)?;
+        Ok(Self { title, product, slide: Some(slide), mechanism: None, identify })
     }
 
     /// The slide of the scene file `file_name` and the product it belongs to, if the scene has one.

@@ -243,6 +243,26 @@ pub(super) const ROOT: &[Key] = &[
     table("sum", &[key("name"), key("of")]),
     table("correlation", &[key("of"), key("coefficient")]),
     table(
+        "identify",
+        &[
+            key("model"),
+            key("law"),
+            key("cutoff"),
+            key("time"),
+            key("position"),
+            key("speed"),
+            key("force"),
+            key("current"),
+            key("force_constant"),
+            key("loss"),
+            key("search"),
+            table("friction", &[key("coefficient")]),
+            table("contact", &[key("stiffness")]),
+            table("slide", &[key("mass")]),
+            table("gaps", &[key("of"), key("n")]),
+        ],
+    ),
+    table(
         "vary",
         &[
             table("friction", &[table("coefficient", DEVIATION)]),
@@ -262,7 +282,7 @@ pub fn note_unfit(node: &Node<'_>) {
 
 /// Tables of what moves and of its run. Which of their keys count depends on the scene: on the kind of a joint, the law of a contact,
 /// whether it is a slide or a mechanism.
-const OF_MOTION: [&str; 14] = [
+const OF_MOTION: [&str; 15] = [
     "slide",
     "contact",
     "friction",
@@ -277,6 +297,7 @@ const OF_MOTION: [&str; 14] = [
     "drawing",
     "pin",
     "vary",
+    "identify",
 ];
 
 /// Notes every key of the tables of motion below the `root` that nothing has read: it has no effect.

@@ -26,10 +26,10 @@ use super::{
 };
 use crate::setup::{ControllerSpec, GapMeasures, LevelRange, PinSpec, RunSpec, SURFACES, Scene, SlideSpec};
 
-const MASS: Quantity = Quantity { units: unit::MASS, range: [0.001, 1e7] };
+pub(super) const MASS: Quantity = Quantity { units: unit::MASS, range: [0.001, 1e7] };
 const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
-const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [0.0, 100.0] };
+pub(super) const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [0.0, 100.0] };
 const STICK_BAND: Quantity = Quantity { units: unit::SPEED, range: [1e-7, 1000.0] };
 pub(super) const GAIN: Quantity = Quantity { units: unit::DAMPING, range: [0.0, 1e6] };
 pub(super) const RAMP: Quantity = Quantity { units: unit::SECONDS, range: [-1000.0, 1000.0] };
@@ -251,7 +251,11 @@ pub(super) fn controller(root: &Field, friction: &FrictionData<f64>) -> Result<C
 }
 
 /// The one of `all` whose `name` is the text of `field`.
-fn choice<T: Copy, const N: usize>(field: &Field, all: [T; N], name: fn(T) -> &'static str) -> Result<T, SceneError> {
+pub(super) fn choice<T: Copy, const N: usize>(
+    field: &Field,
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> Result<T, SceneError> {
     let text = field.to_text()?;
     all.into_iter().find(|one| name(*one) == text).ok_or_else(|| {
         let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };

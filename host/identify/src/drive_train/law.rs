@@ -29,7 +29,28 @@ pub enum Term {
     Delay,
 }
 
+/// The laws that are compared, from the simplest on, with their names.
+pub const LAWS: [(&str, &[Term]); 5] = [
+    ("coulomb", &Term::DRY),
+    ("symmetric", &Term::SYMMETRIC),
+    ("by-direction", &Term::BY_DIRECTION),
+    ("symmetric-delayed", &Term::SYMMETRIC_DELAYED),
+    ("by-direction-delayed", &Term::BY_DIRECTION_DELAYED),
+];
+
 impl Term {
+    /// Every term.
+    pub const ALL: [Self; 9] = [
+        Self::Mass,
+        Self::Viscous,
+        Self::ViscousForwards,
+        Self::ViscousBackwards,
+        Self::Coulomb,
+        Self::CoulombForwards,
+        Self::CoulombBackwards,
+        Self::Offset,
+        Self::Delay,
+    ];
     /// Mass, viscous and Coulomb friction, and an offset.
     pub const SYMMETRIC: [Self; 4] = [Self::Mass, Self::Viscous, Self::Coulomb, Self::Offset];
     /// Mass and Coulomb friction alone.
@@ -37,6 +58,18 @@ impl Term {
     /// Friction by direction, which has the offset in it.
     pub const BY_DIRECTION: [Self; 5] =
         [Self::Mass, Self::ViscousForwards, Self::CoulombForwards, Self::ViscousBackwards, Self::CoulombBackwards];
+
+    /// [`SYMMETRIC`](Self::SYMMETRIC) with a delay.
+    pub const SYMMETRIC_DELAYED: [Self; 5] = [Self::Mass, Self::Viscous, Self::Coulomb, Self::Offset, Self::Delay];
+    /// [`BY_DIRECTION`](Self::BY_DIRECTION) with a delay.
+    pub const BY_DIRECTION_DELAYED: [Self; 6] = [
+        Self::Mass,
+        Self::ViscousForwards,
+        Self::CoulombForwards,
+        Self::ViscousBackwards,
+        Self::CoulombBackwards,
+        Self::Delay,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {

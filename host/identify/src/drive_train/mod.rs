@@ -7,5 +7,5 @@ mod motion;
 #[cfg(test)]
 mod tests;
 
-pub use self::law::{DriveTrain, Term};
+pub use self::law::{DriveTrain, LAWS, Term};
 pub use self::motion::{Filtered, Options, Signal, filtered};
