@@ -46,10 +46,7 @@ impl From<SimulateError> for Failure {
 
 impl From<RecordError> for Failure {
     fn from(error: RecordError) -> Self {
-        match error {
-            RecordError::Io { .. } => Self::Work(error.into()),
-            RecordError::Csv { .. } | RecordError::Content { .. } => Self::Input(error.to_string()),
-        }
+        Self::Input(error.to_string())
     }
 }
 

@@ -1,12 +1,12 @@
 //! `slipfit identify`: parameters from measured motion.
 
 mod output;
+mod report;
 mod words;
 
 use std::path::PathBuf;
 
 use clap::Args;
-use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
 use slipfit_identify::{
     compare::{Compared, best, compare},
@@ -16,6 +16,7 @@ use slipfit_identify::{
 };
 use slipfit_system::files;
 
+use self::report::Report;
 use super::{
     arguments::SceneArguments,
     endings,
@@ -53,25 +54,6 @@ pub(super) struct Arguments {
     /// Prints JSON instead of text.
     #[arg(long)]
     json: bool,
-}
-
-/// What the records say.
-#[derive(Serialize)]
-struct Report<'a> {
-    title: &'a str,
-    /// "slide" or "drive-train".
-    model: &'static str,
-    records: Vec<&'a str>,
-    /// The estimate that counts: the first of those compared for a stated law, else the best.
-    law: &'a str,
-    /// Single wrong samples that were replaced.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    spikes: Option<usize>,
-    /// Cut-off frequency (Hz) of the motion's filter.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    cutoff_hz: Option<f64>,
-    compared: &'a [Compared],
-    warnings: &'a [String],
 }
 
 impl Arguments {

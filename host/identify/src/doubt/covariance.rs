@@ -103,6 +103,9 @@ pub fn gram(columns: &[Vec<f64>]) -> DMatrix<f64> {
 /// The inverse of products of columns of length 1, and the directions without one.
 pub fn pseudo_inverse(products: DMatrix<f64>) -> (DMatrix<f64>, Vec<DVector<f64>>) {
     let p = products.nrows();
+    if p == 0 {
+        return (products, Vec::new());
+    }
     let eigen = products.symmetric_eigen();
     let (mut inverse, mut undetermined) = (DMatrix::zeros(p, p), Vec::new());
     for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {

@@ -10,7 +10,7 @@ pub const MOST: usize = 3;
 /// Points along each parameter.
 const POINTS: usize = 9;
 /// How often the grid is refined, each time to the cells about its best point.
-const LEVELS: usize = 7;
+const LEVELS: usize = 3;
 
 /// The best values, `None` where no point has an output. Parameters need two bounds.
 pub fn search<M: Model + ?Sized>(model: &M, loss: Loss) -> Option<Vec<f64>> {

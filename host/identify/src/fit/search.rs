@@ -42,9 +42,17 @@ pub fn fit<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Fit, Model
 
     let loss = options.loss;
     let (values, output) = if options.grid {
-        let best = grid::search(model, loss).unwrap_or(stated);
-        let output = model.simulate(&best)?;
-        (best, output)
+        let coarse = grid::search(model, loss).unwrap_or(stated);
+        let output = model.simulate(&coarse)?;
+        let scale = deviation(&output, Loss::Huber);
+        let cost = |output: &[f64]| -> f64 {
+            residuals(output).iter().map(|residual| loss.root(residual / scale)[0]).map(|root| root * root).sum()
+        };
+        // Between its points the output may be smooth: then the gradient leads farther.
+        match minimise(model, &coarse, &free, loss, scale) {
+            Ok((values, fine)) if cost(&fine) < cost(&output) => (values, fine),
+            _ => (coarse, output),
+        }
     } else {
         let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
         for start in promising(model, &stated, options.starts) {

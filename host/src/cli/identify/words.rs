@@ -10,7 +10,7 @@ use slipfit_identify::{
 };
 use slipfit_tolerance::number::{fixed, or_dash, percent};
 
-use super::Report;
+use super::report::Report;
 use crate::cli::terminal::text_table;
 
 /// Difference of the criterion from which on a law is decisively better.

@@ -1,5 +1,6 @@
 //! What the keys of a scene mean, a few sentences each. A star stands for any part of a path; of several that fit, the first counts.
 
+mod identify;
 mod moving;
 mod product;
 
@@ -7,7 +8,7 @@ use std::sync::LazyLock;
 
 /// Keys and their meaning, in the order in which they are looked for.
 pub static MEANINGS: LazyLock<Vec<(&str, &str)>> =
-    LazyLock::new(|| [WHOLE, moving::SLIDE, moving::MECHANISM, product::PRODUCT].concat());
+    LazyLock::new(|| [WHOLE, identify::IDENTIFY, moving::SLIDE, moving::MECHANISM, product::PRODUCT].concat());
 
 /// Keys of the whole scene, and their meaning.
 const WHOLE: &[(&str, &str)] = &[
@@ -64,6 +65,10 @@ const WHOLE: &[(&str, &str)] = &[
         "vary",
         "Parameters that vary from unit to unit, besides the gaps, in `slipfit population`. Each takes a tolerance, around \
          the scene's value. Optional.",
+    ),
+    (
+        "identify",
+        "What `slipfit identify` seeks in measured motion. Where `model` is `drive-train` it is the only table of the scene. Optional.",
     ),
 ];
 
