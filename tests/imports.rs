@@ -10,7 +10,7 @@ use std::{
 };
 
 /// The modules at the top of each crate, the lowest first.
-const LAYERS: [(&str, &[&str]); 6] = [
+const LAYERS: [(&str, &[&str]); 7] = [
     (
         "host/src",
         &[
@@ -20,6 +20,7 @@ const LAYERS: [(&str, &[&str]); 6] = [
             "mechanism",
             "scene",
             "possible",
+            "identify",
             "population",
             "quality",
             "firmware",
@@ -47,6 +48,7 @@ const LAYERS: [(&str, &[&str]); 6] = [
         ],
     ),
     ("host/measured/src", &["unit", "table", "csv", "numeric", "families", "capability", "production"]),
+    ("host/identify/src", &["signal", "record", "model", "fit", "doubt", "estimate", "compare", "drive_train"]),
     ("host/qif/src", &["error", "file", "drawing", "format", "xml", "words", "units", "model", "part", "results"]),
     (
         "host/desk/src",

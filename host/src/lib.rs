@@ -9,6 +9,7 @@
 pub mod cli;
 pub mod dynamics;
 pub mod firmware;
+pub mod identify;
 pub mod mechanism;
 pub mod population;
 pub mod possible;

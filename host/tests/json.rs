@@ -23,9 +23,19 @@ fn every_field_is_in_the_guide() {
     let row = |k: u32| format!("{k},{},{}\n", ["A", "B"][k as usize % 2], 10.0 + 0.01 * f64::from(k * k % 37));
     let parts = (0..70).fold("part,tool,width [mm]\nlower,,9.9\nupper,,10.5\n".to_owned(), |text, k| text + &row(k));
     std::fs::write(folder.path().join("parts.csv"), parts).unwrap();
-    let commands: [(&str, &[&str]); 37] = [
+    std::fs::write(folder.path().join("train.toml"), "[identify]\nmodel = \"drive-train\"\n").unwrap();
+    let scene = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cd-rom-slide.toml")).unwrap();
+    std::fs::write(folder.path().join("sought.toml"), scene + "[identify]\nfriction.coefficient = [0.1, 0.5]\n")
+        .unwrap();
+    let simulate = ["simulate", "--n", "2", "--stroke", "--csv", "run.csv"];
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder.path()).args(simulate).output().unwrap();
+    assert!(output.status.success());
+    let commands: [(&str, &[&str]); 39] = [
         ("check", &["check"]),
         ("capability", &["capability", "parts.csv", "--group", "tool"]),
+        ("identify", &["identify", "sought.toml", "run.csv"]),
+        ("identify", &["identify", "train.toml", "run.csv"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
         ("check of a product", &["check", "clutch"]),
         ("simulate", &["simulate", "--n", "2.5"]),

@@ -1,5 +1,6 @@
 //! Why a command ends without having done its work.
 
+use slipfit_identify::{estimate::EstimateError, record::RecordError};
 use slipfit_system::files::{Coincidence, WriteError};
 use slipfit_tolerance::counting::{run::RunError, study::StudyError};
 use thiserror::Error;
@@ -38,6 +39,23 @@ impl From<SimulateError> for Failure {
             SimulateError::Parameter(_) | SimulateError::Every { .. } => Self::Input(error.to_string()),
             SimulateError::NotFinite { .. } | SimulateError::Unsolved { .. } | SimulateError::Interrupted => {
                 Self::Work(error.into())
+            }
+        }
+    }
+}
+
+impl From<RecordError> for Failure {
+    fn from(error: RecordError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<EstimateError> for Failure {
+    fn from(error: EstimateError) -> Self {
+        match error {
+            EstimateError::Model(_) => Self::Work(error.into()),
+            EstimateError::NoInfluence(_) | EstimateError::Grid(_) | EstimateError::Few { .. } => {
+                Self::Input(error.to_string())
             }
         }
     }

@@ -8,6 +8,7 @@ mod encoding;
 mod endings;
 mod failure;
 mod fmu;
+mod identify;
 mod import;
 mod kernel;
 mod mechanism;
@@ -69,6 +70,7 @@ enum Command {
     Check(check::Arguments),
     Import(import::Arguments),
     Capability(capability::Arguments),
+    Identify(identify::Arguments),
     Tolerance(tolerance::Arguments),
     Allocate(allocate::Arguments),
     Simulate(simulate::Arguments),
@@ -103,6 +105,7 @@ pub fn main() -> ExitCode {
         Some(Command::Check(arguments)) => arguments.run(),
         Some(Command::Import(arguments)) => arguments.run(),
         Some(Command::Capability(arguments)) => arguments.run(),
+        Some(Command::Identify(arguments)) => arguments.run(),
         Some(Command::Tolerance(arguments)) => arguments.run(),
         Some(Command::Allocate(arguments)) => arguments.run(),
         Some(Command::Simulate(arguments)) => arguments.run(),

@@ -10,7 +10,7 @@ use crate::mechanism::Mechanism;
 use super::{
     Override, Problem, SceneError,
     diagnostic::Found,
-    keys,
+    identify, keys,
     measured::{self, columns::Columns},
     mechanism,
     parse::{scene, title},
@@ -19,7 +19,7 @@ use super::{
     tree::{Node, Source},
     value::Field,
 };
-use crate::setup::{GapMeasures, Measured, PinSpec, SURFACES, Scene};
+use crate::setup::{GapMeasures, Identification, Measured, PinSpec, SURFACES, Scene};
 
 /// What a scene file describes.
 pub struct SceneFile {
@@ -34,6 +34,8 @@ pub struct SceneFile {
     pub mechanism: Option<Mechanism>,
     /// What of it was measured, if anything was.
     pub measured: Option<Arc<Measured>>,
+    /// What is sought in measured motion, if it says so.
+    pub identify: Option<Identification>,
 }
 
 impl SceneFile {
@@ -71,6 +73,10 @@ impl SceneFile {
     pub(super) fn read(tree: &Node<'_>, file_name: &str) -> Result<Self, SceneError> {
         let root = Field { key: String::new(), node: tree };
         let title = title(&root, file_name)?;
+        if let Some(identify) = identify::drive_train(&root)? {
+            let (product, slide, mechanism, measured) = (None, None, None, None);
+            return Ok(Self { title, product, slide, mechanism, measured, identify: Some(identify) });
+        }
         let measured = measured::columns(&root, file_name)?;
         let mut product = ["dimension", "part", "measure"]
             .iter()
@@ -81,7 +87,7 @@ impl SceneFile {
             ["slide", "contact", "friction", "drive", "run", "controller", "sweep", "pin", "vary", "uncertain"];
         if product.is_some() && !mechanism::is_mechanism(&root) && of_slide.iter().all(|key| root.get(key).is_none()) {
             let measured = found(measured, product.as_ref(), Vec::new())?;
-            return Ok(Self { title, product, slide: None, mechanism: None, measured });
+            return Ok(Self { title, product, slide: None, mechanism: None, measured, identify: None });
         }
         if mechanism::is_mechanism(&root) {
             mechanism::refuse_slide(&root)?;
@@ -89,7 +95,7 @@ impl SceneFile {
             let names = mechanism.gaps.iter().map(|gap| gap.name.clone()).collect();
             let measured = found(measured, product.as_ref(), names)?;
             mechanism.measured.clone_from(&measured);
-            return Ok(Self { title, product, slide: None, mechanism: Some(mechanism), measured });
+            return Ok(Self { title, product, slide: None, mechanism: Some(mechanism), measured, identify: None });
         }
         if product.is_some()
             && root.get("slide").is_none()
@@ -114,7 +120,8 @@ impl SceneFile {
         }
         let mut slide = scene(&root, title.clone(), pins, gap_measures)?;
         slide.measured.clone_from(&measured);
-        Ok(Self { title, product, slide: Some(slide), mechanism: None, measured })
+        let identify = identify::slide(&root, &slide)?;
+        Ok(Self { title, product, slide: Some(slide), mechanism: None, measured, identify })
     }
 
     /// The slide of the scene file `file_name` and the product it belongs to, if the scene has one.

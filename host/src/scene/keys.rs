@@ -256,6 +256,26 @@ pub(super) const ROOT: &[Key] = &[
     table("allocate", &[key("yield"), key("malfunction"), key("force_limit")]),
     table("sum", &[key("name"), key("of")]),
     table(
+        "identify",
+        &[
+            key("model"),
+            key("law"),
+            key("cutoff"),
+            key("time"),
+            key("position"),
+            key("speed"),
+            key("force"),
+            key("current"),
+            key("force_constant"),
+            key("loss"),
+            key("search"),
+            table("friction", &[key("coefficient")]),
+            table("contact", &[key("stiffness")]),
+            table("slide", &[key("mass")]),
+            table("gaps", &[key("of"), key("n")]),
+        ],
+    ),
+    table(
         "measured",
         &[
             key("file"),
@@ -277,7 +297,7 @@ pub fn note_unfit(node: &Node<'_>) {
 
 /// Tables of what moves and of its run. Which of their keys count depends on the scene: on the kind of a joint, the law of a contact,
 /// whether it is a slide or a mechanism.
-const OF_MOTION: [&str; 15] = [
+const OF_MOTION: [&str; 16] = [
     "slide",
     "contact",
     "friction",
@@ -293,6 +313,7 @@ const OF_MOTION: [&str; 15] = [
     "pin",
     "vary",
     "uncertain",
+    "identify",
 ];
 
 /// Notes every key of the tables of motion below the `root` that nothing has read: it has no effect.

@@ -7,6 +7,7 @@ mod contact;
 mod diagnostic;
 mod drawing;
 mod file;
+mod identify;
 mod keys;
 mod levels;
 mod measured;

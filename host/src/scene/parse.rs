@@ -255,7 +255,11 @@ pub(super) fn controller(root: &Field, friction: &FrictionData<f64>) -> Result<C
 }
 
 /// The one of `all` whose `name` is the text of `field`.
-fn choice<T: Copy, const N: usize>(field: &Field, all: [T; N], name: fn(T) -> &'static str) -> Result<T, SceneError> {
+pub(super) fn choice<T: Copy, const N: usize>(
+    field: &Field,
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> Result<T, SceneError> {
     let text = field.to_text()?;
     all.into_iter().find(|one| name(*one) == text).ok_or_else(|| {
         let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };

@@ -1,6 +1,7 @@
 //! What is to be computed, as data: a slide on four pins, runs and controllers, tolerance levels, what varies and what is not known.
 
 mod hash;
+mod identify;
 mod measured;
 mod parameter;
 mod slide;
@@ -8,6 +9,7 @@ mod task;
 mod uncertain;
 
 pub use hash::{Digest, scene_hash};
+pub use identify::{Identification, Law, Sought, Subject, Unknown};
 pub use measured::{Measured, MeasuredGaps, Place};
 pub use parameter::{Adjustable, SlideParameter, Varied, coefficient, stick_band, tilted_x, tilted_z};
 pub use slide::{GapError, GapMeasures, PinSpec, SURFACES, Scene, SlideSpec};

@@ -35,6 +35,12 @@ pub const ANGLE: &[Unit] = &[times("°", std::f64::consts::PI / 180.0), si("rad"
 pub const MASS: &[Unit] = &[per("g", 1e3), si("kg"), per("mg", 1e6)];
 /// Forces.
 pub const FORCE: &[Unit] = &[si("N"), per("mN", 1e3), times("kN", 1e3)];
+/// Frequencies.
+pub const FREQUENCY: &[Unit] = &[si("Hz"), times("kHz", 1e3)];
+/// Electric currents.
+pub const CURRENT: &[Unit] = &[si("A"), per("mA", 1e3)];
+/// Voltages.
+pub const VOLTAGE: &[Unit] = &[si("V"), per("mV", 1e3)];
 /// Stiffnesses.
 pub const STIFFNESS: &[Unit] = &[times("N/mm", 1e3), si("N/m"), times("N/µm", 1e6)];
 /// Moments of a force.

@@ -1,4 +1,4 @@
-//! What can be wrong with a CSV file of measured parts, and where.
+//! What can be wrong with a CSV file of measured parts or of a record, and where.
 
 use std::{fmt, ops::Range};
 
@@ -132,6 +132,24 @@ pub enum Problem {
         /// Upper limit.
         upper: f64,
     },
+    /// A row of a record without a number in a column that needs one.
+    #[error("column {0} has no number in this row; a record needs one in each row")]
+    NoNumber(Shown),
+    /// A column of a record in a unit that does not fit.
+    #[error("column {name} is in {unit}, but {role} is in {allowed}")]
+    ColumnUnit {
+        /// Name of the column.
+        name: Shown,
+        /// Its unit.
+        unit: Shown,
+        /// What it is for, such as "the force".
+        role: &'static str,
+        /// Units that fit.
+        allowed: String,
+    },
+    /// A record without rows.
+    #[error("there is no row below the names of the columns")]
+    NoRows,
     /// No row with a part.
     #[error("there is no row with a measured part")]
     NoParts,

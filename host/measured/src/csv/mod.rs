@@ -24,11 +24,16 @@ mod cells;
 mod error;
 mod options;
 mod read;
+pub mod series;
 #[cfg(test)]
 mod tests;
 mod write;
 
-use std::{io, path::Path};
+use std::{
+    fs::File as Source,
+    io::{self, Read},
+    path::Path,
+};
 
 use self::cells::delimiter;
 pub use self::error::{CsvError, Place, Problem, Shown};
@@ -48,15 +53,22 @@ pub enum FileError {
     Csv(#[from] CsvError),
 }
 
-/// Reads a file; one that is too large is refused before it is read.
+/// Reads a file; one that is too large is refused before it is read, and a pipe after as many bytes.
 pub fn read_file(path: &Path, options: &Options) -> Result<MeasuredTable, FileError> {
-    let bytes = std::fs::metadata(path)?.len();
-    check_size(bytes, options)?;
-    Ok(read(&std::fs::read(path)?, options)?)
+    Ok(read(&bytes_of(path, options.largest)?, options)?)
 }
 
-fn check_size(bytes: u64, options: &Options) -> Result<(), CsvError> {
-    let limit = options.largest;
+/// The bytes of a file, or of a pipe that ends, of which there may be at most `limit`.
+fn bytes_of(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
+    let source = Source::open(path)?;
+    check_size(source.metadata()?.len(), limit)?;
+    let mut bytes = Vec::new();
+    source.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
+    check_size(bytes.len() as u64, limit)?;
+    Ok(bytes)
+}
+
+fn check_size(bytes: u64, limit: u64) -> Result<(), CsvError> {
     if bytes <= limit {
         return Ok(());
     }
@@ -65,11 +77,16 @@ fn check_size(bytes: u64, options: &Options) -> Result<(), CsvError> {
 
 /// Reads the bytes of a file.
 pub fn read(bytes: &[u8], options: &Options) -> Result<MeasuredTable, CsvError> {
-    check_size(bytes.len() as u64, options)?;
+    check_size(bytes.len() as u64, options.largest)?;
+    let (text, start) = text_of(bytes)?;
+    File { text, start, delimiter: delimiter(&text[start..]) }.read(options)
+}
+
+/// The text of a file, and the first byte after a byte order mark.
+fn text_of(bytes: &[u8]) -> Result<(&str, usize), CsvError> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let at = error.valid_up_to();
         CsvError { place: Place::new(bytes, at..at + 1), problem: Problem::NotUtf8 }
     })?;
-    let start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
-    File { text, start, delimiter: delimiter(&text[start..]) }.read(options)
+    Ok((text, if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 }))
 }

@@ -12,7 +12,7 @@ use super::keys::{Key, ROOT, join};
 use meaning::{DISTRIBUTIONS, MEANINGS};
 
 /// Kinds of quantities with their units.
-const QUANTITIES: [(&str, &[Unit]); 17] = [
+const QUANTITIES: [(&str, &[Unit]); 18] = [
     ("length", unit::LENGTH),
     ("angle", unit::ANGLE),
     ("mass", unit::MASS),
@@ -30,6 +30,7 @@ const QUANTITIES: [(&str, &[Unit]); 17] = [
     ("damping, gain of a force", unit::DAMPING),
     ("damping, gain of a torque", unit::TORQUE_GAIN),
     ("stiffness about an axis", unit::TORSION),
+    ("frequency", unit::FREQUENCY),
 ];
 
 /// Stands for what a key takes where the parser's message about a wrong value does not say it.

@@ -1,5 +1,6 @@
 //! What the keys of a scene mean, a few sentences each. A star stands for any part of a path; of several that fit, the first counts.
 
+mod identify;
 mod moving;
 mod product;
 
@@ -7,7 +8,7 @@ use std::sync::LazyLock;
 
 /// Keys and their meaning, in the order in which they are looked for.
 pub static MEANINGS: LazyLock<Vec<(&str, &str)>> =
-    LazyLock::new(|| [WHOLE, moving::SLIDE, moving::MECHANISM, product::PRODUCT].concat());
+    LazyLock::new(|| [WHOLE, identify::IDENTIFY, moving::SLIDE, moving::MECHANISM, product::PRODUCT].concat());
 
 /// Keys of the whole scene, and their meaning.
 const WHOLE: &[(&str, &str)] = &[
@@ -73,6 +74,10 @@ const WHOLE: &[(&str, &str)] = &[
         "uncertain",
         "The same parameters where one value holds for all units, but is not known: `[least, greatest]`, `{ mean, deviation }` \
          or `{ median, factor }` of the value itself. `population`, `run` and `allocate` answer for all of it. Optional.",
+    ),
+    (
+        "identify",
+        "What `slipfit identify` seeks in measured motion. Where `model` is `drive-train` it is the only table of the scene. Optional.",
     ),
 ];
 

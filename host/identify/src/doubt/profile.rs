@@ -1,0 +1,167 @@
+//! Intervals by profile likelihood: one parameter is moved, the others follow, until the loss has risen by too much.
+
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+use super::covariance::{Linearised, pseudo_inverse};
+use crate::{
+    fit::Fit,
+    model::{Model, ModelError},
+};
+
+/// How far the record bounds a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Shape {
+    /// From both sides.
+    Bounded,
+    /// From one side only: on the other the loss does not rise enough before the bound.
+    OneSided,
+    /// Not at all: every value within the bounds explains the record.
+    Flat,
+}
+
+/// An interval by profile likelihood.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Profile {
+    /// Where the interval ends (SI); `None` on a side without an end before the bound.
+    pub ends: [Option<f64>; 2],
+    /// How far the record bounds the parameter.
+    pub shape: Shape,
+}
+
+/// Points that the search for an end may take.
+const POINTS: usize = 8;
+/// Share of the rise to which an end is found.
+const CLOSE: f64 = 0.03;
+
+/// The profile of parameter `i` about a `fit`. The loss may rise by as much as an exact parabola would over a distance of `reach` (SI) from
+/// the estimate: the deviation with coloured noise, times the quantile.
+///
+/// # Errors
+/// [`ModelError`] where the model cannot be computed.
+pub fn profile<M: Model + ?Sized>(
+    model: &M,
+    fit: &Fit,
+    linearised: &Linearised,
+    i: usize,
+    reach: Option<f64>,
+) -> Result<Profile, ModelError> {
+    let parameter = &model.parameters()[i];
+    let Some(reach) = reach.filter(|reach| *reach > 0.0) else {
+        return Ok(Profile { ends: [None; 2], shape: Shape::Flat });
+    };
+    let search = Search::new(model, fit, linearised, i);
+    let allowed = search.curvature * reach * reach;
+    let end = |side: f64| -> Result<Option<f64>, ModelError> {
+        let bound = if side < 0.0 { parameter.bounds[0] } else { parameter.bounds[1] };
+        let most = (bound - fit.values[i]).abs();
+        let mut distance = reach.min(most);
+        let (mut inside, mut outside) = ([0.0, 0.0], None);
+        for _ in 0..POINTS {
+            let rise = search.rise(side * distance)?;
+            if (rise / allowed - 1.0).abs() < CLOSE {
+                break;
+            }
+            if rise < allowed {
+                if distance >= most {
+                    return Ok(None);
+                }
+                inside = [distance, rise];
+            } else {
+                outside = Some([distance, rise]);
+            }
+            // As on a parabola, but between what is known to be inside and outside.
+            let parabola = distance * libm::sqrt(allowed / rise.max(0.01 * allowed));
+            distance = match outside {
+                Some([far, _]) if parabola <= inside[0] || parabola >= far => 0.5 * (inside[0] + far),
+                Some(_) => parabola,
+                None => parabola.max(1.2 * distance).min(most),
+            };
+        }
+        Ok(Some(fit.values[i] + side * distance))
+    };
+    let ends = [end(-1.0)?, end(1.0)?];
+    let shape = match ends {
+        [Some(_), Some(_)] => Shape::Bounded,
+        [None, None] => Shape::Flat,
+        _ => Shape::OneSided,
+    };
+    Ok(Profile { ends, shape })
+}
+
+/// What is the same at all points of a profile.
+struct Search<'a, M: Model + ?Sized> {
+    model: &'a M,
+    fit: &'a Fit,
+    linearised: &'a Linearised,
+    i: usize,
+    others: Vec<usize>,
+    /// Inverse of the products of the others' columns.
+    inverse: DMatrix<f64>,
+    /// How the others follow, for a change of the parameter by its unit.
+    follow: DVector<f64>,
+    /// Loss at the estimate.
+    least: f64,
+    /// Rise of the loss for a change by 1 (SI), over its square.
+    curvature: f64,
+}
+
+impl<'a, M: Model + ?Sized> Search<'a, M> {
+    fn new(model: &'a M, fit: &'a Fit, linearised: &'a Linearised, i: usize) -> Self {
+        let others: Vec<usize> = (0..fit.values.len()).filter(|k| *k != i && linearised.units[*k] > 0.0).collect();
+        let product = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|k| &linearised.columns[k]);
+            a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>()
+        };
+        let products = DMatrix::from_fn(others.len(), others.len(), |a, b| product(others[a], others[b]));
+        let shared = DVector::from_fn(others.len(), |a, _| product(others[a], i));
+        let inverse = pseudo_inverse(products).0;
+        let follow = -(&inverse * &shared);
+        let slopes = fit.residuals.iter().map(|residual| fit.loss.psi_slope(residual / fit.scale));
+        let slope = slopes.sum::<f64>() / fit.residuals.len() as f64;
+        let own = 1.0 + follow.dot(&shared);
+        let unit = linearised.units[i];
+        let curvature = slope.max(0.1) * own / (fit.scale * fit.scale * unit * unit);
+        let mut search = Self { model, fit, linearised, i, others, inverse, follow, least: 0.0, curvature };
+        search.least = search.cost(&fit.residuals);
+        search
+    }
+
+    fn cost(&self, residuals: &[f64]) -> f64 {
+        residuals.iter().map(|residual| self.fit.loss.root(residual / self.fit.scale)[0]).map(|root| root * root).sum()
+    }
+
+    fn residuals(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
+        let output = self.model.simulate(values)?;
+        Ok(self.model.measured().iter().zip(&output).map(|(measured, output)| measured - output).collect())
+    }
+
+    /// How much the loss rises when the parameter moves `by` (SI) and the others follow, with one step of Gauss and Newton after that.
+    fn rise(&self, by: f64) -> Result<f64, ModelError> {
+        let mut values = self.fit.values.clone();
+        values[self.i] += by;
+        let shifts = &self.follow * (by / self.linearised.units[self.i]);
+        self.shift(&mut values, &shifts);
+        let residuals = self.residuals(&values)?;
+        let straight = self.cost(&residuals);
+        if self.others.is_empty() {
+            return Ok(straight - self.least);
+        }
+        let scale = self.fit.scale;
+        let cut: Vec<f64> = residuals.iter().map(|residual| scale * self.fit.loss.psi(residual / scale)).collect();
+        let score = |k: &usize| self.linearised.columns[*k].iter().zip(&cut).map(|(a, b)| a * b).sum::<f64>();
+        let scores = DVector::from_iterator(self.others.len(), self.others.iter().map(score));
+        self.shift(&mut values, &(&self.inverse * scores));
+        let corrected = self.residuals(&values).map(|residuals| self.cost(&residuals));
+        Ok(corrected.unwrap_or(straight).min(straight) - self.least)
+    }
+
+    /// Moves the others by `shifts` in their units, within their bounds.
+    fn shift(&self, values: &mut [f64], shifts: &DVector<f64>) {
+        for (k, shift) in self.others.iter().zip(shifts.iter()) {
+            let [low, high] = self.model.parameters()[*k].bounds;
+            values[*k] = (values[*k] + shift * self.linearised.units[*k]).clamp(low, high);
+        }
+    }
+}

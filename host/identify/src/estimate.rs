@@ -1,0 +1,197 @@
+//! An estimate with what is known of it: determined combinations, deviations, intervals, lack of fit.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use serde::Serialize;
+use slipfit_measured::numeric::tails::student_quantile_above;
+
+use crate::{
+    doubt::{
+        bootstrap,
+        covariance::{Linearised, pseudo_inverse},
+        determined::{NoInfluence, Undetermined, check_influence, undetermined},
+        lack::{Lack, relative},
+        noise::Noise,
+        profile::{Profile, profile},
+    },
+    fit::{By, Fit, Loss, Options, fit, grid},
+    model::{Model, ModelError, Parameter},
+};
+
+/// A parameter and what is known of it. SI units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Estimated {
+    /// Its name.
+    pub name: String,
+    /// The symbol of its unit; empty for a plain number.
+    pub unit: &'static str,
+    /// Estimate; the middle of all that explain the record equally well where it is not determined.
+    pub value: f64,
+    /// Standard deviation; `None` where the record does not determine it.
+    pub deviation: Option<f64>,
+    /// The same by the autocovariance of the residuals alone.
+    pub deviation_by_autocovariance: Option<f64>,
+    /// The same by the block bootstrap alone.
+    pub deviation_by_bootstrap: Option<f64>,
+    /// Interval of 95 % by the deviation.
+    pub interval: Option<[f64; 2]>,
+    /// Interval of 95 % by the block bootstrap.
+    pub bootstrap: Option<[f64; 2]>,
+    /// Interval of 95 % by profile likelihood.
+    pub profile: Profile,
+    /// Whether the estimate lies at a bound of the search.
+    pub at_bound: bool,
+}
+
+/// An estimate of the parameters of a model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Whether the model explains the record.
+    pub lack: Lack,
+    /// Parameters.
+    pub parameters: Vec<Estimated>,
+    /// Correlations of the parameters; rows of zeros for what is not determined.
+    pub correlation: Vec<Vec<f64>>,
+    /// What the record does not determine, in words.
+    pub undetermined: Vec<String>,
+    /// What a residual cost.
+    pub loss: Loss,
+    /// What found the estimate.
+    pub by: By,
+    /// Samples that were compared.
+    pub samples: usize,
+    /// Independent samples that know as much.
+    pub effective_samples: f64,
+    /// Standard deviation of the residuals (SI).
+    pub residual_deviation: f64,
+    /// Measured minus computed, sample by sample.
+    #[serde(skip)]
+    pub residuals: Vec<f64>,
+}
+
+/// Why there is no estimate.
+#[derive(Debug, thiserror::Error)]
+pub enum EstimateError {
+    /// The model cannot be computed.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A parameter changes nothing.
+    #[error(transparent)]
+    NoInfluence(#[from] NoInfluence),
+    /// A grid of too many parameters, or of one without bounds.
+    #[error("a grid needs one to three parameters, each with two bounds, and not {0}")]
+    Grid(usize),
+    /// More parameters than samples.
+    #[error("{parameters} parameters are sought in {samples} samples, and each needs at least ten")]
+    Few {
+        /// Parameters.
+        parameters: usize,
+        /// Samples.
+        samples: usize,
+    },
+}
+
+/// Checks what the record determines, fits the `model` to it, and says how well it does.
+///
+/// # Errors
+/// [`EstimateError`] where the model cannot be computed or a parameter has no influence.
+pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estimate, EstimateError> {
+    let (parameters, samples) = (model.parameters(), model.measured().len());
+    if samples < 10 * parameters.len().max(1) {
+        return Err(EstimateError::Few { parameters: parameters.len(), samples });
+    }
+    let has_grid = (1..=grid::MOST).contains(&parameters.len()) && parameters.iter().all(Parameter::is_bounded);
+    if options.grid && !has_grid {
+        return Err(EstimateError::Grid(parameters.len()));
+    }
+    let fitted = fit(model, options)?;
+    check_influence(parameters, &fitted.values, model.measured(), &fitted.sensitivities)?;
+    let runs = model.runs();
+    let linearised = Linearised::of(&fitted, runs.clone());
+    let undetermined = undetermined(parameters, &fitted.values, &linearised);
+    let noise = Noise::of(&linearised.residuals, &runs);
+    let covariance = linearised.covariance(&noise);
+    let drawn = bootstrap::widest(&linearised);
+    let effective_samples = noise.effective(samples);
+    let freedom = (effective_samples - parameters.len() as f64).max(1.0);
+    let quantile = student_quantile_above(0.025, freedom);
+
+    let of = |i: usize| -> Result<Estimated, ModelError> {
+        let parameter: &Parameter = &parameters[i];
+        let known = !undetermined.iter().any(|direction| direction.parameters.contains(&i));
+        let value = fitted.values[i];
+        let by_autocovariance = known.then(|| libm::sqrt(covariance[(i, i)].max(0.0)));
+        let by_bootstrap = known.then(|| drawn.deviations[i]);
+        // Neither knows all: the one takes the noise for the same everywhere, the other has few blocks.
+        let deviation = by_autocovariance.zip(by_bootstrap).map(|(one, other)| one.max(other));
+        let within = |value: f64| value.clamp(parameter.bounds[0], parameter.bounds[1]);
+        let reach = deviation.map(|deviation| quantile * deviation);
+        Ok(Estimated {
+            name: parameter.name.clone(),
+            unit: parameter.unit,
+            value,
+            deviation,
+            deviation_by_autocovariance: by_autocovariance,
+            deviation_by_bootstrap: by_bootstrap,
+            interval: reach.map(|reach| [within(value - reach), within(value + reach)]),
+            bootstrap: known.then(|| drawn.ranges[i].map(|by| within(value + by))),
+            profile: profile(model, &fitted, &linearised, i, reach)?,
+            at_bound: parameter.is_at_bound(value),
+        })
+    };
+    let estimated = (0..parameters.len()).into_par_iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let held_out = held_out_error(model, &fitted, &linearised);
+    Ok(Estimate {
+        lack: Lack::new(model.measured(), &linearised.residuals, &runs, held_out),
+        correlation: correlation(&covariance, &undetermined),
+        parameters: estimated,
+        undetermined: undetermined.into_iter().map(|direction| direction.words).collect(),
+        loss: fitted.loss,
+        by: fitted.by,
+        samples,
+        effective_samples,
+        residual_deviation: fitted.scale,
+        residuals: fitted.residuals,
+    })
+}
+
+/// Correlations of a `covariance`, 0 for what is `undetermined`.
+fn correlation(covariance: &DMatrix<f64>, undetermined: &[Undetermined]) -> Vec<Vec<f64>> {
+    let known = |i: usize| !undetermined.iter().any(|direction| direction.parameters.contains(&i));
+    let of = |i: usize, k: usize| {
+        let product = covariance[(i, i)] * covariance[(k, k)];
+        if product > 0.0 && known(i) && known(k) { covariance[(i, k)] / libm::sqrt(product) } else { 0.0 }
+    };
+    let p = covariance.nrows();
+    (0..p).map(|i| (0..p).map(|k| if i == k { 1.0 } else { of(i, k) }).collect()).collect()
+}
+
+/// Relative error in the last quarter of each run, for the estimate that the rest gives by the derivatives at the estimate from all.
+fn held_out_error<M: Model + ?Sized>(model: &M, fit: &Fit, linearised: &Linearised) -> Option<f64> {
+    let p = linearised.columns.len();
+    let mut held_out = vec![false; fit.residuals.len()];
+    let mut at = 0;
+    for length in &linearised.runs {
+        held_out[at + length - length / 4..at + length].fill(true);
+        at += length;
+    }
+    let fitted = |values: &[f64], other: &[f64]| -> f64 {
+        values.iter().zip(other).zip(&held_out).filter(|(_, out)| !**out).map(|((a, b), _)| a * b).sum()
+    };
+    let columns = &linearised.columns;
+    let products = DMatrix::from_fn(p, p, |i, k| fitted(&columns[i], &columns[k]));
+    let scores = DVector::from_fn(p, |i, _| fitted(&columns[i], &linearised.residuals));
+    let (inverse, undetermined) = pseudo_inverse(products);
+    // A quarter that alone determines a parameter cannot be held out.
+    if undetermined.len() > linearised.undetermined.len() {
+        return None;
+    }
+    let moved = inverse * scores;
+    let (mut residuals, mut measured) = (Vec::new(), Vec::new());
+    for t in (0..held_out.len()).filter(|t| held_out[*t]) {
+        let by: f64 = (0..p).map(|i| columns[i][t] * moved[i]).sum();
+        residuals.push(linearised.residuals[t] - by);
+        measured.push(model.measured()[t]);
+    }
+    Some(relative(&residuals, &measured))
+}

@@ -1,0 +1,60 @@
+//! The best point of a grid that is refined about its best point: for models whose output jumps with their parameters.
+
+use rayon::prelude::*;
+
+use super::loss::{Loss, scale};
+use crate::model::Model;
+
+/// The most parameters for which a grid is searched.
+pub const MOST: usize = 3;
+/// Points along each parameter.
+const POINTS: usize = 9;
+/// How often the grid is refined, each time to the cells about its best point.
+const LEVELS: usize = 3;
+
+/// The best values, `None` where no point has an output. Parameters need two bounds.
+pub fn search<M: Model + ?Sized>(model: &M, loss: Loss) -> Option<Vec<f64>> {
+    let parameters = model.parameters();
+    let mut ranges: Vec<[f64; 2]> = parameters.iter().map(|parameter| parameter.bounds).collect();
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    let mut deviation = None;
+    for _ in 0..LEVELS {
+        let count = (0..parameters.len()).fold(1, |count, _| count * POINTS);
+        let point = |k: usize| -> Vec<f64> {
+            let mut rest = k;
+            let along = |[low, high]: &[f64; 2]| {
+                let i = rest % POINTS;
+                rest /= POINTS;
+                low + (high - low) * i as f64 / (POINTS - 1) as f64
+            };
+            ranges.iter().map(along).collect()
+        };
+        // In the order of the points, whatever the number of threads.
+        let residuals: Vec<Option<Vec<f64>>> = (0..count)
+            .into_par_iter()
+            .map(|k| {
+                let output = model.simulate(&point(k)).ok()?;
+                Some(model.measured().iter().zip(&output).map(|(measured, output)| measured - output).collect())
+            })
+            .collect();
+        // One scale for all points of all grids: that of the best by absolute values.
+        let unit = *deviation.get_or_insert_with(|| {
+            let least = residuals.iter().flatten().map(|residuals| scale(residuals, Loss::Huber));
+            least.fold(f64::INFINITY, f64::min).max(f64::MIN_POSITIVE)
+        });
+        for (k, residuals) in residuals.iter().enumerate() {
+            let Some(residuals) = residuals else { continue };
+            let cost: f64 =
+                residuals.iter().map(|residual| loss.root(residual / unit)[0]).map(|root| root * root).sum();
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                best = Some((cost, point(k)));
+            }
+        }
+        let (_, at) = best.as_ref()?;
+        for ((range, value), parameter) in ranges.iter_mut().zip(at).zip(parameters) {
+            let cell = 1.5 * (range[1] - range[0]) / (POINTS - 1) as f64;
+            *range = [(value - cell).max(parameter.bounds[0]), (value + cell).min(parameter.bounds[1])];
+        }
+    }
+    best.map(|(_, values)| values)
+}

@@ -1,0 +1,110 @@
+//! A model and a loss as a problem of least squares.
+
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
+
+use super::{bounds, loss::Loss};
+use crate::model::{Model, ModelError};
+
+/// Steps of the search, in evaluations for each parameter.
+const PATIENCE: usize = 20;
+
+/// The search for the parameters that are not held.
+struct Problem<'m, M: Model + ?Sized> {
+    model: &'m M,
+    /// Indices of the parameters that are searched; the others keep their values.
+    free: &'m [usize],
+    values: Vec<f64>,
+    searched: DVector<f64>,
+    loss: Loss,
+    /// The deviation in which the loss counts residuals.
+    scale: f64,
+    output: Option<Vec<f64>>,
+    error: std::cell::RefCell<Option<ModelError>>,
+}
+
+impl<M: Model + ?Sized> Problem<'_, M> {
+    fn compute(&mut self) {
+        self.output = self.model.simulate(&self.values).map_err(|error| self.error.replace(Some(error))).ok();
+    }
+
+    /// Residuals in deviations.
+    fn scaled<'a>(&'a self, output: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        self.model.measured().iter().zip(output).map(|(measured, output)| (measured - output) / self.scale)
+    }
+}
+
+impl<M: Model + ?Sized> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, M> {
+    type ParameterStorage = Owned<f64, Dyn>;
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+
+    fn set_params(&mut self, searched: &DVector<f64>) {
+        self.searched.copy_from(searched);
+        for (i, u) in self.free.iter().zip(searched.iter()) {
+            self.values[*i] = bounds::value(&self.model.parameters()[*i], *u)[0];
+        }
+        self.compute();
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.searched.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        let output = self.output.as_ref()?;
+        let roots = self.scaled(output).map(|u| self.loss.root(u)[0]);
+        Some(DVector::from_iterator(output.len(), roots))
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let output = self.output.as_ref()?;
+        let of_output = self.model.sensitivities(&self.values, output).map_err(|error| self.error.replace(Some(error)));
+        let of_output = of_output.ok()?;
+        let slopes: Vec<f64> = self.scaled(output).map(|u| self.loss.root(u)[1] / self.scale).collect();
+        let mut jacobian = DMatrix::zeros(output.len(), self.free.len());
+        for (mut column, (i, u)) in jacobian.column_iter_mut().zip(self.free.iter().zip(self.searched.iter())) {
+            let inner = bounds::value(&self.model.parameters()[*i], *u)[1];
+            for ((entry, slope), of_output) in column.iter_mut().zip(&slopes).zip(&of_output[*i]) {
+                *entry = -slope * of_output * inner;
+            }
+        }
+        Some(jacobian)
+    }
+}
+
+/// The values from `start` that minimise the loss of residuals in deviations of `scale`, those not `free` held, and the output there.
+///
+/// # Errors
+/// [`ModelError`] where the model cannot be computed.
+pub fn minimise<M: Model + ?Sized>(
+    model: &M,
+    start: &[f64],
+    free: &[usize],
+    loss: Loss,
+    scale: f64,
+) -> Result<(Vec<f64>, Vec<f64>), ModelError> {
+    let parameters = model.parameters();
+    let searched: Vec<f64> = free.iter().map(|i| bounds::searched(&parameters[*i], start[*i])).collect();
+    let mut problem = Problem {
+        model,
+        free,
+        values: start.to_vec(),
+        searched: DVector::from_vec(searched.clone()),
+        loss,
+        scale,
+        output: None,
+        error: None.into(),
+    };
+    problem.set_params(&DVector::from_vec(searched));
+    if !free.is_empty() {
+        // Differences of computed outputs are good to some five digits: a tighter tolerance would chase their noise.
+        let (at, _) = LevenbergMarquardt::new().with_tol(1e-9).with_patience(PATIENCE).minimize(problem);
+        problem = at;
+    }
+    match (problem.output, problem.error.into_inner()) {
+        (Some(output), _) => Ok((problem.values, output)),
+        (None, Some(error)) => Err(error),
+        (None, None) => model.simulate(&problem.values).map(|output| (problem.values, output)),
+    }
+}

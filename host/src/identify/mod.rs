@@ -1,0 +1,5 @@
+//! Scenes as models of measured motion.
+
+mod slide;
+
+pub use self::slide::SlideModel;
