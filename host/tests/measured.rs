@@ -22,7 +22,7 @@ fn capability_of_qif_results_is_that_of_the_same_csv() {
         let table = results::read(&std::fs::read_to_string(&file).unwrap()).unwrap();
         std::fs::write(folder.path().join("parts.csv"), csv::write(&table)).unwrap();
         let by = |file: &str| {
-            let output = slipfit(folder.path(), &["capability", file, "--json"]);
+            let output = slipfit(folder.path(), &["capability", file, "--family", "normal", "--json"]);
             (output.status.code(), output.stdout, String::from_utf8(output.stderr).unwrap())
         };
         let [(code, bytes, errors), (code_of_csv, bytes_of_csv, errors_of_csv)] =
@@ -38,7 +38,7 @@ fn capability_of_qif_results_is_that_of_the_same_csv() {
 fn figures_are_those_of_the_values() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("p.csv"), "part,a [mm]\nupper,9\n1,1\n2,2\n3,4\n4,5\n5,-\n").unwrap();
-    let found = json(folder.path(), &["capability", "p.csv", "--json"]);
+    let found = json(folder.path(), &["capability", "p.csv", "--family", "normal", "--json"]);
     let a = &found["characteristics"][0];
     let deviation = libm::sqrt(10.0 / 3.0);
     assert_eq!(
@@ -48,6 +48,29 @@ fn figures_are_those_of_the_values() {
     assert!((a["deviation"]["value"].as_f64().unwrap() - deviation).abs() < 1e-12);
     assert!((a["performance"]["least"]["value"].as_f64().unwrap() - 6.0 / (3.0 * deviation)).abs() < 1e-12);
     assert!(a["performance"]["spread"].is_null());
+}
+
+/// The page has every picture, names outliers and is the same from run to run.
+#[test]
+fn a_page_shows_every_characteristic() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |k: u32| {
+        let width = if k == 17 { 11.0 } else { 10.0 + 0.01 * f64::from(k * k % 37) };
+        format!("s{k},{},{width}\n", ["A", "B"][k as usize % 2])
+    };
+    let parts = (0..60).fold("part,tool,width [mm]\nlower,,9.9\nupper,,10.5\n".to_owned(), |text, k| text + &row(k));
+    std::fs::write(folder.path().join("parts.csv"), parts).unwrap();
+    let arguments = ["capability", "parts.csv", "--group", "tool", "--page", "parts.html"];
+    stdout(&slipfit(folder.path(), &arguments));
+    let page = std::fs::read_to_string(folder.path().join("parts.html")).unwrap();
+    assert_eq!(page.matches("<svg").count(), 4);
+    for expected in
+        ["Capability of parts.csv", "probability plot", "Outlier: part s17", "Assumed: a ", "Cpk within tool"]
+    {
+        assert!(page.contains(expected), "{expected}");
+    }
+    stdout(&slipfit(folder.path(), &arguments));
+    assert_eq!(std::fs::read_to_string(folder.path().join("parts.html")).unwrap(), page);
 }
 
 /// Errors name file, line and column, and what to do.
@@ -62,11 +85,18 @@ fn bad_files_are_told_where_they_are_wrong() {
         ("", "p.csv:1:1: the file is empty"),
     ] {
         std::fs::write(folder.path().join("p.csv"), text).unwrap();
-        let output = slipfit(folder.path(), &["capability", "p.csv"]);
+        let output = slipfit(folder.path(), &["capability", "p.csv", "--family", "normal"]);
         let errors = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.code() == Some(2) && errors.contains(expected), "{text}: {errors}");
     }
+    std::fs::write(folder.path().join("six.csv"), "part,a\n1,1\n2,2\n3,4\n4,5\n5,7\n6,3\n").unwrap();
     for (arguments, expected) in [
+        (vec!["capability", "six.csv"], "takes 30 measured parts, but there are 6; state its family"),
+        (
+            vec!["capability", "six.csv", "--family", "johnson-su"],
+            "johnson-su needs 30 measured parts, but there are 6",
+        ),
+        (vec!["capability", "six.csv", "--family", "gamma"], "allowed are normal, lognormal"),
         (vec!["capability", "absent.csv"], "absent.csv: No such file"),
         (vec!["capability", "p.qif", "--group", "a"], "--group names a column of a CSV file"),
         (vec!["import", "p.csv"], "p.csv:1:1"),

@@ -1,6 +1,7 @@
 //! What people look at: charts, pictures, pages, and results as CSV.
 
 pub(crate) mod bars;
+pub mod capability;
 pub mod causes;
 pub(crate) mod chart;
 pub mod drawing;

@@ -1,5 +1,7 @@
 //! Why the capability of a column cannot be told.
 
+use crate::families::FitError;
+
 /// A column whose capability cannot be told.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -29,6 +31,14 @@ pub enum CapabilityError {
     TooFarApart {
         /// Name of the column.
         column: String,
+    },
+    /// A distribution that cannot be told.
+    #[error("\"{column}\": {why}")]
+    NoFigures {
+        /// Name of the column.
+        column: String,
+        /// Why.
+        why: FitError,
     },
     /// An index beyond the columns or groupings.
     #[error("there is no column or grouping {0}")]

@@ -11,6 +11,7 @@ use slipfit_tolerance::numeric::normal::tail;
 use super::{CapabilityError, Estimate, Known, Options, Sample, capability};
 use crate::{
     csv,
+    families::Kind,
     table::{Column, MeasuredTable},
 };
 
@@ -86,7 +87,7 @@ fn subgroups_outliers_and_family_are_told() {
     assert!(found.normality.is_some_and(|normality| normality.p < 1e-6));
     let within = found.within.as_ref().expect("subgroups");
     assert_eq!((within.freedom, within.groups[0].count, within.groups[1].count), (79, 41, 40));
-    assert!(found.points.is_some());
+    assert!(!found.distribution.stated && !found.distribution.allowed.is_empty());
     // The order of the rows and of the columns changes nothing.
     let json = serde_json::to_string(&found).expect("JSON");
     let again = csv::read(
@@ -109,9 +110,17 @@ fn few_or_equal_parts_are_refused_with_what_is_needed() {
         "all 3 measured parts have \"a\" 1.5; a finer reading is needed to tell its variation"
     );
     assert!(matches!(of("x,1e308\nx,-1e308\n"), Err(CapabilityError::TooFarApart { .. })));
-    let six = of("x,1\nx,2\nx,3\nx,4\nx,5\nx,6\n").expect("capability");
-    assert_eq!(six.points, None);
-    assert_eq!(six.no_points.as_deref(), Some("to choose a distribution takes 30 measured parts, but there are 6"));
+    let six = table("cavity,a\nx,1\nx,2\nx,3\nx,4\nx,5\nx,6\n");
+    let of_six = |family| capability(&six, 0, &Options { family, ..Options::default() });
+    assert_eq!(
+        of_six(None).expect_err("no family").to_string(),
+        "\"a\": to choose a distribution takes 30 measured parts, but there are 6"
+    );
+    assert_eq!(
+        of_six(Some(Kind::JohnsonSu)).expect_err("few").to_string(),
+        "\"a\": johnson-su needs 30 measured parts, but there are 6"
+    );
+    let six = of_six(Some(Kind::Normal)).expect("capability");
     assert_eq!(six.tolerance_intervals[0].any_distribution, None);
     assert_eq!(six.tolerance_intervals[0].parts_for_any, 93);
 }
@@ -129,6 +138,6 @@ proptest! {
     ) {
         let column = Column { name: "a".into(), values, limits: [lower, upper], ..Column::default() };
         let table = MeasuredTable::new(vec![column]).expect("a table");
-        let _ = capability(&table, 0, &Options::default());
+        let _ = capability(&table, 0, &Options { family: Some(Kind::Normal), ..Options::default() });
     }
 }

@@ -59,8 +59,8 @@ pub fn two_sided_factor(parts: f64, freedom: f64, share: f64, confidence: f64) -
     let outside = 1.0 - share;
     let [whole, halved] = [-quantile(outside), -quantile(0.5 * outside)];
     // For each error of the mean the half width, in σ, of the interval with this share.
-    let points: Vec<[f64; 2]> = (scores().into_iter())
-        .map(|[error, weight]| {
+    let points: Vec<[f64; 2]> = (scores().iter())
+        .map(|&[error, weight]| {
             let error = error.abs() / libm::sqrt(parts);
             let excess = |half: f64| {
                 let left = tail(half - error) + tail(half + error);

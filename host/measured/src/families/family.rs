@@ -4,8 +4,13 @@ use std::fmt;
 
 use slipfit_tolerance::numeric::normal::quantile;
 
+use crate::numeric::scale::scores;
+
 /// A distribution of a family.
 pub trait Family: fmt::Debug + Send + Sync {
+    /// A copy of it.
+    fn clone_box(&self) -> Box<dyn Family>;
+
     /// Its parameters with their usual names, in the unit of the values where they have one.
     fn parameters(&self) -> Vec<(&'static str, f64)>;
 
@@ -18,6 +23,21 @@ pub trait Family: fmt::Debug + Send + Sync {
     /// The value below which it lies with the same probability as a standard normal below `score`: its quantile, accurate
     /// in both tails.
     fn value(&self, score: f64) -> f64;
+
+    /// Its mean.
+    fn mean(&self) -> f64 {
+        scores().iter().map(|[score, weight]| weight * self.value(*score)).sum()
+    }
+
+    /// Its standard deviation.
+    fn deviation(&self) -> f64 {
+        let mean = self.mean();
+        let square = |[score, weight]: &[f64; 2]| {
+            let off = self.value(*score) - mean;
+            weight * off * off
+        };
+        libm::sqrt(scores().iter().map(square).sum())
+    }
 
     /// The probability of values up to `x`.
     fn cdf(&self, x: f64) -> f64 {

@@ -8,6 +8,7 @@ use super::{
     lognormal::Lognormal,
     mixture::TwoNormals,
     normal::Normal,
+    posterior::Posterior,
     sample::{Sample, mean_and_square},
     shifted,
     weibull::Weibull,
@@ -32,17 +33,18 @@ impl Kind {
             Self::JohnsonSb => Box::new(JohnsonSb::fit(&sample).ok_or(FitError::NoMaximum(self))?),
             Self::TwoNormals => Box::new(TwoNormals::fit(&sample)),
         };
-        let ln_likelihood = family.ln_likelihood(values);
-        if !ln_likelihood.is_finite() {
-            return Err(FitError::NoMaximum(self));
+        Fit::new(self, family, &sample)
+    }
+
+    /// The likeliest distribution of the family, or the most probable one where the likelihood has no maximum.
+    pub fn fit_or_mode(self, values: &[f64]) -> Result<Fit, FitError> {
+        match self.fit(values) {
+            Err(FitError::NoMaximum(_)) => {
+                let posterior = Posterior::new(self, None, values)?;
+                Fit::new(self, posterior.mode().clone_box(), &Sample::new(values)?)
+            }
+            fit => fit,
         }
-        let (k, n) = (self.parameters() as f64, found as f64);
-        // With small samples' correction (N. Sugiura, "Further analysis of the data by Akaike's information criterion
-        // and the finite corrections", 1978); infinite where a sample is too small for it.
-        let correction = if n > k + 1.0 { 2.0 * k * (k + 1.0) / (n - k - 1.0) } else { f64::INFINITY };
-        let aicc = 2.0 * k - 2.0 * ln_likelihood + correction;
-        let qq_correlation = qq_correlation(&sample.sorted, family.as_ref());
-        Ok(Fit { kind: self, family, ln_likelihood, aicc, qq_correlation })
     }
 
     fn logarithms(self, sample: &Sample) -> Result<Vec<f64>, FitError> {
@@ -50,6 +52,22 @@ impl Kind {
             Some(least) if *least <= 0.0 => Err(FitError::NotPositive { family: self, value: *least }),
             _ => Ok(sample.sorted.iter().map(|x| libm::log(*x)).collect()),
         }
+    }
+}
+
+impl Fit {
+    fn new(kind: Kind, family: Box<dyn Family>, sample: &Sample) -> Result<Self, FitError> {
+        let ln_likelihood = family.ln_likelihood(&sample.sorted);
+        if !ln_likelihood.is_finite() {
+            return Err(FitError::NoMaximum(kind));
+        }
+        let (k, n) = (kind.parameters() as f64, sample.sorted.len() as f64);
+        // With small samples' correction (N. Sugiura, "Further analysis of the data by Akaike's information criterion
+        // and the finite corrections", 1978); infinite where a sample is too small for it.
+        let correction = if n > k + 1.0 { 2.0 * k * (k + 1.0) / (n - k - 1.0) } else { f64::INFINITY };
+        let aicc = 2.0 * k - 2.0 * ln_likelihood + correction;
+        let qq_correlation = qq_correlation(&sample.sorted, family.as_ref());
+        Ok(Self { kind, family, ln_likelihood, aicc, qq_correlation })
     }
 }
 
@@ -79,7 +97,7 @@ pub fn choose(values: &[f64]) -> Result<(Vec<Fit>, Vec<FitError>), FitError> {
     Sample::new(values)?;
     let (mut fits, mut errors) = (Vec::new(), Vec::new());
     for kind in Kind::ALL {
-        match kind.fit(values) {
+        match kind.fit_or_mode(values) {
             Ok(fit) => fits.push(fit),
             Err(error) => errors.push(error),
         }
@@ -96,6 +114,14 @@ pub fn preferred(fits: &[Fit]) -> Option<&Fit> {
     let lowest = fits.iter().map(|fit| fit.aicc).fold(f64::INFINITY, f64::min);
     let place = |fit: &&Fit| Kind::ALL.iter().position(|kind| *kind == fit.kind);
     fits.iter().filter(|fit| fit.aicc <= lowest + UNDECIDED).min_by_key(place)
+}
+
+/// The fits that are not refuted: those whose criterion is within 7 of the lowest, beyond which a family has little support
+/// (K. Burnham and D. Anderson).
+pub fn supported(fits: &[Fit]) -> impl Iterator<Item = &Fit> {
+    const LITTLE: f64 = 7.0;
+    let lowest = fits.iter().map(|fit| fit.aicc).fold(f64::INFINITY, f64::min);
+    fits.iter().filter(move |fit| fit.aicc <= lowest + LITTLE)
 }
 
 /// Correlation of sorted values and the quantiles of a distribution at G. Blom's points (i − 3/8)/(n + 1/4).

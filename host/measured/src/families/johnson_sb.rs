@@ -58,6 +58,10 @@ impl JohnsonSb {
 }
 
 impl Family for JohnsonSb {
+    fn clone_box(&self) -> Box<dyn Family> {
+        Box::new(*self)
+    }
+
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         vec![("gamma", self.gamma), ("delta", self.delta), ("xi", self.xi), ("lambda", self.lambda)]
     }

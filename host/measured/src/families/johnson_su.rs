@@ -56,6 +56,10 @@ impl JohnsonSu {
 }
 
 impl Family for JohnsonSu {
+    fn clone_box(&self) -> Box<dyn Family> {
+        Box::new(*self)
+    }
+
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         vec![("gamma", self.gamma), ("delta", self.delta), ("xi", self.xi), ("lambda", self.lambda)]
     }
@@ -69,6 +73,17 @@ impl Family for JohnsonSu {
     fn tails(&self, x: f64) -> [f64; 2] {
         let score = self.score(x);
         [tail(-score), tail(score)]
+    }
+
+    fn mean(&self) -> f64 {
+        self.xi - self.lambda * libm::exp(0.5 / (self.delta * self.delta)) * libm::sinh(self.gamma / self.delta)
+    }
+
+    fn deviation(&self) -> f64 {
+        // N. Johnson's formula of the variance, with ω = exp(1/δ²).
+        let less = libm::expm1(1.0 / (self.delta * self.delta));
+        let turned = (less + 1.0) * libm::cosh(2.0 * self.gamma / self.delta) + 1.0;
+        self.lambda * libm::sqrt(0.5 * less * turned)
     }
 
     fn value(&self, score: f64) -> f64 {

@@ -65,6 +65,9 @@ pub enum FitError {
     /// A likelihood that grows towards an end of the parameters' range.
     #[error("{0} has no likeliest parameters for these values; a simpler family fits as well")]
     NoMaximum(Kind),
+    /// Values of which intervals cannot be told.
+    #[error("the values leave too much open of {0} for intervals; a simpler family may do")]
+    NoInterval(Kind),
 }
 
 impl Kind {
@@ -104,13 +107,15 @@ impl Kind {
         }
     }
 
-    /// Measured parts without which it is refused: two for the normal, whose intervals are exact; five for the other
-    /// families of two parameters; ten per parameter above, whose estimates are skewed for fewer.
+    /// Measured parts without which it is refused, as its intervals would not hold: two for the normal, whose intervals are
+    /// exact; five for the other families of two parameters; 30 above, and 100 for Johnson's system with two ends, whose
+    /// ends fewer parts do not tell.
     pub fn least_parts(self) -> usize {
         match self {
             Self::Normal => 2,
             Self::Lognormal | Self::Weibull => 5,
-            _ => 10 * self.parameters(),
+            Self::JohnsonSb => 100,
+            _ => 30,
         }
     }
 }

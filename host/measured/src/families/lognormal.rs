@@ -24,6 +24,10 @@ impl Lognormal {
 }
 
 impl Family for Lognormal {
+    fn clone_box(&self) -> Box<dyn Family> {
+        Box::new(*self)
+    }
+
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         vec![("shift", self.shift), ("mean of ln", self.mean), ("sd of ln", self.deviation)]
     }
@@ -43,6 +47,15 @@ impl Family for Lognormal {
         }
         let score = (libm::log(x - self.shift) - self.mean) / self.deviation;
         [tail(-score), tail(score)]
+    }
+
+    fn mean(&self) -> f64 {
+        self.shift + libm::exp(self.mean + 0.5 * self.deviation * self.deviation)
+    }
+
+    fn deviation(&self) -> f64 {
+        let square = self.deviation * self.deviation;
+        libm::exp(self.mean + 0.5 * square) * libm::sqrt(libm::expm1(square))
     }
 
     fn value(&self, score: f64) -> f64 {

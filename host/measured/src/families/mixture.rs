@@ -89,6 +89,10 @@ impl TwoNormals {
 }
 
 impl Family for TwoNormals {
+    fn clone_box(&self) -> Box<dyn Family> {
+        Box::new(*self)
+    }
+
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         let [a, b] = self.parts;
         let share = ("share", self.share);
@@ -104,6 +108,17 @@ impl Family for TwoNormals {
     fn tails(&self, x: f64) -> [f64; 2] {
         let [a, b] = self.parts.map(|part| part.tails(x));
         [0, 1].map(|side| self.share * a[side] + (1.0 - self.share) * b[side])
+    }
+
+    fn mean(&self) -> f64 {
+        let [a, b] = self.parts;
+        self.share * a.mean + (1.0 - self.share) * b.mean
+    }
+
+    fn deviation(&self) -> f64 {
+        let [a, b] = self.parts;
+        let (p, q, apart) = (self.share, 1.0 - self.share, b.mean - a.mean);
+        libm::sqrt(p * a.deviation * a.deviation + q * b.deviation * b.deviation + p * q * apart * apart)
     }
 
     fn value(&self, score: f64) -> f64 {

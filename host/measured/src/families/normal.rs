@@ -23,6 +23,10 @@ impl Normal {
 }
 
 impl Family for Normal {
+    fn clone_box(&self) -> Box<dyn Family> {
+        Box::new(*self)
+    }
+
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         vec![("mean", self.mean), ("sd", self.deviation)]
     }
@@ -35,6 +39,14 @@ impl Family for Normal {
     fn tails(&self, x: f64) -> [f64; 2] {
         let score = self.score(x);
         [tail(-score), tail(score)]
+    }
+
+    fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    fn deviation(&self) -> f64 {
+        self.deviation
     }
 
     fn value(&self, score: f64) -> f64 {

@@ -58,6 +58,10 @@ impl Weibull {
 }
 
 impl Family for Weibull {
+    fn clone_box(&self) -> Box<dyn Family> {
+        Box::new(*self)
+    }
+
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         vec![("shift", self.shift), ("scale", self.scale), ("shape", self.shape)]
     }
@@ -76,6 +80,15 @@ impl Family for Weibull {
         }
         let power = self.power(x);
         [-libm::expm1(-power), libm::exp(-power)]
+    }
+
+    fn mean(&self) -> f64 {
+        self.shift + self.scale * libm::tgamma(1.0 + 1.0 / self.shape)
+    }
+
+    fn deviation(&self) -> f64 {
+        let [first, second] = [1.0, 2.0].map(|order| libm::tgamma(1.0 + order / self.shape));
+        self.scale * libm::sqrt((second - first * first).max(0.0))
     }
 
     fn value(&self, score: f64) -> f64 {

@@ -17,7 +17,7 @@ pub struct NoncentralT {
     /// Points of the standard deviation's ratio.
     ratios: Vec<[f64; 2]>,
     /// Points of the normal score.
-    scores: Vec<[f64; 2]>,
+    scores: &'static [[f64; 2]],
 }
 
 impl NoncentralT {
@@ -40,7 +40,7 @@ impl NoncentralT {
         }
         // (Z + δ)/r ≤ t where r ≥ (Z + δ)/t.
         let mut sides = [0.0; 2];
-        for [score, weight] in &self.scores {
+        for [score, weight] in self.scores {
             let ratio = ((score + shift) / t).max(0.0);
             let below = chi_squared_above(self.freedom * ratio * ratio, self.freedom);
             sides[0] += weight * below;

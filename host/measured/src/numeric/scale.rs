@@ -1,5 +1,7 @@
 //! What is known of the standard deviation of a normal production from a sample.
 
+use std::sync::OnceLock;
+
 use slipfit_tolerance::numeric::gauss::piece;
 
 /// Standard deviations beyond which the ratio of both deviations does not lie.
@@ -17,9 +19,10 @@ pub fn ratios(freedom: f64) -> Vec<[f64; 2]> {
 }
 
 /// Points of a standard normal with weights that add up to 1.
-pub fn scores() -> Vec<[f64; 2]> {
+pub fn scores() -> &'static [[f64; 2]] {
     const FARTHEST: f64 = 9.0;
-    weighted([-FARTHEST, FARTHEST], |score| -0.5 * score * score)
+    static SCORES: OnceLock<Vec<[f64; 2]>> = OnceLock::new();
+    SCORES.get_or_init(|| weighted([-FARTHEST, FARTHEST], |score| -0.5 * score * score))
 }
 
 /// Points of a variable between two ends, with weights that add up to 1 and follow the logarithm of its density, up to a constant.

@@ -59,9 +59,6 @@ pub enum ProductionError {
         /// The value (SI).
         value: f64,
     },
-    /// A family whose parameters the parts do not determine.
-    #[error("the parts do not determine the parameters of the family {0}; a simpler one, or more parts, would do")]
-    Undetermined(Kind),
 }
 
 /// Distributions of some characteristics that are correlated by a Gaussian copula.
@@ -86,7 +83,7 @@ pub struct Production {
 #[derive(Debug)]
 enum Shape {
     Smoothed(Smoothing),
-    Fitted { fit: Fit, values: Vec<f64>, left: OnceLock<Vec<(f64, Distribution)>> },
+    Fitted { fit: Fit, smoothing: Smoothing, values: Vec<f64>, left: OnceLock<Vec<(f64, Distribution)>> },
 }
 
 const SEED: u64 = 0x6d65_6173;
@@ -170,7 +167,8 @@ impl Shape {
                 kind.fit(&measured)?
             }
         };
-        Ok(Self::Fitted { fit, values: measured, left: OnceLock::new() })
+        let smoothing = Smoothing::new(values, *bounds)?;
+        Ok(Self::Fitted { fit, smoothing, values: measured, left: OnceLock::new() })
     }
 
     fn likeliest(&self) -> Distribution {
@@ -184,19 +182,21 @@ impl Shape {
     fn drawn(&self, weights: &[f64], share: f64) -> Distribution {
         match self {
             Self::Smoothed(smoothing) => smoothing.table(Some(weights)),
-            Self::Fitted { fit, values, left } => {
+            Self::Fitted { fit, smoothing, values, left } => {
                 let left = left.get_or_init(|| left_possible(fit, values));
                 let at = left.partition_point(|(below, _)| *below < share);
-                left.get(at).or(left.last()).map_or_else(|| self.likeliest(), |(_, distribution)| distribution.clone())
+                // Where the family's own cannot be drawn, the parts themselves say what they leave open.
+                let drawn = left.get(at).or(left.last()).map(|(_, distribution)| distribution.clone());
+                drawn.unwrap_or_else(|| smoothing.table(Some(weights)))
             }
         }
     }
 }
 
 /// Distributions that `values` leave possible with the probabilities up to each: ordered by their medians, so that
-/// characteristics that are correlated have correlated means. None if the likelihood is too far from a normal one.
+/// characteristics that are correlated have correlated means. None if none can be drawn.
 fn left_possible(fit: &Fit, values: &[f64]) -> Vec<(f64, Distribution)> {
-    let Some(posterior) = Posterior::new(fit, values) else { return Vec::new() };
+    let Ok(posterior) = Posterior::new(fit.kind, Some(fit.family.as_ref()), values) else { return Vec::new() };
     let mut draws: Vec<(f64, &dyn Family)> = posterior.draws().collect();
     draws.sort_by(|a, b| a.1.value(0.0).total_cmp(&b.1.value(0.0)));
     let sum: f64 = draws.iter().map(|(weight, _)| weight).sum();

@@ -4,14 +4,16 @@
 
 mod clearances;
 mod html;
+mod measured;
 mod production;
 mod sweep;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use slipfit_measured::{capability::Capability, table::MeasuredTable};
 
 use self::html::{figure, list, minus_signs, real};
 pub use self::{clearances::Clearances, production::Production};
-use super::{palette::style_sheet, player};
+use super::{palette::style_sheet, player, plot::PlotError};
 use crate::dynamics::{driven::DriveKind, sweep::Sweep};
 
 /// What a report is made of.
@@ -93,6 +95,26 @@ pub fn units_page(title: &str, answer: &str, of: &Units, remarks: &[String]) -> 
 pub fn unit_page(title: &str, answer: &str, player: Markup, picture: Figure, remarks: &[String]) -> Markup {
     let of = Units { figures: vec![picture], player: Some(player) };
     page(title, &html! { (verdict(answer)) (notes(remarks)) h2 { "What this unit does" } (moving(&of)) }, Some(&of))
+}
+
+/// The page of measured parts from a file, with pictures and figures of every characteristic, divided by a grouping of the
+/// table if one is given.
+///
+/// # Errors
+/// [`PlotError`], if a number is not finite.
+pub fn measured_page(
+    source: &str,
+    table: &MeasuredTable,
+    characteristics: &[Capability],
+    grouping: Option<usize>,
+    remarks: &[String],
+) -> Result<Markup, PlotError> {
+    let sections = measured::sections(table, characteristics, grouping)?;
+    Ok(page(
+        &format!("Capability of {source}"),
+        &html! { (measured::summary(characteristics)) (notes(remarks)) (sections) },
+        None,
+    ))
 }
 
 /// A page with these sections, and with what moves the player of `units`.

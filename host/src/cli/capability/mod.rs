@@ -1,0 +1,149 @@
+//! `slipfit capability`: what measured parts tell of a production.
+
+mod words;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rayon::prelude::*;
+use serde::Serialize;
+use slipfit_measured::{
+    capability::{Capability, Options, capability},
+    csv,
+    families::Kind,
+    table::MeasuredTable,
+};
+use slipfit_qif::{file, results};
+use slipfit_system::files;
+
+use super::{
+    failure::Failure,
+    terminal::{print, print_json, warn},
+};
+use crate::show::report::measured_page;
+
+/// Tells performance and capability of measured parts by ISO 22514-2.
+///
+/// Intervals are of 95 %. They are of the distribution that the parts choose, from 30 parts on, or of the one that --family states.
+///
+/// A CSV file has a row for each part. Its first row names the characteristics with their units, such as "length [mm]"; rows named
+/// nominal, lower and upper may follow. A QIF 3.0 file of results (.qif) has all that by itself. Outliers are named and stay in every
+/// figure.
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// Measured parts: CSV, or QIF results (.qif).
+    file: PathBuf,
+    /// Column of the CSV whose texts divide the parts into subgroups, such as a cavity or a machine.
+    #[arg(long, value_name = "COLUMN")]
+    group: Option<String>,
+    /// Column of the CSV that labels the parts; default: "part".
+    #[arg(long, value_name = "COLUMN")]
+    label: Option<String>,
+    /// Leaves out a column of the CSV; may be repeated.
+    #[arg(long, value_name = "COLUMN")]
+    ignore: Vec<String>,
+    /// Family of the distribution; default: chosen from the parts, of which that takes 30.
+    #[arg(long, value_name = "NAME", value_parser = family)]
+    family: Option<Kind>,
+    /// Writes a page with pictures of every characteristic.
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
+    /// Prints JSON instead of text.
+    #[arg(long)]
+    json: bool,
+}
+
+fn family(name: &str) -> Result<Kind, String> {
+    let names = Kind::ALL.map(Kind::name);
+    let known = Kind::ALL.into_iter().find(|kind| kind.name() == name);
+    known.ok_or_else(|| format!("allowed are {}", names.join(", ")))
+}
+
+#[derive(Serialize)]
+struct Report {
+    parts: usize,
+    characteristics: Vec<Capability>,
+    refused: Vec<Refused>,
+    warnings: Vec<String>,
+}
+
+/// A characteristic whose capability cannot be told.
+#[derive(Serialize)]
+struct Refused {
+    name: String,
+    why: String,
+}
+
+impl Arguments {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or of which no characteristic can be judged.
+    pub(super) fn run(self) -> Result<(), Failure> {
+        let table = self.table()?;
+        let grouping = self.group.as_ref().map(|_| 0);
+        let options = Options { family: self.family, grouping, ..Options::default() };
+        let (mut characteristics, mut refused) = (Vec::new(), Vec::new());
+        let found: Vec<_> =
+            (0..table.columns().len()).into_par_iter().map(|k| capability(&table, k, &options)).collect();
+        for (column, found) in table.columns().iter().zip(found) {
+            match found {
+                Ok(found) => characteristics.push(found),
+                Err(error) => refused.push(Refused { name: column.name.clone(), why: error.to_string() }),
+            }
+        }
+        if let (true, Some(first)) = (characteristics.is_empty(), refused.first()) {
+            return Err(Failure::Input(format!(
+                "{}: {}{}",
+                self.file.display(),
+                first.why,
+                words::state_one(&first.why)
+            )));
+        }
+        let mut warnings: Vec<String> = words::unjudged(&refused).into_iter().collect();
+        warnings.extend(characteristics.iter().flat_map(words::warnings_of));
+        let report = Report { parts: table.parts(), characteristics, refused, warnings };
+        if let Some(path) = &self.page {
+            let source = self.file.file_name().unwrap_or_default().to_string_lossy();
+            let page = measured_page(&source, &table, &report.characteristics, grouping, &report.warnings);
+            files::write(path, page.map_err(anyhow::Error::from)?.into_string().as_bytes())?;
+        }
+        if self.json {
+            return print_json(&report);
+        }
+        print(&words::described(&report))?;
+        warn(&report.warnings);
+        Ok(())
+    }
+
+    fn table(&self) -> Result<MeasuredTable, Failure> {
+        let shown = self.file.display();
+        if !self.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("qif")) {
+            let groups = self.group.iter().cloned().collect();
+            let options = csv::Options {
+                labels: self.label.clone(),
+                groups,
+                ignored: self.ignore.clone(),
+                ..csv::Options::default()
+            };
+            return csv::read_file(&self.file, &options).map_err(|error| match error {
+                csv::FileError::Csv(csv::CsvError { place, problem }) => {
+                    let options =
+                        if matches!(problem, csv::Problem::NotANumber { .. }) { " (--group, --ignore)" } else { "" };
+                    Failure::Input(format!("{shown}:{}:{}: {problem}{options}", place.line, place.column))
+                }
+                csv::FileError::Io(error) => Failure::Input(format!("{shown}: {error}")),
+            });
+        }
+        let given = [
+            ("--group", self.group.is_some()),
+            ("--label", self.label.is_some()),
+            ("--ignore", !self.ignore.is_empty()),
+        ];
+        if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
+            return Err(Failure::Input(format!("{option} names a column of a CSV file, and {shown} is QIF")));
+        }
+        let text = file::read(&self.file).map_err(|error| Failure::Input(format!("{shown}: {error}")))?;
+        results::read(&text).map_err(|error| Failure::Input(format!("{shown}:{error}")))
+    }
+}
