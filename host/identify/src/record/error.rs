@@ -22,7 +22,7 @@ pub enum RecordError {
         /// The file.
         name: String,
         /// What, and where.
-        error: CsvError,
+        error: Box<CsvError>,
     },
     /// The numbers are wrong.
     #[error("{name}:{}:{}: {problem}", place.line, place.column)]
@@ -41,7 +41,7 @@ impl RecordError {
         let name = name.to_owned();
         match error {
             FileError::Io(error) => Self::Io { name, error },
-            FileError::Csv(error) => Self::Csv { name, error },
+            FileError::Csv(error) => Self::Csv { name, error: Box::new(error) },
         }
     }
 }
