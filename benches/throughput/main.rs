@@ -47,7 +47,7 @@ fn linear() -> Model {
         correlations: Vec::new(),
         measures: (0..MEASURES).map(measure).collect(),
         sums: Vec::new(),
-        function: Box::new(Linear::new(&[0.0; MEASURES], &rows)),
+        function: std::sync::Arc::new(Linear::new(&[0.0; MEASURES], &rows)),
     }
 }
 

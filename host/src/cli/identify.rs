@@ -103,7 +103,8 @@ impl Arguments {
         let stated = law.into_iter().map(|law| (law.name.as_str(), &law.terms[..]));
         for (name, terms) in stated.chain(LAWS) {
             let is_known = laws.iter().any(|(other, _)| other == name);
-            if !is_known && !(coasts && terms.contains(&drive_train::Term::Delay)) {
+            let is_undelayed = coasts && terms.contains(&drive_train::Term::Delay);
+            if !(is_known || is_undelayed) {
                 laws.push((name.to_owned(), DriveTrain::new(terms, &runs)));
             }
         }

@@ -127,7 +127,7 @@ impl Measured<'_> {
         let score = |i: usize| quantile((i as f64 + 0.625) / (n + 0.25));
         let every = sorted.len().div_ceil(POINTS);
         // The ends in full: they show the tails.
-        let is_shown = |i: usize| i % every == 0 || i < 50 || i + 50 >= sorted.len();
+        let is_shown = |i: usize| i.is_multiple_of(every) || i < 50 || i + 50 >= sorted.len();
         let points = sorted.iter().enumerate().filter(|(i, (part, _))| is_shown(*i) || self.is_outlier(*part));
         let points: Vec<_> = points.map(|(i, (part, value))| (*part, (*value, score(i)))).collect();
         let farthest = score(sorted.len() - 1).max(3.0);

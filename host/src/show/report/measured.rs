@@ -62,6 +62,9 @@ fn section(of: &MeasuredTable, found: &Capability, grouping: Option<usize>) -> R
     })
 }
 
+/// Name of a figure, its estimate, and how it is shown.
+type Row<'a> = (String, Option<Estimate>, &'a dyn Fn(f64) -> String);
+
 /// Every figure with its interval.
 fn indices(of: &Capability) -> Markup {
     let decimals = digits(of.deviation.value);
@@ -75,7 +78,7 @@ fn indices(of: &Capability) -> Markup {
     let [below, above, both] = [of.failing.below, of.failing.above, of.failing.both];
     let counted = of.counted.map(|counted| counted.share);
     let within = of.within.as_ref();
-    let mut rows: Vec<(String, Option<Estimate>, &dyn Fn(f64) -> String)> = vec![
+    let mut rows: Vec<Row> = vec![
         (unit("mean"), Some(of.mean), &length),
         (unit("standard deviation"), Some(of.deviation), &length),
         ("Pp".into(), of.performance.spread, &ratio),
