@@ -37,11 +37,18 @@ pub fn feature(node: Node, definitions: &ById, units: &Units) -> Result<Feature,
     });
     let definition = definition.transpose()?;
     let shape = match name(node) {
-        "PlaneFeatureNominal" => plane(node, units)?,
-        "CylinderFeatureNominal" => cylinder(node, definition, units)?,
-        "OppositeParallelPlanesFeatureNominal" => slot(node, definition, units)?,
-        "PointFeatureNominal" => point(node, units)?,
-        _ => Err(format!("a feature of the kind {kind}, which a part of a scene does not have")),
+        "PlaneFeatureNominal" => plane(node, units),
+        "CylinderFeatureNominal" => cylinder(node, definition, units),
+        "OppositeParallelPlanesFeatureNominal" => slot(node, definition, units),
+        "PointFeatureNominal" => point(node, units),
+        _ => Ok(Err(format!("a feature of the kind {kind}, which a part of a scene does not have"))),
+    };
+    // A feature that the file describes by other means than these has no shape here, and is no error.
+    let shape = match shape {
+        Err(QifError { problem: Problem::Missing { element, missing: what }, .. }) => {
+            missing(&format!("{what} in {element}"))?
+        }
+        shape => shape?,
     };
     Ok(Feature { name: named.unwrap_or_else(|| format!("{kind} {id}")), id, kind, shape })
 }
