@@ -6,7 +6,10 @@ use std::path::Path;
 
 use common::{json, slipfit, stdout};
 use slipfit::{
-    dynamics::simulate::{Settings, simulate},
+    dynamics::{
+        driven::Driven,
+        simulate::{Settings, simulate},
+    },
     identify::SlideModel,
     scene::CD_ROM_SLIDE,
     setup::{Scene, Sought, Unknown},
@@ -14,7 +17,7 @@ use slipfit::{
 use slipfit_core::{sampling::stream::unit_stream, slide::CONTACTS};
 use slipfit_identify::{
     estimate::{Estimate, estimate},
-    fit::{Loss, Options},
+    fit::Options,
     record::Record,
 };
 use slipfit_tolerance::failure::subset::normals;
@@ -195,20 +198,22 @@ fn a_slide_is_known_from_its_stroke_and_outliers_do_not_count() {
 }
 
 #[test]
-#[ignore = "800 fits of four parameters take ten minutes"]
-fn intervals_hold_in_92_to_98_percent_of_records() {
+#[ignore = "240 fits of four parameters"]
+fn intervals_hold() {
+    const RECORDS: u64 = 60;
     let (scene, force) = stroke();
     let peak = peak(&force);
     for (correlation, share) in [(0.0, 0.01), (0.0, 0.05), (0.9, 0.01), (0.9, 0.05)] {
         let mut held = [0; 4];
-        for seed in 0..200 {
+        for seed in 0..RECORDS {
             let found = estimated(&scene, 4, noisy(&force, &noise(seed, force.len(), correlation, share * peak)));
             for ((count, parameter), truth) in held.iter_mut().zip(&found.parameters).zip(TRUE) {
                 let [low, high] = parameter.interval.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
                 *count += usize::from((low..=high).contains(&truth));
             }
         }
-        println!("noise {share} of the peak, correlation {correlation}: {held:?} of 200");
-        assert!(held.iter().all(|count| (184..=196).contains(count)), "{share} {correlation}: {held:?}");
+        println!("noise {share} of the peak, correlation {correlation}: {held:?} of {RECORDS}");
+        // Three standard deviations below 95 %.
+        assert!(held.iter().all(|count| *count >= 52), "{share} {correlation}: {held:?}");
     }
 }

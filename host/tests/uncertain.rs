@@ -130,7 +130,7 @@ ramp_end = [0.03, 0.11]
 fn a_parameter_varies_about_its_unknown_mean() {
     let folder = tempfile::tempdir().unwrap();
     let of = |vary: &str| {
-        let arguments = ["population", "--units", "400", "--set", FRICTION, "--set", vary, "--json"];
+        let arguments = ["population", "--units", "3000", "--set", FRICTION, "--set", vary, "--json"];
         share(&json(folder.path(), &arguments)["uncertain"]["malfunctions"])
     };
     let [narrow, wide] = ["0.001", "0.15"].map(|by| of(&format!("vary.friction.coefficient={by}")));

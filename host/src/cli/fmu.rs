@@ -25,7 +25,7 @@ use crate::{
     xml::printable,
 };
 
-/// Packs the controller's kernel as an FMI co-simulation unit (FMU), for system simulators.
+/// Packs the controller's kernel as an FMI co-simulation unit (FMU).
 ///
 /// For slides and mechanisms. The kernel is compiled on this machine, which needs Cargo. The FMU runs on machines of the same kind only.
 #[derive(Args)]
