@@ -190,14 +190,14 @@ fn shares_are_those_of_the_joint_distribution() {
 #[test]
 fn mistakes_are_named() {
     let folder = tempfile::tempdir().unwrap();
-    write_parts(folder.path(), 40, 1, 0.0, [("width [mm]", &|z| 20.0 + 0.01 * z), ("angle [°]", &|z| z)]);
+    write_parts(folder.path(), 60, 1, 0.0, [("width [mm]", &|z| 20.0 + 0.01 * z), ("angle [°]", &|z| z)]);
     std::fs::write(folder.path().join("stack.toml"), STACK).unwrap();
     std::fs::write(folder.path().join("bad.csv"), "part,width [mm]\n1,20\n2,x\n").unwrap();
     std::fs::write(folder.path().join("few.csv"), "part,width [mm]\n1,20\n2,20.01\n3,19.99\n").unwrap();
     for (set, wanted) in [
         ("measured.file=none.csv", "none.csv"),
         ("measured.file=bad.csv", "bad.csv:3:3"),
-        ("measured.file=few.csv", "30 measured parts, but there are 3"),
+        ("measured.file=few.csv", "50 measured parts, but there are 3"),
         ("measured.only=A", "`measured.only` has no effect without a `group`"),
         ("measured.distribution=cauchy", "smoothed: the values themselves"),
         ("measured.column=[]", "`measured.column` is a list of 0"),

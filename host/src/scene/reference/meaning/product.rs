@@ -340,7 +340,7 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ("measured.only", "The group, or a list of the groups, whose parts count. Default: all parts."),
     (
         "measured.distribution",
-        "`smoothed`: the distribution of the values themselves, from 30 parts on. A family, such as `normal` or \
+        "`smoothed`: the distribution of the values themselves, from 50 parts on. A family, such as `normal` or \
          `weibull`: its likeliest distribution. `chosen`: the family that fits best, from 30 parts on. Default: `smoothed`.",
     ),
     (
