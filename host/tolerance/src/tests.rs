@@ -287,7 +287,7 @@ impl Function for Kinks {
 #[test]
 fn kinks_are_told_from_bends() {
     let mut model = linear(vec![normal("x", 0.0, 3.0), normal("y", 0.0, 3.0)], vec![vec![1.0; 2]; 4]);
-    model.function = Box::new(Kinks);
+    model.function = std::sync::Arc::new(Kinks);
     let analysis = analysed(&model);
     let Theory { moments, worst_cases, sums_of_squares, .. } = &analysis.theory;
     assert_eq!(moments.iter().map(|of| of.described).collect::<Vec<_>>(), [false, false, false, true]);

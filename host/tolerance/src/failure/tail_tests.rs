@@ -42,7 +42,7 @@ impl Case {
     fn model(&self) -> Model {
         let contributors = (0..self.variables).map(|_| normal("x", 0.0, 3.0)).collect();
         let mut model = linear(contributors, vec![vec![1.0; self.variables]]);
-        model.function = Box::new(Of(self.measure));
+        model.function = std::sync::Arc::new(Of(self.measure));
         model
     }
 

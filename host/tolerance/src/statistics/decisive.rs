@@ -242,6 +242,6 @@ mod tests {
         assert_eq!(shares(&points, &EACH, noise), [None; 3]);
         // What is alone decides all.
         let (points, noise) = counted(64, 1, |u| u[0]);
-        assert_eq!(shares(&points, &[0..3], noise), [Some(Share { share: 1.0, error: 0.0 })]);
+        assert_eq!(shares(&points, &vec![0..3; 1], noise), [Some(Share { share: 1.0, error: 0.0 })]);
     }
 }

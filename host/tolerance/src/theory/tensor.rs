@@ -161,7 +161,7 @@ mod tests {
 
     fn of_normal(function: fn(f64) -> f64) -> Option<Exact> {
         let mut model = linear(vec![normal("x", 0.0, 3.0)], vec![vec![1.0]]);
-        model.function = Box::new(Of(function));
+        model.function = std::sync::Arc::new(Of(function));
         of_measures(&model)[0]
     }
 

@@ -324,7 +324,7 @@ mod tests {
     fn curvature_along_a_correlated_variable_that_is_not_normal_is_right() {
         let x = scalar("x", Distribution::Uniform { limits: [-1.0, 1.0] }, [-1.0, 1.0]);
         let mut model = linear(vec![x, normal("y", 0.0, 0.3)], vec![vec![0.0, 1.0]; 2]);
-        model.function = Box::new(Squares);
+        model.function = std::sync::Arc::new(Squares);
         model.correlations = vec![(0, 1, 0.6)];
         let [square, sum] = &of_measures(&model)[..] else { panic!("two measures") };
         assert!((square.mean - 1.0 / 3.0).abs() < 1e-9, "{square:?}");
@@ -347,7 +347,7 @@ mod tests {
         let lot = |at: f64| Distribution::Uniform { limits: [at - 1e-4, at + 1e-4] };
         let x = Distribution::Mixture(vec![(0.99, lot(0.0)), (0.01, lot(10.0))]);
         let mut model = linear(vec![scalar("x", x, [-1.0, 11.0])], vec![vec![1.0]]);
-        model.function = Box::new(Bent);
+        model.function = std::sync::Arc::new(Bent);
         let found = of_measures(&model)[0];
         let off = 1.0 - (10.04 / 12.0) * (10.04 / 12.0);
         assert!((found.curved - off).abs() < 1e-3 && !found.by_slopes(), "{found:?}");
