@@ -1,6 +1,7 @@
 //! The production that measured parts come from: a distribution per characteristic, and how they move together.
 
 mod dependence;
+mod error;
 mod marginal;
 mod smoothed;
 #[cfg(test)]
@@ -11,12 +12,9 @@ use std::sync::OnceLock;
 use slipfit_core::sampling::stream::{Rng, Xoshiro256PlusPlus, unit_stream};
 use slipfit_tolerance::model::Distribution;
 
-use self::{
-    dependence::Dependence,
-    marginal::of_family,
-    smoothed::{LEAST_TO_SMOOTH, Smoothing},
-};
-use crate::families::{Family, Fit, FitError, Kind, Posterior, choose, preferred};
+pub use self::error::ProductionError;
+use self::{dependence::Dependence, error::LEAST_TO_SMOOTH, marginal::of_family, smoothed::Smoothing};
+use crate::families::{Family, Fit, Kind, Posterior, choose, preferred};
 
 /// What the distribution of a characteristic is taken from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,27 +36,6 @@ pub struct Characteristic {
     pub assumed: Assumed,
     /// Least and greatest value that a part can have; only smoothed values could exceed them.
     pub bounds: [f64; 2],
-}
-
-/// Why a characteristic has no distribution.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ProductionError {
-    /// Too few parts to smooth.
-    #[error(
-        "smoothing takes {LEAST_TO_SMOOTH} measured parts, but there are {0}; `distribution = \"normal\"` assumes a family, \
-         whose parameters fewer parts determine"
-    )]
-    FewParts(usize),
-    /// A family that does not fit.
-    #[error(transparent)]
-    Fit(#[from] FitError),
-    /// A measured value that no part can have.
-    #[error("one part has {value}, which is beyond the bounds")]
-    Bounds {
-        /// The value (SI).
-        value: f64,
-    },
 }
 
 /// Distributions of some characteristics that are correlated by a Gaussian copula.

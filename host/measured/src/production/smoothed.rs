@@ -2,11 +2,9 @@
 
 use slipfit_tolerance::{model::Distribution, numeric::normal::quantile as score_at};
 
-use super::ProductionError;
+use super::error::ProductionError;
 use crate::families::FitError;
 
-/// Parts without which nothing is smoothed: intervals by weighting the parts anew are too narrow for fewer.
-pub const LEAST_TO_SMOOTH: usize = 50;
 /// Values of the table that is drawn from.
 const VALUES: usize = 2001;
 /// Points that stand for the kernel of every value, at least; of few values more.

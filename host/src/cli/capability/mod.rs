@@ -1,14 +1,14 @@
 //! `slipfit capability`: what measured parts tell of a production.
 
+mod report;
 mod words;
 
 use std::path::PathBuf;
 
 use clap::Args;
 use rayon::prelude::*;
-use serde::Serialize;
 use slipfit_measured::{
-    capability::{Capability, Options, capability},
+    capability::{Options, capability},
     csv,
     families::Kind,
     table::MeasuredTable,
@@ -16,6 +16,7 @@ use slipfit_measured::{
 use slipfit_qif::{file, results};
 use slipfit_system::files;
 
+use self::report::{Refused, Report};
 use super::{
     failure::Failure,
     terminal::{print, print_json, warn},
@@ -57,21 +58,6 @@ fn family(name: &str) -> Result<Kind, String> {
     let names = Kind::ALL.map(Kind::name);
     let known = Kind::ALL.into_iter().find(|kind| kind.name() == name);
     known.ok_or_else(|| format!("allowed are {}", names.join(", ")))
-}
-
-#[derive(Serialize)]
-struct Report {
-    parts: usize,
-    characteristics: Vec<Capability>,
-    refused: Vec<Refused>,
-    warnings: Vec<String>,
-}
-
-/// A characteristic whose capability cannot be told.
-#[derive(Serialize)]
-struct Refused {
-    name: String,
-    why: String,
 }
 
 impl Arguments {

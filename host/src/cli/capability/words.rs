@@ -8,7 +8,7 @@ use slipfit_measured::{
 };
 use slipfit_tolerance::number::{fixed, or_dash, percent, three_digits};
 
-use super::{Refused, Report};
+use super::report::{Refused, Report};
 use crate::{
     cli::terminal::text_table,
     show::capability::{digits, index},
