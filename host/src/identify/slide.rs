@@ -45,7 +45,7 @@ impl SlideModel {
     /// The slide of `scene` with gaps of these `levels` and what is `sought` of it, beside `records` with a force.
     ///
     /// # Errors
-    /// [`EarlyRecord`] where a record begins before the run.
+    /// A record that begins before the run.
     pub fn new(
         scene: &Scene,
         levels: [f64; CONTACTS],
