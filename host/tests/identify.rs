@@ -198,12 +198,12 @@ fn a_slide_is_known_from_its_stroke_and_outliers_do_not_count() {
 }
 
 #[test]
-#[ignore = "240 fits of four parameters"]
+#[ignore = "60 fits of four parameters"]
 fn intervals_hold() {
-    const RECORDS: u64 = 60;
+    const RECORDS: u64 = 30;
     let (scene, force) = stroke();
     let peak = peak(&force);
-    for (correlation, share) in [(0.0, 0.01), (0.0, 0.05), (0.9, 0.01), (0.9, 0.05)] {
+    for (correlation, share) in [(0.0, 0.01), (0.9, 0.05)] {
         let mut held = [0; 4];
         for seed in 0..RECORDS {
             let found = estimated(&scene, 4, noisy(&force, &noise(seed, force.len(), correlation, share * peak)));
@@ -214,6 +214,6 @@ fn intervals_hold() {
         }
         println!("noise {share} of the peak, correlation {correlation}: {held:?} of {RECORDS}");
         // Three standard deviations below 95 %.
-        assert!(held.iter().all(|count| *count >= 52), "{share} {correlation}: {held:?}");
+        assert!(held.iter().all(|count| *count >= 25), "{share} {correlation}: {held:?}");
     }
 }
