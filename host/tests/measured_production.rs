@@ -186,6 +186,24 @@ fn shares_are_those_of_the_joint_distribution() {
     }
 }
 
+/// An outlier of a few parts is named, too, and so is a mean far from the middle of the tolerance.
+#[test]
+fn doubtful_parts_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("stack.toml"), STACK).unwrap();
+    let rows = [20.03, 20.04, 20.05, 20.04, 20.03, 20.05, 20.04, 20.3].map(|width| width.to_string());
+    let text =
+        rows.iter().enumerate().fold("part,width [mm]\n".to_owned(), |text, (i, row)| text + &format!("{i},{row}\n"));
+    std::fs::write(folder.path().join("parts.csv"), text).unwrap();
+    let output = slipfit(folder.path(), &["tolerance", "stack.toml", "--set", "measured.distribution=normal"]);
+    let told = stderr(&output);
+    assert!(output.status.success() && told.contains("`ring`: part 8 lies 2.5 standard deviations"), "{told}");
+    assert!(
+        told.contains("`ring`: the measured mean lies 73 % of half the tolerance above its middle, and 1 of 8 parts"),
+        "{told}"
+    );
+}
+
 /// What is wrong is said at its line, or with the file's line.
 #[test]
 fn mistakes_are_named() {

@@ -29,7 +29,7 @@ pub use self::{
     failing::{Counted, Failing},
     indices::{Indices, Known},
     normality::{LEAST_PARTS, Normality},
-    outliers::{Outlier, SIGNIFICANCE},
+    outliers::{Outlier, SIGNIFICANCE, outliers},
     points::{Distribution, SCORES},
     sample::Sample,
     tolerance_interval::{ToleranceInterval, one_sided_factor, parts_for_any, two_sided_factor},
@@ -129,7 +129,7 @@ pub fn capability(table: &MeasuredTable, column: usize, options: &Options) -> Re
         counted: has_limits.then(|| Counted::new(&sample.sorted, limits)),
         within: grouping.and_then(|grouping| Within::new(measured, grouping, &sample)),
         normality: Normality::new(&sample),
-        outliers: outliers::outliers(&sample, |part| table.label(part)),
+        outliers: outliers(&sample, |part| table.label(part)),
         tolerance_intervals: shares.map(|share| ToleranceInterval::new(*share, &known, &sample.sorted)).collect(),
     })
 }

@@ -139,9 +139,10 @@ impl Shape {
             Assumed::Smoothed => return Ok(Self::Smoothed(Smoothing::new(values, *bounds)?)),
             Assumed::Family(kind) => kind.fit(&measured)?,
             Assumed::Chosen => {
-                let (fits, _) = choose(&measured)?;
-                let kind = preferred(&fits).map_or(Kind::Normal, |fit| fit.kind);
-                kind.fit(&measured)?
+                let (mut fits, _) = choose(&measured)?;
+                let kind = preferred(&fits).map(|fit| fit.kind);
+                let best = fits.iter().position(|fit| Some(fit.kind) == kind);
+                best.map_or_else(|| Kind::Normal.fit(&measured), |best| Ok(fits.swap_remove(best)))?
             }
         };
         let smoothing = Smoothing::new(values, *bounds)?;

@@ -1,10 +1,9 @@
 //! What is to be known of measured values before they stand for a production.
 
 use slipfit_measured::{
-    capability::{Options, capability},
+    capability::{Sample, outliers},
     numeric::tails::student_quantile_above,
     production::Characteristic,
-    table::{Column, MeasuredTable},
 };
 use slipfit_tolerance::number::{fixed, percent};
 
@@ -19,9 +18,9 @@ const SHIFTED: f64 = 0.1;
 
 /// Warns of outliers and of a drift in the values measured for `of`, which is written in `field`.
 pub fn warn(field: &Field, of: &str, characteristic: &Characteristic) {
-    let column = Column { name: of.into(), values: characteristic.values.clone(), ..Column::default() };
-    let found = MeasuredTable::new(vec![column]).ok().and_then(|table| capability(&table, 0, &Options::default()).ok());
-    for outlier in found.iter().flat_map(|found| &found.outliers) {
+    // Too few parts, or parts without a variation, are refused where a distribution is made of them.
+    let sample = Sample::new(of, &characteristic.values).ok();
+    for outlier in sample.iter().flat_map(|sample| outliers(sample, |part| (part + 1).to_string())) {
         field.warn(&format!(
             "`{of}`: part {} lies {} standard deviations from the mean, farther than a normal production reaches; it stays in the \
              distribution",
