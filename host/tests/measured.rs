@@ -122,3 +122,17 @@ fn an_imported_model_is_a_part_that_check_accepts() {
         assert_eq!(printed, std::fs::read_to_string(folder.path().join("part.toml")).unwrap());
     }
 }
+
+/// A page takes the place of nothing else.
+#[test]
+fn a_page_is_a_file_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "part,a [mm]\nupper,9\n1,1\n2,2\n3,4\n4,5\n";
+    std::fs::write(folder.path().join("p.html"), text).unwrap();
+    for (file, page, wanted) in [("p.html", "p.html", "--page"), ("p.html", "q.csv", "--page writes .html or .htm")] {
+        let output = slipfit(folder.path(), &["capability", file, "--family", "normal", "--page", page]);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && errors.contains(wanted), "{errors}");
+    }
+    assert_eq!(std::fs::read_to_string(folder.path().join("p.html")).unwrap(), text);
+}

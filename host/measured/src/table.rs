@@ -187,20 +187,6 @@ impl MeasuredTable {
         Ok(self)
     }
 
-    /// With other nominal values and limits, as a scene or the command line states them.
-    pub fn with_limits(
-        mut self,
-        column: usize,
-        nominal: Option<f64>,
-        limits: [Option<f64>; 2],
-    ) -> Result<Self, TableError> {
-        if let Some(column) = self.columns.get_mut(column) {
-            (column.nominal, column.limits) = (nominal, limits);
-            check_numbers(column)?;
-        }
-        Ok(self)
-    }
-
     /// The characteristics.
     pub fn columns(&self) -> &[Column] {
         &self.columns

@@ -108,7 +108,7 @@ pub fn capability(table: &MeasuredTable, column: usize, options: &Options) -> Re
     let sample = Sample::new(&measured.name, &measured.values)?;
     let known = Known::of(&sample);
     let has_limits = limits.iter().any(Option::is_some);
-    let (distribution, _, figures) = points::figures(&sample, options.family, limits)
+    let (distribution, figures) = points::figures(&sample, options.family, limits)
         .map_err(|why| CapabilityError::NoFigures { column: measured.name.clone(), why })?;
     let shares = options.shares.iter().filter(|share| 0.0 < **share && **share < 1.0);
     Ok(Capability {

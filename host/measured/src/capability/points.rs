@@ -52,7 +52,7 @@ pub fn figures(
     sample: &Sample,
     stated: Option<Kind>,
     limits: [Option<f64>; 2],
-) -> Result<(Distribution, Box<dyn Family>, Figures), FitError> {
+) -> Result<(Distribution, Figures), FitError> {
     let known = Known::of(sample);
     let (fits, errors) = match stated {
         Some(kind) => (vec![kind.fit_or_mode(&sample.sorted)?], Vec::new()),
@@ -87,7 +87,7 @@ pub fn figures(
         points: SCORES.map(|score| family.value(score)),
         allowed,
     };
-    Ok((distribution, family, figures))
+    Ok((distribution, figures))
 }
 
 /// The distribution that estimates are of: the likeliest one, but with the usual standard deviation of a normal one.

@@ -18,7 +18,8 @@ use slipfit_system::files;
 
 use self::report::{Refused, Report};
 use super::{
-    failure::Failure,
+    endings,
+    failure::{Failure, refused},
     terminal::{print, print_json, warn},
 };
 use crate::show::report::measured_page;
@@ -66,29 +67,33 @@ impl Arguments {
     /// # Errors
     /// A file that cannot be read, or of which no characteristic can be judged.
     pub(super) fn run(self) -> Result<(), Failure> {
+        if let Some(page) = &self.page {
+            let outputs = [("--page", page.as_path())];
+            endings::check(&outputs)?;
+            files::check_distinct(&[("the measured parts", &self.file)], &outputs)?;
+            files::check_writable(page).map_err(refused)?;
+        }
         let table = self.table()?;
         let grouping = self.group.as_ref().map(|_| 0);
         let options = Options { family: self.family, grouping, ..Options::default() };
-        let (mut characteristics, mut refused) = (Vec::new(), Vec::new());
+        let (mut characteristics, mut unjudged, mut errors) = (Vec::new(), Vec::new(), Vec::new());
         let found: Vec<_> =
             (0..table.columns().len()).into_par_iter().map(|k| capability(&table, k, &options)).collect();
         for (column, found) in table.columns().iter().zip(found) {
             match found {
                 Ok(found) => characteristics.push(found),
-                Err(error) => refused.push(Refused { name: column.name.clone(), why: error.to_string() }),
+                Err(error) => {
+                    unjudged.push(Refused { name: column.name.clone(), why: error.to_string() });
+                    errors.push(error);
+                }
             }
         }
-        if let (true, Some(first)) = (characteristics.is_empty(), refused.first()) {
-            return Err(Failure::Input(format!(
-                "{}: {}{}",
-                self.file.display(),
-                first.why,
-                words::state_one(&first.why)
-            )));
+        if let (true, Some(first)) = (characteristics.is_empty(), errors.first()) {
+            return Err(Failure::Input(format!("{}: {}", self.file.display(), words::advised(first))));
         }
-        let mut warnings: Vec<String> = words::unjudged(&refused).into_iter().collect();
+        let mut warnings: Vec<String> = words::unjudged(&errors).into_iter().collect();
         warnings.extend(characteristics.iter().flat_map(words::warnings_of));
-        let report = Report { parts: table.parts(), characteristics, refused, warnings };
+        let report = Report { parts: table.parts(), characteristics, refused: unjudged, warnings };
         if let Some(path) = &self.page {
             let source = self.file.file_name().unwrap_or_default().to_string_lossy();
             let page = measured_page(&source, &table, &report.characteristics, grouping, &report.warnings);

@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use slipfit_measured::{
-    capability::{Capability, LEAST_PARTS},
-    families::Kind,
+    capability::{Capability, CapabilityError, LEAST_PARTS},
+    families::{FitError, Kind},
 };
 use slipfit_tolerance::number::{fixed, or_dash, percent, three_digits};
 
-use super::report::{Refused, Report};
+use super::report::Report;
 use crate::{
     cli::terminal::text_table,
     show::capability::{digits, index},
@@ -17,19 +17,23 @@ use crate::{
 /// Probability below which a test speaks against the normal distribution or against equal subgroups.
 const DOUBTFUL: f64 = 0.05;
 
-/// What to do where a distribution cannot be chosen.
-pub fn state_one(why: &str) -> &'static str {
-    if why.contains("to choose a distribution") { "; state its family if you know it: --family normal" } else { "" }
+/// Why a characteristic cannot be judged, and what to do where a distribution cannot be chosen.
+pub fn advised(error: &CapabilityError) -> String {
+    let advice = match error {
+        CapabilityError::NoFigures { why: FitError::FewToChoose { .. }, .. } => {
+            "; state its family if you know it: --family normal"
+        }
+        _ => "",
+    };
+    format!("{error}{advice}")
 }
 
 /// That some characteristics cannot be judged, and why the first of them cannot.
-pub fn unjudged(refused: &[Refused]) -> Option<String> {
-    let why = &refused.first()?.why;
-    Some(match refused.len() {
-        1 => format!("{why}{}", state_one(why)),
-        count => {
-            format!("{why}{}; {} more characteristics cannot be judged, and --json says why", state_one(why), count - 1)
-        }
+pub fn unjudged(errors: &[CapabilityError]) -> Option<String> {
+    let why = advised(errors.first()?);
+    Some(match errors.len() {
+        1 => why,
+        count => format!("{why}; {} more characteristics cannot be judged, and --json says why", count - 1),
     })
 }
 
