@@ -33,6 +33,7 @@ mod written;
 pub use diagnostic::{Problem, SceneError};
 pub use file::SceneFile;
 pub use levels::{LevelError, MOST_LEVELS, parse_levels};
+pub use measured::file::{PartsError, is_qif, load as load_parts};
 pub use parse::parse_every;
 pub use shipped::{CD_ROM_SLIDE, SHIPPED, shipped};
 pub use written::{tolerance, with_tolerances};

@@ -13,7 +13,6 @@ use slipfit_measured::{
     families::Kind,
     table::MeasuredTable,
 };
-use slipfit_qif::{file, results};
 use slipfit_system::files;
 
 use self::report::{Refused, Report};
@@ -22,7 +21,10 @@ use super::{
     failure::{Failure, refused},
     terminal::{print, print_json, warn},
 };
-use crate::show::report::measured_page;
+use crate::{
+    scene::{PartsError, is_qif, load_parts},
+    show::report::measured_page,
+};
 
 /// Tells performance and capability of measured parts by ISO 22514-2.
 ///
@@ -108,33 +110,25 @@ impl Arguments {
     }
 
     fn table(&self) -> Result<MeasuredTable, Failure> {
-        let shown = self.file.display();
-        if !self.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("qif")) {
-            let groups = self.group.iter().cloned().collect();
-            let options = csv::Options {
-                labels: self.label.clone(),
-                groups,
-                ignored: self.ignore.clone(),
-                ..csv::Options::default()
-            };
-            return csv::read_file(&self.file, &options).map_err(|error| match error {
-                csv::FileError::Csv(csv::CsvError { place, problem }) => {
-                    let options =
-                        if matches!(problem, csv::Problem::NotANumber { .. }) { " (--group, --ignore)" } else { "" };
-                    Failure::Input(format!("{shown}:{}:{}: {problem}{options}", place.line, place.column))
-                }
-                csv::FileError::Io(error) => Failure::Input(format!("{shown}: {error}")),
-            });
-        }
         let given = [
             ("--group", self.group.is_some()),
             ("--label", self.label.is_some()),
             ("--ignore", !self.ignore.is_empty()),
         ];
-        if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
+        if let Some((option, _)) = given.into_iter().find(|(_, given)| *given && is_qif(&self.file)) {
+            let shown = self.file.display();
             return Err(Failure::Input(format!("{option} names a column of a CSV file, and {shown} is QIF")));
         }
-        let text = file::read(&self.file).map_err(|error| Failure::Input(format!("{shown}: {error}")))?;
-        results::read(&text).map_err(|error| Failure::Input(format!("{shown}:{error}")))
+        let options = csv::Options {
+            labels: self.label.clone(),
+            groups: self.group.iter().cloned().collect(),
+            ignored: self.ignore.clone(),
+            ..csv::Options::default()
+        };
+        load_parts(&self.file, &options).map_err(|error| {
+            let is_text =
+                matches!(&error, PartsError::Csv { error, .. } if matches!(error.problem, csv::Problem::NotANumber { .. }));
+            Failure::Input(format!("{error}{}", if is_text { " (--group, --ignore)" } else { "" }))
+        })
     }
 }

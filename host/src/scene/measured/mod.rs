@@ -7,6 +7,7 @@ pub mod file;
 use std::path::Path;
 
 use slipfit_measured::{
+    csv::Options,
     families::Kind,
     production::{Assumed, Characteristic, Production},
     table::MeasuredTable,
@@ -90,10 +91,16 @@ fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str, headings: &[String]) ->
         (only, _) => only.map(|field| texts(&field, "a group, or a list of groups")).transpose()?,
     };
     let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
+    let options = Options {
+        groups: group.into_iter().map(str::to_owned).collect(),
+        values: Some(headings.to_vec()),
+        ..Options::default()
+    };
     let mut tables = Vec::new();
     for path in texts(&field, FILES)? {
-        let read = file::load(&folder.join(path), group, headings);
-        let read = read.map_err(|why| field.error(Problem::Measured { of: path.into(), why }, FILES))?;
+        let read = file::load(&folder.join(path), &options);
+        let read =
+            read.map_err(|why| field.error(Problem::Measured { of: path.into(), why: why.to_string() }, FILES))?;
         tables.push(read);
     }
     let assumed = table.get("distribution").map_or(Ok(Assumed::Smoothed), |field| assumed(&field))?;
