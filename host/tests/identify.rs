@@ -12,7 +12,7 @@ use slipfit::{
     },
     identify::SlideModel,
     scene::CD_ROM_SLIDE,
-    setup::{Scene, Sought, Unknown},
+    setup::{Scene, SlideParameter, Sought, SoughtValue},
 };
 use slipfit_core::{sampling::stream::unit_stream, slide::CONTACTS};
 use slipfit_identify::{
@@ -142,17 +142,17 @@ fn stroke() -> (Scene, Vec<f64>) {
 }
 
 fn sought(scene: &Scene, count: usize) -> Vec<Sought> {
-    let level = |surface: usize, of: &str| Unknown::Level {
-        of: of.into(),
-        contacts: (0..CONTACTS).filter(|i| i % 4 == surface && scene.pins[i / 4].gaps[i % 4].is_some()).collect(),
+    let level = |surface: usize| {
+        let varies = |i: &usize| i % 4 == surface && scene.pins[i / 4].gaps[i % 4].is_some();
+        SoughtValue::Level((0..CONTACTS).filter(varies).collect())
     };
     let all = [
-        (Unknown::Friction, [0.2, 0.4]),
-        (Unknown::Mass, [0.06, 0.11]),
-        (level(0, "left"), [-1.0, 4.0]),
-        (level(1, "right"), [-1.0, 4.0]),
+        ("friction.coefficient", SoughtValue::Parameter(SlideParameter::Friction), [0.2, 0.4]),
+        ("slide.mass", SoughtValue::Parameter(SlideParameter::Mass), [0.06, 0.11]),
+        ("n of left", level(0), [-1.0, 4.0]),
+        ("n of right", level(1), [-1.0, 4.0]),
     ];
-    all.into_iter().take(count).map(|(unknown, bounds)| Sought { unknown, bounds }).collect()
+    all.into_iter().take(count).map(|(name, value, bounds)| Sought { name: name.into(), value, bounds }).collect()
 }
 
 /// First-order autoregressive noise of a standard `deviation`.

@@ -1,6 +1,6 @@
 //! The slide of a scene as a model of its drive's force over time.
 
-use slipfit_core::{menu::FrictionData, slide::CONTACTS};
+use slipfit_core::slide::CONTACTS;
 use slipfit_identify::{
     model::{Model, ModelError, Parameter},
     record::Record,
@@ -9,7 +9,7 @@ use slipfit_tolerance::number::{ten_digits, three_digits};
 
 use crate::{
     dynamics::simulate::{Settings, SimulateError, simulate},
-    setup::{Scene, Sought, Unknown},
+    setup::{Scene, Sought},
 };
 
 /// A slide and the records of its drive's force, which begin with the scene's run.
@@ -56,10 +56,10 @@ impl SlideModel {
             return Err(EarlyRecord { record: early.name.clone(), start: early.start });
         }
         let parameter = |sought: &Sought| Parameter {
-            name: sought.unknown.name(),
-            unit: sought.unknown.unit(),
+            name: sought.name.clone(),
+            unit: sought.value.unit(),
             bounds: sought.bounds,
-            start: sought.unknown.value(scene, &levels).clamp(sought.bounds[0], sought.bounds[1]),
+            start: sought.value.of(scene, &levels).clamp(sought.bounds[0], sought.bounds[1]),
         };
         let clock = |record: &Record| Clock { start: record.start, step: record.step, samples: record.samples };
         Ok(Self {
@@ -107,7 +107,7 @@ impl Model for SlideModel {
     fn simulate(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
         let (mut scene, mut levels) = (self.scene.clone(), self.levels);
         for (sought, value) in self.sought.iter().zip(values) {
-            sought.unknown.apply(&mut scene, &mut levels, *value);
+            sought.value.set(&mut scene, &mut levels, *value);
         }
         let mut output: Vec<f64> = Vec::with_capacity(self.measured.len());
         let mut before: Option<(Clock, usize)> = None;
@@ -132,54 +132,5 @@ impl Model for SlideModel {
             output.extend(force);
         }
         Ok(output)
-    }
-}
-
-impl Unknown {
-    /// Its name: the key of the scene, or whose level it is.
-    pub fn name(&self) -> String {
-        match self {
-            Self::Friction => "friction.coefficient".into(),
-            Self::Stiffness => "contact.stiffness".into(),
-            Self::Mass => "slide.mass".into(),
-            Self::Level { of, .. } => format!("n of {of}"),
-        }
-    }
-
-    /// The symbol of its SI unit.
-    fn unit(&self) -> &'static str {
-        match self {
-            Self::Mass => "kg",
-            Self::Stiffness => "N/m^e",
-            Self::Friction | Self::Level { .. } => "",
-        }
-    }
-
-    /// Its value (SI) in a scene with gaps of these `levels`.
-    fn value(&self, scene: &Scene, levels: &[f64; CONTACTS]) -> f64 {
-        match self {
-            Self::Friction => match scene.friction {
-                FrictionData::Regularised { coefficient, .. } | FrictionData::Exact { coefficient } => coefficient,
-                FrictionData::None => 0.0,
-            },
-            Self::Stiffness => scene.contact.stiffness,
-            Self::Mass => scene.slide.mass,
-            Self::Level { contacts, .. } => contacts.first().map_or(0.0, |i| levels[*i]),
-        }
-    }
-
-    /// Gives it a `value` (SI).
-    fn apply(&self, scene: &mut Scene, levels: &mut [f64; CONTACTS], value: f64) {
-        match self {
-            Self::Friction => match &mut scene.friction {
-                FrictionData::Regularised { coefficient, .. } | FrictionData::Exact { coefficient } => {
-                    *coefficient = value;
-                }
-                FrictionData::None => {}
-            },
-            Self::Stiffness => scene.contact.stiffness = value,
-            Self::Mass => scene.slide.mass = value,
-            Self::Level { contacts, .. } => contacts.iter().for_each(|i| levels[*i] = value),
-        }
     }
 }

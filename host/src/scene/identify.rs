@@ -1,6 +1,6 @@
 //! Reading `[identify]`: what is sought in measured motion.
 
-use slipfit_core::{menu::FrictionData, slide::CONTACTS};
+use slipfit_core::slide::CONTACTS;
 use slipfit_identify::{
     drive_train::{LAWS, Term},
     fit::{Loss, Options},
@@ -10,14 +10,13 @@ use slipfit_tolerance::unit::{self, Quantity};
 
 use super::{
     Problem, SceneError,
-    contact::stiffness,
-    parameter::FRICTIONLESS,
+    parameter::{Kind, Named},
     parse::choice,
-    quantity::{COEFFICIENT, MASS},
+    slide_parameters::named,
     tree::Value,
     value::Field,
 };
-use crate::setup::{Identification, Law, SURFACES, Scene, Sought, Subject, Unknown};
+use crate::setup::{Identification, Law, SURFACES, Scene, Sought, SoughtValue, Subject};
 
 const DRIVE_TRAIN: &str = "drive-train";
 const SLIDE: &str = "slide";
@@ -52,29 +51,8 @@ pub(super) fn slide(root: &Field, scene: &Scene) -> Result<Option<Identification
     table.expect_table()?;
     table.get("model").as_ref().map(model).transpose()?;
     let mut sought = Vec::new();
-    let bounds_of = |group: &str, key: &str| -> Result<Option<Field>, SceneError> {
-        let Some(group) = table.get(group) else { return Ok(None) };
-        group.expect_table()?;
-        Ok(group.get(key))
-    };
-    if let Some(field) = bounds_of("friction", "coefficient")? {
-        if scene.friction == FrictionData::None {
-            field.found().note(field.no_effect(FRICTIONLESS, "to leave it out"));
-        }
-        let bounds = bounds(&field, field.to_numbers(&COEFFICIENT)?)?;
-        sought.push(Sought { unknown: Unknown::Friction, bounds });
-    }
-    if let Some(field) = bounds_of("contact", "stiffness")? {
-        let Value::List(nodes) = &field.node.value else { return Err(field.wrong_type("a list of 2 stiffnesses")) };
-        let read = nodes.iter().map(|node| stiffness(&Field { key: field.key.clone(), node }, scene.contact.exponent));
-        let found: Vec<f64> = read.collect::<Result<_, _>>()?;
-        let problem = || Problem::Length { key: field.key.clone(), found: nodes.len() };
-        let pair = <[f64; 2]>::try_from(found).map_err(|_| field.error(problem(), "a list of 2 stiffnesses"))?;
-        sought.push(Sought { unknown: Unknown::Stiffness, bounds: bounds(&field, pair)? });
-    }
-    if let Some(field) = bounds_of("slide", "mass")? {
-        let bounds = bounds(&field, field.to_numbers(&MASS)?)?;
-        sought.push(Sought { unknown: Unknown::Mass, bounds });
+    for Named { parameter, name, kind, field } in named(root, "identify", scene)? {
+        sought.push(Sought { value: SoughtValue::Parameter(parameter), name, bounds: bounds(&field, kind)? });
     }
     sought.extend(levels(&table, scene)?);
     if sought.is_empty() {
@@ -132,13 +110,14 @@ fn law(field: &Field) -> Result<Law, SceneError> {
     }
 }
 
-/// Two bounds in increasing order.
-fn bounds(field: &Field, [low, high]: [f64; 2]) -> Result<[f64; 2], SceneError> {
-    // What stands for a wrong value may be anything.
-    if low < high || field.found().any() {
-        return Ok([low, high.max(low + f64::EPSILON)]);
-    }
-    Err(field.out_of_range("", "a lower and a higher bound"))
+/// Two bounds (SI) of a value of this `kind`.
+fn bounds(field: &Field, kind: Kind) -> Result<[f64; 2], SceneError> {
+    const BOUNDS: &str = "a lower and a higher bound";
+    let Value::List(nodes) = &field.node.value else { return Err(field.wrong_type(BOUNDS)) };
+    let [low, high] = &nodes[..] else {
+        return Err(field.error(Problem::Length { key: field.key.clone(), found: nodes.len() }, BOUNDS));
+    };
+    kind.range(field, [low, high], BOUNDS)
 }
 
 /// The tolerance levels that are sought.
@@ -158,17 +137,14 @@ fn levels(table: &Field, scene: &Scene) -> Result<Vec<Sought>, SceneError> {
             let allowed = format!("all, {}, a pin, or one gap such as {:?}", SURFACES.join(", "), names[0]);
             return Err(of.error(Problem::UnknownName { of: "varying gap".into(), name: name.into() }, allowed));
         }
-        let before = sought.iter().find_map(|other| match &other.unknown {
-            Unknown::Level { of, contacts: taken } => taken.iter().any(|one| contacts.contains(one)).then_some(of),
-            _ => None,
-        });
-        if before.is_some() {
+        let is_taken = |other: &Sought| matches!(&other.value, SoughtValue::Level(taken) if taken.iter().any(|one| contacts.contains(one)));
+        if sought.iter().any(is_taken) {
             let problem = Problem::Duplicate { key: of.key.clone(), name: name.into() };
             return Err(of.error(problem, "gaps of which none is sought twice"));
         }
         let n = entry.require("n", "a list of 2 levels")?;
-        let bounds = bounds(&n, n.to_numbers(&LEVEL)?)?;
-        sought.push(Sought { unknown: Unknown::Level { of: name.into(), contacts }, bounds });
+        let bounds = bounds(&n, Kind::Number(&LEVEL))?;
+        sought.push(Sought { value: SoughtValue::Level(contacts), name: format!("n of {name}"), bounds });
     }
     Ok(sought)
 }

@@ -6,6 +6,7 @@ use super::{
     SceneError,
     contact::{STIFFNESS, per_millimetre, stiffness},
     quantity::{LEAST_RAMP, RAMP},
+    tree::Node,
     value::Field,
 };
 use crate::setup::ShownIn;
@@ -53,6 +54,25 @@ impl Kind {
             Self::Stiffness(exponent) => {
                 Ok(field.found().recover(stiffness(field, exponent.unwrap_or(1.0)), STIFFNESS[0]))
             }
+        }
+    }
+
+    /// The values (SI) of a list of two, in increasing order as `order` says.
+    ///
+    /// # Errors
+    /// An end that makes no scene, or ends in another order; none where something else is wrong, as what stands for it may be anything.
+    pub fn range(self, list: &Field, ends: [&Node; 2], order: &str) -> Result<[f64; 2], SceneError> {
+        let ends = ends.map(|node| Field { key: list.key.clone(), node });
+        let [low, high] = [self.value(&ends[0])?, self.value(&ends[1])?];
+        if list.found().any() {
+            return Ok([low, high]);
+        }
+        if low >= high {
+            return Err(list.out_of_range("", order));
+        }
+        match ends.iter().zip([low, high]).find(|(_, value)| !self.allows(*value)) {
+            Some((end, _)) => Err(end.out_of_range("", self.limits())),
+            None => Ok([low, high]),
         }
     }
 

@@ -66,17 +66,8 @@ fn belief(field: &Field, kind: Kind) -> Result<Belief, SceneError> {
             let [least, greatest] = &nodes[..] else {
                 return Err(field.error(Problem::Length { key: field.key.clone(), found: nodes.len() }, ALLOWED));
             };
-            let [least, greatest] = [least, greatest].map(|node| Field { key: field.key.clone(), node });
-            let [low, high] = [kind.value(&least)?, kind.value(&greatest)?];
-            if low >= high && !field.found().any() {
-                return Err(wrong(field, "a least value that is below the greatest, such as [0.2, 0.3]".into()));
-            }
-            for (end, value) in [(&least, low), (&greatest, high)] {
-                if !kind.allows(value) && !field.found().any() {
-                    return Err(wrong(end, kind.limits()));
-                }
-            }
-            Ok(Belief::Between([low, high]))
+            let order = "a least value that is below the greatest, such as [0.2, 0.3]";
+            Ok(Belief::Between(kind.range(field, [least, greatest], order)?))
         }
         Value::Table(_) => {
             if let Some(of_median) = field.get("median") {

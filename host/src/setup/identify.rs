@@ -1,6 +1,9 @@
 //! What is sought in measured motion.
 
+use slipfit_core::slide::CONTACTS;
 use slipfit_identify::{drive_train::Term, fit, record::Columns};
+
+use super::{Adjustable, Scene, SlideParameter};
 
 /// What is sought in measured motion, and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,29 +39,50 @@ pub struct Law {
     pub terms: Vec<Term>,
 }
 
-/// A parameter of a slide that is sought, between two bounds.
+/// A value of a slide that is sought, between two bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sought {
     /// Which.
-    pub unknown: Unknown,
+    pub value: SoughtValue,
+    /// Its name, such as friction.coefficient.
+    pub name: String,
     /// The least and the greatest value (SI).
     pub bounds: [f64; 2],
 }
 
-/// What may be unknown of a slide.
+/// A value of a slide that can be sought.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Unknown {
-    /// Coefficient of friction.
-    Friction,
-    /// Stiffness of the contacts (N/m^e).
-    Stiffness,
-    /// Mass (kg), with which the moments of inertia grow.
-    Mass,
-    /// Tolerance level of some gaps.
-    Level {
-        /// What they are called together.
-        of: String,
-        /// Their indices.
-        contacts: Vec<usize>,
-    },
+pub enum SoughtValue {
+    /// A parameter.
+    Parameter(SlideParameter),
+    /// The tolerance level of the gaps of these indices.
+    Level(Vec<usize>),
+}
+
+impl SoughtValue {
+    /// The symbol of its SI unit; empty for a plain number.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::Parameter(SlideParameter::Mass) => "kg",
+            Self::Parameter(SlideParameter::Stiffness) => "N/m^e",
+            Self::Parameter(_) | Self::Level(_) => "",
+        }
+    }
+
+    /// What it is (SI) in a scene with gaps of these `levels`.
+    pub fn of(&self, scene: &Scene, levels: &[f64; CONTACTS]) -> f64 {
+        let first = match self {
+            Self::Parameter(parameter) => parameter.values(scene).first().copied(),
+            Self::Level(contacts) => contacts.first().map(|i| levels[*i]),
+        };
+        first.unwrap_or_default()
+    }
+
+    /// Makes it `value` (SI).
+    pub fn set(&self, scene: &mut Scene, levels: &mut [f64; CONTACTS], value: f64) {
+        match self {
+            Self::Parameter(parameter) => parameter.set(scene, value),
+            Self::Level(contacts) => contacts.iter().for_each(|i| levels[*i] = value),
+        }
+    }
 }

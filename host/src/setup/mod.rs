@@ -9,7 +9,7 @@ mod task;
 mod uncertain;
 
 pub use hash::{Digest, scene_hash};
-pub use identify::{Identification, Law, Sought, Subject, Unknown};
+pub use identify::{Identification, Law, Sought, SoughtValue, Subject};
 pub use measured::{Measured, MeasuredGaps, Place};
 pub use parameter::{Adjustable, SlideParameter, Varied, coefficient, stick_band, tilted_x, tilted_z};
 pub use slide::{GapError, GapMeasures, PinSpec, SURFACES, Scene, SlideSpec};
