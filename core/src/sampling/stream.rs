@@ -31,9 +31,16 @@ pub fn unit_stream(seed: u64, unit: u64) -> Xoshiro256PlusPlus {
     Xoshiro256PlusPlus::seed_from_u64(derived(seed, unit))
 }
 
+/// A number between 0 and 1, neither of both, from random `bits`: the middle of one of 2⁵³ equal parts. That of the last part would
+/// be rounded to 1.
+#[inline(always)]
+pub fn uniform(bits: u64) -> f64 {
+    (((bits >> 11) as f64 + 0.5) / (1u64 << 53) as f64).min(1.0 - 0.5 * f64::EPSILON)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{GOLDEN, Rng, SeedableRng, Xoshiro256PlusPlus, derived, mix, unit_stream};
+    use super::{GOLDEN, Rng, SeedableRng, Xoshiro256PlusPlus, derived, mix, uniform, unit_stream};
 
     #[test]
     fn generator_gives_the_published_numbers() {
@@ -62,9 +69,10 @@ mod tests {
         let first = |seed, unit| unit_stream(seed, unit).next_u64();
         assert!(first(7, 0) != first(7, 1) && first(7, 0) != first(8, 0) && first(0, 1) != first(1, 0));
         // Neighbours are uncorrelated: the product of two uniform numbers about ½ has mean 0 and deviation 1/12.
-        let uniform = |unit| (first(3, unit) >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+        let centred = |unit| uniform(first(3, unit)) - 0.5;
+        assert!(uniform(0) > 0.0 && uniform(u64::MAX) < 1.0);
         let count = if cfg!(miri) { 100 } else { 10_000 };
-        let mean = (0..count).map(|unit| uniform(unit) * uniform(unit + 1)).sum::<f64>() / count as f64;
+        let mean = (0..count).map(|unit| centred(unit) * centred(unit + 1)).sum::<f64>() / count as f64;
         assert!(libm::fabs(mean) < 4.0 / 12.0 / libm::sqrt(count as f64), "{mean}");
     }
 }

@@ -152,13 +152,13 @@ pub fn explained(units: u64, marked: &[Marked], variables: usize) -> Option<Expl
 #[cfg(test)]
 mod tests {
     use super::{Explained, Marked, explained};
-    use slipfit_core::sampling::stream::{Rng, unit_stream};
+    use slipfit_core::sampling::stream::{Rng, uniform, unit_stream};
     use slipfit_tolerance::numeric::normal::{quantile, tail};
 
     /// Independent uniform numbers.
     fn uniforms(seed: u64) -> impl FnMut() -> f64 {
         let mut stream = unit_stream(seed, 0);
-        move || ((stream.next_u64() >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+        move || uniform(stream.next_u64())
     }
 
     /// What x explains of `figures`, of units by ascending x; none if these do not differ.

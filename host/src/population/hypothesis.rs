@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 use slipfit_core::{
-    sampling::stream::{Rng, derived, unit_stream},
+    sampling::stream::{Rng, derived, uniform, unit_stream},
     slide::ABSENT,
 };
 use slipfit_tolerance::numeric::normal;
@@ -98,8 +98,8 @@ impl Hypothesis {
 fn combination<S: Subject>(subject: &S, distance: f64, seed: u64, number: u64) -> S::Gaps {
     let mut stream = unit_stream(derived(seed, STREAM), number);
     let mut n = |gap: &f64| {
-        let uniform = (stream.next_u64() >> 11) as f64 / (1u64 << 53) as f64 + 0.5 / (1u64 << 53) as f64;
-        if *gap == ABSENT { None } else { Some(normal::quantile(uniform)) }
+        let share = uniform(stream.next_u64());
+        if *gap == ABSENT { None } else { Some(normal::quantile(share)) }
     };
     let n: Vec<Option<f64>> = subject.gaps_at(&[0.0]).as_ref().iter().map(&mut n).collect();
     let present = n.iter().flatten();

@@ -6,7 +6,7 @@ use slipfit_measured::{
     table::Grouping,
 };
 use slipfit_tolerance::{
-    number::{fixed, or_dash, typeset},
+    number::{decimals, fixed, or_dash, typeset},
     numeric::normal::quantile,
 };
 
@@ -19,12 +19,6 @@ use super::{
 const POINTS: usize = 500;
 /// Points of a curve.
 const CURVE: i32 = 200;
-
-/// Decimals with which a value has three digits of its standard `deviation`.
-pub fn digits(deviation: f64) -> usize {
-    let magnitude = libm::floor(libm::log10(deviation.max(1e-12)));
-    (2.0 - magnitude).clamp(0.0, 12.0) as usize
-}
 
 /// An index with its interval.
 pub fn index(estimate: Option<Estimate>) -> String {
@@ -155,7 +149,7 @@ impl Measured<'_> {
             Some(nominal) => (nominal, "nominal"),
             None => (self.of.mean.value, "mean"),
         };
-        (origin, format!("{what} {}", typeset(&fixed(origin, digits(self.of.deviation.value)))))
+        (origin, format!("{what} {}", typeset(&fixed(origin, decimals(self.of.deviation.value, 3)))))
     }
 
     /// Limits as lines between two abscissas.

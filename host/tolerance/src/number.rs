@@ -52,6 +52,12 @@ pub fn three_digits(x: f64) -> String {
     }
 }
 
+/// Decimals with which a number has so many significant digits of a deviation of this `size`.
+pub fn decimals(size: f64, digits: i32) -> usize {
+    let magnitude = libm::floor(libm::log10(size.max(1e-12)));
+    (f64::from(digits - 1) - magnitude).clamp(0.0, 12.0) as usize
+}
+
 /// Defects per million in three digits. Nobody can tell a millionth of one from nothing.
 pub fn per_million(ppm: f64) -> String {
     if ppm > 0.0 && ppm < 1e-6 { "below 1e-6".to_owned() } else { three_digits(ppm) }

@@ -1,7 +1,7 @@
 //! From several starts to one estimate.
 
 use rayon::prelude::*;
-use slipfit_core::sampling::stream::{Rng, unit_stream};
+use slipfit_core::sampling::stream::{Rng, uniform, unit_stream};
 
 use super::{By, Fit, grid, least_squares::minimise, loss::Loss, loss::scale};
 use crate::model::{Model, ModelError, Parameter};
@@ -103,7 +103,7 @@ fn promising<M: Model + ?Sized>(model: &M, stated: &[f64], starts: usize) -> Vec
     }
     let drawn = (0..starts as u64).map(|k| {
         let mut stream = unit_stream(START_SEED, k);
-        let mut share = move || (stream.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+        let mut share = move || uniform(stream.next_u64());
         parameters
             .iter()
             .map(move |parameter| parameter.bounds[0] + share() * (parameter.bounds[1] - parameter.bounds[0]))

@@ -9,7 +9,7 @@ mod tests;
 
 use std::sync::OnceLock;
 
-use slipfit_core::sampling::stream::{Rng, Xoshiro256PlusPlus, unit_stream};
+use slipfit_core::sampling::stream::{Rng, uniform, unit_stream};
 use slipfit_tolerance::model::Distribution;
 
 pub use self::error::ProductionError;
@@ -112,17 +112,12 @@ impl Production {
     pub fn drawn(&self, number: u64) -> Joint {
         let mut stream = unit_stream(SEED, number);
         let parts = self.characteristics.first().map_or(0, |of| of.values.len());
-        let weights: Vec<f64> = (0..parts).map(|_| -libm::log(share(&mut stream))).collect();
+        let weights: Vec<f64> = (0..parts).map(|_| -libm::log(uniform(stream.next_u64()))).collect();
         let shares = self.dependence.shares(&mut stream);
         let drawn = |(shape, share): (&Shape, &f64)| shape.drawn(&weights, *share);
         let distributions = self.shapes.iter().zip(&shares).map(drawn).collect();
         Joint { distributions, correlations: self.dependence.coefficients(Some(&mut stream)) }
     }
-}
-
-/// Uniform between 0 and 1, neither of both.
-fn share(stream: &mut Xoshiro256PlusPlus) -> f64 {
-    ((stream.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
 }
 
 impl Shape {

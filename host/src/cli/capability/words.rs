@@ -6,13 +6,10 @@ use slipfit_measured::{
     capability::{Capability, CapabilityError, LEAST_PARTS},
     families::{FitError, Kind},
 };
-use slipfit_tolerance::number::{fixed, or_dash, percent, three_digits};
+use slipfit_tolerance::number::{decimals, fixed, or_dash, percent, three_digits};
 
 use super::report::Report;
-use crate::{
-    cli::terminal::text_table,
-    show::capability::{digits, index},
-};
+use crate::{cli::terminal::text_table, show::capability::index};
 
 /// Probability below which a test speaks against the normal distribution or against equal subgroups.
 const DOUBTFUL: f64 = 0.05;
@@ -40,7 +37,7 @@ pub fn unjudged(errors: &[CapabilityError]) -> Option<String> {
 /// What to look at in a characteristic.
 pub fn warnings_of(of: &Capability) -> Vec<String> {
     let name = &of.name;
-    let digits = digits(of.deviation.value);
+    let digits = decimals(of.deviation.value, 3);
     let mut warnings = Vec::new();
     for outlier in &of.outliers {
         warnings.push(format!(
@@ -71,7 +68,7 @@ pub fn warnings_of(of: &Capability) -> Vec<String> {
 pub fn described(report: &Report) -> String {
     let mut text = format!("{} parts; intervals of 95 %\n\n", report.parts);
     let row = |of: &Capability| {
-        let digits = digits(of.deviation.value);
+        let digits = decimals(of.deviation.value, 3);
         let number = |value: f64| fixed(value, digits);
         let [lower, upper] = of.limits.map(|limit| or_dash(limit, number));
         let unit = of.unit.symbol();
@@ -101,7 +98,7 @@ pub fn described(report: &Report) -> String {
             index(within.indices.spread),
             index(within.indices.least)
         );
-        let digits = digits(of.deviation.value);
+        let digits = decimals(of.deviation.value, 3);
         let rows: Vec<_> = within
             .groups
             .iter()

@@ -8,7 +8,7 @@ use slipfit_identify::{
     estimate::{Estimate, Estimated},
     fit::By,
 };
-use slipfit_tolerance::number::{fixed, or_dash, percent};
+use slipfit_tolerance::number::{decimals, fixed, or_dash, percent};
 
 use super::report::Report;
 use crate::cli::terminal::text_table;
@@ -84,7 +84,7 @@ pub fn described(report: &Report, chosen: &Compared, duration: f64) -> String {
 /// A table of the parameters.
 fn parameters(estimate: &Estimate) -> String {
     let row = |parameter: &Estimated| {
-        let digits = digits(parameter.deviation.unwrap_or_else(|| 0.01 * parameter.value.abs()));
+        let digits = decimals(parameter.deviation.unwrap_or_else(|| 0.01 * parameter.value.abs()), 2);
         let number =
             |value: f64| if digits > 9 || value.abs() > 1e7 { format!("{value:.3e}") } else { fixed(value, digits) };
         let range = |[low, high]: [f64; 2]| format!("{} to {}", number(low), number(high));
@@ -113,12 +113,6 @@ fn profile(profile: &Profile, number: impl Fn(f64) -> String) -> String {
         (Shape::OneSided, [None, Some(high)]) => format!("one-sided, below {}", number(high)),
         _ => "flat".into(),
     }
-}
-
-/// Decimals with which a value has two digits of its `deviation`.
-fn digits(deviation: f64) -> usize {
-    let magnitude = libm::floor(libm::log10(deviation.max(1e-12)));
-    (1.0 - magnitude).clamp(0.0, 12.0) as usize
 }
 
 /// The two parameters that are most correlated, if there are two.

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use slipfit_tolerance::statistics::{
     decisive::{self, Point},
+    interval::of_values,
     mixture::Mixture,
 };
 
@@ -13,8 +14,6 @@ use crate::{
 
 /// Shares of the units that need no more than the forces of [`Tried::force`].
 const SHARES: [f64; 2] = [0.5, 0.95];
-/// Chance beyond either end of an interval of 95 %.
-const SIDE: f64 = 0.025;
 
 /// A value that was tried, and what its units did.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,7 +127,7 @@ impl Answer {
             let mut forces = tried.iter().map(|tried| Some(tried.force?[number])).collect::<Option<Vec<f64>>>()?;
             forces.sort_by(f64::total_cmp);
             let expected = forces.iter().sum::<f64>() / forces.len() as f64;
-            Some(Expected { expected, interval: [SIDE, 1.0 - SIDE].map(|share| between(&forces, share)) })
+            Some(Expected { expected, interval: of_values(&forces) })
         };
         let malfunctions = mixture(&|counts| counts.malfunctions);
         let decides = decides(&unknowns, tried, units_each, malfunctions.noise);
@@ -188,14 +187,6 @@ fn decides(unknowns: &[UnknownReport], tried: &[Tried], units_each: u64, noise: 
         .collect();
     decides.sort_by(|one, other| other.share.total_cmp(&one.share));
     decides
-}
-
-/// The point below which a `share` of equal strata lies, one of the ascending `values` in the middle of each.
-fn between(values: &[f64], share: f64) -> f64 {
-    let place = (share * values.len() as f64 - 0.5).clamp(0.0, (values.len() - 1) as f64);
-    let low = (place as usize).min(values.len().saturating_sub(2));
-    let next = values[(low + 1).min(values.len() - 1)];
-    values[low] + (place - low as f64) * (next - values[low])
 }
 
 /// The forces that [`SHARES`] of the units do not exceed.

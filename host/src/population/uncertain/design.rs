@@ -1,6 +1,6 @@
 //! How many values of what is unknown are tried, and with how many units.
 
-use slipfit_core::sampling::stream::derived;
+use slipfit_core::sampling::stream::{derived, uniform};
 use slipfit_tolerance::{
     numeric::lanes::LANES,
     sampling::sampler::{Method, Sampler},
@@ -58,7 +58,7 @@ impl Design {
         let point = |value: u64| {
             let mut bits = vec![[0; LANES]; coordinates];
             sampler.fill(value, &mut bits);
-            bits.iter().map(|bits| ((bits[0] >> 11) as f64 + 0.5) / (1u64 << 53) as f64).collect()
+            bits.iter().map(|bits| uniform(bits[0])).collect()
         };
         (0..self.values).map(point).collect()
     }

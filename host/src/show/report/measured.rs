@@ -6,11 +6,11 @@ use slipfit_measured::{
     families::Kind,
     table::MeasuredTable,
 };
-use slipfit_tolerance::number::{fixed, or_dash, percent, three_digits, typeset};
+use slipfit_tolerance::number::{decimals, fixed, or_dash, percent, three_digits, typeset};
 
 use super::html::{columns, figure, list, optional, real, row, table};
 use crate::show::{
-    capability::{Measured, digits, index},
+    capability::{Measured, index},
     plot::PlotError,
 };
 
@@ -67,8 +67,8 @@ type Row<'a> = (String, Option<Estimate>, &'a dyn Fn(f64) -> String);
 
 /// Every figure with its interval.
 fn indices(of: &Capability) -> Markup {
-    let decimals = digits(of.deviation.value);
-    let length = |x: f64| real(x, decimals);
+    let digits = decimals(of.deviation.value, 3);
+    let length = |x: f64| real(x, digits);
     let ratio = |x: f64| real(x, 2);
     let share = |x: f64| percent(x, 4);
     let unit = |name: &str| match of.unit.symbol() {
@@ -98,12 +98,12 @@ fn indices(of: &Capability) -> Markup {
         let Estimate { value, interval: [low, high] } = estimate?;
         Some(row(&name, [shown(value), format!("{} … {}", shown(low), shown(high))]))
     });
-    let [lower, upper] = of.limits.map(|limit| optional(limit, decimals));
+    let [lower, upper] = of.limits.map(|limit| optional(limit, digits));
     let caption = format!(
         "{} parts, {} not measured; limits {lower} and {upper}, nominal {}.",
         of.count,
         of.missing,
-        optional(of.nominal, decimals)
+        optional(of.nominal, digits)
     );
     table(&caption, html! { tr { (columns(&["figure", "value", "interval of 95 %"])) } }, rows)
 }
@@ -135,12 +135,12 @@ fn remarks(of: &Capability) -> Vec<String> {
         )),
         None => remarks.push("Too few parts for a test of normality.".into()),
     }
-    let decimals = digits(of.deviation.value);
+    let digits = decimals(of.deviation.value, 3);
     for outlier in &of.outliers {
         remarks.push(format!(
             "Outlier: part {} with {}, {} standard deviations from the mean. It stays in every figure.",
             outlier.label,
-            real(outlier.value, decimals),
+            real(outlier.value, digits),
             fixed(outlier.distance, 1)
         ));
     }

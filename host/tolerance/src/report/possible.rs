@@ -1,7 +1,7 @@
 //! What is not known of a production widens the intervals of its report.
 
 use super::contents::{Defects, Report};
-use crate::{numeric::normal::SIDE, statistics::estimate::Estimate};
+use crate::statistics::{estimate::Estimate, interval::of_values};
 
 /// Widens the intervals and errors of `report`, which is of the likeliest production, by `possible` reports of the same model
 /// and productions that are drawn with their probability.
@@ -70,7 +70,7 @@ fn widened(own: Estimate, others: impl Iterator<Item = Estimate>) -> Estimate {
     let square = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (count - 1.0);
     let left = libm::sqrt((1.0 - noise / count / square).max(0.0));
     let left = if left.is_finite() { left } else { 0.0 };
-    let ends = [SIDE, 1.0 - SIDE].map(|share| quantile(&values, share)).map(|end| mean + left * (end - mean));
+    let ends = of_values(&values).map(|end| mean + left * (end - mean));
     let error = own.error.unwrap_or(0.0);
     let end = |side: usize| {
         let sign = [-1.0, 1.0][side];
@@ -84,14 +84,6 @@ fn widened(own: Estimate, others: impl Iterator<Item = Estimate>) -> Estimate {
         error: Some(libm::hypot(left * libm::sqrt(square), error)),
         interval: [end(0), end(1)],
     }
-}
-
-/// The `share` quantile of `sorted` values, linear between the places (i − ½)/n.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let last = sorted.len() - 1;
-    let at = (share * sorted.len() as f64 - 0.5).clamp(0.0, last as f64);
-    let below = at as usize;
-    sorted[below] + (at - below as f64) * (sorted[last.min(below + 1)] - sorted[below])
 }
 
 fn widen_defects(own: &mut Defects, others: impl Iterator<Item = Defects>) {

@@ -166,19 +166,19 @@ fn legendre(order: usize, u: f64) -> f64 {
 mod tests {
     use super::{Point, Share, shares};
     use crate::sampling::sampler::{Method, Sampler};
-    use slipfit_core::sampling::stream::{Rng, derived, unit_stream};
+    use slipfit_core::sampling::stream::{Rng, derived, uniform, unit_stream};
 
     /// Shares of hits among `units` at 64 points of which three coordinates are unknown, and their variance by counting.
     fn counted(units: u64, seed: u64, p: impl Fn(&[f64]) -> f64) -> (Vec<Point>, f64) {
         let sampler = Sampler::new(Method::ScrambledSobol, derived(seed, 1), 3, 1, 64);
         let mut stream = unit_stream(seed, 0);
-        let mut uniform = move || ((stream.next_u64() >> 11) as f64 + 0.5) / (1u64 << 53) as f64;
+        let mut share = move || uniform(stream.next_u64());
         let mut point = |i| {
             let mut bits = vec![[0; crate::numeric::lanes::LANES]; 3];
             sampler.fill(i, &mut bits);
             let at: Vec<f64> = bits.iter().map(|bits| bits[0] as f64 / libm::ldexp(1.0, 64)).collect();
             let chance = p(&at);
-            let hits = (0..units).filter(|_| uniform() < chance).count();
+            let hits = (0..units).filter(|_| share() < chance).count();
             Point { figure: hits as f64 / units as f64, at }
         };
         let points: Vec<Point> = (0..64).map(&mut point).collect();

@@ -32,6 +32,17 @@ fn chi_squared(freedom: f64, probability: f64) -> f64 {
     ChiSquared::new(freedom).map_or(f64::NAN, |chi| chi.inverse_cdf(probability))
 }
 
+/// Of a figure with these equally probable values in ascending order, at least one: each is in the middle of as many equal parts of the
+/// probability, and between them it is linear.
+pub fn of_values(sorted: &[f64]) -> [f64; 2] {
+    let last = sorted.len() - 1;
+    [SIDE, 1.0 - SIDE].map(|share| {
+        let place = (share * sorted.len() as f64 - 0.5).clamp(0.0, last as f64);
+        let below = place as usize;
+        sorted[below] + (place - below as f64) * (sorted[last.min(below + 1)] - sorted[below])
+    })
+}
+
 /// Of a probability of which `hits` of `units` were seen (Clopper and Pearson 1934): never too short.
 pub fn proportion(hits: u64, units: u64) -> [f64; 2] {
     binomial::limits(hits, units, SIDE)

@@ -107,16 +107,16 @@ mod tests {
         numeric::normal::{SIDE, tail},
         statistics::binomial,
     };
-    use slipfit_core::sampling::stream::{Rng, unit_stream};
+    use slipfit_core::sampling::stream::{Rng, uniform, unit_stream};
     use statrs::function::beta::beta_reg;
 
     /// Hits among `units` at each of `values`, in strata of what is unknown, u, where the probability is `p` of it.
     fn counted(values: u64, units: u64, seed: u64, p: impl Fn(f64) -> f64) -> Vec<u64> {
         let mut stream = unit_stream(seed, 0);
-        let mut uniform = move || ((stream.next_u64() >> 11) as f64 + 0.5) / (1u64 << 53) as f64;
+        let mut share = move || uniform(stream.next_u64());
         let count = |k: u64| {
-            let chance = p((k as f64 + uniform()) / values as f64);
-            (0..units).filter(|_| uniform() < chance).count() as u64
+            let chance = p((k as f64 + share()) / values as f64);
+            (0..units).filter(|_| share() < chance).count() as u64
         };
         (0..values).map(count).collect()
     }
