@@ -12,7 +12,7 @@ use fields::{check_object, guide};
 /// The guide's heading of what is printed for a shard.
 const SHARD: &str = "A shard of tolerance or population";
 
-/// What is not known of a slide, and of a mechanism.
+/// Unknowns of a slide, and of a mechanism.
 const FRICTION: &str = "uncertain.friction.coefficient=[0.2, 0.3]";
 const STIFFNESS: &str = "uncertain.contact.stiffness={ median = 3000, factor = 3 }";
 

@@ -217,6 +217,7 @@ fn mistakes_are_named() {
         ("measured.file=bad.csv", "bad.csv:3:3"),
         ("measured.file=few.csv", "50 measured parts, but there are 3"),
         ("measured.only=A", "`measured.only` has no effect without a `group`"),
+        ("measured.group=width", "`measured.group` has no effect without `only`"),
         ("measured.distribution=cauchy", "smoothed: the values themselves"),
         ("measured.column=[]", "`measured.column` is a list of 0"),
         (

@@ -1,4 +1,4 @@
-//! What is not known of a production, as a user meets it.
+//! Unknowns of a production, as a user meets them.
 
 mod common;
 
@@ -125,7 +125,7 @@ ramp_end = [0.03, 0.11]
     assert!(folder.path().join("slipfit-out/stop/population-unknown.svg").exists());
 }
 
-/// A parameter may vary about a mean that is not known.
+/// A parameter may vary about an unknown mean.
 #[test]
 fn a_parameter_varies_about_its_unknown_mean() {
     let folder = tempfile::tempdir().unwrap();

@@ -46,7 +46,7 @@ impl Gap {
 }
 
 impl Mechanism {
-    /// Whether one value or distribution in the whole production is not known.
+    /// Whether a value or distribution of the whole production is unknown.
     pub fn has_unknowns(&self) -> bool {
         !self.uncertain.is_empty() || self.measured.is_some()
     }

@@ -83,7 +83,7 @@ pub struct Mechanism {
     pub gaps: Vec<Gap>,
     /// Parameters that vary over the production, beside the gaps.
     pub vary: Vec<Varied>,
-    /// Parameters that have one value in the whole production, which is not known.
+    /// Parameters with one unknown value in the whole production.
     pub uncertain: Vec<Uncertain>,
     /// What is simulated: the stroke (m) is the first drive's, and the error a share of the mechanism's own speed.
     pub run: RunSpec,

@@ -5,7 +5,7 @@ use crate::setup::{self, Adjustable, coefficient, stick_band, tilted_x, tilted_z
 
 /// A parameter of a mechanism that varies.
 pub type Varied = setup::Varied<Parameter>;
-/// A parameter of a mechanism that is not known.
+/// An unknown parameter of a mechanism.
 pub type Uncertain = setup::Uncertain<Parameter>;
 
 /// A parameter of a mechanism.

@@ -10,7 +10,7 @@ use crate::mechanism::Mechanism;
 use super::{
     Override, Problem, SceneError,
     diagnostic::Found,
-    identify, keys,
+    identify, key_checks,
     measured::{self, columns::Columns},
     mechanism,
     parse::{scene, title},
@@ -49,11 +49,11 @@ impl SceneFile {
         for change in overrides {
             tree.set(change)?;
         }
-        keys::note_unfit(&tree);
+        key_checks::note_unfit(&tree);
         let mut read = Self::read(&tree, file_name);
         if let Ok(file) = &mut read {
             if !found.any() {
-                keys::note_unread(&tree);
+                key_checks::note_unread(&tree);
             }
             file.warn(found.take_warnings());
         }

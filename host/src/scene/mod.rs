@@ -8,6 +8,7 @@ mod diagnostic;
 mod drawing;
 mod file;
 mod identify;
+mod key_checks;
 mod keys;
 mod levels;
 mod measured;
@@ -16,6 +17,7 @@ mod parameter;
 mod parse;
 mod pins;
 mod plausible;
+mod problem;
 mod product;
 mod quantity;
 #[cfg(test)]
@@ -30,11 +32,12 @@ mod value;
 mod vary;
 mod written;
 
-pub use diagnostic::{Problem, SceneError};
+pub use diagnostic::SceneError;
 pub use file::SceneFile;
 pub use levels::{LevelError, MOST_LEVELS, parse_levels};
 pub use measured::file::{PartsError, is_qif, load as load_parts};
 pub use parse::parse_every;
+pub use problem::Problem;
 pub use shipped::{CD_ROM_SLIDE, SHIPPED, shipped};
 pub use written::{tolerance, with_tolerances};
 

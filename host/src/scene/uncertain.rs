@@ -1,4 +1,4 @@
-//! Parameters that have one value in the whole production, which is not known.
+//! Parameters with one unknown value in the whole production.
 
 use slipfit_tolerance::{
     number::ten_digits,
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::setup::{Adjustable, Belief, REACH, Uncertain};
 
-/// What may be stated of a value that is not known.
+/// What may be stated of an unknown value.
 const ALLOWED: &str = "[least, greatest], { mean, deviation } or { median, factor }: values of the parameter itself, not deviations from it";
 const FACTOR: Quantity = Quantity { units: unit::ONE, range: [1.0, 1000.0] };
 

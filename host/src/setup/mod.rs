@@ -1,4 +1,4 @@
-//! What is to be computed, as data: a slide on four pins, runs and controllers, tolerance levels, what varies and what is not known.
+//! What is to be computed, as data: a slide on four pins, runs and controllers, tolerance levels, what varies and what is unknown.
 
 mod hash;
 mod identify;

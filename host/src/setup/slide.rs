@@ -44,7 +44,7 @@ pub struct Scene {
     pub sweep: LevelRange,
     /// What varies over the production beside the gaps.
     pub vary: Vec<Varied>,
-    /// What has one value in the whole production, which is not known.
+    /// Parameters with one unknown value in the whole production.
     pub uncertain: Vec<Uncertain>,
     /// Which measure of the product each gap is, pin by pin; `None` where the scene gives its statistics.
     pub gap_measures: GapMeasures,
@@ -98,7 +98,7 @@ pub struct GapError {
 }
 
 impl Scene {
-    /// Whether one value or distribution in the whole production is not known.
+    /// Whether a value or distribution of the whole production is unknown.
     pub fn has_unknowns(&self) -> bool {
         !self.uncertain.is_empty() || self.measured.is_some()
     }

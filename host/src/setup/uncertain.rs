@@ -1,4 +1,4 @@
-//! Parameters that have one value in the whole production, which is not known.
+//! Parameters with one unknown value in the whole production.
 
 use slipfit_tolerance::numeric::normal::{normal_factor, quantile};
 
@@ -61,7 +61,7 @@ pub struct ShownIn {
     pub size: f64,
 }
 
-/// A parameter that is not known: of a slide, or of another menu `P`.
+/// An unknown parameter: of a slide, or of another menu `P`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertain<P = SlideParameter> {
     /// Which.

@@ -1,4 +1,4 @@
-//! The picture of what is not known.
+//! The picture of an unknown.
 
 use super::{
     plot::{Chart, Markers, Panel, PlotError, Scale, Shape, line_chart},

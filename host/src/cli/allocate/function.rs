@@ -74,7 +74,7 @@ impl<'a> Function<'a> {
         Ok(Counted { failed: failed + undecided, units })
     }
 
-    /// What the units do with these `tolerances` (SI) over all that is not known, beside `units` that were counted; none where everything
+    /// What the units do with these `tolerances` (SI) over all unknowns, beside `units` that were counted; none where everything
     /// is known.
     ///
     /// # Errors

@@ -48,7 +48,7 @@ pub struct Report {
     pub good: Option<f64>,
     /// Other units that confirm the share of malfunctions, where that is required.
     pub malfunctions: Option<Confirmation>,
-    /// What units do over all that is not known, where something is not and malfunction is limited.
+    /// What units do over all unknowns, where there are any and malfunction is limited.
     pub uncertain: Option<Unknown>,
     /// Cost against defects; empty unless it was asked for.
     pub curve: Vec<CurvePoint>,
@@ -62,11 +62,11 @@ pub struct Checks {
     pub measures: Check,
     /// Other units that confirm the share of malfunctions, where that is required.
     pub confirmation: Option<Confirmation>,
-    /// What units do over all that is not known.
+    /// What units do over all unknowns.
     pub unknown: Option<Unknown>,
 }
 
-/// What units do with the tolerances found, over all that is not known.
+/// What units do with the tolerances found, over all unknowns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Unknown {
     /// The share of them that may malfunction.

@@ -18,11 +18,11 @@ fn digits(value: f64) -> String {
     if rounded == 0.0 || (1e-4..1e9).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
-/// Whether the requirement on malfunction holds over all that is not known.
+/// Whether the requirement on malfunction holds over all unknowns.
 fn over_unknown(Unknown { allowed, holds, answer }: &Unknown) -> String {
     let holds = if *holds { "holds over the whole interval" } else { "does not hold over the whole interval" };
     format!(
-        "Over what is not known: {} (95 %) malfunction; the requirement, {} %, {holds}. Decided by {}\n",
+        "Over all unknowns: {} (95 %) malfunction; the requirement, {} %, {holds}. Decided by {}\n",
         share(&answer.malfunctions),
         percent(*allowed, 2),
         decided(answer)

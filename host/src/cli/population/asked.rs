@@ -40,7 +40,7 @@ use crate::{
 ///
 /// For slides and mechanisms with a drive. Every unit has gaps of its own. Gaps that are measures follow from the product's
 /// tolerances; the others are drawn from the mean and the standard deviation in the scene. With `[vary]` in the scene friction, stiffness, damping, mass, gain, ramp
-/// and the direction of gravity vary, too. With `[uncertain]` four times as many units more are simulated, and the answer covers what is not known.
+/// and the direction of gravity vary, too. With `[uncertain]` four times as many units more are simulated, and the answer covers the unknown values.
 /// A slide runs the whole stroke unless `--opening` is given, a mechanism
 /// `run.duration` or to the end of its stroke.
 ///

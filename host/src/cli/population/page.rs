@@ -37,7 +37,7 @@ pub const FIGURES: [&str; 4] =
 /// The same of a mechanism.
 pub const MECHANISM_FIGURES: [&str; 3] = ["population.svg", "population-forces.svg", "population-drivers.svg"];
 
-/// Name of the picture of what is not known.
+/// Name of the picture of the unknowns.
 pub const UNKNOWN_FIGURE: &str = "population-unknown.svg";
 
 /// What the picture of forces shows.
@@ -105,11 +105,11 @@ pub fn units_of_mechanism(
     Ok((Units { figures, player }, names))
 }
 
-/// The picture of what is not known, of which an `answer` says what it leaves open; none where that has no number.
+/// The picture of the unknown that decides most of an `answer`; none where no unknown has a number.
 pub fn unknown_figure(title: &str, answer: Option<&Answer>) -> Result<Option<Figure>, Failure> {
     let Some(answer) = answer.filter(|answer| !answer.unknowns.is_empty()) else { return Ok(None) };
     let svg = decisive(title, answer).map_err(anyhow::Error::from)?;
-    let caption = "How many units malfunction, over what decides most of what is not known. Each ring is a value that was tried, with \
+    let caption = "How many units malfunction, over the unknown that decides most. Each ring is a value that was tried, with \
                    units of its own; the other unknowns differ between them.";
     Ok(Some(Figure { caption: caption.into(), svg }))
 }

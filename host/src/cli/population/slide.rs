@@ -71,7 +71,7 @@ struct Found {
     levels: Vec<LevelReport>,
     hypothesis: Hypothesis,
     rare: Option<Rare>,
-    /// What is not known leaves open.
+    /// What the unknowns leave open.
     unknown: Option<Answer>,
 }
 

@@ -1,4 +1,4 @@
-//! What is not known of a production: how it is asked for, and the answer in words.
+//! Unknowns of a production: how they are asked for, and the answer in words.
 
 use std::fmt::Write;
 
@@ -39,7 +39,7 @@ impl Arguments {
         let asked = [("--shard", self.shard.is_some()), ("--out", self.out.is_some()), ("--rare", self.rare)];
         if let Some((option, _)) = asked.into_iter().find(|(_, asked)| unknown && *asked) {
             let message = format!(
-                "{option} takes the values that the scene states for what is not known: allowed is a scene without [uncertain] and [measured]"
+                "{option} takes the values that the scene states for the unknowns: allowed is a scene without [uncertain] and [measured]"
             );
             return Err(Failure::Input(message));
         }
@@ -53,8 +53,7 @@ impl Arguments {
 /// Where so many have a parameter that is out of bounds that the scene is to blame.
 pub fn warnings(answer: &Answer) -> Result<Vec<String>, Failure> {
     let (units, out) = (answer.units(), answer.out_of_bounds);
-    let told =
-        |count: u64, why: &str| format!("with what is not known {count} of {units} units come to no verdict{why}");
+    let told = |count: u64, why: &str| format!("over the unknowns {count} of {units} units come to no verdict{why}");
     let out_of_bounds = ", since one of their parameters is out of bounds";
     if out as f64 > OUT_OF_BOUNDS * units as f64 {
         return Err(Failure::Input(told(out, out_of_bounds)));
@@ -64,7 +63,7 @@ pub fn warnings(answer: &Answer) -> Result<Vec<String>, Failure> {
     Ok(all.into_iter().flatten().collect())
 }
 
-/// Digits after the point of shares up to `high` in percent: whole percent of what is not known are enough.
+/// Digits after the point of shares up to `high` in percent: whole percent are enough of what unknowns decide.
 fn decimals(high: f64) -> usize {
     match high {
         0.1.. => 0,

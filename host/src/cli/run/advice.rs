@@ -21,7 +21,7 @@ pub struct Units<'a> {
     pub statistics: &'a Statistics,
     /// What drives malfunction, the strongest first.
     pub of_malfunction: &'a [Driver],
-    /// What is not known leaves open, if anything is not.
+    /// What the unknowns leave open, if there are any.
     pub unknown: Option<&'a Answer>,
 }
 

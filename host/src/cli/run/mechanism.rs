@@ -70,7 +70,7 @@ struct Report {
     levels: Vec<LevelReport>,
     /// What units drawn one by one do; none where no gap varies.
     population: Option<Statistics>,
-    /// What is not known leaves open of it; none if everything is known, or no unit is drawn.
+    /// What the unknowns leave open of it; none without unknowns, or if no unit is drawn.
     uncertain: Option<Answer>,
     /// How the product's measures vary, as `slipfit tolerance --json` shows it.
     tolerance: Option<Measures>,

@@ -73,7 +73,7 @@ struct Report {
     levels: Vec<LevelReport>,
     /// What units drawn one by one do, as `slipfit population --json` shows it.
     population: Statistics,
-    /// What is not known leaves open of it; none if everything is known.
+    /// What the unknowns leave open of it; none without unknowns.
     uncertain: Option<Answer>,
     /// How the product's measures vary, as `slipfit tolerance --json` shows it.
     tolerance: Option<Measures>,
@@ -90,7 +90,7 @@ struct Simulated {
     population: Population,
     /// The same for the page, and the names of its pictures' files.
     units: (UnitsShown, Vec<&'static str>),
-    /// What is not known leaves open, if anything is not.
+    /// What the unknowns leave open, if there are any.
     unknown: Option<Answer>,
 }
 

@@ -1,4 +1,4 @@
-//! What a production does of which something is not known, as distributions.
+//! What a production with unknowns does, as distributions.
 
 use serde::Serialize;
 use slipfit_tolerance::statistics::{
@@ -74,7 +74,7 @@ pub struct ValueReport {
 /// What the production does.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Answer {
-    /// What is not known.
+    /// The unknowns.
     pub unknowns: Vec<UnknownReport>,
     /// What is known from measured parts alone.
     pub measured: Vec<String>,

@@ -1,4 +1,4 @@
-//! Populations of which something is not known: one value for the whole production, but which?
+//! Populations with unknowns: parameters with one value in the whole production, but which?
 //!
 //! An outer loop tries values of what is unknown, an inner one counts units of each. What a figure of the whole production is, is then
 //! a distribution: as probable as the values that lead to it.

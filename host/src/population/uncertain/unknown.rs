@@ -1,4 +1,4 @@
-//! Something that has one value in the whole production, which is not known.
+//! Something with one unknown value in the whole production.
 
 use crate::setup::{Adjustable, Uncertain};
 

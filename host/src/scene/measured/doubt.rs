@@ -1,4 +1,4 @@
-//! What is to be known of measured values before they stand for a production.
+//! Warnings about measured values: outliers, a drift, a shifted mean.
 
 use slipfit_measured::{
     capability::{Sample, outliers},
@@ -13,7 +13,7 @@ use crate::scene::value::Field;
 const LEAST_PARTS: usize = 10;
 /// The probability to name a drift where there is none.
 const SIGNIFICANCE: f64 = 0.001;
-/// Share of half the tolerance from which on a shift is told.
+/// Share of half the tolerance from which on a shift is reported.
 const SHIFTED: f64 = 0.1;
 
 /// Warns of outliers and of a drift in the values measured for `of`, which is written in `field`.

@@ -83,13 +83,15 @@ fn heading<'t>(own: &Field<'t, '_>) -> Result<&'t str, SceneError> {
 fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str, headings: &[String]) -> Result<Parts<'t, 's>, SceneError> {
     const FILES: &str = "a file of measured parts, CSV or QIF results, or a list of such files";
     let field = table.require("file", FILES)?;
-    let group = table.get("group").map(|field| field.to_text()).transpose()?;
-    let only = match (table.get("only"), group) {
-        (Some(only), None) => {
+    let (group, only) = match (table.get("group"), table.get("only")) {
+        (Some(group), None) => return Err(group.no_effect("without `only`", "the groups whose parts count, as `only`")),
+        (None, Some(only)) => {
             return Err(only.no_effect("without a `group`", "the column that divides the parts, as `group`"));
         }
-        (only, _) => only.map(|field| texts(&field, "a group, or a list of groups")).transpose()?,
+        (group, only) => (group, only),
     };
+    let group = group.map(|field| field.to_text()).transpose()?;
+    let groups = only.as_ref().map(|field| texts(field, "a group, or a list of groups")).transpose()?;
     let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
     let options = Options {
         groups: group.into_iter().map(str::to_owned).collect(),
@@ -104,8 +106,8 @@ fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str, headings: &[String]) ->
         tables.push(read);
     }
     let assumed = table.get("distribution").map_or(Ok(Assumed::Smoothed), |field| assumed(&field))?;
-    let parts = Parts { field, tables, only, assumed };
-    if let Some(only) = table.get("only") {
+    let parts = Parts { field, tables, only: groups, assumed };
+    if let Some(only) = only {
         parts.check_groups(&only)?;
     }
     Ok(parts)

@@ -1,4 +1,4 @@
-//! What is not known of a production widens the intervals of its report.
+//! Unknowns of a production widen the intervals of its report.
 
 use super::contents::{Defects, Report};
 use crate::statistics::{estimate::Estimate, interval::of_values};

@@ -72,7 +72,7 @@ const WHOLE: &[(&str, &str)] = &[
     ),
     (
         "uncertain",
-        "The same parameters where one value holds for all units, but is not known: `[least, greatest]`, `{ mean, deviation }` \
+        "The same parameters where one value holds for all units, but is unknown: `[least, greatest]`, `{ mean, deviation }` \
          or `{ median, factor }` of the value itself. `population`, `run` and `allocate` answer for all of it. Optional.",
     ),
     (
