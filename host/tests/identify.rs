@@ -130,6 +130,24 @@ fn what_is_sought_of_a_slide_is_checked() {
     }
 }
 
+/// What is written is a table of the scene that was fitted, with all units.
+#[test]
+fn an_estimate_goes_back_into_its_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let sought =
+        "friction.coefficient = [0.1, 0.5]\ncontact.stiffness = [10, 1000]\ngaps = [{ of = \"left\", n = [-1, 4] }]\n";
+    write(folder.path(), "slide.toml", &format!("{CD_ROM_SLIDE}\n[identify]\n{sought}"));
+    stdout(&slipfit(folder.path(), &["simulate", "--n", "1.5", "--stroke", "--csv", "run.csv"]));
+    stdout(&slipfit(folder.path(), &["identify", "slide.toml", "run.csv", "--n", "1.5", "-o", "found.toml"]));
+    let written = std::fs::read_to_string(folder.path().join("found.toml")).unwrap();
+    assert!(written.contains("N/m^1.5\"") && written.contains("\n# n of left: mean 1."), "{written}");
+    write(folder.path(), "known.toml", &format!("{CD_ROM_SLIDE}\n{written}"));
+    let found = json(folder.path(), &["population", "known.toml", "--units", "32", "--json"]);
+    let names: Vec<&str> =
+        found["uncertain"]["unknowns"].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["friction.coefficient", "contact.stiffness"]);
+}
+
 /// Friction, mass, and the levels of the gaps to the left and to the right.
 const TRUE: [f64; 4] = [0.3, 0.0818, 1.5, 1.5];
 

@@ -139,7 +139,7 @@ impl Arguments {
             compared: &compared,
             warnings: &warnings,
         };
-        self.finish(&report, chosen, records.iter().map(Record::duration).sum())
+        self.finish(&report, chosen, records.iter().map(Record::duration).sum(), None)
     }
 
     fn slide(&self, file: &SceneFile, identify: &Identification) -> Result<(), Failure> {
@@ -168,13 +168,13 @@ impl Arguments {
             compared: &compared,
             warnings: &warnings,
         };
-        self.finish(&report, chosen, records.iter().map(Record::duration).sum())
+        self.finish(&report, chosen, records.iter().map(Record::duration).sum(), Some(scene.contact.exponent))
     }
 
-    /// Writes and prints the `report`, of which one estimate was `chosen`.
-    fn finish(&self, report: &Report, chosen: &Compared, duration: f64) -> Result<(), Failure> {
+    /// Writes and prints the `report`, of which one estimate was `chosen`, of records of this `duration` (s) and contacts of this `exponent`.
+    fn finish(&self, report: &Report, chosen: &Compared, duration: f64, exponent: Option<f64>) -> Result<(), Failure> {
         if let Some(path) = &self.output {
-            files::write(path, output::table(report.title, report.model, &chosen.estimate).as_bytes())?;
+            files::write(path, output::table(report.title, report.model, &chosen.estimate, exponent).as_bytes())?;
         }
         if self.json {
             return print_json(report);

@@ -5,8 +5,9 @@ use std::fmt::Write;
 use slipfit_identify::estimate::{Estimate, Estimated};
 use slipfit_tolerance::number::ten_digits;
 
-/// The table `[uncertain]` of an `estimate`: means, deviations and, as a comment, correlations.
-pub fn table(title: &str, model: &str, estimate: &Estimate) -> String {
+/// The table `[uncertain]` of an `estimate`: means, deviations and, as a comment, correlations and what a scene has no key for, the levels
+/// of gaps. Stiffnesses have the contact's `exponent`, of a slide.
+pub fn table(title: &str, model: &str, estimate: &Estimate, exponent: Option<f64>) -> String {
     let mut text =
         format!("# {model} of {title:?}, identified from {} samples by slipfit identify.\n", estimate.samples);
     if let Some(verdict) = &estimate.lack.verdict {
@@ -27,29 +28,21 @@ pub fn table(title: &str, model: &str, estimate: &Estimate) -> String {
     text += "\n[uncertain]\n";
     for (_, parameter) in known {
         let Some(deviation) = parameter.deviation else { continue };
-        let number = |value: f64| match parameter.unit {
+        let unit = exponent.map(|exponent| parameter.unit.replace("^e", &format!("^{exponent}")));
+        let unit = unit.as_deref().unwrap_or(parameter.unit);
+        let number = |value: f64| match unit {
             "" => ten_digits(value),
             unit => format!("\"{} {unit}\"", ten_digits(value)),
         };
-        let _ = writeln!(
-            text,
-            "{} = {{ mean = {}, deviation = {} }}",
-            key(&parameter.name, model),
-            number(parameter.value),
-            number(deviation)
-        );
+        let [mean, deviation] = [parameter.value, deviation].map(number);
+        let _ = match (model, parameter.name.strip_prefix("n of ")) {
+            ("slide", Some(gaps)) => writeln!(text, "# n of {gaps}: mean {mean}, deviation {deviation}"),
+            ("slide", None) => writeln!(text, "{} = {{ mean = {mean}, deviation = {deviation} }}", parameter.name),
+            _ => {
+                let key = parameter.name.replace(" / ", "_by_").replace(' ', "_");
+                writeln!(text, "drive_train.{key} = {{ mean = {mean}, deviation = {deviation} }}")
+            }
+        };
     }
     text
-}
-
-/// The key of a parameter; that of a drive train is below its own table.
-fn key(name: &str, model: &str) -> String {
-    let is_plain = |part: &str| part.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-    if name.split('.').all(is_plain) && model == "slide" {
-        return name.to_owned();
-    }
-    match name.strip_prefix("n of ") {
-        Some(gaps) => format!("gaps.{gaps:?}"),
-        None => format!("drive_train.{}", name.replace(" / ", "_by_").replace(' ', "_")),
-    }
 }
