@@ -251,3 +251,66 @@ fn malfunction_that_no_tolerance_mends_is_told() {
     assert!(errors.contains("wrong.toml:") && errors.contains("malfunction"), "{errors}");
     assert!(!folder.path().join("new.toml").exists());
 }
+
+/// Every tolerance that is chosen stands at its feature as on a drawing, with what is not chosen of it.
+#[test]
+fn tolerances_are_listed_by_feature() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = r#"
+[[dimension]]
+name = "shim"
+value = "0.04 in"
+tolerance = "0.002 in"
+cost = { reciprocal = 0.01, at = "0.001 in", range = ["0.0005 in", "0.004 in"] }
+
+[[part]]
+name = "plate"
+plane = [
+  { name = "base", at = [0, 0, 0], normal = "-z", along = "+x", extents = [100, 60] },
+  { name = "top", at = [0, 0, 20], normal = "+z", along = "+x", extents = [100, 60], profile = { zone = 0.2, datum = "plate.base", cost = { reciprocal = 0.02, range = [0.05, 0.4] } } },
+]
+axis = [
+  { name = "bore", at = [-30, 0, 10], along = "+z", length = 20, kind = "hole", diameter = { value = 8, tolerance = [0, 0.1], cost = { reciprocal = 0.02, range = [0.01, 0.1] } }, position = { zone = 0.2, datum = ["plate.base"], material = "maximum", cost = { reciprocal = 0.02, range = [0.05, 0.4] } } },
+  { name = "slot", at = [30, 0, 10], along = "+z", length = 20, position = { zone = 0.3, datum = ["plate.base", "plate.bore (M)"], cost = { reciprocal = 0.02, range = [0.05, 0.4] } } },
+]
+
+[[measure]]
+name = "holes"
+distance = ["plate.bore", "plate.slot"]
+require = "rss"
+lower = 59.8
+upper = 60.2
+
+[[measure]]
+name = "height"
+is = "shim"
+require = "rss"
+lower = 0.95
+upper = 1.08
+"#;
+    std::fs::write(folder.path().join("plate.toml"), scene).unwrap();
+    let printed = stdout(&slipfit(folder.path(), &["allocate", "plate.toml", "--samples", "10000"]));
+    let list = printed.split("On the drawing, by feature\n").nth(1).unwrap().split("\n\n").next().unwrap();
+    let shape: Vec<String> = list.lines().map(without_figures).collect();
+    let expected = [
+        "  shim  0.04 ± # in",
+        "  plate",
+        "    top   profile 0.4 mm | base",
+        "    bore  diameter 8 +0.15 / -0.05 mm",
+        "          position # mm (M) | base",
+        "    slot  position # mm | base | bore (M)",
+    ];
+    assert_eq!(shape, expected, "{printed}");
+    let found = json(folder.path(), &["allocate", "plate.toml", "--samples", "10000", "--json"]);
+    for chosen in found["tolerances"].as_array().unwrap() {
+        assert!(list.contains(chosen["callout"].as_str().unwrap()), "{chosen}");
+        let written = chosen["tolerance"].as_f64().unwrap();
+        assert!(written > 0.0 && chosen["feature"].is_string(), "{chosen}");
+    }
+}
+
+/// A line in which `#` stands for figures with three decimals or more.
+fn without_figures(line: &str) -> String {
+    let is_figure = |word: &str| word.split('.').nth(1).is_some_and(|decimals| decimals.len() > 2);
+    line.split(' ').map(|word| if is_figure(word) { "#" } else { word }).collect::<Vec<_>>().join(" ")
+}

@@ -107,22 +107,6 @@ fn bad_files_are_told_where_they_are_wrong() {
     }
 }
 
-#[test]
-fn an_imported_model_is_a_part_that_check_accepts() {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, [in_part, all]) in [("nist_ctc_01_asme1_ap242.qif", [11, 14]), ("nist_ctc_03_asme1_ap242.qif", [18, 22])]
-    {
-        let file = qif(name);
-        let output = slipfit(folder.path(), &["import", file.to_str().unwrap(), "-o", "part.toml"]);
-        let told = String::from_utf8(output.stderr.clone()).unwrap();
-        stdout(&output);
-        assert!(told.starts_with(&format!("{in_part} of {all} tolerances")), "{told}");
-        stdout(&slipfit(folder.path(), &["check", "part.toml"]));
-        let printed = stdout(&slipfit(folder.path(), &["import", file.to_str().unwrap()]));
-        assert_eq!(printed, std::fs::read_to_string(folder.path().join("part.toml")).unwrap());
-    }
-}
-
 /// A page takes the place of nothing else.
 #[test]
 fn a_page_is_a_file_of_its_own() {

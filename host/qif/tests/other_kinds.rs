@@ -92,12 +92,12 @@ fn other_kinds_are_listed_and_nothing_is_guessed() {
     let drawing = read(&text).expect("a drawing");
     let part = write(&drawing, None, "a file");
     assert_eq!((drawing.features.len(), drawing.tolerances.len()), (5, cases.len()));
-    assert!(part.list.contains(&format!("Not in the part: {0} of {0}", cases.len())), "{}", part.list);
+    assert!(part.left_out.contains(&format!("#: {0} of {0} tolerances", cases.len())), "{}", part.left_out);
     for (i, (kind, ..)) in cases.iter().enumerate() {
-        assert!(part.list.contains(&format!("[1{}]", 100 + i)), "{kind}: {}", part.list);
+        assert!(part.left_out.contains(&format!("[1{}]", 100 + i)), "{kind}: {}", part.left_out);
     }
     for feature in ["countersink", "thread", "without an axis"] {
-        assert!(part.text.contains(feature), "{}", part.text);
+        assert!(part.left_out.contains(feature), "{}", part.left_out);
     }
     toml::from_str::<toml::Table>(&part.file()).expect("valid TOML");
 }

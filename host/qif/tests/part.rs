@@ -103,7 +103,7 @@ fn tolerances_that_a_scene_refuses_are_listed() {
         let (features, reason) = of(&part, id);
         assert!(features.is_empty() && !reason.is_empty(), "{id}: {features:?} {reason}");
     }
-    assert!(part.list.contains("Not in the part: 8 of 11"), "{}", part.list);
+    assert!(part.left_out.contains(" 8 of 11 tolerances"), "{}", part.left_out);
 }
 
 proptest! {

@@ -120,28 +120,32 @@ impl SceneArguments {
     /// Its name for messages, and its text: of a file, or of a shipped one by its name.
     pub fn text(&self) -> Result<(String, Cow<'static, str>), Failure> {
         let path = &self.scene;
-        let unreadable =
-            |why: &dyn std::fmt::Display| Failure::Input(format!("cannot read the scene {}: {why}", path.display()));
         let name = path.to_string_lossy();
         // A folder is no scene: where there is one of that name, the shipped one is meant.
         if let Some(text) = shipped(&name).filter(|_| !path.exists() || path.is_dir()) {
             return Ok((format!("{name}.toml"), text.into()));
         }
-        let file = std::fs::File::open(path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound => {
-                let names: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
-                unreadable(&format!("{error}; shipped scenes are {}", names.join(", ")))
-            }
-            _ => unreadable(&error),
-        })?;
-        let mut bytes = Vec::new();
-        file.take(SCENE_MOST + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
-        if bytes.len() as u64 > SCENE_MOST {
-            return Err(unreadable(&format!("it is longer than {SCENE_MOST} bytes")));
-        }
-        let text = encoding::text_of(bytes).map_err(|error| unreadable(&error))?;
-        Ok((path.display().to_string(), text.into()))
+        Ok((path.display().to_string(), text_of(path)?.into()))
     }
+}
+
+/// The text of a scene's file.
+pub fn text_of(path: &Path) -> Result<String, Failure> {
+    let unreadable =
+        |why: &dyn std::fmt::Display| Failure::Input(format!("cannot read the scene {}: {why}", path.display()));
+    let file = std::fs::File::open(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            let names: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
+            unreadable(&format!("{error}; shipped scenes are {}", names.join(", ")))
+        }
+        _ => unreadable(&error),
+    })?;
+    let mut bytes = Vec::new();
+    file.take(SCENE_MOST + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
+    if bytes.len() as u64 > SCENE_MOST {
+        return Err(unreadable(&format!("it is longer than {SCENE_MOST} bytes")));
+    }
+    encoding::text_of(bytes).map_err(|error| unreadable(&error))
 }
 
 /// Which drive of a mechanism.

@@ -39,7 +39,7 @@ pub use measured::file::{PartsError, is_qif, load as load_parts};
 pub use parse::parse_every;
 pub use problem::Problem;
 pub use shipped::{CD_ROM_SLIDE, SHIPPED, shipped};
-pub use written::{tolerance, with_tolerances};
+pub use written::{callout, tolerance, with_tolerances};
 
 /// A change of one key, from the command line.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,9 @@
 //! Scene files with other tolerances: the text as it is but for these.
 
-use slipfit_tolerance::product::costed::Costed;
+use slipfit_tolerance::{
+    number::ten_digits,
+    product::costed::{Costed, Written},
+};
 
 /// The `text` of the scene file that `costed` was read from, with `tolerances` (SI), one each, in `digits` significant digits
 /// and never wider. Those that do not stand in the file stay.
@@ -23,18 +26,48 @@ pub fn with_tolerances(text: &str, costed: &[Costed], tolerances: &[f64], digits
 /// A tolerance (SI) as it stands in a scene.
 pub fn tolerance(costed: &Costed, t: f64, digits: usize) -> String {
     let form = &costed.written;
-    let t = rounded_down(t * form.per_si, digits);
     let with_unit = |number: f64| match form.unit {
         Some(unit) => format!("\"{number} {unit}\""),
         None => number.to_string(),
     };
+    match deviations(form, t, digits) {
+        Deviations::Both(t) => with_unit(t),
+        Deviations::Each([lower, upper]) => format!("[{}, {}]", with_unit(lower), with_unit(upper)),
+    }
+}
+
+/// A tolerance (SI) as it stands on a drawing: a size with its deviations, or a zone with its datums.
+pub fn callout(costed: &Costed, t: f64, digits: usize) -> String {
+    let (form, callout) = (&costed.written, &costed.callout);
+    let unit = form.unit.or(Some(costed.quantity.unit()).filter(|unit| !unit.is_empty()));
+    let unit = unit.map(|unit| if unit == "°" { unit.to_owned() } else { format!(" {unit}") }).unwrap_or_default();
+    let key = callout.key.as_ref().map(|key| key.replace('_', " ") + " ").unwrap_or_default();
+    let signed = |number: f64| if number == 0.0 { "0".to_owned() } else { format!("{number:+}") };
+    // The digits that the conversion made up do not count.
+    let nominal = callout.nominal.map(|nominal| ten_digits(nominal * form.per_si) + " ").unwrap_or_default();
+    match deviations(form, t, digits) {
+        Deviations::Both(t) if form.key == "zone" => format!("{key}{t}{unit}{}", callout.frame),
+        Deviations::Both(t) => format!("{key}{nominal}± {t}{unit}"),
+        Deviations::Each([lower, upper]) => format!("{key}{nominal}{} / {}{unit}", signed(upper), signed(lower)),
+    }
+}
+
+/// A tolerance in its unit.
+enum Deviations {
+    /// To both sides, or the width of a zone.
+    Both(f64),
+    /// Lower and upper.
+    Each([f64; 2]),
+}
+
+fn deviations(form: &Written, t: f64, digits: usize) -> Deviations {
+    let t = rounded_down(t * form.per_si, digits);
     if form.middle == 0.0 {
-        return with_unit(t);
+        return Deviations::Both(t);
     }
     let middle = form.middle * form.per_si;
     // The digits that the conversion made up do not count.
-    let [lower, upper] = [middle - t, middle + t].map(|end| format!("{end:.15e}").parse().unwrap_or(end));
-    format!("[{}, {}]", with_unit(lower), with_unit(upper))
+    Deviations::Each([middle - t, middle + t].map(|end| format!("{end:.15e}").parse().unwrap_or(end)))
 }
 
 /// `t` > 0 in some significant digits, never more than it is but for what is lost in 15 digits.

@@ -6,8 +6,11 @@
 mod decide;
 mod entry;
 mod geometry;
+mod merge;
 mod names;
 mod rules;
+mod skeleton;
+pub mod update;
 mod write;
 
 use crate::{drawing::Drawing, words::one_line};
@@ -17,13 +20,15 @@ use crate::{drawing::Drawing, words::one_line};
 pub struct Part {
     /// Its name in the scene.
     pub name: String,
-    /// The `[[part]]` with its features and comments.
+    /// The `[[part]]` and its name.
+    pub head: String,
+    /// Its features, with comments for what of them is not in the part.
     pub text: String,
-    /// The tolerances and dimensions left out of the part, as comments.
-    pub list: String,
-    /// A measure between two features as an example, without which a scene of the part alone has nothing to compute; empty for
-    /// a part of less than two features.
-    pub example: String,
+    /// What is left out of the part, as comments.
+    pub left_out: String,
+    /// What the user states beside the part: mates as comments, and a measure between two features as an example, without which a scene
+    /// of the part alone has nothing to compute.
+    pub skeleton: String,
     /// For each tolerance of the drawing the features, by name, in which the part states it, and the key.
     pub stated: Vec<Stated>,
 }
@@ -42,22 +47,32 @@ pub struct Stated {
 impl Part {
     /// The whole text of a file that holds the part alone.
     pub fn file(&self) -> String {
-        format!("{}{}{}", self.text, self.list, self.example)
+        let Self { head, text, left_out, skeleton, .. } = self;
+        format!("{head}{text}\n{left_out}{skeleton}")
+    }
+
+    /// How many tolerances and dimensions of the drawing are not, or not for all of their features, in the part.
+    pub fn listed(&self) -> usize {
+        self.stated.iter().filter(|stated| !stated.refused.is_empty()).count()
     }
 }
 
 /// Writes a `drawing` as a part called `name`, or as the file names it; `source` is named in the first comment.
 pub fn write(drawing: &Drawing, name: Option<&str>, source: &str) -> Part {
-    let part = names::valid(name.unwrap_or(&drawing.name));
-    let features = names::features(drawing);
+    let name = names::valid(name.unwrap_or(&drawing.name));
+    part_of(drawing, &name, source, names::features(drawing))
+}
+
+/// A `drawing` as the part `name`, whose features have these names.
+fn part_of(drawing: &Drawing, name: &str, source: &str, features: Vec<String>) -> Part {
     let decided = decide::decide(drawing);
+    let mark = write::MARK;
     let head = format!(
-        "# From {}. Lengths in mm, in the frame of the part.\n[[part]]\nname = {} # {}\n",
+        "{mark} From {}. Lengths in mm, in the frame of the part.\n[[part]]\nname = {} {mark} {}\n",
         one_line(source),
-        write::quoted(&part),
+        write::quoted(name),
         one_line(&drawing.name)
     );
-    let text = head + &write::features(drawing, &decided, &part, &features);
     let stated = drawing.tolerances.iter().enumerate().map(|(i, tolerance)| {
         let has = |feature: &&usize| decided.entries[**feature].iter().any(|entry| entry.tolerance == i);
         let mut refused: Vec<String> = decided.refused[i].iter().map(|(_, reason)| reason.clone()).collect();
@@ -69,15 +84,12 @@ pub fn write(drawing: &Drawing, name: Option<&str>, source: &str) -> Part {
             refused,
         }
     });
-    let stated = stated.collect();
-    let example = match decided.order[..] {
-        [one, two, ..] => format!(
-            "\n# An example of a measure; mates, measures and limits of the product are yours to state.\n[[measure]]\nname = \
-             \"example\"\ndistance = [{}, {}]\n",
-            write::quoted(&format!("{part}.{}", features[one])),
-            write::quoted(&format!("{part}.{}", features[two]))
-        ),
-        _ => String::new(),
-    };
-    Part { list: write::list(drawing, &decided), name: part, text, example, stated }
+    Part {
+        stated: stated.collect(),
+        text: write::features(drawing, &decided, name, &features),
+        left_out: write::left_out(drawing, &decided, name),
+        skeleton: skeleton::skeleton(drawing, &decided.order, name, &features),
+        name: name.to_owned(),
+        head,
+    }
 }

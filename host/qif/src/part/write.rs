@@ -8,9 +8,12 @@ use super::{
     names,
 };
 use crate::{
-    drawing::{Drawing, Material, Shape, Tolerance},
+    drawing::{Drawing, Feature, Material, Plane, Shape, Tolerance},
     words::one_line,
 };
+
+/// What begins every comment of an import, by which an update knows what is its own.
+pub const MARK: &str = "#:";
 
 /// The text of the features, each with comments for what of it is not in the part.
 pub fn features(drawing: &Drawing, decided: &Decided, part: &str, names: &[String]) -> String {
@@ -21,41 +24,53 @@ pub fn features(drawing: &Drawing, decided: &Decided, part: &str, names: &[Strin
         let (table, keys) = place(shape);
         // Writing to a text cannot fail.
         let _ = writeln!(text, "\n[[part.{table}]]");
+        size_comment(&mut text, shape, &decided.entries[index]);
+        not_in_part(&mut text, drawing, decided, index);
         let letters = drawing.datums.iter().filter(|datum| datum.features.contains(&index)).map(|datum| &datum.label);
-        let letters: Vec<_> = letters.map(|label| format!(", datum {label}")).collect();
-        let whose = format!("{} {}{}", feature.kind, feature.name, letters.concat());
+        let letters: Vec<_> = letters.map(|label| format!("{DATUM}{label}")).collect();
+        let whose = format!("{}{}", in_file(feature), letters.concat());
         line(&mut text, &format!("name = {}", quoted(&names[index])), &whose);
         for (key, value) in keys {
             let _ = writeln!(text, "{key} = {value}");
         }
-        size(&mut text, shape, &decided.entries[index]);
+        if let Some(kind) = sized_kind(shape, &decided.entries[index]) {
+            let _ = writeln!(text, "kind = \"{kind}\"");
+        }
         let patterns = Patterns { drawing };
         for entry in &decided.entries[index] {
             let value = value(entry, part, names, &patterns);
             line(&mut text, &format!("{} = {value}", entry.key), &said(&drawing.tolerances[entry.tolerance]));
         }
-        comments(&mut text, drawing, decided, index);
-    }
-    for (index, feature) in drawing.features.iter().enumerate() {
-        let Err(reason) = &feature.shape else { continue };
-        let _ = writeln!(
-            text,
-            "\n# not a feature of the part: {} {}: {}",
-            feature.kind,
-            one_line(&feature.name),
-            one_line(reason)
-        );
-        comments(&mut text, drawing, decided, index);
     }
     text
 }
 
-/// The list of all tolerances that are not, or not for all of their features, in the part.
-pub fn list(drawing: &Drawing, decided: &Decided) -> String {
+/// What stands between the words of a feature and the letter of its datum.
+pub const DATUM: &str = ", datum ";
+
+/// A feature by its kind and name in the file.
+pub fn in_file(feature: &Feature) -> String {
+    one_line(&format!("{} {}", feature.kind, feature.name))
+}
+
+/// First line of what is left out of a part.
+pub fn left_out_of(part: &str) -> String {
+    format!("{MARK} Left out of the part {}:", quoted(part))
+}
+
+/// What is left out of the `part`: features that a part cannot have, and a list of all tolerances that are not, or not for all of their
+/// features, in it.
+pub fn left_out(drawing: &Drawing, decided: &Decided, part: &str) -> String {
     let refused = drawing.tolerances.iter().zip(&decided.refused).filter(|(_, reasons)| !reasons.is_empty());
     let refused: Vec<_> = refused.collect();
     let total = drawing.tolerances.len();
-    let mut text = format!("\n# Not in the part: {} of {total} tolerances and dimensions of the file\n", refused.len());
+    let mut text = format!("{}\n", left_out_of(part));
+    for (index, feature) in drawing.features.iter().enumerate() {
+        let Err(reason) = &feature.shape else { continue };
+        let _ = writeln!(text, "{MARK} not a feature of the part: {}: {}", in_file(feature), one_line(reason));
+        not_in_part(&mut text, drawing, decided, index);
+    }
+    let _ = writeln!(text, "{MARK} {} of {total} tolerances and dimensions of the file", refused.len());
     for (number, (tolerance, reasons)) in refused.iter().enumerate() {
         let mut distinct: Vec<&str> = Vec::new();
         for (_, reason) in reasons.iter() {
@@ -70,10 +85,10 @@ pub fn list(drawing: &Drawing, decided: &Decided) -> String {
             String::new()
         };
         let reasons = one_line(&distinct.join("; "));
-        let _ = writeln!(text, "# {:3}. {}{some}: {reasons}", number + 1, said(tolerance));
+        let _ = writeln!(text, "{MARK} {:3}. {}{some}: {reasons}", number + 1, said(tolerance));
     }
     for remark in &drawing.remarks {
-        let _ = writeln!(text, "# {}", one_line(remark));
+        let _ = writeln!(text, "{MARK} {}", one_line(remark));
     }
     text
 }
@@ -87,14 +102,14 @@ fn said(tolerance: &Tolerance) -> String {
 }
 
 fn line(text: &mut String, key: &str, comment: &str) {
-    let _ = writeln!(text, "{key} # {}", one_line(comment));
+    let _ = writeln!(text, "{key} {MARK} {}", one_line(comment));
 }
 
 /// What of the feature with this index is not in the part.
-fn comments(text: &mut String, drawing: &Drawing, decided: &Decided, index: usize) {
+fn not_in_part(text: &mut String, drawing: &Drawing, decided: &Decided, index: usize) {
     for (tolerance, reasons) in drawing.tolerances.iter().zip(&decided.refused) {
         for (_, reason) in reasons.iter().filter(|(feature, _)| *feature == Some(index)) {
-            let _ = writeln!(text, "# not in the part: {}: {}", said(tolerance), one_line(reason));
+            let _ = writeln!(text, "{MARK} not in the part: {}: {}", said(tolerance), one_line(reason));
         }
     }
 }
@@ -120,34 +135,29 @@ fn place(shape: &Shape) -> (&'static str, Vec<(&'static str, String)>) {
     }
 }
 
+/// Whether an axis with a diameter in the part is a hole or a pin, where that is known.
+fn sized_kind(shape: &Shape, entries: &[Entry]) -> Option<&'static str> {
+    let Shape::Axis(axis) = shape else { return None };
+    let is_hole = axis.is_hole.filter(|_| is_sized(entries))?;
+    Some(if is_hole { "hole" } else { "pin" })
+}
+
+fn is_sized(entries: &[Entry]) -> bool {
+    entries.iter().any(|entry| entry.diameter.is_some())
+}
+
 /// What is known of the size of a feature beside its tolerances.
-fn size(text: &mut String, shape: &Shape, entries: &[Entry]) {
-    let is_sized = entries.iter().any(|entry| entry.diameter.is_some());
-    match shape {
-        Shape::Plane(plane) => {
-            if let Some(width) = plane.width {
-                let _ = writeln!(text, "# the middle plane of two faces that are {width} mm apart");
-            }
+fn size_comment(text: &mut String, shape: &Shape, entries: &[Entry]) {
+    let _ = match shape {
+        Shape::Plane(Plane { width: Some(width), .. }) => {
+            writeln!(text, "{MARK} the middle plane of two faces that are {width} mm apart")
         }
-        Shape::Axis(axis) => {
-            let kind = axis.is_hole.map(|is_hole| if is_hole { "hole" } else { "pin" });
-            match kind {
-                Some(kind) if is_sized => {
-                    let _ = writeln!(text, "kind = \"{kind}\"");
-                }
-                _ if is_sized => {}
-                kind => {
-                    let kind = kind.map(|kind| format!(" of a {kind}")).unwrap_or_default();
-                    let _ = writeln!(
-                        text,
-                        "# diameter{kind} {} mm, without limits that the part could state",
-                        axis.diameter
-                    );
-                }
-            }
+        Shape::Axis(axis) if !is_sized(entries) => {
+            let kind = axis.is_hole.map(|is_hole| if is_hole { " of a hole" } else { " of a pin" }).unwrap_or_default();
+            writeln!(text, "{MARK} diameter{kind} {} mm, without limits that the part could state", axis.diameter)
         }
-        Shape::Point(_) => {}
-    }
+        _ => Ok(()),
+    };
 }
 
 /// Names of patterns.

@@ -14,7 +14,11 @@ use slipfit_tolerance::{
     product::{Product, costed::Costed},
 };
 
-use crate::{population::uncertain::answer::Answer, scene::tolerance};
+use super::tolerances::DIGITS;
+use crate::{
+    population::uncertain::answer::Answer,
+    scene::{callout, tolerance},
+};
 
 /// Prices below this share of the cost are rounding.
 const NOTHING: f64 = 1e-12;
@@ -127,6 +131,12 @@ pub struct Chosen {
     pub cost: f64,
     /// As it stands in a scene.
     pub written: String,
+    /// The part; null of a dimension that is of no part.
+    pub part: Option<String>,
+    /// The feature, or the dimension.
+    pub feature: String,
+    /// As it stands on a drawing.
+    pub callout: String,
 }
 
 /// A requirement.
@@ -216,7 +226,10 @@ impl Report {
                 before: costed.stated * factor,
                 process: (!process.name.is_empty()).then(|| process.name.clone()),
                 cost: process.law.cost(*t),
-                written: format!("{} = {}", costed.written.key, tolerance(costed, *t, super::tolerances::DIGITS)),
+                written: format!("{} = {}", costed.written.key, tolerance(costed, *t, DIGITS)),
+                part: costed.callout.part.clone(),
+                feature: costed.callout.feature.clone(),
+                callout: callout(costed, *t, DIGITS),
             }
         });
         let in_units = |tolerances: &[f64]| {

@@ -6,7 +6,7 @@ use slipfit_tolerance::{
     number::{fixed, or_dash, per_million, percent, three_digits},
 };
 
-use super::report::{Confirmation, Measured, Report, Required, Unknown};
+use super::report::{Chosen, Confirmation, Measured, Report, Required, Unknown};
 use crate::cli::{
     population::uncertain::{decided, share},
     terminal::text_table,
@@ -47,6 +47,7 @@ pub fn tables(report: &Report) -> String {
         })
         .collect();
     text += &text_table(&["tolerance of", "new line", "before", "process", "cost"], &rows);
+    text += &on_the_drawing(&report.tolerances);
     let rows: Vec<_> = report.requirements.iter().map(requirement).collect();
     text += "\n";
     text += &text_table(&["requirement", "found", "allowed", "price", "of"], &rows);
@@ -89,6 +90,29 @@ pub fn tables(report: &Report) -> String {
         let of =
             |point: &super::report::CurvePoint| format!("{} at {} ppm", digits(point.cost), per_million(point.ppm));
         text += &format!("Cost against defects: {} … {}\n", of(first), of(last));
+    }
+    text
+}
+
+/// The tolerances by part and feature.
+fn on_the_drawing(tolerances: &[Chosen]) -> String {
+    let mut text = "\nOn the drawing, by feature\n".to_owned();
+    let width = tolerances.iter().map(|chosen| chosen.feature.chars().count()).max().unwrap_or_default();
+    let parts = tolerances.chunk_by(|one, two| one.part == two.part);
+    for part in parts {
+        let indent = match part.first().and_then(|chosen| chosen.part.as_ref()) {
+            Some(name) => {
+                text += &format!("  {name}\n");
+                "    "
+            }
+            None => "  ",
+        };
+        for feature in part.chunk_by(|one, two| one.feature == two.feature) {
+            for (k, chosen) in feature.iter().enumerate() {
+                let name = if k == 0 { chosen.feature.as_str() } else { "" };
+                text += &format!("{indent}{name:width$}  {}\n", chosen.callout);
+            }
+        }
     }
     text
 }

@@ -30,7 +30,7 @@ use slipfit_tolerance::{
     },
     model::{Contributor, Measure, Quantity as Measured, Variation},
     product::{
-        costed::{Costed, Written},
+        costed::{Callout, Costed, Written},
         iso286,
     },
     unit::{self, Quantity},
@@ -38,11 +38,7 @@ use slipfit_tolerance::{
 
 use crate::scene::{Problem, SceneError, tree::Value, value::Field};
 
-use super::{
-    quantity::{self, LENGTH},
-    tables::tables,
-    toleranced::positive,
-};
+use super::{quantity, tables::tables, toleranced::positive};
 
 const MONEY: Quantity = Quantity { units: unit::ONE, range: [0.0, 1e12] };
 const POWER: Quantity = Quantity { units: unit::ONE, range: [0.01, 10.0] };
@@ -60,17 +56,20 @@ const REQUIREMENTS: &str = "rss, rss-off-centre, worst-case, { ppm = 100 }, { pp
 pub(super) fn costs(root: &Field, contributors: &[Contributor]) -> Result<Vec<Costed>, SceneError> {
     let mut found = Vec::new();
     for table in tables(root, "dimension")? {
-        collect(&table, &named(&table, ""), contributors, &mut found)?;
+        let place = Callout { part: None, feature: named(&table), key: None, nominal: None, frame: String::new() };
+        collect(&table, place, contributors, &mut found)?;
     }
     for part in tables(root, "part")? {
         for kind in ["plane", "point", "axis"] {
             for feature in tables(&part, kind)? {
-                let name = named(&feature, &(named(&part, "") + "."));
                 let Value::Table(entries) = &feature.node.value else { continue };
                 for entry in entries.iter().filter(|entry| matches!(entry.node.value, Value::Table(_))) {
-                    let separator = if entry.key == "diameter" { "." } else { " " };
                     let field = Field { key: format!("{}.{}", feature.key, entry.key), node: &entry.node };
-                    collect(&field, &format!("{name}{separator}{}", entry.key), contributors, &mut found)?;
+                    let part = named(&part);
+                    let frame = frame(&field, &part);
+                    let (feature, key) = (named(&feature), Some(entry.key.clone().into_owned()));
+                    let place = Callout { part: Some(part), feature, key, nominal: None, frame };
+                    collect(&field, place, contributors, &mut found)?;
                 }
             }
         }
@@ -78,13 +77,39 @@ pub(super) fn costs(root: &Field, contributors: &[Contributor]) -> Result<Vec<Co
     Ok(found)
 }
 
-fn named(table: &Field, before: &str) -> String {
-    let name = table.get("name").and_then(|name| name.to_text().ok().map(str::to_owned));
-    format!("{before}{}", name.unwrap_or_default())
+fn named(table: &Field) -> String {
+    table.get("name").and_then(|name| name.to_text().ok().map(str::to_owned)).unwrap_or_default()
+}
+
+/// What follows the width of the zone in `table` on a drawing of `part`, whose own features are called by their short names.
+fn frame(table: &Field, part: &str) -> String {
+    let short = |field: &Field| field.to_text().map(|text| text.replace(&format!("{part}."), "")).unwrap_or_default();
+    let datums = |key: &str| match table.get(key) {
+        None => String::new(),
+        Some(field) => match &field.node.value {
+            Value::List(nodes) => nodes
+                .iter()
+                .map(|node| format!(" | {}", short(&Field { key: field.key.clone(), node })))
+                .collect::<String>(),
+            _ => format!(" | {}", short(&field)),
+        },
+    };
+    let material = match table.get("material").as_ref().and_then(|material| material.to_text().ok()) {
+        Some("maximum") => " (M)",
+        Some("least") => " (L)",
+        _ => "",
+    };
+    let within = table.get("within").map(|within| format!(", within {}{}", within.written(""), datums("within_datum")));
+    format!("{material}{}{}", datums("datum"), within.unwrap_or_default())
 }
 
 /// Reads the cost of the tolerance in `table`, if it has one.
-fn collect(table: &Field, name: &str, contributors: &[Contributor], found: &mut Vec<Costed>) -> Result<(), SceneError> {
+fn collect(
+    table: &Field,
+    place: Callout,
+    contributors: &[Contributor],
+    found: &mut Vec<Costed>,
+) -> Result<(), SceneError> {
     let Some(cost) = table.get("cost") else { return Ok(()) };
     let (key, width) = match table.get("zone") {
         Some(zone) => ("zone", zone),
@@ -94,9 +119,11 @@ fn collect(table: &Field, name: &str, contributors: &[Contributor], found: &mut 
     let value = table.get("value");
     let measured = value.as_ref().map_or(Ok(Measured::Length), |value| quantity::of(table, value))?;
     let quantity = quantity::units(measured);
-    let (stated, form) = stated(&width, quantity, name, value.as_ref(), contributors)?;
+    let name = place.name();
+    let (stated, form) = stated(&width, quantity, &name, value.as_ref(), contributors)?;
     let written = Written { key, ..form };
-    let size = value.filter(|_| measured == Measured::Length).map(|value| value.to_number(&LENGTH)).transpose()?;
+    let nominal = value.map(|value| value.to_number(quantity)).transpose()?;
+    let size = nominal.filter(|_| measured == Measured::Length);
     let list = match &cost.node.value {
         Value::List(nodes) if nodes.is_empty() => {
             return Err(cost.error(Problem::Length { key: cost.key.clone(), found: 0 }, "one or more processes"));
@@ -106,11 +133,12 @@ fn collect(table: &Field, name: &str, contributors: &[Contributor], found: &mut 
     };
     let processes = list.iter().map(|field| process(field, quantity, size)).collect::<Result<_, _>>()?;
     found.push(Costed {
-        name: name.into(),
+        name,
         stated,
         processes,
         quantity: measured,
         written,
+        callout: Callout { nominal, ..place },
         place: width.node.place.in_file(),
     });
     Ok(())

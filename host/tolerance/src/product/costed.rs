@@ -17,8 +17,34 @@ pub struct Costed {
     pub quantity: Quantity,
     /// How it is written.
     pub written: Written,
+    /// Where it stands on a drawing.
+    pub callout: Callout,
     /// Where it stands in the file (bytes), unless it was set on the command line.
     pub place: Option<Range<usize>>,
+}
+
+/// Where a tolerance stands on a drawing, and what stands there besides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Callout {
+    /// The part; none of a dimension that is of no part.
+    pub part: Option<String>,
+    /// The feature, or the dimension.
+    pub feature: String,
+    /// What is limited, such as "position"; none of a dimension.
+    pub key: Option<String>,
+    /// Nominal size (SI), of a size.
+    pub nominal: Option<f64>,
+    /// What follows the width of a zone: its condition of material, its datums, the width within a pattern.
+    pub frame: String,
+}
+
+impl Callout {
+    /// The name of the tolerance, such as "hub" or "box.rim flatness".
+    pub fn name(&self) -> String {
+        let part = self.part.as_ref().map(|part| format!("{part}.")).unwrap_or_default();
+        let key = self.key.as_ref().map(|key| if key == "diameter" { ".diameter".into() } else { format!(" {key}") });
+        format!("{part}{}{}", self.feature, key.unwrap_or_default())
+    }
 }
 
 /// How a tolerance stands in a scene.
