@@ -58,7 +58,7 @@ fn merge(paths: &[PathBuf]) -> Result<Part, RunError> {
 fn work(out: &Path, pause: Duration, shard: Shard, resume: bool, seed: u64) -> Result<(), RunError> {
     let model = model(pause);
     let study = Study::new(&model, Settings { seed, ..SETTINGS })?;
-    let source = Source { name: "bent".into(), text: "a scene".into(), set: Vec::new() };
+    let source = Source { name: "bent".into(), text: "a scene".into(), set: Vec::new(), measured: None };
     run(&study, &source, shard, Some(&Keep { out, resume }), |_| ()).map(drop)
 }
 

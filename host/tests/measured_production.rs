@@ -4,7 +4,7 @@ mod common;
 
 use std::{fmt::Write, path::Path};
 
-use common::{json, slipfit};
+use common::{json, slipfit, stdout};
 use serde_json::Value;
 use slipfit_core::sampling::{
     normal::score,
@@ -245,4 +245,48 @@ fn mistakes_are_named() {
     std::fs::write(folder.path().join("costed.toml"), scene).unwrap();
     let output = slipfit(folder.path(), &["allocate", "costed.toml"]);
     assert!(stderr(&output).contains("does not change measured parts"), "{}", stderr(&output));
+}
+
+/// Measured parts are an input: no output takes their place, and shards of others are not joined.
+#[test]
+fn measured_parts_are_an_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let parts = |shift: f64| {
+        (0..60).fold("groove [mm]\n".to_owned(), |text, k| {
+            text + &format!("{}\n", 10.0 + shift + 0.001 * f64::from(k * 7 % 60))
+        })
+    };
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let scene = "[[dimension]]\nname = \"groove\"\nvalue = 10\ntolerance = 0.1\n[[measure]]\nname = \"twice\"\nis = \"2 * groove\"\n\
+                 [measured]\nfile = \"parts.csv\"\n[[measured.column]]\nof = \"groove\"\n";
+    write("parts.csv", &parts(0.0));
+    write("s.toml", scene);
+    std::fs::create_dir(folder.path().join("sub")).unwrap();
+    write("sub/s.toml", &scene.replace("parts.csv", "../parts.csv"));
+    for (scene, output) in [
+        ("s.toml", ["--csv", "parts.csv"]),
+        ("s.toml", ["--draws", "./parts.csv"]),
+        ("s.toml", ["--out", "parts.csv.x/../parts.csv"]),
+        ("sub/s.toml", ["--csv", "parts.csv"]),
+    ] {
+        let output = slipfit(folder.path(), &[&["tolerance", scene, "--samples", "1000"][..], &output].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(std::fs::read_to_string(folder.path().join("parts.csv")).unwrap(), parts(0.0));
+    }
+    let set = ["tolerance", "s.toml", "--samples", "1000", "--set", "measured.file=other.csv", "--csv", "other.csv"];
+    write("other.csv", &parts(0.01));
+    assert_eq!(slipfit(folder.path(), &set).status.code(), Some(2));
+    let draw = |shard: &str, out: &str| {
+        stdout(&slipfit(folder.path(), &["tolerance", "s.toml", "--samples", "20000", "--shard", shard, "--out", out]))
+    };
+    draw("1/2", "a.part");
+    draw("2/2", "b.part");
+    stdout(&slipfit(folder.path(), &["merge", "a.part", "b.part"]));
+    write("parts.csv", &parts(0.02));
+    let output = slipfit(folder.path(), &["merge", "a.part", "b.part"]);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(2) && errors.contains("measured parts are others"), "{errors}");
+    draw("2/2", "c.part");
+    let output = slipfit(folder.path(), &["merge", "a.part", "c.part"]);
+    assert_ne!(output.status.code(), Some(0));
 }

@@ -70,8 +70,21 @@ impl SceneArguments {
     /// Whether all `outputs`, each with the option that asks for it, can be written, and none is the scene or another.
     pub fn check_outputs(&self, outputs: &[(&str, &Path)]) -> Result<(), Failure> {
         endings::check(outputs)?;
-        files::check_distinct(&[("the scene", &self.scene)], outputs)?;
+        let inputs = if outputs.is_empty() { Vec::new() } else { self.inputs() };
+        let inputs: Vec<_> = inputs.iter().map(|(name, path)| (*name, path.as_path())).collect();
+        files::check_distinct(&inputs, outputs)?;
         outputs.iter().try_for_each(|(_, path)| files::check_writable(path).map_err(refused))
+    }
+
+    /// The scene and the files that it refers to, each with what it is.
+    pub fn inputs(&self) -> Vec<(&'static str, PathBuf)> {
+        let mut inputs = vec![("the scene", self.scene.clone())];
+        // A stream is read once; what a file lacks is told when the scene is read.
+        if let (true, Ok((name, text))) = (self.scene.is_file(), self.text()) {
+            let measured = SceneFile::measured_files(&name, &text, &self.overrides(&[]));
+            inputs.extend(measured.into_iter().map(|path| ("the measured parts", path)));
+        }
+        inputs
     }
 
     /// Reads the scene file, with `options` as further settings.

@@ -19,6 +19,7 @@ use crate::{
     mechanism::ByDrive,
     population::{part::StoredGaps, tally::Tally},
     scene::{Override, SceneFile},
+    setup::Measured,
 };
 
 /// Joins the parts that `tolerance --shard` or `population --shard` wrote.
@@ -51,6 +52,12 @@ impl Arguments {
         let source = &part.header.source;
         let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
         let file = SceneFile::parse(&source.name, &source.text, &set)?;
+        if file.measured.as_deref().map(Measured::hash) != source.measured {
+            let name = &source.name;
+            return Err(Failure::Input(format!(
+                "{name}: its measured parts are others than when the shards were drawn"
+            )));
+        }
         let nothing = || Failure::Input(format!("{}: the scene describes no product", source.name));
         let model = &file.product.as_ref().ok_or_else(nothing)?.model;
         check(&part, self.files.first().map_or(Path::new(""), |path| path), model)?;

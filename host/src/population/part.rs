@@ -240,7 +240,7 @@ mod tests {
         let settings = Settings::new(1100, 5, true, 0.25, Some(0.3));
         let counter = Counter::new(&scene, Duty { limit: settings.limit(), stroke: None });
         let simulation = Simulation { subject: &scene, production: &production, settings, counter, listener: None };
-        let source = Source { name: "cd-rom".into(), text: "its text".into(), set: Vec::new() };
+        let source = Source { name: "cd-rom".into(), text: "its text".into(), set: Vec::new(), measured: None };
         let folder = tempfile::tempdir().unwrap();
         let path = |name: String| folder.path().join(name);
         let shard = |out: &std::path::Path, shard: Shard, resume: bool| {

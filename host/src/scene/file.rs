@@ -1,6 +1,6 @@
 //! A scene file as a whole: a product with its tolerances, a slide that moves, or both.
 
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 
 use slipfit_core::{clearance::GapStatistics, slide::PINS};
 use slipfit_tolerance::{model::Variation, product::Product, theory::moments};
@@ -58,6 +58,15 @@ impl SceneFile {
             file.warn(found.take_warnings());
         }
         found.conclude(read)
+    }
+
+    /// The files of measured parts that a scene refers to; none where its text cannot be read.
+    pub fn measured_files(file_name: &str, text: &str, overrides: &[Override]) -> Vec<PathBuf> {
+        let found = Found::default();
+        let Ok(mut tree) = (Source { name: file_name, text, found: &found }).document() else { return Vec::new() };
+        // An override that is wrong is told when the scene is read.
+        overrides.iter().for_each(|change| drop(tree.set(change)));
+        measured::files(&Field { key: String::new(), node: &tree }, file_name)
     }
 
     /// Gives `warnings` to what moves, else to the product.

@@ -6,6 +6,8 @@ use slipfit_tolerance::{
     product::Product,
 };
 
+use super::hash::Digest;
+
 /// What a measured characteristic is in its scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
@@ -62,6 +64,17 @@ impl Measured {
             distributions: among.iter().filter_map(of).collect(),
             correlations: joint.correlations.iter().filter_map(pair).collect(),
         }
+    }
+
+    /// Hash of the measured values and of what they are in the scene.
+    pub fn hash(&self) -> u64 {
+        let mut digest = Digest::new();
+        for (name, of) in self.names.iter().zip(self.production.characteristics()) {
+            digest.bytes(name.as_bytes());
+            digest.counts(of.values.iter().map(|value| usize::from(value.is_some())));
+            digest.numbers(of.values.iter().copied().flatten().chain(of.bounds));
+        }
+        digest.finish()
     }
 
     /// The gaps among the characteristics, as `joint` has them.

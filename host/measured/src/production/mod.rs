@@ -66,6 +66,11 @@ enum Shape {
 const SEED: u64 = 0x6d65_6173;
 
 impl Production {
+    /// Its characteristics, as they were measured.
+    pub fn characteristics(&self) -> &[Characteristic] {
+        &self.characteristics
+    }
+
     /// Of `characteristics` of the same parts.
     ///
     /// # Errors

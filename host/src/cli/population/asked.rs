@@ -160,7 +160,8 @@ impl Arguments {
         self.scene.check_outputs(&given(outputs))?;
         let settings = self.settings().by_drive(drive);
         let (name, text) = self.scene.text()?;
-        let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
+        // Shards of a scene with measured parts are refused.
+        let source = Source { name, text: text.into_owned(), set: self.scene.set.clone(), measured: None };
         let shard = self.shard.unwrap_or(Shard::ALL);
         let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
         let mut rows = self.csv.as_deref().map(|path| Rows::begin(path, subject)).transpose()?;

@@ -184,9 +184,12 @@ impl Arguments {
         let own = [("--out", &self.out), ("the checkpoint of --out", &partial), ("--draws", &self.draws)];
         let own: Vec<_> = own.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?))).collect();
         endings::check_part("--out", self.out.as_deref())?;
-        self.outputs.prepare(&[("the scene", &self.scene.scene)], &own, model.measures.len())?;
+        let inputs = self.scene.inputs();
+        let inputs: Vec<_> = inputs.iter().map(|(name, path)| (*name, path.as_path())).collect();
+        self.outputs.prepare(&inputs, &own, model.measures.len())?;
         let (name, text) = self.scene.text()?;
-        let source = Source { name, text: text.into_owned(), set: self.scene.set.clone() };
+        let measured_parts = measured.map(Measured::hash);
+        let source = Source { name, text: text.into_owned(), set: self.scene.set.clone(), measured: measured_parts };
         let shard = self.shard.unwrap_or(Shard::ALL);
         let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
         let blocks = shard.blocks(settings.blocks());

@@ -4,7 +4,7 @@ pub(super) mod columns;
 mod doubt;
 pub mod file;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use slipfit_measured::{
     csv::Options,
@@ -70,6 +70,18 @@ pub(super) fn columns<'t, 's>(root: &Field<'t, 's>, file_name: &str) -> Result<O
     Ok(Some(Columns::new(production, columns)))
 }
 
+/// The files of measured parts that the scene `root` in the file `file_name` refers to.
+pub(super) fn files(root: &Field, file_name: &str) -> Vec<PathBuf> {
+    let field = root.get("measured").and_then(|table| table.get("file"));
+    let paths = field.and_then(|field| texts(&field, "").ok()).unwrap_or_default();
+    paths.into_iter().map(|path| folder(file_name).join(path)).collect()
+}
+
+/// The folder that paths in a scene's file are relative to.
+fn folder(file_name: &str) -> &Path {
+    Path::new(file_name).parent().unwrap_or(Path::new(""))
+}
+
 /// The heading of the column whose table is `own`.
 fn heading<'t>(own: &Field<'t, '_>) -> Result<&'t str, SceneError> {
     own.expect_table()?;
@@ -92,7 +104,6 @@ fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str, headings: &[String]) ->
     };
     let group = group.map(|field| field.to_text()).transpose()?;
     let groups = only.as_ref().map(|field| texts(field, "a group, or a list of groups")).transpose()?;
-    let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
     let options = Options {
         groups: group.into_iter().map(str::to_owned).collect(),
         values: Some(headings.to_vec()),
@@ -100,7 +111,7 @@ fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str, headings: &[String]) ->
     };
     let mut tables = Vec::new();
     for path in texts(&field, FILES)? {
-        let read = file::load(&folder.join(path), &options);
+        let read = file::load(&folder(file_name).join(path), &options);
         let read =
             read.map_err(|why| field.error(Problem::Measured { of: path.into(), why: why.to_string() }, FILES))?;
         tables.push(read);

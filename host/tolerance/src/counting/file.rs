@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{model::Model, sampling::sampler};
 
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// The scene a study belongs to, as it was read.
@@ -29,12 +29,14 @@ pub struct Source {
     pub text: String,
     /// What `--set` changed.
     pub set: Vec<String>,
+    /// Hash of the measured parts that it refers to, if it does.
+    pub measured: Option<u64>,
 }
 
 impl Source {
     /// Whether it describes the same scene: the name may differ.
     pub fn is_same(&self, other: &Self) -> bool {
-        self.text == other.text && self.set == other.set
+        self.text == other.text && self.set == other.set && self.measured == other.measured
     }
 }
 
