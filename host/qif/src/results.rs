@@ -42,6 +42,10 @@ pub fn read(text: &str) -> Result<MeasuredTable, QifError> {
     for results in children(set) {
         table.add(results, &characteristics)?;
     }
+    if let Some((results, problem)) = table.unpaired() {
+        let place = children(set).nth(results - 1).unwrap_or(set);
+        return Err(error_at(place, problem));
+    }
     if table.columns.is_empty() {
         return Err(error_at(set, Problem::Nothing("measured values")));
     }
@@ -117,9 +121,26 @@ struct Table {
     results: usize,
     columns: Vec<Made>,
     index: HashMap<Key, usize>,
+    /// How many values each part has of an item and measured feature items.
+    counts: HashMap<(String, Vec<String>), HashMap<usize, usize>>,
 }
 
 impl Table {
+    /// A part with fewer values of an item than others have, of which nothing says which of them it lacks: number of its results, and
+    /// what is wrong.
+    fn unpaired(&self) -> Option<(usize, Problem)> {
+        let mut found: Vec<_> = self.counts.iter().filter_map(|((item, _), of_parts)| {
+            let most = *of_parts.values().max()?;
+            let (part, count) = of_parts.iter().filter(|(_, count)| **count < most).min()?;
+            let results = self.parts.get(*part)?.0;
+            let item = words::one_line(item);
+            let why = format!("the characteristic item {item} has {count} of the {most} values that other parts have, and nothing says which");
+            Some((results, why))
+        }).collect();
+        found.sort();
+        found.into_iter().next().map(|(results, why)| (results, Problem::Table(why)))
+    }
+
     /// Adds the values of a MeasurementResults: those of one part, or of several actual components.
     fn add(&mut self, results: Node, known: &Characteristics) -> Result<(), QifError> {
         self.results += 1;
@@ -147,6 +168,7 @@ impl Table {
             let count = seen.entry((part, id.to_owned(), items.clone())).or_default();
             let key = (id.to_owned(), items, *count);
             *count += 1;
+            self.counts.entry((key.0.clone(), key.1.clone())).or_default().insert(part, *count);
             let kind = words::kind(name(measurement));
             if known.item(id).is_none() {
                 let problem = Problem::Reference { element: name(measurement).to_owned(), id: words::one_line(id) };
@@ -160,6 +182,9 @@ impl Table {
     fn put(&mut self, part: usize, key: Key, kind: &str, value: Node, known: &Characteristics) -> Result<(), QifError> {
         let is_angle = kind.starts_with("Angle") || kind.starts_with("Angular") && kind != "Angularity";
         let is_length = !kind.starts_with("UserDefined") || kind == "UserDefinedLinear";
+        if is_length && !is_angle && value.attribute("linearUnit").is_some() {
+            known.units.scale(value)?;
+        }
         let (unit, scale) = if is_length { known.unit(value, is_angle) } else { (Unit::None, 1.0) };
         let column = *self.index.entry(key.clone()).or_insert_with(|| {
             let made = Made { key, kind: kind.to_owned(), unit, scale, is_angle, values: Vec::new() };

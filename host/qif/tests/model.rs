@@ -40,7 +40,7 @@ fn everything_is_counted_and_nothing_lost() {
         assert_eq!(drawing.tolerances.len(), count(text, "CharacteristicNominals", "CharacteristicNominal"));
         assert_eq!(drawing.datums.len(), count(text, "DatumDefinitions", "<DatumDefinition"));
         assert_eq!(part.listed(), listed);
-        let counted = format!("#: {listed} of {} tolerances and dimensions", drawing.tolerances.len());
+        let counted = format!("#| {listed} of {} tolerances and dimensions", drawing.tolerances.len());
         let (others, list) = part.left_out.split_once(&counted).expect("a counted list");
         for (stated, tolerance) in part.stated.iter().zip(&drawing.tolerances) {
             let id = format!("[{}]", stated.id);

@@ -92,7 +92,7 @@ fn other_kinds_are_listed_and_nothing_is_guessed() {
     let drawing = read(&text).expect("a drawing");
     let part = write(&drawing, None, "a file");
     assert_eq!((drawing.features.len(), drawing.tolerances.len()), (5, cases.len()));
-    assert!(part.left_out.contains(&format!("#: {0} of {0} tolerances", cases.len())), "{}", part.left_out);
+    assert!(part.left_out.contains(&format!("#| {0} of {0} tolerances", cases.len())), "{}", part.left_out);
     for (i, (kind, ..)) in cases.iter().enumerate() {
         assert!(part.left_out.contains(&format!("[1{}]", 100 + i)), "{kind}: {}", part.left_out);
     }

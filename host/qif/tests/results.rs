@@ -119,3 +119,37 @@ fn damaged_files_are_errors_with_a_place() {
     let error = read(include_str!("data/nist_ctc_01_asme1_ap242.qif")).expect_err("no results");
     assert!(error.to_string().contains("no measurement results"), "{error}");
 }
+
+/// A part that lacks one of two values of an item does not say which of them it lacks.
+#[test]
+fn a_value_without_its_pair_is_not_guessed() {
+    let parts: Vec<&str> = SHEET_METAL.split("<MeasurementResults id=").collect();
+    let third = parts[3];
+    let scanned = scanned(SHEET_METAL);
+    let repeated = |item: &str| scanned[2].iter().filter(|(other, _)| *other == item).count() > 1;
+    let measurement = third
+        .split("<PointProfileCharacteristicMeasurement ")
+        .skip(1)
+        .find(|text| repeated(between(text, "<CharacteristicItemId>", "<")[0].trim()))
+        .expect("an item with two values");
+    let end = "</PointProfileCharacteristicMeasurement>";
+    let whole =
+        format!("<PointProfileCharacteristicMeasurement {}{end}", measurement.split(end).next().expect("an end"));
+    let without = third.replacen(&whole, "", 1);
+    let less = [&parts[..3], &[without.as_str()], &parts[4..]].concat();
+    let less = less.join("<MeasurementResults id=");
+    assert!(less.len() < SHEET_METAL.len());
+    let error = read(&less).expect_err("a value without its pair");
+    let line =
+        less[..less.match_indices("<MeasurementResults id=").nth(2).expect("the third").0].matches('\n').count() + 1;
+    assert_eq!(error.line as usize, line);
+    assert!(error.to_string().contains("1 of the 2 values"), "{error}");
+}
+
+#[test]
+fn units_that_are_not_declared_are_told_at_their_value() {
+    let text = SHEET_METAL.replacen("<Value>", "<Value linearUnit=\"furlong\">", 1);
+    let error = read(&text).expect_err("a unit that is nowhere");
+    let line = text[..text.find("furlong").expect("it")].matches('\n').count() + 1;
+    assert!(error.line as usize == line && error.to_string().contains("`furlong`"), "{error}");
+}

@@ -60,7 +60,7 @@ fn what_the_model_changes_is_renewed_and_told() {
     let Updated { text, changes, .. } = renewed(&scene, &drawing);
     assert_eq!(changes, ["p.A: flatness is 0.15; it was 0.2"]);
     let [old, new] = [only_in(&scene, &text), only_in(&text, &scene)];
-    assert!(old.len() == 1 && new.len() == 1 && new[0].starts_with("flatness = 0.15 #: "), "{old:?} {new:?}");
+    assert!(old.len() == 1 && new.len() == 1 && new[0].starts_with("flatness = 0.15 #| "), "{old:?} {new:?}");
 }
 
 #[test]
@@ -74,18 +74,18 @@ fn what_the_user_changes_stays() {
         text
     };
     // A value that the model still has otherwise.
-    let edited = with("flatness = 0.2 #:", "flatness = 0.3 #:");
+    let edited = with("flatness = 0.2 #|", "flatness = 0.3 #|");
     let Updated { text, changes, .. } = renewed(&edited, &drawing);
     assert_eq!(text, edited);
     assert_eq!(changes, ["p.A: flatness stays 0.3, as you wrote it; the model has 0.2"]);
     // One that is no more of the import, whatever the model says.
-    let taken = with("flatness = 0.2 #:", "flatness = 0.3 #");
+    let taken = with("flatness = 0.2 #|", "flatness = 0.3 #");
     assert_eq!(renewed(&taken, &tighter).text, taken);
     // Keys beside what the model states.
-    let spread = with("flatness = 0.2 #:", "flatness = { zone = 0.2, distribution = \"uniform\" } #:");
+    let spread = with("flatness = 0.2 #|", "flatness = { zone = 0.2, distribution = \"uniform\" } #|");
     assert_eq!(renewed(&spread, &drawing).text, spread);
     let Updated { text, changes, .. } = renewed(&spread, &tighter);
-    assert!(text.contains("flatness = { zone = 0.15, distribution = \"uniform\" } #: "), "{text}");
+    assert!(text.contains("flatness = { zone = 0.15, distribution = \"uniform\" } #| "), "{text}");
     assert_eq!(changes.len(), 1);
     // A feature by another name, and all that refers to it in the part.
     let named = scene.replace("\"A\"", "\"base face\"").replace("\"p.A\"", "\"p.base face\"");
@@ -161,6 +161,39 @@ fn features_and_tolerances_come_and_go() {
     assert_eq!((text, changes), (scene(&full), vec!["p.A: flatness = 0.2 is new".to_owned()]));
 }
 
+/// What the user wrote into a feature outlives what the model had of it.
+#[test]
+fn comments_and_keys_of_the_user_outlive_the_model_s() {
+    let full = read(CTC_01).expect("a drawing");
+    let own = "# mine, above\n[[part.axis]]\nname = \"Nominal 2182\"";
+    let scene = scene(&full)
+        .replace("[[part.axis]]\nname = \"Nominal 2182\"", own)
+        .replace("diameter = { value = 25,", "# mine, within\ndiameter = { value = 25,");
+    assert_eq!(scene.matches("# mine,").count(), 2);
+    let mut less = full.clone();
+    let index = less.features.iter().position(|feature| feature.name == "Nominal 2182").expect("a feature");
+    less.tolerances.retain(|tolerance| tolerance.features != [index]);
+    let Updated { text, changes, .. } = renewed(&scene, &less);
+    assert_eq!(text.matches("# mine,").count(), 2, "{text}");
+    assert!(
+        changes.len() == 1 && changes[0].starts_with("p.Nominal 2182: diameter is not in the model"),
+        "{changes:?}"
+    );
+    // Without the feature as well, and with a measure that refers to it.
+    less.features[index].shape = Err("gone".into());
+    let measured = format!("{scene}\n[[measure]]\nname = \"m\"\ndistance = [\"p.A\", \"p.Nominal 2182\"]\n");
+    let Updated { text, changes, .. } = renewed(&measured, &less);
+    assert_eq!(text.matches("# mine,").count(), 2, "{text}");
+    let line = text.lines().position(|line| line.contains("p.Nominal 2182\"")).expect("a line") + 1;
+    assert_eq!(changes, [format!("p.Nominal 2182 is not in the model, and was removed; line {line} refers to it")]);
+    // With a key of the user's it stays and is the user's.
+    let keyed = scene.replace("# mine, within\n", "roundness = 0.01 # mine, within\n");
+    let Updated { text, changes, .. } = renewed(&keyed, &less);
+    assert!(changes.len() == 1 && changes[0].ends_with("as you added roundness"), "{changes:?}");
+    assert!(text.contains("roundness = 0.01 # mine, within\n") && text.contains("diameter = { value = 25,"), "{text}");
+    assert_eq!(renewed(&text, &less).text, text);
+}
+
 /// A datum stands above what refers to it also where the model has a new reference.
 #[test]
 fn datums_stand_above_what_refers_to_them() {
@@ -182,12 +215,12 @@ fn datums_stand_above_what_refers_to_them() {
         }),
     });
     let scene = scene(&full);
-    let place = |text: &str, name: &str| text.find(&format!("name = \"{name}\" #:")).expect("a feature");
+    let place = |text: &str, name: &str| text.find(&format!("name = \"{name}\" #|")).expect("a feature");
     assert!(place(&scene, "A") < place(&scene, "B"));
     let Updated { text, changes, .. } = renewed(&scene, &other);
     assert_eq!(changes, ["p.A: perpendicularity = { zone = 0.3, datum = [\"p.B\"] } is new"]);
     assert!(place(&text, "B") < place(&text, "A") && place(&text, "A") < place(&text, "Nominal 2159"), "{text}");
-    assert_eq!(only_in(&scene, &text), ["#: 3 of 14 tolerances and dimensions of the file"]);
+    assert_eq!(only_in(&scene, &text), ["#| 3 of 14 tolerances and dimensions of the file"]);
     toml::from_str::<toml::Table>(&text).expect("valid TOML");
 }
 

@@ -18,6 +18,7 @@ mod precision;
 #[cfg(test)]
 pub(crate) mod reference;
 mod run;
+mod schema;
 mod self_locking;
 mod simulate;
 mod stability;
@@ -81,6 +82,7 @@ enum Command {
     Fmu(fmu::Arguments),
     Precision(precision::Arguments),
     Merge(merge::Arguments),
+    Schema(schema::Arguments),
 }
 
 /// Runs the command that the process was started with.
@@ -116,6 +118,7 @@ pub fn main() -> ExitCode {
         Some(Command::Fmu(arguments)) => arguments.run(),
         Some(Command::Precision(arguments)) => arguments.run(),
         Some(Command::Merge(arguments)) => arguments.run(),
+        Some(Command::Schema(arguments)) => arguments.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

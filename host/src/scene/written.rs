@@ -66,8 +66,9 @@ fn deviations(form: &Written, t: f64, digits: usize) -> Deviations {
         return Deviations::Both(t);
     }
     let middle = form.middle * form.per_si;
-    // The digits that the conversion made up do not count.
-    Deviations::Each([middle - t, middle + t].map(|end| format!("{end:.15e}").parse().unwrap_or(end)))
+    // The digits that the conversion and the sum made up do not count.
+    let made_up = if digits < 15 { 11 } else { 15 };
+    Deviations::Each([middle - t, middle + t].map(|end| format!("{end:.made_up$e}").parse().unwrap_or(end)))
 }
 
 /// `t` > 0 in some significant digits, never more than it is but for what is lost in 15 digits.

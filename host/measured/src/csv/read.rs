@@ -16,7 +16,9 @@ use crate::{
 
 /// First cells of the rows that state limits.
 pub const LIMIT_ROWS: [&str; 3] = ["nominal", "lower", "upper"];
-/// Name of a first column that labels the parts.
+/// What measuring programs write for them.
+const ALSO: [&str; 3] = ["target", "lsl", "usl"];
+/// Name of the column that labels the parts.
 pub const LABELS: &str = "part";
 
 /// The text of a file.
@@ -53,10 +55,11 @@ impl Rows<'_> {
         is_row
     }
 
-    /// Which limit the row states, if any.
-    fn limit(&self) -> Option<usize> {
-        let first = self.row.get(0)?.trim();
-        LIMIT_ROWS.iter().position(|name| first.eq_ignore_ascii_case(name))
+    /// Which limit the row states by its cell of this `column`, if any.
+    fn limit(&self, column: usize) -> Option<usize> {
+        let cell = self.row.get(column)?.trim();
+        let is = |name: &str| cell.eq_ignore_ascii_case(name);
+        (0..LIMIT_ROWS.len()).find(|k| is(LIMIT_ROWS[*k]) || is(ALSO[*k]))
     }
 
     fn is_empty(&self) -> bool {
@@ -81,11 +84,13 @@ impl File<'_> {
         }
         let (head, head_at) = (rows.row.clone(), rows.at);
         let mut is_row = rows.next();
-        let states_limits = is_row && rows.limit().is_some();
-        let mut targets = self.targets(&head, head_at, states_limits, options)?;
+        // A column that is not named as labels is one if limits stand in it.
+        let states_limits = is_row && rows.limit(0).is_some();
+        let labels = labels_of(&head, states_limits, options);
+        let mut targets = self.targets(&head, head_at, (labels, states_limits), options)?;
 
         let mut numbers = Numbers { comma_allowed: self.delimiter != b',', mark: None };
-        let (mut at_limits, mut limits_seen, mut parts) = (states_limits, [false; LIMIT_ROWS.len()], 0);
+        let (mut limits_seen, mut parts) = ([false; LIMIT_ROWS.len()], 0);
         while is_row {
             if rows.is_empty() {
                 is_row = rows.next();
@@ -96,8 +101,7 @@ impl File<'_> {
                 // The first cell too many, or the end of the row.
                 return Err(self.error(rows.at, expected.min(found), Problem::Cells { found, expected }));
             }
-            let limit = rows.limit().filter(|_| at_limits);
-            at_limits = limit.is_some();
+            let limit = rows.limit(0).filter(|_| states_limits).or(labels.and_then(|labels| rows.limit(labels)));
             match limit {
                 Some(limit) if std::mem::replace(&mut limits_seen[limit], true) => {
                     return Err(self.error(rows.at, 0, Problem::RepeatedRow(LIMIT_ROWS[limit])));
@@ -122,7 +126,7 @@ impl File<'_> {
         &self,
         head: &StringRecord,
         at: usize,
-        states_limits: bool,
+        (labels, states_limits): (Option<usize>, bool),
         options: &Options,
     ) -> Result<Vec<Target>, CsvError> {
         let mut names = Vec::new();
@@ -150,10 +154,6 @@ impl File<'_> {
                 return Err(self.error(at, 0, Problem::NoColumn { name, role, columns }));
             }
         }
-        let labels = match &options.labels {
-            Some(name) => names.iter().position(|(other, _)| other == name),
-            None => (states_limits || names[0].0.eq_ignore_ascii_case(LABELS)).then_some(0),
-        };
         let mut targets = Vec::new();
         for (index, (name, unit)) in names.into_iter().enumerate() {
             let is_in = |list: &[String]| list.iter().any(|other| other == name);
@@ -213,6 +213,20 @@ impl Target {
             (Self::Labels(_) | Self::Grouping(_) | Self::Ignored, _) => {}
         }
         Ok(())
+    }
+}
+
+/// The column that labels the parts: the stated one, the one of that name, or the first one if limits stand in it.
+fn labels_of(head: &StringRecord, states_limits: bool, options: &Options) -> Option<usize> {
+    let named = |is: &dyn Fn(&str) -> bool| head.iter().position(|cell| is(name_and_unit(cell).0));
+    match &options.labels {
+        Some(name) => named(&|other| other == name),
+        None if states_limits => Some(0),
+        None => named(&|other| {
+            let is_other = |list: &[String]| list.iter().any(|name| name == other);
+            let is_taken = is_other(&options.groups) || options.values.as_deref().is_some_and(is_other);
+            other.eq_ignore_ascii_case(LABELS) && !is_taken
+        }),
     }
 }
 

@@ -36,6 +36,29 @@ fn limits_labels_and_groups_are_read() {
     assert_eq!(read(write(&table).as_bytes(), &grouped()), Ok(table));
 }
 
+/// Limits stand above or below the parts, labels in any column, by the names of other programs, too.
+#[test]
+fn limits_and_labels_stand_anywhere() {
+    let expected = read(TABLE.as_bytes(), &grouped()).expect("a table");
+    let [head, limits @ .., one, two, three] = &TABLE.lines().collect::<Vec<_>>()[..] else { panic!("six lines") };
+    let below = [&[*head, *one, *two, *three][..], limits].concat().join("\n");
+    let names = TABLE.replace("nominal", "Target").replace("lower", "LSL").replace("upper", "USL");
+    let turned = |line: &str| line.split(',').rev().collect::<Vec<_>>().join(",");
+    let backwards = TABLE.lines().map(turned).collect::<Vec<_>>().join("\n");
+    for text in [below, names] {
+        assert_eq!(read(text.as_bytes(), &grouped()), Ok(expected.clone()), "{text}");
+    }
+    let table = read(backwards.as_bytes(), &grouped()).expect("a table");
+    let [angle, length] = table.columns() else { panic!("{table:?}") };
+    assert_eq!(
+        [length, angle].map(|column| &column.values),
+        [&expected.columns()[0].values, &expected.columns()[1].values]
+    );
+    assert_eq!((length.limits, table.label(2)), (expected.columns()[0].limits, "3".into()));
+    // A file without labels has no rows but parts.
+    assert!(read("a [mm]\n1\n2\nlower\n".as_bytes(), &Options::default()).is_err());
+}
+
 #[test]
 fn other_spellings_read_as_the_same_table() {
     let expected = read(TABLE.as_bytes(), &grouped());

@@ -17,6 +17,27 @@ pub struct Posterior {
     mode: Box<dyn Family>,
 }
 
+/// Values at each end that stay as they are, and groups of equal number between them.
+const ENDS: usize = 100;
+const GROUPS: usize = 800;
+
+/// Sorted values, each with its number: of many values, neighbours in the middle are one value at their mean. A group is a thousandth of
+/// the production wide, so that its spread is a millionth of the variance.
+fn grouped(sorted: &[f64]) -> Vec<(f64, f64)> {
+    let single = |x: &f64| (1.0, *x);
+    if sorted.len() <= 2 * ENDS + GROUPS {
+        return sorted.iter().map(single).collect();
+    }
+    let (low, rest) = sorted.split_at(ENDS);
+    let (middle, high) = rest.split_at(rest.len() - ENDS);
+    let group = |values: &[f64]| {
+        let count = values.len() as f64;
+        (count, values.iter().sum::<f64>() / count)
+    };
+    let groups = middle.chunks(middle.len().div_ceil(GROUPS)).map(group);
+    low.iter().map(single).chain(groups).chain(high.iter().map(single)).collect()
+}
+
 impl Posterior {
     /// Of a family, for `values`; a distribution `near` the likeliest one helps to find it.
     pub fn new(kind: Kind, near: Option<&dyn Family>, values: &[f64]) -> Result<Self, FitError> {
@@ -24,7 +45,12 @@ impl Posterior {
         let none = FitError::NoInterval(kind);
         let free = Free::new(kind, &sample).ok_or(none.clone())?;
         let (start, widths) = free.start(near);
-        let ln_density = |point: &[f64]| free.family(point).ln_likelihood(&sample.sorted) + free.ln_prior(point);
+        let grouped = grouped(&sample.sorted);
+        let ln_density = |point: &[f64]| {
+            let family = free.family(point);
+            let ln_likelihood: f64 = grouped.iter().map(|(count, x)| count * family.ln_density(*x)).sum();
+            ln_likelihood + free.ln_prior(point)
+        };
         let drawn = importance::draw(&start, &widths, ln_density).ok_or(none.clone())?;
         let mode = drawn.iter().max_by(|a, b| ln_density(&a.1).total_cmp(&ln_density(&b.1))).ok_or(none)?;
         let mode = free.family(&mode.1);

@@ -14,7 +14,7 @@ use slipfit_tolerance::model::Distribution;
 
 pub use self::error::ProductionError;
 use self::{dependence::Dependence, error::LEAST_TO_SMOOTH, marginal::of_family, smoothed::Smoothing};
-use crate::families::{Family, Fit, Kind, Posterior, choose, preferred};
+use crate::families::{Family, Fit, FitError, Kind, Posterior, choose, preferred};
 
 /// What the distribution of a characteristic is taken from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +62,9 @@ enum Shape {
     Smoothed(Smoothing),
     Fitted { fit: Fit, smoothing: Smoothing, values: Vec<f64>, left: OnceLock<Vec<(f64, Distribution)>> },
 }
+
+/// Parts without which no family is taken: draws from the posterior of fewer do not reach the ends of its intervals.
+const LEAST_OF_FAMILY: usize = 5;
 
 const SEED: u64 = 0x6d65_6173;
 
@@ -137,6 +140,10 @@ impl Shape {
                 return Err(ProductionError::FewParts(measured.len()));
             }
             Assumed::Smoothed => return Ok(Self::Smoothed(Smoothing::new(values, *bounds)?)),
+            Assumed::Family(family) if measured.len() < LEAST_OF_FAMILY => {
+                let (least, found) = (LEAST_OF_FAMILY, measured.len());
+                return Err(FitError::FewParts { family: *family, least, found }.into());
+            }
             Assumed::Family(kind) => kind.fit(&measured)?,
             Assumed::Chosen => {
                 let (mut fits, _) = choose(&measured)?;
@@ -152,6 +159,12 @@ impl Shape {
     fn likeliest(&self) -> Distribution {
         match self {
             Self::Smoothed(smoothing) => smoothing.table(None),
+            Self::Fitted { fit, values, .. } if fit.kind == Kind::Normal => {
+                // The likeliest deviation is that of the parts alone.
+                let n = values.len() as f64;
+                let deviation = fit.family.deviation() * libm::sqrt(n / (n - 1.0));
+                Distribution::Normal { mean: fit.family.mean(), deviation }
+            }
             Self::Fitted { fit, .. } => of_family(fit.kind, fit.family.as_ref()),
         }
     }

@@ -79,13 +79,18 @@ fn smoothed_values_stay_within_their_bounds() {
 fn a_family_is_drawn_as_it_is_fitted() {
     let of = characteristics(5, 200, 0.0, Assumed::Smoothed, |z| 3.0 + libm::exp(0.4 * z));
     let values: Vec<f64> = of[0].values.iter().copied().flatten().collect();
+    let mean = values.iter().sum::<f64>() / 200.0;
+    let deviation = libm::sqrt(values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / 199.0);
     for kind in Kind::ALL {
         let Ok(fit) = kind.fit(&values) else { continue };
         let own = Characteristic { assumed: Assumed::Family(kind), ..of[0].clone() };
         let marginal = Marginal::new(&Production::new(vec![own]).expect("a production").joint().distributions[0]);
         for z in [-3.0, -1.0, 0.0, 0.7, 2.0, 3.0] {
-            let x = fit.family.value(z);
-            let (found, wanted) = (marginal.tails(x)[1], fit.family.tails(x)[1]);
+            // A normal one has the usual standard deviation, with n − 1.
+            let normal = kind == Kind::Normal;
+            let x = if normal { mean + deviation * z } else { fit.family.value(z) };
+            let wanted = if normal { slipfit_tolerance::numeric::normal::tail(z) } else { fit.family.tails(x)[1] };
+            let found = marginal.tails(x)[1];
             assert!((found - wanted).abs() <= 2e-3 * wanted.min(1.0 - wanted) + 1e-4, "{kind} {z}: {found}, {wanted}");
         }
     }
@@ -129,7 +134,8 @@ fn too_few_parts_are_refused() {
     let of = |parts, assumed| Production::new(characteristics(10, parts, 0.3, assumed, |z| z));
     assert!(matches!(of(LEAST_TO_SMOOTH - 1, Assumed::Smoothed), Err((0, ProductionError::FewParts(49)))));
     assert!(matches!(of(20, Assumed::Chosen), Err((0, ProductionError::Fit(_)))));
-    assert!(of(6, Assumed::Family(Kind::Normal)).is_ok());
+    assert!(of(5, Assumed::Family(Kind::Normal)).is_ok());
+    assert!(matches!(of(4, Assumed::Family(Kind::Normal)), Err((0, ProductionError::Fit(_)))));
     let same = Characteristic { values: vec![Some(1.0); 60], assumed: Assumed::Smoothed, bounds: ANY };
     assert!(matches!(Production::new(vec![same]), Err((0, ProductionError::Fit(_)))));
 }

@@ -49,9 +49,26 @@ fn prefix_of_key(key: &toml_edit::Key) -> &str {
     key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default()
 }
 
-/// The lines above the header of a table, without those of an import.
+/// The lines above the header of a table and above its keys, without those of an import.
 pub fn own_lines(table: &Table) -> String {
-    unmarked(prefix(table))
+    let of_keys: String = table.iter().filter_map(|(key, _)| table.key(key)).map(prefix_of_key).map(unmarked).collect();
+    unmarked(prefix(table)) + &of_keys
+}
+
+/// Keys of an imported feature that the user added.
+pub fn own_keys(table: &Table) -> Vec<&str> {
+    let is_own = |(key, item): &(&str, &Item)| *key != "name" && !PLACE.contains(key) && comment(item).is_none();
+    table.iter().filter(is_own).map(|(key, _)| key).collect()
+}
+
+/// Makes an imported feature the user's: its comments are no more those of an import.
+pub fn give_away(table: &mut Table) {
+    for (_, item) in table.iter_mut() {
+        let Some(comment) = comment(item).map(|comment| format!(" # {comment}")) else { continue };
+        if let Some(value) = item.as_value_mut() {
+            value.decor_mut().set_suffix(comment);
+        }
+    }
 }
 
 /// Lines of an import.
@@ -83,7 +100,13 @@ pub fn feature(old: &mut Table, new: &Table, name: &str, changes: &mut Vec<Strin
         .map(|(key, _)| key.to_owned())
         .collect();
     for key in gone {
+        let lines = old.key(&key).map(prefix_of_key).map(unmarked).unwrap_or_default();
         let value = old.remove(&key).map(|item| written(&item)).unwrap_or_default();
+        if let Some(mut name) = old.key_mut("name").filter(|_| lines.contains('#')) {
+            let before = name.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
+            let before = format!("{before}{lines}");
+            name.leaf_decor_mut().set_prefix(before);
+        }
         changes.push(format!("{name}: {key} is not in the model, and was removed; it was {value}"));
         // It says whether the diameter is that of a hole or of a pin.
         if key == "diameter" && !new.contains_key("kind") {

@@ -1,6 +1,6 @@
 //! Renews an imported part in a scene that already uses it.
 //!
-//! What the import wrote is known by its comments, which begin with `#:`, and by the place of its features. Everything else is the user's and
+//! What the import wrote is known by its comments, which begin with `#|`, and by the place of its features. Everything else is the user's and
 //! stays, to the last blank. A tolerance whose comment is still that of the model, but not its value, was changed by hand and stays, too.
 
 use std::collections::HashMap;
@@ -92,7 +92,15 @@ pub fn update(scene: &str, drawing: &Drawing, name: Option<&str>, source: &str) 
         let head = left_out_of(&name);
         prepend_after(&mut document, end, &format!("\n{head}\n"));
     }
-    let text = document.to_string().replacen(&format!("{}\n", left_out_of(&name)), &part.left_out, 1);
+    let text = document.to_string();
+    let text = text.replacen(&format!("{}\n", left_out_of(&name)), &part.left_out, 1);
+    for change in &mut changes {
+        let Some(feature) = change.strip_suffix(" is not in the model, and was removed") else { continue };
+        let is_named = |line: &str| !line.trim_start().starts_with('#') && refers_to(line, feature);
+        if let Some(line) = text.lines().position(is_named) {
+            *change += &format!("; line {} refers to it", line + 1);
+        }
+    }
     let text = if has_returns { text.replace('\n', "\r\n") } else { text };
     Ok(Updated { text, part, changes })
 }
@@ -103,6 +111,15 @@ fn at(text: &str, error: &TomlError) -> UpdateError {
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
     UpdateError::Toml { line, column, message: error.message().trim_end().to_owned() }
+}
+
+/// Whether a line has the name of a `feature`, and not as the beginning of another.
+fn refers_to(line: &str, feature: &str) -> bool {
+    let ends = |(at, _): (usize, &str)| {
+        let rest = &line[at + feature.len()..];
+        rest.starts_with(['"', '\'', '.', '-', ')']) || rest.starts_with(" (")
+    };
+    line.match_indices(feature).any(ends)
 }
 
 /// The `[[part]]` tables.
@@ -171,8 +188,15 @@ fn renew(part: &mut Table, renewed: &Table, name: &str, changes: &mut Vec<String
     let is_new = |kind: &str, name: &str| new.iter().any(|(k, t)| *k == kind && text(t, "name") == Some(name));
     let mut comments = Vec::new();
     for (kind, feature) in old.iter().filter(|(kind, feature)| !is_new(kind, feature)) {
-        comments.extend(remove(part, kind, feature));
-        changes.push(format!("{name}.{feature} is not in the model, and was removed"));
+        match remove(part, kind, feature) {
+            Removed::Kept(keys) => {
+                changes.push(format!("{name}.{feature} is not in the model, and is yours now, as you added {keys}"));
+            }
+            Removed::Gone(lines) => {
+                comments.extend(lines);
+                changes.push(format!("{name}.{feature} is not in the model, and was removed"));
+            }
+        }
     }
     // A datum stands above what refers to it.
     let mut last = part.position().unwrap_or_default();
@@ -208,16 +232,34 @@ fn tables_of<'t>(part: &'t Table, kind: &str) -> impl Iterator<Item = &'t Table>
     part.get(kind).and_then(Item::as_array_of_tables).into_iter().flat_map(ArrayOfTables::iter)
 }
 
-/// Takes a feature out of a part and returns the user's comments above it, with their position.
-fn remove(part: &mut Table, kind: &str, name: &str) -> Option<(isize, String)> {
-    let tables = part.get_mut(kind)?.as_array_of_tables_mut()?;
-    let index = tables.iter().position(|table| text(table, "name") == Some(name))?;
-    let table = tables.remove(index);
+/// What became of a feature that the model has no more.
+enum Removed {
+    /// It stays, as the user added these keys to it.
+    Kept(String),
+    /// It is gone; the user's comments at it, with their position, are not.
+    Gone(Option<(isize, String)>),
+}
+
+/// Takes a feature out of a part, unless the user added keys to it.
+fn remove(part: &mut Table, kind: &str, name: &str) -> Removed {
+    let tables = part.get_mut(kind).and_then(Item::as_array_of_tables_mut);
+    let Some(tables) = tables else { return Removed::Gone(None) };
+    let index = tables.iter().position(|table| text(table, "name") == Some(name));
+    let Some((index, table)) = index.and_then(|index| Some((index, tables.get_mut(index)?))) else {
+        return Removed::Gone(None);
+    };
+    let keys = merge::own_keys(table).join(", ");
+    if !keys.is_empty() {
+        merge::give_away(table);
+        return Removed::Kept(keys);
+    }
+    let lines = merge::own_lines(table);
+    let place = table.position().unwrap_or_default();
+    tables.remove(index);
     if tables.is_empty() {
         part.remove(kind);
     }
-    let lines = merge::own_lines(&table);
-    lines.contains('#').then(|| (table.position().unwrap_or_default(), lines))
+    Removed::Gone(lines.contains('#').then_some((place, lines)))
 }
 
 /// All tables below `table`, and itself, in the order of their keys.

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// What begins every comment of an import, by which an update knows what is its own.
-pub const MARK: &str = "#:";
+pub const MARK: &str = "#|";
 
 /// The text of the features, each with comments for what of it is not in the part.
 pub fn features(drawing: &Drawing, decided: &Decided, part: &str, names: &[String]) -> String {

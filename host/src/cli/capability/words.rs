@@ -52,6 +52,11 @@ pub fn warnings_of(of: &Capability) -> Vec<String> {
     if let Some(normality) = of.normality.as_ref().filter(|normality| is_normal && normality.p < DOUBTFUL) {
         warnings.push(format!("\"{name}\" is hardly normal (Anderson–Darling, p = {})", three_digits(normality.p)));
     }
+    if of.within.is_some() && !is_normal {
+        warnings.push(format!(
+            "\"{name}\": Cp and Cpk are those of a normal distribution within the subgroups, which these parts do not have"
+        ));
+    }
     if let Some(within) = of.within.as_ref().filter(|within| within.p < DOUBTFUL) {
         warnings.push(format!(
             "\"{name}\": the subgroups by {} differ (p = {}), which makes {} % of the variance; Cpk is {} within them",

@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 use slipfit_measured::{
     csv::Options,
     families::Kind,
-    production::{Assumed, Characteristic, Production},
+    production::{Assumed, Characteristic, Production, ProductionError},
     table::MeasuredTable,
     unit::Unit,
 };
-use slipfit_tolerance::{model::Quantity as Measurand, unit::Quantity};
+use slipfit_tolerance::{model::Quantity as Measurand, number::ten_digits, unit::Quantity};
 
 use self::columns::{Column, Columns};
 use super::{
@@ -65,7 +65,14 @@ pub(super) fn columns<'t, 's>(root: &Field<'t, 's>, file_name: &str) -> Result<O
     }
     let production = Production::new(characteristics).map_err(|(i, error)| {
         let Column { of, field } = &columns[i];
-        field.error(Problem::Measured { of: (*of).into(), why: error.to_string() }, SHAPES)
+        let why = match (&error, quantity(root, of)) {
+            (ProductionError::Bounds { value }, Ok(Quantity { units: [unit, ..], .. })) => {
+                let value = ten_digits(value / unit.to_si(1.0));
+                format!("one part has {value} {}, which is beyond `least` or `most`", unit.symbol)
+            }
+            _ => error.to_string(),
+        };
+        field.error(Problem::Measured { of: (*of).into(), why }, SHAPES)
     })?;
     Ok(Some(Columns::new(production, columns)))
 }
@@ -110,10 +117,15 @@ fn parts<'t, 's>(table: &Field<'t, 's>, file_name: &str, headings: &[String]) ->
         ..Options::default()
     };
     let mut tables = Vec::new();
-    for path in texts(&field, FILES)? {
+    let paths = texts(&field, FILES)?;
+    for (i, path) in paths.iter().enumerate() {
+        if paths[..i].contains(path) {
+            let problem = Problem::Duplicate { key: field.key.clone(), name: (*path).into() };
+            return Err(field.error(problem, "each file once"));
+        }
         let read = file::load(&folder(file_name).join(path), &options);
         let read =
-            read.map_err(|why| field.error(Problem::Measured { of: path.into(), why: why.to_string() }, FILES))?;
+            read.map_err(|why| field.error(Problem::Measured { of: (*path).into(), why: why.to_string() }, FILES))?;
         tables.push(read);
     }
     let assumed = table.get("distribution").map_or(Ok(Assumed::Smoothed), |field| assumed(&field))?;
@@ -190,13 +202,16 @@ impl Parts<'_, '_> {
         }
         let assumed = own.get("distribution").map_or(Ok(self.assumed), |field| assumed(&field))?;
         let mut bounds = [f64::NEG_INFINITY, f64::INFINITY];
-        for (bound, key) in bounds.iter_mut().zip(["least", "most"]) {
+        for (k, key) in ["least", "most"].into_iter().enumerate() {
             let Some(field) = own.get(key) else { continue };
             if assumed != Assumed::Smoothed {
                 let place = "with a family, which has its own bounds";
                 return Err(field.no_effect(place, "distribution = \"smoothed\" beside it"));
             }
-            *bound = field.to_number(quantity)?;
+            bounds[k] = field.to_number(quantity)?;
+            if bounds[0] >= bounds[1] {
+                return Err(field.out_of_range("", "`least` below `most`"));
+            }
         }
         Ok(Characteristic { values, assumed, bounds })
     }

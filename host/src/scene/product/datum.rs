@@ -22,13 +22,15 @@ use super::{
 
 /// The datums of the list, or the only one: features of the part of `feature` that stand above.
 pub(super) fn datums(list: &Field, draft: &mut Draft) -> Result<Vec<Datum>, SceneError> {
+    const ALLOWED: &str = "one to three datums, the primary first";
     let nodes = match &list.node.value {
         Value::List(nodes) => nodes.iter().map(|node| Field { key: list.key.clone(), node }).collect(),
-        _ => vec![list.clone()],
+        Value::Text(_) => vec![list.clone()],
+        _ => return Err(list.wrong_type(ALLOWED)),
     };
     if nodes.is_empty() || nodes.len() > 3 {
         let problem = Problem::Length { key: list.key.clone(), found: nodes.len() };
-        return Err(list.error(problem, "one to three datums, the primary first"));
+        return Err(list.error(problem, ALLOWED));
     }
     let mut datums: Vec<Datum> = Vec::new();
     for field in &nodes {

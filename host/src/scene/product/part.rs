@@ -121,9 +121,13 @@ fn feature<'t, 's>(
 /// The unit vector `key` of a table.
 pub(super) fn direction(table: &Field, key: &str) -> Result<[f64; 3], SceneError> {
     let field = table.require(key, DIRECTION)?;
-    let Value::Text(text) = &field.node.value else {
-        let vector = field.to_numbers(&COMPONENT)?;
-        return unit(vector).ok_or_else(|| field.out_of_range("", DIRECTION));
+    let text = match &field.node.value {
+        Value::Text(text) => text,
+        Value::List(_) => {
+            let vector = field.to_numbers(&COMPONENT)?;
+            return unit(vector).ok_or_else(|| field.out_of_range("", DIRECTION));
+        }
+        _ => return Err(field.wrong_type(DIRECTION)),
     };
     let mut vector = [0.0; 3];
     let (sign, axis) = text.split_at(text.len().min(1));

@@ -3,6 +3,7 @@
 
 mod meaning;
 mod probe;
+mod schema;
 
 use std::fmt::Write;
 

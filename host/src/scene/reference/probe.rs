@@ -24,36 +24,56 @@ const TABLES: usize = 4;
 
 /// What the key at `path` takes, with its range or its choices; `None` if no scene comes to read it.
 pub fn takes(path: &str) -> Option<String> {
-    let shipped = ASKED.iter().filter_map(|name| shipped(name)).map(|text| (text, TABLES));
-    let mut texts = shipped.chain(OTHERS.map(|text| (text, ALL)));
-    texts.find_map(|(text, tables)| (0..tables).find_map(|nth| takes_in(text, path, nth)))
+    each_that_it_takes(path).next()
 }
 
-/// The same of the `nth` table of one scene.
-fn takes_in(text: &str, path: &str, nth: usize) -> Option<String> {
+/// All that the key at `path` takes, as the scenes come to read it, each once.
+pub fn all_that_it_takes(path: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for takes in each_that_it_takes(path) {
+        if !found.contains(&takes) {
+            found.push(takes);
+        }
+    }
+    found
+}
+
+fn each_that_it_takes(path: &str) -> impl Iterator<Item = String> {
+    let shipped = ASKED.iter().filter_map(|name| shipped(name)).map(|text| (text, TABLES));
+    let texts = shipped.chain(OTHERS.map(|text| (text, ALL)));
+    texts.flat_map(move |(text, tables)| (0..tables).map_while(move |nth| takes_in(text, path, nth)).flatten())
+}
+
+/// The same of the `nth` table of one scene; `None` if it has no such table.
+fn takes_in(text: &str, path: &str, nth: usize) -> Option<Option<String>> {
     let parts: Vec<_> = path.split('.').collect();
-    let asked = |value, kind: &dyn Fn(&Problem) -> bool| {
-        let error = in_scene(text, &parts, nth, value)?;
-        error.allowed().find_map(|(problem, allowed)| kind(problem).then(|| allowed.to_owned()))
-    };
+    let asked =
+        |value, kind: &dyn Fn(&Problem) -> bool| {
+            let error = in_scene(text, &parts, nth, value)?;
+            Some(error.and_then(|error| {
+                error.allowed().find_map(|(problem, allowed)| kind(problem).then(|| allowed.to_owned()))
+            }))
+        };
     let takes = asked(
         Value::Other(PROBE),
         &|problem| matches!(problem, Problem::Type { key, found } if key == path && *found == PROBE),
     )?;
+    let Some(takes) = takes else { return Some(None) };
     let more = if takes.starts_with("a number") {
-        asked(Value::Number(9.9e299), &|problem| matches!(problem, Problem::OutOfRange { key, .. } if key == path))
+        asked(Value::Number(9.9e299), &|problem| matches!(problem, Problem::OutOfRange { key, .. } if key == path))?
             .filter(|range| *range != takes)
             .map(|range| format!("{takes}; {range}"))
     } else if takes.starts_with("a text in quotes") {
-        asked(Value::Text("?".into()), &|problem| matches!(problem, Problem::Choice { key, .. } if key == path))
+        asked(Value::Text("?".into()), &|problem| matches!(problem, Problem::Choice { key, .. } if key == path))?
     } else {
         None
     };
-    Some(more.unwrap_or(takes))
+    Some(Some(more.unwrap_or(takes)))
 }
 
-/// What is wrong with the scene `text` once the `nth` table that has or may have the key has this `value` there.
-fn in_scene(text: &str, path: &[&str], nth: usize, value: Value<'static>) -> Option<SceneError> {
+/// What is wrong with the scene `text` once the `nth` table that has or may have the key has this `value` there; `None` if there is no
+/// such table.
+fn in_scene(text: &str, path: &[&str], nth: usize, value: Value<'static>) -> Option<Option<SceneError>> {
     let found = Found::default();
     let source = Source { name: "reference", text, found: &found };
     let mut tree = source.document().ok()?;
@@ -62,7 +82,7 @@ fn in_scene(text: &str, path: &[&str], nth: usize, value: Value<'static>) -> Opt
     if value.is_some() {
         return None;
     }
-    found.conclude(SceneFile::read(&tree, "reference").map(|_| ())).err()
+    Some(found.conclude(SceneFile::read(&tree, "reference").map(|_| ())).err())
 }
 
 /// Puts the `value` at the `path` below `node`, at the place that has `left` more before it.

@@ -16,6 +16,10 @@ pub fn widen(report: &mut Report, possible: &[Report]) {
         let Some(figure) = figure else { continue };
         *figure = widened(*figure, others.iter().filter_map(|figures| figures[number]));
     }
+    let shares = report.measures.iter_mut().filter_map(|measure| measure.estimates.good.as_mut());
+    for share in report.yield_of_all.iter_mut().chain(shares) {
+        share.interval = share.interval.map(|end| end.map(|end| end.clamp(0.0, 1.0)));
+    }
     for (i, row) in report.correlation_intervals.iter_mut().enumerate() {
         for (j, interval) in row.iter_mut().enumerate().filter(|(j, _)| *j != i) {
             let of = |report: &Report| (report.correlation[i][j], report.correlation_intervals[i][j]);

@@ -349,7 +349,7 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ),
     (
         "measured.column.of",
-        "Name of a dimension, an offset, a diameter or a gap, as `slipfit tolerance` and `slipfit population` print it.",
+        "Name of a dimension, an offset or a diameter, as `slipfit tolerance` prints it, or of a gap, as `slipfit check` does.",
     ),
     ("measured.column.heading", "Name of the column in the file. Default: the same as `of`."),
     ("measured.column.distribution", "As `measured.distribution`, for this column."),
