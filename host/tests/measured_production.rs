@@ -230,7 +230,10 @@ fn mistakes_are_named() {
         ),
         ("measured.column=[{ of = \"ring\", heading = \"angle\" }]", "is in °"),
         ("measured.column=[{ of = \"ring\", heading = \"width\" }, { of = \"ring\", heading = \"width\" }]", "again"),
-        ("measured.column=[{ of = \"ring\", heading = \"width\", least = 20 }]", "beyond the bounds"),
+        (
+            "measured.column=[{ of = \"ring\", heading = \"width\", least = 20 }]",
+            "mm, which is beyond `least` or `most`",
+        ),
         (
             "measured.column=[{ of = \"ring\", heading = \"width\", least = 19, distribution = \"normal\" }]",
             "no effect",

@@ -33,7 +33,7 @@ impl Judge {
     }
 }
 
-/// Shipped scenes, those of the reference, and every block of the guide that is a whole scene.
+/// Shipped scenes, those of the reference, and every block of the guide that is a scene.
 fn sound() -> Vec<(String, String)> {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut scenes = Vec::new();
@@ -48,8 +48,11 @@ fn sound() -> Vec<(String, String)> {
     for entry in std::fs::read_dir(root.join("guide/src")).unwrap() {
         let path = entry.unwrap().path();
         let Ok(page) = std::fs::read_to_string(&path) else { continue };
-        for block in page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()) {
-            if block.parse::<toml::Table>().is_ok_and(|table| !table.contains_key("package")) {
+        let blocks = page.split("```toml").skip(1).filter_map(|rest| rest.split_once('\n')?.1.split("```").next());
+        for block in blocks {
+            let is_scene =
+                |table: toml::Table| ["dimension", "part", "slide", "body"].iter().any(|key| table.contains_key(*key));
+            if block.parse::<toml::Table>().is_ok_and(is_scene) {
                 scenes.push((path.display().to_string(), block.to_owned()));
             }
         }

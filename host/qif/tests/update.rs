@@ -240,6 +240,22 @@ fn scenes_without_the_part_are_errors() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
+    /// A damaged scene is an error or another scene, but no panic.
+    #[test]
+    fn damaged_scenes_do_not_panic(cuts in prop::collection::vec((0.0..1.0_f64, 0_usize..80, "[\\[\\]{}=\"#|a.\n ]{0,8}"), 1..5)) {
+        let drawing = read(CTC_01).expect("a drawing");
+        let mut text = scene(&drawing);
+        for (place, length, with) in &cuts {
+            let boundary = |at: usize| (0..=at).rev().find(|i| text.is_char_boundary(*i)).unwrap_or(0);
+            let at = boundary((place * text.len() as f64) as usize);
+            let end = boundary((at + length).min(text.len())).max(at);
+            text.replace_range(at..end, with);
+        }
+        if let Ok(found) = update(&text, &drawing, Some("p"), "a file") {
+            prop_assert!(toml::from_str::<toml::Table>(&found.text).is_ok(), "{text}");
+        }
+    }
+
     /// Lines that a user puts anywhere stay there, each once, while the model changes.
     #[test]
     fn lines_of_the_user_stay(places in prop::collection::vec(0.0..1.0_f64, 1..12)) {

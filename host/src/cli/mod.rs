@@ -62,8 +62,7 @@ Examples:
                                            at which levels n the slide jams on its stroke
   slipfit population --plot units.svg      how many units of the production malfunction, and why
   slipfit table -o force.h                 the flash table as a C header (.bin .hex .h .rs)
-  slipfit kernel -o scene.rs               the scene as a Rust constant and type for firmware
-  slipfit fmu -o slide.fmu                 the same kernel for system simulators (FMI)";
+  slipfit kernel -o scene.rs               the scene as a Rust constant and type for firmware";
 
 #[derive(Subcommand)]
 enum Command {

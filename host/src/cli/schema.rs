@@ -11,7 +11,7 @@ use super::{
     terminal::write_out,
 };
 
-/// Prints the JSON Schema of scene files, with which an editor completes keys and marks mistakes.
+/// Prints the JSON Schema of scene files, for completion and checks in an editor.
 ///
 /// Editors that use Taplo, such as VS Code with Even Better TOML, read it where the first line of a scene is
 /// `#:schema ./slipfit.schema.json`.

@@ -31,8 +31,8 @@ use crate::{
 /// Intervals are of 95 %. They are of the distribution that the parts choose, from 30 parts on, or of the one that --family states.
 ///
 /// A CSV file has a row for each part. Its first row names the characteristics with their units, such as "length [mm]"; rows named
-/// nominal, lower and upper may follow. A QIF 3.0 file of results (.qif) has all that by itself. Outliers are named and stay in every
-/// figure.
+/// nominal, lower and upper (or target, LSL and USL) state limits. A QIF 3.0 file of results (.qif) has all that by itself. Outliers are
+/// named and stay in every figure.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Measured parts: CSV, or QIF results (.qif).
