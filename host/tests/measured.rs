@@ -107,6 +107,20 @@ fn bad_files_are_told_where_they_are_wrong() {
     }
 }
 
+/// Subgroups of one part each tell nothing, which is said; a file of measured parts that is no text is told at its line.
+#[test]
+fn what_tells_nothing_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = (0..8).map(|k| format!("{k},tool {k},{}\n", 10 + k % 3)).collect::<String>();
+    std::fs::write(folder.path().join("p.csv"), format!("part,tool,a [mm]\n{rows}")).unwrap();
+    let output = slipfit(folder.path(), &["capability", "p.csv", "--group", "tool", "--family", "normal"]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no two subgroups by tool"), "{}", stdout(&output));
+    std::fs::write(folder.path().join("p.qif"), b"<Q>\n\xe4</Q>").unwrap();
+    let output = slipfit(folder.path(), &["capability", "p.qif"]);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && errors.contains("p.qif: line 2 has the byte 0xe4"), "{errors}");
+}
+
 /// A page takes the place of nothing else.
 #[test]
 fn a_page_is_a_file_of_its_own() {

@@ -8,6 +8,7 @@ mod entry;
 mod geometry;
 mod merge;
 mod names;
+mod positions;
 mod rules;
 mod skeleton;
 pub mod update;

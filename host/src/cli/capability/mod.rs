@@ -95,6 +95,9 @@ impl Arguments {
         }
         let mut warnings: Vec<String> = words::unjudged(&errors).into_iter().collect();
         warnings.extend(characteristics.iter().flat_map(words::warnings_of));
+        if let Some(group) = self.group.as_ref().filter(|_| characteristics.iter().all(|of| of.within.is_none())) {
+            warnings.push(format!("no two subgroups by {group} have parts that differ, so there are no Cp and Cpk"));
+        }
         let report = Report { parts: table.parts(), characteristics, refused: unjudged, warnings };
         if let Some(path) = &self.page {
             let source = self.file.file_name().unwrap_or_default().to_string_lossy();

@@ -72,8 +72,7 @@ fn section(path: &str, keys: &[Key], others: &[&str], all: &[(String, &[Key])], 
     let _ = writeln!(page, "\n### {heading}\n\n{same}| key | takes | meaning |\n|---|---|---|");
     for key in keys {
         let path = join(path, key.name);
-        let at = MEANINGS.iter().position(|(pattern, _)| covers(pattern, &path));
-        let at = at.unwrap_or_else(|| panic!("no description of `{path}`: add one to scene/reference/meaning"));
+        let (at, meaning) = meaning_of(&path);
         used[at] = true;
         let takes = others.iter().find_map(|other| probe::takes(&join(other, key.name)));
         let mut takes = takes.unwrap_or_else(|| UNREAD.to_owned());
@@ -82,7 +81,7 @@ fn section(path: &str, keys: &[Key], others: &[&str], all: &[(String, &[Key])], 
             let first = first.map_or(path.as_str(), |(path, _)| path);
             let _ = write!(takes, "; keys of [`{first}`](#{})", first.replace('.', ""));
         }
-        let _ = writeln!(page, "| `{}` | {} | {} |", key.name, takes.replace('|', "\\|"), MEANINGS[at].1);
+        let _ = writeln!(page, "| `{}` | {} | {} |", key.name, takes.replace('|', "\\|"), meaning);
     }
 }
 
@@ -99,6 +98,13 @@ fn same_keys(path: &str, others: &[&str]) -> String {
         true => String::new(),
         false => format!("These are also the keys of `{}`.\n\n", names.join("`, `")),
     }
+}
+
+/// What the key at `path` means, and which of the meanings that is.
+fn meaning_of(path: &str) -> (usize, &'static str) {
+    let at = MEANINGS.iter().position(|(pattern, _)| covers(pattern, path));
+    let at = at.unwrap_or_else(|| panic!("no description of `{path}`: add one to scene/reference/meaning"));
+    (at, MEANINGS[at].1)
 }
 
 /// Whether `pattern`, in which a star stands for any part, means the key `path`.

@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
-use super::{covers, meaning::MEANINGS, names, probe};
+use super::{collect, meaning_of, names, probe};
 use crate::scene::keys::{Key, ROOT, join};
 
 /// A number with its unit, as a text.
@@ -31,15 +31,6 @@ pub fn schema() -> String {
     format!("{:#}\n", root)
 }
 
-/// Every table below `path`.
-fn collect(path: &str, keys: &'static [Key], tables: &mut Vec<(String, &'static [Key])>) {
-    for key in keys.iter().filter(|key| !key.below.is_empty()) {
-        let path = join(path, key.name);
-        tables.push((path.clone(), key.below));
-        collect(&path, key.below, tables);
-    }
-}
-
 /// Tables with keys that no table before them has.
 fn first_of_each<'t>(tables: &'t [(String, &'static [Key])]) -> Vec<(&'t str, &'static [Key])> {
     let is_first = |i: usize| tables[..i].iter().all(|(_, other)| names(other) != names(tables[i].1));
@@ -55,7 +46,7 @@ fn table(path: &str, keys: &[Key], places: &[&str], tables: &[(String, &'static 
     let mut properties = Map::new();
     for key in keys {
         let own = join(path, key.name);
-        let meaning = MEANINGS.iter().find(|(pattern, _)| covers(pattern, &own)).map_or("", |(_, meaning)| meaning);
+        let (_, meaning) = meaning_of(&own);
         let mut takes: Vec<String> = Vec::new();
         for found in places.iter().flat_map(|place| probe::all_that_it_takes(&join(place, key.name))) {
             if !takes.contains(&found) {
