@@ -252,7 +252,7 @@ fn malfunction_that_no_tolerance_mends_is_told() {
     assert!(!folder.path().join("new.toml").exists());
 }
 
-/// Every tolerance that is chosen stands at its feature as on a drawing, with what is not chosen of it.
+/// Chosen tolerances are listed by feature as on a drawing, with nominal sizes, conditions of material and datums.
 #[test]
 fn tolerances_are_listed_by_feature() {
     let folder = tempfile::tempdir().unwrap();

@@ -27,7 +27,7 @@ fn an_imported_model_is_a_part_that_check_accepts() {
     }
 }
 
-/// CTC-01 as it is typed from its drawing: no import has seen this text.
+/// CTC-01 typed from its drawing, without an import.
 const TYPED: &str = r#"
 [[part]]
 name = "plate"
@@ -186,7 +186,7 @@ fn an_imported_part_in_an_assembly_is_the_typed_one() {
     }
 }
 
-/// A scene follows its model: what changed is told, and what the user wrote stays.
+/// A scene follows its model: changes are reported, and what the user wrote stays.
 #[test]
 fn a_scene_follows_its_model() {
     let folder = tempfile::tempdir().unwrap();

@@ -107,7 +107,7 @@ fn bad_files_are_told_where_they_are_wrong() {
     }
 }
 
-/// Subgroups of one part each tell nothing, which is said; a file of measured parts that is no text is told at its line.
+/// Subgroups of one part each are warned of; the error for a file that is not UTF-8 has its line.
 #[test]
 fn what_tells_nothing_is_said() {
     let folder = tempfile::tempdir().unwrap();

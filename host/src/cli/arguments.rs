@@ -79,7 +79,7 @@ impl SceneArguments {
     /// The scene and the files that it refers to, each with what it is.
     pub fn inputs(&self) -> Vec<(&'static str, PathBuf)> {
         let mut inputs = vec![("the scene", self.scene.clone())];
-        // A stream is read once; what a file lacks is told when the scene is read.
+        // A stream is read once; reading the scene reports what is wrong with its file.
         if let (true, Ok((name, text))) = (self.scene.is_file(), self.text()) {
             let measured = SceneFile::measured_files(&name, &text, &self.overrides(&[]));
             inputs.extend(measured.into_iter().map(|path| ("the measured parts", path)));

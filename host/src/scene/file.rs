@@ -64,7 +64,7 @@ impl SceneFile {
     pub fn measured_files(file_name: &str, text: &str, overrides: &[Override]) -> Vec<PathBuf> {
         let found = Found::default();
         let Ok(mut tree) = (Source { name: file_name, text, found: &found }).document() else { return Vec::new() };
-        // An override that is wrong is told when the scene is read.
+        // Reading the scene reports a wrong override.
         overrides.iter().for_each(|change| drop(tree.set(change)));
         measured::files(&Field { key: String::new(), node: &tree }, file_name)
     }

@@ -1,6 +1,6 @@
 //! What of one feature is renewed, and what stays.
 
-use toml_edit::{Item, Table, Value};
+use toml_edit::{Decor, InlineTable, Item, Key, Table, Value};
 
 use super::write::MARK;
 
@@ -28,31 +28,31 @@ pub fn remark(old: &mut Item, new: &Item) {
 
 /// Gives `old` the comments of an import in lines of their own that `new` has: above its header and above its keys.
 pub fn comments(old: &mut Table, new: &Table) {
-    let above = renewed(prefix(old), prefix(new));
-    old.decor_mut().set_prefix(above);
-    let of_new: String = new.iter().filter_map(|(key, _)| new.key(key)).map(prefix_of_key).flat_map(marked).collect();
+    let lines = renewed(above(old.decor()), above(new.decor()));
+    old.decor_mut().set_prefix(lines);
+    let of_new: String = new.iter().filter_map(|(key, _)| new.key(key)).map(above_key).flat_map(marked).collect();
     let mut of_new = Some(of_new);
     let keys: Vec<String> = old.iter().map(|(key, _)| key.to_owned()).collect();
     for key in keys {
         let Some(mut key) = old.key_mut(&key) else { continue };
-        let before = key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
-        let own = unmarked(before);
+        let own = unmarked(above(key.leaf_decor()));
         key.leaf_decor_mut().set_prefix(of_new.take().unwrap_or_default() + &own);
     }
 }
 
-fn prefix(table: &Table) -> &str {
-    table.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default()
+/// The lines above a header or a key.
+pub fn above(decor: &Decor) -> &str {
+    decor.prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default()
 }
 
-fn prefix_of_key(key: &toml_edit::Key) -> &str {
-    key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default()
+fn above_key(key: &Key) -> &str {
+    above(key.leaf_decor())
 }
 
 /// The lines above the header of a table and above its keys, without those of an import.
 pub fn own_lines(table: &Table) -> String {
-    let of_keys: String = table.iter().filter_map(|(key, _)| table.key(key)).map(prefix_of_key).map(unmarked).collect();
-    unmarked(prefix(table)) + &of_keys
+    let of_keys: String = table.iter().filter_map(|(key, _)| table.key(key)).map(above_key).map(unmarked).collect();
+    unmarked(above(table.decor())) + &of_keys
 }
 
 /// Keys of an imported feature that the user added.
@@ -100,12 +100,11 @@ pub fn feature(old: &mut Table, new: &Table, name: &str, changes: &mut Vec<Strin
         .map(|(key, _)| key.to_owned())
         .collect();
     for key in gone {
-        let lines = old.key(&key).map(prefix_of_key).map(unmarked).unwrap_or_default();
+        let lines = old.key(&key).map(above_key).map(unmarked).unwrap_or_default();
         let value = old.remove(&key).map(|item| written(&item)).unwrap_or_default();
         if let Some(mut name) = old.key_mut("name").filter(|_| lines.contains('#')) {
-            let before = name.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
-            let before = format!("{before}{lines}");
-            name.leaf_decor_mut().set_prefix(before);
+            let lines = format!("{}{lines}", above(name.leaf_decor()));
+            name.leaf_decor_mut().set_prefix(lines);
         }
         changes.push(format!("{name}: {key} is not in the model, and was removed; it was {value}"));
         // It says whether the diameter is that of a hole or of a pin.
@@ -173,7 +172,7 @@ fn equal(one: &Value, two: &Value) -> bool {
 
 /// Gives `old` what `new` states; what else the user wrote into its table stays.
 fn state(old: &mut Value, new: &Value) {
-    let has_own = |table: &toml_edit::InlineTable| table.iter().any(|(key, _)| !FROM_MODEL.contains(&key));
+    let has_own = |table: &InlineTable| table.iter().any(|(key, _)| !FROM_MODEL.contains(&key));
     let Value::InlineTable(table) = old else { return replace(old, new) };
     if !has_own(table) {
         return replace(old, new);
@@ -201,7 +200,7 @@ fn replace(old: &mut Value, new: &Value) {
     *old.decor_mut() = decor;
 }
 
-/// A value as it is written, without its comment.
+/// The text of a value, without its comment.
 fn written(item: &Item) -> String {
     item.as_value().map_or_else(|| "a table".to_owned(), written_value)
 }

@@ -2,6 +2,8 @@
 
 use toml_edit::{DocumentMut, Item, Table};
 
+use super::merge;
+
 /// Distance between the positions of tables of the scene, so that others fit between them.
 const SPACING: isize = 1 << 20;
 
@@ -58,9 +60,8 @@ pub fn prepend_after(document: &mut DocumentMut, position: isize, lines: &str) {
     };
     for_each_table(document.as_table_mut(), &mut |table| {
         if table.position() == Some(next) {
-            let prefix = table.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
-            let prefix = format!("{lines}{prefix}");
-            table.decor_mut().set_prefix(prefix);
+            let lines = format!("{lines}{}", merge::above(table.decor()));
+            table.decor_mut().set_prefix(lines);
         }
     });
 }

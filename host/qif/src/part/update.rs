@@ -148,8 +148,7 @@ fn text<'t>(table: &'t Table, key: &str) -> Option<&'t str> {
 
 /// The imported features of a part: kind, name, and its kind and name in the file.
 fn imported(part: &Table) -> impl Iterator<Item = (&'static str, &str, &str)> {
-    let tables = |kind| part.get(kind).and_then(Item::as_array_of_tables).into_iter().flat_map(ArrayOfTables::iter);
-    KINDS.into_iter().flat_map(move |kind| tables(kind).map(move |table| (kind, table))).filter_map(|(kind, table)| {
+    tables_of(part).filter_map(|(kind, table)| {
         let comment = merge::comment(table.get("name")?)?;
         Some((kind, text(table, "name")?, comment.split(DATUM).next().unwrap_or(comment)))
     })
@@ -182,7 +181,7 @@ fn renew(part: &mut Table, renewed: &Table, name: &str, changes: &mut Vec<String
         merge::remark(old, new);
     }
     let old: Vec<_> = imported(part).map(|(kind, name, _)| (kind, name.to_owned())).collect();
-    let mut new: Vec<_> = KINDS.into_iter().flat_map(|kind| tables_of(renewed, kind).map(move |t| (kind, t))).collect();
+    let mut new: Vec<_> = tables_of(renewed).collect();
     new.sort_by_key(|(_, table)| table.position());
     let is_new = |kind: &str, name: &str| new.iter().any(|(k, t)| *k == kind && text(t, "name") == Some(name));
     let mut comments = Vec::new();
@@ -227,8 +226,10 @@ fn renew(part: &mut Table, renewed: &Table, name: &str, changes: &mut Vec<String
     comments
 }
 
-fn tables_of<'t>(part: &'t Table, kind: &str) -> impl Iterator<Item = &'t Table> + use<'t> {
-    part.get(kind).and_then(Item::as_array_of_tables).into_iter().flat_map(ArrayOfTables::iter)
+/// The features of a part, each with its kind.
+fn tables_of(part: &Table) -> impl Iterator<Item = (&'static str, &Table)> {
+    let of = |kind| part.get(kind).and_then(Item::as_array_of_tables).into_iter().flat_map(ArrayOfTables::iter);
+    KINDS.into_iter().flat_map(move |kind| of(kind).map(move |table| (kind, table)))
 }
 
 /// What became of a feature that the model has no more.

@@ -17,13 +17,13 @@ pub struct Costed {
     pub quantity: Quantity,
     /// How it is written.
     pub written: Written,
-    /// Where it stands on a drawing.
+    /// How it is written on a drawing.
     pub callout: Callout,
     /// Where it stands in the file (bytes), unless it was set on the command line.
     pub place: Option<Range<usize>>,
 }
 
-/// Where a tolerance stands on a drawing, and what stands there besides.
+/// How a tolerance is written on a drawing, and at which feature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Callout {
     /// The part; none of a dimension that is of no part.
