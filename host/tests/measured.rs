@@ -121,6 +121,21 @@ fn what_tells_nothing_is_said() {
     assert!(output.status.code() == Some(2) && errors.contains("p.qif: line 2 has the byte 0xe4"), "{errors}");
 }
 
+/// Cp and Cpk are of the normal distribution; it is said where the parts have another one.
+#[test]
+fn a_capability_that_is_not_the_parts_own_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |k: i32| format!("{k},{},{}\n", k % 2, (0.02 * f64::from(k * 13 % 60) - 0.6).exp());
+    let rows: String = (0..60).map(row).collect();
+    std::fs::write(folder.path().join("p.csv"), format!("part,tool,a [mm]\nlower,,0.1\nupper,,5\n{rows}")).unwrap();
+    for (family, warned) in [("lognormal", true), ("normal", false)] {
+        let output = slipfit(folder.path(), &["capability", "p.csv", "--group", "tool", "--family", family]);
+        assert!(stdout(&output).contains("Cpk"), "{family}");
+        let warnings = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(warnings.contains("Cp and Cpk are those of a normal distribution"), warned, "{family}: {warnings}");
+    }
+}
+
 /// A page takes the place of nothing else.
 #[test]
 fn a_page_is_a_file_of_its_own() {

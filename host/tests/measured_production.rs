@@ -293,3 +293,28 @@ fn measured_parts_are_an_input() {
     let output = slipfit(folder.path(), &["merge", "a.part", "c.part"]);
     assert_ne!(output.status.code(), Some(0));
 }
+
+/// The interval of a yield ends at 100 %.
+#[test]
+fn no_yield_is_above_all_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let parts = (0..60).fold("groove [mm]\n".to_owned(), |text, k| {
+        text + &format!("{}\n", 10.0 + 0.001 * (f64::from(k * 7 % 60) - 29.5))
+    });
+    std::fs::write(folder.path().join("parts.csv"), parts).unwrap();
+    for half in [0.05, 0.052, 0.055] {
+        let scene = format!(
+            "[[dimension]]\nname = \"groove\"\nvalue = 10\ntolerance = 0.1\n[[measure]]\nname = \"once\"\nis = \"groove\"\nlower = \
+             {}\nupper = {}\n[measured]\nfile = \"parts.csv\"\ndistribution = \"normal\"\n[[measured.column]]\nof = \"groove\"\n",
+            10.0 - half,
+            10.0 + half
+        );
+        std::fs::write(folder.path().join("s.toml"), scene).unwrap();
+        for samples in ["500", "1000"] {
+            let found = json(folder.path(), &["tolerance", "s.toml", "--samples", samples, "--json"]);
+            let of_all = &found["yield_of_all"];
+            let [low, high] = [0, 1].map(|end| of_all["interval"][end].as_f64().unwrap());
+            assert!(low < of_all["value"].as_f64().unwrap() && high <= 1.0 && high > 0.99, "{of_all}");
+        }
+    }
+}

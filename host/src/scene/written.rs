@@ -85,7 +85,32 @@ fn rounded_down(t: f64, digits: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::rounded_down;
+    use slipfit_tolerance::{
+        model::Quantity,
+        product::costed::{Callout, Costed, Written},
+    };
+
+    use super::{callout, rounded_down, tolerance};
+
+    /// Deviations about a middle have no more digits than the tolerance.
+    #[test]
+    fn sums_have_no_digits_of_their_own() {
+        let written = Written { key: "tolerance", unit: None, per_si: 1e3, middle: 0.075e-3 };
+        let (part, feature, key) = (Some("plate".to_owned()), "bore".to_owned(), Some("diameter".to_owned()));
+        let place = Callout { part, feature, key, nominal: Some(15.875e-3), frame: String::new() };
+        let (quantity, processes) = (Quantity::Length, Vec::new());
+        let costed =
+            Costed { name: place.name(), stated: 0.125e-3, processes, quantity, written, callout: place, place: None };
+        for (t, deviations, on_drawing) in [
+            (0.12382e-3, "[-0.04882, 0.19882]", "+0.19882 / -0.04882"),
+            (0.075e-3, "[0, 0.15]", "+0.15 / 0"),
+            (0.0321e-3, "[0.0429, 0.1071]", "+0.1071 / +0.0429"),
+        ] {
+            assert_eq!(tolerance(&costed, t, 6), deviations);
+            assert_eq!(callout(&costed, t, 6), format!("diameter 15.875 {on_drawing} mm"));
+        }
+        assert_eq!(costed.name, "plate.bore.diameter");
+    }
 
     #[test]
     fn tolerances_are_never_rounded_up() {
