@@ -112,7 +112,7 @@ mod tests {
                 // A weight is a ratio of likelihoods, here of this distribution and of one about a standard error wider: it is
                 // right to 2 %.
                 let ratio = |x: f64| {
-                    family.ln_density(x) - family.ln_density(mean + (x - mean) * (1.0 - 0.7 / (count as f64).sqrt()))
+                    family.ln_density(x) - family.ln_density(mean + (x - mean) * (1.0 - 0.7 / libm::sqrt(count as f64)))
                 };
                 let [one, two] = [&single, &found].map(|values| of(values, &ratio));
                 assert!((one - two).abs() < 0.02, "{kind} of {count}: {one}, {two}");
