@@ -20,7 +20,7 @@ const PURPOSES: [(&str, &[&str]); 11] = [
     ),
     ("slots added up to pins", &["system/law/pin.rs"]),
     ("pins added up to the matrix", &["\nadd_at<", "\ncross_columns<", "\ncross_rows<"]),
-    ("the drive", &["floating/pull.rs", "law/drive.rs", "src/drive.rs"]),
+    ("the drive", &["floating/pull.rs", "law/drive.rs", "drive/ramp.rs"]),
     ("where pins are, their forces", &["floating/pin.rs", "system/alike.rs", "system/element.rs"]),
     ("factors of the matrix", &["\nfactorised<"]),
     ("the solution", &["\nsolve<"]),

@@ -1,7 +1,7 @@
 use super::{Ahead, Limits, State, Status};
 use crate::{
     ParameterError, SVector, Vector3,
-    drive::{Drive, Push},
+    drive::{Drive, Push, Pushed},
     law::{Impact, Pad, ThreeHalves},
     mechanism::Driven as _,
     system::{AxisBody, on_axis},
@@ -99,17 +99,13 @@ impl Push<f64> for Breaks {
         Ok(self)
     }
 
-    fn force(&self, t: f64, v: f64) -> f64 {
+    fn effort(&self, t: f64, v: f64) -> f64 {
         let [from, to] = self.during;
         if t >= from && t < to { f64::NAN } else { self.drive.force(t, v) }
     }
 
-    fn force_rate(&self, _: f64) -> f64 {
-        0.0
-    }
-
-    fn gain(&self) -> f64 {
-        self.drive.gain
+    fn pushed(&self, t: f64, v: f64) -> Pushed<f64> {
+        Pushed { force: self.effort(t, v), per_speed: self.drive.gain, per_time: 0.0 }
     }
 }
 

@@ -14,7 +14,7 @@ pub mod stop;
 
 pub use elastic::{Elastic, Linear, Power, ThreeHalves};
 pub use fit::{ClearanceFit, Fit};
-pub use friction::{Exact, Friction, Frictionless, Regularised, StaticKinetic};
+pub use friction::{Exact, Friction, Frictionless, Regularised, StaticKinetic, Stribeck, StribeckData};
 pub use hunt_crossley::HuntCrossley;
 pub use impact::Impact;
 pub use lankarani_nikravesh::LankaraniNikravesh;

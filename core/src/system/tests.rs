@@ -2,7 +2,10 @@
 
 use super::{
     Axes, Bodies, Displacement, Element, Elements, Jacobian, Law, OnAxis, System, ThroughJoints,
-    law::{Axis, Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Slot, Spring, Stopped, Wall},
+    law::{
+        Axis, Contact, Contour, Contoured, Journal, LineSpring, Motor, Pad, Pin, Pusher, Ring, Slot, Spring, Stopped,
+        Wall,
+    },
     planar::{self, PlanarTree, example::Linkage},
     spatial::{
         self, FreeBodies, Port, Rim, Seat,
@@ -111,6 +114,23 @@ fn planar_derivatives_are_those_of_the_forces() {
             ),
         ),
     );
+    let elements = (
+        elements,
+        (
+            Element::<_, _, 2> {
+                link: planar::Across { point: pin, seat: rod, normal: Vector2::new(-0.6, 0.8) },
+                law: Contoured {
+                    wall: Pad { gap: -0.1, contact: contact() },
+                    along: Axis::Y,
+                    contour: Contour { slope: 0.2, curvature: -0.7 },
+                },
+            },
+            Element::<_, _, 4> {
+                link: planar::Between { hole: rod, pin },
+                law: LineSpring { stiffness: 30.0, damping: 4.0, free_length: 0.1, drawn: Vector2::zeros() },
+            },
+        ),
+    );
     check(&System::new(tree, elements), start, 0.3, |force| force.norm() > 20.0);
 }
 
@@ -169,6 +189,30 @@ fn spatial_derivatives_are_those_of_the_forces() {
                     },
                 ),
             ),
+        ),
+    );
+    let elements = (
+        elements,
+        (
+            [(Axis::X, Axis::Z, 1.0, Some(0)), (Axis::Y, Axis::Z, -1.0, None), (Axis::Z, Axis::X, 1.0, Some(0))].map(
+                |(axis, along, sign, from)| Element::<_, _, 3> {
+                    link: Seat { point: port(Some(1), 0.2, 0.1, -0.1), from },
+                    law: Contoured {
+                        wall: Wall { axis, sign, gap: 0.012, contact: contact() },
+                        along,
+                        contour: Contour { slope: -0.2, curvature: 0.7 },
+                    },
+                },
+            ),
+            [Some(0), None].map(|from| Element::<_, _, 3> {
+                link: Seat { point: port(Some(1), 0.2, 0.1, -0.1), from },
+                law: LineSpring {
+                    stiffness: 30.0,
+                    damping: 4.0,
+                    free_length: 0.1,
+                    drawn: Vector3::new(0.2, -0.1, 0.1),
+                },
+            }),
         ),
     );
     let start = bodies.nominal();

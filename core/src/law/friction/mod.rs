@@ -3,10 +3,12 @@
 mod exact;
 mod regularised;
 mod static_kinetic;
+mod stribeck;
 
 pub use exact::Exact;
 pub use regularised::Regularised;
 pub use static_kinetic::StaticKinetic;
+pub use stribeck::{Stribeck, StribeckData};
 
 use crate::Scalar;
 
@@ -32,6 +34,22 @@ pub struct SlidingContact<S> {
     pub mass_rate: S,
     /// How the impedance is to change along the sliding direction: 1 the tangent of the law, 0 its secant.
     pub tangent_share: S,
+}
+
+impl<S: Scalar> SlidingContact<S> {
+    /// The traction of a coefficient μ(s) that goes by the sliding speed s alone, from μ(s)/s and d(μ(s)/s)/d(s²).
+    #[inline(always)]
+    fn along_the_motion(&self, (ratio, ratio_slope): (S, S)) -> Traction<S> {
+        let Self { sliding: [x, y], normal, tangent_share, .. } = *self;
+        let along = ratio * normal;
+        let turn = (tangent_share + tangent_share) * ratio_slope * normal;
+        let (turn_x, turn_y) = (turn * x, turn * y);
+        Traction {
+            force: [-along * x, -along * y],
+            impedance: [along + turn_x * x, turn_x * y, along + turn_y * y],
+            per_normal: [ratio * x, ratio * y],
+        }
+    }
 }
 
 /// A friction law.

@@ -48,17 +48,8 @@ impl<S: Scalar> Friction<S> for Regularised<S> {
 
     #[inline(always)]
     fn traction(&self, (): &(), contact: &SlidingContact<S>) -> (Traction<S>, ()) {
-        let SlidingContact { sliding: [x, y], normal, tangent_share, .. } = *contact;
-        let (ratio, ratio_slope) = self.per_speed(x * x + y * y);
-        let along = ratio * normal;
-        let turn = (tangent_share + tangent_share) * ratio_slope * normal;
-        let (turn_x, turn_y) = (turn * x, turn * y);
-        let traction = Traction {
-            force: [-along * x, -along * y],
-            impedance: [along + turn_x * x, turn_x * y, along + turn_y * y],
-            per_normal: [ratio * x, ratio * y],
-        };
-        (traction, ())
+        let [x, y] = contact.sliding;
+        (contact.along_the_motion(self.per_speed(x * x + y * y)), ())
     }
 
     #[inline(always)]

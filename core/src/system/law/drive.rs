@@ -1,7 +1,11 @@
 //! Drives: a P-velocity controller behind a ramp (eq. 12), as a force or as a torque.
 
 use super::{Law, Response};
-use crate::{SMatrix, SVector, Scalar, drive::Push, mechanism::Way};
+use crate::{
+    SMatrix, SVector, Scalar,
+    drive::{Push, Pushed},
+    mechanism::Way,
+};
 
 /// A drive that pushes along the first number of its link and goes by the speed of the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +32,7 @@ impl<S: Scalar, P: Push<S>> DriveLaw<S, 2> for Pusher<P> {
 
     #[inline(always)]
     fn effort(&self, t: S, speed: S) -> S {
-        self.0.force(t, speed)
+        self.0.effort(t, speed)
     }
 }
 
@@ -40,7 +44,7 @@ impl<S: Scalar, P: Push<S>> DriveLaw<S, 1> for Motor<P> {
 
     #[inline(always)]
     fn effort(&self, t: S, speed: S) -> S {
-        self.0.force(t, speed)
+        self.0.effort(t, speed)
     }
 }
 
@@ -61,11 +65,12 @@ impl<S: Scalar, P: Push<S>> Law<S, 2> for Pusher<P> {
     #[inline(always)]
     fn response(&self, t: S, _: &SVector<S, 2>, rate: &SVector<S, 2>, (): &(), _: Way<S>) -> (Response<S, 2>, ()) {
         let zero = S::zero();
+        let Pushed { force, per_speed, per_time } = self.0.pushed(t, self.speed(rate));
         let response = Response {
-            force: SVector::<S, 2>::new(self.effort(t, self.speed(rate)), zero),
-            impedance: SMatrix::<S, 2, 2>::new(zero, self.0.gain(), zero, zero),
+            force: SVector::<S, 2>::new(force, zero),
+            impedance: SMatrix::<S, 2, 2>::new(zero, per_speed, zero, zero),
             stiffness: SMatrix::zeros(),
-            per_time: SVector::<S, 2>::new(self.0.force_rate(t), zero),
+            per_time: SVector::<S, 2>::new(per_time, zero),
         };
         (response, ())
     }
@@ -91,11 +96,12 @@ impl<S: Scalar, P: Push<S>> Law<S, 1> for Motor<P> {
 
     #[inline(always)]
     fn response(&self, t: S, _: &SVector<S, 1>, rate: &SVector<S, 1>, (): &(), _: Way<S>) -> (Response<S, 1>, ()) {
+        let Pushed { force, per_speed, per_time } = self.0.pushed(t, self.speed(rate));
         let response = Response {
-            force: SVector::<S, 1>::new(self.effort(t, self.speed(rate))),
-            impedance: SMatrix::<S, 1, 1>::new(self.0.gain()),
+            force: SVector::<S, 1>::new(force),
+            impedance: SMatrix::<S, 1, 1>::new(per_speed),
             stiffness: SMatrix::zeros(),
-            per_time: SVector::<S, 1>::new(self.0.force_rate(t)),
+            per_time: SVector::<S, 1>::new(per_time),
         };
         (response, ())
     }

@@ -1,7 +1,9 @@
 //! What a force law of an element is; the laws, one a file.
 
+mod contour;
 mod drive;
 mod journal;
+mod line_spring;
 mod pin;
 mod ring;
 mod slot;
@@ -9,8 +11,10 @@ mod spring;
 mod stopped;
 mod wall;
 
+pub use contour::{Contour, Contoured};
 pub use drive::{DriveLaw, Motor, Pusher};
 pub use journal::Journal;
+pub use line_spring::LineSpring;
 pub use pin::{Fitted, Pin};
 pub use ring::Ring;
 pub use slot::Slot;

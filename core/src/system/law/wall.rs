@@ -35,6 +35,11 @@ impl Axis {
         own
     }
 
+    /// The unit vector along it.
+    pub fn unit<S: Scalar>(self) -> [S; 3] {
+        self.in_order([S::one(), S::zero(), S::zero()])
+    }
+
     /// What belongs to this axis, and to the two that follow it in turn, of what belongs to x, y and z.
     #[inline(always)]
     fn first<T: Copy>(self, [x, y, z]: [T; 3]) -> [T; 3] {

@@ -1,5 +1,6 @@
 //! The drive: a P-velocity controller behind a ramp (eq. 12).
 
+use super::{Push, Pushed};
 use crate::{
     ParameterError, Scalar, Vector3,
     error::bounded,
@@ -66,26 +67,6 @@ impl<S: Scalar> Drive<S> {
     }
 }
 
-/// What drives a body along its axis, as a menu of types so that a scene without a drive pays nothing.
-pub trait Push<S>: Copy {
-    /// This drive, if it can be stepped without failing.
-    ///
-    /// # Errors
-    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
-    fn checked(self) -> Result<Self, ParameterError<S>>
-    where
-        S: PartialOrd;
-
-    /// The force (N) at time `t` (s) and speed `v` (m/s).
-    fn force(&self, t: S, v: S) -> S;
-
-    /// How fast the force (N/s) changes with time `t` (s) alone.
-    fn force_rate(&self, t: S) -> S;
-
-    /// How much less the force is (N·s/m) at a higher speed.
-    fn gain(&self) -> S;
-}
-
 impl<S: Scalar> Push<S> for Drive<S> {
     fn checked(self) -> Result<Self, ParameterError<S>>
     where
@@ -95,40 +76,13 @@ impl<S: Scalar> Push<S> for Drive<S> {
     }
 
     #[inline(always)]
-    fn force(&self, t: S, v: S) -> S {
+    fn effort(&self, t: S, v: S) -> S {
         self.force(t, v)
     }
 
     #[inline(always)]
-    fn force_rate(&self, t: S) -> S {
-        self.force_rate(t)
-    }
-
-    #[inline(always)]
-    fn gain(&self) -> S {
-        self.gain
-    }
-}
-
-/// No drive.
-impl<S: Scalar> Push<S> for () {
-    fn checked(self) -> Result<Self, ParameterError<S>> {
-        Ok(())
-    }
-
-    #[inline(always)]
-    fn force(&self, _: S, _: S) -> S {
-        S::zero()
-    }
-
-    #[inline(always)]
-    fn force_rate(&self, _: S) -> S {
-        S::zero()
-    }
-
-    #[inline(always)]
-    fn gain(&self) -> S {
-        S::zero()
+    fn pushed(&self, t: S, v: S) -> Pushed<S> {
+        Pushed { force: self.force(t, v), per_speed: self.gain, per_time: self.force_rate(t) }
     }
 }
 
