@@ -18,7 +18,12 @@ use slipfit_problems::mechanisms;
 use slipfit_tests::known_runs::mechanism_rows;
 
 fn scene(name: &str) -> Mechanism {
-    SceneFile::parse(name, shipped(name).unwrap(), &[]).unwrap_or_else(|error| panic!("{error}")).mechanism.unwrap()
+    let text = match name {
+        "motion-plane" => include_str!("problems/scenes/motion-plane.toml"),
+        "motion-space" => include_str!("problems/scenes/motion-space.toml"),
+        shipped_name => shipped(shipped_name).unwrap(),
+    };
+    SceneFile::parse(name, text, &[]).unwrap_or_else(|error| panic!("{error}")).mechanism.unwrap()
 }
 
 /// What a system of two scalars starts from.
@@ -50,6 +55,8 @@ fn what_is_written_is_current() {
         "four-bar",
         "hatch",
         "linear-guide",
+        "motion-plane",
+        "motion-space",
         "slider-crank",
         "slider-crank-guide",
         "telescopic-drawer",
@@ -58,7 +65,8 @@ fn what_is_written_is_current() {
         let file = format!("tests/problems/src/mechanisms/{}.rs", name.replace('-', "_"));
         let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(&file);
         let written = std::fs::read_to_string(path).unwrap();
-        let command = format!("slipfit kernel host/scenes/{name}.toml -o {file}");
+        let folder = if name.starts_with("motion") { "tests/problems/scenes" } else { "host/scenes" };
+        let command = format!("slipfit kernel {folder}/{name}.toml -o {file}");
         assert!(written == rust_source(&scene(name)).unwrap(), "not current, to be written by {command}");
     }
 }
@@ -108,6 +116,7 @@ in_plane! {
     a_guided_slider_crank_has_the_desks_bits: slider_crank_guide;
     a_four_bar_has_the_desks_bits: four_bar;
     a_woodpecker_has_the_desks_bits: woodpecker_toy;
+    what_motion_can_have_in_a_plane_has_the_desks_bits: motion_plane;
 }
 
 in_space! {
@@ -116,25 +125,36 @@ in_space! {
     a_drawer_has_the_desks_bits: telescopic_drawer, 2;
 }
 
-/// The desk has room for more coordinates than the composed type has; those stand still and change no bit.
-#[test]
-fn a_ball_rod_has_the_desks_bits() {
-    use mechanisms::ball_rod::{DIMENSION, STEP, STEPS, Scheme, start, unit};
-    let mechanism = scene("ball-rod");
-    let gaps = mechanism.gaps_at(&[0.0]).unwrap();
-    let mounts = spatial::mounts(&mechanism).unwrap().expect("ideal joints");
-    let tree = spatial::tree::<3, 18, 8>(&mechanism, &mounts).unwrap();
-    let elements = spatial::elements(&mechanism, &gaps, NO_STICK).unwrap();
-    let chosen = System::new(tree, ThroughJoints(&elements[..]));
-    let one = Kernel::<f64, _, Scheme>::new(unit(0.0).unwrap(), f64::from(STEP)).unwrap();
-    let other = Kernel::<f64, _, Scheme>::new(chosen, f64::from(STEP)).unwrap();
-    let (mut a, mut b) = (one.at_rest::<DIMENSION>(start().0), other.at_rest::<8>(tree.nominal()));
-    for k in 0..STEPS {
-        assert_eq!(one.step(&mut a), other.step(&mut b), "step {k}");
-        let (pose, velocity) = (&b.motion.pose[..DIMENSION], &b.motion.velocity.as_slice()[..DIMENSION]);
-        assert_eq!((&a.motion.pose[..], a.motion.velocity.as_slice()), (pose, velocity), "step {k}");
-    }
-    assert!(a.motion.velocity.norm() > 1.0, "it moves");
+macro_rules! on_joints {
+    ($($test:ident: $name:ident, $moves:literal;)*) => {$(
+        /// The desk has room for more coordinates than the composed type has; those stand still and change no bit.
+        #[test]
+        fn $test() {
+            use mechanisms::$name::{DIMENSION, STEP, STEPS, Scheme, start, unit};
+            let mechanism = scene(&stringify!($name).replace('_', "-"));
+            let gaps = mechanism.gaps_at(&[0.0]).unwrap();
+            let mounts = spatial::mounts(&mechanism).unwrap().expect("ideal joints");
+            let tree = spatial::tree::<3, 18, 8>(&mechanism, &mounts).unwrap();
+            let elements = spatial::elements(&mechanism, &gaps, NO_STICK).unwrap();
+            let chosen = System::new(tree, ThroughJoints(&elements[..]));
+            let one = Kernel::<f64, _, Scheme>::new(unit(0.0).unwrap(), f64::from(STEP)).unwrap();
+            let other = Kernel::<f64, _, Scheme>::new(chosen, f64::from(STEP)).unwrap();
+            let (mut a, mut b) = (one.at_rest::<DIMENSION>(start().0), other.at_rest::<8>(tree.nominal()));
+            let mut most = 0.0f64;
+            for k in 0..STEPS {
+                assert_eq!(one.step(&mut a), other.step(&mut b), "step {k}");
+                let (pose, velocity) = (&b.motion.pose[..DIMENSION], &b.motion.velocity.as_slice()[..DIMENSION]);
+                assert_eq!((&a.motion.pose[..], a.motion.velocity.as_slice()), (pose, velocity), "step {k}");
+                most = most.max(a.motion.velocity.norm());
+            }
+            assert!(most > $moves, "it moves");
+        }
+    )*};
+}
+
+on_joints! {
+    a_ball_rod_has_the_desks_bits: ball_rod, 1.0;
+    what_motion_can_have_in_space_has_the_desks_bits: motion_space, 0.1;
 }
 
 /// The greatest error of the drive's `effort` by steps of one length (s), as a share of its peak in the reference run `file`, whose

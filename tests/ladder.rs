@@ -27,7 +27,7 @@ const WITH_CLEARANCE: [(&str, &str); 2] =
     [("slide_exact_with_clearance", "slide_exact"), ("slide_regularised_with_clearance", "slide_regularised")];
 
 /// Shipped mechanisms in a plane, each with the step of its scene, by implicit Euler. The step of one in space is no function by itself.
-const MECHANISMS: [&str; 4] = ["slider_crank", "slider_crank_guide", "four_bar", "woodpecker_toy"];
+const MECHANISMS: [&str; 5] = ["slider_crank", "slider_crank_guide", "four_bar", "woodpecker_toy", "motion_plane"];
 
 /// Shipped mechanisms in space, by implicit Euler.
 const IN_SPACE: [&str; 4] = ["hatch", "linear_guide", "telescopic_drawer", "ball_rod"];

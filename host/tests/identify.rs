@@ -57,6 +57,27 @@ fn a_drive_train_gives_its_parameters_back() {
     assert!(symmetric["lack"]["verdict"].is_null());
 }
 
+/// What is found of a drive train is what a mechanism's drive may have as unknown.
+#[test]
+fn an_identified_drive_train_goes_into_a_mechanism() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "train.toml", TRAIN);
+    write(folder.path(), "run.csv", &swinging());
+    let law = "identify.law=symmetric";
+    stdout(&slipfit(folder.path(), &["identify", "train.toml", "run.csv", "--set", law, "-o", "found.toml"]));
+    let found = std::fs::read_to_string(folder.path().join("found.toml")).unwrap();
+    let scene = "mechanism = { space = \"plane\" }\nrun = { duration = 300 }\n\
+         [[body]]\nname = \"stage\"\nmass = 2000\ninertia = 1e6\ncentre = [0, 0]\n\
+         [[joint]]\nname = \"guide\"\nkind = \"prismatic\"\nbetween = [\"frame\", \"stage\"]\nat = [0, 0]\naxis = [1, 0]\n\
+         [[drive]]\nname = \"motor\"\npushes = \"stage\"\naxis = [1, 0]\ngain = 0.1\nramp_start = 0\nramp_end = 0.1\nspeed = 100\n\
+         limit = 30\ncoulomb = 5\nstick_band = 1\nviscous = \"3 N·s/m\"\n";
+    write(folder.path(), "stage.toml", &format!("{scene}{found}"));
+    let text = stdout(&slipfit(folder.path(), &["population", "stage.toml", "--units", "40"]));
+    for name in ["stage.mass", "motor.coulomb", "motor.viscous", "motor.offset"] {
+        assert!(text.contains(name), "{name} in\n{text}");
+    }
+}
+
 #[test]
 fn a_law_that_lacks_a_term_says_so_first() {
     let folder = tempfile::tempdir().unwrap();
@@ -68,7 +89,7 @@ fn a_law_that_lacks_a_term_says_so_first() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("decisively better than coulomb, offset"));
     let written = std::fs::read_to_string(folder.path().join("found.toml")).unwrap();
     assert!(
-        written.contains("# Lack of fit") && written.contains("\n[uncertain]\ndrive_train.coulomb = { mean = \""),
+        written.contains("# Lack of fit") && written.contains("\n[uncertain]\ndrive = [{ name = \"motor\", coulomb = { mean = \""),
         "{written}"
     );
 }

@@ -204,15 +204,21 @@ fn spatial_derivatives_are_those_of_the_forces() {
                     },
                 },
             ),
-            [Some(0), None].map(|from| Element::<_, _, 3> {
-                link: Seat { point: port(Some(1), 0.2, 0.1, -0.1), from },
-                law: LineSpring {
-                    stiffness: 30.0,
-                    damping: 4.0,
-                    free_length: 0.1,
-                    drawn: Vector3::new(0.2, -0.1, 0.1),
+            (
+                Element::<_, _, 1> {
+                    link: spatial::AtPoint { body: 0, lever: Vector3::new(0.1, -0.2, 0.3), axis_w: Vector3::y() },
+                    law: Motor(drive()),
                 },
-            }),
+                [Some(0), None].map(|from| Element::<_, _, 3> {
+                    link: Seat { point: port(Some(1), 0.2, 0.1, -0.1), from },
+                    law: LineSpring {
+                        stiffness: 30.0,
+                        damping: 4.0,
+                        free_length: 0.1,
+                        drawn: Vector3::new(0.2, -0.1, 0.1),
+                    },
+                }),
+            ),
         ),
     );
     let start = bodies.nominal();

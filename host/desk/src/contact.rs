@@ -1,6 +1,9 @@
 //! Laws of contacts as plain data.
 
-use slipfit_core::menu::{ContactData, FrictionData};
+use slipfit_core::{
+    law::StribeckData,
+    menu::{ContactData, FrictionData},
+};
 
 /// Laws of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -8,7 +11,63 @@ pub struct Laws {
     /// Along the normal.
     pub contact: NormalData,
     /// Along the tangents.
-    pub friction: FrictionData<f64>,
+    pub friction: SlidingData,
+}
+
+/// A law along a contact's tangents, SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SlidingData {
+    /// Coulomb friction, with one coefficient.
+    Coulomb(FrictionData<f64>),
+    /// Regularised friction with a static and a kinetic coefficient, the fall between them and a viscous part.
+    Stribeck(StribeckData<f64>),
+    /// True stick up to the static coefficient, sliding with the kinetic one.
+    StaticKinetic {
+        /// Static coefficient.
+        at_rest: f64,
+        /// Kinetic coefficient, not above it.
+        kinetic: f64,
+    },
+}
+
+impl SlidingData {
+    /// No friction.
+    pub const NONE: Self = Self::Coulomb(FrictionData::None);
+
+    /// The coefficient that has to be overcome to move: the static one, where there are two.
+    pub fn holds(&self) -> f64 {
+        match self {
+            Self::Coulomb(data) => data.coefficient(),
+            Self::Stribeck(StribeckData { at_rest, .. }) | Self::StaticKinetic { at_rest, .. } => *at_rest,
+        }
+    }
+
+    /// The coefficients, static before kinetic; none without friction.
+    pub fn coefficients(&mut self) -> Vec<&mut f64> {
+        match self {
+            Self::Coulomb(FrictionData::None) => Vec::new(),
+            Self::Coulomb(FrictionData::Regularised { coefficient, .. } | FrictionData::Exact { coefficient }) => {
+                vec![coefficient]
+            }
+            Self::Stribeck(StribeckData { at_rest, kinetic, .. }) | Self::StaticKinetic { at_rest, kinetic } => {
+                vec![at_rest, kinetic]
+            }
+        }
+    }
+
+    /// The stick band (m/s), of a regularised law.
+    pub fn stick_band(&mut self) -> Option<&mut f64> {
+        match self {
+            Self::Coulomb(FrictionData::Regularised { stick_band, .. })
+            | Self::Stribeck(StribeckData { stick_band, .. }) => Some(stick_band),
+            _ => None,
+        }
+    }
+
+    /// Whether only implicit steps can follow it.
+    pub fn sticks(&self) -> bool {
+        matches!(self, Self::Coulomb(FrictionData::Exact { .. }) | Self::StaticKinetic { .. })
+    }
 }
 
 /// A law along a contact's normal, SI units.

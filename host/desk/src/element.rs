@@ -5,23 +5,31 @@ use std::f64::consts::TAU;
 use nalgebra::Matrix3;
 use slipfit_core::{
     ParameterError, Scalar,
-    drive::Drive,
-    law::Regularised,
+    law::{Regularised, Stribeck, StribeckData},
     mechanism::Way,
     menu::FrictionData,
     system::{
         Assembly, Bodies, Element, Elements, Law, Link,
-        law::{Contact, Journal, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
+        law::{Contact, Contoured, Journal, LineSpring, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
         planar::{self, PlanarTree},
-        spatial::{About, Along, FreeBodies, Rim, Seat},
+        spatial::{About, Along, AtPoint, FreeBodies, Rim, Seat},
     },
 };
 
 use crate::{
     closing::Approach,
-    contact::Laws,
+    contact::{Laws, SlidingData},
+    drive::AnyDrive,
     laws::{AnyNormal, AnySliding},
 };
+
+/// Over how many stick bands static friction falls halfway to kinetic where a stick band is used in place of true stick: at the end of
+/// the band a thousandth of their difference is lost.
+const DROP: f64 = 33.0;
+
+/// The least stick band (m/s) that stands for true stick with such a fall: implicit steps are stable on a steeper one, where the motion
+/// itself is not, and would hold what has broken away.
+const LEAST_BAND: f64 = 3e-7;
 
 /// Any contact without internal variables.
 pub type AnyContact<S = f64> = Contact<AnyNormal<S>, AnySliding<S>>;
@@ -32,12 +40,28 @@ pub type AnyContact<S = f64> = Contact<AnyNormal<S>, AnySliding<S>>;
 /// [`ParameterError`] names the parameter that is not finite or out of bounds.
 pub fn contact<S: Scalar + PartialOrd>(laws: &Laws, stick_band: f64) -> Result<AnyContact<S>, ParameterError<S>> {
     let normal = AnyNormal::new(&laws.contact)?;
+    let number = S::from_f64;
     let regularised =
-        |coefficient, band| Ok(AnySliding::Regularised(Regularised::new(S::from_f64(coefficient), S::from_f64(band))?));
+        |coefficient, band| Ok(AnySliding::Regularised(Regularised::new(number(coefficient), number(band))?));
+    let stribeck = |data: StribeckData<f64>| {
+        let StribeckData { at_rest, kinetic, stribeck_speed, viscous, stick_band } = data;
+        let [at_rest, kinetic] = [at_rest, kinetic].map(number);
+        let [stribeck_speed, viscous, stick_band] = [stribeck_speed, viscous, stick_band].map(number);
+        let data = StribeckData { at_rest, kinetic, stribeck_speed, viscous, stick_band };
+        Ok(AnySliding::Stribeck(Stribeck::new(data)?))
+    };
     let friction = match laws.friction {
-        FrictionData::None => AnySliding::Frictionless,
-        FrictionData::Regularised { coefficient, stick_band } => regularised(coefficient, stick_band)?,
-        FrictionData::Exact { coefficient } => regularised(coefficient, stick_band)?,
+        SlidingData::Coulomb(FrictionData::None) => AnySliding::Frictionless,
+        SlidingData::Coulomb(FrictionData::Regularised { coefficient, stick_band }) => {
+            regularised(coefficient, stick_band)?
+        }
+        SlidingData::Coulomb(FrictionData::Exact { coefficient }) => regularised(coefficient, stick_band)?,
+        SlidingData::Stribeck(data) => stribeck(data)?,
+        SlidingData::StaticKinetic { at_rest, kinetic } => {
+            let stick_band = stick_band.max(LEAST_BAND);
+            let stribeck_speed = DROP * stick_band;
+            stribeck(StribeckData { at_rest, kinetic, stribeck_speed, viscous: 0.0, stick_band })?
+        }
     };
     Ok(Contact { normal, friction })
 }
@@ -65,6 +89,22 @@ fn act<S, B, L, W, const D: usize, const R: usize>(
     }
     let (response, _) = law.response(t, &seen.place, &seen.rate, internal, way);
     sum.add::<L, W, R>(link, at, &view, &response);
+}
+
+/// [`act`] in a function of its own.
+#[inline(never)]
+fn act_apart<S, B, L, W, const D: usize, const R: usize>(
+    element: &Element<L, W, R>,
+    way: (S, Way<S>),
+    at: (&B, &B::Placed),
+    sum: &mut impl Assembly<S, B, D>,
+) where
+    S: Scalar + PartialOrd,
+    B: Bodies<S, D>,
+    L: Link<S, B, D, R>,
+    W: Law<S, R, Internal = ()>,
+{
+    act(element, way, at, &(), sum);
 }
 
 /// The gap (m) of a contact, which is negative where it is pressed together.
@@ -107,7 +147,7 @@ fn approach<
 }
 
 /// An element in a plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PlanarElement<const D: usize> {
     /// A hole around a pin.
     Journal(Element<planar::Between<f64, D>, Journal<f64, AnyNormal<f64>, AnySliding<f64>>, 4>),
@@ -116,16 +156,20 @@ pub enum PlanarElement<const D: usize> {
     /// A torsion spring, and the angles (rad) at which its two bodies start.
     Spring(Element<planar::Turning, Spring<f64>, 1>, [f64; 2]),
     /// A torque.
-    Motor(Element<planar::Turning, Motor<Drive<f64>>, 1>),
+    Motor(Element<planar::Turning, Motor<AnyDrive>, 1>),
     /// A force.
-    Pusher(Element<planar::Along<f64, D>, Pusher<Drive<f64>>, 2>),
+    Pusher(Element<planar::Along<f64, D>, Pusher<AnyDrive>, 2>),
+    /// A point before a line with a contour.
+    Contour(Element<planar::Across<f64, D>, Contoured<f64, Pad<f64, AnyNormal<f64>, AnySliding<f64>>>, 2>),
+    /// A spring along the line between two points.
+    Line(Element<planar::Between<f64, D>, LineSpring<f64, 2>, 4>),
 }
 
 /// A ring around a rod whose axes are turned or not.
 type AnyRing<S> = Element<Rim<S, Option<Matrix3<S>>>, Ring<S, AnyNormal<S>, AnySliding<S>>, 3>;
 
 /// An element in space.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SpatialElement<S = f64> {
     /// A pin between walls.
     Pin(Element<Seat<S>, Pin<S, AnyNormal<S>, AnySliding<S>>, 3>),
@@ -134,9 +178,15 @@ pub enum SpatialElement<S = f64> {
     /// A ring around a rod whose axes are turned or not.
     Ring(AnyRing<S>),
     /// A torque.
-    Motor(Element<About<S>, Motor<Drive<S>>, 1>),
+    Motor(Element<About<S>, Motor<AnyDrive<S>>, 1>),
     /// A force.
-    Pusher(Element<Along<S>, Pusher<Drive<S>>, 2>),
+    Pusher(Element<Along<S>, Pusher<AnyDrive<S>>, 2>),
+    /// A force by the speed where it acts.
+    AtPoint(Element<AtPoint<S>, Motor<AnyDrive<S>>, 1>),
+    /// A point before a wall with a contour.
+    Contour(Element<Seat<S>, Contoured<S, Wall<S, AnyNormal<S>, AnySliding<S>>>, 3>),
+    /// A spring along the line between two points.
+    Line(Element<Seat<S>, LineSpring<S, 3>, 3>),
 }
 
 impl<const D: usize> PlanarElement<D> {
@@ -145,7 +195,8 @@ impl<const D: usize> PlanarElement<D> {
         match self {
             Self::Journal(element) => gap(element, at),
             Self::Pad(element) => gap(element, at),
-            Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) => None,
+            Self::Contour(element) => gap(element, at),
+            Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) | Self::Line(_) => None,
         }
     }
 
@@ -158,7 +209,8 @@ impl<const D: usize> PlanarElement<D> {
         match self {
             Self::Journal(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Pad(element) => approach((element, &element.law.contact.normal), at, see),
-            Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) => {}
+            Self::Contour(element) => approach((element, &element.law.wall.contact.normal), at, see),
+            Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) | Self::Line(_) => {}
         }
     }
 }
@@ -173,7 +225,8 @@ impl SpatialElement {
             Self::Pin(element) => gap(element, at),
             Self::Wall(element) => gap(element, at),
             Self::Ring(element) => gap(element, at),
-            Self::Motor(_) | Self::Pusher(_) => None,
+            Self::Contour(element) => gap(element, at),
+            Self::Motor(_) | Self::Pusher(_) | Self::AtPoint(_) | Self::Line(_) => None,
         }
     }
 }
@@ -190,7 +243,8 @@ impl<S: Scalar + PartialOrd> SpatialElement<S> {
             Self::Pin(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Wall(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Ring(element) => approach((element, &element.law.contact.normal), at, see),
-            Self::Motor(_) | Self::Pusher(_) => {}
+            Self::Contour(element) => approach((element, &element.law.wall.contact.normal), at, see),
+            Self::Motor(_) | Self::Pusher(_) | Self::AtPoint(_) | Self::Line(_) => {}
         }
     }
 }
@@ -239,6 +293,9 @@ impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
             }
             Self::Motor(element) => act(element, way, at, &(), sum),
             Self::Pusher(element) => act(element, way, at, &(), sum),
+            // Out of line: seldom asked for, they would be compiled into every mechanism.
+            Self::Contour(element) => act_apart(element, way, at, sum),
+            Self::Line(element) => act_apart(element, way, at, sum),
         }
     }
 
@@ -293,6 +350,9 @@ impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBod
             Self::Ring(element) => act(element, way, at, &(), sum),
             Self::Motor(element) => act(element, way, at, &(), sum),
             Self::Pusher(element) => act(element, way, at, &(), sum),
+            Self::AtPoint(element) => act(element, way, at, &(), sum),
+            Self::Contour(element) => act_apart(element, way, at, sum),
+            Self::Line(element) => act_apart(element, way, at, sum),
         }
     }
 

@@ -162,11 +162,13 @@ const STEPS_PER_LOOK: u32 = 256;
 pub type Accelerations<const D: usize> = [SVector<f64, D>; 2];
 
 /// How the contacts of a mechanism are watched, so that no step passes one over.
-pub struct Watched<F> {
+pub struct Watched<'a, F> {
     /// Fills in the contacts at a motion, always in the same order.
     pub gaps: F,
     /// How deep (m) a contact may be that a step passes over.
     pub depth: f64,
+    /// Ascending times (s) at which what is commanded bends: no step passes over one.
+    pub bends: &'a [f64],
 }
 
 /// Integrates `mechanism` from `start` at time 0 over `duration` (s) or until `accept` breaks, which sees the start and the
@@ -197,7 +199,9 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
             return Err(Stopped::Interrupted);
         }
         // A last step that would leave a splinter takes it along.
-        let length = if t + 1.01 * h >= duration { duration - t } else { h };
+        let next = watched.bends[watched.bends.partition_point(|bend| *bend <= t)..].first();
+        let limit = next.map_or(duration, |bend| bend.min(duration));
+        let length = if t + 1.01 * h >= limit { limit - t } else { h };
         let (step, accelerations) = I::dense_step(mechanism, t, length, &motion, &at_start);
         // A step that leaves the finite range is the worst of all: stages deep in a contact that the derivatives at the step's start do
         // not know overflow.
@@ -223,7 +227,7 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
         std::mem::swap(&mut before, &mut after);
         h = h.min(before.until_pushed(watched.depth)).max(LEAST_STEP);
         effort.accepted += 1;
-        t = if length == duration - t { duration } else { t + length };
+        t = if length == limit - t { limit } else { t + length };
         motion = step.motion;
         at_start = differentiated(t, &motion);
         flow = accept(t, &motion, Some(accelerations), &before);

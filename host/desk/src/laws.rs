@@ -5,7 +5,7 @@ use slipfit_core::{
     ParameterError, Scalar,
     law::{
         Elastic, Exact, Friction, Frictionless, HuntCrossley, Impact, LankaraniNikravesh, Linear, Normal,
-        NormalResponse, Power, Regularised, ThreeHalves,
+        NormalResponse, Power, Regularised, Stribeck, ThreeHalves,
         friction::{SlidingContact, Traction},
     },
     menu::{ContactData, FrictionData, FrictionType, NormalType, SlideData},
@@ -131,6 +131,14 @@ pub enum AnySliding<S> {
     Frictionless,
     /// Regularised Coulomb friction.
     Regularised(Regularised<S>),
+    /// Friction as it is measured.
+    Stribeck(Stribeck<S>),
+}
+
+/// The traction of Stribeck friction, in a function of its own: it is seldom asked for, and would be compiled into every contact.
+#[inline(never)]
+fn measured<S: Scalar>(law: &Stribeck<S>, contact: &SlidingContact<S>) -> Traction<S> {
+    law.traction(&(), contact).0
 }
 
 impl<S: Scalar> Friction<S> for AnySliding<S> {
@@ -145,6 +153,7 @@ impl<S: Scalar> Friction<S> for AnySliding<S> {
         match self {
             Self::Frictionless => Frictionless.traction(&(), contact),
             Self::Regularised(law) => law.traction(&(), contact),
+            Self::Stribeck(law) => (measured(law, contact), ()),
         }
     }
 

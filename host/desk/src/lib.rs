@@ -7,6 +7,7 @@
 
 pub mod closing;
 pub mod contact;
+pub mod drive;
 pub mod element;
 pub mod error_control;
 pub mod laws;

@@ -56,6 +56,8 @@ pub struct Allowed<'a> {
     pub error: &'a dyn Fn(Reported, f64) -> f64,
     /// How deep (m) a contact may be that a step passes over.
     pub depth: f64,
+    /// Ascending times (s) at which what is commanded bends: no step passes over one.
+    pub bends: &'a [f64],
 }
 
 /// What a step says about itself.
@@ -180,6 +182,7 @@ macro_rules! plants {
                             self.watch(&motion.pose, &motion.velocity, gaps);
                         },
                         depth: allowed.depth,
+                        bends: allowed.bends,
                     },
                     |t, motion, accelerations, gaps| see(t, &visible(motion), accelerations, Some(gaps)),
                 )

@@ -78,7 +78,7 @@ impl Kind {
             SpatialElement::Pin(one) => (one.link, Shape::Pin),
             SpatialElement::Wall(one) => (one.link, Shape::Wall(one.law.axis)),
             SpatialElement::Ring(one) => (one.link.seat, Shape::Ring { is_turned: one.link.axes.is_some() }),
-            SpatialElement::Motor(_) | SpatialElement::Pusher(_) => return None,
+            _ => return None,
         };
         Some(Self { bodies: [seat.point.body, seat.from], shape, laws })
     }
@@ -197,10 +197,10 @@ impl Groups {
         for (element, laws) in elements.iter().zip(laws) {
             match laws.and_then(|laws| Kind::of(element, laws)) {
                 Some(kind) => match groups.alike.iter_mut().find(|(of, _)| *of == kind) {
-                    Some((_, alike)) => alike.push(*element),
-                    None => groups.alike.push((kind, vec![*element])),
+                    Some((_, alike)) => alike.push(element.clone()),
+                    None => groups.alike.push((kind, vec![element.clone()])),
                 },
-                None => groups.others.push(*element),
+                None => groups.others.push(element.clone()),
             }
         }
         groups
@@ -211,8 +211,8 @@ impl Groups {
         let mut rest = self.others;
         for (kind, alike) in self.alike {
             let (fours, left) = alike.as_chunks::<LANES>();
-            rest.extend(fours.iter().filter(|elements| !four(&kind, elements)).flatten());
-            rest.extend(left);
+            rest.extend(fours.iter().filter(|elements| !four(&kind, elements)).flatten().cloned());
+            rest.extend(left.iter().cloned());
         }
         rest
     }
@@ -222,7 +222,7 @@ impl ByLane {
     fn new(groups: Groups) -> Self {
         let mut lanes = array::from_fn(|_| Vec::new());
         let rest = groups.fours(|_, four| {
-            lanes.iter_mut().zip(four).for_each(|(lane, element): (&mut Vec<_>, _)| lane.push(*element));
+            lanes.iter_mut().zip(four).for_each(|(lane, element): (&mut Vec<_>, _)| lane.push(element.clone()));
             true
         });
         Self { lanes, rest }

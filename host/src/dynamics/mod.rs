@@ -15,6 +15,7 @@ pub mod level;
 pub(crate) mod looks;
 pub mod outcome;
 pub mod run;
+pub mod setpoint;
 pub mod settings;
 pub mod simulate;
 pub mod slide;

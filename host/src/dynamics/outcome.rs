@@ -1,10 +1,11 @@
 //! What one simulated unit did.
 
 use serde::Serialize;
-use slipfit_core::{drive::Drive, table::MotionVerdict};
+use slipfit_core::table::MotionVerdict;
 use slipfit_desk::settled::extremes;
 pub use slipfit_desk::settled::{BREAKAWAY_SPEED, SETTLED_WINDOW, settled};
 
+use super::setpoint::Setpoint;
 use crate::setup::RunSpec;
 
 /// Share of the commanded speed from which a unit runs.
@@ -118,7 +119,10 @@ pub struct Outcome {
     pub stops: Option<Moment>,
     /// Where the slide tips: the first wall below a pin that meets its pin after the ramp's start, having been free until then.
     pub tips: Option<Moment>,
-    /// The verdict, at the end.
+    /// Speed as a share of the command where the verdict is made; NaN without a command.
+    #[serde(skip)]
+    pub share: f64,
+    /// The verdict, at the end; of a command with several stretches of constant speed, at the end of each: the first that is not run.
     pub verdict: Verdict,
 }
 
@@ -138,7 +142,11 @@ pub struct Instant {
 /// Watches a run instant by instant and keeps its figures, not the run.
 #[derive(Clone, Debug)]
 pub struct Observer {
-    drive: Drive<f64>,
+    setpoint: Setpoint,
+    /// Ends of stretches of constant speed that are still to come, the last first.
+    holds: Vec<f64>,
+    /// The share of the command at the end of the first such stretch in which the unit did not run, or else of the last one.
+    held: Option<f64>,
     run: RunSpec,
     last: Option<Instant>,
     breakaway: Option<f64>,
@@ -168,16 +176,19 @@ impl Below {
 }
 
 impl Observer {
-    /// For a `run` under `drive`.
-    pub fn new(drive: Drive<f64>, run: RunSpec) -> Self {
+    /// For a `run` under a drive that is commanded `setpoint`.
+    pub fn new(setpoint: impl Into<Setpoint>, run: RunSpec) -> Self {
+        let setpoint = setpoint.into();
+        let mut holds = setpoint.holds();
+        holds.reverse();
         let below = [Below::default(); 2];
         let window = std::collections::VecDeque::new();
-        Self { drive, run, last: None, breakaway: None, peak: None, below, tips: None, window }
+        Self { setpoint, holds, held: None, run, last: None, breakaway: None, peak: None, below, tips: None, window }
     }
 
     /// 1 or −1: the direction of the command. Speeds, forces and travel count along it.
     fn along(&self) -> f64 {
-        if self.drive.speed < 0.0 { -1.0 } else { 1.0 }
+        self.setpoint.along()
     }
 
     /// Whether a slide displaced by `z` (m) has come to the end of the stroke.
@@ -190,16 +201,19 @@ impl Observer {
         let along = self.along();
         let now = Instant { vz: at.vz * along, force: at.force * along, z: at.z * along, ..at };
         let Instant { t, vz, force, z } = now;
-        if t >= self.drive.ramp_start {
+        self.hold(&now);
+        if t >= self.setpoint.start() {
             if let Some(before) = self.last
-                && before.t >= self.drive.ramp_start
+                && before.t >= self.setpoint.start()
                 && before.vz < BREAKAWAY_SPEED
                 && vz >= BREAKAWAY_SPEED
             {
                 self.breakaway = Some(before.t + (t - before.t) * (BREAKAWAY_SPEED - before.vz) / (vz - before.vz));
             }
             self.peak = Some(self.peak.map_or(force.abs(), |peak| peak.max(force.abs())));
-            let command = self.drive.command(t) * along;
+            let command = self.setpoint.at(t) * along;
+            // Backwards where that is commanded.
+            let (vz, command) = if command < 0.0 { (-vz, -command) } else { (vz, command) };
             for (below, share) in self.below.iter_mut().zip([RUNS, JAMMED]) {
                 // A release burst is no motion.
                 let is_below = vz < (share * command).max(BREAKAWAY_SPEED);
@@ -214,6 +228,19 @@ impl Observer {
         }
     }
 
+    /// Takes note of the share of the command at the end of a stretch of constant speed, where `now` is there.
+    fn hold(&mut self, now: &Instant) {
+        while let Some(end) = self.holds.last().copied().filter(|end| now.t >= end * (1.0 - 1e-12)) {
+            self.holds.pop();
+            let at = match self.last {
+                Some(last) if now.t > end => last,
+                _ => *now,
+            };
+            let share = at.vz / (self.setpoint.at(end * (1.0 - 1e-9)) * self.along());
+            self.held = Some(self.held.map_or(share, |held| first_failure(held, share)));
+        }
+    }
+
     /// Takes note that the slide tips at time `t` (s), displaced by `z` (m). The first time counts.
     pub fn tips(&mut self, t: f64, z: f64) {
         let z = z * self.along();
@@ -224,14 +251,17 @@ impl Observer {
     pub fn outcome(&self) -> Outcome {
         let Instant { t, vz, z, .. } = self.last.unwrap_or(Instant { t: 0.0, vz: 0.0, force: 0.0, z: 0.0 });
         let is_at_end = self.run.stroke.map(|stroke| z >= stroke);
-        let command = self.drive.command(t) * self.along();
-        let share = vz / command;
+        let command = self.setpoint.at(t) * self.along();
         // At the stroke's end what the command is by then counts.
-        let over = t >= self.drive.ramp_end || is_at_end == Some(true);
-        let verdict = Verdict::of(share, over && command > 0.0);
+        let over = t >= self.setpoint.end() || is_at_end == Some(true);
+        let at_end = (command != 0.0).then_some(vz / command);
+        let share = [self.held, at_end].into_iter().flatten().reduce(first_failure);
+        let verdict = share.map_or(Verdict::Undecided, |share| Verdict::of(share, over));
+        let share = share.unwrap_or(f64::NAN);
         let swings = extremes(self.window.iter().map(|at| at.vz))
-            .filter(|speeds| verdict != Verdict::Undecided && between_verdicts(speeds.map(|speed| speed / command)));
-        let [slows, stops] = self.below.map(|below| below.since.filter(|_| over));
+            .filter(|_| verdict != Verdict::Undecided && command != 0.0)
+            .filter(|speeds| between_verdicts(speeds.map(|speed| speed / command)));
+        let [slows, stops] = self.below.map(|below| below.since.filter(|_| over && command != 0.0));
         Outcome {
             breakaway: self.breakaway,
             peak_force: self.peak,
@@ -243,9 +273,15 @@ impl Observer {
             slows,
             stops,
             tips: self.tips,
+            share,
             verdict,
         }
     }
+}
+
+/// The `first` of two shares of a command if the unit does not run with it, else the `second`.
+fn first_failure(first: f64, second: f64) -> f64 {
+    if Verdict::of(first, true) == Verdict::Runs { second } else { first }
 }
 
 /// Speed, as a share of the command, beyond which a drive has run away.
@@ -264,7 +300,7 @@ pub fn between_verdicts([least, greatest]: [f64; 2]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use slipfit_core::Vector3;
+    use slipfit_core::{Vector3, drive::Drive};
 
     fn run(duration: f64, stroke: Option<f64>) -> RunSpec {
         RunSpec { duration, stroke, error: 1e-6 }

@@ -235,19 +235,24 @@ impl Mechanism {
         self.drives.iter().map(move |named| {
             let motion = &motions[named.body];
             let (vz, z) = match named.action {
-                Action::Pushes { axis } => (&motion.velocity, &motion.displacement).along(axis),
+                Action::Pushes { axis } => {
+                    let lever = if named.at_centre { Vector3::zeros() } else { named.drive.point_b };
+                    let turned = motion.orientation * lever;
+                    let velocity = motion.velocity + motion.spin.cross(&turned);
+                    (&velocity, &(motion.displacement + (turned - lever))).along(axis)
+                }
                 Action::Turns { axis } => (&motion.spin, &motion.turned).along(axis),
             };
-            Instant { t, vz, force: named.drive.force(t, vz), z }
+            Instant { t, vz, force: named.effort(t, vz), z }
         })
     }
 
     /// The least inertia (kg, kg·m²) that a drive may find: that of its body alone.
     pub fn least_inertia(&self, NamedDrive { action, body, .. }: &NamedDrive) -> f64 {
-        let body = &self.bodies[*body];
+        let (mass, inertia) = self.moved_with(*body);
         match action {
-            Action::Pushes { .. } => body.mass,
-            Action::Turns { axis } => body.inertia.iter().zip(axis).map(|(inertia, axis)| inertia * axis * axis).sum(),
+            Action::Pushes { .. } => mass,
+            Action::Turns { axis } => inertia.iter().zip(axis).map(|(inertia, axis)| inertia * axis * axis).sum(),
         }
     }
 

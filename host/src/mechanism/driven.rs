@@ -64,7 +64,7 @@ pub fn confirmed(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<[Mec
     }
     let excess = one.energy_excess;
     for ((outcome, finer), named) in one.outcomes.iter_mut().zip(&better.outcomes).zip(&mechanism.drives) {
-        let agrees = figures_agree(outcome, finer, named.drive.command(finer.end.t));
+        let agrees = figures_agree(outcome, finer, named.commanded(finer.end.t));
         if excess.is_nan() || excess > ENERGY || !agrees {
             outcome.verdict = Verdict::Undecided;
         }
@@ -143,7 +143,7 @@ impl Driven for ByDrive<'_> {
     fn level(&self, n: f64, motion: Motion) -> Result<Level, SimulateError> {
         let gaps = self.mechanism.gaps_at(&[n]).map_err(|error| SimulateError::Parameter(error.to_string()))?;
         let mut commanded = Mechanism { run: motion.run, ..self.mechanism.clone() };
-        commanded.drives[self.drive].drive.speed = motion.speed;
+        commanded.drives[self.drive].set_speed(motion.speed);
         let [mut one, finer] = confirmed(&commanded, &gaps, motion.every)?;
         let (outcome, trajectory) = (one.outcomes[self.drive], one.trajectories.swap_remove(self.drive));
         let difference = trajectory.greatest_difference(&finer.trajectories[self.drive], self.drive().ramp_start);

@@ -29,14 +29,11 @@ impl<'a> Energies<'a> {
         let contacts = pressed.zip(joints_of_elements(mechanism)).filter_map(|(gap, joint)| {
             let ([stiffness, exponent], depth) = (joint?.laws.contact.spring(), -gap?);
             // Of a pin the deepest of its four walls is known.
-            let walls = if matches!(joint?.kind, JointKind::Track { .. }) { 4.0 } else { 1.0 };
+            let is_pin = matches!(joint?.kind, JointKind::Track { .. }) && joint?.contours.is_empty();
+            let walls = if is_pin { 4.0 } else { 1.0 };
             (depth > 0.0).then(|| walls * stiffness * libm::pow(depth, exponent + 1.0) / (exponent + 1.0))
         });
-        let springs = mechanism.springs.iter().map(|spring| {
-            let angle = |port: Option<usize>| port.map_or(0.0, |body| motions[body].turned.z);
-            let turned = angle(spring.between[0]) - angle(spring.between[1]);
-            0.5 * spring.stiffness * turned * turned
-        });
+        let springs = mechanism.springs.iter().map(|spring| spring.energy(mechanism, motions));
         let stored: f64 = contacts.chain(springs).sum();
         let start = mechanism.energy(motions).iter().sum::<f64>() + stored;
         let count = mechanism.drives.len();
@@ -55,7 +52,9 @@ impl<'a> Energies<'a> {
                     (motion.velocity + motion.spin.cross(&point)).dot(&Vector3::from(axis))
                 }
             };
-            let power = at.force * speed;
+            // An offset of the drive train works like a force.
+            let offset = named.train.map_or(0.0, |train| train.offset);
+            let power = (at.force - offset) * speed;
             self.work[k] += 0.5 * length * (power + self.last.1[k]);
             self.last.1[k] = power;
         }
@@ -83,14 +82,12 @@ impl Mechanism {
     /// Energy (J) of motion, and of height against gravity from the drawn pose.
     fn energy(&self, motions: &[BodyMotion]) -> [f64; 2] {
         let gravity = Vector3::from(self.gravity);
-        let each = self.bodies.iter().zip(motions).map(|(body, motion)| {
+        let each = self.bodies.iter().zip(motions).enumerate().map(|(k, (body, motion))| {
+            let (moved, inertia) = self.moved_with(k);
             // In a plane axes of body and frame share the one that counts.
             let spin_b = if self.planar { motion.spin } else { motion.orientation.inverse() * motion.spin };
-            let turning: f64 = spin_b.iter().zip(body.inertia).map(|(spin, inertia)| inertia * spin * spin).sum();
-            [
-                0.5 * (body.mass * motion.velocity.norm_squared() + turning),
-                -body.mass * gravity.dot(&motion.displacement),
-            ]
+            let turning: f64 = spin_b.iter().zip(inertia).map(|(spin, inertia)| inertia * spin * spin).sum();
+            [0.5 * (moved * motion.velocity.norm_squared() + turning), -body.mass * gravity.dot(&motion.displacement)]
         });
         each.fold([0.0, 0.0], |[moving, height], [of_motion, of_height]| [moving + of_motion, height + of_height])
     }

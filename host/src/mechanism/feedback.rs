@@ -1,6 +1,6 @@
 //! Drives whose feedback can turn positive.
 //!
-//! A pushing drive acts at its point and controls the speed of the centre of mass. On a body that turns about a pivot of the frame the
+//! A pushing drive acts at its point, and may control the speed of the centre of mass instead of its own. On a body that turns about a pivot of the frame the
 //! two move in the same sense only while both are on the same side of the pivot, seen along the drive's axis. Beyond, more force means
 //! less measured speed, and the drive drives itself away from its command.
 
@@ -31,6 +31,9 @@ pub fn reversals(mechanism: &Mechanism) -> Vec<Reversal<'_>> {
 
 fn reversal<'a>(mechanism: &'a Mechanism, named: &'a NamedDrive) -> Option<Reversal<'a>> {
     let Action::Pushes { axis } = named.action else { return None };
+    if !named.at_centre {
+        return None;
+    }
     let body = &mechanism.bodies[named.body];
     let mut pivots = mechanism.joints.iter().filter_map(|joint| match joint.kind {
         JointKind::Revolute { axis } => Some((joint, axis)),

@@ -10,7 +10,9 @@ use slipfit_core::{
     },
 };
 
-use super::{JointKind, Mechanism, Mounts, RunError, element::PlanarElement, element::SpatialElement, planar, spatial};
+use super::{
+    Joint, JointKind, Mechanism, Mounts, RunError, element::PlanarElement, element::SpatialElement, planar, spatial,
+};
 
 /// The mobility of a mechanism, n = 6(N − 1) − Σ i·c_i − n_cl (eq. 8), in a plane with 3 for 6.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -131,7 +133,7 @@ fn in_plane<const D: usize>(
             .joints
             .iter()
             .filter(|joint| !matches!(joint.kind, JointKind::Stop { .. }))
-            .cloned()
+            .map(straight)
             .collect(),
         ..mechanism.clone()
     };
@@ -152,6 +154,11 @@ fn in_plane<const D: usize>(
     Ok(rank_of(&rows))
 }
 
+/// A `joint` with straight and parallel walls.
+fn straight(joint: &Joint) -> Joint {
+    Joint { contours: Vec::new(), ..joint.clone() }
+}
+
 /// What joints with play hold of the free `bodies`: row by row the generalised force of 1 N.
 fn in_space<const N: usize, const W: usize>(
     mechanism: &Mechanism,
@@ -159,8 +166,9 @@ fn in_space<const N: usize, const W: usize>(
     gaps: &[f64],
 ) -> Result<Vec<SVector<f64, W>>, ParameterError<f64>> {
     let placed = bodies.placed(&bodies.nominal(), &SVector::zeros());
+    let joints = mechanism.joints.iter().map(straight).collect();
     let mut rows = Vec::new();
-    for element in spatial::elements(mechanism, gaps, 1.0)? {
+    for element in spatial::elements(&Mechanism { joints, ..mechanism.clone() }, gaps, 1.0)? {
         match element {
             SpatialElement::Pin(element) => {
                 let gradient = gradient(&element.link, bodies, &placed);

@@ -1,8 +1,13 @@
 //! The hash that ties a table and a kernel to the mechanism that they were made of.
 
-use super::{Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port};
+use super::{Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port, SlidingData, SpringKind};
 use crate::setup::Digest;
-use slipfit_core::{drive::Drive, menu::FrictionData};
+use slipfit_core::{
+    drive::{Drive, TrainData},
+    law::StribeckData,
+    menu::FrictionData,
+};
+use slipfit_desk::drive::Pieces;
 
 /// The physics of every unit, and which drive a table is of. Titles and names, what is simulated and how a controller
 /// computes count for nothing.
@@ -22,6 +27,14 @@ pub fn hash(mechanism: &Mechanism, drive: usize) -> u64 {
     for spring in &mechanism.springs {
         digest.counts(spring.between.map(port));
         digest.numbers([spring.stiffness, spring.damping]);
+        match spring.kind {
+            // Relaxed in the drawn pose, as every spring was that older tables know.
+            SpringKind::Torsion { rest: 0.0 } => {}
+            SpringKind::Torsion { rest } => digest.numbers([rest]),
+            SpringKind::Line { ends, free_length } => {
+                digest.numbers(ends.into_iter().flatten().chain([free_length]));
+            }
+        }
     }
     for named in &mechanism.drives {
         let Drive { gain, ramp_start, ramp_end, speed, point_b } = named.drive;
@@ -32,6 +45,19 @@ pub fn hash(mechanism: &Mechanism, drive: usize) -> u64 {
         digest.counts([named.body, kind]);
         digest.numbers([gain, ramp_start, ramp_end, speed].into_iter().chain(axis));
         digest.numbers(point_b.iter().copied());
+        if let Some(Pieces(pieces)) = &named.command {
+            digest.counts([pieces.len()]);
+            digest.numbers(pieces.iter().flat_map(|piece| piece.coefficients.into_iter().chain([piece.start])));
+        }
+        if let Some(train) = &named.train {
+            of_train(&mut digest, train);
+        }
+        if !named.at_centre && named.drive.point_b.iter().any(|of| *of != 0.0) {
+            digest.bytes(b"at its point");
+        }
+        if named.rotor != 0.0 {
+            digest.numbers([named.rotor]);
+        }
     }
     for Gap { statistics, .. } in &mechanism.gaps {
         digest.numbers([statistics.mean, statistics.deviation]);
@@ -44,7 +70,7 @@ fn port(port: Port) -> usize {
     port.map_or(0, |body| body + 1)
 }
 
-fn of_joint(digest: &mut Digest, Joint { between, at, kind, laws, .. }: &Joint) {
+fn of_joint(digest: &mut Digest, Joint { between, at, kind, laws, contours, drag, .. }: &Joint) {
     digest.counts(between.map(port));
     digest.numbers(*at);
     match kind {
@@ -70,6 +96,15 @@ fn of_joint(digest: &mut Digest, Joint { between, at, kind, laws, .. }: &Joint) 
     if !kind.is_ideal() {
         of_laws(digest, laws);
     }
+    digest.numbers(contours.iter().flat_map(|contour| [contour.slope, contour.curvature]));
+    if let Some(drag) = drag {
+        of_train(digest, drag);
+    }
+}
+
+fn of_train(digest: &mut Digest, train: &TrainData<f64>) {
+    let TrainData { limit, coulomb: [along, against], stick_band, viscous, offset } = *train;
+    digest.numbers([limit, along, against, stick_band, viscous, offset]);
 }
 
 fn of_laws(digest: &mut Digest, Laws { contact, friction }: &Laws) {
@@ -79,9 +114,15 @@ fn of_laws(digest: &mut Digest, Laws { contact, friction }: &Laws) {
         NormalData::LankaraniNikravesh(of) => with(digest, [2], [of.stiffness, of.exponent, of.restitution, of.speed]),
     }
     match friction {
-        FrictionData::None => digest.counts([0]),
-        FrictionData::Regularised { coefficient, stick_band } => with(digest, [1], [*coefficient, *stick_band]),
-        FrictionData::Exact { coefficient } => with(digest, [2], [*coefficient]),
+        SlidingData::Coulomb(FrictionData::None) => digest.counts([0]),
+        SlidingData::Coulomb(FrictionData::Regularised { coefficient, stick_band }) => {
+            with(digest, [1], [*coefficient, *stick_band]);
+        }
+        SlidingData::Coulomb(FrictionData::Exact { coefficient }) => with(digest, [2], [*coefficient]),
+        SlidingData::Stribeck(StribeckData { at_rest, kinetic, stribeck_speed, viscous, stick_band }) => {
+            with(digest, [3], [*at_rest, *kinetic, *stribeck_speed, *viscous, *stick_band]);
+        }
+        SlidingData::StaticKinetic { at_rest, kinetic } => with(digest, [4], [*at_rest, *kinetic]),
     }
 }
 

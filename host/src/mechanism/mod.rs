@@ -8,6 +8,7 @@ pub mod closing;
 pub mod columns;
 #[cfg(test)]
 mod contact_tests;
+mod drive;
 mod driven;
 mod energy;
 pub mod feedback;
@@ -31,12 +32,14 @@ pub mod self_locking;
 mod side_by_side_tests;
 mod source;
 pub mod spatial;
+mod spring;
 mod start;
 mod state;
 mod sunk;
 mod torn;
 
 pub use columns::BodyMotion;
+pub use drive::{Action, NamedDrive, UNLIMITED};
 pub use driven::{ByDrive, ENERGY, confirmed, finer};
 pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps, STOP_MOST, level_of};
@@ -48,15 +51,17 @@ pub use run::{controller_run, film, run};
 pub use run_error::RunError;
 pub(crate) use source::scheme;
 pub use source::{dimension, drive_names, element_paths, rust_source};
+pub use spring::{Spring, SpringKind};
 pub use start::Rest;
 pub use sunk::Sunk;
 pub use torn::{Torn, torn};
 
 use std::sync::Arc;
 
-use slipfit_core::{clearance::GapStatistics, drive::Drive};
+pub use slipfit_core::system::law::Contour;
+use slipfit_core::{clearance::GapStatistics, drive::TrainData};
 pub use slipfit_desk::{
-    contact::{Laws, NormalData, Rebound},
+    contact::{Laws, NormalData, Rebound, SlidingData},
     element,
 };
 
@@ -75,7 +80,7 @@ pub struct Mechanism {
     pub bodies: Vec<Body>,
     /// Joints.
     pub joints: Vec<Joint>,
-    /// Torsion springs.
+    /// Springs.
     pub springs: Vec<Spring>,
     /// Drives.
     pub drives: Vec<NamedDrive>,
@@ -139,6 +144,11 @@ pub struct Joint {
     pub kind: JointKind,
     /// Laws of its contacts.
     pub laws: Laws,
+    /// How its walls slope and bow along the travel: one for each line of a guide, left of the axis first, and for each wall of a track,
+    /// in the order of its gaps. None where they are straight and parallel.
+    pub contours: Vec<Contour<f64>>,
+    /// Friction of an ideal joint against its one motion, whatever it carries.
+    pub drag: Option<TrainData<f64>>,
 }
 
 /// What a joint is. Axes and normals are of unit length, in the drawn pose.
@@ -235,47 +245,6 @@ impl JointKind {
             Self::Stop { .. } => "stop",
         }
     }
-}
-
-/// A torsion spring between two bodies, relaxed in the drawn pose.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Spring {
-    /// Name.
-    pub name: String,
-    /// The bodies.
-    pub between: [Port; 2],
-    /// Stiffness (N·m/rad).
-    pub stiffness: f64,
-    /// Damping (N·m·s/rad).
-    pub damping: f64,
-}
-
-/// A drive with its name: a P-velocity controller behind a ramp (eq. 12).
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedDrive {
-    /// Name.
-    pub name: String,
-    /// The body that it drives, from the frame.
-    pub body: usize,
-    /// The controller. For a torque gain and speed are in N·m·s/rad and rad/s, and the point counts for nothing.
-    pub drive: Drive<f64>,
-    /// How it acts.
-    pub action: Action,
-}
-
-/// How a drive acts on its body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Action {
-    /// As a force along an axis of the frame, at the drive's point; it goes by the speed of the centre of mass.
-    Pushes {
-        /// Direction, of unit length.
-        axis: [f64; 3],
-    },
-    /// As a torque about an axis of the frame; it goes by the angular velocity.
-    Turns {
-        /// Direction, of unit length; in a plane it is the plane's normal.
-        axis: [f64; 3],
-    },
 }
 
 /// A gap over the production.

@@ -110,6 +110,7 @@ name = "rod"
 pushes = "lever"
 axis = [0, 1]
 point = [{}, {y}]
+controls = "centre"
 gain = 0.04
 ramp_start = 0.01
 ramp_end = 0.02

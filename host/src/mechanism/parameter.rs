@@ -1,7 +1,7 @@
 //! Parameters of a mechanism that can vary over the production, beside its gaps, or be unknown.
 
 use super::{Mechanism, NormalData};
-use crate::setup::{self, Adjustable, coefficient, stick_band, tilted_x, tilted_z};
+use crate::setup::{self, Adjustable, tilted_x, tilted_z};
 
 /// A parameter of a mechanism that varies.
 pub type Varied = setup::Varied<Parameter>;
@@ -11,7 +11,7 @@ pub type Uncertain = setup::Uncertain<Parameter>;
 /// A parameter of a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// Coefficient of friction of all joints.
+    /// Coefficient of friction of all joints: of those with two the kinetic one, and the static one with it.
     Friction,
     /// Speed below which the regularised friction of all joints fades.
     StickBand,
@@ -27,6 +27,16 @@ pub enum Parameter {
     Gain(usize),
     /// End of a drive's ramp.
     RampEnd(usize),
+    /// The most that a drive's motor gives.
+    Limit(usize),
+    /// Coulomb friction of a drive's train, along and against its axis.
+    Coulomb(usize),
+    /// Viscous friction of a drive's train.
+    Viscous(usize),
+    /// Offset of a drive's train.
+    Offset(usize),
+    /// Slope of all walls of a joint that have one.
+    Slope(usize),
     /// Direction of gravity: rotation about the frame's x.
     TiltX,
     /// Direction of gravity: rotation about the frame's z, in a plane within it.
@@ -46,8 +56,17 @@ impl Adjustable for Parameter {
         let joints = mechanism.joints.iter_mut().filter(|joint| !joint.kind.is_ideal());
         let laws = joints.map(|joint| &mut joint.laws);
         match self {
-            Self::Friction => laws.for_each(|laws| replace(coefficient(&mut laws.friction))),
-            Self::StickBand => laws.for_each(|laws| replace(stick_band(&mut laws.friction))),
+            Self::Friction => laws.for_each(|laws| {
+                let mut coefficients = laws.friction.coefficients();
+                let Some(kinetic) = coefficients.pop() else { return };
+                let before = *kinetic;
+                replace(Some(kinetic));
+                // A static coefficient keeps its ratio to the kinetic one.
+                for at_rest in coefficients {
+                    *at_rest = if before > 0.0 { *at_rest * (*kinetic / before) } else { at_rest.max(*kinetic) };
+                }
+            }),
+            Self::StickBand => laws.for_each(|laws| replace(laws.friction.stick_band())),
             Self::Stiffness => laws.for_each(|laws| match &mut laws.contact {
                 NormalData::Impact(data) => replace(Some(&mut data.stiffness)),
                 NormalData::HuntCrossley(data) | NormalData::LankaraniNikravesh(data) => {
@@ -67,6 +86,20 @@ impl Adjustable for Parameter {
             }
             Self::Gain(drive) => replace(Some(&mut mechanism.drives[drive].drive.gain)),
             Self::RampEnd(drive) => replace(Some(&mut mechanism.drives[drive].drive.ramp_end)),
+            Self::Limit(drive) => replace(mechanism.drives[drive].train.as_mut().map(|train| &mut train.limit)),
+            Self::Coulomb(drive) => {
+                mechanism.drives[drive]
+                    .train
+                    .iter_mut()
+                    .flat_map(|train| &mut train.coulomb)
+                    .for_each(|of| replace(Some(of)));
+            }
+            Self::Viscous(drive) => replace(mechanism.drives[drive].train.as_mut().map(|train| &mut train.viscous)),
+            Self::Offset(drive) => replace(mechanism.drives[drive].train.as_mut().map(|train| &mut train.offset)),
+            Self::Slope(joint) => {
+                let contours = mechanism.joints[joint].contours.iter_mut();
+                contours.filter(|of| of.slope != 0.0).for_each(|of| replace(Some(&mut of.slope)));
+            }
             Self::TiltX => mechanism.gravity = tilted_x(gravity, change(0.0)),
             Self::TiltZ => mechanism.gravity = tilted_z(gravity, change(0.0)),
         }

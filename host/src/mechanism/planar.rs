@@ -2,15 +2,18 @@
 
 use slipfit_core::{
     ParameterError, Vector2,
+    drive::Train,
     system::{
         Element,
-        law::{Journal, Motor, Pad, Pusher, Spring},
+        law::{Axis, Contour, Contoured, Journal, LineSpring, Motor, Pad, Pusher, Spring},
         planar::{Across, Along, Between, Coordinate, PlanarTree, Rigid, Turning},
     },
 };
 
+use slipfit_desk::drive::AnyDrive;
+
 use super::{
-    Action, Body, JointKind, Mechanism, Mounts, Rest,
+    Action, Body, JointKind, Mechanism, Mounts, Rest, SpringKind,
     element::{PlanarElement, contact},
     mounts::flat,
 };
@@ -32,10 +35,9 @@ pub fn bodies<const D: usize>(
 
 /// The bodies of `mechanism` on their `mounts`: masses, moments of inertia and centres of mass.
 pub fn rigid<const D: usize>(mechanism: &Mechanism, mounts: &Mounts) -> Vec<Rigid<f64, D>> {
-    let body = |(i, body): (usize, &Body)| Rigid {
-        mass: body.mass,
-        inertia: body.inertia[2],
-        centre: mounts.point(Some(i), flat(body.centre)),
+    let body = |(i, body): (usize, &Body)| {
+        let (mass, [_, _, inertia]) = mechanism.moved_with(i);
+        Rigid { mass, inertia, centre: mounts.point(Some(i), flat(body.centre)) }
     };
     mechanism.bodies.iter().enumerate().map(body).collect()
 }
@@ -68,8 +70,16 @@ pub fn elements<const D: usize>(
                     let seat = at + up * (across * side);
                     let normal = up * if side > 0.0 { -1.0 } else { 1.0 };
                     let link = Across { point: mounts.point(first, corner), seat: mounts.point(second, seat), normal };
-                    let law = Pad { gap: gaps[gap], contact: contact(&joint.laws, stick_band)? };
-                    elements.push(PlanarElement::Pad(Element { link, law }));
+                    let wall = Pad { gap: gaps[gap], contact: contact(&joint.laws, stick_band)? };
+                    // The second axis of the link points back along the lines on their left, and along them on their right.
+                    let (line, sense) = if side > 0.0 { (0, 1.0) } else { (1, -1.0) };
+                    elements.push(match joint.contours.get(line) {
+                        None => PlanarElement::Pad(Element { link, law: wall }),
+                        Some(Contour { slope, curvature }) => {
+                            let contour = Contour { slope: sense * slope, curvature: *curvature };
+                            PlanarElement::Contour(Element { link, law: Contoured { wall, along: Axis::Y, contour } })
+                        }
+                    });
                 }
             }
             JointKind::Stop { gap, normal } => {
@@ -83,14 +93,43 @@ pub fn elements<const D: usize>(
     }
     let Rest { places, .. } = Rest::<D>::of(mechanism, mounts);
     for spring in &mechanism.springs {
+        let (stiffness, damping) = (spring.stiffness, spring.damping);
+        let rest = match spring.kind {
+            SpringKind::Torsion { rest } => rest,
+            SpringKind::Line { ends: [of_first, of_second], free_length } => {
+                let [first, second] = spring.between;
+                let link =
+                    Between { hole: mounts.point(second, flat(of_second)), pin: mounts.point(first, flat(of_first)) };
+                let law = LineSpring { stiffness, damping, free_length, drawn: Vector2::zeros() };
+                elements.push(PlanarElement::Line(Element { link, law }));
+                continue;
+            }
+        };
         let [body, against] = spring.between.map(|port| mounts.turn(port));
         let starts = [body, against].map(|turn| turn.map_or(0.0, |k| places[k]));
-        let (stiffness, damping) = (spring.stiffness, spring.damping);
-        let law = Spring { stiffness, damping, rest: 0.0, start: starts[0] - starts[1] };
+        let law = Spring { stiffness, damping, rest, start: starts[0] - starts[1] };
         elements.push(PlanarElement::Spring(Element { link: Turning { body, against }, law }, starts));
     }
+    for joint in &mechanism.joints {
+        let Some(data) = joint.drag else { continue };
+        let drag = AnyDrive::Friction(Train::new((), data)?);
+        let [first, second] = joint.between;
+        elements.push(match joint.kind {
+            JointKind::Prismatic { axis } => {
+                let point = mounts.point(first.or(second), flat(joint.at));
+                PlanarElement::Pusher(Element {
+                    link: Along { point, sensor: point, axis: flat(axis) },
+                    law: Pusher(drag),
+                })
+            }
+            _ => {
+                let link = Turning { body: mounts.turn(first), against: mounts.turn(second) };
+                PlanarElement::Motor(Element { link, law: Motor(drag) })
+            }
+        });
+    }
     for named in &mechanism.drives {
-        let drive = named.drive.checked()?;
+        let drive = named.law(mechanism)?;
         elements.push(match named.action {
             Action::Turns { .. } => {
                 let link = Turning { body: mounts.turn(Some(named.body)), against: None };
@@ -98,8 +137,9 @@ pub fn elements<const D: usize>(
             }
             Action::Pushes { axis } => {
                 let centre = flat(mechanism.bodies[named.body].centre);
-                let point = centre + Vector2::new(drive.point_b.x, drive.point_b.y);
-                let [point, sensor] = [point, centre].map(|at| mounts.point(Some(named.body), at));
+                let point = centre + Vector2::new(named.drive.point_b.x, named.drive.point_b.y);
+                let sensor = if named.at_centre { centre } else { point };
+                let [point, sensor] = [point, sensor].map(|at| mounts.point(Some(named.body), at));
                 PlanarElement::Pusher(Element { link: Along { point, sensor, axis: flat(axis) }, law: Pusher(drive) })
             }
         });

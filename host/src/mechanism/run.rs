@@ -222,7 +222,7 @@ fn solve<P: Plant<D>, const D: usize>(
         drives.extend(mechanism.drives_at(t, motions).zip(&origins).map(from));
     };
     let named = mechanism.drives.iter().enumerate();
-    let mut observers: Vec<_> = named.map(|(k, named)| Observer::new(named.drive, of_drive(k))).collect();
+    let mut observers: Vec<_> = named.map(|(k, named)| Observer::new(named.setpoint(), of_drive(k))).collect();
     let mut there = Vec::new();
     let mut ends = |observers: &[Observer], state: &State<D>| {
         let (Some(first), Some(_)) = (observers.first(), mechanism.run.stroke) else { return false };
@@ -249,10 +249,12 @@ fn solve<P: Plant<D>, const D: usize>(
         if is_absurd || ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
+    let mut bends: Vec<f64> = mechanism.drives.iter().flat_map(|named| named.setpoint().bends()).collect();
+    bends.sort_by(f64::total_cmp);
     let effort = match by.controller {
         None => {
             let error = |step: Reported, length: f64| limits.error(&step, length, least_mass);
-            desk.by_desk(start, duration, Allowed { error: &error, depth: limits.place() }, &mut keep)
+            desk.by_desk(start, duration, Allowed { error: &error, depth: limits.place(), bends: &bends }, &mut keep)
         }
         Some(ControllerSpec { step, integrator, .. }) => {
             desk.by_controller(start, duration, (integrator, step), &mut keep)

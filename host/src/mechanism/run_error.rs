@@ -9,6 +9,11 @@ use crate::dynamics::{error_control::Stopped, simulate::SimulateError};
 /// Why a unit has no run.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum RunError {
+    /// A unit for co-simulation cannot have this.
+    #[error(
+        "a co-simulation unit cannot have {0}: it sets gaps, gains and commands itself; take `simulate`, or a kernel"
+    )]
+    NoUnit(String),
     /// The joints are no tree.
     #[error(transparent)]
     Mounts(#[from] MountError),

@@ -40,7 +40,7 @@ where
         let reported = Reported { residual: step.residual, error: step.error, drift: step.drift };
         limits.error(&reported, length, least_mass)
     };
-    let unwatched = Watched { gaps: |_: &_, _: &mut _| (), depth: 0.0 };
+    let unwatched = Watched { gaps: |_: &_, _: &mut _| (), depth: 0.0, bends: &[] };
     integrate::<Rodas4, _, D>(&desk, start, 0.2, error, unwatched, |t, motion, _, _| {
         steps.push((t, motion.velocity));
         ControlFlow::Continue(())

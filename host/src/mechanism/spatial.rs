@@ -3,18 +3,21 @@
 use nalgebra::Matrix3;
 use slipfit_core::{
     ParameterError, Vector3,
+    drive::Train,
     system::{
         Element,
-        law::{Axis, Motor, Pin, Pusher, Ring, Wall},
+        law::{Axis, Contoured, LineSpring, Motor, Pin, Pusher, Ring, Wall},
         spatial::{
-            About, Along, FreeBodies, Port as PointOf, Rigid, Rim, Seat,
+            About, Along, AtPoint, FreeBodies, Port as PointOf, Rigid, Rim, Seat,
             tree::{Joint as IdealJoint, Mount, SpatialTree},
         },
     },
 };
 
+use slipfit_desk::drive::AnyDrive;
+
 use super::{
-    Action, Joint, JointKind, Mechanism, MountError, Port,
+    Action, Joint, JointKind, Mechanism, MountError, Port, SpringKind,
     element::{AnyContact, SpatialElement, contact},
     hanging::{Hung, hanging},
 };
@@ -37,8 +40,9 @@ pub fn bodies<const N: usize, const D: usize>(
 ) -> Result<FreeBodies<f64, N, D>, ParameterError<f64>> {
     let none = Rigid { mass: 1.0, inertia_b: Vector3::repeat(1.0), centre_w: Vector3::zeros() };
     let mut bodies = [none; N];
-    for (rigid, body) in bodies.iter_mut().zip(&mechanism.bodies) {
-        *rigid = Rigid { mass: body.mass, inertia_b: body.inertia.into(), centre_w: body.centre.into() };
+    for (k, (rigid, body)) in bodies.iter_mut().zip(&mechanism.bodies).enumerate() {
+        let (mass, inertia) = mechanism.moved_with(k);
+        *rigid = Rigid { mass, inertia_b: inertia.into(), centre_w: body.centre.into() };
     }
     FreeBodies::new(bodies, mechanism.gravity.into())
 }
@@ -103,15 +107,46 @@ pub fn elements(
     for joint in &mechanism.joints {
         add(mechanism, joint, gaps, contact(&joint.laws, stick_band)?, &mut elements)?;
     }
+    for spring in &mechanism.springs {
+        let SpringKind::Line { ends, free_length } = spring.kind else { continue };
+        let [of_first, of_second] = ends.map(Vector3::from);
+        let [first, from] = spring.between;
+        let (stiffness, damping) = (spring.stiffness, spring.damping);
+        let law = LineSpring { stiffness, damping, free_length, drawn: of_first - of_second };
+        let link = Seat { point: point_of(mechanism, first, of_first), from };
+        elements.push(SpatialElement::Line(Element { link, law }));
+    }
+    for joint in &mechanism.joints {
+        let Some(data) = joint.drag else { continue };
+        let law = Motor(AnyDrive::Friction(Train::new((), data)?));
+        let Some(body) = joint.between.into_iter().flatten().next() else { continue };
+        elements.push(match joint.kind {
+            JointKind::Revolute { axis } => {
+                SpatialElement::Motor(Element { link: About { body, axis_w: axis.into() }, law })
+            }
+            JointKind::Prismatic { axis } => {
+                let lever = point_of(mechanism, Some(body), joint.at.into()).lever;
+                SpatialElement::AtPoint(Element { link: AtPoint { body, lever, axis_w: axis.into() }, law })
+            }
+            _ => continue,
+        });
+    }
     for named in &mechanism.drives {
-        let drive = named.drive.checked()?;
+        let drive = named.law(mechanism)?;
+        let lever = named.drive.point_b;
         elements.push(match named.action {
+            Action::Pushes { axis } if !named.at_centre && lever != Vector3::zeros() => {
+                SpatialElement::AtPoint(Element {
+                    link: AtPoint { body: named.body, lever, axis_w: axis.into() },
+                    law: Motor(drive),
+                })
+            }
             Action::Turns { axis } => SpatialElement::Motor(Element {
                 link: About { body: named.body, axis_w: axis.into() },
                 law: Motor(drive),
             }),
             Action::Pushes { axis } => SpatialElement::Pusher(Element {
-                link: Along { body: named.body, lever: drive.point_b, axis_w: axis.into() },
+                link: Along { body: named.body, lever, axis_w: axis.into() },
                 law: Pusher(drive),
             }),
         });
@@ -137,6 +172,16 @@ fn add(
     let at: Vector3<f64> = joint.at.into();
     let seat = |at| Seat { point: point_of(mechanism, first, at), from };
     match joint.kind {
+        JointKind::Track { gaps: indices } if !joint.contours.is_empty() => {
+            let walls = [(Axis::X, 1.0), (Axis::X, -1.0), (Axis::Y, -1.0), (Axis::Y, 1.0)];
+            for ((gap, contour), (axis, sign)) in indices.into_iter().zip(&joint.contours).zip(walls) {
+                if let Some(gap) = gap {
+                    let wall = Wall { axis, sign, gap: gaps[gap], contact };
+                    let law = Contoured { wall, along: Axis::Z, contour: *contour };
+                    elements.push(SpatialElement::Contour(Element { link: seat(at), law }));
+                }
+            }
+        }
         JointKind::Track { gaps: indices } => {
             let gaps = indices.map(|gap| gap.map_or(NONE, |gap| gaps[gap]));
             elements.push(SpatialElement::Pin(Element { link: seat(at), law: Pin { gaps, contact } }));

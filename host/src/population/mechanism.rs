@@ -105,17 +105,15 @@ fn of_run(driven: &ByDrive, drawn: &Drawn<Vec<f64>>, i: usize) -> Result<(Outcom
     let spec = RunSpec { error: own.run.error.max(ERROR), ..own.run };
     let found = run(&Mechanism { run: spec, ..own.clone() }, gaps, spec.duration)?;
     let outcome = found.outcomes[driven.index()];
-    let drive = own.drives[driven.index()].drive;
-    let share = |outcome: &Outcome| outcome.final_velocity / drive.command(outcome.end.t).abs();
     let has_energy_from_nowhere = found.energy_excess.is_nan() || found.energy_excess > ENERGY;
-    let is_doubtful = is_near_a_limit(share(&outcome)) || outcome.swings.is_some() || has_energy_from_nowhere;
+    let is_doubtful = is_near_a_limit(outcome.share) || outcome.swings.is_some() || has_energy_from_nowhere;
     // No verdict stays none.
     if outcome.verdict == Verdict::Undecided || !is_doubtful {
-        return Ok((outcome, share(&outcome), false));
+        return Ok((outcome, outcome.share, false));
     }
     let [exact, _] = confirmed(&own, gaps, spec.duration)?;
     let exact = exact.outcomes[driven.index()];
-    Ok((exact, share(&exact), true))
+    Ok((exact, exact.share, true))
 }
 
 fn told(outcome: &Outcome, at_desk: bool) -> UnitOutcome {

@@ -72,7 +72,19 @@ macro_rules! parameters {
             table("slide", &[table("mass", $below), table("tilt_x", $below), table("tilt_z", $below)]),
             table("mechanism", &[table("tilt_x", $below), table("tilt_z", $below)]),
             table("body", &[key("name"), table("mass", $below)]),
-            table("drive", &[key("name"), table("gain", $below), table("ramp_end", $below)]),
+            table("joint", &[key("name"), table("slope", $below)]),
+            table(
+                "drive",
+                &[
+                    key("name"),
+                    table("gain", $below),
+                    table("ramp_end", $below),
+                    table("limit", $below),
+                    table("coulomb", $below),
+                    table("viscous", $below),
+                    table("offset", $below),
+                ],
+            ),
         ]
     };
 }
@@ -145,7 +157,16 @@ const AXIS: &[Key] = &[
 
 const CONTACT: &[Key] =
     &[key("law"), key("stiffness"), key("exponent"), key("damping"), key("depth"), key("restitution"), key("speed")];
-const FRICTION: &[Key] = &[key("law"), key("coefficient"), key("stick_band")];
+const FRICTION: &[Key] = &[
+    key("law"),
+    key("coefficient"),
+    key("stick_band"),
+    key("static_coefficient"),
+    key("stribeck_speed"),
+    key("viscous"),
+];
+const SEGMENT: &[Key] =
+    &[key("kind"), key("speed"), key("duration"), key("acceleration"), key("jerk"), key("amplitude"), key("frequency")];
 
 /// The keys of a feature of this shape.
 pub(super) fn of_feature(shape: Shape) -> &'static [Key] {
@@ -174,6 +195,17 @@ pub(super) const ROOT: &[Key] = &[
             key("pushes"),
             key("turns"),
             key("axis"),
+            key("controls"),
+            table("segment", SEGMENT),
+            key("cycles"),
+            key("limit"),
+            key("coulomb"),
+            key("stick_band"),
+            key("viscous"),
+            key("offset"),
+            key("rotor"),
+            key("gear"),
+            key("travel"),
         ],
     ),
     table("mechanism", &[key("space"), key("gravity")]),
@@ -195,11 +227,27 @@ pub(super) const ROOT: &[Key] = &[
             key("right"),
             key("rail"),
             key("wall"),
+            key("slope"),
+            key("bow"),
+            key("coulomb"),
+            key("stick_band"),
+            key("viscous"),
             table("contact", CONTACT),
             table("friction", FRICTION),
         ],
     ),
-    table("spring", &[key("name"), key("between"), key("stiffness"), key("damping")]),
+    table(
+        "spring",
+        &[
+            key("name"),
+            key("between"),
+            key("stiffness"),
+            key("damping"),
+            key("preload"),
+            key("ends"),
+            key("free_length"),
+        ],
+    ),
     table("run", &[key("duration"), key("stroke"), key("error")]),
     table("controller", &[key("step"), key("integrator"), key("scalar")]),
     table("sweep", &[key("n")]),

@@ -7,6 +7,7 @@ mod contact;
 mod diagnostic;
 mod drawing;
 mod file;
+mod friction;
 mod identify;
 mod key_checks;
 mod keys;

@@ -18,16 +18,17 @@ use super::{
     Override, Problem, SceneError,
     contact::impact,
     diagnostic::{COMMAND_LINE, Found},
+    friction::coulomb,
     parse_levels,
     plausible::{self, Loads},
-    quantity::{COEFFICIENT, GAIN, LEAST_RAMP, MASS, POINT, RAMP, SPEED, STICK_BAND},
+    quantity::{GAIN, LEAST_RAMP, MASS, POINT, RAMP, SPEED},
     slide_parameters,
     tree::{Source, Value},
     uncertain::uncertain,
     value::Field,
     vary::vary,
 };
-use crate::setup::{ControllerSpec, GapMeasures, LevelRange, PinSpec, RunSpec, SURFACES, Scene, SlideSpec};
+use crate::setup::{ControllerSpec, GapMeasures, LevelRange, PinSpec, RunSpec, SURFACES, Scene, SlideSpec, stick_band};
 
 const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
@@ -59,8 +60,9 @@ pub(super) fn scene(
     let slide = found.recover(root.table("slide").and_then(|table| slide(&table)), nothing);
     let nothing = ContactData { stiffness: 1.0, exponent: 1.0, damping: 0.0, depth: 1.0 };
     let contact = found.recover(root.table("contact").and_then(|table| impact(&table)), nothing);
-    let friction = found.recover(root.table("friction").and_then(|table| friction(&table)), FrictionData::None);
-    let controller = found.recover(controller(root, &friction), DEFAULT_CONTROLLER);
+    let friction = found.recover(root.table("friction").and_then(|table| coulomb(&table)), FrictionData::None);
+    let controller =
+        found.recover(controller(root, matches!(friction, FrictionData::Exact { .. })), DEFAULT_CONTROLLER);
     let nothing = RunSpec { duration: 1.0, stroke: None, error: DEFAULT_ERROR };
     let run = found.recover(root.table("run").and_then(|table| run(&table, false)), nothing);
     let nothing = Drive { gain: 1.0, ramp_start: 0.0, ramp_end: 1.0, speed: 0.0, point_b: [0.0; 3].into() };
@@ -126,7 +128,7 @@ fn doubt(root: &Field, scene: &Scene) {
         plausible::gain(&field, scene.drive.gain);
     }
     if let Some(field) = root.get("friction").and_then(|friction| friction.get("stick_band")) {
-        plausible::stick_band(&field, &scene.friction, scene.drive.speed.abs());
+        plausible::stick_band(&field, stick_band(&mut scene.friction.clone()).copied(), scene.drive.speed.abs());
     }
     let Some(Value::List(nodes)) = root.get("pin").map(|pins| &pins.node.value) else { return };
     for (node, pin) in nodes.iter().zip(&scene.pins) {
@@ -177,36 +179,6 @@ fn slide(table: &Field) -> Result<SlideSpec, SceneError> {
     Ok(SlideSpec { mass, inertia_box, gravity })
 }
 
-pub(super) fn friction(table: &Field) -> Result<FrictionData<f64>, SceneError> {
-    const LAWS: &str = "regularised, exact, none";
-    let law = table.require("law", LAWS)?;
-    let (key, written) = (law.key.clone(), law.written(""));
-    let coefficient = || -> Result<f64, SceneError> {
-        let coefficient = table.number("coefficient", &COEFFICIENT)?;
-        if let Some(field) = table.get("coefficient") {
-            plausible::friction(&field, coefficient);
-        }
-        Ok(coefficient)
-    };
-    match law.to_text()? {
-        "regularised" => Ok(FrictionData::Regularised {
-            coefficient: coefficient()?,
-            stick_band: table.number("stick_band", &STICK_BAND)?,
-        }),
-        "none" => {
-            // Not used, but wrong all the same.
-            table.get("coefficient").map(|field| field.to_number(&COEFFICIENT)).transpose()?;
-            table.get("stick_band").map(|field| field.to_number(&STICK_BAND)).transpose()?;
-            Ok(FrictionData::None)
-        }
-        "exact" => {
-            table.get("stick_band").map(|field| field.to_number(&STICK_BAND)).transpose()?;
-            Ok(FrictionData::Exact { coefficient: coefficient()? })
-        }
-        _ => Err(law.error(Problem::Choice { key, written }, LAWS)),
-    }
-}
-
 fn drive(table: &Field) -> Result<Drive<f64>, SceneError> {
     let ramp_start = table.number("ramp_start", &RAMP)?;
     let end = table.require("ramp_end", &RAMP.units())?;
@@ -240,12 +212,12 @@ pub(super) fn run(table: &Field, turns: bool) -> Result<RunSpec, SceneError> {
     })
 }
 
-/// Reads the optional table `controller`, of which every key is optional.
-pub(super) fn controller(root: &Field, friction: &FrictionData<f64>) -> Result<ControllerSpec, SceneError> {
+/// Reads the optional table `controller`, of which every key is optional. Friction that `sticks` needs an implicit scheme.
+pub(super) fn controller(root: &Field, sticks: bool) -> Result<ControllerSpec, SceneError> {
     let Some(table) = root.get("controller") else { return Ok(DEFAULT_CONTROLLER) };
     table.expect_table()?;
     let step = table.get("step").map(|field| field.to_number(&STEP)).transpose()?;
-    let integrator = table.get("integrator").map(|field| integrator(&field, friction)).transpose()?;
+    let integrator = table.get("integrator").map(|field| integrator(&field, sticks)).transpose()?;
     let scalar = table.get("scalar").map(|field| choice(&field, ScalarKind::ALL, ScalarKind::name)).transpose()?;
     Ok(ControllerSpec {
         step: step.unwrap_or(DEFAULT_CONTROLLER.step),
@@ -267,9 +239,9 @@ pub(super) fn choice<T: Copy, const N: usize>(
     })
 }
 
-fn integrator(field: &Field, friction: &FrictionData<f64>) -> Result<IntegratorKind, SceneError> {
+fn integrator(field: &Field, sticks: bool) -> Result<IntegratorKind, SceneError> {
     let kind = choice(field, IntegratorKind::ALL, IntegratorKind::name)?;
-    if matches!(friction, FrictionData::Exact { .. }) && !kind.is_implicit() {
+    if sticks && !kind.is_implicit() {
         let implicit: Vec<_> = IntegratorKind::ALL.into_iter().filter(|kind| kind.is_implicit()).collect();
         let names = implicit.into_iter().map(IntegratorKind::name).collect::<Vec<_>>().join(", ");
         return Err(field.error(Problem::ExplicitFriction(kind.name().into()), names));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use slipfit_core::menu::{ContactData, FrictionData};
+use slipfit_core::menu::ContactData;
 use slipfit_tolerance::number::{ten_digits, three_digits};
 use slipfit_tolerance::unit::{self, Unit};
 
@@ -61,10 +61,10 @@ pub(super) fn friction(field: &Field, coefficient: f64) {
     }
 }
 
-/// Warns about a stick band, stated by `field` in a law of `friction`, that is wider than the commanded `speed` (m/s): all sliding is then
+/// Warns about a stick band, stated by `field`, that is wider than the commanded `speed` (m/s): all sliding is then
 /// inside it, where friction acts as a damper.
-pub(super) fn stick_band(field: &Field, friction: &FrictionData<f64>, speed: f64) {
-    let FrictionData::Regularised { stick_band, .. } = *friction else { return };
+pub(super) fn stick_band(field: &Field, stick_band: Option<f64>, speed: f64) {
+    let Some(stick_band) = stick_band else { return };
     if speed == 0.0 || stick_band <= speed {
         return;
     }

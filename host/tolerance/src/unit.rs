@@ -57,6 +57,18 @@ pub const MICROSECONDS: &[Unit] = &[MICROSECOND, MILLISECOND, si("s")];
 pub const SPEED: &[Unit] = &[per("mm/s", 1e3), si("m/s")];
 /// Accelerations.
 pub const ACCELERATION: &[Unit] = &[si("m/s²"), per("mm/s²", 1e3)];
+/// Angular accelerations.
+pub const ANGULAR_ACCELERATION: &[Unit] = &[si("rad/s²"), times("°/s²", std::f64::consts::PI / 180.0)];
+/// Jerks.
+pub const JERK: &[Unit] = &[si("m/s³"), per("mm/s³", 1e3)];
+/// Angular jerks.
+pub const ANGULAR_JERK: &[Unit] = &[si("rad/s³"), times("°/s³", std::f64::consts::PI / 180.0)];
+/// Torques of drives.
+pub const TORQUE: &[Unit] = &[si("N·m"), per("N·mm", 1e3)];
+/// Slopes.
+pub const SLOPE: &[Unit] = &[si(""), per("mm/m", 1e3)];
+/// What grows with a speed.
+pub const PER_SPEED: &[Unit] = &[si("s/m"), times("s/mm", 1e3)];
 /// Moments of inertia.
 pub const INERTIA: &[Unit] = &[per("g·mm²", 1e9), si("kg·m²"), per("kg·mm²", 1e6)];
 /// Angular velocities.

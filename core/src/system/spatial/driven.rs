@@ -24,6 +24,17 @@ pub struct Along<S> {
     pub axis_w: Vector3<S>,
 }
 
+/// A point of a body along an axis of the frame, where the speed counts, too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtPoint<S> {
+    /// The body; one that is not there stands still.
+    pub body: usize,
+    /// The point (m), from the centre of mass in the body's axes.
+    pub lever: Vector3<S>,
+    /// Direction in the frame, of unit length.
+    pub axis_w: Vector3<S>,
+}
+
 /// How fast a body turns about an axis of the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct About<S> {
@@ -95,6 +106,27 @@ trait Sees<const R: usize> {
 
     /// How the torque of a `force` that is held, and keeps its direction in the frame, goes by a small turn of the body.
     fn carried(&self, at: &PlacedBody<Self::Number>, force: &SVector<Self::Number, R>) -> Matrix3<Self::Number>;
+}
+
+impl<S: Scalar> Sees<1> for AtPoint<S> {
+    type Number = S;
+
+    #[inline(always)]
+    fn body(&self) -> usize {
+        self.body
+    }
+
+    #[inline(always)]
+    fn speeds(&self, at: &PlacedBody<S>) -> Speeds<S, 1> {
+        let (axis, lever) = (&self.axis_w, times(&at.to_frame, &self.lever));
+        let by_turn = cross(axis, &cross(&lever, &at.rotation_w));
+        Speeds::new(at, [[*axis], [cross(&lever, axis)], [by_turn]])
+    }
+
+    #[inline(always)]
+    fn carried(&self, at: &PlacedBody<S>, force: &SVector<S, 1>) -> Matrix3<S> {
+        twice_crossed(&outer(&(self.axis_w * force[0]), &times(&at.to_frame, &self.lever)))
+    }
 }
 
 impl<S: Scalar> Sees<2> for Along<S> {

@@ -14,7 +14,7 @@ mod seat;
 pub mod tree;
 
 pub use bodies::{FreeBodies, InFrame, Placed, PlacedBody, Rigid};
-pub use driven::{About, Along};
+pub use driven::{About, Along, AtPoint};
 pub(crate) use floating::split;
 pub use floating::{Floating, PinOfFrame, Pull};
 pub use pair::Pair;

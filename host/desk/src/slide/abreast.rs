@@ -162,7 +162,7 @@ mod tests {
         let rest = Motion { pose: Pose::nominal(), velocity: zero, acceleration: zero, internal: NO_INTERNAL };
         let sensitivity = Sensitivity { mass: 0.0818, gain: 40.0 };
         let error = |step: &_, length| sensitivity.error(Tolerance::of_force(1e-4), step, length);
-        let unwatched = Watched { gaps: |_: &_, _: &mut _| (), depth: 0.0 };
+        let unwatched = Watched { gaps: |_: &_, _: &mut _| (), depth: 0.0, bends: &[] };
         let mut steps = Vec::new();
         integrate::<Rodas4, _, 6>(&OutOfLine::by(slide, contacts), rest, 0.3, error, unwatched, |t, motion, _, _| {
             let [a, b, c, d, e, f] = motion.velocity.data.0[0];

@@ -87,7 +87,7 @@ impl Run {
             gaps.clear(spin);
             driven.contacts().watch(slide, motion, speed, gaps);
         };
-        let watched = Watched { gaps, depth: self.tolerance.position };
+        let watched = Watched { gaps, depth: self.tolerance.position, bends: &[] };
         integrate::<Rodas4, _, 6>(driven, rest, self.duration, error, watched, |t, motion, accelerations, gaps| {
             let mut of_pins = [ABSENT; CONTACTS];
             for (wall, of_wall) in gaps.gaps().enumerate() {

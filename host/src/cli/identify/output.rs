@@ -5,8 +5,8 @@ use std::fmt::Write;
 use slipfit_identify::estimate::{Estimate, Estimated};
 use slipfit_tolerance::number::ten_digits;
 
-/// The table `[uncertain]` of an `estimate`: means, deviations and, as a comment, correlations and what a scene has no key for, the levels
-/// of gaps. Stiffnesses have the contact's `exponent`, of a slide.
+/// The table `[uncertain]` of an `estimate`: means, deviations and, as a comment, correlations and what a scene has no key for, such as
+/// levels of gaps. Stiffnesses have the contact's `exponent`, of a slide.
 pub fn table(title: &str, model: &str, estimate: &Estimate, exponent: Option<f64>) -> String {
     let mut text =
         format!("# {model} of {title:?}, identified from {} samples by slipfit identify.\n", estimate.samples);
@@ -26,6 +26,8 @@ pub fn table(title: &str, model: &str, estimate: &Estimate, exponent: Option<f64
         }
     }
     text += "\n[uncertain]\n";
+    // Tables of a body and a drive, whose names are those of the scene that takes them.
+    let mut of_train = Vec::new();
     for (_, parameter) in known {
         let Some(deviation) = parameter.deviation else { continue };
         let unit = exponent.map(|exponent| parameter.unit.replace("^e", &format!("^{exponent}")));
@@ -39,10 +41,25 @@ pub fn table(title: &str, model: &str, estimate: &Estimate, exponent: Option<f64
             ("slide", Some(gaps)) => writeln!(text, "# n of {gaps}: mean {mean}, deviation {deviation}"),
             ("slide", None) => writeln!(text, "{} = {{ mean = {mean}, deviation = {deviation} }}", parameter.name),
             _ => {
-                let key = parameter.name.replace(" / ", "_by_").replace(' ', "_");
-                writeln!(text, "drive_train.{key} = {{ mean = {mean}, deviation = {deviation} }}")
+                let table = match parameter.name.as_str() {
+                    "mass" if unit == "kg" => "body = [{ name = \"stage\"",
+                    "coulomb" | "viscous" | "offset" if unit.starts_with("N") => "drive = [{ name = \"motor\"",
+                    // What no key of a scene says, such as a ratio of two or one direction's friction.
+                    name => {
+                        let _ = writeln!(text, "# {name}: mean {mean}, deviation {deviation}");
+                        continue;
+                    }
+                };
+                of_train.push((table, format!("{} = {{ mean = {mean}, deviation = {deviation} }}", parameter.name)));
+                Ok(())
             }
         };
+    }
+    for table in ["body = [{ name = \"stage\"", "drive = [{ name = \"motor\""] {
+        let keys: Vec<_> = of_train.iter().filter(|(of, _)| *of == table).map(|(_, key)| key.as_str()).collect();
+        if !keys.is_empty() {
+            let _ = writeln!(text, "{table}, {} }}]", keys.join(", "));
+        }
     }
     text
 }

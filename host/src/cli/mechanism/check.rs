@@ -15,7 +15,7 @@ use crate::{
         terminal::{print, print_json, text_table, warn},
     },
     mechanism::{
-        Freedom, Mechanism, Spring,
+        Freedom, Mechanism, Spring, SpringKind,
         feedback::{Reversal, reversals},
         self_locking::{DriveSide, Locked, locked},
     },
@@ -71,18 +71,36 @@ pub fn check(
     if !rows.is_empty() {
         let _ = write!(text, "\n{}", text_table(&[&format!("gap at n = {}", level(n)), "mm", "closes at n"], &rows));
     }
-    if !mechanism.springs.is_empty() {
-        let row = |spring: &Spring| {
-            let [first, second] = spring.between.map(|port| mechanism.name_of(port).to_owned());
-            vec![spring.name.clone(), first, second, ten_digits(spring.stiffness), ten_digits(spring.damping)]
-        };
-        let rows: Vec<_> = mechanism.springs.iter().map(row).collect();
-        let heading = ["torsion spring", "of", "and", "stiffness, N·m/rad", "damping, N·m·s/rad"];
-        let _ = write!(text, "\n{}", text_table(&heading, &rows));
+    for (what, units) in [("torsion spring", ["N·m/rad", "N·m·s/rad", "N·m"]), ("spring", ["N/mm", "N·s/mm", "N"])]
+    {
+        let rows: Vec<_> = mechanism.springs.iter().filter_map(|spring| spring_row(mechanism, spring, what)).collect();
+        if !rows.is_empty() {
+            let [stiffness, damping, preload] = units;
+            let numbers = [("stiffness", stiffness), ("damping", damping), ("preload", preload)];
+            let numbers = numbers.map(|(of, unit)| format!("{of}, {unit}"));
+            let heading: Vec<_> = [what, "of", "and"].into_iter().chain(numbers.iter().map(String::as_str)).collect();
+            let _ = write!(text, "\n{}", text_table(&heading, &rows));
+        }
     }
     print(&text)?;
     warn(&warnings);
     Ok(())
+}
+
+/// The row of a `spring` in the table of what is called `of`; `None` if it is of the other kind.
+fn spring_row(mechanism: &Mechanism, spring: &Spring, of: &str) -> Option<Vec<String>> {
+    let (is_torsion, preload) = match spring.kind {
+        SpringKind::Torsion { rest } => (true, spring.stiffness * rest),
+        SpringKind::Line { ends: [first, second], free_length } => {
+            let squares = first.iter().zip(second).map(|(a, b)| (a - b) * (a - b));
+            (false, spring.stiffness * (libm::sqrt(squares.sum()) - free_length))
+        }
+    };
+    let scale = if is_torsion { 1.0 } else { 1e-3 };
+    let numbers = [spring.stiffness * scale, spring.damping * scale, preload];
+    let names = spring.between.map(|port| mechanism.name_of(port).to_owned());
+    let row = std::iter::once(spring.name.clone()).chain(names).chain(numbers.map(ten_digits)).collect();
+    (is_torsion == (of == "torsion spring")).then_some(row)
 }
 
 /// What a designer should know before trusting a run.

@@ -23,9 +23,10 @@ pub(super) use sweep::sweep;
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
-            RunError::Mounts(_) | RunError::Bodies(_) | RunError::Stopped { stopped: Stopped::Parameter(_) } => {
-                Self::Input(error.to_string())
-            }
+            RunError::Mounts(_)
+            | RunError::Bodies(_)
+            | RunError::NoUnit(_)
+            | RunError::Stopped { stopped: Stopped::Parameter(_) } => Self::Input(error.to_string()),
             RunError::Stopped { .. } => Self::Work(error.into()),
         }
     }

@@ -2,8 +2,6 @@
 
 use std::{fmt::Write, path::Path};
 
-use slipfit_core::menu::FrictionType;
-
 use super::{
     Unit, model,
     variable::{Causality, Variables},
@@ -11,7 +9,9 @@ use super::{
 use crate::{
     dynamics::driven::Driven,
     firmware::kernel_crate::mechanism_crate,
-    mechanism::{Action, ByDrive, Joint, JointKind, Mechanism, NamedDrive, RunError, drive_names, element_paths},
+    mechanism::{
+        Action, ByDrive, Joint, JointKind, Mechanism, NamedDrive, RunError, SlidingData, drive_names, element_paths,
+    },
 };
 
 /// The parts of the model's source that go by what there is.
@@ -31,6 +31,9 @@ struct Model {
 /// If the mechanism has no run, see [`RunError`].
 pub fn mechanism_unit(mechanism: &Mechanism, core: &Path) -> Result<Unit, RunError> {
     use Causality::Fixed;
+    if let Some(what) = unsupported(mechanism) {
+        return Err(RunError::NoUnit(what));
+    }
     let hash = ByDrive::new(mechanism, 0).map_or(0, |driven| driven.hash());
     let token = super::token(hash, &mechanism.controller);
     let mut variables = Variables::default();
@@ -69,6 +72,15 @@ pub fn mechanism_unit(mechanism: &Mechanism, core: &Path) -> Result<Unit, RunErr
     })
 }
 
+/// What there is in `mechanism` that a unit cannot set.
+fn unsupported(mechanism: &Mechanism) -> Option<String> {
+    let walls = mechanism.joints.iter().find(|joint| !joint.contours.is_empty());
+    let walls = walls.map(|joint| format!("walls that slope or bow, as \"{}\" has", joint.name));
+    let is_more = |named: &&NamedDrive| named.command.is_some() || named.train_in(mechanism).is_some();
+    let drive = mechanism.drives.iter().find(is_more);
+    walls.or(drive.map(|named| format!("a drive with segments, a limit or friction, as \"{}\" has", named.name)))
+}
+
 fn set_gaps(joints: &[(&str, &Joint)], gaps: &[String], model: &mut Model) {
     use JointKind::{Bearing, Guide, Journal, Stop, Track};
     for (at, joint) in joints {
@@ -92,13 +104,17 @@ fn set_gaps(joints: &[(&str, &Joint)], gaps: &[String], model: &mut Model) {
 
 /// One coefficient for all contacts where the scene has one for all, else one a joint.
 fn set_friction(joints: &[(&str, &Joint)], variables: &mut Variables, model: &mut Model) {
-    let has_friction = |joint: &Joint| joint.laws.friction.friction_type() != FrictionType::Frictionless;
-    let coefficient = |joint: &Joint| joint.laws.friction.coefficient();
-    let frictional: Vec<_> = joints.iter().filter(|(_, joint)| has_friction(joint)).collect();
-    let Some((_, first)) = frictional.first() else { return };
-    let is_one = frictional.iter().all(|(_, joint)| coefficient(joint) == coefficient(first));
+    // Friction with several numbers stays as the scene has it.
+    let coulomb = |joint: &Joint| match joint.laws.friction {
+        SlidingData::Coulomb(data) if data.coefficient() != 0.0 => Some(data),
+        _ => None,
+    };
+    let frictional = joints.iter().filter_map(|(at, joint)| Some((at, joint, coulomb(joint)?)));
+    let frictional: Vec<_> = frictional.collect();
+    let Some((.., first)) = frictional.first() else { return };
+    let is_one = frictional.iter().all(|(.., data)| data.coefficient() == first.coefficient());
     let mut known: Vec<(&str, String)> = Vec::new();
-    for (at, joint) in frictional {
+    for (at, joint, data) in frictional {
         let of = if is_one { "" } else { joint.name.as_str() };
         let value = match known.iter().find(|(name, _)| *name == of) {
             Some((_, value)) => value.clone(),
@@ -108,12 +124,12 @@ fn set_friction(joints: &[(&str, &Joint)], variables: &mut Variables, model: &mu
                 } else {
                     (format!("friction.coefficient.{of}"), format!("coefficient of friction in the joint {of}"))
                 };
-                let value = variables.set(Causality::Tunable, name, "1", coefficient(joint), what);
+                let value = variables.set(Causality::Tunable, name, "1", data.coefficient(), what);
                 known.push((of, value.clone()));
                 value
             }
         };
-        let (law, made) = model::friction(joint.laws.friction, Some(&value));
+        let (law, made) = model::friction(data, Some(&value));
         model.laws.push(law);
         let _ = writeln!(model.changes, "        elements{at}.law.contact.friction = {made};");
     }

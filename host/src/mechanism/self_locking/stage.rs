@@ -155,7 +155,7 @@ impl Stage {
             }
             stage.round &= matches!(joint.kind, JointKind::Bearing { .. });
             if stage.contacts.len() > before {
-                stage.friction = stage.friction.min(joint.laws.friction.coefficient());
+                stage.friction = stage.friction.min(joint.laws.friction.holds());
             }
         }
         stage.on = on?;

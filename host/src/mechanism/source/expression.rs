@@ -1,5 +1,13 @@
 //! Expressions of source text, each with its type.
 
+use slipfit_core::{
+    drive::{Piece, TrainData},
+    system::law::{Axis, Contour, LineSpring},
+};
+use slipfit_desk::drive::Pieces;
+
+use crate::mechanism::{Mechanism, NamedDrive};
+
 /// Type and value of an expression.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Typed {
@@ -65,7 +73,85 @@ fn drive(drive: &slipfit_core::drive::Drive<f64>) -> String {
     )
 }
 
-/// A law by the name of `law` that a drive acts by.
-pub fn driven(law: &str, by: &slipfit_core::drive::Drive<f64>) -> Typed {
-    typed(format!("{law}<Drive<S>>"), format!("{law}({})", drive(by)))
+/// A law by the name of `law` that a drive of `mechanism` acts by, and the names that it needs from core's drives.
+fn driven(law: &str, named: &NamedDrive, mechanism: &Mechanism) -> (Typed, Vec<&'static str>) {
+    let mut names = Vec::new();
+    let controller = match &named.command {
+        None => {
+            names.push("Drive");
+            typed("Drive<S>", drive(&named.drive))
+        }
+        Some(Pieces(pieces)) => {
+            names.extend(["Commanded", "Piece", "Push"]);
+            let piece = |Piece { start, coefficients }: &Piece<f64>| {
+                format!("Piece {{ start: s({start:?}), coefficients: [{}] }}", numbers(coefficients))
+            };
+            let all: Vec<_> = pieces.iter().map(piece).collect();
+            typed(
+                format!("Commanded<S, [Piece<S>; {}]>", pieces.len()),
+                format!("Commanded {{ gain: s({:?}), command: [{}] }}.checked()?", named.drive.gain, all.join(", ")),
+            )
+        }
+    };
+    let whole = match named.train_in(mechanism) {
+        None => controller,
+        Some(data) => on_train(&controller, &data, &mut names),
+    };
+    (typed(format!("{law}<{}>", whole.of), format!("{law}({})", whole.value)), names)
+}
+
+/// The laws of all frictions of joints and drives of `mechanism`, in the order of its elements; what a drive acts by is called `law` when
+/// it is asked for. The names that they need from core's drives are added to `used`.
+pub fn driving<'a>(mechanism: &'a Mechanism, used: &'a mut Vec<&'static str>) -> impl FnMut(&str) -> Typed + 'a {
+    let mut frictions = mechanism.joints.iter().filter_map(|joint| joint.drag);
+    let mut drives = mechanism.drives.iter();
+    move |law: &str| {
+        if let Some(data) = frictions.next() {
+            let drag = on_train(&typed("()", "()"), &data, used);
+            return typed(format!("{law}<{}>", drag.of), format!("{law}({})", drag.value));
+        }
+        let Some(named) = drives.next() else { return Typed::default() };
+        let (typed, names) = driven(law, named, mechanism);
+        used.extend(names);
+        typed
+    }
+}
+
+/// A `controller` on a drive train.
+fn on_train(controller: &Typed, data: &TrainData<f64>, names: &mut Vec<&'static str>) -> Typed {
+    names.extend(["Train", "TrainData"]);
+    let TrainData { limit, coulomb, stick_band, viscous, offset } = data;
+    typed(
+        format!("Train<S, {}>", controller.of),
+        format!(
+            "Train::new({}, TrainData {{ limit: s({limit:?}), coulomb: [{}], stick_band: s({stick_band:?}), \
+             viscous: s({viscous:?}), offset: s({offset:?}) }})?",
+            controller.value,
+            numbers(coulomb)
+        ),
+    )
+}
+
+/// A spring along a line, of so many dimensions.
+pub fn line_spring<const K: usize>(law: &LineSpring<f64, K>) -> Typed {
+    let LineSpring { stiffness, damping, free_length, drawn } = law;
+    typed(
+        format!("LineSpring<S, {K}>"),
+        format!(
+            "LineSpring {{ stiffness: s({stiffness:?}), damping: s({damping:?}), free_length: s({free_length:?}), drawn: {} }}",
+            vector(drawn.as_slice())
+        ),
+    )
+}
+
+/// The law of a `wall` with a contour.
+pub fn contoured(wall: Typed, along: Axis, Contour { slope, curvature }: &Contour<f64>) -> Typed {
+    typed(
+        format!("Contoured<S, {}>", wall.of),
+        format!(
+            "Contoured {{ wall: {}, along: Axis::{along:?}, contour: Contour {{ slope: s({slope:?}), curvature: \
+             s({curvature:?}) }} }}",
+            wall.value
+        ),
+    )
 }

@@ -1,9 +1,12 @@
 //! Contact laws as source text.
 
-use slipfit_core::menu::{FrictionData, FrictionType, NormalType};
+use slipfit_core::{
+    law::StribeckData,
+    menu::{FrictionData, FrictionType, NormalType},
+};
 
 use super::expression::Typed;
-use crate::mechanism::{Laws, NormalData, Rebound};
+use crate::mechanism::{Laws, NormalData, Rebound, SlidingData};
 
 /// The contacts met so far, each once.
 #[derive(Default)]
@@ -65,7 +68,23 @@ impl Contacts {
     }
 
     fn friction(&mut self, laws: &Laws) -> Typed {
-        let (name, of, value) = match (laws.friction.friction_type(), laws.friction) {
+        let data = match laws.friction {
+            SlidingData::Coulomb(data) => data,
+            SlidingData::Stribeck(StribeckData { at_rest, kinetic, stribeck_speed, viscous, stick_band }) => {
+                self.names.extend(["Stribeck", "StribeckData"]);
+                let value = format!(
+                    "Stribeck::new(StribeckData {{ at_rest: s({at_rest:?}), kinetic: s({kinetic:?}), stribeck_speed: \
+                     s({stribeck_speed:?}), viscous: s({viscous:?}), stick_band: s({stick_band:?}) }})?"
+                );
+                return Typed { of: "Stribeck<S>".into(), value };
+            }
+            SlidingData::StaticKinetic { at_rest, kinetic } => {
+                self.names.push("StaticKinetic");
+                let value = format!("StaticKinetic::new(s({at_rest:?}), s({kinetic:?}))?");
+                return Typed { of: "StaticKinetic<S>".into(), value };
+            }
+        };
+        let (name, of, value) = match (data.friction_type(), data) {
             (FrictionType::Regularised, FrictionData::Regularised { coefficient, stick_band }) => {
                 let value = format!("Regularised::new(s({coefficient:?}), s({stick_band:?}))?");
                 ("Regularised", "Regularised<S>", value)

@@ -47,9 +47,13 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
     };
     let mut laws = parts.laws.clone();
     let clearance = if mechanism.gaps.is_empty() { "" } else { "    clearance::GapStatistics,\n" };
-    let drive = if mechanism.drives.is_empty() { "" } else { "    drive::Drive,\n" };
+    let drive = match &list(&parts.drives)[..] {
+        "" => String::new(),
+        "Drive" => "    drive::Drive,\n".to_owned(),
+        several => format!("    drive::{{{several}}},\n"),
+    };
     let poses = if pose.of.contains("Pose") { "    pose::Pose,\n" } else { "" };
-    let vectors = if *module == "planar" && mechanism.drives.is_empty() { "Vector2" } else { "Vector2, Vector3" };
+    let vectors = if parts.drives.contains(&"Drive") { "Vector2, Vector3" } else { "Vector2" };
     let vectors = if *module == "planar" { vectors } else { "Vector3" };
     let driving = if mechanism.drives.is_empty() { "" } else { "Driving, " };
     let mut core_laws = String::new();

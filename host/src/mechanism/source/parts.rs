@@ -18,6 +18,8 @@ pub struct Parts {
     pub laws: Vec<&'static str>,
     pub module: &'static str,
     pub names: Vec<&'static str>,
+    /// Names used from `slipfit_core::drive`.
+    pub drives: Vec<&'static str>,
     /// Type and value of the pose that it starts in, and the rates (m/s, rad/s).
     pub pose: Typed,
     pub rates: Vec<f64>,

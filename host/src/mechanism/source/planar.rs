@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use slipfit_core::{
     Vector2,
-    system::planar::{Chain, Kind, Point, Rigid},
+    system::planar::{Across, Between, Chain, Kind, Point, Rigid},
 };
 
 use super::{
-    expression::{Typed, driven, element, grouped, nested, numbers, typed, vector},
+    expression::{Typed, contoured, driving, element, grouped, line_spring, nested, numbers, typed, vector},
     laws::Contacts,
     parts::Parts,
 };
@@ -85,8 +85,8 @@ fn of<const D: usize>(mechanism: &Mechanism, mounts: &Mounts, contacts: &mut Con
         ),
     };
     let mut names = vec!["Chain", "Kind", "PlanarTree", "Point", "Rigid", "Topology"];
-    let mut laws = Vec::new();
-    let elements = elements::<D>(mechanism, mounts, contacts, &mut laws, &mut names)?;
+    let (mut laws, mut drives) = (Vec::new(), Vec::new());
+    let elements = elements::<D>(mechanism, mounts, contacts, (&mut laws, &mut names, &mut drives))?;
     let all = nested(grouped(&elements));
     if all.value.contains("Path") {
         names.push("Path");
@@ -107,6 +107,7 @@ fn of<const D: usize>(mechanism: &Mechanism, mounts: &Mounts, contacts: &mut Con
         laws,
         module: "planar",
         names,
+        drives,
         pose,
         rates: rates.into(),
     })
@@ -116,9 +117,9 @@ fn elements<const D: usize>(
     mechanism: &Mechanism,
     mounts: &Mounts,
     contacts: &mut Contacts,
-    laws: &mut Vec<&'static str>,
-    names: &mut Vec<&'static str>,
+    (laws, names, used): (&mut Vec<&'static str>, &mut Vec<&'static str>, &mut Vec<&'static str>),
 ) -> Result<Vec<Typed>, RunError> {
+    let mut drive = driving(mechanism, used);
     let open = vec![0.0; mechanism.gaps.len()];
     let mut joints = joints_of_elements(mechanism);
     let turning =
@@ -137,12 +138,8 @@ fn elements<const D: usize>(
             PlanarElement::Journal(one) => {
                 names.push("Between");
                 laws.push("Journal");
-                let (hole, pin) = (&one.link.hole, &one.link.pin);
                 element(
-                    typed(
-                        format!("Between<S, {D}, {}, {}>", carrier(&hole.carrier), carrier(&pin.carrier)),
-                        format!("Between {{ hole: {}, pin: {} }}", point(hole), point(pin)),
-                    ),
+                    between(&one.link),
                     typed(
                         format!("Journal<S, {}>", contact.of),
                         format!(
@@ -156,23 +153,17 @@ fn elements<const D: usize>(
             PlanarElement::Pad(one) => {
                 names.push("Across");
                 laws.push("Pad");
-                let (at, seat) = (&one.link.point, &one.link.seat);
-                element(
-                    typed(
-                        format!("Across<S, {D}, {}, {}>", carrier(&at.carrier), carrier(&seat.carrier)),
-                        format!(
-                            "Across {{ point: {}, seat: {}, normal: {} }}",
-                            point(at),
-                            point(seat),
-                            vector(one.link.normal.as_slice())
-                        ),
-                    ),
-                    typed(
-                        format!("Pad<S, {}>", contact.of),
-                        format!("Pad {{ gap: gaps[{gap}], contact: {} }}", contact.value),
-                    ),
-                    2,
-                )
+                element(across(&one.link), pad(gap, &contact), 2)
+            }
+            PlanarElement::Contour(one) => {
+                names.push("Across");
+                laws.extend(["Axis", "Contour", "Contoured", "Pad"]);
+                element(across(&one.link), contoured(pad(gap, &contact), one.law.along, &one.law.contour), 2)
+            }
+            PlanarElement::Line(one) => {
+                names.push("Between");
+                laws.push("LineSpring");
+                element(between(&one.link), line_spring(&one.law), 4)
             }
             PlanarElement::Spring(one, _) => {
                 names.push("Turning");
@@ -201,7 +192,7 @@ fn elements<const D: usize>(
                         format!("Turning<{}, {}>", turning(one.link.body), turning(one.link.against)),
                         "Turning { body: Path, against: Path }",
                     ),
-                    driven("Motor", &one.law.0),
+                    drive("Motor"),
                     1,
                 )
             }
@@ -219,13 +210,35 @@ fn elements<const D: usize>(
                             vector(axis.as_slice())
                         ),
                     ),
-                    driven("Pusher", &one.law.0),
+                    drive("Pusher"),
                     2,
                 )
             }
         });
     }
     Ok(written)
+}
+
+/// The two points that a link is between.
+fn between<const D: usize>(Between { hole, pin }: &Between<f64, D>) -> Typed {
+    typed(
+        format!("Between<S, {D}, {}, {}>", carrier(&hole.carrier), carrier(&pin.carrier)),
+        format!("Between {{ hole: {}, pin: {} }}", point(hole), point(pin)),
+    )
+}
+
+/// The point that a link looks at from its seat.
+fn across<const D: usize>(link: &Across<f64, D>) -> Typed {
+    let (at, seat) = (&link.point, &link.seat);
+    typed(
+        format!("Across<S, {D}, {}, {}>", carrier(&at.carrier), carrier(&seat.carrier)),
+        format!("Across {{ point: {}, seat: {}, normal: {} }}", point(at), point(seat), vector(link.normal.as_slice())),
+    )
+}
+
+/// A pad with the gap of that number.
+fn pad(gap: usize, contact: &Typed) -> Typed {
+    typed(format!("Pad<S, {}>", contact.of), format!("Pad {{ gap: gaps[{gap}], contact: {} }}", contact.value))
 }
 
 /// What moves the body that the coordinate `turn` turns.

@@ -1,12 +1,17 @@
 //! A mechanism in space as source text.
 
-use slipfit_core::system::spatial::{
-    FreeBodies, Port, Rigid, Seat,
-    tree::{Joint, Mount},
+use std::collections::VecDeque;
+
+use slipfit_core::system::{
+    law::Axis,
+    spatial::{
+        FreeBodies, Port, Rigid, Seat,
+        tree::{Joint, Mount},
+    },
 };
 
 use super::{
-    expression::{Typed, driven, element, numbers, typed, vector},
+    expression::{Typed, contoured, driving, element, line_spring, numbers, typed, vector},
     laws::Contacts,
     parts::Parts,
 };
@@ -21,8 +26,8 @@ pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Pa
     if !(1..=spatial::MOST).contains(&count) {
         return Err(RunError::Bodies(count));
     }
-    let (mut laws, mut names) = (Vec::new(), vec!["FreeBodies", "Rigid"]);
-    let elements = elements(mechanism, contacts, &mut laws, &mut names)?;
+    let (mut laws, mut names, mut drives) = (Vec::new(), vec!["FreeBodies", "Rigid"], Vec::new());
+    let elements = elements(mechanism, contacts, (&mut laws, &mut names, &mut drives))?;
     let free = free(mechanism)?;
     let width = 6 * count;
     let parts = Parts {
@@ -34,6 +39,7 @@ pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Pa
         laws,
         module: "spatial",
         names,
+        drives,
         pose: typed(format!("[Pose<S>; {count}]"), format!("[Pose::nominal(); {count}]")),
         rates: vec![0.0; width],
     };
@@ -96,12 +102,22 @@ fn seat(seat: &Seat<f64>) -> String {
     format!("Seat {{ point: Port {{ body: {body:?}, lever: {} }}, from: {from:?} }}", vector(lever.as_slice()))
 }
 
+/// A wall with the gap of that number.
+fn wall((axis, sign): (Axis, f64), gap: usize, contact: &Typed) -> Typed {
+    typed(
+        format!("Wall<S, {}>", contact.of),
+        format!("Wall {{ axis: Axis::{axis:?}, sign: s({sign:?}), gap: gaps[{gap}], contact: {} }}", contact.value),
+    )
+}
+
 fn elements(
     mechanism: &Mechanism,
     contacts: &mut Contacts,
-    laws: &mut Vec<&'static str>,
-    names: &mut Vec<&'static str>,
+    (laws, names, used): (&mut Vec<&'static str>, &mut Vec<&'static str>, &mut Vec<&'static str>),
 ) -> Result<Vec<Typed>, RunError> {
+    let mut drive = driving(mechanism, used);
+    // Gaps of the walls of one track that are still to come.
+    let mut of_track = VecDeque::new();
     let open = vec![0.0; mechanism.gaps.len()];
     let mut joints = joints_of_elements(mechanism);
     let mut written = Vec::new();
@@ -134,18 +150,22 @@ fn elements(
             SpatialElement::Wall(one) => {
                 names.extend(["Port", "Seat"]);
                 laws.extend(["Axis", "Wall"]);
-                let (axis, sign) = (one.law.axis, one.law.sign);
-                element(
-                    typed("Seat<S>", seat(&one.link)),
-                    typed(
-                        format!("Wall<S, {}>", contact.of),
-                        format!(
-                            "Wall {{ axis: Axis::{axis:?}, sign: s({sign:?}), gap: gaps[{gap}], contact: {} }}",
-                            contact.value
-                        ),
-                    ),
-                    3,
-                )
+                element(typed("Seat<S>", seat(&one.link)), wall((one.law.axis, one.law.sign), gap, &contact), 3)
+            }
+            SpatialElement::Contour(one) => {
+                names.extend(["Port", "Seat"]);
+                laws.extend(["Axis", "Contour", "Contoured", "Wall"]);
+                if let (true, Some(JointKind::Track { gaps })) = (of_track.is_empty(), joint.map(|joint| &joint.kind)) {
+                    of_track.extend(gaps.iter().flatten().copied());
+                }
+                let of = of_track.pop_front().unwrap_or_default();
+                let wall = wall((one.law.wall.axis, one.law.wall.sign), of, &contact);
+                element(typed("Seat<S>", seat(&one.link)), contoured(wall, one.law.along, &one.law.contour), 3)
+            }
+            SpatialElement::Line(one) => {
+                names.extend(["Port", "Seat"]);
+                laws.push("LineSpring");
+                element(typed("Seat<S>", seat(&one.link)), line_spring(&one.law), 3)
             }
             SpatialElement::Ring(one) => {
                 names.extend(["Port", "Rim", "Seat"]);
@@ -180,7 +200,25 @@ fn elements(
                         "About<S>",
                         format!("About {{ body: {}, axis_w: {} }}", link.body, vector(link.axis_w.as_slice())),
                     ),
-                    driven("Motor", &one.law.0),
+                    drive("Motor"),
+                    1,
+                )
+            }
+            SpatialElement::AtPoint(one) => {
+                names.push("AtPoint");
+                laws.push("Motor");
+                let link = one.link;
+                element(
+                    typed(
+                        "AtPoint<S>",
+                        format!(
+                            "AtPoint {{ body: {}, lever: {}, axis_w: {} }}",
+                            link.body,
+                            vector(link.lever.as_slice()),
+                            vector(link.axis_w.as_slice())
+                        ),
+                    ),
+                    drive("Motor"),
                     1,
                 )
             }
@@ -198,7 +236,7 @@ fn elements(
                             vector(link.axis_w.as_slice())
                         ),
                     ),
-                    driven("Pusher", &one.law.0),
+                    drive("Pusher"),
                     2,
                 )
             }

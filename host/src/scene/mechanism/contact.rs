@@ -1,14 +1,11 @@
 //! Gaps of joints, and the laws of their contacts.
 
-use slipfit_core::{
-    clearance::GapStatistics,
-    menu::{ContactData, FrictionData},
-};
+use slipfit_core::{clearance::GapStatistics, menu::ContactData};
 use slipfit_tolerance::{product::Product, unit::Quantity};
 
 use crate::{
-    mechanism::{Gap, Laws, NormalData},
-    scene::{SceneError, contact, measured::columns::Columns, parse, pins, tree::Value, value::Field},
+    mechanism::{Gap, Laws, NormalData, SlidingData},
+    scene::{SceneError, contact, friction, measured::columns::Columns, pins, tree::Value, value::Field},
 };
 
 /// The gaps met so far.
@@ -53,8 +50,10 @@ pub(super) fn laws(table: &Field, otherwise: Option<Laws>) -> Result<Option<Laws
         Some(_) => Some(found.recover(table.table("contact").and_then(|table| contact::normal(&table)), NO_CONTACT)),
     };
     let friction = match table.get("friction") {
-        None => otherwise.map_or(FrictionData::None, |laws| laws.friction),
-        Some(_) => found.recover(table.table("friction").and_then(|table| parse::friction(&table)), FrictionData::None),
+        None => otherwise.map_or(SlidingData::NONE, |laws| laws.friction),
+        Some(_) => {
+            found.recover(table.table("friction").and_then(|table| friction::sliding(&table)), SlidingData::NONE)
+        }
     };
     Ok(contact.map(|contact| Laws { contact, friction }))
 }

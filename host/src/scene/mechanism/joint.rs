@@ -1,6 +1,6 @@
 //! Joints, ideal or with play.
 
-use slipfit_core::menu::FrictionData;
+use slipfit_core::drive::TrainData;
 use slipfit_tolerance::{
     number::three_digits,
     unit::{self, Quantity},
@@ -8,11 +8,13 @@ use slipfit_tolerance::{
 
 use super::{
     contact::{Gaps, NO_CONTACT, laws},
+    contour::contours,
+    drive,
     names::{Names, tables},
     place::{direction, place},
 };
 use crate::{
-    mechanism::{Joint, JointKind, Laws, Mechanism, STOP_MOST},
+    mechanism::{Joint, JointKind, Laws, Mechanism, Port, STOP_MOST, SlidingData},
     scene::{Problem, SceneError, pins::MEAN, plausible, quantity::POINT, value::Field},
     setup::SURFACES,
 };
@@ -62,11 +64,37 @@ fn joint(
             return Err(table.error(Problem::Missing("contact".into()), "a table [contact], or one of the joint's own"));
         }
     };
-    Ok(Joint { name, between, at, kind, laws })
+    let contours = contours(table, &kind)?;
+    let drag = drag(table, planar, &kind, between)?;
+    Ok(Joint { name, between, at, kind, laws, contours, drag })
+}
+
+/// Reads the friction of an ideal joint, which has one motion to rub against.
+fn drag(
+    table: &Field,
+    planar: bool,
+    kind: &JointKind,
+    between: [Port; 2],
+) -> Result<Option<TrainData<f64>>, SceneError> {
+    let stated = ["coulomb", "viscous", "stick_band"].iter().find_map(|key| table.get(key));
+    let Some(field) = stated else { return Ok(None) };
+    let to_frame = between.contains(&None);
+    let is_known = match kind {
+        JointKind::Revolute { .. } => planar || to_frame,
+        JointKind::Prismatic { .. } => to_frame,
+        _ => false,
+    };
+    if is_known {
+        return drive::drag(table, matches!(kind, JointKind::Revolute { .. }));
+    }
+    let what = format!("`{}` of a joint of kind \"{}\" like this one", field.key, kind.name());
+    let allowed = "an ideal revolute or prismatic joint with the frame, in a plane a revolute one of any bodies; joints with play have \
+                   [joint.friction]";
+    Err(field.error(Problem::Unsupported { what }, allowed))
 }
 
 /// The laws of a joint without contacts.
-const NO_LAWS: Laws = Laws { contact: NO_CONTACT, friction: FrictionData::None };
+const NO_LAWS: Laws = Laws { contact: NO_CONTACT, friction: SlidingData::NONE };
 
 /// Reads what the joint called `name` is.
 fn kind(name: &str, table: &Field, planar: bool, gaps: &mut Gaps) -> Result<JointKind, SceneError> {

@@ -2,15 +2,17 @@
 
 mod body;
 mod contact;
+mod contour;
 mod drive;
 mod joint;
 mod names;
 mod parameters;
 mod place;
+mod segment;
+mod spring;
 #[cfg(test)]
 mod tests;
 
-use slipfit_core::menu::FrictionData;
 use slipfit_tolerance::{
     product::Product,
     unit::{self, Quantity},
@@ -104,13 +106,13 @@ pub(super) fn mechanism(
         uncertain: Vec::new(),
         planar,
         gravity,
-        springs: drive::springs(root, planar, &names)?,
+        springs: spring::springs(root, planar, &names)?,
         drives,
         bodies,
         joints,
         gaps: gaps.gaps,
         run,
-        controller: parse::controller(root, &laws.map_or(FrictionData::None, |laws| laws.friction))?,
+        controller: parse::controller(root, laws.is_some_and(|laws| laws.friction.sticks()))?,
         sweep,
         measured: None,
         warnings: Vec::new(),
@@ -122,6 +124,7 @@ pub(super) fn mechanism(
     if !found.any() {
         joint::check(&mechanism, &joint_fields, &fields)?;
         body::check(&mechanism, &fields)?;
+        drive::check(&mechanism, root)?;
         check_tree(&mechanism, &joint_fields, root)?;
         check_gaps(&mechanism, &joint_fields, root)?;
         body::check_start(&mechanism, &fields)?;
@@ -170,7 +173,7 @@ fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
         }
         let friction = [field, root].iter().find_map(|table| table.get("friction"));
         if let Some(band) = friction.and_then(|friction| friction.get("stick_band")) {
-            plausible::stick_band(&band, &joint.laws.friction, speed);
+            plausible::stick_band(&band, joint.laws.friction.clone().stick_band().copied(), speed);
         }
         if let (JointKind::Journal { gap, radius } | JointKind::Bearing { gap, radius, .. }, Some(stated)) =
             (&joint.kind, field.get("radius"))

@@ -1,14 +1,13 @@
 //! Parameters of a mechanism, beside its gaps, that a table names.
 
-use slipfit_core::menu::FrictionData;
-
 use super::{
     body::MASS,
-    drive::TORQUE_GAIN,
+    contour::SLOPE,
+    drive::{FORCE, FORCE_OFFSET, TORQUE, TORQUE_GAIN, TORQUE_OFFSET},
     names::{Names, tables},
 };
 use crate::{
-    mechanism::{Action, Mechanism, NormalData, Parameter},
+    mechanism::{Action, Mechanism, NormalData, Parameter, UNLIMITED},
     scene::{
         Problem, SceneError,
         contact::{DAMPING, DEPTH},
@@ -23,9 +22,9 @@ fn no_effect(parameter: Parameter, mechanism: &Mechanism) -> Option<&'static str
     let mut laws = mechanism.joints.iter().filter(|joint| !joint.kind.is_ideal()).map(|joint| joint.laws);
     let untilted = |axis| (across(mechanism.gravity, axis) == 0.0).then_some(UNTILTED);
     match parameter {
-        Parameter::Friction => laws.all(|laws| laws.friction == FrictionData::None).then_some(FRICTIONLESS),
+        Parameter::Friction => laws.all(|laws| laws.friction.holds() == 0.0).then_some(FRICTIONLESS),
         Parameter::StickBand => {
-            let is_regularised = laws.any(|laws| matches!(laws.friction, FrictionData::Regularised { .. }));
+            let is_regularised = laws.any(|mut laws| laws.friction.stick_band().is_some());
             (!is_regularised).then_some(BANDLESS)
         }
         Parameter::Stiffness => laws.next().is_none().then_some("where no joint has play, so that there is no contact"),
@@ -35,7 +34,26 @@ fn no_effect(parameter: Parameter, mechanism: &Mechanism) -> Option<&'static str
         }
         Parameter::TiltX => untilted(0),
         Parameter::TiltZ => untilted(2),
-        Parameter::Mass(_) | Parameter::Gain(_) | Parameter::RampEnd(_) => None,
+        Parameter::RampEnd(drive) => {
+            mechanism.drives[drive].command.as_ref().map(|_| "where segments stand in place of a ramp")
+        }
+        Parameter::Limit(drive) => {
+            let limited = mechanism.drives[drive].train.is_some_and(|train| train.limit < UNLIMITED);
+            (!limited).then_some("of a drive without a limit")
+        }
+        Parameter::Coulomb(drive) => {
+            let rubs = mechanism.drives[drive].train.is_some_and(|train| train.coulomb != [0.0; 2]);
+            (!rubs).then_some("of a drive that states no `coulomb`, which a deviation adds to")
+        }
+        Parameter::Viscous(drive) | Parameter::Offset(drive) => {
+            let has_train = mechanism.drives[drive].train.is_some();
+            (!has_train).then_some("of a drive that states no limit and no friction; state 0 there")
+        }
+        Parameter::Slope(joint) => {
+            let slopes = mechanism.joints[joint].contours.iter().any(|contour| contour.slope != 0.0);
+            (!slopes).then_some("of a joint without `slope`")
+        }
+        Parameter::Mass(_) | Parameter::Gain(_) => None,
     }
 }
 
@@ -87,16 +105,34 @@ pub(super) fn named<'t, 's>(
         let body = names.body(&of.get("name").unwrap_or_else(|| of.clone()))?;
         found.extend(find(&of, [&name, "mass"], Parameter::Mass(body), Kind::Number(&MASS)));
     }
+    for (name, of) in tables(&table, "joint")? {
+        let Some(i) = mechanism.joints.iter().position(|joint| joint.name == name) else {
+            let known: Vec<&str> = mechanism.joints.iter().map(|joint| joint.name.as_str()).collect();
+            let problem = Problem::UnknownName { of: "joint".into(), name };
+            return Err(of.get("name").unwrap_or(of).error(problem, known.join(", ")));
+        };
+        found.extend(find(&of, [&name, "slope"], Parameter::Slope(i), Kind::Number(&SLOPE)));
+    }
     for (name, of) in tables(&table, "drive")? {
         let Some(i) = drives.iter().position(|drive| drive.name == name) else {
             let known: Vec<&str> = drives.iter().map(|drive| drive.name.as_str()).collect();
             let problem = Problem::UnknownName { of: "drive".into(), name };
             return Err(of.get("name").unwrap_or(of).error(problem, known.join(", ")));
         };
-        let gain = if matches!(drives[i].action, Action::Turns { .. }) { &TORQUE_GAIN } else { &GAIN };
+        let turns = matches!(drives[i].action, Action::Turns { .. });
+        let gain = if turns { &TORQUE_GAIN } else { &GAIN };
         found.extend(find(&of, [&name, "gain"], Parameter::Gain(i), Kind::Number(gain)));
         let start = drives[i].drive.ramp_start;
         found.extend(find(&of, [&name, "ramp_end"], Parameter::RampEnd(i), Kind::RampEnd(start)));
+        let [effort, offset] = if turns { [&TORQUE, &TORQUE_OFFSET] } else { [&FORCE, &FORCE_OFFSET] };
+        for (key, parameter, quantity) in [
+            ("limit", Parameter::Limit(i), effort),
+            ("coulomb", Parameter::Coulomb(i), effort),
+            ("viscous", Parameter::Viscous(i), gain),
+            ("offset", Parameter::Offset(i), offset),
+        ] {
+            found.extend(find(&of, [&name, key], parameter, Kind::Number(quantity)));
+        }
     }
     Ok(found)
 }

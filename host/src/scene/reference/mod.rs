@@ -13,7 +13,7 @@ use super::keys::{Key, ROOT, join};
 use meaning::{DISTRIBUTIONS, MEANINGS};
 
 /// Kinds of quantities with their units.
-const QUANTITIES: [(&str, &[Unit]); 18] = [
+const QUANTITIES: [(&str, &[Unit]); 24] = [
     ("length", unit::LENGTH),
     ("angle", unit::ANGLE),
     ("mass", unit::MASS),
@@ -32,6 +32,12 @@ const QUANTITIES: [(&str, &[Unit]); 18] = [
     ("damping, gain of a torque", unit::TORQUE_GAIN),
     ("stiffness about an axis", unit::TORSION),
     ("frequency", unit::FREQUENCY),
+    ("torque of a drive", unit::TORQUE),
+    ("angular acceleration", unit::ANGULAR_ACCELERATION),
+    ("jerk", unit::JERK),
+    ("angular jerk", unit::ANGULAR_JERK),
+    ("slope of a wall", unit::SLOPE),
+    ("growth of friction with speed", unit::PER_SPEED),
 ];
 
 /// Stands for what a key takes where the parser's message about a wrong value does not say it.

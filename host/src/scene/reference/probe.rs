@@ -12,7 +12,12 @@ use crate::scene::{
 /// A value of no type.
 const PROBE: &str = "a probe";
 /// Scenes with what none of the shipped ones has.
-const OTHERS: [&str; 3] = [include_str!("dimensions.toml"), include_str!("parts.toml"), include_str!("rebound.toml")];
+const OTHERS: [&str; 4] = [
+    include_str!("dimensions.toml"),
+    include_str!("parts.toml"),
+    include_str!("rebound.toml"),
+    include_str!("motion.toml"),
+];
 /// How many tables of one of these are asked.
 const ALL: usize = 48;
 

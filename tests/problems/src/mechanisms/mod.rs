@@ -1,4 +1,5 @@
-//! The shipped mechanisms as composed types: what `slipfit kernel SCENE -o FILE.rs` writes of them, kept current by a test.
+//! Mechanisms as composed types: the shipped ones, and two with what drives, springs, friction and walls can have. What
+//! `slipfit kernel SCENE -o FILE.rs` writes of them, kept current by a test.
 
 /// Four-bar with play between coupler and rocker.
 #[rustfmt::skip]
@@ -9,6 +10,12 @@ pub mod hatch;
 /// Linear guide on two rods.
 #[rustfmt::skip]
 pub mod linear_guide;
+/// What drives, springs, friction and walls can have in a plane.
+#[rustfmt::skip]
+pub mod motion_plane;
+/// What they can have in space.
+#[rustfmt::skip]
+pub mod motion_space;
 /// Slider-crank with play in its big end.
 #[rustfmt::skip]
 pub mod slider_crank;

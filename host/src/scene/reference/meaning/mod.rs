@@ -29,7 +29,10 @@ const WHOLE: &[(&str, &str)] = &[
     ("mechanism", "Marks a scene of bodies and joints."),
     ("body", "A list `[[body]]`: the moving bodies of a mechanism, at least one."),
     ("joint", "A list `[[joint]]`: what connects two bodies, or a body and the frame. Optional."),
-    ("spring", "A list `[[spring]]`: torsion springs, each between two bodies. For mechanisms in a plane. Optional."),
+    (
+        "spring",
+        "A list `[[spring]]`: springs between two bodies, along a line or, in a plane, about its normal. For mechanisms. Optional.",
+    ),
     ("run", "How long a run lasts, and how exactly the desk computes it. Required by slides and mechanisms."),
     (
         "controller",

@@ -42,7 +42,23 @@ pub const SLIDE: &[(&str, &str)] = &[
         "Coulomb friction. `regularised`: fades to zero below the speed `stick_band`, so that a loaded part creeps. `exact`: \
          holds a part at rest. `none`: no friction.",
     ),
-    ("friction.coefficient", "Coefficient of friction. Required unless the law is `none`."),
+    (
+        "friction.static_coefficient",
+        "For mechanisms: coefficient that has to be overcome to move, not below `coefficient`. Default: `coefficient`.",
+    ),
+    (
+        "friction.stribeck_speed",
+        "For mechanisms: speed v_S at which regularised friction has fallen halfway from static to kinetic: μ(s) = μ_k + (μ_s − \
+         μ_k)/(1 + (s/v_S)²). Not below `stick_band`. Required by `regularised` with a `static_coefficient`; in `exact` the fall is sudden.",
+    ),
+    (
+        "friction.viscous",
+        "For mechanisms: by how much the coefficient of regularised friction grows with the sliding speed. Default: 0.",
+    ),
+    (
+        "friction.coefficient",
+        "Coefficient of friction; with a `static_coefficient` that of parts which slide. Required unless the law is `none`.",
+    ),
     (
         "friction.stick_band",
         "Sliding speed below which regularised friction fades to zero. Required by the law `regularised`.",
@@ -52,9 +68,66 @@ pub const SLIDE: &[(&str, &str)] = &[
         "Force for each unit of speed that the body is slower than commanded: force = gain · (command − speed). For a drive \
          that turns, torque for each unit of angular velocity, in N·m·s/rad.",
     ),
-    ("drive.ramp_start", "When the commanded speed begins to rise from zero."),
-    ("drive.ramp_end", "When the commanded speed reaches `speed`, at least 1 µs after `ramp_start`."),
-    ("drive.speed", "Commanded speed after the ramp. For a drive that turns, in rad/s."),
+    (
+        "drive.ramp_start",
+        "When the commanded speed begins to rise from zero. With segments, when the first of them starts; default 0 there.",
+    ),
+    (
+        "drive.ramp_end",
+        "When the commanded speed reaches `speed`, at least 1 µs after `ramp_start`. Not with segments.",
+    ),
+    ("drive.speed", "Commanded speed after the ramp. For a drive that turns, in rad/s. Not with segments."),
+    (
+        "drive.controls",
+        "For mechanisms, of a drive that pushes: the speed of its `point` or of the body's `centre` of mass. A slide's drive controls that \
+         of the centre. Default: `point`.",
+    ),
+    (
+        "drive.segment",
+        "For mechanisms: what is commanded in place of the ramp, one segment after the other, from rest. After the last one the \
+         command stays as it is.",
+    ),
+    (
+        "drive.segment.kind",
+        "`ramp`: to another `speed`. `hold`: stay at the speed. `sine`, `chirp`: a sine about the speed, of one frequency, or of one that \
+         changes evenly from the first to the second.",
+    ),
+    (
+        "drive.segment.speed",
+        "Speed at the end of a ramp; negative to reverse, 0 to stop. In rad/s for a drive that turns.",
+    ),
+    (
+        "drive.segment.duration",
+        "How long the segment lasts. A ramp has either this, and is smooth like the paper's, or `acceleration`.",
+    ),
+    ("drive.segment.acceleration", "Constant, or with `jerk` the greatest, acceleration of a ramp."),
+    ("drive.segment.jerk", "How fast the acceleration of a ramp changes: an S-curve. Default: at once."),
+    ("drive.segment.amplitude", "Amplitude of the speed of a sine or chirp."),
+    ("drive.segment.frequency", "Frequency of a sine; of a chirp a list of two, from and to."),
+    ("drive.cycles", "How often the segments are run; more than once, they have to end at rest. Default: 1."),
+    (
+        "drive.limit",
+        "For mechanisms: the most that the motor gives, either way; a torque for a drive that turns. Default: no limit.",
+    ),
+    (
+        "drive.coulomb",
+        "For mechanisms: Coulomb friction of the drive train; of two numbers the first is that of motion along the axis, the second of \
+         motion against it. It acts on the body and is no part of the force that is told. Default: none.",
+    ),
+    ("drive.stick_band", "Speed below which `coulomb` fades to zero. Required with it."),
+    ("drive.viscous", "For mechanisms: viscous friction of the drive train. Default: none."),
+    (
+        "drive.offset",
+        "For mechanisms: what the motor has to give more along the axis than against it. With `gain = 0` a negative offset is a constant \
+         force. Default: 0.",
+    ),
+    (
+        "drive.rotor",
+        "For mechanisms: moment of inertia of what turns with the motor. The body feels it times the square of the gear; it has no weight \
+         there. What is pushed has to be on an ideal prismatic joint of the frame along the axis. Default: none.",
+    ),
+    ("drive.gear", "Turns of the rotor for each of the body. Required with `rotor` by a drive that turns."),
+    ("drive.travel", "Travel of the body for each turn of the rotor. Required with `rotor` by a drive that pushes."),
     ("drive.point", "Where the force acts, measured from the centre of mass. Default: the centre of mass."),
     ("drive.name", "Name of the drive. Required in a mechanism."),
     (
@@ -177,10 +250,45 @@ pub const MECHANISM: &[(&str, &str)] = &[
     ("joint.right", "As `left`, for the pin's right side (towards +x)."),
     ("joint.rail", "As `left`, for the rail, which lies on top of the pin."),
     ("joint.wall", "As `left`, for the wall below the pin."),
+    (
+        "joint.slope",
+        "By how much each gap narrows over the travel, 1 for 45°: of a `track` towards +z of the second body from the drawn pose, of \
+         `prismatic` with a clearance along the axis from `at`. One number for all walls, or a list: left and right of the axis; left, right, \
+         rail, wall. Default: 0, parallel.",
+    ),
+    (
+        "joint.bow",
+        "`[height, length]`: the walls bow towards the gap by this height in the middle of this length, which is at the same place; \
+         away from it where the height is negative. One for all walls, or a list as for `slope`. Default: straight.",
+    ),
+    (
+        "joint.coulomb",
+        "Of an ideal joint, `revolute` or `prismatic`: friction against its motion, whatever the joint carries; of two numbers the first \
+         is that of motion along the axis. Default: none.",
+    ),
+    ("joint.stick_band", "Speed below which `coulomb` fades to zero. Required with it."),
+    (
+        "joint.viscous",
+        "Of an ideal joint, `revolute` or `prismatic`: friction that grows with the speed. Default: none.",
+    ),
     ("joint.contact", "The joint's own contact law. Default: the scene's `[contact]`."),
     ("joint.friction", "The joint's own friction law. Default: the scene's `[friction]`."),
     ("spring.name", "Name of the spring."),
-    ("spring.between", "The two bodies; `frame` is the body at rest. The spring is relaxed in the drawn pose."),
-    ("spring.stiffness", "Torque for each unit of angle."),
-    ("spring.damping", "Torque for each unit of angular velocity. Default: 0."),
+    ("spring.between", "The two bodies; `frame` is the body at rest."),
+    ("spring.stiffness", "Torque for each unit of angle; with `ends` force for each unit of length."),
+    (
+        "spring.damping",
+        "Torque for each unit of angular velocity; with `ends` force for each unit of speed. Default: 0.",
+    ),
+    (
+        "spring.ends",
+        "A place on either body in the drawn pose: the spring acts along the line between them. Without it the spring turns about the \
+         plane's normal. Required in space.",
+    ),
+    (
+        "spring.preload",
+        "Force with which it pulls the ends together in the drawn pose, pushes if negative; of a torsion spring the torque on the first \
+         body, from x to y. Default: 0, unless `free_length` is stated.",
+    ),
+    ("spring.free_length", "Distance of the ends without force, in place of `preload`."),
 ];

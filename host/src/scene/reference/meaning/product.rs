@@ -383,6 +383,16 @@ pub const PRODUCT: &[(&str, &str)] = &[
     ("vary.slide.tilt_z", "Rotation of gravity about the frame's z, in °. Optional."),
     ("vary.drive.gain", "Gain of the drive, in N·s/mm; in N·m·s/rad for a drive that turns. Optional."),
     ("vary.drive.ramp_end", "End of the ramp, in s. Optional."),
+    ("vary.drive.limit", "Limit of a mechanism's motor, in N; in N·m for a drive that turns. Optional."),
+    (
+        "vary.drive.coulomb",
+        "Coulomb friction of a mechanism's drive train, likewise; of both directions by as much. Optional.",
+    ),
+    ("vary.drive.viscous", "Viscous friction of a mechanism's drive train, in N·s/mm or N·m·s/rad. Optional."),
+    ("vary.drive.offset", "Offset of a mechanism's drive train, in N or N·m. Optional."),
+    ("vary.joint", "A list `[[vary.joint]]`: joints of a mechanism with their parameters. Optional."),
+    ("vary.joint.name", "Name of a joint."),
+    ("vary.joint.slope", "Slope of those of its walls that have one. Optional."),
     (
         "uncertain.*.*.mean",
         "Mean of a normal distribution of the value, in the key's unit. It is cut off at four standard deviations.",

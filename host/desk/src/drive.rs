@@ -1,0 +1,120 @@
+//! Drives chosen at run time: the laws are core's, and so are the bits.
+
+use std::sync::Arc;
+
+use slipfit_core::{
+    ParameterError, Scalar,
+    drive::{Command, Commanded, Drive, Piece, Push, Pushed, Train, TrainData, check_pieces},
+};
+
+/// A commanded speed of any number of pieces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pieces<S = f64>(pub Arc<[Piece<S>]>);
+
+impl<S: Scalar + PartialOrd> Command<S> for Pieces<S> {
+    fn piece(&self, t: S) -> Piece<S> {
+        match self.0.partition_point(|piece| piece.start <= t) {
+            0 => Piece { start: t, coefficients: [S::zero(); 4] },
+            after => self.0[after - 1],
+        }
+    }
+
+    fn checked(self) -> Result<Self, ParameterError<S>> {
+        check_pieces(&self.0).map(|()| self)
+    }
+}
+
+/// Any drive.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnyDrive<S = f64> {
+    /// A ramp.
+    Ramp(Drive<S>),
+    /// A ramp, on a drive train.
+    RampTrain(Train<S, Drive<S>>),
+    /// Any command.
+    Commanded(Commanded<S, Pieces<S>>),
+    /// Any command, on a drive train.
+    CommandedTrain(Train<S, Commanded<S, Pieces<S>>>),
+    /// Friction alone, of a joint.
+    Friction(Train<S, ()>),
+}
+
+impl<S: Scalar + PartialOrd> AnyDrive<S> {
+    /// The drive with the ramp, or with the command of `pieces` in place of it, on the drive train of `train`, if it has one.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    pub fn new(
+        ramp: Drive<S>,
+        pieces: Option<&Pieces<S>>,
+        train: Option<TrainData<S>>,
+    ) -> Result<Self, ParameterError<S>> {
+        let commanded = pieces.map(|pieces| Commanded { gain: ramp.gain, command: pieces.clone() });
+        Ok(match (commanded, train) {
+            (None, None) => Self::Ramp(ramp.checked()?),
+            (None, Some(data)) => Self::RampTrain(Train::new(ramp, data)?),
+            (Some(commanded), None) => Self::Commanded(commanded.checked()?),
+            (Some(commanded), Some(data)) => Self::CommandedTrain(Train::new(commanded, data)?),
+        })
+    }
+}
+
+impl<S: Scalar + PartialOrd> Push<S> for AnyDrive<S> {
+    fn checked(self) -> Result<Self, ParameterError<S>> {
+        Ok(match self {
+            Self::Ramp(drive) => Self::Ramp(drive.checked()?),
+            Self::RampTrain(drive) => Self::RampTrain(drive.checked()?),
+            Self::Commanded(drive) => Self::Commanded(drive.checked()?),
+            Self::CommandedTrain(drive) => Self::CommandedTrain(drive.checked()?),
+            Self::Friction(drive) => Self::Friction(drive.checked()?),
+        })
+    }
+
+    #[inline(always)]
+    fn effort(&self, t: S, v: S) -> S {
+        match self {
+            Self::Ramp(drive) => drive.effort(t, v),
+            Self::RampTrain(drive) => drive.effort(t, v),
+            Self::Commanded(drive) => drive.effort(t, v),
+            Self::CommandedTrain(drive) => drive.effort(t, v),
+            Self::Friction(drive) => drive.effort(t, v),
+        }
+    }
+
+    #[inline(always)]
+    fn pushed(&self, t: S, v: S) -> Pushed<S> {
+        match self {
+            Self::Ramp(drive) => drive.pushed(t, v),
+            other => other.pushed_otherwise(t, v),
+        }
+    }
+}
+
+impl<S: Scalar + PartialOrd> AnyDrive<S> {
+    /// [`Push::pushed`] of all but a plain ramp, in a function of its own: it would be compiled into every mechanism.
+    #[inline(never)]
+    fn pushed_otherwise(&self, t: S, v: S) -> Pushed<S> {
+        match self {
+            Self::Ramp(drive) => drive.pushed(t, v),
+            Self::RampTrain(drive) => drive.pushed(t, v),
+            Self::Commanded(drive) => drive.pushed(t, v),
+            Self::CommandedTrain(drive) => drive.pushed(t, v),
+            Self::Friction(drive) => drive.pushed(t, v),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_are_looked_up_as_the_kernel_does() {
+        let piece = |start: f64, speed: f64| Piece { start, coefficients: [speed, 0.5, -1.0, 2.0] };
+        let array = [piece(0.1, 1.0), piece(0.2, 2.0), piece(0.2, 3.0), piece(0.7, -1.0)];
+        let pieces = Pieces(array.to_vec().into());
+        for t in [-1.0, 0.0, 0.1, 0.15, 0.2, 0.3, 0.7, 5.0] {
+            assert_eq!(pieces.piece(t), array.piece(t), "{t}");
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Drives of a mechanism: what they act on, what they are commanded, what their drive train takes.
+
+use slipfit_core::{
+    ParameterError,
+    drive::{Drive, Piece, Push, TrainData},
+};
+use slipfit_desk::drive::{AnyDrive, Pieces};
+
+use super::Mechanism;
+use crate::dynamics::setpoint::Setpoint;
+
+/// The limit (N, N·m) of a motor for which none is stated.
+pub const UNLIMITED: f64 = 1e12;
+
+/// A drive with its name: a P-velocity controller behind a ramp (eq. 12), or behind any commanded speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedDrive {
+    /// Name.
+    pub name: String,
+    /// The body that it drives, from the frame.
+    pub body: usize,
+    /// The controller. For a torque gain and speed are in N·m·s/rad and rad/s, and the point counts for nothing. With a `command` the
+    /// ramp spans its segments, and the speed is the fastest that is commanded.
+    pub drive: Drive<f64>,
+    /// How it acts.
+    pub action: Action,
+    /// What is commanded in place of the ramp, if anything is.
+    pub command: Option<Pieces>,
+    /// The limit of its motor and the friction of its drive train, if any is stated.
+    pub train: Option<TrainData<f64>>,
+    /// Whether it controls the speed of the centre of mass, not that of its point.
+    pub at_centre: bool,
+    /// Inertia of what turns with its motor, as the body feels it (kg, kg·m²).
+    pub rotor: f64,
+}
+
+/// How a drive acts on its body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    /// As a force along an axis of the frame, at the drive's point.
+    Pushes {
+        /// Direction, of unit length.
+        axis: [f64; 3],
+    },
+    /// As a torque about an axis of the frame; it goes by the angular velocity.
+    Turns {
+        /// Direction, of unit length; in a plane it is the plane's normal.
+        axis: [f64; 3],
+    },
+}
+
+impl Action {
+    /// Direction of the force, or of the torque's axis.
+    pub fn axis(self) -> [f64; 3] {
+        match self {
+            Self::Pushes { axis } | Self::Turns { axis } => axis,
+        }
+    }
+}
+
+impl NamedDrive {
+    /// What it is commanded.
+    pub fn setpoint(&self) -> Setpoint {
+        Setpoint::new(self.drive, self.command.clone())
+    }
+
+    /// The commanded speed (m/s, rad/s) at time `t` (s).
+    pub fn commanded(&self, t: f64) -> f64 {
+        self.setpoint().at(t)
+    }
+
+    /// The same drive with another greatest `speed` (m/s, rad/s): what is commanded is scaled.
+    pub fn set_speed(&mut self, speed: f64) {
+        if let Some(Pieces(pieces)) = &mut self.command {
+            let share = speed / self.drive.speed;
+            let scaled = |Piece { start, coefficients }: &Piece<f64>| Piece {
+                start: *start,
+                coefficients: coefficients.map(|coefficient| coefficient * share),
+            };
+            *pieces = pieces.iter().map(scaled).collect();
+        }
+        self.drive.speed = speed;
+    }
+
+    /// The drive as core computes with it, in the mechanism that it is of.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    pub fn law(&self, mechanism: &Mechanism) -> Result<AnyDrive, ParameterError<f64>> {
+        AnyDrive::new(self.drive, self.command.as_ref(), self.train_in(mechanism))
+    }
+
+    /// Its drive train in `mechanism`, with what lifts the weight that a rotor does not have: bodies carry the rotor's inertia as mass.
+    pub fn train_in(&self, mechanism: &Mechanism) -> Option<TrainData<f64>> {
+        let weight = self.rotor_weight(mechanism);
+        let free = TrainData { limit: UNLIMITED, coulomb: [0.0; 2], stick_band: 1.0, viscous: 0.0, offset: 0.0 };
+        let train = if weight == 0.0 { self.train } else { Some(self.train.unwrap_or(free)) };
+        train.map(|train| TrainData { offset: train.offset + weight, ..train })
+    }
+
+    /// The weight (N) along the axis that the rotor would have as a mass.
+    pub fn rotor_weight(&self, mechanism: &Mechanism) -> f64 {
+        match self.action {
+            Action::Pushes { axis } => {
+                self.rotor * mechanism.gravity.iter().zip(axis).map(|(gravity, axis)| gravity * axis).sum::<f64>()
+            }
+            Action::Turns { .. } => 0.0,
+        }
+    }
+
+    /// What its motor gives (N, N·m) at time `t` (s) and `speed` (m/s, rad/s).
+    pub fn effort(&self, t: f64, speed: f64) -> f64 {
+        match (&self.command, self.train) {
+            (None, None) => self.drive.force(t, speed),
+            // One that is invalid was refused before.
+            (command, train) => {
+                AnyDrive::new(self.drive, command.as_ref(), train).map_or(f64::NAN, |law| law.effort(t, speed))
+            }
+        }
+    }
+}
+
+impl Mechanism {
+    /// What moves with a body: its mass (kg) and moments of inertia (kg·m²), each with what its drives turn or push beside it.
+    pub fn moved_with(&self, body: usize) -> (f64, [f64; 3]) {
+        let (mut mass, mut inertia) = (self.bodies[body].mass, self.bodies[body].inertia);
+        for drive in self.drives.iter().filter(|drive| drive.body == body && drive.rotor != 0.0) {
+            match drive.action {
+                Action::Pushes { .. } => mass += drive.rotor,
+                Action::Turns { axis } => {
+                    for (inertia, axis) in inertia.iter_mut().zip(axis) {
+                        *inertia += drive.rotor * axis * axis;
+                    }
+                }
+            }
+        }
+        (mass, inertia)
+    }
+}

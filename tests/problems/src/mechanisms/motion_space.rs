@@ -1,0 +1,94 @@
+// A slide on a track whose walls converge, with what drives, springs and friction can have in space: a mechanism for firmware, to be compiled against slipfit-core. SI units.
+
+use slipfit_core::{
+    ParameterError, SVector, Scalar, Vector3,
+    clearance::GapStatistics,
+    drive::{Commanded, Piece, Push, Train, TrainData},
+    integrator::ImplicitEuler,
+    kernel::{Kernel, StateOf},
+    law::{Impact, Stribeck, StribeckData, ThreeHalves},
+    system::{
+        Driving, Element, System, ThroughJoints,
+        law::{Axis, Contact, Contour, Contoured, LineSpring, Motor, Wall},
+        spatial::{AtPoint, FreeBodies, Port, Rigid, Seat, tree::{Joint, Mount, SpatialTree}},
+    },
+};
+
+/// Number of coordinates.
+pub const DIMENSION: usize = 4;
+
+/// Step (s).
+pub const STEP: f32 = 0.001;
+
+/// Steps of the scene's run.
+pub const STEPS: u32 = 400;
+
+/// The scheme.
+pub type Scheme = ImplicitEuler<4>;
+
+/// What a flash table of this mechanism is stamped with: it must be equal before a lookup is trusted.
+pub const SCENE_HASH: u64 = 0x9d65552df7b57434;
+
+/// The bodies.
+pub type Bodies<S> = SpatialTree<S, 2, 12, 4>;
+
+/// What acts on them.
+pub type Elements<S> = ThroughJoints<([Element<Seat<S>, Contoured<S, Wall<S, Impact<S, ThreeHalves<S>>, Stribeck<S>>>, 3>; 3], (Element<Seat<S>, LineSpring<S, 3>, 3>, (Element<AtPoint<S>, Motor<Train<S, ()>>, 1>, Element<AtPoint<S>, Motor<Train<S, Commanded<S, [Piece<S>; 6]>>>, 1>))), 12>;
+
+/// A unit's type: what the mechanism does not have leaves no code.
+pub type Unit<S> = System<Bodies<S>, Elements<S>>;
+
+/// Gaps over the production, mean and standard deviation (m).
+pub const GAPS: [[f64; 2]; 3] = [
+    [0.0003, 2.9999999999999997e-5], // pin left
+    [0.0003, 2.9999999999999997e-5], // pin right
+    [0.0002, 2e-5], // pin wall
+];
+
+/// The unit of tolerance level `n`.
+///
+/// # Errors
+/// If a gap at that level, or another parameter, is out of bounds.
+pub fn unit<S: Scalar + PartialOrd>(n: S) -> Result<Unit<S>, ParameterError<S>> {
+    let s = S::from_f64;
+    let gap = |[mean, deviation]: [f64; 2], least| GapStatistics { mean: s(mean), deviation: s(deviation) }.checked_at(n, least);
+    let gaps = [gap(GAPS[0], -0.1)?, gap(GAPS[1], -0.1)?, gap(GAPS[2], -0.1)?];
+    let contact_0 = Contact { normal: Impact::new(ThreeHalves::new(s(1000000.0))?, s(200.0), s(1e-5))?, friction: Stribeck::new(StribeckData { at_rest: s(0.25), kinetic: s(0.15), stribeck_speed: s(0.005), viscous: s(0.05), stick_band: s(0.001) })? };
+    let bodies = SpatialTree::new(FreeBodies::new([Rigid { mass: s(0.6123370055013617), inertia_b: Vector3::new(s(0.002), s(0.002), s(0.001)), centre_w: Vector3::new(s(0.0), s(0.0), s(0.0)) }, Rigid { mass: s(0.1), inertia_b: Vector3::new(s(0.0001), s(0.0001), s(0.0001)), centre_w: Vector3::new(s(0.0), s(0.03), s(0.04)) }], Vector3::new(s(0.0), s(-9.81), s(0.0)))?, &[
+        Mount { body: 0, on: None, joint: Joint::Prismatic { axis: Vector3::new(s(0.0), s(0.0), s(1.0)) } },
+        Mount { body: 1, on: Some(0), joint: Joint::Spherical { at: Vector3::new(s(0.0), s(0.02), s(0.0)) } },
+    ])?;
+    let elements = ThroughJoints(([
+        Element { link: Seat { point: Port { body: None, lever: Vector3::new(s(0.0), s(0.03), s(0.06)) }, from: Some(1) }, law: Contoured { wall: Wall { axis: Axis::X, sign: s(1.0), gap: gaps[0], contact: contact_0 }, along: Axis::Z, contour: Contour { slope: s(-0.001), curvature: s(-0.019999999999999997) } } },
+        Element { link: Seat { point: Port { body: None, lever: Vector3::new(s(0.0), s(0.03), s(0.06)) }, from: Some(1) }, law: Contoured { wall: Wall { axis: Axis::X, sign: s(-1.0), gap: gaps[1], contact: contact_0 }, along: Axis::Z, contour: Contour { slope: s(-0.002), curvature: s(-0.019999999999999997) } } },
+        Element { link: Seat { point: Port { body: None, lever: Vector3::new(s(0.0), s(0.03), s(0.06)) }, from: Some(1) }, law: Contoured { wall: Wall { axis: Axis::Y, sign: s(1.0), gap: gaps[2], contact: contact_0 }, along: Axis::Z, contour: Contour { slope: s(0.001), curvature: s(-0.019999999999999997) } } },
+    ], (Element { link: Seat { point: Port { body: Some(1), lever: Vector3::new(s(0.005), s(0.0), s(0.019999999999999997)) }, from: None }, law: LineSpring { stiffness: s(20.0), damping: s(0.3), free_length: s(0.15), drawn: Vector3::new(s(-0.015), s(-0.03), s(0.16)) } }, (Element { link: AtPoint { body: 0, lever: Vector3::new(s(0.0), s(0.0), s(0.0)), axis_w: Vector3::new(s(0.0), s(0.0), s(1.0)) }, law: Motor(Train::new((), TrainData { limit: s(1000000000000.0), coulomb: [s(0.1), s(0.2)], stick_band: s(0.001), viscous: s(0.5), offset: s(0.0) })?) }, Element { link: AtPoint { body: 0, lever: Vector3::new(s(0.01), s(0.005), s(0.0)), axis_w: Vector3::new(s(0.0), s(0.0), s(1.0)) }, law: Motor(Train::new(Commanded { gain: s(200.0), command: [Piece { start: s(0.0), coefficients: [s(0.0), s(0.0), s(20.0), s(0.0)] }, Piece { start: s(0.05), coefficients: [s(0.05), s(2.0), s(0.0), s(0.0)] }, Piece { start: s(0.075), coefficients: [s(0.09999999999999999), s(2.0), s(-20.0), s(0.0)] }, Piece { start: s(0.125), coefficients: [s(0.15), s(0.0), s(0.0), s(0.0)] }, Piece { start: s(0.225), coefficients: [s(0.15), s(0.0), s(-89.99999999999997), s(599.9999999999998)] }, Piece { start: s(0.325), coefficients: [s(-0.15), s(0.0), s(0.0), s(0.0)] }] }.checked()?, TrainData { limit: s(8.0), coulomb: [s(0.4), s(0.5)], stick_band: s(0.001), viscous: s(2.0), offset: s(0.1) })?) }))));
+    Ok(System::new(bodies, elements))
+}
+
+/// Where and how fast the unit starts: pose and generalised velocities.
+pub fn start<S: Scalar>() -> ([[S; 2]; 4], SVector<S, 4>) {
+    let s = S::from_f64;
+    let pose = [[s(0.0), s(0.0)], [s(1.0), s(0.0)], [s(0.0), s(0.0)], [s(0.0), s(0.0)]];
+    (pose, SVector::from([s(0.0), s(0.0), s(0.0), s(0.0)]))
+}
+
+/// A kernel and the state that it steps.
+pub type Predictor = (Kernel<f32, Unit<f32>, Scheme>, StateOf<f32, Unit<f32>, 4>);
+
+/// The kernel of the unit of tolerance level `n` and its state at the start.
+///
+/// # Errors
+/// If a gap at that level, or another parameter, is out of bounds.
+pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
+    let kernel = Kernel::new(unit(n)?, STEP)?;
+    let (pose, velocity) = start();
+    let mut state = kernel.at_rest(pose);
+    state.motion.velocity = velocity;
+    Ok((kernel, state))
+}
+
+/// Speed (m/s) and force (N) of the drive "motor" at time `t` (s).
+pub fn drive_motor<S: Scalar>(unit: &Unit<S>, t: S, pose: &[[S; 2]; 4], velocity: &SVector<S, DIMENSION>) -> Driving<S> {
+    unit.driving_through_joints(&unit.elements().0.1.1.1, t, pose, velocity)
+}
