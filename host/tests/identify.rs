@@ -89,7 +89,8 @@ fn a_law_that_lacks_a_term_says_so_first() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("decisively better than coulomb, offset"));
     let written = std::fs::read_to_string(folder.path().join("found.toml")).unwrap();
     assert!(
-        written.contains("# Lack of fit") && written.contains("\n[uncertain]\ndrive = [{ name = \"motor\", coulomb = { mean = \""),
+        written.contains("# Lack of fit")
+            && written.contains("\n[uncertain]\ndrive = [{ name = \"motor\", coulomb = { mean = \""),
         "{written}"
     );
 }

@@ -2,8 +2,8 @@
 //! its own: kinetic, of height, of springs, of what is pressed in.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use slipfit::mechanism::{BodyMotion, Joint, JointKind, Mechanism, Moment, NormalData, film};
-use slipfit_core::menu::{ContactData, FrictionData};
+use slipfit::mechanism::{BodyMotion, Joint, JointKind, Mechanism, Moment, NormalData, SlidingData, film};
+use slipfit_core::menu::ContactData;
 
 use super::mechanism;
 
@@ -12,7 +12,7 @@ use super::mechanism;
 fn conservative(scene: &str, spin: Option<f64>, gravity: [f64; 3]) -> Mechanism {
     let mut own = mechanism(scene, &[]);
     for joint in &mut own.joints {
-        joint.laws.friction = FrictionData::None;
+        joint.laws.friction = SlidingData::NONE;
         let [stiffness, exponent] = joint.laws.contact.spring();
         let depth = 1e-5;
         joint.laws.contact = NormalData::Impact(ContactData { stiffness, exponent, damping: 0.0, depth });

@@ -1,6 +1,6 @@
 //! The hash that ties a table and a kernel to the mechanism that they were made of.
 
-use super::{Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port, SlidingData, SpringKind};
+use super::{Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port, SlidingData, SpringKind, Thrown};
 use crate::setup::Digest;
 use slipfit_core::{
     drive::{Drive, TrainData},
@@ -20,6 +20,9 @@ pub fn hash(mechanism: &Mechanism, drive: usize) -> u64 {
     for body in &mechanism.bodies {
         digest.numbers([body.mass, body.start.angle, body.start.spin, body.start.speed]);
         digest.numbers(body.inertia.into_iter().chain(body.centre));
+        if let Some(Thrown { displacement, turned, velocity, spin }) = body.start.thrown {
+            digest.numbers([displacement, turned, velocity, spin].into_iter().flatten());
+        }
     }
     for joint in &mechanism.joints {
         of_joint(&mut digest, joint);

@@ -2,7 +2,7 @@
 
 use slipfit_desk::{error_control::greater, plant::Reported};
 
-use super::{Action, Mechanism};
+use super::{Action, Mechanism, Start};
 
 /// How long (s) an error of speed may last: what makes an error of place of it.
 const LASTING: f64 = 1.2e-3;
@@ -26,11 +26,12 @@ impl Limits {
             Action::Pushes { .. } => named.drive.speed.abs(),
             Action::Turns { .. } => named.drive.speed.abs() * lever(named.body),
         });
-        let thrown = mechanism
-            .bodies
-            .iter()
-            .enumerate()
-            .map(|(i, body)| body.start.speed.abs().max(body.start.spin.abs() * lever(i)));
+        let thrown = mechanism.bodies.iter().enumerate().map(|(i, body)| {
+            let Start { spin, speed, thrown, .. } = body.start;
+            let length = |of: [f64; 3]| libm::sqrt(of.iter().map(|x| x * x).sum());
+            let [free, turning] = thrown.map_or([0.0; 2], |thrown| [thrown.velocity, thrown.spin].map(length));
+            speed.abs().max(free).max(spin.abs().max(turning) * lever(i))
+        });
         let longest = (0..mechanism.bodies.len()).map(&lever).fold(0.0, f64::max);
         let gravity = libm::sqrt(mechanism.gravity.iter().map(|g| g * g).sum());
         let greatest = driven.chain(thrown).fold(0.0, f64::max);

@@ -117,7 +117,7 @@ pub struct Body {
     pub start: Start,
 }
 
-/// How a body in a plane starts, as far as its own ideal joint lets it.
+/// How a body starts, as far as its own ideal joint lets it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
     /// Angle from the drawn pose (rad).
@@ -126,6 +126,21 @@ pub struct Start {
     pub spin: f64,
     /// Speed along the joint's axis (m/s).
     pub speed: f64,
+    /// How it starts if no ideal joint holds it, where that is stated; in a plane by its velocity alone.
+    pub thrown: Option<Thrown>,
+}
+
+/// How a body starts that no ideal joint holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Thrown {
+    /// Displacement of the centre of mass from the drawn pose (m).
+    pub displacement: [f64; 3],
+    /// Rotation vector from the drawn pose (rad), about the axes of the frame.
+    pub turned: [f64; 3],
+    /// Velocity of the centre of mass (m/s).
+    pub velocity: [f64; 3],
+    /// Angular velocity about the axes of the frame (rad/s).
+    pub spin: [f64; 3],
 }
 
 /// A body, or the frame where there is none.

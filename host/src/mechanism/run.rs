@@ -24,6 +24,7 @@ use super::{
     planar,
     record::{MechanismRun, Moment, Samples},
     spatial,
+    start::thrown,
     state::{State, half_angle},
     sunk::{self, Depths},
 };
@@ -150,7 +151,12 @@ where
     let bodies = spatial::bodies::<N, D>(mechanism)?;
     let limits = Limits::of(mechanism, |body| bodies.lever(body));
     let elements = spatial::elements(mechanism, gaps, limits.stick_band())?;
-    let start = (bodies.nominal(), [0.0; D]);
+    let (mut poses, mut rates) = (bodies.nominal(), [0.0; D]);
+    for (k, (pose, velocity)) in thrown(mechanism).into_iter().enumerate() {
+        poses[k] = pose;
+        rates[6 * k..6 * k + 6].copy_from_slice(&velocity);
+    }
+    let start = (poses, rates);
     let gaps_at = |pose: &_, velocity: &_| {
         let placed = bodies.placed(pose, velocity);
         elements.iter().map(|element| element.gap((&bodies, &placed))).collect()

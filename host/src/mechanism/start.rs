@@ -1,11 +1,15 @@
 //! How a mechanism starts: at rest as it is drawn, or turned and moving as its bodies say.
 
-use slipfit_core::system::{
-    planar::Coordinate,
-    spatial::tree::{Joint as IdealJoint, Mount},
+use nalgebra::{UnitQuaternion, Vector3};
+use slipfit_core::{
+    pose::{Orientation, Pose},
+    system::{
+        planar::Coordinate,
+        spatial::tree::{Joint as IdealJoint, Mount},
+    },
 };
 
-use super::{Mechanism, Mounts};
+use super::{Mechanism, Mounts, mounts::flat};
 
 /// Where and how fast a mechanism on ideal joints starts.
 pub struct Rest<const D: usize> {
@@ -23,7 +27,10 @@ impl<const D: usize> Rest<D> {
             let start = mechanism.bodies[owned.body].start;
             (places[k], rates[k]) = match owned.coordinate {
                 Coordinate::Turn => (start.angle, start.spin),
-                Coordinate::Slide { .. } => (0.0, start.speed),
+                Coordinate::Slide { axis, .. } => match start.thrown {
+                    Some(thrown) => (0.0, axis.dot(&flat(thrown.velocity))),
+                    None => (0.0, start.speed),
+                },
             };
         }
         Self { places, rates }
@@ -49,4 +56,18 @@ impl<const D: usize> Rest<D> {
         }
         Self { places, rates }
     }
+}
+
+/// The poses of the free bodies of `mechanism` in space at the start, and their velocities (m/s, rad/s), the angular ones in the axes of
+/// the body.
+pub fn thrown(mechanism: &Mechanism) -> Vec<(Pose<f64>, [f64; 6])> {
+    let of_body = |body: &super::Body| {
+        let Some(thrown) = body.start.thrown else { return (Pose::nominal(), [0.0; 6]) };
+        let turned = UnitQuaternion::from_scaled_axis(Vector3::from(thrown.turned));
+        let orientation = Orientation { w: turned.w, v: turned.imag() };
+        let [[x, y, z], spin] =
+            [thrown.velocity.into(), turned.inverse() * Vector3::from(thrown.spin)].map(<[f64; 3]>::from);
+        (Pose { displacement_w: thrown.displacement.into(), orientation }, [x, y, z, spin[0], spin[1], spin[2]])
+    };
+    mechanism.bodies.iter().map(of_body).collect()
 }

@@ -7,7 +7,7 @@ use slipfit_core::{
 
 use super::{
     Joint, JointKind, Mechanism, Mounts, Rest, RunError, joint_elements::joints_of_elements, planar, spatial,
-    state::half_angle,
+    start::thrown, state::half_angle,
 };
 
 /// How far (m) a joint may be pressed together at the start beyond its play. Contacts give way by less, and angles are rounded; what a
@@ -41,8 +41,12 @@ pub fn torn<'a>(mechanism: &'a Mechanism, gaps: &[f64]) -> Result<Option<Torn<'a
     } else if let Some(mounts) = spatial::mounts(mechanism)? {
         on_joints(mechanism, &mounts, gaps)?
     } else {
-        // Free bodies in space start as they are drawn.
-        return Ok(None);
+        match mechanism.bodies.len() {
+            1 => free::<1, 6>(mechanism, gaps)?,
+            2 => free::<2, 12>(mechanism, gaps)?,
+            3 => free::<3, 18>(mechanism, gaps)?,
+            other => return Err(RunError::Bodies(other)),
+        }
     };
     let torn = found.into_iter().zip(joints_of_elements(mechanism)).filter_map(|(gap, joint)| {
         let (joint, depth) = (joint?, -gap?);
@@ -69,7 +73,17 @@ fn in_plane<const D: usize>(
     Ok(elements.iter().map(|element| element.gap((&tree, &placed))).collect())
 }
 
-/// The same in space.
+/// The same of free bodies in space.
+fn free<const N: usize, const D: usize>(mechanism: &Mechanism, gaps: &[f64]) -> Result<Vec<Option<f64>>, RunError> {
+    let bodies = spatial::bodies::<N, D>(mechanism)?;
+    let mut poses = bodies.nominal();
+    poses.iter_mut().zip(thrown(mechanism)).for_each(|(pose, (start, _))| *pose = start);
+    let placed = bodies.placed(&poses, &SVector::zeros());
+    let elements = spatial::elements(mechanism, gaps, 1.0)?;
+    Ok(elements.iter().map(|element| element.gap((&bodies, &placed))).collect())
+}
+
+/// The same of bodies on ideal joints in space.
 fn on_joints(mechanism: &Mechanism, mounts: &[Mount<f64>], gaps: &[f64]) -> Result<Vec<Option<f64>>, RunError> {
     const D: usize = spatial::MOST_COORDINATES;
     let tree = spatial::tree::<{ spatial::MOST }, { 6 * spatial::MOST }, D>(mechanism, mounts)?;

@@ -209,7 +209,19 @@ pub(super) const ROOT: &[Key] = &[
         ],
     ),
     table("mechanism", &[key("space"), key("gravity")]),
-    table("body", &[key("name"), key("mass"), key("inertia"), key("centre"), key("angle"), key("spin"), key("speed")]),
+    table(
+        "body",
+        &[
+            key("name"),
+            key("mass"),
+            key("inertia"),
+            key("centre"),
+            key("angle"),
+            key("spin"),
+            key("speed"),
+            key("displaced"),
+        ],
+    ),
     table(
         "joint",
         &[

@@ -165,7 +165,13 @@ impl<'a> Forces<'a> {
 fn effort(drive: &Drive, t: f64, at: &Placed) -> f64 {
     let [start, end] = drive.ramp;
     let s = ((t - start) / (end - start)).clamp(0.0, 1.0);
-    let actual = if drive.turns { at.spin } else { at.velocity }.dot(&drive.axis);
+    let of_point = || at.velocity + at.spin.cross(&(at.turned * drive.point));
+    let actual = match (drive.turns, drive.at_centre) {
+        (true, _) => at.spin,
+        (false, true) => at.velocity,
+        (false, false) => of_point(),
+    };
+    let actual = actual.dot(&drive.axis);
     drive.gain * (drive.speed * s * s * (3.0 - 2.0 * s) - actual)
 }
 

@@ -130,6 +130,8 @@ pub struct Drive {
     pub axis: Vec3,
     /// Where a force acts (m), from the centre of mass.
     pub point: Vec3,
+    /// Whether it controls the speed of the centre of mass, not that of its point.
+    pub at_centre: bool,
     /// Gain (N·s/m or N·m·s/rad).
     pub gain: f64,
     /// Start and end of the ramp (s).
@@ -192,7 +194,7 @@ impl Scene {
             text += &format!("stiffness = {stiffness:e}\ndamping = {damping:e}\n");
         }
         for (i, drive) in self.drives.iter().enumerate() {
-            let Drive { body, turns, axis, point, gain, ramp: [start, end], speed } = drive;
+            let Drive { body, turns, axis, point, at_centre, gain, ramp: [start, end], speed } = drive;
             let (verb, of_gain, of_speed) =
                 if *turns { ("turns", "N·m·s/rad", "rad/s") } else { ("pushes", "N·s/m", "m/s") };
             text += &format!("\n[[drive]]\nname = \"drive {i}\"\n{verb} = \"{}\"\n", self.bodies[*body].name);
@@ -201,6 +203,7 @@ impl Scene {
             }
             if !turns && point.norm() > 0.0 {
                 text += &format!("point = {}\n", self.place(point));
+                text += if *at_centre { "controls = \"centre\"\n" } else { "" };
             }
             text += &format!("gain = \"{gain:e} {of_gain}\"\nspeed = \"{speed:e} {of_speed}\"\n");
             text += &format!("ramp_start = {start:e}\nramp_end = {end:e}\n");

@@ -200,5 +200,14 @@ fn add_drive(scene: &mut Scene, dice: &mut Dice) {
     let is_held = scene.joints.iter().any(|joint| joint.between.contains(&Some(body)) && !joint.kind.is_ideal());
     let point = if !turns && is_held && dice.chance(0.5) { dice.vector(0.01, false) } else { Vec3::zeros() };
     let axis = dice.direction(false);
-    scene.drives.push(Drive { body, turns, axis, point, gain, ramp, speed: speed * dice.sign() });
+    scene.drives.push(Drive {
+        body,
+        turns,
+        axis,
+        point,
+        at_centre: body % 2 == 0,
+        gain,
+        ramp,
+        speed: speed * dice.sign(),
+    });
 }

@@ -2,11 +2,14 @@
 
 use std::collections::VecDeque;
 
-use slipfit_core::system::{
-    law::Axis,
-    spatial::{
-        FreeBodies, Port, Rigid, Seat,
-        tree::{Joint, Mount},
+use slipfit_core::{
+    pose::{Orientation, Pose},
+    system::{
+        law::Axis,
+        spatial::{
+            FreeBodies, Port, Rigid, Seat,
+            tree::{Joint, Mount},
+        },
     },
 };
 
@@ -17,7 +20,7 @@ use super::{
 };
 use crate::mechanism::{
     JointKind, Mechanism, Rest, RunError, element::SpatialElement, joint_elements::joints_of_elements, spatial,
-    state::half_angle,
+    start::thrown, state::half_angle,
 };
 
 /// The parts of `mechanism`.
@@ -40,8 +43,8 @@ pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Pa
         module: "spatial",
         names,
         drives,
-        pose: typed(format!("[Pose<S>; {count}]"), format!("[Pose::nominal(); {count}]")),
-        rates: vec![0.0; width],
+        pose: typed(format!("[Pose<S>; {count}]"), poses(mechanism)),
+        rates: thrown(mechanism).into_iter().flat_map(|(_, velocity)| velocity).collect(),
     };
     let Some(mounts) = spatial::mounts(mechanism)? else { return Ok(parts) };
     let dimension = spatial::coordinates(&mounts);
@@ -64,6 +67,22 @@ pub(super) fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Pa
         rates: rates[..dimension].into(),
         ..parts
     })
+}
+
+/// The poses in which free bodies start.
+fn poses(mechanism: &Mechanism) -> String {
+    let count = mechanism.bodies.len();
+    if mechanism.bodies.iter().all(|body| body.start.thrown.is_none()) {
+        return format!("[Pose::nominal(); {count}]");
+    }
+    let pose = |(Pose { displacement_w, orientation: Orientation { w, v } }, _): &(Pose<f64>, _)| {
+        format!(
+            "Pose {{ displacement_w: {}, orientation: slipfit_core::pose::Orientation {{ w: s({w:?}), v: {} }} }}",
+            vector(displacement_w.as_slice()),
+            vector(v.as_slice())
+        )
+    };
+    format!("[{}]", thrown(mechanism).iter().map(pose).collect::<Vec<_>>().join(", "))
 }
 
 /// The bodies, free.

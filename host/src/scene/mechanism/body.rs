@@ -5,8 +5,8 @@ use slipfit_tolerance::unit::{self, Quantity};
 
 use super::{names::tables, place::place};
 use crate::{
-    mechanism::{Body, Joint, JointKind, Mechanism, Mounts, Start, Torn, spatial, torn},
-    scene::{Problem, SceneError, plausible, quantity::POINT, value::Field},
+    mechanism::{Body, Joint, JointKind, Mechanism, Mounts, Start, Thrown, Torn, spatial, torn},
+    scene::{Problem, SceneError, plausible, quantity::POINT, tree::Value, value::Field},
 };
 
 pub(super) const MASS: Quantity = Quantity { units: unit::MASS, range: [1e-6, 1e7] };
@@ -40,11 +40,37 @@ fn body(name: String, table: &Field, planar: bool) -> Result<Body, SceneError> {
     }
     let centre = table.require("centre", if planar { "a place [x, y] in mm" } else { "a place [x, y, z] in mm" })?;
     let centre = place(&centre, planar, &POINT)?;
-    let start = |key: &str, quantity| -> Result<f64, SceneError> {
-        table.get(key).map_or(Ok(0.0), |field| field.to_number(quantity))
+    Ok(Body { name, mass, inertia, centre, start: start(table, planar)? })
+}
+
+/// Reads how a body starts: by numbers on its own ideal joint, by lists where none holds it.
+fn start(table: &Field, planar: bool) -> Result<Start, SceneError> {
+    let listed = |key: &str| table.get(key).filter(|field| matches!(field.node.value, Value::List(_)));
+    let number = |key: &str, quantity| -> Result<f64, SceneError> {
+        table.get(key).filter(|_| listed(key).is_none()).map_or(Ok(0.0), |field| field.to_number(quantity))
     };
-    let start = Start { angle: start("angle", &ANGLE)?, spin: start("spin", &SPIN)?, speed: start("speed", &SPEED)? };
-    Ok(Body { name, mass, inertia, centre, start })
+    let vector = |key: &str, quantity, planar| -> Result<Option<[f64; 3]>, SceneError> {
+        listed(key).map(|field| place(&field, planar, quantity)).transpose()
+    };
+    let velocity = vector("speed", &SPEED, planar)?;
+    // In a plane a body turns about one axis.
+    let [turned, spin] = match planar {
+        true => [None; 2],
+        false => [vector("angle", &ANGLE, false)?, vector("spin", &SPIN, false)?],
+    };
+    let displacement = table.get("displaced").map(|field| place(&field, planar, &POINT)).transpose()?;
+    if let Some(field) = table.get("displaced").filter(|_| planar) {
+        let what = "`displaced` in a plane".into();
+        return Err(field.error(Problem::Unsupported { what }, "a centre where the body starts"));
+    }
+    let is_thrown = [velocity, turned, spin, displacement].iter().any(Option::is_some);
+    let thrown = is_thrown.then(|| Thrown {
+        displacement: displacement.unwrap_or_default(),
+        turned: turned.unwrap_or_default(),
+        velocity: velocity.unwrap_or_default(),
+        spin: spin.unwrap_or_default(),
+    });
+    Ok(Start { angle: number("angle", &ANGLE)?, spin: number("spin", &SPIN)?, speed: number("speed", &SPEED)?, thrown })
 }
 
 /// Whether something holds or moves each body.
@@ -72,7 +98,8 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
             fields.iter().enumerate().for_each(|(i, table)| {
                 let turns = own(i).any(|coordinate| matches!(coordinate, Coordinate::Turn));
                 let slides = own(i).filter(|coordinate| matches!(coordinate, Coordinate::Slide { .. })).count() == 1;
-                check_freedoms([turns, slides], table);
+                let is_free = own(i).filter(|coordinate| matches!(coordinate, Coordinate::Slide { .. })).count() == 2;
+                check_freedoms([turns, slides], is_free, table);
             });
         }
     } else if let Ok(mounts) = spatial::mounts(mechanism) {
@@ -85,6 +112,7 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
                     Some(IdealJoint::Cylindrical { .. }) => [true, true],
                     _ => [false, false],
                 },
+                mounts.is_none(),
                 table,
             );
         });
@@ -93,10 +121,14 @@ pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), Scene
 }
 
 /// Whether a body that is read from `table` can start as it says: turned where it turns by itself, with a speed where its own joint lets
-/// it slide along one axis.
-fn check_freedoms([turns, slides]: [bool; 2], table: &Field) {
-    for (key, can) in [("angle", turns), ("spin", turns), ("speed", slides)] {
-        if let Some(field) = table.get(key).filter(|_| !can) {
+/// it slide along one axis; by lists where no ideal joint holds it, in space none of the mechanism.
+fn check_freedoms([turns, slides]: [bool; 2], is_free: bool, table: &Field) {
+    for (key, can) in [("angle", turns), ("spin", turns), ("speed", slides), ("displaced", false)] {
+        let can = |field: &Field| match field.node.value {
+            Value::List(_) => is_free,
+            _ => can,
+        };
+        if let Some(field) = table.get(key).filter(|field| !can(field)) {
             let what = format!("`{key}` at the start of a body that no joint lets move so");
             table.found().note(field.error(Problem::Unsupported { what }, "to leave it out"));
         }

@@ -206,10 +206,22 @@ pub const MECHANISM: &[(&str, &str)] = &[
     ("body.centre", "Centre of mass in the pose in which the mechanism is drawn."),
     (
         "body.angle",
-        "Rotation from the drawn pose at the start, in space about the axis of the body's ideal joint. Default: 0.",
+        "Rotation from the drawn pose at the start, in space about the axis of the body's ideal joint. In space without ideal joints a \
+         list: the rotation vector. Default: 0.",
     ),
-    ("body.spin", "Angular velocity at the start, in space about the axis of the body's ideal joint. Default: 0."),
-    ("body.speed", "Speed at the start along the axis of the body's ideal joint. Default: 0."),
+    (
+        "body.spin",
+        "Angular velocity at the start, in space about the axis of the body's ideal joint. In space without ideal joints a list, about \
+         x, y and z. Default: 0.",
+    ),
+    (
+        "body.speed",
+        "Speed at the start along the axis of the body's ideal joint. Of a body that no ideal joint holds a list: its velocity. Default: 0.",
+    ),
+    (
+        "body.displaced",
+        "In space without ideal joints: how far from the drawn pose the centre of mass starts. Default: `[0, 0, 0]`.",
+    ),
     ("joint.name", "Name of the joint."),
     (
         "joint.kind",
