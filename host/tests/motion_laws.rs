@@ -1,7 +1,10 @@
 //! Drives, springs, friction and walls of scenes against closed forms.
 
+mod common;
+
 use std::f64::consts::{PI, TAU};
 
+use common::{slipfit, stdout};
 use slipfit::{
     mechanism::{MechanismRun, run},
     scene::{Override, SceneFile},
@@ -559,6 +562,36 @@ fn a_drive_controls_the_speed_of_its_point_unless_the_centres_is_stated() {
                     *of += h / 6.0 * sum;
                 }
             }
+        }
+    }
+}
+
+/// A slide on pins that states what its own types do not have is computed as a mechanism. With a limit that it never comes to, it moves as
+/// the slide's own solver has it.
+#[test]
+fn a_slide_moves_alike_as_a_mechanism() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |set: &[&str], names: [&str; 3]| {
+        let mut arguments = vec!["simulate", "cd-rom-slide", "--set", "run.duration=1500", "--csv", "run.csv"];
+        arguments.extend(set);
+        stdout(&slipfit(folder.path(), &arguments));
+        let mut file = csv::Reader::from_path(folder.path().join("run.csv")).unwrap();
+        let heads = file.headers().unwrap().clone();
+        let at = names.map(|name| heads.iter().position(|head| head == name).unwrap_or_else(|| panic!("{name}")));
+        let row = |row: csv::StringRecord| at.map(|k| row[k].parse::<f64>().unwrap());
+        file.records().map(|record| row(record.unwrap())).collect::<Vec<_>>()
+    };
+    for n in ["-2", "0", "2"] {
+        let slide = rows(&["--n", n], ["force (N)", "x (m)", "z (m)"]);
+        let written = rows(
+            &["--n", n, "--set", "drive.limit=1000"],
+            ["drive.force (N)", "slide.x (m)", "slide.z (m)"],
+        );
+        assert_eq!(slide.len(), written.len());
+        let peak = slide.iter().map(|row| row[0].abs()).fold(0.0, f64::max);
+        for (one, other) in slide.iter().zip(&written) {
+            assert!((one[0] - other[0]).abs() < 5e-5 * peak, "{n}: {one:?} {other:?}");
+            assert!((one[1] - other[1]).abs() < 1e-8 && (one[2] - other[2]).abs() < 1e-8, "{n}: {one:?} {other:?}");
         }
     }
 }

@@ -16,6 +16,7 @@ use super::{
     parse::{scene, title},
     pins::{fill, pins, sums},
     product::product,
+    short_form,
     tree::{Node, Source},
     value::Field,
 };
@@ -50,6 +51,9 @@ impl SceneFile {
             tree.set(change)?;
         }
         key_checks::note_unfit(&tree);
+        if let Err(error) = short_form::write_out(&mut tree) {
+            return found.conclude(Err(error));
+        }
         let mut read = Self::read(&tree, file_name);
         if let Ok(file) = &mut read {
             if !found.any() {

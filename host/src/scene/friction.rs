@@ -16,19 +16,14 @@ const STRIBECK_SPEED: Quantity = Quantity { units: unit::SPEED, range: [1e-7, 1e
 /// Names of the laws in scene files.
 const LAWS: &str = "regularised, exact, none";
 
-/// Keys that only the laws of mechanisms have.
-const MEASURED: [&str; 3] = ["static_coefficient", "stribeck_speed", "viscous"];
-
-/// Reads the friction of a slide, which has one coefficient.
+/// Reads the friction of a slide, which has one coefficient: with others it is read as a mechanism.
 pub(super) fn coulomb(table: &Field) -> Result<FrictionData<f64>, SceneError> {
-    if let Some(field) = MEASURED.iter().find_map(|key| table.get(key)) {
-        let what = format!("`{}` of a slide", field.key);
-        let instead = "law, coefficient, stick_band; the others are for mechanisms, with [[body]] and [[joint]]";
-        return Err(field.error(Problem::Unsupported { what }, instead));
-    }
     match sliding(table)? {
         SlidingData::Coulomb(data) => Ok(data),
-        SlidingData::Stribeck(_) | SlidingData::StaticKinetic { .. } => Ok(FrictionData::None),
+        SlidingData::Stribeck(_) | SlidingData::StaticKinetic { .. } => {
+            let what = "friction with two coefficients of the slide's own types".into();
+            Err(table.error(Problem::Unsupported { what }, "law, coefficient, stick_band"))
+        }
     }
 }
 

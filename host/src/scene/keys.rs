@@ -264,7 +264,10 @@ pub(super) const ROOT: &[Key] = &[
     table("controller", &[key("step"), key("integrator"), key("scalar")]),
     table("sweep", &[key("n")]),
     table("drawing", &[key("clearance")]),
-    table("pin", &[key("name"), key("position"), key("left"), key("right"), key("rail"), key("wall")]),
+    table(
+        "pin",
+        &[key("name"), key("position"), key("left"), key("right"), key("rail"), key("wall"), key("slope"), key("bow")],
+    ),
     table("tolerance", &[key("general"), key("rule"), key("sigma"), key("datums"), key("correlation")]),
     table(
         "dimension",

@@ -24,6 +24,7 @@ mod quantity;
 #[cfg(test)]
 pub(crate) mod reference;
 mod shipped;
+mod short_form;
 mod slide_parameters;
 #[cfg(test)]
 mod tests;

@@ -44,16 +44,16 @@ pub const SLIDE: &[(&str, &str)] = &[
     ),
     (
         "friction.static_coefficient",
-        "For mechanisms: coefficient that has to be overcome to move, not below `coefficient`. Default: `coefficient`.",
+        "Coefficient that has to be overcome to move, not below `coefficient`. Default: `coefficient`.",
     ),
     (
         "friction.stribeck_speed",
-        "For mechanisms: speed v_S at which regularised friction has fallen halfway from static to kinetic: μ(s) = μ_k + (μ_s − \
+        "Speed v_S at which regularised friction has fallen halfway from static to kinetic: μ(s) = μ_k + (μ_s − \
          μ_k)/(1 + (s/v_S)²). Not below `stick_band`. Required by `regularised` with a `static_coefficient`; in `exact` the fall is sudden.",
     ),
     (
         "friction.viscous",
-        "For mechanisms: by how much the coefficient of regularised friction grows with the sliding speed. Default: 0.",
+        "By how much the coefficient of regularised friction grows with the sliding speed. Default: 0.",
     ),
     (
         "friction.coefficient",
@@ -79,12 +79,11 @@ pub const SLIDE: &[(&str, &str)] = &[
     ("drive.speed", "Commanded speed after the ramp. For a drive that turns, in rad/s. Not with segments."),
     (
         "drive.controls",
-        "For mechanisms, of a drive that pushes: the speed of its `point` or of the body's `centre` of mass. A slide's drive controls that \
-         of the centre. Default: `point`.",
+        "Of a drive that pushes: the speed of its `point` or of the body's `centre` of mass. Default: `point`; of a slide `centre`.",
     ),
     (
         "drive.segment",
-        "For mechanisms: what is commanded in place of the ramp, one segment after the other, from rest. After the last one the \
+        "What is commanded in place of the ramp, one segment after the other, from rest. After the last one the \
          command stays as it is.",
     ),
     (
@@ -105,25 +104,22 @@ pub const SLIDE: &[(&str, &str)] = &[
     ("drive.segment.amplitude", "Amplitude of the speed of a sine or chirp."),
     ("drive.segment.frequency", "Frequency of a sine; of a chirp a list of two, from and to."),
     ("drive.cycles", "How often the segments are run; more than once, they have to end at rest. Default: 1."),
-    (
-        "drive.limit",
-        "For mechanisms: the most that the motor gives, either way; a torque for a drive that turns. Default: no limit.",
-    ),
+    ("drive.limit", "The most that the motor gives, either way; a torque for a drive that turns. Default: no limit."),
     (
         "drive.coulomb",
-        "For mechanisms: Coulomb friction of the drive train; of two numbers the first is that of motion along the axis, the second of \
+        "Coulomb friction of the drive train; of two numbers the first is that of motion along the axis, the second of \
          motion against it. It acts on the body and is no part of the force that is told. Default: none.",
     ),
     ("drive.stick_band", "Speed below which `coulomb` fades to zero. Required with it."),
-    ("drive.viscous", "For mechanisms: viscous friction of the drive train. Default: none."),
+    ("drive.viscous", "Viscous friction of the drive train. Default: none."),
     (
         "drive.offset",
-        "For mechanisms: what the motor has to give more along the axis than against it. With `gain = 0` a negative offset is a constant \
+        "What the motor has to give more along the axis than against it. With `gain = 0` a negative offset is a constant \
          force. Default: 0.",
     ),
     (
         "drive.rotor",
-        "For mechanisms: moment of inertia of what turns with the motor. The body feels it times the square of the gear; it has no weight \
+        "Moment of inertia of what turns with the motor. The body feels it times the square of the gear; it has no weight \
          there. What is pushed has to be on an ideal prismatic joint of the frame along the axis. Default: none.",
     ),
     ("drive.gear", "Turns of the rotor for each of the body. Required with `rotor` by a drive that turns."),
@@ -187,6 +183,15 @@ pub const SLIDE: &[(&str, &str)] = &[
     ("pin.right", "As `left`, for the pin's right side (towards +x)."),
     ("pin.rail", "As `left`, for the slide's rail, which lies on top of the pin."),
     ("pin.wall", "As `left`, for the slide's wall below the pin."),
+    (
+        "pin.slope",
+        "By how much the slide's gaps at this pin narrow towards +z of the slide; see `joint.slope`. A slide with it is computed as a \
+         mechanism. Default: 0.",
+    ),
+    (
+        "pin.bow",
+        "How the slide's surfaces at this pin bow; see `joint.bow`. A slide with it is computed as a mechanism. Default: straight.",
+    ),
 ];
 
 /// Keys of mechanisms, and their meaning.
