@@ -583,10 +583,7 @@ fn a_slide_moves_alike_as_a_mechanism() {
     };
     for n in ["-2", "0", "2"] {
         let slide = rows(&["--n", n], ["force (N)", "x (m)", "z (m)"]);
-        let written = rows(
-            &["--n", n, "--set", "drive.limit=1000"],
-            ["drive.force (N)", "slide.x (m)", "slide.z (m)"],
-        );
+        let written = rows(&["--n", n, "--set", "drive.limit=1000"], ["drive.force (N)", "slide.x (m)", "slide.z (m)"]);
         assert_eq!(slide.len(), written.len());
         let peak = slide.iter().map(|row| row[0].abs()).fold(0.0, f64::max);
         for (one, other) in slide.iter().zip(&written) {

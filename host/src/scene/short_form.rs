@@ -188,12 +188,12 @@ fn parameters(table: Value) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::{CD_ROM_SLIDE, Override, SceneFile, shipped};
+    use crate::scene::{Override, SceneFile, shipped};
 
     fn read(set: &[&str]) -> SceneFile {
         let set: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
-        let text = shipped(CD_ROM_SLIDE).unwrap();
-        SceneFile::parse(CD_ROM_SLIDE, text, &set).unwrap_or_else(|error| panic!("{error}"))
+        let text = shipped("cd-rom-slide").unwrap();
+        SceneFile::parse("cd-rom-slide", text, &set).unwrap_or_else(|error| panic!("{error}"))
     }
 
     #[test]
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_mistake_is_shown_where_it_is_written() {
-        let text = shipped(CD_ROM_SLIDE).unwrap().replace("[drive]", "[drive]\nlimit = \"5 kg\"");
+        let text = shipped("cd-rom-slide").unwrap().replace("[drive]", "[drive]\nlimit = \"5 kg\"");
         let Err(error) = SceneFile::parse("s.toml", &text, &[]) else { panic!("accepted") };
         let line = text.lines().position(|line| line.contains("5 kg")).unwrap() + 1;
         assert!(error.to_string().contains(&format!("s.toml:{line}:")), "{error}");

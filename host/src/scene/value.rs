@@ -19,6 +19,14 @@ pub struct Field<'t, 's> {
     pub node: &'t Node<'s>,
 }
 
+/// One number for all, or one for each.
+pub enum OneOrEach<const N: usize> {
+    /// For all.
+    One(f64),
+    /// For each.
+    Each([f64; N]),
+}
+
 /// A number as it stands in the scene.
 pub struct Measure<'t> {
     /// The number, finite.
@@ -103,6 +111,15 @@ impl<'t, 's> Field<'t, 's> {
             *number = Field { key: self.key.clone(), node }.to_number(quantity)?;
         }
         Ok(numbers)
+    }
+
+    /// This as a number (SI), or as a list of them.
+    pub fn one_or_each<const N: usize>(&self, quantity: &Quantity) -> Result<OneOrEach<N>, SceneError> {
+        match &self.node.value {
+            Value::List(_) => self.to_numbers(quantity).map(OneOrEach::Each),
+            Value::Number(_) | Value::Text(_) => self.to_number(quantity).map(OneOrEach::One),
+            _ => Err(self.wrong_type(format!("{}, or {}", quantity.units(), list_of::<N>(quantity)))),
+        }
     }
 
     /// This as a text.

@@ -77,8 +77,9 @@ fn tables_and_keys_without_effect_are_refused() {
     refused(&format!("{LEVER}\n[[pin]]\nname = \"x\"\n"), &[], "`pin` beside `mechanism`", "or bodies");
     refused(CD_ROM_SLIDE, &["mechanism.space=plane"], "beside `mechanism` is not supported", "[[body]]");
     refused(&format!("{LEVER}\n[drawing]\nclearance = [0.4, 0.4]\n"), &[], "`drawing` beside", "or bodies");
+    // With a spring it is a mechanism, whose springs are between two bodies.
     let spring = format!("{CD_ROM_SLIDE}\n[[spring]]\nname = \"s\"\nstiffness = 1\n");
-    refused(&spring, &[], "`spring` has no effect", "to leave it out");
+    refused(&spring, &[], "`spring.between` is missing", "a list of two bodies");
     refused(CD_ROM_SLIDE, &["drive.axis=[0, 0, 1]"], "`drive.axis` has no effect", "gain, ramp_start");
     refused(LEVER, &["drive.motor.point=[1, 0]"], "`drive.point` has no effect", "turns");
     refused(LEVER, &["joint.shaft.radius=5"], "`joint.radius` has no effect", "name, kind, between, at");

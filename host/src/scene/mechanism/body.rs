@@ -6,7 +6,12 @@ use slipfit_tolerance::unit::{self, Quantity};
 use super::{names::tables, place::place};
 use crate::{
     mechanism::{Body, Joint, JointKind, Mechanism, Mounts, Start, Thrown, Torn, spatial, torn},
-    scene::{Problem, SceneError, plausible, quantity::POINT, tree::Value, value::Field},
+    scene::{
+        Problem, SceneError, plausible,
+        quantity::POINT,
+        tree::Value,
+        value::{Field, OneOrEach},
+    },
 };
 
 pub(super) const MASS: Quantity = Quantity { units: unit::MASS, range: [1e-6, 1e7] };
@@ -45,18 +50,30 @@ fn body(name: String, table: &Field, planar: bool) -> Result<Body, SceneError> {
 
 /// Reads how a body starts: by numbers on its own ideal joint, by lists where none holds it.
 fn start(table: &Field, planar: bool) -> Result<Start, SceneError> {
-    let listed = |key: &str| table.get(key).filter(|field| matches!(field.node.value, Value::List(_)));
+    // The number on a joint, and the list of a free body.
+    let either = |key: &str, quantity, planar| -> Result<(f64, Option<[f64; 3]>), SceneError> {
+        let Some(field) = table.get(key) else { return Ok((0.0, None)) };
+        let read = if planar {
+            match field.one_or_each::<2>(quantity)? {
+                OneOrEach::One(one) => OneOrEach::One(one),
+                OneOrEach::Each([x, y]) => OneOrEach::Each([x, y, 0.0]),
+            }
+        } else {
+            field.one_or_each::<3>(quantity)?
+        };
+        Ok(match read {
+            OneOrEach::One(one) => (one, None),
+            OneOrEach::Each(each) => (0.0, Some(each)),
+        })
+    };
     let number = |key: &str, quantity| -> Result<f64, SceneError> {
-        table.get(key).filter(|_| listed(key).is_none()).map_or(Ok(0.0), |field| field.to_number(quantity))
+        table.get(key).map_or(Ok(0.0), |field| field.to_number(quantity))
     };
-    let vector = |key: &str, quantity, planar| -> Result<Option<[f64; 3]>, SceneError> {
-        listed(key).map(|field| place(&field, planar, quantity)).transpose()
-    };
-    let velocity = vector("speed", &SPEED, planar)?;
+    let (speed, velocity) = either("speed", &SPEED, planar)?;
     // In a plane a body turns about one axis.
-    let [turned, spin] = match planar {
-        true => [None; 2],
-        false => [vector("angle", &ANGLE, false)?, vector("spin", &SPIN, false)?],
+    let [(angle, turned), (turning, spin)] = match planar {
+        true => [(number("angle", &ANGLE)?, None), (number("spin", &SPIN)?, None)],
+        false => [either("angle", &ANGLE, false)?, either("spin", &SPIN, false)?],
     };
     let displacement = table.get("displaced").map(|field| place(&field, planar, &POINT)).transpose()?;
     if let Some(field) = table.get("displaced").filter(|_| planar) {
@@ -70,7 +87,7 @@ fn start(table: &Field, planar: bool) -> Result<Start, SceneError> {
         velocity: velocity.unwrap_or_default(),
         spin: spin.unwrap_or_default(),
     });
-    Ok(Start { angle: number("angle", &ANGLE)?, spin: number("spin", &SPIN)?, speed: number("speed", &SPEED)?, thrown })
+    Ok(Start { angle, spin: turning, speed, thrown })
 }
 
 /// Whether something holds or moves each body.

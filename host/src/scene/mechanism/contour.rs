@@ -4,7 +4,11 @@ use slipfit_tolerance::unit::{self, Quantity};
 
 use crate::{
     mechanism::{Contour, JointKind},
-    scene::{Problem, SceneError, tree::Value, value::Field},
+    scene::{
+        Problem, SceneError,
+        tree::Value,
+        value::{Field, OneOrEach},
+    },
 };
 
 pub(super) const SLOPE: Quantity = Quantity { units: unit::SLOPE, range: [-0.5, 0.5] };
@@ -13,30 +17,60 @@ const OVER: Quantity = Quantity { units: unit::LENGTH, range: [0.1, 1e5] };
 
 /// Reads the contours of the walls of a joint of this `kind` at the `table`; empty where all are straight and parallel.
 pub(super) fn contours(table: &Field, kind: &JointKind) -> Result<Vec<Contour<f64>>, SceneError> {
-    let stated = [table.get("slope"), table.get("bow")];
-    let Some(first) = stated.iter().flatten().next() else { return Ok(Vec::new()) };
-    let has_wall = match kind {
-        JointKind::Guide { .. } => vec![true; 2],
-        JointKind::Track { gaps } => gaps.iter().map(Option::is_some).collect(),
-        _ => {
-            let what = format!("`{}` of a joint of kind \"{}\"", first.key, kind.name());
-            let allowed =
-                "a track, or in a plane a prismatic joint with a clearance; a stop's normal may lean in a plane";
-            return Err(first.error(Problem::Unsupported { what }, allowed));
+    match kind {
+        JointKind::Guide { .. } => of_walls(table, [true; 2]),
+        JointKind::Track { gaps } => of_walls(table, gaps.map(|gap| gap.is_some())),
+        _ => match ["slope", "bow"].iter().find_map(|key| table.get(key)) {
+            None => Ok(Vec::new()),
+            Some(field) => {
+                let what = format!("`{}` of a joint of kind \"{}\"", field.key, kind.name());
+                let allowed =
+                    "a track, or in a plane a prismatic joint with a clearance; a stop's normal may lean in a plane";
+                Err(field.error(Problem::Unsupported { what }, allowed))
+            }
+        },
+    }
+}
+
+/// Those of `N` walls, of which some may not be there.
+fn of_walls<const N: usize>(table: &Field, is_there: [bool; N]) -> Result<Vec<Contour<f64>>, SceneError> {
+    let slope = table.get("slope").map(|field| field.one_or_each(&SLOPE).map(|values| (field, values))).transpose()?;
+    let bow = table.get("bow").map(|field| bows(&field).map(|values| (field, values))).transpose()?;
+    let spread = |stated: Option<(Field, OneOrEach<N>)>| -> Result<[f64; N], SceneError> {
+        let Some((field, values)) = stated else { return Ok([0.0; N]) };
+        match values {
+            OneOrEach::One(one) => Ok(is_there.map(|is| if is { one } else { 0.0 })),
+            OneOrEach::Each(each) if each.iter().zip(is_there).any(|(value, is)| *value != 0.0 && !is) => {
+                Err(field.no_effect("where the track has no such wall", "0 there"))
+            }
+            OneOrEach::Each(each) => Ok(each),
         }
     };
-    let [slope, bow] = &stated;
-    let slopes =
-        each(slope.as_ref(), &has_wall, "a number, or a list of one for each wall", &|field| field.to_number(&SLOPE))?;
-    let curvatures = each(bow.as_ref(), &has_wall, BOWED, &curvature)?;
-    let contour = |(slope, curvature): (f64, f64)| Contour { slope, curvature };
-    let contours: Vec<_> = slopes.into_iter().zip(curvatures).map(contour).collect();
+    let contours = spread(slope)?.into_iter().zip(spread(bow)?);
+    let contours: Vec<_> = contours.map(|(slope, curvature)| Contour { slope, curvature }).collect();
     let is_flat = contours.iter().all(|contour| contour.slope == 0.0 && contour.curvature == 0.0);
     Ok(if is_flat { Vec::new() } else { contours })
 }
 
 /// What a bow may be.
 const BOWED: &str = "[height, over a length] in mm, or a list of such for each wall";
+
+/// Curvatures (1/m) of walls that bow: one pair for all, or a list of a pair for each.
+fn bows<const N: usize>(field: &Field) -> Result<OneOrEach<N>, SceneError> {
+    let Value::List(nodes) = &field.node.value else { return Err(field.wrong_type(BOWED)) };
+    if !nodes.iter().all(|node| matches!(node.value, Value::List(_))) {
+        return curvature(field).map(OneOrEach::One);
+    }
+    if nodes.len() != N {
+        let problem = Problem::Length { key: field.key.clone(), found: nodes.len() };
+        return Err(field.error(problem, format!("[height, over a length] in mm, or a list of {N} such")));
+    }
+    let mut each = [0.0; N];
+    for (value, node) in each.iter_mut().zip(nodes) {
+        *value = curvature(&Field { key: field.key.clone(), node })?;
+    }
+    Ok(OneOrEach::Each(each))
+}
 
 /// Curvature (1/m) of a wall that bows by a height in the middle of a length, towards the gap where that is positive.
 fn curvature(field: &Field) -> Result<f64, SceneError> {
@@ -47,41 +81,4 @@ fn curvature(field: &Field) -> Result<f64, SceneError> {
     let number = |node, quantity| Field { key: field.key.clone(), node }.to_number(quantity);
     let (height, over): (f64, f64) = (number(height, &BOW)?, number(over, &OVER)?);
     Ok(-8.0 * height / (over * over))
-}
-
-/// What `read` makes of `field` for each wall: of the value itself for all that there are, or of those that are listed.
-fn each(
-    field: Option<&Field>,
-    has_wall: &[bool],
-    allowed: &str,
-    read: &dyn Fn(&Field) -> Result<f64, SceneError>,
-) -> Result<Vec<f64>, SceneError> {
-    let Some(field) = field else { return Ok(vec![0.0; has_wall.len()]) };
-    let listed = match &field.node.value {
-        // The value itself may be a list, of two numbers.
-        Value::List(nodes) if nodes.len() == has_wall.len() && nodes.iter().all(|node| is_one(node, allowed)) => nodes,
-        Value::List(nodes) if !allowed.starts_with('[') => {
-            let problem = Problem::Length { key: field.key.clone(), found: nodes.len() };
-            return Err(field.error(problem, format!("a number, or a list of {}", has_wall.len())));
-        }
-        _ => {
-            let value = read(field)?;
-            return Ok(has_wall.iter().map(|is| if *is { value } else { 0.0 }).collect());
-        }
-    };
-    let mut values = Vec::new();
-    for (node, is_there) in listed.iter().zip(has_wall) {
-        let field = Field { key: field.key.clone(), node };
-        let value = read(&field)?;
-        if !is_there && value != 0.0 {
-            return Err(field.no_effect("where the track has no such wall", "0"));
-        }
-        values.push(value);
-    }
-    Ok(values)
-}
-
-/// Whether a node of a list is the value of one wall.
-fn is_one(node: &crate::scene::tree::Node, allowed: &str) -> bool {
-    matches!(node.value, Value::List(_)) == allowed.starts_with('[')
 }

@@ -17,8 +17,7 @@ use crate::{
     scene::{
         Problem, SceneError, plausible,
         quantity::{GAIN, LEAST_RAMP, POINT, RAMP, STICK_BAND},
-        tree::Value,
-        value::Field,
+        value::{Field, OneOrEach},
     },
 };
 
@@ -135,8 +134,10 @@ fn train(table: &Field, turns: bool) -> Result<Option<TrainData<f64>>, SceneErro
     let limit = number("limit", force)?;
     let coulomb = match table.get("coulomb") {
         None => None,
-        Some(field) if matches!(field.node.value, Value::List(_)) => Some(field.to_numbers(force)?),
-        Some(field) => Some([field.to_number(force)?; 2]),
+        Some(field) => Some(match field.one_or_each(force)? {
+            OneOrEach::One(both) => [both; 2],
+            OneOrEach::Each(each) => each,
+        }),
     };
     let viscous = number("viscous", if turns { &TORQUE_GAIN } else { &GAIN })?;
     let offset = number("offset", signed)?;

@@ -88,6 +88,10 @@ fn any_of(takes: &[String]) -> Map<String, Value> {
 /// What a key takes by the reader's own words, if they are understood.
 fn form(takes: &str) -> Option<Value> {
     let (what, range) = takes.split_once("; ").map_or((takes, None), |(what, range)| (what, Some(range)));
+    if let Some((one, list)) = what.split_once(", or a list of ") {
+        let one = range.map_or(one.to_owned(), |range| format!("{one}; {range}"));
+        return Some(json!({ "anyOf": [form(&one)?, form(&format!("a list of {list}"))?] }));
+    }
     if what == "true or false" {
         return Some(json!({ "type": "boolean" }));
     }
