@@ -147,6 +147,8 @@ pub struct Observer {
     holds: Vec<f64>,
     /// The share of the command at the end of the first such stretch in which the unit did not run, or else of the last one.
     held: Option<f64>,
+    /// From when on it was slow where it first did not run at the end of such a stretch.
+    failed: Option<[Option<Moment>; 2]>,
     run: RunSpec,
     last: Option<Instant>,
     breakaway: Option<f64>,
@@ -183,7 +185,19 @@ impl Observer {
         holds.reverse();
         let below = [Below::default(); 2];
         let window = std::collections::VecDeque::new();
-        Self { setpoint, holds, held: None, run, last: None, breakaway: None, peak: None, below, tips: None, window }
+        Self {
+            setpoint,
+            holds,
+            held: None,
+            failed: None,
+            run,
+            last: None,
+            breakaway: None,
+            peak: None,
+            below,
+            tips: None,
+            window,
+        }
     }
 
     /// 1 or −1: the direction of the command. Speeds, forces and travel count along it.
@@ -237,6 +251,9 @@ impl Observer {
                 _ => *now,
             };
             let share = at.vz / (self.setpoint.at(end * (1.0 - 1e-9)) * self.along());
+            if self.failed.is_none() && Verdict::of(share, true) != Verdict::Runs {
+                self.failed = Some(self.below.map(|below| below.since));
+            }
             self.held = Some(self.held.map_or(share, |held| first_failure(held, share)));
         }
     }
@@ -261,7 +278,8 @@ impl Observer {
         let swings = extremes(self.window.iter().map(|at| at.vz))
             .filter(|_| verdict != Verdict::Undecided && command != 0.0)
             .filter(|speeds| between_verdicts(speeds.map(|speed| speed / command)));
-        let [slows, stops] = self.below.map(|below| below.since.filter(|_| over && command != 0.0));
+        let at_end = self.below.map(|below| below.since.filter(|_| over && command != 0.0));
+        let [slows, stops] = self.failed.unwrap_or(at_end);
         Outcome {
             breakaway: self.breakaway,
             peak_force: self.peak,

@@ -121,7 +121,9 @@ fn ramp(table: &Field) -> Result<(f64, f64), SceneError> {
 fn spanning(pieces: &[Piece<f64>], gain: f64, point_b: Vector3<f64>) -> Drive<f64> {
     let moves = pieces.iter().find(|piece| piece.coefficients.iter().any(|of| *of != 0.0));
     let ramp_start = moves.map_or(0.0, |piece| piece.start);
-    let ramp_end = pieces.last().map_or(ramp_start, |piece| piece.start).max(ramp_start + LEAST_RAMP);
+    // Sums of durations are rounded: a run that is as long as all segments comes to their end.
+    let end = pieces.last().map_or(ramp_start, |piece| piece.start * (1.0 - 1e-12));
+    let ramp_end = end.max(ramp_start + LEAST_RAMP);
     let ends = pieces.windows(2).map(|two| two[0].speed(two[1].start)).chain(pieces.iter().map(|p| p.coefficients[0]));
     let speed = ends.fold(0.0, |most: f64, speed| if speed.abs() > most.abs() { speed } else { most });
     Drive { gain, ramp_start, ramp_end, speed, point_b }
