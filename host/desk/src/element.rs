@@ -146,6 +146,10 @@ fn approach<
     }
 }
 
+/// A line, or a wall, with a contour and any laws.
+type AnyContouredPad = Contoured<f64, Pad<f64, AnyNormal<f64>, AnySliding<f64>>>;
+type AnyContouredWall<S> = Contoured<S, Wall<S, AnyNormal<S>, AnySliding<S>>>;
+
 /// An element in a plane.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlanarElement<const D: usize> {
@@ -160,7 +164,7 @@ pub enum PlanarElement<const D: usize> {
     /// A force.
     Pusher(Element<planar::Along<f64, D>, Pusher<AnyDrive>, 2>),
     /// A point before a line with a contour.
-    Contour(Element<planar::Across<f64, D>, Contoured<f64, Pad<f64, AnyNormal<f64>, AnySliding<f64>>>, 2>),
+    Contour(Element<planar::Across<f64, D>, AnyContouredPad, 2>),
     /// A spring along the line between two points.
     Line(Element<planar::Between<f64, D>, LineSpring<f64, 2>, 4>),
 }
@@ -184,7 +188,7 @@ pub enum SpatialElement<S = f64> {
     /// A force by the speed where it acts.
     AtPoint(Element<AtPoint<S>, Motor<AnyDrive<S>>, 1>),
     /// A point before a wall with a contour.
-    Contour(Element<Seat<S>, Contoured<S, Wall<S, AnyNormal<S>, AnySliding<S>>>, 3>),
+    Contour(Element<Seat<S>, AnyContouredWall<S>, 3>),
     /// A spring along the line between two points.
     Line(Element<Seat<S>, LineSpring<S, 3>, 3>),
 }

@@ -37,6 +37,14 @@ pub enum SpringKind {
 }
 
 impl Spring {
+    /// Its ends in the drawn pose (m), if it acts along a line.
+    pub fn ends(&self) -> Option<[[f64; 3]; 2]> {
+        match self.kind {
+            SpringKind::Torsion { .. } => None,
+            SpringKind::Line { ends, .. } => Some(ends),
+        }
+    }
+
     /// The energy (J) that it stores where the bodies of `mechanism` have moved by `motions`.
     pub fn energy(&self, mechanism: &Mechanism, motions: &[BodyMotion]) -> f64 {
         let stretch = match self.kind {

@@ -162,5 +162,5 @@ fn add_drive(scene: &mut Scene, dice: &mut Dice, turning: &[usize]) {
     let point = if dice.chance(0.5) && !turning.contains(&body) { dice.vector(0.02, true) } else { Vec3::zeros() };
     let axis = if turns { Vec3::z() } else { dice.direction(true) };
     let speed = speed * dice.sign();
-    scene.drives.push(Drive { body, turns, axis, point, at_centre: body % 2 == 0, gain, ramp, speed });
+    scene.drives.push(Drive { body, turns, axis, point, at_centre: body.is_multiple_of(2), gain, ramp, speed });
 }

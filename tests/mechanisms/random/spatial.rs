@@ -205,7 +205,7 @@ fn add_drive(scene: &mut Scene, dice: &mut Dice) {
         turns,
         axis,
         point,
-        at_centre: body % 2 == 0,
+        at_centre: body.is_multiple_of(2),
         gain,
         ramp,
         speed: speed * dice.sign(),

@@ -6,7 +6,7 @@
 mod symbol;
 mod view;
 
-use crate::mechanism::{Action, Joint, JointKind, Mechanism, NamedDrive};
+use crate::mechanism::{Action, Joint, JointKind, Mechanism, NamedDrive, Spring};
 use crate::{
     setup::SURFACES,
     show::{
@@ -91,11 +91,13 @@ impl Mechanism {
                 kind => kind.gaps().map(|gap| named("gap", gap)).collect(),
             };
             let play = if gaps.is_empty() { String::new() } else { format!(", {} mm", gaps.join(" ")) };
-            (Mark::Number(i + 1), format!("{}: {}{play}", joint.name, joint.kind.name()))
+            let contour = if joint.contours.is_empty() { "" } else { ", not parallel" };
+            (Mark::Number(i + 1), format!("{}: {}{play}{contour}", joint.name, joint.kind.name()))
         });
         let springs = self.springs.iter().map(|spring| {
             let [one, other] = spring.between.map(|port| self.name_of(port));
-            (Mark::Colour(SOFT), format!("{}: torsion spring, {one} to {other}", spring.name))
+            let kind = if spring.ends().is_some() { "spring" } else { "torsion spring" };
+            (Mark::Colour(SOFT), format!("{}: {kind}, {one} to {other}", spring.name))
         });
         let drives = self.drives.iter().map(|drive| {
             let body = &self.bodies[drive.body].name;
@@ -115,6 +117,7 @@ impl Mechanism {
             svg.line(&places, look);
         }
         let mut pen = Pen { svg, view };
+        self.springs.iter().filter_map(Spring::ends).for_each(|ends| pen.spring(ends));
         for joint in &self.joints {
             pen.joint(joint);
         }

@@ -77,6 +77,26 @@ impl Pen<'_> {
         }
     }
 
+    /// A spring along the line between its ends: straight at either, a zigzag between.
+    pub fn spring(&mut self, ends: [[f64; 3]; 2]) {
+        const WINDINGS: usize = 6;
+        let [from, to] = ends.map(|end| self.view.at(end));
+        let [right, down] = [to[0] - from[0], to[1] - from[1]];
+        let length = right.hypot(down);
+        if length < 1.0 {
+            return;
+        }
+        let direction = [right / length, down / length];
+        let (start, each) = (0.2 * length, 0.6 * length / WINDINGS as f64);
+        let turns = (0..WINDINGS).flat_map(|k| {
+            let at = start + each * k as f64;
+            [(at + 0.25 * each, 5.0), (at + 0.75 * each, -5.0)]
+        });
+        let all = [(0.0, 0.0), (start, 0.0)].into_iter().chain(turns).chain([(0.8 * length, 0.0), (length, 0.0)]);
+        let places: Vec<_> = all.map(|(along, across)| moved(from, direction, along, across)).collect();
+        self.svg.line(&places, Stroke::new(SOFT, 1.5));
+    }
+
     /// A joint, in the colours of the bodies that it joins.
     pub fn joint(&mut self, joint: &Joint) {
         let at = self.view.at(joint.at);

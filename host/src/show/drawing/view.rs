@@ -1,6 +1,6 @@
 //! From places (m) to places on the picture (px).
 
-use crate::mechanism::{Action, JointKind, Mechanism};
+use crate::mechanism::{Action, JointKind, Mechanism, Spring};
 
 /// Room for symbols and labels around everything (px).
 const MARGIN: f64 = 56.0;
@@ -31,7 +31,9 @@ impl Extent {
         let centres = mechanism.bodies.iter().map(|body| body.centre);
         let pushing = mechanism.drives.iter().filter(|drive| matches!(drive.action, Action::Pushes { .. }));
         let forces = pushing.map(|drive| mechanism.drive_point(drive));
-        let places: Vec<[f64; 3]> = centres.chain(mechanism.joints.iter().flat_map(ends)).chain(forces).collect();
+        let springs = mechanism.springs.iter().filter_map(Spring::ends).flatten();
+        let joints = mechanism.joints.iter().flat_map(ends);
+        let places: Vec<[f64; 3]> = centres.chain(joints).chain(forces).chain(springs).collect();
         Self(std::array::from_fn(|k| {
             let values = || places.iter().map(|place| place[k]);
             [values().fold(f64::MAX, f64::min), values().fold(f64::MIN, f64::max)]
@@ -95,6 +97,11 @@ fn ends(joint: &crate::mechanism::Joint) -> Vec<[f64; 3]> {
     let along =
         |axis: [f64; 3], half: f64| [-half, half].map(|s| std::array::from_fn(|k| joint.at[k] + s * axis[k])).to_vec();
     match joint.kind {
+        // A wide one also by its width.
+        JointKind::Guide { axis, edges: [long, wide], .. } if wide > long => {
+            let across = along([-axis[1], axis[0], 0.0], 0.5 * wide);
+            along(axis, 0.5 * long).into_iter().chain(across).collect()
+        }
         JointKind::Guide { axis, edges, .. } => along(axis, 0.5 * edges[0]),
         JointKind::Bearing { axis, length, .. } => along(axis, 0.5 * length),
         _ => vec![joint.at],
