@@ -62,16 +62,14 @@ impl<S: Scalar, P: Push<S>> Push<S> for Train<S, P> {
         let TrainData { limit, coulomb: [along, against], viscous, offset, .. } = self.data;
         let asked = self.controller.pushed(t, v);
         // A saturated motor does not answer to speed or time.
-        let unless_saturated = |slope: S| asked.force.magnitude().select_gt(limit, S::zero(), slope);
+        let free = asked.force.magnitude().select_gt(limit, S::zero(), S::one());
         let coulomb = v.select_gt(S::zero(), along, against);
         let square = v * v;
         let (ratio, ratio_slope) = self.band.per_speed(square);
         Pushed {
             force: asked.force.within(-limit, limit) - (coulomb * ratio + viscous) * v - offset,
-            per_speed: unless_saturated(asked.per_speed)
-                + coulomb * (ratio + (ratio_slope + ratio_slope) * square)
-                + viscous,
-            per_time: unless_saturated(asked.per_time),
+            per_speed: free * asked.per_speed + coulomb * (ratio + (ratio_slope + ratio_slope) * square) + viscous,
+            per_time: free * asked.per_time,
         }
     }
 }

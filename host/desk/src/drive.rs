@@ -14,7 +14,7 @@ pub struct Pieces<S = f64>(pub Arc<[Piece<S>]>);
 impl<S: Scalar + PartialOrd> Command<S> for Pieces<S> {
     fn piece(&self, t: S) -> Piece<S> {
         match self.0.partition_point(|piece| piece.start <= t) {
-            0 => Piece { start: t, coefficients: [S::zero(); 4] },
+            0 => Piece { start: S::zero(), coefficients: [S::zero(); 4] },
             after => self.0[after - 1],
         }
     }

@@ -108,6 +108,8 @@ pub fn pieces(
     }
     // From then on it stays as it is.
     course.pieces.push(Piece { start: course.t, coefficients: [course.speed, 0.0, 0.0, 0.0] });
+    // A kernel adds its pieces up, which leaves no negative zero.
+    course.pieces.iter_mut().flat_map(|piece| &mut piece.coefficients).for_each(|of| *of += 0.0);
     Ok(course.pieces)
 }
 

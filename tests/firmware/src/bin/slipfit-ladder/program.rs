@@ -218,7 +218,6 @@ mechanisms! {
     telescopic_drawer;
     ball_rod;
     motion_plane;
-    motion_space;
 }
 
 /// Says what a Newton pass of a slide with exact friction takes, its iteration matrix and solution included: a step of two passes less
