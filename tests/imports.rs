@@ -60,6 +60,7 @@ const LAYERS: [(&str, &[&str]); 7] = [
             "scheme",
             "pack",
             "out_of_line",
+            "drive",
             "element",
             "side_by_side",
             "error_control",

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use common::{slipfit, stdout};
 use slipfit::{
-    mechanism::{MechanismRun, run},
+    mechanism::{MechanismRun, confirmed, run},
     scene::{Override, SceneFile},
 };
 
@@ -593,6 +593,65 @@ fn a_slide_moves_alike_as_a_mechanism() {
     }
 }
 
+/// The verdict of the stage that a finer run confirms, and whether there is one at all.
+fn confirmed_verdict(drive: &str, set: &[&str]) -> String {
+    let scene = format!(
+        "mechanism = {{ space = \"plane\" }}\n{STAGE}[[drive]]\nname = \"motor\"\npushes = \"stage\"\naxis = [1, 0]\n{drive}"
+    );
+    let set: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
+    let mechanism =
+        SceneFile::parse("scene.toml", &scene, &set).unwrap_or_else(|error| panic!("{error}")).mechanism.unwrap();
+    confirmed(&mechanism, &[], 1e-3).unwrap()[0].outcomes[0].verdict.to_string()
+}
+
+#[test]
+fn a_motion_that_ends_at_rest_or_where_it_began_has_a_verdict() {
+    let there = "segment = [{ kind = \"ramp\", speed = 100, acceleration = 2 }, { kind = \"hold\", duration = 0.2 },\n\
+                 { kind = \"ramp\", speed = 0, acceleration = 2 }]\n";
+    let and_back = "segment = [{ kind = \"ramp\", speed = 100, acceleration = 2 }, { kind = \"hold\", duration = 0.2 },\n\
+                    { kind = \"ramp\", speed = -100, acceleration = 2 }, { kind = \"hold\", duration = 0.2 },\n\
+                    { kind = \"ramp\", speed = 0, acceleration = 2 }]\n";
+    for (segments, length) in [(there, 300.0), (and_back, 600.0)] {
+        for duration in [length, length + 1.0, length + 20.0, 1000.0, 3000.0] {
+            let drive = format!("gain = 1\n{segments}");
+            let verdict = confirmed_verdict(&drive, &[&format!("run.duration={duration}")]);
+            assert_eq!(verdict, "runs", "{duration}: {segments}");
+        }
+    }
+    // What does not come back is jammed, and so is what never moved, whenever the run ends after it should have.
+    let sticks = |coulomb: &str| format!("gain = 0.2\nlimit = 5\ncoulomb = {coulomb}\nstick_band = 0.1\n{and_back}");
+    assert_eq!(confirmed_verdict(&sticks("[0.5, 6]"), &["run.duration=1500"]), "jammed");
+    for duration in [260, 400, 550, 700] {
+        assert_eq!(confirmed_verdict(&sticks("6"), &[&format!("run.duration={duration}")]), "jammed", "{duration}");
+    }
+    // A wave about zero commands no speed to be judged by.
+    let wave = "gain = 1\nsegment = [{ kind = \"sine\", amplitude = 50, frequency = 5, duration = 1 }]\n";
+    assert_eq!(confirmed_verdict(wave, &[]), "undecided");
+    assert_eq!(confirmed_verdict(&format!("cycles = 2\n{wave}"), &["run.duration=2000"]), "undecided");
+}
+
+#[test]
+fn what_friction_differs_by_is_the_motion_not_the_order_of_the_bodies() {
+    // Turned from x to y at 10 rad/s the motor gives the first number.
+    for (space, axis, angle) in [("plane", "", "1e-3"), ("space", "axis = [0, 0, 1]\n", "1e-3")] {
+        for between in ["\"frame\", \"wheel\"", "\"wheel\", \"frame\""] {
+            let (at, inertia) = match space {
+                "plane" => ("[0, 0]", format!("\"{angle} kg·m²\"")),
+                _ => ("[0, 0, 0]", format!("[\"{angle} kg·m²\", \"{angle} kg·m²\", \"{angle} kg·m²\"]")),
+            };
+            let scene = format!(
+                "mechanism = {{ space = \"{space}\" }}\nrun = {{ duration = 400 }}\n\
+                 [[body]]\nname = \"wheel\"\nmass = 100\ninertia = {inertia}\ncentre = {at}\n\
+                 [[joint]]\nname = \"axle\"\nkind = \"revolute\"\nbetween = [{between}]\nat = {at}\n{axis}\
+                 coulomb = [0.02, 0.05]\nstick_band = 0.1\n\
+                 [[drive]]\nname = \"motor\"\nturns = \"wheel\"\n{axis}gain = 5\nramp_start = 0\nramp_end = 0.1\nspeed = 10\n"
+            ).replace("coulomb = [0.02, 0.05]", "coulomb = [\"0.02 N·m\", \"0.05 N·m\"]");
+            let torque = columns(&ran(&scene, &[]), ["motor.torque (N·m)"]).last().unwrap()[0];
+            assert!((torque - 0.02).abs() < 1e-6, "{space} {between}: {torque}");
+        }
+    }
+}
+
 /// What is wrong with a scene, with the place that the message shows.
 fn refused(scene: &str) -> String {
     match SceneFile::parse("scene.toml", scene, &[]) {
@@ -653,18 +712,21 @@ fn what_makes_no_sense_is_refused_at_its_place() {
             "has no effect",
         ),
         (drive(ramp).replace("[[drive]]", "slope = 0.1\n[[drive]]"), "`joint.slope`"),
-        (wedge(0.1, 0.2, ramp).replace("slope = 0.1", "slope = [0.1, 0.2, 0.3]"), "a list of 2"),
-        (wedge(0.1, 0.2, ramp).replace("slope = 0.1", "bow = 0.1"), "over a length"),
-        (wedge(0.1, 0.2, ramp).replace("stick_band = 0.001", "stick_band = 0.001\nstatic_coefficient = 0.1"), "0.2"),
+        (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "slope = [0.1, 0.2, 0.3]"), "a list of 2"),
+        (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "bow = 0.1"), "over a length"),
+        // At ± 20 mm the lines have come together by 2 mm on either side, of a gap of 1.2 mm.
+        (wedge(0.1, 0.2, ramp), "tears `guide` open"),
+        (wedge(0.0, 0.2, ramp).replace("slope = 0", "bow = [-100, 100]"), "tears `guide` open"),
+        (wedge(0.01, 0.2, ramp).replace("stick_band = 0.001", "stick_band = 0.001\nstatic_coefficient = 0.1"), "0.2"),
         (
-            wedge(0.1, 0.2, ramp).replace("stick_band = 0.001", "stick_band = 0.001\nstatic_coefficient = 0.3"),
+            wedge(0.01, 0.2, ramp).replace("stick_band = 0.001", "stick_band = 0.001\nstatic_coefficient = 0.3"),
             "stribeck_speed",
         ),
         (
-            wedge(0.1, 0.2, ramp).replace("stick_band = 0.001", "stick_band = 0.001\nstribeck_speed = 0.3"),
+            wedge(0.01, 0.2, ramp).replace("stick_band = 0.001", "stick_band = 0.001\nstribeck_speed = 0.3"),
             "has no effect",
         ),
-        (wedge(0.1, 0.2, ramp).replace("\"regularised\"", "\"exact\"\nviscous = 1"), "has no effect"),
+        (wedge(0.01, 0.2, ramp).replace("\"regularised\"", "\"exact\"\nviscous = 1"), "has no effect"),
     ] {
         let scene =
             if scene.contains("mechanism =") { scene } else { format!("mechanism = {{ space = \"plane\" }}\n{scene}") };

@@ -63,7 +63,9 @@ pub fn with_step_tried(scene: &Scene, n: &[f64; CONTACTS], trust: Trust) -> Resu
 /// `run`, made by `settings`, held against the `better` one, which is sampled at the same times.
 pub fn against(better: &Run, scene: &Scene, settings: &Settings, mut run: Run) -> Run {
     let agrees = match settings.solver {
-        Solver::Desk { .. } => figures_agree(&run.outcome, &better.outcome, scene.drive.command(better.outcome.end.t)),
+        Solver::Desk { .. } => {
+            figures_agree(&run.outcome, &better.outcome, [scene.drive.command(better.outcome.end.t), LEAST_TRAVEL])
+        }
         // How far its figures are off is said beside its verdict.
         Solver::Controller(_) => run.outcome.verdict == better.outcome.verdict,
     };
@@ -83,8 +85,8 @@ pub fn against(better: &Run, scene: &Scene, settings: &Settings, mut run: Run) -
 const DOUBTFUL: f64 = 0.01;
 
 /// Whether two runs agree in verdict and figures: in peak, final speed and travel, each to 1 %. A final speed counts by the `command`
-/// (m/s, rad/s) at the end where that is greater.
-pub fn figures_agree(one: &Outcome, better: &Outcome, command: f64) -> bool {
+/// (m/s, rad/s) at the end where that is greater, a travel by what is `some` (m, rad) likewise.
+pub fn figures_agree(one: &Outcome, better: &Outcome, [command, some]: [f64; 2]) -> bool {
     let within = |one: f64, better: f64, whole: f64| (one - better).abs() <= DOUBTFUL * whole.abs();
     let peaks = match (one.peak_force, better.peak_force) {
         (Some(one), Some(better)) => within(one, better, better),
@@ -96,12 +98,12 @@ pub fn figures_agree(one: &Outcome, better: &Outcome, command: f64) -> bool {
     let run_away = [one, better].iter().all(|outcome| outcome.runs_away(command));
     let figures = peaks
         && within(one.final_velocity, better.final_velocity, speed)
-        && within(travel, better_travel, better_travel.abs().max(LEAST_TRAVEL));
+        && within(travel, better_travel, better_travel.abs().max(some));
     one.verdict == better.verdict && (run_away || figures)
 }
 
 /// Travel (m, rad) that counts as some.
-const LEAST_TRAVEL: f64 = 1e-5;
+pub const LEAST_TRAVEL: f64 = 1e-5;
 
 #[cfg(test)]
 mod tests {

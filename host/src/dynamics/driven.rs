@@ -78,6 +78,11 @@ pub trait Driven: Sync {
     /// The drive.
     fn drive(&self) -> &Drive<f64>;
 
+    /// Whether it is commanded segments, which may reverse, instead of a ramp to one speed.
+    fn has_segments(&self) -> bool {
+        false
+    }
+
     /// Duration, stroke and error.
     fn run(&self) -> RunSpec;
 

@@ -268,9 +268,9 @@ impl Observer {
     pub fn outcome(&self) -> Outcome {
         let Instant { t, vz, z, .. } = self.last.unwrap_or(Instant { t: 0.0, vz: 0.0, force: 0.0, z: 0.0 });
         let is_at_end = self.run.stroke.map(|stroke| z >= stroke);
-        let command = self.setpoint.at(t) * self.along();
+        let command = self.setpoint.settled_at(t) * self.along();
         // At the stroke's end what the command is by then counts.
-        let over = t >= self.setpoint.end() || is_at_end == Some(true);
+        let over = t >= self.setpoint.end() || is_at_end == Some(true) || self.failed.is_some();
         let at_end = (command != 0.0).then_some(vz / command);
         let share = [self.held, at_end].into_iter().flatten().reduce(first_failure);
         let verdict = share.map_or(Verdict::Undecided, |share| Verdict::of(share, over));

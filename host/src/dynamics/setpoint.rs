@@ -30,6 +30,12 @@ impl Setpoint {
         }
     }
 
+    /// The same, exactly zero where rounding alone is left of it.
+    pub fn settled_at(&self, t: f64) -> f64 {
+        let speed = self.at(t);
+        if speed.abs() > 1e-9 * self.ramp.speed.abs() { speed } else { 0.0 }
+    }
+
     /// When the command begins to move (s).
     pub fn start(&self) -> f64 {
         self.ramp.ramp_start

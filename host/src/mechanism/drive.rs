@@ -7,7 +7,7 @@ use slipfit_core::{
 use slipfit_desk::drive::{AnyDrive, Pieces};
 
 use super::Mechanism;
-use crate::dynamics::setpoint::Setpoint;
+use crate::dynamics::{confirm::LEAST_TRAVEL, setpoint::Setpoint};
 
 /// The limit (N, N·m) of a motor for which none is stated.
 pub const UNLIMITED: f64 = 1e12;
@@ -67,6 +67,19 @@ impl NamedDrive {
     /// The commanded speed (m/s, rad/s) at time `t` (s).
     pub fn commanded(&self, t: f64) -> f64 {
         self.setpoint().at(t)
+    }
+
+    /// The speed and the travel (m/s and m, rad/s and rad) that figures at the end `t` (s) of a run are compared with. What is at rest there
+    /// by its command, or back where it began, is compared with a thousandth of how fast it went and how far that may be.
+    pub fn scale(&self, t: f64) -> [f64; 2] {
+        let command = self.commanded(t).abs();
+        match self.command {
+            None => [command, LEAST_TRAVEL],
+            Some(_) => {
+                let least = 1e-3 * self.drive.speed.abs();
+                [command.max(least), LEAST_TRAVEL.max(least * t)]
+            }
+        }
     }
 
     /// The same drive with another greatest `speed` (m/s, rad/s): what is commanded is scaled.

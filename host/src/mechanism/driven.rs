@@ -64,7 +64,7 @@ pub fn confirmed(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<[Mec
     }
     let excess = one.energy_excess;
     for ((outcome, finer), named) in one.outcomes.iter_mut().zip(&better.outcomes).zip(&mechanism.drives) {
-        let agrees = figures_agree(outcome, finer, named.commanded(finer.end.t));
+        let agrees = figures_agree(outcome, finer, named.scale(finer.end.t));
         if excess.is_nan() || excess > ENERGY || !agrees {
             outcome.verdict = Verdict::Undecided;
         }
@@ -122,6 +122,10 @@ impl Driven for ByDrive<'_> {
 
     fn drive(&self) -> &Drive<f64> {
         &self.mechanism.drives[self.drive].drive
+    }
+
+    fn has_segments(&self) -> bool {
+        self.mechanism.drives[self.drive].command.is_some()
     }
 
     fn run(&self) -> RunSpec {

@@ -123,7 +123,9 @@ pub fn elements<const D: usize>(
                 })
             }
             _ => {
-                let link = Turning { body: mounts.turn(first), against: mounts.turn(second) };
+                // Of two bodies the second turns against the first, of one and the frame that one.
+                let (body, against) = if second.is_some() { (second, first) } else { (first, second) };
+                let link = Turning { body: mounts.turn(body), against: mounts.turn(against) };
                 PlanarElement::Motor(Element { link, law: Motor(drag) })
             }
         });

@@ -1,7 +1,10 @@
 //! Reading the law along a contact's tangents.
 
 use slipfit_core::{law::StribeckData, menu::FrictionData};
-use slipfit_tolerance::unit::{self, Quantity};
+use slipfit_tolerance::{
+    number::three_digits,
+    unit::{self, Quantity},
+};
 
 use super::{
     Problem, SceneError, plausible,
@@ -12,6 +15,9 @@ use crate::mechanism::SlidingData;
 
 const VISCOUS: Quantity = Quantity { units: unit::PER_SPEED, range: [0.0, 1e6] };
 const STRIBECK_SPEED: Quantity = Quantity { units: unit::SPEED, range: [1e-7, 1e5] };
+
+/// How many stick bands a fall from static to kinetic friction should at least take.
+const NEAR: f64 = 10.0;
 
 /// Names of the laws in scene files.
 const LAWS: &str = "regularised, exact, none";
@@ -82,6 +88,16 @@ fn regularised(table: &Field, kinetic: f64) -> Result<SlidingData, SceneError> {
             let speed = table.number("stribeck_speed", &STRIBECK_SPEED)?;
             if let Some(field) = table.get("stribeck_speed").filter(|_| speed < stick_band) {
                 return Err(field.out_of_range("mm/s", format!("{} mm/s, the stick band, or more", stick_band * 1e3)));
+            }
+            if let Some(field) = table.get("static_coefficient").filter(|_| speed < NEAR * stick_band) {
+                let share = stick_band / speed;
+                let reached = kinetic + (at_rest.unwrap_or(kinetic) - kinetic) / (1.0 + share * share);
+                field.warn(&format!(
+                    "friction comes to {} at the end of the stick band, because it falls to kinetic friction within {} stick bands: a stick \
+                     band of a tenth of `stribeck_speed` or less leaves all but a hundredth of the difference",
+                    three_digits(reached),
+                    three_digits(speed / stick_band)
+                ));
             }
             speed
         }

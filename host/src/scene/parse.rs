@@ -33,8 +33,8 @@ use crate::setup::{ControllerSpec, GapMeasures, LevelRange, PinSpec, RunSpec, SU
 pub(super) const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
 const CLEARANCE: Quantity = Quantity { units: unit::LENGTH, range: [0.0, 100.0] };
-const DURATION: Quantity = Quantity { units: unit::MILLISECONDS, range: [0.001, 1e6] };
-const STROKE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
+pub(super) const DURATION: Quantity = Quantity { units: unit::MILLISECONDS, range: [0.001, 1e6] };
+pub(super) const STROKE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
 const TURN: Quantity = Quantity { units: unit::ANGLE, range: [0.001, 1e7] };
 const ERROR: Quantity = Quantity { units: unit::ONE, range: [1e-10, 0.1] };
 const STEP: Quantity = Quantity { units: unit::MICROSECONDS, range: [0.002, 1e4] };

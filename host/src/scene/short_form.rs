@@ -9,8 +9,8 @@ use slipfit_core::slide::box_inertia;
 
 use super::{
     SceneError,
-    parse::EDGE,
-    quantity::MASS,
+    parse::{DURATION, EDGE, STROKE},
+    quantity::{MASS, RAMP, SPEED},
     tree::{Entry, Node, Place, Value},
     value::Field,
 };
@@ -61,7 +61,7 @@ pub(super) fn write_out(root: &mut Node) -> Result<(), SceneError> {
     if is_mechanism || !is_beyond(root) {
         return Ok(());
     }
-    let inertia = inertia(root)?;
+    let (inertia, stroke) = (inertia(root)?, stroke_duration(root)?);
     let Value::Table(entries) = &mut root.value else { return Ok(()) };
     // A note of the drawing's clearances, which nothing is computed from.
     take(entries, "drawing");
@@ -76,6 +76,7 @@ pub(super) fn write_out(root: &mut Node) -> Result<(), SceneError> {
                 let Node { value, place } = entry.node;
                 written.push(Entry { node: Node { value: parameters(value), place }, ..entry });
             }
+            "run" => written.push(Entry { node: run(entry.node, stroke), ..entry }),
             _ => written.push(entry),
         }
     }
@@ -89,6 +90,31 @@ fn inertia(root: &Node) -> Result<[f64; 3], SceneError> {
     let field = |key: &str| node(key).map(|node| Field { key: format!("slide.{key}"), node });
     let (Some(mass), Some(edges)) = (field("mass"), field("inertia_box")) else { return Ok([1.0; 3]) };
     Ok(box_inertia(mass.to_number(&MASS)?, edges.to_numbers(&EDGE)?).into())
+}
+
+/// How long (s) a run of the whole stroke lasts at most, and when the ramp ends (s); `None` where one of them is not stated.
+fn stroke_duration(root: &Node) -> Result<Option<[f64; 2]>, SceneError> {
+    let field = |table: &str, key: &str| {
+        root.get(table).and_then(|of| of.get(key)).map(|node| Field { key: format!("{table}.{key}"), node })
+    };
+    let all = [field("drive", "ramp_end"), field("drive", "speed"), field("run", "stroke")];
+    let [Some(end), Some(speed), Some(stroke)] = all else { return Ok(None) };
+    let [end, speed, stroke] = [end.to_number(&RAMP)?, speed.to_number(&SPEED)?, stroke.to_number(&STROKE)?];
+    Ok((speed != 0.0).then(|| [end.max(0.0) + stroke / speed.abs(), end]))
+}
+
+/// `[run]`, whose duration is that of a slide's opening: where it ends before the ramp, there would be no verdict, and it becomes that of
+/// the `stroke`.
+fn run(Node { place, value }: Node<'_>, stroke: Option<[f64; 2]>) -> Node<'_> {
+    let Some([stroke, ramp_end]) = stroke else { return Node { place, value } };
+    let Value::Table(mut entries) = value else { return Node { place, value } };
+    for entry in entries.iter_mut().filter(|entry| entry.key == "duration") {
+        let stated = Field { key: "run.duration".into(), node: &entry.node }.as_number(&DURATION);
+        if stated.is_ok_and(|stated| stated < ramp_end) {
+            entry.node.value = Value::Number(stroke * 1e3);
+        }
+    }
+    Node { place, value: Value::Table(entries) }
 }
 
 fn take<'s>(entries: &mut Vec<Entry<'s>>, key: &str) -> Option<Entry<'s>> {
@@ -209,6 +235,15 @@ mod tests {
         assert_eq!(statistics, slide.pins.iter().flat_map(|pin| pin.gaps).collect::<Vec<_>>());
         let names: Vec<_> = written.gaps.iter().map(|gap| gap.name.clone()).collect();
         assert_eq!(names, slide.contact_names());
+    }
+
+    /// The shipped slide's opening ends before its ramp: as a mechanism it runs its stroke.
+    #[test]
+    fn a_run_that_would_have_no_verdict_is_that_of_the_stroke() {
+        let duration = |set: &[&str]| read(set).mechanism.unwrap().run.duration;
+        // 1 s of ramp, then 80 mm at 0.1 m/s.
+        assert!((duration(&["drive.limit=5"]) - 1.8).abs() < 1e-12);
+        assert_eq!(duration(&["drive.limit=5", "run.duration=1200"]), 1.2);
     }
 
     #[test]

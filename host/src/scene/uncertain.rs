@@ -26,10 +26,11 @@ pub(super) fn uncertain<P: Adjustable>(named: Vec<Named<P>>, scene: &P::Of) -> R
         let values = parameter.values(scene);
         let is_one = values.windows(2).all(|pair| pair[0] == pair[1]);
         if !is_one || matches!(kind, Kind::Stiffness(None)) {
-            let what = format!("`{}` of joints that differ in it", field.key);
-            return Err(
-                field.error(Problem::Unsupported { what }, "one value and one exponent for all joints with play")
-            );
+            let what = format!("`{}` whose values differ in the scene", field.key);
+            return Err(field.error(
+                Problem::Unsupported { what },
+                "one value wherever the scene has it, and one exponent for all joints with play",
+            ));
         }
         let [low, high] = belief.bounds();
         if let Some(stated) = values.first().filter(|stated| **stated < low || **stated > high) {

@@ -96,6 +96,9 @@ pub fn check(driven: &dyn Driven, &Wish { speeds, stroke, demand }: &Wish<'_>) -
     if let Some(stroke) = stroke.filter(|stroke| !(kind.step()..=kind.most()).contains(stroke)) {
         return Err(PositionError::Stroke { kind, stroke }.into());
     }
+    if driven.has_segments() {
+        return Err(PositionError::Segments.into());
+    }
     let (duration, ramp_end) = (driven.run().duration, driven.drive().ramp_end);
     if duration <= ramp_end {
         return Err(PositionError::Ramp { duration, ramp_end }.into());

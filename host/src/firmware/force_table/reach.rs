@@ -72,6 +72,9 @@ impl DriveKind {
 /// Why there are no runs that a table over position can be made of.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PositionError {
+    /// The drive may come by a position more than once.
+    #[error("a drive that is commanded segments may come by a position several times: make its table over time")]
+    Segments,
     /// The drive does not come to its speed.
     #[error(
         "the run of {} ms ends before the drive's ramp does, at {} ms: a table over position takes a stroke, \

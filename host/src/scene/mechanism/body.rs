@@ -93,7 +93,8 @@ fn start(table: &Field, planar: bool) -> Result<Start, SceneError> {
 /// Whether something holds or moves each body.
 pub(super) fn check(mechanism: &Mechanism, fields: &[Field]) -> Result<(), SceneError> {
     for (i, body) in mechanism.bodies.iter().enumerate() {
-        let joined = mechanism.joints.iter().any(|joint| joint.between.contains(&Some(i)));
+        let driven = mechanism.drives.iter().any(|drive| drive.body == i) && body.start.thrown.is_some();
+        let joined = driven || mechanism.joints.iter().any(|joint| joint.between.contains(&Some(i)));
         let sprung = mechanism.springs.iter().any(|spring| spring.between.contains(&Some(i)));
         if !joined && !sprung {
             let name = fields[i].get("name").unwrap_or_else(|| fields[i].clone());
@@ -147,22 +148,32 @@ fn check_freedoms([turns, slides]: [bool; 2], is_free: bool, table: &Field) {
         };
         if let Some(field) = table.get(key).filter(|field| !can(field)) {
             let what = format!("`{key}` at the start of a body that no joint lets move so");
-            table.found().note(field.error(Problem::Unsupported { what }, "to leave it out"));
+            let allowed = if is_free { "a list of numbers, or to leave it out" } else { "to leave it out" };
+            table.found().note(field.error(Problem::Unsupported { what }, allowed));
         }
     }
 }
 
 /// Whether the angles at which bodies start leave the joints of the mean unit together.
-pub(super) fn check_start(mechanism: &Mechanism, fields: &[Field]) -> Result<(), SceneError> {
+pub(super) fn check_start<'t, 's>(
+    mechanism: &Mechanism,
+    joints: &[Field<'t, 's>],
+    fields: &[Field<'t, 's>],
+) -> Result<(), SceneError> {
     let gaps = mechanism.stated_gaps_at(&[0.0]);
     // What has no run is told elsewhere.
     let Ok(Some(Torn { joint, depth })) = torn(mechanism, &gaps) else { return Ok(()) };
-    let of_joint = joint.between.iter().flatten().find_map(|body| fields[*body].get("angle"));
-    let Some(field) = of_joint.or_else(|| fields.iter().find_map(|body| body.get("angle"))) else {
-        return Ok(());
+    let of_start = |body: &Field<'t, 's>| ["angle", "displaced"].iter().find_map(|key| body.get(key));
+    let of_joint = joint.between.iter().flatten().find_map(|body| of_start(&fields[*body]));
+    // Walls that slope or bow may be too near in the drawn pose.
+    let of_walls = || {
+        let own = mechanism.joints.iter().zip(joints).find(|(one, _)| one.name == joint.name);
+        own.and_then(|(_, field)| ["slope", "bow"].iter().find_map(|key| field.get(key)))
     };
+    let field = of_joint.or_else(of_walls).or_else(|| fields.iter().find_map(of_start));
+    let Some(field) = field else { return Ok(()) };
     let problem =
         format!("this start tears `{}` open: the parts of this joint overlap by {:.4} mm", joint.name, 1e3 * depth);
-    let allowed = "angles that fit each other, or parts that are drawn where they start";
+    let allowed = "angles and places that fit each other, or parts that are drawn where they start";
     Err(field.error(Problem::Mechanism(problem), allowed))
 }

@@ -30,7 +30,7 @@ pub(super) const TORQUE_OFFSET: Quantity = Quantity { units: unit::TORQUE, range
 /// Stick band of a drive that turns.
 const ROTATION_BAND: Quantity = Quantity { units: unit::ROTATION, range: [1e-9, 1e3] };
 const ROTOR: Quantity = Quantity { units: unit::INERTIA, range: [1e-6, 1e15] };
-const GEAR: Quantity = Quantity { units: unit::ONE, range: [-1e5, 1e5] };
+const GEAR: Quantity = Quantity { units: unit::ONE, range: [1e-3, 1e5] };
 const TRAVEL: Quantity = Quantity { units: unit::LENGTH, range: [1e-3, 1e5] };
 
 /// Reads the drives.
@@ -54,7 +54,10 @@ fn drive(name: String, table: &Field, planar: bool, names: &Names) -> Result<Nam
         Action::Turns { .. } => None,
     };
     let point_b = point.unwrap_or_default().into();
-    table.get("gain").iter().for_each(|field| plausible::gain(field, gain));
+    let train = train(table, turns)?;
+    if train.is_none() {
+        table.get("gain").iter().for_each(|field| plausible::gain(field, gain));
+    }
     let units = Commanded::new(turns);
     let (drive, command) = match table.get("segment") {
         Some(segments) => {
@@ -75,12 +78,15 @@ fn drive(name: String, table: &Field, planar: bool, names: &Names) -> Result<Nam
             if let Some(field) = table.get("cycles") {
                 return Err(field.no_effect("without segments", "tables [[drive.segment]]"));
             }
-            let (ramp_start, ramp_end) = ramp(table)?;
-            let speed = table.number("speed", &units.speed)?;
+            // Without a gain nothing is commanded.
+            let states = |key: &&str| table.get(key).is_some();
+            let is_idle = gain == 0.0 && train.is_some() && !["ramp_start", "ramp_end", "speed"].iter().any(states);
+            let (ramp_start, ramp_end) = if is_idle { (0.0, 1.0) } else { ramp(table)? };
+            let speed = if is_idle { 0.0 } else { table.number("speed", &units.speed)? };
             (Drive { gain, ramp_start, ramp_end, speed, point_b }, None)
         }
     };
-    let (train, rotor) = (train(table, turns)?, rotor(table, turns)?);
+    let rotor = rotor(table, turns)?;
     Ok(NamedDrive { name, body, drive, action, command, train, at_centre: at_centre(table, turns)?, rotor })
 }
 

@@ -127,7 +127,7 @@ pub(super) fn mechanism(
         drive::check(&mechanism, root)?;
         check_tree(&mechanism, &joint_fields, root)?;
         check_gaps(&mechanism, &joint_fields, root)?;
-        body::check_start(&mechanism, &fields)?;
+        body::check_start(&mechanism, &joint_fields, &fields)?;
         // A weight that is doubtful itself is no measure of the others.
         if plausible::is_gravity(gravity) {
             doubt(&mechanism, &joint_fields, root);

@@ -210,5 +210,9 @@ fn wave(table: &Field, units: &Commanded, course: &mut Course, [from, to]: [f64;
         let [(_, before), (speed, after)] = [f64::from(k), f64::from(k + 1)].map(|k| at(k * each));
         course.cubic(each, speed, [before, after]);
     }
+    // Whole periods end where they began, but for rounding.
+    if (course.speed - base).abs() < 1e-9 * amplitude.abs() {
+        course.speed = base;
+    }
     Ok(())
 }

@@ -280,14 +280,12 @@ pub const MECHANISM: &[(&str, &str)] = &[
     ),
     (
         "joint.coulomb",
-        "Of an ideal joint, `revolute` or `prismatic`: friction against its motion, whatever the joint carries; of two numbers the first \
-         is that of motion along the axis. Default: none.",
+        "Of an ideal joint with the frame, `revolute` or `prismatic`, or a `revolute` one of any bodies in a plane: friction against its \
+         motion, whatever it carries. Of two numbers the first is that of motion along or about the axis, in a plane from x to y; of two \
+         moving bodies the second counts against the first. Default: none.",
     ),
     ("joint.stick_band", "Speed below which `coulomb` fades to zero. Required with it."),
-    (
-        "joint.viscous",
-        "Of an ideal joint, `revolute` or `prismatic`: friction that grows with the speed. Default: none.",
-    ),
+    ("joint.viscous", "Of the same joints: friction that grows with the speed. Default: none."),
     ("joint.contact", "The joint's own contact law. Default: the scene's `[contact]`."),
     ("joint.friction", "The joint's own friction law. Default: the scene's `[friction]`."),
     ("spring.name", "Name of the spring."),
