@@ -113,6 +113,22 @@ impl<S: Scalar + PartialOrd> FrictionData<S> {
         }
     }
 
+    /// The coefficient μ, to be changed; `None` without friction.
+    pub fn coefficient_mut(&mut self) -> Option<&mut S> {
+        match self {
+            Self::None => None,
+            Self::Regularised { coefficient, .. } | Self::Exact { coefficient } => Some(coefficient),
+        }
+    }
+
+    /// The stick band (m/s), to be changed; `None` of a law that has none.
+    pub fn stick_band_mut(&mut self) -> Option<&mut S> {
+        match self {
+            Self::Regularised { stick_band, .. } => Some(stick_band),
+            Self::Exact { .. } | Self::None => None,
+        }
+    }
+
     /// The cheapest friction law that covers the data.
     pub fn friction_type(&self) -> FrictionType {
         match self {

@@ -109,7 +109,7 @@ impl<S: Scalar, C: Command<S>> Push<S> for Commanded<S, C> {
 
     #[inline(always)]
     fn effort(&self, t: S, v: S) -> S {
-        self.gain * (self.command.piece(t).speed(t) - v)
+        self.pushed(t, v).force
     }
 
     #[inline(always)]

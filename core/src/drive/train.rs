@@ -1,4 +1,4 @@
-//! What stands between a controller and the body that it drives: the limit of its motor, and the friction of its drive train.
+//! Drive trains: the limit of the motor and the friction between the motor and the body that it drives.
 
 use super::{Push, Pushed};
 use crate::{ParameterError, Scalar, error::bounded, law::Regularised};
@@ -28,6 +28,14 @@ pub struct Train<S, P> {
     band: Regularised<S>,
 }
 
+impl<S: Scalar> TrainData<S> {
+    /// What the motor gives (N) of the `effort` (N) that its controller asks for.
+    #[inline(always)]
+    pub fn limited(&self, effort: S) -> S {
+        effort.within(-self.limit, self.limit)
+    }
+}
+
 impl<S: Scalar + PartialOrd, P: Push<S>> Train<S, P> {
     /// The `controller` on the drive train of `data`.
     ///
@@ -54,7 +62,7 @@ impl<S: Scalar, P: Push<S>> Push<S> for Train<S, P> {
 
     #[inline(always)]
     fn effort(&self, t: S, v: S) -> S {
-        self.controller.effort(t, v).within(-self.data.limit, self.data.limit)
+        self.data.limited(self.controller.effort(t, v))
     }
 
     #[inline(always)]
@@ -67,7 +75,7 @@ impl<S: Scalar, P: Push<S>> Push<S> for Train<S, P> {
         let square = v * v;
         let (ratio, ratio_slope) = self.band.per_speed(square);
         Pushed {
-            force: asked.force.within(-limit, limit) - (coulomb * ratio + viscous) * v - offset,
+            force: self.data.limited(asked.force) - (coulomb * ratio + viscous) * v - offset,
             per_speed: free * asked.per_speed + coulomb * (ratio + (ratio_slope + ratio_slope) * square) + viscous,
             per_time: free * asked.per_time,
         }

@@ -45,23 +45,25 @@ impl SlidingData {
     /// The coefficients, static before kinetic; none without friction.
     pub fn coefficients(&mut self) -> Vec<&mut f64> {
         match self {
-            Self::Coulomb(FrictionData::None) => Vec::new(),
-            Self::Coulomb(FrictionData::Regularised { coefficient, .. } | FrictionData::Exact { coefficient }) => {
-                vec![coefficient]
-            }
+            Self::Coulomb(data) => data.coefficient_mut().into_iter().collect(),
             Self::Stribeck(StribeckData { at_rest, kinetic, .. }) | Self::StaticKinetic { at_rest, kinetic } => {
                 vec![at_rest, kinetic]
             }
         }
     }
 
-    /// The stick band (m/s), of a regularised law.
-    pub fn stick_band(&mut self) -> Option<&mut f64> {
+    /// The stick band (m/s), of a regularised law, to be changed.
+    pub fn stick_band_mut(&mut self) -> Option<&mut f64> {
         match self {
-            Self::Coulomb(FrictionData::Regularised { stick_band, .. })
-            | Self::Stribeck(StribeckData { stick_band, .. }) => Some(stick_band),
-            _ => None,
+            Self::Coulomb(data) => data.stick_band_mut(),
+            Self::Stribeck(StribeckData { stick_band, .. }) => Some(stick_band),
+            Self::StaticKinetic { .. } => None,
         }
+    }
+
+    /// The stick band (m/s), of a regularised law.
+    pub fn stick_band(mut self) -> Option<f64> {
+        self.stick_band_mut().copied()
     }
 
     /// Whether only implicit steps can follow it.

@@ -27,8 +27,8 @@ use crate::{
 /// the band a thousandth of their difference is lost.
 const DROP: f64 = 33.0;
 
-/// The least stick band (m/s) that stands for true stick with such a fall: implicit steps are stable on a steeper one, where the motion
-/// itself is not, and would hold what has broken away.
+/// The least stick band (m/s) in place of true stick with such a fall. On a steeper fall implicit steps are stable where the motion is not,
+/// so that a body which has broken away would seem to stick.
 const LEAST_BAND: f64 = 3e-7;
 
 /// Any contact without internal variables.

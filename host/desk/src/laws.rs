@@ -131,7 +131,7 @@ pub enum AnySliding<S> {
     Frictionless,
     /// Regularised Coulomb friction.
     Regularised(Regularised<S>),
-    /// Friction as it is measured.
+    /// Friction with a static and a kinetic coefficient and a viscous part.
     Stribeck(Stribeck<S>),
 }
 

@@ -2,7 +2,7 @@
 
 use slipfit_core::{
     ParameterError,
-    drive::{Drive, Piece, Push, TrainData},
+    drive::{Commanded, Drive, Piece, Push, TrainData},
 };
 use slipfit_desk::drive::{AnyDrive, Pieces};
 
@@ -42,7 +42,7 @@ pub enum Action {
         /// Direction, of unit length.
         axis: [f64; 3],
     },
-    /// As a torque about an axis of the frame; it goes by the angular velocity.
+    /// As a torque about an axis of the frame; it controls the angular velocity.
     Turns {
         /// Direction, of unit length; in a plane it is the plane's normal.
         axis: [f64; 3],
@@ -123,13 +123,11 @@ impl NamedDrive {
 
     /// What its motor gives (N, N·m) at time `t` (s) and `speed` (m/s, rad/s).
     pub fn effort(&self, t: f64, speed: f64) -> f64 {
-        match (&self.command, self.train) {
-            (None, None) => self.drive.force(t, speed),
-            // One that is invalid was refused before.
-            (command, train) => {
-                AnyDrive::new(self.drive, command.as_ref(), train).map_or(f64::NAN, |law| law.effort(t, speed))
-            }
-        }
+        let asked = match &self.command {
+            None => self.drive.force(t, speed),
+            Some(command) => Commanded { gain: self.drive.gain, command: command.clone() }.effort(t, speed),
+        };
+        self.train.map_or(asked, |train| train.limited(asked))
     }
 }
 

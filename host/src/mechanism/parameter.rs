@@ -66,7 +66,7 @@ impl Adjustable for Parameter {
                     *at_rest = if before > 0.0 { *at_rest * (*kinetic / before) } else { at_rest.max(*kinetic) };
                 }
             }),
-            Self::StickBand => laws.for_each(|laws| replace(laws.friction.stick_band())),
+            Self::StickBand => laws.for_each(|laws| replace(laws.friction.stick_band_mut())),
             Self::Stiffness => laws.for_each(|laws| match &mut laws.contact {
                 NormalData::Impact(data) => replace(Some(&mut data.stiffness)),
                 NormalData::HuntCrossley(data) | NormalData::LankaraniNikravesh(data) => {

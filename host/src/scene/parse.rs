@@ -11,7 +11,7 @@ use slipfit_tolerance::unit::{self, Quantity};
 
 use crate::{
     dynamics::scheme::{IntegratorKind, ScalarKind},
-    mechanism::mobility::SURFACE_NORMALS,
+    mechanism::{SlidingData, mobility::SURFACE_NORMALS},
 };
 
 use super::{
@@ -28,7 +28,7 @@ use super::{
     value::Field,
     vary::vary,
 };
-use crate::setup::{ControllerSpec, GapMeasures, LevelRange, PinSpec, RunSpec, SURFACES, Scene, SlideSpec, stick_band};
+use crate::setup::{ControllerSpec, GapMeasures, LevelRange, PinSpec, RunSpec, SURFACES, Scene, SlideSpec};
 
 pub(super) const EDGE: Quantity = Quantity { units: unit::LENGTH, range: [0.001, 1e5] };
 const GRAVITY: Quantity = Quantity { units: unit::ACCELERATION, range: [-1e4, 1e4] };
@@ -128,7 +128,7 @@ fn doubt(root: &Field, scene: &Scene) {
         plausible::gain(&field, scene.drive.gain);
     }
     if let Some(field) = root.get("friction").and_then(|friction| friction.get("stick_band")) {
-        plausible::stick_band(&field, stick_band(&mut scene.friction.clone()).copied(), scene.drive.speed.abs());
+        plausible::stick_band(&field, SlidingData::Coulomb(scene.friction).stick_band(), scene.drive.speed.abs());
     }
     let Some(Value::List(nodes)) = root.get("pin").map(|pins| &pins.node.value) else { return };
     for (node, pin) in nodes.iter().zip(&scene.pins) {

@@ -11,7 +11,7 @@ mod uncertain;
 pub use hash::{Digest, scene_hash};
 pub use identify::{Identification, Law, Sought, SoughtValue, Subject};
 pub use measured::{Measured, MeasuredGaps, Place};
-pub use parameter::{Adjustable, SlideParameter, Varied, coefficient, stick_band, tilted_x, tilted_z};
+pub use parameter::{Adjustable, SlideParameter, Varied, tilted_x, tilted_z};
 pub use slide::{GapError, GapMeasures, PinSpec, SURFACES, Scene, SlideSpec};
 pub use task::{ControllerSpec, GAP_MOST, LevelRange, RunSpec};
 pub use uncertain::{Belief, REACH, ShownIn, Uncertain};

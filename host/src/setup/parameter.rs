@@ -1,6 +1,5 @@
 //! Parameters that can differ from what a scene states, and those that do from unit to unit.
 
-use slipfit_core::menu::FrictionData;
 use slipfit_tolerance::model::Contributor;
 
 /// A parameter of a slide or of a mechanism.
@@ -70,22 +69,6 @@ pub enum SlideParameter {
     TiltX,
     /// Direction of gravity: rotation about the frame's z.
     TiltZ,
-}
-
-/// The coefficient of `friction`; none where there is no friction.
-pub fn coefficient(friction: &mut FrictionData<f64>) -> Option<&mut f64> {
-    match friction {
-        FrictionData::Regularised { coefficient, .. } | FrictionData::Exact { coefficient } => Some(coefficient),
-        FrictionData::None => None,
-    }
-}
-
-/// The stick band of `friction`, if its law has one.
-pub fn stick_band(friction: &mut FrictionData<f64>) -> Option<&mut f64> {
-    match friction {
-        FrictionData::Regularised { stick_band, .. } => Some(stick_band),
-        FrictionData::Exact { .. } | FrictionData::None => None,
-    }
 }
 
 /// `gravity` (m/s²) turned about x by an `angle` (rad).

@@ -12,8 +12,8 @@ use slipfit_core::{
 use slipfit_tolerance::number::ten_digits;
 
 use super::{
-    Adjustable, ControllerSpec, GAP_MOST, LevelRange, Measured, RunSpec, SlideParameter, Uncertain, Varied,
-    coefficient, stick_band, tilted_x, tilted_z,
+    Adjustable, ControllerSpec, GAP_MOST, LevelRange, Measured, RunSpec, SlideParameter, Uncertain, Varied, tilted_x,
+    tilted_z,
 };
 
 /// Which surfaces meet a pin, in the order of Table 2.
@@ -171,8 +171,8 @@ impl Adjustable for SlideParameter {
     fn change(self, scene: &mut Scene, change: &mut dyn FnMut(f64) -> f64) {
         let gravity = scene.slide.gravity;
         let value = match self {
-            Self::Friction => coefficient(&mut scene.friction),
-            Self::StickBand => stick_band(&mut scene.friction),
+            Self::Friction => scene.friction.coefficient_mut(),
+            Self::StickBand => scene.friction.stick_band_mut(),
             Self::Stiffness => Some(&mut scene.contact.stiffness),
             Self::Damping => Some(&mut scene.contact.damping),
             Self::Depth => Some(&mut scene.contact.depth),

@@ -37,7 +37,7 @@ pub struct SlidingContact<S> {
 }
 
 impl<S: Scalar> SlidingContact<S> {
-    /// The traction of a coefficient μ(s) that goes by the sliding speed s alone, from μ(s)/s and d(μ(s)/s)/d(s²).
+    /// The traction of a coefficient μ(s) that depends on the sliding speed s alone, from μ(s)/s and d(μ(s)/s)/d(s²).
     #[inline(always)]
     fn along_the_motion(&self, (ratio, ratio_slope): (S, S)) -> Traction<S> {
         let Self { sliding: [x, y], normal, tangent_share, .. } = *self;

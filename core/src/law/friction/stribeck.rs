@@ -1,4 +1,4 @@
-//! Regularised friction as it is measured: more at rest than in motion, and a viscous part.
+//! Regularised friction with a static and a kinetic coefficient and a viscous part.
 
 use super::{Friction, Regularised, SlidingContact, Traction};
 use crate::{ParameterError, Scalar, error::bounded};

@@ -27,7 +27,7 @@ pub struct Along<S> {
 /// A point of a body along an axis of the frame, where the speed counts, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtPoint<S> {
-    /// The body; one that is not there stands still.
+    /// The body; one that does not exist is at rest.
     pub body: usize,
     /// The point (m), from the centre of mass in the body's axes.
     pub lever: Vector3<S>,
@@ -108,6 +108,20 @@ trait Sees<const R: usize> {
     fn carried(&self, at: &PlacedBody<Self::Number>, force: &SVector<Self::Number, R>) -> Matrix3<Self::Number>;
 }
 
+/// How the speed of a point at the `lever` (m, in the body's axes) along an axis of the frame changes with the angular velocity, and with a
+/// small turn of the body: ω·(lever × axis), the axis turning against the body, ∂axis = axis × θ.
+#[inline(always)]
+fn at_lever<S: Scalar>(at: &PlacedBody<S>, (lever, axis): (&Vector3<S>, &Vector3<S>)) -> [Vector3<S>; 2] {
+    let lever = times(&at.to_frame, lever);
+    [cross(&lever, axis), cross(axis, &cross(&lever, &at.rotation_w))]
+}
+
+/// How the torque of a `force` (N) at the `lever` along an axis of the frame changes with a small turn of the body.
+#[inline(always)]
+fn carried_at<S: Scalar>(at: &PlacedBody<S>, (lever, axis): (&Vector3<S>, &Vector3<S>), force: S) -> Matrix3<S> {
+    twice_crossed(&outer(&(axis * force), &times(&at.to_frame, lever)))
+}
+
 impl<S: Scalar> Sees<1> for AtPoint<S> {
     type Number = S;
 
@@ -118,14 +132,13 @@ impl<S: Scalar> Sees<1> for AtPoint<S> {
 
     #[inline(always)]
     fn speeds(&self, at: &PlacedBody<S>) -> Speeds<S, 1> {
-        let (axis, lever) = (&self.axis_w, times(&at.to_frame, &self.lever));
-        let by_turn = cross(axis, &cross(&lever, &at.rotation_w));
-        Speeds::new(at, [[*axis], [cross(&lever, axis)], [by_turn]])
+        let [by_turning, by_turn] = at_lever(at, (&self.lever, &self.axis_w));
+        Speeds::new(at, [[self.axis_w], [by_turning], [by_turn]])
     }
 
     #[inline(always)]
     fn carried(&self, at: &PlacedBody<S>, force: &SVector<S, 1>) -> Matrix3<S> {
-        twice_crossed(&outer(&(self.axis_w * force[0]), &times(&at.to_frame, &self.lever)))
+        carried_at(at, (&self.lever, &self.axis_w), force[0])
     }
 }
 
@@ -139,15 +152,13 @@ impl<S: Scalar> Sees<2> for Along<S> {
 
     #[inline(always)]
     fn speeds(&self, at: &PlacedBody<S>) -> Speeds<S, 2> {
-        let (axis, lever, none) = (&self.axis_w, times(&at.to_frame, &self.lever), Vector3::zeros());
-        // ω·(lever × axis), the axis turning against the body: ∂axis = axis × θ.
-        let by_turn = cross(axis, &cross(&lever, &at.rotation_w));
-        Speeds::new(at, [[*axis; 2], [cross(&lever, axis), none], [by_turn, none]])
+        let ([by_turning, by_turn], none) = (at_lever(at, (&self.lever, &self.axis_w)), Vector3::zeros());
+        Speeds::new(at, [[self.axis_w; 2], [by_turning, none], [by_turn, none]])
     }
 
     #[inline(always)]
     fn carried(&self, at: &PlacedBody<S>, force: &SVector<S, 2>) -> Matrix3<S> {
-        twice_crossed(&outer(&(self.axis_w * force[0]), &times(&at.to_frame, &self.lever)))
+        carried_at(at, (&self.lever, &self.axis_w), force[0])
     }
 }
 

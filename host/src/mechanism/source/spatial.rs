@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use slipfit_core::{
+    Vector3,
     pose::{Orientation, Pose},
     system::{
         law::Axis,
@@ -121,6 +122,12 @@ fn seat(seat: &Seat<f64>) -> String {
     format!("Seat {{ point: Port {{ body: {body:?}, lever: {} }}, from: {from:?} }}", vector(lever.as_slice()))
 }
 
+/// A link called `name` of a body that is pushed at a lever along an axis.
+fn pushing(name: &str, body: usize, [lever, axis]: [&Vector3<f64>; 2]) -> Typed {
+    let [lever, axis] = [lever, axis].map(|of| vector(of.as_slice()));
+    typed(format!("{name}<S>"), format!("{name} {{ body: {body}, lever: {lever}, axis_w: {axis} }}"))
+}
+
 /// A wall with the gap of that number.
 fn wall((axis, sign): (Axis, f64), gap: usize, contact: &Typed) -> Typed {
     typed(
@@ -227,37 +234,13 @@ fn elements(
                 names.push("AtPoint");
                 laws.push("Motor");
                 let link = one.link;
-                element(
-                    typed(
-                        "AtPoint<S>",
-                        format!(
-                            "AtPoint {{ body: {}, lever: {}, axis_w: {} }}",
-                            link.body,
-                            vector(link.lever.as_slice()),
-                            vector(link.axis_w.as_slice())
-                        ),
-                    ),
-                    drive("Motor"),
-                    1,
-                )
+                element(pushing("AtPoint", link.body, [&link.lever, &link.axis_w]), drive("Motor"), 1)
             }
             SpatialElement::Pusher(one) => {
                 names.push("Along");
                 laws.push("Pusher");
                 let link = one.link;
-                element(
-                    typed(
-                        "Along<S>",
-                        format!(
-                            "Along {{ body: {}, lever: {}, axis_w: {} }}",
-                            link.body,
-                            vector(link.lever.as_slice()),
-                            vector(link.axis_w.as_slice())
-                        ),
-                    ),
-                    drive("Pusher"),
-                    2,
-                )
+                element(pushing("Along", link.body, [&link.lever, &link.axis_w]), drive("Pusher"), 2)
             }
         });
     }

@@ -173,7 +173,7 @@ fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
         }
         let friction = [field, root].iter().find_map(|table| table.get("friction"));
         if let Some(band) = friction.and_then(|friction| friction.get("stick_band")) {
-            plausible::stick_band(&band, joint.laws.friction.clone().stick_band().copied(), speed);
+            plausible::stick_band(&band, joint.laws.friction.stick_band(), speed);
         }
         if let (JointKind::Journal { gap, radius } | JointKind::Bearing { gap, radius, .. }, Some(stated)) =
             (&joint.kind, field.get("radius"))

@@ -24,7 +24,7 @@ fn no_effect(parameter: Parameter, mechanism: &Mechanism) -> Option<&'static str
     match parameter {
         Parameter::Friction => laws.all(|laws| laws.friction.holds() == 0.0).then_some(FRICTIONLESS),
         Parameter::StickBand => {
-            let is_regularised = laws.any(|mut laws| laws.friction.stick_band().is_some());
+            let is_regularised = laws.any(|laws| laws.friction.stick_band().is_some());
             (!is_regularised).then_some(BANDLESS)
         }
         Parameter::Stiffness => laws.next().is_none().then_some("where no joint has play, so that there is no contact"),

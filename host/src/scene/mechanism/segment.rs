@@ -106,7 +106,7 @@ pub fn pieces(
         }
         course.t += (count - 1.0) * length;
     }
-    // From then on it stays as it is.
+    // From then on it does not change.
     course.pieces.push(Piece { start: course.t, coefficients: [course.speed, 0.0, 0.0, 0.0] });
     // A kernel adds its pieces up, which leaves no negative zero.
     course.pieces.iter_mut().flat_map(|piece| &mut piece.coefficients).for_each(|of| *of += 0.0);
@@ -210,7 +210,7 @@ fn wave(table: &Field, units: &Commanded, course: &mut Course, [from, to]: [f64;
         let [(_, before), (speed, after)] = [f64::from(k), f64::from(k + 1)].map(|k| at(k * each));
         course.cubic(each, speed, [before, after]);
     }
-    // Whole periods end where they began, but for rounding.
+    // Whole periods end where they began; what rounding leaves is removed.
     if (course.speed - base).abs() < 1e-9 * amplitude.abs() {
         course.speed = base;
     }
