@@ -8,7 +8,7 @@ use slipfit_desk::slide::{At, Controller, Report, Witness, by_controller};
 use super::{
     audit::Auditor,
     error_control::Effort,
-    outcome::{Instant, Observer},
+    observer::{Instant, Observer},
     run::{Run, SimulateError, Solved},
     settings::{Settings, Solver},
     tipping::Tipping,

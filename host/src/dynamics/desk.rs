@@ -14,7 +14,7 @@ use super::{
     effort::Effort,
     error_control::{Knot, Tolerance, sampled},
     looks::{Place, end, looks, samples},
-    outcome::{Instant, Observer},
+    observer::{Instant, Observer},
     run::{Run, SimulateError, Solved},
     scheme::ScalarKind,
     settings::Settings,

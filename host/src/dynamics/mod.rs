@@ -13,6 +13,7 @@ pub(crate) mod example;
 pub mod film;
 pub mod level;
 pub(crate) mod looks;
+pub mod observer;
 pub mod outcome;
 pub mod run;
 pub mod setpoint;

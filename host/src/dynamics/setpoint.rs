@@ -41,7 +41,7 @@ impl Setpoint {
         self.ramp.ramp_start
     }
 
-    /// From when on the command stays as it is (s).
+    /// From when on the command is constant (s).
     pub fn end(&self) -> f64 {
         self.ramp.ramp_end
     }

@@ -18,7 +18,7 @@ use super::{
     mounts::flat,
     state::{State, half_angle, rotation_vector},
 };
-use crate::dynamics::outcome::Instant;
+use crate::dynamics::observer::Instant;
 
 /// How one body moves.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@
 use nalgebra::Vector3;
 
 use super::{Action, JointKind, Mechanism, columns::BodyMotion, joint_elements::joints_of_elements};
-use crate::dynamics::outcome::Instant;
+use crate::dynamics::observer::Instant;
 
 /// The energy account of a run (J).
 pub struct Energies<'a> {
