@@ -2,13 +2,15 @@
 
 mod identify;
 mod moving;
+mod parameters;
 mod product;
 
 use std::sync::LazyLock;
 
 /// Keys and their meaning, in the order in which they are looked for.
-pub static MEANINGS: LazyLock<Vec<(&str, &str)>> =
-    LazyLock::new(|| [WHOLE, identify::IDENTIFY, moving::SLIDE, moving::MECHANISM, product::PRODUCT].concat());
+pub static MEANINGS: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
+    [WHOLE, identify::IDENTIFY, moving::SLIDE, moving::MECHANISM, product::PRODUCT, parameters::PARAMETERS].concat()
+});
 
 /// Keys of the whole scene, and their meaning.
 const WHOLE: &[(&str, &str)] = &[

@@ -84,7 +84,7 @@ pub const SLIDE: &[(&str, &str)] = &[
     (
         "drive.segment",
         "What is commanded in place of the ramp, one segment after the other, from rest. After the last one the \
-         command stays as it is.",
+         command is constant.",
     ),
     (
         "drive.segment.kind",
@@ -108,7 +108,7 @@ pub const SLIDE: &[(&str, &str)] = &[
     (
         "drive.coulomb",
         "Coulomb friction of the drive train; of two numbers the first is that of motion along the axis, the second of \
-         motion against it. It acts on the body and is no part of the force that is told. Default: none.",
+         motion against it. It acts on the body and is not part of the reported force. Default: none.",
     ),
     ("drive.stick_band", "Speed below which `coulomb` fades to zero. Required with it."),
     ("drive.viscous", "Viscous friction of the drive train. Default: none."),
