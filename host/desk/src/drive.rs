@@ -1,6 +1,9 @@
 //! Drives chosen at run time: the laws are core's, and so are the bits.
 
-use std::sync::Arc;
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
 
 use slipfit_core::{
     ParameterError, Scalar,
@@ -24,6 +27,42 @@ impl<S: Scalar + PartialOrd> Command<S> for Pieces<S> {
     }
 }
 
+/// The effort (N, N·m) that a sampling controller holds between two of its samples. All clones share it; the run changes it between steps.
+#[derive(Clone, Debug, Default)]
+pub struct Held(Arc<AtomicU64>);
+
+impl Held {
+    /// Holds `effort` (N, N·m) from now on.
+    pub fn set(&self, effort: f64) {
+        self.0.store(effort.to_bits(), Ordering::Relaxed);
+    }
+
+    /// What is held (N, N·m).
+    pub fn get(&self) -> f64 {
+        f64::from_bits(self.0.load(Ordering::Relaxed))
+    }
+}
+
+impl PartialEq for Held {
+    fn eq(&self, other: &Self) -> bool {
+        self.get() == other.get()
+    }
+}
+
+impl<S: Scalar> Push<S> for Held {
+    fn checked(self) -> Result<Self, ParameterError<S>> {
+        Ok(self)
+    }
+
+    fn effort(&self, _: S, _: S) -> S {
+        S::from_f64(self.get())
+    }
+
+    fn pushed(&self, t: S, v: S) -> Pushed<S> {
+        Pushed { force: self.effort(t, v), per_speed: S::zero(), per_time: S::zero() }
+    }
+}
+
 /// Any drive.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AnyDrive<S = f64> {
@@ -35,6 +74,10 @@ pub enum AnyDrive<S = f64> {
     Commanded(Commanded<S, Pieces<S>>),
     /// Any command, on a drive train.
     CommandedTrain(Train<S, Commanded<S, Pieces<S>>>),
+    /// A sampling controller.
+    Held(Held),
+    /// A sampling controller, on a drive train.
+    HeldTrain(Train<S, Held>),
     /// Friction alone, of a joint.
     Friction(Train<S, ()>),
 }
@@ -59,6 +102,19 @@ impl<S: Scalar + PartialOrd> AnyDrive<S> {
     }
 }
 
+impl<S: Scalar + PartialOrd> AnyDrive<S> {
+    /// What `held` gives, on the drive train of `train`, if it has one.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
+    pub fn held(held: Held, train: Option<TrainData<S>>) -> Result<Self, ParameterError<S>> {
+        Ok(match train {
+            None => Self::Held(held),
+            Some(data) => Self::HeldTrain(Train::new(held, data)?),
+        })
+    }
+}
+
 impl<S: Scalar + PartialOrd> Push<S> for AnyDrive<S> {
     fn checked(self) -> Result<Self, ParameterError<S>> {
         Ok(match self {
@@ -66,6 +122,8 @@ impl<S: Scalar + PartialOrd> Push<S> for AnyDrive<S> {
             Self::RampTrain(drive) => Self::RampTrain(drive.checked()?),
             Self::Commanded(drive) => Self::Commanded(drive.checked()?),
             Self::CommandedTrain(drive) => Self::CommandedTrain(drive.checked()?),
+            Self::Held(drive) => Self::Held(drive),
+            Self::HeldTrain(drive) => Self::HeldTrain(drive.checked()?),
             Self::Friction(drive) => Self::Friction(drive.checked()?),
         })
     }
@@ -77,6 +135,8 @@ impl<S: Scalar + PartialOrd> Push<S> for AnyDrive<S> {
             Self::RampTrain(drive) => drive.effort(t, v),
             Self::Commanded(drive) => drive.effort(t, v),
             Self::CommandedTrain(drive) => drive.effort(t, v),
+            Self::Held(drive) => drive.effort(t, v),
+            Self::HeldTrain(drive) => drive.effort(t, v),
             Self::Friction(drive) => drive.effort(t, v),
         }
     }
@@ -99,6 +159,8 @@ impl<S: Scalar + PartialOrd> AnyDrive<S> {
             Self::RampTrain(drive) => drive.pushed(t, v),
             Self::Commanded(drive) => drive.pushed(t, v),
             Self::CommandedTrain(drive) => drive.pushed(t, v),
+            Self::Held(drive) => drive.pushed(t, v),
+            Self::HeldTrain(drive) => drive.pushed(t, v),
             Self::Friction(drive) => drive.pushed(t, v),
         }
     }

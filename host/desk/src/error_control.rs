@@ -189,10 +189,11 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
     let differentiated = |t: f64, motion: &MotionOf<f64, M, D>| {
         mechanism.differentiated(t, &motion.pose, &motion.internal, &motion.velocity)
     };
-    let mut at_start = differentiated(t, &motion);
     let [mut before, mut after] = [Gaps::default(), Gaps::default()];
     (watched.gaps)(&motion, &mut before);
+    // First `accept`: a controller that samples there changes what acts from then on.
     let mut flow = accept(t, &motion, None, &before);
+    let mut at_start = differentiated(t, &motion);
     while t < duration && flow.is_continue() {
         let tried = effort.accepted + effort.refused;
         if tried.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
@@ -229,8 +230,8 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
         effort.accepted += 1;
         t = if length == limit - t { limit } else { t + length };
         motion = step.motion;
-        at_start = differentiated(t, &motion);
         flow = accept(t, &motion, Some(accelerations), &before);
+        at_start = differentiated(t, &motion);
     }
     Ok(effort)
 }

@@ -81,8 +81,7 @@ impl SceneArguments {
         let mut inputs = vec![("the scene", self.scene.clone())];
         // A stream is read once; reading the scene reports what is wrong with its file.
         if let (true, Ok((name, text))) = (self.scene.is_file(), self.text()) {
-            let measured = SceneFile::measured_files(&name, &text, &self.overrides(&[]));
-            inputs.extend(measured.into_iter().map(|path| ("the measured parts", path)));
+            inputs.extend(SceneFile::files(&name, &text, &self.overrides(&[])));
         }
         inputs
     }

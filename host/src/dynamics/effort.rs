@@ -3,18 +3,29 @@
 //! A P-drive multiplies the error of a speed by its gain. Within a step shorter than some of the drive's time constants (mass over gain)
 //! the speed is known well enough for that. In a longer one the drive follows its load without delay, and a polynomial of the speed,
 //! good to its last digits, would still show forces that never act. There the force is interpolated itself: it is known at the ends
-//! of steps, which the scheme damps, and is monotone between two of them.
+//! of steps, which the scheme damps, and is monotone between two of them. A controller that samples holds its effort between samples.
 
 /// A drive's force (N) or torque (N·m) over a run.
 pub struct Effort {
-    /// Ends of steps (s), ascending.
+    /// Ends of steps (s), ascending; of a controller that samples, its samples.
     times: Vec<f64>,
     /// The effort there.
     values: Vec<f64>,
     /// Longest step (s) within which the effort follows from the speed.
     longest: f64,
-    /// Whether a step is longer.
-    any_longer: bool,
+    /// How the effort is known between the times.
+    between: Between,
+}
+
+/// How an effort is known between two times.
+#[derive(Clone, Copy, PartialEq)]
+enum Between {
+    /// By the speed.
+    BySpeed,
+    /// By the speed where steps are short, and by the efforts at the ends of longer ones.
+    Monotone,
+    /// It is held.
+    Held,
 }
 
 /// Time constants of the drive in the longest step within which its effort follows from the speed.
@@ -25,20 +36,46 @@ impl Effort {
     pub fn new(times: Vec<f64>, values: Vec<f64>, time_constant: f64) -> Self {
         let longest = TIME_CONSTANTS * time_constant;
         let any_longer = times.windows(2).any(|ends| ends[1] - ends[0] > longest);
-        Self { times, values, longest, any_longer }
+        let between = if any_longer { Between::Monotone } else { Between::BySpeed };
+        Self { times, values, longest, between }
+    }
+
+    /// Of a controller that took these `samples`: when (s), ascending, and the effort (N, N·m) that it holds from then on.
+    pub fn held(samples: &[[f64; 2]]) -> Self {
+        let [times, values] = [0, 1].map(|i| samples.iter().map(|sample| sample[i]).collect());
+        Self { times, values, longest: 0.0, between: Between::Held }
+    }
+
+    /// What is held before and from time `t` (s) on, if a sample is taken there; `None` of an effort that is not held, or not changed.
+    pub fn change(&self, t: f64) -> Option<[f64; 2]> {
+        let after = self.times.partition_point(|time| *time <= t);
+        let is_sample = self.between == Between::Held && after > 1 && self.times[after - 1] == t;
+        is_sample.then(|| [self.values[after - 2], self.values[after - 1]])
     }
 
     /// The effort at time `t` (s), where that of the interpolated speed is `by_speed`.
     pub fn at(&self, t: f64, by_speed: f64) -> f64 {
-        // Of most runs no step is: no search for the one around `t`.
-        if !self.any_longer {
-            return by_speed;
+        match self.between {
+            // That of most runs: no search for the step around `t`.
+            Between::BySpeed => by_speed,
+            Between::Monotone => self.before(self.times.partition_point(|knot| *knot < t), t, by_speed),
+            Between::Held => {
+                let after = self.times.partition_point(|time| *time <= t);
+                after.checked_sub(1).map_or(by_speed, |last| self.values[last])
+            }
         }
-        self.before(self.times.partition_point(|knot| *knot < t), t, by_speed)
+    }
+
+    /// The same at the end of a step, where the speed is known.
+    pub fn at_knot(&self, t: f64, by_speed: f64) -> f64 {
+        if self.between == Between::Held { self.at(t, by_speed) } else { by_speed }
     }
 
     /// The same in the step that ends at `knot`.
     pub fn before(&self, knot: usize, t: f64, by_speed: f64) -> f64 {
+        if self.between == Between::Held {
+            return self.at(t, by_speed);
+        }
         match knot.checked_sub(1) {
             Some(i) if knot < self.times.len() && self.length(i) > self.longest => self.monotone(i, t),
             _ => by_speed,

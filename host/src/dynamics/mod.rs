@@ -2,6 +2,7 @@
 
 pub mod answer;
 pub mod audit;
+pub mod command;
 pub mod confirm;
 pub mod controller;
 pub mod desk;

@@ -1,39 +1,50 @@
 //! What a drive is commanded over time.
 
-use slipfit_core::drive::{Command, Drive, Piece};
-use slipfit_desk::drive::Pieces;
+use slipfit_core::drive::{Drive, Piece};
 
-/// A commanded speed, as verdicts look at it.
+use super::command::Command;
+
+/// Share of the greatest speed of a recorded command below which it is rest.
+const RECORDED_REST: f64 = 1e-3;
+
+/// A commanded speed, as verdicts see it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setpoint {
     ramp: Drive<f64>,
-    pieces: Option<Pieces>,
+    command: Option<Command>,
 }
 
 impl From<Drive<f64>> for Setpoint {
     fn from(ramp: Drive<f64>) -> Self {
-        Self { ramp, pieces: None }
+        Self { ramp, command: None }
     }
 }
 
 impl Setpoint {
-    /// The ramp of a drive, or the `pieces` that are commanded in place of it.
-    pub fn new(ramp: Drive<f64>, pieces: Option<Pieces>) -> Self {
-        Self { ramp, pieces }
+    /// The ramp of a drive, or the `command` in place of it.
+    pub fn new(ramp: Drive<f64>, command: Option<Command>) -> Self {
+        Self { ramp, command }
+    }
+
+    /// Pieces of the command in place of the ramp; none if there is a ramp.
+    fn pieces(&self) -> &[Piece<f64>] {
+        self.command.as_ref().map_or(&[], |command| &command.pieces.0)
+    }
+
+    fn is_recorded(&self) -> bool {
+        self.command.as_ref().is_some_and(|command| command.is_recorded)
     }
 
     /// The commanded speed (m/s, rad/s) at time `t` (s).
     pub fn at(&self, t: f64) -> f64 {
-        match &self.pieces {
-            None => self.ramp.command(t),
-            Some(pieces) => pieces.piece(t).speed(t),
-        }
+        self.command.as_ref().map_or_else(|| self.ramp.command(t), |command| command.at(t))
     }
 
-    /// The same, exactly zero where rounding alone is left of it.
+    /// The same, exactly zero where rounding alone is left of it, or the noise of a record.
     pub fn settled_at(&self, t: f64) -> f64 {
         let speed = self.at(t);
-        if speed.abs() > 1e-9 * self.ramp.speed.abs() { speed } else { 0.0 }
+        let least = if self.is_recorded() { RECORDED_REST } else { 1e-9 };
+        if speed.abs() > least * self.ramp.speed.abs() { speed } else { 0.0 }
     }
 
     /// When the command begins to move (s).
@@ -46,12 +57,13 @@ impl Setpoint {
         self.ramp.ramp_end
     }
 
-    /// 1 or −1: the direction that is commanded first.
+    /// 1 or −1: the direction that is commanded first; in a record, whose first speeds are noise, that of the greatest speed.
     pub fn along(&self) -> f64 {
-        let first = match &self.pieces {
+        let first = match &self.command {
             None => self.ramp.speed,
-            Some(Pieces(pieces)) => {
-                let moves = pieces.iter().find(|piece| piece.coefficients.iter().any(|of| *of != 0.0));
+            Some(command) if command.is_recorded => self.ramp.speed,
+            Some(_) => {
+                let moves = self.pieces().iter().find(|piece| piece.coefficients.iter().any(|of| *of != 0.0));
                 // Of the first speed that is not zero, the sign.
                 moves.map_or(0.0, |piece| piece.coefficients.into_iter().find(|of| *of != 0.0).unwrap_or_default())
             }
@@ -61,13 +73,15 @@ impl Setpoint {
 
     /// Times (s), each at the end of a stretch with a constant speed that is not zero, before the last.
     pub fn holds(&self) -> Vec<f64> {
-        let Some(Pieces(pieces)) = &self.pieces else { return Vec::new() };
+        if self.is_recorded() {
+            return Vec::new();
+        }
         let is_hold = |piece: &Piece<f64>| piece.coefficients[0] != 0.0 && piece.coefficients[1..] == [0.0; 3];
-        pieces.windows(2).filter(|two| is_hold(&two[0])).map(|two| two[1].start).collect()
+        self.pieces().windows(2).filter(|two| is_hold(&two[0])).map(|two| two[1].start).collect()
     }
 
     /// Times (s) at which the command bends.
     pub fn bends(&self) -> Vec<f64> {
-        self.pieces.iter().flat_map(|Pieces(pieces)| pieces.iter().map(|piece| piece.start)).collect()
+        self.pieces().iter().map(|piece| piece.start).collect()
     }
 }

@@ -1,16 +1,19 @@
-//! Drives of a mechanism: what they act on, what they are commanded, what their drive train takes.
+//! Drives of a mechanism: what they act on, what they are commanded, and the friction of their drive trains.
 
 use slipfit_core::{
     ParameterError,
-    drive::{Commanded, Drive, Piece, Push, TrainData},
+    drive::{Commanded, Drive, Push, TrainData},
 };
-use slipfit_desk::drive::{AnyDrive, Pieces};
+use slipfit_desk::drive::AnyDrive;
 
-use super::Mechanism;
+use super::{Command, Mechanism, Sampling};
 use crate::dynamics::{confirm::LEAST_TRAVEL, setpoint::Setpoint};
 
 /// The limit (N, N·m) of a motor for which none is stated.
 pub const UNLIMITED: f64 = 1e12;
+
+/// Time (s) by which a prescribed motion follows its command: mass over gain.
+pub const PRESCRIBED: f64 = 1e-7;
 
 /// A drive with its name: a P-velocity controller behind a ramp (eq. 12), or behind any commanded speed.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +28,11 @@ pub struct NamedDrive {
     /// How it acts.
     pub action: Action,
     /// What is commanded in place of the ramp, if anything is.
-    pub command: Option<Pieces>,
+    pub command: Option<Command>,
+    /// How its controller samples; `None` of one that acts continuously.
+    pub sampling: Option<Sampling>,
+    /// Whether the body moves as commanded, whatever force that takes: the gain is that of [`PRESCRIBED`] then.
+    pub is_prescribed: bool,
     /// The limit of its motor and the friction of its drive train, if any is stated.
     pub train: Option<TrainData<f64>>,
     /// Whether it controls the speed of the centre of mass, not that of its point.
@@ -84,13 +91,8 @@ impl NamedDrive {
 
     /// The same drive with another greatest `speed` (m/s, rad/s): what is commanded is scaled.
     pub fn set_speed(&mut self, speed: f64) {
-        if let Some(Pieces(pieces)) = &mut self.command {
-            let share = speed / self.drive.speed;
-            let scaled = |Piece { start, coefficients }: &Piece<f64>| Piece {
-                start: *start,
-                coefficients: coefficients.map(|coefficient| coefficient * share),
-            };
-            *pieces = pieces.iter().map(scaled).collect();
+        if let Some(command) = &mut self.command {
+            *command = command.scaled(speed / self.drive.speed);
         }
         self.drive.speed = speed;
     }
@@ -100,7 +102,11 @@ impl NamedDrive {
     /// # Errors
     /// [`ParameterError`] names the first parameter that is not finite or out of bounds.
     pub fn law(&self, mechanism: &Mechanism) -> Result<AnyDrive, ParameterError<f64>> {
-        AnyDrive::new(self.drive, self.command.as_ref(), self.train_in(mechanism))
+        let train = self.train_in(mechanism);
+        match &self.sampling {
+            Some(sampling) => AnyDrive::held(sampling.held.clone(), train),
+            None => AnyDrive::new(self.drive, self.command.as_ref().map(|command| &command.pieces), train),
+        }
     }
 
     /// Its drive train in `mechanism`, with what lifts the weight that a rotor does not have: bodies carry the rotor's inertia as mass.
@@ -121,17 +127,26 @@ impl NamedDrive {
         }
     }
 
-    /// What its motor gives (N, N·m) at time `t` (s) and `speed` (m/s, rad/s).
+    /// What its motor gives (N, N·m) at time `t` (s) and `speed` (m/s, rad/s), if its controller does not sample.
     pub fn effort(&self, t: f64, speed: f64) -> f64 {
         let asked = match &self.command {
             None => self.drive.force(t, speed),
-            Some(command) => Commanded { gain: self.drive.gain, command: command.clone() }.effort(t, speed),
+            Some(command) => Commanded { gain: self.drive.gain, command: command.pieces.clone() }.effort(t, speed),
         };
         self.train.map_or(asked, |train| train.limited(asked))
     }
 }
 
 impl Mechanism {
+    /// Gives drives of a prescribed motion their gain.
+    pub fn set_prescribed_gains(&mut self) {
+        let gain = |named: &NamedDrive| named.is_prescribed.then(|| self.least_inertia(named) / PRESCRIBED);
+        let gains: Vec<_> = self.drives.iter().map(gain).collect();
+        for (named, gain) in self.drives.iter_mut().zip(gains) {
+            named.drive.gain = gain.unwrap_or(named.drive.gain);
+        }
+    }
+
     /// What moves with a body: its mass (kg) and moments of inertia (kg·m²), each with what its drives turn or push beside it.
     pub fn moved_with(&self, body: usize) -> (f64, [f64; 3]) {
         let (mut mass, mut inertia) = (self.bodies[body].mass, self.bodies[body].inertia);

@@ -1,13 +1,12 @@
 //! The hash that ties a table and a kernel to the mechanism that they were made of.
 
-use super::{Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port, SlidingData, SpringKind, Thrown};
+use super::{Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port, Sampling, SlidingData, SpringKind, Thrown};
 use crate::setup::Digest;
 use slipfit_core::{
     drive::{Drive, TrainData},
     law::StribeckData,
     menu::FrictionData,
 };
-use slipfit_desk::drive::Pieces;
 
 /// The physics of every unit, and which drive a table is of. Titles and names, what is simulated and how a controller
 /// computes count for nothing.
@@ -48,9 +47,15 @@ pub fn hash(mechanism: &Mechanism, drive: usize) -> u64 {
         digest.counts([named.body, kind]);
         digest.numbers([gain, ramp_start, ramp_end, speed].into_iter().chain(axis));
         digest.numbers(point_b.iter().copied());
-        if let Some(Pieces(pieces)) = &named.command {
+        if let Some(command) = &named.command {
+            let pieces = &command.pieces.0;
             digest.counts([pieces.len()]);
             digest.numbers(pieces.iter().flat_map(|piece| piece.coefficients.into_iter().chain([piece.start])));
+        }
+        if let Some(Sampling { period, position_gain, differentiates, positions, .. }) = &named.sampling {
+            digest.counts([usize::from(position_gain.is_some()), usize::from(*differentiates)]);
+            digest.numbers([*period, position_gain.unwrap_or_default()]);
+            digest.numbers(positions.iter().flat_map(|positions| positions.iter().copied()));
         }
         if let Some(train) = &named.train {
             of_train(&mut digest, train);

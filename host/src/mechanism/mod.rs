@@ -27,6 +27,8 @@ pub mod planar;
 mod record;
 mod run;
 mod run_error;
+mod sampler;
+mod sampling;
 pub mod self_locking;
 #[cfg(test)]
 mod side_by_side_tests;
@@ -49,6 +51,7 @@ pub use parameter::{Parameter, Uncertain, Varied};
 pub use record::{MechanismRun, Moment, SCHEME, Samples};
 pub use run::{controller_run, film, run};
 pub use run_error::RunError;
+pub use sampling::Sampling;
 pub(crate) use source::scheme;
 pub use source::{dimension, drive_names, element_paths, rust_source};
 pub use spring::{Spring, SpringKind};
@@ -65,6 +68,7 @@ pub use slipfit_desk::{
     element,
 };
 
+pub use crate::dynamics::command::Command;
 use crate::setup::{ControllerSpec, LevelRange, Measured, RunSpec};
 
 /// Which bodies there are, what joins them, and what is to be simulated. SI units.

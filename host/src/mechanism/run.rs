@@ -23,6 +23,7 @@ use super::{
     limits::Limits,
     planar,
     record::{MechanismRun, Moment, Samples},
+    sampler::Sampler,
     spatial,
     start::thrown,
     state::{State, half_angle},
@@ -68,6 +69,8 @@ pub fn controller_run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result
 }
 
 fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, RunError> {
+    let own = mechanism.with_own_controllers();
+    let mechanism = own.as_ref().unwrap_or(mechanism);
     if mechanism.planar {
         let mounts = Mounts::of(mechanism)?;
         match mounts.coordinates().len() {
@@ -244,6 +247,27 @@ fn solve<P: Plant<D>, const D: usize>(
         let mut drives = mechanism.drives.iter().zip(mechanism.drives_at(t, &motions));
         drives.any(|(named, at)| has_run_away(at.vz, named.drive.speed))
     };
+    let mut samplers: Vec<Option<Sampler>> = mechanism.drives.iter().map(Sampler::of).collect();
+    let duration = mechanism.run.duration;
+    let mut bends: Vec<f64> = mechanism.drives.iter().flat_map(|named| named.setpoint().bends()).collect();
+    bends.extend(samplers.iter().flatten().flat_map(|sampler| sampler.times(duration)));
+    if mechanism.drives.iter().any(|named| named.is_prescribed) {
+        let longest = LONGEST.min(duration / LEAST_STEPS);
+        bends.extend((0..).map(|k| f64::from(k) * longest).take_while(|t| *t < duration));
+    }
+    bends.sort_by(f64::total_cmp);
+    // Times that rounding alone tells apart would make a step of their difference.
+    bends.dedup_by(|later, earlier| *later - *earlier < SAME_TIME);
+    bends.retain(|bend| duration - bend > SAME_TIME);
+    let (mut sampled_motions, mut sampled_drives) = (Vec::new(), Vec::new());
+    let mut sample = |t: f64, state: &State<D>| {
+        if samplers.iter().flatten().any(|sampler| sampler.is_due(t)) {
+            told(state, &mut sampled_motions);
+            drives_at(t, &sampled_motions, &mut sampled_drives);
+            let due = samplers.iter_mut().zip(&sampled_drives).filter_map(|(of, at)| Some((of.as_mut()?, at)));
+            due.filter(|(sampler, _)| sampler.is_due(t)).for_each(|(sampler, at)| sampler.sample(*at));
+        }
+    };
     let mut knots: Vec<Knot<State<D>>> = Vec::new();
     let clock = Instant::now();
     let mut keep = |t: f64, motion: &Motion<f64, P::Pose, (), D>, accelerations: Option<_>, gaps: Option<&Gaps>| {
@@ -251,13 +275,12 @@ fn solve<P: Plant<D>, const D: usize>(
             depths.observe(gaps_at(&motion.pose, &motion.velocity));
         }
         let values = state(&motion.pose, motion.velocity.into());
+        sample(t, &values);
         knots.push(Knot { t, values, rates: accelerations.map(|rates: Accelerations<D>| rates.map(<[f64; D]>::from)) });
         let is_absurd = motion.velocity.iter().any(|rate| rate.abs() > ABSURD) && run_away(t, &values);
         if is_absurd || ends(&observers, &values) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let (start, duration) = ((pose, SVector::from(rates)), mechanism.run.duration);
-    let mut bends: Vec<f64> = mechanism.drives.iter().flat_map(|named| named.setpoint().bends()).collect();
-    bends.sort_by(f64::total_cmp);
+    let start = (pose, SVector::from(rates));
     let effort = match by.controller {
         None => {
             let error = |step: Reported, length: f64| limits.error(&step, length, least_mass);
@@ -292,7 +315,10 @@ fn solve<P: Plant<D>, const D: usize>(
             *moves |= at.vz != 0.0;
         }
     }
-    let efforts = mechanism.drives.iter().zip(at_knots).map(|(named, (values, moves))| {
+    let efforts = mechanism.drives.iter().zip(at_knots).zip(samplers).map(|((named, (values, moves)), sampler)| {
+        if let Some(sampler) = sampler {
+            return Effort::held(&sampler.into_samples());
+        }
         // What other joints hold still has a speed that is known exactly at all times.
         let time_constant = if moves { mechanism.least_inertia(named) / named.drive.gain } else { f64::INFINITY };
         Effort::new(times.clone(), values, time_constant)
@@ -308,8 +334,21 @@ fn solve<P: Plant<D>, const D: usize>(
             }
         };
         drives_at(t, motions, &mut drives);
-        if let Place::Before(knot) = place {
-            drives.iter_mut().zip(&efforts).for_each(|(at, effort)| at.force = effort.before(knot, t, at.force));
+        match place {
+            Place::At(_) => {
+                let mut any = false;
+                for (at, effort) in drives.iter_mut().zip(&efforts) {
+                    any |= effort.change(t).map(|[before, _]| at.force = before).is_some();
+                }
+                // The work up to here is that of what was held.
+                if any {
+                    energies.observe(t, motions, &drives);
+                }
+                drives.iter_mut().zip(&efforts).for_each(|(at, effort)| at.force = effort.at_knot(t, at.force));
+            }
+            Place::Before(knot) => {
+                drives.iter_mut().zip(&efforts).for_each(|(at, effort)| at.force = effort.before(knot, t, at.force));
+            }
         }
         energies.observe(t, motions, &drives);
         observers.iter_mut().zip(&drives).for_each(|(observer, at)| observer.observe(*at));
@@ -353,6 +392,13 @@ fn solve<P: Plant<D>, const D: usize>(
         integration,
     })
 }
+
+/// Difference (s) of two times at which steps end that is rounding.
+const SAME_TIME: f64 = 1e-10;
+
+/// Longest step (s) under a prescribed motion, and fewest steps of a run: the force is known at the ends of steps.
+const LONGEST: f64 = 1e-3;
+const LEAST_STEPS: f64 = 500.0;
 
 /// A speed (m/s, rad/s) that no mechanism has, at which the run of one whose drive runs away ends.
 const ABSURD: f64 = 1e5;

@@ -14,6 +14,9 @@ pub enum RunError {
         "a co-simulation unit cannot have {0}: it sets gaps, gains and commands itself; take `simulate`, or a kernel"
     )]
     NoUnit(String),
+    /// A kernel cannot have this.
+    #[error("a kernel cannot have {0}; `simulate`, `sweep`, `population` and `table` can")]
+    NoKernel(String),
     /// The joints are no tree.
     #[error(transparent)]
     Mounts(#[from] MountError),

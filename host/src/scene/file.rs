@@ -64,8 +64,8 @@ impl SceneFile {
         found.conclude(read)
     }
 
-    /// The files of measured parts that a scene refers to; none where its text cannot be read.
-    pub fn measured_files(file_name: &str, text: &str, overrides: &[Override]) -> Vec<PathBuf> {
+    /// The files that a scene refers to, each with what it is; none where its text cannot be read.
+    pub fn files(file_name: &str, text: &str, overrides: &[Override]) -> Vec<(&'static str, PathBuf)> {
         let found = Found::default();
         let Ok(mut tree) = (Source { name: file_name, text, found: &found }).document() else { return Vec::new() };
         // Reading the scene reports a wrong override.
@@ -104,7 +104,7 @@ impl SceneFile {
         }
         if mechanism::is_mechanism(&root) {
             mechanism::refuse_slide(&root)?;
-            let mut mechanism = mechanism::mechanism(&root, title.clone(), product.as_ref(), measured.as_ref())?;
+            let mut mechanism = mechanism::mechanism(&root, (title.clone(), file_name), product.as_ref(), measured.as_ref())?;
             let names = mechanism.gaps.iter().map(|gap| gap.name.clone()).collect();
             let measured = found(measured, product.as_ref(), names)?;
             mechanism.measured.clone_from(&measured);

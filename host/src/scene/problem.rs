@@ -127,6 +127,12 @@ pub enum Problem {
         /// Why.
         why: String,
     },
+    /// A record that cannot be commanded.
+    #[error("the record cannot be commanded: {why}")]
+    Record {
+        /// Why.
+        why: String,
+    },
     /// Exact friction with a scheme that does not solve for forces.
     #[error("`controller.integrator` is \"{0}\", which cannot do exact friction")]
     ExplicitFriction(String),

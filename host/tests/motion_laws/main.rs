@@ -5,6 +5,7 @@ mod common;
 mod drives;
 mod friction;
 mod refused;
+mod sampled;
 mod springs;
 mod verdicts;
 mod walls;

@@ -37,6 +37,8 @@ pub const MASS: &[Unit] = &[per("g", 1e3), si("kg"), per("mg", 1e6)];
 pub const FORCE: &[Unit] = &[si("N"), per("mN", 1e3), times("kN", 1e3)];
 /// Frequencies.
 pub const FREQUENCY: &[Unit] = &[si("Hz"), times("kHz", 1e3)];
+/// Gain of a position loop: speed for each unit of distance.
+pub const PER_SECOND: &[Unit] = &[si("1/s")];
 /// Electric currents.
 pub const CURRENT: &[Unit] = &[si("A"), per("mA", 1e3)];
 /// Voltages.

@@ -1,7 +1,9 @@
 //! Which column of a file is what.
 
 use slipfit_measured::csv::{Problem, Shown, series::Head};
-use slipfit_tolerance::unit::{CURRENT, FORCE, LENGTH, SECONDS, SPEED, Unit, VOLTAGE};
+use slipfit_tolerance::unit::{
+    ANGLE, CURRENT, FORCE, LENGTH, ROTATION, SECONDS, SPEED, TORQUE, Unit, VOLTAGE,
+};
 
 /// The force (N) for a current of 1 A, or for a voltage of 1 V.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +29,8 @@ pub struct Columns {
     pub current: Option<String>,
     /// What turns the current or the voltage into a force.
     pub force_constant: Option<ForceConstant>,
+    /// Whether the drive turns: positions are angles then, and forces are torques.
+    pub turns: bool,
 }
 
 /// What a column is for.
@@ -63,8 +67,12 @@ impl Role {
         }
     }
 
-    fn units(self) -> &'static [Unit] {
+    /// The units of its column, of a drive that `turns` or pushes.
+    fn units(self, turns: bool) -> &'static [Unit] {
         match self {
+            Self::Position if turns => ANGLE,
+            Self::Speed if turns => ROTATION,
+            Self::Force if turns => TORQUE,
             Self::Time => SECONDS,
             Self::Position => LENGTH,
             Self::Speed => SPEED,
@@ -101,7 +109,7 @@ impl Columns {
                 }
             };
             if let Some(index) = index {
-                found.push(Found { role, index, unit: unit(&heads[index], role).map_err(|problem| (index, problem))? });
+                found.push(Found { role, index, unit: unit(&heads[index], role.units(self.turns), role).map_err(|problem| (index, problem))? });
             }
         }
         Ok(found)
@@ -121,9 +129,9 @@ impl Columns {
 }
 
 /// The unit of a column, which has to be one of its role's.
-fn unit(head: &Head, role: Role) -> Result<Unit, Problem> {
-    role.units().iter().find(|unit| unit.is(&head.unit)).copied().ok_or_else(|| {
-        let allowed = role.units().iter().map(|unit| unit.symbol).collect::<Vec<_>>().join(", ");
+fn unit(head: &Head, units: &[Unit], role: Role) -> Result<Unit, Problem> {
+    units.iter().find(|unit| unit.is(&head.unit)).copied().ok_or_else(|| {
+        let allowed = units.iter().map(|unit| unit.symbol).collect::<Vec<_>>().join(", ");
         Problem::ColumnUnit { name: Shown::new(&head.name), unit: Shown::new(&head.unit), role: role.name(), allowed }
     })
 }

@@ -26,6 +26,7 @@ impl From<RunError> for Failure {
             RunError::Mounts(_)
             | RunError::Bodies(_)
             | RunError::NoUnit(_)
+            | RunError::NoKernel(_)
             | RunError::Stopped { stopped: Stopped::Parameter(_) } => Self::Input(error.to_string()),
             RunError::Stopped { .. } => Self::Work(error.into()),
         }

@@ -76,9 +76,12 @@ pub fn mechanism_unit(mechanism: &Mechanism, core: &Path) -> Result<Unit, RunErr
 fn unsupported(mechanism: &Mechanism) -> Option<String> {
     let walls = mechanism.joints.iter().find(|joint| !joint.contours.is_empty());
     let walls = walls.map(|joint| format!("walls that slope or bow, as \"{}\" has", joint.name));
-    let is_more = |named: &&NamedDrive| named.command.is_some() || named.train_in(mechanism).is_some();
+    let is_more = |named: &&NamedDrive| {
+        let has_command = named.command.is_some() || named.sampling.is_some() || named.is_prescribed;
+        has_command || named.train_in(mechanism).is_some()
+    };
     let drive = mechanism.drives.iter().find(is_more);
-    walls.or(drive.map(|named| format!("a drive with segments, a limit or friction, as \"{}\" has", named.name)))
+    walls.or(drive.map(|named| format!("a drive with more than a gain and a ramp, as \"{}\" has", named.name)))
 }
 
 fn set_gaps(joints: &[(&str, &Joint)], gaps: &[String], model: &mut Model) {

@@ -4,7 +4,6 @@ use slipfit_core::{
     drive::{Piece, TrainData},
     system::law::{Axis, Contour, LineSpring},
 };
-use slipfit_desk::drive::Pieces;
 
 use crate::mechanism::{Mechanism, NamedDrive};
 
@@ -81,7 +80,8 @@ fn driven(law: &str, named: &NamedDrive, mechanism: &Mechanism) -> (Typed, Vec<&
             names.push("Drive");
             typed("Drive<S>", drive(&named.drive))
         }
-        Some(Pieces(pieces)) => {
+        Some(command) => {
+            let pieces = &command.pieces.0;
             names.extend(["Commanded", "Piece", "Push"]);
             let piece = |Piece { start, coefficients }: &Piece<f64>| {
                 format!("Piece {{ start: s({start:?}), coefficients: [{}] }}", numbers(coefficients))

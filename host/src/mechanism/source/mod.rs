@@ -22,11 +22,27 @@ fn parts(mechanism: &Mechanism, contacts: &mut Contacts) -> Result<Parts, RunErr
     if mechanism.planar { planar::parts(mechanism, contacts) } else { spatial::parts(mechanism, contacts) }
 }
 
+/// What there is in `mechanism` that no kernel has.
+fn unsupported(mechanism: &Mechanism) -> Option<String> {
+    mechanism.drives.iter().find_map(|named| {
+        let what = match named {
+            named if named.sampling.is_some() => "a controller that samples",
+            named if named.is_prescribed => "a prescribed motion",
+            named if named.command.as_ref().is_some_and(|command| command.is_recorded) => "a recorded command",
+            _ => return None,
+        };
+        Some(format!("{what}, as the drive \"{}\" has", named.name))
+    })
+}
+
 /// A Rust module with the type `Unit` of `mechanism`, its gaps over the production as `GAPS`, `unit(n)` and the kernel `predictor(n)`.
 ///
 /// # Errors
 /// If the mechanism has no run, see [`RunError`].
 pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
+    if let Some(what) = unsupported(mechanism) {
+        return Err(RunError::NoKernel(what));
+    }
     let mut contacts = Contacts::default();
     let parts = parts(mechanism, &mut contacts)?;
     let Parts { head, dimension, bodies, elements, module, pose, rates, .. } = &parts;

@@ -77,15 +77,25 @@ pub(super) fn columns<'t, 's>(root: &Field<'t, 's>, file_name: &str) -> Result<O
     Ok(Some(Columns::new(production, columns)))
 }
 
-/// The files of measured parts that the scene `root` in the file `file_name` refers to.
-pub(super) fn files(root: &Field, file_name: &str) -> Vec<PathBuf> {
-    let field = root.get("measured").and_then(|table| table.get("file"));
-    let paths = field.and_then(|field| texts(&field, "").ok()).unwrap_or_default();
-    paths.into_iter().map(|path| folder(file_name).join(path)).collect()
+/// The files that the scene `root` in the file `file_name` refers to, each with what it is: measured parts and recorded commands.
+pub(super) fn files(root: &Field, file_name: &str) -> Vec<(&'static str, PathBuf)> {
+    let mut fields = Vec::new();
+    let parts = root.get("measured").and_then(|table| table.get("file"));
+    fields.extend(parts.map(|field| ("the measured parts", field)));
+    if let Some(drives) = root.get("drive") {
+        let nodes = if let Value::List(nodes) = &drives.node.value { &nodes[..] } else { std::slice::from_ref(drives.node) };
+        let records = nodes.iter().filter_map(|node| Field { key: drives.key.clone(), node }.get("record"));
+        fields.extend(records.filter_map(|record| Some(("a recorded command", record.get("file")?))));
+    }
+    let paths = |(what, field): (&'static str, Field)| {
+        let paths = texts(&field, "").unwrap_or_default().into_iter().map(|path| folder(file_name).join(path));
+        paths.map(|path| (what, path)).collect::<Vec<_>>()
+    };
+    fields.into_iter().flat_map(paths).collect()
 }
 
 /// The folder that paths in a scene's file are relative to.
-fn folder(file_name: &str) -> &Path {
+pub(super) fn folder(file_name: &str) -> &Path {
     Path::new(file_name).parent().unwrap_or(Path::new(""))
 }
 

@@ -2,21 +2,21 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::Vector3;
-use slipfit_core::drive::{Drive, Piece, TrainData};
-use slipfit_desk::drive::Pieces;
+use slipfit_core::drive::TrainData;
 use slipfit_tolerance::unit::{self, Quantity};
 
 use super::{
+    command::{Context, Controls, controls},
     names::{Names, tables},
     place::{direction, place},
-    segment::{Commanded, pieces},
 };
 use crate::{
     mechanism::{Action, Joint, JointKind, Mechanism, NamedDrive, UNLIMITED},
     scene::{
-        Problem, SceneError, plausible,
-        quantity::{GAIN, LEAST_RAMP, POINT, RAMP, STICK_BAND},
+        Problem, SceneError,
+        parse::choice,
+        plausible,
+        quantity::{GAIN, POINT, STICK_BAND},
         value::{Field, OneOrEach},
     },
 };
@@ -34,8 +34,13 @@ const GEAR: Quantity = Quantity { units: unit::ONE, range: [1e-3, 1e5] };
 const TRAVEL: Quantity = Quantity { units: unit::LENGTH, range: [1e-3, 1e5] };
 
 /// Reads the drives.
-pub(super) fn drives(root: &Field, planar: bool, names: &Names) -> Result<Vec<NamedDrive>, SceneError> {
-    tables(root, "drive")?.into_iter().map(|(name, table)| drive(name, &table, planar, names)).collect()
+pub(super) fn drives(
+    root: &Field,
+    planar: bool,
+    names: &Names,
+    file_name: &str,
+) -> Result<Vec<NamedDrive>, SceneError> {
+    tables(root, "drive")?.into_iter().map(|(name, table)| drive(name, &table, planar, names, file_name)).collect()
 }
 
 /// What a drive acts on, read from its `table`.
@@ -45,8 +50,15 @@ struct Acts {
     gain: f64,
 }
 
-fn drive(name: String, table: &Field, planar: bool, names: &Names) -> Result<NamedDrive, SceneError> {
-    let Acts { body, action, gain } = acts(table, planar, names)?;
+fn drive(
+    name: String,
+    table: &Field,
+    planar: bool,
+    names: &Names,
+    file_name: &str,
+) -> Result<NamedDrive, SceneError> {
+    let is_prescribed = is_prescribed(table)?;
+    let Acts { body, action, gain } = acts(table, planar, names, is_prescribed)?;
     let turns = matches!(action, Action::Turns { .. });
     // A torque has no point.
     let point = match action {
@@ -58,48 +70,36 @@ fn drive(name: String, table: &Field, planar: bool, names: &Names) -> Result<Nam
     if train.is_none() {
         table.get("gain").iter().for_each(|field| plausible::gain(field, gain));
     }
-    let units = Commanded::new(turns);
-    let (drive, command) = match table.get("segment") {
-        Some(segments) => {
-            let start = table.get("ramp_start").map(|field| field.to_number(&RAMP)).transpose()?.unwrap_or_default();
-            for key in ["ramp_end", "speed"] {
-                if let Some(field) = table.get(key) {
-                    return Err(field.no_effect("beside segments", "the segments alone, each with its own speed"));
-                }
-            }
-            let pieces = pieces(&segments, table.get("cycles"), start, &units)?;
-            let drive = spanning(&pieces, gain, point_b);
-            if drive.speed == 0.0 {
-                return Err(segments.out_of_range("", "at least one segment with a speed other than 0"));
-            }
-            (drive, Some(Pieces(pieces.into())))
-        }
-        None => {
-            if let Some(field) = table.get("cycles") {
-                return Err(field.no_effect("without segments", "tables [[drive.segment]]"));
-            }
-            // Without a gain nothing is commanded.
-            let states = |key: &&str| table.get(key).is_some();
-            let is_idle = gain == 0.0 && train.is_some() && !["ramp_start", "ramp_end", "speed"].iter().any(states);
-            let (ramp_start, ramp_end) = if is_idle { (0.0, 1.0) } else { ramp(table)? };
-            let speed = if is_idle { 0.0 } else { table.number("speed", &units.speed)? };
-            (Drive { gain, ramp_start, ramp_end, speed, point_b }, None)
-        }
-    };
+    let context = Context { turns, is_prescribed, has_train: train.is_some(), file_name };
+    let Controls { drive, command, sampling } = controls(table, gain, point_b, &context)?;
     let rotor = rotor(table, turns)?;
-    Ok(NamedDrive { name, body, drive, action, command, train, at_centre: at_centre(table, turns)?, rotor })
+    let at_centre = at_centre(table, turns)?;
+    Ok(NamedDrive { name, body, drive, action, command, sampling, is_prescribed, train, at_centre, rotor })
 }
 
-fn acts(table: &Field, planar: bool, names: &Names) -> Result<Acts, SceneError> {
+/// Whether the body moves as commanded, whatever that takes.
+fn is_prescribed(table: &Field) -> Result<bool, SceneError> {
+    let name = |is_prescribed| if is_prescribed { "prescribed" } else { "controlled" };
+    let motion = table.get("motion").map(|field| choice(&field, [false, true], name)).transpose()?;
+    let is_prescribed = motion.unwrap_or(false);
+    if let Some(field) = ["gain", "limit"].iter().find_map(|key| table.get(key)).filter(|_| is_prescribed) {
+        return Err(field.no_effect("of a prescribed motion", "no such key, or no motion = \"prescribed\""));
+    }
+    Ok(is_prescribed)
+}
+
+fn acts(table: &Field, planar: bool, names: &Names, is_prescribed: bool) -> Result<Acts, SceneError> {
+    // That of a prescribed motion is known with the mechanism.
+    let gain = |quantity| if is_prescribed { Ok(1.0) } else { table.number("gain", quantity) };
     match (table.get("pushes"), table.get("turns")) {
         (Some(field), None) => {
             let action = Action::Pushes { axis: direction(table, "axis", planar)? };
-            Ok(Acts { body: names.body(&field)?, action, gain: table.number("gain", &GAIN)? })
+            Ok(Acts { body: names.body(&field)?, action, gain: gain(&GAIN)? })
         }
         (None, Some(field)) => {
             let axis = if planar { [0.0, 0.0, 1.0] } else { direction(table, "axis", false)? };
             let action = Action::Turns { axis };
-            Ok(Acts { body: names.body(&field)?, action, gain: table.number("gain", &TORQUE_GAIN)? })
+            Ok(Acts { body: names.body(&field)?, action, gain: gain(&TORQUE_GAIN)? })
         }
         (None, None) => {
             Err(table
@@ -110,29 +110,6 @@ fn acts(table: &Field, planar: bool, names: &Names) -> Result<Acts, SceneError> 
             Err(field.error(problem, "one of pushes and turns"))
         }
     }
-}
-
-/// When the ramp starts and ends (s).
-fn ramp(table: &Field) -> Result<(f64, f64), SceneError> {
-    let start = table.number("ramp_start", &RAMP)?;
-    let field = table.require("ramp_end", &RAMP.units())?;
-    let end = field.to_number(&RAMP)?;
-    if end - start < LEAST_RAMP {
-        return Err(field.out_of_range("s", format!("more than ramp_start, {start} s, by 1 µs or more")));
-    }
-    Ok((start, end))
-}
-
-/// A ramp from the start to the end of `pieces` to the greatest speed that they command.
-fn spanning(pieces: &[Piece<f64>], gain: f64, point_b: Vector3<f64>) -> Drive<f64> {
-    let moves = pieces.iter().find(|piece| piece.coefficients.iter().any(|of| *of != 0.0));
-    let ramp_start = moves.map_or(0.0, |piece| piece.start);
-    // Sums of durations are rounded: a run that is as long as all segments comes to their end.
-    let end = pieces.last().map_or(ramp_start, |piece| piece.start * (1.0 - 1e-12));
-    let ramp_end = end.max(ramp_start + LEAST_RAMP);
-    let ends = pieces.windows(2).map(|two| two[0].speed(two[1].start)).chain(pieces.iter().map(|p| p.coefficients[0]));
-    let speed = ends.fold(0.0, |most: f64, speed| if speed.abs() > most.abs() { speed } else { most });
-    Drive { gain, ramp_start, ramp_end, speed, point_b }
 }
 
 /// The limit of the motor and the friction of the drive train, if any is stated.

@@ -1,6 +1,7 @@
 //! Reading a mechanism: bodies, joints, springs and drives.
 
 mod body;
+mod command;
 mod contact;
 mod contour;
 mod drive;
@@ -8,6 +9,7 @@ mod joint;
 mod names;
 mod parameters;
 mod place;
+mod recorded;
 mod segment;
 mod spring;
 #[cfg(test)]
@@ -66,7 +68,7 @@ pub(super) fn refuse_slide(root: &Field) -> Result<(), SceneError> {
 /// Reads the mechanism of the scene `root`, whose gaps may be measures of `product` or `measured`.
 pub(super) fn mechanism(
     root: &Field,
-    title: String,
+    (title, file_name): (String, &str),
     product: Option<&Product>,
     measured: Option<&Columns>,
 ) -> Result<Mechanism, SceneError> {
@@ -97,10 +99,10 @@ pub(super) fn mechanism(
     let mut gaps = Gaps { gaps: Vec::new(), product, measured };
     let (joints, joint_fields) = joint::joints(root, planar, &names, laws, &mut gaps)?;
     let sweep = root.get("sweep").map(|_| parse::sweep(&root.table("sweep")?)).transpose()?.unwrap_or(LEVELS);
-    let drives = drive::drives(root, planar, &names)?;
+    let drives = drive::drives(root, planar, &names, file_name)?;
     let turns = drives.first().is_some_and(|first| first.action.kind() == DriveKind::Turns);
     let run = parse::run(&root.table("run")?, turns)?;
-    let mechanism = Mechanism {
+    let mut mechanism = Mechanism {
         title,
         vary: Vec::new(),
         uncertain: Vec::new(),
@@ -117,6 +119,7 @@ pub(super) fn mechanism(
         measured: None,
         warnings: Vec::new(),
     };
+    mechanism.set_prescribed_gains();
     let varied = vary(named(root, "vary", &names, &mechanism)?)?;
     let unknown = uncertain(named(root, "uncertain", &names, &mechanism)?, &mechanism)?;
     let mechanism = Mechanism { vary: varied, uncertain: unknown, ..mechanism };

@@ -13,7 +13,7 @@ use super::keys::{Key, ROOT, join};
 use meaning::{DISTRIBUTIONS, MEANINGS};
 
 /// Kinds of quantities with their units.
-const QUANTITIES: [(&str, &[Unit]); 24] = [
+const QUANTITIES: [(&str, &[Unit]); 25] = [
     ("length", unit::LENGTH),
     ("angle", unit::ANGLE),
     ("mass", unit::MASS),
@@ -38,6 +38,7 @@ const QUANTITIES: [(&str, &[Unit]); 24] = [
     ("angular jerk", unit::ANGULAR_JERK),
     ("slope of a wall", unit::SLOPE),
     ("growth of friction with speed", unit::PER_SPEED),
+    ("gain of a position loop", unit::PER_SECOND),
 ];
 
 /// Stands for what a key takes where the parser's message about a wrong value does not say it.

@@ -104,6 +104,43 @@ pub const SLIDE: &[(&str, &str)] = &[
     ("drive.segment.amplitude", "Amplitude of the speed of a sine or chirp."),
     ("drive.segment.frequency", "Frequency of a sine; of a chirp a list of two, from and to."),
     ("drive.cycles", "How often the segments are run; more than once, they have to end at rest. Default: 1."),
+    (
+        "drive.record",
+        "A recorded command in place of the ramp: a column of a CSV file whose first row names the columns with their units, sampled at \
+         equal intervals from 0 s or later. After the last sample the command keeps its speed; positions that are not `cubic` rest there.",
+    ),
+    ("drive.record.file", "The CSV file; relative to the folder of the scene."),
+    ("drive.record.time", "Heading of the column of the time. Default: `t` or `time`."),
+    (
+        "drive.record.position",
+        "Heading of the column of positions; only how they differ from the first one counts. For a position loop or a prescribed motion.",
+    ),
+    ("drive.record.speed", "Heading of the column of speeds."),
+    (
+        "drive.record.interpolation",
+        "What is commanded between two samples: `linear` and `cubic` (a spline) interpolate, `held` keeps the last sample. Default: \
+         `linear`; of a prescribed motion, whose speed must not jump, `cubic`.",
+    ),
+    (
+        "drive.motion",
+        "`controlled`: a controller pushes or turns the body with its `gain`. `prescribed`: the body moves as commanded, whatever that \
+         takes; the reported force is what it takes. Default: `controlled`.",
+    ),
+    (
+        "drive.sampling",
+        "Period of a controller that samples: it measures at equal intervals and holds its force in between. Simulated in runs, sweeps, \
+         populations and tables, and not available in kernels. Default: the controller acts continuously.",
+    ),
+    (
+        "drive.position_gain",
+        "Gain k of a position loop around the speed loop: force = gain · (k · (commanded − measured distance) − speed). The commanded \
+         distance is that which the commanded speed leads to. With `sampling`. Default: no position loop.",
+    ),
+    (
+        "drive.measures",
+        "What a controller that samples measures: the `speed`; or the `position` alone, whose change over the last period is its speed. \
+         Default: `speed`.",
+    ),
     ("drive.limit", "The most that the motor gives, either way; a torque for a drive that turns. Default: no limit."),
     (
         "drive.coulomb",
