@@ -12,6 +12,7 @@ use crate::{
         determined::{NoInfluence, Undetermined, check_influence, undetermined},
         lack::{Lack, relative},
         noise::Noise,
+        prior::{Known, combined},
         profile::{Profile, profile},
     },
     fit::{By, Fit, Loss, Options, fit, grid},
@@ -27,13 +28,13 @@ pub struct Estimated {
     pub unit: &'static str,
     /// Estimate; the middle of all that explain the record equally well where it is not determined.
     pub value: f64,
-    /// Standard deviation; `None` where the record does not determine it.
+    /// Standard deviation; `None` where the record does not determine it. With a prior that of both; what follows is of the record alone.
     pub deviation: Option<f64>,
     /// The same by the autocovariance of the residuals alone.
     pub deviation_by_autocovariance: Option<f64>,
     /// The same by the block bootstrap alone.
     pub deviation_by_bootstrap: Option<f64>,
-    /// Interval of 95 % by the deviation.
+    /// Interval of 95 %, by `deviation` or by profile likelihood, whichever is wider on each side.
     pub interval: Option<[f64; 2]>,
     /// Interval of 95 % by the block bootstrap.
     pub bootstrap: Option<[f64; 2]>,
@@ -108,50 +109,83 @@ pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estim
     check_influence(parameters, &fitted.values, model.measured(), &fitted.sensitivities)?;
     let runs = model.runs();
     let linearised = Linearised::of(&fitted, runs.clone());
-    let undetermined = undetermined(parameters, &fitted.values, &linearised);
+    let undetermined: Vec<Undetermined> = undetermined(parameters, &fitted.values, &linearised);
     let noise = Noise::of(&linearised.residuals, &runs);
     let covariance = linearised.covariance(&noise);
     let drawn = bootstrap::widest(&linearised);
+    let has_prior = |i: usize| parameters[i].prior.is_some();
+    let is_among = |directions: &[Undetermined], i: usize| directions.iter().any(|one| one.parameters.contains(&i));
+    // Neither of two deviations knows all: the one takes the noise for the same everywhere, the other has few blocks.
+    let of_record = |i: usize| {
+        let by_autocovariance = libm::sqrt(covariance[(i, i)].max(0.0));
+        [by_autocovariance, drawn.deviations[i], by_autocovariance.max(drawn.deviations[i])]
+    };
+    let posterior = (0..parameters.len()).any(has_prior).then(|| {
+        let wider = |i: usize| {
+            let [own, _, both] = of_record(i);
+            if own > 0.0 { both / own } else { 1.0 }
+        };
+        let (rows, columns) = covariance.shape();
+        let wide = DMatrix::from_fn(rows, columns, |i, k| covariance[(i, k)] * wider(i) * wider(k));
+        combined(parameters, &Known { values: fitted.values.clone(), covariance: wide }, &linearised.units)
+    });
+    let left: Vec<Undetermined> =
+        undetermined.iter().filter(|direction| !direction.parameters.iter().any(|i| has_prior(*i))).cloned().collect();
     let effective_samples = noise.effective(samples);
     let freedom = (effective_samples - parameters.len() as f64).max(1.0);
     let quantile = student_quantile_above(0.025, freedom);
 
     let of = |i: usize| -> Result<Estimated, ModelError> {
         let parameter: &Parameter = &parameters[i];
-        let known = !undetermined.iter().any(|direction| direction.parameters.contains(&i));
-        let value = fitted.values[i];
-        let by_autocovariance = known.then(|| libm::sqrt(covariance[(i, i)].max(0.0)));
-        let by_bootstrap = known.then(|| drawn.deviations[i]);
-        // Neither knows all: the one takes the noise for the same everywhere, the other has few blocks.
-        let deviation = by_autocovariance.zip(by_bootstrap).map(|(one, other)| one.max(other));
+        let known = !is_among(&left, i);
+        let by_record = (!is_among(&undetermined, i)).then(|| of_record(i));
+        let (value, deviation) = match &posterior {
+            None => (fitted.values[i], by_record.map(|[.., both]| both)),
+            Some(all) => (all.values[i], known.then(|| libm::sqrt(all.covariance[(i, i)].max(0.0)))),
+        };
         let within = |value: f64| value.clamp(parameter.bounds[0], parameter.bounds[1]);
         let reach = deviation.map(|deviation| quantile * deviation);
+        let profile = profile(model, &fitted, &linearised, i, by_record.map(|[.., both]| quantile * both))?;
+        let interval = reach.map(|reach| {
+            let [low, high] = [value - reach, value + reach].map(within);
+            // A bent output makes one side longer. What is known beforehand is not in the profile.
+            let ends = profile.ends.map(|end| end.filter(|_| posterior.is_none()));
+            [ends[0].map_or(low, |end| end.min(low)), ends[1].map_or(high, |end| end.max(high))]
+        });
         Ok(Estimated {
             name: parameter.name.clone(),
             unit: parameter.unit,
             value,
             deviation,
-            deviation_by_autocovariance: by_autocovariance,
-            deviation_by_bootstrap: by_bootstrap,
-            interval: reach.map(|reach| [within(value - reach), within(value + reach)]),
-            bootstrap: known.then(|| drawn.ranges[i].map(|by| within(value + by))),
-            profile: profile(model, &fitted, &linearised, i, reach)?,
+            deviation_by_autocovariance: by_record.map(|[one, ..]| one),
+            deviation_by_bootstrap: by_record.map(|[_, other, _]| other),
+            interval,
+            bootstrap: by_record.map(|_| drawn.ranges[i].map(|by| within(fitted.values[i] + by))),
+            profile,
             at_bound: parameter.is_at_bound(value),
         })
     };
     let estimated = (0..parameters.len()).into_par_iter().map(of).collect::<Result<Vec<_>, _>>()?;
     let held_out = held_out_error(model, &fitted, &linearised);
+    let residuals = match &posterior {
+        None => fitted.residuals,
+        Some(known) => {
+            let output = model.simulate(&known.values)?;
+            model.measured().iter().zip(&output).map(|(measured, output)| measured - output).collect()
+        }
+    };
+    let covariance = posterior.map_or(covariance, |known| known.covariance);
     Ok(Estimate {
         lack: Lack::new(model.measured(), &linearised.residuals, &runs, held_out),
-        correlation: correlation(&covariance, &undetermined),
+        correlation: correlation(&covariance, &left),
         parameters: estimated,
-        undetermined: undetermined.into_iter().map(|direction| direction.words).collect(),
+        undetermined: left.into_iter().map(|direction| direction.words).collect(),
         loss: fitted.loss,
         by: fitted.by,
         samples,
         effective_samples,
         residual_deviation: fitted.scale,
-        residuals: fitted.residuals,
+        residuals,
     })
 }
 

@@ -14,6 +14,8 @@ pub struct Parameter {
     pub bounds: [f64; 2],
     /// Where the search starts.
     pub start: f64,
+    /// Mean and standard deviation of what is known of it beforehand, if anything is.
+    pub prior: Option<[f64; 2]>,
 }
 
 /// Why a model has no output for some parameters.

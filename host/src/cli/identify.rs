@@ -4,19 +4,21 @@ mod output;
 mod report;
 mod words;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfit_core::slide::CONTACTS;
 use slipfit_identify::{
+    between::between,
     compare::{Compared, best, compare},
     drive_train::{self, DriveTrain, Filtered, LAWS, filtered},
+    fit,
     model::Model,
     record::{Needs, Record, read_file},
 };
 use slipfit_system::files;
 
-use self::report::Report;
+use self::report::{Report, UnitReport};
 use super::{
     arguments::SceneArguments,
     endings,
@@ -24,24 +26,25 @@ use super::{
     terminal::{print, print_json, warn},
 };
 use crate::{
-    identify::SlideModel,
-    scene::SceneFile,
-    setup::{Identification, Law, Subject},
+    identify::{Compared as Quantity, Identification, Law, MotionModel, OfRecord, Subject, Unit},
 };
 
 /// Estimates parameters from measured motion, and says what the record does not determine.
 ///
-/// The table `[identify]` of the scene says what is sought. A slide is simulated, and the force of its drive compared with the record's. A
-/// drive train (`model = "drive-train"`) is fitted along the measured motion; several laws are compared. A record is a CSV file whose first
-/// row names the columns with their units: t (s), force (N), position (m) or speed (m/s). Intervals are of 95 % and allow for noise whose
-/// samples depend on each other.
+/// The table `[identify]` of the scene says what is sought. A slide or a mechanism is simulated, and what its drive does is compared with
+/// the record. A drive train (`model = "drive-train"`) is fitted along the measured motion; several laws are compared. A record is a CSV
+/// file whose first row names the columns with their units: t (s), force (N), position (m) or speed (m/s). Intervals are of 95 % and allow
+/// for noise whose samples depend on each other.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Scene file (TOML) with a table [identify].
     scene: PathBuf,
-    /// Records (CSV), each of one run of the same unit.
+    /// Records (CSV) of one unit; a folder stands for all records in it.
     #[arg(required = true, value_name = "RUN.csv")]
     records: Vec<PathBuf>,
+    /// Takes each RUN for another unit, fits each, and prints their mean and spread. A folder holds the runs of one unit.
+    #[arg(long)]
+    each: bool,
     /// Tolerance level of the gaps that are not sought.
     #[arg(long, allow_hyphen_values = true)]
     n: Option<f64>,
@@ -56,11 +59,28 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+/// The records of one unit.
+struct OfUnit {
+    /// As it is called on the command line.
+    name: String,
+    records: Vec<Record>,
+}
+
+/// What the records of one unit say.
+struct Found {
+    compared: Vec<Compared>,
+    /// Which of them counts.
+    chosen: usize,
+    spikes: Option<usize>,
+    cutoff_hz: Option<f64>,
+    warnings: Vec<String>,
+}
+
 impl Arguments {
     /// Runs the command.
     ///
     /// # Errors
-    /// A scene or a record that cannot be read, a parameter without influence, a slide that cannot be simulated.
+    /// A scene or a record that cannot be read, a parameter without influence, a unit that cannot be simulated.
     pub(super) fn run(self) -> Result<(), Failure> {
         let arguments = SceneArguments { scene: self.scene.clone(), set: self.set.clone(), json: self.json };
         let file = arguments.load_file(&[])?;
@@ -71,116 +91,203 @@ impl Arguments {
             files::check_distinct(&records, &[("--output", path)])?;
         }
         let Some(identify) = &file.identify else {
-            let why = "the scene has no table [identify] for a slide or a drive train; see the guide, identify.md";
+            let why = "the scene has no table [identify]; see the guide, identify.md";
             return Err(Failure::Input(format!("{}: {why}", self.scene.display())));
         };
         match &identify.subject {
-            Subject::DriveTrain { law, cutoff } => self.drive_train(&file, identify, law.as_ref(), *cutoff),
-            Subject::Slide(_) => self.slide(&file, identify),
-        }
-    }
-
-    fn records(&self, identify: &Identification, needs: Needs) -> Result<Vec<Record>, Failure> {
-        self.records.iter().map(|path| Ok(read_file(path, &identify.columns, needs)?)).collect()
-    }
-
-    fn drive_train(
-        &self,
-        file: &SceneFile,
-        identify: &Identification,
-        law: Option<&Law>,
-        cutoff: Option<f64>,
-    ) -> Result<(), Failure> {
-        if self.n.is_some() {
-            return Err(Failure::Input("--n is for slides, whose gaps have levels; a drive train has none".into()));
-        }
-        let records = self.records(identify, Needs::Motion)?;
-        let options = drive_train::Options { cutoff };
-        let runs: Vec<Filtered> = records.iter().map(|record| filtered(record, &options)).collect();
-        // The stated law first; a drive that coasts has no delay.
-        let coasts = runs.iter().any(|run| run.force.is_none());
-        let mut laws: Vec<(String, DriveTrain)> = Vec::new();
-        let stated = law.into_iter().map(|law| (law.name.as_str(), &law.terms[..]));
-        for (name, terms) in stated.chain(LAWS) {
-            let is_known = laws.iter().any(|(other, _)| other == name);
-            let is_undelayed = coasts && terms.contains(&drive_train::Term::Delay);
-            if !(is_known || is_undelayed) {
-                laws.push((name.to_owned(), DriveTrain::new(terms, &runs)));
+            Subject::DriveTrain { law, cutoff } => {
+                if self.n.is_some() {
+                    let why = "--n is for slides and mechanisms, whose gaps have levels; a drive train has none";
+                    return Err(Failure::Input(why.into()));
+                }
+                let units = self.units(identify, Needs::Motion)?;
+                let found = each(&units, |unit| drive_train(unit, law.as_ref(), *cutoff, &identify.options))?;
+                self.finish(&file.title, Written { model: "drive-train", exponent: None, lists: &[] }, &units, found)
+            }
+            Subject::Slide(of) => {
+                let scene = file.slide.as_ref().ok_or_else(|| Failure::Input("the scene has no slide".into()))?;
+                let levels = [self.level()?; CONTACTS];
+                scene.check_gaps(&levels).map_err(|error| Failure::Input(format!("--n: {error}")))?;
+                let units = self.units(identify, needs(of))?;
+                let found = self.of_unit(scene, levels.to_vec(), of, &units, identify, &scene.warnings)?;
+                let lists: Vec<_> = of.sought.iter().map(|sought| sought.list).collect();
+                let exponent = Some(scene.contact.exponent);
+                self.finish(&file.title, Written { model: "slide", exponent, lists: &lists }, &units, found)
+            }
+            Subject::Mechanism(of) => {
+                let mechanism =
+                    file.mechanism.as_ref().ok_or_else(|| Failure::Input("the scene has no mechanism".into()))?;
+                let levels = vec![self.level()?; mechanism.gaps.len()];
+                mechanism.gaps_at(&levels).map_err(|error| Failure::Input(format!("--n: {error}")))?;
+                let units = self.units(identify, needs(of))?;
+                let found = self.of_unit(mechanism, levels, of, &units, identify, &mechanism.warnings)?;
+                let lists: Vec<_> = of.sought.iter().map(|sought| sought.list).collect();
+                let joint = mechanism.joints.iter().find(|joint| !joint.kind.is_ideal());
+                let exponent = joint.map(|joint| joint.laws.contact.spring()[1]);
+                self.finish(&file.title, Written { model: "mechanism", exponent, lists: &lists }, &units, found)
             }
         }
-        let models: Vec<(&str, &dyn Model)> =
-            laws.iter().map(|(name, law)| (name.as_str(), law as &dyn Model)).collect();
-        let (compared, refused) = compare(&models, &identify.options);
-        // A stated law has to have an estimate, else any.
-        let error = |name: Option<&str>| refused.iter().position(|(law, _)| name.is_none_or(|name| name == *law));
-        let fatal = match law {
-            Some(law) => error(Some(&law.name)),
-            None if compared.is_empty() => error(None),
-            None => None,
-        };
-        let mut refused = refused;
-        if let Some(at) = fatal {
-            return Err(refused.swap_remove(at).1.into());
-        }
-        let mut warnings: Vec<String> =
-            refused.iter().map(|(name, why)| format!("the law {name} is not compared: {why}")).collect();
-        let chosen = law.and_then(|law| compared.iter().find(|one| one.name == law.name)).or(best(&compared));
-        let Some(chosen) = chosen else { return Err(Failure::Input("no law has an estimate".into())) };
-        warnings.extend(words::better(chosen, &compared));
-        let spikes = runs.iter().map(|run| run.spikes).sum();
-        let cutoff_hz = runs.first().map(|run| run.cutoff);
-        let report = Report {
-            title: &file.title,
-            model: "drive-train",
-            records: records.iter().map(|record| record.name.as_str()).collect(),
-            law: &chosen.name,
-            spikes: Some(spikes),
-            cutoff_hz,
-            compared: &compared,
-            warnings: &warnings,
-        };
-        self.finish(&report, chosen, records.iter().map(Record::duration).sum(), None)
     }
 
-    fn slide(&self, file: &SceneFile, identify: &Identification) -> Result<(), Failure> {
-        let (Some(scene), Subject::Slide(sought)) = (&file.slide, &identify.subject) else {
-            return Err(Failure::Input("the scene has no slide".into()));
-        };
-        let level = self.n.unwrap_or(0.0);
-        if !level.is_finite() {
-            return Err(Failure::Input(format!("--n is {level}, allowed are finite numbers")));
+    fn level(&self) -> Result<f64, Failure> {
+        match self.n.unwrap_or(0.0) {
+            level if level.is_finite() => Ok(level),
+            level => Err(Failure::Input(format!("--n is {level}, allowed are finite numbers"))),
         }
-        let levels = [level; CONTACTS];
-        scene.check_gaps(&levels).map_err(|error| Failure::Input(format!("--n: {error}")))?;
-        let records = self.records(identify, Needs::Force)?;
-        let model = SlideModel::new(scene, levels, sought, &records);
-        let model = model.map_err(|error| Failure::Input(error.to_string()))?;
-        let (compared, mut refused) = compare(&[("as stated", &model as &dyn Model)], &identify.options);
-        let Some(chosen) = compared.first() else { return Err(refused.swap_remove(0).1.into()) };
-        let warnings = scene.warnings.clone();
-        let report = Report {
-            title: &file.title,
-            model: "slide",
-            records: records.iter().map(|record| record.name.as_str()).collect(),
-            law: &chosen.name,
-            spikes: None,
-            cutoff_hz: None,
-            compared: &compared,
-            warnings: &warnings,
-        };
-        self.finish(&report, chosen, records.iter().map(Record::duration).sum(), Some(scene.contact.exponent))
     }
 
-    /// Writes and prints the `report`, of which one estimate was `chosen`, of records of this `duration` (s) and contacts of this `exponent`.
-    fn finish(&self, report: &Report, chosen: &Compared, duration: f64, exponent: Option<f64>) -> Result<(), Failure> {
+    /// The records, unit by unit.
+    fn units(&self, identify: &Identification, needs: Needs) -> Result<Vec<OfUnit>, Failure> {
+        let read = |path: &Path| -> Result<Vec<Record>, Failure> {
+            let paths = if path.is_dir() { records_in(path)? } else { vec![path.to_path_buf()] };
+            paths.iter().map(|path| Ok(read_file(path, &identify.columns, needs)?)).collect()
+        };
+        let named = |path: &PathBuf| Ok(OfUnit { name: path.display().to_string(), records: read(path)? });
+        let units = self.records.iter().map(named).collect::<Result<Vec<_>, Failure>>()?;
+        if self.each {
+            return match units.len() {
+                0 | 1 => Err(Failure::Input("--each needs the records of two units or more".into())),
+                _ => Ok(units),
+            };
+        }
+        let names: Vec<_> = units.iter().map(|unit| unit.name.as_str()).collect();
+        let name = names.join(", ");
+        Ok(vec![OfUnit { name, records: units.into_iter().flat_map(|unit| unit.records).collect() }])
+    }
+
+    /// What the records of each unit say of one of a scene.
+    fn of_unit<U: Unit>(
+        &self,
+        unit: &U,
+        levels: Vec<f64>,
+        of: &OfRecord<U::Parameter>,
+        units: &[OfUnit],
+        identify: &Identification,
+        warnings: &[String],
+    ) -> Result<Vec<Found>, Failure> {
+        each(units, |records| {
+            let model = MotionModel::new(unit, levels.clone(), of, &records.records);
+            let model = model.map_err(|error| Failure::Input(error.to_string()))?;
+            let (compared, mut refused) = compare(&[("as stated", &model as &dyn Model)], &identify.options);
+            if compared.is_empty() {
+                return Err(refused.swap_remove(0).1.into());
+            }
+            Ok(Found { compared, chosen: 0, spikes: None, cutoff_hz: None, warnings: warnings.to_vec() })
+        })
+    }
+
+    /// Writes and prints what was `found` of the `units`.
+    fn finish(&self, title: &str, written: Written, units: &[OfUnit], found: Vec<Found>) -> Result<(), Failure> {
+        let chosen: Vec<&Compared> = found.iter().map(|one| &one.compared[one.chosen]).collect();
+        let pooled = self.each.then(|| between(&chosen.iter().map(|one| &one.estimate).collect::<Vec<_>>()));
         if let Some(path) = &self.output {
-            files::write(path, output::table(report.title, report.model, &chosen.estimate, exponent).as_bytes())?;
+            let table = match &pooled {
+                None => output::of_one(title, &written, &chosen[0].estimate),
+                Some(pooled) => output::of_several(title, &written, pooled),
+            };
+            files::write(path, table.as_bytes())?;
         }
+        let reports: Vec<UnitReport> = units.iter().zip(&found).map(|(unit, found)| UnitReport::new(unit, found)).collect();
+        let report = Report { title, model: written.model, units: &reports, between: pooled.as_deref() };
         if self.json {
-            return print_json(report);
+            return match &pooled {
+                None => print_json(&report.of_one()),
+                Some(_) => print_json(&report),
+            };
         }
-        print(&words::described(report, chosen, duration))?;
-        warn(report.warnings);
+        match &pooled {
+            None => print(&words::described(&report, &reports[0], chosen[0]))?,
+            Some(pooled) => print(&words::between(&report, &chosen, pooled))?,
+        }
+        let mut warnings: Vec<&String> = Vec::new();
+        for warning in found.iter().flat_map(|one| &one.warnings) {
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
+        warn(&warnings.into_iter().cloned().collect::<Vec<_>>());
         Ok(())
     }
+}
+
+/// How an estimate is written as a table of its scene.
+struct Written<'a> {
+    /// "slide", "mechanism" or "drive-train".
+    model: &'static str,
+    /// Exponent of the contacts, if there are any.
+    exponent: Option<f64>,
+    /// For each parameter the list of the scene that states it, if one does.
+    lists: &'a [Option<&'static str>],
+}
+
+/// What a fit needs of a record.
+fn needs<P>(of: &OfRecord<P>) -> Needs {
+    if of.along.is_none() && of.compared == Quantity::Force { Needs::Force } else { Needs::Motion }
+}
+
+/// What is found of each of the `units`; errors of one of several name it.
+fn each(units: &[OfUnit], find: impl Fn(&OfUnit) -> Result<Found, Failure>) -> Result<Vec<Found>, Failure> {
+    let named = |unit: &OfUnit| {
+        find(unit).map_err(|failure| match failure {
+            Failure::Input(why) if units.len() > 1 && !why.contains(&unit.name) => {
+                Failure::Input(format!("{}: {why}", unit.name))
+            }
+            failure => failure,
+        })
+    };
+    units.iter().map(named).collect()
+}
+
+/// The CSV files of a `folder`, by their names.
+fn records_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let entries = std::fs::read_dir(folder).map_err(|error| Failure::Input(format!("{}: {error}", folder.display())))?;
+    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")));
+    paths.sort();
+    match paths.len() {
+        0 => Err(Failure::Input(format!("{}: the folder has no file that ends in .csv", folder.display()))),
+        _ => Ok(paths),
+    }
+}
+
+/// What the records of a `unit` say of a drive train with this `law`, or of all laws.
+fn drive_train(
+    unit: &OfUnit,
+    law: Option<&Law>,
+    cutoff: Option<f64>,
+    options: &fit::Options,
+) -> Result<Found, Failure> {
+    let motion = drive_train::Options { cutoff };
+    let runs: Vec<Filtered> = unit.records.iter().map(|record| filtered(record, &motion)).collect();
+    // The stated law first; a drive that coasts has no delay.
+    let coasts = runs.iter().any(|run| run.force.is_none());
+    let mut laws: Vec<(String, DriveTrain)> = Vec::new();
+    let stated = law.into_iter().map(|law| (law.name.as_str(), &law.terms[..]));
+    for (name, terms) in stated.chain(LAWS) {
+        let is_known = laws.iter().any(|(other, _)| other == name);
+        let is_undelayed = coasts && terms.contains(&drive_train::Term::Delay);
+        if !(is_known || is_undelayed) {
+            laws.push((name.to_owned(), DriveTrain::new(terms, &runs)));
+        }
+    }
+    let models: Vec<(&str, &dyn Model)> = laws.iter().map(|(name, law)| (name.as_str(), law as &dyn Model)).collect();
+    let (compared, mut refused) = compare(&models, options);
+    // A stated law has to have an estimate, else any.
+    let error = |name: Option<&str>| refused.iter().position(|(law, _)| name.is_none_or(|name| name == *law));
+    let fatal = match law {
+        Some(law) => error(Some(&law.name)),
+        None if compared.is_empty() => error(None),
+        None => None,
+    };
+    if let Some(at) = fatal {
+        return Err(refused.swap_remove(at).1.into());
+    }
+    let mut warnings: Vec<String> =
+        refused.iter().map(|(name, why)| format!("the law {name} is not compared: {why}")).collect();
+    let by_name = law.and_then(|law| compared.iter().position(|one| one.name == law.name));
+    let chosen = by_name.or_else(|| best(&compared).and_then(|best| compared.iter().position(|one| one == best)));
+    let Some(chosen) = chosen else { return Err(Failure::Input("no law has an estimate".into())) };
+    warnings.extend(words::better(&compared[chosen], &compared));
+    let spikes = Some(runs.iter().map(|run| run.spikes).sum());
+    Ok(Found { chosen, spikes, cutoff_hz: runs.first().map(|run| run.cutoff), warnings, compared })
 }

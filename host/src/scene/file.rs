@@ -20,7 +20,10 @@ use super::{
     tree::{Node, Source},
     value::Field,
 };
-use crate::setup::{GapMeasures, Identification, Measured, PinSpec, SURFACES, Scene};
+use crate::{
+    identify::Identification,
+    setup::{GapMeasures, Measured, PinSpec, SURFACES, Scene},
+};
 
 /// What a scene file describes.
 pub struct SceneFile {
@@ -104,11 +107,12 @@ impl SceneFile {
         }
         if mechanism::is_mechanism(&root) {
             mechanism::refuse_slide(&root)?;
-            let mut mechanism = mechanism::mechanism(&root, (title.clone(), file_name), product.as_ref(), measured.as_ref())?;
+            let (mut mechanism, identify) =
+                mechanism::mechanism(&root, (title.clone(), file_name), product.as_ref(), measured.as_ref())?;
             let names = mechanism.gaps.iter().map(|gap| gap.name.clone()).collect();
             let measured = found(measured, product.as_ref(), names)?;
             mechanism.measured.clone_from(&measured);
-            return Ok(Self { title, product, slide: None, mechanism: Some(mechanism), measured, identify: None });
+            return Ok(Self { title, product, slide: None, mechanism: Some(mechanism), measured, identify });
         }
         if product.is_some()
             && root.get("slide").is_none()

@@ -88,6 +88,36 @@ macro_rules! parameters {
         ]
     };
 }
+/// Bounds of a value that is sought, and what is known of it.
+const SOUGHT: &[Key] = &[key("between"), key("mean"), key("deviation")];
+const SOUGHT_PARAMETERS: &[Key] = parameters!(SOUGHT);
+const RECORD: [Key; 16] = [
+    key("model"),
+    key("law"),
+    key("recorded"),
+    key("compare"),
+    key("along"),
+    key("cutoff"),
+    key("time"),
+    key("position"),
+    key("speed"),
+    key("force"),
+    key("current"),
+    key("force_constant"),
+    key("loss"),
+    key("search"),
+    table("gaps", &[key("of"), table("n", SOUGHT)]),
+    table("delay", SOUGHT),
+];
+const IDENTIFY: [Key; RECORD.len() + SOUGHT_PARAMETERS.len()] = {
+    let mut keys = [RECORD[0]; RECORD.len() + SOUGHT_PARAMETERS.len()];
+    let mut i = 0;
+    while i < keys.len() {
+        keys[i] = if i < RECORD.len() { RECORD[i] } else { SOUGHT_PARAMETERS[i - RECORD.len()] };
+        i += 1;
+    }
+    keys
+};
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
 const ZONE: &[Key] = &[
@@ -318,26 +348,6 @@ pub(super) const ROOT: &[Key] = &[
     table("allocate", &[key("yield"), key("malfunction"), key("force_limit")]),
     table("sum", &[key("name"), key("of")]),
     table(
-        "identify",
-        &[
-            key("model"),
-            key("law"),
-            key("cutoff"),
-            key("time"),
-            key("position"),
-            key("speed"),
-            key("force"),
-            key("current"),
-            key("force_constant"),
-            key("loss"),
-            key("search"),
-            table("friction", &[key("coefficient")]),
-            table("contact", &[key("stiffness")]),
-            table("slide", &[key("mass")]),
-            table("gaps", &[key("of"), key("n")]),
-        ],
-    ),
-    table(
         "measured",
         &[
             key("file"),
@@ -350,6 +360,7 @@ pub(super) const ROOT: &[Key] = &[
     table("correlation", &[key("of"), key("coefficient")]),
     table("vary", parameters!(DEVIATION)),
     table("uncertain", parameters!(BELIEF)),
+    table("identify", &IDENTIFY),
 ];
 
 /// The full name of the key `name` below `path`.

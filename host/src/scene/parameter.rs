@@ -94,6 +94,16 @@ impl Kind {
         }
     }
 
+    /// The symbol of its SI unit; empty for a plain number.
+    pub fn si_unit(self) -> &'static str {
+        let of = |quantity: &Quantity| quantity.units.iter().find(|unit| unit.to_si(1.0) == 1.0).map_or("", |of| of.symbol);
+        match self {
+            Self::Number(quantity) => of(quantity),
+            Self::RampEnd(_) => of(&RAMP),
+            Self::Stiffness(_) => "N/m^e",
+        }
+    }
+
     /// How its values are shown.
     pub fn shown_in(self) -> ShownIn {
         let first = |quantity: &Quantity| {

@@ -20,7 +20,7 @@ const BODY: &str = "slide";
 const DRIVE: &str = "drive";
 
 /// Keys that make a mechanism of a slide.
-const BEYOND: [(&str, &[&str]); 3] = [
+const BEYOND: [(&str, &[&str]); 4] = [
     ("friction", &["static_coefficient", "stribeck_speed", "viscous"]),
     (
         "drive",
@@ -44,6 +44,7 @@ const BEYOND: [(&str, &[&str]); 3] = [
         ],
     ),
     ("pin", &["slope", "bow"]),
+    ("identify", &["along"]),
 ];
 
 /// Whether the scene `root` is a slide with what only mechanisms have.
@@ -77,7 +78,7 @@ pub(super) fn write_out(root: &mut Node) -> Result<(), SceneError> {
             "slide" => written.extend(bodies(entry.node, inertia, &at)),
             "pin" => written.push(new("joint", &at, Node { value: tracks(entry.node.value), place: at.clone() })),
             "drive" => written.push(new("drive", &at, Node { value: drives(entry.node, &at), place: at.clone() })),
-            "vary" | "uncertain" => {
+            "vary" | "uncertain" | "identify" => {
                 let Node { value, place } = entry.node;
                 written.push(Entry { node: Node { value: parameters(value), place }, ..entry });
             }
@@ -189,7 +190,7 @@ fn drives<'s>(drive: Node<'s>, at: &Place<'s>) -> Value<'s> {
     Value::List(vec![Node { place: at.clone(), value: Value::Table(entries) }])
 }
 
-/// Parameters of a slide, which `[vary]` or `[uncertain]` names, as those of the mechanism.
+/// Parameters of a slide, which `[vary]`, `[uncertain]` or `[identify]` names, as those of the mechanism.
 fn parameters(table: Value) -> Value {
     let Value::Table(entries) = table else { return table };
     let mut written = Vec::new();

@@ -1,7 +1,6 @@
 //! What is to be computed, as data: a slide on four pins, runs and controllers, tolerance levels, what varies and what is unknown.
 
 mod hash;
-mod identify;
 mod measured;
 mod parameter;
 mod slide;
@@ -9,7 +8,6 @@ mod task;
 mod uncertain;
 
 pub use hash::{Digest, scene_hash};
-pub use identify::{Identification, Law, Sought, SoughtValue, Subject};
 pub use measured::{Measured, MeasuredGaps, Place};
 pub use parameter::{Adjustable, SlideParameter, Varied, tilted_x, tilted_z};
 pub use slide::{GapError, GapMeasures, PinSpec, SURFACES, Scene, SlideSpec};

@@ -1,9 +1,9 @@
 //! Deviations by the block bootstrap: estimates from blocks of the record, drawn again and again.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use slipfit_core::sampling::stream::{Rng, unit_stream};
 
-use super::covariance::{Linearised, pseudo_inverse};
+use super::covariance::Linearised;
 
 /// Estimates that are drawn.
 const DRAWS: usize = 1000;
@@ -33,10 +33,11 @@ pub fn widest(linearised: &Linearised) -> Bootstrap {
     wide
 }
 
-/// Draws blocks of `block` samples of a `linearised` fit.
+/// Draws blocks of `block` samples of a `linearised` fit. What is drawn are the residuals times their derivatives, of which the estimate is a
+/// sum; the derivatives by themselves stay those of the record: it is its noise that is drawn anew, not the motion.
 fn draw(linearised: &Linearised, block: usize) -> Bootstrap {
     let p = linearised.columns.len();
-    let mut blocks: Vec<(DMatrix<f64>, DVector<f64>)> = Vec::new();
+    let mut blocks: Vec<DVector<f64>> = Vec::new();
     let mut at = 0;
     for length in &linearised.runs {
         let mut start = at;
@@ -46,23 +47,24 @@ fn draw(linearised: &Linearised, block: usize) -> Bootstrap {
             let stop = if start + 2 * block > end { end } else { start + block };
             let of = |i: usize| &linearised.columns[i][start..stop];
             let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            let products = DMatrix::from_fn(p, p, |i, k| product(of(i), of(k)));
             let residuals = &linearised.residuals[start..stop];
-            blocks.push((products, DVector::from_fn(p, |i, _| product(of(i), residuals))));
+            blocks.push(DVector::from_fn(p, |i, _| product(of(i), residuals)));
             start = stop;
         }
         at = end;
     }
+    // The fit takes a part of the noise out of the residuals.
+    let count = blocks.len() as f64;
+    let taken = libm::sqrt(count / (count - p as f64).max(1.0));
     let mut stream = unit_stream(SEED, 0);
     let mut draws: Vec<Vec<f64>> = vec![Vec::with_capacity(DRAWS); p];
     for _ in 0..DRAWS {
-        let (mut products, mut scores) = (DMatrix::zeros(p, p), DVector::zeros(p));
+        let mut scores = DVector::zeros(p);
         for _ in 0..blocks.len() {
             let k = ((u128::from(stream.next_u64()) * blocks.len() as u128) >> 64) as usize;
-            products += &blocks[k].0;
-            scores += &blocks[k].1;
+            scores += &blocks[k];
         }
-        let moved = pseudo_inverse(products).0 * scores;
+        let moved = &linearised.inverse * scores * taken;
         draws.iter_mut().zip(moved.iter().zip(&linearised.units)).for_each(|(all, (by, unit))| all.push(by * unit));
     }
     let deviation = |draws: &Vec<f64>| {

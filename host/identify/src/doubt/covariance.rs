@@ -102,6 +102,11 @@ pub fn gram(columns: &[Vec<f64>]) -> DMatrix<f64> {
 
 /// The inverse of products of columns of length 1, and the directions without one.
 pub fn pseudo_inverse(products: DMatrix<f64>) -> (DMatrix<f64>, Vec<DVector<f64>>) {
+    inverse_above(LEAST_SINGULAR * LEAST_SINGULAR, products)
+}
+
+/// The inverse of a symmetric matrix without the directions of eigenvalues up to `least`, and these directions.
+pub fn inverse_above(least: f64, products: DMatrix<f64>) -> (DMatrix<f64>, Vec<DVector<f64>>) {
     let p = products.nrows();
     if p == 0 {
         return (products, Vec::new());
@@ -109,7 +114,7 @@ pub fn pseudo_inverse(products: DMatrix<f64>) -> (DMatrix<f64>, Vec<DVector<f64>
     let eigen = products.symmetric_eigen();
     let (mut inverse, mut undetermined) = (DMatrix::zeros(p, p), Vec::new());
     for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-        if *value > LEAST_SINGULAR * LEAST_SINGULAR {
+        if *value > least {
             inverse += vector * vector.transpose() / *value;
         } else {
             undetermined.push(vector.into_owned());

@@ -100,7 +100,7 @@ mod tests {
     use super::{Linearised, Parameter, check_influence, undetermined};
 
     fn parameter(name: &str) -> Parameter {
-        Parameter { name: name.into(), unit: "N", bounds: [0.0, 10.0], start: 1.0 }
+        Parameter { name: name.into(), unit: "N", bounds: [0.0, 10.0], start: 1.0, prior: None }
     }
 
     fn words(columns: &[Vec<f64>], values: &[f64]) -> Vec<String> {

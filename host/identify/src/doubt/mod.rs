@@ -5,4 +5,5 @@ pub mod covariance;
 pub mod determined;
 pub mod lack;
 pub mod noise;
+pub mod prior;
 pub mod profile;

@@ -153,6 +153,7 @@ impl DriveTrain {
             unit: term.units()[usize::from(coasts)],
             bounds: [f64::NEG_INFINITY, f64::INFINITY],
             start: 0.0,
+            prior: None,
         };
         let measured = |run: &Filtered| match &run.force {
             Some(force) if !coasts => force.clone(),

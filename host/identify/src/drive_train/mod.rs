@@ -8,4 +8,4 @@ mod motion;
 mod tests;
 
 pub use self::law::{DriveTrain, LAWS, Term};
-pub use self::motion::{Filtered, Options, Signal, filtered};
+pub use self::motion::{ComparedSamples, Filtered, Options, Signal, Smoothed, filtered, smoothed};

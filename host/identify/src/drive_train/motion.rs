@@ -52,10 +52,50 @@ const REST: (f64, f64) = (0.01, 0.05);
 /// Share of rest, through the second filter, from which on a sample is not compared.
 const RESTS: f64 = 0.05;
 
-/// Filters a `record` that has a motion.
-pub fn filtered(record: &Record, options: &Options) -> Filtered {
+/// The speed of a record, filtered without a shift of phase, its force, and the samples at which forces are compared.
+#[derive(Clone, Debug)]
+pub struct Smoothed {
+    /// Speed (m/s) at every sample.
+    pub speed: Vec<f64>,
+    /// Force (N) at every sample; `None` where none was measured.
+    pub force: Option<Vec<f64>>,
+    /// Which samples are compared.
+    pub compared: ComparedSamples,
+    /// Cut-off frequency (Hz) of the motion's filter.
+    pub cutoff: f64,
+    /// Single wrong samples that were replaced.
+    pub spikes: usize,
+}
+
+/// The samples of a record that are compared, after a second filter: neither its ends nor where the drive rests.
+#[derive(Clone, Debug)]
+pub struct ComparedSamples {
+    filter: LowPass,
+    chosen: Vec<usize>,
+    /// Intervals of the record from one to the next.
+    every: usize,
+}
+
+impl ComparedSamples {
+    /// What is compared of a `signal` with a value at every sample of the record.
+    pub fn of(&self, signal: &[f64]) -> Vec<f64> {
+        self.chosen(&self.filter.both_ways(signal))
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.chosen.len()
+    }
+
+    fn chosen(&self, signal: &[f64]) -> Vec<f64> {
+        self.chosen.iter().map(|i| signal[*i]).collect()
+    }
+}
+
+/// Filters the motion of a `record` that has one, by a filter of this cut-off frequency (Hz); `None` as in [`Options`].
+pub fn smoothed(record: &Record, cutoff: Option<f64>) -> Smoothed {
     let rate = 1.0 / record.step;
-    let cutoff = options.cutoff.unwrap_or((0.1 * rate).min(HIGHEST)).min(0.4 * rate);
+    let cutoff = cutoff.unwrap_or((0.1 * rate).min(HIGHEST)).min(0.4 * rate);
     let first = LowPass::new(cutoff / rate);
     let mut spikes = 0;
     let mut clean = |signal: &[f64]| {
@@ -68,6 +108,19 @@ pub fn filtered(record: &Record, options: &Options) -> Filtered {
         (_, Some(position)) => central(&first.both_ways(&clean(position)), record.step),
         (None, None) => vec![0.0; record.samples],
     };
+    let force = record.force.as_ref().map(|force| clean(force));
+    let filter = LowPass::new(SECOND * cutoff / rate);
+    let every = ((0.5 * rate / (2.0 * SECOND * cutoff)) as usize).max(1);
+    // The ends of a filtered signal depend on how it is continued beyond.
+    let margin = (filter.settling() / 3).min(record.samples / 10);
+    let rests = filter.both_ways(&resting(&speed, record.step));
+    let chosen = (margin..record.samples - margin).step_by(every).filter(|i| rests[*i].abs() < RESTS).collect();
+    Smoothed { speed, force, compared: ComparedSamples { filter, chosen, every }, cutoff, spikes }
+}
+
+/// Filters a `record` that has a motion.
+pub fn filtered(record: &Record, options: &Options) -> Filtered {
+    let Smoothed { speed, force, compared, cutoff, spikes } = smoothed(record, options.cutoff);
     let acceleration = central(&speed, record.step);
     let forwards: Vec<f64> = speed
         .iter()
@@ -82,28 +135,17 @@ pub fn filtered(record: &Record, options: &Options) -> Filtered {
         })
         .collect();
     let speed_forwards: Vec<f64> = speed.iter().map(|speed| speed.max(0.0)).collect();
-    let force = record.force.as_ref().map(|force| clean(force));
-
-    let second = LowPass::new(SECOND * cutoff / rate);
-    let every = ((0.5 * rate / (2.0 * SECOND * cutoff)) as usize).max(1);
-    // The ends of a filtered signal depend on how it is continued beyond.
-    let margin = (second.settling() / 3).min(record.samples / 10);
-    let rests = resting(&speed, record.step);
-    let rests = second.both_ways(&rests);
-    let moves: Vec<usize> =
-        (margin..record.samples - margin).step_by(every).filter(|i| rests[*i].abs() < RESTS).collect();
-    let at_samples = |signal: &[f64]| moves.iter().map(|i| signal[*i]).collect::<Vec<f64>>();
-    let compared = |signal: &[f64]| {
-        let smooth = second.both_ways(signal);
-        Signal { value: at_samples(&smooth), rate: at_samples(&central(&smooth, record.step)) }
+    let signal = |signal: &[f64]| {
+        let smooth = compared.filter.both_ways(signal);
+        Signal { value: compared.chosen(&smooth), rate: compared.chosen(&central(&smooth, record.step)) }
     };
     Filtered {
-        acceleration: compared(&acceleration),
-        speed: compared(&speed),
-        forwards: compared(&forwards),
-        speed_forwards: compared(&speed_forwards),
-        force: force.map(|force| compared(&force).value),
-        step: record.step * every as f64,
+        acceleration: signal(&acceleration),
+        speed: signal(&speed),
+        forwards: signal(&forwards),
+        speed_forwards: signal(&speed_forwards),
+        force: force.map(|force| compared.of(&force)),
+        step: record.step * compared.every as f64,
         cutoff,
         spikes,
     }

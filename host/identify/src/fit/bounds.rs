@@ -28,7 +28,7 @@ mod tests {
 
     #[test]
     fn values_come_back() {
-        let parameter = Parameter { name: "a".into(), unit: "", bounds: [2.0, 5.0], start: 3.0 };
+        let parameter = Parameter { name: "a".into(), unit: "", bounds: [2.0, 5.0], start: 3.0, prior: None };
         for at in [2.1, 3.0, 4.9] {
             assert!((value(&parameter, searched(&parameter, at))[0] - at).abs() < 1e-12);
         }

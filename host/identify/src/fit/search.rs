@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use slipfit_core::sampling::stream::{Rng, uniform, unit_stream};
 
-use super::{By, Fit, grid, least_squares::minimise, loss::Loss, loss::scale};
+use super::{By, Fit, grid, least_squares::{CLOSE, NEAR, minimise}, loss::Loss, loss::scale};
 use crate::model::{Model, ModelError, Parameter};
 
 /// How a fit is made.
@@ -49,14 +49,14 @@ pub fn fit<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Fit, Model
             residuals(output).iter().map(|residual| loss.root(residual / scale)[0]).map(|root| root * root).sum()
         };
         // Between its points the output may be smooth: then the gradient leads farther.
-        match minimise(model, &coarse, &free, loss, scale) {
+        match minimise(model, &coarse, &free, (loss, scale), CLOSE) {
             Ok((values, fine)) if cost(&fine) < cost(&output) => (values, fine),
             _ => (coarse, output),
         }
     } else {
         let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
         for start in promising(model, &stated, options.starts) {
-            let (values, output) = minimise(model, &start, &free, Loss::Squares, 1.0)?;
+            let (values, output) = minimise(model, &start, &free, (Loss::Squares, 1.0), NEAR)?;
             let found = deviation(&output, Loss::Huber);
             if best.as_ref().is_none_or(|(least, ..)| found < *least) {
                 best = Some((found, values, output));
@@ -66,12 +66,10 @@ pub fn fit<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Fit, Model
             let output = model.simulate(&stated)?;
             return finish(model, stated, output, options, least);
         };
-        if loss != Loss::Squares {
-            // The scale follows the estimate. Two rounds leave it within its own error.
-            for _ in 0..2 {
-                let scale = deviation(&output, loss);
-                (values, output) = minimise(model, &values, &free, loss, scale)?;
-            }
+        // The scale follows the estimate. Two rounds leave it within its own error; squares have none.
+        for _ in 0..if loss == Loss::Squares { 1 } else { 2 } {
+            let scale = deviation(&output, loss);
+            (values, output) = minimise(model, &values, &free, (loss, scale), CLOSE)?;
         }
         (values, output)
     };
@@ -157,7 +155,7 @@ mod tests {
     }
 
     fn of(measured: Vec<f64>, bounds: [f64; 2]) -> Decay {
-        let parameter = |name: &str, bounds: [f64; 2], start| Parameter { name: name.into(), unit: "", bounds, start };
+        let parameter = |name: &str, bounds: [f64; 2], start| Parameter { name: name.into(), unit: "", bounds, start, prior: None };
         Decay {
             parameters: [parameter("a", [0.0, 10.0], 1.0), parameter("b", bounds, 0.5 * (bounds[0] + bounds[1]))],
             measured,

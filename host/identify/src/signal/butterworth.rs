@@ -4,12 +4,14 @@
 use std::f64::consts::PI;
 
 /// A section of second order, in transposed direct form II.
+#[derive(Clone, Debug)]
 struct Section {
     b: [f64; 3],
     a: [f64; 2],
 }
 
 /// The filter.
+#[derive(Clone, Debug)]
 pub struct LowPass {
     sections: [Section; 2],
     /// Samples that the step response needs to settle to a thousandth.

@@ -2,63 +2,107 @@
 
 use std::fmt::Write;
 
-use slipfit_identify::estimate::{Estimate, Estimated};
+use slipfit_identify::{between::Between, estimate::Estimate};
 use slipfit_tolerance::number::ten_digits;
 
-/// The table `[uncertain]` of an `estimate`: means, deviations and, as a comment, correlations and what a scene has no key for, such as
-/// levels of gaps. Stiffnesses have the contact's `exponent`, of a slide.
-pub fn table(title: &str, model: &str, estimate: &Estimate, exponent: Option<f64>) -> String {
-    let mut text =
-        format!("# {model} of {title:?}, identified from {} samples by slipfit identify.\n", estimate.samples);
+use super::Written;
+
+/// A parameter as it is written: mean and deviation (SI).
+struct Row<'a> {
+    name: &'a str,
+    unit: &'a str,
+    mean: f64,
+    deviation: f64,
+}
+
+/// The table `[uncertain]` of the `estimate` of one unit: means, deviations and, as comments, correlations and what a scene has no key for,
+/// such as levels of gaps.
+pub fn of_one(title: &str, written: &Written, estimate: &Estimate) -> String {
+    let mut text = format!(
+        "# {} of {title:?}, identified from {} samples by slipfit identify.\n",
+        written.model, estimate.samples
+    );
     if let Some(verdict) = &estimate.lack.verdict {
         let _ = writeln!(text, "# Lack of fit: {verdict}.");
     }
     for words in &estimate.undetermined {
         let _ = writeln!(text, "# Not determined: {words}.");
     }
-    let known: Vec<(usize, &Estimated)> =
-        estimate.parameters.iter().enumerate().filter(|(_, parameter)| parameter.deviation.is_some()).collect();
+    let known: Vec<usize> = (0..estimate.parameters.len()).filter(|i| estimate.parameters[*i].deviation.is_some()).collect();
     if known.len() > 1 {
         let _ = writeln!(text, "# Correlations, in the order of the keys:");
-        for (i, _) in &known {
-            let row: Vec<_> = known.iter().map(|(k, _)| format!("{:+.4}", estimate.correlation[*i][*k])).collect();
+        for i in &known {
+            let row: Vec<_> = known.iter().map(|k| format!("{:+.4}", estimate.correlation[*i][*k])).collect();
             let _ = writeln!(text, "#   {}", row.join(" "));
         }
     }
-    text += "\n[uncertain]\n";
-    // Tables of a body and a drive, whose names are those of the scene that takes them.
-    let mut of_train = Vec::new();
-    for (_, parameter) in known {
-        let Some(deviation) = parameter.deviation else { continue };
-        let unit = exponent.map(|exponent| parameter.unit.replace("^e", &format!("^{exponent}")));
-        let unit = unit.as_deref().unwrap_or(parameter.unit);
-        let number = |value: f64| match unit {
+    let rows = known.into_iter().filter_map(|i| {
+        let own = &estimate.parameters[i];
+        Some((i, Row { name: &own.name, unit: own.unit, mean: own.value, deviation: own.deviation? }))
+    });
+    text + &table(written, rows)
+}
+
+/// The same of several units: the mean of all is what is unknown. How much the units differ is told as comments.
+pub fn of_several(title: &str, written: &Written, pooled: &[Between]) -> String {
+    let units = pooled.iter().map(|of| of.units).max().unwrap_or_default();
+    let mut text =
+        format!("# {} of {title:?}: the mean of {units} units, identified by slipfit identify.\n", written.model);
+    for of in pooled {
+        let spread = format!("{} {}", ten_digits(of.spread), of.unit);
+        let _ = writeln!(text, "# {} differs from unit to unit by a standard deviation of {}.", of.name, spread.trim_end());
+    }
+    let rows = pooled.iter().enumerate();
+    text + &table(written, rows.map(|(i, of)| (i, Row { name: &of.name, unit: of.unit, mean: of.mean, deviation: of.deviation })))
+}
+
+/// Names of a body and a drive of the scene that takes what is found of a drive train.
+const OF_TRAIN: [(&str, &str); 2] = [("body", "stage"), ("drive", "motor")];
+
+fn table<'a>(written: &Written, rows: impl Iterator<Item = (usize, Row<'a>)>) -> String {
+    let mut text = "\n[uncertain]\n".to_owned();
+    // Keys of a table in a list, by list and name of the table.
+    let mut listed: Vec<([String; 2], Vec<String>)> = Vec::new();
+    for (i, Row { name, unit, mean, deviation }) in rows {
+        let unit = written.exponent.map_or_else(|| unit.to_owned(), |exponent| unit.replace("^e", &format!("^{exponent}")));
+        let number = |value: f64| match &unit[..] {
             "" => ten_digits(value),
             unit => format!("\"{} {unit}\"", ten_digits(value)),
         };
-        let [mean, deviation] = [parameter.value, deviation].map(number);
-        let _ = match (model, parameter.name.strip_prefix("n of ")) {
-            ("slide", Some(gaps)) => writeln!(text, "# n of {gaps}: mean {mean}, deviation {deviation}"),
-            ("slide", None) => writeln!(text, "{} = {{ mean = {mean}, deviation = {deviation} }}", parameter.name),
-            _ => {
-                let table = match parameter.name.as_str() {
-                    "mass" if unit == "kg" => "body = [{ name = \"stage\"",
-                    "coulomb" | "viscous" | "offset" if unit.starts_with("N") => "drive = [{ name = \"motor\"",
-                    // What no key of a scene says, such as a ratio of two or one direction's friction.
-                    name => {
-                        let _ = writeln!(text, "# {name}: mean {mean}, deviation {deviation}");
-                        continue;
-                    }
-                };
-                of_train.push((table, format!("{} = {{ mean = {mean}, deviation = {deviation} }}", parameter.name)));
-                Ok(())
+        let [mean, deviation] = [mean, deviation].map(number);
+        let place = match (written.model, written.lists.get(i).copied().flatten(), name.rsplit_once('.')) {
+            ("drive-train", ..) => match name {
+                "mass" if unit == "kg" => Some((OF_TRAIN[0], name)),
+                "coulomb" | "viscous" | "offset" if unit.starts_with('N') => Some((OF_TRAIN[1], name)),
+                // What no key of a scene says, such as a ratio of two or one direction's friction.
+                _ => None,
+            },
+            (_, Some(list), Some((table, key))) => Some(((list, table), key)),
+            (_, None, Some(_)) => {
+                let _ = writeln!(text, "{name} = {{ mean = {mean}, deviation = {deviation} }}");
+                continue;
             }
+            _ => None,
         };
+        match place {
+            None => {
+                let _ = writeln!(text, "# {name}: mean {mean}, deviation {deviation}");
+            }
+            Some(((list, table), key)) => {
+                let (at, line) = ([list.to_owned(), table.to_owned()], format!("{key} = {{ mean = {mean}, deviation = {deviation} }}"));
+                match listed.iter_mut().find(|(other, _)| *other == at) {
+                    Some((_, lines)) => lines.push(line),
+                    None => listed.push((at, vec![line])),
+                }
+            }
+        }
     }
-    for table in ["body = [{ name = \"stage\"", "drive = [{ name = \"motor\""] {
-        let keys: Vec<_> = of_train.iter().filter(|(of, _)| *of == table).map(|(_, key)| key.as_str()).collect();
-        if !keys.is_empty() {
-            let _ = writeln!(text, "{table}, {} }}]", keys.join(", "));
+    for list in ["body", "joint", "drive"] {
+        let of_list = listed.iter().filter(|([other, _], _)| other == list);
+        let tables: Vec<_> =
+            of_list.map(|([_, table], lines)| format!("{{ name = {table:?}, {} }}", lines.join(", "))).collect();
+        if !tables.is_empty() {
+            let _ = writeln!(text, "{list} = [{}]", tables.join(", "));
         }
     }
     text

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use slipfit_identify::{
+    between::Between,
     compare::{Compared, best},
     doubt::profile::{Profile, Shape},
     estimate::{Estimate, Estimated},
@@ -10,7 +11,7 @@ use slipfit_identify::{
 };
 use slipfit_tolerance::number::{decimals, fixed, or_dash, percent};
 
-use super::report::Report;
+use super::report::{Report, UnitReport};
 use crate::cli::terminal::text_table;
 
 /// Difference of the criterion from which on a law is decisively better.
@@ -30,7 +31,7 @@ pub fn better(chosen: &Compared, compared: &[Compared]) -> Option<String> {
 }
 
 /// The report as text.
-pub fn described(report: &Report, chosen: &Compared, duration: f64) -> String {
+pub fn described(report: &Report, unit: &UnitReport, chosen: &Compared) -> String {
     let estimate = &chosen.estimate;
     let mut text = String::new();
     if let Some(verdict) = &estimate.lack.verdict {
@@ -39,14 +40,14 @@ pub fn described(report: &Report, chosen: &Compared, duration: f64) -> String {
             "Lack of fit: the model does not explain the record: {verdict}. Intervals below mean little.\n"
         );
     }
-    let law = if report.model == "slide" { String::new() } else { format!(", law {}", chosen.name) };
+    let law = if report.model == "drive-train" { format!(", law {}", chosen.name) } else { String::new() };
     let _ = writeln!(
         text,
         "{}: {}{law}; {} samples of {} s, which know as much as {} independent ones\n",
         report.title,
         report.model,
         estimate.samples,
-        fixed(duration, 1),
+        fixed(unit.duration, 1),
         fixed(estimate.effective_samples, 0)
     );
     text += &parameters(estimate);
@@ -70,23 +71,65 @@ pub fn described(report: &Report, chosen: &Compared, duration: f64) -> String {
             "Search          by a grid: intervals suppose a smooth output and mean little where it jumps"
         );
     }
-    if let (Some(spikes), Some(cutoff)) = (report.spikes, report.cutoff_hz) {
+    if let (Some(spikes), Some(cutoff)) = (unit.spikes, unit.cutoff_hz) {
         let _ =
             writeln!(text, "Filter          {} Hz forwards and backwards; {spikes} spikes replaced", fixed(cutoff, 0));
     }
-    if report.compared.len() > 1 {
+    if unit.compared.len() > 1 {
         let _ = writeln!(text, "\nLaws compared; one that is more than {DECISIVE} behind is decisively worse\n");
-        text += &comparison(report.compared);
+        text += &comparison(unit.compared);
     }
     text
+}
+
+/// What the estimates `chosen` for several units have in common.
+pub fn between(report: &Report, chosen: &[&Compared], pooled: &[Between]) -> String {
+    let mut text = format!("{}: {} of {} units\n\n", report.title, report.model, chosen.len());
+    let name = |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") };
+    let row = |of: &Between| {
+        let number = writer(of.mean, Some(of.deviation));
+        let [low, high] = of.interval.map(&number);
+        let spread = number(of.spread);
+        vec![name(&of.name, of.unit), of.units.to_string(), number(of.mean), number(of.deviation), format!("{low} to {high}"), spread]
+    };
+    let rows: Vec<_> = pooled.iter().map(row).collect();
+    text += &text_table(&["parameter", "units", "mean", "its deviation", "95 % interval", "spread between units"], &rows);
+    text += "\nEach unit: estimate ± deviation\n\n";
+    let of_unit = |(unit, chosen): (&UnitReport, &&Compared)| {
+        let estimate = &chosen.estimate;
+        let of_parameter = |own: &Estimated| match own.deviation {
+            Some(deviation) => {
+                let number = writer(own.value, own.deviation);
+                format!("{} ± {}", number(own.value), number(deviation))
+            }
+            None => "-".into(),
+        };
+        let mut row = vec![unit.records.join(", ")];
+        row.extend(estimate.parameters.iter().map(of_parameter));
+        row.push(percent(estimate.lack.relative_error, 1));
+        row.push(if estimate.lack.verdict.is_some() { "lack of fit" } else { "" }.into());
+        row
+    };
+    let rows: Vec<_> = report.units.iter().zip(chosen).map(of_unit).collect();
+    let mut heads = vec!["records".to_owned()];
+    let parameters = chosen.first().map_or(&[][..], |one| &one.estimate.parameters);
+    heads.extend(parameters.iter().map(|own| name(&own.name, own.unit)));
+    heads.extend(["residuals, %", "verdict"].map(str::to_owned));
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    text += &text_table(&heads, &rows);
+    text
+}
+
+/// Writes numbers with the digits that a `value` with this deviation has.
+fn writer(value: f64, deviation: Option<f64>) -> impl Fn(f64) -> String {
+    let digits = decimals(deviation.filter(|of| *of > 0.0).unwrap_or(0.01 * value.abs()), 2);
+    move |value: f64| if digits > 9 || value.abs() > 1e7 { format!("{value:.3e}") } else { fixed(value, digits) }
 }
 
 /// A table of the parameters.
 fn parameters(estimate: &Estimate) -> String {
     let row = |parameter: &Estimated| {
-        let digits = decimals(parameter.deviation.unwrap_or_else(|| 0.01 * parameter.value.abs()), 2);
-        let number =
-            |value: f64| if digits > 9 || value.abs() > 1e7 { format!("{value:.3e}") } else { fixed(value, digits) };
+        let number = writer(parameter.value, parameter.deviation);
         let range = |[low, high]: [f64; 2]| format!("{} to {}", number(low), number(high));
         let name = match parameter.unit {
             "" => parameter.name.clone(),
@@ -95,10 +138,10 @@ fn parameters(estimate: &Estimate) -> String {
         vec![
             name,
             if parameter.deviation.is_some() { number(parameter.value) } else { "-".into() },
-            or_dash(parameter.deviation, number),
+            or_dash(parameter.deviation, &number),
             or_dash(parameter.interval, range),
             or_dash(parameter.bootstrap, range),
-            profile(&parameter.profile, number),
+            profile(&parameter.profile, &number),
         ]
     };
     let rows: Vec<_> = estimate.parameters.iter().map(row).collect();

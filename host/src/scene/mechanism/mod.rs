@@ -27,7 +27,7 @@ use self::{
     place::place,
 };
 use super::{
-    Problem, SceneError,
+    Problem, SceneError, identify,
     measured::columns::Columns,
     parse,
     plausible::{self, Loads},
@@ -37,6 +37,7 @@ use super::{
 };
 use crate::{
     dynamics::driven::DriveKind,
+    identify::Identification,
     mechanism::{Joint, JointKind, Mechanism, MountError, Mounts, NormalData, spatial},
     setup::{LevelRange, SURFACES},
 };
@@ -65,13 +66,13 @@ pub(super) fn refuse_slide(root: &Field) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Reads the mechanism of the scene `root`, whose gaps may be measures of `product` or `measured`.
+/// Reads the mechanism of the scene `root`, whose gaps may be measures of `product` or `measured`, and what is sought of it in records.
 pub(super) fn mechanism(
     root: &Field,
     (title, file_name): (String, &str),
     product: Option<&Product>,
     measured: Option<&Columns>,
-) -> Result<Mechanism, SceneError> {
+) -> Result<(Mechanism, Option<Identification>), SceneError> {
     let found = root.found();
     let table = root.table("mechanism")?;
     let planar = match table.get("space") {
@@ -136,7 +137,9 @@ pub(super) fn mechanism(
             doubt(&mechanism, &joint_fields, root);
         }
     }
-    Ok(mechanism)
+    let sought = named(root, "identify", &names, &mechanism)?;
+    let identify = identify::mechanism(root, &sought, &mechanism)?;
+    Ok((mechanism, identify))
 }
 
 /// Warns about stiffnesses and gaps that are implausible for the loads of the `mechanism`.

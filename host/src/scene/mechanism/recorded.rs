@@ -4,7 +4,10 @@ use slipfit_core::drive::Piece;
 use slipfit_identify::record::{Columns, Needs, Record, read_file};
 
 use super::super::measured::folder;
-use crate::scene::{Problem, SceneError, parse::choice, value::Field};
+use crate::{
+    dynamics::command::spline,
+    scene::{Problem, SceneError, parse::choice, value::Field},
+};
 
 /// A recorded command.
 pub struct Recorded {
@@ -110,52 +113,4 @@ pub fn recorded(
 fn commanded(record: &Record, coefficients: impl Fn(usize) -> [f64; 4]) -> Vec<Piece<f64>> {
     let start = |i: usize| record.start + record.step * i as f64;
     (0..record.samples).map(|i| Piece { start: start(i), coefficients: coefficients(i).map(|of| of + 0.0) }).collect()
-}
-
-/// The natural cubic spline through `values` at equal distances `step`: its coefficients from each value to the next.
-pub fn spline(values: &[f64], step: f64) -> Vec<[f64; 4]> {
-    let last = values.len() - 1;
-    // Second derivatives times step²/6, by elimination of M(i−1) + 4·M(i) + M(i+1) = second difference, zero at both ends.
-    let (mut upper, mut second) = (vec![0.0; last + 1], vec![0.0; last + 1]);
-    for i in 1..last {
-        let pivot = 4.0 - upper[i - 1];
-        upper[i] = 1.0 / pivot;
-        second[i] = (values[i + 1] - 2.0 * values[i] + values[i - 1] - second[i - 1]) / pivot;
-    }
-    for i in (1..last).rev() {
-        second[i] -= upper[i] * second[i + 1];
-    }
-    let coefficients = |i: usize| {
-        let slope = values[i + 1] - values[i] - 2.0 * second[i] - second[i + 1];
-        let [square, cube] = [3.0 * second[i], second[i + 1] - second[i]];
-        [values[i], slope / step, square / (step * step), cube / (step * step * step)]
-    };
-    (0..last).map(coefficients).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::spline;
-
-    #[test]
-    fn a_spline_goes_through_its_values_and_is_smooth() {
-        let h = 0.05;
-        let values: Vec<f64> = (0..100).map(|i| libm::sin(3.0 * h * f64::from(i))).collect();
-        let spline = spline(&values, h);
-        let at = |i: usize, s: f64| {
-            let [a, b, c, d] = spline[i];
-            [((d * s + c) * s + b) * s + a, (3.0 * d * s + 2.0 * c) * s + b, 6.0 * d * s + 2.0 * c]
-        };
-        for i in 0..98 {
-            for (end, start) in at(i, h).into_iter().zip(at(i + 1, 0.0)) {
-                assert!((end - start).abs() < 1e-9, "{i}: {end} {start}");
-            }
-        }
-        // Away from its ends, where it has no curvature.
-        for i in 20..80 {
-            let t = h * (i as f64 + 0.5);
-            let [value, slope, _] = at(i, 0.5 * h);
-            assert!((value - libm::sin(3.0 * t)).abs() < 1e-5 && (slope - 3.0 * libm::cos(3.0 * t)).abs() < 1e-4);
-        }
-    }
 }

@@ -4,21 +4,33 @@
 pub const IDENTIFY: &[(&str, &str)] = &[
     (
         "identify.model",
-        "`slide`: the slide of the scene is simulated, and the force of its drive compared. `drive-train`: a drive without a mechanism, \
-         whose force is compared along the measured motion. Default: `slide`.",
+        "`drive-train`: a drive without a mechanism, whose force is compared along the measured motion. Default: the slide or the mechanism \
+         of the scene.",
     ),
     (
         "identify.law",
         "For drive trains: the law that counts, or its terms as a list, such as `[\"mass\", \"coulomb\"]`. Default: the best of all laws.",
     ),
+    ("identify.recorded", "For mechanisms: name of the drive that was recorded. Default: the first."),
+    (
+        "identify.compare",
+        "What is compared with the simulated motion: the `force` of the drive, its `speed`, or its `position` from the first sample on. \
+         Default: `force`.",
+    ),
+    (
+        "identify.along",
+        "`motion`: the drive moves as it was measured, and the force that this takes is compared, so that its controller need not be known. \
+         Default: the motion is simulated.",
+    ),
     (
         "identify.cutoff",
-        "For drive trains: cut-off frequency of the filter of the motion. Default: a tenth of the sampling frequency, at most 100 Hz.",
+        "Cut-off frequency of the filter of a measured motion: for drive trains, and with `along`. Default: a tenth of the sampling \
+         frequency, at most 100 Hz.",
     ),
     ("identify.time", "Name of the column of the time. Default: `t` or `time`."),
-    ("identify.position", "For drive trains: name of the column of the position. Default: `position` or `z`."),
-    ("identify.speed", "For drive trains: name of the column of the speed. Default: `speed`, `velocity` or `vz`."),
-    ("identify.force", "Name of the column of the force. Default: `force`."),
+    ("identify.position", "Name of the column of the position. Default: `position` or `z`."),
+    ("identify.speed", "Name of the column of the speed. Default: `speed`, `velocity` or `vz`."),
+    ("identify.force", "Name of the column of the force, or of the torque of a drive that turns. Default: `force`."),
     (
         "identify.current",
         "Name of the column of the motor's current or voltage, where there is no force. Default: `current` or `voltage`.",
@@ -27,25 +39,37 @@ pub const IDENTIFY: &[(&str, &str)] = &[
     (
         "identify.loss",
         "What a residual costs. `squares`; `huber`: in proportion where it is large; `bisquare`: no more where it is an outlier. \
-         Default: `bisquare` for slides, `squares` for drive trains, whose spikes are replaced before.",
+         Default: `squares` for drive trains, whose spikes are replaced before; else `bisquare`.",
     ),
     (
         "identify.search",
-        "For slides: `gradient`, or `grid` for at most three parameters where the force jumps with them. Default: `gradient`.",
+        "`gradient`, or `grid` for at most three parameters where the force jumps with them. Not for drive trains. Default: `gradient`.",
     ),
-    ("identify.friction", "What is sought of the friction. Optional."),
-    ("identify.friction.coefficient", "Bounds of the coefficient of friction, such as `[0.1, 0.5]`. Optional."),
-    ("identify.contact", "What is sought of the contacts. Optional."),
-    ("identify.contact.stiffness", "Bounds of the stiffness, a list of two. Optional."),
-    ("identify.slide", "What is sought of the slide. Optional."),
-    ("identify.slide.mass", "Bounds of the mass, such as `[60, 120]`. The moments of inertia follow. Optional."),
     (
         "identify.gaps",
         "A list of gaps whose tolerance level is sought, such as `[{ of = \"rail\", n = [-3, 3] }]`. Optional.",
     ),
     (
         "identify.gaps.of",
-        "Which gaps have this level: `all`, a surface such as `rail`, the name of a pin, or one gap such as `left front rail`.",
+        "Which gaps have this level: `all`; of a slide a surface such as `rail`, the name of a pin, or one gap such as `left front rail`; \
+         of a mechanism the name of a joint or of a gap.",
     ),
-    ("identify.gaps.n", "Bounds of the tolerance level."),
+    ("identify.gaps.n", "Bounds of the tolerance level, or a table with `between`, `mean` and `deviation`."),
+    (
+        "identify.delay",
+        "Bounds of the time by which the record lags behind what it shows, such as `[0, 0.01]`; it is sought then. Optional.",
+    ),
+    ("identify.friction", "Parameters of the friction that are sought, each with bounds such as `[0.1, 0.5]`. Optional."),
+    ("identify.contact", "Parameters of the contacts that are sought. Optional."),
+    ("identify.slide", "Parameters of the slide that are sought. Optional."),
+    ("identify.mechanism", "Parameters of a mechanism's gravity that are sought. Optional."),
+    ("identify.body", "A list `[[identify.body]]`: bodies of a mechanism with what is sought of them. Optional."),
+    ("identify.joint", "A list `[[identify.joint]]`: joints of a mechanism with what is sought of them. Optional."),
+    ("identify.drive", "What is sought of the drive; of a mechanism's a list `[[identify.drive]]`. Optional."),
+    (
+        "identify.gaps.n.between",
+        "The least and the greatest value of what is sought. Required in such a table, which stands in place of a list of bounds.",
+    ),
+    ("identify.gaps.n.mean", "What the value is known to be beforehand, as the mean of a normal distribution. Required there."),
+    ("identify.gaps.n.deviation", "Standard deviation of that. Required there."),
 ];
