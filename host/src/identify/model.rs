@@ -166,8 +166,13 @@ impl<U: Unit> MotionModel<U> {
             let share = place - before as f64;
             computed[before] + share * (computed[before + 1] - computed[before])
         };
-        let all = self.of.compared.counted((0..samples).map(at).collect());
-        Ok(run.along.as_ref().map_or_else(|| all.clone(), |(_, compared)| compared.of(&all)))
+        let mut all = self.of.compared.counted((0..samples).map(at).collect());
+        let Some((_, compared)) = &run.along else { return Ok(all) };
+        // The jump from rest to a record that begins in motion has an infinite force.
+        if let [first, second, ..] = &mut all[..] {
+            *first = *second;
+        }
+        Ok(compared.of(&all))
     }
 }
 
