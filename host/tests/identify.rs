@@ -163,7 +163,11 @@ fn an_estimate_goes_back_into_its_scene() {
     stdout(&slipfit(folder.path(), &["identify", "slide.toml", "run.csv", "--n", "1.5", "-o", "found.toml"]));
     let written = std::fs::read_to_string(folder.path().join("found.toml")).unwrap();
     assert!(written.contains("N/m^1.5\"") && written.contains("\n# n of left: mean 1."), "{written}");
-    write(folder.path(), "known.toml", &format!("{CD_ROM_SLIDE}\n{written}"));
+    write(folder.path(), "known.toml", &format!("include = \"found.toml\"\n{CD_ROM_SLIDE}"));
+    assert!(
+        written.contains("[[uncertain.correlation]]\nof = [\"friction.coefficient\", \"contact.stiffness\"]"),
+        "{written}"
+    );
     let found = json(folder.path(), &["population", "known.toml", "--units", "32", "--json"]);
     let names: Vec<&str> =
         found["uncertain"]["unknowns"].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
@@ -192,7 +196,14 @@ fn sought(scene: &Scene, count: usize) -> OfRecord<SlideParameter> {
         ("n of left", level(0), [-1.0, 4.0]),
         ("n of right", level(1), [-1.0, 4.0]),
     ];
-    let of = |(name, value, bounds): (&str, _, _)| Sought { name: name.into(), value, list: None, unit: "", bounds, prior: None };
+    let of = |(name, value, bounds): (&str, _, _)| Sought {
+        name: name.into(),
+        value,
+        list: None,
+        unit: "",
+        bounds,
+        prior: None,
+    };
     let sought = all.into_iter().take(count).map(of).collect();
     OfRecord { sought, drive: 0, compared: Compared::Force, along: None }
 }
@@ -323,7 +334,9 @@ fn a_late_record_tells_its_delay_and_a_prior_what_the_record_does_not() {
     let found = values(&json(folder.path(), &["identify", "stage.toml", "late.csv", "--json"]));
     assert!((found.last().unwrap()[0] - 0.004).abs() < 1e-4, "{found:?}");
     // At constant speed friction and offset are known as a sum: 6 N.
-    let rows = (0..500).fold("t (s),speed (mm/s),force (N)\n".to_owned(), |text, k| text + &format!("{},{},{}\n", 0.002 * f64::from(k), 50.0, 6.15 + 0.01 * f64::from(k % 7)));
+    let rows = (0..500).fold("t (s),speed (mm/s),force (N)\n".to_owned(), |text, k| {
+        text + &format!("{},{},{}\n", 0.002 * f64::from(k), 50.0, 6.15 + 0.01 * f64::from(k % 7))
+    });
     write(folder.path(), "steady.csv", &rows);
     let sought = |offset: &str| {
         stage(&format!("along = \"motion\"\ndrive = [{{ name = \"motor\", coulomb = [0, 20], offset = {offset} }}]\n"))
@@ -365,8 +378,7 @@ fn units_have_a_mean_and_a_spread() {
     assert!(number(&mass, "spread") < 0.002 && (number(&mass, "mean") - 2.0).abs() < 0.003, "{mass}");
     let written = std::fs::read_to_string(folder.path().join("found.toml")).unwrap();
     assert!(written.contains("# motor.coulomb differs from unit to unit by a standard deviation of 0.8"), "{written}");
-    let known = stage(SOUGHT).split("[identify]").next().unwrap().to_owned() + &written;
-    write(folder.path(), "known.toml", &known);
+    write(folder.path(), "known.toml", &format!("include = \"found.toml\"\n{}", stage(SOUGHT)));
     let text = stdout(&slipfit(folder.path(), &["population", "known.toml", "--units", "20"]));
     assert!(text.contains("motor.coulomb"), "{text}");
     let text = stdout(&slipfit(folder.path(), &arguments[..7]));

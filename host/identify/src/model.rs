@@ -41,6 +41,9 @@ pub trait Model: Sync {
         vec![self.measured().len()]
     }
 
+    /// When (s) each of them was measured.
+    fn times(&self) -> Vec<f64>;
+
     /// What should have been measured with these `values` of the parameters.
     ///
     /// # Errors

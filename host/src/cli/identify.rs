@@ -26,7 +26,9 @@ use super::{
     terminal::{print, print_json, warn},
 };
 use crate::{
+    dynamics::driven::DriveKind,
     identify::{Compared as Quantity, Identification, Law, MotionModel, OfRecord, Subject, Unit},
+    show::report::{Course, Identified, identified_page},
 };
 
 /// Estimates parameters from measured motion, and says what the record does not determine.
@@ -54,6 +56,9 @@ pub(super) struct Arguments {
     /// Writes the estimate as a scene's table (TOML) to this file.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Writes a page with measured and computed motion, residuals, profiles and correlations (HTML).
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
     /// Prints JSON instead of text.
     #[arg(long)]
     json: bool,
@@ -68,6 +73,10 @@ struct OfUnit {
 
 /// What the records of one unit say.
 struct Found {
+    /// What was measured (SI) and when (s), run after run.
+    measured: Vec<f64>,
+    times: Vec<f64>,
+    runs: Vec<usize>,
     compared: Vec<Compared>,
     /// Which of them counts.
     chosen: usize,
@@ -84,11 +93,17 @@ impl Arguments {
     pub(super) fn run(self) -> Result<(), Failure> {
         let arguments = SceneArguments { scene: self.scene.clone(), set: self.set.clone(), json: self.json };
         let file = arguments.load_file(&[])?;
-        if let Some(path) = &self.output {
-            endings::check_one("--output", path, &["toml"])?;
-            arguments.check_outputs(&[("--output", path)])?;
+        let mut outputs = Vec::new();
+        for (option, path, ending) in [("--output", &self.output, "toml"), ("--page", &self.page, "html")] {
+            if let Some(path) = path {
+                endings::check_one(option, path, &[ending])?;
+                outputs.push((option, path.as_path()));
+            }
+        }
+        if !outputs.is_empty() {
+            arguments.check_outputs(&outputs)?;
             let records: Vec<_> = self.records.iter().map(|record| ("a record", record.as_path())).collect();
-            files::check_distinct(&records, &[("--output", path)])?;
+            files::check_distinct(&records, &outputs)?;
         }
         let Some(identify) = &file.identify else {
             let why = "the scene has no table [identify]; see the guide, identify.md";
@@ -102,7 +117,12 @@ impl Arguments {
                 }
                 let units = self.units(identify, Needs::Motion)?;
                 let found = each(&units, |unit| drive_train(unit, law.as_ref(), *cutoff, &identify.options))?;
-                self.finish(&file.title, Written { model: "drive-train", exponent: None, lists: &[] }, &units, found)
+                self.finish(
+                    &file.title,
+                    Written { compared: "force (N)", model: "drive-train", exponent: None, lists: &[] },
+                    &units,
+                    found,
+                )
             }
             Subject::Slide(of) => {
                 let scene = file.slide.as_ref().ok_or_else(|| Failure::Input("the scene has no slide".into()))?;
@@ -112,7 +132,12 @@ impl Arguments {
                 let found = self.of_unit(scene, levels.to_vec(), of, &units, identify, &scene.warnings)?;
                 let lists: Vec<_> = of.sought.iter().map(|sought| sought.list).collect();
                 let exponent = Some(scene.contact.exponent);
-                self.finish(&file.title, Written { model: "slide", exponent, lists: &lists }, &units, found)
+                self.finish(
+                    &file.title,
+                    Written { compared: compared(of, false), model: "slide", exponent, lists: &lists },
+                    &units,
+                    found,
+                )
             }
             Subject::Mechanism(of) => {
                 let mechanism =
@@ -124,7 +149,9 @@ impl Arguments {
                 let lists: Vec<_> = of.sought.iter().map(|sought| sought.list).collect();
                 let joint = mechanism.joints.iter().find(|joint| !joint.kind.is_ideal());
                 let exponent = joint.map(|joint| joint.laws.contact.spring()[1]);
-                self.finish(&file.title, Written { model: "mechanism", exponent, lists: &lists }, &units, found)
+                let turns = mechanism.drives[of.drive].action.kind() == DriveKind::Turns;
+                let written = Written { compared: compared(of, turns), model: "mechanism", exponent, lists: &lists };
+                self.finish(&file.title, written, &units, found)
             }
         }
     }
@@ -172,7 +199,9 @@ impl Arguments {
             if compared.is_empty() {
                 return Err(refused.swap_remove(0).1.into());
             }
-            Ok(Found { compared, chosen: 0, spikes: None, cutoff_hz: None, warnings: warnings.to_vec() })
+            let [measured, times] = [model.measured().to_vec(), model.times()];
+            let (runs, warnings) = (model.runs(), warnings.to_vec());
+            Ok(Found { measured, times, runs, compared, chosen: 0, spikes: None, cutoff_hz: None, warnings })
         })
     }
 
@@ -187,37 +216,78 @@ impl Arguments {
             };
             files::write(path, table.as_bytes())?;
         }
-        let reports: Vec<UnitReport> = units.iter().zip(&found).map(|(unit, found)| UnitReport::new(unit, found)).collect();
+        let reports: Vec<UnitReport> =
+            units.iter().zip(&found).map(|(unit, found)| UnitReport::new(unit, found)).collect();
         let report = Report { title, model: written.model, units: &reports, between: pooled.as_deref() };
+        let text = match &pooled {
+            None => words::described(&report, &reports[0], chosen[0]),
+            Some(pooled) => words::between(&report, &chosen, pooled),
+        };
+        let mut warnings: Vec<String> = Vec::new();
+        for warning in found.iter().flat_map(|one| &one.warnings) {
+            if !warnings.contains(warning) {
+                warnings.push(warning.clone());
+            }
+        }
+        if let Some(path) = &self.page {
+            let units: Vec<Identified> = units.iter().zip(&found).map(|(unit, found)| found.on_page(unit)).collect();
+            let page =
+                identified_page(title, &text, &units, written.compared, &warnings).map_err(anyhow::Error::from)?;
+            files::write(path, page.into_string().as_bytes())?;
+        }
         if self.json {
             return match &pooled {
                 None => print_json(&report.of_one()),
                 Some(_) => print_json(&report),
             };
         }
-        match &pooled {
-            None => print(&words::described(&report, &reports[0], chosen[0]))?,
-            Some(pooled) => print(&words::between(&report, &chosen, pooled))?,
-        }
-        let mut warnings: Vec<&String> = Vec::new();
-        for warning in found.iter().flat_map(|one| &one.warnings) {
-            if !warnings.contains(&warning) {
-                warnings.push(warning);
-            }
-        }
-        warn(&warnings.into_iter().cloned().collect::<Vec<_>>());
+        print(&text)?;
+        warn(&warnings);
         Ok(())
+    }
+}
+
+impl Found {
+    /// What is shown of it on a page; the records are those of its `unit`.
+    fn on_page<'a>(&'a self, unit: &'a OfUnit) -> Identified<'a> {
+        let chosen = &self.compared[self.chosen];
+        let (mut courses, mut at) = (Vec::new(), 0);
+        for (record, samples) in unit.records.iter().zip(&self.runs) {
+            let range = at..at + samples;
+            at += samples;
+            courses.push(Course {
+                name: &record.name,
+                times: &self.times[range.clone()],
+                measured: &self.measured[range.clone()],
+                residuals: &chosen.estimate.residuals[range],
+            });
+        }
+        Identified { chosen, courses }
     }
 }
 
 /// How an estimate is written as a table of its scene.
 struct Written<'a> {
+    /// What was compared, with its unit.
+    compared: &'static str,
     /// "slide", "mechanism" or "drive-train".
     model: &'static str,
     /// Exponent of the contacts, if there are any.
     exponent: Option<f64>,
     /// For each parameter the list of the scene that states it, if one does.
     lists: &'a [Option<&'static str>],
+}
+
+/// What is compared of a drive that `turns` or pushes, with its unit.
+fn compared<P>(of: &OfRecord<P>, turns: bool) -> &'static str {
+    match (of.compared, turns) {
+        (Quantity::Force, false) => "force (N)",
+        (Quantity::Force, true) => "torque (N·m)",
+        (Quantity::Speed, false) => "speed (m/s)",
+        (Quantity::Speed, true) => "angular velocity (rad/s)",
+        (Quantity::Position, false) => "distance (m)",
+        (Quantity::Position, true) => "angle (rad)",
+    }
 }
 
 /// What a fit needs of a record.
@@ -240,7 +310,8 @@ fn each(units: &[OfUnit], find: impl Fn(&OfUnit) -> Result<Found, Failure>) -> R
 
 /// The CSV files of a `folder`, by their names.
 fn records_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let entries = std::fs::read_dir(folder).map_err(|error| Failure::Input(format!("{}: {error}", folder.display())))?;
+    let entries =
+        std::fs::read_dir(folder).map_err(|error| Failure::Input(format!("{}: {error}", folder.display())))?;
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.retain(|path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")));
     paths.sort();
@@ -289,5 +360,8 @@ fn drive_train(
     let Some(chosen) = chosen else { return Err(Failure::Input("no law has an estimate".into())) };
     warnings.extend(words::better(&compared[chosen], &compared));
     let spikes = Some(runs.iter().map(|run| run.spikes).sum());
-    Ok(Found { chosen, spikes, cutoff_hz: runs.first().map(|run| run.cutoff), warnings, compared })
+    let cutoff_hz = runs.first().map(|run| run.cutoff);
+    let (_, model) = &laws[0];
+    let [measured, times] = [model.measured().to_vec(), model.times()];
+    Ok(Found { measured, times, runs: model.runs(), chosen, spikes, cutoff_hz, warnings, compared })
 }

@@ -21,6 +21,7 @@ pub struct MotionModel<U: Unit> {
     of: OfRecord<U::Parameter>,
     parameters: Vec<Parameter>,
     measured: Vec<f64>,
+    times: Vec<f64>,
     runs: Vec<Run<U>>,
 }
 
@@ -103,7 +104,7 @@ impl<U: Unit> MotionModel<U> {
         of: &OfRecord<U::Parameter>,
         records: &[Record],
     ) -> Result<Self, RecordMisfit> {
-        let (mut measured, mut runs) = (Vec::new(), Vec::new());
+        let (mut measured, mut times, mut runs) = (Vec::new(), Vec::new(), Vec::new());
         for record in records {
             let Record { start, step, samples, ref name, .. } = *record;
             if start < 0.0 {
@@ -114,12 +115,14 @@ impl<U: Unit> MotionModel<U> {
                 None => {
                     let values = of.compared.of_record(record).ok_or_else(|| lacks(of.compared.name()))?;
                     measured.extend(of.compared.counted(values.clone()));
+                    times.extend((0..samples).map(|i| start + step * i as f64));
                     None
                 }
                 Some(along) => {
                     let smoothed = smoothed(record, along.cutoff);
                     let force = smoothed.force.as_ref().ok_or_else(|| lacks("force"))?;
                     measured.extend(smoothed.compared.of(force));
+                    times.extend(smoothed.compared.times(record));
                     let own = unit.prescribed(of.drive, &smoothed.speed, step).ok_or(RecordMisfit::NotPrescribed)?;
                     Some((own, smoothed.compared))
                 }
@@ -143,7 +146,7 @@ impl<U: Unit> MotionModel<U> {
             }
         };
         let parameters = of.sought.iter().map(parameter).collect();
-        Ok(Self { unit: unit.clone(), levels, of: of.clone(), parameters, measured, runs })
+        Ok(Self { unit: unit.clone(), levels, of: of.clone(), parameters, measured, times, runs })
     }
 
     /// What should have been recorded of a `run` of a unit with these `values`.
@@ -200,6 +203,10 @@ impl<U: Unit> Model for MotionModel<U> {
 
     fn runs(&self) -> Vec<usize> {
         self.runs.iter().map(Run::compared).collect()
+    }
+
+    fn times(&self) -> Vec<f64> {
+        self.times.clone()
     }
 
     fn simulate(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {

@@ -1,6 +1,8 @@
 //! The hash that ties a table and a kernel to the mechanism that they were made of.
 
-use super::{Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port, Sampling, SlidingData, SpringKind, Thrown};
+use super::{
+    Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port, Sampling, SlidingData, SpringKind, Thrown,
+};
 use crate::setup::Digest;
 use slipfit_core::{
     drive::{Drive, TrainData},

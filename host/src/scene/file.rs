@@ -10,7 +10,7 @@ use crate::mechanism::Mechanism;
 use super::{
     Override, Problem, SceneError,
     diagnostic::Found,
-    identify, key_checks,
+    identify, include, key_checks,
     measured::{self, columns::Columns},
     mechanism,
     parse::{scene, title},
@@ -49,7 +49,14 @@ impl SceneFile {
     /// [`SceneError`] points at every value, in the file or in an override, that makes no scene.
     pub fn parse(file_name: &str, text: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let found = Found::default();
-        let mut tree = Source { name: file_name, text, found: &found }.document()?;
+        let source = Source { name: file_name, text, found: &found };
+        let included = include::read(&source.document()?, file_name)?;
+        let mut tree = source.document()?;
+        // That it is there was read with the first one.
+        tree.entry("include").iter().for_each(|entry| entry.read.set(true));
+        for file in &included {
+            include::add(&mut tree, file)?;
+        }
         for change in overrides {
             tree.set(change)?;
         }
@@ -73,7 +80,10 @@ impl SceneFile {
         let Ok(mut tree) = (Source { name: file_name, text, found: &found }).document() else { return Vec::new() };
         // Reading the scene reports a wrong override.
         overrides.iter().for_each(|change| drop(tree.set(change)));
-        measured::files(&Field { key: String::new(), node: &tree }, file_name)
+        let included = include::paths(&tree, file_name).unwrap_or_default();
+        let mut files: Vec<_> = included.into_iter().map(|(_, path)| ("an included file", path.into())).collect();
+        files.extend(measured::files(&Field { key: String::new(), node: &tree }, file_name));
+        files
     }
 
     /// Gives `warnings` to what moves, else to the product.

@@ -34,16 +34,8 @@ const SHAPE: [Key; 13] = [
     key("cpk"),
 ];
 /// The same, and the parts of a mixture.
-const MIXTURE: [Key; SHAPE.len() + 1] = {
-    const PART: &[Key] = &[key("weight"), key("tolerance"), key("sigma"), table("distribution", &SHAPE)];
-    let mut keys = [table("of", PART); SHAPE.len() + 1];
-    let mut i = 0;
-    while i < SHAPE.len() {
-        keys[i] = SHAPE[i];
-        i += 1;
-    }
-    keys
-};
+const MIXED: &[Key] = &[key("weight"), key("tolerance"), key("sigma"), table("distribution", &SHAPE)];
+const MIXTURE: [Key; SHAPE.len() + 1] = joined(&SHAPE, &[table("of", MIXED)]);
 const DISTRIBUTION: Key = table("distribution", &MIXTURE);
 
 const COST: Key = table(
@@ -109,15 +101,21 @@ const RECORD: [Key; 16] = [
     table("gaps", &[key("of"), table("n", SOUGHT)]),
     table("delay", SOUGHT),
 ];
-const IDENTIFY: [Key; RECORD.len() + SOUGHT_PARAMETERS.len()] = {
-    let mut keys = [RECORD[0]; RECORD.len() + SOUGHT_PARAMETERS.len()];
+const IDENTIFY: [Key; RECORD.len() + SOUGHT_PARAMETERS.len()] = joined(&RECORD, SOUGHT_PARAMETERS);
+const BELIEFS: &[Key] = parameters!(BELIEF);
+const UNCERTAIN: [Key; BELIEFS.len() + 1] = joined(BELIEFS, &[table("correlation", &[key("of"), key("coefficient")])]);
+
+/// The keys of two lists, of `N` in all.
+const fn joined<const N: usize>(first: &'static [Key], second: &'static [Key]) -> [Key; N] {
+    let mut keys = [first[0]; N];
     let mut i = 0;
-    while i < keys.len() {
-        keys[i] = if i < RECORD.len() { RECORD[i] } else { SOUGHT_PARAMETERS[i - RECORD.len()] };
+    while i < N {
+        keys[i] = if i < first.len() { first[i] } else { second[i - first.len()] };
         i += 1;
     }
     keys
-};
+}
+
 const VECTORIAL: Key = table("vectorial", &[table("position", VECTOR), table("orientation", VECTOR)]);
 const VECTOR: &[Key] = &[table("x", DEVIATION), table("y", DEVIATION), table("z", DEVIATION)];
 const ZONE: &[Key] = &[
@@ -210,6 +208,7 @@ pub(super) fn of_feature(shape: Shape) -> &'static [Key] {
 /// Every key of a scene.
 pub(super) const ROOT: &[Key] = &[
     key("title"),
+    key("include"),
     table("slide", &[key("mass"), key("inertia_box"), key("gravity")]),
     table("contact", CONTACT),
     table("friction", FRICTION),
@@ -359,7 +358,7 @@ pub(super) const ROOT: &[Key] = &[
     ),
     table("correlation", &[key("of"), key("coefficient")]),
     table("vary", parameters!(DEVIATION)),
-    table("uncertain", parameters!(BELIEF)),
+    table("uncertain", &UNCERTAIN),
     table("identify", &IDENTIFY),
 ];
 

@@ -9,6 +9,7 @@ mod drawing;
 mod file;
 mod friction;
 mod identify;
+mod include;
 mod key_checks;
 mod keys;
 mod levels;

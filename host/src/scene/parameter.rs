@@ -96,7 +96,8 @@ impl Kind {
 
     /// The symbol of its SI unit; empty for a plain number.
     pub fn si_unit(self) -> &'static str {
-        let of = |quantity: &Quantity| quantity.units.iter().find(|unit| unit.to_si(1.0) == 1.0).map_or("", |of| of.symbol);
+        let of =
+            |quantity: &Quantity| quantity.units.iter().find(|unit| unit.to_si(1.0) == 1.0).map_or("", |of| of.symbol);
         match self {
             Self::Number(quantity) => of(quantity),
             Self::RampEnd(_) => of(&RAMP),

@@ -89,7 +89,7 @@ pub(super) fn scene(
     };
     let named = |table| slide_parameters::named(root, table, &scene);
     let varied = found.recover(named("vary").and_then(vary), Vec::new());
-    let unknown = found.recover(named("uncertain").and_then(|named| uncertain(named, &scene)), Vec::new());
+    let unknown = found.recover(named("uncertain").and_then(|named| uncertain(root, named, &scene)), Vec::new());
     let scene = Scene { vary: varied, uncertain: unknown, ..scene };
     for i in [0, scene.sweep.count - 1] {
         scene.check_gaps(&[scene.sweep.level(i); CONTACTS]).map_err(|error| {

@@ -127,6 +127,12 @@ pub enum Problem {
         /// Why.
         why: String,
     },
+    /// An included file that cannot be read.
+    #[error("the file cannot be included: {why}")]
+    Include {
+        /// Why.
+        why: String,
+    },
     /// A record that cannot be commanded.
     #[error("the record cannot be commanded: {why}")]
     Record {
@@ -188,7 +194,7 @@ pub enum Problem {
     },
     /// Coefficients that no set of random variables can have.
     #[error(
-        "the correlations leave a dimension nothing of its own (±1), or contradict each other: their matrix is not positive definite"
+        "the correlations leave a number nothing of its own (±1), or contradict each other: their matrix is not positive definite"
     )]
     NotPositiveDefinite,
     /// Something that drawings have and this program does not.

@@ -2,6 +2,7 @@
 
 use slipfit_tolerance::{
     number::ten_digits,
+    product::correlation,
     unit::{self, Quantity},
 };
 
@@ -15,10 +16,15 @@ use crate::setup::{Adjustable, Belief, REACH, Uncertain};
 
 /// What may be stated of an unknown value.
 const ALLOWED: &str = "[least, greatest], { mean, deviation } or { median, factor }: values of the parameter itself, not deviations from it";
+const COEFFICIENT: Quantity = Quantity { units: unit::ONE, range: [-1.0, 1.0] };
 const FACTOR: Quantity = Quantity { units: unit::ONE, range: [1.0, 1000.0] };
 
-/// Reads what is known of the `named` parameters of a scene, which states values of its own.
-pub(super) fn uncertain<P: Adjustable>(named: Vec<Named<P>>, scene: &P::Of) -> Result<Vec<Uncertain<P>>, SceneError> {
+/// Reads what is known of the `named` parameters of a scene, which states values of its own, and how they are correlated.
+pub(super) fn uncertain<P: Adjustable>(
+    root: &Field,
+    named: Vec<Named<P>>,
+    scene: &P::Of,
+) -> Result<Vec<Uncertain<P>>, SceneError> {
     let read = |named: Named<P>| {
         let Named { parameter, name, kind, field } = named;
         let belief = belief(&field, kind)?;
@@ -41,9 +47,52 @@ pub(super) fn uncertain<P: Adjustable>(named: Vec<Named<P>>, scene: &P::Of) -> R
                 field.key
             ));
         }
-        Ok(Uncertain { parameter, name, belief, shown_in })
+        Ok(Uncertain { parameter, name, belief, shown_in, weights: Vec::new() })
     };
-    named.into_iter().map(read).collect()
+    let mut unknown = named.into_iter().map(read).collect::<Result<Vec<_>, SceneError>>()?;
+    if let Some(list) = root.get("uncertain").and_then(|table| table.get("correlation")) {
+        let names: Vec<String> = unknown.iter().map(|one| one.name.clone()).collect();
+        let coefficients = correlations(&list, &names)?;
+        let factor = correlation::factor(names.len(), &coefficients).ok_or_else(|| {
+            list.error(Problem::NotPositiveDefinite, "coefficients that can belong to random numbers")
+        })?;
+        unknown.iter_mut().zip(factor).enumerate().for_each(|(k, (own, row))| own.weights = row[..=k].to_vec());
+    }
+    Ok(unknown)
+}
+
+/// The pairs of the tables in `list`, each of two of the unknowns `names`: row, column, coefficient.
+fn correlations(list: &Field, names: &[String]) -> Result<Vec<(usize, usize, f64)>, SceneError> {
+    let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type("tables [[uncertain.correlation]]")) };
+    let mut found: Vec<(usize, usize, f64)> = Vec::new();
+    for node in nodes {
+        let table = Field { key: list.key.clone(), node };
+        table.expect_table()?;
+        let of = table.require("of", "a list of 2 unknowns by their names")?;
+        let Value::List(pair) = &of.node.value else {
+            return Err(of.wrong_type("a list of 2 unknowns by their names"));
+        };
+        let place = |node| {
+            let field = Field { key: of.key.clone(), node };
+            let name = field.to_text()?;
+            names.iter().position(|known| known == name).ok_or_else(|| {
+                let problem = Problem::UnknownName { of: "unknown".into(), name: name.into() };
+                field.error(problem, names.join(", "))
+            })
+        };
+        let [one, other] = &pair[..] else {
+            return Err(of.error(Problem::Length { key: of.key.clone(), found: pair.len() }, "a list of 2 unknowns"));
+        };
+        let [one, other] = [place(one)?, place(other)?];
+        let is_known =
+            |(row, column, _): &(usize, usize, f64)| [*row, *column] == [one, other] || [*row, *column] == [other, one];
+        if one == other || found.iter().any(is_known) {
+            let problem = Problem::Duplicate { key: of.key.clone(), name: names[one].clone() };
+            return Err(of.error(problem, "each pair of two unknowns once"));
+        }
+        found.push((one, other, table.number("coefficient", &COEFFICIENT)?));
+    }
+    Ok(found)
 }
 
 /// What `field` says of a value of this `kind`.

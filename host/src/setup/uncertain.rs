@@ -72,6 +72,9 @@ pub struct Uncertain<P = SlideParameter> {
     pub belief: Belief,
     /// How its values are shown.
     pub shown_in: ShownIn,
+    /// Correlations: the row of Cholesky's factor of the normal scores' correlations, which weighs independent scores of the unknowns up to
+    /// this one. Empty where none is correlated.
+    pub weights: Vec<f64>,
 }
 
 #[cfg(test)]

@@ -51,7 +51,9 @@ fn a_sampled_speed_loop_with_too_much_gain_swings_within_its_limit() {
 #[test]
 fn a_position_loop_follows_its_command_as_its_difference_equation_does() {
     let (gain, position_gain, period) = (100.0, 20.0, 0.002);
-    for (measures, differentiates, limit) in [("", false, 1e12), ("measures = \"position\"\n", true, 1e12), ("", false, 2.0)] {
+    for (measures, differentiates, limit) in
+        [("", false, 1e12), ("measures = \"position\"\n", true, 1e12), ("", false, 2.0)]
+    {
         let limited = if limit < 1e9 { format!("limit = {limit}\n") } else { String::new() };
         let run = sampled(&format!(
             "gain = \"{gain} N·s/m\"\nposition_gain = {position_gain}\nsampling = {period}\n{measures}{limited}\
@@ -114,7 +116,8 @@ fn a_prescribed_motion_tells_the_force_that_it_takes() {
              ends = [[-200, 0{three}], [0, 0{three}]]\nstiffness = \"40 N/m\"\nfree_length = 200\n\
              [[drive]]\nname = \"motor\"\npushes = \"stage\"\naxis = [1, 0{three}]\nmotion = \"prescribed\"\nviscous = \"3 N·s/m\"\n\
              segment = [{{ kind = \"sine\", amplitude = 80, frequency = 2, duration = 1 }}]\n",
-            STAGE.replace("centre = [0, 0]", &format!("centre = [0, 0{three}]"))
+            STAGE
+                .replace("centre = [0, 0]", &format!("centre = [0, 0{three}]"))
                 .replace("at = [0, 0]", &format!("at = [0, 0{three}]"))
                 .replace("axis = [1, 0]", &format!("axis = [1, 0{three}]"))
                 .replace("inertia = 1e6", if three.is_empty() { "inertia = 1e6" } else { "inertia = [1e6, 1e6, 1e6]" })

@@ -22,12 +22,14 @@ pub enum Shape {
 }
 
 /// An interval by profile likelihood.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Profile {
     /// Where the interval ends (SI); `None` on a side without an end before the bound.
     pub ends: [Option<f64>; 2],
     /// How far the record bounds the parameter.
     pub shape: Shape,
+    /// Points of the profile, by ascending value (SI): how much the loss rises there, as a share of the rise that ends the interval.
+    pub points: Vec<[f64; 2]>,
 }
 
 /// Points that the search for an end may take.
@@ -49,17 +51,19 @@ pub fn profile<M: Model + ?Sized>(
 ) -> Result<Profile, ModelError> {
     let parameter = &model.parameters()[i];
     let Some(reach) = reach.filter(|reach| *reach > 0.0) else {
-        return Ok(Profile { ends: [None; 2], shape: Shape::Flat });
+        return Ok(Profile { ends: [None; 2], shape: Shape::Flat, points: Vec::new() });
     };
     let search = Search::new(model, fit, linearised, i);
     let allowed = search.curvature * reach * reach;
-    let end = |side: f64| -> Result<Option<f64>, ModelError> {
+    let mut points = vec![[fit.values[i], 0.0]];
+    let mut end = |side: f64| -> Result<Option<f64>, ModelError> {
         let bound = if side < 0.0 { parameter.bounds[0] } else { parameter.bounds[1] };
         let most = (bound - fit.values[i]).abs();
         let mut distance = reach.min(most);
         let (mut inside, mut outside) = ([0.0, 0.0], None);
         for _ in 0..POINTS {
             let rise = search.rise(side * distance)?;
+            points.push([fit.values[i] + side * distance, rise / allowed]);
             if (rise / allowed - 1.0).abs() < CLOSE {
                 break;
             }
@@ -87,7 +91,8 @@ pub fn profile<M: Model + ?Sized>(
         [None, None] => Shape::Flat,
         _ => Shape::OneSided,
     };
-    Ok(Profile { ends, shape })
+    points.sort_by(|one, other| one[0].total_cmp(&other[0]));
+    Ok(Profile { ends, shape, points })
 }
 
 /// What is the same at all points of a profile.

@@ -127,6 +127,7 @@ pub struct DriveTrain {
     has_delay: bool,
     measured: Vec<f64>,
     runs: Vec<usize>,
+    times: Vec<f64>,
 }
 
 impl DriveTrain {
@@ -166,6 +167,7 @@ impl DriveTrain {
             has_delay,
             measured: runs.iter().flat_map(measured).collect(),
             runs: runs.iter().map(|run| run.speed.value.len()).collect(),
+            times: runs.iter().flat_map(|run| run.times.iter().copied()).collect(),
         }
     }
 
@@ -199,6 +201,10 @@ impl Model for DriveTrain {
 
     fn runs(&self) -> Vec<usize> {
         self.runs.clone()
+    }
+
+    fn times(&self) -> Vec<f64> {
+        self.times.clone()
     }
 
     fn simulate(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {

@@ -34,8 +34,8 @@ pub struct Filtered {
     pub speed_forwards: Signal,
     /// Force (N); `None` where none was measured.
     pub force: Option<Vec<f64>>,
-    /// Interval of these samples (s).
-    pub step: f64,
+    /// Times of these samples (s).
+    pub times: Vec<f64>,
     /// Cut-off frequency (Hz) of the motion's filter.
     pub cutoff: f64,
     /// Single wrong samples that were replaced.
@@ -72,14 +72,17 @@ pub struct Smoothed {
 pub struct ComparedSamples {
     filter: LowPass,
     chosen: Vec<usize>,
-    /// Intervals of the record from one to the next.
-    every: usize,
 }
 
 impl ComparedSamples {
     /// What is compared of a `signal` with a value at every sample of the record.
     pub fn of(&self, signal: &[f64]) -> Vec<f64> {
         self.chosen(&self.filter.both_ways(signal))
+    }
+
+    /// When (s) they were taken of their `record`.
+    pub fn times(&self, record: &Record) -> Vec<f64> {
+        self.chosen.iter().map(|i| record.start + record.step * *i as f64).collect()
     }
 
     /// How many there are.
@@ -115,7 +118,7 @@ pub fn smoothed(record: &Record, cutoff: Option<f64>) -> Smoothed {
     let margin = (filter.settling() / 3).min(record.samples / 10);
     let rests = filter.both_ways(&resting(&speed, record.step));
     let chosen = (margin..record.samples - margin).step_by(every).filter(|i| rests[*i].abs() < RESTS).collect();
-    Smoothed { speed, force, compared: ComparedSamples { filter, chosen, every }, cutoff, spikes }
+    Smoothed { speed, force, compared: ComparedSamples { filter, chosen }, cutoff, spikes }
 }
 
 /// Filters a `record` that has a motion.
@@ -145,7 +148,7 @@ pub fn filtered(record: &Record, options: &Options) -> Filtered {
         forwards: signal(&forwards),
         speed_forwards: signal(&speed_forwards),
         force: force.map(|force| compared.of(&force)),
-        step: record.step * compared.every as f64,
+        times: compared.times(record),
         cutoff,
         spikes,
     }

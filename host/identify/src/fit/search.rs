@@ -3,7 +3,12 @@
 use rayon::prelude::*;
 use slipfit_core::sampling::stream::{Rng, uniform, unit_stream};
 
-use super::{By, Fit, grid, least_squares::{CLOSE, NEAR, minimise}, loss::Loss, loss::scale};
+use super::{
+    By, Fit, grid,
+    least_squares::{CLOSE, NEAR, minimise},
+    loss::Loss,
+    loss::scale,
+};
 use crate::model::{Model, ModelError, Parameter};
 
 /// How a fit is made.
@@ -149,13 +154,18 @@ mod tests {
             &self.measured
         }
 
+        fn times(&self) -> Vec<f64> {
+            (0..self.measured.len()).map(|i| 0.01 * i as f64).collect()
+        }
+
         fn simulate(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
             Ok(decay(values[0], values[1]))
         }
     }
 
     fn of(measured: Vec<f64>, bounds: [f64; 2]) -> Decay {
-        let parameter = |name: &str, bounds: [f64; 2], start| Parameter { name: name.into(), unit: "", bounds, start, prior: None };
+        let parameter =
+            |name: &str, bounds: [f64; 2], start| Parameter { name: name.into(), unit: "", bounds, start, prior: None };
         Decay {
             parameters: [parameter("a", [0.0, 10.0], 1.0), parameter("b", bounds, 0.5 * (bounds[0] + bounds[1]))],
             measured,

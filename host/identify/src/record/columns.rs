@@ -1,9 +1,7 @@
 //! Which column of a file is what.
 
 use slipfit_measured::csv::{Problem, Shown, series::Head};
-use slipfit_tolerance::unit::{
-    ANGLE, CURRENT, FORCE, LENGTH, ROTATION, SECONDS, SPEED, TORQUE, Unit, VOLTAGE,
-};
+use slipfit_tolerance::unit::{ANGLE, CURRENT, FORCE, LENGTH, ROTATION, SECONDS, SPEED, TORQUE, Unit, VOLTAGE};
 
 /// The force (N) for a current of 1 A, or for a voltage of 1 V.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +107,11 @@ impl Columns {
                 }
             };
             if let Some(index) = index {
-                found.push(Found { role, index, unit: unit(&heads[index], role.units(self.turns), role).map_err(|problem| (index, problem))? });
+                found.push(Found {
+                    role,
+                    index,
+                    unit: unit(&heads[index], role.units(self.turns), role).map_err(|problem| (index, problem))?,
+                });
             }
         }
         Ok(found)

@@ -15,8 +15,8 @@ struct Row<'a> {
     deviation: f64,
 }
 
-/// The table `[uncertain]` of the `estimate` of one unit: means, deviations and, as comments, correlations and what a scene has no key for,
-/// such as levels of gaps.
+/// The table `[uncertain]` of the `estimate` of one unit: means, deviations, correlations and, as comments, what a scene has no key for, such
+/// as levels of gaps.
 pub fn of_one(title: &str, written: &Written, estimate: &Estimate) -> String {
     let mut text = format!(
         "# {} of {title:?}, identified from {} samples by slipfit identify.\n",
@@ -28,20 +28,37 @@ pub fn of_one(title: &str, written: &Written, estimate: &Estimate) -> String {
     for words in &estimate.undetermined {
         let _ = writeln!(text, "# Not determined: {words}.");
     }
-    let known: Vec<usize> = (0..estimate.parameters.len()).filter(|i| estimate.parameters[*i].deviation.is_some()).collect();
-    if known.len() > 1 {
-        let _ = writeln!(text, "# Correlations, in the order of the keys:");
-        for i in &known {
-            let row: Vec<_> = known.iter().map(|k| format!("{:+.4}", estimate.correlation[*i][*k])).collect();
-            let _ = writeln!(text, "#   {}", row.join(" "));
-        }
-    }
+    let known: Vec<usize> =
+        (0..estimate.parameters.len()).filter(|i| estimate.parameters[*i].deviation.is_some()).collect();
     let rows = known.into_iter().filter_map(|i| {
         let own = &estimate.parameters[i];
         Some((i, Row { name: &own.name, unit: own.unit, mean: own.value, deviation: own.deviation? }))
     });
-    text + &table(written, rows)
+    let (keys, names) = table(written, rows);
+    text + &keys + &correlations(&estimate.correlation, &names)
 }
+
+/// The correlations of the parameters that are unknowns of the scene: the number of each, and its name there.
+fn correlations(correlation: &[Vec<f64>], names: &[(usize, String)]) -> String {
+    let mut text = String::new();
+    for (k, (column, other)) in names.iter().enumerate() {
+        for (row, name) in &names[..k] {
+            let coefficient = LESS * correlation[*row][*column];
+            if coefficient.abs() >= SMALL {
+                let _ = writeln!(
+                    text,
+                    "\n[[uncertain.correlation]]\nof = [{name:?}, {other:?}]\ncoefficient = {coefficient:.6}"
+                );
+            }
+        }
+    }
+    text
+}
+
+/// By which correlations are less than found, so that rounded ones cannot contradict each other.
+const LESS: f64 = 0.9999;
+/// Correlation below which there is none.
+const SMALL: f64 = 1e-3;
 
 /// The same of several units: the mean of all is what is unknown. How much the units differ is told as comments.
 pub fn of_several(title: &str, written: &Written, pooled: &[Between]) -> String {
@@ -50,21 +67,26 @@ pub fn of_several(title: &str, written: &Written, pooled: &[Between]) -> String 
         format!("# {} of {title:?}: the mean of {units} units, identified by slipfit identify.\n", written.model);
     for of in pooled {
         let spread = format!("{} {}", ten_digits(of.spread), of.unit);
-        let _ = writeln!(text, "# {} differs from unit to unit by a standard deviation of {}.", of.name, spread.trim_end());
+        let _ =
+            writeln!(text, "# {} differs from unit to unit by a standard deviation of {}.", of.name, spread.trim_end());
     }
     let rows = pooled.iter().enumerate();
-    text + &table(written, rows.map(|(i, of)| (i, Row { name: &of.name, unit: of.unit, mean: of.mean, deviation: of.deviation })))
+    let rows = rows.map(|(i, of)| (i, Row { name: &of.name, unit: of.unit, mean: of.mean, deviation: of.deviation }));
+    text + &table(written, rows).0
 }
 
 /// Names of a body and a drive of the scene that takes what is found of a drive train.
 const OF_TRAIN: [(&str, &str); 2] = [("body", "stage"), ("drive", "motor")];
 
-fn table<'a>(written: &Written, rows: impl Iterator<Item = (usize, Row<'a>)>) -> String {
+/// The table of the `rows` that the scene has keys for, and the number and name there of each; the others are comments.
+fn table<'a>(written: &Written, rows: impl Iterator<Item = (usize, Row<'a>)>) -> (String, Vec<(usize, String)>) {
     let mut text = "\n[uncertain]\n".to_owned();
     // Keys of a table in a list, by list and name of the table.
+    let mut names = Vec::new();
     let mut listed: Vec<([String; 2], Vec<String>)> = Vec::new();
     for (i, Row { name, unit, mean, deviation }) in rows {
-        let unit = written.exponent.map_or_else(|| unit.to_owned(), |exponent| unit.replace("^e", &format!("^{exponent}")));
+        let unit =
+            written.exponent.map_or_else(|| unit.to_owned(), |exponent| unit.replace("^e", &format!("^{exponent}")));
         let number = |value: f64| match &unit[..] {
             "" => ten_digits(value),
             unit => format!("\"{} {unit}\"", ten_digits(value)),
@@ -79,6 +101,7 @@ fn table<'a>(written: &Written, rows: impl Iterator<Item = (usize, Row<'a>)>) ->
             },
             (_, Some(list), Some((table, key))) => Some(((list, table), key)),
             (_, None, Some(_)) => {
+                names.push((i, name.to_owned()));
                 let _ = writeln!(text, "{name} = {{ mean = {mean}, deviation = {deviation} }}");
                 continue;
             }
@@ -89,7 +112,11 @@ fn table<'a>(written: &Written, rows: impl Iterator<Item = (usize, Row<'a>)>) ->
                 let _ = writeln!(text, "# {name}: mean {mean}, deviation {deviation}");
             }
             Some(((list, table), key)) => {
-                let (at, line) = ([list.to_owned(), table.to_owned()], format!("{key} = {{ mean = {mean}, deviation = {deviation} }}"));
+                names.push((i, format!("{table}.{key}")));
+                let (at, line) = (
+                    [list.to_owned(), table.to_owned()],
+                    format!("{key} = {{ mean = {mean}, deviation = {deviation} }}"),
+                );
                 match listed.iter_mut().find(|(other, _)| *other == at) {
                     Some((_, lines)) => lines.push(line),
                     None => listed.push((at, vec![line])),
@@ -105,5 +132,5 @@ fn table<'a>(written: &Written, rows: impl Iterator<Item = (usize, Row<'a>)>) ->
             let _ = writeln!(text, "{list} = [{}]", tables.join(", "));
         }
     }
-    text
+    (text, names)
 }

@@ -90,10 +90,18 @@ pub fn between(report: &Report, chosen: &[&Compared], pooled: &[Between]) -> Str
         let number = writer(of.mean, Some(of.deviation));
         let [low, high] = of.interval.map(&number);
         let spread = number(of.spread);
-        vec![name(&of.name, of.unit), of.units.to_string(), number(of.mean), number(of.deviation), format!("{low} to {high}"), spread]
+        vec![
+            name(&of.name, of.unit),
+            of.units.to_string(),
+            number(of.mean),
+            number(of.deviation),
+            format!("{low} to {high}"),
+            spread,
+        ]
     };
     let rows: Vec<_> = pooled.iter().map(row).collect();
-    text += &text_table(&["parameter", "units", "mean", "its deviation", "95 % interval", "spread between units"], &rows);
+    text +=
+        &text_table(&["parameter", "units", "mean", "its deviation", "95 % interval", "spread between units"], &rows);
     text += "\nEach unit: estimate ± deviation\n\n";
     let of_unit = |(unit, chosen): (&UnitReport, &&Compared)| {
         let estimate = &chosen.estimate;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use slipfit_tolerance::numeric::normal::{quantile, tail};
 
 use super::{
     answer::{Answer, Tried, UnknownReport, forces},
@@ -55,7 +56,8 @@ pub fn study<M: Clone + Sync>(
     duty: Duty,
     count: impl Fn(&M, u64, Range<u64>) -> Result<Counted, SimulateError> + Sync,
 ) -> Result<Answer, SimulateError> {
-    let points = design.points(unknowns.iter().map(|unknown| unknown.coordinates()).sum());
+    let mut points = design.points(unknowns.iter().map(|unknown| unknown.coordinates()).sum());
+    points.iter_mut().for_each(|point| correlate(unknowns, point));
     let tried = |value: usize| {
         let (mut own, mut at, mut shown) = (model.clone(), 0, Vec::with_capacity(unknowns.len()));
         for unknown in unknowns {
@@ -80,6 +82,18 @@ pub fn study<M: Clone + Sync>(
     let unknowns = unknowns.iter().enumerate().map(report).collect();
     let measured = measured.map(|measured| measured.names.clone()).unwrap_or_default();
     Ok(Answer::of(unknowns, measured, &tried, design.units_each, duty))
+}
+
+/// Gives a `point` of independent coordinates the correlations of the `unknowns`, by their normal scores.
+fn correlate<M>(unknowns: &[&dyn Unknown<M>], point: &mut [f64]) {
+    if unknowns.iter().all(|unknown| unknown.weights().is_empty()) {
+        return;
+    }
+    let scores: Vec<f64> = point.iter().map(|share| quantile(*share)).collect();
+    for (k, unknown) in unknowns.iter().enumerate().filter(|(_, unknown)| !unknown.weights().is_empty()) {
+        let score: f64 = unknown.weights().iter().zip(&scores).map(|(weight, score)| weight * score).sum();
+        point[k] = tail(-score);
+    }
 }
 
 /// The production of this number that measured parts leave possible beside the likeliest one; none where nothing was measured.

@@ -12,6 +12,12 @@ pub trait Unknown<M>: Sync {
         1
     }
 
+    /// Weights of independent normal scores of the unknowns up to this one, each of one coordinate, in its own score; empty where it is
+    /// independent of the others.
+    fn weights(&self) -> &[f64] {
+        &[]
+    }
+
     /// Gives `model` the value at a `point` of the unit cube.
     fn apply(&self, point: &[f64], model: &mut M);
 
@@ -37,5 +43,9 @@ impl<P: Adjustable> Unknown<P::Of> for Uncertain<P> {
 
     fn unit(&self) -> &str {
         &self.shown_in.unit
+    }
+
+    fn weights(&self) -> &[f64] {
+        &self.weights
     }
 }

@@ -11,13 +11,7 @@ use slipfit_identify::{
 use slipfit_tolerance::unit::{self, Quantity};
 
 use self::sought::{Gaps, delay, levels, parameters};
-use super::{
-    Problem, SceneError,
-    parameter::Named,
-    parse::choice,
-    slide_parameters::named,
-    value::Field,
-};
+use super::{Problem, SceneError, parameter::Named, parse::choice, slide_parameters::named, value::Field};
 use crate::{
     dynamics::driven::DriveKind,
     identify::{Along, Compared, Identification, OfRecord, Sought, Subject},
@@ -55,8 +49,7 @@ pub(super) fn slide(root: &Field, scene: &Scene) -> Result<Option<Identification
     table.expect_table()?;
     let names = scene.contact_names().to_vec();
     let varies = |i: usize| scene.pins[i / 4].gaps[i % 4].is_some_and(|gap| gap.deviation > 0.0);
-    let is_meant =
-        |name: &str, i: usize| name == SURFACES[i % 4] || name == scene.pins[i / 4].name || name == names[i];
+    let is_meant = |name: &str, i: usize| name == SURFACES[i % 4] || name == scene.pins[i / 4].name || name == names[i];
     let groups = format!("all, {}, a pin, or one gap such as {:?}", SURFACES.join(", "), names[0]);
     let gaps = Gaps { count: CONTACTS, varies: &varies, is_meant: &is_meant, groups };
     let parameters = named(root, "identify", scene)?;
@@ -150,7 +143,9 @@ fn of_record<P: Adjustable>(
     if along.is_none() && compared == Compared::Force {
         let fields = ["position", "speed"].iter().find_map(|key| table.get(key));
         if let Some(field) = fields {
-            return Err(field.no_effect("where only the force is compared", "compare, or along = \"motion\", beside it"));
+            return Err(
+                field.no_effect("where only the force is compared", "compare, or along = \"motion\", beside it")
+            );
         }
     }
     // Spikes of a measured motion are replaced before.

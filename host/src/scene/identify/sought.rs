@@ -96,9 +96,7 @@ pub fn levels<P>(table: &Field, gaps: &Gaps) -> Result<Vec<Sought<P>>, SceneErro
             let problem = Problem::UnknownName { of: "varying gap".into(), name: name.into() };
             return Err(of.error(problem, gaps.groups.clone()));
         }
-        let is_taken = |other: &Sought<P>| {
-            matches!(&other.value, SoughtValue::Level(taken) if taken.iter().any(|one| meant.contains(one)))
-        };
+        let is_taken = |other: &Sought<P>| matches!(&other.value, SoughtValue::Level(taken) if taken.iter().any(|one| meant.contains(one)));
         if sought.iter().any(is_taken) {
             let problem = Problem::Duplicate { key: of.key.clone(), name: name.into() };
             return Err(of.error(problem, "gaps of which none is sought twice"));

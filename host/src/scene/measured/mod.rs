@@ -83,7 +83,8 @@ pub(super) fn files(root: &Field, file_name: &str) -> Vec<(&'static str, PathBuf
     let parts = root.get("measured").and_then(|table| table.get("file"));
     fields.extend(parts.map(|field| ("the measured parts", field)));
     if let Some(drives) = root.get("drive") {
-        let nodes = if let Value::List(nodes) = &drives.node.value { &nodes[..] } else { std::slice::from_ref(drives.node) };
+        let nodes =
+            if let Value::List(nodes) = &drives.node.value { &nodes[..] } else { std::slice::from_ref(drives.node) };
         let records = nodes.iter().filter_map(|node| Field { key: drives.key.clone(), node }.get("record"));
         fields.extend(records.filter_map(|record| Some(("a recorded command", record.get("file")?))));
     }

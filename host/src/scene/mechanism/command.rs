@@ -52,13 +52,17 @@ pub(super) fn controls(
     context: &Context,
 ) -> Result<Controls, SceneError> {
     let units = Commanded::new(context.turns);
-    let record = table.get("record").map(|field| recorded(&field, [context.turns, context.is_prescribed], context.file_name)).transpose()?;
+    let record = table
+        .get("record")
+        .map(|field| recorded(&field, [context.turns, context.is_prescribed], context.file_name))
+        .transpose()?;
     let mut sampling = sampling(table, context.is_prescribed)?;
     if let (Some(record), Some(field)) = (&record, table.get("record")) {
         let has_loop = sampling.as_ref().is_some_and(|of| of.position_gain.is_some());
         if record.is_position && !has_loop && !context.is_prescribed {
             let what = "recorded positions for a drive that controls its speed".into();
-            let allowed = "a position loop, `position_gain` with `sampling`; or motion = \"prescribed\"; or recorded speeds";
+            let allowed =
+                "a position loop, `position_gain` with `sampling`; or motion = \"prescribed\"; or recorded speeds";
             return Err(field.error(Problem::Unsupported { what }, allowed));
         }
     }
@@ -97,8 +101,7 @@ pub(super) fn controls(
             (Drive { gain, ramp_start, ramp_end, speed, point_b }, None)
         }
     };
-    let command =
-        command.map(|(pieces, is_recorded)| Command { pieces: Pieces(pieces.into()), is_recorded });
+    let command = command.map(|(pieces, is_recorded)| Command { pieces: Pieces(pieces.into()), is_recorded });
     Ok(Controls { drive, command, sampling })
 }
 
@@ -158,12 +161,7 @@ fn jumps(pieces: &[Piece<f64>], positions: &[f64]) -> Vec<Piece<f64>> {
 }
 
 /// A ramp from the start to the end of the `pieces` that `field` states, to the greatest speed that they command.
-fn spanning(
-    field: &Field,
-    pieces: &[Piece<f64>],
-    gain: f64,
-    point_b: Vector3<f64>,
-) -> Result<Drive<f64>, SceneError> {
+fn spanning(field: &Field, pieces: &[Piece<f64>], gain: f64, point_b: Vector3<f64>) -> Result<Drive<f64>, SceneError> {
     let moves = pieces.iter().find(|piece| piece.coefficients.iter().any(|of| *of != 0.0));
     let ramp_start = moves.map_or(0.0, |piece| piece.start);
     // Sums of durations are rounded: a run that is as long as all segments comes to their end.

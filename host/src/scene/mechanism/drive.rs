@@ -50,13 +50,7 @@ struct Acts {
     gain: f64,
 }
 
-fn drive(
-    name: String,
-    table: &Field,
-    planar: bool,
-    names: &Names,
-    file_name: &str,
-) -> Result<NamedDrive, SceneError> {
+fn drive(name: String, table: &Field, planar: bool, names: &Names, file_name: &str) -> Result<NamedDrive, SceneError> {
     let is_prescribed = is_prescribed(table)?;
     let Acts { body, action, gain } = acts(table, planar, names, is_prescribed)?;
     let turns = matches!(action, Action::Turns { .. });

@@ -122,7 +122,7 @@ pub(super) fn mechanism(
     };
     mechanism.set_prescribed_gains();
     let varied = vary(named(root, "vary", &names, &mechanism)?)?;
-    let unknown = uncertain(named(root, "uncertain", &names, &mechanism)?, &mechanism)?;
+    let unknown = uncertain(root, named(root, "uncertain", &names, &mechanism)?, &mechanism)?;
     let mechanism = Mechanism { vary: varied, uncertain: unknown, ..mechanism };
     // With values that stand for wrong ones there is nothing to look at.
     if !found.any() {

@@ -39,11 +39,7 @@ impl Interpolation {
 
 /// Reads the `table` of a recorded command of a drive that `turns` or pushes, and whose motion is prescribed or not; `file_name` is that of
 /// the scene.
-pub fn recorded(
-    table: &Field,
-    [turns, is_prescribed]: [bool; 2],
-    file_name: &str,
-) -> Result<Recorded, SceneError> {
+pub fn recorded(table: &Field, [turns, is_prescribed]: [bool; 2], file_name: &str) -> Result<Recorded, SceneError> {
     table.expect_table()?;
     let file = table.require("file", "a CSV file with a column of positions or speeds over time")?;
     let text = |key: &str| table.get(key).map(|field| field.to_text().map(str::to_owned)).transpose();

@@ -4,6 +4,7 @@
 
 mod clearances;
 mod html;
+mod identified;
 mod measured;
 mod production;
 mod sweep;
@@ -12,7 +13,11 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use slipfit_measured::{capability::Capability, table::MeasuredTable};
 
 use self::html::{figure, list, minus_signs, real};
-pub use self::{clearances::Clearances, production::Production};
+pub use self::{
+    clearances::Clearances,
+    identified::{Course, Identified, identified_page},
+    production::Production,
+};
 use super::{palette::style_sheet, player, plot::PlotError};
 use crate::dynamics::{driven::DriveKind, sweep::Sweep};
 

@@ -14,6 +14,11 @@ pub static MEANINGS: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
 
 /// Keys of the whole scene, and their meaning.
 const WHOLE: &[(&str, &str)] = &[
+    (
+        "include",
+        "A TOML file, or a list of files, whose keys count as the scene's own, such as what `slipfit identify -o` writes. Paths are relative \
+         to the folder of the scene. No value may be stated twice. Optional.",
+    ),
     ("title", "Title of plots and reports. Default: the file's name without its ending."),
     ("slide", "The moving body of a slide on pins. Something that moves is a `[slide]` or a `[mechanism]`."),
     (

@@ -38,6 +38,11 @@ pub const PARAMETERS: &[(&str, &str)] = &[
     ("vary.joint.name", "Name of a joint."),
     ("vary.joint.slope", "Slope of those of its walls that have one. Optional."),
     (
+        "uncertain.correlation",
+        "A list `[[uncertain.correlation]]`: pairs of unknowns by the names that reports have for them, whose values are not independent. \
+         Optional.",
+    ),
+    (
         "uncertain.*.*.mean",
         "Mean of a normal distribution of the value, in the key's unit. It is cut off at four standard deviations.",
     ),
