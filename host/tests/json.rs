@@ -31,11 +31,12 @@ fn every_field_is_in_the_guide() {
     let output =
         Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder.path()).args(simulate).output().unwrap();
     assert!(output.status.success());
-    let commands: [(&str, &[&str]); 39] = [
+    let commands: [(&str, &[&str]); 40] = [
         ("check", &["check"]),
         ("capability", &["capability", "parts.csv", "--group", "tool"]),
         ("identify", &["identify", "sought.toml", "run.csv"]),
         ("identify", &["identify", "train.toml", "run.csv"]),
+        ("identify --each", &["identify", "sought.toml", "run.csv", "run.csv", "--each"]),
         ("check of a mechanism", &["check", "telescopic-drawer"]),
         ("check of a product", &["check", "clutch"]),
         ("simulate", &["simulate", "--n", "2.5"]),

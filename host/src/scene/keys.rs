@@ -101,7 +101,7 @@ const RECORD: [Key; 16] = [
     table("gaps", &[key("of"), table("n", SOUGHT)]),
     table("delay", SOUGHT),
 ];
-const IDENTIFY: [Key; RECORD.len() + SOUGHT_PARAMETERS.len()] = joined(&RECORD, SOUGHT_PARAMETERS);
+const IDENTIFY: [Key; RECORD.len() + SOUGHT_PARAMETERS.len()] = joined(SOUGHT_PARAMETERS, &RECORD);
 const BELIEFS: &[Key] = parameters!(BELIEF);
 const UNCERTAIN: [Key; BELIEFS.len() + 1] = joined(BELIEFS, &[table("correlation", &[key("of"), key("coefficient")])]);
 

@@ -121,7 +121,11 @@ fn every_bad_value_is_shown_with_its_place_and_what_is_allowed() {
             "mas = 81.8 ",
             ["|mas = ", "unknown key `slide.mas`, did you mean `slide.mass`", "inertia_box"],
         ),
-        ("[sweep]", "[swep]", ["[|swep]", "unknown key `swep`, did you mean `sweep`?", "title, slide, contact"]),
+        (
+            "[sweep]",
+            "[swep]",
+            ["[|swep]", "unknown key `swep`, did you mean `sweep`?", "title, include, slide, contact"],
+        ),
         ("wall = [0.5757", "floor = [0.5757", ["|floor = ", "unknown key `pin.floor`", "rail, wall"]),
         ("mass = 81.8 ", "", ["|[slide]", "`slide.mass` is missing", "a number in g, or a text with its unit: g, kg"]),
         ("law = \"regularised\"", "", ["|[friction]", "`friction.law` is missing", "regularised, exact, none"]),

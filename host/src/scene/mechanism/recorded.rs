@@ -41,7 +41,6 @@ impl Interpolation {
 /// the scene.
 pub fn recorded(table: &Field, [turns, is_prescribed]: [bool; 2], file_name: &str) -> Result<Recorded, SceneError> {
     table.expect_table()?;
-    let file = table.require("file", "a CSV file with a column of positions or speeds over time")?;
     let text = |key: &str| table.get(key).map(|field| field.to_text().map(str::to_owned)).transpose();
     let columns = Columns {
         time: text("time")?,
@@ -50,6 +49,10 @@ pub fn recorded(table: &Field, [turns, is_prescribed]: [bool; 2], file_name: &st
         turns,
         ..Columns::default()
     };
+    let all = [Interpolation::Linear, Interpolation::Cubic, Interpolation::Held];
+    let between = table.get("interpolation").map(|field| choice(&field, all, Interpolation::name)).transpose()?;
+    let file = table.require("file", "a CSV file with a column of positions or speeds over time")?;
+    let path = folder(file_name).join(file.to_text()?);
     let is_position = match (&columns.position, &columns.speed) {
         (Some(_), None) => true,
         (None, Some(_)) => false,
@@ -58,9 +61,6 @@ pub fn recorded(table: &Field, [turns, is_prescribed]: [bool; 2], file_name: &st
             return Err(table.error(problem, "one of position and speed: the heading of the column that is commanded"));
         }
     };
-    let all = [Interpolation::Linear, Interpolation::Cubic, Interpolation::Held];
-    let between = table.get("interpolation").map(|field| choice(&field, all, Interpolation::name)).transpose()?;
-    let path = folder(file_name).join(file.to_text()?);
     let record = read_file(&path, &columns, Needs::Motion)
         .map_err(|error| file.error(Problem::Record { why: error.to_string() }, "a record at equal intervals"))?;
     if record.start < 0.0 {

@@ -75,9 +75,17 @@ fn names(keys: &[Key]) -> Vec<&str> {
 /// The table at `path`, which has the same keys as those at `others`.
 fn section(path: &str, keys: &[Key], others: &[&str], all: &[(String, &[Key])], used: &mut [bool], page: &mut String) {
     let heading = if path.is_empty() { "The file".to_owned() } else { format!("`{path}`") };
-    let same = same_keys(path, others);
+    let mut same = same_keys(path, others);
+    // A table that goes on where another one ends.
+    let before = all.iter().take_while(|(other, _)| other != path);
+    let begins =
+        |other: &[Key]| other.len() > 1 && other.len() < keys.len() && names(&keys[..other.len()]) == names(other);
+    let first = before.filter(|(_, other)| begins(other)).max_by_key(|(_, other)| other.len());
+    if let Some((other, _)) = first {
+        same = format!("Besides these it has the keys of [`{other}`](#{}).\n\n", other.replace('.', ""));
+    }
     let _ = writeln!(page, "\n### {heading}\n\n{same}| key | takes | meaning |\n|---|---|---|");
-    for key in keys {
+    for key in &keys[first.map_or(0, |(_, other)| other.len())..] {
         let path = join(path, key.name);
         let (at, meaning) = meaning_of(&path);
         used[at] = true;
@@ -107,9 +115,14 @@ fn same_keys(path: &str, others: &[&str]) -> String {
     }
 }
 
-/// What the key at `path` means, and which of the meanings that is.
+/// What the key at `path` means, and which of the meanings that is. Parameters mean in `[uncertain]` and `[identify]` what they do in `[vary]`.
 fn meaning_of(path: &str) -> (usize, &'static str) {
-    let at = MEANINGS.iter().position(|(pattern, _)| covers(pattern, path));
+    let find = |path: &str| MEANINGS.iter().position(|(pattern, _)| covers(pattern, path));
+    let of_vary = || {
+        let rest = ["uncertain.", "identify."].iter().find_map(|table| path.strip_prefix(table))?;
+        find(&format!("vary.{rest}"))
+    };
+    let at = find(path).or_else(of_vary);
     let at = at.unwrap_or_else(|| panic!("no description of `{path}`: add one to scene/reference/meaning"));
     (at, MEANINGS[at].1)
 }

@@ -9,7 +9,7 @@ use slipfit_tolerance::number::typeset;
 
 use super::{Figure, figures, html as parts, notes, page, verdict};
 use crate::show::{
-    chart::{Chart, Look, Panel, Series},
+    chart::{Chart, Look, Markers, Panel, Series, Shape},
     plot::{PlotError, line_chart, small_chart},
 };
 
@@ -116,13 +116,29 @@ fn profile(title: &str, own: &Estimated) -> Result<Figure, PlotError> {
             y_label: "rise of the loss; 1 ends the interval of 95 %".into(),
             series: vec![
                 Series { label: String::new(), look: Look::Guide, points: ends },
-                Series { label: String::new(), look: Look::Kind(0), points },
+                Series { label: String::new(), look: Look::Level(0.0), points: curve(&points) },
             ],
+            markers: vec![Markers { label: String::new(), shape: Shape::Dot, points }],
             ..Panel::default()
         }],
         ..Chart::default()
     })?;
     Ok(Figure { caption: format!("How much worse the record is explained with another {}.", own.name), svg })
+}
+
+/// A smooth line through the `points` of a profile: its root is nearly straight to either side of the estimate.
+fn curve(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    const PIECES: u32 = 12;
+    let between = |two: &[(f64, f64)]| {
+        let [(from, low), (to, high)] = [two[0], two[1]];
+        let [low, high] = [low, high].map(|rise| libm::sqrt(rise.max(0.0)));
+        (0..PIECES).map(move |k| {
+            let share = f64::from(k) / f64::from(PIECES);
+            let root = low + share * (high - low);
+            (from + share * (to - from), root * root)
+        })
+    };
+    points.windows(2).flat_map(between).chain(points.last().copied()).collect()
 }
 
 fn correlations(estimate: &Estimate) -> Markup {

@@ -60,22 +60,12 @@ pub const IDENTIFY: &[(&str, &str)] = &[
         "Bounds of the time by which the record lags behind what it shows, such as `[0, 0.01]`; it is sought then. Optional.",
     ),
     (
-        "identify.friction",
-        "Parameters of the friction that are sought, each with bounds such as `[0.1, 0.5]`. Optional.",
-    ),
-    ("identify.contact", "Parameters of the contacts that are sought. Optional."),
-    ("identify.slide", "Parameters of the slide that are sought. Optional."),
-    ("identify.mechanism", "Parameters of a mechanism's gravity that are sought. Optional."),
-    ("identify.body", "A list `[[identify.body]]`: bodies of a mechanism with what is sought of them. Optional."),
-    ("identify.joint", "A list `[[identify.joint]]`: joints of a mechanism with what is sought of them. Optional."),
-    ("identify.drive", "What is sought of the drive; of a mechanism's a list `[[identify.drive]]`. Optional."),
-    (
-        "identify.gaps.n.between",
+        "identify.delay.between",
         "The least and the greatest value of what is sought. Required in such a table, which stands in place of a list of bounds.",
     ),
     (
-        "identify.gaps.n.mean",
+        "identify.delay.mean",
         "What the value is known to be beforehand, as the mean of a normal distribution. Required there.",
     ),
-    ("identify.gaps.n.deviation", "Standard deviation of that. Required there."),
+    ("identify.delay.deviation", "Standard deviation of that. Required there."),
 ];
