@@ -73,11 +73,12 @@ impl<M: Model + ?Sized> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, M> {
     }
 }
 
-/// Cosine of the angle between residuals and derivatives at which a search ends: times the root of the number of samples it is how far the
-/// minimum is, in standard errors of white noise. Of 1500 samples that is 0.4 % of one.
-pub const CLOSE: f64 = 1e-4;
+/// Cosine of the angle between residuals and derivatives at which a search ends. Times the root of the number of samples it is how far the
+/// minimum is, in standard errors of white noise, of a parameter that no other one resembles; of those that do it may be a hundred times
+/// as far, and still near.
+pub const CLOSE: f64 = 1e-6;
 /// The same of a search that another one follows.
-pub const NEAR: f64 = 1e-2;
+pub const NEAR: f64 = 1e-3;
 
 /// The values from `start` that minimise the loss of residuals in deviations of `scale`, those not `free` held, and the output there; as
 /// `close` to the minimum as [`CLOSE`] says.

@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
-use super::{collect, meaning_of, names, probe};
+use super::{collect, meaning_of, probe};
 use crate::scene::keys::{Key, ROOT, join};
 
 /// A number with its unit, as a text.
@@ -18,7 +18,7 @@ pub fn schema() -> String {
     let definitions: Vec<(String, Value)> = first_of_each(&tables)
         .into_par_iter()
         .map(|(path, keys)| {
-            let places = tables.iter().filter(|(_, other)| names(other) == names(keys));
+            let places = tables.iter().filter(|(_, other)| are_alike(other, keys));
             let places: Vec<&str> = places.map(|(path, _)| path.as_str()).collect();
             (definition(path), table(path, keys, &places, &tables))
         })
@@ -33,12 +33,18 @@ pub fn schema() -> String {
 
 /// Tables with keys that no table before them has.
 fn first_of_each<'t>(tables: &'t [(String, &'static [Key])]) -> Vec<(&'t str, &'static [Key])> {
-    let is_first = |i: usize| tables[..i].iter().all(|(_, other)| names(other) != names(tables[i].1));
+    let is_first = |i: usize| tables[..i].iter().all(|(_, other)| !are_alike(other, tables[i].1));
     (0..tables.len()).filter(|i| is_first(*i)).map(|i| (tables[i].0.as_str(), tables[i].1)).collect()
 }
 
 fn definition(path: &str) -> String {
     path.replace('.', "-")
+}
+
+/// Whether two tables have the same keys, and these the same keys below.
+fn are_alike(one: &[Key], other: &[Key]) -> bool {
+    let alike = |(one, other): (&Key, &Key)| one.name == other.name && are_alike(one.below, other.below);
+    one.len() == other.len() && one.iter().zip(other).all(alike)
 }
 
 /// A table with these `keys`, which stands at `places`.
@@ -63,7 +69,7 @@ fn table(path: &str, keys: &[Key], places: &[&str], tables: &[(String, &'static 
 
 /// A table, or a list of tables; where it has a short form, that is not looked into.
 fn of_tables(key: &Key, takes: &[String], tables: &[(String, &'static [Key])]) -> Map<String, Value> {
-    let first = tables.iter().find(|(_, keys)| names(keys) == names(key.below));
+    let first = tables.iter().find(|(_, keys)| are_alike(keys, key.below));
     let refer = json!({ "$ref": format!("#/definitions/{}", definition(first.map_or("", |(path, _)| path))) });
     let mut schema = Map::new();
     schema.insert("allOf".into(), json!([refer]));
