@@ -73,7 +73,9 @@ pub fn judge(path: &str) -> bool {
     let (Some(mechanism), Some(identify)) = (&file.mechanism, &file.identify) else { unreachable!("a mechanism") };
     let Subject::Mechanism(of) = &identify.subject else { unreachable!("of a mechanism") };
     let model = MotionModel::new(mechanism, Vec::new(), of, &[record]).unwrap_or_else(|error| panic!("{error}"));
-    let published: Vec<f64> = PUBLISHED.iter().map(|(_, value, _)| *value).collect();
+    let value =
+        |name: &str| PUBLISHED.iter().find(|(own, ..)| name.ends_with(own)).map_or(f64::NAN, |(_, value, _)| *value);
+    let published: Vec<f64> = model.parameters().iter().map(|parameter| value(&parameter.name)).collect();
     let output = model.simulate(&published).unwrap_or_else(|error| panic!("{error}"));
     let error = relative(model.measured(), &output);
     println!(

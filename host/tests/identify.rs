@@ -386,3 +386,50 @@ fn units_have_a_mean_and_a_spread() {
     let alone = slipfit(folder.path(), &["identify", "stage.toml", "unit0", "--each"]);
     assert!(alone.status.code() == Some(2), "{alone:?}");
 }
+
+/// One unit coasts by the symmetric law, the other rubs by direction: both are told by one law.
+#[test]
+fn units_of_a_drive_train_are_compared_by_one_law() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "train.toml", TRAIN);
+    write(folder.path(), "one.csv", &swinging());
+    let noise = normals(&mut unit_stream(2, 0), 3000);
+    let row = |i: usize| {
+        let t = 1e-3 * i as f64;
+        let (speed, acceleration) = (libm::sin(8.0 * t), 8.0 * libm::cos(8.0 * t));
+        let friction = if speed > 0.0 { 4.0 + 2.0 * speed } else { -7.0 + 5.0 * speed };
+        format!("{t},{},{}\n", 1e3 * speed, 2.0 * acceleration + friction + 0.1 * noise[i])
+    };
+    write(
+        folder.path(),
+        "two.csv",
+        &(0..3000).fold("t (s),speed (mm/s),force (N)\n".to_owned(), |text, i| text + &row(i)),
+    );
+    let found = json(folder.path(), &["identify", "train.toml", "one.csv", "two.csv", "--each", "--json"]);
+    let laws: Vec<&str> = found["units"].as_array().unwrap().iter().map(|unit| unit["law"].as_str().unwrap()).collect();
+    assert!(laws[0] == laws[1] && laws[0].starts_with("by-direction"), "{laws:?}");
+    let forwards = found["between"].as_array().unwrap().iter().find(|one| one["name"] == "viscous forwards").unwrap();
+    assert!((forwards["mean"].as_f64().unwrap() - 2.5).abs() < 0.1, "{forwards}");
+}
+
+#[test]
+fn what_a_measured_motion_does_not_show_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "run.csv", "t (s),force (N)\n0,1\n");
+    for (identify, expected) in [
+        (
+            "along = \"motion\"\ndrive = [{ name = \"motor\", gain = [0.1, 1] }]\n",
+            "has no effect along the measured motion",
+        ),
+        ("along = \"motion\"\ncompare = \"speed\"\ndelay = [0, 0.01]\n", "has no effect along the measured motion"),
+        ("delay = [-0.01, 0.01]\n", "0 to 10 s"),
+        ("cutoff = 10\ndelay = [0, 0.01]\n", "has no effect where the motion is computed"),
+        ("recorded = \"other\"\ndelay = [0, 0.01]\n", "there is no drive `other`"),
+        ("delay = { between = [0, 0.01], mean = 0.02, deviation = 0.001 }\n", "a value between the bounds"),
+    ] {
+        write(folder.path(), "stage.toml", &stage(identify));
+        let output = slipfit(folder.path(), &["identify", "stage.toml", "run.csv"]);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && errors.contains(expected), "{identify}: {errors}");
+    }
+}

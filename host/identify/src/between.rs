@@ -3,7 +3,7 @@
 use serde::Serialize;
 use slipfit_measured::numeric::tails::student_quantile_above;
 
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Estimated};
 
 /// A parameter over several units, SI units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,16 +27,16 @@ pub struct Between {
 /// Each parameter that at least two of the `estimates` determine, in the order of the first.
 pub fn between(estimates: &[&Estimate]) -> Vec<Between> {
     let Some(first) = estimates.first() else { return Vec::new() };
-    let of = |i: usize| {
+    let of = |of_first: &Estimated| {
         let parameter = |estimate: &&Estimate| {
-            let own = estimate.parameters.get(i)?;
+            let same = |own: &&Estimated| (&own.name, own.unit) == (&of_first.name, of_first.unit);
+            let own = estimate.parameters.iter().find(same)?;
             Some([own.value, own.deviation?])
         };
         let found: Vec<[f64; 2]> = estimates.iter().filter_map(parameter).collect();
-        let (name, unit) = (first.parameters[i].name.clone(), first.parameters[i].unit);
-        (found.len() > 1).then(|| pooled(name, unit, &found))
+        (found.len() > 1).then(|| pooled(of_first.name.clone(), of_first.unit, &found))
     };
-    (0..first.parameters.len()).filter_map(of).collect()
+    first.parameters.iter().filter_map(of).collect()
 }
 
 /// Values with their deviations, of units that differ: the spread by R. DerSimonian and N. Laird (1986), the deviation of the mean by

@@ -148,9 +148,12 @@ pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estim
         let profile = profile(model, &fitted, &linearised, i, by_record.map(|[.., both]| quantile * both))?;
         let interval = reach.map(|reach| {
             let [low, high] = [value - reach, value + reach].map(within);
-            // A bent output makes one side longer. What is known beforehand is not in the profile.
-            let ends = profile.ends.map(|end| end.filter(|_| posterior.is_none()));
-            [ends[0].map_or(low, |end| end.min(low)), ends[1].map_or(high, |end| end.max(high))]
+            // A bent output makes one side longer, up to the bound where the record sets no end. What is known beforehand is not in it.
+            if posterior.is_some() {
+                return [low, high];
+            }
+            let [first, last] = [0, 1].map(|side| profile.ends[side].unwrap_or(parameter.bounds[side]));
+            [low.min(first), high.max(last)]
         });
         Ok(Estimated {
             name: parameter.name.clone(),

@@ -27,7 +27,7 @@ use super::{
 };
 use crate::{
     dynamics::driven::DriveKind,
-    identify::{Compared as Quantity, Identification, Law, MotionModel, OfRecord, Subject, Unit},
+    identify::{Compared as Quantity, Identification, Law, MotionModel, OfRecord, Sought, Subject, Unit},
     show::report::{Course, Identified, identified_page},
 };
 
@@ -116,7 +116,10 @@ impl Arguments {
                     return Err(Failure::Input(why.into()));
                 }
                 let units = self.units(identify, Needs::Motion)?;
-                let found = each(&units, |unit| drive_train(unit, law.as_ref(), *cutoff, &identify.options))?;
+                let mut found = each(&units, |unit| drive_train(unit, law.as_ref(), *cutoff, &identify.options))?;
+                if self.each && law.is_none() {
+                    choose_alike(&mut found)?;
+                }
                 self.finish(
                     &file.title,
                     Written { compared: "force (N)", model: "drive-train", exponent: None, lists: &[] },
@@ -130,7 +133,7 @@ impl Arguments {
                 scene.check_gaps(&levels).map_err(|error| Failure::Input(format!("--n: {error}")))?;
                 let units = self.units(identify, needs(of))?;
                 let found = self.of_unit(scene, levels.to_vec(), of, &units, identify, &scene.warnings)?;
-                let lists: Vec<_> = of.sought.iter().map(|sought| sought.list).collect();
+                let lists: Vec<_> = of.sought.iter().map(Sought::place).collect();
                 let exponent = Some(scene.contact.exponent);
                 self.finish(
                     &file.title,
@@ -146,7 +149,7 @@ impl Arguments {
                 mechanism.gaps_at(&levels).map_err(|error| Failure::Input(format!("--n: {error}")))?;
                 let units = self.units(identify, needs(of))?;
                 let found = self.of_unit(mechanism, levels, of, &units, identify, &mechanism.warnings)?;
-                let lists: Vec<_> = of.sought.iter().map(|sought| sought.list).collect();
+                let lists: Vec<_> = of.sought.iter().map(Sought::place).collect();
                 let joint = mechanism.joints.iter().find(|joint| !joint.kind.is_ideal());
                 let exponent = joint.map(|joint| joint.laws.contact.spring()[1]);
                 let turns = mechanism.drives[of.drive].action.kind() == DriveKind::Turns;
@@ -274,8 +277,8 @@ struct Written<'a> {
     model: &'static str,
     /// Exponent of the contacts, if there are any.
     exponent: Option<f64>,
-    /// For each parameter the list of the scene that states it, if one does.
-    lists: &'a [Option<&'static str>],
+    /// For each parameter of the scene the list that states it, if one does; `None` for what no key of a scene says.
+    lists: &'a [Option<Option<&'static str>>],
 }
 
 /// What is compared of a drive that `turns` or pushes, with its unit.
@@ -292,7 +295,12 @@ fn compared<P>(of: &OfRecord<P>, turns: bool) -> &'static str {
 
 /// What a fit needs of a record.
 fn needs<P>(of: &OfRecord<P>) -> Needs {
-    if of.along.is_none() && of.compared == Quantity::Force { Needs::Force } else { Needs::Motion }
+    match (of.along, of.compared) {
+        (Some(_), _) => Needs::Motion,
+        (None, Quantity::Force) => Needs::Force,
+        (None, Quantity::Speed) => Needs::Speed,
+        (None, Quantity::Position) => Needs::Position,
+    }
 }
 
 /// What is found of each of the `units`; errors of one of several name it.
@@ -306,6 +314,24 @@ fn each(units: &[OfUnit], find: impl Fn(&OfUnit) -> Result<Found, Failure>) -> R
         })
     };
     units.iter().map(named).collect()
+}
+
+/// Chooses the law that explains the records of all units best, so that their parameters are the same.
+fn choose_alike(found: &mut [Found]) -> Result<(), Failure> {
+    let behind = |name: &str| {
+        let of_unit = |one: &Found| one.compared.iter().find(|law| law.name == name).map(|law| law.behind);
+        found.iter().map(of_unit).sum::<Option<f64>>()
+    };
+    let names = found.first().map_or(&[][..], |one| &one.compared);
+    let all = names.iter().filter_map(|law| Some((law.name.clone(), behind(&law.name)?)));
+    let best = all.min_by(|one, other| one.1.total_cmp(&other.1));
+    let Some((name, _)) = best else {
+        return Err(Failure::Input("no law has an estimate for every unit; state one as identify.law".into()));
+    };
+    for one in found {
+        one.chosen = one.compared.iter().position(|law| law.name == name).unwrap_or(one.chosen);
+    }
+    Ok(())
 }
 
 /// The CSV files of a `folder`, by their names.

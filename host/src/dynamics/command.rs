@@ -76,17 +76,21 @@ fn integrals(Pieces(pieces): &Pieces) -> Vec<f64> {
     std::iter::once(0.0).chain(after).take(pieces.len()).collect()
 }
 
-/// The natural cubic spline through `values` at equal distances `step`: its coefficients from each value to the next.
-pub fn spline(values: &[f64], step: f64) -> Vec<[f64; 4]> {
+/// The cubic spline through `values` at equal distances `step`: its coefficients from each value to the next. It has no curvature at its
+/// ends, or this slope at its `start`.
+pub fn spline(values: &[f64], step: f64, start: Option<f64>) -> Vec<[f64; 4]> {
     let last = values.len() - 1;
     // Second derivatives times step²/6, by elimination of M(i−1) + 4·M(i) + M(i+1) = second difference, zero at both ends.
     let (mut upper, mut second) = (vec![0.0; last + 1], vec![0.0; last + 1]);
+    if let Some(slope) = start {
+        (upper[0], second[0]) = (0.5, 0.5 * (values[1] - values[0] - slope * step));
+    }
     for i in 1..last {
         let pivot = 4.0 - upper[i - 1];
         upper[i] = 1.0 / pivot;
         second[i] = (values[i + 1] - 2.0 * values[i] + values[i - 1] - second[i - 1]) / pivot;
     }
-    for i in (1..last).rev() {
+    for i in (0..last).rev() {
         second[i] -= upper[i] * second[i + 1];
     }
     let coefficients = |i: usize| {
@@ -121,7 +125,9 @@ mod tests {
     fn a_spline_goes_through_its_values_and_is_smooth() {
         let h = 0.05;
         let values: Vec<f64> = (0..100).map(|i| libm::sin(3.0 * h * f64::from(i))).collect();
-        let spline = spline(&values, h);
+        let ends = [None, Some(3.0)].map(|start| spline(&values, h, start));
+        assert!((ends[1][0][1] - 3.0).abs() < 1e-12);
+        let [spline, _] = ends;
         let at = |i: usize, s: f64| {
             let [a, b, c, d] = spline[i];
             [((d * s + c) * s + b) * s + a, (3.0 * d * s + 2.0 * c) * s + b, 6.0 * d * s + 2.0 * c]

@@ -21,7 +21,7 @@ impl Unit for Mechanism {
 
     fn prescribed(&self, drive: usize, speeds: &[f64], step: f64) -> Option<Self> {
         let mut own = self.clone();
-        let spline = spline(speeds, step);
+        let spline = spline(speeds, step, None);
         let last = [speeds.last().copied().unwrap_or_default(), 0.0, 0.0, 0.0];
         let piece = |(k, coefficients): (usize, [f64; 4])| Piece { start: step * k as f64, coefficients };
         let pieces = spline.into_iter().chain([last]).enumerate().map(piece).collect();

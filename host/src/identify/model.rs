@@ -164,7 +164,8 @@ impl<U: Unit> MotionModel<U> {
         let motion = unit.motion(&levels, self.of.drive, step, start + step * samples as f64)?;
         let computed = self.of.compared.of_motion(&motion);
         let at = |i: usize| {
-            let place = ((start - delay) / step + i as f64).max(0.0);
+            // Where a run ended early nothing changes any more.
+            let place = ((start - delay) / step + i as f64).clamp(0.0, computed.len() as f64 - 1.0);
             let before = (place as usize).min(computed.len().saturating_sub(2));
             let share = place - before as f64;
             computed[before] + share * (computed[before + 1] - computed[before])

@@ -93,6 +93,13 @@ pub struct Sought<P> {
     pub prior: Option<[f64; 2]>,
 }
 
+impl<P> Sought<P> {
+    /// In which list of a scene it is stated, if in one; `None` of what no key of a scene says.
+    pub fn place(&self) -> Option<Option<&'static str>> {
+        matches!(self.value, SoughtValue::Parameter(_)).then_some(self.list)
+    }
+}
+
 /// A value that can be sought.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SoughtValue<P> {

@@ -26,6 +26,8 @@ pub struct Moment {
     pub t: f64,
     /// How each body has moved.
     pub motions: Vec<BodyMotion>,
+    /// What each drive gives (N, N·m).
+    pub efforts: Vec<f64>,
 }
 
 /// A finished run.

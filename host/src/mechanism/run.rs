@@ -368,7 +368,12 @@ fn solve<P: Plant<D>, const D: usize>(
     }
     let before_end: Vec<f64> = knots.iter().map(|knot| knot.t).filter(|t| *t <= end).collect();
     let shown = if by.moments > 0 { chosen(&before_end, by.moments) } else { Vec::new() };
-    let moment = |k: usize| Moment { t: knots[k].t, motions: motions[k].clone() };
+    let moment = |k: usize| {
+        let (t, motions) = (knots[k].t, motions[k].clone());
+        let by_speed = mechanism.drives_at(t, &motions).map(|at| at.force);
+        let efforts = by_speed.zip(&efforts).map(|(force, effort)| effort.at_knot(t, force)).collect();
+        Moment { t, motions, efforts }
+    };
     let film = shown.into_iter().map(moment).collect();
     let outcome = |(observer, named): (&Observer, &NamedDrive)| {
         let outcome = observer.outcome();

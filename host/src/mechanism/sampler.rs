@@ -10,8 +10,10 @@ pub struct Sampler<'a> {
     named: &'a NamedDrive,
     sampling: &'a Sampling,
     travel: Travel,
-    /// Position (m, rad) at the last sample.
-    last: Option<f64>,
+    /// Time (s) and position (m, rad) of the last sample.
+    last: Option<[f64; 2]>,
+    /// Samples that were due so far.
+    due: u64,
     /// Each sample: when (s) it was taken, and what is held from then on (N, N·m).
     samples: Vec<[f64; 2]>,
 }
@@ -24,7 +26,7 @@ impl<'a> Sampler<'a> {
     pub fn of(named: &'a NamedDrive) -> Option<Self> {
         let sampling = named.sampling.as_ref()?;
         let travel = Travel::new(&named.drive, named.command.as_ref(), sampling.positions.as_deref());
-        Some(Self { named, sampling, travel, last: None, samples: Vec::new() })
+        Some(Self { named, sampling, travel, last: None, due: 0, samples: Vec::new() })
     }
 
     /// The times (s) at which it samples, before `end` (s).
@@ -35,15 +37,15 @@ impl<'a> Sampler<'a> {
 
     /// Whether it samples at time `t` (s): at the first end of a step that is not before the next sample.
     pub fn is_due(&self, t: f64) -> bool {
-        t >= (self.samples.len() as f64 - EARLY) * self.sampling.period
+        t >= (self.due as f64 - EARLY) * self.sampling.period
     }
 
     /// Samples the motion `at` an instant, and holds what follows from it.
     pub fn sample(&mut self, at: Instant) {
-        let Sampling { period, position_gain, differentiates, ref held, .. } = *self.sampling;
-        let speed = match self.last.filter(|_| differentiates) {
-            Some(last) => (at.z - last) / period,
-            None => at.vz,
+        let Sampling { position_gain, differentiates, ref held, .. } = *self.sampling;
+        let speed = match self.last {
+            Some([t, z]) if differentiates && at.t > t => (at.z - z) / (at.t - t),
+            _ => at.vz,
         };
         let command = match position_gain {
             Some(gain) => gain * (self.travel.at(at.t) - at.z),
@@ -52,10 +54,11 @@ impl<'a> Sampler<'a> {
         let limit = self.named.train.map_or(UNLIMITED, |train| train.limit);
         let effort = (self.named.drive.gain * (command - speed)).clamp(-limit, limit);
         held.set(effort);
-        self.last = Some(at.z);
-        // A step that is longer than the period passes samples over: what they would have held is not known.
+        self.last = Some([at.t, at.z]);
+        self.samples.push([at.t, effort]);
+        // A step that is longer than the period passes samples over.
         while self.is_due(at.t) {
-            self.samples.push([at.t, effort]);
+            self.due += 1;
         }
     }
 

@@ -50,16 +50,18 @@ impl SceneFile {
     pub fn parse(file_name: &str, text: &str, overrides: &[Override]) -> Result<Self, SceneError> {
         let found = Found::default();
         let source = Source { name: file_name, text, found: &found };
-        let included = include::read(&source.document()?, file_name)?;
+        let mut first = source.document()?;
+        // An override may be of `include`; the others are applied to the whole scene.
+        overrides.iter().for_each(|change| drop(first.set(change)));
+        let included = include::read(&first, file_name)?;
         let mut tree = source.document()?;
-        // That it is there was read with the first one.
-        tree.entry("include").iter().for_each(|entry| entry.read.set(true));
         for file in &included {
             include::add(&mut tree, file)?;
         }
         for change in overrides {
             tree.set(change)?;
         }
+        tree.entry("include").iter().for_each(|entry| entry.read.set(true));
         key_checks::note_unfit(&tree);
         if let Err(error) = short_form::write_out(&mut tree) {
             return found.conclude(Err(error));
@@ -77,11 +79,14 @@ impl SceneFile {
     /// The files that a scene refers to, each with what it is; none where its text cannot be read.
     pub fn files(file_name: &str, text: &str, overrides: &[Override]) -> Vec<(&'static str, PathBuf)> {
         let found = Found::default();
+        let included;
         let Ok(mut tree) = (Source { name: file_name, text, found: &found }).document() else { return Vec::new() };
         // Reading the scene reports a wrong override.
         overrides.iter().for_each(|change| drop(tree.set(change)));
-        let included = include::paths(&tree, file_name).unwrap_or_default();
-        let mut files: Vec<_> = included.into_iter().map(|(_, path)| ("an included file", path.into())).collect();
+        let paths = include::paths(&tree, file_name).unwrap_or_default();
+        let mut files: Vec<_> = paths.into_iter().map(|(_, path)| ("an included file", path.into())).collect();
+        included = include::read(&tree, file_name).unwrap_or_default();
+        included.iter().for_each(|file| drop(include::add(&mut tree, file)));
         files.extend(measured::files(&Field { key: String::new(), node: &tree }, file_name));
         files
     }

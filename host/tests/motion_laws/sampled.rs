@@ -206,3 +206,38 @@ fn a_recorded_command_is_commanded_as_stated() {
         assert!(count == 430.0 && rms < most, "{record} {motion}: {rms} N of {} N", acceleration(0.0));
     }
 }
+
+#[test]
+fn what_cannot_be_prescribed_or_recorded_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |speed: fn(f64) -> f64| {
+        let row = |k: u32| format!("{},{},0\n", 0.01 * f64::from(k), speed(0.01 * f64::from(k)));
+        "t (s),speed (mm/s),current (A)\n".to_owned() + &(0..50).map(row).collect::<String>()
+    };
+    std::fs::write(folder.path().join("moving.csv"), rows(|t| 50.0 + t)).unwrap();
+    std::fs::write(folder.path().join("resting.csv"), rows(|t| 50.0 * t)).unwrap();
+    for (drive, expected) in [
+        ("motion = \"prescribed\"\nrecord = { file = \"moving.csv\", speed = \"speed\" }", "it begins in motion"),
+        ("motion = \"prescribed\"\nramp_start = -1\nramp_end = 0.1\nspeed = 10", "has begun before the run"),
+        (
+            "motion = \"prescribed\"\nramp_start = 0\nramp_end = 0.1\nspeed = 10\nlimit = 3",
+            "`drive.limit` has no effect",
+        ),
+        ("gain = 1\nrecord = { file = \"resting.csv\", position = \"speed\" }", "is in \"mm/s\""),
+        (
+            "gain = 1\nsampling = 0.001\nramp_start = 0\nramp_end = 1\nspeed = 10\nmeasures = \"force\"",
+            "speed, position",
+        ),
+        ("gain = 1\nrecord = { file = \"resting.csv\", speed = \"speed\" }\nspeed = 10", "`drive.speed` has no effect"),
+        ("motion = \"prescribed\"\nrecord = { file = \"resting.csv\", speed = \"speed\" }", ""),
+    ] {
+        let scene = format!(
+            "mechanism = {{ space = \"plane\" }}\n{STAGE}[[drive]]\nname = \"motor\"\npushes = \"stage\"\naxis = [1, 0]\n{drive}\n"
+        );
+        std::fs::write(folder.path().join("stage.toml"), scene).unwrap();
+        let output = slipfit(folder.path(), &["simulate", "stage.toml"]);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        let is_right = if expected.is_empty() { output.status.success() } else { output.status.code() == Some(2) };
+        assert!(is_right && errors.contains(expected), "{drive}: {errors}");
+    }
+}

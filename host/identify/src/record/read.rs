@@ -17,12 +17,18 @@ pub enum Needs {
     Force,
     /// Position or speed; without a force the drive coasts.
     Motion,
+    /// The position alone.
+    Position,
+    /// The speed alone.
+    Speed,
 }
 
 impl Needs {
     fn roles(self) -> &'static [Role] {
         match self {
             Self::Force => &[Role::Time, Role::Force, Role::Current, Role::Voltage],
+            Self::Position => &[Role::Time, Role::Position],
+            Self::Speed => &[Role::Time, Role::Speed],
             Self::Motion => &[Role::Time, Role::Position, Role::Speed, Role::Force, Role::Current, Role::Voltage],
         }
     }
@@ -79,7 +85,7 @@ fn record(
         place: Place { line: 1, column: 1, span: 0..0 },
         problem: RecordProblem::Missing { role: role.name(), hint },
     };
-    let time = at(Role::Time).ok_or_else(|| missing(Role::Time, "call it t or time, or name it as identify.time"))?;
+    let time = at(Role::Time).ok_or_else(|| missing(Role::Time, "call it t or time, or name it"))?;
     let times = &series.columns[time];
     let step = interval(times).map_err(|(sample, problem)| wrong(time, Some(sample), problem))?;
     let varying = |role: Role| -> Result<Option<&Vec<f64>>, RecordError> {
@@ -110,7 +116,11 @@ fn record(
         Needs::Motion if position.is_none() && speed.is_none() => {
             return Err(missing(Role::Position, "call it position or speed, or name it as identify.position"));
         }
-        Needs::Force | Needs::Motion => {}
+        Needs::Position if position.is_none() => {
+            return Err(missing(Role::Position, "call it position, or name it"));
+        }
+        Needs::Speed if speed.is_none() => return Err(missing(Role::Speed, "call it speed, or name it")),
+        Needs::Force | Needs::Motion | Needs::Position | Needs::Speed => {}
     }
     let (start, samples) = (times[0], times.len());
     Ok(Record { name: name.to_owned(), start, step, samples, position, speed, force })

@@ -99,8 +99,8 @@ fn table<'a>(written: &Written, rows: impl Iterator<Item = (usize, Row<'a>)>) ->
                 // What no key of a scene says, such as a ratio of two or one direction's friction.
                 _ => None,
             },
-            (_, Some(list), Some((table, key))) => Some(((list, table), key)),
-            (_, None, Some(_)) => {
+            (_, Some(Some(list)), Some((table, key))) => Some(((list, table), key)),
+            (_, Some(None), Some(_)) => {
                 names.push((i, name.to_owned()));
                 let _ = writeln!(text, "{name} = {{ mean = {mean}, deviation = {deviation} }}");
                 continue;

@@ -56,12 +56,14 @@ pub fn study<M: Clone + Sync>(
     duty: Duty,
     count: impl Fn(&M, u64, Range<u64>) -> Result<Counted, SimulateError> + Sync,
 ) -> Result<Answer, SimulateError> {
-    let mut points = design.points(unknowns.iter().map(|unknown| unknown.coordinates()).sum());
-    points.iter_mut().for_each(|point| correlate(unknowns, point));
+    // Shares of the variance are those of independent coordinates: the first of correlated unknowns has what they share.
+    let points = design.points(unknowns.iter().map(|unknown| unknown.coordinates()).sum());
     let tried = |value: usize| {
         let (mut own, mut at, mut shown) = (model.clone(), 0, Vec::with_capacity(unknowns.len()));
+        let mut correlated = points[value].clone();
+        correlate(unknowns, &mut correlated);
         for unknown in unknowns {
-            let point = &points[value][at..at + unknown.coordinates()];
+            let point = &correlated[at..at + unknown.coordinates()];
             at += point.len();
             unknown.apply(point, &mut own);
             shown.push(unknown.shown(point));

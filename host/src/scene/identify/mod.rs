@@ -74,7 +74,10 @@ pub(super) fn mechanism(
         let joint = mechanism.joints.iter().find(|joint| joint.name == name);
         joint.is_some_and(|joint| joint.kind.gaps().any(|gap| gap == i))
     };
-    let is_meant = |name: &str, i: usize| name == mechanism.gaps[i].name || of_joint(name, i);
+    // A surface means that of every track.
+    let of_surface =
+        |name: &str, i: usize| SURFACES.contains(&name) && mechanism.gaps[i].name.rsplit(' ').next() == Some(name);
+    let is_meant = |name: &str, i: usize| name == mechanism.gaps[i].name || of_joint(name, i) || of_surface(name, i);
     let names: Vec<&str> = mechanism.gaps.iter().map(|gap| gap.name.as_str()).collect();
     let groups = if names.is_empty() { "none: no joint has play".into() } else { format!("all, {}", names.join(", ")) };
     let gaps = Gaps { count: names.len(), varies: &varies, is_meant: &is_meant, groups };
@@ -84,6 +87,13 @@ pub(super) fn mechanism(
         Slope(_) => Some("joint"),
         _ => None,
     };
+    if table.get("along").is_some() {
+        let is_idle = |named: &&Named<_>| [Gain(drive), Limit(drive), RampEnd(drive)].contains(&named.parameter);
+        if let Some(named) = parameters.iter().find(is_idle) {
+            let allowed = "what the motion depends on, not what makes it";
+            return Err(named.field.no_effect("along the measured motion", allowed));
+        }
+    }
     let unit = OfUnit { drive, turns, may_be_prescribed: true, list };
     let (options, columns, of) = of_record(&table, parameters, &gaps, &unit)?;
     Ok(Some(Identification { columns, options, subject: Subject::Mechanism(of) }))

@@ -14,7 +14,7 @@ use crate::{
 };
 
 const LEVEL: Quantity = Quantity { units: unit::ONE, range: [-100.0, 100.0] };
-const DELAY: Quantity = Quantity { units: unit::SECONDS, range: [-10.0, 10.0] };
+const DELAY: Quantity = Quantity { units: unit::SECONDS, range: [0.0, 10.0] };
 const BOUNDS: &str = "a lower and a higher bound";
 
 /// The gaps of a unit, by their indices.

@@ -101,6 +101,18 @@ pub(super) fn controls(
             (Drive { gain, ramp_start, ramp_end, speed, point_b }, None)
         }
     };
+    let at_start = match &command {
+        Some((pieces, _)) => {
+            let begun = pieces.partition_point(|piece| piece.start <= 0.0);
+            begun.checked_sub(1).map_or(0.0, |last| pieces[last].speed(0.0))
+        }
+        None => drive.command(0.0),
+    };
+    if context.is_prescribed && at_start.abs() > 1e-6 * drive.speed.abs() {
+        let what = "a prescribed motion that has begun before the run".into();
+        let field = table.get("motion").unwrap_or_else(|| table.clone());
+        return Err(field.error(Problem::Unsupported { what }, "a command that begins at 0 s or later, from rest"));
+    }
     let command = command.map(|(pieces, is_recorded)| Command { pieces: Pieces(pieces.into()), is_recorded });
     Ok(Controls { drive, command, sampling })
 }

@@ -53,7 +53,8 @@ fn no_effect(parameter: Parameter, mechanism: &Mechanism) -> Option<&'static str
             let slopes = mechanism.joints[joint].contours.iter().any(|contour| contour.slope != 0.0);
             (!slopes).then_some("of a joint without `slope`")
         }
-        Parameter::Mass(_) | Parameter::Gain(_) => None,
+        Parameter::Gain(drive) => mechanism.drives[drive].is_prescribed.then_some("of a prescribed motion"),
+        Parameter::Mass(_) => None,
     }
 }
 

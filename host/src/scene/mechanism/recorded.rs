@@ -61,7 +61,8 @@ pub fn recorded(table: &Field, [turns, is_prescribed]: [bool; 2], file_name: &st
             return Err(table.error(problem, "one of position and speed: the heading of the column that is commanded"));
         }
     };
-    let record = read_file(&path, &columns, Needs::Motion)
+    let needs = if is_position { Needs::Position } else { Needs::Speed };
+    let record = read_file(&path, &columns, needs)
         .map_err(|error| file.error(Problem::Record { why: error.to_string() }, "a record at equal intervals"))?;
     if record.start < 0.0 {
         let why = format!("the record begins at {} s", record.start);
@@ -75,7 +76,21 @@ pub fn recorded(table: &Field, [turns, is_prescribed]: [bool; 2], file_name: &st
         return Err(field.error(Problem::Unsupported { what }, "cubic; of speeds also linear"));
     }
     let values = if is_position { &record.position } else { &record.speed };
-    let values = values.as_deref().unwrap_or_default();
+    let mut values = values.clone().unwrap_or_default();
+    if is_prescribed {
+        let fastest = fastest(&values, is_position, record.step);
+        let first = if is_position { (values[1] - values[0]) / record.step } else { values[0] };
+        if first.abs() > AT_REST * fastest {
+            let why = "it begins in motion, and the body at rest".to_owned();
+            let allowed = format!("a record that begins with less than {} % of its greatest speed", 100.0 * AT_REST);
+            return Err(file.error(Problem::Record { why }, allowed));
+        }
+        // What is left of a speed is noise.
+        if !is_position {
+            values[0] = 0.0;
+        }
+    }
+    let values = &values[..];
     let (pieces, positions) = match (is_position, between) {
         (true, Interpolation::Held) => {
             let pieces = commanded(&record, |_| [0.0; 4]);
@@ -86,7 +101,7 @@ pub fn recorded(table: &Field, [turns, is_prescribed]: [bool; 2], file_name: &st
             (commanded(&record, |i| [speed(i), 0.0, 0.0, 0.0]), None)
         }
         (true, Interpolation::Cubic) => {
-            let spline = spline(values, record.step);
+            let spline = spline(values, record.step, is_prescribed.then_some(0.0));
             let derivative = |[_, b, c, d]: [f64; 4]| [b, 2.0 * c, 3.0 * d, 0.0];
             let last = spline.last().map_or(0.0, |[_, b, c, d]| b + record.step * (2.0 * c + 3.0 * d * record.step));
             // After the last sample its speed.
@@ -98,11 +113,22 @@ pub fn recorded(table: &Field, [turns, is_prescribed]: [bool; 2], file_name: &st
             (commanded(&record, |i| [values[i], slope(i), 0.0, 0.0]), None)
         }
         (false, Interpolation::Cubic) => {
-            let spline = spline(values, record.step);
+            let spline = spline(values, record.step, None);
             (commanded(&record, |i| spline.get(i).copied().unwrap_or([values[i], 0.0, 0.0, 0.0])), None)
         }
     };
     Ok(Recorded { pieces, positions, is_position })
+}
+
+/// Share of its greatest speed below which a recorded motion is at rest.
+const AT_REST: f64 = 0.05;
+
+/// The greatest speed of `values`, positions or speeds, at intervals of `step` (s).
+fn fastest(values: &[f64], is_position: bool, step: f64) -> f64 {
+    match is_position {
+        true => values.windows(2).fold(0.0, |most: f64, two| most.max(((two[1] - two[0]) / step).abs())),
+        false => values.iter().fold(0.0, |most: f64, value| most.max(value.abs())),
+    }
 }
 
 /// A piece from each sample of a `record` on, with these coefficients of the speed.

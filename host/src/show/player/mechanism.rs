@@ -42,7 +42,7 @@ fn of_drive(driven: &ByDrive, run: &MechanismRun) -> (Vec<Plot>, Vec<Event>) {
     let at_drive = |of: &dyn Fn(f64, f64) -> f64, digits| {
         series(moments, digits, |moment| {
             let at = mechanism.drives_at(moment.t, &moment.motions).nth(driven.index());
-            at.map_or(0.0, |at| sign * of(at.force, at.vz))
+            at.map_or(0.0, |at| sign * of(moment.efforts[driven.index()], at.vz))
         })
     };
     let force = Plot {

@@ -52,7 +52,7 @@ pub const IDENTIFY: &[(&str, &str)] = &[
     (
         "identify.gaps.of",
         "Which gaps have this level: `all`; of a slide a surface such as `rail`, the name of a pin, or one gap such as `left front rail`; \
-         of a mechanism the name of a joint or of a gap.",
+         of a mechanism the name of a joint or of a gap, or such a surface of all tracks.",
     ),
     ("identify.gaps.n", "Bounds of the tolerance level, or a table with `between`, `mean` and `deviation`."),
     (
