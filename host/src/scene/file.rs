@@ -79,16 +79,26 @@ impl SceneFile {
     /// The files that a scene refers to, each with what it is; none where its text cannot be read.
     pub fn files(file_name: &str, text: &str, overrides: &[Override]) -> Vec<(&'static str, PathBuf)> {
         let found = Found::default();
-        let included;
-        let Ok(mut tree) = (Source { name: file_name, text, found: &found }).document() else { return Vec::new() };
-        // Reading the scene reports a wrong override.
-        overrides.iter().for_each(|change| drop(tree.set(change)));
-        let paths = include::paths(&tree, file_name).unwrap_or_default();
+        let source = Source { name: file_name, text, found: &found };
+        let (Ok(mut first), Ok(mut tree)) = (source.document(), source.document()) else { return Vec::new() };
+        // Reading the scene reports what is wrong with an override or an included file.
+        overrides.iter().for_each(|change| drop(first.set(change)));
+        let paths = include::paths(&first, file_name).unwrap_or_default();
         let mut files: Vec<_> = paths.into_iter().map(|(_, path)| ("an included file", path.into())).collect();
-        included = include::read(&tree, file_name).unwrap_or_default();
-        included.iter().for_each(|file| drop(include::add(&mut tree, file)));
-        files.extend(measured::files(&Field { key: String::new(), node: &tree }, file_name));
+        let included = include::read(&first, file_name).unwrap_or_default();
+        files.extend(Self::named_files(&mut tree, &included, (file_name, overrides)));
         files
+    }
+
+    /// The files that are named in a scene `tree` with what is `included`.
+    fn named_files<'s>(
+        tree: &mut Node<'s>,
+        included: &'s [include::Included],
+        (file_name, overrides): (&str, &'s [Override]),
+    ) -> Vec<(&'static str, PathBuf)> {
+        included.iter().for_each(|file| drop(include::add(tree, file)));
+        overrides.iter().for_each(|change| drop(tree.set(change)));
+        measured::files(&Field { key: String::new(), node: tree }, file_name)
     }
 
     /// Gives `warnings` to what moves, else to the product.
