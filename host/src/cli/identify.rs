@@ -1,5 +1,6 @@
 //! `slipfit identify`: parameters from measured motion.
 
+mod found;
 mod output;
 mod report;
 mod words;
@@ -18,7 +19,10 @@ use slipfit_identify::{
 };
 use slipfit_system::files;
 
-use self::report::{Report, UnitReport};
+use self::{
+    found::{Found, OfUnit, Written},
+    report::{Report, UnitReport},
+};
 use super::{
     arguments::SceneArguments,
     endings,
@@ -28,7 +32,7 @@ use super::{
 use crate::{
     dynamics::driven::DriveKind,
     identify::{Compared as Quantity, Identification, Law, MotionModel, OfRecord, Sought, Subject, Unit},
-    show::report::{Course, Identified, identified_page},
+    show::report::{Identified, identified_page},
 };
 
 /// Estimates parameters from measured motion, and says what the record does not determine.
@@ -62,27 +66,6 @@ pub(super) struct Arguments {
     /// Prints JSON instead of text.
     #[arg(long)]
     json: bool,
-}
-
-/// The records of one unit.
-struct OfUnit {
-    /// As it is called on the command line.
-    name: String,
-    records: Vec<Record>,
-}
-
-/// What the records of one unit say.
-struct Found {
-    /// What was measured (SI) and when (s), run after run.
-    measured: Vec<f64>,
-    times: Vec<f64>,
-    runs: Vec<usize>,
-    compared: Vec<Compared>,
-    /// Which of them counts.
-    chosen: usize,
-    spikes: Option<usize>,
-    cutoff_hz: Option<f64>,
-    warnings: Vec<String>,
 }
 
 impl Arguments {
@@ -248,37 +231,6 @@ impl Arguments {
         warn(&warnings);
         Ok(())
     }
-}
-
-impl Found {
-    /// What is shown of it on a page; the records are those of its `unit`.
-    fn on_page<'a>(&'a self, unit: &'a OfUnit) -> Identified<'a> {
-        let chosen = &self.compared[self.chosen];
-        let (mut courses, mut at) = (Vec::new(), 0);
-        for (record, samples) in unit.records.iter().zip(&self.runs) {
-            let range = at..at + samples;
-            at += samples;
-            courses.push(Course {
-                name: &record.name,
-                times: &self.times[range.clone()],
-                measured: &self.measured[range.clone()],
-                residuals: &chosen.estimate.residuals[range],
-            });
-        }
-        Identified { chosen, courses }
-    }
-}
-
-/// How an estimate is written as a table of its scene.
-struct Written<'a> {
-    /// What was compared, with its unit.
-    compared: &'static str,
-    /// "slide", "mechanism" or "drive-train".
-    model: &'static str,
-    /// Exponent of the contacts, if there are any.
-    exponent: Option<f64>,
-    /// For each parameter of the scene the list that states it, if one does; `None` for what no key of a scene says.
-    lists: &'a [Option<Option<&'static str>>],
 }
 
 /// What is compared of a drive that `turns` or pushes, with its unit.

@@ -31,7 +31,8 @@ pub struct NamedDrive {
     pub command: Option<Command>,
     /// How its controller samples; `None` of one that acts continuously.
     pub sampling: Option<Sampling>,
-    /// Whether the body moves as commanded, whatever force that takes: the gain is that of [`PRESCRIBED`] then.
+    /// Whether the body moves as commanded, whatever force that takes: the gain is so high then that the body
+    /// follows within 0.1 µs.
     pub is_prescribed: bool,
     /// The limit of its motor and the friction of its drive train, if any is stated.
     pub train: Option<TrainData<f64>>,

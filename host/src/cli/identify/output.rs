@@ -5,7 +5,7 @@ use std::fmt::Write;
 use slipfit_identify::{between::Between, estimate::Estimate};
 use slipfit_tolerance::number::ten_digits;
 
-use super::Written;
+use super::found::Written;
 
 /// A parameter as it is written: mean and deviation (SI).
 struct Row<'a> {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use slipfit_identify::{between::Between, compare::Compared, record::Record};
 
-use super::{Found, OfUnit};
+use super::found::{Found, OfUnit};
 
 /// What the records of several units say.
 #[derive(Serialize)]
