@@ -390,7 +390,7 @@ fn units_have_a_mean_and_a_spread() {
     assert!(alone.status.code() == Some(2), "{alone:?}");
 }
 
-/// One unit coasts by the symmetric law, the other rubs by direction: both are told by one law.
+/// One unit coasts by the symmetric law, the other rubs by direction: one law describes both.
 #[test]
 fn units_of_a_drive_train_are_compared_by_one_law() {
     let folder = tempfile::tempdir().unwrap();

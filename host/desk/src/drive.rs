@@ -100,9 +100,7 @@ impl<S: Scalar + PartialOrd> AnyDrive<S> {
             (Some(commanded), Some(data)) => Self::CommandedTrain(Train::new(commanded, data)?),
         })
     }
-}
 
-impl<S: Scalar + PartialOrd> AnyDrive<S> {
     /// What `held` gives, on the drive train of `train`, if it has one.
     ///
     /// # Errors

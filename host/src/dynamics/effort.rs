@@ -46,11 +46,11 @@ impl Effort {
         Self { times, values, longest: 0.0, between: Between::Held }
     }
 
-    /// What is held before and from time `t` (s) on, if a sample is taken there; `None` of an effort that is not held, or not changed.
-    pub fn change(&self, t: f64) -> Option<[f64; 2]> {
+    /// What is held up to time `t` (s), if a sample is taken there; `None` of an effort that is not held.
+    pub fn held_before(&self, t: f64) -> Option<f64> {
         let after = self.times.partition_point(|time| *time <= t);
         let is_sample = self.between == Between::Held && after > 1 && self.times[after - 1] == t;
-        is_sample.then(|| [self.values[after - 2], self.values[after - 1]])
+        is_sample.then(|| self.values[after - 2])
     }
 
     /// The effort at time `t` (s), where that of the interpolated speed is `by_speed`.

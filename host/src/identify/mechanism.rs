@@ -1,12 +1,12 @@
 //! A mechanism as a unit that is sought.
 
-use slipfit_core::drive::Piece;
+use slipfit_core::drive::{Piece, TrainData};
 use slipfit_desk::drive::Pieces;
 
 use super::Unit;
 use crate::{
     dynamics::{command::spline, simulate::SimulateError, trajectory::Trajectory},
-    mechanism::{Command, Mechanism, Parameter, run},
+    mechanism::{Command, Mechanism, Parameter, UNLIMITED, run},
     setup::RunSpec,
 };
 
@@ -31,7 +31,7 @@ impl Unit for Mechanism {
         named.is_prescribed = true;
         // What limits the motor does not limit a motion that has been.
         named.train =
-            named.train.map(|train| slipfit_core::drive::TrainData { limit: crate::mechanism::UNLIMITED, ..train });
+            named.train.map(|train| TrainData { limit: UNLIMITED, ..train });
         let fastest = speeds.iter().fold(0.0f64, |most, speed| if speed.abs() > most.abs() { *speed } else { most });
         (named.drive.speed, named.drive.ramp_start, named.drive.ramp_end) = (fastest, 0.0, step * speeds.len() as f64);
         own.set_prescribed_gains();

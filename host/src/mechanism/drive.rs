@@ -128,13 +128,18 @@ impl NamedDrive {
         }
     }
 
+    /// What its motor gives (N, N·m) of the `effort` that its controller asks for.
+    pub fn limited(&self, effort: f64) -> f64 {
+        self.train.map_or(effort, |train| train.limited(effort))
+    }
+
     /// What its motor gives (N, N·m) at time `t` (s) and `speed` (m/s, rad/s), if its controller does not sample.
     pub fn effort(&self, t: f64, speed: f64) -> f64 {
         let asked = match &self.command {
             None => self.drive.force(t, speed),
             Some(command) => Commanded { gain: self.drive.gain, command: command.pieces.clone() }.effort(t, speed),
         };
-        self.train.map_or(asked, |train| train.limited(asked))
+        self.limited(asked)
     }
 }
 

@@ -4,6 +4,7 @@
 //! x and y span the plane and angles turn from x to y; the others are in space.
 
 pub mod agreement;
+mod bends;
 pub mod closing;
 pub mod columns;
 #[cfg(test)]

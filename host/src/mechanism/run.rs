@@ -17,6 +17,7 @@ use slipfit_desk::{
 
 use super::{
     Mechanism, Mounts, NamedDrive, Rest, RunError,
+    bends::bends,
     columns::{self, BodyMotion, JointedBodies, PlanarBodies},
     energy::Energies,
     joint_elements::joints_of_elements,
@@ -248,17 +249,7 @@ fn solve<P: Plant<D>, const D: usize>(
         drives.any(|(named, at)| has_run_away(at.vz, named.drive.speed))
     };
     let mut samplers: Vec<Option<Sampler>> = mechanism.drives.iter().map(Sampler::of).collect();
-    let duration = mechanism.run.duration;
-    let mut bends: Vec<f64> = mechanism.drives.iter().flat_map(|named| named.setpoint().bends()).collect();
-    bends.extend(samplers.iter().flatten().flat_map(|sampler| sampler.times(duration)));
-    if mechanism.drives.iter().any(|named| named.is_prescribed) {
-        let longest = LONGEST.min(duration / LEAST_STEPS);
-        bends.extend((0..).map(|k| f64::from(k) * longest).take_while(|t| *t < duration));
-    }
-    bends.sort_by(f64::total_cmp);
-    // Times that rounding alone tells apart would make a step of their difference.
-    bends.dedup_by(|later, earlier| *later - *earlier < SAME_TIME);
-    bends.retain(|bend| duration - bend > SAME_TIME);
+    let (duration, bends) = (mechanism.run.duration, bends(mechanism));
     let (mut sampled_motions, mut sampled_drives) = (Vec::new(), Vec::new());
     let mut sample = |t: f64, state: &State<D>| {
         if samplers.iter().flatten().any(|sampler| sampler.is_due(t)) {
@@ -338,7 +329,7 @@ fn solve<P: Plant<D>, const D: usize>(
             Place::At(_) => {
                 let mut any = false;
                 for (at, effort) in drives.iter_mut().zip(&efforts) {
-                    any |= effort.change(t).map(|[before, _]| at.force = before).is_some();
+                    any |= effort.held_before(t).map(|before| at.force = before).is_some();
                 }
                 // The work up to here is that of what was held.
                 if any {
@@ -397,13 +388,6 @@ fn solve<P: Plant<D>, const D: usize>(
         integration,
     })
 }
-
-/// Difference (s) of two times at which steps end that is rounding.
-const SAME_TIME: f64 = 1e-10;
-
-/// Longest step (s) under a prescribed motion, and fewest steps of a run: the force is known at the ends of steps.
-const LONGEST: f64 = 1e-3;
-const LEAST_STEPS: f64 = 500.0;
 
 /// A speed (m/s, rad/s) that no mechanism has, at which the run of one whose drive runs away ends.
 const ABSURD: f64 = 1e5;

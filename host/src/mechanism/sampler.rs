@@ -2,7 +2,7 @@
 
 use slipfit_desk::drive::Held;
 
-use super::{Mechanism, NamedDrive, Sampling, UNLIMITED};
+use super::{Mechanism, NamedDrive, Sampling};
 use crate::dynamics::{command::Travel, observer::Instant};
 
 /// What takes the samples of a drive's controller in one run.
@@ -29,12 +29,6 @@ impl<'a> Sampler<'a> {
         Some(Self { named, sampling, travel, last: None, due: 0, samples: Vec::new() })
     }
 
-    /// The times (s) at which it samples, before `end` (s).
-    pub fn times(&self, end: f64) -> impl Iterator<Item = f64> + use<> {
-        let period = self.sampling.period;
-        (0..).map(move |k| f64::from(k) * period).take_while(move |t| *t < end)
-    }
-
     /// Whether it samples at time `t` (s): at the first end of a step that is not before the next sample.
     pub fn is_due(&self, t: f64) -> bool {
         t >= (self.due as f64 - EARLY) * self.sampling.period
@@ -51,8 +45,7 @@ impl<'a> Sampler<'a> {
             Some(gain) => gain * (self.travel.at(at.t) - at.z),
             None => self.named.commanded(at.t),
         };
-        let limit = self.named.train.map_or(UNLIMITED, |train| train.limit);
-        let effort = (self.named.drive.gain * (command - speed)).clamp(-limit, limit);
+        let effort = self.named.limited(self.named.drive.gain * (command - speed));
         held.set(effort);
         self.last = Some([at.t, at.z]);
         self.samples.push([at.t, effort]);

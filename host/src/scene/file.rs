@@ -80,25 +80,17 @@ impl SceneFile {
     pub fn files(file_name: &str, text: &str, overrides: &[Override]) -> Vec<(&'static str, PathBuf)> {
         let found = Found::default();
         let source = Source { name: file_name, text, found: &found };
-        let (Ok(mut first), Ok(mut tree)) = (source.document(), source.document()) else { return Vec::new() };
+        let Ok(mut first) = source.document() else { return Vec::new() };
         // Reading the scene reports what is wrong with an override or an included file.
         overrides.iter().for_each(|change| drop(first.set(change)));
         let paths = include::paths(&first, file_name).unwrap_or_default();
         let mut files: Vec<_> = paths.into_iter().map(|(_, path)| ("an included file", path.into())).collect();
         let included = include::read(&first, file_name).unwrap_or_default();
-        files.extend(Self::named_files(&mut tree, &included, (file_name, overrides)));
-        files
-    }
-
-    /// The files that are named in a scene `tree` with what is `included`.
-    fn named_files<'s>(
-        tree: &mut Node<'s>,
-        included: &'s [include::Included],
-        (file_name, overrides): (&str, &'s [Override]),
-    ) -> Vec<(&'static str, PathBuf)> {
-        included.iter().for_each(|file| drop(include::add(tree, file)));
+        let Ok(mut tree) = source.document() else { return files };
+        included.iter().for_each(|file| drop(include::add(&mut tree, file)));
         overrides.iter().for_each(|change| drop(tree.set(change)));
-        measured::files(&Field { key: String::new(), node: tree }, file_name)
+        files.extend(measured::files(&Field { key: String::new(), node: &tree }, file_name));
+        files
     }
 
     /// Gives `warnings` to what moves, else to the product.

@@ -10,11 +10,11 @@ use crate::model::Parameter;
 pub struct Known {
     /// Values.
     pub values: Vec<f64>,
-    /// Covariance; zero along what is not determined.
+    /// Covariance; zero along undetermined combinations.
     pub covariance: DMatrix<f64>,
 }
 
-/// An estimate with its `covariance` (zero along what is not determined), and the priors of the `parameters`: normal distributions, which
+/// An estimate with its `covariance` (zero along undetermined combinations), and the priors of the `parameters`: normal distributions, which
 /// add their information. To the first order: the output is taken for linear between the estimate and the result. `units` are sizes of the
 /// parameters in which their numbers are comparable.
 pub fn combined(parameters: &[Parameter], record: &Known, units: &[f64]) -> Known {

@@ -7,7 +7,7 @@ use slipfit_tolerance::number::ten_digits;
 
 use super::found::Written;
 
-/// A parameter as it is written: mean and deviation (SI).
+/// A parameter to be written: mean and deviation (SI).
 struct Row<'a> {
     name: &'a str,
     unit: &'a str,
@@ -60,7 +60,7 @@ const LESS: f64 = 0.9999;
 /// Correlation below which there is none.
 const SMALL: f64 = 1e-3;
 
-/// The same of several units: the mean of all is what is unknown. How much the units differ is told as comments.
+/// The same of several units: the mean of all is the unknown. How much the units differ is written as comments.
 pub fn of_several(title: &str, written: &Written, pooled: &[Between]) -> String {
     let units = pooled.iter().map(|of| of.units).max().unwrap_or_default();
     let mut text =

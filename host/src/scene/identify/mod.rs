@@ -53,7 +53,7 @@ pub(super) fn slide(root: &Field, scene: &Scene) -> Result<Option<Identification
     let groups = format!("all, {}, a pin, or one gap such as {:?}", SURFACES.join(", "), names[0]);
     let gaps = Gaps { count: CONTACTS, varies: &varies, is_meant: &is_meant, groups };
     let parameters = named(root, "identify", scene)?;
-    let unit = OfUnit { drive: 0, turns: false, may_be_prescribed: false, list: |_| None };
+    let unit = OfUnit { drive: 0, turns: false, list: |_| None };
     let (options, columns, of) = of_record(&table, &parameters, &gaps, &unit)?;
     Ok(Some(Identification { columns, options, subject: Subject::Slide(of) }))
 }
@@ -94,7 +94,7 @@ pub(super) fn mechanism(
             return Err(named.field.no_effect("along the measured motion", allowed));
         }
     }
-    let unit = OfUnit { drive, turns, may_be_prescribed: true, list };
+    let unit = OfUnit { drive, turns, list };
     let (options, columns, of) = of_record(&table, parameters, &gaps, &unit)?;
     Ok(Some(Identification { columns, options, subject: Subject::Mechanism(of) }))
 }
@@ -105,8 +105,6 @@ struct OfUnit<L> {
     drive: usize,
     /// Whether it turns.
     turns: bool,
-    /// Whether its motion may be prescribed.
-    may_be_prescribed: bool,
     /// In which list of the scene a parameter is stated.
     list: L,
 }
@@ -142,7 +140,7 @@ fn of_record<P: Adjustable>(
     let grid = table.get("search").map(|field| choice(&field, [false, true], search)).transpose()?.unwrap_or_default();
     let compared = [Compared::Force, Compared::Speed, Compared::Position];
     let compared = table.get("compare").map(|field| choice(&field, compared, Compared::name)).transpose()?;
-    let along = along(table, unit.may_be_prescribed, compared)?;
+    let along = along(table, compared)?;
     let columns = Columns {
         position: text(table, "position")?,
         speed: text(table, "speed")?,
@@ -165,7 +163,7 @@ fn of_record<P: Adjustable>(
 }
 
 /// Whether the drive moves as it was measured.
-fn along(table: &Field, may_be_prescribed: bool, compared: Option<Compared>) -> Result<Option<Along>, SceneError> {
+fn along(table: &Field, compared: Option<Compared>) -> Result<Option<Along>, SceneError> {
     let Some(field) = table.get("along") else {
         return match table.get("cutoff") {
             Some(field) => Err(field.no_effect("where the motion is computed", "along = \"motion\" beside it")),
@@ -175,10 +173,6 @@ fn along(table: &Field, may_be_prescribed: bool, compared: Option<Compared>) -> 
     if field.to_text()? != "motion" {
         let problem = Problem::Choice { key: field.key.clone(), written: field.written("") };
         return Err(field.error(problem, "motion, or no such key: the motion is computed"));
-    }
-    if !may_be_prescribed {
-        let what = "a slide that moves as it was measured".into();
-        return Err(field.error(Problem::Unsupported { what }, "the slide as a mechanism of bodies and joints"));
     }
     if let Some(field) = compared.and_then(|_| table.get("compare")) {
         return Err(field.no_effect("along the measured motion", "the force, which is what is left to compare"));

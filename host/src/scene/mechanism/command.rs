@@ -117,7 +117,7 @@ pub(super) fn controls(
     Ok(Controls { drive, command, sampling })
 }
 
-/// Refuses `keys` of the drive of `table` beside what stands in their place.
+/// Refuses `keys` of the drive of `table` beside what replaces them.
 fn refuse(table: &Field, keys: &[&str], beside: &str, allowed: &str) -> Result<(), SceneError> {
     match keys.iter().find_map(|key| table.get(key)) {
         Some(field) => Err(field.no_effect(format!("beside {beside}"), allowed)),

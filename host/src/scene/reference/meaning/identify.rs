@@ -61,7 +61,7 @@ pub const IDENTIFY: &[(&str, &str)] = &[
     ),
     (
         "identify.delay.between",
-        "The least and the greatest value of what is sought. Required in such a table, which stands in place of a list of bounds.",
+        "The least and the greatest value of what is sought. Required in such a table, which replaces a list of bounds.",
     ),
     (
         "identify.delay.mean",
