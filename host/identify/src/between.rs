@@ -50,6 +50,7 @@ fn pooled(name: String, unit: &'static str, found: &[[f64; 2]]) -> Between {
     let scatter = |mean: f64, weights: &[f64]| -> f64 {
         found.iter().zip(weights).map(|([value, _], weight)| weight * (value - mean) * (value - mean)).sum()
     };
+    // A deviation of zero would have an infinite weight.
     let least = found.iter().fold(f64::MIN_POSITIVE, |most, [_, deviation]| most.max(1e-9 * deviation));
     let variances: Vec<f64> = found.iter().map(|[_, deviation]| deviation.max(least) * deviation.max(least)).collect();
     let weights: Vec<f64> = variances.iter().map(|variance| 1.0 / variance).collect();

@@ -30,8 +30,7 @@ impl Unit for Mechanism {
         named.sampling = None;
         named.is_prescribed = true;
         // What limits the motor does not limit a motion that has been.
-        named.train =
-            named.train.map(|train| TrainData { limit: UNLIMITED, ..train });
+        named.train = named.train.map(|train| TrainData { limit: UNLIMITED, ..train });
         let fastest = speeds.iter().fold(0.0f64, |most, speed| if speed.abs() > most.abs() { *speed } else { most });
         (named.drive.speed, named.drive.ramp_start, named.drive.ramp_end) = (fastest, 0.0, step * speeds.len() as f64);
         own.set_prescribed_gains();

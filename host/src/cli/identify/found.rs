@@ -8,20 +8,27 @@ use crate::show::report::{Course, Identified};
 pub struct OfUnit {
     /// As it is called on the command line.
     pub name: String,
+    /// Its records.
     pub records: Vec<Record>,
 }
 
 /// What the records of one unit say.
 pub struct Found {
-    /// What was measured (SI) and when (s), run after run.
+    /// What was measured (SI), run after run.
     pub measured: Vec<f64>,
+    /// When (s) each of it was measured.
     pub times: Vec<f64>,
+    /// The number of samples of each run.
     pub runs: Vec<usize>,
+    /// Every law with its estimate.
     pub compared: Vec<Compared>,
     /// Which of them counts.
     pub chosen: usize,
+    /// Single wrong samples that were replaced.
     pub spikes: Option<usize>,
+    /// Cut-off frequency (Hz) of the motion's filter.
     pub cutoff_hz: Option<f64>,
+    /// What to know before trusting a figure.
     pub warnings: Vec<String>,
 }
 

@@ -165,11 +165,21 @@ fn rotor(table: &Field, turns: bool) -> Result<f64, SceneError> {
     Ok(inertia * ratio * ratio)
 }
 
-/// Whether what drives push has a rotor only where an ideal joint leaves it no other motion: mass that moves along one direction alone is
+/// Most samples of a controller in a run, each of which ends a step.
+const MOST_SAMPLES: f64 = 2e6;
+
+/// Whether controllers sample no more often than steps can end, and what drives push has a rotor only where an ideal joint leaves it no other motion: mass that moves along one direction alone is
 /// known there.
 pub(super) fn check(mechanism: &Mechanism, root: &Field) -> Result<(), SceneError> {
     let fields = tables(root, "drive")?;
     for (named, (_, table)) in mechanism.drives.iter().zip(fields) {
+        let least = mechanism.run.duration / MOST_SAMPLES;
+        if named.sampling.as_ref().is_some_and(|sampling| sampling.period < least) {
+            let field = table.get("sampling").unwrap_or(table);
+            return Err(
+                field.out_of_range("s", format!("{least:e} s or more in a run of {} s", mechanism.run.duration))
+            );
+        }
         let of_body = |joint: &&Joint| joint.between.contains(&Some(named.body)) && joint.between.contains(&None);
         let is_held = |joint: &Joint| match (named.action, &joint.kind) {
             (Action::Turns { .. }, _) => true,

@@ -1,7 +1,7 @@
 //! Reading a recorded command: a column of a CSV file.
 
 use slipfit_core::drive::Piece;
-use slipfit_identify::record::{Columns, Needs, Record, read_file};
+use slipfit_identify::record::{Columns, Needs, read_file};
 
 use super::super::measured::folder;
 use crate::{
@@ -11,9 +11,9 @@ use crate::{
 
 /// A recorded command.
 pub struct Recorded {
-    /// The speed over time.
+    /// The speed (m/s, rad/s) over time.
     pub pieces: Vec<Piece<f64>>,
-    /// Distances from the start that are held over each piece, of positions that are not interpolated.
+    /// Distances (m, rad) from the start that are held over each piece, of positions that are not interpolated.
     pub positions: Option<Vec<f64>>,
     /// Whether positions were recorded, not speeds.
     pub is_position: bool,
@@ -91,33 +91,33 @@ pub fn recorded(table: &Field, [turns, is_prescribed]: [bool; 2], file_name: &st
         }
     }
     let values = &values[..];
-    let (pieces, positions) = match (is_position, between) {
-        (true, Interpolation::Held) => {
-            let pieces = commanded(&record, |_| [0.0; 4]);
-            (pieces, Some(values.iter().map(|value| value - values[0]).collect()))
-        }
-        (true, Interpolation::Linear) => {
-            let speed = |i: usize| values.get(i + 1).map_or(0.0, |next| (next - values[i]) / record.step);
-            (commanded(&record, |i| [speed(i), 0.0, 0.0, 0.0]), None)
-        }
-        (true, Interpolation::Cubic) => {
-            let spline = spline(values, record.step, is_prescribed.then_some(0.0));
-            let derivative = |[_, b, c, d]: [f64; 4]| [b, 2.0 * c, 3.0 * d, 0.0];
-            let last = spline.last().map_or(0.0, |[_, b, c, d]| b + record.step * (2.0 * c + 3.0 * d * record.step));
-            // After the last sample its speed.
-            (commanded(&record, |i| spline.get(i).map_or([last, 0.0, 0.0, 0.0], |of| derivative(*of))), None)
-        }
-        (false, Interpolation::Held) => (commanded(&record, |i| [values[i], 0.0, 0.0, 0.0]), None),
-        (false, Interpolation::Linear) => {
-            let slope = |i: usize| values.get(i + 1).map_or(0.0, |next| (next - values[i]) / record.step);
-            (commanded(&record, |i| [values[i], slope(i), 0.0, 0.0]), None)
-        }
-        (false, Interpolation::Cubic) => {
-            let spline = spline(values, record.step, None);
-            (commanded(&record, |i| spline.get(i).copied().unwrap_or([values[i], 0.0, 0.0, 0.0])), None)
-        }
+    let start = (is_prescribed && is_position).then_some(0.0);
+    let curve = interpolated(values, record.step, between, start);
+    // After the last sample a speed stays, and so does a position, unless its slope is known.
+    let last = match (is_position && between == Interpolation::Cubic, curve.last()) {
+        (true, Some([_, b, c, d])) => b + record.step * (2.0 * c + 3.0 * d * record.step),
+        _ => 0.0,
     };
+    let end = [values.last().copied().unwrap_or_default(), last, 0.0, 0.0];
+    let speed = |[a, b, c, d]: [f64; 4]| if is_position { [b, 2.0 * c, 3.0 * d, 0.0] } else { [a, b, c, d] };
+    let piece = |(i, of): (usize, [f64; 4])| Piece {
+        start: record.start + record.step * i as f64,
+        // Without a negative zero.
+        coefficients: speed(of).map(|of| of + 0.0),
+    };
+    let pieces = curve.into_iter().chain([end]).enumerate().map(piece).collect();
+    let is_held = is_position && between == Interpolation::Held;
+    let positions = is_held.then(|| values.iter().map(|value| value - values[0]).collect());
     Ok(Recorded { pieces, positions, is_position })
+}
+
+/// Coefficients from each of `values` at intervals of `step` (s) to the next; a spline may have a slope at its `start`.
+fn interpolated(values: &[f64], step: f64, between: Interpolation, start: Option<f64>) -> Vec<[f64; 4]> {
+    match between {
+        Interpolation::Held => values.windows(2).map(|two| [two[0], 0.0, 0.0, 0.0]).collect(),
+        Interpolation::Linear => values.windows(2).map(|two| [two[0], (two[1] - two[0]) / step, 0.0, 0.0]).collect(),
+        Interpolation::Cubic => spline(values, step, start),
+    }
 }
 
 /// Share of its greatest speed below which a recorded motion is at rest.
@@ -129,10 +129,4 @@ fn fastest(values: &[f64], is_position: bool, step: f64) -> f64 {
         true => values.windows(2).fold(0.0, |most: f64, two| most.max(((two[1] - two[0]) / step).abs())),
         false => values.iter().fold(0.0, |most: f64, value| most.max(value.abs())),
     }
-}
-
-/// A piece from each sample of a `record` on, with these coefficients of the speed.
-fn commanded(record: &Record, coefficients: impl Fn(usize) -> [f64; 4]) -> Vec<Piece<f64>> {
-    let start = |i: usize| record.start + record.step * i as f64;
-    (0..record.samples).map(|i| Piece { start: start(i), coefficients: coefficients(i).map(|of| of + 0.0) }).collect()
 }
