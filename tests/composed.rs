@@ -20,6 +20,7 @@ use slipfit_tests::known_runs::mechanism_rows;
 fn scene(name: &str) -> Mechanism {
     let text = match name {
         "motion-plane" => include_str!("problems/scenes/motion-plane.toml"),
+        "motion-rails" => include_str!("problems/scenes/motion-rails.toml"),
         "motion-space" => include_str!("problems/scenes/motion-space.toml"),
         shipped_name => shipped(shipped_name).unwrap(),
     };
@@ -56,6 +57,7 @@ fn what_is_written_is_current() {
         "hatch",
         "linear-guide",
         "motion-plane",
+        "motion-rails",
         "motion-space",
         "slider-crank",
         "slider-crank-guide",
@@ -117,6 +119,7 @@ in_plane! {
     a_four_bar_has_the_desks_bits: four_bar;
     a_woodpecker_has_the_desks_bits: woodpecker_toy;
     what_motion_can_have_in_a_plane_has_the_desks_bits: motion_plane;
+    walls_through_several_gaps_have_the_desks_bits: motion_rails;
 }
 
 in_space! {

@@ -264,3 +264,16 @@ fn peaks_of_units_are_good_to_a_thousandth() {
         assert!(p95 < 1e-3 && errors[0] > 0.0, "{name}: {p95}");
     }
 }
+
+/// A run that ends while the drive still ramps judges no unit: how many fail is not known, and why.
+#[test]
+fn units_without_a_verdict_are_no_success() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["population", "slider-crank", "--units", "20", "--set", "run.duration=10"];
+    let text = stdout(&slipfit(folder.path(), &arguments));
+    assert!(text.contains("Malfunction     not known: none of 20 units comes to a verdict"), "{text}");
+    assert!(text.contains("undecided: the run ends at 10 ms, what is commanded at "), "{text}");
+    assert!(!text.contains("None malfunctions") && !text.contains("Sigma level"), "{text}");
+    let found = json(folder.path(), &[&arguments[..], &["--json"]].concat());
+    assert!(found["statistics"]["undecided"]["units"] == 20 && found["statistics"]["sigma_level"].is_null(), "{found}");
+}

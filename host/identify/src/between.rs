@@ -24,8 +24,16 @@ pub struct Between {
     pub spread: f64,
 }
 
-/// Each parameter that at least two of the `estimates` determine, in the order of the first.
+/// Those of the `estimates` whose models explain their records, by their numbers; all where fewer than two do.
+pub fn explained(estimates: &[&Estimate]) -> Vec<usize> {
+    let all = 0..estimates.len();
+    let explained: Vec<usize> = all.clone().filter(|k| estimates[*k].lack.verdict.is_none()).collect();
+    if explained.len() > 1 { explained } else { all.collect() }
+}
+
+/// Each parameter that at least two of the [`explained`] `estimates` determine, in the order of the first.
 pub fn between(estimates: &[&Estimate]) -> Vec<Between> {
+    let estimates: Vec<&Estimate> = explained(estimates).into_iter().map(|k| estimates[k]).collect();
     let Some(first) = estimates.first() else { return Vec::new() };
     let of = |of_first: &Estimated| {
         let parameter = |estimate: &&Estimate| {

@@ -6,17 +6,17 @@ use serde::Serialize;
 use slipfit_measured::numeric::tails::student_quantile_above;
 
 use crate::{
+    beforehand::Beforehand,
     doubt::{
         bootstrap,
-        covariance::{Linearised, pseudo_inverse},
+        covariance::{Linearised, pseudo_inverse, with_known},
         determined::{NoInfluence, Undetermined, check_influence, undetermined},
         lack::{Lack, relative},
-        noise::Noise,
-        prior::{Known, combined},
         profile::{Profile, profile},
     },
     fit::{By, Fit, Loss, Options, fit, grid},
     model::{Model, ModelError, Parameter},
+    signal::noise::Noise,
 };
 
 /// A parameter and what is known of it. SI units.
@@ -28,15 +28,15 @@ pub struct Estimated {
     pub unit: &'static str,
     /// Estimate; the middle of all that explain the record equally well where it is not determined.
     pub value: f64,
-    /// Standard deviation; `None` where the record does not determine it. With a prior that of both; what follows is of the record alone.
+    /// Standard deviation, with what is known beforehand; `None` where neither that nor the record determines it.
     pub deviation: Option<f64>,
-    /// The same by the autocovariance of the residuals alone.
+    /// The same of the record alone, by the autocovariance of the residuals.
     pub deviation_by_autocovariance: Option<f64>,
-    /// The same by the block bootstrap alone.
+    /// The same of the record alone, by the block bootstrap.
     pub deviation_by_bootstrap: Option<f64>,
     /// Interval of 95 %, by `deviation` or by profile likelihood, whichever is wider on each side.
     pub interval: Option<[f64; 2]>,
-    /// Interval of 95 % by the block bootstrap.
+    /// Interval of 95 % by the block bootstrap, of the record alone.
     pub bootstrap: Option<[f64; 2]>,
     /// Interval of 95 % by profile likelihood.
     pub profile: Profile,
@@ -120,6 +120,7 @@ pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estim
         let by_autocovariance = libm::sqrt(covariance[(i, i)].max(0.0));
         [by_autocovariance, drawn.deviations[i], by_autocovariance.max(drawn.deviations[i])]
     };
+    let beforehand = Beforehand::of(parameters, &fitted.residuals, &runs);
     let posterior = (0..parameters.len()).any(has_prior).then(|| {
         let wider = |i: usize| {
             let [own, _, both] = of_record(i);
@@ -127,7 +128,7 @@ pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estim
         };
         let (rows, columns) = covariance.shape();
         let wide = DMatrix::from_fn(rows, columns, |i, k| covariance[(i, k)] * wider(i) * wider(k));
-        combined(parameters, &Known { values: fitted.values.clone(), covariance: wide }, &linearised.units)
+        with_known(&beforehand, &wide, &linearised.units)
     });
     let left: Vec<Undetermined> =
         undetermined.iter().filter(|direction| !direction.parameters.iter().any(|i| has_prior(*i))).cloned().collect();
@@ -139,19 +140,21 @@ pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estim
         let parameter: &Parameter = &parameters[i];
         let known = !is_among(&left, i);
         let by_record = (!is_among(&undetermined, i)).then(|| of_record(i));
-        let (value, deviation) = match &posterior {
-            None => (fitted.values[i], by_record.map(|[.., both]| both)),
-            Some(all) => (all.values[i], known.then(|| libm::sqrt(all.covariance[(i, i)].max(0.0)))),
+        let value = fitted.values[i];
+        let deviation = match &posterior {
+            None => by_record.map(|[.., both]| both),
+            Some(all) => known.then(|| libm::sqrt(all[(i, i)].max(0.0))),
         };
         let within = |value: f64| value.clamp(parameter.bounds[0], parameter.bounds[1]);
         let reach = deviation.map(|deviation| quantile * deviation);
-        let profile = profile(model, &fitted, &linearised, i, by_record.map(|[.., both]| quantile * both))?;
+        let profile = profile(model, &fitted, &linearised, &beforehand, i, reach)?;
         let interval = reach.map(|reach| {
             let [low, high] = [value - reach, value + reach].map(within);
-            // A bent output makes one side longer, up to the bound where the record sets no end. What is known beforehand is not in it.
-            if posterior.is_some() {
+            // What the record does not show has no profile.
+            if profile.points.is_empty() {
                 return [low, high];
             }
+            // A bent output makes one side longer, up to the bound where nothing sets an end.
             let [first, last] = [0, 1].map(|side| profile.ends[side].unwrap_or(parameter.bounds[side]));
             [low.min(first), high.max(last)]
         });
@@ -169,15 +172,8 @@ pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estim
         })
     };
     let estimated = (0..parameters.len()).into_par_iter().map(of).collect::<Result<Vec<_>, _>>()?;
-    let held_out = held_out_error(model, &fitted, &linearised);
-    let residuals = match &posterior {
-        None => fitted.residuals,
-        Some(known) => {
-            let output = model.simulate(&known.values)?;
-            model.measured().iter().zip(&output).map(|(measured, output)| measured - output).collect()
-        }
-    };
-    let covariance = posterior.map_or(covariance, |known| known.covariance);
+    let held_out = held_out_error(model, &fitted, &linearised, &beforehand);
+    let covariance = posterior.unwrap_or(covariance);
     Ok(Estimate {
         lack: Lack::new(model.measured(), &linearised.residuals, &runs, held_out),
         correlation: correlation(&covariance, &left),
@@ -188,7 +184,7 @@ pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estim
         samples,
         effective_samples,
         residual_deviation: fitted.scale,
-        residuals,
+        residuals: fitted.residuals,
     })
 }
 
@@ -204,7 +200,12 @@ fn correlation(covariance: &DMatrix<f64>, undetermined: &[Undetermined]) -> Vec<
 }
 
 /// Relative error in the last quarter of each run, for the estimate that the rest gives by the derivatives at the estimate from all.
-fn held_out_error<M: Model + ?Sized>(model: &M, fit: &Fit, linearised: &Linearised) -> Option<f64> {
+fn held_out_error<M: Model + ?Sized>(
+    model: &M,
+    fit: &Fit,
+    linearised: &Linearised,
+    beforehand: &Beforehand,
+) -> Option<f64> {
     let p = linearised.columns.len();
     let mut held_out = vec![false; fit.residuals.len()];
     let mut at = 0;
@@ -216,8 +217,10 @@ fn held_out_error<M: Model + ?Sized>(model: &M, fit: &Fit, linearised: &Linearis
         values.iter().zip(other).zip(&held_out).filter(|(_, out)| !**out).map(|((a, b), _)| a * b).sum()
     };
     let columns = &linearised.columns;
-    let products = DMatrix::from_fn(p, p, |i, k| fitted(&columns[i], &columns[k]));
-    let scores = DVector::from_fn(p, |i, _| fitted(&columns[i], &linearised.residuals));
+    let known = beforehand.normal_equations(&fit.values, &linearised.units, fit.scale);
+    let added = |i: usize, k: usize| if i == k { known[i][0] } else { 0.0 };
+    let products = DMatrix::from_fn(p, p, |i, k| fitted(&columns[i], &columns[k]) + added(i, k));
+    let scores = DVector::from_fn(p, |i, _| fitted(&columns[i], &linearised.residuals) + known[i][1]);
     let (inverse, undetermined) = pseudo_inverse(products);
     // A quarter that alone determines a parameter cannot be held out.
     if undetermined.len() > linearised.undetermined.len() {

@@ -5,6 +5,7 @@
 //! with intervals how well it does. [`drive_train`] is the model of a drive train by its effort along the measured motion.
 #![forbid(unsafe_code)]
 
+pub mod beforehand;
 pub mod between;
 pub mod compare;
 pub mod doubt;

@@ -10,9 +10,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use slipfit_core::slide::CONTACTS;
 use slipfit_identify::{
-    between::between,
+    between::{between, explained},
     compare::{Compared, best, compare},
     drive_train::{self, DriveTrain, Filtered, LAWS, filtered},
+    estimate::Estimate,
     fit,
     model::Model,
     record::{Needs, Record, read_file},
@@ -214,6 +215,15 @@ impl Arguments {
             if !warnings.contains(warning) {
                 warnings.push(warning.clone());
             }
+        }
+        if pooled.is_some() {
+            let all: Vec<&Estimate> = chosen.iter().map(|one| &one.estimate).collect();
+            let counted = explained(&all);
+            let left_out = (0..all.len()).filter(|k| !counted.contains(k));
+            warnings.extend(left_out.map(|k| {
+                let why = all[k].lack.verdict.as_deref().unwrap_or_default();
+                format!("{} is left out of the mean, because the model does not explain it: {why}", units[k].name)
+            }));
         }
         if let Some(path) = &self.page {
             let units: Vec<Identified> = units.iter().zip(&found).map(|(unit, found)| found.on_page(unit)).collect();

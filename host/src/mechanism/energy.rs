@@ -29,7 +29,7 @@ impl<'a> Energies<'a> {
         let contacts = pressed.zip(joints_of_elements(mechanism)).filter_map(|(gap, joint)| {
             let ([stiffness, exponent], depth) = (joint?.laws.contact.spring(), -gap?);
             // Of a pin the deepest of its four walls is known.
-            let is_pin = matches!(joint?.kind, JointKind::Track { .. }) && joint?.contours.is_empty();
+            let is_pin = matches!(joint?.kind, JointKind::Track { .. }) && joint?.walls.is_parallel();
             let walls = if is_pin { 4.0 } else { 1.0 };
             (depth > 0.0).then(|| walls * stiffness * libm::pow(depth, exponent + 1.0) / (exponent + 1.0))
         });

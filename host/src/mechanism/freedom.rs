@@ -11,7 +11,8 @@ use slipfit_core::{
 };
 
 use super::{
-    Joint, JointKind, Mechanism, Mounts, RunError, element::PlanarElement, element::SpatialElement, planar, spatial,
+    Joint, JointKind, Mechanism, Mounts, RunError, Walls, element::PlanarElement, element::SpatialElement, planar,
+    spatial,
 };
 
 /// The mobility of a mechanism, n = 6(N − 1) − Σ i·c_i − n_cl (eq. 8), in a plane with 3 for 6.
@@ -156,7 +157,7 @@ fn in_plane<const D: usize>(
 
 /// A `joint` with straight and parallel walls.
 fn straight(joint: &Joint) -> Joint {
-    Joint { contours: Vec::new(), ..joint.clone() }
+    Joint { walls: Walls::Parallel, ..joint.clone() }
 }
 
 /// What joints with play hold of the free `bodies`: row by row the generalised force of 1 N.

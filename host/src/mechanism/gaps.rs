@@ -61,7 +61,7 @@ impl Mechanism {
 
     /// The widest gap (m) of a `joint` over the production.
     pub(super) fn widest_of(&self, joint: &Joint) -> f64 {
-        joint.kind.gaps().map(|gap| self.gaps[gap].widest()).fold(0.0, f64::max)
+        joint.gaps().map(|gap| self.gaps[gap].widest()).fold(0.0, f64::max)
     }
 
     /// The joint that loses its play at the lowest level, and that level, of those that have some by their mean. A track loses it
@@ -69,13 +69,17 @@ impl Mechanism {
     pub fn first_to_close(&self) -> Option<(String, f64)> {
         let of_joint = |joint: &Joint| -> Vec<(String, Vec<usize>)> {
             match joint.kind {
-                JointKind::Track { gaps: [left, right, rail, wall] } => {
-                    let pair = |one: Option<usize>, other: Option<usize>, name: &str| {
-                        Some((format!("{} {name}", joint.name), vec![one?, other?]))
+                JointKind::Track { gaps } => {
+                    let pair = |place: usize, walls: [usize; 2], name: &str| {
+                        let [one, other] = walls.map(|wall| Some(joint.walls.gap_at(wall, place, gaps[wall]?)));
+                        let far = self.gaps[one?].name.find(" at ").filter(|_| place > 0);
+                        let far = far.map_or("", |at| &self.gaps[one.unwrap_or_default()].name[at..]);
+                        Some((format!("{} {name}{far}", joint.name), vec![one?, other?]))
                     };
-                    [pair(left, right, "across"), pair(rail, wall, "up-down")].into_iter().flatten().collect()
+                    let pairs = |place| [pair(place, [0, 1], "across"), pair(place, [2, 3], "up-down")];
+                    (0..joint.walls.places()).flat_map(pairs).flatten().collect()
                 }
-                ref kind => kind.gaps().map(|gap| (self.gaps[gap].name.clone(), vec![gap])).collect(),
+                _ => joint.gaps().map(|gap| (self.gaps[gap].name.clone(), vec![gap])).collect(),
             }
         };
         let level = |(name, gaps): (String, Vec<usize>)| {

@@ -1,7 +1,7 @@
 //! The hash that ties a table and a kernel to the mechanism that they were made of.
 
 use super::{
-    Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port, Sampling, SlidingData, SpringKind, Thrown,
+    Action, Gap, Joint, JointKind, Laws, Mechanism, NormalData, Port, Sampling, SlidingData, SpringKind, Thrown, Walls,
 };
 use crate::setup::Digest;
 use slipfit_core::{
@@ -80,7 +80,7 @@ fn port(port: Port) -> usize {
     port.map_or(0, |body| body + 1)
 }
 
-fn of_joint(digest: &mut Digest, Joint { between, at, kind, laws, contours, drag, .. }: &Joint) {
+fn of_joint(digest: &mut Digest, Joint { between, at, kind, laws, walls, drag, .. }: &Joint) {
     digest.counts(between.map(port));
     digest.numbers(*at);
     match kind {
@@ -106,7 +106,16 @@ fn of_joint(digest: &mut Digest, Joint { between, at, kind, laws, contours, drag
     if !kind.is_ideal() {
         of_laws(digest, laws);
     }
-    digest.numbers(contours.iter().flat_map(|contour| [contour.slope, contour.curvature]));
+    match walls {
+        Walls::Parallel => {}
+        Walls::Stated(contours) => {
+            digest.numbers(contours.iter().flat_map(|contour| [contour.slope, contour.curvature]));
+        }
+        Walls::OfGaps(walls) => walls.iter().for_each(|wall| {
+            digest.counts(wall.iter().map(|of| of.gap));
+            digest.numbers(wall.iter().flat_map(|of| of.adds));
+        }),
+    }
     if let Some(drag) = drag {
         of_train(digest, drag);
     }

@@ -12,7 +12,7 @@ pub(super) fn joints_of_elements(mechanism: &Mechanism) -> impl Iterator<Item = 
 fn elements_of(joint: &Joint) -> usize {
     use super::JointKind::{Bearing, Guide, Journal, Stop, Track};
     match joint.kind {
-        Track { gaps } if !joint.contours.is_empty() => gaps.iter().flatten().count(),
+        Track { gaps } if !joint.walls.is_parallel() => gaps.iter().flatten().count(),
         Journal { .. } | Stop { .. } | Track { .. } => 1,
         Bearing { .. } => 2,
         Guide { .. } => 4,

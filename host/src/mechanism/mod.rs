@@ -40,6 +40,7 @@ mod start;
 mod state;
 mod sunk;
 mod torn;
+mod walls;
 
 pub use columns::BodyMotion;
 pub use drive::{Action, NamedDrive, UNLIMITED};
@@ -59,6 +60,7 @@ pub use spring::{Spring, SpringKind};
 pub use start::Rest;
 pub use sunk::Sunk;
 pub use torn::{Torn, torn};
+pub use walls::{OfGap, Walls, through};
 
 use std::sync::Arc;
 
@@ -164,9 +166,8 @@ pub struct Joint {
     pub kind: JointKind,
     /// Laws of its contacts.
     pub laws: Laws,
-    /// How its walls slope and bow along the travel: one for each line of a guide, left of the axis first, and for each wall of a track,
-    /// in the order of its gaps. None where they are straight and parallel.
-    pub contours: Vec<Contour<f64>>,
+    /// How its walls run along the travel.
+    pub walls: Walls,
     /// Friction of an ideal joint against its one motion, whatever it carries.
     pub drag: Option<TrainData<f64>>,
 }
@@ -245,6 +246,20 @@ impl JointKind {
     pub fn is_ideal(&self) -> bool {
         use JointKind::{Cylindrical, Fixed, PinSlot, Prismatic, Revolute, Spherical};
         matches!(self, Fixed | Revolute { .. } | Prismatic { .. } | PinSlot { .. } | Cylindrical { .. } | Spherical)
+    }
+
+    /// The gaps at its place, by their numbers.
+    pub fn gaps(&self) -> impl Iterator<Item = usize> + use<> {
+        let gaps = match *self {
+            Self::Journal { gap, .. }
+            | Self::Guide { gap, .. }
+            | Self::Bearing { gap, .. }
+            | Self::Stop { gap, .. } => [Some(gap), None, None, None],
+            Self::Track { gaps } => gaps,
+            Self::Fixed | Self::Revolute { .. } | Self::Prismatic { .. } | Self::PinSlot { .. } => [None; 4],
+            Self::Cylindrical { .. } | Self::Spherical => [None; 4],
+        };
+        gaps.into_iter().flatten()
     }
 
     /// Whether it ends a travel.

@@ -1,6 +1,6 @@
 //! Parameters of a mechanism that can vary over the production, beside its gaps, or be unknown.
 
-use super::{Mechanism, NormalData};
+use super::{Mechanism, NormalData, Walls};
 use crate::setup::{self, Adjustable, tilted_x, tilted_z};
 
 /// A parameter of a mechanism that varies.
@@ -97,8 +97,9 @@ impl Adjustable for Parameter {
             Self::Viscous(drive) => replace(mechanism.drives[drive].train.as_mut().map(|train| &mut train.viscous)),
             Self::Offset(drive) => replace(mechanism.drives[drive].train.as_mut().map(|train| &mut train.offset)),
             Self::Slope(joint) => {
-                let contours = mechanism.joints[joint].contours.iter_mut();
-                contours.filter(|of| of.slope != 0.0).for_each(|of| replace(Some(&mut of.slope)));
+                if let Walls::Stated(contours) = &mut mechanism.joints[joint].walls {
+                    contours.iter_mut().filter(|of| of.slope != 0.0).for_each(|of| replace(Some(&mut of.slope)));
+                }
             }
             Self::TiltX => mechanism.gravity = tilted_x(gravity, change(0.0)),
             Self::TiltZ => mechanism.gravity = tilted_z(gravity, change(0.0)),

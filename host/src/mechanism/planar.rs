@@ -73,10 +73,10 @@ pub fn elements<const D: usize>(
                     let wall = Pad { gap: gaps[gap], contact: contact(&joint.laws, stick_band)? };
                     // The second axis of the link points back along the lines on their left, and along them on their right.
                     let (line, sense) = if side > 0.0 { (0, 1.0) } else { (1, -1.0) };
-                    elements.push(match joint.contours.get(line) {
+                    elements.push(match joint.walls.contour(line, gaps) {
                         None => PlanarElement::Pad(Element { link, law: wall }),
                         Some(Contour { slope, curvature }) => {
-                            let contour = Contour { slope: sense * slope, curvature: *curvature };
+                            let contour = Contour { slope: sense * slope, curvature };
                             PlanarElement::Contour(Element { link, law: Contoured { wall, along: Axis::Y, contour } })
                         }
                     });

@@ -172,12 +172,12 @@ fn add(
     let at: Vector3<f64> = joint.at.into();
     let seat = |at| Seat { point: point_of(mechanism, first, at), from };
     match joint.kind {
-        JointKind::Track { gaps: indices } if !joint.contours.is_empty() => {
+        JointKind::Track { gaps: indices } if !joint.walls.is_parallel() => {
             let walls = [(Axis::X, 1.0), (Axis::X, -1.0), (Axis::Y, -1.0), (Axis::Y, 1.0)];
-            for ((gap, contour), (axis, sign)) in indices.into_iter().zip(&joint.contours).zip(walls) {
-                if let Some(gap) = gap {
+            for (i, (gap, (axis, sign))) in indices.into_iter().zip(walls).enumerate() {
+                if let (Some(gap), Some(contour)) = (gap, joint.walls.contour(i, gaps)) {
                     let wall = Wall { axis, sign, gap: gaps[gap], contact };
-                    let law = Contoured { wall, along: Axis::Z, contour: *contour };
+                    let law = Contoured { wall, along: Axis::Z, contour };
                     elements.push(SpatialElement::Contour(Element { link: seat(at), law }));
                 }
             }

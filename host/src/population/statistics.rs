@@ -130,7 +130,8 @@ impl Statistics {
             undecided,
             malfunctions: failed,
             over_limit: duty.limit.map(|_| Share::new(counts.over_limit, all)),
-            sigma_level: failed.sigma_level(),
+            // Of undecided units it is not known on which side they are.
+            sigma_level: failed.sigma_level().filter(|_| undecided.units == 0),
             peak_force: Spread::of(&figures.force),
             running_force: Spread::of(&figures.running_force),
             breakaway: Spread::of(&figures.breakaway),

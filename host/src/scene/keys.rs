@@ -275,6 +275,7 @@ pub(super) const ROOT: &[Key] = &[
             key("wall"),
             key("slope"),
             key("bow"),
+            table("along", &[key("at"), key("clearance"), key("left"), key("right"), key("rail"), key("wall")]),
             key("coulomb"),
             key("stick_band"),
             key("viscous"),
@@ -300,7 +301,17 @@ pub(super) const ROOT: &[Key] = &[
     table("drawing", &[key("clearance")]),
     table(
         "pin",
-        &[key("name"), key("position"), key("left"), key("right"), key("rail"), key("wall"), key("slope"), key("bow")],
+        &[
+            key("name"),
+            key("position"),
+            key("left"),
+            key("right"),
+            key("rail"),
+            key("wall"),
+            key("slope"),
+            key("bow"),
+            table("along", &[key("at"), key("left"), key("right"), key("rail"), key("wall")]),
+        ],
     ),
     table("tolerance", &[key("general"), key("rule"), key("sigma"), key("datums"), key("correlation")]),
     table(

@@ -43,7 +43,7 @@ const BEYOND: [(&str, &[&str]); 4] = [
             "travel",
         ],
     ),
-    ("pin", &["slope", "bow"]),
+    ("pin", &["slope", "bow", "along"]),
     ("identify", &["along"]),
 ];
 

@@ -4,6 +4,7 @@
 mod common;
 mod drive_train;
 mod mechanism;
+mod production;
 mod refused;
 mod slide;
 

@@ -82,7 +82,7 @@ fn estimated(scene: &Scene, count: usize, force: Vec<f64>) -> Estimate {
     estimate(&model, &Options::default()).unwrap()
 }
 
-fn noisy(force: &[f64], noise: &[f64]) -> Vec<f64> {
+pub fn noisy(force: &[f64], noise: &[f64]) -> Vec<f64> {
     force.iter().zip(noise).map(|(force, noise)| force + noise).collect()
 }
 

@@ -65,6 +65,13 @@ fn what_makes_no_sense_is_refused_at_its_place() {
         (drive(ramp).replace("[[drive]]", "slope = 0.1\n[[drive]]"), "`joint.slope`"),
         (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "slope = [0.1, 0.2, 0.3]"), "a list of 2"),
         (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "bow = 0.1"), "over a length"),
+        (
+            wedge(0.01, 0.2, ramp).replace("[[drive]]", "along = [{ at = 9, clearance = [1, 0] }]\n[[drive]]"),
+            "beside `slope`",
+        ),
+        (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "along = [{ at = 9 }]"), "clearance"),
+        (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "along = [{ at = 0, clearance = [1, 0] }]"), "0.1 mm or more"),
+        (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "along = []"), "one or two tables"),
         // At ± 20 mm the lines have come together by 4 mm on either side, of a gap of 1.2 mm.
         (wedge(0.2, 0.2, ramp), "tears `guide` open"),
         (wedge(0.0, 0.2, ramp).replace("slope = 0", "bow = [-100, 100]"), "tears `guide` open"),

@@ -1,6 +1,10 @@
 //! Walls that converge or are bowed.
 
-use super::{columns, planar, ran, wedge};
+use super::{
+    columns,
+    common::{slipfit, stdout},
+    planar, ran, wedge,
+};
 
 #[test]
 fn converging_lines_jam_a_block_where_they_have_closed_and_let_go_by_their_slope() {
@@ -76,4 +80,75 @@ fn the_walls_of_a_track_may_converge() {
         let expected = 0.2e-3 / s + 3.0 / (2.0 * 1e6 * s * (s + friction));
         assert!((end / expected - 1.0).abs() < 2e-3, "{slope} {friction}: {end} {expected}");
     }
+}
+
+/// Gaps at other places of the travel say the same as slope and bow.
+#[test]
+fn gaps_at_several_places_are_a_slope_and_a_bow() {
+    let drive = "segment = [{ kind = \"ramp\", speed = 50, duration = 0.02 }]\n";
+    let end = |walls: &str| {
+        let scene = wedge(0.0, 0.1, drive).replace("slope = 0\n", walls).replace("duration = 3000", "duration = 2600");
+        assert!(scene.contains(walls));
+        columns(&planar(&scene, &[]), ["stage.x (m)"]).last().unwrap()[0]
+    };
+    for (stated, as_gaps) in [
+        ("slope = 0.01\n", "along = [{ at = 100, clearance = [0.2, 0] }]\n"),
+        ("slope = 0.02\n", "along = [{ at = -50, clearance = [2.2, 0] }]\n"),
+        ("bow = [-1.6, 200]\n", "along = [{ at = -100, clearance = [-0.4, 0] }, { at = 50, clearance = [0.8, 0] }]\n"),
+    ] {
+        let [stated, as_gaps] = [stated, as_gaps].map(end);
+        assert!((stated - as_gaps).abs() < 1e-6, "{stated} {as_gaps}");
+    }
+}
+
+/// A block between lines whose distances at two places are of a drawing: each unit stops where its own lines have closed, as far as it comes.
+#[test]
+fn units_jam_where_the_walls_of_their_drawing_have_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let walls = "along = [{ at = 100, clearance = \"play at the end\" }]\n";
+    let product = "[[dimension]]\nname = \"start\"\nvalue = 22.2\ntolerance = 0.3\n\
+                   [[dimension]]\nname = \"end\"\nvalue = 20.6\ntolerance = 0.3\n\
+                   [[dimension]]\nname = \"block\"\nvalue = 20\ntolerance = 0.15\n\
+                   [[measure]]\nname = \"play at the start\"\nis = \"(start - block) / 2\"\n\
+                   [[measure]]\nname = \"play at the end\"\nis = \"(end - block) / 2\"\n";
+    let drive = "segment = [{ kind = \"ramp\", speed = 50, duration = 0.02 }]\n";
+    let scene = wedge(0.0, 0.05, drive)
+        .replace("slope = 0\n", walls)
+        .replace("clearance = [1.2, 0]", "clearance = \"play at the start\"")
+        .replace("duration = 3000", "duration = 2600")
+        .replace("error = 1e-7", "error = 1e-5");
+    let text = format!("title = \"rails\"\nmechanism = {{ space = \"plane\" }}\n{scene}\n{product}");
+    std::fs::write(folder.path().join("rails.toml"), text).unwrap();
+    stdout(&slipfit(folder.path(), &["population", "rails.toml", "--units", "300", "--csv", "units.csv"]));
+    let mut reader = csv::Reader::from_path(folder.path().join("units.csv")).unwrap();
+    let head = reader.headers().unwrap().clone();
+    let column = |name: &str| head.iter().position(|own| own == name).unwrap();
+    let places = ["travel_m", "guide (m)", "guide at 100 mm (m)"].map(column);
+    let rows = reader.records().map(|row| row.unwrap());
+    let units: Vec<([f64; 3], bool)> =
+        rows.map(|row| (places.map(|k| row[k].parse().unwrap()), &row[column("verdict")] != "runs")).collect();
+    let mut stopped = 0;
+    for ([travel, start, end], fails) in &units {
+        let slope = (start - end) / 0.1;
+        let closed = start / slope - 0.02 + 3.0 / (2.0 * 1e6 * slope * (slope + 0.05));
+        if (0.0..0.118).contains(&closed) {
+            assert!(*fails && (travel / closed - 1.0).abs() < 5e-3, "{travel} {closed}");
+            stopped += 1;
+        } else if !(0.0..0.135).contains(&closed) {
+            assert!(!fails && *travel > 0.128, "{travel} {closed}");
+        }
+    }
+    assert!((30..270).contains(&stopped), "{stopped}");
+    // Both gaps have the spread of the drawing, and the block in common.
+    let mean = |of: &dyn Fn(&[f64; 3]) -> f64| units.iter().map(|(unit, _)| of(unit)).sum::<f64>() / units.len() as f64;
+    let [start, end] = [1, 2].map(|k| mean(&|unit| unit[k]));
+    let product =
+        |a: usize, b: usize| mean(&|unit| (unit[a] - [0.0, start, end][a]) * (unit[b] - [0.0, start, end][b]));
+    let deviation = 0.5e-3 * libm::sqrt(0.01 + 0.0025);
+    assert!((end - 0.3e-3).abs() < 4.0 * deviation / libm::sqrt(300.0), "{end}");
+    assert!((libm::sqrt(product(2, 2)) / deviation - 1.0).abs() < 0.16, "{}", product(2, 2));
+    let correlation = product(1, 2) / libm::sqrt(product(1, 1) * product(2, 2));
+    assert!((correlation - 0.2).abs() < 0.23, "{correlation}");
+    let checked = stdout(&slipfit(folder.path(), &["check", "rails.toml"]));
+    assert!(checked.contains("guide at 100 mm"), "{checked}");
 }

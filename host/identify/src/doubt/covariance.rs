@@ -2,8 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::noise::Noise;
-use crate::fit::Fit;
+use crate::{beforehand::Beforehand, fit::Fit, signal::noise::Noise};
 
 /// An estimate as one of least squares: derivatives, and residuals that a robust loss has cut.
 #[derive(Clone, Debug)]
@@ -121,6 +120,28 @@ pub fn inverse_above(least: f64, products: DMatrix<f64>) -> (DMatrix<f64>, Vec<D
         }
     }
     (inverse, undetermined)
+}
+
+/// The covariance with what is known `beforehand`, to that by a record alone (zero along undetermined combinations). `units` are sizes of the
+/// parameters in which their numbers are comparable.
+pub fn with_known(beforehand: &Beforehand, of_record: &DMatrix<f64>, units: &[f64]) -> DMatrix<f64> {
+    let p = units.len();
+    let unit = |i: usize| if units[i] > 0.0 { units[i] } else { 1.0 };
+    let mut information = inverse(DMatrix::from_fn(p, p, |i, k| of_record[(i, k)] / (unit(i) * unit(k))));
+    for i in 0..p {
+        information[(i, i)] += unit(i) * unit(i) * beforehand.information(i);
+    }
+    let covariance = inverse(information);
+    DMatrix::from_fn(p, p, |i, k| covariance[(i, k)] * unit(i) * unit(k))
+}
+
+/// Share of the greatest eigenvalue below which one is rounding. What is known beforehand may be worth little beside a record.
+const ROUNDING: f64 = 1e-13;
+
+/// The inverse of a symmetric matrix of any size without the directions in which it is zero.
+fn inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
+    let size = matrix.diagonal().iter().fold(f64::MIN_POSITIVE, |most, one| most.max(*one));
+    inverse_above(ROUNDING, matrix / size).0 / size
 }
 
 #[cfg(test)]

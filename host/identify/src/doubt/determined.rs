@@ -20,7 +20,7 @@ const LEAST_INFLUENCE: f64 = 1e-6;
 /// Share of the greatest part in a combination below which a parameter has no part in it.
 const NO_PART: f64 = 0.02;
 
-/// Whether each of the `parameters`, at these `values`, has an influence on the `output`.
+/// Whether each of the `parameters`, at these `values`, has an influence on the `output`, or is known beforehand.
 ///
 /// # Errors
 /// [`NoInfluence`] names the first that has none.
@@ -33,7 +33,8 @@ pub fn check_influence(
     let size = |column: &[f64]| libm::sqrt(column.iter().map(|value| value * value).sum::<f64>());
     let whole = size(output).max(f64::MIN_POSITIVE);
     for ((parameter, value), column) in parameters.iter().zip(values).zip(sensitivities) {
-        if size(column) * parameter.scale(*value) < LEAST_INFLUENCE * whole {
+        let is_small = size(column) * parameter.scale(*value) < LEAST_INFLUENCE * whole;
+        if is_small && parameter.prior.is_none() {
             return Err(NoInfluence { name: parameter.name.clone() });
         }
     }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::noise::split;
+use crate::signal::noise::split;
 
 /// Share of the measured force, about zero, beyond which correlated residuals are more than noise.
 const GREAT_ERROR: f64 = 0.1;

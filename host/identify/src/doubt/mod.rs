@@ -4,6 +4,4 @@ pub mod bootstrap;
 pub mod covariance;
 pub mod determined;
 pub mod lack;
-pub mod noise;
-pub mod prior;
 pub mod profile;

@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use super::covariance::{Linearised, pseudo_inverse};
 use crate::{
-    fit::Fit,
+    beforehand::Beforehand,
+    fit::{Cost, Fit},
     model::{Model, ModelError},
 };
 
@@ -36,6 +37,9 @@ pub struct Profile {
 const POINTS: usize = 8;
 /// Share of the rise to which an end is found.
 const CLOSE: f64 = 0.03;
+/// Steps by which the other parameters follow, and the share of the rise below which a step gains nothing.
+const STEPS: usize = 6;
+const GAIN: f64 = 0.01;
 
 /// The profile of parameter `i` about a `fit`. The loss may rise by as much as an exact parabola would over a distance of `reach` (SI) from
 /// the estimate: the deviation with coloured noise, times the quantile.
@@ -46,14 +50,15 @@ pub fn profile<M: Model + ?Sized>(
     model: &M,
     fit: &Fit,
     linearised: &Linearised,
+    beforehand: &Beforehand,
     i: usize,
     reach: Option<f64>,
 ) -> Result<Profile, ModelError> {
     let parameter = &model.parameters()[i];
-    let Some(reach) = reach.filter(|reach| *reach > 0.0) else {
+    let Some(reach) = reach.filter(|reach| *reach > 0.0 && linearised.units[i] > 0.0) else {
         return Ok(Profile { ends: [None; 2], shape: Shape::Flat, points: Vec::new() });
     };
-    let search = Search::new(model, fit, linearised, i);
+    let search = Search::new(model, fit, linearised, beforehand, i);
     let allowed = search.curvature * reach * reach;
     let mut points = vec![[fit.values[i], 0.0]];
     let mut end = |side: f64| -> Result<Option<f64>, ModelError> {
@@ -100,6 +105,7 @@ struct Search<'a, M: Model + ?Sized> {
     model: &'a M,
     fit: &'a Fit,
     linearised: &'a Linearised,
+    cost: Cost<'a>,
     i: usize,
     others: Vec<usize>,
     /// Inverse of the products of the others' columns.
@@ -113,28 +119,26 @@ struct Search<'a, M: Model + ?Sized> {
 }
 
 impl<'a, M: Model + ?Sized> Search<'a, M> {
-    fn new(model: &'a M, fit: &'a Fit, linearised: &'a Linearised, i: usize) -> Self {
+    fn new(model: &'a M, fit: &'a Fit, linearised: &'a Linearised, beforehand: &'a Beforehand, i: usize) -> Self {
         let others: Vec<usize> = (0..fit.values.len()).filter(|k| *k != i && linearised.units[*k] > 0.0).collect();
         let product = |a: usize, b: usize| {
             let [a, b] = [a, b].map(|k| &linearised.columns[k]);
             a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>()
         };
-        let products = DMatrix::from_fn(others.len(), others.len(), |a, b| product(others[a], others[b]));
+        let known = beforehand.normal_equations(&fit.values, &linearised.units, fit.scale);
+        let added = |a: usize, b: usize| if a == b { known[others[a]][0] } else { 0.0 };
+        let products = DMatrix::from_fn(others.len(), others.len(), |a, b| product(others[a], others[b]) + added(a, b));
         let shared = DVector::from_fn(others.len(), |a, _| product(others[a], i));
         let inverse = pseudo_inverse(products).0;
         let follow = -(&inverse * &shared);
         let slopes = fit.residuals.iter().map(|residual| fit.loss.psi_slope(residual / fit.scale));
         let slope = slopes.sum::<f64>() / fit.residuals.len() as f64;
-        let own = 1.0 + follow.dot(&shared);
+        let own = 1.0 + known[i][0] + follow.dot(&shared);
         let unit = linearised.units[i];
         let curvature = slope.max(0.1) * own / (fit.scale * fit.scale * unit * unit);
-        let mut search = Self { model, fit, linearised, i, others, inverse, follow, least: 0.0, curvature };
-        search.least = search.cost(&fit.residuals);
-        search
-    }
-
-    fn cost(&self, residuals: &[f64]) -> f64 {
-        residuals.iter().map(|residual| self.fit.loss.root(residual / self.fit.scale)[0]).map(|root| root * root).sum()
+        let cost = Cost { loss: fit.loss, scale: fit.scale, beforehand };
+        let least = cost.of(&fit.residuals, &fit.values);
+        Self { model, fit, linearised, cost, i, others, inverse, follow, least, curvature }
     }
 
     fn residuals(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
@@ -142,24 +146,36 @@ impl<'a, M: Model + ?Sized> Search<'a, M> {
         Ok(self.model.measured().iter().zip(&output).map(|(measured, output)| measured - output).collect())
     }
 
-    /// How much the loss rises when the parameter moves `by` (SI) and the others follow, with one step of Gauss and Newton after that.
+    /// How much the loss rises when the parameter moves `by` (SI) and the others follow to where it is least: by steps of Gauss and Newton
+    /// with the derivatives of the estimate, until they gain no more.
     fn rise(&self, by: f64) -> Result<f64, ModelError> {
         let mut values = self.fit.values.clone();
         values[self.i] += by;
-        let shifts = &self.follow * (by / self.linearised.units[self.i]);
-        self.shift(&mut values, &shifts);
-        let residuals = self.residuals(&values)?;
-        let straight = self.cost(&residuals);
-        if self.others.is_empty() {
-            return Ok(straight - self.least);
+        self.shift(&mut values, &(&self.follow * (by / self.linearised.units[self.i])));
+        let mut residuals = self.residuals(&values)?;
+        let mut least = self.cost.of(&residuals, &values) - self.least;
+        for _ in 0..if self.others.is_empty() { 0 } else { STEPS } {
+            let scores = self.scores(&residuals, &values);
+            self.shift(&mut values, &(&self.inverse * scores));
+            let Ok(next) = self.residuals(&values) else { break };
+            let rise = self.cost.of(&next, &values) - self.least;
+            let gain = least - rise;
+            (least, residuals) = (least.min(rise), next);
+            if gain < GAIN * least {
+                break;
+            }
         }
-        let scale = self.fit.scale;
-        let cut: Vec<f64> = residuals.iter().map(|residual| scale * self.fit.loss.psi(residual / scale)).collect();
-        let score = |k: &usize| self.linearised.columns[*k].iter().zip(&cut).map(|(a, b)| a * b).sum::<f64>();
-        let scores = DVector::from_iterator(self.others.len(), self.others.iter().map(score));
-        self.shift(&mut values, &(&self.inverse * scores));
-        let corrected = self.residuals(&values).map(|residuals| self.cost(&residuals));
-        Ok(corrected.unwrap_or(straight).min(straight) - self.least)
+        Ok(least)
+    }
+
+    /// The derivatives of the loss by the others, in their units, negative and halved.
+    fn scores(&self, residuals: &[f64], values: &[f64]) -> DVector<f64> {
+        let Cost { loss, scale, beforehand } = self.cost;
+        let cut: Vec<f64> = residuals.iter().map(|residual| scale * loss.psi(residual / scale)).collect();
+        let known = beforehand.normal_equations(values, &self.linearised.units, scale);
+        let score =
+            |k: &usize| self.linearised.columns[*k].iter().zip(&cut).map(|(a, b)| a * b).sum::<f64>() + known[*k][1];
+        DVector::from_iterator(self.others.len(), self.others.iter().map(score))
     }
 
     /// Moves the others by `shifts` in their units, within their bounds.

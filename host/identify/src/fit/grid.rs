@@ -2,8 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::loss::{Loss, scale};
-use crate::model::Model;
+use super::{
+    least_squares::Cost,
+    loss::{Loss, scale},
+};
+use crate::{beforehand::Beforehand, model::Model};
 
 /// The most parameters for which a grid is searched.
 pub const MOST: usize = 3;
@@ -17,7 +20,7 @@ pub fn search<M: Model + ?Sized>(model: &M, loss: Loss) -> Option<Vec<f64>> {
     let parameters = model.parameters();
     let mut ranges: Vec<[f64; 2]> = parameters.iter().map(|parameter| parameter.bounds).collect();
     let mut best: Option<(f64, Vec<f64>)> = None;
-    let mut deviation = None;
+    let mut reference: Option<(f64, Beforehand)> = None;
     for _ in 0..LEVELS {
         let count = (0..parameters.len()).fold(1, |count, _| count * POINTS);
         let point = |k: usize| -> Vec<f64> {
@@ -38,16 +41,20 @@ pub fn search<M: Model + ?Sized>(model: &M, loss: Loss) -> Option<Vec<f64>> {
             })
             .collect();
         // One scale for all points of all grids: that of the best by absolute values.
-        let unit = *deviation.get_or_insert_with(|| {
-            let least = residuals.iter().flatten().map(|residuals| scale(residuals, Loss::Huber));
-            least.fold(f64::INFINITY, f64::min).max(f64::MIN_POSITIVE)
-        });
+        let (scale, beforehand) = match &reference {
+            Some(reference) => reference,
+            None => {
+                let of = |residuals: &Vec<f64>| scale(residuals, Loss::Huber).max(f64::MIN_POSITIVE);
+                let best = residuals.iter().flatten().min_by(|one, other| of(one).total_cmp(&of(other)))?;
+                reference.insert((of(best), Beforehand::of(parameters, best, &model.runs())))
+            }
+        };
+        let cost = Cost { loss, scale: *scale, beforehand };
         for (k, residuals) in residuals.iter().enumerate() {
             let Some(residuals) = residuals else { continue };
-            let cost: f64 =
-                residuals.iter().map(|residual| loss.root(residual / unit)[0]).map(|root| root * root).sum();
-            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                best = Some((cost, point(k)));
+            let found = cost.of(residuals, &point(k));
+            if best.as_ref().is_none_or(|(least, _)| found < *least) {
+                best = Some((found, point(k)));
             }
         }
         let (_, at) = best.as_ref()?;

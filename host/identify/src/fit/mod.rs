@@ -8,6 +8,7 @@ mod search;
 
 use serde::Serialize;
 
+pub use self::least_squares::Cost;
 pub use self::loss::Loss;
 pub use self::search::{Options, fit};
 

@@ -2,14 +2,18 @@
 
 use rayon::prelude::*;
 use slipfit_core::sampling::stream::{Rng, uniform, unit_stream};
+use slipfit_tolerance::numeric::normal::quantile;
 
 use super::{
     By, Fit, grid,
-    least_squares::{CLOSE, NEAR, minimise},
+    least_squares::{CLOSE, Cost, NEAR, minimise},
     loss::Loss,
     loss::scale,
 };
-use crate::model::{Model, ModelError, Parameter};
+use crate::{
+    beforehand::Beforehand,
+    model::{Model, ModelError, Parameter},
+};
 
 /// How a fit is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,23 +49,27 @@ pub fn fit<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Fit, Model
     };
     let deviation = |output: &[f64], loss: Loss| scale(&residuals(output), loss).max(least);
 
+    let runs = model.runs();
+    let known = |output: &[f64]| Beforehand::of(parameters, &residuals(output), &runs);
     let loss = options.loss;
     let (values, output) = if options.grid {
         let coarse = grid::search(model, loss).unwrap_or(stated);
         let output = model.simulate(&coarse)?;
-        let scale = deviation(&output, Loss::Huber);
-        let cost = |output: &[f64]| -> f64 {
-            residuals(output).iter().map(|residual| loss.root(residual / scale)[0]).map(|root| root * root).sum()
-        };
+        let beforehand = known(&output);
+        let cost = Cost { loss, scale: deviation(&output, Loss::Huber), beforehand: &beforehand };
+        let of = |values: &[f64], output: &[f64]| cost.of(&residuals(output), values);
         // Between its points the output may be smooth: then the gradient leads farther.
-        match minimise(model, &coarse, &free, (loss, scale), CLOSE) {
-            Ok((values, fine)) if cost(&fine) < cost(&output) => (values, fine),
+        match minimise(model, &coarse, &free, cost, CLOSE) {
+            Ok((values, fine)) if of(&values, &fine) < of(&coarse, &output) => (values, fine),
             _ => (coarse, output),
         }
     } else {
         let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
         for start in promising(model, &stated, options.starts) {
-            let (values, output) = minimise(model, &start, &free, (Loss::Squares, 1.0), NEAR)?;
+            let output = model.simulate(&start)?;
+            let beforehand = known(&output);
+            let cost = Cost { loss: Loss::Squares, scale: deviation(&output, Loss::Squares), beforehand: &beforehand };
+            let (values, output) = minimise(model, &start, &free, cost, NEAR)?;
             let found = deviation(&output, Loss::Huber);
             if best.as_ref().is_none_or(|(least, ..)| found < *least) {
                 best = Some((found, values, output));
@@ -71,10 +79,17 @@ pub fn fit<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Fit, Model
             let output = model.simulate(&stated)?;
             return finish(model, stated, output, options, least);
         };
-        // The scale follows the estimate. Two rounds leave it within its own error; squares have none.
-        for _ in 0..if loss == Loss::Squares { 1 } else { 2 } {
-            let scale = deviation(&output, loss);
-            (values, output) = minimise(model, &values, &free, (loss, scale), CLOSE)?;
+        // The scale follows the estimate. Two rounds leave it within its own error. Squares without anything known beforehand have none.
+        let has_known = parameters.iter().any(|parameter| parameter.prior.is_some());
+        let rounds = match (has_known, loss) {
+            (true, _) => 3,
+            (false, Loss::Squares) => 1,
+            (false, _) => 2,
+        };
+        for _ in 0..rounds {
+            let beforehand = known(&output);
+            let cost = Cost { loss, scale: deviation(&output, loss), beforehand: &beforehand };
+            (values, output) = minimise(model, &values, &free, cost, CLOSE)?;
         }
         (values, output)
     };
@@ -96,35 +111,45 @@ fn finish<M: Model + ?Sized>(
     Ok(Fit { values, output, residuals, sensitivities, scale, loss: options.loss, by })
 }
 
-/// The `stated` start and the best one of some others, if that is better.
+/// Starts that are drawn for each parameter of which something is known beforehand, and how many of the best are followed then.
+const FOR_KNOWN: usize = 4;
+const FOLLOWED: usize = 3;
+
+/// The `stated` start and the best of some others, if they are better: from within the bounds, or as what is known beforehand has it.
 fn promising<M: Model + ?Sized>(model: &M, stated: &[f64], starts: usize) -> Vec<Vec<f64>> {
     let parameters = model.parameters();
     let bounded = parameters.iter().all(Parameter::is_bounded);
-    let mut all = vec![stated.to_vec()];
     if !bounded || parameters.is_empty() {
-        return all;
+        return vec![stated.to_vec()];
     }
-    let drawn = (0..starts as u64).map(|k| {
+    let known = parameters.iter().filter(|parameter| parameter.prior.is_some()).count();
+    let drawn = |k: u64| -> Vec<f64> {
         let mut stream = unit_stream(START_SEED, k);
-        let mut share = move || uniform(stream.next_u64());
-        parameters
-            .iter()
-            .map(move |parameter| parameter.bounds[0] + share() * (parameter.bounds[1] - parameter.bounds[0]))
-    });
-    all.extend(drawn.map(Iterator::collect));
-    let costs: Vec<f64> = all
-        .par_iter()
-        .map(|values| {
-            let Ok(output) = model.simulate(values) else { return f64::INFINITY };
-            model.measured().iter().zip(&output).map(|(measured, output)| (measured - output).abs()).sum()
-        })
-        .collect();
-    let best = (0..all.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
-    if best == 0 || costs[0].is_infinite() {
-        vec![all.swap_remove(best)]
-    } else {
-        vec![all[0].clone(), all.swap_remove(best)]
+        let value = |parameter: &Parameter| {
+            let [low, high] = parameter.bounds;
+            let share = uniform(stream.next_u64());
+            match parameter.prior {
+                None => low + share * (high - low),
+                Some([mean, deviation]) => (mean + deviation * quantile(share)).clamp(low, high),
+            }
+        };
+        parameters.iter().map(value).collect()
+    };
+    let mut all = vec![stated.to_vec()];
+    all.extend((0..(starts + FOR_KNOWN * known) as u64).map(drawn));
+    let cost = |values: &Vec<f64>| {
+        let Ok(output) = model.simulate(values) else { return f64::INFINITY };
+        model.measured().iter().zip(&output).map(|(measured, output)| (measured - output).abs()).sum()
+    };
+    let costs: Vec<f64> = all.par_iter().map(cost).collect();
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    order.sort_by(|one, other| costs[*one].total_cmp(&costs[*other]));
+    order.truncate(if known > 0 { FOLLOWED } else { 1 });
+    // The stated start is followed, too, if it can be computed.
+    if !order.contains(&0) && costs[0].is_finite() {
+        order.insert(0, 0);
     }
+    order.into_iter().map(|k| std::mem::take(&mut all[k])).collect()
 }
 
 /// Seed of the drawn starts.

@@ -82,6 +82,9 @@ pub fn described(report: &Report, unit: &UnitReport, chosen: &Compared) -> Strin
     text
 }
 
+/// Parameters that the table of units has columns for.
+const COLUMNS: usize = 6;
+
 /// What the estimates `chosen` for several units have in common.
 pub fn between(report: &Report, chosen: &[&Compared], pooled: &[Between]) -> String {
     let mut text = format!("{}: {} of {} units\n\n", report.title, report.model, chosen.len());
@@ -102,7 +105,10 @@ pub fn between(report: &Report, chosen: &[&Compared], pooled: &[Between]) -> Str
     let rows: Vec<_> = pooled.iter().map(row).collect();
     text +=
         &text_table(&["parameter", "units", "mean", "its deviation", "95 % interval", "spread between units"], &rows);
-    text += "\nEach unit: estimate ± deviation\n\n";
+    let parameters = chosen.first().map_or(&[][..], |one| &one.estimate.parameters);
+    let more = parameters.len().saturating_sub(COLUMNS);
+    let more = if more > 0 { format!("; --json has {more} more parameters") } else { String::new() };
+    let _ = writeln!(text, "\nEach unit: estimate ± deviation{more}\n");
     let of_unit = |(unit, chosen): (&UnitReport, &&Compared)| {
         let estimate = &chosen.estimate;
         let of_parameter = |own: &Estimated| match own.deviation {
@@ -113,15 +119,14 @@ pub fn between(report: &Report, chosen: &[&Compared], pooled: &[Between]) -> Str
             None => "-".into(),
         };
         let mut row = vec![unit.records.join(", ")];
-        row.extend(estimate.parameters.iter().map(of_parameter));
+        row.extend(estimate.parameters.iter().take(COLUMNS).map(of_parameter));
         row.push(percent(estimate.lack.relative_error, 1));
         row.push(if estimate.lack.verdict.is_some() { "lack of fit" } else { "" }.into());
         row
     };
     let rows: Vec<_> = report.units.iter().zip(chosen).map(of_unit).collect();
     let mut heads = vec!["records".to_owned()];
-    let parameters = chosen.first().map_or(&[][..], |one| &one.estimate.parameters);
-    heads.extend(parameters.iter().map(|own| name(&own.name, own.unit)));
+    heads.extend(parameters.iter().take(COLUMNS).map(|own| name(&own.name, own.unit)));
     heads.extend(["residuals, %", "verdict"].map(str::to_owned));
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     text += &text_table(&heads, &rows);

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 use slipfit_system::files;
 use slipfit_tolerance::{
-    number::{fixed, level, or_dash},
+    number::{fixed, level, or_dash, ten_digits},
     product::Product,
 };
 
@@ -19,7 +19,7 @@ use crate::{
             rare,
             reports::{LevelReport, UnitReport},
             uncertain,
-            words::{faults, levels, percent, strongest, verdicts},
+            words::{faults, levels, malfunction, percent, strongest, verdicts, worst},
         },
         terminal::{print, print_json, text_table, warn},
     },
@@ -164,8 +164,13 @@ fn summary(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
         driven.name(),
     );
     text += &found.unknown.as_ref().map(|answer| uncertain::before(answer, kind)).unwrap_or_default();
-    let _ = writeln!(text, "Malfunction     {}", percent(&statistics.malfunctions));
+    let _ = writeln!(text, "Malfunction     {}", malfunction(statistics));
     text += &verdicts(statistics);
+    let Statistics { undecided, unsolved, out_of_bounds, .. } = *statistics;
+    // Warnings name the others.
+    if undecided.units > unsolved + out_of_bounds {
+        let _ = writeln!(text, "                undecided{}", why_undecided(driven));
+    }
     if let (Some(share), Some(limit)) = (statistics.over_limit, limit) {
         let name = format!("  over {limit} {unit} ");
         let _ = writeln!(text, "{name:16}{}", percent(&share));
@@ -196,14 +201,26 @@ fn summary(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
     text + &found.rare.as_ref().map(rare::describe).unwrap_or_default()
 }
 
+/// A remark behind undecided units.
+fn why_undecided(driven: &ByDrive) -> String {
+    let mechanism = driven.mechanism();
+    let setpoint = mechanism.drives[driven.index()].setpoint();
+    let [ends, command] = [mechanism.run.duration, setpoint.end()].map(|t| ten_digits(t * 1e3));
+    if mechanism.run.duration < setpoint.end() {
+        let longer = ten_digits((setpoint.end() + 0.5) * 1e3);
+        format!(": the run ends at {ends} ms, what is commanded at {command} ms; --set run.duration={longer} runs on")
+    } else if setpoint.settled_at(mechanism.run.duration) == 0.0 {
+        ": nothing is commanded at the end of the run".into()
+    } else {
+        ": a finer run came to another verdict; take a tenth of run.error".into()
+    }
+}
+
 /// The answer, for people: what the units did together, and the worst of them.
 fn described(driven: &ByDrive, found: &Found, limit: Option<f64>) -> String {
     let kind = driven.kind();
     let (effort, unit) = (kind.effort(), kind.effort_unit());
-    let heading = match found.population.statistics.malfunctions.units {
-        0 => format!("None malfunctions; the greatest {effort}s"),
-        _ => "The worst".to_owned(),
-    };
+    let heading = worst(&found.population.statistics, effort);
     let row = |one: &Unit<Vec<f64>>| {
         let outcome = one.outcome;
         vec![

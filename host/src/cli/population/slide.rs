@@ -16,7 +16,7 @@ use super::{
     rare,
     reports::{LevelReport, UnitReport},
     uncertain,
-    words::{faults, levels, percent, strongest, verdicts},
+    words::{faults, levels, malfunction, percent, strongest, verdicts, worst},
 };
 use crate::{
     cli::{
@@ -151,18 +151,14 @@ const DRIVERS: usize = 5;
 impl Arguments {
     /// The answer, for people: what the units did together, and the worst of them.
     fn describe(&self, scene: &Scene, found: &Found) -> String {
-        let title = match found.population.statistics.malfunctions.units {
-            0 => "None malfunctions; the greatest forces",
-            _ => "The worst",
-        };
+        let title = worst(&found.population.statistics, "force");
         format!("{}\n{title}\n{}", self.summary(scene, found), worst_units(scene, &found.population.tally.worst))
     }
 
     /// What the units did together.
     fn summary(&self, scene: &Scene, found: &Found) -> String {
         let Population { statistics, of_force, of_malfunction, .. } = &found.population;
-        let Statistics { units, undecided, malfunctions, over_limit, sigma_level, unsolved, out_of_bounds, .. } =
-            *statistics;
+        let Statistics { units, undecided, over_limit, sigma_level, unsolved, out_of_bounds, .. } = *statistics;
         let mut text = format!("{}: {units} units", scene.title);
         let length = match self.duty_of(scene).stroke {
             Some(stroke) => format!("the stroke of {} mm", fixed(stroke * 1e3, 1)),
@@ -170,7 +166,7 @@ impl Arguments {
         };
         let _ = writeln!(text, ", {length}\n");
         text += &found.unknown.as_ref().map(|answer| uncertain::before(answer, DriveKind::Pushes)).unwrap_or_default();
-        let _ = writeln!(text, "Malfunction     {}", percent(&malfunctions));
+        let _ = writeln!(text, "Malfunction     {}", malfunction(statistics));
         text += &verdicts(statistics);
         // Warnings name the others.
         if undecided.units > unsolved + out_of_bounds {

@@ -90,6 +90,27 @@ pub fn strongest(drivers: &[Driver], most: usize) -> String {
     if shown.is_empty() { "nothing alone, as far as so many units show".to_owned() } else { shown.join(", ") }
 }
 
+/// The share that malfunctions. Units without a verdict may do, too.
+pub fn malfunction(statistics: &Statistics) -> String {
+    let Statistics { units, undecided, malfunctions, .. } = statistics;
+    match undecided.units {
+        0 => percent(malfunctions),
+        all if all == *units && malfunctions.units == 0 => {
+            format!("not known: none of {units} units comes to a verdict")
+        }
+        some => format!("{} at least: {some} units come to no verdict", percent(malfunctions)),
+    }
+}
+
+/// The heading over the units that need the greatest `effort`.
+pub fn worst(statistics: &Statistics, effort: &str) -> String {
+    match (statistics.malfunctions.units, statistics.undecided.units) {
+        (0, 0) => format!("None malfunctions; the greatest {effort}s"),
+        (0, _) => format!("None is known to malfunction; the greatest {effort}s"),
+        _ => "The worst".into(),
+    }
+}
+
 /// A share with its interval.
 pub fn percent(share: &Share) -> String {
     let [low, high] = share.interval.map(|end| number::percent(end, 2));

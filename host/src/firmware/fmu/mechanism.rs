@@ -74,7 +74,7 @@ pub fn mechanism_unit(mechanism: &Mechanism, core: &Path) -> Result<Unit, RunErr
 
 /// What there is in `mechanism` that a unit cannot set.
 fn unsupported(mechanism: &Mechanism) -> Option<String> {
-    let walls = mechanism.joints.iter().find(|joint| !joint.contours.is_empty());
+    let walls = mechanism.joints.iter().find(|joint| !joint.walls.is_parallel());
     let walls = walls.map(|joint| format!("walls that slope or bow, as \"{}\" has", joint.name));
     let is_more = |named: &&NamedDrive| {
         let has_command = named.command.is_some() || named.sampling.is_some() || named.is_prescribed;

@@ -5,7 +5,7 @@ use slipfit_core::{
     system::law::{Axis, Contour, LineSpring},
 };
 
-use crate::mechanism::{Mechanism, NamedDrive};
+use crate::mechanism::{Mechanism, NamedDrive, Walls};
 
 /// Type and value of an expression.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -145,13 +145,26 @@ pub fn line_spring<const K: usize>(law: &LineSpring<f64, K>) -> Typed {
 }
 
 /// The law of a `wall` with a contour.
-pub fn contoured(wall: Typed, along: Axis, Contour { slope, curvature }: &Contour<f64>) -> Typed {
+pub fn contoured(wall: Typed, along: Axis, contour: &str) -> Typed {
     typed(
         format!("Contoured<S, {}>", wall.of),
-        format!(
-            "Contoured {{ wall: {}, along: Axis::{along:?}, contour: Contour {{ slope: s({slope:?}), curvature: \
-             s({curvature:?}) }} }}",
-            wall.value
-        ),
+        format!("Contoured {{ wall: {}, along: Axis::{along:?}, contour: {contour} }}", wall.value),
     )
+}
+
+/// The contour of wall `i`, whose slope counts with the sign of `sense`, as the `stated` one or as the gaps have it.
+pub fn contour(walls: &Walls, i: usize, sense: f64, stated: &Contour<f64>) -> String {
+    let [slope, curvature] = match walls {
+        Walls::OfGaps(walls) => {
+            let term = |adds: f64, gap: usize| (adds != 0.0).then(|| format!("s({adds:?}) * gaps[{gap}]"));
+            let sum = |k: usize, sign: f64| {
+                let all = walls.get(i).into_iter().flatten();
+                let terms: Vec<String> = all.filter_map(|of| term(sign * of.adds[k], of.gap)).collect();
+                if terms.is_empty() { "s(0.0)".into() } else { terms.join(" + ") }
+            };
+            [sum(0, sense), sum(1, 1.0)]
+        }
+        _ => [stated.slope, stated.curvature].map(|value| format!("s({value:?})")),
+    };
+    format!("Contour {{ slope: {slope}, curvature: {curvature} }}")
 }

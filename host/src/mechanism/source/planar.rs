@@ -8,7 +8,7 @@ use slipfit_core::{
 };
 
 use super::{
-    expression::{Typed, contoured, driving, element, grouped, line_spring, nested, numbers, typed, vector},
+    expression::{Typed, contour, contoured, driving, element, grouped, line_spring, nested, numbers, typed, vector},
     laws::Contacts,
     parts::Parts,
 };
@@ -124,7 +124,7 @@ fn elements<const D: usize>(
     let mut joints = joints_of_elements(mechanism);
     let turning =
         |turn: Option<usize>| turn.map_or("Frame".into(), |turn| carrier(&chain_of::<D>(mechanism, mounts, turn)));
-    let mut written = Vec::new();
+    let (mut written, mut corner) = (Vec::new(), 0);
     for found in planar::elements::<D>(mechanism, mounts, &open, 1.0)? {
         let joint = joints.next().flatten();
         let (contact, gap) = joint.map_or((Typed::default(), 0), |joint| {
@@ -158,7 +158,12 @@ fn elements<const D: usize>(
             PlanarElement::Contour(one) => {
                 names.push("Across");
                 laws.extend(["Axis", "Contour", "Contoured", "Pad"]);
-                element(across(&one.link), contoured(pad(gap, &contact), one.law.along, &one.law.contour), 2)
+                // The first two of a guide's four corners run along its first line.
+                let (line, sense) = if corner % 4 < 2 { (0, 1.0) } else { (1, -1.0) };
+                corner += 1;
+                let contour =
+                    joint.map_or_else(String::new, |joint| contour(&joint.walls, line, sense, &one.law.contour));
+                element(across(&one.link), contoured(pad(gap, &contact), one.law.along, &contour), 2)
             }
             PlanarElement::Line(one) => {
                 names.push("Between");

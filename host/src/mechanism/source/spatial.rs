@@ -15,7 +15,7 @@ use slipfit_core::{
 };
 
 use super::{
-    expression::{Typed, contoured, driving, element, line_spring, numbers, typed, vector},
+    expression::{Typed, contour, contoured, driving, element, line_spring, numbers, typed, vector},
     laws::Contacts,
     parts::Parts,
 };
@@ -182,11 +182,12 @@ fn elements(
                 names.extend(["Port", "Seat"]);
                 laws.extend(["Axis", "Contour", "Contoured", "Wall"]);
                 if let (true, Some(JointKind::Track { gaps })) = (of_track.is_empty(), joint.map(|joint| &joint.kind)) {
-                    of_track.extend(gaps.iter().flatten().copied());
+                    of_track.extend(gaps.iter().enumerate().filter_map(|(i, gap)| Some((i, (*gap)?))));
                 }
-                let of = of_track.pop_front().unwrap_or_default();
+                let (i, of) = of_track.pop_front().unwrap_or_default();
                 let wall = wall((one.law.wall.axis, one.law.wall.sign), of, &contact);
-                element(typed("Seat<S>", seat(&one.link)), contoured(wall, one.law.along, &one.law.contour), 3)
+                let contour = joint.map_or_else(String::new, |joint| contour(&joint.walls, i, 1.0, &one.law.contour));
+                element(typed("Seat<S>", seat(&one.link)), contoured(wall, one.law.along, &contour), 3)
             }
             SpatialElement::Line(one) => {
                 names.extend(["Port", "Seat"]);

@@ -3,7 +3,6 @@
 mod law;
 mod sought;
 
-use slipfit_core::slide::CONTACTS;
 use slipfit_identify::{
     fit::{Loss, Options},
     record::{Columns, ForceConstant},
@@ -51,7 +50,8 @@ pub(super) fn slide(root: &Field, scene: &Scene) -> Result<Option<Identification
     let varies = |i: usize| scene.pins[i / 4].gaps[i % 4].is_some_and(|gap| gap.deviation > 0.0);
     let is_meant = |name: &str, i: usize| name == SURFACES[i % 4] || name == scene.pins[i / 4].name || name == names[i];
     let groups = format!("all, {}, a pin, or one gap such as {:?}", SURFACES.join(", "), names[0]);
-    let gaps = Gaps { count: CONTACTS, varies: &varies, is_meant: &is_meant, groups };
+    let names = names.iter().map(String::as_str).collect();
+    let gaps = Gaps { names, varies: &varies, is_meant: &is_meant, groups };
     let parameters = named(root, "identify", scene)?;
     let unit = OfUnit { drive: 0, turns: false, list: |_| None };
     let (options, columns, of) = of_record(&table, &parameters, &gaps, &unit)?;
@@ -72,7 +72,7 @@ pub(super) fn mechanism(
     let varies = |i: usize| mechanism.gaps[i].statistics.deviation > 0.0;
     let of_joint = |name: &str, i: usize| {
         let joint = mechanism.joints.iter().find(|joint| joint.name == name);
-        joint.is_some_and(|joint| joint.kind.gaps().any(|gap| gap == i))
+        joint.is_some_and(|joint| joint.gaps().any(|gap| gap == i))
     };
     // A surface means that of every track.
     let of_surface =
@@ -80,7 +80,7 @@ pub(super) fn mechanism(
     let is_meant = |name: &str, i: usize| name == mechanism.gaps[i].name || of_joint(name, i) || of_surface(name, i);
     let names: Vec<&str> = mechanism.gaps.iter().map(|gap| gap.name.as_str()).collect();
     let groups = if names.is_empty() { "none: no joint has play".into() } else { format!("all, {}", names.join(", ")) };
-    let gaps = Gaps { count: names.len(), varies: &varies, is_meant: &is_meant, groups };
+    let gaps = Gaps { names, varies: &varies, is_meant: &is_meant, groups };
     let list = |parameter: mechanism::Parameter| match parameter {
         Mass(_) => Some("body"),
         Gain(_) | RampEnd(_) | Limit(_) | Coulomb(_) | Viscous(_) | Offset(_) => Some("drive"),

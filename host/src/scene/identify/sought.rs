@@ -19,8 +19,8 @@ const BOUNDS: &str = "a lower and a higher bound";
 
 /// The gaps of a unit, by their indices.
 pub struct Gaps<'a> {
-    /// How many there are.
-    pub count: usize,
+    /// Their names.
+    pub names: Vec<&'a str>,
     /// Whether one varies.
     pub varies: &'a dyn Fn(usize) -> bool,
     /// Whether a name means one; `all` means every one.
@@ -82,7 +82,10 @@ pub fn delay<P>(table: &Field) -> Result<Option<Sought<P>>, SceneError> {
 /// The tolerance levels that are sought.
 pub fn levels<P>(table: &Field, gaps: &Gaps) -> Result<Vec<Sought<P>>, SceneError> {
     let Some(list) = table.get("gaps") else { return Ok(Vec::new()) };
-    const LIST: &str = "a list such as [{ of = \"all\", n = [-3, 3] }]";
+    const LIST: &str = "a list such as [{ of = \"all\", n = [-3, 3] }], or \"production\"";
+    if let Value::Text(text) = &list.node.value {
+        return if text == "production" { Ok(of_production(gaps)) } else { Err(list.out_of_range("", LIST)) };
+    }
     let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(LIST)) };
     let mut sought: Vec<Sought<P>> = Vec::new();
     for node in nodes {
@@ -91,7 +94,7 @@ pub fn levels<P>(table: &Field, gaps: &Gaps) -> Result<Vec<Sought<P>>, SceneErro
         let of = entry.require("of", "all, or the name of gaps")?;
         let name = of.to_text()?;
         let is_meant = |i: &usize| (gaps.varies)(*i) && (name == "all" || (gaps.is_meant)(name, *i));
-        let meant: Vec<usize> = (0..gaps.count).filter(is_meant).collect();
+        let meant: Vec<usize> = (0..gaps.names.len()).filter(is_meant).collect();
         if meant.is_empty() {
             let problem = Problem::UnknownName { of: "varying gap".into(), name: name.into() };
             return Err(of.error(problem, gaps.groups.clone()));
@@ -107,4 +110,18 @@ pub fn levels<P>(table: &Field, gaps: &Gaps) -> Result<Vec<Sought<P>>, SceneErro
         sought.push(Sought { value: SoughtValue::Level(meant), name, list: None, unit: "", bounds, prior });
     }
     Ok(sought)
+}
+
+/// The level of every gap that varies, known beforehand as the production has it: normal about 0, with a deviation of 1.
+fn of_production<P>(gaps: &Gaps) -> Vec<Sought<P>> {
+    const FARTHEST: f64 = 5.0;
+    let of = |i: usize| Sought {
+        value: SoughtValue::Level(vec![i]),
+        name: format!("n of {}", gaps.names[i]),
+        list: None,
+        unit: "",
+        bounds: [-FARTHEST, FARTHEST],
+        prior: Some([0.0, 1.0]),
+    };
+    (0..gaps.names.len()).filter(|i| (gaps.varies)(*i)).map(of).collect()
 }

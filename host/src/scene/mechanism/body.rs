@@ -168,7 +168,7 @@ pub(super) fn check_start<'t, 's>(
     // Walls that slope or bow may be too near in the drawn pose.
     let of_walls = || {
         let own = mechanism.joints.iter().zip(joints).find(|(one, _)| one.name == joint.name);
-        own.and_then(|(_, field)| ["slope", "bow"].iter().find_map(|key| field.get(key)))
+        own.and_then(|(_, field)| ["slope", "bow", "along"].iter().find_map(|key| field.get(key)))
     };
     let field = of_joint.or_else(of_walls).or_else(|| fields.iter().find_map(of_start));
     let Some(field) = field else { return Ok(()) };

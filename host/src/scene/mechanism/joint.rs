@@ -8,7 +8,7 @@ use slipfit_tolerance::{
 
 use super::{
     contact::{Gaps, NO_CONTACT, laws},
-    contour::contours,
+    contour::walls,
     drive,
     names::{Names, tables},
     place::{direction, place},
@@ -64,9 +64,9 @@ fn joint(
             return Err(table.error(Problem::Missing("contact".into()), "a table [contact], or one of the joint's own"));
         }
     };
-    let contours = contours(table, &kind)?;
+    let walls = walls(&name, table, &kind, gaps)?;
     let drag = drag(table, planar, &kind, between)?;
-    Ok(Joint { name, between, at, kind, laws, contours, drag })
+    Ok(Joint { name, between, at, kind, laws, walls, drag })
 }
 
 /// Reads the friction of an ideal joint, which has one motion to rub against.

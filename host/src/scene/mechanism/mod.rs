@@ -200,8 +200,7 @@ fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
 /// Whether the gaps of the mean unit and of all levels are possible.
 fn check_gaps(mechanism: &Mechanism, joints: &[Field], root: &Field) -> Result<(), SceneError> {
     if let Err(error) = mechanism.gaps_at(&[0.0]) {
-        let is_of =
-            |joint: &crate::mechanism::Joint| joint.kind.gaps().any(|gap| mechanism.gaps[gap].name == error.name);
+        let is_of = |joint: &crate::mechanism::Joint| joint.gaps().any(|gap| mechanism.gaps[gap].name == error.name);
         let joint = &joints[mechanism.joints.iter().position(is_of).unwrap_or_default()];
         let field = joint.get("clearance").unwrap_or_else(|| joint.clone());
         return Err(field.error(Problem::Mechanism(error.to_string()), "a mean gap that is not negative"));

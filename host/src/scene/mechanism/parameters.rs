@@ -7,7 +7,7 @@ use super::{
     names::{Names, tables},
 };
 use crate::{
-    mechanism::{Action, Mechanism, NormalData, Parameter, UNLIMITED},
+    mechanism::{Action, Mechanism, NormalData, Parameter, UNLIMITED, Walls},
     scene::{
         Problem, SceneError,
         contact::{DAMPING, DEPTH},
@@ -50,7 +50,10 @@ fn no_effect(parameter: Parameter, mechanism: &Mechanism) -> Option<&'static str
             (!has_train).then_some("of a drive that states no limit and no friction; state 0 there")
         }
         Parameter::Slope(joint) => {
-            let slopes = mechanism.joints[joint].contours.iter().any(|contour| contour.slope != 0.0);
+            let Walls::Stated(contours) = &mechanism.joints[joint].walls else {
+                return Some("of a joint without `slope`");
+            };
+            let slopes = contours.iter().any(|contour| contour.slope != 0.0);
             (!slopes).then_some("of a joint without `slope`")
         }
         Parameter::Gain(drive) => mechanism.drives[drive].is_prescribed.then_some("of a prescribed motion"),

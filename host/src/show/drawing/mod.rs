@@ -91,7 +91,7 @@ impl Mechanism {
                 kind => kind.gaps().map(|gap| named("gap", gap)).collect(),
             };
             let play = if gaps.is_empty() { String::new() } else { format!(", {} mm", gaps.join(" ")) };
-            let contour = if joint.contours.is_empty() { "" } else { ", not parallel" };
+            let contour = if joint.walls.is_parallel() { "" } else { ", not parallel" };
             (Mark::Number(i + 1), format!("{}: {}{play}{contour}", joint.name, joint.kind.name()))
         });
         let springs = self.springs.iter().map(|spring| {
@@ -194,22 +194,6 @@ impl Mechanism {
             return self.bodies[body].centre;
         }
         std::array::from_fn(|k| places.iter().map(|place| place[k]).sum::<f64>() / places.len() as f64)
-    }
-}
-
-impl JointKind {
-    /// The gaps of the joint, by their numbers.
-    pub fn gaps(&self) -> impl Iterator<Item = usize> + use<> {
-        let gaps = match *self {
-            Self::Journal { gap, .. }
-            | Self::Guide { gap, .. }
-            | Self::Bearing { gap, .. }
-            | Self::Stop { gap, .. } => [Some(gap), None, None, None],
-            Self::Track { gaps } => gaps,
-            Self::Fixed | Self::Revolute { .. } | Self::Prismatic { .. } | Self::PinSlot { .. } => [None; 4],
-            Self::Cylindrical { .. } | Self::Spherical => [None; 4],
-        };
-        gaps.into_iter().flatten()
     }
 }
 

@@ -13,6 +13,9 @@ pub mod linear_guide;
 /// What drives, springs, friction and walls can have in a plane.
 #[rustfmt::skip]
 pub mod motion_plane;
+/// Walls whose gaps are stated at three places.
+#[rustfmt::skip]
+pub mod motion_rails;
 /// What they can have in space.
 #[rustfmt::skip]
 pub mod motion_space;

@@ -47,7 +47,8 @@ pub const IDENTIFY: &[(&str, &str)] = &[
     ),
     (
         "identify.gaps",
-        "A list of gaps whose tolerance level is sought, such as `[{ of = \"rail\", n = [-3, 3] }]`. Optional.",
+        "A list of gaps whose tolerance level is sought, such as `[{ of = \"rail\", n = [-3, 3] }]`; or `\"production\"`: the level of every \
+         gap is unknown, and normal about 0 with a deviation of 1, as in the production. Optional.",
     ),
     (
         "identify.gaps.of",

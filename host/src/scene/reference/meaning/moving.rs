@@ -229,6 +229,16 @@ pub const SLIDE: &[(&str, &str)] = &[
         "pin.bow",
         "How the slide's surfaces at this pin bow; see `joint.bow`. A slide with it is computed as a mechanism. Default: straight.",
     ),
+    (
+        "pin.along",
+        "In place of `slope` and `bow`: the gaps of this pin at one or two other places of the travel; see `joint.along`. A slide with it is \
+         computed as a mechanism.",
+    ),
+    ("pin.along.at", "How far the place is towards +z of the slide from where the pin is drawn."),
+    ("pin.along.left", "The gap there, as `left`."),
+    ("pin.along.right", "The gap there, as `right`."),
+    ("pin.along.rail", "The gap there, as `rail`."),
+    ("pin.along.wall", "The gap there, as `wall`."),
 ];
 
 /// Keys of mechanisms, and their meaning.
@@ -315,6 +325,20 @@ pub const MECHANISM: &[(&str, &str)] = &[
         "`[height, length]`: the walls bow towards the gap by this height in the middle of this length, which is at the same place; \
          away from it where the height is negative. One for all walls, or a list as for `slope`. Default: straight.",
     ),
+    (
+        "joint.along",
+        "In place of `slope` and `bow`: the gaps at one or two other places of the travel, such as \
+         `[{ at = 300, clearance = \"play at the end\" }]`. Through one the walls are straight, through two they bow.",
+    ),
+    (
+        "joint.along.at",
+        "How far the place is along the travel from where the joint is drawn, in the direction of `slope`.",
+    ),
+    ("joint.along.clearance", "Of a `prismatic` joint in a plane: the gap there, as `clearance`."),
+    ("joint.along.left", "Of a track: the gap there, as `left`."),
+    ("joint.along.right", "The same, as `right`."),
+    ("joint.along.rail", "The same, as `rail`."),
+    ("joint.along.wall", "The same, as `wall`."),
     (
         "joint.coulomb",
         "Of an ideal joint with the frame, `revolute` or `prismatic`, or a `revolute` one of any bodies in a plane: friction against its \
