@@ -85,3 +85,27 @@ fn units_of_a_drive_train_are_compared_by_one_law() {
     let forwards = found["between"].as_array().unwrap().iter().find(|one| one["name"] == "viscous forwards").unwrap();
     assert!((forwards["mean"].as_f64().unwrap() - 2.5).abs() < 0.1, "{forwards}");
 }
+
+/// A unit whose force has something that no law knows does not count in the mean, and is named.
+#[test]
+fn a_unit_that_is_not_explained_is_left_out_of_the_mean() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "train.toml", TRAIN);
+    write(folder.path(), "one.csv", &swinging());
+    write(folder.path(), "two.csv", &swinging());
+    let pulled = |(i, row): (usize, &str)| {
+        let (rest, force) = row.rsplit_once(',').unwrap();
+        // A load that hangs on the drive for half of the time.
+        let load = if (i / 300) % 2 == 0 { 0.0 } else { 9.0 };
+        format!("{rest},{}\n", force.parse::<f64>().unwrap() + load)
+    };
+    let rows: String = swinging().lines().skip(1).enumerate().map(pulled).collect();
+    write(folder.path(), "three.csv", &format!("t (s),speed (mm/s),force (N)\n{rows}"));
+    let arguments = ["identify", "train.toml", "one.csv", "two.csv", "three.csv", "--each"];
+    let found = json(folder.path(), &[&arguments[..], &["--json"]].concat());
+    let mass = found["between"].as_array().unwrap().iter().find(|one| one["name"] == "mass").unwrap();
+    assert!(mass["units"] == 2 && (mass["mean"].as_f64().unwrap() - 2.0).abs() < 0.01, "{mass}");
+    let output = slipfit(folder.path(), &arguments);
+    let warnings = String::from_utf8(output.stderr).unwrap();
+    assert!(warnings.contains("three.csv is left out of the mean"), "{warnings}");
+}

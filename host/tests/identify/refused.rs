@@ -51,6 +51,7 @@ fn what_is_sought_of_a_slide_is_checked() {
         ("friction.coefficient = [0.5, 0.1]", "a lower and a higher bound"),
         ("gaps = [{ of = \"roof\", n = [-3, 3] }]", "there is no varying gap `roof`"),
         ("gaps = [{ of = \"rail\", n = [-3, 3] }, { of = \"left back\", n = [-3, 3] }]", "\"left back\" again"),
+        ("gaps = \"all\"", "or \"production\""),
         ("loss = \"huber\"", "what is sought"),
         ("friction.coefficient = [0.1, 0.5]\ncutoff = 10", "`identify.cutoff` has no effect"),
         ("friction.coefficient = [0.1, 0.5]", "run.csv:2:1: the record has 1 samples"),

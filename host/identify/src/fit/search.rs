@@ -142,7 +142,10 @@ fn promising<M: Model + ?Sized>(model: &M, stated: &[f64], starts: usize) -> Vec
         model.measured().iter().zip(&output).map(|(measured, output)| (measured - output).abs()).sum()
     };
     let costs: Vec<f64> = all.par_iter().map(cost).collect();
-    let mut order: Vec<usize> = (0..all.len()).collect();
+    let mut order: Vec<usize> = (0..all.len()).filter(|k| costs[*k].is_finite()).collect();
+    if order.is_empty() {
+        return vec![stated.to_vec()];
+    }
     order.sort_by(|one, other| costs[*one].total_cmp(&costs[*other]));
     order.truncate(if known > 0 { FOLLOWED } else { 1 });
     // The stated start is followed, too, if it can be computed.
