@@ -29,7 +29,17 @@ impl Beforehand {
         let known: Vec<Known> = parameters.iter().enumerate().filter_map(of_one).collect();
         let samples = residuals.len();
         let effective = if known.is_empty() { samples as f64 } else { Noise::of(residuals, runs).effective(samples) };
-        Self { known, weight: samples as f64 / effective.max(1.0) }
+        Self { known, weight: (samples as f64 / effective.max(1.0)).max(1.0) }
+    }
+
+    /// The same beside a record whose samples are independent.
+    pub fn beside_independent(parameters: &[Parameter]) -> Self {
+        Self::of(parameters, &[], &[])
+    }
+
+    /// Whether nothing is known.
+    pub fn is_nothing(&self) -> bool {
+        self.known.is_empty()
     }
 
     /// The parameters of which something is known, in the order of [`residuals`](Self::residuals).

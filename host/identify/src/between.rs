@@ -39,6 +39,8 @@ pub fn between(estimates: &[&Estimate]) -> Vec<Between> {
         let parameter = |estimate: &&Estimate| {
             let same = |own: &&Estimated| (&own.name, own.unit) == (&of_first.name, of_first.unit);
             let own = estimate.parameters.iter().find(same)?;
+            // What is known beforehand alone is the same for all, and no record of theirs.
+            own.deviation_by_autocovariance?;
             Some([own.value, own.deviation?])
         };
         let found: Vec<[f64; 2]> = estimates.iter().filter_map(parameter).collect();

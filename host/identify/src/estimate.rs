@@ -105,8 +105,8 @@ pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estim
     if options.grid && !has_grid {
         return Err(EstimateError::Grid(parameters.len()));
     }
-    let fitted = fit(model, options)?;
-    check_influence(parameters, &fitted.values, model.measured(), &fitted.sensitivities)?;
+    let mut fitted = fit(model, options)?;
+    check_influence(parameters, &fitted.values, model.measured(), &mut fitted.sensitivities)?;
     let runs = model.runs();
     let linearised = Linearised::of(&fitted, runs.clone());
     let undetermined: Vec<Undetermined> = undetermined(parameters, &fitted.values, &linearised);

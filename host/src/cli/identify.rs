@@ -32,7 +32,7 @@ use super::{
 };
 use crate::{
     dynamics::driven::DriveKind,
-    identify::{Compared as Quantity, Identification, Law, MotionModel, OfRecord, Sought, Subject, Unit},
+    identify::{Compared as Quantity, Identification, Law, MotionModel, OfRecord, Sought, SoughtValue, Subject, Unit},
     show::report::{Identified, identified_page},
 };
 
@@ -179,6 +179,12 @@ impl Arguments {
         identify: &Identification,
         warnings: &[String],
     ) -> Result<Vec<Found>, Failure> {
+        let is_of_all = |of: &&Sought<U::Parameter>| of.prior.is_some() && !matches!(of.value, SoughtValue::Level(_));
+        if let (true, Some(of)) = (self.each, of.sought.iter().find(is_of_all)) {
+            let why =
+                "with --each what is known of it beforehand would count once for every unit; allowed are two bounds";
+            return Err(Failure::Input(format!("{}: {why}", of.name)));
+        }
         each(units, |records| {
             let model = MotionModel::new(unit, levels.clone(), of, &records.records);
             let model = model.map_err(|error| Failure::Input(error.to_string()))?;

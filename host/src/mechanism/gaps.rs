@@ -59,9 +59,9 @@ impl Mechanism {
         counts.map(|joint| self.widest_of(joint)).fold(0.0, f64::max)
     }
 
-    /// The widest gap (m) of a `joint` over the production.
+    /// The widest gap (m) of a `joint` at its own place over the production.
     pub(super) fn widest_of(&self, joint: &Joint) -> f64 {
-        joint.gaps().map(|gap| self.gaps[gap].widest()).fold(0.0, f64::max)
+        joint.kind.gaps().map(|gap| self.gaps[gap].widest()).fold(0.0, f64::max)
     }
 
     /// The joint that loses its play at the lowest level, and that level, of those that have some by their mean. A track loses it
@@ -72,7 +72,7 @@ impl Mechanism {
                 JointKind::Track { gaps } => {
                     let pair = |place: usize, walls: [usize; 2], name: &str| {
                         let [one, other] = walls.map(|wall| Some(joint.walls.gap_at(wall, place, gaps[wall]?)));
-                        let far = self.gaps[one?].name.find(" at ").filter(|_| place > 0);
+                        let far = self.gaps[one?].name.rfind(" at ").filter(|_| place > 0);
                         let far = far.map_or("", |at| &self.gaps[one.unwrap_or_default()].name[at..]);
                         Some((format!("{} {name}{far}", joint.name), vec![one?, other?]))
                     };

@@ -53,7 +53,7 @@ pub fn torn<'a>(mechanism: &'a Mechanism, gaps: &[f64]) -> Result<Option<Torn<'a
         // As deep as play is wide, or as a preload presses in the drawn pose. A stop has a distance instead of play.
         let is_stop = matches!(joint.kind, JointKind::Stop { .. });
         let deep = |gap: f64| if is_stop { (-gap).max(0.0) } else { gap.abs() };
-        let play = joint.gaps().map(|gap| deep(gaps[gap])).fold(0.0, f64::max);
+        let play = joint.kind.gaps().map(|gap| deep(gaps[gap])).fold(0.0, f64::max);
         (depth > play + PRESSED).then_some(Torn { joint, depth })
     });
     Ok(torn.max_by(|one, other| one.depth.total_cmp(&other.depth)))

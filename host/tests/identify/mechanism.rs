@@ -84,6 +84,9 @@ fn a_late_record_tells_its_delay_and_a_prior_what_the_record_does_not() {
     let found = values(&json(folder.path(), &["identify", "known.toml", "steady.csv", "--json"]));
     assert!((found[0][0] - 5.03).abs() < 0.05 && (found[0][1] - 0.1).abs() < 0.01, "{found:?}");
     assert!((found[1][0] - 1.0).abs() < 0.02 && (found[1][1] - 0.1).abs() < 0.01, "{found:?}");
+    // What is known of all units counts once, not once for each.
+    let each = slipfit(folder.path(), &["identify", "known.toml", "steady.csv", "steady.csv", "--each"]);
+    assert!(String::from_utf8(each.stderr).unwrap().contains("would count once for every unit"));
 }
 
 /// Four units that differ in their friction, two runs of each.

@@ -123,9 +123,5 @@ fn intervals_hold_as_often_as_they_say() {
         println!("noise {share} of the peak, correlation {correlation}: {of_kind:?} of 50");
         held.iter_mut().zip(of_kind).for_each(|(held, of_kind)| *held += of_kind);
     }
-    let [friction, mass, left, right] = held;
-    assert!([friction, mass, right].iter().all(|count| (184..=196).contains(count)), "{held:?} of 200");
-    // The left gaps act only while the slide tips, and not linearly: their intervals hold in 91 %, short of 92. What is asked of them is
-    // no less than three standard deviations of such a count below 95 %.
-    assert!((181..=196).contains(&left), "{held:?} of 200");
+    assert!(held.iter().all(|count| (184..=196).contains(count)), "{held:?} of 200");
 }

@@ -72,6 +72,19 @@ fn what_makes_no_sense_is_refused_at_its_place() {
         (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "along = [{ at = 9 }]"), "clearance"),
         (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "along = [{ at = 0, clearance = [1, 0] }]"), "0.1 mm or more"),
         (wedge(0.01, 0.2, ramp).replace("slope = 0.01", "along = []"), "one or two tables"),
+        (
+            wedge(0.01, 0.2, ramp).replace("slope = 0.01", "along = [{ at = 1, clearance = [5, 0] }]"),
+            "gaps that give a slope of 0.5 at most",
+        ),
+        (
+            wedge(0.01, 0.2, ramp).replace("slope = 0.01", "along = [{ at = 99, clearance = [1, 0], left = [1, 0] }]"),
+            "has no effect at a joint of this kind",
+        ),
+        // At −20 mm the lines have come together by 2.8 mm on either side, however wide they are far away.
+        (
+            wedge(0.01, 0.2, ramp).replace("slope = 0.01", "along = [{ at = -100, clearance = [-18.8, 0] }]"),
+            "tears `guide` open",
+        ),
         // At ± 20 mm the lines have come together by 4 mm on either side, of a gap of 1.2 mm.
         (wedge(0.2, 0.2, ramp), "tears `guide` open"),
         (wedge(0.0, 0.2, ramp).replace("slope = 0", "bow = [-100, 100]"), "tears `guide` open"),

@@ -20,15 +20,16 @@ const LEAST_INFLUENCE: f64 = 1e-6;
 /// Share of the greatest part in a combination below which a parameter has no part in it.
 const NO_PART: f64 = 0.02;
 
-/// Whether each of the `parameters`, at these `values`, has an influence on the `output`, or is known beforehand.
+/// Whether each of the `parameters`, at these `values`, has an influence on the `output`. The derivatives by one that has none, but is known
+/// beforehand, become 0: they are rounding.
 ///
 /// # Errors
-/// [`NoInfluence`] names the first that has none.
+/// [`NoInfluence`] names the first that has none and is not known beforehand.
 pub fn check_influence(
     parameters: &[Parameter],
     values: &[f64],
     output: &[f64],
-    sensitivities: &[Vec<f64>],
+    sensitivities: &mut [Vec<f64>],
 ) -> Result<(), NoInfluence> {
     let size = |column: &[f64]| libm::sqrt(column.iter().map(|value| value * value).sum::<f64>());
     let whole = size(output).max(f64::MIN_POSITIVE);
@@ -36,6 +37,9 @@ pub fn check_influence(
         let is_small = size(column) * parameter.scale(*value) < LEAST_INFLUENCE * whole;
         if is_small && parameter.prior.is_none() {
             return Err(NoInfluence { name: parameter.name.clone() });
+        }
+        if is_small {
+            column.fill(0.0);
         }
     }
     Ok(())
@@ -124,8 +128,12 @@ mod tests {
 
     #[test]
     fn a_parameter_without_influence_is_an_error() {
-        let columns = [vec![1.0; 9], vec![1e-12; 9]];
-        let error = check_influence(&[parameter("a"), parameter("b")], &[1.0, 1.0], &[2.0; 9], &columns);
+        let mut columns = [vec![1.0; 9], vec![1e-12; 9]];
+        let error = check_influence(&[parameter("a"), parameter("b")], &[1.0, 1.0], &[2.0; 9], &mut columns);
         assert_eq!(error.expect_err("no influence").name, "b");
+        let known = Parameter { prior: Some([0.0, 1.0]), ..parameter("b") };
+        check_influence(&[parameter("a"), known], &[1.0, 1.0], &[2.0; 9], &mut columns)
+            .expect("it is known beforehand");
+        assert_eq!(columns[1], [0.0; 9]);
     }
 }

@@ -10,7 +10,7 @@ use crate::{
     model::{Model, ModelError},
 };
 
-/// How far the record bounds a parameter.
+/// How far the record, with what is known beforehand, bounds a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
@@ -133,9 +133,10 @@ impl<'a, M: Model + ?Sized> Search<'a, M> {
         let follow = -(&inverse * &shared);
         let slopes = fit.residuals.iter().map(|residual| fit.loss.psi_slope(residual / fit.scale));
         let slope = slopes.sum::<f64>() / fit.residuals.len() as f64;
-        let own = 1.0 + known[i][0] + follow.dot(&shared);
         let unit = linearised.units[i];
-        let curvature = slope.max(0.1) * own / (fit.scale * fit.scale * unit * unit);
+        // Where residuals are cut the loss of the record rises less.
+        let own = slope.max(0.1) * (1.0 + follow.dot(&shared)) + known[i][0];
+        let curvature = own / (fit.scale * fit.scale * unit * unit);
         let cost = Cost { loss: fit.loss, scale: fit.scale, beforehand };
         let least = cost.of(&fit.residuals, &fit.values);
         Self { model, fit, linearised, cost, i, others, inverse, follow, least, curvature }

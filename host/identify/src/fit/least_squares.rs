@@ -81,11 +81,11 @@ impl<M: Model + ?Sized> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, M> {
 /// minimum is, in standard errors of white noise, of a parameter that no other one resembles; of those that do it may be a hundred times
 /// as far, and still near.
 pub const CLOSE: f64 = 1e-6;
-/// The gain of a step, as a share of the cost, below which a search ends, by how close it has to come. The cost of noise changes by one over
-/// the number of samples in a standard error.
-const GAIN: f64 = 1e-3;
 /// The same of a search that another one follows.
 pub const NEAR: f64 = 1e-3;
+/// The gain of a step, as a share of the cost, below which a search ends, over the cosine at which it does. The cost of noise changes by one
+/// over the number of samples in a standard error.
+const GAIN: f64 = 1e-3;
 
 /// What a search minimises.
 #[derive(Clone, Copy)]

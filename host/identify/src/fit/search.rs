@@ -20,7 +20,7 @@ use crate::{
 pub struct Options {
     /// What a residual costs.
     pub loss: Loss,
-    /// Starts beside the stated one, drawn within the bounds, of which the best is followed.
+    /// Starts beside the stated one, drawn within the bounds or as what is known beforehand has it, of which the best are followed.
     pub starts: usize,
     /// Whether a grid is searched instead of following gradients.
     pub grid: bool,
@@ -64,36 +64,69 @@ pub fn fit<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Fit, Model
             _ => (coarse, output),
         }
     } else {
-        let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
+        // At a start what the model does not yet explain is no noise, and what is known beforehand must not outweigh it.
+        let independent = Beforehand::beside_independent(parameters);
+        let (mut best, mut failed): (Option<(f64, Vec<f64>, Vec<f64>)>, _) = (None, None);
         for start in promising(model, &stated, options.starts) {
-            let output = model.simulate(&start)?;
-            let beforehand = known(&output);
-            let cost = Cost { loss: Loss::Squares, scale: deviation(&output, Loss::Squares), beforehand: &beforehand };
-            let (values, output) = minimise(model, &start, &free, cost, NEAR)?;
-            let found = deviation(&output, Loss::Huber);
-            if best.as_ref().is_none_or(|(least, ..)| found < *least) {
-                best = Some((found, values, output));
+            let found = model.simulate(&start).and_then(|output| {
+                let scale = deviation(&output, Loss::Squares);
+                minimise(model, &start, &free, Cost { loss: Loss::Squares, scale, beforehand: &independent }, NEAR)
+            });
+            match found {
+                Ok((values, output)) => {
+                    let found = judged(deviation(&output, Loss::Huber), &values, &independent, model.measured().len());
+                    if best.as_ref().is_none_or(|(least, ..)| found < *least) {
+                        best = Some((found, values, output));
+                    }
+                }
+                Err(error) => failed = Some(error),
             }
         }
-        let Some((_, mut values, mut output)) = best else {
-            let output = model.simulate(&stated)?;
-            return finish(model, stated, output, options, least);
+        let (mut values, mut output) = match (best, failed) {
+            (Some((_, values, output)), _) => (values, output),
+            (None, Some(error)) => return Err(error),
+            (None, None) => (stated.clone(), model.simulate(&stated)?),
         };
-        // The scale follows the estimate. Two rounds leave it within its own error. Squares without anything known beforehand have none.
-        let has_known = parameters.iter().any(|parameter| parameter.prior.is_some());
-        let rounds = match (has_known, loss) {
-            (true, _) => 3,
-            (false, Loss::Squares) => 1,
-            (false, _) => 2,
+        let mut round = |of: &dyn Fn(&[f64]) -> Beforehand| -> Result<f64, ModelError> {
+            let (scale, beforehand) = (deviation(&output, loss), of(&output));
+            (values, output) = minimise(model, &values, &free, Cost { loss, scale, beforehand: &beforehand }, CLOSE)?;
+            Ok(scale)
         };
-        for _ in 0..rounds {
-            let beforehand = known(&output);
-            let cost = Cost { loss, scale: deviation(&output, loss), beforehand: &beforehand };
-            (values, output) = minimise(model, &values, &free, cost, CLOSE)?;
+        if independent.is_nothing() {
+            // The scale follows the estimate. Two rounds leave it within its own error; squares have none.
+            for _ in 0..if loss == Loss::Squares { 1 } else { 2 } {
+                round(&|_| independent.clone())?;
+            }
+        } else {
+            // What is known beforehand counts the more the greater the scale is: until both settle. How much the samples' noise follows itself
+            // is seen only then.
+            settle(|| round(&|_| independent.clone()))?;
+            settle(|| round(&known))?;
         }
         (values, output)
     };
     finish(model, values, output, options, least)
+}
+
+/// Repeats a `round`, which says the scale that it began with, until that settles.
+fn settle(mut round: impl FnMut() -> Result<f64, ModelError>) -> Result<(), ModelError> {
+    const MOST: usize = 10;
+    const SETTLED: f64 = 1e-3;
+    let mut before = round()?;
+    for _ in 1..MOST {
+        let scale = round()?;
+        if (scale - before).abs() < SETTLED * scale {
+            break;
+        }
+        before = scale;
+    }
+    Ok(())
+}
+
+/// How well `values` explain so many `samples` with residuals of this `deviation`, and what is known `beforehand`: twice the negative logarithm
+/// of their likelihood.
+fn judged(deviation: f64, values: &[f64], beforehand: &Beforehand, samples: usize) -> f64 {
+    2.0 * samples as f64 * libm::log(deviation) + beforehand.cost(values)
 }
 
 fn finish<M: Model + ?Sized>(
@@ -219,5 +252,19 @@ mod tests {
     fn a_bound_holds() {
         let found = values(&of(decay(3.0, 2.0), [2.5, 9.0]), Options::default());
         assert!((found.values[1] - 2.5).abs() < 1e-3, "{:?}", found.values);
+    }
+
+    /// What is known beforehand is five deviations off, and the record knows the values far better.
+    #[test]
+    fn a_record_outweighs_what_is_known_beforehand() {
+        let noise = |i: usize| 0.01 * (f64::from((i as u32).wrapping_mul(2_654_435_761) >> 16) / 32_768.0 - 1.0);
+        let measured: Vec<f64> = decay(3.0, 2.0).iter().enumerate().map(|(i, y)| y + noise(i)).collect();
+        for loss in Loss::ALL {
+            let mut model = of(measured.clone(), [0.0, 9.0]);
+            model.parameters[0].prior = Some([2.0, 0.2]);
+            model.parameters[0].start = 2.0;
+            let found = values(&model, Options { loss, starts: 0, ..Options::default() });
+            assert!((found.values[0] - 3.0).abs() < 0.01 && (found.values[1] - 2.0).abs() < 0.02, "{:?}", found.values);
+        }
     }
 }

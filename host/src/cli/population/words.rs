@@ -98,6 +98,7 @@ pub fn malfunction(statistics: &Statistics) -> String {
         all if all == *units && malfunctions.units == 0 => {
             format!("not known: none of {units} units comes to a verdict")
         }
+        1 => format!("{} at least: a unit comes to no verdict", percent(malfunctions)),
         some => format!("{} at least: {some} units come to no verdict", percent(malfunctions)),
     }
 }

@@ -14,7 +14,7 @@ use super::{Problem, SceneError, parameter::Named, parse::choice, slide_paramete
 use crate::{
     dynamics::driven::DriveKind,
     identify::{Along, Compared, Identification, OfRecord, Sought, Subject},
-    mechanism::{self, Mechanism},
+    mechanism::{self, JointKind, Mechanism},
     setup::{Adjustable, SURFACES, Scene},
 };
 
@@ -51,7 +51,8 @@ pub(super) fn slide(root: &Field, scene: &Scene) -> Result<Option<Identification
     let is_meant = |name: &str, i: usize| name == SURFACES[i % 4] || name == scene.pins[i / 4].name || name == names[i];
     let groups = format!("all, {}, a pin, or one gap such as {:?}", SURFACES.join(", "), names[0]);
     let names = names.iter().map(String::as_str).collect();
-    let gaps = Gaps { names, varies: &varies, is_meant: &is_meant, groups };
+    let possible = |_| [f64::NEG_INFINITY, f64::INFINITY];
+    let gaps = Gaps { names, varies: &varies, possible: &possible, is_meant: &is_meant, groups };
     let parameters = named(root, "identify", scene)?;
     let unit = OfUnit { drive: 0, turns: false, list: |_| None };
     let (options, columns, of) = of_record(&table, &parameters, &gaps, &unit)?;
@@ -74,13 +75,24 @@ pub(super) fn mechanism(
         let joint = mechanism.joints.iter().find(|joint| joint.name == name);
         joint.is_some_and(|joint| joint.gaps().any(|gap| gap == i))
     };
-    // A surface means that of every track.
-    let of_surface =
-        |name: &str, i: usize| SURFACES.contains(&name) && mechanism.gaps[i].name.rsplit(' ').next() == Some(name);
+    // A surface means that of every track, at all places.
+    let of_surface = |name: &str, i: usize| {
+        let Some(k) = SURFACES.iter().position(|surface| *surface == name) else { return false };
+        mechanism.joints.iter().any(|joint| {
+            let JointKind::Track { gaps } = joint.kind else { return false };
+            let at = |place| gaps[k].map(|own| joint.walls.gap_at(k, place, own));
+            (0..joint.walls.places()).any(|place| at(place) == Some(i))
+        })
+    };
+    let possible = |i: usize| {
+        let [least, greatest] = mechanism.allowed_gap(i);
+        let statistics = mechanism.gaps[i].statistics;
+        [statistics.level(greatest), statistics.level(least)]
+    };
     let is_meant = |name: &str, i: usize| name == mechanism.gaps[i].name || of_joint(name, i) || of_surface(name, i);
     let names: Vec<&str> = mechanism.gaps.iter().map(|gap| gap.name.as_str()).collect();
     let groups = if names.is_empty() { "none: no joint has play".into() } else { format!("all, {}", names.join(", ")) };
-    let gaps = Gaps { names, varies: &varies, is_meant: &is_meant, groups };
+    let gaps = Gaps { names, varies: &varies, possible: &possible, is_meant: &is_meant, groups };
     let list = |parameter: mechanism::Parameter| match parameter {
         Mass(_) => Some("body"),
         Gain(_) | RampEnd(_) | Limit(_) | Coulomb(_) | Viscous(_) | Offset(_) => Some("drive"),

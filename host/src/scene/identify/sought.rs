@@ -23,6 +23,8 @@ pub struct Gaps<'a> {
     pub names: Vec<&'a str>,
     /// Whether one varies.
     pub varies: &'a dyn Fn(usize) -> bool,
+    /// The levels at which one is possible.
+    pub possible: &'a dyn Fn(usize) -> [f64; 2],
     /// Whether a name means one; `all` means every one.
     pub is_meant: &'a dyn Fn(&str, usize) -> bool,
     /// The names that mean gaps, for a message.
@@ -84,7 +86,12 @@ pub fn levels<P>(table: &Field, gaps: &Gaps) -> Result<Vec<Sought<P>>, SceneErro
     let Some(list) = table.get("gaps") else { return Ok(Vec::new()) };
     const LIST: &str = "a list such as [{ of = \"all\", n = [-3, 3] }], or \"production\"";
     if let Value::Text(text) = &list.node.value {
-        return if text == "production" { Ok(of_production(gaps)) } else { Err(list.out_of_range("", LIST)) };
+        let found = of_production(gaps);
+        return match (&text[..], found.is_empty()) {
+            ("production", false) => Ok(found),
+            ("production", true) => Err(list.no_effect("where no gap varies", "a scene with a gap that varies")),
+            _ => Err(list.out_of_range("", LIST)),
+        };
     }
     let Value::List(nodes) = &list.node.value else { return Err(list.wrong_type(LIST)) };
     let mut sought: Vec<Sought<P>> = Vec::new();
@@ -112,16 +119,20 @@ pub fn levels<P>(table: &Field, gaps: &Gaps) -> Result<Vec<Sought<P>>, SceneErro
     Ok(sought)
 }
 
-/// The level of every gap that varies, known beforehand as the production has it: normal about 0, with a deviation of 1.
+/// The level of every gap that varies, known beforehand as the production has it: normal about 0, with a deviation of 1,
+/// each independent of the others.
 fn of_production<P>(gaps: &Gaps) -> Vec<Sought<P>> {
     const FARTHEST: f64 = 5.0;
-    let of = |i: usize| Sought {
-        value: SoughtValue::Level(vec![i]),
-        name: format!("n of {}", gaps.names[i]),
-        list: None,
-        unit: "",
-        bounds: [-FARTHEST, FARTHEST],
-        prior: Some([0.0, 1.0]),
+    let of = |i: usize| {
+        let [low, high] = (gaps.possible)(i);
+        Sought {
+            value: SoughtValue::Level(vec![i]),
+            name: format!("n of {}", gaps.names[i]),
+            list: None,
+            unit: "",
+            bounds: [low.max(-FARTHEST), high.min(FARTHEST)],
+            prior: Some([0.0, 1.0]),
+        }
     };
     (0..gaps.names.len()).filter(|i| (gaps.varies)(*i)).map(of).collect()
 }

@@ -1,7 +1,7 @@
 //! Reading how the walls of a joint run: how they slope and bow, or the gaps at other places.
 
 use slipfit_tolerance::{
-    number::ten_digits,
+    number::{ten_digits, three_digits},
     unit::{self, Quantity},
 };
 
@@ -87,6 +87,11 @@ fn others(along: &Field, walls: &[Wall], gaps: &mut Gaps) -> Result<Vec<Vec<OfGa
             return Err(at.out_of_range("mm", allowed));
         }
         places.push(away);
+        let is_known = |key: &str| walls.iter().any(|wall| wall.key == key);
+        let mut keys = ["clearance"].into_iter().chain(SURFACES).filter(|key| !is_known(key));
+        if let Some(field) = keys.find_map(|key| place.get(key)) {
+            return Err(field.no_effect("at a joint of this kind", "the keys that its own gaps have"));
+        }
         for (wall, others) in walls.iter().zip(&mut found) {
             match (wall.gap, place.get(wall.key)) {
                 (Some(_), None) => return Err(place.error(Problem::Missing(wall.key.into()), "the gap there")),
@@ -102,7 +107,17 @@ fn others(along: &Field, walls: &[Wall], gaps: &mut Gaps) -> Result<Vec<Vec<OfGa
         }
     }
     let walls = walls.iter().zip(&found);
-    Ok(walls.map(|(wall, others)| wall.gap.map_or_else(Vec::new, |own| through(own, others))).collect())
+    let found: Vec<Vec<OfGap>> =
+        walls.map(|(wall, others)| wall.gap.map_or_else(Vec::new, |own| through(own, others))).collect();
+    let mean = |gap: usize| gaps.gaps[gap].statistics.mean;
+    let sum = |wall: &[OfGap], k: usize| wall.iter().map(|of| of.adds[k] * mean(of.gap)).sum::<f64>();
+    let slopes = found.iter().flat_map(|wall| places.iter().map(|s| sum(wall, 0) + sum(wall, 1) * s));
+    let steepest = slopes.fold(0.0f64, |most, slope| most.max(slope.abs()));
+    if steepest > SLOPE.range[1] {
+        let what = format!("a wall through these gaps has a slope of {}", three_digits(steepest));
+        return Err(along.error(Problem::Mechanism(what), "gaps that give a slope of 0.5 at most"));
+    }
+    Ok(found)
 }
 
 /// Those of `N` walls, of which some may not be there.

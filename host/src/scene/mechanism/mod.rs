@@ -202,7 +202,9 @@ fn check_gaps(mechanism: &Mechanism, joints: &[Field], root: &Field) -> Result<(
     if let Err(error) = mechanism.gaps_at(&[0.0]) {
         let is_of = |joint: &crate::mechanism::Joint| joint.gaps().any(|gap| mechanism.gaps[gap].name == error.name);
         let joint = &joints[mechanism.joints.iter().position(is_of).unwrap_or_default()];
-        let field = joint.get("clearance").unwrap_or_else(|| joint.clone());
+        let is_far = error.name.contains(" at ") && joint.get("along").is_some();
+        let key = if is_far { "along" } else { "clearance" };
+        let field = joint.get(key).unwrap_or_else(|| joint.clone());
         return Err(field.error(Problem::Mechanism(error.to_string()), "a mean gap that is not negative"));
     }
     let Some(table) = root.get("sweep") else { return Ok(()) };

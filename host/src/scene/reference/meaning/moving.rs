@@ -234,7 +234,7 @@ pub const SLIDE: &[(&str, &str)] = &[
         "In place of `slope` and `bow`: the gaps of this pin at one or two other places of the travel; see `joint.along`. A slide with it is \
          computed as a mechanism.",
     ),
-    ("pin.along.at", "How far the place is towards +z of the slide from where the pin is drawn."),
+    ("pin.along.at", "How far (mm) the place is towards +z of the slide from where the pin is drawn."),
     ("pin.along.left", "The gap there, as `left`."),
     ("pin.along.right", "The gap there, as `right`."),
     ("pin.along.rail", "The gap there, as `rail`."),
@@ -328,11 +328,11 @@ pub const MECHANISM: &[(&str, &str)] = &[
     (
         "joint.along",
         "In place of `slope` and `bow`: the gaps at one or two other places of the travel, such as \
-         `[{ at = 300, clearance = \"play at the end\" }]`. Through one the walls are straight, through two they bow.",
+         `[{ at = 300, clearance = \"play at the end\" }]`. With one the walls are straight, with two they bow.",
     ),
     (
         "joint.along.at",
-        "How far the place is along the travel from where the joint is drawn, in the direction of `slope`.",
+        "How far (mm) the place is along the travel from where the joint is drawn, in the direction of `slope`.",
     ),
     ("joint.along.clearance", "Of a `prismatic` joint in a plane: the gap there, as `clearance`."),
     ("joint.along.left", "Of a track: the gap there, as `left`."),
