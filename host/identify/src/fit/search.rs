@@ -66,7 +66,8 @@ pub fn fit<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Fit, Model
     } else {
         // At a start what the model does not yet explain is no noise, and what is known beforehand must not outweigh it.
         let independent = Beforehand::beside_independent(parameters);
-        let (mut best, mut failed): (Option<(f64, Vec<f64>, Vec<f64>)>, _) = (None, None);
+        let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
+        let mut failed = None;
         for start in promising(model, &stated, options.starts) {
             let found = model.simulate(&start).and_then(|output| {
                 let scale = deviation(&output, Loss::Squares);
