@@ -50,7 +50,7 @@ const LAYERS: [(&str, &[&str]); 7] = [
     ("host/measured/src", &["unit", "table", "csv", "numeric", "families", "capability", "production"]),
     (
         "host/identify/src",
-        &["signal", "record", "model", "fit", "doubt", "estimate", "between", "compare", "drive_train"],
+        &["signal", "record", "model", "beforehand", "fit", "doubt", "estimate", "between", "compare", "drive_train"],
     ),
     ("host/qif/src", &["error", "file", "drawing", "format", "xml", "words", "units", "model", "part", "results"]),
     (
