@@ -4,7 +4,7 @@ use slipfit_core::clearance::GapStatistics;
 use slipfit_tolerance::number::{level, ten_digits};
 
 use super::{Gap, Joint, JointKind, Mechanism};
-use crate::setup::GAP_MOST;
+use crate::setup::{GAP_MOST, SURFACES};
 
 /// How far (m) a stop may be.
 pub const STOP_MOST: f64 = 10.0;
@@ -72,9 +72,10 @@ impl Mechanism {
                 JointKind::Track { gaps } => {
                     let pair = |place: usize, walls: [usize; 2], name: &str| {
                         let [one, other] = walls.map(|wall| Some(joint.walls.gap_at(wall, place, gaps[wall]?)));
-                        let far = self.gaps[one?].name.rfind(" at ").filter(|_| place > 0);
-                        let far = far.map_or("", |at| &self.gaps[one.unwrap_or_default()].name[at..]);
-                        Some((format!("{} {name}{far}", joint.name), vec![one?, other?]))
+                        // What its name has after joint and surface says where it is.
+                        let own = format!("{} {}", joint.name, SURFACES[walls[0]]);
+                        let place = self.gaps[one?].name.strip_prefix(&own).unwrap_or_default();
+                        Some((format!("{} {name}{place}", joint.name), vec![one?, other?]))
                     };
                     let pairs = |place| [pair(place, [0, 1], "across"), pair(place, [2, 3], "up-down")];
                     (0..joint.walls.places()).flat_map(pairs).flatten().collect()

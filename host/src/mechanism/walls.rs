@@ -4,10 +4,9 @@ use super::{Contour, Joint};
 
 /// How the walls of a joint run along the travel: one for each line of a guide, left of the axis first, and for each wall of a track, in the
 /// order of its gaps.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Walls {
     /// Straight and parallel.
-    #[default]
     Parallel,
     /// They slope and bow as stated.
     Stated(Vec<Contour<f64>>),
@@ -50,7 +49,7 @@ impl Walls {
         }
     }
 
-    /// The gap of wall `i`, which is `own` at the joint, at a place by its number.
+    /// The gap of wall `i` at a place by its number, of which 0 is the joint's own, where the gap is `own`.
     pub fn gap_at(&self, i: usize, place: usize, own: usize) -> usize {
         match self {
             Self::OfGaps(walls) => walls.get(i).and_then(|wall| wall.get(place)).map_or(own, |of| of.gap),

@@ -172,7 +172,7 @@ fn a_reversal_tells_the_play_and_not_its_split() {
     write(folder.path(), "late.csv", &format!("{head}\n{}\n", late.join("\n")));
     let text = stdout(&slipfit(folder.path(), &["identify", "play.toml", "late.csv"]));
     assert!(text.contains("n of ahead and n of behind only as a sum"), "{text}");
-    // From the first contact on, both are known, to what a step of the desk may err by.
+    // From the first contact on, both are known.
     let found = values(&json(folder.path(), &["identify", "play.toml", "whole.csv", "--json"]));
-    assert!(found.iter().all(|[level, _]| (level - 0.5).abs() < 1e-5), "{found:?}");
+    assert!(found.iter().all(|[level, _]| (level - 0.5).abs() < 1e-6), "{found:?}");
 }

@@ -2,8 +2,10 @@
 
 use super::slide::noisy;
 use slipfit::{
-    dynamics::driven::Driven,
-    dynamics::simulate::{Settings, simulate},
+    dynamics::{
+        driven::Driven,
+        simulate::{Settings, simulate},
+    },
     identify::{Identification, MotionModel, OfRecord, Subject},
     population::{
         production::Production,
@@ -28,9 +30,11 @@ use slipfit_tolerance::failure::subset::normals;
 const FRICTION: f64 = 0.25;
 /// Units that are measured, each at constant speed.
 const UNITS: u64 = 10;
-/// From when on (s) their force is recorded, until when, and how often.
+/// From when on (s) their force is recorded.
 const START: f64 = 0.25;
+/// Until when (s).
 const END: f64 = 1.5;
+/// The interval (s) of samples.
 const STEP: f64 = 1e-3;
 
 /// The shipped slide, driven to 50 mm/s within 0.2 s. Its friction and the gaps are sought, which the production gives.
@@ -86,7 +90,7 @@ fn a_unit_whose_gaps_nobody_knows_tells_its_friction() {
     let friction = &found.parameters[0];
     let deviation = friction.deviation.unwrap();
     assert!(deviation < 0.01 && (friction.value - FRICTION).abs() < 4.0 * deviation, "{friction:?}");
-    // A wall that nothing touches stays what it was, which is no error.
+    // The gap of a wall that nothing touches stays as it was known beforehand.
     assert!(found.parameters.iter().any(|of| of.deviation.is_some_and(|own| own > 0.999)), "{:?}", found.parameters);
     assert!(found.undetermined.is_empty() && found.lack.verdict.is_none(), "{:?}", found.lack);
 }

@@ -146,7 +146,10 @@ fn inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Linearised, Noise};
+    use nalgebra::DMatrix;
+
+    use super::{Beforehand, Linearised, Noise, with_known};
+    use crate::model::Parameter;
 
     #[test]
     fn white_noise_gives_the_textbook_error() {
@@ -169,5 +172,31 @@ mod tests {
         // (1 + ρ)/(1 − ρ) times the variance of white noise.
         let ratio = linearised.covariance(&noise)[(0, 0)] * n as f64 / (1.9 / 0.1);
         assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
+    }
+
+    fn known(parameters: &[Option<[f64; 2]>]) -> Beforehand {
+        let parameter = |prior: &Option<[f64; 2]>| Parameter {
+            name: "a".into(),
+            unit: "",
+            bounds: [-1e9, 1e9],
+            start: 0.0,
+            prior: *prior,
+        };
+        Beforehand::beside_independent(&parameters.iter().map(parameter).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn two_sources_of_one_value_add_their_information() {
+        let of_record = DMatrix::from_element(1, 1, 0.04);
+        let found = with_known(&known(&[Some([2.0, 0.1])]), &of_record, &[0.5]);
+        assert!((found[(0, 0)] - 1.0 / 125.0).abs() < 1e-12, "{found}");
+    }
+
+    /// Of two values only the sum is known from the record: what is known of one beforehand tells the other.
+    #[test]
+    fn what_is_known_beforehand_determines_what_a_record_does_not() {
+        let sum = DMatrix::from_element(2, 2, 0.25) * 0.01;
+        let found = with_known(&known(&[Some([1.0, 0.1]), None]), &sum, &[1.0, 1.0]);
+        assert!((found[(0, 0)] - 0.01).abs() < 1e-9 && (found[(1, 1)] - 0.02).abs() < 1e-9, "{found}");
     }
 }

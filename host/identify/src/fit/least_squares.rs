@@ -83,9 +83,6 @@ impl<M: Model + ?Sized> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, M> {
 pub const CLOSE: f64 = 1e-6;
 /// The same of a search that another one follows.
 pub const NEAR: f64 = 1e-3;
-/// The gain of a step, as a share of the cost, below which a search ends, over the cosine at which it does. The cost of noise changes by one
-/// over the number of samples in a standard error.
-const GAIN: f64 = 1e-3;
 
 /// What a search minimises.
 #[derive(Clone, Copy)]
@@ -130,8 +127,7 @@ pub fn minimise<M: Model + ?Sized>(
     };
     problem.set_params(&DVector::from_vec(searched));
     if !free.is_empty() {
-        let search =
-            LevenbergMarquardt::new().with_tol(1e-9).with_gtol(close).with_ftol(GAIN * close).with_patience(PATIENCE);
+        let search = LevenbergMarquardt::new().with_tol(1e-9).with_gtol(close).with_patience(PATIENCE);
         let (at, _) = search.minimize(problem);
         problem = at;
     }

@@ -69,8 +69,12 @@ pub fn fit<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Fit, Model
         let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
         let mut failed = None;
         for start in promising(model, &stated, options.starts) {
-            let found = model.simulate(&start).and_then(|output| {
-                let scale = deviation(&output, Loss::Squares);
+            // Squares have their minimum at the same place in any unit, if nothing stands beside them.
+            let scale = match independent.is_nothing() {
+                true => Ok(1.0),
+                false => model.simulate(&start).map(|output| deviation(&output, Loss::Squares)),
+            };
+            let found = scale.and_then(|scale| {
                 minimise(model, &start, &free, Cost { loss: Loss::Squares, scale, beforehand: &independent }, NEAR)
             });
             match found {

@@ -201,10 +201,10 @@ fn doubt(mechanism: &Mechanism, joints: &[Field], root: &Field) {
 fn check_gaps(mechanism: &Mechanism, joints: &[Field], root: &Field) -> Result<(), SceneError> {
     if let Err(error) = mechanism.gaps_at(&[0.0]) {
         let is_of = |joint: &crate::mechanism::Joint| joint.gaps().any(|gap| mechanism.gaps[gap].name == error.name);
-        let joint = &joints[mechanism.joints.iter().position(is_of).unwrap_or_default()];
-        let is_far = error.name.contains(" at ") && joint.get("along").is_some();
-        let key = if is_far { "along" } else { "clearance" };
-        let field = joint.get(key).unwrap_or_else(|| joint.clone());
+        let number = mechanism.joints.iter().position(is_of).unwrap_or_default();
+        let is_own = mechanism.joints[number].kind.gaps().any(|gap| mechanism.gaps[gap].name == error.name);
+        let field = joints[number].get(if is_own { "clearance" } else { "along" });
+        let field = field.unwrap_or_else(|| joints[number].clone());
         return Err(field.error(Problem::Mechanism(error.to_string()), "a mean gap that is not negative"));
     }
     let Some(table) = root.get("sweep") else { return Ok(()) };
