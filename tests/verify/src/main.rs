@@ -1,5 +1,7 @@
-//! Every test with one command, `cargo verify`: installs what the tests need where it may, and says what is missing where
-//! it may not. No test is ever skipped, also not the long ones that `cargo test` leaves out. Arguments go to `cargo test`.
+//! The tests with one command, `cargo verify`: installs what they need where it may, and says what is missing where it may not.
+//!
+//! `cargo verify --all` adds those that are ignored because they take long, but studies, whose names start with `study_`: each has a smaller
+//! test of its own. Other arguments go to `cargo test`.
 #![forbid(unsafe_code)]
 
 mod programs;
@@ -9,6 +11,8 @@ use std::{
     path::Path,
     process::{Command, ExitCode, Stdio},
 };
+
+use programs::Tier;
 
 /// Targets that tests build for.
 const TARGETS: [&str; 6] = [
@@ -151,9 +155,15 @@ fn install(packages: &[&str]) -> bool {
         && runs(apt_get().args(["install", "--yes", "--no-install-recommends"]).args(packages))
 }
 
-/// Runs the tests of the whole workspace: all at once, or by Cargo where it is given arguments.
+/// Runs the tests of the whole workspace: several programs at a time, or by Cargo where it is given arguments.
 fn tests() -> Outcome {
-    let arguments: Vec<_> = env::args_os().skip(1).collect();
+    let mut arguments: Vec<_> = env::args_os().skip(1).collect();
+    let tier = if arguments.first().is_some_and(|first| first == "--all") {
+        arguments.remove(0);
+        Tier::All
+    } else {
+        Tier::Usual
+    };
     if !arguments.is_empty() {
         let mut command = cargo_test();
         command.args(arguments);
@@ -165,7 +175,7 @@ fn tests() -> Outcome {
     }
     let programs = programs::built(cargo_test(), &Path::new(ROOT).canonicalize().map_err(|error| error.to_string())?)?;
     let count = programs.len();
-    programs::run(programs)?;
+    programs::run(programs, tier)?;
     if !runs(cargo_test().args(["--doc", "--quiet"])) {
         return Err("examples in the documentation failed".to_owned());
     }

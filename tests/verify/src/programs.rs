@@ -13,6 +13,25 @@ use std::{
 
 use serde_json::Value;
 
+/// Which of its tests a program runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tier {
+    /// What `cargo test` runs.
+    Usual,
+    /// Those that are ignored because they take long, too; but no studies.
+    All,
+}
+
+impl Tier {
+    /// What the program is told.
+    fn arguments(self) -> &'static [&'static str] {
+        match self {
+            Self::Usual => &[],
+            Self::All => &["--include-ignored", "--skip", "study_"],
+        }
+    }
+}
+
 /// A program with tests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
@@ -54,11 +73,11 @@ fn program(line: &str, root: &Path) -> Option<Program> {
     })
 }
 
-/// Runs the `programs`, as many at a time as there are processors.
+/// Runs the tests of this `tier` of the `programs`, as many at a time as there are processors.
 ///
 /// # Errors
 /// If tests fail, with how many programs have such.
-pub fn run(programs: Vec<Program>) -> Result<(), String> {
+pub fn run(programs: Vec<Program>, tier: Tier) -> Result<(), String> {
     let waiting = Mutex::new(VecDeque::from(programs));
     let failed = Mutex::new(0);
     let threads = thread::available_parallelism().map_or(1, |count| count.get());
@@ -73,7 +92,7 @@ pub fn run(programs: Vec<Program>) -> Result<(), String> {
                     if i % 2 == 0 { waiting.pop_back() } else { waiting.pop_front() }
                 };
                 while let Some(program) = next() {
-                    if !program.passes() {
+                    if !program.passes(tier) {
                         *failed.lock().expect("no thread panics") += 1;
                     }
                 }
@@ -88,10 +107,10 @@ pub fn run(programs: Vec<Program>) -> Result<(), String> {
 
 impl Program {
     /// Whether its tests pass; prints a line, and all that it says if they do not.
-    fn passes(&self) -> bool {
+    fn passes(&self, tier: Tier) -> bool {
         let start = Instant::now();
         let ran = Command::new(&self.file)
-            .arg("--include-ignored")
+            .args(tier.arguments())
             .current_dir(&self.folder)
             .env("CARGO_MANIFEST_DIR", &self.folder)
             .stdin(Stdio::null())

@@ -1,5 +1,7 @@
 //! Productions against the distributions that their parts were drawn from.
 
+use std::ops::RangeInclusive;
+
 use slipfit_core::sampling::{
     normal::score,
     stream::{Rng, unit_stream},
@@ -165,8 +167,20 @@ fn coverage<const N: usize>(
 
 /// Mean, standard deviation and share above two standard deviations of one of two that move together, and the mean of their sum.
 #[test]
+#[ignore = "60 productions, 400 times each"]
+fn few_repeats_of_intervals_hold() {
+    intervals_hold(15, 0.8..=1.0, 0.73..=1.0);
+}
+
+#[test]
 #[ignore = "1,200 productions, 400 times each"]
-fn intervals_hold() {
+fn study_how_often_intervals_hold() {
+    intervals_hold(300, 0.92..=0.98, 0.90..=0.98);
+}
+
+/// Asserts that the shares of the intervals which hold, of this many productions, lie in these ranges: of normal distributions and of what is
+/// smoothed.
+fn intervals_hold(repeats: u64, of_normal: RangeInclusive<f64>, of_smoothed: RangeInclusive<f64>) {
     let of = |distribution: &Distribution| match distribution {
         Distribution::Normal { mean, deviation } => [*mean, *deviation, tail((2.0 - mean) / deviation)],
         Distribution::Table(values) => {
@@ -184,14 +198,14 @@ fn intervals_hold() {
     let truth = [0.0, 1.0, tail(2.0), 0.0];
     let normal = Assumed::Family(Kind::Normal);
     // What is smoothed says little of tails that few parts are in: its third figure is not judged.
-    for (assumed, parts, least, judged) in [
-        (normal, 6, 0.92, [0, 1, 2, 3].as_slice()),
-        (normal, 30, 0.92, &[0, 1, 2, 3]),
-        (normal, 100, 0.92, &[0, 1, 2, 3]),
-        (Assumed::Smoothed, LEAST_TO_SMOOTH, 0.90, &[0, 1, 3]),
+    for (assumed, parts, allowed, judged) in [
+        (normal, 6, &of_normal, [0, 1, 2, 3].as_slice()),
+        (normal, 30, &of_normal, &[0, 1, 2, 3]),
+        (normal, 100, &of_normal, &[0, 1, 2, 3]),
+        (Assumed::Smoothed, LEAST_TO_SMOOTH, &of_smoothed, &[0, 1, 3]),
     ] {
-        let found = coverage(300, parts, assumed, figures, truth);
+        let found = coverage(repeats, parts, assumed, figures, truth);
         println!("{assumed:?} of {parts} parts: {found:.3?}");
-        assert!(judged.iter().all(|k| (least..=0.98).contains(&found[*k])), "{assumed:?} {parts} {found:?}");
+        assert!(judged.iter().all(|k| allowed.contains(&found[*k])), "{assumed:?} {parts} {found:?}");
     }
 }
