@@ -1,7 +1,7 @@
 //! Productions that measured parts leave possible: few parts do not determine a distribution.
 
-use rayon::prelude::*;
 use slipfit_core::sampling::stream::derived;
+use slipfit_system::parallel;
 use slipfit_tolerance::{
     analysis::analyse,
     counting::study::{Settings, StudyError},
@@ -12,7 +12,7 @@ use slipfit_tolerance::{
 use crate::setup::Measured;
 
 /// Productions that are drawn: their extreme fortieths are the ends of intervals.
-pub const PRODUCTIONS: u32 = 120;
+pub const PRODUCTIONS: usize = 120;
 /// The most units of each, as their sampling errors are known and taken away.
 const UNITS: u64 = 5000;
 /// What their seeds are derived with.
@@ -30,15 +30,15 @@ pub fn reports(
     done: impl Fn() + Sync,
 ) -> Result<Vec<Report>, StudyError> {
     let units = (UNITS / settings.replicates).clamp(2, settings.units()) * settings.replicates;
-    let one = |number: u32| {
-        let number = u64::from(number);
+    let one = |number: usize| {
+        let number = number as u64;
         let own = measured.model(model, &measured.production.drawn(number));
         let settings = Settings { samples: units, seed: derived(settings.seed, STREAM + number), ..settings };
         let found = analyse(&own, settings, |_| ())?;
         done();
         Ok(report("", &own, &found))
     };
-    (0..PRODUCTIONS).into_par_iter().with_max_len(1).map(one).collect()
+    parallel::each(PRODUCTIONS, one).into_iter().collect()
 }
 
 /// What a report says of the `measured` parts.

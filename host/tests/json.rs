@@ -49,14 +49,14 @@ fn every_field_is_in_the_guide() {
         ("simulate", &["simulate", "cd-rom-slide-drawing", "--unit", "17", "--stroke"]),
         ("population", &["population", "--units", "300", "--force-limit", "2"]),
         (
-            "population of a mechanism",
+            "population",
             &["population", "slider-crank", "--units", "200", "--force-limit", "0.6", "--set", "run.duration=50"],
         ),
         // Forces have a figure, verdicts have none in an opening.
         ("population", &["population", "--units", "300", "--opening", "--force-limit", "0.25", "--rare"]),
         ("population", &["population", "--units", "100", "--force-limit", "2", "--set", FRICTION]),
         (
-            "population of a mechanism",
+            "population",
             &["population", "slider-crank", "--units", "20", "--set", "run.duration=50", "--set", STIFFNESS],
         ),
         ("table", &["table", "--n", "0:2:1", "-o", "table.bin"]),
@@ -96,7 +96,7 @@ fn every_field_is_in_the_guide() {
         ("allocate", &["allocate", "shaft-housing", "--samples", "1000", "--require", "yield=0.99", "--csv", "c.csv"]),
         ("run", &["run", "--n", "0:2:1"]),
         ("run", &["run", "cd-rom-slide", "--n", "0:1:1", "--units", "20", "--set", FRICTION]),
-        ("run of a mechanism", &["run", "slider-crank", "--n", "0:1:1", "--set", "run.duration=100"]),
+        ("run", &["run", "slider-crank", "--n", "0:1:1", "--set", "run.duration=100"]),
         ("table", &["table", "slider-crank", "--n", "0:1:1", "--set", "run.duration=100", "-o", "torque.bin"]),
         ("kernel", &["kernel", "slider-crank", "-o", "unit.rs"]),
     ];

@@ -107,6 +107,17 @@ fn act_apart<S, B, L, W, const D: usize, const R: usize>(
     act(element, way, at, &(), sum);
 }
 
+/// What a `contact` in space does, in a function of its own.
+#[inline(never)]
+fn contact_apart<const N: usize, const D: usize>(
+    contact: &SpatialContact,
+    way: (f64, Way<f64>),
+    at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
+    sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
+) {
+    contact.act(way, at, &(), None, sum);
+}
+
 /// The gap (m) of a contact, which is negative where it is pressed together.
 fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
     element: &Element<L, W, R>,
@@ -148,7 +159,7 @@ fn approach<
 
 /// A line, or a wall, with a contour and any laws.
 type AnyContouredPad = Contoured<f64, Pad<f64, AnyNormal<f64>, AnySliding<f64>>>;
-type AnyContouredWall<S> = Contoured<S, Wall<S, AnyNormal<S>, AnySliding<S>>>;
+type AnyContouredWall = Contoured<f64, Wall<f64, AnyNormal<f64>, AnySliding<f64>>>;
 
 /// An element in a plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -172,25 +183,32 @@ pub enum PlanarElement<const D: usize> {
 /// A ring around a rod whose axes are turned or not.
 type AnyRing<S> = Element<Rim<S, Option<Matrix3<S>>>, Ring<S, AnyNormal<S>, AnySliding<S>>, 3>;
 
-/// An element in space.
+/// A contact in space, or several side by side: a number `S` has a value for each.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SpatialElement<S = f64> {
+pub enum SpatialContact<S = f64> {
     /// A pin between walls.
     Pin(Element<Seat<S>, Pin<S, AnyNormal<S>, AnySliding<S>>, 3>),
     /// A point before a wall.
     Wall(Element<Seat<S>, Wall<S, AnyNormal<S>, AnySliding<S>>, 3>),
     /// A ring around a rod whose axes are turned or not.
     Ring(AnyRing<S>),
+}
+
+/// An element in space.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SpatialElement {
+    /// A contact.
+    Contact(SpatialContact),
     /// A torque.
-    Motor(Element<About<S>, Motor<AnyDrive<S>>, 1>),
+    Motor(Element<About<f64>, Motor<AnyDrive>, 1>),
     /// A force.
-    Pusher(Element<Along<S>, Pusher<AnyDrive<S>>, 2>),
+    Pusher(Element<Along<f64>, Pusher<AnyDrive>, 2>),
     /// A force by the speed where it acts.
-    AtPoint(Element<AtPoint<S>, Motor<AnyDrive<S>>, 1>),
+    AtPoint(Element<AtPoint<f64>, Motor<AnyDrive>, 1>),
     /// A point before a wall with a contour.
-    Contour(Element<Seat<S>, AnyContouredWall<S>, 3>),
+    Contour(Element<Seat<f64>, AnyContouredWall, 3>),
     /// A spring along the line between two points.
-    Line(Element<Seat<S>, LineSpring<S, 3>, 3>),
+    Line(Element<Seat<f64>, LineSpring<f64, 3>, 3>),
 }
 
 impl<const D: usize> PlanarElement<D> {
@@ -226,16 +244,29 @@ impl SpatialElement {
         at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
     ) -> Option<f64> {
         match self {
-            Self::Pin(element) => gap(element, at),
-            Self::Wall(element) => gap(element, at),
-            Self::Ring(element) => gap(element, at),
+            Self::Contact(SpatialContact::Pin(element)) => gap(element, at),
+            Self::Contact(SpatialContact::Wall(element)) => gap(element, at),
+            Self::Contact(SpatialContact::Ring(element)) => gap(element, at),
             Self::Contour(element) => gap(element, at),
             Self::Motor(_) | Self::Pusher(_) | Self::AtPoint(_) | Self::Line(_) => None,
         }
     }
+
+    /// Shows `see` the contacts that it is.
+    pub fn approach<const N: usize, const D: usize>(
+        &self,
+        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
+        see: &mut impl FnMut(Approach),
+    ) {
+        match self {
+            Self::Contact(contact) => contact.approach(at, see),
+            Self::Contour(element) => approach((element, &element.law.wall.contact.normal), at, see),
+            Self::Motor(_) | Self::Pusher(_) | Self::AtPoint(_) | Self::Line(_) => {}
+        }
+    }
 }
 
-impl<S: Scalar + PartialOrd> SpatialElement<S> {
+impl<S: Scalar + PartialOrd> SpatialContact<S> {
     /// Shows `see` the contacts that it is.
     #[inline(always)]
     pub fn approach<const N: usize, const D: usize>(
@@ -247,8 +278,6 @@ impl<S: Scalar + PartialOrd> SpatialElement<S> {
             Self::Pin(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Wall(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Ring(element) => approach((element, &element.law.contact.normal), at, see),
-            Self::Contour(element) => approach((element, &element.law.wall.contact.normal), at, see),
-            Self::Motor(_) | Self::Pusher(_) | Self::AtPoint(_) | Self::Line(_) => {}
         }
     }
 }
@@ -332,7 +361,7 @@ pub fn next_to(angle: f64, last: f64) -> f64 {
     angle + TAU * ((last - angle) / TAU).round()
 }
 
-impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialElement<S> {
+impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
     type Internal = ();
 
     const STICKS: bool = false;
@@ -352,15 +381,42 @@ impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBod
             Self::Pin(element) => act(element, way, at, &[(); 2], sum),
             Self::Wall(element) => act(element, way, at, &(), sum),
             Self::Ring(element) => act(element, way, at, &(), sum),
-            Self::Motor(element) => act(element, way, at, &(), sum),
-            Self::Pusher(element) => act(element, way, at, &(), sum),
-            Self::AtPoint(element) => act(element, way, at, &(), sum),
-            Self::Contour(element) => act_apart(element, way, at, sum),
-            Self::Line(element) => act_apart(element, way, at, sum),
         }
     }
 
     fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
 
     fn accept(&self, _: S, (): &(), (): &mut ()) {}
+}
+
+impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
+    type Internal = ();
+
+    const STICKS: bool = false;
+
+    fn fresh(&self) {}
+
+    #[inline(always)]
+    fn act(
+        &self,
+        way: (f64, Way<f64>),
+        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
+        (): &(),
+        _: Option<&mut ()>,
+        sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
+    ) {
+        match self {
+            // Out of line, so that they are compiled once for what they add up to. Most contacts stand side by side.
+            Self::Contact(contact) => contact_apart(contact, way, at, sum),
+            Self::Motor(element) => act_apart(element, way, at, sum),
+            Self::Pusher(element) => act_apart(element, way, at, sum),
+            Self::AtPoint(element) => act_apart(element, way, at, sum),
+            Self::Contour(element) => act_apart(element, way, at, sum),
+            Self::Line(element) => act_apart(element, way, at, sum),
+        }
+    }
+
+    fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
+
+    fn accept(&self, _: f64, (): &(), (): &mut ()) {}
 }

@@ -18,7 +18,7 @@ use slipfit_core::{
 use crate::{
     closing::{Approach, Gaps},
     contact::Laws,
-    element::{SpatialElement, contact},
+    element::{SpatialContact, SpatialElement, contact},
     out_of_line::Contacts,
     pack::Pack,
 };
@@ -51,7 +51,7 @@ pub struct ByLane {
 pub struct Quads<V: Simd, const N: usize, const D: usize> {
     instructions: V,
     bodies: FreeBodies<Quad<V>, N, D>,
-    quads: Vec<SpatialElement<Quad<V>>>,
+    quads: Vec<SpatialContact<Quad<V>>>,
     /// Those that do not make four.
     rest: Vec<SpatialElement>,
 }
@@ -72,39 +72,38 @@ enum Shape {
 }
 
 impl Kind {
-    /// That of an `element` with these `laws`; `None` unless it is a contact.
-    fn of(element: &SpatialElement, laws: Laws) -> Option<Self> {
-        let (seat, shape) = match element {
-            SpatialElement::Pin(one) => (one.link, Shape::Pin),
-            SpatialElement::Wall(one) => (one.link, Shape::Wall(one.law.axis)),
-            SpatialElement::Ring(one) => (one.link.seat, Shape::Ring { is_turned: one.link.axes.is_some() }),
-            _ => return None,
+    /// That of a `contact` with these `laws`.
+    fn of(contact: &SpatialContact, laws: Laws) -> Self {
+        let (seat, shape) = match contact {
+            SpatialContact::Pin(one) => (one.link, Shape::Pin),
+            SpatialContact::Wall(one) => (one.link, Shape::Wall(one.law.axis)),
+            SpatialContact::Ring(one) => (one.link.seat, Shape::Ring { is_turned: one.link.axes.is_some() }),
         };
-        Some(Self { bodies: [seat.point.body, seat.from], shape, laws })
+        Self { bodies: [seat.point.body, seat.from], shape, laws }
     }
 
-    /// `four` elements of this kind as one. A `stick_band` (m/s) stands for true stick.
-    fn together<V: Simd>(&self, four: &[SpatialElement; LANES], stick_band: f64) -> Option<SpatialElement<Quad<V>>> {
+    /// `four` contacts of this kind as one. A `stick_band` (m/s) stands for true stick.
+    fn together<V: Simd>(&self, four: &[SpatialContact; LANES], stick_band: f64) -> Option<SpatialContact<Quad<V>>> {
         let contact = contact::<Quad<V>>(&self.laws, stick_band).ok()?;
         let [body, from] = self.bodies;
         Some(match self.shape {
             Shape::Pin => {
                 let pins =
-                    each(four, |element| if let SpatialElement::Pin(one) = element { Some(*one) } else { None })?;
+                    each(four, |contact| if let SpatialContact::Pin(one) = contact { Some(*one) } else { None })?;
                 let point = Port { body, lever: vector(&pins.map(|one| one.link.point.lever)) };
                 let gaps = array::from_fn(|k| Quad::<V>::of(pins.map(|one| one.law.gaps[k])));
-                SpatialElement::Pin(Element { link: Seat { point, from }, law: Pin { gaps, contact } })
+                SpatialContact::Pin(Element { link: Seat { point, from }, law: Pin { gaps, contact } })
             }
             Shape::Wall(axis) => {
                 let walls =
-                    each(four, |element| if let SpatialElement::Wall(one) = element { Some(*one) } else { None })?;
+                    each(four, |contact| if let SpatialContact::Wall(one) = contact { Some(*one) } else { None })?;
                 let point = Port { body, lever: vector(&walls.map(|one| one.link.point.lever)) };
                 let [sign, gap] = [walls.map(|one| one.law.sign), walls.map(|one| one.law.gap)].map(Quad::<V>::of);
-                SpatialElement::Wall(Element { link: Seat { point, from }, law: Wall { axis, sign, gap, contact } })
+                SpatialContact::Wall(Element { link: Seat { point, from }, law: Wall { axis, sign, gap, contact } })
             }
             Shape::Ring { is_turned } => {
                 let rings =
-                    each(four, |element| if let SpatialElement::Ring(one) = element { Some(*one) } else { None })?;
+                    each(four, |contact| if let SpatialContact::Ring(one) = contact { Some(*one) } else { None })?;
                 let point = Port { body, lever: vector(&rings.map(|one| one.link.seat.point.lever)) };
                 let axes = is_turned.then(|| {
                     let axes = rings.map(|one| one.link.axes.unwrap_or_default());
@@ -113,14 +112,14 @@ impl Kind {
                 let radius = Quad::<V>::of(rings.map(|one| one.link.radius));
                 let clearance = Quad::<V>::of(rings.map(|one| one.law.clearance));
                 let link = Rim { seat: Seat { point, from }, axes, radius };
-                SpatialElement::Ring(Element { link, law: Ring { clearance, contact } })
+                SpatialContact::Ring(Element { link, law: Ring { clearance, contact } })
             }
         })
     }
 }
 
-/// What `of` makes of each of `four` elements; `None` where it makes nothing of one.
-fn each<T>(four: &[SpatialElement; LANES], of: impl Fn(&SpatialElement) -> Option<T>) -> Option<[T; LANES]> {
+/// What `of` makes of each of `four` contacts; `None` where it makes nothing of one.
+fn each<T>(four: &[SpatialContact; LANES], of: impl Fn(&SpatialContact) -> Option<T>) -> Option<[T; LANES]> {
     let found: Vec<T> = four.iter().filter_map(of).collect();
     found.try_into().ok()
 }
@@ -165,16 +164,21 @@ impl<const N: usize, const D: usize> SideBySide<N, D> {
         let bodies = system.bodies();
         let placed = bodies.placed(pose, velocity);
         gaps.clear(fastest(&placed));
-        let rest: [&[SpatialElement]; LANES + 1] = match self {
+        let rest = match self {
             #[cfg(target_arch = "x86_64")]
             Self::Wide(quads) => {
                 Simd::vectorize(quads.instructions, Watch { quads, placed: &placed, gaps });
-                [&quads.rest, &[], &[], &[], &[]]
+                &quads.rest
             }
-            Self::ByLane(ByLane { lanes: [a, b, c, d], rest }) => [a, b, c, d, rest],
+            Self::ByLane(ByLane { lanes, rest }) => {
+                lanes
+                    .iter()
+                    .flatten()
+                    .for_each(|one| one.approach((bodies, &placed), &mut |contact| gaps.add(contact)));
+                rest
+            }
         };
-        let mut add = |contact| gaps.add(contact);
-        rest.into_iter().flatten().for_each(|one| one.approach((bodies, &placed), &mut add));
+        rest.iter().for_each(|one| one.approach((bodies, &placed), &mut |contact| gaps.add(contact)));
     }
 }
 
@@ -183,10 +187,10 @@ pub fn fastest<const N: usize>(placed: &Placed<f64, N>) -> f64 {
     placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm()))
 }
 
-/// Elements by their kinds, and those that are no contacts.
+/// Contacts by their kinds, and other elements.
 #[derive(Default)]
 struct Groups {
-    alike: Vec<(Kind, Vec<SpatialElement>)>,
+    alike: Vec<(Kind, Vec<SpatialContact>)>,
     others: Vec<SpatialElement>,
 }
 
@@ -195,24 +199,26 @@ impl Groups {
     fn of(elements: &[SpatialElement], laws: impl Iterator<Item = Option<Laws>>) -> Self {
         let mut groups = Self::default();
         for (element, laws) in elements.iter().zip(laws) {
-            match laws.and_then(|laws| Kind::of(element, laws)) {
-                Some(kind) => match groups.alike.iter_mut().find(|(of, _)| *of == kind) {
-                    Some((_, alike)) => alike.push(element.clone()),
-                    None => groups.alike.push((kind, vec![element.clone()])),
-                },
-                None => groups.others.push(element.clone()),
+            let (SpatialElement::Contact(contact), Some(laws)) = (element, laws) else {
+                groups.others.push(element.clone());
+                continue;
+            };
+            let kind = Kind::of(contact, laws);
+            match groups.alike.iter_mut().find(|(of, _)| *of == kind) {
+                Some((_, alike)) => alike.push(contact.clone()),
+                None => groups.alike.push((kind, vec![contact.clone()])),
             }
         }
         groups
     }
 
     /// Shows `four` each four of a kind; what it does not take, and what does not make four, is returned with the others.
-    fn fours(self, mut four: impl FnMut(&Kind, &[SpatialElement; LANES]) -> bool) -> Vec<SpatialElement> {
+    fn fours(self, mut four: impl FnMut(&Kind, &[SpatialContact; LANES]) -> bool) -> Vec<SpatialElement> {
         let mut rest = self.others;
         for (kind, alike) in self.alike {
             let (fours, left) = alike.as_chunks::<LANES>();
-            rest.extend(fours.iter().filter(|elements| !four(&kind, elements)).flatten().cloned());
-            rest.extend(left.iter().cloned());
+            let left = fours.iter().filter(|contacts| !four(&kind, contacts)).flatten().chain(left);
+            rest.extend(left.cloned().map(SpatialElement::Contact));
         }
         rest
     }
@@ -222,7 +228,10 @@ impl ByLane {
     fn new(groups: Groups) -> Self {
         let mut lanes = array::from_fn(|_| Vec::new());
         let rest = groups.fours(|_, four| {
-            lanes.iter_mut().zip(four).for_each(|(lane, element): (&mut Vec<_>, _)| lane.push(element.clone()));
+            lanes
+                .iter_mut()
+                .zip(four)
+                .for_each(|(lane, contact): (&mut Vec<_>, _)| lane.push(SpatialElement::Contact(contact.clone())));
             true
         });
         Self { lanes, rest }

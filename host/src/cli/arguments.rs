@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     mechanism::{ByDrive, Mechanism},
-    scene::{Override, SHIPPED, SceneFile, shipped},
+    scene::{Override, SHIPPED, SceneError, SceneFile, shipped},
     setup::Scene,
 };
 
@@ -61,6 +61,18 @@ pub enum Moving {
     Slide(Box<Scene>),
     /// Bodies and joints.
     Mechanism(Box<Mechanism>),
+}
+
+impl Moving {
+    /// What moves in the scene `text` of the file `name`, and the product it belongs to, if there is one.
+    pub fn parse(name: &str, text: &str, set: &[Override]) -> Result<(Self, Option<Product>), SceneError> {
+        let mut file = SceneFile::parse(name, text, set)?;
+        if let Some(mechanism) = file.mechanism.take() {
+            return Ok((Self::Mechanism(Box::new(mechanism)), file.product));
+        }
+        let (scene, product) = file.into_slide(name, text)?;
+        Ok((Self::Slide(Box::new(scene)), product))
+    }
 }
 
 /// The longest scene file (bytes).
@@ -106,12 +118,7 @@ impl SceneArguments {
     /// Reads what moves in the scene and the product it belongs to, if there is one, with `options` as further settings.
     pub fn load_moving_with_product(&self, options: &[Override]) -> Result<(Moving, Option<Product>), Failure> {
         let (name, text) = self.text()?;
-        let mut file = SceneFile::parse(&name, &text, &self.overrides(options))?;
-        if let Some(mechanism) = file.mechanism.take() {
-            return Ok((Moving::Mechanism(Box::new(mechanism)), file.product));
-        }
-        let (scene, product) = file.into_slide(&name, &text)?;
-        Ok((Moving::Slide(Box::new(scene)), product))
+        Ok(Moving::parse(&name, &text, &self.overrides(options))?)
     }
 
     /// Reads the slide of the scene and the product it belongs to, if there is one, with `options` as further settings.

@@ -6,7 +6,6 @@ use std::{
 };
 
 use clap::Args;
-use slipfit_core::slide::CONTACTS;
 use slipfit_system::files;
 use slipfit_tolerance::counting::{
     file::{Found, Part},
@@ -14,10 +13,11 @@ use slipfit_tolerance::counting::{
     study::Study,
 };
 
-use super::{endings, failure::Failure, population, tolerance::OutputArguments};
+use super::{
+    arguments::Moving, by_one_drive::ByOneDrive, endings, failure::Failure, population, tolerance::OutputArguments,
+};
 use crate::{
-    mechanism::ByDrive,
-    population::{part::StoredGaps, tally::Tally},
+    population::tally::Tally,
     scene::{Override, SceneFile},
     setup::Measured,
 };
@@ -42,11 +42,8 @@ pub(super) struct Arguments {
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
-        if self.files.first().is_some_and(|path| is_of::<Tally<[f64; CONTACTS]>>(path)) {
+        if self.files.first().is_some_and(|path| is_of::<Tally>(path)) {
             return self.population();
-        }
-        if self.files.first().is_some_and(|path| is_of::<Tally<Vec<f64>>>(path)) {
-            return self.population_of_mechanism();
         }
         let part: Part = merge(&self.files)?;
         let source = &part.header.source;
@@ -73,12 +70,12 @@ impl Arguments {
         self.outputs.show(&file.title, file.slide.as_ref(), file.measured.as_deref(), &study, &part.tallies, self.json)
     }
 
-    /// All shards of a population, written as one if that is asked for.
-    fn tally<G: StoredGaps>(&self) -> Result<Part<Tally<G>>, Failure> {
+    /// The shards of a population, written as one if that is asked for.
+    fn population(&self) -> Result<(), Failure> {
         if let Some(option) = self.outputs.asked() {
             return Err(Failure::Input(format!("{option}: these are shards of a population, which has no measures")));
         }
-        let part: Part<Tally<G>> = merge(&self.files)?;
+        let part: Part<Tally> = merge(&self.files)?;
         let shards: Vec<_> = self.files.iter().map(|path| ("one of the shards", path.as_path())).collect();
         endings::check_part("--out", self.out.as_deref())?;
         let own: Vec<_> = self.out.iter().map(|path| ("--out", path.as_path())).collect();
@@ -86,33 +83,15 @@ impl Arguments {
         if let Some(path) = &self.out {
             files::write(path, &part.encode().map_err(RunError::from)?)?;
         }
-        Ok(part)
-    }
-
-    /// The shards of a mechanism's population.
-    fn population_of_mechanism(&self) -> Result<(), Failure> {
-        let part = self.tally::<Vec<f64>>()?;
         let (source, settings) = (&part.header.source, &part.header.settings);
         let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
-        let file = SceneFile::parse(&source.name, &source.text, &set)?;
-        let driven = file.mechanism.as_ref().and_then(|mechanism| ByDrive::new(mechanism, settings.drive()));
-        let driven = driven.ok_or_else(|| Failure::Input(format!("{}: the scene has no such drive", source.name)))?;
-        population::Arguments::of_parts(settings, self.json).conclude_mechanism(
-            &driven,
-            part.tallies,
-            file.product.as_ref(),
-        )
-    }
-
-    /// The shards of a slide's population.
-    fn population(&self) -> Result<(), Failure> {
-        let part = self.tally()?;
-        let source = &part.header.source;
-        let set: Vec<_> = source.set.iter().map(|assignment| Override::set(assignment)).collect();
-        let (mut scene, product) = SceneFile::parse_with_slide(&source.name, &source.text, &set)?;
-        let asked = population::Arguments::of_parts(&part.header.settings, self.json);
-        let production = asked.prepare(&mut scene, product.as_ref())?;
-        asked.conclude(&scene, &production, part.tallies, None, product.as_ref())
+        let (mut moving, product) = Moving::parse(&source.name, &source.text, &set)?;
+        let asked = population::Arguments::of_parts(settings, self.json);
+        asked.set_length(&mut moving)?;
+        let nothing = || Failure::Input(format!("{}: the scene has no such drive", source.name));
+        let of = ByOneDrive::numbered(&moving, settings.drive()).ok_or_else(nothing)?;
+        let production = of.production(product.as_ref(), settings.correlation(), settings.seed)?;
+        asked.conclude(&of, &production, part.tallies, None, product.as_ref())
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod allocate;
 mod arguments;
+mod by_one_drive;
 mod capability;
 mod check;
 mod encoding;

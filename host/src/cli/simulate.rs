@@ -334,7 +334,8 @@ impl Arguments {
             .map_err(|error| Failure::Input(error.to_string()))?;
         let (drawn, i) = production.draw_one(check_number(number)?);
         // What does not vary has any level.
-        let n = scene.levels_of(&drawn.gaps[i]).map(Option::unwrap_or_default);
+        let levels = scene.levels_of(&drawn.gaps[i]);
+        let n = std::array::from_fn(|i| levels[i].unwrap_or_default());
         Ok((scene_of(&scene, &drawn, i), n))
     }
 }

@@ -27,7 +27,7 @@ const SHORTEST_TRIED: f64 = 5e-6;
 ///
 /// # Errors
 /// See [`SimulateError`].
-pub fn confirmed(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, run: Run) -> Result<Run, SimulateError> {
+pub fn confirmed(scene: &Scene, gaps: &[f64], settings: &Settings, run: Run) -> Result<Run, SimulateError> {
     let tolerance = match settings.solver {
         Solver::Desk { tolerance } => FINER * tolerance,
         Solver::Controller(_) => tolerance(scene),

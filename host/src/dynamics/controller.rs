@@ -2,7 +2,6 @@
 
 use std::{ops::ControlFlow, time::Instant as Clock};
 
-use slipfit_core::slide::CONTACTS;
 use slipfit_desk::slide::{At, Controller, Report, Witness, by_controller};
 
 use super::{
@@ -21,12 +20,7 @@ use crate::setup::{ControllerSpec, Scene};
 ///
 /// # Errors
 /// See [`SimulateError`].
-pub fn run(
-    scene: &Scene,
-    gaps: &[f64; CONTACTS],
-    settings: &Settings,
-    spec: ControllerSpec,
-) -> Result<Run, SimulateError> {
+pub fn run(scene: &Scene, gaps: &[f64], settings: &Settings, spec: ControllerSpec) -> Result<Run, SimulateError> {
     started(scene, gaps, settings, spec, None)
 }
 
@@ -34,7 +28,7 @@ pub fn run(
 ///
 /// # Errors
 /// See [`SimulateError`].
-pub fn audited(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Result<Run, SimulateError> {
+pub fn audited(scene: &Scene, gaps: &[f64], settings: &Settings) -> Result<Run, SimulateError> {
     let spec = match settings.solver {
         Solver::Controller(spec) => spec,
         Solver::Desk { .. } => scene.controller,
@@ -44,7 +38,7 @@ pub fn audited(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Re
 
 fn started(
     scene: &Scene,
-    gaps: &[f64; CONTACTS],
+    gaps: &[f64],
     settings: &Settings,
     spec: ControllerSpec,
     auditor: Option<Auditor>,

@@ -37,7 +37,7 @@ pub type See<'a> = &'a mut dyn FnMut(f64, f64, &Pose<f64>, &[f64; CONTACTS]);
 ///
 /// # Errors
 /// See [`SimulateError`].
-pub fn run(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, tolerance: f64) -> Result<Run, SimulateError> {
+pub fn run(scene: &Scene, gaps: &[f64], settings: &Settings, tolerance: f64) -> Result<Run, SimulateError> {
     seen(scene, gaps, settings, tolerance, None)
 }
 
@@ -47,7 +47,7 @@ pub fn run(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings, tolerance
 /// See [`SimulateError`].
 pub fn seen(
     scene: &Scene,
-    gaps: &[f64; CONTACTS],
+    gaps: &[f64],
     settings: &Settings,
     tolerance: f64,
     mut see: Option<See>,

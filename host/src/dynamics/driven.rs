@@ -2,7 +2,7 @@
 
 use slipfit_core::drive::Drive;
 
-use super::{level::Level, run::SimulateError};
+use super::{level::Level, run::SimulateError, setpoint::Setpoint};
 use crate::setup::{LevelRange, RunSpec};
 
 /// What a drive gives: a force along an axis, or a torque about one. Forces (N), speeds (m/s) and travel (m) of the one
@@ -77,6 +77,11 @@ pub trait Driven: Sync {
 
     /// The drive.
     fn drive(&self) -> &Drive<f64>;
+
+    /// What it is commanded.
+    fn setpoint(&self) -> Setpoint {
+        (*self.drive()).into()
+    }
 
     /// Whether it is commanded segments, which may reverse, instead of a ramp to one speed.
     fn has_segments(&self) -> bool {

@@ -41,7 +41,7 @@ pub struct Film {
 ///
 /// # Errors
 /// See [`SimulateError`].
-pub fn film(scene: &Scene, gaps: &[f64; CONTACTS], count: usize) -> Result<Film, SimulateError> {
+pub fn film(scene: &Scene, gaps: &[f64], count: usize) -> Result<Film, SimulateError> {
     let mut frames = Vec::new();
     let mut see = |t: f64, vz: f64, pose: &Pose<f64>, gaps: &[f64; CONTACTS]| frames.push(frame(t, vz, pose, gaps));
     let settings = Settings::desk(scene, 1e-3);

@@ -1,7 +1,5 @@
 //! One unit, moved from rest: by the desk, which knows its error, or as the controller computes it.
 
-use slipfit_core::slide::CONTACTS;
-
 use super::{controller, desk};
 use crate::setup::Scene;
 
@@ -15,7 +13,7 @@ pub use super::{
 ///
 /// # Errors
 /// See [`SimulateError`].
-pub fn simulate(scene: &Scene, gaps: &[f64; CONTACTS], settings: &Settings) -> Result<Run, SimulateError> {
+pub fn simulate(scene: &Scene, gaps: &[f64], settings: &Settings) -> Result<Run, SimulateError> {
     match settings.solver {
         Solver::Desk { tolerance } => desk::run(scene, gaps, settings, tolerance),
         Solver::Controller(spec) => controller::run(scene, gaps, settings, spec),

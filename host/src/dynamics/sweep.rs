@@ -1,6 +1,6 @@
 //! The same product at many tolerance levels.
 
-use rayon::prelude::*;
+use slipfit_system::parallel;
 
 use super::{
     driven::{DriveKind, Driven},
@@ -42,16 +42,13 @@ pub fn sweep(
     unit: impl Fn(f64) -> Result<Level, SimulateError> + Sync,
     done: impl Fn() + Sync,
 ) -> Result<Sweep, SimulateError> {
-    let levels: Vec<Result<Level, SimulateError>> = levels
-        .par_iter()
-        .map(|&n| {
-            let mut level = unit(n)?;
-            if keep == Keep::Figures {
-                level.trajectory = Trajectory::default();
-            }
-            done();
-            Ok(level)
-        })
-        .collect();
-    Ok(Sweep { kind: driven.kind(), gaps: driven.gap_names(), levels: levels.into_iter().collect::<Result<_, _>>()? })
+    let levels = parallel::try_map(levels, |n| {
+        let mut level = unit(*n)?;
+        if keep == Keep::Figures {
+            level.trajectory = Trajectory::default();
+        }
+        done();
+        Ok::<_, SimulateError>(level)
+    })?;
+    Ok(Sweep { kind: driven.kind(), gaps: driven.gap_names(), levels })
 }

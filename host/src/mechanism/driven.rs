@@ -9,6 +9,7 @@ use crate::{
         driven::{DriveKind, Driven, Motion},
         error_control,
         outcome::Verdict,
+        setpoint::Setpoint,
         simulate::SimulateError,
         sweep::{Level, classes},
         trust::Trust,
@@ -122,6 +123,10 @@ impl Driven for ByDrive<'_> {
 
     fn drive(&self) -> &Drive<f64> {
         &self.mechanism.drives[self.drive].drive
+    }
+
+    fn setpoint(&self) -> Setpoint {
+        self.mechanism.drives[self.drive].setpoint()
     }
 
     fn has_segments(&self) -> bool {

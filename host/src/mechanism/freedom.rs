@@ -11,8 +11,9 @@ use slipfit_core::{
 };
 
 use super::{
-    Joint, JointKind, Mechanism, Mounts, RunError, Walls, element::PlanarElement, element::SpatialElement, planar,
-    spatial,
+    Joint, JointKind, Mechanism, Mounts, RunError, Walls,
+    element::{PlanarElement, SpatialContact, SpatialElement},
+    planar, spatial,
 };
 
 /// The mobility of a mechanism, n = 6(N − 1) − Σ i·c_i − n_cl (eq. 8), in a plane with 3 for 6.
@@ -171,14 +172,14 @@ fn in_space<const N: usize, const W: usize>(
     let mut rows = Vec::new();
     for element in spatial::elements(&Mechanism { joints, ..mechanism.clone() }, gaps, 1.0)? {
         match element {
-            SpatialElement::Pin(element) => {
+            SpatialElement::Contact(SpatialContact::Pin(element)) => {
                 let gradient = gradient(&element.link, bodies, &placed);
                 let [left, right, rail, wall] = element.law.gaps.map(|gap| gap < spatial::NONE);
                 let held = [left || right, rail || wall, false];
                 let all = gradient.row_iter().zip(held);
                 rows.extend(all.filter(|(_, held)| *held).map(|(row, _)| row.transpose()));
             }
-            SpatialElement::Ring(element) => {
+            SpatialElement::Contact(SpatialContact::Ring(element)) => {
                 let gradient = gradient(&element.link, bodies, &placed);
                 rows.extend(gradient.row_iter().take(2).map(|row| row.transpose()));
             }

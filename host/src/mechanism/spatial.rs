@@ -18,7 +18,7 @@ use slipfit_desk::drive::AnyDrive;
 
 use super::{
     Action, Joint, JointKind, Mechanism, MountError, Port, SpringKind,
-    element::{AnyContact, SpatialElement, contact},
+    element::{AnyContact, SpatialContact, SpatialElement, contact},
     hanging::{Hung, hanging},
 };
 
@@ -184,13 +184,16 @@ fn add(
         }
         JointKind::Track { gaps: indices } => {
             let gaps = indices.map(|gap| gap.map_or(NONE, |gap| gaps[gap]));
-            elements.push(SpatialElement::Pin(Element { link: seat(at), law: Pin { gaps, contact } }));
+            elements.push(SpatialElement::Contact(SpatialContact::Pin(Element {
+                link: seat(at),
+                law: Pin { gaps, contact },
+            })));
         }
         JointKind::Stop { gap, normal } => {
             let slanted = ParameterError { parameter: "normal", value: normal[0], least: -1.0, greatest: 1.0 };
             let (axis, sign) = axis_of(normal).ok_or(slanted)?;
             let law = Wall { axis, sign, gap: gaps[gap], contact };
-            elements.push(SpatialElement::Wall(Element { link: seat(at), law }));
+            elements.push(SpatialElement::Contact(SpatialContact::Wall(Element { link: seat(at), law })));
         }
         JointKind::Bearing { gap, axis, length, radius } => {
             let axis = Vector3::from(axis);
@@ -198,7 +201,7 @@ fn add(
                 let centre = at + axis * (length * end);
                 let link = Rim { seat: seat(centre), axes: axes_with_third(&axis), radius };
                 let law = Ring { clearance: gaps[gap], contact };
-                elements.push(SpatialElement::Ring(Element { link, law }));
+                elements.push(SpatialElement::Contact(SpatialContact::Ring(Element { link, law })));
             }
         }
         _ => {}

@@ -9,11 +9,12 @@ use std::{collections::BTreeMap, ops::Range};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use slipfit_system::parallel;
+
 use super::{
     explained::{Explained, Marked, explained},
     kept::{Judged, Kept, Outcomes},
     production::Production,
-    subject::UnitGaps,
 };
 
 /// Units from which on contributors are ranked.
@@ -50,7 +51,7 @@ impl Driver {
 /// What malfunction varies with, the strongest first, in a `production` of whose first `units` the `outcomes` are known. Empty if fewer
 /// than [`LEAST_UNITS`] are, or fewer than [`LEAST_OUTCOMES`] do or do not malfunction: the luckiest of many contributors would
 /// explain all.
-pub fn of_malfunction<G: UnitGaps>(production: &Production<G>, outcomes: &Outcomes, units: u64) -> Vec<Driver> {
+pub fn of_malfunction(production: &Production, outcomes: &Outcomes, units: u64) -> Vec<Driver> {
     let Judged { units, marked } = outcomes.judged(units);
     let marked: Vec<(u64, f64)> = marked.into_iter().map(|number| (number, 1.0)).collect();
     let enough = marked.len() >= LEAST_OUTCOMES && units - marked.len() as u64 >= LEAST_OUTCOMES as u64;
@@ -58,7 +59,7 @@ pub fn of_malfunction<G: UnitGaps>(production: &Production<G>, outcomes: &Outcom
 }
 
 /// What the greatest force varies with, likewise.
-pub fn of_force<G: UnitGaps>(production: &Production<G>, outcomes: &Outcomes, units: u64) -> Vec<Driver> {
+pub fn of_force(production: &Production, outcomes: &Outcomes, units: u64) -> Vec<Driver> {
     let forces = outcomes.with_force(units);
     let count = forces.len() as u64;
     if count < LEAST_UNITS {
@@ -78,7 +79,7 @@ fn value(column: &Column, variables: &[Vec<f64>], i: usize) -> f64 {
 
 /// The contributors by falling share in the variance of a figure that is 0 except for the `marked` units: numbers, ascending, and
 /// figures. Where these are `units` in all, no others are looked at; otherwise all up to that number are.
-fn ranked<G: UnitGaps>(production: &Production<G>, units: u64, marked: &[(u64, f64)]) -> Vec<Driver> {
+fn ranked(production: &Production, units: u64, marked: &[(u64, f64)]) -> Vec<Driver> {
     let contributors = production.contributors();
     let variables = contributors.iter().map(|(_, own)| own.len()).sum::<usize>();
     let drawn = of_marked(production, variables, marked);
@@ -109,7 +110,7 @@ fn ranked<G: UnitGaps>(production: &Production<G>, units: u64, marked: &[(u64, f
 }
 
 /// The variables of the `marked` units, a column each.
-fn of_marked<G: UnitGaps>(production: &Production<G>, variables: usize, marked: &[(u64, f64)]) -> Vec<Vec<f64>> {
+fn of_marked(production: &Production, variables: usize, marked: &[(u64, f64)]) -> Vec<Vec<f64>> {
     let mut all = vec![Vec::with_capacity(marked.len()); variables];
     for group in marked.chunk_by(|(one, _), (next, _)| one / PIECE == next / PIECE) {
         let (first, end) = (group[0].0 / PIECE * PIECE, group[group.len() - 1].0 + 1);
@@ -135,38 +136,36 @@ fn combination(own: Range<usize>, marked: &[(u64, f64)], drawn: &[Vec<f64>], pil
 }
 
 /// What each of the `columns` explains.
-fn columns_explained<G: UnitGaps>(
-    production: &Production<G>,
+fn columns_explained(
+    production: &Production,
     units: u64,
     marked: &[(u64, f64)],
     drawn: &[Vec<f64>],
     columns: &[Column],
 ) -> Vec<Option<Explained>> {
     // By value, then by number: units with equal values come in an order that tells nothing.
-    let sorted: Vec<Vec<(f64, usize)>> = columns
-        .par_iter()
-        .map(|column| {
-            let mut sorted: Vec<(f64, usize)> = (0..marked.len()).map(|i| (value(column, drawn, i), i)).collect();
-            sorted.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
-            sorted
-        })
-        .collect();
+    let sorted = parallel::map(columns, |column| {
+        let mut sorted: Vec<(f64, usize)> = (0..marked.len()).map(|i| (value(column, drawn, i), i)).collect();
+        sorted.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
+        sorted
+    });
     let places = if marked.len() as u64 == units {
         vec![(0..units).collect(); columns.len()]
     } else {
         places(production, units, marked, columns, &sorted)
     };
-    let of = |(sorted, places): (&Vec<(f64, usize)>, &Vec<u64>)| {
+    let of = |k: usize| {
+        let (sorted, places) = (&sorted[k], &places[k]);
         let unit = |((_, i), place): (&(f64, usize), &u64)| Marked { place: *place, value: marked[*i].1 };
         let ordered: Vec<Marked> = sorted.iter().zip(places).map(unit).collect();
         explained(units, &ordered, columns.len())
     };
-    sorted.par_iter().zip(&places).map(of).collect()
+    parallel::each(columns.len(), of)
 }
 
 /// How many of the first `units` come before each of the marked ones, which are `sorted`, by each of the `columns`.
-fn places<G: UnitGaps>(
-    production: &Production<G>,
+fn places(
+    production: &Production,
     units: u64,
     marked: &[(u64, f64)],
     columns: &[Column],
@@ -178,7 +177,7 @@ fn places<G: UnitGaps>(
     // As many pieces at a time as keep all threads at work.
     for starts in pieces.chunks(4 * rayon::current_num_threads()) {
         let draw = |first: &u64| (*first, production.draw(*first..units.min(first + PIECE)).variables);
-        let drawn: Vec<(u64, Vec<Vec<f64>>)> = starts.par_iter().with_max_len(1).map(draw).collect();
+        let drawn: Vec<(u64, Vec<Vec<f64>>)> = parallel::map(starts, draw);
         counts.par_iter_mut().zip(columns).zip(sorted).for_each(|((counts, column), sorted)| {
             for (first, variables) in &drawn {
                 for i in 0..units.min(first + PIECE) - first {

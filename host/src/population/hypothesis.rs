@@ -3,12 +3,12 @@
 //! All gaps moved by the same n, as eq. 9 moves them, against as many random combinations as far from the mean unit: random
 //! directions in the space of all gaps, each gap measured by its standard deviation, of the same root mean square.
 
-use rayon::prelude::*;
 use serde::Serialize;
 use slipfit_core::{
     sampling::stream::{Rng, derived, uniform, unit_stream},
     slide::ABSENT,
 };
+use slipfit_system::parallel;
 use slipfit_tolerance::numeric::normal;
 
 use super::{
@@ -53,12 +53,7 @@ impl Hypothesis {
     ///
     /// # Errors
     /// See [`SimulateError`].
-    pub fn test<S: Subject>(
-        subject: &S,
-        directions: u64,
-        seed: u64,
-        limit: Option<f64>,
-    ) -> Result<Self, SimulateError> {
+    pub fn test(subject: &dyn Subject, directions: u64, seed: u64, limit: Option<f64>) -> Result<Self, SimulateError> {
         let at = |distance: f64| {
             let sides = [-distance, distance].map(|n| subject.gaps_at(&[n]));
             let sides = subject.units(&subject.as_drawn(sides.into()))?;
@@ -75,7 +70,7 @@ impl Hypothesis {
                 random: Share::new(failed, directions.max(1)),
             })
         };
-        let distances = DISTANCES.into_par_iter().with_max_len(1).map(at).collect::<Result<_, _>>()?;
+        let distances = parallel::try_map(&DISTANCES, |distance| at(*distance))?;
         Ok(Self { distances })
     }
 
@@ -95,13 +90,13 @@ impl Hypothesis {
 }
 
 /// Gaps (m) in a random direction from the means, at a root mean square of `distance` standard deviations.
-fn combination<S: Subject>(subject: &S, distance: f64, seed: u64, number: u64) -> S::Gaps {
+fn combination(subject: &dyn Subject, distance: f64, seed: u64, number: u64) -> Vec<f64> {
     let mut stream = unit_stream(derived(seed, STREAM), number);
     let mut n = |gap: &f64| {
         let share = uniform(stream.next_u64());
         if *gap == ABSENT { None } else { Some(normal::quantile(share)) }
     };
-    let n: Vec<Option<f64>> = subject.gaps_at(&[0.0]).as_ref().iter().map(&mut n).collect();
+    let n: Vec<Option<f64>> = subject.gaps_at(&[0.0]).iter().map(&mut n).collect();
     let present = n.iter().flatten();
     let square = present.clone().map(|n| n * n).sum::<f64>() / present.count().max(1) as f64;
     let scale = distance / libm::sqrt(square.max(f64::MIN_POSITIVE));

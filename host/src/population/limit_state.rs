@@ -44,11 +44,11 @@ impl Kind {
 }
 
 /// The limit state of one kind on one side.
-pub struct LimitState<'a, S: Subject> {
+pub struct LimitState<'a> {
     /// What the units are of.
-    pub subject: &'a S,
+    pub subject: &'a dyn Subject,
     /// What varies.
-    pub production: &'a Production<'a, S::Gaps>,
+    pub production: &'a Production<'a>,
     /// How units malfunction.
     pub kind: Kind,
     /// Which units do.
@@ -76,7 +76,7 @@ pub struct Log {
     pub error: Option<SimulateError>,
 }
 
-impl<S: Subject> LimitState<'_, S> {
+impl LimitState<'_> {
     fn found(&mut self, points: &[Vec<f64>]) -> Result<Vec<f64>, SimulateError> {
         if interrupt::requested() {
             return Err(SimulateError::Interrupted);
@@ -101,7 +101,7 @@ impl<S: Subject> LimitState<'_, S> {
     }
 }
 
-impl<S: Subject> Margins for LimitState<'_, S> {
+impl Margins for LimitState<'_> {
     /// As many as keep the lanes of a pack busy while units end one by one.
     const TOGETHER: usize = 64;
 

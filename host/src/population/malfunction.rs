@@ -6,12 +6,12 @@ use super::{subject::Subject, unit::Unit};
 use crate::dynamics::outcome::Verdict;
 
 /// Whether a unit malfunctions: it crawls, jams, or needs more than the `limit` (N).
-pub fn malfunctions<G>(unit: &Unit<G>, limit: Option<f64>) -> bool {
+pub fn malfunctions(unit: &Unit, limit: Option<f64>) -> bool {
     unit.outcome.verdict.is_malfunction() || is_over(unit, limit)
 }
 
 /// Whether a unit needs more than the `limit` (N).
-pub fn is_over<G>(unit: &Unit<G>, limit: Option<f64>) -> bool {
+pub fn is_over(unit: &Unit, limit: Option<f64>) -> bool {
     unit.outcome.peak_force.zip(limit).is_some_and(|(force, limit)| force > limit)
 }
 
@@ -31,7 +31,7 @@ pub enum Kind {
 
 impl Kind {
     /// Of a `unit`, with a motor's force `limit` (N); none if it does not malfunction.
-    pub fn of<G>(unit: &Unit<G>, limit: Option<f64>) -> Option<Self> {
+    pub fn of(unit: &Unit, limit: Option<f64>) -> Option<Self> {
         match unit.outcome.verdict {
             Verdict::Crawls => Some(Self::Crawls),
             Verdict::Jammed => Some(Self::Jams),
@@ -55,12 +55,12 @@ pub enum Side {
 
 impl Side {
     /// Those that a production of `subject` has.
-    pub fn all<S: Subject>(subject: &S) -> &'static [Self] {
+    pub fn all(subject: &dyn Subject) -> &'static [Self] {
         if subject.has_levels() { &[Self::Tight, Self::Loose] } else { &[Self::Any] }
     }
 
     /// Whether a unit with these `gaps` (m) is on it.
-    pub fn has<S: Subject>(self, subject: &S, gaps: &S::Gaps) -> bool {
+    pub fn has(self, subject: &dyn Subject, gaps: &[f64]) -> bool {
         match self {
             Self::Tight => subject.tightness(gaps) > 0.0,
             Self::Loose => subject.tightness(gaps) <= 0.0,

@@ -1,12 +1,10 @@
 //! Units of a mechanism's production, each run by the desk.
 
-use rayon::prelude::*;
-use slipfit_system::interrupt;
+use slipfit_system::{interrupt, parallel};
 
 use super::{
     Unit, UnitOutcome,
     production::Drawn,
-    study::Population,
     subject::Subject,
     unit::{Decisive, Fault, is_near_a_limit},
 };
@@ -23,26 +21,17 @@ use crate::{
 /// the peak effort of 95 % of all units less than 0.06 %, and units near the limit of a verdict are run again.
 const ERROR: f64 = 1e-4;
 
-/// A population of a mechanism.
-pub type MechanismPopulation = Population<Vec<f64>>;
-
 impl Subject for ByDrive<'_> {
-    type Gaps = Vec<f64>;
-
     /// A unit whose gaps its joints do not allow cannot be assembled: it is jammed where it stands.
-    fn units(&self, drawn: &Drawn<Vec<f64>>) -> Result<Vec<Unit<Vec<f64>>>, SimulateError> {
-        let unit = |(i, gaps): (usize, &Vec<f64>)| {
+    fn units(&self, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError> {
+        let unit = |i: usize| {
             let (found, _) = unit(self, drawn, i)?;
-            Ok(Unit { number: drawn.numbers.start + i as u64, gaps: gaps.clone(), outcome: found })
+            Ok(Unit { number: drawn.numbers.start + i as u64, gaps: drawn.gaps[i].clone(), outcome: found })
         };
-        drawn.gaps.par_iter().enumerate().with_max_len(1).map(unit).collect()
+        parallel::each(drawn.gaps.len(), unit).into_iter().collect()
     }
 
-    fn decisive(
-        &self,
-        drawn: &Drawn<Vec<f64>>,
-        asked: &[usize],
-    ) -> Result<Vec<Result<Decisive, Fault>>, SimulateError> {
+    fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Result<Decisive, Fault>>, SimulateError> {
         let decisive = |i: &usize| {
             let (outcome, share) = unit(self, drawn, *i)?;
             if let Some(fault @ (Fault::Unsolved | Fault::OutOfBounds)) = outcome.fault {
@@ -51,10 +40,10 @@ impl Subject for ByDrive<'_> {
             let speed = (outcome.verdict != Verdict::Undecided).then_some(share);
             Ok(Ok(Decisive { speed, force: outcome.peak_force }))
         };
-        asked.par_iter().with_max_len(1).map(decisive).collect()
+        parallel::try_map(asked, decisive)
     }
 
-    fn trouble(&self, drawn: &Drawn<Vec<f64>>, i: usize) -> Option<String> {
+    fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String> {
         of_run(self, drawn, i).err().map(|error| error.to_string())
     }
 
@@ -62,12 +51,16 @@ impl Subject for ByDrive<'_> {
         self.mechanism().stated_gaps_at(n)
     }
 
-    fn levels_of(&self, gaps: &Vec<f64>) -> Vec<Option<f64>> {
+    fn levels_of(&self, gaps: &[f64]) -> Vec<Option<f64>> {
         self.mechanism().levels_of(gaps)
     }
 
-    fn fits(&self, gaps: &Vec<f64>) -> bool {
+    fn fits(&self, gaps: &[f64]) -> bool {
         self.mechanism().misfit(gaps).is_none()
+    }
+
+    fn combinations(&self) -> u64 {
+        128
     }
 
     fn parameters(&self) -> usize {
@@ -76,7 +69,7 @@ impl Subject for ByDrive<'_> {
 }
 
 /// The mechanism of unit `i` of those `drawn`.
-pub fn mechanism_of(mechanism: &Mechanism, drawn: &Drawn<Vec<f64>>, i: usize) -> Mechanism {
+pub fn mechanism_of(mechanism: &Mechanism, drawn: &Drawn, i: usize) -> Mechanism {
     let mut own = mechanism.clone();
     for (varied, deviation) in mechanism.vary.iter().zip(&drawn.deviations[i]) {
         varied.parameter.vary(&mut own, *deviation);
@@ -85,7 +78,7 @@ pub fn mechanism_of(mechanism: &Mechanism, drawn: &Drawn<Vec<f64>>, i: usize) ->
 }
 
 /// What unit `i` of those `drawn` does, and its final speed as a share of the command.
-fn unit(driven: &ByDrive, drawn: &Drawn<Vec<f64>>, i: usize) -> Result<(UnitOutcome, f64), SimulateError> {
+fn unit(driven: &ByDrive, drawn: &Drawn, i: usize) -> Result<(UnitOutcome, f64), SimulateError> {
     if interrupt::requested() {
         return Err(SimulateError::Interrupted);
     }
@@ -99,7 +92,7 @@ fn unit(driven: &ByDrive, drawn: &Drawn<Vec<f64>>, i: usize) -> Result<(UnitOutc
 }
 
 /// What the run of unit `i` found, its final speed as a share of the command, and whether it was run again.
-fn of_run(driven: &ByDrive, drawn: &Drawn<Vec<f64>>, i: usize) -> Result<(Outcome, f64, bool), SimulateError> {
+fn of_run(driven: &ByDrive, drawn: &Drawn, i: usize) -> Result<(Outcome, f64, bool), SimulateError> {
     let gaps = &drawn.gaps[i];
     let own = mechanism_of(driven.mechanism(), drawn, i);
     let spec = RunSpec { error: own.run.error.max(ERROR), ..own.run };

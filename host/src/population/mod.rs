@@ -6,7 +6,6 @@
 pub mod drivers;
 mod explained;
 pub mod finding;
-pub mod gaps;
 pub mod hypothesis;
 pub mod kept;
 pub mod limit_state;
@@ -27,9 +26,8 @@ pub mod telling;
 pub mod uncertain;
 pub mod unit;
 
-use rayon::prelude::*;
 pub use slipfit_desk::population::{Course, Figures, simulate, simulate_in};
-use slipfit_system::interrupt;
+use slipfit_system::{interrupt, parallel};
 
 use crate::dynamics::simulate::SimulateError;
 
@@ -49,31 +47,27 @@ const PIECE: usize = 128;
 ///
 /// # Errors
 /// [`SimulateError::Interrupted`].
-pub fn simulate_units<S: Subject>(
-    subject: &S,
-    production: &Production<S::Gaps>,
+pub fn simulate_units(
+    subject: &dyn Subject,
+    production: &Production,
     numbers: std::ops::Range<u64>,
     done: impl Fn(u64) + Sync,
-    mut see: impl FnMut(&Drawn<S::Gaps>, &[Unit<S::Gaps>]),
+    mut see: impl FnMut(&Drawn, &[Unit]),
 ) -> Result<(), SimulateError> {
     let starts: Vec<u64> = numbers.clone().step_by(PIECE).collect();
     // As many pieces at a time as keep all threads at work, so that memory does not grow with the population.
     for starts in starts.chunks(32 * rayon::current_num_threads()) {
-        let pieces: Vec<_> = starts
-            .par_iter()
-            .with_max_len(1)
-            .map(|start| {
-                if interrupt::requested() {
-                    return Err(SimulateError::Interrupted);
-                }
-                let piece = *start..(start + PIECE as u64).min(numbers.end);
-                let count = piece.end - piece.start;
-                let drawn = production.draw(piece);
-                let units = subject.units(&drawn)?;
-                done(count);
-                Ok((drawn, units))
-            })
-            .collect();
+        let pieces = parallel::map(starts, |start| {
+            if interrupt::requested() {
+                return Err(SimulateError::Interrupted);
+            }
+            let piece = *start..(start + PIECE as u64).min(numbers.end);
+            let count = piece.end - piece.start;
+            let drawn = production.draw(piece);
+            let units = subject.units(&drawn)?;
+            done(count);
+            Ok((drawn, units))
+        });
         for piece in pieces {
             let (drawn, units) = piece?;
             see(&drawn, &units);

@@ -3,14 +3,12 @@
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
-use slipfit_core::slide::CONTACTS;
 use slipfit_tolerance::counting::file::{FormatError, Found, Reader, integer};
 
 use super::{
     Unit,
     kept::Outcomes,
     ranked::Ranked,
-    subject::UnitGaps,
     tally::{Tally, VERDICTS},
     unit::{FAULTS, UnitOutcome},
 };
@@ -18,52 +16,6 @@ use crate::dynamics::outcome::Moment;
 
 /// Units of a block.
 const BLOCK: u64 = 512;
-
-/// Gaps that files hold.
-pub trait StoredGaps: UnitGaps {
-    /// The first bytes of files with populations of them.
-    const MAGIC: &'static [u8; 8];
-
-    /// Adds their bytes.
-    fn encode(&self, out: &mut Vec<u8>);
-    /// Reads them.
-    ///
-    /// # Errors
-    /// [`FormatError::Damaged`].
-    fn decode(reader: &mut Reader) -> Result<Self, FormatError>;
-}
-
-/// All sixteen.
-impl StoredGaps for [f64; CONTACTS] {
-    const MAGIC: &'static [u8; 8] = b"SLIPSTAL";
-
-    fn encode(&self, out: &mut Vec<u8>) {
-        self.iter().for_each(|gap| out.extend(gap.to_le_bytes()));
-    }
-
-    fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
-        let mut gaps = [0.0; CONTACTS];
-        for gap in &mut gaps {
-            *gap = reader.number()?;
-        }
-        Ok(gaps)
-    }
-}
-
-/// How many there are, then all.
-impl StoredGaps for Vec<f64> {
-    const MAGIC: &'static [u8; 8] = b"SLIPMTAL";
-
-    fn encode(&self, out: &mut Vec<u8>) {
-        integer(out, self.len() as u64);
-        self.iter().for_each(|gap| out.extend(gap.to_le_bytes()));
-    }
-
-    fn decode(reader: &mut Reader) -> Result<Self, FormatError> {
-        let count = reader.count()?;
-        (0..count).map(|_| reader.number()).collect()
-    }
-}
 
 /// What a population of a scene is made with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -115,9 +67,9 @@ impl Settings {
     }
 }
 
-impl<G: StoredGaps> Found for Tally<G> {
+impl Found for Tally {
     type Settings = Settings;
-    const MAGIC: &'static [u8; 8] = G::MAGIC;
+    const MAGIC: &'static [u8; 8] = b"SLIPUTAL";
 
     fn blocks(settings: &Settings) -> u64 {
         settings.units.div_ceil(BLOCK)
@@ -154,8 +106,10 @@ impl<G: StoredGaps> Found for Tally<G> {
 
     /// Counts, figures, outcomes, then units: the worst, and the first of each verdict.
     fn encode(&self, out: &mut Vec<u8>) {
-        let mut counts = self.counts;
+        let mut counts = self.counts.clone();
         counts.each().for_each(|count| integer(out, *count));
+        integer(out, counts.pressed.len() as u64);
+        counts.pressed.iter().for_each(|count| integer(out, *count));
         self.figures.each().into_iter().for_each(|figure| figure.encode(out));
         self.outcomes.encode(out);
         for units in [&self.worst].into_iter().chain(&self.first) {
@@ -169,6 +123,7 @@ impl<G: StoredGaps> Found for Tally<G> {
         for count in found.counts.each() {
             *count = reader.integer()?;
         }
+        found.counts.pressed = (0..reader.count()?).map(|_| reader.integer()).collect::<Result<_, _>>()?;
         for figure in found.figures.each_mut() {
             *figure = Ranked::decode(reader)?;
         }
@@ -180,34 +135,36 @@ impl<G: StoredGaps> Found for Tally<G> {
     }
 }
 
-/// Adds the bytes of a unit: number, verdict, contact (16 if none), whether the desk computed it, fault (3 if none), breakaway, peak and settled
-/// force, final speed, end, the contact's force, gaps. NaN is none.
-fn encode<G: StoredGaps>(Unit { number, gaps, outcome }: &Unit<G>, out: &mut Vec<u8>) {
+/// Adds the bytes of a unit: number, verdict, whether the desk computed it, fault (3 if none), breakaway, peak and settled force, final speed, end,
+/// how many gaps, which of them is pressed in deepest (that many if none), the force there, gaps. NaN is none.
+fn encode(Unit { number, gaps, outcome }: &Unit, out: &mut Vec<u8>) {
     integer(out, *number);
     let verdict = VERDICTS.iter().position(|verdict| *verdict == outcome.verdict).unwrap_or(VERDICTS.len() - 1);
-    let (contact, force) = outcome.most_loaded.unwrap_or((CONTACTS, 0.0));
+    let (contact, force) = outcome.most_loaded.unwrap_or((gaps.len(), 0.0));
     let fault = FAULTS.iter().position(|fault| Some(*fault) == outcome.fault).unwrap_or(FAULTS.len());
-    out.extend([verdict as u8, contact as u8, u8::from(outcome.at_desk), fault as u8]);
+    out.extend([verdict as u8, u8::from(outcome.at_desk), fault as u8]);
     let optional = [outcome.breakaway, outcome.peak_force, outcome.settled_force];
     let figures = optional.map(|figure| figure.unwrap_or(f64::NAN)).into_iter();
-    let numbers = figures.chain([outcome.final_velocity, outcome.end.t, outcome.end.z, force]);
+    let numbers = figures.chain([outcome.final_velocity, outcome.end.t, outcome.end.z]);
     numbers.for_each(|number| out.extend(number.to_le_bytes()));
-    gaps.encode(out);
+    [gaps.len(), contact].into_iter().for_each(|count| integer(out, count as u64));
+    [force].iter().chain(gaps).for_each(|number| out.extend(number.to_le_bytes()));
 }
 
-fn unit<G: StoredGaps>(reader: &mut Reader) -> Result<Unit<G>, FormatError> {
+fn unit(reader: &mut Reader) -> Result<Unit, FormatError> {
     let number = reader.integer()?;
-    let [verdict, contact, at_desk, fault] = reader.array()?;
+    let [verdict, at_desk, fault] = reader.array()?;
     let verdict = *VERDICTS.get(usize::from(verdict)).ok_or(FormatError::Damaged)?;
     let mut optional = || Ok(Some(reader.number()?).filter(|figure| !figure.is_nan()));
     let (breakaway, peak_force, settled_force) = (optional()?, optional()?, optional()?);
     let final_velocity = reader.number()?;
     let end = Moment { t: reader.number()?, z: reader.number()? };
+    let (count, contact) = (reader.count()?, reader.integer()?);
     let force = reader.number()?;
-    let gaps = G::decode(reader)?;
-    let most_loaded = match usize::from(contact) {
-        CONTACTS => None,
-        contact if contact < CONTACTS => Some((contact, force)),
+    let gaps: Vec<f64> = (0..count).map(|_| reader.number()).collect::<Result<_, _>>()?;
+    let most_loaded = match contact {
+        none if none == gaps.len() as u64 => None,
+        contact if contact < gaps.len() as u64 => Some((contact as usize, force)),
         _ => return Err(FormatError::Damaged),
     };
     let (at_desk, fault) = (at_desk != 0, FAULTS.get(usize::from(fault)).copied());
@@ -255,7 +212,7 @@ mod tests {
             shard(out, Shard { number, count: 3 }, false).unwrap();
         }
         for order in [[0, 1, 2], [2, 0, 1]] {
-            let merged = merge::<Tally<[f64; 16]>>(&order.map(|i: usize| parts[i].clone())).unwrap();
+            let merged = merge::<Tally>(&order.map(|i: usize| parts[i].clone())).unwrap();
             assert_eq!(merged.encode().unwrap(), std::fs::read(&whole).unwrap());
             assert_eq!(merged.tallies, units);
         }
@@ -264,9 +221,9 @@ mod tests {
         let mut bytes = std::fs::read(&parts[1]).unwrap();
         bytes.truncate(bytes.len() / 2);
         std::fs::write(&parts[1], bytes).unwrap();
-        assert!(matches!(merge::<Tally<[f64; 16]>>(&parts), Err(RunError::Format { .. })));
+        assert!(matches!(merge::<Tally>(&parts), Err(RunError::Format { .. })));
         let other = Settings::new(1100, 5, true, 0.25, None);
-        assert_eq!(Tally::<[f64; 16]>::difference(&settings, &other), Some("force limit"));
+        assert_eq!(Tally::difference(&settings, &other), Some("force limit"));
         assert_eq!((settings.correlation(), settings.limit()), (0.25, Some(0.3)));
     }
 }

@@ -2,9 +2,9 @@
 //!
 //! A unit is a pure function of scene, seed and its number.
 
-use std::{marker::PhantomData, ops::Range, sync::Arc};
+use std::{ops::Range, sync::Arc};
 
-use slipfit_core::{sampling::stream::derived, slide::CONTACTS};
+use slipfit_core::{sampling::stream::derived, slide::ABSENT};
 use slipfit_measured::production::Joint;
 use slipfit_tolerance::{
     model::Contributor,
@@ -13,10 +13,7 @@ use slipfit_tolerance::{
     sampling::draw::DrawError,
 };
 
-use super::{
-    gaps::UnitGaps,
-    source::{Columns, Held, Source, Stated, each_itself, of_statistics},
-};
+use super::source::{Columns, Held, Source, Stated, each_itself, of_statistics};
 use crate::{
     mechanism::{self, Mechanism},
     setup::{Measured, MeasuredGaps, Scene},
@@ -28,8 +25,7 @@ pub use super::source::MOST_UNITS;
 const STREAMS: [u64; 2] = [3 << 32, 4 << 32];
 
 /// A production of a scene with a slide, or with a mechanism.
-pub struct Production<'a, G = [f64; CONTACTS]> {
-    kind: PhantomData<G>,
+pub struct Production<'a> {
     gaps: Vec<Gap>,
     /// Of the measures that gaps are, of the gaps that have statistics of their own, and of parameters.
     sources: Vec<Source<'a>>,
@@ -59,11 +55,11 @@ enum Gap {
 }
 
 /// Some units, as they were drawn.
-pub struct Drawn<G = [f64; CONTACTS]> {
+pub struct Drawn {
     /// Their numbers.
     pub numbers: Range<u64>,
-    /// Gaps (m) of each; [`ABSENT`](slipfit_core::slide::ABSENT) for none.
-    pub gaps: Vec<G>,
+    /// Gaps (m) of each; [`ABSENT`] for none.
+    pub gaps: Vec<Vec<f64>>,
     /// Deviations (SI) of the parameters of each, in the order in which the scene says what varies.
     pub deviations: Vec<Vec<f64>>,
     /// Values of all variables, a column each, in the order of [`Production::contributors`].
@@ -84,9 +80,7 @@ impl<'a> Production<'a> {
         let vary = scene.vary.iter().map(|varied| varied.deviation.clone()).collect();
         Self::of(Ingredients { gaps, product, correlation, vary, measured: scene.measured.clone(), seed })
     }
-}
 
-impl<'a> Production<'a, Vec<f64>> {
     /// Of `mechanism`, whose gaps are measures of `product` or have means and deviations; any two of the latter have the
     /// `correlation`.
     ///
@@ -105,9 +99,7 @@ impl<'a> Production<'a, Vec<f64>> {
         let gaps = mechanism.gaps.iter().map(stated).collect();
         Self::of(Ingredients { gaps, product, correlation, vary, measured: mechanism.measured.clone(), seed })
     }
-}
 
-impl<'a, G: UnitGaps> Production<'a, G> {
     /// The likeliest production.
     fn of(made_of: Ingredients<'a>) -> Result<Self, DrawError> {
         let measured = made_of.measured.as_ref();
@@ -161,7 +153,7 @@ impl<'a, G: UnitGaps> Production<'a, G> {
         }
         let contributors = sources.iter().flat_map(|source| &source.model.contributors);
         let names = contributors.map(|contributor| contributor.name.clone()).collect();
-        Ok(Self { kind: PhantomData, gaps, sources, parameters, names, made_of })
+        Ok(Self { gaps, sources, parameters, names, made_of })
     }
 
     /// What varies: name, and which of the variables are its own.
@@ -176,13 +168,13 @@ impl<'a, G: UnitGaps> Production<'a, G> {
     }
 
     /// The units `numbers`.
-    pub fn draw(&self, numbers: Range<u64>) -> Drawn<G> {
+    pub fn draw(&self, numbers: Range<u64>) -> Drawn {
         let columns = self.sources.iter().map(|source| source.draw(&numbers)).collect();
         self.assembled(numbers, columns)
     }
 
     /// Units among which is that of this `number`, and its place among them.
-    pub fn draw_one(&self, number: u64) -> (Drawn<G>, usize) {
+    pub fn draw_one(&self, number: u64) -> (Drawn, usize) {
         let first = number - number % LANES as u64;
         (self.draw(first..number + 1), (number - first) as usize)
     }
@@ -193,7 +185,7 @@ impl<'a, G: UnitGaps> Production<'a, G> {
     }
 
     /// The units at `points` of the space of scores, and which of them are made: those with all truncated zones inside.
-    pub fn at(&self, points: &[Vec<f64>]) -> (Drawn<G>, Vec<bool>) {
+    pub fn at(&self, points: &[Vec<f64>]) -> (Drawn, Vec<bool>) {
         let mut made = vec![true; points.len()];
         let mut first = 0;
         let columns = self.sources.iter().map(|source| {
@@ -212,9 +204,9 @@ impl<'a, G: UnitGaps> Production<'a, G> {
     }
 
     /// Units from what each source has drawn.
-    fn assembled(&self, numbers: Range<u64>, sources: Vec<Columns>) -> Drawn<G> {
+    fn assembled(&self, numbers: Range<u64>, sources: Vec<Columns>) -> Drawn {
         let count = (numbers.end - numbers.start) as usize;
-        let mut gaps = vec![G::absent(self.gaps.len()); count];
+        let mut gaps = vec![vec![ABSENT; self.gaps.len()]; count];
         let mut deviations = vec![Vec::with_capacity(self.parameters); count];
         let mut variables = Vec::new();
         for (s, Columns { variables: columns, measures }) in sources.into_iter().enumerate() {
@@ -222,7 +214,7 @@ impl<'a, G: UnitGaps> Production<'a, G> {
                 if let Gap::Drawn(of, measure) = gap
                     && *of == s
                 {
-                    gaps.iter_mut().zip(&measures[*measure]).for_each(|(gaps, value)| gaps.as_mut()[i] = *value);
+                    gaps.iter_mut().zip(&measures[*measure]).for_each(|(gaps, value)| gaps[i] = *value);
                 }
             }
             if self.parameters > 0 && s + 1 == self.sources.len() {

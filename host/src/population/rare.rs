@@ -4,9 +4,9 @@
 //! and levels that follow one of these never see the other. Kinds and sides exclude each other, so that probabilities add up.
 //! Independent repeats tell the error.
 
-use rayon::prelude::*;
 use serde::Serialize;
 use slipfit_core::sampling::stream::derived;
+use slipfit_system::parallel;
 use slipfit_tolerance::failure::{Margins, subset};
 
 use super::{
@@ -52,18 +52,18 @@ pub struct Rare {
 }
 
 /// What is asked for.
-pub struct Question<'a, S: Subject> {
+pub struct Question<'a> {
     /// What the units are of.
-    pub subject: &'a S,
+    pub subject: &'a dyn Subject,
     /// What varies in it.
-    pub production: &'a Production<'a, S::Gaps>,
+    pub production: &'a Production<'a>,
     /// Seed of the repeats.
     pub seed: u64,
     /// A motor's force (N).
     pub limit: Option<f64>,
 }
 
-impl<S: Subject> Question<'_, S> {
+impl Question<'_> {
     /// Kinds and sides.
     fn cells(&self) -> Vec<(Kind, Side)> {
         let kinds = [Kind::Crawls, Kind::Jams, Kind::Overruns, Kind::OverLimit];
@@ -87,7 +87,9 @@ impl<S: Subject> Question<'_, S> {
         done: impl Fn(usize) + Sync,
     ) -> Result<Rare, SimulateError> {
         let Self { subject, production, limit, .. } = *self;
-        let part = |(number, (kind, side)): (usize, (Kind, Side))| {
+        let cells = self.cells();
+        let part = |number: usize| {
+            let (kind, side) = cells[number];
             let state = || LimitState { subject, production, kind, side, limit, log: Log::default(), weight: 0.0 };
             let seed = derived(self.seed, STREAM + number as u64);
             let factor = production.factor();
@@ -114,8 +116,7 @@ impl<S: Subject> Question<'_, S> {
             };
             Ok::<_, SimulateError>((Part { kind, side, finding }, [simulated, undecided + out_of_bounds]))
         };
-        let cells = self.cells();
-        let found: Result<Vec<_>, _> = cells.into_par_iter().enumerate().with_max_len(1).map(part).collect();
+        let found: Result<Vec<_>, _> = parallel::each(cells.len(), part).into_iter().collect();
         let (parts, counts): (Vec<Part>, Vec<[u64; 2]>) = found?.into_iter().unzip();
         let malfunction = Finding::sum(parts.iter().map(|part| &part.finding));
         let [simulated, unknown] = [0, 1].map(|i| counts.iter().map(|counts| counts[i]).sum());
@@ -141,8 +142,7 @@ fn probability<M: Margins + Send>(
         done(1);
         (found.map(|run| (factor * run.probability).min(1.0)), state)
     };
-    let repeats =
-        |numbers: std::ops::Range<usize>| -> Vec<_> { numbers.into_par_iter().with_max_len(1).map(repeat).collect() };
+    let repeats = |numbers: std::ops::Range<usize>| parallel::each(numbers.len(), |i| repeat(numbers.start + i));
     let mut all = repeats(0..PILOTS);
     if all.iter().any(|(found, _)| found.is_ok()) {
         all.extend(repeats(PILOTS..REPEATS));

@@ -15,7 +15,7 @@ use crate::dynamics::simulate::SimulateError;
 
 use super::{
     Unit,
-    part::{Settings, StoredGaps},
+    part::Settings,
     production::Production,
     simulate_units,
     subject::Subject,
@@ -23,34 +23,34 @@ use super::{
 };
 
 /// Where units go one by one, beside being counted: in order, each once.
-pub struct Listener<'a, G> {
+pub struct Listener<'a> {
     /// The first unit that it has not heard of.
     next: u64,
-    hear: Hear<'a, G>,
+    hear: Hear<'a>,
 }
 
 /// What a [`Listener`] does with some units.
-pub type Hear<'a, G> = Box<dyn FnMut(&[Unit<G>]) -> Result<(), WriteError> + Send + 'a>;
+pub type Hear<'a> = Box<dyn FnMut(&[Unit]) -> Result<(), WriteError> + Send + 'a>;
 
-impl<'a, G> Listener<'a, G> {
+impl<'a> Listener<'a> {
     /// That does this with units, one thread at a time.
-    pub fn new(hear: Hear<'a, G>) -> Mutex<Self> {
+    pub fn new(hear: Hear<'a>) -> Mutex<Self> {
         Mutex::new(Self { next: 0, hear })
     }
 }
 
 /// Units to be simulated.
-pub struct Simulation<'a, S: Subject> {
+pub struct Simulation<'a> {
     /// What they are units of.
-    pub subject: &'a S,
+    pub subject: &'a dyn Subject,
     /// What varies in it.
-    pub production: &'a Production<'a, S::Gaps>,
+    pub production: &'a Production<'a>,
     /// Which units.
     pub settings: Settings,
     /// What counts them.
-    pub counter: Counter<'a, S>,
+    pub counter: Counter<'a>,
     /// Who else wants them.
-    pub listener: Option<Mutex<Listener<'a, S::Gaps>>>,
+    pub listener: Option<Mutex<Listener<'a>>>,
 }
 
 impl From<SimulateError> for RunError {
@@ -62,9 +62,9 @@ impl From<SimulateError> for RunError {
     }
 }
 
-impl<S: Subject<Gaps: StoredGaps>> Simulation<'_, S> {
+impl Simulation<'_> {
     /// Simulates the units `numbers`, counts them and lets the listener know of those that it has not heard of.
-    fn counted(&self, numbers: Range<u64>, done: &(impl Fn(u64) + Sync)) -> Result<Tally<S::Gaps>, RunError> {
+    fn counted(&self, numbers: Range<u64>, done: &(impl Fn(u64) + Sync)) -> Result<Tally, RunError> {
         let mut tally = self.counter.nothing();
         let mut heard = Ok(());
         let mut listener =
@@ -86,7 +86,7 @@ impl<S: Subject<Gaps: StoredGaps>> Simulation<'_, S> {
     /// # Errors
     /// As [`Work::add`].
     pub fn catch_up(&self, end: u64) -> Result<(), RunError> {
-        let heard = |listener: &Mutex<Listener<_>>| listener.lock().unwrap_or_else(PoisonError::into_inner).next;
+        let heard = |listener: &Mutex<Listener>| listener.lock().unwrap_or_else(PoisonError::into_inner).next;
         match self.listener.as_ref().map(heard) {
             Some(next) if next < end => self.counted(next..end, &|_| ()).map(drop),
             _ => Ok(()),
@@ -94,27 +94,22 @@ impl<S: Subject<Gaps: StoredGaps>> Simulation<'_, S> {
     }
 }
 
-impl<S: Subject<Gaps: StoredGaps>> Work for Simulation<'_, S> {
-    type Found = Tally<S::Gaps>;
+impl Work for Simulation<'_> {
+    type Found = Tally;
 
     fn settings(&self) -> Settings {
         self.settings
     }
 
-    fn empty(&self) -> Tally<S::Gaps> {
+    fn empty(&self) -> Tally {
         self.counter.nothing()
     }
 
-    fn fits(&self, part: &Part<Tally<S::Gaps>>) -> bool {
+    fn fits(&self, part: &Part<Tally>) -> bool {
         part.tallies.fits(&self.counter.nothing())
     }
 
-    fn add(
-        &self,
-        blocks: Range<u64>,
-        found: &mut Tally<S::Gaps>,
-        done: &(impl Fn(u64) + Sync),
-    ) -> Result<(), RunError> {
+    fn add(&self, blocks: Range<u64>, found: &mut Tally, done: &(impl Fn(u64) + Sync)) -> Result<(), RunError> {
         let numbers = self.settings.units_in(&blocks);
         self.catch_up(numbers.start)?;
         found.join(self.counted(numbers, done)?);

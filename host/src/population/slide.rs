@@ -3,7 +3,6 @@
 use slipfit_core::{
     law::Elastic,
     menu::{FrictionData, SlideData},
-    slide::CONTACTS,
 };
 use slipfit_desk::population::{Course, Figures, simulate as simulate_lanes};
 
@@ -31,8 +30,6 @@ pub const ERROR: f64 = 4e-5;
 pub const ERROR_OF_STICK: f64 = 2.5e-6;
 
 impl Subject for Scene {
-    type Gaps = [f64; CONTACTS];
-
     fn units(&self, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError> {
         units(self, drawn)
     }
@@ -45,16 +42,20 @@ impl Subject for Scene {
         trouble(self, drawn, i)
     }
 
-    fn gaps_at(&self, n: &[f64]) -> [f64; CONTACTS] {
-        Scene::gaps_at(self, &std::array::from_fn(|i| level_of(n, i)))
+    fn gaps_at(&self, n: &[f64]) -> Vec<f64> {
+        Scene::gaps_at(self, &std::array::from_fn(|i| level_of(n, i))).to_vec()
     }
 
-    fn levels_of(&self, gaps: &[f64; CONTACTS]) -> Vec<Option<f64>> {
-        Scene::levels_of(self, gaps).to_vec()
+    fn levels_of(&self, gaps: &[f64]) -> Vec<Option<f64>> {
+        Scene::levels_of(self, gaps)
     }
 
-    fn fits(&self, _: &[f64; CONTACTS]) -> bool {
+    fn fits(&self, _: &[f64]) -> bool {
         true
+    }
+
+    fn combinations(&self) -> u64 {
+        512
     }
 
     fn parameters(&self) -> usize {
@@ -93,7 +94,7 @@ pub fn units(scene: &Scene, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError> {
                 if is_doubtful { at_desk(scene, drawn, i, found)? } else { found }
             }
         };
-        Ok(Unit { number: drawn.numbers.start + i as u64, gaps: drawn.gaps[i], outcome })
+        Ok(Unit { number: drawn.numbers.start + i as u64, gaps: drawn.gaps[i].clone(), outcome })
     };
     lanes(scene, drawn, &all).into_iter().enumerate().map(unit).collect()
 }

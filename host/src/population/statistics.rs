@@ -114,7 +114,7 @@ pub struct Statistics {
 
 impl Statistics {
     /// Of a `tally` of at least one unit with this `duty`.
-    pub fn new<G>(tally: &Tally<G>, duty: Duty) -> Self {
+    pub fn new(tally: &Tally, duty: Duty) -> Self {
         let (counts, figures) = (&tally.counts, &tally.figures);
         let all = counts.units.max(1);
         let [runs, crawls, jammed, overruns, undecided] = counts.verdicts.map(|units| Share::new(units, all));

@@ -6,17 +6,16 @@ use super::{
     production::Production,
     simulate_units,
     statistics::{Statistics, malfunctions},
-    subject::{Subject, UnitGaps},
+    subject::Subject,
     tally::{Counter, Duty, Tally},
 };
 use crate::dynamics::{outcome::Verdict, simulate::SimulateError};
-use slipfit_core::slide::CONTACTS;
 
 /// A population.
 #[derive(Clone, Debug)]
-pub struct Population<G = [f64; CONTACTS]> {
+pub struct Population {
     /// What is kept of its units.
-    pub tally: Tally<G>,
+    pub tally: Tally,
     /// What they did together.
     pub statistics: Statistics,
     /// What drives the greatest force, the strongest first.
@@ -41,9 +40,9 @@ pub struct Judgement {
 ///
 /// # Errors
 /// See [`simulate_units`].
-pub fn judge<S: Subject>(
-    subject: &S,
-    production: &Production<S::Gaps>,
+pub fn judge(
+    subject: &dyn Subject,
+    production: &Production,
     count: u64,
     limit: Option<f64>,
     done: impl Fn(u64) + Sync,
@@ -59,15 +58,15 @@ pub fn judge<S: Subject>(
     Ok(found)
 }
 
-impl<G: UnitGaps> Population<G> {
+impl Population {
     /// The first `count` units of a `production` of `subject` with this `duty`, on all threads of the current pool. `done` is
     /// called with how many have been simulated.
     ///
     /// # Errors
     /// See [`simulate_units`].
-    pub fn study<S: Subject<Gaps = G>>(
-        subject: &S,
-        production: &Production<G>,
+    pub fn study(
+        subject: &dyn Subject,
+        production: &Production,
         count: u64,
         duty: Duty,
         done: impl Fn(u64) + Sync,
@@ -79,7 +78,7 @@ impl<G: UnitGaps> Population<G> {
     }
 
     /// Of the `tally` of a `production` with this `duty`.
-    pub fn of(production: &Production<G>, tally: Tally<G>, duty: Duty) -> Self {
+    pub fn of(production: &Production, tally: Tally, duty: Duty) -> Self {
         Self {
             statistics: Statistics::new(&tally, duty),
             of_force: drivers::of_force(production, &tally.outcomes, tally.counts.units),

@@ -6,43 +6,37 @@ use super::{
 };
 use crate::dynamics::{driven::Driven, simulate::SimulateError};
 
-pub use super::gaps::UnitGaps;
-
 /// A level of eq. 9, and the unit there.
-pub type AtLevel<G> = (f64, Unit<G>);
+pub type AtLevel = (f64, Unit);
 
 /// What the units of a production are units of.
 pub trait Subject: Driven {
-    /// The gaps of a unit.
-    type Gaps: UnitGaps;
-
     /// Simulates the units that were `drawn`; one that cannot be has a [`Fault`].
     ///
     /// # Errors
     /// [`SimulateError::Interrupted`].
-    fn units(&self, drawn: &Drawn<Self::Gaps>) -> Result<Vec<Unit<Self::Gaps>>, SimulateError>;
+    fn units(&self, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError>;
 
     /// The figures that decide whether units do their job, of those `drawn` units that are `asked` for, or why there are none.
     ///
     /// # Errors
     /// [`SimulateError::Interrupted`].
-    fn decisive(
-        &self,
-        drawn: &Drawn<Self::Gaps>,
-        asked: &[usize],
-    ) -> Result<Vec<Result<Decisive, Fault>>, SimulateError>;
+    fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Result<Decisive, Fault>>, SimulateError>;
 
     /// Why unit `i` of those `drawn` has no run; `None` if it has one.
-    fn trouble(&self, drawn: &Drawn<Self::Gaps>, i: usize) -> Option<String>;
+    fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String>;
 
     /// The gaps (m) at the tolerance levels `n`, one for each; the last holds for all that follow.
-    fn gaps_at(&self, n: &[f64]) -> Self::Gaps;
+    fn gaps_at(&self, n: &[f64]) -> Vec<f64>;
 
     /// The tolerance levels at which the `gaps` (m) are; `None` for one that does not vary.
-    fn levels_of(&self, gaps: &Self::Gaps) -> Vec<Option<f64>>;
+    fn levels_of(&self, gaps: &[f64]) -> Vec<Option<f64>>;
 
     /// Whether a unit with these `gaps` (m) can be assembled.
-    fn fits(&self, gaps: &Self::Gaps) -> bool;
+    fn fits(&self, gaps: &[f64]) -> bool;
+
+    /// How many random combinations of gaps take a few seconds.
+    fn combinations(&self) -> u64;
 
     /// How many parameters vary beside the gaps.
     fn parameters(&self) -> usize;
@@ -54,13 +48,13 @@ pub trait Subject: Driven {
 
     /// How much tighter than the mean unit one with these `gaps` (m) is: the mean over its gaps, each in its standard
     /// deviations, signed like the level n of eq. 9.
-    fn tightness(&self, gaps: &Self::Gaps) -> f64 {
+    fn tightness(&self, gaps: &[f64]) -> f64 {
         let levels: Vec<f64> = self.levels_of(gaps).into_iter().flatten().collect();
         levels.iter().sum::<f64>() / levels.len().max(1) as f64
     }
 
     /// Units with the given `gaps` (m) and the scene's own parameters.
-    fn as_drawn(&self, gaps: Vec<Self::Gaps>) -> Drawn<Self::Gaps> {
+    fn as_drawn(&self, gaps: Vec<Vec<f64>>) -> Drawn {
         let deviations = vec![vec![0.0; self.parameters()]; gaps.len()];
         Drawn { numbers: 0..gaps.len() as u64, gaps, deviations, variables: Vec::new() }
     }
@@ -70,7 +64,7 @@ pub trait Subject: Driven {
     ///
     /// # Errors
     /// As [`Subject::units`].
-    fn at_levels(&self, n: &[f64]) -> Result<Vec<AtLevel<Self::Gaps>>, SimulateError> {
+    fn at_levels(&self, n: &[f64]) -> Result<Vec<AtLevel>, SimulateError> {
         let (n, gaps): (Vec<_>, Vec<_>) =
             n.iter().map(|n| (*n, self.gaps_at(&[*n]))).filter(|(_, gaps)| self.fits(gaps)).unzip();
         Ok(n.into_iter().zip(self.units(&self.as_drawn(gaps))?).collect())

@@ -2,8 +2,6 @@
 
 use std::cmp::Ordering;
 
-use slipfit_core::slide::CONTACTS;
-
 use super::{
     Unit,
     kept::Outcomes,
@@ -36,7 +34,7 @@ pub struct Duty {
 }
 
 /// Counts of units.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// All.
     pub units: u64,
@@ -54,20 +52,19 @@ pub struct Counts {
     pub faults: [u64; FAULTS.len()],
     /// Those that malfunction, by kind as in [`KINDS`]: tight ones and loose ones.
     pub kinds: [[u64; 2]; 4],
-    /// Those that malfunction, by the contact that is pressed in deepest.
-    pub pressed: [u64; CONTACTS],
+    /// Those that malfunction, by the gap whose contact is pressed in deepest; as many as any unit has pressed.
+    pub pressed: Vec<u64>,
 }
 
 impl Counts {
-    /// Every count, in one order.
+    /// Every count but those of [`Counts::pressed`], in one order.
     pub fn each(&mut self) -> impl Iterator<Item = &mut u64> {
-        let Self { units, verdicts, short, over_limit, malfunctions, at_desk, faults, kinds, pressed } = self;
+        let Self { units, verdicts, short, over_limit, malfunctions, at_desk, faults, kinds, pressed: _ } = self;
         [units, short, over_limit, malfunctions, at_desk]
             .into_iter()
             .chain(faults)
             .chain(verdicts)
             .chain(kinds.as_flattened_mut())
-            .chain(pressed)
     }
 }
 
@@ -108,7 +105,7 @@ impl Figures {
 
 /// What is kept of units. The order in which they come does not matter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tally<G> {
+pub struct Tally {
     /// Counts.
     pub counts: Counts,
     /// How figures spread.
@@ -116,28 +113,23 @@ pub struct Tally<G> {
     /// Which units malfunction and with what force: of this it is found what both vary with.
     pub outcomes: Outcomes,
     /// The worst, at most [`WORST`]: of those that malfunction the ones that come least far, then those that need most force.
-    pub worst: Vec<Unit<G>>,
+    pub worst: Vec<Unit>,
     /// The first of each verdict, as in [`VERDICTS`], in order.
-    pub first: [Vec<Unit<G>>; VERDICTS.len()],
+    pub first: [Vec<Unit>; VERDICTS.len()],
 }
 
 /// The worse first. Of equal ones the first of the production.
-fn by_badness<G>(one: &Unit<G>, other: &Unit<G>) -> Ordering {
-    let key = |unit: &Unit<G>| (!unit.outcome.verdict.is_malfunction(), unit.outcome.end.z);
+fn by_badness(one: &Unit, other: &Unit) -> Ordering {
+    let key = |unit: &Unit| (!unit.outcome.verdict.is_malfunction(), unit.outcome.end.z);
     let ((runs, z), (other_runs, other_z)) = (key(one), key(other));
     let by_travel = if runs { Ordering::Equal } else { z.total_cmp(&other_z) };
-    let force = |unit: &Unit<G>| unit.outcome.peak_force.unwrap_or(f64::NEG_INFINITY);
+    let force = |unit: &Unit| unit.outcome.peak_force.unwrap_or(f64::NEG_INFINITY);
     let by_force = force(other).total_cmp(&force(one));
     runs.cmp(&other_runs).then(by_travel).then(by_force).then(one.number.cmp(&other.number))
 }
 
 /// Puts `unit` in its place by `order` and keeps the first `most`.
-fn keep<G: Clone>(
-    kept: &mut Vec<Unit<G>>,
-    unit: &Unit<G>,
-    most: usize,
-    order: impl Fn(&Unit<G>, &Unit<G>) -> Ordering,
-) {
+fn keep(kept: &mut Vec<Unit>, unit: &Unit, most: usize, order: impl Fn(&Unit, &Unit) -> Ordering) {
     let place = kept.partition_point(|other| order(other, unit) == Ordering::Less);
     if place < most {
         kept.insert(place, unit.clone());
@@ -145,13 +137,13 @@ fn keep<G: Clone>(
     }
 }
 
-impl<G: Clone> Default for Tally<G> {
+impl Default for Tally {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<G: Clone> Tally<G> {
+impl Tally {
     /// Of no units.
     pub fn new() -> Self {
         Self {
@@ -168,11 +160,14 @@ impl<G: Clone> Tally<G> {
         self.counts.each().zip(other.counts.each()).for_each(|(own, other)| *own += *other);
         self.figures.each_mut().into_iter().zip(other.figures.each()).for_each(|(own, other)| own.join(other));
         self.outcomes.join(&other.outcomes);
+        let pressed = &mut self.counts.pressed;
+        pressed.resize(pressed.len().max(other.counts.pressed.len()), 0);
+        pressed.iter_mut().zip(&other.counts.pressed).for_each(|(own, other)| *own += other);
         other.worst.iter().for_each(|unit| keep(&mut self.worst, unit, WORST, by_badness));
         other.first.iter().flatten().for_each(|unit| self.keep_first(unit));
     }
 
-    fn keep_first(&mut self, unit: &Unit<G>) {
+    fn keep_first(&mut self, unit: &Unit) {
         let verdict = VERDICTS.iter().position(|verdict| *verdict == unit.outcome.verdict).unwrap_or(0);
         keep(&mut self.first[verdict], unit, FIRST, |one, other| one.number.cmp(&other.number));
     }
@@ -192,7 +187,7 @@ impl<G: Clone> Tally<G> {
     }
 
     /// The first units of the production, in order, as far as all of them are kept.
-    pub fn first_units(&self) -> Vec<&Unit<G>> {
+    pub fn first_units(&self) -> Vec<&Unit> {
         let full = self.first.iter().filter(|kept| kept.len() == FIRST);
         let last = full.filter_map(|kept| kept.last()).map(|unit| unit.number).min().unwrap_or(u64::MAX);
         let mut units: Vec<_> = self.first.iter().flatten().filter(|unit| unit.number <= last).collect();
@@ -202,24 +197,24 @@ impl<G: Clone> Tally<G> {
 }
 
 /// Counts the units of a production.
-pub struct Counter<'a, S: Subject> {
-    subject: &'a S,
+pub struct Counter<'a> {
+    subject: &'a dyn Subject,
     duty: Duty,
 }
 
-impl<'a, S: Subject> Counter<'a, S> {
+impl<'a> Counter<'a> {
     /// Of a production of `subject`.
-    pub fn new(subject: &'a S, duty: Duty) -> Self {
+    pub fn new(subject: &'a dyn Subject, duty: Duty) -> Self {
         Self { subject, duty }
     }
 
     /// Of no units.
-    pub fn nothing(&self) -> Tally<S::Gaps> {
+    pub fn nothing(&self) -> Tally {
         Tally::new()
     }
 
     /// Adds the `units`.
-    pub fn add(&self, tally: &mut Tally<S::Gaps>, units: &[Unit<S::Gaps>]) {
+    pub fn add(&self, tally: &mut Tally, units: &[Unit]) {
         let Duty { limit, stroke } = self.duty;
         let Figures { force, running_force, failing_force, breakaway, final_velocity, tightness, failing_tightness } =
             &mut tally.figures;
@@ -257,6 +252,7 @@ impl<'a, S: Subject> Counter<'a, S> {
                 let side = usize::from(n <= 0.0);
                 KINDS.iter().zip(&mut counts.kinds).for_each(|(of, own)| count(&mut own[side], Some(*of) == kind));
                 if let Some((contact, _)) = outcome.most_loaded {
+                    counts.pressed.resize(counts.pressed.len().max(contact + 1), 0);
                     counts.pressed[contact] += 1;
                 }
             }

@@ -1,9 +1,6 @@
 //! Populations against the desk, and their laws.
 
-use slipfit_core::{
-    menu::{FrictionData, SlideData},
-    slide::CONTACTS,
-};
+use slipfit_core::menu::{FrictionData, SlideData};
 
 use super::{
     Course, production::Production, simulate, simulate_in, simulate_units, slide, study::Population, tally::Duty,
@@ -26,7 +23,7 @@ fn slides(scene: &Scene, units: u64) -> Vec<SlideData<f64>> {
     drawn.gaps.iter().map(|gaps| scene.slide_data(gaps)).collect()
 }
 
-fn at_desk(scene: &Scene, gaps: &[f64; CONTACTS]) -> Outcome {
+fn at_desk(scene: &Scene, gaps: &[f64]) -> Outcome {
     one::simulate(scene, gaps, &Settings::desk(scene, 1.0)).unwrap().outcome
 }
 

@@ -1,7 +1,6 @@
 //! One unit of a population: what it did, or why it has no run.
 
 use serde::Serialize;
-use slipfit_core::slide::CONTACTS;
 
 use crate::dynamics::{
     outcome::{JAMMED, Moment, RUNS, Verdict},
@@ -14,11 +13,11 @@ const DOUBT: f64 = 0.01;
 
 /// One unit of a population.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unit<G = [f64; CONTACTS]> {
+pub struct Unit {
     /// Its number in the production, from 0 on.
     pub number: u64,
     /// Its gaps (m): of a slide in the order of Table 2, else in the mechanism's order.
-    pub gaps: G,
+    pub gaps: Vec<f64>,
     /// What it did.
     pub outcome: UnitOutcome,
 }

@@ -128,12 +128,9 @@ impl Scene {
     }
 
     /// The tolerance levels at which the contacts have these `gaps` (m); `None` for one that does not vary, or is none.
-    pub fn levels_of(&self, gaps: &[f64; CONTACTS]) -> [Option<f64>; CONTACTS] {
-        let mut levels = [None; CONTACTS];
-        for ((level, of), gap) in levels.iter_mut().zip(self.pins.iter().flat_map(|pin| pin.gaps)).zip(gaps) {
-            *level = of.filter(|of| of.deviation > 0.0).map(|of| of.level(*gap));
-        }
-        levels
+    pub fn levels_of(&self, gaps: &[f64]) -> Vec<Option<f64>> {
+        let statistics = self.pins.iter().flat_map(|pin| pin.gaps);
+        statistics.zip(gaps).map(|(of, gap)| Some(of.filter(|of| of.deviation > 0.0)?.level(*gap))).collect()
     }
 
     /// [`gaps_at`](Self::gaps_at) computed in the scalar `S`, from levels and statistics rounded to it: in f32 the bits of
@@ -150,14 +147,14 @@ impl Scene {
         gaps
     }
 
-    /// The slide with the given `gaps` (m) as the kernel's data, every number rounded once to the scalar `S`.
-    pub fn slide_data<S: Scalar>(&self, gaps: &[f64; CONTACTS]) -> SlideData<S> {
+    /// The slide with the given `gaps` (m), [`ABSENT`] where none is given, as the kernel's data, every number rounded once to the scalar `S`.
+    pub fn slide_data<S: Scalar>(&self, gaps: &[f64]) -> SlideData<S> {
         let body = Body {
             mass: self.slide.mass,
             inertia_b: box_inertia(self.slide.mass, self.slide.inertia_box),
             gravity_w: self.slide.gravity.into(),
             pins_w: [0, 1, 2, 3].map(|i| self.pins[i].position.into()),
-            gaps: *gaps,
+            gaps: std::array::from_fn(|i| gaps.get(i).copied().unwrap_or(ABSENT)),
         };
         let data: SlideData<f64> =
             SlideData { body, contact: self.contact, friction: self.friction, drive: self.drive };

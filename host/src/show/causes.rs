@@ -1,11 +1,9 @@
 //! Pictures of where malfunction comes from: the histogram of forces, the sides on which units fail, what drives them.
 
-use slipfit_core::slide::CONTACTS;
 use slipfit_tolerance::number::fixed;
 
 use crate::{
     dynamics::driven::DriveKind,
-    setup::Scene,
     show::{
         bars::{Bar, Block, bars},
         chart::outline,
@@ -18,6 +16,7 @@ use crate::{
         ranked::Ranked,
         statistics::Share,
         study::Population,
+        subject::Subject,
         tally::{Counts, Tally},
     },
     show::units::effort,
@@ -40,7 +39,7 @@ fn classes(units: u64) -> usize {
 ///
 /// # Errors
 /// [`PlotError`], if no unit has a force.
-pub fn histogram<G>(title: &str, kind: DriveKind, tally: &Tally<G>, limit: Option<f64>) -> Result<String, PlotError> {
+pub fn histogram(title: &str, kind: DriveKind, tally: &Tally, limit: Option<f64>) -> Result<String, PlotError> {
     let Tally { counts: Counts { units, over_limit, .. }, figures, .. } = tally;
     let [low, high] = figures.force.ends().ok_or(PlotError::Empty)?;
     let all = (*units).max(1);
@@ -76,8 +75,14 @@ pub fn histogram<G>(title: &str, kind: DriveKind, tally: &Tally<G>, limit: Optio
     })
 }
 
-/// On which side units malfunction: loose or tight, and the contact that is pressed hardest.
-pub fn sides(scene: &Scene, tally: &Tally<[f64; CONTACTS]>) -> String {
+/// On which side units of `subject` malfunction: loose or tight, and the contact that is pressed hardest.
+///
+/// # Errors
+/// [`PlotError`], if no gap varies.
+pub fn sides(subject: &dyn Subject, tally: &Tally) -> Result<String, PlotError> {
+    if !subject.has_levels() {
+        return Err(PlotError::Empty);
+    }
     let Tally { counts, figures, .. } = tally;
     let (all, failing) = (&figures.tightness, &figures.failing_tightness);
     // Units before the unit of this rank, from the loosest on, and those that malfunction among them.
@@ -101,21 +106,21 @@ pub fn sides(scene: &Scene, tally: &Tally<[f64; CONTACTS]>) -> String {
         ],
     }];
     let pressed = |(units, name): (&u64, String)| bar(&name, *units, counts.malfunctions);
-    let mut contacts: Vec<Bar> = counts.pressed.iter().zip(scene.contact_names()).map(pressed).collect();
+    let mut contacts: Vec<Bar> = counts.pressed.iter().zip(subject.gap_names()).map(pressed).collect();
     contacts.retain(|bar| bar.percent >= LEAST);
     contacts.sort_by(|one, other| other.percent.total_cmp(&one.percent));
     contacts.truncate(MOST);
     if !contacts.is_empty() {
         blocks.push(Block { heading: "of those press hardest at".into(), bars: contacts });
     }
-    bars(&scene.title, "where units fail, % of them, with the standard error", &blocks)
+    Ok(bars(subject.title(), "where units fail, % of them, with the standard error", &blocks))
 }
 
 /// What drives force and malfunction, the strongest first.
 ///
 /// # Errors
 /// If no contributor is told from nothing.
-pub fn ranking<G>(title: &str, kind: DriveKind, population: &Population<G>) -> Result<String, PlotError> {
+pub fn ranking(title: &str, kind: DriveKind, population: &Population) -> Result<String, PlotError> {
     let block = |heading: &str, drivers: &[Driver]| {
         let bar = |driver: &Driver| Bar {
             name: driver.name.clone(),
@@ -181,12 +186,12 @@ mod tests {
         let limit = Some(0.5 * (force.at(119).unwrap() + force.at(120).unwrap()));
         let drawn = histogram(&scene.title, DriveKind::Pushes, &study(limit).tally, limit).unwrap();
         assert!(drawn.contains("which 50.00 % exceed") && drawn.contains("malfunction"), "{drawn}");
-        let drawn = sides(&scene, &population.tally);
+        let drawn = sides(&scene, &population.tally).unwrap();
         assert!(drawn.contains("the tightest tenth") && drawn.contains("press hardest at"), "{drawn}");
         assert!(ranking(&scene.title, DriveKind::Pushes, &population).unwrap().contains("greatest force"));
         // Without failures and without forces there is less to show, and no error.
         let nothing = Tally::new();
         assert_eq!(histogram(&scene.title, DriveKind::Pushes, &nothing, None), Err(PlotError::Empty));
-        assert!(!sides(&scene, &nothing).contains("press hardest"));
+        assert!(!sides(&scene, &nothing).unwrap().contains("press hardest"));
     }
 }

@@ -71,7 +71,7 @@ impl<W: Write> UnitRows<W> {
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn add<G: AsRef<[f64]>>(&mut self, tightness: f64, unit: &Unit<G>) -> io::Result<()> {
+    pub fn add(&mut self, tightness: f64, unit: &Unit) -> io::Result<()> {
         let Unit { number, gaps, outcome } = unit;
         let optional = |value: Option<f64>| value.map_or(String::new(), ten_digits);
         // A unit without a run has no figures; one that cannot be assembled stands still.
@@ -89,7 +89,7 @@ impl<W: Write> UnitRows<W> {
             outcome.verdict.to_string(),
             outcome.at_desk.to_string(),
         ];
-        let gaps = gaps.as_ref().iter().map(|gap| optional((*gap != ABSENT).then_some(*gap)));
+        let gaps = gaps.iter().map(|gap| optional((*gap != ABSENT).then_some(*gap)));
         Ok(self.0.write_record(own.into_iter().chain(gaps))?)
     }
 

@@ -30,7 +30,7 @@ pub fn effort(kind: DriveKind) -> String {
 ///
 /// # Errors
 /// [`PlotError`], if there is nothing to show.
-pub fn forces<S: Subject>(subject: &S, tally: &Tally<S::Gaps>, limit: Option<f64>) -> Result<String, PlotError> {
+pub fn forces(subject: &dyn Subject, tally: &Tally, limit: Option<f64>) -> Result<String, PlotError> {
     let first = tally.first_units();
     let marks = first.iter().take(MARKED);
     let marks: Vec<_> = marks.map(|unit| (subject.tightness(&unit.gaps), unit.outcome)).collect();

@@ -1,5 +1,6 @@
-//! What an operating system has: files that are whole or not there, and a request to stop.
+//! What an operating system has: files that are whole or not there, threads, and a request to stop.
 #![forbid(unsafe_code)]
 
 pub mod files;
 pub mod interrupt;
+pub mod parallel;

@@ -6,14 +6,13 @@ mod words;
 use std::path::PathBuf;
 
 use clap::Args;
-use rayon::prelude::*;
 use slipfit_measured::{
     capability::{Options, capability},
     csv,
     families::Kind,
     table::MeasuredTable,
 };
-use slipfit_system::files;
+use slipfit_system::{files, parallel};
 
 use self::report::{Refused, Report};
 use super::{
@@ -79,8 +78,7 @@ impl Arguments {
         let grouping = self.group.as_ref().map(|_| 0);
         let options = Options { family: self.family, grouping, ..Options::default() };
         let (mut characteristics, mut unjudged, mut errors) = (Vec::new(), Vec::new(), Vec::new());
-        let found: Vec<_> =
-            (0..table.columns().len()).into_par_iter().map(|k| capability(&table, k, &options)).collect();
+        let found = parallel::each(table.columns().len(), |k| capability(&table, k, &options));
         for (column, found) in table.columns().iter().zip(found) {
             match found {
                 Ok(found) => characteristics.push(found),

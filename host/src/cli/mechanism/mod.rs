@@ -2,7 +2,6 @@
 
 mod check;
 mod doubt;
-pub(super) mod population;
 mod simulate;
 mod sweep;
 

@@ -82,7 +82,7 @@ impl OneUnit {
     /// That with this `number` in a `production`, and the mechanism with its parameters.
     pub fn of_production(
         mechanism: &Mechanism,
-        production: &Production<Vec<f64>>,
+        production: &Production,
         number: u64,
     ) -> Result<(Mechanism, Self), Failure> {
         let (drawn, i) = production.draw_one(number);

@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
-use slipfit_system::files;
+use slipfit_system::{files, parallel};
 use slipfit_tolerance::number::{fixed, level, or_dash};
 
 use super::{DriveReport, Wanted, doubt, shown, units};
@@ -48,7 +47,7 @@ pub fn sweep(mechanism: &Mechanism, wanted: &Wanted, threads: &ThreadArguments) 
         let doubts = doubt::warnings(mechanism, &one, &finer, &one.agreement(&finer, mechanism));
         Ok(((*n, one.outcomes), doubts))
     };
-    let levels = threads.install(|| units_of.par_iter().map(one).collect::<Result<Vec<_>, _>>())?;
+    let levels = threads.install(|| parallel::try_map(&units_of, one))?;
     bar.finish_and_clear();
     let (levels, doubts): (Vec<_>, Vec<_>) = levels?.into_iter().unzip();
     if let Some(path) = wanted.csv {

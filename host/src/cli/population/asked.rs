@@ -4,27 +4,23 @@ use std::path::PathBuf;
 
 use clap::Args;
 use indicatif::ProgressBar;
-use slipfit_tolerance::{
-    counting::{
-        file::{Found as _, Source},
-        run::{Keep, Shard, checkpoint, run},
-    },
-    product::Product,
+use slipfit_tolerance::counting::{
+    file::{Found as _, Source},
+    run::{Keep, Shard, checkpoint, run},
 };
 
 use super::rows::Rows;
 use crate::{
     cli::{
-        arguments::{DriveArguments, SceneArguments, ThreadArguments},
+        arguments::{DriveArguments, Moving, SceneArguments, ThreadArguments},
         endings,
         failure::Failure,
         terminal::{given, print, print_json, progress},
         tolerance::Written,
     },
     dynamics::driven::Driven,
-    mechanism::Mechanism,
     population::{
-        part::{Settings, StoredGaps},
+        part::Settings,
         production::Production,
         rare::{Question, Rare},
         simulation::{Listener, Simulation},
@@ -33,7 +29,6 @@ use crate::{
         tally::{Counter, Duty, Tally},
         uncertain::design::Design,
     },
-    setup::Scene,
 };
 
 /// Simulates units of a production one by one: how many malfunction, and why.
@@ -110,14 +105,9 @@ pub const HYPOTHESIS: &str = "Do the tightest and the loosest units malfunction 
                                      from the mean unit.";
 
 impl Arguments {
-    /// What units have to do: for a slide.
-    pub fn duty_of(&self, scene: &Scene) -> Duty {
-        Duty { limit: self.force_limit, stroke: scene.run.stroke.filter(|_| !self.opening) }
-    }
-
-    /// The same for a mechanism.
-    pub fn duty_of_mechanism(&self, mechanism: &Mechanism) -> Duty {
-        Duty { limit: self.force_limit, stroke: mechanism.run.stroke }
+    /// What units have to do.
+    pub fn duty_of(&self, subject: &dyn Subject) -> Duty {
+        Duty { limit: self.force_limit, stroke: subject.run().stroke.filter(|_| !self.opening) }
     }
 
     fn settings(&self) -> Settings {
@@ -127,7 +117,7 @@ impl Arguments {
     /// The units of this shard.
     fn numbers(&self) -> std::ops::Range<u64> {
         let (settings, shard) = (self.settings(), self.shard.unwrap_or(Shard::ALL));
-        settings.units_in(&shard.blocks(Tally::<Vec<f64>>::blocks(&settings)))
+        settings.units_in(&shard.blocks(Tally::blocks(&settings)))
     }
 
     /// The progress of the units of this shard, and of those of a `design`.
@@ -139,14 +129,14 @@ impl Arguments {
 
     /// Simulates what is asked for of a `production` of `subject` with this `duty`, by the `drive` of that number, and tells `bar` of
     /// each unit. None, if it is one of several shards, which is written to its file.
-    pub fn simulated<S: Subject<Gaps: StoredGaps>>(
+    pub fn simulated(
         &self,
-        subject: &S,
-        production: &Production<S::Gaps>,
+        subject: &dyn Subject,
+        production: &Production,
         duty: Duty,
         drive: usize,
         bar: &ProgressBar,
-    ) -> Result<Option<Tally<S::Gaps>>, Failure> {
+    ) -> Result<Option<Tally>, Failure> {
         let partial = self.out.as_deref().map(checkpoint);
         let outputs = [
             ("--csv", &self.csv),
@@ -181,16 +171,6 @@ impl Arguments {
         if self.scene.json { print_json(&written) } else { print(&written.to_string()) }.map(|()| None)
     }
 
-    /// The production of `mechanism`.
-    pub fn production_of<'a>(
-        &self,
-        mechanism: &Mechanism,
-        product: Option<&'a Product>,
-    ) -> Result<Production<'a, Vec<f64>>, Failure> {
-        Production::of_mechanism(mechanism, product, self.correlation, self.seed)
-            .map_err(|error| Failure::Input(error.to_string()))
-    }
-
     /// As it was asked for when a population was split, `settings` among it.
     pub fn of_parts(settings: &Settings, json: bool) -> Self {
         Self {
@@ -213,20 +193,27 @@ impl Arguments {
         }
     }
 
-    /// Lets the `scene` run as long as it is asked to; its production.
-    pub fn prepare<'a>(&self, scene: &mut Scene, product: Option<&'a Product>) -> Result<Production<'a>, Failure> {
-        if !self.opening {
-            scene.run.duration = scene.stroke_duration().unwrap_or(scene.run.duration);
+    /// Lets what moves run as long as is asked for: a slide its whole stroke, unless its opening is asked for.
+    pub fn set_length(&self, moving: &mut Moving) -> Result<(), Failure> {
+        match moving {
+            Moving::Slide(scene) if !self.opening => {
+                scene.run.duration = scene.stroke_duration().unwrap_or(scene.run.duration);
+            }
+            Moving::Mechanism(_) if self.opening => {
+                let message = "--opening is for slides on pins: a mechanism has one run, `run.duration`";
+                return Err(Failure::Input(message.into()));
+            }
+            _ => {}
         }
-        Production::new(scene, product, self.correlation, self.seed).map_err(|error| Failure::Input(error.to_string()))
+        Ok(())
     }
 
     /// Rare malfunction, which the units of the `population` must not contradict.
-    pub fn estimate<S: Subject>(
+    pub fn estimate(
         &self,
-        subject: &S,
-        production: &Production<S::Gaps>,
-        population: &Population<S::Gaps>,
+        subject: &dyn Subject,
+        production: &Production,
+        population: &Population,
     ) -> Result<Rare, Failure> {
         let limit = self.force_limit;
         let question = Question { subject, production, seed: self.seed, limit };

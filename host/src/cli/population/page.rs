@@ -1,24 +1,12 @@
 //! What units do, for a page: pictures, and a player of one unit of each kind.
 
 use maud::Markup;
-use rayon::prelude::*;
+
+use slipfit_system::parallel;
 
 use crate::{
-    cli::failure::Failure,
-    dynamics::{
-        driven::{DriveKind, Driven},
-        film::MOMENTS,
-    },
-    mechanism::{ByDrive, film},
-    population::{
-        Unit,
-        mechanism::{MechanismPopulation, mechanism_of},
-        production::Production,
-        study::Population,
-        telling::{filmed, one_of_each},
-        uncertain::answer::Answer,
-    },
-    setup::Scene,
+    cli::{by_one_drive::ByOneDrive, failure::Failure},
+    population::{Unit, production::Production, study::Population, telling::one_of_each, uncertain::answer::Answer},
     show::{
         causes,
         figure::word,
@@ -34,9 +22,6 @@ use crate::{
 pub const FIGURES: [&str; 4] =
     ["population.svg", "population-forces.svg", "population-sides.svg", "population-drivers.svg"];
 
-/// The same of a mechanism.
-pub const MECHANISM_FIGURES: [&str; 3] = ["population.svg", "population-forces.svg", "population-drivers.svg"];
-
 /// Name of the picture of the unknowns.
 pub const UNKNOWN_FIGURE: &str = "population-unknown.svg";
 
@@ -44,64 +29,36 @@ pub const UNKNOWN_FIGURE: &str = "population-unknown.svg";
 const EVERY_MARK: &str = "Every mark is a unit of the production, drawn with gaps of its own. No level stands for it: its gaps \
                           differ from each other.";
 
-/// Pictures and player of a `population`, with a motor's force `limit` (N), and the names of the pictures' files.
+/// Pictures and player of a `population`, with a motor's force `limit` (N, N·m), and the names of the pictures' files.
 pub fn units(
-    scene: &Scene,
+    of: &ByOneDrive,
     production: &Production,
     population: &Population,
     limit: Option<f64>,
 ) -> Result<(Units, Vec<&'static str>), Failure> {
-    let all = &population.tally;
+    let (subject, all) = (of.subject(), &population.tally);
+    let (title, kind) = (subject.title(), subject.kind());
     let pictures = [
-        (EVERY_MARK, units::forces(scene, all, limit)),
+        (EVERY_MARK.to_owned(), units::forces(subject, all, limit)),
         (
-            "What force units need. Those that jam need all that the drive has.",
-            causes::histogram(&scene.title, DriveKind::Pushes, all, limit),
+            format!("What {} units need. Those that jam need all that the drive has.", kind.effort()),
+            causes::histogram(title, kind, all, limit),
         ),
         (
-            "Where units fail: how many of the loose and of the tight ones, and which contact presses hardest.",
-            Ok(causes::sides(scene, all)),
+            "Where units fail: how many of the loose and of the tight ones, and which contact presses hardest.".into(),
+            causes::sides(subject, all),
         ),
         (
-            "Which tolerances the force and the malfunction vary with, the strongest first. What is missing to 100 % comes from \
-             weaker ones and from several together.",
-            causes::ranking(&scene.title, DriveKind::Pushes, population),
-        ),
-    ];
-    let run = |unit: &Unit| {
-        let film = filmed(scene, production, unit.number, MOMENTS)?;
-        Ok(player::of_slide(scene, label(unit), &film))
-    };
-    let player = played(&one_of_each(all), run, "on its pins")?;
-    let (figures, names) = shown(FIGURES, pictures)?;
-    Ok((Units { figures, player }, names))
-}
-
-/// The same of a mechanism.
-pub fn units_of_mechanism(
-    driven: &ByDrive,
-    production: &Production<Vec<f64>>,
-    population: &MechanismPopulation,
-    limit: Option<f64>,
-) -> Result<(Units, Vec<&'static str>), Failure> {
-    let (title, kind, all) = (driven.title(), driven.kind(), &population.tally);
-    let pictures = [
-        (EVERY_MARK, units::forces(driven, all, limit)),
-        ("The greatest force or torque that units need of the drive.", causes::histogram(title, kind, all, limit)),
-        (
-            "Which gaps and tolerances malfunction and the greatest force or torque vary with, the strongest first.",
+            format!(
+                "Which tolerances the {} and the malfunction vary with, the strongest first. What is missing to 100 % comes \
+                 from weaker ones and from several together.",
+                kind.effort()
+            ),
             causes::ranking(title, kind, population),
         ),
     ];
-    let run = |unit: &Unit<Vec<f64>>| {
-        let (drawn, i) = production.draw_one(unit.number);
-        let own = mechanism_of(driven.mechanism(), &drawn, i);
-        let own = ByDrive::new(&own, driven.index()).ok_or_else(|| Failure::Input("no such drive".into()))?;
-        let filmed = film(own.mechanism(), &drawn.gaps[i], MOMENTS)?;
-        Ok(player::of_mechanism(own.mechanism(), Some(&own), &drawn.gaps[i], label(unit), &filmed))
-    };
-    let player = played(&one_of_each(all), run, "on its joints")?;
-    let (figures, names) = shown(MECHANISM_FIGURES, pictures)?;
+    let player = played(of, production, &one_of_each(all))?;
+    let (figures, names) = shown(FIGURES, pictures)?;
     Ok((Units { figures, player }, names))
 }
 
@@ -115,34 +72,29 @@ pub fn unknown_figure(title: &str, answer: Option<&Answer>) -> Result<Option<Fig
 }
 
 /// What tells a unit from others.
-fn label<G>(unit: &Unit<G>) -> String {
+fn label(unit: &Unit) -> String {
     format!("unit {}: {}", unit.number, word(unit.outcome.verdict))
 }
 
-/// The player of `units`, one of each kind, `whereon` they move; none if there is no unit.
-fn played<G: Sync>(
-    units: &[&Unit<G>],
-    run: impl Fn(&Unit<G>) -> Result<player::Run, Failure> + Sync + Send,
-    whereon: &str,
-) -> Result<Option<Markup>, Failure> {
-    let runs = units.par_iter().map(|unit| run(unit)).collect::<Result<Vec<_>, _>>()?;
-    let words = format!(
-        "A typical unit of each kind (that with the median of the greatest force among those that jam, crawl or run), {whereon}:"
-    );
-    Ok((!runs.is_empty()).then(|| player::figure(&runs, &words)).transpose().map_err(anyhow::Error::from)?)
+/// The player of `units`, one of each kind; none if there is no unit.
+fn played(of: &ByOneDrive, production: &Production, units: &[&Unit]) -> Result<Option<Markup>, Failure> {
+    let runs = parallel::try_map(units, |unit| of.played(production, unit, label(unit)))?;
+    let words =
+        "A typical unit of each kind (that with the median of the greatest force among those that jam, crawl or run):";
+    Ok((!runs.is_empty()).then(|| player::figure(&runs, words)).transpose().map_err(anyhow::Error::from)?)
 }
 
 /// Those of the `pictures` that show something, and the names of their files.
 fn shown<const N: usize>(
     files: [&'static str; N],
-    pictures: [(&str, Result<String, PlotError>); N],
+    pictures: [(String, Result<String, PlotError>); N],
 ) -> Result<(Vec<Figure>, Vec<&'static str>), Failure> {
     let (mut figures, mut names) = (Vec::new(), Vec::new());
     for (name, (caption, svg)) in files.into_iter().zip(pictures) {
         match svg {
             Err(PlotError::Empty) => {}
             svg => {
-                figures.push(Figure { caption: caption.into(), svg: svg.map_err(anyhow::Error::from)? });
+                figures.push(Figure { caption, svg: svg.map_err(anyhow::Error::from)? });
                 names.push(name);
             }
         }

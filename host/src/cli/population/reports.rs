@@ -22,7 +22,7 @@ pub struct LevelReport {
 
 impl LevelReport {
     /// Of level `n`, whose unit did this, among the units of a `tally`.
-    pub fn new<G>(n: f64, outcome: &UnitOutcome, tally: &Tally<G>) -> Self {
+    pub fn new(n: f64, outcome: &UnitOutcome, tally: &Tally) -> Self {
         // Those that have no force need none.
         let Tally { counts, figures, .. } = tally;
         let without = counts.units - figures.force.units();
@@ -32,7 +32,7 @@ impl LevelReport {
     }
 
     /// Of those of [`LEVELS`] at which a unit of `subject` can be assembled.
-    pub fn all<S: Subject>(subject: &S, tally: &Tally<S::Gaps>) -> Result<Vec<Self>, SimulateError> {
+    pub fn all(subject: &dyn Subject, tally: &Tally) -> Result<Vec<Self>, SimulateError> {
         let at = subject.at_levels(&LEVELS)?;
         Ok(at.iter().map(|(n, unit)| Self::new(*n, &unit.outcome, tally)).collect())
     }
@@ -49,12 +49,9 @@ pub struct UnitReport {
 
 impl UnitReport {
     /// The worst units of `subject`, the worst first.
-    pub fn worst<S: Subject>(subject: &S, tally: &Tally<S::Gaps>) -> Vec<Self> {
-        let report = |unit: &Unit<S::Gaps>| Self {
-            number: unit.number,
-            tightness: subject.tightness(&unit.gaps),
-            outcome: unit.outcome,
-        };
+    pub fn worst(subject: &dyn Subject, tally: &Tally) -> Vec<Self> {
+        let report =
+            |unit: &Unit| Self { number: unit.number, tightness: subject.tightness(&unit.gaps), outcome: unit.outcome };
         tally.worst.iter().map(report).collect()
     }
 }

@@ -10,22 +10,22 @@ use crate::{
 };
 
 /// Rows of units on their way into a file.
-pub struct Rows<'a, S> {
+pub struct Rows<'a> {
     path: &'a Path,
-    subject: &'a S,
+    subject: &'a dyn Subject,
     rows: UnitRows<Writing>,
 }
 
-impl<'a, S: Subject> Rows<'a, S> {
+impl<'a> Rows<'a> {
     /// Into the file `path`, for units of `subject`.
-    pub fn begin(path: &'a Path, subject: &'a S) -> Result<Self, WriteError> {
+    pub fn begin(path: &'a Path, subject: &'a dyn Subject) -> Result<Self, WriteError> {
         let rows = UnitRows::new(Writing::begin(path)?, subject.kind(), &subject.gap_names());
         Ok(Self { path, subject, rows: rows.map_err(files::failed(path))? })
     }
 
     /// Adds some units.
-    pub fn add(&mut self, units: &[Unit<S::Gaps>]) -> Result<(), WriteError> {
-        let mut add = |unit: &Unit<S::Gaps>| self.rows.add(self.subject.tightness(&unit.gaps), unit);
+    pub fn add(&mut self, units: &[Unit]) -> Result<(), WriteError> {
+        let mut add = |unit: &Unit| self.rows.add(self.subject.tightness(&unit.gaps), unit);
         units.iter().try_for_each(&mut add).map_err(files::failed(self.path))
     }
 

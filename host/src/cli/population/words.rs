@@ -45,11 +45,7 @@ const OUT_OF_BOUNDS: f64 = 0.01;
 ///
 /// # Errors
 /// Where so many have a parameter that is out of bounds that the scene is to blame.
-pub fn faults<S: Subject>(
-    subject: &S,
-    production: &Production<S::Gaps>,
-    population: &Population<S::Gaps>,
-) -> Result<Vec<String>, Failure> {
+pub fn faults(subject: &dyn Subject, production: &Production, population: &Population) -> Result<Vec<String>, Failure> {
     let Statistics { units, unassembled, unsolved, out_of_bounds, .. } = population.statistics;
     let first = |fault: Fault| {
         let kept = population.tally.first.iter().flatten().filter(|unit| unit.outcome.fault == Some(fault));

@@ -1,9 +1,9 @@
 //! `slipfit run`: the main job, from tolerances to a flash table and a report. Its first lines are the answer.
 
 mod advice;
-mod mechanism;
 mod output;
-mod slide;
+mod simulated;
+mod told;
 
 use std::path::{Path, PathBuf};
 
@@ -17,13 +17,16 @@ use slipfit_tolerance::{
 };
 
 use super::{
-    arguments::{DRAWING, DriveArguments, Moving, SceneArguments, ThreadArguments},
+    arguments::{DRAWING, DriveArguments, SceneArguments, ThreadArguments},
+    by_one_drive::ByOneDrive,
     failure::Failure,
+    population::page::{self, UNKNOWN_FIGURE},
     sweep::LevelArguments,
     terminal::progress,
     tolerance::DEFAULT,
 };
 use output::Output;
+use told::FIGURES;
 
 use crate::{
     dynamics::{answer::ranges, driven::Driven, sweep::Sweep},
@@ -61,32 +64,17 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
+    /// Looks whether there can be a table, analyses the product and fills the folder.
     pub fn run(&self) -> Result<(), Failure> {
         let overrides: Vec<_> = self.levels.overrides().into_iter().collect();
         let (moving, product) = self.scene.load_moving_with_product(&overrides)?;
-        match moving {
-            Moving::Slide(scene) => {
-                self.drive.refuse()?;
-                self.run_slide(&scene, product.as_ref())
-            }
-            Moving::Mechanism(mechanism) => self.run_mechanism(&self.drive.of(&mechanism)?, product.as_ref()),
-        }
-    }
-
-    /// Looks whether there can be a table, analyses the product and has the folder filled, with these `figures` among the
-    /// files.
-    fn written(
-        &self,
-        driven: &dyn Driven,
-        product: Option<&Product>,
-        figures: &[&str],
-        fill: impl FnOnce(&Output, Option<Production>) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
-        force_table::check(driven, Demand::Full).map_err(|error| Failure::Input(error.to_string()))?;
-        let production = product.map(|product| self.analyse(driven.title(), product)).transpose()?;
+        let of = ByOneDrive::new(&moving, &self.drive)?;
+        force_table::check(of.subject(), Demand::Full).map_err(|error| Failure::Input(error.to_string()))?;
+        let analysed = product.as_ref().map(|product| self.analyse(of.subject().title(), product)).transpose()?;
         let folder = self.out.clone().unwrap_or_else(|| Path::new(OUT).join(self.scene.stem()));
-        let output = Output::prepare(folder, &self.scene, figures, production.as_ref())?;
-        let done = fill(&output, production);
+        let figures = [FIGURES.as_slice(), &page::FIGURES, &[UNKNOWN_FIGURE]].concat();
+        let output = Output::prepare(folder, &self.scene, &figures, analysed.as_ref())?;
+        let done = self.fill(&output, &of, product.as_ref(), analysed);
         output.close(done)
     }
 

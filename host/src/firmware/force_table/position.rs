@@ -10,8 +10,9 @@
 //!
 //! *Commanded speed* is the scene's `drive.speed`, set for each run; the ramp takes as long as the scene has it.
 
-use rayon::prelude::*;
 use slipfit_core::table::{AxisKind, Encoding};
+
+use slipfit_system::parallel;
 
 use super::{
     SUBSAMPLES,
@@ -133,17 +134,14 @@ pub fn make(driven: &dyn Driven, wish: &Wish<'_>, done: impl Fn() + Sync) -> Res
     // Past the stroke's end, so that the last node is passed.
     let run = RunSpec { stroke: None, ..driven.run() };
     let (kind, sweep) = (driven.kind(), *driven.levels());
-    let runs: Vec<Result<_, SimulateError>> = units
-        .par_iter()
-        .map(|&(n, speed)| {
-            let run = driven.level(n, Motion { speed, run, every: EVERY })?;
-            done();
-            let passage = Passage::of(&run.trajectory, speed, kind.sample(), kind.most());
-            let reach = Reach { n, speed, z: passage.reach, verdict: run.outcome.verdict };
-            Ok((passage, (reach, run.trust.warning())))
-        })
-        .collect();
-    let (passages, judged): (Vec<Passage>, Vec<_>) = runs.into_iter().collect::<Result<_, _>>()?;
+    let runs = parallel::try_map(&units, |&(n, speed)| {
+        let run = driven.level(n, Motion { speed, run, every: EVERY })?;
+        done();
+        let passage = Passage::of(&run.trajectory, speed, kind.sample(), kind.most());
+        let reach = Reach { n, speed, z: passage.reach, verdict: run.outcome.verdict };
+        Ok::<_, SimulateError>((passage, (reach, run.trust.warning())))
+    })?;
+    let (passages, judged): (Vec<Passage>, Vec<_>) = runs.into_iter().unzip();
     let (reaches, warnings): (Vec<Reach>, Vec<Option<String>>) = judged.into_iter().unzip();
     let steps = steps(kind, &reaches, [stroke, driven.run().stroke], driven.run().duration)?;
     let per_node = per_node([Some(sweep.count), speeds.map(|speeds| speeds.count)], steps, demand);

@@ -5,8 +5,9 @@
 
 use std::borrow::Cow;
 
-use rayon::prelude::*;
 use slipfit_core::table::{AxisKind, Encoding};
+
+use slipfit_system::parallel;
 
 use super::{
     SUBSAMPLES,
@@ -71,7 +72,7 @@ fn whole<'a>(driven: &dyn Driven, sweep: &'a Sweep, motion: Motion) -> Result<Ve
         }
         Ok(Cow::Owned(driven.level(level.n, Motion { run, ..motion })?.trajectory))
     };
-    sweep.levels.par_iter().map(beyond).collect()
+    parallel::try_map(&sweep.levels, beyond)
 }
 
 /// Makes the table of `driven` that `demand` asks for from the `runs` of a `sweep` at [`levels`], sampled `every` (s).

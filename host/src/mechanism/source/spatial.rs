@@ -20,8 +20,12 @@ use super::{
     parts::Parts,
 };
 use crate::mechanism::{
-    JointKind, Mechanism, Rest, RunError, element::SpatialElement, joint_elements::joints_of_elements, spatial,
-    start::thrown, state::half_angle,
+    JointKind, Mechanism, Rest, RunError,
+    element::{SpatialContact, SpatialElement},
+    joint_elements::joints_of_elements,
+    spatial,
+    start::thrown,
+    state::half_angle,
 };
 
 /// The parts of `mechanism`.
@@ -155,7 +159,7 @@ fn elements(
             _ => 0,
         });
         written.push(match found {
-            SpatialElement::Pin(one) => {
+            SpatialElement::Contact(SpatialContact::Pin(one)) => {
                 names.extend(["Port", "Seat"]);
                 laws.push("Pin");
                 let indices = match joint.map(|joint| &joint.kind) {
@@ -173,7 +177,7 @@ fn elements(
                     3,
                 )
             }
-            SpatialElement::Wall(one) => {
+            SpatialElement::Contact(SpatialContact::Wall(one)) => {
                 names.extend(["Port", "Seat"]);
                 laws.extend(["Axis", "Wall"]);
                 element(typed("Seat<S>", seat(&one.link)), wall((one.law.axis, one.law.sign), gap, &contact), 3)
@@ -194,7 +198,7 @@ fn elements(
                 laws.push("LineSpring");
                 element(typed("Seat<S>", seat(&one.link)), line_spring(&one.law), 3)
             }
-            SpatialElement::Ring(one) => {
+            SpatialElement::Contact(SpatialContact::Ring(one)) => {
                 names.extend(["Port", "Rim", "Seat"]);
                 laws.push("Ring");
                 let (of, axes) = match one.link.axes {

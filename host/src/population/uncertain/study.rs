@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use slipfit_system::parallel;
 use slipfit_tolerance::numeric::normal::{quantile, tail};
 
 use super::{
@@ -14,7 +14,6 @@ use crate::{
     dynamics::simulate::SimulateError,
     mechanism::ByDrive,
     population::{
-        gaps::UnitGaps,
         production::Production,
         simulate_units,
         subject::Subject,
@@ -30,9 +29,9 @@ pub type Counted = (Counts, Option<[f64; 2]>);
 ///
 /// # Errors
 /// See [`simulate_units`].
-pub fn counted<S: Subject>(
-    subject: &S,
-    production: &Production<S::Gaps>,
+pub fn counted(
+    subject: &dyn Subject,
+    production: &Production,
     numbers: Range<u64>,
     duty: Duty,
     done: impl Fn(u64) + Sync,
@@ -71,8 +70,7 @@ pub fn study<M: Clone + Sync>(
         let (counts, force) = count(&own, value as u64, design.units_of(value as u64))?;
         Ok(Tried { point: points[value].clone(), shown, counts, force })
     };
-    let tried: Vec<Tried> =
-        (0..points.len()).into_par_iter().with_max_len(1).map(tried).collect::<Result<_, SimulateError>>()?;
+    let tried: Vec<Tried> = parallel::each(points.len(), tried).into_iter().collect::<Result<_, SimulateError>>()?;
     let report = |(i, unknown): (usize, &&dyn Unknown<M>)| UnknownReport {
         name: unknown.name().to_owned(),
         unit: unknown.unit().to_owned(),
@@ -99,7 +97,7 @@ fn correlate<M>(unknowns: &[&dyn Unknown<M>], point: &mut [f64]) {
 }
 
 /// The production of this number that measured parts leave possible beside the likeliest one; none where nothing was measured.
-fn possible<'a, G: UnitGaps>(production: &Production<'a, G>, number: u64) -> Option<Production<'a, G>> {
+fn possible<'a>(production: &Production<'a>, number: u64) -> Option<Production<'a>> {
     // The likeliest can be drawn, and these have its correlations where their own contradict what the scene states.
     production.possible(number)?.ok()
 }
@@ -127,7 +125,7 @@ pub fn of_slide(
 /// See [`simulate_units`].
 pub fn of_mechanism(
     driven: &ByDrive,
-    production: &Production<Vec<f64>>,
+    production: &Production,
     design: Design,
     duty: Duty,
     done: impl Fn(u64) + Sync,

@@ -5,7 +5,6 @@ mod solver;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use slipfit_core::slide::CONTACTS;
 
 pub use solver::{EVERY, Knob, Problem, Solver, Timed, solvers, solvers_of};
 
@@ -69,7 +68,7 @@ pub struct Point {
 ///
 /// # Errors
 /// See [`SimulateError`].
-pub fn truth(scene: &Scene, gaps: &[f64; CONTACTS], problem: Problem) -> Result<Truth, SimulateError> {
+pub fn truth(scene: &Scene, gaps: &[f64], problem: Problem) -> Result<Truth, SimulateError> {
     let force = |tolerance| {
         let settings = Settings::desk(scene, EVERY).to(tolerance);
         run_of(scene, gaps, problem.duration, settings).map(|run| run.trajectory.force)

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use serde::Serialize;
-use slipfit_core::{menu::FrictionData, slide::CONTACTS};
+use slipfit_core::menu::FrictionData;
 use slipfit_tolerance::number::three_digits;
 
 use crate::{
@@ -98,7 +98,7 @@ impl Solver<'_> {
 }
 
 /// Every solver that can do the friction law of `scene`, for the unit with these `gaps` (m).
-pub fn solvers<'a>(scene: &'a Scene, gaps: &'a [f64; CONTACTS], problem: Problem) -> Vec<Solver<'a>> {
+pub fn solvers<'a>(scene: &'a Scene, gaps: &'a [f64], problem: Problem) -> Vec<Solver<'a>> {
     let exact = matches!(scene.friction, FrictionData::Exact { .. });
     let duration = problem.duration;
     let fixed = |kind: IntegratorKind| Solver {
@@ -166,7 +166,7 @@ pub fn to(mechanism: &Mechanism, error: f64) -> Mechanism {
 }
 
 /// `duration` (s) of `scene` as `solver` computes it, whatever its stroke.
-pub fn run_of(scene: &Scene, gaps: &[f64; CONTACTS], duration: f64, settings: Settings) -> Result<Run, SimulateError> {
+pub fn run_of(scene: &Scene, gaps: &[f64], duration: f64, settings: Settings) -> Result<Run, SimulateError> {
     let run = RunSpec { duration, stroke: None, ..scene.run };
     simulate(scene, gaps, &Settings { run, every: EVERY, ..settings })
 }

@@ -7,8 +7,9 @@
 mod factor;
 mod generator;
 
-use rayon::prelude::*;
 use serde::Serialize;
+
+use slipfit_system::parallel;
 
 use crate::{
     dynamics::{
@@ -156,16 +157,12 @@ pub fn random(scene: &Scene, seed: u64, count: usize, done: impl Fn() + Sync) ->
 }
 
 fn judged(points: Vec<(&'static str, Vec<f64>, Setup)>, done: impl Fn() + Sync) -> Result<Vec<Point>, SimulateError> {
-    let judged: Vec<Result<Point, SimulateError>> = points
-        .into_par_iter()
-        .map(|(factor, values, setup)| {
-            let integrator = setup.scene.controller.integrator.name();
-            let indicators = indicators(&setup);
-            done();
-            Ok(Point { integrator, factor, values, indicators: indicators? })
-        })
-        .collect();
-    judged.into_iter().collect()
+    parallel::try_map(&points, |(factor, values, setup)| {
+        let integrator = setup.scene.controller.integrator.name();
+        let indicators = indicators(setup);
+        done();
+        Ok(Point { integrator, factor, values: values.clone(), indicators: indicators? })
+    })
 }
 
 /// The run, unless it left the finite range or the desk found no step short enough.

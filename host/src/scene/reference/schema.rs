@@ -2,8 +2,9 @@
 //!
 //! It refuses less than the program: whatever it marks is wrong, but what depends on other keys is left to `slipfit check`.
 
-use rayon::prelude::*;
 use serde_json::{Map, Value, json};
+
+use slipfit_system::parallel;
 
 use super::{collect, meaning_of, probe};
 use crate::scene::keys::{Key, ROOT, join};
@@ -15,14 +16,11 @@ const WITH_UNIT: &str = r"^\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\
 pub fn schema() -> String {
     let mut tables: Vec<(String, &'static [Key])> = Vec::new();
     collect("", ROOT, &mut tables);
-    let definitions: Vec<(String, Value)> = first_of_each(&tables)
-        .into_par_iter()
-        .map(|(path, keys)| {
-            let places = tables.iter().filter(|(_, other)| are_alike(other, keys));
-            let places: Vec<&str> = places.map(|(path, _)| path.as_str()).collect();
-            (definition(path), table(path, keys, &places, &tables))
-        })
-        .collect();
+    let definitions = parallel::map(&first_of_each(&tables), |(path, keys)| {
+        let places = tables.iter().filter(|(_, other)| are_alike(other, keys));
+        let places: Vec<&str> = places.map(|(path, _)| path.as_str()).collect();
+        (definition(path), table(path, keys, &places, &tables))
+    });
     let mut root = table("", ROOT, &[""], &tables);
     root["$schema"] = json!("http://json-schema.org/draft-07/schema#");
     root["title"] = json!("Scene of slipfit");
