@@ -45,7 +45,7 @@ fn every_field_is_in_the_guide() {
         ("simulate of a mechanism", &["simulate", "slider-crank", "--every", "10ms"]),
         ("simulate of a mechanism", &["simulate", "woodpecker-toy", "--every", "10ms"]),
         ("sweep", &["sweep", "--n", "0:4:2", "--stroke"]),
-        ("sweep of a mechanism", &["sweep", "slider-crank", "--n", "0:1:1"]),
+        ("sweep", &["sweep", "slider-crank", "--n", "0:1:1"]),
         ("simulate", &["simulate", "cd-rom-slide-drawing", "--unit", "17", "--stroke"]),
         ("population", &["population", "--units", "300", "--force-limit", "2"]),
         (

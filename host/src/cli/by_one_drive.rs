@@ -210,13 +210,14 @@ impl<'a> ByOneDrive<'a> {
     }
 }
 
-/// A remark behind units that come to no verdict.
-pub fn why_undecided(driven: &dyn Driven) -> String {
+/// A remark behind units that come to no verdict; `longer` is how they run longer, if there is an option for it.
+pub fn why_undecided(driven: &dyn Driven, longer: Option<&str>) -> String {
     let (duration, setpoint) = (driven.run().duration, driven.setpoint());
     let [ends, command] = [duration, setpoint.end()].map(|t| ten_digits(t * 1e3));
     if duration < setpoint.end() {
-        let longer = ten_digits((setpoint.end() + 0.5) * 1e3);
-        format!(": the run ends at {ends} ms, what is commanded at {command} ms; --set run.duration={longer} runs on")
+        let settled = ten_digits((setpoint.end() + 0.5) * 1e3);
+        let longer = longer.map_or_else(|| format!("--set run.duration={settled} runs on"), str::to_owned);
+        format!(": the run ends at {ends} ms, what is commanded at {command} ms; {longer}")
     } else if setpoint.settled_at(duration) == 0.0 {
         ": nothing is commanded at the end of the run".into()
     } else {

@@ -1,4 +1,4 @@
-//! `slipfit sweep`: the slide over tolerance levels.
+//! `slipfit sweep`: a unit of every tolerance level.
 
 use std::{collections::BTreeMap, fmt::Write, path::PathBuf};
 
@@ -9,11 +9,10 @@ use slipfit_system::files;
 use slipfit_tolerance::number::{fixed, level, or_dash};
 
 use super::{
-    arguments::{Moving, SceneArguments, ThreadArguments},
-    check,
+    arguments::{DriveArguments, Moving, SceneArguments, ThreadArguments},
+    by_one_drive::{ByOneDrive, why_undecided},
     failure::Failure,
-    mechanism::{self, Wanted},
-    simulate::{ControllerArguments, LengthArguments, why_undecided},
+    simulate::{ControllerArguments, LengthArguments},
     terminal::{given, print, print_json, progress, text_table, warn},
 };
 use crate::{
@@ -33,13 +32,17 @@ use crate::{
 
 /// Simulates a slide or a mechanism at many tolerance levels: where does it run, crawl, jam?
 ///
-/// A slide runs its opening (`run.duration`) unless `--stroke` is given. A mechanism needs a drive. The desk computes the runs by
-/// error-controlled steps. With `--step`, `--integrator` or `--scalar` the controller computes them by steps of one length, and a warning
-/// names the levels whose runs cannot be trusted. These options and `--stroke` are for slides only.
+/// A slide runs its opening (`run.duration`) unless `--stroke` is given; a mechanism runs for `run.duration`, or to the end of its stroke. The
+/// desk computes the runs by error-controlled steps. With `--step`, `--integrator` or `--scalar` the controller computes them by steps of one
+/// length, and a warning names the levels whose runs cannot be trusted.
+///
+/// For slides only: `--step`, `--integrator`, `--scalar`, `--stroke`.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    drive: DriveArguments,
     #[command(flatten)]
     levels: LevelArguments,
     /// Writes a row of figures for every level as CSV.
@@ -89,8 +92,12 @@ pub(super) struct LevelReport {
 }
 
 #[derive(Serialize)]
-struct Report {
-    title: String,
+struct Report<'a> {
+    title: &'a str,
+    /// The drive's name.
+    drive: &'a str,
+    /// N, or N·m of a drive that turns, whose forces, speeds and travel are torques, rad/s and rad.
+    effort_unit: &'static str,
     ranges: Vec<Range>,
     levels: Vec<LevelReport>,
     warnings: Vec<String>,
@@ -101,61 +108,64 @@ impl Arguments {
         let of_run = self.controller.overrides().into_iter().chain(self.length.overrides());
         let overrides: Vec<_> = of_run.chain(self.levels.overrides()).collect();
         let (moving, product) = self.scene.load_moving_with_product(&overrides)?;
-        let scene = match moving {
-            Moving::Slide(scene) => self.length.applied(*scene)?,
-            Moving::Mechanism(mechanism) => {
-                if self.controller.given() || self.length.stroke {
-                    let why = "--step, --integrator, --scalar and --stroke are for slides on pins; \
-                               a mechanism runs for run.duration, or to run.stroke";
-                    return Err(Failure::Input(why.into()));
-                }
-                let of_product = product.iter().flat_map(|product| product.warnings.clone()).collect();
-                let Self { scene, csv, plot, .. } = self;
-                let wanted = Wanted { scene, csv, plot, page: &None, by_controller: false, of_product };
-                return mechanism::sweep(&mechanism, &wanted, &self.threads);
+        let moving = match moving {
+            Moving::Slide(scene) => Moving::Slide(Box::new(self.length.applied(*scene)?)),
+            Moving::Mechanism(_) if self.controller.given() || self.length.stroke => {
+                let why = "--step, --integrator, --scalar and --stroke are for slides on pins; \
+                           a mechanism runs for run.duration, or to run.stroke";
+                return Err(Failure::Input(why.into()));
             }
+            moving => moving,
         };
+        let of = ByOneDrive::new(&moving, &self.drive)?;
+        let subject = of.subject();
         self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
-        let settings = if self.controller.given() {
-            let step = scene.controller.step;
-            Settings::controller(&scene, (1e-3 / step).round().max(1.0) * step)
-        } else {
-            Settings::desk(&scene, 1e-3)
-        };
-        let levels = scene.sweep.levels();
+        let levels = subject.levels().levels();
         let bar = progress("simulating", levels.len());
-        let swept = self
-            .threads
-            .install(|| sweep(&scene, &levels, Keep::Figures, |n| slide_level(&scene, n, &settings), || bar.inc(1)))?;
+        let unit = |n| match of {
+            ByOneDrive::Slide(scene) if self.controller.given() => slide_level(scene, n, &controllers(scene)),
+            _ => subject.level(n, subject.motion(1e-3)),
+        };
+        let swept = self.threads.install(|| sweep(subject, &levels, Keep::Figures, unit, || bar.inc(1)))?;
         bar.finish_and_clear();
         let mut swept = swept?;
-        if let Some(worst) = worst_doubt(&swept).map(|k| &mut swept.levels[k]) {
-            worst.trust = with_step_tried(&scene, &[worst.n; CONTACTS], worst.trust)?;
+        if let (ByOneDrive::Slide(scene), Some(k)) = (of, worst_doubt(&swept)) {
+            let worst = &mut swept.levels[k];
+            worst.trust = with_step_tried(scene, &[worst.n; CONTACTS], worst.trust)?;
+            worst.doubts = worst.trust.warning().into_iter().collect();
         }
         if let Some(path) = &self.csv {
             files::write(path, &sweep_csv(&swept)?)?;
         }
         if let Some(path) = &self.plot {
-            files::write(path, verdicts(&swept, &scene.title).map_err(anyhow::Error::from)?.as_bytes())?;
+            files::write(path, verdicts(&swept, subject.title()).map_err(anyhow::Error::from)?.as_bytes())?;
         }
-        let mut warnings = check::warnings_of(&scene);
+        let mut warnings = of.warnings()?;
         warnings.extend(product.into_iter().flat_map(|product| product.warnings));
         warnings.extend(doubts(&swept));
         if self.scene.json {
             return print_json(&Report {
-                title: scene.title.clone(),
+                title: subject.title(),
+                drive: of.drive_name(),
+                effort_unit: subject.kind().effort_unit(),
                 ranges: ranges(&swept),
                 levels: for_machines(&swept),
                 warnings,
             });
         }
-        print(&format!("{}\n\n{}\n{}", scene.title, answer(&swept), for_people(&scene, &swept)))?;
+        print(&format!("{}\n\n{}\n{}", subject.title(), answer(&swept), for_people(&of, &swept)))?;
         warn(&warnings);
         Ok(())
     }
 }
 
-/// From which level to which the slide runs, crawls and jams: a line each.
+/// The controller's steps, with samples on them, a millisecond apart or a step where that is longer.
+fn controllers(scene: &Scene) -> Settings {
+    let step = scene.controller.step;
+    Settings::controller(scene, (1e-3 / step).round().max(1.0) * step)
+}
+
+/// From which level to which the unit runs, crawls and jams: a line each.
 pub(super) fn answer(sweep: &Sweep) -> String {
     ranges(sweep).iter().map(|range| range.describe() + "\n").collect()
 }
@@ -166,14 +176,15 @@ pub(super) fn for_machines(sweep: &Sweep) -> Vec<LevelReport> {
         let [compressed, zero, free] = level.class_counts();
         let named = sweep.gaps.iter().zip(&level.classes);
         let classes = named.filter_map(|(name, class)| Some((name.clone(), (*class)?.to_string()))).collect();
-        let Level { n, outcome, solved: solver, trust, .. } = *level;
+        let &Level { n, outcome, solved: solver, trust, .. } = level;
         LevelReport { n, outcome, solver, trust, compressed, zero, free, classes }
     };
     sweep.levels.iter().map(report).collect()
 }
 
 /// The levels of a sweep as a table.
-fn for_people(scene: &Scene, sweep: &Sweep) -> String {
+fn for_people(of: &ByOneDrive, sweep: &Sweep) -> String {
+    let kind = sweep.kind;
     let rows: Vec<Vec<String>> = sweep
         .levels
         .iter()
@@ -185,28 +196,30 @@ fn for_people(scene: &Scene, sweep: &Sweep) -> String {
                 or_dash(breakaway, |t| fixed(t * 1e3, 2)),
                 or_dash(peak_force, |f| fixed(f, 4)),
                 or_dash(settled_force, |f| fixed(f, 4)),
-                fixed(final_velocity * 1e3, 3),
-                fixed(end.z * 1e3, 2),
+                fixed(kind.speed(final_velocity), 3),
+                fixed(kind.travel(end.z), 2),
                 verdict.to_string(),
                 format!("{compressed}/{zero}/{free}"),
-                on_the_way(sweep.kind, &at.outcome),
+                on_the_way(kind, &at.outcome),
             ]
         })
         .collect();
+    let unit = kind.effort_unit();
     let heading = [
         "n",
         "breakaway, ms",
-        "peak, N",
-        "settled, N",
-        "final, mm/s",
-        "travel, mm",
+        &format!("peak, {unit}"),
+        &format!("settled, {unit}"),
+        &format!("final, {}", kind.speed_unit()),
+        &format!("travel, {}", kind.travel_unit()),
         "verdict",
         "gaps compressed/zero/free",
         "on the way",
     ];
     let mut text = text_table(&heading, &rows);
+    let longer = of.longer().map(|_| "--stroke runs the whole stroke");
     if sweep.levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided) {
-        let _ = writeln!(text, "\nundecided{}", why_undecided(scene, Verdict::Undecided));
+        let _ = writeln!(text, "\nundecided{}", why_undecided(of.subject(), longer));
     }
     text
 }
@@ -214,16 +227,16 @@ fn for_people(scene: &Scene, sweep: &Sweep) -> String {
 /// The place of the level whose run can be trusted least; `None` if all can.
 fn worst_doubt(sweep: &Sweep) -> Option<usize> {
     let difference = |k: &usize| sweep.levels[*k].trust.difference.unwrap_or_default();
-    let doubtful = (0..sweep.levels.len()).filter(|k| !sweep.levels[*k].trust.is_sound());
+    let doubtful = (0..sweep.levels.len()).filter(|k| !sweep.levels[*k].doubts.is_empty());
     doubtful.max_by(|one, other| difference(one).total_cmp(&difference(other)))
 }
 
 /// A warning for the levels whose runs cannot be trusted, with the advice of the worst.
 pub(super) fn doubts(sweep: &Sweep) -> Option<String> {
-    let doubtful: Vec<&Level> = sweep.levels.iter().filter(|level| !level.trust.is_sound()).collect();
+    let doubtful: Vec<&Level> = sweep.levels.iter().filter(|level| !level.doubts.is_empty()).collect();
     let worst = &sweep.levels[worst_doubt(sweep)?];
     let levels = doubtful.iter().map(|at| level(at.n)).collect::<Vec<_>>().join(", ");
-    let warning = worst.trust.warning()?;
+    let warning = worst.doubts.first()?;
     let levels = if doubtful.len() > 12 { format!("{} levels", doubtful.len()) } else { format!("n = {levels}") };
     let alone = if worst.trust.better_step_tried && doubtful.len() > 1 { ", which does there" } else { "" };
     Some(format!("at {levels}, worst at n = {}: {warning}{alone}", level(worst.n)))

@@ -17,6 +17,8 @@ pub struct Level {
     pub solved: Solved,
     /// How far the run can be trusted.
     pub trust: Trust,
+    /// What speaks against the run, if anything.
+    pub doubts: Vec<String>,
     /// Class of each gap in the order of [`Sweep::gaps`](super::sweep::Sweep::gaps); `None` where there is no contact.
     pub classes: Vec<Option<GapClass>>,
 }

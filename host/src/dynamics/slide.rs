@@ -65,6 +65,7 @@ pub fn slide_level(scene: &Scene, n: f64, settings: &Settings) -> Result<Level, 
         outcome: run.outcome,
         solved: run.solved,
         trust: run.trust,
+        doubts: run.trust.warning().into_iter().collect(),
         classes: classes(&scene.gaps_at(&n_each)),
     })
 }

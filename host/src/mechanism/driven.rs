@@ -2,7 +2,7 @@
 
 use slipfit_core::drive::Drive;
 
-use super::{Action, Mechanism, MechanismRun, RunError, hash::hash, run};
+use super::{Action, Mechanism, MechanismRun, RunError, doubts, hash::hash, run};
 use crate::{
     dynamics::{
         confirm::figures_agree,
@@ -154,9 +154,13 @@ impl Driven for ByDrive<'_> {
         let mut commanded = Mechanism { run: motion.run, ..self.mechanism.clone() };
         commanded.drives[self.drive].set_speed(motion.speed);
         let [mut one, finer] = confirmed(&commanded, &gaps, motion.every)?;
+        let mut doubts = doubts(&commanded, &one, &finer, &one.agreement(&finer, &commanded));
         let (outcome, trajectory) = (one.outcomes[self.drive], one.trajectories.swap_remove(self.drive));
         let difference = trajectory.greatest_difference(&finer.trajectories[self.drive], self.drive().ramp_start);
         let trust = Trust::default().compared(difference, None);
-        Ok(Level { n, trajectory, outcome, solved: one.solved(), trust, classes: classes(&gaps) })
+        if doubts.is_empty() {
+            doubts.extend(trust.warning());
+        }
+        Ok(Level { n, trajectory, outcome, solved: one.solved(), trust, doubts, classes: classes(&gaps) })
     }
 }

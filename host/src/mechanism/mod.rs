@@ -9,6 +9,7 @@ pub mod closing;
 pub mod columns;
 #[cfg(test)]
 mod contact_tests;
+mod doubt;
 mod drive;
 mod driven;
 mod energy;
@@ -43,6 +44,7 @@ mod torn;
 mod walls;
 
 pub use columns::BodyMotion;
+pub use doubt::doubts;
 pub use drive::{Action, NamedDrive, UNLIMITED};
 pub use driven::{ByDrive, ENERGY, confirmed, finer};
 pub use freedom::Freedom;

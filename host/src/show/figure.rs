@@ -82,27 +82,6 @@ pub fn columns_over_time(samples: &Samples, columns: &[String], title: &str, of:
     })
 }
 
-/// The peak of each drive over the levels as SVG, the marks telling the verdicts: name and unit, then level by level n, verdict
-/// and peak.
-///
-/// # Errors
-/// [`PlotError`], if there is no drive or no level, or a peak is not finite.
-pub fn drives_over_n(drives: &[(String, Vec<Judged>)], title: &str) -> Result<String, PlotError> {
-    let panels = drives.iter().enumerate().map(|(i, (name, levels))| {
-        let mut panel = marked(levels, &format!("peak of {name}"));
-        // One legend serves all panels.
-        panel.markers.iter_mut().filter(|_| i > 0).for_each(|markers| markers.label.clear());
-        panel
-    });
-    line_chart(&Chart {
-        title: title.to_owned(),
-        subtitle: "verdict and greatest effort over the tolerance level".to_owned(),
-        x_label: "tolerance level n".to_owned(),
-        scale: Scale::Linear,
-        panels: panels.collect(),
-    })
-}
-
 fn over_time(
     sweep: &Sweep,
     title: &str,

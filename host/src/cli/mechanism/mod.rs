@@ -1,9 +1,7 @@
-//! What `check`, `simulate`, `sweep` and `population` say of a mechanism of bodies and joints, one file a command.
+//! What `check` and `simulate` say of a mechanism of bodies and joints, one file a command.
 
 mod check;
-mod doubt;
 mod simulate;
-mod sweep;
 
 use std::path::PathBuf;
 
@@ -17,7 +15,6 @@ use crate::{
 
 pub(super) use check::{check, warnings_of};
 pub(super) use simulate::{OneUnit, simulate};
-pub(super) use sweep::sweep;
 
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use slipfit_system::files;
 use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 
-use super::{DriveReport, GapReport, Wanted, doubt, gap_reports, levels, shown, units};
+use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{
         failure::Failure,
@@ -17,7 +17,7 @@ use crate::{
     dynamics::{answer::on_the_way, error_control::Stopped, film::MOMENTS},
     mechanism::{
         Action, ByDrive, Mechanism, MechanismRun, RunError, SCHEME, agreement::Agreement, confirmed, controller_run,
-        film,
+        doubts, film,
     },
     population::{mechanism::mechanism_of, production::Production},
     setup::ControllerSpec,
@@ -121,7 +121,7 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
         || computed(mechanism, &desk, &agreement) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
     let words = || described(mechanism, label, one) + &computed();
     let mut warnings = wanted.warnings(mechanism)?;
-    warnings.extend(doubt::warnings(mechanism, &desk, &finer, &agreement));
+    warnings.extend(doubts(mechanism, &desk, &finer, &agreement));
     if let Some(path) = wanted.page {
         files::write(path, page(mechanism, unit, one, &words(), &warnings)?.into_string().as_bytes())?;
     }

@@ -171,7 +171,7 @@ impl Arguments {
                 true => {
                     ": the opening ends before the ramp does; without --opening the whole stroke is simulated".into()
                 }
-                false => why_undecided(subject),
+                false => why_undecided(subject, None),
             };
             let _ = writeln!(text, "                undecided{why}");
         }

@@ -151,7 +151,7 @@ fn warnings(of: &ByOneDrive, simulated: &Simulated) -> Result<Vec<String>, Failu
     let unknown = simulated.units().and_then(|units| units.unknown);
     warnings.extend(unknown.map(uncertain::warnings).transpose()?.unwrap_or_default());
     if judged.levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided) {
-        warnings.push(format!("not every level comes to a verdict{}", why_undecided(subject)));
+        warnings.push(format!("not every level comes to a verdict{}", why_undecided(subject, None)));
     }
     if subject.run().stroke.is_none() && of.has_opening() {
         warnings.push(

@@ -2,18 +2,11 @@
 
 use slipfit_tolerance::number::{fixed, three_digits};
 
-use crate::{
-    dynamics::outcome::{Outcome, Verdict},
-    mechanism::{ENERGY, Mechanism, MechanismRun, NamedDrive, Sunk, agreement::Agreement},
-};
+use super::{ENERGY, Mechanism, MechanismRun, NamedDrive, Sunk, agreement::Agreement};
+use crate::dynamics::outcome::{Outcome, Verdict};
 
 /// What speaks against the `desk`'s run of `mechanism`, by a `finer` one with which it has this `agreement`.
-pub fn warnings(
-    mechanism: &Mechanism,
-    desk: &MechanismRun,
-    finer: &MechanismRun,
-    agreement: &Agreement,
-) -> Vec<String> {
+pub fn doubts(mechanism: &Mechanism, desk: &MechanismRun, finer: &MechanismRun, agreement: &Agreement) -> Vec<String> {
     let unconfirmed = undecided(mechanism, desk, finer).or_else(|| coarse(agreement));
     unconfirmed.into_iter().chain(desk.sunk.as_ref().map(sunk)).collect()
 }
