@@ -98,6 +98,7 @@ impl Costs {
 }
 
 #[test]
+#[ignore = "builds images of eight cores: `cargo verify --all`"]
 fn every_core_has_the_bits_of_the_pc() {
     let on_pc = Steps::on(&mut Desk).states.to_string();
     let mut table = String::from(
@@ -117,6 +118,7 @@ fn every_core_has_the_bits_of_the_pc() {
 }
 
 #[test]
+#[ignore = "builds images of eight cores: `cargo verify --all`"]
 fn the_guide_has_these_costs() {
     let page = guide::page("firmware");
     for (Core { name, target, cpu, .. }, costs) in CORES.iter().zip(&*COSTS) {

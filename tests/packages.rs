@@ -71,6 +71,7 @@ fn statuses() -> String {
 }
 
 #[test]
+#[ignore = "builds what users build: `cargo verify --all`"]
 fn c_projects_find_the_library_by_cmake_and_by_pkg_config() {
     let folder = folder("packages");
     let prefix = folder.join("prefix");
@@ -180,6 +181,7 @@ fn in_function((i, block): (usize, &String)) -> String {
 }
 
 #[test]
+#[ignore = "builds what users build: `cargo verify --all`"]
 fn the_examples_of_the_guide_are_rust() {
     require_crates();
     let folder = folder("guide-rust");
@@ -215,6 +217,7 @@ fn forget_unpacked(package: &str) {
 
 /// As they would be published: each builds from its own files alone.
 #[test]
+#[ignore = "builds what users build: `cargo verify --all`"]
 fn cargo_packages_core_and_the_c_library() {
     let folder = folder("cargo-packages");
     forget_unpacked("slipfit-core-0.1.0");

@@ -102,6 +102,7 @@ fn steps(folder: &Path, level: &str, of_the_crate: &str) -> Steps {
 }
 
 #[test]
+#[ignore = "builds what users build: `cargo verify --all`"]
 fn one_line_of_the_profile_keeps_a_step_fast() {
     cross::require_target();
     cross::require_crates();
