@@ -30,8 +30,7 @@ and change it. The word behind the command is the scene's name; its file is `hos
 How to read the answers:
 
 - **Levels.** A line has a range of tolerance levels n and their verdict: runs, crawls or jammed ([concepts](concepts.md)). n = 0 is
-  the mean unit, positive n is tighter, negative n looser. For a mechanism the line begins with the name of its drive, such as
-  `motor`. In the picture of a slide the grey hill is the normal distribution of a single gap over n. It is no distribution of
+  the mean unit, positive n is tighter, negative n looser. In the picture of a slide the grey hill is the normal distribution of a single gap over n. It is no distribution of
   units, because the gaps of a real unit vary one by one: [populations](population.md) count those.
 - **Pictures of mechanisms** show the pose in which the scene file draws them; play is not to scale. In a *track* a point of one body
   moves between four surfaces of another; its four gaps are left, right, rail and wall.
@@ -60,7 +59,7 @@ fn shown(name: &'static str, file: &SceneFile) -> Shown {
     if let Some(mechanism) = &file.mechanism {
         let drawing = Some((vec!["check", name, "--plot", "picture.svg"], "picture.svg"));
         return match mechanism.drives.is_empty() {
-            false => Shown { command: vec!["sweep", name], picture: drawing, from: "motor:" },
+            false => Shown { command: vec!["sweep", name], picture: drawing, from: "n = " },
             true => Shown { command: vec!["simulate", name], picture: drawing, from: " at the end" },
         };
     }

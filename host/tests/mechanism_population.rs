@@ -232,8 +232,8 @@ fn shards_of_a_mechanism_are_the_whole() {
     let merged = stdout(&slipfit(folder.path(), &["merge", "b", "a", "--out", "merged", "--json"]));
     assert!(merged == whole && std::fs::read(at("merged")).unwrap() == std::fs::read(at("whole")).unwrap());
     let page = std::fs::read_to_string(at("page.html")).unwrap();
-    // Forces over tightness, their histogram, what drives them, the hypothesis; and the player.
-    assert_eq!(page.matches("<figure").count(), 5);
+    // Forces over tightness, their histogram, the sides, what drives them, the hypothesis; and the player.
+    assert_eq!(page.matches("<figure").count(), 6);
     let svg = std::fs::read_to_string(at("distance.svg")).unwrap();
     assert!(svg.contains("loosest"), "{svg}");
 }

@@ -111,7 +111,7 @@ fn so_do_the_pages_of_mechanisms() {
         stdout(&slipfit(folder.path(), &[arguments, &["--page", "page.html"]].concat()));
         folder.path().join("page.html")
     };
-    // The player, forces over tightness, their histogram, the hypothesis.
+    // The player, forces over tightness, their histogram, the hypothesis: no unit malfunctions.
     moves(&page(&["population", "telescopic-drawer", "--units", "24"]), 1, 4);
     // A guide, points before walls and no drive, rings and collars in space.
     for scene in ["slider-crank-guide", "woodpecker-toy", "hatch"] {

@@ -2,7 +2,7 @@
 
 use slipfit_core::drive::Drive;
 
-use super::{Action, Mechanism, MechanismRun, RunError, doubts, hash::hash, run};
+use super::{Action, ENERGY, Mechanism, MechanismRun, RunError, doubts, hash::hash, run};
 use crate::{
     dynamics::{
         confirm::figures_agree,
@@ -28,9 +28,6 @@ pub fn finer(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<Mechanis
     let spec = RunSpec { error: mechanism.run.error / FINER, ..mechanism.run };
     run(&Mechanism { run: spec, ..mechanism.clone() }, gaps, every)
 }
-
-/// The energy, as a share of the greatest one, that a run may have beyond what was supplied.
-pub const ENERGY: f64 = 0.01;
 
 /// The greatest difference of a column to a [`finer`] run with which a run is taken as it is.
 const AGREES: f64 = 0.003;

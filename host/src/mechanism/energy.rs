@@ -8,6 +8,9 @@ use nalgebra::Vector3;
 use super::{Action, JointKind, Mechanism, columns::BodyMotion, joint_elements::joints_of_elements};
 use crate::dynamics::observer::Instant;
 
+/// The energy, as a share of the greatest one, that a run may have beyond what was supplied.
+pub const ENERGY: f64 = 0.01;
+
 /// The energy account of a run (J).
 pub struct Energies<'a> {
     mechanism: &'a Mechanism,

@@ -25,8 +25,7 @@ use super::{
     terminal::progress,
     tolerance::DEFAULT,
 };
-use output::Output;
-use told::FIGURES;
+use output::{FIGURES, Output};
 
 use crate::{
     dynamics::{answer::ranges, driven::Driven, sweep::Sweep},

@@ -21,6 +21,20 @@ use crate::{
 pub const PAGE: &str = "report.html";
 /// The flash table.
 pub const TABLE: &str = "table.bin";
+/// The pictures: of one run, of a run that is the opening of a stroke, and of the stroke.
+pub const FIGURES: [&str; 11] = [
+    "verdict.svg",
+    "velocity.svg",
+    "force.svg",
+    "torque.svg",
+    "opening-velocity.svg",
+    "opening-force.svg",
+    "opening-torque.svg",
+    "stroke-velocity.svg",
+    "stroke-force.svg",
+    "stroke-torque.svg",
+    "mechanism.svg",
+];
 /// Figures over n.
 pub const SWEEP: &str = "sweep.csv";
 /// The statistics of the product's measures.

@@ -41,21 +41,6 @@ use crate::{
     },
 };
 
-/// The pictures: of one run, of a run that is the opening of a stroke, and of the stroke.
-pub const FIGURES: [&str; 11] = [
-    "verdict.svg",
-    "velocity.svg",
-    "force.svg",
-    "torque.svg",
-    "opening-velocity.svg",
-    "opening-force.svg",
-    "opening-torque.svg",
-    "stroke-velocity.svg",
-    "stroke-force.svg",
-    "stroke-torque.svg",
-    "mechanism.svg",
-];
-
 #[derive(Serialize)]
 struct Report<'a> {
     title: &'a str,
