@@ -31,7 +31,7 @@ fn every_field_is_in_the_guide() {
     let output =
         Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder.path()).args(simulate).output().unwrap();
     assert!(output.status.success());
-    let commands: [(&str, &[&str]); 40] = [
+    let commands: [(&str, &[&str]); 41] = [
         ("check", &["check"]),
         ("capability", &["capability", "parts.csv", "--group", "tool"]),
         ("identify", &["identify", "sought.toml", "run.csv"]),
@@ -46,6 +46,7 @@ fn every_field_is_in_the_guide() {
         ("simulate of a mechanism", &["simulate", "woodpecker-toy", "--every", "10ms"]),
         ("sweep", &["sweep", "--n", "0:4:2", "--stroke"]),
         ("sweep", &["sweep", "slider-crank", "--n", "0:1:1"]),
+        ("sweep --over", &["sweep", "--over", "friction.coefficient=0.2:0.3:0.1", "--stroke", "--units", "64"]),
         ("simulate", &["simulate", "cd-rom-slide-drawing", "--unit", "17", "--stroke"]),
         ("population", &["population", "--units", "300", "--force-limit", "2"]),
         (

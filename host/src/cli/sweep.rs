@@ -1,4 +1,6 @@
-//! `slipfit sweep`: a unit of every tolerance level.
+//! `slipfit sweep`: a unit of every tolerance level, or of every value of keys.
+
+mod over;
 
 use std::{collections::BTreeMap, fmt::Write, path::PathBuf};
 
@@ -20,7 +22,7 @@ use crate::{
         answer::{Range, on_the_way, ranges},
         confirm::with_step_tried,
         outcome::{Outcome, Verdict},
-        simulate::{Settings, Solved},
+        simulate::{Settings, SimulateError, Solved},
         slide::slide_level,
         sweep::{Keep, Level, Sweep, sweep},
         trust::Trust,
@@ -30,7 +32,7 @@ use crate::{
     show::{export::sweep_csv, figure::verdicts},
 };
 
-/// Simulates a slide or a mechanism at many tolerance levels: where does it run, crawl, jam?
+/// Simulates a slide or a mechanism at many tolerance levels, or values of any key: where does it run, crawl, jam?
 ///
 /// A slide runs its opening (`run.duration`) unless `--stroke` is given; a mechanism runs for `run.duration`, or to the end of its stroke. The
 /// desk computes the runs by error-controlled steps. With `--step`, `--integrator` or `--scalar` the controller computes them by steps of one
@@ -45,6 +47,17 @@ pub(super) struct Arguments {
     drive: DriveArguments,
     #[command(flatten)]
     levels: LevelArguments,
+    /// Goes over the values of a key of the scene, from A to B, such as friction.coefficient=0.1:0.4:0.02; given twice, over two keys.
+    ///
+    /// A key is any that `--set` takes with a number, in the key's unit, or n, the tolerance level. At each value, or combination of two, the
+    /// unit of level n = 0 or of the one `--n` is simulated.
+    #[arg(long, value_name = "KEY=A:B:STEP", allow_hyphen_values = true)]
+    over: Vec<String>,
+    /// Units of the production to simulate at every value of `--over`: which share of them malfunctions.
+    ///
+    /// The units are the same at every value. A slide's run the opening unless `--stroke` is given.
+    #[arg(long, requires = "over", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    units: Option<u64>,
     /// Writes a row of figures for every level as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -104,28 +117,33 @@ struct Report<'a> {
 }
 
 impl Arguments {
-    pub fn run(&self) -> Result<(), Failure> {
-        let of_run = self.controller.overrides().into_iter().chain(self.length.overrides());
-        let overrides: Vec<_> = of_run.chain(self.levels.overrides()).collect();
-        let (moving, product) = self.scene.load_moving_with_product(&overrides)?;
-        let moving = match moving {
-            Moving::Slide(scene) => Moving::Slide(Box::new(self.length.applied(*scene)?)),
+    /// What moves, for as long as is asked for.
+    fn of_length(&self, moving: Moving) -> Result<Moving, Failure> {
+        match moving {
+            Moving::Slide(scene) => Ok(Moving::Slide(Box::new(self.length.applied(*scene)?))),
             Moving::Mechanism(_) if self.controller.given() || self.length.stroke => {
                 let why = "--step, --integrator, --scalar and --stroke are for slides on pins; \
                            a mechanism runs for run.duration, or to run.stroke";
-                return Err(Failure::Input(why.into()));
+                Err(Failure::Input(why.into()))
             }
-            moving => moving,
-        };
+            moving => Ok(moving),
+        }
+    }
+
+    pub fn run(&self) -> Result<(), Failure> {
+        let of_run = self.controller.overrides().into_iter().chain(self.length.overrides());
+        if !self.over.is_empty() {
+            return self.over_keys(&of_run.collect::<Vec<_>>());
+        }
+        let overrides: Vec<_> = of_run.chain(self.levels.overrides()).collect();
+        let (moving, product) = self.scene.load_moving_with_product(&overrides)?;
+        let moving = self.of_length(moving)?;
         let of = ByOneDrive::new(&moving, &self.drive)?;
         let subject = of.subject();
         self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
         let levels = subject.levels().levels();
         let bar = progress("simulating", levels.len());
-        let unit = |n| match of {
-            ByOneDrive::Slide(scene) if self.controller.given() => slide_level(scene, n, &controllers(scene)),
-            _ => subject.level(n, subject.motion(1e-3)),
-        };
+        let unit = |n| of_point(&of, n, self.controller.given());
         let swept = self.threads.install(|| sweep(subject, &levels, Keep::Figures, unit, || bar.inc(1)))?;
         bar.finish_and_clear();
         let mut swept = swept?;
@@ -156,6 +174,14 @@ impl Arguments {
         print(&format!("{}\n\n{}\n{}", subject.title(), answer(&swept), for_people(&of, &swept)))?;
         warn(&warnings);
         Ok(())
+    }
+}
+
+/// The unit of level `n`, by the desk or, of a slide, by its controller.
+fn of_point(of: &ByOneDrive, n: f64, by_controller: bool) -> Result<Level, SimulateError> {
+    match of {
+        ByOneDrive::Slide(scene) if by_controller => slide_level(scene, n, &controllers(scene)),
+        _ => of.subject().level(n, of.subject().motion(1e-3)),
     }
 }
 

@@ -1,11 +1,12 @@
 //! The figures of a sweep, velocity and force over time (the paper's Figs. 8 and 9) and verdict and force over n, and those
 //! of one unit.
 
-use slipfit_tolerance::number::{level, typeset};
+use slipfit_tolerance::number::{level, ten_digits, typeset};
 
 use super::plot::{Chart, Look, Markers, Panel, PlotError, Scale, Series, Shape, line_chart};
 use crate::{
     dynamics::{
+        driven::DriveKind,
         outcome::{Outcome, Verdict},
         sweep::{Level, Sweep},
         trajectory::Trajectory,
@@ -131,6 +132,72 @@ pub fn verdicts(sweep: &Sweep, title: &str) -> Result<String, PlotError> {
             levels(sweep)
         ),
         x_label: "tolerance level n".to_owned(),
+        scale: Scale::Linear,
+        panels,
+    })
+}
+
+/// A key that is swept.
+#[derive(Clone, Copy, Debug)]
+pub struct OverKey<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// How many values.
+    pub count: usize,
+}
+
+/// What happens at some values of the keys.
+#[derive(Clone, Debug)]
+pub struct Swept {
+    /// Of each key.
+    pub values: Vec<f64>,
+    /// Of the unit.
+    pub verdict: Verdict,
+    /// Its greatest effort (N, N·m), if it has one.
+    pub peak: Option<f64>,
+    /// Share of the production that malfunctions (%), if it was asked for.
+    pub malfunction: Option<f64>,
+}
+
+/// The greatest effort of a unit, and the share of the production that malfunctions where it is known, over one key as SVG; over two, a line
+/// for each value of the second.
+///
+/// # Errors
+/// [`PlotError`], if there is nothing to show or it is not finite.
+pub fn over_keys(keys: &[OverKey], points: &[Swept], kind: DriveKind, title: &str) -> Result<String, PlotError> {
+    let [first, second] =
+        [keys.first().ok_or(PlotError::Empty)?, keys.get(1).unwrap_or(&OverKey { name: "", count: 1 })];
+    let line = |k: usize, value: &dyn Fn(&Swept) -> Option<f64>| {
+        let own = points.iter().skip(k).step_by(second.count.max(1));
+        let label = |point: &Swept| format!("{} = {}", second.name, ten_digits(point.values[1]));
+        // Colours as of levels, from the first value to the last.
+        let place = 6.0 * k as f64 / second.count.saturating_sub(1).max(1) as f64 - 3.0;
+        Series {
+            label: if keys.len() > 1 { points.get(k).map(label).unwrap_or_default() } else { String::new() },
+            look: if keys.len() > 1 { Look::Level(place) } else { Look::Level(0.0) },
+            points: own.filter_map(|point| Some((point.values[0], value(point)?))).collect(),
+        }
+    };
+    let lines = |value: &dyn Fn(&Swept) -> Option<f64>| (0..second.count).map(|k| line(k, value)).collect::<Vec<_>>();
+    let effort = format!("peak drive {} ({})", kind.effort(), kind.effort_unit());
+    let mut force = if keys.len() > 1 {
+        Panel { y_label: effort, series: lines(&|point| point.peak), ..Panel::default() }
+    } else {
+        let judged: Vec<Judged> = points.iter().map(|point| (point.values[0], point.verdict, point.peak)).collect();
+        marked(&judged, &effort)
+    };
+    let mut panels = Vec::new();
+    if points.iter().any(|point| point.malfunction.is_some()) {
+        let y_label = "units that malfunction (%)".to_owned();
+        panels.push(Panel { y_label, series: lines(&|point| point.malfunction), ..Panel::default() });
+        // One legend serves both panels.
+        force.series.iter_mut().for_each(|series| series.label.clear());
+    }
+    panels.insert(0, force);
+    line_chart(&Chart {
+        title: title.to_owned(),
+        subtitle: format!("over {}", keys.iter().map(|key| key.name).collect::<Vec<_>>().join(" and ")),
+        x_label: first.name.to_owned(),
         scale: Scale::Linear,
         panels,
     })

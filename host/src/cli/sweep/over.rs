@@ -1,0 +1,336 @@
+//! `slipfit sweep --over`: one or two keys of the scene, value by value.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+use slipfit_system::{files, parallel};
+use slipfit_tolerance::{
+    number::{fixed, or_dash, ten_digits},
+    product::Product,
+};
+
+use super::{Arguments, of_point};
+use crate::{
+    cli::{
+        arguments::Moving,
+        by_one_drive::ByOneDrive,
+        failure::Failure,
+        population::words::percent,
+        terminal::{given, print, print_json, progress, text_table, warn},
+    },
+    dynamics::{
+        answer::on_the_way,
+        driven::DriveKind,
+        outcome::{Outcome, Verdict},
+    },
+    population::{
+        statistics::{Share, Statistics},
+        study::Population,
+        tally::Duty,
+    },
+    scene::{Override, parse_levels},
+    setup::LevelRange,
+    show::figure::{OverKey, Swept, over_keys},
+};
+
+/// The key that is the tolerance level.
+const LEVEL: &str = "n";
+/// The most points.
+const MOST_POINTS: usize = 100_000;
+/// Seed of the productions: every point has the same units, so that points differ by the keys alone.
+const SEED: u64 = 1;
+
+/// A key of the scene, or the level n, and its values.
+struct Key {
+    name: String,
+    values: LevelRange,
+}
+
+impl Key {
+    /// From `KEY=A:B:STEP`.
+    fn parse(text: &str) -> Result<Self, Failure> {
+        let form = || {
+            Failure::Input(format!("--over {text}: allowed is KEY=A:B:STEP, such as friction.coefficient=0.1:0.4:0.02"))
+        };
+        let (name, values) = text.split_once('=').ok_or_else(form)?;
+        let values = parse_levels(values).map_err(|error| Failure::Input(format!("--over {text}: {error}")))?;
+        Ok(Self { name: name.trim().to_owned(), values })
+    }
+}
+
+/// What a unit, or a production, does with some values of the keys.
+#[derive(Clone, Serialize)]
+struct Point {
+    /// Of each key.
+    values: Vec<f64>,
+    /// Tolerance level of the unit.
+    n: f64,
+    #[serde(flatten)]
+    outcome: Outcome,
+    /// What units of the production do; none if it was not asked for.
+    population: Option<Statistics>,
+    #[serde(skip)]
+    doubts: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    title: &'a str,
+    drive: &'a str,
+    /// N, or N·m of a drive that turns, whose forces, speeds and travel are torques, rad/s and rad.
+    effort_unit: &'static str,
+    keys: Vec<&'a str>,
+    points: &'a [Point],
+    warnings: Vec<String>,
+}
+
+impl Arguments {
+    /// Simulates a unit, and units of the production if they are asked for, at all values of the keys.
+    pub(super) fn over_keys(&self, of_run: &[Override]) -> Result<(), Failure> {
+        let keys = self.over.iter().map(|text| Key::parse(text)).collect::<Result<Vec<_>, _>>()?;
+        let points = combinations(&keys)?;
+        self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
+        let level = self.level_of_points(&keys)?;
+        // What holds for all, and whatever is wrong at the first.
+        let (moving, _) = self.at(&keys, &points[0], of_run)?;
+        let of = ByOneDrive::new(&moving, &self.drive)?;
+        let kind = of.subject().kind();
+        let bar = progress("simulating", points.len());
+        let found = self.threads.install(|| {
+            parallel::try_map(&points, |values| {
+                let point = self.point(&keys, values, level, of_run);
+                bar.inc(1);
+                point
+            })
+        })??;
+        bar.finish_and_clear();
+        if let Some(path) = &self.csv {
+            files::write(path, &csv_of(&keys, kind, &found)?)?;
+        }
+        if let Some(path) = &self.plot {
+            let swept: Vec<Swept> = found.iter().map(shown).collect();
+            let named: Vec<OverKey> =
+                keys.iter().map(|key| OverKey { name: &key.name, count: key.values.count }).collect();
+            let svg = over_keys(&named, &swept, kind, of.subject().title()).map_err(anyhow::Error::from)?;
+            files::write(path, svg.as_bytes())?;
+        }
+        let mut warnings = of.warnings()?;
+        warnings.extend(doubts(&keys, &found));
+        if self.scene.json {
+            return print_json(&Report {
+                title: of.subject().title(),
+                drive: of.drive_name(),
+                effort_unit: kind.effort_unit(),
+                keys: keys.iter().map(|key| key.name.as_str()).collect(),
+                points: &found,
+                warnings,
+            });
+        }
+        print(&format!("{}\n\n{}\n{}", of.subject().title(), answer(&keys, &found), table(&keys, kind, &found)))?;
+        warn(&warnings);
+        Ok(())
+    }
+
+    /// The level of all units, where it is no key.
+    fn level_of_points(&self, keys: &[Key]) -> Result<f64, Failure> {
+        let Some(n) = &self.levels.n else { return Ok(0.0) };
+        let one = parse_levels(n).ok().filter(|levels| levels.count == 1);
+        match one {
+            _ if keys.iter().any(|key| key.name == LEVEL) => {
+                Err(Failure::Input(format!("--n {n}: --over has the level n as a key")))
+            }
+            Some(level) => Ok(level.first),
+            None => Err(Failure::Input(format!(
+                "--n {n}: beside --over one level is allowed, such as --n 2; or --over n={n}"
+            ))),
+        }
+    }
+
+    /// What moves with these `values` of the keys.
+    fn at(&self, keys: &[Key], values: &[f64], of_run: &[Override]) -> Result<(Moving, Option<Product>), Failure> {
+        let (name, text) = self.scene.text()?;
+        let named = keys.iter().zip(values).filter(|(key, _)| key.name != LEVEL);
+        let set = named.map(|(key, value)| Override::set(&format!("{}={}", key.name, ten_digits(*value))));
+        let all = self.scene.overrides(&of_run.iter().cloned().chain(set).collect::<Vec<_>>());
+        let (moving, product) = Moving::parse(&name, &text, &all)?;
+        Ok((self.of_length(moving)?, product))
+    }
+
+    fn point(&self, keys: &[Key], values: &[f64], level: f64, of_run: &[Override]) -> Result<Point, Failure> {
+        let (moving, product) = self.at(keys, values, of_run)?;
+        let of = ByOneDrive::new(&moving, &self.drive)?;
+        let n = keys.iter().position(|key| key.name == LEVEL).map_or(level, |k| values[k]);
+        let unit = of_point(&of, n, self.controller.given())?;
+        let population = self.units.map(|units| {
+            let production = of.production(product.as_ref(), 0.0, SEED)?;
+            let duty = Duty {
+                limit: None,
+                stroke: of.subject().run().stroke.filter(|_| !of.has_opening() || self.length.stroke),
+            };
+            Ok::<_, Failure>(Population::study(of.subject(), &production, units, duty, |_| ())?.statistics)
+        });
+        Ok(Point {
+            values: values.to_vec(),
+            n,
+            outcome: unit.outcome,
+            population: population.transpose()?,
+            doubts: unit.doubts,
+        })
+    }
+}
+
+/// All combinations of values, the last key's fastest.
+fn combinations(keys: &[Key]) -> Result<Vec<Vec<f64>>, Failure> {
+    if keys.len() > 2 {
+        return Err(Failure::Input(format!("--over is given {} times, allowed are one or two keys", keys.len())));
+    }
+    if let [one, other] = keys
+        && one.name == other.name
+    {
+        return Err(Failure::Input(format!("--over names {} twice", one.name)));
+    }
+    let count: usize = keys.iter().map(|key| key.values.count).product();
+    if count > MOST_POINTS {
+        return Err(Failure::Input(format!("--over makes {count} points, allowed are {MOST_POINTS}")));
+    }
+    let mut points = vec![Vec::new()];
+    for key in keys {
+        let with = |point: &Vec<f64>| {
+            key.values.levels().into_iter().map(|value| [&point[..], &[value]].concat()).collect::<Vec<_>>()
+        };
+        points = points.iter().flat_map(with).collect();
+    }
+    Ok(points)
+}
+
+/// The values of the keys in words.
+fn place(keys: &[Key], values: &[f64]) -> String {
+    let of = |(key, value): (&Key, &f64)| format!("{} = {}", key.name, ten_digits(*value));
+    keys.iter().zip(values).map(of).collect::<Vec<_>>().join(", ")
+}
+
+/// Which values do what: of one key in ranges, of two in counts; and the least and the greatest share that malfunctions.
+fn answer(keys: &[Key], points: &[Point]) -> String {
+    let mut text = String::new();
+    if let [key] = keys {
+        for range in points.chunk_by(|one, next| one.outcome.verdict == next.outcome.verdict) {
+            let [first, last] = [&range[0], &range[range.len() - 1]].map(|point| ten_digits(point.values[0]));
+            let values = if range.len() == 1 { first } else { format!("{first} … {last}") };
+            let _ = writeln!(text, "{} = {values}: {}", key.name, range[0].outcome.verdict);
+        }
+    } else {
+        for verdict in [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Overruns, Verdict::Undecided] {
+            let count = points.iter().filter(|point| point.outcome.verdict == verdict).count();
+            if count > 0 {
+                let _ = writeln!(text, "{verdict} at {count} of {} combinations", points.len());
+            }
+        }
+    }
+    let share = |point: &&Point| point.population.as_ref().map_or(0.0, |found| found.malfunctions.share);
+    let all: Vec<&Point> = points.iter().filter(|point| point.population.is_some()).collect();
+    let least = all.iter().min_by(|one, other| share(one).total_cmp(&share(other)));
+    let most = all.iter().max_by(|one, other| share(one).total_cmp(&share(other)));
+    for (name, point) in [("least", least), ("greatest", most)] {
+        if let Some(Point { values, population: Some(Statistics { malfunctions, .. }), .. }) = point {
+            let _ = writeln!(
+                text,
+                "The {name} share that malfunctions: {} at {}",
+                percent(malfunctions),
+                place(keys, values)
+            );
+        }
+    }
+    text
+}
+
+/// All points as a table.
+fn table(keys: &[Key], kind: DriveKind, points: &[Point]) -> String {
+    let has_units = points.iter().any(|point| point.population.is_some());
+    let row = |point: &Point| {
+        let Outcome { breakaway, peak_force, final_velocity, end, verdict, .. } = point.outcome;
+        let mut row: Vec<String> = point.values.iter().map(|value| ten_digits(*value)).collect();
+        row.extend([
+            verdict.to_string(),
+            or_dash(breakaway, |t| fixed(t * 1e3, 2)),
+            or_dash(peak_force, |force| fixed(force, 4)),
+            fixed(kind.speed(final_velocity), 3),
+            fixed(kind.travel(end.z), 2),
+        ]);
+        if let Some(found) = &point.population {
+            row.push(percent(&found.malfunctions));
+            row.push(found.undecided.units.to_string());
+        }
+        row.push(on_the_way(kind, &point.outcome));
+        row
+    };
+    let rows: Vec<_> = points.iter().map(row).collect();
+    let [peak, speed, travel] = [
+        format!("peak, {}", kind.effort_unit()),
+        format!("final, {}", kind.speed_unit()),
+        format!("travel, {}", kind.travel_unit()),
+    ];
+    let mut heading: Vec<&str> = keys.iter().map(|key| key.name.as_str()).collect();
+    heading.extend(["verdict", "breakaway, ms", &peak, &speed, &travel]);
+    if has_units {
+        heading.extend(["units that malfunction", "undecided"]);
+    }
+    heading.push("on the way");
+    text_table(&heading, &rows)
+}
+
+/// A row for every point; SI units, what is not there is empty.
+fn csv_of(keys: &[Key], kind: DriveKind, points: &[Point]) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let figures = kind.choose(
+        ["breakaway_s", "peak_n", "settled_n", "final_m_per_s", "travel_m"],
+        ["breakaway_s", "peak_n_m", "settled_n_m", "final_rad_per_s", "travel_rad"],
+    );
+    let names = keys.iter().map(|key| key.name.as_str()).filter(|name| *name != LEVEL);
+    writer.write_record(names.chain([LEVEL, "verdict"]).chain(figures).chain([
+        "units",
+        "malfunctions",
+        "undecided",
+    ]))?;
+    for point in points {
+        let optional = |value: Option<f64>| value.map_or(String::new(), ten_digits);
+        let Outcome { breakaway, peak_force, settled_force, final_velocity, end, verdict, .. } = point.outcome;
+        let values = keys.iter().zip(&point.values).filter(|(key, _)| key.name != LEVEL);
+        let own = values.map(|(_, value)| ten_digits(*value)).chain([
+            ten_digits(point.n),
+            verdict.to_string(),
+            optional(breakaway),
+            optional(peak_force),
+            optional(settled_force),
+            ten_digits(final_velocity),
+            ten_digits(end.z),
+        ]);
+        let counts =
+            point.population.as_ref().map(|found| [found.units, found.malfunctions.units, found.undecided.units]);
+        let counts = counts.map_or_else(Default::default, |counts| counts.map(|count| count.to_string()));
+        writer.write_record(own.chain(counts))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// A point as pictures show it: the share in per cent.
+fn shown(point: &Point) -> Swept {
+    let share = |share: &Share| 100.0 * share.share;
+    Swept {
+        values: point.values.clone(),
+        verdict: point.outcome.verdict,
+        peak: point.outcome.peak_force,
+        malfunction: point.population.as_ref().map(|found| share(&found.malfunctions)),
+    }
+}
+
+/// What speaks against the runs, of the first of which it does.
+fn doubts(keys: &[Key], points: &[Point]) -> Option<String> {
+    let mut doubtful = points.iter().filter(|point| !point.doubts.is_empty());
+    let first = doubtful.next()?;
+    let others = match doubtful.count() {
+        0 => String::new(),
+        1 => " (and at another point)".into(),
+        more => format!(" (and at {more} other points)"),
+    };
+    Some(format!("at {}{others}: {}", place(keys, &first.values), first.doubts[0]))
+}
