@@ -427,7 +427,7 @@ fn what_cannot_be_swept_is_refused() {
         (&["--over", "friction.coefficient"][..], "allowed is KEY=A:B:STEP"),
         (&["--over", "friction.coefficient=0.3:0.1:0.1"], "is below the first"),
         (&["--over", "friction.nothing=0:1:1"], "friction.nothing"),
-        (&["--over", "friction.coefficient=0:9:1"], "friction.coefficient"),
+        (&["--over", "friction.coefficient=-0.1:0.1:0.1"], "--over friction.coefficient=-0.1"),
         (&["--over", "n=0:1:1", "--over", "n=0:1:1"], "names n twice"),
         (&["--over", "n=0:1:1", "--n", "2"], "--over has the level n as a key"),
         (&["--over", "slide.mass=80:90:10", "--n", "0:1:1"], "one level is allowed"),

@@ -63,7 +63,12 @@ impl Override {
     /// What follows `--set`: `key=value`. The value is TOML or, where that does not parse, a bare text:
     /// `slide.mass=90 g`. A pin goes by its name: `pin.left front.left=[0.01, 0.05]`.
     pub fn set(assignment: &str) -> Self {
-        Self { text: format!("--set {assignment}"), key: None }
+        Self::assigned("--set", assignment)
+    }
+
+    /// The same behind another `option` (without spaces).
+    pub fn assigned(option: &str, assignment: &str) -> Self {
+        Self { text: format!("{option} {assignment}"), key: None }
     }
 
     /// The value of an `option` (without spaces) that stands for `key`.

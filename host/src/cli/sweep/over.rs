@@ -56,6 +56,11 @@ impl Key {
         let values = parse_levels(values).map_err(|error| Failure::Input(format!("--over {text}: {error}")))?;
         Ok(Self { name: name.trim().to_owned(), values })
     }
+
+    /// All values, as they are written: 0.1 and twice 0.1 more are 0.3.
+    fn values(&self) -> Vec<f64> {
+        self.values.levels().into_iter().map(|value| ten_digits(value).parse().unwrap_or(value)).collect()
+    }
 }
 
 /// What a unit, or a production, does with some values of the keys.
@@ -150,7 +155,8 @@ impl Arguments {
     fn at(&self, keys: &[Key], values: &[f64], of_run: &[Override]) -> Result<(Moving, Option<Product>), Failure> {
         let (name, text) = self.scene.text()?;
         let named = keys.iter().zip(values).filter(|(key, _)| key.name != LEVEL);
-        let set = named.map(|(key, value)| Override::set(&format!("{}={}", key.name, ten_digits(*value))));
+        let set =
+            named.map(|(key, value)| Override::assigned("--over", &format!("{}={}", key.name, ten_digits(*value))));
         let all = self.scene.overrides(&of_run.iter().cloned().chain(set).collect::<Vec<_>>());
         let (moving, product) = Moving::parse(&name, &text, &all)?;
         Ok((self.of_length(moving)?, product))
@@ -196,7 +202,7 @@ fn combinations(keys: &[Key]) -> Result<Vec<Vec<f64>>, Failure> {
     let mut points = vec![Vec::new()];
     for key in keys {
         let with = |point: &Vec<f64>| {
-            key.values.levels().into_iter().map(|value| [&point[..], &[value]].concat()).collect::<Vec<_>>()
+            key.values().into_iter().map(|value| [&point[..], &[value]].concat()).collect::<Vec<_>>()
         };
         points = points.iter().flat_map(with).collect();
     }
