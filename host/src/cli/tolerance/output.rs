@@ -115,7 +115,7 @@ impl OutputArguments {
         let analysis = conclude(study, tallies).map_err(RunError::from)?;
         let mut report = report::report(title, study.model, &analysis);
         if let Some(measured) = measured.filter(|measured| measured.has_contributors()) {
-            let bar = progress("weighing what the parts leave open", PRODUCTIONS as usize);
+            let bar = progress("weighing what the parts leave open", PRODUCTIONS);
             let possible =
                 possible::reports(study.model, measured, study.settings, || bar.inc(1)).map_err(RunError::from)?;
             bar.finish_and_clear();
