@@ -147,6 +147,20 @@ impl<'a> ByOneDrive<'a> {
         Some(Moving::Slide(Box::new(Scene { run, ..(*scene).clone() })))
     }
 
+    /// What is meant by `longer`, or the same where there is nothing longer.
+    pub fn or_longer<'b>(&self, longer: &'b Option<Moving>) -> ByOneDrive<'b>
+    where
+        'a: 'b,
+    {
+        longer.as_ref().and_then(|moving| ByOneDrive::numbered(moving, self.drive())).unwrap_or(*self)
+    }
+
+    /// The title of the scene, with the drive where there are several.
+    pub fn title(&self) -> String {
+        let title = self.subject().title();
+        if self.has_other_drives() { format!("{title}, by {}", self.drive_name()) } else { title.to_owned() }
+    }
+
     /// Whether a run is an opening, if a stroke is stated.
     pub fn has_opening(&self) -> bool {
         matches!(self, Self::Slide(_))
@@ -173,7 +187,7 @@ impl<'a> ByOneDrive<'a> {
                 Some((guide.friction, guide.critical_friction?, guide.side))
             }
             Self::Mechanism(driven) => {
-                let locked = locked(driven.mechanism()).into_iter().next()?;
+                let locked = locked(driven.mechanism()).into_iter().find(|found| found.drive == driven.name())?;
                 Some((locked.friction, locked.critical_friction, locked.side))
             }
         }
@@ -210,8 +224,12 @@ impl<'a> ByOneDrive<'a> {
     }
 }
 
-/// A remark behind units that come to no verdict; `longer` is how they run longer, if there is an option for it.
-pub fn why_undecided(driven: &dyn Driven, longer: Option<&str>) -> String {
+/// How a run is made finer.
+pub const FINER: &str = "take a tenth of run.error";
+
+/// A remark behind units that come to no verdict; `longer` is how they run longer, if there is an option for it, and `finer` how they run
+/// finer.
+pub fn why_undecided(driven: &dyn Driven, longer: Option<&str>, finer: &str) -> String {
     let (duration, setpoint) = (driven.run().duration, driven.setpoint());
     let [ends, command] = [duration, setpoint.end()].map(|t| ten_digits(t * 1e3));
     if duration < setpoint.end() {
@@ -221,6 +239,6 @@ pub fn why_undecided(driven: &dyn Driven, longer: Option<&str>) -> String {
     } else if setpoint.settled_at(duration) == 0.0 {
         ": nothing is commanded at the end of the run".into()
     } else {
-        ": a finer run came to another verdict; take a tenth of run.error".into()
+        format!(": a finer run came to another verdict; {finer}")
     }
 }

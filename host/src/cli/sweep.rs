@@ -12,7 +12,7 @@ use slipfit_tolerance::number::{fixed, level, or_dash};
 
 use super::{
     arguments::{DriveArguments, Moving, SceneArguments, ThreadArguments},
-    by_one_drive::{ByOneDrive, why_undecided},
+    by_one_drive::{ByOneDrive, FINER, why_undecided},
     failure::Failure,
     simulate::{ControllerArguments, LengthArguments},
     terminal::{given, print, print_json, progress, text_table, warn},
@@ -58,10 +58,10 @@ pub(super) struct Arguments {
     /// The units are the same at every value. A slide's run the opening unless `--stroke` is given.
     #[arg(long, requires = "over", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     units: Option<u64>,
-    /// Writes a row of figures for every level as CSV.
+    /// Writes a row of figures for every level, or value, as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws verdict and force over the tolerance level as SVG.
+    /// Draws verdict and force over the tolerance level, or over the keys, as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -171,7 +171,8 @@ impl Arguments {
                 warnings,
             });
         }
-        print(&format!("{}\n\n{}\n{}", subject.title(), answer(&swept), for_people(&of, &swept)))?;
+        let finer = if self.controller.given() { "take a smaller --step" } else { FINER };
+        print(&format!("{}\n\n{}\n{}", of.title(), answer(&swept), for_people(&of, &swept, finer)))?;
         warn(&warnings);
         Ok(())
     }
@@ -209,7 +210,7 @@ pub(super) fn for_machines(sweep: &Sweep) -> Vec<LevelReport> {
 }
 
 /// The levels of a sweep as a table.
-fn for_people(of: &ByOneDrive, sweep: &Sweep) -> String {
+fn for_people(of: &ByOneDrive, sweep: &Sweep, finer: &str) -> String {
     let kind = sweep.kind;
     let rows: Vec<Vec<String>> = sweep
         .levels
@@ -244,8 +245,9 @@ fn for_people(of: &ByOneDrive, sweep: &Sweep) -> String {
     ];
     let mut text = text_table(&heading, &rows);
     let longer = of.longer().map(|_| "--stroke runs the whole stroke");
-    if sweep.levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided) {
-        let _ = writeln!(text, "\nundecided{}", why_undecided(of.subject(), longer));
+    // Doubts say why the others have none.
+    if sweep.levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided && level.doubts.is_empty()) {
+        let _ = writeln!(text, "\nundecided{}", why_undecided(of.subject(), longer, finer));
     }
     text
 }

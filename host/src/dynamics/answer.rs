@@ -56,17 +56,6 @@ pub fn ranges(sweep: &Sweep) -> Vec<Range> {
     groups.filter_map(range).collect()
 }
 
-/// From which level to which something runs, crawls or jams, in words, from the verdicts over n.
-pub fn ranges_of(verdicts: &[(f64, Verdict)]) -> Vec<String> {
-    let groups = verdicts.chunk_by(|one, next| one.1 == next.1);
-    let range = |group: &[(f64, Verdict)]| match group {
-        [] => None,
-        [(n, verdict)] => Some(format!("{verdict} at n = {}", level(*n))),
-        [(first, verdict), .., (last, _)] => Some(format!("{verdict} from n = {} to {}", level(*first), level(*last))),
-    };
-    groups.filter_map(range).collect()
-}
-
 /// `least` to `most`, or one of them where they look the same.
 fn between([least, most]: [f64; 2], decimals: usize) -> String {
     let [least, most] = [least, most].map(|value| fixed(value, decimals));

@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "takes 10 s; `cargo verify` runs it"]
+    #[ignore = "takes 10 s; `cargo verify --all` runs it"]
     fn stated_intervals_hold_for_a_linear_limit() {
         for known in [1e-5, 1e-7] {
             let limit = limit(known);
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "takes 10 s; `cargo verify` runs it"]
+    #[ignore = "takes 10 s; `cargo verify --all` runs it"]
     fn stated_intervals_hold_for_two_opposite_limits() {
         for known in [1e-5, 1e-7] {
             let limit = limit(known / 2.0);

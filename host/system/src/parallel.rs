@@ -2,7 +2,10 @@
 //!
 //! A function for all kinds of work: a parallel iterator is compiled anew for each.
 
-use std::sync::Mutex;
+use std::sync::{
+    Mutex,
+    atomic::{AtomicUsize, Ordering},
+};
 
 use rayon::prelude::*;
 
@@ -24,12 +27,23 @@ pub fn map<'a, I: Sync, T: Send>(items: &'a [I], of: impl Fn(&'a I) -> T + Sync)
 /// The same where it may fail.
 ///
 /// # Errors
-/// The first one in the order of `items`; the others are tried nevertheless.
+/// The first one in the order of `items`. What comes after it is not begun.
 pub fn try_map<'a, I: Sync, T: Send, E: Send>(
     items: &'a [I],
     of: impl Fn(&'a I) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
-    map(items, of).into_iter().collect()
+    let failed = AtomicUsize::new(usize::MAX);
+    let made = each(items.len(), |i| {
+        if failed.load(Ordering::Relaxed) < i {
+            return None;
+        }
+        let one = of(&items[i]);
+        if one.is_err() {
+            failed.fetch_min(i, Ordering::Relaxed);
+        }
+        Some(one)
+    });
+    made.into_iter().flatten().collect()
 }
 
 /// Does `part` for each number below `count`, a part at a time on each thread.

@@ -74,6 +74,15 @@ fn few_repeats_of_every_family_hold() {
 }
 
 #[test]
+#[ignore = "takes ten seconds"]
+fn few_repeats_of_a_chosen_family_hold() {
+    for (kind, family) in examples().into_iter().filter(|(kind, _)| kind.least_parts() <= 30) {
+        let (held, none) = coverage(kind, family.as_ref(), 30, false, 10);
+        assert!(is_near(held, [60.0, 100.0]), "{kind}: {held:.1?} %, {none} without");
+    }
+}
+
+#[test]
 #[ignore = "takes minutes"]
 fn study_how_often_intervals_of_a_chosen_family_hold() {
     for (kind, family) in examples() {

@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     cli::{
-        by_one_drive::{ByOneDrive, why_undecided},
+        by_one_drive::{ByOneDrive, FINER, why_undecided},
         failure::Failure,
         terminal::{print, print_json, text_table, warn},
     },
@@ -171,7 +171,7 @@ impl Arguments {
                 true => {
                     ": the opening ends before the ramp does; without --opening the whole stroke is simulated".into()
                 }
-                false => why_undecided(subject, None),
+                false => why_undecided(subject, None, FINER),
             };
             let _ = writeln!(text, "                undecided{why}");
         }
@@ -221,7 +221,8 @@ fn worst_units(subject: &dyn Subject, units: &[Unit]) -> String {
     let has_contacts = units.iter().any(|unit| unit.outcome.most_loaded.is_some());
     let row = |unit: &Unit| {
         let outcome = unit.outcome;
-        let loaded = |(gap, force): (usize, f64)| format!("{} ({} N)", names[gap], fixed(force, 2));
+        let name = |gap: usize| names.get(gap).map_or("-", String::as_str);
+        let loaded = |(gap, force): (usize, f64)| format!("{} ({} N)", name(gap), fixed(force, 2));
         let mut row = vec![
             unit.number.to_string(),
             level((subject.tightness(&unit.gaps) * 100.0).round() / 100.0),

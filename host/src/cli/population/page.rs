@@ -45,7 +45,10 @@ pub fn units(
             causes::histogram(title, kind, all, limit),
         ),
         (
-            "Where units fail: how many of the loose and of the tight ones, and which contact presses hardest.".into(),
+            format!(
+                "Where units fail: how many of the loose and of the tight ones{}.",
+                if all.counts.pressed.is_empty() { "" } else { ", and which contact presses hardest" }
+            ),
             causes::sides(subject, all),
         ),
         (

@@ -58,7 +58,7 @@ impl Arguments {
     pub(super) fn simulate(&self, of: &ByOneDrive, product: Option<&Product>) -> Result<Simulated, Failure> {
         let subject = of.subject();
         let longer = of.longer();
-        let whole = longer.as_ref().and_then(|moving| ByOneDrive::numbered(moving, of.drive())).unwrap_or(*of);
+        let whole = of.or_longer(&longer);
         let judged = whole.subject();
         let varies = subject.has_levels() || subject.parameters() > 0 || of.has_unknowns();
         let units = if varies { self.units.unwrap_or(UNITS) } else { 0 };

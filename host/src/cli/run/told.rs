@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     cli::{
-        by_one_drive::{ByOneDrive, why_undecided},
+        by_one_drive::{ByOneDrive, FINER, why_undecided},
         failure::Failure,
         population::uncertain,
         sweep::{LevelReport, doubts, for_machines},
@@ -75,6 +75,9 @@ impl Arguments {
         let simulated = self.simulate(of, product)?;
         let subject = of.subject();
         let mut warnings = warnings(of, &simulated)?;
+        if self.units.is_some() && simulated.production.is_none() {
+            warnings.push("--units: nothing varies, so that no units of the production were simulated".into());
+        }
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.clone()));
 
         let answer = said(of, &simulated, production.as_ref());
@@ -82,7 +85,7 @@ impl Arguments {
         let Simulated { table, production: units, .. } = &simulated;
         let [worst_force_error, worst_velocity_error] = table.worst_error_in_use;
         let page = report(&ReportInput {
-            title: subject.title(),
+            title: &of.title(),
             sweep: simulated.judged(),
             answer: &answer,
             figures: &figures.iter().map(|(_, figure)| figure.clone()).collect::<Vec<_>>(),
@@ -123,7 +126,7 @@ impl Arguments {
                 warnings,
             });
         }
-        print(&format!("{}\n\n{answer}Look at         {}", subject.title(), output.page().display()))?;
+        print(&format!("{}\n\n{answer}Look at         {}", of.title(), output.page().display()))?;
         warn(&warnings);
         Ok(())
     }
@@ -135,8 +138,12 @@ fn warnings(of: &ByOneDrive, simulated: &Simulated) -> Result<Vec<String>, Failu
     warnings.extend(doubts(judged));
     let unknown = simulated.units().and_then(|units| units.unknown);
     warnings.extend(unknown.map(uncertain::warnings).transpose()?.unwrap_or_default());
-    if judged.levels.iter().any(|level| level.outcome.verdict == Verdict::Undecided) {
-        warnings.push(format!("not every level comes to a verdict{}", why_undecided(subject, None)));
+    // Doubts say why the others have none.
+    let is_unexplained = |level: &Level| level.outcome.verdict == Verdict::Undecided && level.doubts.is_empty();
+    if judged.levels.iter().any(is_unexplained) {
+        let longer = of.longer();
+        let why = why_undecided(of.or_longer(&longer).subject(), None, FINER);
+        warnings.push(format!("not every level comes to a verdict{why}"));
     }
     if subject.run().stroke.is_none() && of.has_opening() {
         warnings.push(

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use slipfit_system::{files, parallel};
+use slipfit_system::{files, interrupt, parallel};
 use slipfit_tolerance::{
     number::{fixed, or_dash, ten_digits},
     product::Product,
@@ -15,19 +15,16 @@ use crate::{
         arguments::Moving,
         by_one_drive::ByOneDrive,
         failure::Failure,
-        population::words::percent,
+        population::words::{faults, malfunction},
         terminal::{given, print, print_json, progress, text_table, warn},
     },
     dynamics::{
         answer::on_the_way,
         driven::DriveKind,
         outcome::{Outcome, Verdict},
+        simulate::SimulateError,
     },
-    population::{
-        statistics::{Share, Statistics},
-        study::Population,
-        tally::Duty,
-    },
+    population::{statistics::Statistics, study::Population, tally::Duty},
     scene::{Override, parse_levels},
     setup::LevelRange,
     show::figure::{OverKey, Swept, over_keys},
@@ -74,6 +71,10 @@ struct Point {
     outcome: Outcome,
     /// What units of the production do; none if it was not asked for.
     population: Option<Statistics>,
+    /// What a designer should know of the scene with these values.
+    #[serde(skip)]
+    warnings: Vec<String>,
+    /// What speaks against the unit's run.
     #[serde(skip)]
     doubts: Vec<String>,
 }
@@ -96,7 +97,11 @@ impl Arguments {
         let points = combinations(&keys)?;
         self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
         let level = self.level_of_points(&keys)?;
-        // What holds for all, and whatever is wrong at the first.
+        // Whatever is wrong at any value is told before hours of simulation.
+        parallel::try_map(&points, |values| {
+            let (moving, _) = self.at(&keys, values, of_run)?;
+            self.check_units(&keys, &ByOneDrive::new(&moving, &self.drive)?)
+        })?;
         let (moving, _) = self.at(&keys, &points[0], of_run)?;
         let of = ByOneDrive::new(&moving, &self.drive)?;
         let kind = of.subject().kind();
@@ -119,7 +124,7 @@ impl Arguments {
             let svg = over_keys(&named, &swept, kind, of.subject().title()).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;
         }
-        let mut warnings = of.warnings()?;
+        let mut warnings = gathered(&keys, &found);
         warnings.extend(doubts(&keys, &found));
         if self.scene.json {
             return print_json(&Report {
@@ -131,7 +136,7 @@ impl Arguments {
                 warnings,
             });
         }
-        print(&format!("{}\n\n{}\n{}", of.subject().title(), answer(&keys, &found), table(&keys, kind, &found)))?;
+        print(&format!("{}\n\n{}\n{}", of.title(), answer(&keys, &found), table(&keys, kind, &found)))?;
         warn(&warnings);
         Ok(())
     }
@@ -162,26 +167,40 @@ impl Arguments {
         Ok((self.of_length(moving)?, product))
     }
 
+    /// Whether units of the production tell anything at the points.
+    fn check_units(&self, keys: &[Key], of: &ByOneDrive) -> Result<(), Failure> {
+        let why = match self.units {
+            None => return Ok(()),
+            Some(_) if of.has_unknowns() => "allowed is a scene without [uncertain] and [measured]",
+            Some(_) if self.controller.given() => {
+                "they are the desk's: allowed is no --step, --integrator and --scalar"
+            }
+            Some(_) if keys.iter().all(|key| key.name == LEVEL) => "units have gaps of their own, whatever the level n",
+            Some(_) => return Ok(()),
+        };
+        Err(Failure::Input(format!("--units beside --over: {why}")))
+    }
+
     fn point(&self, keys: &[Key], values: &[f64], level: f64, of_run: &[Override]) -> Result<Point, Failure> {
+        if interrupt::requested() {
+            return Err(SimulateError::Interrupted.into());
+        }
         let (moving, product) = self.at(keys, values, of_run)?;
         let of = ByOneDrive::new(&moving, &self.drive)?;
         let n = keys.iter().position(|key| key.name == LEVEL).map_or(level, |k| values[k]);
         let unit = of_point(&of, n, self.controller.given())?;
+        let mut warnings = of.warnings()?;
+        warnings.extend(product.iter().flat_map(|product| product.warnings.iter().cloned()));
         let population = self.units.map(|units| {
             let production = of.production(product.as_ref(), 0.0, SEED)?;
-            let duty = Duty {
-                limit: None,
-                stroke: of.subject().run().stroke.filter(|_| !of.has_opening() || self.length.stroke),
-            };
-            Ok::<_, Failure>(Population::study(of.subject(), &production, units, duty, |_| ())?.statistics)
+            let stroke = of.subject().run().stroke.filter(|_| !of.has_opening() || self.length.stroke);
+            let duty = Duty { limit: None, stroke };
+            let population = Population::study(of.subject(), &production, units, duty, |_| ())?;
+            warnings.extend(faults(of.subject(), &production, &population)?);
+            Ok::<_, Failure>(population.statistics)
         });
-        Ok(Point {
-            values: values.to_vec(),
-            n,
-            outcome: unit.outcome,
-            population: population.transpose()?,
-            doubts: unit.doubts,
-        })
+        let population = population.transpose()?;
+        Ok(Point { values: values.to_vec(), n, outcome: unit.outcome, population, warnings, doubts: unit.doubts })
     }
 }
 
@@ -234,16 +253,14 @@ fn answer(keys: &[Key], points: &[Point]) -> String {
     }
     let share = |point: &&Point| point.population.as_ref().map_or(0.0, |found| found.malfunctions.share);
     let all: Vec<&Point> = points.iter().filter(|point| point.population.is_some()).collect();
-    let least = all.iter().min_by(|one, other| share(one).total_cmp(&share(other)));
+    // Where units come to no verdict, more may malfunction than are known to.
+    let judged = all.iter().filter(|point| point.population.as_ref().is_some_and(|found| found.undecided.units == 0));
+    let least = judged.min_by(|one, other| share(one).total_cmp(&share(other)));
     let most = all.iter().max_by(|one, other| share(one).total_cmp(&share(other)));
     for (name, point) in [("least", least), ("greatest", most)] {
-        if let Some(Point { values, population: Some(Statistics { malfunctions, .. }), .. }) = point {
-            let _ = writeln!(
-                text,
-                "The {name} share that malfunctions: {} at {}",
-                percent(malfunctions),
-                place(keys, values)
-            );
+        if let Some(Point { values, population: Some(found), .. }) = point {
+            let _ =
+                writeln!(text, "The {name} share that malfunctions: {} at {}", malfunction(found), place(keys, values));
         }
     }
     text
@@ -263,7 +280,7 @@ fn table(keys: &[Key], kind: DriveKind, points: &[Point]) -> String {
             fixed(kind.travel(end.z), 2),
         ]);
         if let Some(found) = &point.population {
-            row.push(percent(&found.malfunctions));
+            row.push(malfunction(found));
             row.push(found.undecided.units.to_string());
         }
         row.push(on_the_way(kind, &point.outcome));
@@ -318,14 +335,46 @@ fn csv_of(keys: &[Key], kind: DriveKind, points: &[Point]) -> anyhow::Result<Vec
     Ok(writer.into_inner()?)
 }
 
-/// A point as pictures show it: the share in per cent.
+/// A point as pictures show it: the share in per cent, where any unit comes to a verdict.
 fn shown(point: &Point) -> Swept {
-    let share = |share: &Share| 100.0 * share.share;
+    let share = |found: &Statistics| (found.undecided.units < found.units).then_some(100.0 * found.malfunctions.share);
     Swept {
         values: point.values.clone(),
         verdict: point.outcome.verdict,
         peak: point.outcome.peak_force,
-        malfunction: point.population.as_ref().map(|found| share(&found.malfunctions)),
+        malfunction: point.population.as_ref().and_then(share),
+    }
+}
+
+/// The warnings of all points: of those that differ by numbers alone the first, with where it holds unless that is everywhere.
+fn gathered(keys: &[Key], points: &[Point]) -> Vec<String> {
+    let kind = |text: &str| text.split(|c: char| c.is_ascii_digit()).next().unwrap_or_default().to_owned();
+    let mut kinds: Vec<(String, Vec<(&Point, &str)>)> = Vec::new();
+    for point in points {
+        for warning in &point.warnings {
+            let of = kind(warning);
+            match kinds.iter_mut().find(|(other, _)| *other == of) {
+                Some((_, all)) => all.push((point, warning)),
+                None => kinds.push((of, vec![(point, warning)])),
+            }
+        }
+    }
+    let told = |(_, all): &(String, Vec<(&Point, &str)>)| {
+        let (first, warning) = all[0];
+        if all.len() >= points.len() && all.iter().all(|(_, other)| *other == warning) {
+            return warning.to_owned();
+        }
+        format!("at {}{}: {warning}", place(keys, &first.values), others(all.len() - 1))
+    };
+    kinds.iter().map(told).collect()
+}
+
+/// How many other points there are.
+fn others(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => " (and at another point)".into(),
+        more => format!(" (and at {more} other points)"),
     }
 }
 
@@ -333,10 +382,5 @@ fn shown(point: &Point) -> Swept {
 fn doubts(keys: &[Key], points: &[Point]) -> Option<String> {
     let mut doubtful = points.iter().filter(|point| !point.doubts.is_empty());
     let first = doubtful.next()?;
-    let others = match doubtful.count() {
-        0 => String::new(),
-        1 => " (and at another point)".into(),
-        more => format!(" (and at {more} other points)"),
-    };
-    Some(format!("at {}{others}: {}", place(keys, &first.values), first.doubts[0]))
+    Some(format!("at {}{}: {}", place(keys, &first.values), others(doubtful.count()), first.doubts[0]))
 }

@@ -139,7 +139,7 @@ pub fn make(driven: &dyn Driven, wish: &Wish<'_>, done: impl Fn() + Sync) -> Res
         done();
         let passage = Passage::of(&run.trajectory, speed, kind.sample(), kind.most());
         let reach = Reach { n, speed, z: passage.reach, verdict: run.outcome.verdict };
-        Ok::<_, SimulateError>((passage, (reach, run.trust.warning())))
+        Ok::<_, SimulateError>((passage, (reach, run.doubts.into_iter().next())))
     })?;
     let (passages, judged): (Vec<Passage>, Vec<_>) = runs.into_iter().unzip();
     let (reaches, warnings): (Vec<Reach>, Vec<Option<String>>) = judged.into_iter().unzip();

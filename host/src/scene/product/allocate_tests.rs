@@ -56,7 +56,7 @@ pub(super) fn of_first(kind: Kind) -> [Requirement; 1] {
 
 /// Processes are chosen by linearised figures: no other choice of them is cheaper by the full model.
 #[test]
-#[ignore = "takes 15 s; `cargo verify` runs it"]
+#[ignore = "takes 15 s; `cargo verify --all` runs it"]
 fn no_other_processes_are_cheaper_by_the_full_model() {
     let text = shipped("clutch-processes").unwrap();
     let costed = costed(text);

@@ -9,7 +9,7 @@ use super::allocate_tests::{all, cheapest, costed, model_of, of_first};
 
 /// Of kinked and folded measures, which no program around some tolerances describes, against all pairs of tolerances on a grid.
 #[test]
-#[ignore = "takes 20 s; `cargo verify` runs it"]
+#[ignore = "takes 20 s; `cargo verify --all` runs it"]
 fn kinked_measures_have_no_cheaper_tolerances_on_a_grid() {
     const STEP: f64 = 1.12;
     let cases = [
