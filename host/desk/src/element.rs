@@ -107,17 +107,6 @@ fn act_apart<S, B, L, W, const D: usize, const R: usize>(
     act(element, way, at, &(), sum);
 }
 
-/// What a `contact` in space does, in a function of its own.
-#[inline(never)]
-fn contact_apart<const N: usize, const D: usize>(
-    contact: &SpatialContact,
-    way: (f64, Way<f64>),
-    at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
-    sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
-) {
-    contact.act(way, at, &(), None, sum);
-}
-
 /// The gap (m) of a contact, which is negative where it is pressed together.
 fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
     element: &Element<L, W, R>,
@@ -406,8 +395,9 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
         sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
     ) {
         match self {
-            // Out of line, so that they are compiled once for what they add up to. Most contacts stand side by side.
-            Self::Contact(contact) => contact_apart(contact, way, at, sum),
+            // Those that do not stand side by side: a call from wide instructions costs more than what it does.
+            Self::Contact(contact) => contact.act(way, at, &(), None, sum),
+            // Out of line: there are few of them, and they would be compiled wherever contacts are.
             Self::Motor(element) => act_apart(element, way, at, sum),
             Self::Pusher(element) => act_apart(element, way, at, sum),
             Self::AtPoint(element) => act_apart(element, way, at, sum),
