@@ -1,8 +1,9 @@
 //! Elements chosen at run time: the laws and links are core's, and so are the bits.
 
+mod spatial;
+
 use std::f64::consts::TAU;
 
-use nalgebra::Matrix3;
 use slipfit_core::{
     ParameterError, Scalar,
     law::{Regularised, Stribeck, StribeckData},
@@ -10,9 +11,8 @@ use slipfit_core::{
     menu::FrictionData,
     system::{
         Assembly, Bodies, Element, Elements, Law, Link,
-        law::{Contact, Contoured, Journal, LineSpring, Motor, Pad, Pin, Pusher, Ring, Spring, Wall},
+        law::{Contact, Contoured, Journal, LineSpring, Motor, Pad, Pusher, Spring},
         planar::{self, PlanarTree},
-        spatial::{About, Along, AtPoint, FreeBodies, Rim, Seat},
     },
 };
 
@@ -22,6 +22,8 @@ use crate::{
     drive::AnyDrive,
     laws::{AnyNormal, AnySliding},
 };
+
+pub use spatial::{SpatialContact, SpatialElement};
 
 /// Over how many stick bands static friction falls halfway to kinetic where a stick band is used in place of true stick: at the end of
 /// the band a thousandth of their difference is lost.
@@ -146,9 +148,8 @@ fn approach<
     }
 }
 
-/// A line, or a wall, with a contour and any laws.
+/// A line with a contour and any laws.
 type AnyContouredPad = Contoured<f64, Pad<f64, AnyNormal<f64>, AnySliding<f64>>>;
-type AnyContouredWall = Contoured<f64, Wall<f64, AnyNormal<f64>, AnySliding<f64>>>;
 
 /// An element in a plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -167,37 +168,6 @@ pub enum PlanarElement<const D: usize> {
     Contour(Element<planar::Across<f64, D>, AnyContouredPad, 2>),
     /// A spring along the line between two points.
     Line(Element<planar::Between<f64, D>, LineSpring<f64, 2>, 4>),
-}
-
-/// A ring around a rod whose axes are turned or not.
-type AnyRing<S> = Element<Rim<S, Option<Matrix3<S>>>, Ring<S, AnyNormal<S>, AnySliding<S>>, 3>;
-
-/// A contact in space, or several side by side: a number `S` has a value for each.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SpatialContact<S = f64> {
-    /// A pin between walls.
-    Pin(Element<Seat<S>, Pin<S, AnyNormal<S>, AnySliding<S>>, 3>),
-    /// A point before a wall.
-    Wall(Element<Seat<S>, Wall<S, AnyNormal<S>, AnySliding<S>>, 3>),
-    /// A ring around a rod whose axes are turned or not.
-    Ring(AnyRing<S>),
-}
-
-/// An element in space.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SpatialElement {
-    /// A contact.
-    Contact(SpatialContact),
-    /// A torque.
-    Motor(Element<About<f64>, Motor<AnyDrive>, 1>),
-    /// A force.
-    Pusher(Element<Along<f64>, Pusher<AnyDrive>, 2>),
-    /// A force by the speed where it acts.
-    AtPoint(Element<AtPoint<f64>, Motor<AnyDrive>, 1>),
-    /// A point before a wall with a contour.
-    Contour(Element<Seat<f64>, AnyContouredWall, 3>),
-    /// A spring along the line between two points.
-    Line(Element<Seat<f64>, LineSpring<f64, 3>, 3>),
 }
 
 impl<const D: usize> PlanarElement<D> {
@@ -222,51 +192,6 @@ impl<const D: usize> PlanarElement<D> {
             Self::Pad(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Contour(element) => approach((element, &element.law.wall.contact.normal), at, see),
             Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) | Self::Line(_) => {}
-        }
-    }
-}
-
-impl SpatialElement {
-    /// The gap (m) of the contact that it is, if it is one.
-    pub fn gap<const N: usize, const D: usize>(
-        &self,
-        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
-    ) -> Option<f64> {
-        match self {
-            Self::Contact(SpatialContact::Pin(element)) => gap(element, at),
-            Self::Contact(SpatialContact::Wall(element)) => gap(element, at),
-            Self::Contact(SpatialContact::Ring(element)) => gap(element, at),
-            Self::Contour(element) => gap(element, at),
-            Self::Motor(_) | Self::Pusher(_) | Self::AtPoint(_) | Self::Line(_) => None,
-        }
-    }
-
-    /// Shows `see` the contacts that it is.
-    pub fn approach<const N: usize, const D: usize>(
-        &self,
-        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
-        see: &mut impl FnMut(Approach),
-    ) {
-        match self {
-            Self::Contact(contact) => contact.approach(at, see),
-            Self::Contour(element) => approach((element, &element.law.wall.contact.normal), at, see),
-            Self::Motor(_) | Self::Pusher(_) | Self::AtPoint(_) | Self::Line(_) => {}
-        }
-    }
-}
-
-impl<S: Scalar + PartialOrd> SpatialContact<S> {
-    /// Shows `see` the contacts that it is.
-    #[inline(always)]
-    pub fn approach<const N: usize, const D: usize>(
-        &self,
-        at: (&FreeBodies<S, N, D>, &<FreeBodies<S, N, D> as Bodies<S, D>>::Placed),
-        see: &mut impl FnMut(Approach<S>),
-    ) {
-        match self {
-            Self::Pin(element) => approach((element, &element.law.contact.normal), at, see),
-            Self::Wall(element) => approach((element, &element.law.contact.normal), at, see),
-            Self::Ring(element) => approach((element, &element.law.contact.normal), at, see),
         }
     }
 }
@@ -348,65 +273,4 @@ impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
 /// `angle` (rad) by so many turns that it is next to `last`.
 pub fn next_to(angle: f64, last: f64) -> f64 {
     angle + TAU * ((last - angle) / TAU).round()
-}
-
-impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
-    type Internal = ();
-
-    const STICKS: bool = false;
-
-    fn fresh(&self) {}
-
-    #[inline(always)]
-    fn act(
-        &self,
-        way: (S, Way<S>),
-        at: (&FreeBodies<S, N, D>, &<FreeBodies<S, N, D> as Bodies<S, D>>::Placed),
-        (): &(),
-        _: Option<&mut ()>,
-        sum: &mut impl Assembly<S, FreeBodies<S, N, D>, D>,
-    ) {
-        match self {
-            Self::Pin(element) => act(element, way, at, &[(); 2], sum),
-            Self::Wall(element) => act(element, way, at, &(), sum),
-            Self::Ring(element) => act(element, way, at, &(), sum),
-        }
-    }
-
-    fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
-
-    fn accept(&self, _: S, (): &(), (): &mut ()) {}
-}
-
-impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
-    type Internal = ();
-
-    const STICKS: bool = false;
-
-    fn fresh(&self) {}
-
-    #[inline(always)]
-    fn act(
-        &self,
-        way: (f64, Way<f64>),
-        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
-        (): &(),
-        _: Option<&mut ()>,
-        sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
-    ) {
-        match self {
-            // Those that do not stand side by side: a call from wide instructions costs more than what it does.
-            Self::Contact(contact) => contact.act(way, at, &(), None, sum),
-            // Out of line: there are few of them, and they would be compiled wherever contacts are.
-            Self::Motor(element) => act_apart(element, way, at, sum),
-            Self::Pusher(element) => act_apart(element, way, at, sum),
-            Self::AtPoint(element) => act_apart(element, way, at, sum),
-            Self::Contour(element) => act_apart(element, way, at, sum),
-            Self::Line(element) => act_apart(element, way, at, sum),
-        }
-    }
-
-    fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
-
-    fn accept(&self, _: f64, (): &(), (): &mut ()) {}
 }
