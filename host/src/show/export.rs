@@ -6,7 +6,12 @@ use slipfit_core::{clearance::GapClass, slide::ABSENT};
 use slipfit_tolerance::number::ten_digits;
 
 use crate::{
-    dynamics::{driven::DriveKind, outcome::Moment, sweep::Sweep, trajectory::Trajectory},
+    dynamics::{
+        driven::DriveKind,
+        outcome::{Moment, Outcome},
+        sweep::Sweep,
+        trajectory::Trajectory,
+    },
     mechanism::Samples,
     population::{Unit, unit::Fault},
     quality::{precision, stability},
@@ -49,21 +54,12 @@ impl<W: Write> UnitRows<W> {
     /// # Errors
     /// Those of the writer.
     pub fn new(writer: W, kind: DriveKind, gaps: &[String]) -> io::Result<Self> {
-        let figures = [
-            "unit",
-            "tightness",
-            "breakaway_s",
-            kind.choose("peak_force_N", "peak_torque_N_m"),
-            kind.choose("settled_force_N", "settled_torque_N_m"),
-            kind.choose("final_velocity_m_per_s", "final_velocity_rad_per_s"),
-            "end_s",
-            kind.choose("travel_m", "travel_rad"),
-            "verdict",
-            "at_desk",
-        ];
+        let [breakaway, peak, settled, speed, end, travel, ..] = figure_names(kind);
+        let figures = ["unit", "tightness", breakaway, peak, settled, speed, end, travel, "verdict", "at_desk"]
+            .map(str::to_owned);
         let gaps = gaps.iter().map(|name| format!("{name} (m)"));
         let mut writer = csv::Writer::from_writer(writer);
-        writer.write_record(figures.into_iter().map(str::to_owned).chain(gaps))?;
+        writer.write_record(figures.into_iter().chain(gaps))?;
         Ok(Self(writer))
     }
 
@@ -102,44 +98,51 @@ impl<W: Write> UnitRows<W> {
     }
 }
 
+/// Names of a run's figures, with their units; of a drive of this `kind`.
+pub fn figure_names(kind: DriveKind) -> [&'static str; 9] {
+    [
+        "breakaway_s",
+        kind.choose("peak_force_N", "peak_torque_N_m"),
+        kind.choose("settled_force_N", "settled_torque_N_m"),
+        kind.choose("final_velocity_m_per_s", "final_velocity_rad_per_s"),
+        "end_s",
+        kind.choose("travel_m", "travel_rad"),
+        kind.choose("tips_m", "tips_rad"),
+        kind.choose("slows_m", "slows_rad"),
+        kind.choose("stops_m", "stops_rad"),
+    ]
+}
+
+/// The figures of an `outcome` in the order of [`figure_names`], ten digits; empty where there is none.
+pub fn figures(outcome: &Outcome) -> [String; 9] {
+    let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
+    let place = |moment: Option<Moment>| optional(moment.map(|moment| moment.z));
+    [
+        optional(outcome.breakaway),
+        optional(outcome.peak_force),
+        optional(outcome.settled_force),
+        ten_digits(outcome.final_velocity),
+        ten_digits(outcome.end.t),
+        ten_digits(outcome.end.z),
+        place(outcome.tips),
+        place(outcome.slows),
+        place(outcome.stops),
+    ]
+}
+
 /// Figures and the class of each gap over n, one line a level; empty where there is none.
 ///
 /// # Errors
 /// Those of the writer, none in memory.
 pub fn sweep_csv(sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let figures = [
-        "n",
-        "breakaway_s",
-        sweep.kind.choose("peak_force_N", "peak_torque_N_m"),
-        sweep.kind.choose("settled_force_N", "settled_torque_N_m"),
-        sweep.kind.choose("final_velocity_m_per_s", "final_velocity_rad_per_s"),
-        "end_s",
-        sweep.kind.choose("travel_m", "travel_rad"),
-        sweep.kind.choose("tips_m", "tips_rad"),
-        sweep.kind.choose("slows_m", "slows_rad"),
-        sweep.kind.choose("stops_m", "stops_rad"),
-        "verdict",
-    ];
-    writer.write_record(figures.into_iter().chain(sweep.gaps.iter().map(String::as_str)))?;
+    let gaps = sweep.gaps.iter().map(String::as_str);
+    writer.write_record(["n"].into_iter().chain(figure_names(sweep.kind)).chain(["verdict"]).chain(gaps))?;
     for level in &sweep.levels {
-        let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
         let class = |class: &Option<GapClass>| class.map_or_else(String::new, |class| class.to_string());
-        let place = |moment: Option<Moment>| optional(moment.map(|moment| moment.z));
-        let figures = [
-            ten_digits(level.n),
-            optional(level.outcome.breakaway),
-            optional(level.outcome.peak_force),
-            optional(level.outcome.settled_force),
-            ten_digits(level.outcome.final_velocity),
-            ten_digits(level.outcome.end.t),
-            ten_digits(level.outcome.end.z),
-            place(level.outcome.tips),
-            place(level.outcome.slows),
-            place(level.outcome.stops),
-            level.outcome.verdict.to_string(),
-        ];
-        writer.write_record(figures.into_iter().chain(level.classes.iter().map(class)))?;
+        let verdict = level.outcome.verdict.to_string();
+        let own = [ten_digits(level.n)].into_iter().chain(figures(&level.outcome)).chain([verdict]);
+        writer.write_record(own.chain(level.classes.iter().map(class)))?;
     }
     Ok(writer.into_inner()?)
 }

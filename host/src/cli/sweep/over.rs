@@ -18,16 +18,18 @@ use crate::{
         population::words::{faults, malfunction},
         terminal::{given, print, print_json, progress, text_table, warn},
     },
-    dynamics::{
-        answer::on_the_way,
-        driven::DriveKind,
-        outcome::{Outcome, Verdict},
-        simulate::SimulateError,
+    dynamics::{answer::on_the_way, driven::DriveKind, outcome::Outcome, simulate::SimulateError},
+    population::{
+        statistics::Statistics,
+        study::Population,
+        tally::{Duty, VERDICTS},
     },
-    population::{statistics::Statistics, study::Population, tally::Duty},
     scene::{Override, parse_levels},
     setup::LevelRange,
-    show::figure::{OverKey, Swept, over_keys},
+    show::{
+        export::{figure_names, figures},
+        figure::{OverKey, Swept, over_keys},
+    },
 };
 
 /// The key that is the tolerance level.
@@ -60,8 +62,18 @@ impl Key {
     }
 }
 
+/// The scene as it was read, and the keys that are swept.
+struct Read<'a> {
+    keys: &'a [Key],
+    /// Of the file.
+    name: &'a str,
+    text: &'a str,
+    /// Options of the run as settings.
+    of_run: &'a [Override],
+}
+
 /// What a unit, or a production, does with some values of the keys.
-#[derive(Clone, Serialize)]
+#[derive(Serialize)]
 struct Point {
     /// Of each key.
     values: Vec<f64>,
@@ -97,18 +109,21 @@ impl Arguments {
         let points = combinations(&keys)?;
         self.scene.check_outputs(&given([("--csv", &self.csv), ("--plot", &self.plot)]))?;
         let level = self.level_of_points(&keys)?;
-        // Whatever is wrong at any value is told before hours of simulation.
+        // Once: it may be a stream, or change meanwhile.
+        let (name, text) = self.scene.text()?;
+        let read = Read { keys: &keys, name: &name, text: &text, of_run };
+        // Mistakes at any value are reported before hours of simulation.
         parallel::try_map(&points, |values| {
-            let (moving, _) = self.at(&keys, values, of_run)?;
+            let (moving, _) = self.at(&read, values)?;
             self.check_units(&keys, &ByOneDrive::new(&moving, &self.drive)?)
         })?;
-        let (moving, _) = self.at(&keys, &points[0], of_run)?;
+        let (moving, _) = self.at(&read, &points[0])?;
         let of = ByOneDrive::new(&moving, &self.drive)?;
         let kind = of.subject().kind();
         let bar = progress("simulating", points.len());
         let found = self.threads.install(|| {
             parallel::try_map(&points, |values| {
-                let point = self.point(&keys, values, level, of_run);
+                let point = self.point(&read, values, level);
                 bar.inc(1);
                 point
             })
@@ -157,13 +172,12 @@ impl Arguments {
     }
 
     /// What moves with these `values` of the keys.
-    fn at(&self, keys: &[Key], values: &[f64], of_run: &[Override]) -> Result<(Moving, Option<Product>), Failure> {
-        let (name, text) = self.scene.text()?;
-        let named = keys.iter().zip(values).filter(|(key, _)| key.name != LEVEL);
+    fn at(&self, read: &Read, values: &[f64]) -> Result<(Moving, Option<Product>), Failure> {
+        let named = read.keys.iter().zip(values).filter(|(key, _)| key.name != LEVEL);
         let set =
             named.map(|(key, value)| Override::assigned("--over", &format!("{}={}", key.name, ten_digits(*value))));
-        let all = self.scene.overrides(&of_run.iter().cloned().chain(set).collect::<Vec<_>>());
-        let (moving, product) = Moving::parse(&name, &text, &all)?;
+        let all = self.scene.overrides(&read.of_run.iter().cloned().chain(set).collect::<Vec<_>>());
+        let (moving, product) = Moving::parse(read.name, read.text, &all)?;
         Ok((self.of_length(moving)?, product))
     }
 
@@ -181,13 +195,13 @@ impl Arguments {
         Err(Failure::Input(format!("--units beside --over: {why}")))
     }
 
-    fn point(&self, keys: &[Key], values: &[f64], level: f64, of_run: &[Override]) -> Result<Point, Failure> {
+    fn point(&self, read: &Read, values: &[f64], level: f64) -> Result<Point, Failure> {
         if interrupt::requested() {
             return Err(SimulateError::Interrupted.into());
         }
-        let (moving, product) = self.at(keys, values, of_run)?;
+        let (moving, product) = self.at(read, values)?;
         let of = ByOneDrive::new(&moving, &self.drive)?;
-        let n = keys.iter().position(|key| key.name == LEVEL).map_or(level, |k| values[k]);
+        let n = read.keys.iter().position(|key| key.name == LEVEL).map_or(level, |k| values[k]);
         let unit = of_point(&of, n, self.controller.given())?;
         let mut warnings = of.warnings()?;
         warnings.extend(product.iter().flat_map(|product| product.warnings.iter().cloned()));
@@ -244,7 +258,7 @@ fn answer(keys: &[Key], points: &[Point]) -> String {
             let _ = writeln!(text, "{} = {values}: {}", key.name, range[0].outcome.verdict);
         }
     } else {
-        for verdict in [Verdict::Runs, Verdict::Crawls, Verdict::Jammed, Verdict::Overruns, Verdict::Undecided] {
+        for verdict in VERDICTS {
             let count = points.iter().filter(|point| point.outcome.verdict == verdict).count();
             if count > 0 {
                 let _ = writeln!(text, "{verdict} at {count} of {} combinations", points.len());
@@ -301,32 +315,15 @@ fn table(keys: &[Key], kind: DriveKind, points: &[Point]) -> String {
     text_table(&heading, &rows)
 }
 
-/// A row for every point; SI units, what is not there is empty.
+/// A row for every point in SI units; missing values are empty.
 fn csv_of(keys: &[Key], kind: DriveKind, points: &[Point]) -> anyhow::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let figures = kind.choose(
-        ["breakaway_s", "peak_n", "settled_n", "final_m_per_s", "travel_m"],
-        ["breakaway_s", "peak_n_m", "settled_n_m", "final_rad_per_s", "travel_rad"],
-    );
-    let names = keys.iter().map(|key| key.name.as_str()).filter(|name| *name != LEVEL);
-    writer.write_record(names.chain([LEVEL, "verdict"]).chain(figures).chain([
-        "units",
-        "malfunctions",
-        "undecided",
-    ]))?;
+    let names = keys.iter().map(|key| key.name.as_str()).filter(|name| *name != LEVEL).chain([LEVEL, "verdict"]);
+    writer.write_record(names.chain(figure_names(kind)).chain(["units", "malfunctions", "undecided"]))?;
     for point in points {
-        let optional = |value: Option<f64>| value.map_or(String::new(), ten_digits);
-        let Outcome { breakaway, peak_force, settled_force, final_velocity, end, verdict, .. } = point.outcome;
         let values = keys.iter().zip(&point.values).filter(|(key, _)| key.name != LEVEL);
-        let own = values.map(|(_, value)| ten_digits(*value)).chain([
-            ten_digits(point.n),
-            verdict.to_string(),
-            optional(breakaway),
-            optional(peak_force),
-            optional(settled_force),
-            ten_digits(final_velocity),
-            ten_digits(end.z),
-        ]);
+        let own = values.map(|(_, value)| ten_digits(*value));
+        let own = own.chain([ten_digits(point.n), point.outcome.verdict.to_string()]).chain(figures(&point.outcome));
         let counts =
             point.population.as_ref().map(|found| [found.units, found.malfunctions.units, found.undecided.units]);
         let counts = counts.map_or_else(Default::default, |counts| counts.map(|count| count.to_string()));
