@@ -175,7 +175,7 @@ impl<'a> ByOneDrive<'a> {
     pub fn first_to_close(&self) -> Option<(f64, String)> {
         match self {
             Self::Slide(scene) => derived(scene, 0.0).first_to_close(),
-            Self::Mechanism(driven) => driven.mechanism().first_to_close().map(|(joint, n)| (n, joint.to_string())),
+            Self::Mechanism(driven) => driven.mechanism().first_to_close().map(|(joint, n)| (n, joint)),
         }
     }
 

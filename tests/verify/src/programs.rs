@@ -23,7 +23,7 @@ pub enum Tier {
 }
 
 impl Tier {
-    /// What the program is told.
+    /// The arguments of the program.
     fn arguments(self) -> &'static [&'static str] {
         match self {
             Self::Usual => &[],

@@ -79,7 +79,7 @@ fn label(unit: &Unit) -> String {
     format!("unit {}: {}", unit.number, word(unit.outcome.verdict))
 }
 
-/// The player of `units`, one of each kind; none if there is no unit.
+/// The player of typical `units`; none if there is no unit.
 fn played(of: &ByOneDrive, production: &Production, units: &[&Unit]) -> Result<Option<Markup>, Failure> {
     let runs = parallel::try_map(units, |unit| of.played(production, unit, label(unit)))?;
     let words =
