@@ -108,9 +108,9 @@ impl<B, E> System<B, E> {
 
     /// [`forces_abreast`](Self::forces_abreast) where the machine has no lanes: the elements of each lane one after the other. The same
     /// bits, except for signs of zeros.
-    pub fn forces_by_lane<S: Scalar, R, const D: usize>(
+    pub fn forces_by_lane<S: Scalar, EL, R, const D: usize>(
         &self,
-        lanes: &[R; LANES],
+        lanes: &[EL; LANES],
         rest: &R,
         t: S,
         pose: &B::Pose,
@@ -118,6 +118,7 @@ impl<B, E> System<B, E> {
     ) -> SVector<S, D>
     where
         B: Bodies<S, D>,
+        EL: Elements<S, B, D>,
         R: Elements<S, B, D>,
     {
         let placed = self.bodies.placed(pose, velocity);
@@ -132,9 +133,9 @@ impl<B, E> System<B, E> {
     }
 
     /// [`differentiated_abreast`](Self::differentiated_abreast), likewise.
-    pub fn differentiated_by_lane<S: Scalar, R, const D: usize>(
+    pub fn differentiated_by_lane<S: Scalar, EL, R, const D: usize>(
         &self,
-        lanes: &[R; LANES],
+        lanes: &[EL; LANES],
         rest: &R,
         t: S,
         pose: &B::Pose,
@@ -142,6 +143,7 @@ impl<B, E> System<B, E> {
     ) -> Differentiated<S, JacobiansOf<S, B, D>, D>
     where
         B: Bodies<S, D>,
+        EL: Elements<S, B, D>,
         R: Elements<S, B, D>,
     {
         let placed = self.bodies.placed(pose, velocity);

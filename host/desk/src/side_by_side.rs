@@ -43,7 +43,7 @@ pub enum SideBySide<const N: usize, const D: usize> {
 
 /// The elements of each lane, and those that do not make four.
 pub struct ByLane {
-    lanes: [Vec<SpatialElement>; LANES],
+    lanes: [Vec<SpatialContact>; LANES],
     rest: Vec<SpatialElement>,
 }
 
@@ -228,10 +228,7 @@ impl ByLane {
     fn new(groups: Groups) -> Self {
         let mut lanes = array::from_fn(|_| Vec::new());
         let rest = groups.fours(|_, four| {
-            lanes
-                .iter_mut()
-                .zip(four)
-                .for_each(|(lane, contact): (&mut Vec<_>, _)| lane.push(SpatialElement::Contact(contact.clone())));
+            lanes.iter_mut().zip(four).for_each(|(lane, contact): (&mut Vec<_>, _)| lane.push(contact.clone()));
             true
         });
         Self { lanes, rest }
