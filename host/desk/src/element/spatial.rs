@@ -142,12 +142,12 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
         sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
     ) {
         match self {
-            // Those that do not stand side by side: a call from wide instructions costs more than what it does.
+            // Inlined: a call from wide instructions costs more than what these do.
             Self::Contact(contact) => contact.act(way, at, &(), None, sum),
-            // Out of line: there are few of them, and they would be compiled wherever contacts are.
-            Self::Motor(element) => act_apart(element, way, at, sum),
-            Self::Pusher(element) => act_apart(element, way, at, sum),
-            Self::AtPoint(element) => act_apart(element, way, at, sum),
+            Self::Motor(element) => act(element, way, at, &(), sum),
+            Self::Pusher(element) => act(element, way, at, &(), sum),
+            Self::AtPoint(element) => act(element, way, at, &(), sum),
+            // Out of line: seldom asked for, they would be compiled into every mechanism.
             Self::Contour(element) => act_apart(element, way, at, sum),
             Self::Line(element) => act_apart(element, way, at, sum),
         }
